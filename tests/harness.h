@@ -1,0 +1,88 @@
+/* A small test harness. TEST(name) registers itself; CHECK and friends report and count. A test's name is its claim.
+ * Run: build/CONFIG/tests [-j N] [pattern ...]; the last line is "N passed, N failed, N skipped". Every test runs in a
+ * process of its own with a time limit, so that a crash or a hang is one failed test. */
+#ifndef GRAY_TESTS_HARNESS_H
+#define GRAY_TESTS_HARNESS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct test {
+    const char *name, *file;
+    void (*run)(void);
+    bool is_long; /* only run by make test-long */
+    struct test *next;
+};
+void test_register(struct test *test);
+
+#define TEST_DEFINE(test_name, long_flag)                                                                              \
+    static void test_name(void);                                                                                       \
+    static struct test test_entry_##test_name = {#test_name, __FILE__, test_name, long_flag, NULL};                    \
+    __attribute__((constructor)) static void test_enter_##test_name(void) {                                            \
+        test_register(&test_entry_##test_name);                                                                        \
+    }                                                                                                                  \
+    static void test_name(void)
+#define TEST(test_name) TEST_DEFINE(test_name, false)
+#define TEST_LONG(test_name) TEST_DEFINE(test_name, true)
+
+void test_fail(const char *file, int line, const char *format, ...) __attribute__((format(printf, 3, 4)));
+_Noreturn void test_skip(const char *format, ...) __attribute__((format(printf, 1, 2))); /* ends this test as skipped */
+
+#define CHECK(condition)                                                                                               \
+    do {                                                                                                               \
+        if (!(condition))                                                                                              \
+            test_fail(__FILE__, __LINE__, "%s", #condition);                                                           \
+    } while (0)
+#define CHECK_NEAR(a, b, tolerance)                                                                                    \
+    do {                                                                                                               \
+        double check_a = (double)(a), check_b = (double)(b), check_t = (double)(tolerance);                            \
+        double check_d = check_a > check_b ? check_a - check_b : check_b - check_a;                                    \
+        if (!(check_d <= check_t))                                                                                     \
+            test_fail(__FILE__, __LINE__, "%s = %.17g, %s = %.17g, differ by %g > %g", #a, check_a, #b, check_b,       \
+                      check_d, check_t);                                                                               \
+    } while (0)
+#define CHECK_EQ_INT(a, b)                                                                                             \
+    do {                                                                                                               \
+        long long check_a = (long long)(a), check_b = (long long)(b);                                                  \
+        if (check_a != check_b)                                                                                        \
+            test_fail(__FILE__, __LINE__, "%s = %lld, %s = %lld", #a, check_a, #b, check_b);                           \
+    } while (0)
+#define CHECK_TEXT(a, b)                                                                                               \
+    do {                                                                                                               \
+        const char *check_a = (a), *check_b = (b);                                                                     \
+        if (!check_a || !check_b || __builtin_strcmp(check_a, check_b) != 0)                                           \
+            test_fail(__FILE__, __LINE__, "%s is \"%s\", not \"%s\"", #a, check_a ? check_a : "(null)",                \
+                      check_b ? check_b : "(null)");                                                                   \
+    } while (0)
+
+/* A fresh empty folder for this test, removed when the test passes; the working directory stays the repository root. */
+const char *test_folder(void);
+void test_write_file(const char *path, const void *data, size_t size);
+void test_write_text(const char *path, const char *text);
+/* Whole file, NUL-terminated, from malloc; NULL when it cannot be read. */
+char *test_read_file(const char *path, size_t *size);
+
+/* Runs ./gray (of this config) in `folder` (NULL: test_folder()) with the words of `arguments` (split at blanks, no
+ * quoting) and waits at most `seconds`. out and err are NUL-terminated, from malloc. */
+struct test_result {
+    int status; /* exit status, or 128 + signal */
+    char *out, *err;
+};
+struct test_result test_gray(const char *folder, const char *arguments);
+/* The same with an environment addition "NAME=value" (or NULL) and a scene text written to scene.lua first (or NULL). */
+struct test_result test_gray_scene(const char *scene_text, const char *arguments, const char *environment);
+
+/* A picture read back through libpng: 8-bit RGB. */
+struct test_picture {
+    uint32_t width, height;
+    uint8_t *rgb;
+};
+struct test_picture test_read_picture(const char *path);
+/* Deterministic random numbers for tests. */
+struct test_random {
+    uint64_t state;
+};
+double test_uniform(struct test_random *random, double lo, double hi);
+
+#endif
