@@ -1,0 +1,239 @@
+/* Files. Everything that leaves a name in a folder goes through struct file_output: the temporary file stands beside the
+ * target (a rename works only inside one file system) and is named after the process, so that two runs cannot mix. */
+#define _GNU_SOURCE
+#include "base/file.h"
+
+#include "base/mem.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+bool file_map(const char *path, size_t limit, struct file_bytes *out, struct error *error) {
+    *out = (struct file_bytes){0};
+    /* O_NONBLOCK: opening a named pipe must not wait for a writer. */
+    int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (descriptor < 0)
+        return error_set(error, ERROR_SCENE, "%s: cannot be read: %s", path, strerror(errno));
+    struct stat status;
+    bool ok = false;
+    if (fstat(descriptor, &status) != 0) {
+        error_set(error, ERROR_SCENE, "%s: cannot be read: %s", path, strerror(errno));
+    } else if (!S_ISREG(status.st_mode)) {
+        error_set(error, ERROR_SCENE, "%s: is %s, not a regular file", path,
+                  S_ISDIR(status.st_mode) ? "a folder" : "a pipe or device");
+    } else if ((uint64_t)status.st_size > limit) {
+        error_set(error, ERROR_SCENE, "%s: %lld bytes are more than the limit of %zu", path, (long long)status.st_size,
+                  limit);
+    } else if (status.st_size == 0) {
+        out->data = (const uint8_t *)"";
+        ok = true;
+    } else {
+        /* A private copy rather than a mapping: a file that shrinks while it is mapped would kill the process. */
+        size_t size = (size_t)status.st_size, have = 0;
+        uint8_t *data = mem_alloc(size);
+        if (!data) {
+            (void)close(descriptor);
+            return error_no_memory(error, path);
+        }
+        while (have < size) {
+            ssize_t got = read(descriptor, data + have, size - have);
+            if (got < 0 && errno == EINTR)
+                continue;
+            if (got <= 0)
+                break;
+            have += (size_t)got;
+        }
+        ok = have == size;
+        if (!ok) {
+            error_set(error, ERROR_SCENE, "%s: ended after %zu of %zu bytes while it was read", path, have, size);
+            mem_free(data);
+        } else {
+            out->data = data;
+            out->size = size;
+        }
+    }
+    (void)close(descriptor);
+    return ok;
+}
+
+void file_unmap(struct file_bytes *bytes) {
+    if (bytes->size)
+        mem_free((void *)(uintptr_t)bytes->data);
+    *bytes = (struct file_bytes){0};
+}
+
+bool file_is_regular(const char *path) {
+    struct stat status;
+    return stat(path, &status) == 0 && S_ISREG(status.st_mode);
+}
+
+bool file_is_folder(const char *path) {
+    struct stat status;
+    return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
+}
+
+bool file_canonical(const char *path, char *out, size_t size) {
+    char resolved[PATH_MAX];
+    if (!realpath(path, resolved) || strlen(resolved) >= size)
+        return false;
+    memcpy(out, resolved, strlen(resolved) + 1);
+    return true;
+}
+
+bool file_make_folders_for(const char *path, struct error *error) {
+    char folder[4096];
+    size_t length = strlen(path);
+    if (length >= sizeof folder)
+        return error_set(error, ERROR_SCENE, "%.100s...: the file name is longer than %zu bytes", path,
+                         sizeof folder - 1);
+    memcpy(folder, path, length + 1);
+    for (char *at = folder + 1; (at = strchr(at, '/')) != NULL; at++) {
+        *at = '\0';
+        if (mkdir(folder, 0777) != 0 && errno != EEXIST)
+            return error_set(error, ERROR_MACHINE, "%s: the folder %s cannot be made: %s", path, folder, strerror(errno));
+        *at = '/';
+    }
+    return true;
+}
+
+static int compare_names(const void *a, const void *b) {
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+bool file_list(const char *folder, size_t limit, bool (*fn)(void *context, const char *name), void *context) {
+    DIR *stream = opendir(folder);
+    if (!stream)
+        return false;
+    char **names = mem_alloc_zero(limit ? limit : 1, sizeof *names);
+    size_t count = 0;
+    for (struct dirent *entry; names && count < limit && (entry = readdir(stream)) != NULL;) {
+        size_t length = strlen(entry->d_name);
+        if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0)
+            continue;
+        names[count] = mem_alloc(length + 1);
+        if (!names[count])
+            break;
+        memcpy(names[count++], entry->d_name, length + 1);
+    }
+    (void)closedir(stream);
+    if (names)
+        qsort(names, count, sizeof *names, compare_names);
+    bool go_on = names != NULL;
+    for (size_t i = 0; i < count; i++) {
+        go_on = go_on && fn(context, names[i]);
+        mem_free(names[i]);
+    }
+    mem_free(names);
+    return true;
+}
+
+static bool is_direct_target(const char *target) {
+    struct stat status;
+    return strcmp(target, "-") == 0 ||
+           (stat(target, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode));
+}
+
+bool file_output_open(struct file_output *file, const char *target, struct error *error) {
+    memset(file, 0, sizeof *file);
+    if (target[0] == '\0')
+        return error_set(error, ERROR_SCENE, "the name of the output file is empty");
+    if (strlen(target) >= sizeof file->target)
+        return error_set(error, ERROR_SCENE, "%.100s...: the file name is longer than %zu bytes", target,
+                         sizeof file->target - 1);
+    memcpy(file->target, target, strlen(target) + 1);
+    if (file_is_folder(target))
+        return error_set(error, ERROR_SCENE, "%s: is a folder, a picture cannot be written there", target);
+    file->direct = is_direct_target(target);
+    if (file->direct) {
+        file->descriptor = strcmp(target, "-") == 0 ? dup(STDOUT_FILENO) : open(target, O_WRONLY | O_CLOEXEC);
+    } else {
+        if (!file_make_folders_for(target, error))
+            return false;
+        (void)snprintf(file->temporary, sizeof file->temporary, "%s.part-%ld", target, (long)getpid());
+        file->descriptor = open(file->temporary, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
+    }
+    if (file->descriptor < 0)
+        return error_set(error, ERROR_MACHINE, "%s: cannot be written: %s", target, strerror(errno));
+    file->open = true;
+    return true;
+}
+
+bool file_output_write(struct file_output *file, const void *data, size_t size, struct error *error) {
+    const char *at = data;
+    while (size > 0) {
+        ssize_t done = write(file->descriptor, at, size);
+        if (done < 0 && errno == EINTR)
+            continue;
+        if (done <= 0)
+            return error_set(error, ERROR_MACHINE, "%s: cannot be written: %s", file->target, strerror(errno));
+        at += done;
+        size -= (size_t)done;
+        file->written += (uint64_t)done;
+    }
+    return true;
+}
+
+/* The rename is on disk only when the folder is. Some file systems refuse to sync a folder; that is no loss of ours. */
+static void sync_folder_of(const char *target) {
+    char folder[4096];
+    const char *slash = strrchr(target, '/');
+    size_t length = slash ? (size_t)(slash - target) : 0;
+    if (!slash)
+        memcpy(folder, ".", 2);
+    else if (length == 0)
+        memcpy(folder, "/", 2);
+    else {
+        memcpy(folder, target, length);
+        folder[length] = '\0';
+    }
+    int descriptor = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor >= 0) {
+        (void)fsync(descriptor);
+        (void)close(descriptor);
+    }
+}
+
+bool file_output_commit(struct file_output *file, struct error *error) {
+    bool ok = true;
+    struct stat status;
+    if (!file->direct) {
+        if (stat(file->target, &status) == 0)
+            (void)fchmod(file->descriptor, status.st_mode & 07777);
+        ok = fsync(file->descriptor) == 0;
+    }
+    int saved = errno;
+    if (close(file->descriptor) != 0 && ok) {
+        ok = false;
+        saved = errno;
+    }
+    file->open = false;
+    if (!file->direct && ok && rename(file->temporary, file->target) != 0) {
+        ok = false;
+        saved = errno;
+    }
+    if (!ok) {
+        if (!file->direct)
+            (void)unlink(file->temporary);
+        return error_set(error, ERROR_MACHINE, "%s: cannot be written: %s", file->target, strerror(saved));
+    }
+    if (!file->direct)
+        sync_folder_of(file->target);
+    return true;
+}
+
+void file_output_abandon(struct file_output *file) {
+    if (!file->open)
+        return;
+    (void)close(file->descriptor);
+    file->open = false;
+    if (!file->direct)
+        (void)unlink(file->temporary);
+}

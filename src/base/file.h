@@ -1,0 +1,45 @@
+/* The only place that opens, maps or renames files. Reading takes whole files (mapped), writing puts a temporary file
+ * beside the target, syncs it and renames it, so that an old file stays until the new one is whole. */
+#ifndef GRAY_BASE_FILE_H
+#define GRAY_BASE_FILE_H
+
+#include "base/error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* A whole file in memory, read-only. Owner: whoever called file_map; file_unmap gives it back. */
+struct file_bytes {
+    const uint8_t *data;
+    size_t size;
+};
+
+/* Maps a regular file; an empty file gives size 0. A pipe or device is refused as "not a regular file".
+ * A file larger than `limit` bytes is an error. Errors name the path. */
+bool file_map(const char *path, size_t limit, struct file_bytes *out, struct error *error);
+void file_unmap(struct file_bytes *bytes);
+
+bool file_is_regular(const char *path);
+bool file_is_folder(const char *path);
+/* The canonical absolute path (realpath) into out; false when it does not exist or does not fit. */
+bool file_canonical(const char *path, char *out, size_t size);
+/* mkdir -p of the folder part of `path`. */
+bool file_make_folders_for(const char *path, struct error *error);
+/* Calls fn for every entry name of a folder in byte order, at most `limit` entries; stops early when fn returns false. */
+bool file_list(const char *folder, size_t limit, bool (*fn)(void *context, const char *name), void *context);
+
+/* A file being written. Zero value = closed. After file_output_open either commit or abandon must follow. */
+struct file_output {
+    int descriptor;
+    bool open, direct; /* direct: target is a pipe, a device or "-" and is written in place */
+    uint64_t written;
+    char target[4096], temporary[4096 + 32];
+};
+bool file_output_open(struct file_output *file, const char *target, struct error *error); /* makes missing folders */
+bool file_output_write(struct file_output *file, const void *data, size_t size, struct error *error);
+/* fsync, rename over the target (mode bits of an existing file are kept), fsync of the folder. */
+bool file_output_commit(struct file_output *file, struct error *error);
+void file_output_abandon(struct file_output *file); /* removes the temporary file; fine on a closed one */
+
+#endif

@@ -1,0 +1,192 @@
+/* The pool: threads sleep on a condition until a run begins; then everybody, the caller too, claims items from one atomic
+ * counter until none is left. The run is over when the last worker that joined it has left. */
+#include "base/pool.h"
+
+#include "base/mem.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { POOL_LIMIT = 1024 };
+
+struct pool_thread {
+    struct pool *pool;
+    pthread_t thread;
+    int worker;
+};
+
+struct pool {
+    pthread_mutex_t mutex;
+    pthread_cond_t start, finish;
+    uint64_t generation; /* counts runs; a thread joins each once */
+    int active;          /* threads still inside the current run */
+    bool stop;
+    pool_function *fn;
+    void *context;
+    uint32_t count;
+    _Atomic uint64_t next;
+    _Atomic bool cancelled;
+    void (*poll)(void *context);
+    void *poll_context;
+    int workers;
+    struct pool_thread *threads; /* workers - 1 of them */
+};
+
+static double seconds_now(void) {
+    struct timespec now;
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static void work(struct pool *pool, int worker) {
+    double polled = 0;
+    for (;;) {
+        if (worker == 0 && pool->poll) {
+            double now = seconds_now();
+            if (now - polled >= 0.005) {
+                pool->poll(pool->poll_context);
+                polled = now;
+            }
+        }
+        if (atomic_load_explicit(&pool->cancelled, memory_order_relaxed))
+            return;
+        uint64_t item = atomic_fetch_add_explicit(&pool->next, 1, memory_order_relaxed);
+        if (item >= pool->count)
+            return;
+        pool->fn(pool->context, (uint32_t)item, worker);
+    }
+}
+
+static void *thread_main(void *argument) {
+    struct pool_thread *self = argument;
+    struct pool *pool = self->pool;
+    uint64_t seen = 0;
+    (void)pthread_mutex_lock(&pool->mutex);
+    for (;;) {
+        while (!pool->stop && pool->generation == seen)
+            (void)pthread_cond_wait(&pool->start, &pool->mutex);
+        if (pool->stop)
+            break;
+        seen = pool->generation;
+        (void)pthread_mutex_unlock(&pool->mutex);
+        work(pool, self->worker);
+        (void)pthread_mutex_lock(&pool->mutex);
+        if (--pool->active == 0)
+            (void)pthread_cond_signal(&pool->finish);
+    }
+    (void)pthread_mutex_unlock(&pool->mutex);
+    return NULL;
+}
+
+struct pool *pool_create(int threads, char warning[256]) {
+    warning[0] = '\0';
+    long online = sysconf(_SC_NPROCESSORS_ONLN);
+    int wanted = threads > 0 ? threads : online > 0 ? (int)online : 1;
+    if (wanted > POOL_LIMIT)
+        wanted = POOL_LIMIT;
+    struct pool *pool = mem_alloc_zero(1, sizeof *pool);
+    if (!pool)
+        return NULL;
+    pool->threads = mem_alloc_zero((size_t)wanted, sizeof *pool->threads);
+    if (!pool->threads) {
+        mem_free(pool);
+        return NULL;
+    }
+    (void)pthread_mutex_init(&pool->mutex, NULL);
+    (void)pthread_cond_init(&pool->start, NULL);
+    (void)pthread_cond_init(&pool->finish, NULL);
+    pool->workers = 1;
+    for (int i = 0; i < wanted - 1; i++) {
+        pool->threads[i] = (struct pool_thread){.pool = pool, .worker = i + 1};
+        int failure = pthread_create(&pool->threads[i].thread, NULL, thread_main, &pool->threads[i]);
+        if (failure != 0) {
+            (void)snprintf(warning, 256, "only %d of %d threads could be started: %s", pool->workers, wanted,
+                           strerror(failure));
+            break;
+        }
+        pool->workers++;
+    }
+    return pool;
+}
+
+void pool_destroy(struct pool *pool) {
+    if (!pool)
+        return;
+    (void)pthread_mutex_lock(&pool->mutex);
+    pool->stop = true;
+    (void)pthread_cond_broadcast(&pool->start);
+    (void)pthread_mutex_unlock(&pool->mutex);
+    for (int i = 0; i < pool->workers - 1; i++)
+        (void)pthread_join(pool->threads[i].thread, NULL);
+    (void)pthread_cond_destroy(&pool->finish);
+    (void)pthread_cond_destroy(&pool->start);
+    (void)pthread_mutex_destroy(&pool->mutex);
+    mem_free(pool->threads);
+    mem_free(pool);
+}
+
+int pool_workers(const struct pool *pool) {
+    return pool->workers;
+}
+
+bool pool_run(struct pool *pool, uint32_t count, pool_function *fn, void *context) {
+    /* One item is not worth waking anybody. */
+    bool alone = pool->workers == 1 || count <= 1;
+    (void)pthread_mutex_lock(&pool->mutex);
+    pool->fn = fn;
+    pool->context = context;
+    pool->count = count;
+    atomic_store_explicit(&pool->next, 0, memory_order_relaxed);
+    if (!alone) {
+        pool->active = pool->workers - 1;
+        pool->generation++;
+        (void)pthread_cond_broadcast(&pool->start);
+    }
+    (void)pthread_mutex_unlock(&pool->mutex);
+    work(pool, 0);
+    if (!alone) {
+        (void)pthread_mutex_lock(&pool->mutex);
+        while (pool->active > 0) {
+            if (!pool->poll) {
+                (void)pthread_cond_wait(&pool->finish, &pool->mutex);
+                continue;
+            }
+            /* Others still work on long items: keep polling for a wish to stop. */
+            struct timespec until;
+            (void)clock_gettime(CLOCK_REALTIME, &until);
+            until.tv_nsec += 5000000;
+            if (until.tv_nsec >= 1000000000) {
+                until.tv_nsec -= 1000000000;
+                until.tv_sec++;
+            }
+            if (pthread_cond_timedwait(&pool->finish, &pool->mutex, &until) != 0) {
+                (void)pthread_mutex_unlock(&pool->mutex);
+                pool->poll(pool->poll_context);
+                (void)pthread_mutex_lock(&pool->mutex);
+            }
+        }
+        (void)pthread_mutex_unlock(&pool->mutex);
+    }
+    return !pool_cancelled(pool);
+}
+
+void pool_cancel(struct pool *pool) {
+    atomic_store_explicit(&pool->cancelled, true, memory_order_relaxed);
+}
+
+void pool_reset_cancel(struct pool *pool) {
+    atomic_store_explicit(&pool->cancelled, false, memory_order_relaxed);
+}
+
+bool pool_cancelled(const struct pool *pool) {
+    return atomic_load_explicit(&pool->cancelled, memory_order_relaxed);
+}
+
+void pool_set_poll(struct pool *pool, void (*poll)(void *context), void *context) {
+    pool->poll = poll;
+    pool->poll_context = context;
+}

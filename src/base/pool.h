@@ -1,0 +1,32 @@
+/* A blocking parallel-for on pthreads. The caller works too (worker 0); items are claimed with an atomic counter.
+ * Cancelling makes the remaining items be skipped: the functions themselves poll pool_cancelled in long items.
+ * Results must not depend on which worker ran an item. */
+#ifndef GRAY_BASE_POOL_H
+#define GRAY_BASE_POOL_H
+
+#include "base/error.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct pool;
+
+/* threads: 1..1024 in all, the caller included; 0 = one per online processor. Fewer threads than asked for are used
+ * (and *warning set to a sentence, else "") when the system refuses to start some. NULL only without memory. */
+struct pool *pool_create(int threads, char warning[256]);
+void pool_destroy(struct pool *pool);
+int pool_workers(const struct pool *pool); /* worker indices are 0 .. pool_workers - 1 */
+
+typedef void pool_function(void *context, uint32_t item, int worker);
+/* Runs fn for items 0 .. count-1 and returns when all are done or skipped; false if it was cancelled. A pool of one
+ * thread runs them in order. Not reentrant: an item must not call pool_run on the same pool. */
+bool pool_run(struct pool *pool, uint32_t count, pool_function *fn, void *context);
+
+/* Async-signal-safe and thread-safe. The flag stays until pool_reset_cancel. */
+void pool_cancel(struct pool *pool);
+void pool_reset_cancel(struct pool *pool);
+bool pool_cancelled(const struct pool *pool);
+/* Called (from worker 0's thread, every 10 ms or so while it works) during pool_run; may call pool_cancel. */
+void pool_set_poll(struct pool *pool, void (*poll)(void *context), void *context);
+
+#endif

@@ -1,0 +1,7 @@
+/* The version number, in this one place. */
+#ifndef GRAY_BASE_VERSION_H
+#define GRAY_BASE_VERSION_H
+
+#define GRAY_VERSION "0.1.0"
+
+#endif
