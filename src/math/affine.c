@@ -1,0 +1,131 @@
+/* Affine maps. Rotations by multiples of 90 degrees use exact sines; others use math/elementary.h. */
+#include "math/affine.h"
+
+#include "math/elementary.h"
+
+struct affine affine_identity(void) {
+    return (struct affine){{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+}
+
+struct affine affine_compose(const struct affine *outer, const struct affine *inner) {
+    struct affine out;
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 4; j++) {
+            out.m[i][j] = outer->m[i][0] * inner->m[0][j] + outer->m[i][1] * inner->m[1][j] +
+                          outer->m[i][2] * inner->m[2][j] + (j == 3 ? outer->m[i][3] : 0);
+        }
+    }
+    return out;
+}
+
+double affine_determinant(const struct affine *a) {
+    return a->m[0][0] * (a->m[1][1] * a->m[2][2] - a->m[1][2] * a->m[2][1]) -
+           a->m[0][1] * (a->m[1][0] * a->m[2][2] - a->m[1][2] * a->m[2][0]) +
+           a->m[0][2] * (a->m[1][0] * a->m[2][1] - a->m[1][1] * a->m[2][0]);
+}
+
+struct transform transform_identity(void) {
+    return (struct transform){affine_identity(), affine_identity()};
+}
+
+struct transform transform_compose(const struct transform *outer, const struct transform *inner) {
+    return (struct transform){affine_compose(&outer->forward, &inner->forward),
+                              affine_compose(&inner->inverse, &outer->inverse)};
+}
+
+struct transform transform_invert(const struct transform *t) {
+    return (struct transform){t->inverse, t->forward};
+}
+
+struct transform transform_translate(struct vec3 by) {
+    struct transform out = transform_identity();
+    out.forward.m[0][3] = by.x;
+    out.forward.m[1][3] = by.y;
+    out.forward.m[2][3] = by.z;
+    out.inverse.m[0][3] = -by.x;
+    out.inverse.m[1][3] = -by.y;
+    out.inverse.m[2][3] = -by.z;
+    return out;
+}
+
+struct transform transform_scale(struct vec3 factors) {
+    struct transform out = transform_identity();
+    out.forward.m[0][0] = factors.x;
+    out.forward.m[1][1] = factors.y;
+    out.forward.m[2][2] = factors.z;
+    out.inverse.m[0][0] = 1 / factors.x;
+    out.inverse.m[1][1] = 1 / factors.y;
+    out.inverse.m[2][2] = 1 / factors.z;
+    return out;
+}
+
+static void sine_cosine(double degrees, double *sine, double *cosine) {
+    double turned = fmod(degrees, 360); /* exact */
+    double quarters = turned / 90;
+    if (quarters == floor(quarters)) {
+        static const double table[4] = {0, 1, 0, -1};
+        int k = ((int)quarters + 4) & 3;
+        *sine = table[k];
+        *cosine = table[(k + 1) & 3];
+        return;
+    }
+    el_sincos(turned * (3.14159265358979323846 / 180), sine, cosine);
+}
+
+struct transform transform_rotate(int axis, double degrees) {
+    double s, c;
+    sine_cosine(degrees, &s, &c);
+    int a = (axis + 1) % 3, b = (axis + 2) % 3;
+    struct transform out = transform_identity();
+    out.forward.m[a][a] = c;
+    out.forward.m[a][b] = -s;
+    out.forward.m[b][a] = s;
+    out.forward.m[b][b] = c;
+    out.inverse.m[a][a] = c;
+    out.inverse.m[a][b] = s;
+    out.inverse.m[b][a] = -s;
+    out.inverse.m[b][b] = c;
+    return out;
+}
+
+struct transform transform_rotate_about(struct vec3 axis, double degrees) {
+    double s, c;
+    sine_cosine(degrees, &s, &c);
+    struct vec3 k = vec3_normalize(axis);
+    double n = 1 - c;
+    struct transform out = transform_identity();
+    out.forward = (struct affine){{{c + k.x * k.x * n, k.x * k.y * n - k.z * s, k.x * k.z * n + k.y * s, 0},
+                                   {k.y * k.x * n + k.z * s, c + k.y * k.y * n, k.y * k.z * n - k.x * s, 0},
+                                   {k.z * k.x * n - k.y * s, k.z * k.y * n + k.x * s, c + k.z * k.z * n, 0}}};
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            out.inverse.m[i][j] = out.forward.m[j][i];
+    }
+    return out;
+}
+
+bool transform_from_affine(const struct affine *forward, struct transform *out) {
+    double determinant = affine_determinant(forward);
+    if (!isfinite(determinant) || determinant == 0)
+        return false;
+    const double(*m)[4] = forward->m;
+    out->forward = *forward;
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            int a = (j + 1) % 3, b = (j + 2) % 3, c = (i + 1) % 3, d = (i + 2) % 3;
+            out->inverse.m[i][j] = (m[a][c] * m[b][d] - m[a][d] * m[b][c]) / determinant;
+        }
+        out->inverse.m[i][3] = 0;
+    }
+    struct vec3 moved = affine_vector(&out->inverse, vec3_make(m[0][3], m[1][3], m[2][3]));
+    out->inverse.m[0][3] = -moved.x;
+    out->inverse.m[1][3] = -moved.y;
+    out->inverse.m[2][3] = -moved.z;
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 4; j++) {
+            if (!isfinite(out->inverse.m[i][j]))
+                return false;
+        }
+    }
+    return true;
+}

@@ -1,0 +1,41 @@
+/* Elementary functions with the same bits on every x86-64: the only ones allowed on the way to a pixel.
+ *
+ * libm chooses between variants by processor (with and without FMA), and their last bits differ. These use + - * / and
+ * square root in double precision, rounding to nearest, and integer operations, nothing else.
+ *
+ * Errors are below 1 unit in the last place (el_tanh, el_expm1, el_cosh and el_sinh included; tests/unit/
+ * test_elementary.c measures them), results in the subnormal range included. Special cases follow C11 Annex F: NaN,
+ * infinities, signed zeros. A domain error gives a positive quiet NaN. errno is never touched; flags are unspecified.
+ * Angles are in radians, of any size. */
+#ifndef GRAY_MATH_ELEMENTARY_H
+#define GRAY_MATH_ELEMENTARY_H
+
+double el_sin(double x);
+double el_cos(double x);
+void el_sincos(double x, double *sine, double *cosine);
+double el_tan(double x);
+double el_asin(double x);
+double el_acos(double x);
+double el_atan(double x);
+double el_atan2(double y, double x);
+
+double el_exp(double x);
+double el_exp2(double x);
+double el_expm1(double x);
+double el_log(double x);
+double el_log2(double x);
+double el_log10(double x);
+double el_log1p(double x);
+double el_pow(double x, double y);
+
+double el_sinh(double x);
+double el_cosh(double x);
+double el_tanh(double x);
+
+double el_cbrt(double x);
+/* sqrt(x^2 + y^2) without needless overflow or underflow. */
+double el_hypot(double x, double y);
+/* x - trunc(x / y) * y, exact. */
+double el_fmod(double x, double y);
+
+#endif

@@ -1,0 +1,127 @@
+/* Gradient noise: each lattice point owns one of 16 gradients (the 12 edge directions of a cube, four of them twice),
+ * chosen by a permutation of 0..255; the eight corners' ramps are blended by a fade curve without first and second
+ * derivative at the corners. Ken Perlin, "Improving Noise", SIGGRAPH 2002; the permutation is the one published with
+ * it, since the pictures depend on it.
+ *
+ * Invariant: only the lattice cell modulo 256 and the place inside the cell matter, and both are exact for every finite
+ * double, so huge coordinates need no undefined conversion. */
+#include "math/noise.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "math/elementary.h"
+
+static const double pi = 0x1.921fb54442d18p+1;
+
+static const uint8_t permutation[256] = {
+    151, 160, 137, 91,  90,  15,  131, 13,  201, 95,  96,  53,  194, 233, 7,   225, 140, 36,  103, 30,  69,  142,
+    8,   99,  37,  240, 21,  10,  23,  190, 6,   148, 247, 120, 234, 75,  0,   26,  197, 62,  94,  252, 219, 203,
+    117, 35,  11,  32,  57,  177, 33,  88,  237, 149, 56,  87,  174, 20,  125, 136, 171, 168, 68,  175, 74,  165,
+    71,  134, 139, 48,  27,  166, 77,  146, 158, 231, 83,  111, 229, 122, 60,  211, 133, 230, 220, 105, 92,  41,
+    55,  46,  245, 40,  244, 102, 143, 54,  65,  25,  63,  161, 1,   216, 80,  73,  209, 76,  132, 187, 208, 89,
+    18,  169, 200, 196, 135, 130, 116, 188, 159, 86,  164, 100, 109, 198, 173, 186, 3,   64,  52,  217, 226, 250,
+    124, 123, 5,   202, 38,  147, 118, 126, 255, 82,  85,  212, 207, 206, 59,  227, 47,  16,  58,  17,  182, 189,
+    28,  42,  223, 183, 170, 213, 119, 248, 152, 2,   44,  154, 163, 70,  221, 153, 101, 155, 167, 43,  172, 9,
+    129, 22,  39,  253, 19,  98,  108, 110, 79,  113, 224, 232, 178, 185, 112, 104, 218, 246, 97,  228, 251, 34,
+    242, 193, 238, 210, 144, 12,  191, 179, 162, 241, 81,  51,  145, 235, 249, 14,  239, 107, 49,  192, 214, 31,
+    181, 199, 106, 157, 184, 84,  204, 176, 115, 121, 50,  45,  127, 4,   150, 254, 138, 236, 205, 93,  222, 114,
+    67,  29,  24,  72,  243, 141, 128, 195, 78,  66,  215, 61,  156, 180,
+};
+
+/* The cell modulo 256 and the place in it. */
+static inline double cell_of(double x, unsigned *cell) {
+    if (fabs(x) < 0x1.0p62) {
+        int64_t whole = (int64_t)x; /* towards zero; one more step down for negative fractions */
+        if ((double)whole > x) {
+            whole--;
+        }
+        *cell = (unsigned)(whole & 255);
+        return x - (double)whole;
+    }
+    double turn = fmod(x, 256.0); /* exact; x is an integer */
+    *cell = (unsigned)(int)(turn < 0.0 ? turn + 256.0 : turn);
+    return 0.0;
+}
+
+static inline unsigned hash(unsigned i) {
+    return permutation[i & 255];
+}
+
+static inline double fade(double t) {
+    return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+}
+
+/* The 12 edge directions of a cube, four of them twice, in the order of the published program. */
+static const double gradients[16][3] = {
+    {1, 1, 0}, {-1, 1, 0}, {1, -1, 0}, {-1, -1, 0}, {1, 0, 1}, {-1, 0, 1}, {1, 0, -1}, {-1, 0, -1},
+    {0, 1, 1}, {0, -1, 1}, {0, 1, -1}, {0, -1, -1}, {1, 1, 0}, {0, -1, 1}, {-1, 1, 0}, {0, -1, -1},
+};
+
+/* The gradient times the offset. Products with 1 and 0 are exact, so this is the reference's choice of signed summands
+ * without its branches, which no processor could predict. */
+static inline double ramp(unsigned h, double x, double y, double z) {
+    const double *g = gradients[h & 15];
+    return g[0] * x + g[1] * y + g[2] * z;
+}
+
+static inline double mix(double weight, double a, double b) {
+    return a + weight * (b - a);
+}
+
+static double cosine_weight(double t) {
+    return (1.0 - el_cos(pi * t)) / 2.0;
+}
+
+double noise_cosine_mix(double t, double a, double b) {
+    return mix(cosine_weight(t), a, b);
+}
+
+double noise_perlin(double x, double y, double z, int interpolation) {
+    if (!isfinite(x) || !isfinite(y) || !isfinite(z))
+        return 0.0;
+    unsigned i, j, k;
+    x = cell_of(x, &i);
+    y = cell_of(y, &j);
+    z = cell_of(z, &k);
+    double u = fade(x), v = fade(y), w = fade(z);
+    if (interpolation != 0) {
+        /* The blend differs from the linear one only in its weight. */
+        u = cosine_weight(u);
+        v = cosine_weight(v);
+        w = cosine_weight(w);
+    }
+    unsigned a = hash(i) + j, aa = hash(a) + k, ab = hash(a + 1) + k;
+    unsigned b = hash(i + 1) + j, ba = hash(b) + k, bb = hash(b + 1) + k;
+    double near_low = mix(u, ramp(hash(aa), x, y, z), ramp(hash(ba), x - 1, y, z));
+    double near_high = mix(u, ramp(hash(ab), x, y - 1, z), ramp(hash(bb), x - 1, y - 1, z));
+    double far_low = mix(u, ramp(hash(aa + 1), x, y, z - 1), ramp(hash(ba + 1), x - 1, y, z - 1));
+    double far_high = mix(u, ramp(hash(ab + 1), x, y - 1, z - 1), ramp(hash(bb + 1), x - 1, y - 1, z - 1));
+    return mix(w, mix(v, near_low, near_high), mix(v, far_low, far_high));
+}
+
+/* Rounding may leave [0, 1] by a last bit, NaN leaves it altogether. */
+static double share(double ratio) {
+    if (!(ratio < 1.0))
+        return 1.0;
+    return ratio > 0.0 ? ratio : 0.0;
+}
+
+double noise_wood(double x, double y, double z, double factor, double density, int interpolation) {
+    double t = density * noise_perlin(factor * x, factor * y, factor * z, interpolation);
+    t -= floor(t);
+    return share(noise_cosine_mix(0.5 + 0.5 * t, 0.0, 1.0));
+}
+
+double noise_marble(double x, double y, double z, double factor, double multiplier, double vein_frequency,
+                    int interpolation) {
+    double sum = 0.0, scale = 1.0;
+    for (int octave = 0; octave < 4; octave++) {
+        double f = factor * scale;
+        sum += noise_perlin(f * x, f * y, f * z, interpolation) / scale;
+        scale *= 4.0;
+    }
+    double vein = el_cos(vein_frequency * y + multiplier * sum);
+    return share(noise_cosine_mix((1.0 + vein) / 2.0, 0.0, 1.0));
+}

@@ -1,0 +1,35 @@
+/* A ray: origin + t * direction for t in the open interval (t_min, t_max). The direction is NOT normalised, so t is the
+ * same number in object and in world space. */
+#ifndef GRAY_MATH_RAY_H
+#define GRAY_MATH_RAY_H
+
+#include "math/affine.h"
+#include "math/vec3.h"
+
+struct media; /* the stack of solids the ray is inside of; render/media.h */
+
+/* A cone round the ray: its diameter at t is width + spread * t * |direction| (world units). */
+struct footprint {
+    double width, spread;
+};
+
+struct ray {
+    struct vec3 origin, direction;
+    double t_min, t_max;
+    double time; /* 0 at shutter open, 1 at shutter close */
+    struct footprint footprint;
+    const struct media *media;
+};
+
+static inline struct vec3 ray_at(const struct ray *ray, double t) {
+    return vec3_add_scaled(ray->origin, ray->direction, t);
+}
+/* The same ray in another space; t, interval, time and footprint are kept as they are. */
+static inline struct ray ray_transform(const struct affine *to_from, const struct ray *ray) {
+    struct ray out = *ray;
+    out.origin = affine_point(to_from, ray->origin);
+    out.direction = affine_vector(to_from, ray->direction);
+    return out;
+}
+
+#endif
