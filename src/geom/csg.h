@@ -1,0 +1,45 @@
+/* CSG as one primitive: a postfix program over leaves. The crossings of the whole line with every leaf are merged in one
+ * pass by ascending t while the truth value of the program is tracked; where it changes, the surface is there. Difference
+ * flips the normal. A cut face keeps the leaf that made it, hence its material. Owner: the arena it was built in. */
+#ifndef GRAY_GEOM_CSG_H
+#define GRAY_GEOM_CSG_H
+
+#include "base/arena.h"
+#include "base/error.h"
+#include "geom/shape.h"
+
+enum csg_operation { CSG_LEAF, CSG_UNION, CSG_INTERSECTION, CSG_DIFFERENCE }; /* binary ones take the two above them */
+
+struct csg_leaf {
+    struct shape shape;                     /* closed; not SHAPE_CSG (nested programs are flattened into one) */
+    struct transform csg_from_leaf;
+    uint32_t material;
+};
+
+struct csg_token {
+    enum csg_operation operation;
+    uint16_t leaf; /* of CSG_LEAF */
+};
+
+struct csg {
+    const struct csg_leaf *leaves;
+    uint32_t leaf_count; /* 1 .. 65535 */
+    const struct csg_token *program;
+    uint32_t program_length;
+    struct box bounds;
+    uint32_t stack_depth;
+    uint32_t max_crossings;  /* scratch items one ray needs, a guess when meshes are leaves */
+    const void *plan;        /* whatever csg_build prepares for the search (private to csg.c) */
+};
+
+/* Copies leaves and program into the arena, works out bounds and a plan. Fails on no memory, on an empty or malformed
+ * program (assertion of the caller), on more than 65535 leaves. */
+const struct csg *csg_build(struct arena *arena, const struct csg_leaf *leaves, uint32_t leaf_count,
+                            const struct csg_token *program, uint32_t program_length, struct error *error);
+bool csg_nearest(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch, struct crossing *out);
+bool csg_any(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch);
+bool csg_crossings(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch, struct crossing_list *out);
+bool csg_contains(const struct csg *csg, struct vec3 point, struct geom_scratch *scratch);
+void csg_describe(const struct csg *csg, const struct ray *ray, const struct crossing *crossing, struct surface *out);
+
+#endif

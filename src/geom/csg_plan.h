@@ -1,0 +1,41 @@
+/* What csg_build prepares for the sweep in csg.c; private to the two. */
+#ifndef GRAY_GEOM_CSG_PLAN_H
+#define GRAY_GEOM_CSG_PLAN_H
+
+#include "geom/csg.h"
+
+#define CSG_NONE UINT32_MAX
+
+/* An AND or an OR over any number of nodes and literals. */
+struct csg_node {
+    uint32_t parent;    /* CSG_NONE for the root */
+    uint32_t threshold; /* true when so many children are: 1 for OR, all of them for AND */
+};
+
+/* A leaf in the tree. */
+struct csg_literal {
+    uint32_t parent;
+    bool negated;
+};
+
+/* A binary tree over the leaves' boxes in depth-first order: a first child follows its parent, `skip` is where to go on
+ * when the box is missed. */
+struct csg_bound {
+    struct box box;
+    uint32_t skip;
+    uint32_t first, count; /* into `order`; count 0: has children instead */
+};
+
+struct csg_plan {
+    struct csg_node *nodes; /* the root is 0; a parent comes before its children */
+    uint32_t *start_counts; /* true children of each node while the line is outside every leaf */
+    struct csg_literal *literals;
+    struct box *boxes; /* of the leaves, in CSG space, padded */
+    struct csg_bound *bounds;
+    uint32_t *order;
+    uint32_t node_count, bound_count;
+    uint32_t state_items; /* scratch items that hold the truth of all nodes and leaves */
+    double size;          /* largest coordinate of any leaf's box */
+};
+
+#endif

@@ -1,0 +1,68 @@
+/* A triangle mesh with its own acceleration structure, an immutable asset once built: mesh_create copies and triangulates,
+ * mesh_build_index (lazily, before the first render, in parallel on the pool) makes the grid. A mesh answers nearest, any
+ * and all crossings with one and the same watertight triangle test. Owner: the asset store, by reference count. */
+#ifndef GRAY_GEOM_MESH_H
+#define GRAY_GEOM_MESH_H
+
+#include "base/error.h"
+#include "base/pool.h"
+#include "geom/crossing.h"
+#include "geom/hit.h"
+#include "math/box.h"
+#include "math/ray.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct mesh;
+
+/* Polygons as they come from a script or a file. Face f has corners face_start[f] .. face_start[f+1]-1 in the index
+ * arrays (at least 3 corners). normals/normal_index and uvs/uv_index are NULL when absent; an index of UINT32_MAX there
+ * means "this corner has none" (the face is then shaded flat / has no uv). Indices are 0-based and already checked to be
+ * in range by the caller, coordinates finite. */
+struct mesh_input {
+    const char *name; /* for messages: file name or node name */
+    uint32_t vertex_count, face_count;
+    const double (*vertices)[3];
+    const uint32_t *face_start; /* face_count + 1 entries */
+    const uint32_t *vertex_index;
+    uint32_t normal_count;
+    const double (*normals)[3];
+    const uint32_t *normal_index;
+    uint32_t uv_count;
+    const double (*uvs)[2];
+    const uint32_t *uv_index;
+    const uint32_t *face_material; /* material slot per face, or NULL */
+};
+
+enum accel_kind { ACCEL_GRID, ACCEL_NONE }; /* how searches go; the answers are the same */
+
+/* Triangulates n-gons (concave ones by ear clipping in their best plane, convex ones fast; thousands of corners fine),
+ * drops degenerate faces quietly (counted). NULL and error on no memory. Deterministic. Not more than 2^31 triangles. */
+struct mesh *mesh_create(const struct mesh_input *input, struct error *error);
+struct mesh *mesh_share(struct mesh *mesh); /* one more owner */
+void mesh_release(struct mesh *mesh);
+/* Thread-compatible: call from one thread; returns at once when the index exists. False: no memory or cancelled. */
+bool mesh_build_index(struct mesh *mesh, struct pool *pool, struct error *error);
+
+struct box mesh_bounds(const struct mesh *mesh);
+bool mesh_is_closed(const struct mesh *mesh); /* every edge is used by exactly two triangles in opposite directions */
+/* For a mesh that is not closed: one open edge by its two positions; false when closed. */
+bool mesh_open_edge(const struct mesh *mesh, struct vec3 *a, struct vec3 *b);
+uint32_t mesh_triangle_count(const struct mesh *mesh);
+uint32_t mesh_dropped_faces(const struct mesh *mesh);
+bool mesh_has_uv(const struct mesh *mesh);
+bool mesh_has_normals(const struct mesh *mesh);
+size_t mesh_memory(const struct mesh *mesh); /* bytes, index included */
+/* The exact content as a key, so that the same tables give the same mesh (hash over everything in the input but name). */
+uint64_t mesh_input_hash(const struct mesh_input *input);
+bool mesh_equals_input(const struct mesh *mesh, const struct mesh_input *input); /* vertices and faces the same */
+
+bool mesh_nearest(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch,
+                  struct crossing *out);
+bool mesh_any(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch);
+bool mesh_crossings(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch,
+                    struct crossing_list *out);
+void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct crossing *crossing, struct surface *out);
+
+#endif

@@ -1,0 +1,41 @@
+/* What the files of the mesh share; nobody else includes this. */
+#ifndef GRAY_GEOM_MESH_INTERNAL_H
+#define GRAY_GEOM_MESH_INTERNAL_H
+
+#include "accel/triangle_index.h"
+#include "geom/mesh.h"
+
+/* Triangles as flat arrays. A triangle whose first normal or uv corner is MESH_NONE has none. */
+struct mesh {
+    uint32_t references;
+    uint32_t vertex_count, triangle_count, normal_count, uv_count, face_count, dropped_faces;
+    double (*vertices)[3];
+    uint32_t (*corners)[3];
+    double (*normals)[3]; /* unit length; NULL when the input has none */
+    uint32_t (*normal_corners)[3];
+    double (*uvs)[2]; /* NULL when the input has none */
+    uint32_t (*uv_corners)[3];
+    uint32_t *materials; /* per triangle, or NULL */
+    /* The polygons as they came, kept only where the triangles do not tell them. */
+    uint32_t *face_start, *face_vertex;
+    uint64_t input_hash;
+    struct box bounds;
+    bool closed, outward; /* outward: of a closed mesh, the volume it encloses is positive */
+    struct vec3 open_edge[2];
+    struct triangle_index *index;
+};
+
+#define MESH_NONE UINT32_MAX
+
+static inline struct triangle_set mesh_triangles(const struct mesh *mesh) {
+    return (struct triangle_set){(const double (*)[3])mesh->vertices, (const uint32_t (*)[3])mesh->corners,
+                                 mesh->triangle_count, mesh->bounds};
+}
+
+/* (b - a) x (c - a); zero only where the three (rounded differences of) points lie on a line. */
+struct vec3 mesh_triangle_normal(const struct mesh *mesh, uint32_t triangle);
+
+/* Fills closed, outward and open_edge. False: no memory. */
+bool mesh_find_topology(struct mesh *mesh);
+
+#endif

@@ -1,0 +1,50 @@
+/* Shapes: a closed tagged union; one file per shape's mathematics, this module switches (no default, so that the compiler
+ * names the switch a new kind forgot). All rays are in the shape's object space; their directions are not normalised.
+ * For analytic shapes one root-finder serves all: shape_crossings gives every crossing of the whole line in order, the
+ * nearest hit is the first of them inside the ray's interval, CSG merges the lists. */
+#ifndef GRAY_GEOM_SHAPE_H
+#define GRAY_GEOM_SHAPE_H
+
+#include "geom/crossing.h"
+#include "geom/hit.h"
+#include "math/box.h"
+#include "math/ray.h"
+
+struct mesh;
+struct csg;
+
+enum shape_kind { SHAPE_SPHERE, SHAPE_BOX, SHAPE_MESH, SHAPE_CSG };
+
+struct shape {
+    enum shape_kind kind;
+    union {
+        struct {
+            struct vec3 centre;
+            double radius; /* > 0 */
+        } sphere;
+        struct box box; /* min < max on every axis */
+        const struct mesh *mesh;
+        const struct csg *csg;
+    };
+};
+
+struct box shape_bounds(const struct shape *shape);
+/* Closed: every line crosses it an even number of times, so it has an inside (CSG operand, media). */
+bool shape_is_closed(const struct shape *shape);
+/* The crossing with the smallest t in the open interval (ray->t_min, ray->t_max). On equal t the one that comes first in
+ * the shape's own order. False also when scratch overflowed (then scratch->overflow is set). */
+bool shape_nearest(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch, struct crossing *out);
+bool shape_any(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch);
+/* All crossings of the whole line (the ray's interval is ignored), by ascending t, pushed on the scratch. The caller
+ * pops by setting scratch->used = list.first. Tangential touches appear twice (enter, leave) or not at all. */
+bool shape_crossings(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch,
+                     struct crossing_list *out);
+/* Whether a point of object space is inside a closed shape, decided pointwise (for CSG: the boolean expression of the
+ * operands). Used by tests and for the camera's first media stack. Meshes: parity of crossings along a fixed ray. */
+bool shape_contains(const struct shape *shape, struct vec3 point, struct geom_scratch *scratch);
+void shape_describe(const struct shape *shape, const struct ray *ray, const struct crossing *crossing,
+                    struct surface *out);
+/* Upper bound of the scratch items one ray can need when it is known (analytic shapes, CSG of them), else a guess. */
+uint32_t shape_scratch_need(const struct shape *shape);
+
+#endif

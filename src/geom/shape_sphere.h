@@ -1,0 +1,15 @@
+/* The sphere's mathematics, in its own space. */
+#ifndef GRAY_GEOM_SHAPE_SPHERE_H
+#define GRAY_GEOM_SHAPE_SPHERE_H
+
+#include "geom/crossing.h"
+#include "geom/hit.h"
+#include "math/ray.h"
+
+/* Both crossings of the whole line in order, the entering one first; false when there are none. The part is 0. */
+bool sphere_crossings(struct vec3 centre, double radius, const struct ray *ray, struct crossing out[2]);
+bool sphere_contains(struct vec3 centre, double radius, struct vec3 point);
+void sphere_describe(struct vec3 centre, double radius, const struct ray *ray, const struct crossing *crossing,
+                     struct surface *out);
+
+#endif

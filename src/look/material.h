@@ -1,0 +1,68 @@
+/* Materials: a base (Phong) plus decorators that hold the material below them as `base`. Evaluated once per hit into a
+ * struct shading. Immutable, in the arena of the script; images are shared assets. A chain is at most MATERIAL_DEPTH long. */
+#ifndef GRAY_LOOK_MATERIAL_H
+#define GRAY_LOOK_MATERIAL_H
+
+#include "geom/hit.h"
+#include "image/image.h"
+#include "look/shading.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { MATERIAL_DEPTH = 1000 };
+
+enum material_kind { MATERIAL_PHONG, MATERIAL_MARBLE, MATERIAL_WOOD, MATERIAL_IMAGE, MATERIAL_FRESNEL };
+
+/* How a hit becomes a place on an image. SPHERE, CUBE: the decorators td_sphere_material and td_cube_material;
+ * SPHERE_CLASSIC: set_texture on a sphere (the formulas stand in material.c); UV: the shape's own parameters. */
+enum image_mapping { MAPPING_SPHERE, MAPPING_CUBE, MAPPING_SPHERE_CLASSIC, MAPPING_UV };
+
+struct material {
+    enum material_kind kind;
+    const struct material *base; /* NULL for MATERIAL_PHONG */
+    int depth;                   /* 1 for a base */
+    const char *name;            /* for messages; may be NULL */
+    union {
+        struct {
+            struct vec3 kd, ks;
+            double shininess, reflect, refract, ior;
+            bool has_ior, two_sided;
+        } phong;
+        struct {
+            double f, multiplier, vein_frequency;
+            int interpolation;
+            struct vec3 mix;
+        } marble;
+        struct {
+            double f, density;
+            int interpolation;
+            struct vec3 mix;
+        } wood;
+        struct {
+            struct image *image;
+            enum image_mapping mapping;
+            enum image_filter filter;
+            enum image_wrap wrap;
+            bool flip_u;
+        } image;
+    };
+};
+
+/* What decorators change; turned into lobes at the end. */
+struct surface_look {
+    struct vec3 kd, ks;
+    double shininess, reflect, refract, ior;
+    bool has_ior, two_sided;
+    bool fresnel; /* the integrator, which knows the media, replaces reflect and refract by F and 1 - F */
+};
+
+void material_look(const struct material *material, const struct hit *hit, struct surface_look *out);
+/* The lobes of a look whose reflect and refract are final. ambient_plain: the ambient colour is not multiplied by kd. */
+void material_shading(const struct surface_look *look, enum specular_kind specular, bool ambient_plain,
+                      struct shading *out);
+/* Of the base below all decorators: whether light passes into the solid (refract > 0 or Fresnel), and its index. */
+bool material_is_transparent(const struct material *material, double *ior);
+bool material_has_ior(const struct material *material);
+
+#endif

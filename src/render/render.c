@@ -1,0 +1,271 @@
+/* Tiles. A tile samples its pixels and the rim of one pixel round them once (a pixel's first sample is a function of the
+ * pixel alone, so two tiles that share a rim agree), marks by neighbours' differences, resamples what is marked, and is
+ * final. No barrier, nothing shared but the film, of which every tile writes its own pixels. */
+#include "render/render.h"
+
+#include "base/mem.h"
+#include "base/random.h"
+#include "render/camera.h"
+#include "render/whitted.h"
+
+#include <stdatomic.h>
+#include <string.h>
+#include <time.h>
+
+struct worker {
+    struct world_scratch scratch;
+    struct tracer tracer;
+    uint64_t camera_rays, marked, samples;
+    struct vec3 first[(FILM_TILE + 2) * (FILM_TILE + 2)];
+};
+
+struct run {
+    const struct render_job *job;
+    struct pool *pool;
+    struct camera_frame camera;
+    struct media eye_media;
+    struct worker *workers;
+    uint32_t tiles_x, tiles_y, tile_x0, tile_y0;
+    _Atomic uint32_t done;
+    _Atomic bool failed;
+};
+
+/* A rectangle of pixels of the whole picture: x0 <= x < x1. */
+struct rectangle {
+    int64_t x0, y0, x1, y1;
+};
+
+static double seconds_now(void) {
+    struct timespec now;
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static struct vec3 sample(struct run *run, struct worker *worker, int64_t x, int64_t y, double dx, double dy,
+                          uint64_t number) {
+    struct ray ray = camera_ray(&run->camera, (double)x + dx, (double)y + dy);
+    uint64_t pixel = (uint64_t)y * run->job->width + (uint64_t)x;
+    uint64_t key = random_combine(random_combine(random_combine(run->job->settings.seed, 0), pixel), number);
+    worker->camera_rays++;
+    return whitted_trace(&worker->tracer, &ray, key);
+}
+
+/* The first sample has number 0, at the centre or the corner of the pixel. */
+static struct vec3 first_sample(struct run *run, struct worker *worker, int64_t x, int64_t y) {
+    double at = run->job->settings.pixel_corner ? 0 : 0.5;
+    return sample(run, worker, x, y, at, at, 0);
+}
+
+/* Mean of the N x N samples; where one of them is the first sample again it is not traced twice. */
+static struct vec3 all_samples(struct run *run, struct worker *worker, int64_t x, int64_t y, const struct vec3 *first) {
+    int n = run->job->settings.samples;
+    bool reuse = (n & 1) && !run->job->settings.pixel_corner;
+    struct vec3 sum = {0, 0, 0};
+    for (int j = 0; j < n; j++) {
+        for (int i = 0; i < n; i++) {
+            bool centre = reuse && i == n / 2 && j == n / 2;
+            struct vec3 colour;
+            if (centre && first)
+                colour = *first;
+            else if (centre)
+                colour = sample(run, worker, x, y, 0.5, 0.5, 0);
+            else
+                colour = sample(run, worker, x, y, (i + 0.5) / n, (j + 0.5) / n, (uint64_t)(j * n + i + 1));
+            sum = vec3_add(sum, colour);
+        }
+    }
+    return vec3_scale(sum, 1 / ((double)n * (double)n));
+}
+
+static double clamp01(double c) {
+    return c >= 1 ? 1 : c > 0 ? c : 0;
+}
+
+static double squared_distance(struct vec3 a, struct vec3 b) {
+    struct vec3 d = {clamp01(a.x) - clamp01(b.x), clamp01(a.y) - clamp01(b.y), clamp01(a.z) - clamp01(b.z)};
+    return vec3_dot(d, d);
+}
+
+/* First-pass colours of the tile and its rim, as far as they are in the picture. `area` is the rectangle with the rim. */
+static const struct vec3 *first_at(const struct worker *worker, const struct rectangle *area, int64_t x, int64_t y) {
+    return &worker->first[(size_t)(y - area->y0) * (FILM_TILE + 2) + (size_t)(x - area->x0)];
+}
+
+static bool is_marked(const struct run *run, const struct worker *worker, const struct rectangle *area, int64_t x,
+                      int64_t y) {
+    const struct settings *settings = &run->job->settings;
+    struct vec3 own = *first_at(worker, area, x, y);
+    for (int dy = -1; dy <= 1; dy++) {
+        for (int dx = -1; dx <= 1; dx++) {
+            int64_t nx = x + dx, ny = y + dy;
+            if ((dx == 0 && dy == 0) || nx < area->x0 || nx >= area->x1 || ny < area->y0 || ny >= area->y1)
+                continue;
+            double tolerance = dx == 0 || dy == 0 ? settings->side_tolerance : settings->corner_tolerance;
+            if (squared_distance(own, *first_at(worker, area, nx, ny)) > tolerance)
+                return true;
+        }
+    }
+    return false;
+}
+
+static void store(float out[3], struct vec3 colour) {
+    out[0] = (float)colour.x;
+    out[1] = (float)colour.y;
+    out[2] = (float)colour.z;
+}
+
+static bool stopped(const struct run *run, const struct worker *worker) {
+    return pool_cancelled(run->pool) || worker->scratch.failed;
+}
+
+static void finish_pixel(struct run *run, struct worker *worker, const struct rectangle *area, int64_t x, int64_t y,
+                         bool have_first) {
+    struct film *film = run->job->film;
+    size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
+    const struct vec3 *first = have_first ? first_at(worker, area, x, y) : NULL;
+    bool full = run->job->settings.full, marked = full || is_marked(run, worker, area, x, y);
+    struct vec3 colour = marked ? all_samples(run, worker, x, y, first) : *first;
+    store(film->pixels[at].rgb, colour);
+    store(film->pixels[at].first, first ? *first : colour);
+    film->marked[at] = marked;
+    worker->marked += marked;
+}
+
+static bool render_tile(struct run *run, struct worker *worker, struct rectangle tile) {
+    const struct settings *settings = &run->job->settings;
+    bool have_first = !settings->full || settings->keep_first;
+    int64_t rim = settings->full ? 0 : 1;
+    struct rectangle area = {tile.x0 - rim, tile.y0 - rim, tile.x1 + rim, tile.y1 + rim};
+    area.x0 = area.x0 < 0 ? 0 : area.x0;
+    area.y0 = area.y0 < 0 ? 0 : area.y0;
+    area.x1 = area.x1 > run->job->width ? run->job->width : area.x1;
+    area.y1 = area.y1 > run->job->height ? run->job->height : area.y1;
+    for (int64_t y = area.y0; y < area.y1 && have_first; y++) {
+        for (int64_t x = area.x0; x < area.x1; x++) {
+            if (stopped(run, worker))
+                return false;
+            worker->first[(size_t)(y - area.y0) * (FILM_TILE + 2) + (size_t)(x - area.x0)] =
+                first_sample(run, worker, x, y);
+        }
+    }
+    for (int64_t y = tile.y0; y < tile.y1; y++) {
+        for (int64_t x = tile.x0; x < tile.x1; x++) {
+            if (stopped(run, worker))
+                return false;
+            finish_pixel(run, worker, &area, x, y, have_first);
+        }
+    }
+    return true;
+}
+
+static void tile_item(void *context, uint32_t item, int index) {
+    struct run *run = context;
+    struct worker *worker = &run->workers[index];
+    const struct film *film = run->job->film;
+    int64_t x0 = ((int64_t)run->tile_x0 + item % run->tiles_x) * FILM_TILE;
+    int64_t y0 = ((int64_t)run->tile_y0 + item / run->tiles_x) * FILM_TILE;
+    int64_t left = film->x0, top = film->y0, right = left + film->width, bottom = top + film->height;
+    struct rectangle tile = {x0 < left ? left : x0, y0 < top ? top : y0, x0 + FILM_TILE > right ? right : x0 + FILM_TILE,
+                             y0 + FILM_TILE > bottom ? bottom : y0 + FILM_TILE};
+    bool whole = render_tile(run, worker, tile);
+    if (worker->scratch.failed) {
+        atomic_store(&run->failed, true);
+        pool_cancel(run->pool);
+    }
+    if (whole && run->job->tile_done) {
+        uint32_t done = atomic_fetch_add(&run->done, 1) + 1;
+        run->job->tile_done(run->job->context, item, done, run->tiles_x * run->tiles_y);
+    }
+}
+
+bool render_prepare(struct render_job *job, uint32_t *x0, uint32_t *y0, uint32_t *width, uint32_t *height,
+                    char warning[256], struct error *error) {
+    const struct settings *s = &job->settings;
+    struct camera_frame frame;
+    if (!camera_prepare(&job->camera, s, job->width, job->height, &frame, warning, error))
+        return false;
+    *x0 = *y0 = 0;
+    *width = job->width;
+    *height = job->height;
+    if (!s->cropped)
+        return true;
+    if (s->crop_x < 0 || s->crop_y < 0 || s->crop_width < 1 || s->crop_height < 1 ||
+        s->crop_x >= (int64_t)job->width || s->crop_width > (int64_t)job->width - s->crop_x ||
+        s->crop_y >= (int64_t)job->height || s->crop_height > (int64_t)job->height - s->crop_y)
+        return error_set(error, ERROR_USAGE, "--crop %lld,%lld,%lld,%lld does not lie inside the picture of %u x %u",
+                         (long long)s->crop_x, (long long)s->crop_y, (long long)s->crop_width, (long long)s->crop_height,
+                         job->width, job->height);
+    *x0 = (uint32_t)s->crop_x;
+    *y0 = (uint32_t)s->crop_y;
+    *width = (uint32_t)s->crop_width;
+    *height = (uint32_t)s->crop_height;
+    return true;
+}
+
+static void add_statistics(const struct run *run, int workers, struct render_statistics *out) {
+    for (int i = 0; i < workers; i++) {
+        const struct worker *worker = &run->workers[i];
+        out->camera_rays += worker->camera_rays;
+        out->marked_pixels += worker->marked;
+        out->reflected_rays += worker->tracer.reflected_rays;
+        out->refracted_rays += worker->tracer.refracted_rays;
+        out->shadow_rays += worker->tracer.shadow_rays;
+        out->shape_tests += worker->scratch.geom.shape_tests;
+        out->triangle_tests += worker->scratch.geom.triangle_tests;
+        out->voxels += worker->scratch.geom.voxels;
+    }
+    out->samples = out->camera_rays;
+    out->pixels += (uint64_t)run->job->film->width * run->job->film->height;
+}
+
+static bool start_workers(struct run *run, int workers) {
+    run->workers = mem_alloc_zero((size_t)workers, sizeof *run->workers);
+    if (!run->workers)
+        return false;
+    for (int i = 0; i < workers; i++) {
+        struct worker *worker = &run->workers[i];
+        if (!world_scratch_init(&worker->scratch, run->job->world))
+            return false;
+        worker->tracer =
+            (struct tracer){.job = run->job, .scratch = &worker->scratch, .eye_media = &run->eye_media};
+    }
+    return true;
+}
+
+bool render_run(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
+                struct error *error) {
+    struct run run = {.job = job, .pool = pool};
+    char warning[256];
+    int workers = pool_workers(pool);
+    double begin = seconds_now();
+    if (!camera_prepare(&job->camera, &job->settings, job->width, job->height, &run.camera, warning, error))
+        return false;
+    bool ok = start_workers(&run, workers);
+    if (ok) {
+        const struct film *film = job->film;
+        whitted_eye_media(job->world, run.camera.eye, &run.workers[0].scratch, &run.eye_media);
+        run.tile_x0 = film->x0 / FILM_TILE;
+        run.tile_y0 = film->y0 / FILM_TILE;
+        run.tiles_x = (film->x0 + film->width - 1) / FILM_TILE - run.tile_x0 + 1;
+        run.tiles_y = (film->y0 + film->height - 1) / FILM_TILE - run.tile_y0 + 1;
+        ok = !run.workers[0].scratch.failed;
+    }
+    if (!ok) {
+        error_no_memory(error, "the workers of a render");
+    } else if (!pool_run(pool, run.tiles_x * run.tiles_y, tile_item, &run)) {
+        ok = atomic_load(&run.failed) ? error_no_memory(error, "the crossings of a ray")
+                                      : error_set(error, ERROR_CANCELLED, "stopped while rendering");
+        if (atomic_load(&run.failed))
+            pool_reset_cancel(pool);
+    } else if (atomic_load(&run.failed)) {
+        ok = error_no_memory(error, "the crossings of a ray");
+    }
+    if (run.workers) {
+        add_statistics(&run, workers, statistics);
+        for (int i = 0; i < workers; i++)
+            world_scratch_destroy(&run.workers[i].scratch);
+    }
+    mem_free(run.workers);
+    statistics->render_seconds += seconds_now() - begin;
+    return ok;
+}

@@ -1,0 +1,38 @@
+/* A job: world, camera, settings, film. render_run renders every tile on the pool, each tile self-contained: first-pass
+ * samples of its pixels and of the one-pixel rim around them, marks from these, refinement, final. Same bytes for any
+ * number of threads and any order of tiles. */
+#ifndef GRAY_RENDER_RENDER_H
+#define GRAY_RENDER_RENDER_H
+
+#include "base/pool.h"
+#include "render/film.h"
+#include "render/settings.h"
+#include "world/world.h"
+
+struct render_statistics {
+    uint64_t camera_rays, reflected_rays, refracted_rays, shadow_rays;
+    uint64_t pixels, marked_pixels, samples;
+    uint64_t shape_tests, triangle_tests, voxels;
+    double build_seconds, render_seconds;
+};
+
+struct render_job {
+    const struct world *world;
+    struct camera camera;
+    struct settings settings;
+    uint32_t width, height; /* of the whole picture */
+    struct vec3 ambient;
+    struct film *film;      /* placed for the crop */
+    /* Called from any worker when a tile is final; may be NULL. done counts from 1. */
+    void (*tile_done)(void *context, uint32_t tile, uint32_t done, uint32_t count);
+    void *context;
+};
+
+/* False: cancelled or out of memory (error says which). The film then holds what was finished. */
+bool render_run(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
+                struct error *error);
+/* Checks picture size, crop, camera; fills the film rectangle. First call of a job. Warnings: up parallel to view. */
+bool render_prepare(struct render_job *job, uint32_t *x0, uint32_t *y0, uint32_t *width, uint32_t *height,
+                    char warning[256], struct error *error);
+
+#endif

@@ -1,0 +1,22 @@
+/* The recursive integrator of Whitted, "An Improved Illumination Model for Shaded Display", CACM 1980, with the rules of
+ * SPEC 1.2: own light, reflected and refracted rays with independent counters, media stack, Fresnel. */
+#ifndef GRAY_RENDER_WHITTED_H
+#define GRAY_RENDER_WHITTED_H
+
+#include "render/media.h"
+#include "render/render.h"
+
+/* One worker's view of a job. */
+struct tracer {
+    const struct render_job *job;
+    struct world_scratch *scratch;
+    const struct media *eye_media; /* what the camera stands in */
+    uint64_t reflected_rays, refracted_rays, shadow_rays;
+};
+
+/* The colour a camera ray brings; key: the random key of this pixel and sample. */
+struct vec3 whitted_trace(struct tracer *tracer, const struct ray *ray, uint64_t key);
+/* The media round the eye, found by counting crossings. */
+void whitted_eye_media(const struct world *world, struct vec3 eye, struct world_scratch *scratch, struct media *out);
+
+#endif

@@ -1,0 +1,93 @@
+/* The store of assets: what is the same is there once, however often scripts ask for it. Keys are content (tables) or
+ * canonical path (files); a list is enough, since a look-up costs far less than making the asset. */
+#include "base/mem.h"
+#include "scene/node.h"
+
+#include <string.h>
+
+static char *copy_path(const char *path) {
+    size_t size = strlen(path) + 1;
+    char *copy = mem_alloc(size);
+    if (copy)
+        memcpy(copy, path, size);
+    return copy;
+}
+
+void assets_destroy(struct assets *assets) {
+    while (assets->meshes) {
+        struct asset_mesh *next = assets->meshes->next;
+        mesh_release(assets->meshes->mesh);
+        mem_free(assets->meshes->path);
+        mem_free(assets->meshes);
+        assets->meshes = next;
+    }
+    while (assets->images) {
+        struct asset_image *next = assets->images->next;
+        image_release(assets->images->image);
+        mem_free(assets->images->path);
+        mem_free(assets->images);
+        assets->images = next;
+    }
+    *assets = (struct assets){0};
+}
+
+/* Takes over mesh, also when it fails. */
+static bool keep_mesh(struct assets *assets, struct mesh *mesh, uint64_t key, const char *path, struct error *error) {
+    struct asset_mesh *entry = mem_alloc_zero(1, sizeof *entry);
+    char *copy = path ? copy_path(path) : NULL;
+    if (!entry || (path && !copy)) {
+        mem_free(entry);
+        mem_free(copy);
+        mesh_release(mesh);
+        return error_no_memory(error, "the store of meshes");
+    }
+    *entry = (struct asset_mesh){.mesh = mesh, .key = key, .path = copy, .next = assets->meshes};
+    assets->meshes = entry;
+    assets->mesh_count++;
+    return true;
+}
+
+struct mesh *assets_mesh(struct assets *assets, const struct mesh_input *input, struct error *error) {
+    uint64_t key = mesh_input_hash(input);
+    for (struct asset_mesh *entry = assets->meshes; entry; entry = entry->next) {
+        if (!entry->path && entry->key == key && mesh_equals_input(entry->mesh, input))
+            return entry->mesh;
+    }
+    struct mesh *mesh = mesh_create(input, error);
+    return mesh && keep_mesh(assets, mesh, key, NULL, error) ? mesh : NULL;
+}
+
+struct mesh *assets_find_mesh_file(struct assets *assets, const char *path) {
+    for (struct asset_mesh *entry = assets->meshes; entry; entry = entry->next) {
+        if (entry->path && strcmp(entry->path, path) == 0)
+            return entry->mesh;
+    }
+    return NULL;
+}
+
+bool assets_add_mesh_file(struct assets *assets, const char *path, struct mesh *mesh, struct error *error) {
+    return keep_mesh(assets, mesh, 0, path, error);
+}
+
+struct image *assets_image(struct assets *assets, const char *path, struct error *error) {
+    for (struct asset_image *entry = assets->images; entry; entry = entry->next) {
+        if (strcmp(entry->path, path) == 0)
+            return entry->image;
+    }
+    struct image *image = image_read_png(path, error);
+    if (!image)
+        return NULL;
+    struct asset_image *entry = mem_alloc_zero(1, sizeof *entry);
+    char *copy = copy_path(path);
+    if (!entry || !copy) {
+        mem_free(entry);
+        mem_free(copy);
+        image_release(image);
+        error_no_memory(error, "the store of images");
+        return NULL;
+    }
+    *entry = (struct asset_image){.image = image, .path = copy, .next = assets->images};
+    assets->images = entry;
+    assets->image_count++;
+    return image;
+}

@@ -1,0 +1,97 @@
+/* Building the authoring tree. */
+#include "scene/node.h"
+
+#include <string.h>
+
+void scene_init(struct scene *scene, struct assets *assets) {
+    *scene = (struct scene){.assets = assets};
+}
+
+void scene_destroy(struct scene *scene) {
+    arena_destroy(&scene->arena);
+}
+
+struct node *scene_node(struct scene *scene, enum node_kind kind, const char *name, struct error *error) {
+    struct node *node = arena_alloc(&scene->arena, sizeof *node);
+    if (node)
+        node->name = arena_copy_text(&scene->arena, name, strlen(name));
+    if (!node || !node->name) {
+        error_no_memory(error, "a node");
+        return NULL;
+    }
+    node->kind = kind;
+    node->serial = scene->node_count++;
+    node->parent_from_node = transform_identity();
+    return node;
+}
+
+bool node_add_child(struct scene *scene, struct node *parent, struct node *child, struct error *error) {
+    struct node_child *link = arena_alloc(&scene->arena, sizeof *link);
+    if (!link)
+        return error_no_memory(error, "a child of a node");
+    link->node = child;
+    if (parent->last_child)
+        parent->last_child->next = link;
+    else
+        parent->first_child = link;
+    parent->last_child = link;
+    parent->child_count++;
+    return true;
+}
+
+static bool compose_separately(struct scene *scene, struct node *node, enum node_step step, const struct transform *by) {
+    if (!node->separate) {
+        node->separate = arena_alloc_array(&scene->arena, NODE_STEPS, sizeof *node->separate);
+        if (!node->separate)
+            return false;
+        for (int i = 0; i < NODE_STEPS; i++)
+            node->separate[i] = transform_identity();
+        /* What was composed before the order was chosen stays the innermost part. */
+        node->separate[NODE_SCALE] = node->parent_from_node;
+    }
+    node->separate[step] = transform_compose(by, &node->separate[step]);
+    struct transform turned = transform_compose(&node->separate[NODE_ROTATE], &node->separate[NODE_SCALE]);
+    node->parent_from_node = transform_compose(&node->separate[NODE_TRANSLATE], &turned);
+    return true;
+}
+
+bool node_transform(struct scene *scene, struct node *node, enum node_step step, const struct transform *by) {
+    switch (scene->order) {
+    case ORDER_NEW:
+        node->parent_from_node = transform_compose(by, &node->parent_from_node);
+        return true;
+    case ORDER_OLD:
+        node->parent_from_node = transform_compose(&node->parent_from_node, by);
+        return true;
+    case ORDER_SEPARATE:
+        return compose_separately(scene, node, step, by);
+    }
+    return true;
+}
+
+struct transform node_parent_from_node(const struct node *node) {
+    if (node->kind != NODE_JOINT)
+        return node->parent_from_node;
+    struct transform about_x = transform_rotate(0, node->joint_x.init);
+    struct transform about_y = transform_rotate(1, node->joint_y.init);
+    struct transform joint = transform_compose(&about_x, &about_y);
+    return transform_compose(&node->parent_from_node, &joint);
+}
+
+struct material *scene_material(struct scene *scene, enum material_kind kind, const struct material *base,
+                                struct error *error) {
+    int depth = base ? base->depth + 1 : 1;
+    if (depth > MATERIAL_DEPTH) {
+        error_set(error, ERROR_SCENE, "more than %d materials are stacked on each other", MATERIAL_DEPTH);
+        return NULL;
+    }
+    struct material *material = arena_alloc(&scene->arena, sizeof *material);
+    if (!material) {
+        error_no_memory(error, "a material");
+        return NULL;
+    }
+    material->kind = kind;
+    material->base = base;
+    material->depth = depth;
+    return material;
+}

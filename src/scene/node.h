@@ -1,0 +1,91 @@
+/* The authoring tree: nodes with transforms, shapes, materials; a DAG, since a node may hang under several parents (an
+ * instance, not a copy). Everything lives in the arena of the scene; nothing is freed singly. Adding 100,000 children is
+ * linear. Cycles can be built here and are found by world_build, which names the nodes. */
+#ifndef GRAY_SCENE_NODE_H
+#define GRAY_SCENE_NODE_H
+
+#include "base/arena.h"
+#include "geom/mesh.h"
+#include "geom/shape.h"
+#include "look/light.h"
+#include "look/material.h"
+#include "look/sky.h"
+#include "math/affine.h"
+
+enum node_kind { NODE_GROUP, NODE_JOINT, NODE_GEOMETRY, NODE_CSG };
+enum node_csg { NODE_UNION, NODE_INTERSECTION, NODE_DIFFERENCE };
+
+/* SPEC 2.4: which way later calls compose. NEW: M = T * M; OLD: M = M * T; SEPARATE: T * R * S kept apart. */
+enum transform_order { ORDER_NEW, ORDER_OLD, ORDER_SEPARATE };
+
+struct node;
+struct node_child {
+    struct node *node;
+    struct node_child *next;
+};
+
+struct node {
+    enum node_kind kind;
+    const char *name;  /* never NULL */
+    uint32_t serial;   /* order of creation, unique in a scene */
+    bool singular;     /* some scale factor was 0: nothing under it is drawn */
+    struct transform parent_from_node;
+    struct transform *separate; /* ORDER_SEPARATE only: translation, rotation, scaling; else NULL */
+    struct node_child *first_child, *last_child;
+    uint32_t child_count;
+    struct shape shape;              /* NODE_GEOMETRY; never SHAPE_CSG */
+    const struct material *material; /* may be NULL: plain gray and one warning */
+    const struct material *texture;  /* set_texture: a MATERIAL_IMAGE template whose base is filled in when flattened */
+    enum node_csg operation;         /* NODE_CSG */
+    struct node *operands[2];
+    struct { double min, init, max; } joint_x, joint_y; /* NODE_JOINT, degrees */
+    bool warned;            /* this node's oddity has been told once */
+    int mark;               /* used by walks over the tree: 0 not seen, 1 on the path, 2 finished */
+    uint64_t drawable;      /* primitives under it, worked out by such a walk; saturates */
+};
+
+/* The store of assets: outlives scripts and renders. */
+struct asset_mesh {
+    struct mesh *mesh;
+    uint64_t key;
+    char *path; /* file it came from, or NULL for tables */
+    struct asset_mesh *next;
+};
+struct asset_image {
+    struct image *image;
+    char *path;
+    struct asset_image *next;
+};
+struct assets {
+    struct asset_mesh *meshes;
+    struct asset_image *images;
+    uint32_t mesh_count, image_count;
+};
+void assets_destroy(struct assets *assets);
+/* The mesh of this input: an equal one from the store or a new one. Owned by the store. */
+struct mesh *assets_mesh(struct assets *assets, const struct mesh_input *input, struct error *error);
+struct image *assets_image(struct assets *assets, const char *path, struct error *error);
+/* By canonical path of a mesh file; NULL when it is not there yet; and the way to add it (the store takes over mesh). */
+struct mesh *assets_find_mesh_file(struct assets *assets, const char *path);
+bool assets_add_mesh_file(struct assets *assets, const char *path, struct mesh *mesh, struct error *error);
+
+struct scene {
+    struct arena arena;
+    struct assets *assets; /* not owned */
+    uint32_t node_count;
+    enum transform_order order;
+};
+void scene_init(struct scene *scene, struct assets *assets);
+void scene_destroy(struct scene *scene);
+
+struct node *scene_node(struct scene *scene, enum node_kind kind, const char *name, struct error *error);
+bool node_add_child(struct scene *scene, struct node *parent, struct node *child, struct error *error);
+enum node_step { NODE_TRANSLATE, NODE_ROTATE, NODE_SCALE, NODE_STEPS };
+/* Applies one transform in the scene's order. False: no memory (only ORDER_SEPARATE needs any). */
+bool node_transform(struct scene *scene, struct node *node, enum node_step step, const struct transform *by);
+/* Everything from the node to its parent, joint angles included (y after x). */
+struct transform node_parent_from_node(const struct node *node);
+struct material *scene_material(struct scene *scene, enum material_kind kind, const struct material *base,
+                                struct error *error);
+
+#endif

@@ -1,0 +1,241 @@
+/* Flattening of the node DAG. First a walk over the distinct nodes finds cycles and counts what each node will place
+ * (saturating), so that a tree that doubles at every level is refused, or skipped where it places nothing, before any
+ * memory is taken. Then every path from the root to a primitive makes one placed primitive. Both walks keep their own
+ * stack: depth is limited by memory alone. */
+#include "world/flatten.h"
+
+#include "base/mem.h"
+
+#include <stdio.h>
+
+enum { PLACED_LIMIT = 1 << 28 };
+
+/* --- counting and cycles --- */
+
+struct count_frame {
+    struct node *node;
+    struct node_child *next;
+    int operand; /* 0, 1: operands of a CSG node to visit first; 2: children */
+};
+
+struct stack {
+    void *items;
+    size_t count, capacity, size;
+};
+
+static void *stack_push(struct stack *stack) {
+    if (stack->count == stack->capacity) {
+        size_t capacity = stack->capacity ? stack->capacity * 2 : 64;
+        void *items = mem_resize_array(stack->items, capacity, stack->size);
+        if (!items)
+            return NULL;
+        stack->items = items;
+        stack->capacity = capacity;
+    }
+    return (char *)stack->items + stack->count++ * stack->size;
+}
+
+static void *stack_top(const struct stack *stack) {
+    return (char *)stack->items + (stack->count - 1) * stack->size;
+}
+
+static bool tell_cycle(struct flattening *f, const struct stack *stack, const struct node *again) {
+    char names[512];
+    size_t used = 0, first = 0;
+    const struct count_frame *frames = stack->items;
+    while (frames[first].node != again)
+        first++;
+    for (size_t i = first; i <= stack->count && used < sizeof names - 120; i++) {
+        const struct node *node = i == stack->count ? again : frames[i].node;
+        if (i - first >= 6 && i != stack->count) {
+            if (i - first == 6)
+                used += (size_t)snprintf(names + used, sizeof names - used, " > ...");
+            continue;
+        }
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s'%.60s'", i > first ? " > " : "", node->name);
+    }
+    return error_set(f->error, ERROR_SCENE, "the nodes form a cycle: %s", names);
+}
+
+static struct node *next_below(struct count_frame *frame) {
+    struct node *node = frame->node;
+    while (frame->operand < 2) {
+        struct node *operand = node->kind == NODE_CSG ? node->operands[frame->operand] : NULL;
+        frame->operand++;
+        if (operand)
+            return operand;
+    }
+    if (!frame->next)
+        return NULL;
+    struct node *child = frame->next->node;
+    frame->next = frame->next->next;
+    return child;
+}
+
+static uint64_t add_saturating(uint64_t a, uint64_t b) {
+    return a > UINT64_MAX - b ? UINT64_MAX : a + b;
+}
+
+static void clear_marks(struct node *root, struct stack *stack) {
+    /* Marks are cleared by the same walk backwards: 2 becomes 0 where it is met first. */
+    stack->count = 0;
+    struct node **slot = stack_push(stack);
+    if (!slot)
+        return;
+    *slot = root;
+    while (stack->count > 0) {
+        struct node *node = *(struct node **)stack_top(stack);
+        stack->count--;
+        if (node->mark == 0)
+            continue;
+        node->mark = 0;
+        for (int i = 0; i < 2; i++) {
+            if (node->kind == NODE_CSG && node->operands[i] && node->operands[i]->mark) {
+                if ((slot = stack_push(stack)))
+                    *slot = node->operands[i];
+            }
+        }
+        for (struct node_child *child = node->first_child; child; child = child->next) {
+            if (child->node->mark && (slot = stack_push(stack)))
+                *slot = child->node;
+        }
+    }
+}
+
+static bool count_drawable(struct flattening *f, struct node *root) {
+    struct stack stack = {.size = sizeof(struct count_frame)};
+    bool ok = true;
+    struct count_frame *frame = stack_push(&stack);
+    if (!frame)
+        return error_no_memory(f->error, "flattening the scene");
+    *frame = (struct count_frame){.node = root, .next = root->first_child};
+    root->mark = 1;
+    while (ok && stack.count > 0) {
+        frame = stack_top(&stack);
+        struct node *below = next_below(frame);
+        if (below && below->mark == 1) {
+            ok = tell_cycle(f, &stack, below);
+        } else if (below && below->mark == 0) {
+            below->mark = 1;
+            frame = stack_push(&stack);
+            if (!frame)
+                ok = error_no_memory(f->error, "flattening the scene");
+            else
+                *frame = (struct count_frame){.node = below, .next = below->first_child};
+        } else if (!below) {
+            struct node *node = frame->node;
+            uint64_t count = node->kind == NODE_GEOMETRY || node->kind == NODE_CSG ? 1 : 0;
+            for (struct node_child *child = node->first_child; child; child = child->next)
+                count = add_saturating(count, child->node->drawable);
+            node->drawable = node->singular ? 0 : count;
+            node->mark = 2;
+            stack.count--;
+        }
+    }
+    mem_free(stack.items);
+    struct stack marks = {.size = sizeof(struct node *)};
+    clear_marks(root, &marks);
+    mem_free(marks.items);
+    return ok;
+}
+
+/* --- placing --- */
+
+static bool place(struct flattening *f, const struct node *node, const struct transform *world_from_node,
+                  const struct shape *shape, uint32_t material) {
+    struct world *world = f->world;
+    if (world->placed_count == f->placed_capacity)
+        return error_set(f->error, ERROR_MACHINE, "the scene changed while it was flattened");
+    struct placed *placed = &f->placed[world->placed_count];
+    *placed = (struct placed){.world_from_object = *world_from_node, .shape = *shape, .material = material};
+    double stretch = 0;
+    for (int i = 0; i < 3; i++) {
+        const double *row = world_from_node->forward.m[i];
+        stretch = fmax(stretch, fabs(row[0]) + fabs(row[1]) + fabs(row[2]));
+    }
+    placed->scale = stretch;
+    f->nodes[world->placed_count] = node;
+    world->placed_count++;
+    return true;
+}
+
+bool flatten_mesh_index(struct flattening *f, const struct shape *shape) {
+    if (shape->kind != SHAPE_MESH)
+        return true;
+    /* The mesh is an asset: immutable but for its index, which is made at its first render. */
+    struct mesh *mesh = (struct mesh *)(uintptr_t)shape->mesh;
+    return mesh_build_index(mesh, f->pool, f->error);
+}
+
+static bool place_node(struct flattening *f, struct node *node, const struct transform *world_from_node) {
+    if (node->kind == NODE_GEOMETRY) {
+        uint32_t material;
+        if (node->shape.kind == SHAPE_MESH && mesh_triangle_count(node->shape.mesh) == 0)
+            return true;
+        return flatten_mesh_index(f, &node->shape) && flatten_material(f, node, &material) &&
+               place(f, node, world_from_node, &node->shape, material);
+    }
+    if (node->kind == NODE_CSG) {
+        const struct csg *csg;
+        if (!flatten_csg(f, node, &csg))
+            return false;
+        struct shape shape = {.kind = SHAPE_CSG, .csg = csg};
+        return !csg || place(f, node, world_from_node, &shape, 0);
+    }
+    return true;
+}
+
+struct place_frame {
+    struct transform world_from_node;
+    struct node_child *next;
+};
+
+static bool enter_node(struct flattening *f, struct stack *stack, const struct transform *world_from_parent,
+                       struct node *node) {
+    struct transform parent_from_node = node_parent_from_node(node);
+    struct transform world_from_node = transform_compose(world_from_parent, &parent_from_node);
+    if (!place_node(f, node, &world_from_node))
+        return false;
+    if (!node->first_child)
+        return true;
+    struct place_frame *frame = stack_push(stack);
+    if (!frame)
+        return error_no_memory(f->error, "flattening the scene");
+    *frame = (struct place_frame){world_from_node, node->first_child};
+    return true;
+}
+
+bool flatten_scene(struct flattening *f, struct node *root) {
+    if (!count_drawable(f, root))
+        return false;
+    if (root->drawable > PLACED_LIMIT)
+        return error_set(f->error, ERROR_SCENE, "the scene places more than %d primitives (instances of instances?)",
+                         PLACED_LIMIT);
+    f->placed_capacity = (uint32_t)root->drawable;
+    f->placed = arena_alloc_array(f->arena, f->placed_capacity, sizeof *f->placed);
+    f->nodes = arena_alloc_array(f->arena, f->placed_capacity, sizeof *f->nodes);
+    if (!f->placed || !f->nodes)
+        return error_set(f->error, ERROR_MACHINE, "out of memory for %u placed primitives", f->placed_capacity);
+    f->world->placed = f->placed;
+    f->world->nodes = f->nodes;
+    struct stack stack = {.size = sizeof(struct place_frame)};
+    struct transform identity = transform_identity();
+    bool ok = root->drawable == 0 || enter_node(f, &stack, &identity, root);
+    uint32_t steps = 0;
+    while (ok && stack.count > 0) {
+        struct place_frame *frame = stack_top(&stack);
+        struct node_child *link = frame->next;
+        if (!link) {
+            stack.count--;
+            continue;
+        }
+        frame->next = link->next;
+        struct transform world_from_parent = frame->world_from_node;
+        if (link->node->drawable > 0)
+            ok = enter_node(f, &stack, &world_from_parent, link->node);
+        if ((++steps & 4095) == 0 && pool_cancelled(f->pool))
+            ok = error_set(f->error, ERROR_CANCELLED, "stopped while the scene was flattened");
+    }
+    mem_free(stack.items);
+    return ok;
+}

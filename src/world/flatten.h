@@ -1,0 +1,33 @@
+/* From the authoring tree to a list of placed primitives, in flattening order: a node's own surface first, then its
+ * children as they were added. */
+#ifndef GRAY_WORLD_FLATTEN_H
+#define GRAY_WORLD_FLATTEN_H
+
+#include "world/world.h"
+
+struct material_table; /* distinct (material, texture) pairs */
+
+struct flattening {
+    struct arena *arena; /* of the job: everything made here lives there */
+    struct scene *scene;
+    struct world *world;
+    struct pool *pool;
+    world_warning *warn;
+    void *warn_context;
+    struct error *error;
+    struct placed *placed;
+    const struct node **nodes;
+    uint32_t placed_capacity;
+    struct material_table *materials;
+};
+
+/* Fills world->placed, nodes, materials. Errors: cycles, too many primitives, open operands of CSG, no memory. */
+bool flatten_scene(struct flattening *f, struct node *root);
+
+/* The CSG primitive of a NODE_CSG in its own space; NULL shape pointer out when it is empty (nothing to draw). */
+bool flatten_csg(struct flattening *f, struct node *node, const struct csg **out);
+/* Index of a node's effective material (texture over material, plain gray without one). */
+bool flatten_material(struct flattening *f, struct node *node, uint32_t *out);
+bool flatten_mesh_index(struct flattening *f, const struct shape *shape);
+
+#endif

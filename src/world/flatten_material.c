@@ -1,0 +1,125 @@
+/* Effective materials: a node's texture (set_texture) goes over its material, a node without material is plain gray. Each
+ * distinct pair gets one index, in order of first use; the table that finds pairs again is hashed by address, which
+ * decides where an entry stands and never which index it gets. */
+#include "world/flatten.h"
+
+#include "base/random.h"
+
+#include <stdio.h>
+
+struct material_entry {
+    const struct material *material, *texture;
+    enum shape_kind shape; /* a texture is mapped by the kind of its shape */
+    uint32_t index;
+    bool used;
+};
+
+struct material_table {
+    struct material_entry *entries; /* capacity a power of two, at most half full */
+    uint32_t capacity, count;
+    const struct material **list;
+    uint32_t list_capacity;
+};
+
+static const struct material plain_gray = {
+    .kind = MATERIAL_PHONG,
+    .depth = 1,
+    .name = "plain gray",
+    .phong = {.kd = {0.5, 0.5, 0.5}, .ks = {0, 0, 0}, .shininess = 1, .ior = 1},
+};
+
+static struct material_entry *find(struct material_table *table, const struct material *material,
+                                   const struct material *texture, enum shape_kind shape) {
+    uint64_t key = random_combine(random_combine((uint64_t)(uintptr_t)material, (uint64_t)(uintptr_t)texture), shape);
+    for (uint32_t at = (uint32_t)key;; at++) {
+        struct material_entry *entry = &table->entries[at & (table->capacity - 1)];
+        if (!entry->used ||
+            (entry->material == material && entry->texture == texture && (!texture || entry->shape == shape)))
+            return entry;
+    }
+}
+
+static bool grow(struct flattening *f) {
+    struct material_table old = f->materials ? *f->materials : (struct material_table){0};
+    struct material_table *table = f->materials;
+    if (!table)
+        table = arena_alloc(f->arena, sizeof *table);
+    uint32_t capacity = old.capacity ? old.capacity * 2 : 64;
+    struct material_entry *entries = arena_alloc_array(f->arena, capacity, sizeof *entries);
+    const struct material **list = arena_alloc_array(f->arena, capacity, sizeof *list);
+    if (!table || !entries || !list)
+        return error_no_memory(f->error, "the materials of the scene");
+    *table = (struct material_table){.entries = entries, .capacity = capacity, .count = old.count, .list = list,
+                                     .list_capacity = capacity};
+    for (uint32_t i = 0; i < old.capacity; i++) {
+        const struct material_entry *entry = &old.entries[i];
+        if (entry->used)
+            *find(table, entry->material, entry->texture, entry->texture ? entry->shape : SHAPE_SPHERE) = *entry;
+    }
+    for (uint32_t i = 0; i < old.count; i++)
+        list[i] = old.list[i];
+    f->materials = table;
+    return true;
+}
+
+static void warn_once(struct flattening *f, struct node *node, const char *what) {
+    if (node->warned)
+        return;
+    node->warned = true;
+    char text[512];
+    (void)snprintf(text, sizeof text, "warning: node '%.100s' %s", node->name, what);
+    f->warn(f->warn_context, text);
+}
+
+/* The image over the base, mapped as the shape wants it; NULL without memory. */
+static const struct material *textured(struct flattening *f, struct node *node, const struct material *base) {
+    struct material *material = arena_alloc(f->arena, sizeof *material);
+    if (!material) {
+        error_no_memory(f->error, "the materials of the scene");
+        return NULL;
+    }
+    *material = *node->texture;
+    material->base = base;
+    material->depth = base->depth + 1;
+    switch (node->shape.kind) {
+    case SHAPE_SPHERE:
+        material->image.mapping = MAPPING_SPHERE_CLASSIC;
+        break;
+    case SHAPE_BOX:
+        material->image.mapping = MAPPING_CUBE;
+        break;
+    case SHAPE_MESH:
+    case SHAPE_CSG:
+        material->image.mapping = MAPPING_UV;
+        break;
+    }
+    return material;
+}
+
+bool flatten_material(struct flattening *f, struct node *node, uint32_t *out) {
+    const struct material *base = node->material ? node->material : &plain_gray;
+    if (!node->material)
+        warn_once(f, node, "has no material and is shown in plain gray");
+    const struct material *texture = node->texture;
+    if (texture && base->depth >= MATERIAL_DEPTH)
+        return error_set(f->error, ERROR_SCENE, "node '%.100s': more than %d materials are stacked on each other",
+                         node->name, MATERIAL_DEPTH);
+    if (texture && node->shape.kind == SHAPE_MESH && !mesh_has_uv(node->shape.mesh)) {
+        warn_once(f, node, "has a texture, but its mesh has no texture coordinates (vt): the texture is not shown");
+        texture = NULL;
+    }
+    if ((!f->materials || f->materials->count * 2 >= f->materials->capacity) && !grow(f))
+        return false;
+    struct material_entry *entry = find(f->materials, base, texture, node->shape.kind);
+    if (!entry->used) {
+        const struct material *effective = texture ? textured(f, node, base) : base;
+        if (!effective)
+            return false;
+        *entry = (struct material_entry){base, texture, node->shape.kind, f->materials->count, true};
+        f->materials->list[f->materials->count++] = effective;
+    }
+    f->world->materials = f->materials->list;
+    f->world->material_count = f->materials->count;
+    *out = entry->index;
+    return true;
+}

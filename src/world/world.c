@@ -1,0 +1,335 @@
+/* The world: flattening, the grid over the placed primitives, and the three questions a renderer asks. A voxel holds
+ * indices; a primitive is tried once per ray however many voxels list it (a small mailbox remembers). */
+#include "world/world.h"
+
+#include "base/mem.h"
+#include "world/flatten.h"
+
+#include <string.h>
+
+enum { MAILBOX = 32, SCRATCH_START = 256 };
+
+bool world_scratch_init(struct world_scratch *scratch, const struct world *world) {
+    *scratch = (struct world_scratch){0};
+    uint32_t need = world->scratch_need > SCRATCH_START ? world->scratch_need : SCRATCH_START;
+    return geom_scratch_init(&scratch->geom, need);
+}
+
+void world_scratch_destroy(struct world_scratch *scratch) {
+    geom_scratch_destroy(&scratch->geom);
+}
+
+static void place_boxes(struct world *world) {
+    for (uint32_t i = 0; i < world->placed_count; i++) {
+        const struct placed *placed = &world->placed[i];
+        struct box object = shape_bounds(&placed->shape);
+        struct box box = box_transform(&placed->world_from_object.forward, &object);
+        world->boxes[i] = box_pad(box);
+        uint32_t need = shape_scratch_need(&placed->shape);
+        world->scratch_need = need > world->scratch_need ? need : world->scratch_need;
+        if (placed->shape.kind == SHAPE_MESH)
+            world->triangles += mesh_triangle_count(placed->shape.mesh);
+    }
+}
+
+static void add_up_meshes(struct world *world, const struct assets *assets) {
+    for (const struct asset_mesh *entry = assets ? assets->meshes : NULL; entry; entry = entry->next)
+        world->mesh_memory += mesh_memory(entry->mesh);
+}
+
+bool world_build(struct world *world, struct arena *arena, struct scene *scene, struct node *root,
+                 const struct light *lights, uint32_t light_count, const struct sky *sky, enum accel_kind accel,
+                 struct pool *pool, world_warning *warn, void *warn_context, struct error *error) {
+    *world = (struct world){.accel = accel, .sky = *sky, .light_count = light_count};
+    struct light *copied = arena_alloc_array(arena, light_count, sizeof *copied);
+    if (!copied)
+        return error_no_memory(error, "the lights of the scene");
+    if (light_count)
+        memcpy(copied, lights, light_count * sizeof *copied);
+    world->lights = copied;
+    struct flattening flattening = {.arena = arena,
+                                    .scene = scene,
+                                    .world = world,
+                                    .pool = pool,
+                                    .warn = warn,
+                                    .warn_context = warn_context,
+                                    .error = error};
+    if (!flatten_scene(&flattening, root))
+        return false;
+    world->boxes = arena_alloc_array(arena, world->placed_count, sizeof *world->boxes);
+    if (!world->boxes)
+        return error_no_memory(error, "the boxes of the scene");
+    place_boxes(world);
+    add_up_meshes(world, scene->assets);
+    return accel != ACCEL_GRID || grid_build(&world->grid, world->boxes, world->placed_count, pool, error);
+}
+
+void world_destroy(struct world *world) {
+    grid_destroy(&world->grid);
+}
+
+/* --- searching --- */
+
+struct search {
+    const struct world *world;
+    const struct ray *ray;
+    struct world_scratch *scratch;
+    struct ray limited; /* the ray with t_max just behind the best answer, so that an equal t is still found */
+    struct crossing best;
+    uint32_t placed;
+    bool found;
+};
+
+/* Runs one question about one placed primitive again with more scratch until it fits. */
+static bool ask_nearest(struct search *s, uint32_t index, const struct ray *ray_object, struct crossing *out) {
+    const struct shape *shape = &s->world->placed[index].shape;
+    struct geom_scratch *geom = &s->scratch->geom;
+    for (;;) {
+        s->scratch->geom.shape_tests++;
+        bool found = shape->kind == SHAPE_MESH ? mesh_nearest(shape->mesh, ray_object, s->world->accel, geom, out)
+                                               : shape_nearest(shape, ray_object, geom, out);
+        if (!geom->overflow)
+            return found;
+        if (!geom_scratch_grow(geom)) {
+            s->scratch->failed = true;
+            return false;
+        }
+    }
+}
+
+static void try_placed(struct search *s, uint32_t index) {
+    double enter, leave;
+    if (!box_clip(&s->world->boxes[index], &s->limited, &enter, &leave))
+        return;
+    struct ray ray_object = ray_transform(&s->world->placed[index].world_from_object.inverse, &s->limited);
+    struct crossing crossing;
+    if (!ask_nearest(s, index, &ray_object, &crossing))
+        return;
+    if (s->found && !(crossing.t < s->best.t || (crossing.t == s->best.t && index < s->placed)))
+        return;
+    s->best = crossing;
+    s->placed = index;
+    s->found = true;
+    s->limited.t_max = fmin(s->ray->t_max, nextafter(crossing.t, INFINITY));
+}
+
+struct mailbox {
+    uint32_t seen[MAILBOX];
+};
+
+static bool mailbox_first(struct mailbox *box, uint32_t index) {
+    uint32_t *slot = &box->seen[index % MAILBOX];
+    if (*slot == index)
+        return false;
+    *slot = index;
+    return true;
+}
+
+bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
+                            uint32_t *placed, struct crossing *crossing) {
+    struct search s = {.world = world, .ray = ray, .scratch = scratch, .limited = *ray};
+    scratch->rays++;
+    if (world->accel == ACCEL_NONE) {
+        for (uint32_t i = 0; i < world->placed_count; i++)
+            try_placed(&s, i);
+    } else {
+        struct mailbox mailbox;
+        memset(&mailbox, 0xff, sizeof mailbox);
+        struct grid_walk walk = {0};
+        for (bool go_on = grid_walk_begin(&walk, &world->grid, ray); go_on; go_on = grid_walk_next(&walk)) {
+            for (uint32_t i = 0; i < walk.count; i++) {
+                if (mailbox_first(&mailbox, walk.items[i]))
+                    try_placed(&s, walk.items[i]);
+            }
+            /* Strictly before the end of the voxel: an equal t may still wait in the next one. */
+            if (s.found && s.best.t < walk.t_exit)
+                break;
+        }
+        scratch->geom.voxels += walk.voxels;
+    }
+    *placed = s.placed;
+    *crossing = s.best;
+    return s.found;
+}
+
+static bool any_placed(const struct world *world, uint32_t index, const struct ray *ray, struct world_scratch *scratch) {
+    double enter, leave;
+    if (!box_clip(&world->boxes[index], ray, &enter, &leave))
+        return false;
+    const struct placed *placed = &world->placed[index];
+    struct ray ray_object = ray_transform(&placed->world_from_object.inverse, ray);
+    for (;;) {
+        scratch->geom.shape_tests++;
+        bool found = placed->shape.kind == SHAPE_MESH
+                         ? mesh_any(placed->shape.mesh, &ray_object, world->accel, &scratch->geom)
+                         : shape_any(&placed->shape, &ray_object, &scratch->geom);
+        if (!scratch->geom.overflow)
+            return found;
+        if (!geom_scratch_grow(&scratch->geom)) {
+            scratch->failed = true;
+            return false;
+        }
+    }
+}
+
+bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
+    scratch->any_rays++;
+    if (world->accel == ACCEL_NONE) {
+        for (uint32_t i = 0; i < world->placed_count; i++) {
+            if (any_placed(world, i, ray, scratch))
+                return true;
+        }
+        return false;
+    }
+    /* Neighbouring shadow rays mostly end at the same thing: it is asked first. The answer cannot depend on it. */
+    if (scratch->last_blocker < world->placed_count && any_placed(world, scratch->last_blocker, ray, scratch))
+        return true;
+    struct mailbox mailbox;
+    memset(&mailbox, 0xff, sizeof mailbox);
+    (void)mailbox_first(&mailbox, scratch->last_blocker);
+    struct grid_walk walk = {0};
+    bool found = false;
+    for (bool go_on = grid_walk_begin(&walk, &world->grid, ray); go_on && !found; go_on = grid_walk_next(&walk)) {
+        for (uint32_t i = 0; i < walk.count && !found; i++) {
+            uint32_t index = walk.items[i];
+            found = mailbox_first(&mailbox, index) && any_placed(world, index, ray, scratch);
+            if (found)
+                scratch->last_blocker = index;
+        }
+        if (found)
+            break;
+    }
+    scratch->geom.voxels += walk.voxels;
+    return found;
+}
+
+/* --- describing --- */
+
+/* Any two unit vectors at right angles to n and each other (Duff et al., "Building an Orthonormal Basis, Revisited",
+ * JCGT 2017). */
+static void tangents(struct vec3 n, struct vec3 *a, struct vec3 *b) {
+    double sign = n.z < 0 ? -1 : 1, s = -1 / (sign + n.z), c = n.x * n.y * s;
+    *a = vec3_make(1 + sign * n.x * n.x * s, sign * c, -sign * n.x);
+    *b = vec3_make(c, sign + n.y * n.y * s, -n.y);
+}
+
+static double row_sum(const struct affine *a, struct vec3 p) {
+    double largest = 0;
+    for (int i = 0; i < 3; i++) {
+        double sum = fabs(a->m[i][0] * p.x) + fabs(a->m[i][1] * p.y) + fabs(a->m[i][2] * p.z) + fabs(a->m[i][3]);
+        largest = sum > largest ? sum : largest;
+    }
+    return largest;
+}
+
+/* How far a secondary ray must start off the surface. The point is known up to the surface's own error and the rounding of
+ * both transforms; everything scales with the numbers involved, so no length is wired in. */
+static double offset_of(const struct placed *placed, const struct surface *surface, struct vec3 point) {
+    double mapped = row_sum(&placed->world_from_object.forward, surface->point);
+    double back = row_sum(&placed->world_from_object.inverse, point) * placed->scale;
+    return 16 * surface->error * placed->scale + (mapped + back) * 0x1p-42;
+}
+
+static void describe(const struct world *world, const struct ray *ray, uint32_t index, const struct crossing *crossing,
+                     struct hit *hit) {
+    const struct placed *placed = &world->placed[index];
+    const struct transform *map = &placed->world_from_object;
+    struct ray ray_object = ray_transform(&map->inverse, ray);
+    struct surface surface;
+    shape_describe(&placed->shape, &ray_object, crossing, &surface);
+    double length = vec3_length(ray->direction);
+    bool in_csg = placed->shape.kind == SHAPE_CSG;
+    const struct csg_leaf *leaf = in_csg ? &placed->shape.csg->leaves[surface.leaf] : NULL;
+    enum shape_kind kind = in_csg ? leaf->shape.kind : placed->shape.kind;
+    *hit = (struct hit){.t = crossing->t,
+                        .point = affine_point(&map->forward, surface.point),
+                        .view = vec3_scale(ray->direction, -1 / length),
+                        .normal_geometric = vec3_normalize(transform_normal(map, surface.normal)),
+                        .pattern_point = surface.pattern_point,
+                        .pattern_normal = surface.pattern_normal,
+                        .has_uv = surface.has_uv,
+                        .u = surface.u,
+                        .v = surface.v,
+                        .placed = index,
+                        .leaf = surface.leaf,
+                        .part = crossing->part,
+                        .material = in_csg ? leaf->material : placed->material,
+                        .on_sphere = kind == SHAPE_SPHERE,
+                        .on_box = kind == SHAPE_BOX,
+                        .time = ray->time};
+    hit->normal = vec3_normalize(transform_normal(map, surface.shading_normal));
+    if (surface.has_uv) {
+        hit->dpdu = affine_vector(&map->forward, surface.dpdu);
+        hit->dpdv = affine_vector(&map->forward, surface.dpdv);
+    }
+    hit->front = vec3_dot(hit->view, hit->normal_geometric) >= 0;
+    hit->offset = offset_of(placed, &surface, hit->point);
+    if (ray->footprint.width > 0 || ray->footprint.spread > 0) {
+        hit->footprint = ray->footprint.width + ray->footprint.spread * crossing->t * length;
+        struct vec3 a, b;
+        tangents(hit->normal_geometric, &a, &b);
+        a = affine_vector(&map->inverse, a);
+        b = affine_vector(&map->inverse, b);
+        if (leaf) {
+            a = affine_vector(&leaf->csg_from_leaf.inverse, a);
+            b = affine_vector(&leaf->csg_from_leaf.inverse, b);
+        }
+        hit->pattern_scale = fmax(vec3_length(a), vec3_length(b));
+    }
+}
+
+bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit) {
+    uint32_t placed;
+    struct crossing crossing;
+    if (!world_nearest_crossing(world, ray, scratch, &placed, &crossing))
+        return false;
+    describe(world, ray, placed, &crossing, hit);
+    return true;
+}
+
+uint32_t world_containing(const struct world *world, struct vec3 point, struct world_scratch *scratch, uint32_t *placed,
+                          uint32_t limit) {
+    struct ray ray = {.origin = point, .direction = {0.5377, 0.6212, 0.5698}, .t_max = INFINITY};
+    uint32_t count = 0;
+    double *ends = mem_alloc_zero(limit, sizeof *ends);
+    if (!ends) {
+        scratch->failed = true;
+        return 0;
+    }
+    for (uint32_t i = 0; i < world->placed_count; i++) {
+        const struct placed *candidate = &world->placed[i];
+        if (!box_contains(&world->boxes[i], point) || !shape_is_closed(&candidate->shape))
+            continue;
+        struct vec3 p_object = affine_point(&candidate->world_from_object.inverse, point);
+        bool inside = shape_contains(&candidate->shape, p_object, &scratch->geom);
+        while (scratch->geom.overflow && geom_scratch_grow(&scratch->geom))
+            inside = shape_contains(&candidate->shape, p_object, &scratch->geom);
+        if (scratch->geom.overflow)
+            scratch->failed = true;
+        if (!inside)
+            continue;
+        /* Innermost last: the solid the ray leaves first is the innermost. */
+        struct ray ray_object = ray_transform(&candidate->world_from_object.inverse, &ray);
+        struct search s = {.world = world, .ray = &ray, .scratch = scratch};
+        struct crossing crossing = {.t = INFINITY};
+        (void)ask_nearest(&s, i, &ray_object, &crossing);
+        uint32_t at = count;
+        while (at > 0 && ends[at - 1] < crossing.t)
+            at--;
+        if (count < limit) {
+            memmove(placed + at + 1, placed + at, (count - at) * sizeof *placed);
+            memmove(ends + at + 1, ends + at, (count - at) * sizeof *ends);
+            count++;
+        } else if (at > 0) {
+            at--; /* the outermost falls off */
+            memmove(placed, placed + 1, at * sizeof *placed);
+            memmove(ends, ends + 1, at * sizeof *ends);
+        } else {
+            continue;
+        }
+        placed[at] = i;
+        ends[at] = crossing.t;
+    }
+    mem_free(ends);
+    return count;
+}

@@ -1,0 +1,69 @@
+/* The flattened scene: placed primitives, a voxel grid over them, lights; immutable, flat arrays with 32-bit indices,
+ * owned by the arena of one job. Answers what a ray meets. */
+#ifndef GRAY_WORLD_WORLD_H
+#define GRAY_WORLD_WORLD_H
+
+#include "accel/grid.h"
+#include "base/arena.h"
+#include "base/pool.h"
+#include "geom/csg.h"
+#include "geom/hit.h"
+#include "geom/shape.h"
+#include "scene/node.h"
+
+struct placed {
+    struct transform world_from_object;
+    struct shape shape;
+    uint32_t material; /* unused for CSG: the leaves have their own */
+    double scale;      /* largest stretch of world_from_object: bounds errors */
+};
+
+struct world {
+    const struct placed *placed;
+    struct box *boxes; /* world box of each placed primitive */
+    uint32_t placed_count;
+    const struct material **materials;
+    uint32_t material_count;
+    const struct node **nodes; /* nodes[i]: the node that placed[i] came from */
+    const struct light *lights;
+    uint32_t light_count;
+    struct sky sky;
+    struct grid grid;
+    enum accel_kind accel;
+    uint32_t scratch_need;
+    uint64_t triangles; /* instances counted */
+    size_t mesh_memory; /* bytes of the distinct meshes */
+};
+
+/* One worker's mutable memory while it asks the world. */
+struct world_scratch {
+    struct geom_scratch geom;
+    bool failed; /* no memory to grow: the frame is abandoned with ERROR_MACHINE */
+    uint64_t rays, any_rays;
+    uint32_t last_blocker; /* what stopped the last shadow ray */
+};
+bool world_scratch_init(struct world_scratch *scratch, const struct world *world);
+void world_scratch_destroy(struct world_scratch *scratch);
+
+/* Called with one line for things that are odd but not wrong (a geometry node without material ...). */
+typedef void world_warning(void *context, const char *text);
+
+/* Flattens the tree under root as it stands now; mesh indices are built where they are missing. The world points into
+ * the scene's arena (materials, names), so it must not outlive the script. Errors: cycles (naming the nodes), no memory,
+ * cancelled. lights and sky are copied. */
+bool world_build(struct world *world, struct arena *arena, struct scene *scene, struct node *root,
+                 const struct light *lights, uint32_t light_count, const struct sky *sky, enum accel_kind accel,
+                 struct pool *pool, world_warning *warn, void *warn_context, struct error *error);
+void world_destroy(struct world *world); /* what is not in the arena: the grid */
+
+/* Nearest hit in the ray's open interval, fully described. Equal t: the primitive that comes first in flattening order. */
+bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit);
+/* Only which primitive and where; for tests and counters. */
+bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
+                            uint32_t *placed, struct crossing *crossing);
+bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch);
+/* The closed primitives whose inside holds `point`, innermost last; at most `limit`. Returns the count. */
+uint32_t world_containing(const struct world *world, struct vec3 point, struct world_scratch *scratch, uint32_t *placed,
+                          uint32_t limit);
+
+#endif
