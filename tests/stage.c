@@ -1,0 +1,133 @@
+/* See stage.h. */
+#include "tests/stage.h"
+
+#include "tests/harness.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void count_warning(void *context, const char *text) {
+    (void)text;
+    ((struct stage *)context)->warnings++;
+}
+
+void stage_begin(struct stage *s, int threads) {
+    char warning[256];
+    memset(s, 0, sizeof *s);
+    scene_init(&s->scene, &s->assets);
+    s->pool = pool_create(threads, warning);
+    s->root = scene_node(&s->scene, NODE_GROUP, "root", &s->error);
+    s->sky = (struct sky){.kind = SKY_CONSTANT};
+    s->settings = settings_default();
+    s->camera = (struct camera){{0, 0, 10}, {0, 0, -1}, {0, 1, 0}, 50};
+}
+
+void stage_end(struct stage *s) {
+    free(s->film.pixels);
+    world_destroy(&s->world);
+    arena_destroy(&s->arena);
+    scene_destroy(&s->scene);
+    assets_destroy(&s->assets);
+    pool_destroy(s->pool);
+}
+
+bool stage_build(struct stage *s, struct node *root, enum accel_kind accel) {
+    world_destroy(&s->world);
+    arena_reset(&s->arena);
+    return world_build(&s->world, &s->arena, &s->scene, root, s->lights, s->light_count, &s->sky, accel, s->pool,
+                       count_warning, s, &s->error);
+}
+
+bool stage_render(struct stage *s, uint32_t width, uint32_t height) {
+    struct render_job job = {.world = &s->world,
+                             .camera = s->camera,
+                             .settings = s->settings,
+                             .width = width,
+                             .height = height,
+                             .ambient = s->ambient,
+                             .film = &s->film};
+    char warning[256];
+    size_t bytes;
+    uint32_t x0, y0, w, h;
+    bool ok = stage_build(s, s->root, s->settings.accel) &&
+              render_prepare(&job, &x0, &y0, &w, &h, warning, &s->error) && film_size(w, h, &bytes, &s->error);
+    if (ok) {
+        free(s->film.pixels);
+        film_place(&s->film, calloc(1, bytes), w, h);
+        s->film.x0 = x0;
+        s->film.y0 = y0;
+        s->film.full_width = width;
+        s->film.full_height = height;
+        ok = render_run(&job, s->pool, &s->statistics, &s->error);
+    }
+    if (!ok)
+        test_fail(__FILE__, __LINE__, "render: %s", s->error.text);
+    return ok;
+}
+
+struct vec3 stage_pixel(const struct stage *s, uint32_t x, uint32_t y) {
+    const float *rgb = s->film.pixels[(size_t)y * s->film.width + x].rgb;
+    return vec3_make((double)rgb[0], (double)rgb[1], (double)rgb[2]);
+}
+
+struct material *stage_phong(struct stage *s, struct vec3 kd, struct vec3 ks, double shininess) {
+    struct material *material = scene_material(&s->scene, MATERIAL_PHONG, NULL, &s->error);
+    material->phong.kd = kd;
+    material->phong.ks = ks;
+    material->phong.shininess = shininess;
+    material->phong.ior = 1;
+    return material;
+}
+
+struct material *stage_glass(struct stage *s, double reflect, double refract, double ior) {
+    struct material *material = stage_phong(s, vec3_all(0), vec3_all(1), 1);
+    material->phong.reflect = reflect;
+    material->phong.refract = refract;
+    material->phong.ior = ior;
+    material->phong.has_ior = true;
+    return material;
+}
+
+static struct node *add(struct stage *s, struct node *parent, enum node_kind kind, const char *name) {
+    struct node *node = scene_node(&s->scene, kind, name, &s->error);
+    CHECK(node_add_child(&s->scene, parent, node, &s->error));
+    return node;
+}
+
+struct node *stage_group(struct stage *s, struct node *parent) {
+    return add(s, parent, NODE_GROUP, "group");
+}
+
+struct node *stage_sphere(struct stage *s, struct node *parent, const struct material *material) {
+    struct node *node = add(s, parent, NODE_GEOMETRY, "sphere");
+    node->shape = (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}};
+    node->material = material;
+    return node;
+}
+
+struct node *stage_cube(struct stage *s, struct node *parent, const struct material *material) {
+    struct node *node = add(s, parent, NODE_GEOMETRY, "cube");
+    node->shape = (struct shape){.kind = SHAPE_BOX, .box = {{0, 0, 0}, {1, 1, 1}}};
+    node->material = material;
+    return node;
+}
+
+void stage_move(struct stage *s, struct node *node, double x, double y, double z) {
+    struct transform t = transform_translate(vec3_make(x, y, z));
+    CHECK(node_transform(&s->scene, node, NODE_TRANSLATE, &t));
+}
+
+void stage_scale(struct stage *s, struct node *node, double x, double y, double z) {
+    struct transform t = transform_scale(vec3_make(x, y, z));
+    CHECK(node_transform(&s->scene, node, NODE_SCALE, &t));
+}
+
+void stage_rotate(struct stage *s, struct node *node, int axis, double degrees) {
+    struct transform t = transform_rotate(axis, degrees);
+    CHECK(node_transform(&s->scene, node, NODE_ROTATE, &t));
+}
+
+void stage_point_light(struct stage *s, struct vec3 position, struct vec3 colour) {
+    s->lights[s->light_count++] =
+        (struct light){.kind = LIGHT_POINT, .position = position, .colour = colour, .falloff = {1, 0, 0}};
+}

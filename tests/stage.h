@@ -1,0 +1,45 @@
+/* A scene, a world and a render without Lua or files, for tests that look at colours as they are before any byte. */
+#ifndef GRAY_TESTS_STAGE_H
+#define GRAY_TESTS_STAGE_H
+
+#include "render/render.h"
+#include "world/world.h"
+
+struct stage {
+    struct assets assets;
+    struct scene scene;
+    struct pool *pool;
+    struct arena arena;
+    struct world world;
+    struct error error;
+    int warnings;
+    struct node *root;
+    struct light lights[8];
+    uint32_t light_count;
+    struct sky sky;
+    struct vec3 ambient;
+    struct settings settings;
+    struct camera camera;
+    struct render_statistics statistics;
+    struct film film; /* of the last stage_render */
+};
+
+/* An empty root, no lights, black sky, ambient 0, camera at (0,0,10) looking at -z, fov 50, default settings. */
+void stage_begin(struct stage *s, int threads);
+void stage_end(struct stage *s);
+bool stage_build(struct stage *s, struct node *root, enum accel_kind accel);
+/* Builds the world of s->root and renders; the film lives until the next render or the end. Failures fail the test. */
+bool stage_render(struct stage *s, uint32_t width, uint32_t height);
+struct vec3 stage_pixel(const struct stage *s, uint32_t x, uint32_t y);
+
+struct material *stage_phong(struct stage *s, struct vec3 kd, struct vec3 ks, double shininess);
+struct material *stage_glass(struct stage *s, double reflect, double refract, double ior);
+struct node *stage_group(struct stage *s, struct node *parent);
+struct node *stage_sphere(struct stage *s, struct node *parent, const struct material *material);
+struct node *stage_cube(struct stage *s, struct node *parent, const struct material *material);
+void stage_move(struct stage *s, struct node *node, double x, double y, double z);
+void stage_scale(struct stage *s, struct node *node, double x, double y, double z);
+void stage_rotate(struct stage *s, struct node *node, int axis, double degrees);
+void stage_point_light(struct stage *s, struct vec3 position, struct vec3 colour);
+
+#endif

@@ -1,0 +1,248 @@
+/* The world beside brute force, and what flattening promises. */
+#include "tests/harness.h"
+
+#include "tests/stage.h"
+
+#include <string.h>
+
+static struct mesh *small_mesh(struct stage *s, struct test_random *random, bool closed) {
+    static const uint32_t faces[] = {0, 1, 2, 0, 3, 1, 1, 3, 2, 2, 3, 0};
+    static const uint32_t starts[] = {0, 3, 6, 9, 12};
+    double vertices[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0, 1, 0}};
+    for (int i = 0; i < 12; i++)
+        vertices[i / 3][i % 3] += test_uniform(random, -0.1, 0.1);
+    struct mesh_input input = {.name = "small",
+                               .vertex_count = 4,
+                               .face_count = closed ? 4 : 3,
+                               .vertices = (const double(*)[3])vertices,
+                               .face_start = starts,
+                               .vertex_index = faces};
+    return assets_mesh(&s->assets, &input, &s->error);
+}
+
+static void random_place(struct stage *s, struct test_random *random, struct node *node, double spread) {
+    struct transform t = transform_scale(vec3_make(test_uniform(random, 0.2, 2) * (test_uniform(random, 0, 1) < 0.2 ? -1 : 1),
+                                                   test_uniform(random, 0.2, 2), test_uniform(random, 0.2, 2)));
+    node_transform(&s->scene, node, NODE_SCALE, &t);
+    t = transform_rotate((int)test_uniform(random, 0, 3), test_uniform(random, -180, 180));
+    node_transform(&s->scene, node, NODE_ROTATE, &t);
+    t = transform_translate(vec3_make(test_uniform(random, -spread, spread), test_uniform(random, -spread, spread),
+                                      test_uniform(random, -spread, spread)));
+    node_transform(&s->scene, node, NODE_TRANSLATE, &t);
+}
+
+static struct node *random_solid(struct stage *s, struct test_random *random, int depth) {
+    double kind = test_uniform(random, 0, 1);
+    struct node *node;
+    if (kind < 0.25 && depth > 0) {
+        node = scene_node(&s->scene, NODE_CSG, "csg", &s->error);
+        node->operation = (enum node_csg)(int)test_uniform(random, 0, 3);
+        node->operands[0] = random_solid(s, random, depth - 1);
+        node->operands[1] = random_solid(s, random, depth - 1);
+        random_place(s, random, node, 0.3);
+        return node;
+    }
+    node = scene_node(&s->scene, NODE_GEOMETRY, "solid", &s->error);
+    if (kind < 0.5) {
+        node->shape = (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}};
+    } else if (kind < 0.75) {
+        node->shape = (struct shape){.kind = SHAPE_BOX, .box = {{0, 0, 0}, {1, 1, 1}}};
+    } else {
+        node->shape = (struct shape){.kind = SHAPE_MESH, .mesh = small_mesh(s, random, true)};
+    }
+    random_place(s, random, node, 0.3);
+    return node;
+}
+
+/* A mixed world: shapes, instances of groups, CSG; sometimes flat, sometimes empty. */
+static struct node *random_world(struct stage *s, struct test_random *random, int count, double spread, bool flat) {
+    struct node *root = scene_node(&s->scene, NODE_GROUP, "root", &s->error), *last = NULL;
+    for (int i = 0; i < count; i++) {
+        struct node *node;
+        if (last && test_uniform(random, 0, 1) < 0.2) {
+            node = scene_node(&s->scene, NODE_GROUP, "instance", &s->error);
+            CHECK(node_add_child(&s->scene, node, last, &s->error));
+            random_place(s, random, node, spread);
+        } else {
+            node = random_solid(s, random, 2);
+            random_place(s, random, node, spread);
+            last = node;
+        }
+        if (flat) {
+            struct transform t = transform_scale(vec3_make(1, 1e-9, 1));
+            node_transform(&s->scene, node, NODE_SCALE, &t);
+        }
+        CHECK(node_add_child(&s->scene, root, node, &s->error));
+    }
+    return root;
+}
+
+static struct ray random_ray(struct test_random *random, double spread) {
+    struct ray ray = {.t_min = 0, .t_max = INFINITY};
+    double *o = &ray.origin.x, *d = &ray.direction.x;
+    for (int i = 0; i < 3; i++) {
+        o[i] = test_uniform(random, -2 * spread, 2 * spread);
+        d[i] = test_uniform(random, -1, 1);
+        if (test_uniform(random, 0, 1) < 0.05)
+            d[i] = 0;
+    }
+    if (d[0] == 0 && d[1] == 0 && d[2] == 0)
+        d[2] = 1;
+    if (test_uniform(random, 0, 1) < 0.2)
+        ray.t_max = test_uniform(random, 0, spread);
+    return ray;
+}
+
+static void compare_with_brute_force(int worlds, int rays, uint64_t seed) {
+    struct test_random random = {seed};
+    for (int w = 0; w < worlds; w++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        static const int counts[] = {0, 1, 2, 5, 20, 80, 300};
+        int count = counts[w % 7];
+        double spread = w % 3 == 0 ? 2 : w % 3 == 1 ? 10 : 60;
+        struct node *root = random_world(&s, &random, count, spread, w % 11 == 10);
+        struct stage *stage = &s;
+        if (!stage_build(stage, root, ACCEL_GRID)) {
+            test_fail(__FILE__, __LINE__, "%s", s.error.text);
+            stage_end(&s);
+            return;
+        }
+        struct world brute = s.world;
+        brute.accel = ACCEL_NONE;
+        struct world_scratch scratch;
+        CHECK(world_scratch_init(&scratch, &s.world));
+        int wrong = 0;
+        for (int i = 0; i < rays; i++) {
+            struct ray ray = random_ray(&random, spread);
+            uint32_t a = 0, b = 0;
+            struct crossing x = {0}, y = {0};
+            bool hit_a = world_nearest_crossing(&s.world, &ray, &scratch, &a, &x);
+            bool hit_b = world_nearest_crossing(&brute, &ray, &scratch, &b, &y);
+            bool same = hit_a == hit_b && (!hit_a || (a == b && x.t == y.t && x.part == y.part && x.leaf == y.leaf));
+            same = same && world_any(&s.world, &ray, &scratch) == hit_b;
+            wrong += !same;
+            if (!same && wrong < 3)
+                test_fail(__FILE__, __LINE__, "world %d ray %d: grid %d #%u t=%.17g, brute force %d #%u t=%.17g", w, i, hit_a,
+                          a, x.t, hit_b, b, y.t);
+        }
+        CHECK_EQ_INT(wrong, 0);
+        world_scratch_destroy(&scratch);
+        stage_end(&s);
+    }
+}
+
+TEST(world_grid_equals_brute_force_on_random_rays) {
+    compare_with_brute_force(42, 12000, 1);
+}
+
+TEST_LONG(world_grid_equals_brute_force_on_ten_million_rays) {
+    compare_with_brute_force(420, 24000, 2);
+}
+
+TEST(world_names_the_nodes_of_a_cycle) {
+    struct stage s;
+    stage_begin(&s, 1);
+    struct node *a = scene_node(&s.scene, NODE_GROUP, "arm", &s.error);
+    struct node *b = scene_node(&s.scene, NODE_GROUP, "hand", &s.error);
+    CHECK(node_add_child(&s.scene, a, b, &s.error) && node_add_child(&s.scene, b, a, &s.error));
+    CHECK(!stage_build(&s, a, ACCEL_GRID));
+    CHECK_TEXT(s.error.text, "the nodes form a cycle: 'arm' > 'hand' > 'arm'");
+    stage_end(&s);
+}
+
+TEST(world_refuses_a_tree_that_doubles_sixty_times) {
+    struct stage s;
+    stage_begin(&s, 1);
+    struct node *node = scene_node(&s.scene, NODE_GEOMETRY, "leaf", &s.error);
+    node->shape = (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}};
+    struct node *group = NULL, *empty = scene_node(&s.scene, NODE_GROUP, "nothing", &s.error);
+    for (int i = 0; i < 60; i++) {
+        group = scene_node(&s.scene, NODE_GROUP, "twice", &s.error);
+        CHECK(node_add_child(&s.scene, group, node, &s.error) && node_add_child(&s.scene, group, node, &s.error));
+        node = group;
+        struct node *more = scene_node(&s.scene, NODE_GROUP, "nothing", &s.error);
+        CHECK(node_add_child(&s.scene, more, empty, &s.error) && node_add_child(&s.scene, more, empty, &s.error));
+        empty = more;
+    }
+    CHECK(!stage_build(&s, group, ACCEL_GRID));
+    CHECK(strstr(s.error.text, "more than 268435456 primitives") != NULL);
+    CHECK(stage_build(&s, empty, ACCEL_GRID)); /* 2^60 paths, but nothing to place on any */
+    CHECK_EQ_INT(s.world.placed_count, 0);
+    stage_end(&s);
+}
+
+TEST(world_flattens_a_chain_of_a_million_nodes) {
+    struct stage s;
+    stage_begin(&s, 1);
+    struct node *root = scene_node(&s.scene, NODE_GROUP, "root", &s.error), *node = root;
+    for (int i = 0; i < 1000000; i++) {
+        struct node *child = scene_node(&s.scene, NODE_GROUP, "link", &s.error);
+        CHECK(node_add_child(&s.scene, node, child, &s.error));
+        node = child;
+    }
+    struct node *leaf = scene_node(&s.scene, NODE_GEOMETRY, "leaf", &s.error);
+    leaf->shape = (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}};
+    CHECK(node_add_child(&s.scene, node, leaf, &s.error));
+    CHECK(stage_build(&s, root, ACCEL_GRID));
+    CHECK_EQ_INT(s.world.placed_count, 1);
+    CHECK_EQ_INT(s.warnings, 1); /* no material */
+    stage_end(&s);
+}
+
+TEST(csg_operand_that_is_open_is_an_error_that_names_node_and_edge) {
+    struct stage s;
+    struct test_random random = {7};
+    stage_begin(&s, 1);
+    struct node *open = scene_node(&s.scene, NODE_GEOMETRY, "bowl", &s.error);
+    open->shape = (struct shape){.kind = SHAPE_MESH, .mesh = small_mesh(&s, &random, false)};
+    struct node *ball = scene_node(&s.scene, NODE_GEOMETRY, "ball", &s.error);
+    ball->shape = (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}};
+    struct node *cut = scene_node(&s.scene, NODE_CSG, "cut", &s.error);
+    cut->operation = NODE_DIFFERENCE;
+    cut->operands[0] = ball;
+    cut->operands[1] = open;
+    CHECK(!stage_build(&s, cut, ACCEL_GRID));
+    CHECK(strstr(s.error.text, "node 'bowl'") != NULL && strstr(s.error.text, "edge from") != NULL);
+    stage_end(&s);
+}
+
+TEST(an_empty_operand_follows_the_algebra_of_sets) {
+    struct stage s;
+    stage_begin(&s, 1);
+    static const uint32_t expected[3] = {1, 0, 1}; /* A u 0, A n 0, A - 0 */
+    for (int operation = 0; operation < 3; operation++) {
+        struct node *ball = scene_node(&s.scene, NODE_GEOMETRY, "ball", &s.error);
+        ball->shape = (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}};
+        struct node *cut = scene_node(&s.scene, NODE_CSG, "cut", &s.error);
+        cut->operation = (enum node_csg)operation;
+        cut->operands[0] = ball;
+        cut->operands[1] = scene_node(&s.scene, NODE_GROUP, "nothing", &s.error);
+        CHECK(stage_build(&s, cut, ACCEL_GRID));
+        CHECK_EQ_INT(s.world.placed_count, expected[operation]);
+    }
+    stage_end(&s);
+}
+
+TEST(world_finds_the_solids_round_a_point_innermost_last) {
+    struct stage s;
+    stage_begin(&s, 1);
+    struct node *root = scene_node(&s.scene, NODE_GROUP, "root", &s.error);
+    static const double radii[3] = {2, 3, 1};
+    for (int i = 0; i < 3; i++) {
+        struct node *ball = scene_node(&s.scene, NODE_GEOMETRY, "ball", &s.error);
+        ball->shape = (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, radii[i]}};
+        CHECK(node_add_child(&s.scene, root, ball, &s.error));
+    }
+    CHECK(stage_build(&s, root, ACCEL_GRID));
+    struct world_scratch scratch;
+    CHECK(world_scratch_init(&scratch, &s.world));
+    uint32_t inside[4];
+    CHECK_EQ_INT(world_containing(&s.world, vec3_make(0.1, 0.2, 0.3), &scratch, inside, 4), 3);
+    CHECK(inside[0] == 1 && inside[1] == 0 && inside[2] == 2);
+    CHECK_EQ_INT(world_containing(&s.world, vec3_make(0.1, 0.2, 0.3), &scratch, inside, 2), 2);
+    CHECK(inside[0] == 0 && inside[1] == 2);
+    CHECK_EQ_INT(world_containing(&s.world, vec3_make(2.5, 0, 0), &scratch, inside, 4), 1);
+    world_scratch_destroy(&scratch);
+    stage_end(&s);
+}
