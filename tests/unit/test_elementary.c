@@ -8,9 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "harness.h"
 #include "math/elementary.h"
-#include "unit/elementary_reference.h"
+#include "tests/harness.h"
+#include "tests/unit/elementary_reference.h"
 
 #define COUNT(array) ((int)(sizeof(array) / sizeof *(array)))
 
@@ -142,16 +142,16 @@ TEST(elementary_hyperbolics_and_roots_agree_with_400_bit_values) {
     REFERENCE_TWO(hypot);
 }
 
-TEST(elementary_angles_err_by_less_than_one_last_place) {
+TEST(elementary_angles_err_by_less_than_1_05_last_places) {
     CHECK_ONE(sin, 0.9, UNIFORM, -0.8, 0.8);
     CHECK_ONE(sin, 0.9, UNIFORM, -100.0, 100.0);
     CHECK_ONE(sin, 0.9, UNIFORM, -2e6, 2e6);
     CHECK_ONE(sin, 0.9, EXPONENTS, -40, 62); /* beyond 2^63 the ruler gives up */
     CHECK_ONE(cos, 0.9, UNIFORM, -100.0, 100.0);
     CHECK_ONE(cos, 0.9, EXPONENTS, -40, 62);
-    CHECK_ONE(tan, 1.0, UNIFORM, -0.8, 0.8);
-    CHECK_ONE(tan, 1.0, UNIFORM, -100.0, 100.0);
-    CHECK_ONE(tan, 1.0, EXPONENTS, -40, 62);
+    CHECK_ONE(tan, 1.05, UNIFORM, -0.8, 0.8);
+    CHECK_ONE(tan, 1.05, UNIFORM, -100.0, 100.0);
+    CHECK_ONE(tan, 1.05, EXPONENTS, -40, 62);
     CHECK_ONE(asin, 0.7, UNIFORM, -1.0, 1.0);
     CHECK_ONE(asin, 0.7, EXPONENTS, -40, -1);
     CHECK_ONE(acos, 0.7, UNIFORM, -1.0, 1.0);

@@ -2,9 +2,9 @@
  */
 #include <math.h>
 
-#include "harness.h"
 #include "math/elementary.h"
 #include "math/noise.h"
+#include "tests/harness.h"
 
 static const double pi = 0x1.921fb54442d18p+1;
 
