@@ -1,0 +1,65 @@
+/* The rare parts of the watertight test: exact differences of products, and ties. See triangle.h. */
+#include "accel/triangle.h"
+
+__extension__ typedef unsigned __int128 wide;
+
+bool triangle_ray_init(struct triangle_ray *out, const struct ray *ray) {
+    struct vec3 d = ray->direction;
+    double x = fabs(d.x), y = fabs(d.y), z = fabs(d.z);
+    out->z = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+    out->x = (out->z + 1) % 3;
+    out->y = (out->z + 2) % 3;
+    double along = vec3_get(d, out->z);
+    if (!vec3_finite(d) || !(fabs(along) > 0) || !vec3_finite(ray->origin))
+        return false;
+    if (along < 0) { /* keeps the winding as it is seen along the ray */
+        int swap = out->x;
+        out->x = out->y;
+        out->y = swap;
+    }
+    out->shear_x = vec3_get(d, out->x) / along;
+    out->shear_y = vec3_get(d, out->y) / along;
+    out->scale_z = 1 / along;
+    out->origin[0] = ray->origin.x;
+    out->origin[1] = ray->origin.y;
+    out->origin[2] = ray->origin.z;
+    return true;
+}
+
+/* |a b| as an integer of at most 106 bits times a power of two. */
+static wide product(double a, double b, int *exponent) {
+    int ea, eb;
+    uint64_t ma = (uint64_t)ldexp(frexp(fabs(a), &ea), 53);
+    uint64_t mb = (uint64_t)ldexp(frexp(fabs(b), &eb), 53);
+    *exponent = ea + eb;
+    return (wide)ma * mb;
+}
+
+double triangle_edge_exact(double ax, double ay, double bx, double by) {
+    if (!(isfinite(ax) && isfinite(ay) && isfinite(bx) && isfinite(by)))
+        return NAN;
+    int ep, eq;
+    wide p = product(ax, by, &ep), q = product(ay, bx, &eq);
+    bool p_negative = signbit(ax) != signbit(by), q_negative = signbit(ay) != signbit(bx);
+    double p_rounded = ax * by, q_rounded = ay * bx;
+    /* Far apart, of different sign, or one of them zero: nothing cancels and the rounded difference is good. */
+    if (p == 0 || q == 0 || p_negative != q_negative || ep > eq + 20 || eq > ep + 20)
+        return p_rounded - q_rounded;
+    /* Both fit 126 bits on the smaller exponent. */
+    int exponent = ep < eq ? ep : eq;
+    p <<= ep - exponent;
+    q <<= eq - exponent;
+    bool negative = p_negative != (p < q);
+    wide difference = p < q ? q - p : p - q;
+    double value = ldexp((double)difference, exponent - 106);
+    return negative ? -value : value;
+}
+
+/* Moving the origin by (e, e^2) changes the function by e (ay - by) + e^2 (bx - ax). */
+int triangle_edge_tie(double ax, double ay, double bx, double by) {
+    if (ay != by)
+        return ay > by ? 1 : -1;
+    if (ax != bx)
+        return bx > ax ? 1 : -1;
+    return 0;
+}

@@ -1,0 +1,51 @@
+/* An index over the triangles of one mesh: finds what a ray meets, with the same bits as trying every triangle. */
+#ifndef GRAY_ACCEL_TRIANGLE_INDEX_H
+#define GRAY_ACCEL_TRIANGLE_INDEX_H
+
+#include "accel/triangle.h"
+#include "base/error.h"
+#include "base/pool.h"
+#include "math/box.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Borrowed from the mesh, which must outlive the index. */
+struct triangle_set {
+    const double (*vertices)[3];
+    const uint32_t (*corners)[3];
+    uint32_t count;
+    struct box bounds; /* of the triangles; empty when there are none */
+};
+
+struct triangle_index;
+
+/* What a search cost; sums, only ever added to. */
+struct triangle_cost {
+    uint64_t triangle_tests, voxels, hierarchy_steps;
+};
+
+/* Owner: the caller, triangle_index_destroy. False: no memory or cancelled. pool may be NULL. */
+bool triangle_index_build(struct triangle_index **out, const struct triangle_set *set, struct pool *pool,
+                          struct error *error);
+void triangle_index_destroy(struct triangle_index *index); /* NULL is fine */
+size_t triangle_index_memory(const struct triangle_index *index);
+
+/* The smallest t of the ray's open interval; among equal t the lowest triangle. */
+bool triangle_index_nearest(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
+                            struct triangle_hit *hit, struct triangle_cost *cost);
+bool triangle_index_any(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
+                        struct triangle_cost *cost);
+/* Every triangle the whole line meets, in any order, perhaps one several times with the same bits. */
+typedef void triangle_visit(void *context, const struct triangle_hit *hit);
+void triangle_index_all(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
+                        triangle_visit *visit, void *context, struct triangle_cost *cost);
+
+/* The same answers by trying every triangle. */
+bool triangle_brute_nearest(const struct triangle_set *set, const struct ray *ray, struct triangle_hit *hit,
+                            struct triangle_cost *cost);
+bool triangle_brute_any(const struct triangle_set *set, const struct ray *ray, struct triangle_cost *cost);
+void triangle_brute_all(const struct triangle_set *set, const struct ray *ray, triangle_visit *visit, void *context,
+                        struct triangle_cost *cost);
+
+#endif

@@ -1,0 +1,394 @@
+/* CSG by one sweep along the line. Every leaf is closed, so its crossings cut the line into inside and outside; the
+ * lists of all leaves are merged by t, and the truth of the whole expression is followed (csg_plan.c has the tree that
+ * makes one change cheap). Where it changes, the surface is. A mesh counts by parity, whatever its triangles'
+ * orientation.
+ *
+ * Coincident faces. Operands have their own transforms, so faces that are meant to be one differ by rounding. A
+ * crossing has a bound of the error of its t: the rounding errors of the ray in the leaf's space at that place,
+ * relative to the numbers they came from, divided by the cosine at the surface. Crossings whose error intervals overlap
+ * cannot be told apart; they form a group and happen at once:
+ *   - a leaf that crosses an even number of times within a group does not cross;
+ *   - while the line is outside the solid, first all happen that take away, then those that add; while it is inside,
+ *     first those that add, then those that take away; each in the order of the operands.
+ * More true leaves (counted with their sign) can only make the expression true, so it changes at most once in a group,
+ * and the crossing that changes it is the surface. Hence touching solids unite without an inner wall, a difference with
+ * a common face leaves no skin, touching solids intersect in nothing, and of two faces that coincide the same operand
+ * always shows. A solid thinner than the rounding error is not seen.
+ *
+ * The truth of nodes and leaves lives on the scratch, above what was there; nothing is allocated inside a ray. */
+#include "geom/csg.h"
+
+#include "geom/csg_plan.h"
+
+/* The error of a crossing is bounded by so many times the magnitudes that went into it: each of the few operations and
+ * each transform in a chain of some dozens costs 2^-53. */
+#define ROUNDING 0x1p-47
+/* Errors are looked at only where two t are closer than this, relative to the numbers involved. */
+#define COARSE 0x1p-20
+
+/* ---- order ---- */
+
+static bool comes_before(const struct crossing *a, const struct crossing *b, bool by_leaf) {
+    if (by_leaf && a->leaf != b->leaf)
+        return a->leaf < b->leaf;
+    if (a->t != b->t)
+        return a->t < b->t;
+    if (a->leaf != b->leaf)
+        return a->leaf < b->leaf;
+    if (a->part != b->part)
+        return a->part < b->part;
+    return a->enter && !b->enter;
+}
+
+static void sift_down(struct crossing *items, uint32_t root, uint32_t count, bool by_leaf) {
+    struct crossing moved = items[root];
+    for (;;) {
+        uint32_t child = 2 * root + 1;
+        if (child >= count)
+            break;
+        if (child + 1 < count && comes_before(&items[child], &items[child + 1], by_leaf))
+            child++;
+        if (!comes_before(&moved, &items[child], by_leaf))
+            break;
+        items[root] = items[child];
+        root = child;
+    }
+    items[root] = moved;
+}
+
+/* The order is total, so it does not matter that neither way of sorting is stable. */
+static void sort_crossings(struct crossing *items, uint32_t count, bool by_leaf) {
+    if (count <= 48) { /* insertion: a few lists, each in order already */
+        for (uint32_t i = 1; i < count; i++) {
+            struct crossing moved = items[i];
+            uint32_t j = i;
+            for (; j > 0 && comes_before(&moved, &items[j - 1], by_leaf); j--)
+                items[j] = items[j - 1];
+            items[j] = moved;
+        }
+        return;
+    }
+    for (uint32_t i = count / 2; i-- > 0;)
+        sift_down(items, i, count, by_leaf);
+    for (uint32_t end = count; end-- > 1;) {
+        struct crossing last = items[end];
+        items[end] = items[0];
+        items[0] = last;
+        sift_down(items, 0, end, by_leaf);
+    }
+}
+
+/* ---- the sweep ---- */
+
+struct sweep {
+    const struct csg *csg;
+    const struct csg_plan *plan;
+    const struct ray *ray;
+    struct crossing *items; /* all crossings, by t */
+    uint32_t count, next;
+    uint32_t *counts; /* true children of each node */
+    uint32_t *inside; /* one bit per leaf */
+    bool in;          /* the line is inside the solid */
+    double coarse;    /* the part of the coarse distance that does not grow with t */
+};
+
+static bool leaf_is_inside(const struct sweep *s, uint32_t leaf) {
+    return s->inside[leaf / 32] >> leaf % 32 & 1;
+}
+
+/* Whether crossing this leaf's surface now makes its literal true. */
+static bool adds(const struct sweep *s, uint32_t leaf) {
+    return leaf_is_inside(s, leaf) == s->plan->literals[leaf].negated;
+}
+
+/* The line crosses the surface of a leaf; true when the whole expression changes with it. */
+static bool toggle(struct sweep *s, uint32_t leaf) {
+    bool add = adds(s, leaf);
+    s->inside[leaf / 32] ^= UINT32_C(1) << leaf % 32;
+    for (uint32_t node = s->plan->literals[leaf].parent; node != CSG_NONE; node = s->plan->nodes[node].parent) {
+        uint32_t threshold = s->plan->nodes[node].threshold;
+        bool changed = add ? ++s->counts[node] == threshold : s->counts[node]-- == threshold;
+        if (!changed)
+            return false;
+    }
+    s->in = add;
+    return true;
+}
+
+/* The crossing as the operand itself has it. */
+static struct crossing own_crossing(const struct crossing *crossing) {
+    struct crossing own = *crossing;
+    own.enter = crossing->enter != crossing->flip;
+    own.flip = false;
+    own.leaf = 0;
+    return own;
+}
+
+/* One coordinate's rounding error in the leaf's space at t: of the transformed origin, of the way, of the surface. */
+static double row_error(const double row[4], const struct ray *ray, double t, double surface) {
+    double origin = fabs(row[0] * ray->origin.x) + fabs(row[1] * ray->origin.y) + fabs(row[2] * ray->origin.z);
+    double way = fabs(row[0] * ray->direction.x) + fabs(row[1] * ray->direction.y) + fabs(row[2] * ray->direction.z);
+    return ROUNDING * (origin + fabs(row[3]) + fabs(t) * way + surface);
+}
+
+/* How far the t of a crossing may be from where it should be; at most `limit`. */
+static double crossing_error(const struct sweep *s, const struct crossing *crossing, double limit) {
+    const struct csg_leaf *leaf = &s->csg->leaves[crossing->leaf];
+    const struct affine *to_leaf = &leaf->csg_from_leaf.inverse;
+    struct ray ray = ray_transform(to_leaf, s->ray);
+    struct crossing own = own_crossing(crossing);
+    struct surface surface;
+    shape_describe(&leaf->shape, &ray, &own, &surface);
+    struct box bounds = shape_bounds(&leaf->shape);
+    struct vec3 n = vec3_normalize(surface.normal), size = vec3_max(vec3_negate(bounds.min), bounds.max);
+    double error = fabs(n.x) * row_error(to_leaf->m[0], s->ray, crossing->t, fabs(size.x)) +
+                   fabs(n.y) * row_error(to_leaf->m[1], s->ray, crossing->t, fabs(size.y)) +
+                   fabs(n.z) * row_error(to_leaf->m[2], s->ray, crossing->t, fabs(size.z));
+    double cosine = fabs(vec3_dot(n, ray.direction));
+    return error < limit * cosine ? error / cosine : limit;
+}
+
+/* The end of the group that begins at `first`: error intervals are joined as long as they overlap. */
+static uint32_t group_end(const struct sweep *s, uint32_t first) {
+    uint32_t end = first + 1;
+    double reach = 0;
+    for (; end < s->count; end++) {
+        double before = s->items[end - 1].t, t = s->items[end].t, limit = s->coarse + COARSE * fabs(t);
+        if (!(t - before <= limit))
+            break;
+        if (end == first + 1)
+            reach = before + crossing_error(s, &s->items[first], limit);
+        double error = crossing_error(s, &s->items[end], limit);
+        if (!(t - error <= reach))
+            break;
+        reach = fmax(reach, t + error);
+    }
+    return end;
+}
+
+/* Several crossings at once, see the rule at the top. `surface` is the one that changed the truth. */
+static bool cross_group(struct sweep *s, struct crossing *group, uint32_t count, struct crossing *surface) {
+    sort_crossings(group, count, true);
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < count;) {
+        uint32_t end = i + 1;
+        while (end < count && group[end].leaf == group[i].leaf)
+            end++;
+        if ((end - i) % 2)
+            group[kept++] = group[end - 1];
+        i = end;
+    }
+    /* First those that cannot change the truth, in case the others do. */
+    bool was_in = s->in, changed = false;
+    for (uint32_t i = 0; i < kept; i++) {
+        bool last = adds(s, group[i].leaf) != was_in;
+        if (!last)
+            (void)toggle(s, group[i].leaf);
+        group[i].flip = last; /* marks what is left to do */
+    }
+    for (uint32_t i = 0; i < kept; i++) {
+        if (!group[i].flip || !toggle(s, group[i].leaf))
+            continue;
+        *surface = group[i];
+        changed = true;
+    }
+    return changed;
+}
+
+/* The next surface of the solid on the line. */
+static bool sweep_next(struct sweep *s, struct crossing *out) {
+    while (s->next < s->count) {
+        uint32_t first = s->next, end = group_end(s, first);
+        s->next = end;
+        struct crossing surface = s->items[first];
+        bool changed =
+            end == first + 1 ? toggle(s, surface.leaf) : cross_group(s, &s->items[first], end - first, &surface);
+        if (!changed)
+            continue;
+        *out = surface;
+        out->flip = surface.enter != s->in;
+        out->enter = s->in;
+        return true;
+    }
+    return false;
+}
+
+/* Collects and sorts the crossings of all leaves whose boxes meet the ray between t_from and t_to; everything on the
+ * scratch above `used` is the sweep's until the caller pops it. False: no crossings, or scratch overflow. */
+static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray *ray, double t_from, double t_to,
+                        struct geom_scratch *scratch) {
+    const struct csg_plan *plan = csg->plan;
+    double speed = vec3_max_abs(ray->direction);
+    if (!(speed > 0))
+        return false;
+    if (scratch->capacity - scratch->used < plan->state_items) {
+        scratch->overflow = true;
+        return false;
+    }
+    /* The truth of nodes and leaves as plain words. */
+    uint32_t *words = (uint32_t *)(void *)&scratch->items[scratch->used];
+    scratch->used += plan->state_items;
+    uint32_t first = scratch->used;
+    double coarse = COARSE * ((vec3_max_abs(ray->origin) + plan->size) / speed);
+
+    struct ray line = *ray;
+    line.t_min = t_from - coarse - COARSE * fabs(t_from);
+    line.t_max = t_to + coarse + COARSE * fabs(t_to);
+    for (uint32_t b = 0; b < plan->bound_count;) {
+        const struct csg_bound *bound = &plan->bounds[b];
+        double enter, leave;
+        if (!box_clip(&bound->box, &line, &enter, &leave)) {
+            b = bound->skip;
+            continue;
+        }
+        for (uint32_t i = 0; i < bound->count; i++) {
+            uint32_t leaf = plan->order[bound->first + i];
+            if (bound->count > 1 && !box_clip(&plan->boxes[leaf], &line, &enter, &leave))
+                continue;
+            struct ray leaf_ray = ray_transform(&csg->leaves[leaf].csg_from_leaf.inverse, ray);
+            struct crossing_list list = {scratch->used, 0};
+            (void)shape_crossings(&csg->leaves[leaf].shape, &leaf_ray, scratch, &list);
+            if (scratch->overflow)
+                return false;
+            for (uint32_t k = list.first; k < scratch->used; k++)
+                scratch->items[k].leaf = (uint16_t)leaf;
+        }
+        b++;
+    }
+    *s = (struct sweep){.csg = csg,
+                        .plan = plan,
+                        .ray = ray,
+                        .items = &scratch->items[first],
+                        .count = scratch->used - first,
+                        .counts = words,
+                        .inside = words + plan->node_count,
+                        .coarse = coarse};
+    if (s->count == 0)
+        return false;
+    for (uint32_t i = 0; i < plan->node_count; i++)
+        s->counts[i] = plan->start_counts[i];
+    for (uint32_t i = 0; i < (csg->leaf_count + 31) / 32; i++)
+        s->inside[i] = 0;
+    sort_crossings(s->items, s->count, false);
+    return true;
+}
+
+/* ---- the questions ---- */
+
+bool csg_nearest(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch, struct crossing *out) {
+    double enter, leave;
+    if (box_is_empty(&csg->bounds) || !box_clip(&csg->bounds, ray, &enter, &leave))
+        return false;
+    uint32_t used = scratch->used;
+    struct sweep s;
+    bool found = false;
+    if (sweep_begin(&s, csg, ray, ray->t_min, ray->t_max, scratch)) {
+        struct crossing surface;
+        while (!found && sweep_next(&s, &surface) && surface.t < ray->t_max)
+            if (surface.t > ray->t_min) {
+                *out = surface;
+                found = true;
+            }
+    }
+    scratch->used = used;
+    return found;
+}
+
+bool csg_any(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch) {
+    struct crossing ignored;
+    return csg_nearest(csg, ray, scratch, &ignored);
+}
+
+bool csg_crossings(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch,
+                   struct crossing_list *out) {
+    *out = (struct crossing_list){scratch->used, 0};
+    struct ray line = *ray;
+    line.t_min = -INFINITY;
+    line.t_max = INFINITY;
+    double enter, leave;
+    if (box_is_empty(&csg->bounds) || !box_clip(&csg->bounds, &line, &enter, &leave))
+        return true;
+    struct sweep s;
+    if (!sweep_begin(&s, csg, &line, -INFINITY, INFINITY, scratch)) {
+        scratch->used = out->first;
+        return !scratch->overflow;
+    }
+    /* The answer never overtakes the sweep, so it is written where the sweep has been, then moved down over its state.
+     */
+    struct crossing surface;
+    while (sweep_next(&s, &surface))
+        s.items[out->count++] = surface;
+    for (uint32_t i = 0; i < out->count; i++)
+        scratch->items[out->first + i] = s.items[i];
+    scratch->used = out->first + out->count;
+    return true;
+}
+
+/* The postfix program itself, on a stack of bits: independent of the plan. */
+bool csg_contains(const struct csg *csg, struct vec3 point, struct geom_scratch *scratch) {
+    const struct csg_plan *plan = csg->plan;
+    uint32_t used = scratch->used;
+    if (scratch->capacity - used < plan->state_items) {
+        scratch->overflow = true;
+        return false;
+    }
+    uint32_t *stack = (uint32_t *)(void *)&scratch->items[used], depth = 0;
+    scratch->used += plan->state_items;
+    for (uint32_t i = 0; i < csg->program_length; i++) {
+        bool value = false;
+        enum csg_operation operation = csg->program[i].operation;
+        if (operation == CSG_LEAF) {
+            uint32_t index = csg->program[i].leaf;
+            const struct csg_leaf *leaf = &csg->leaves[index];
+            if (box_contains(&plan->boxes[index], point))
+                value = shape_contains(&leaf->shape, affine_point(&leaf->csg_from_leaf.inverse, point), scratch);
+        } else {
+            depth -= 2;
+            bool left = stack[depth / 32] >> depth % 32 & 1, right = stack[(depth + 1) / 32] >> (depth + 1) % 32 & 1;
+            value = operation == CSG_UNION          ? left || right
+                    : operation == CSG_INTERSECTION ? left && right
+                                                    : left && !right;
+        }
+        uint32_t bit = UINT32_C(1) << depth % 32, below = bit - 1;
+        stack[depth / 32] = (depth % 32 ? stack[depth / 32] & below : 0) | (value ? bit : 0);
+        depth++;
+    }
+    bool inside = stack[0] & 1;
+    scratch->used = used;
+    return inside && !scratch->overflow;
+}
+
+/* A bound of how much a map stretches: the Frobenius norm of its linear part. */
+static double stretch(const struct affine *a) {
+    double rows[3];
+    for (int i = 0; i < 3; i++)
+        rows[i] = vec3_length(vec3_make(a->m[i][0], a->m[i][1], a->m[i][2]));
+    return vec3_length(vec3_make(rows[0], rows[1], rows[2]));
+}
+
+void csg_describe(const struct csg *csg, const struct ray *ray, const struct crossing *crossing, struct surface *out) {
+    const struct csg_leaf *leaf = &csg->leaves[crossing->leaf];
+    const struct transform *map = &leaf->csg_from_leaf;
+    struct ray leaf_ray = ray_transform(&map->inverse, ray);
+    struct crossing own = own_crossing(crossing);
+    shape_describe(&leaf->shape, &leaf_ray, &own, out);
+
+    /* What happens in the operand's space stays there; the rest goes to CSG space. */
+    struct vec3 p = out->point;
+    out->point = affine_point(&map->forward, p);
+    out->normal = transform_normal(map, out->normal);
+    out->shading_normal = transform_normal(map, out->shading_normal);
+    if (crossing->flip) {
+        out->normal = vec3_negate(out->normal);
+        out->shading_normal = vec3_negate(out->shading_normal);
+    }
+    out->dpdu = affine_vector(&map->forward, out->dpdu);
+    out->dpdv = affine_vector(&map->forward, out->dpdv);
+    double rounding = 0;
+    for (int i = 0; i < 3; i++) {
+        const double *row = map->forward.m[i];
+        rounding = fmax(rounding, fabs(row[0] * p.x) + fabs(row[1] * p.y) + fabs(row[2] * p.z) + fabs(row[3]));
+    }
+    out->error = stretch(&map->forward) * out->error + 0x1p-49 * rounding;
+    out->leaf = crossing->leaf;
+}

@@ -1,0 +1,254 @@
+/* What a finished mesh answers. Every search ends in the one watertight triangle test of accel/triangle.h; the index only
+ * says which triangles are worth trying. */
+#include "geom/mesh.h"
+
+#include "base/mem.h"
+#include "geom/mesh_internal.h"
+
+#include <string.h>
+
+struct mesh *mesh_share(struct mesh *mesh) {
+    mesh->references++;
+    return mesh;
+}
+
+void mesh_release(struct mesh *mesh) {
+    if (!mesh || --mesh->references > 0)
+        return;
+    triangle_index_destroy(mesh->index);
+    mem_free(mesh->vertices);
+    mem_free(mesh->corners);
+    mem_free(mesh->normals);
+    mem_free(mesh->normal_corners);
+    mem_free(mesh->uvs);
+    mem_free(mesh->uv_corners);
+    mem_free(mesh->materials);
+    mem_free(mesh->face_start);
+    mem_free(mesh->face_vertex);
+    mem_free(mesh);
+}
+
+bool mesh_build_index(struct mesh *mesh, struct pool *pool, struct error *error) {
+    if (mesh->index)
+        return true;
+    struct triangle_set set = mesh_triangles(mesh);
+    return triangle_index_build(&mesh->index, &set, pool, error);
+}
+
+struct box mesh_bounds(const struct mesh *mesh) {
+    return mesh->bounds;
+}
+
+bool mesh_is_closed(const struct mesh *mesh) {
+    return mesh->closed;
+}
+
+bool mesh_open_edge(const struct mesh *mesh, struct vec3 *a, struct vec3 *b) {
+    if (mesh->closed || mesh->triangle_count == 0)
+        return false;
+    *a = mesh->open_edge[0];
+    *b = mesh->open_edge[1];
+    return true;
+}
+
+uint32_t mesh_triangle_count(const struct mesh *mesh) {
+    return mesh->triangle_count;
+}
+
+uint32_t mesh_dropped_faces(const struct mesh *mesh) {
+    return mesh->dropped_faces;
+}
+
+bool mesh_has_uv(const struct mesh *mesh) {
+    return mesh->uvs != NULL;
+}
+
+bool mesh_has_normals(const struct mesh *mesh) {
+    return mesh->normals != NULL;
+}
+
+size_t mesh_memory(const struct mesh *mesh) {
+    size_t triangles = mesh->triangle_count, bytes = sizeof *mesh;
+    bytes += mesh->vertex_count * sizeof *mesh->vertices + triangles * sizeof *mesh->corners;
+    if (mesh->normals)
+        bytes += mesh->normal_count * sizeof *mesh->normals + triangles * sizeof *mesh->normal_corners;
+    if (mesh->uvs)
+        bytes += mesh->uv_count * sizeof *mesh->uvs + triangles * sizeof *mesh->uv_corners;
+    if (mesh->materials)
+        bytes += triangles * sizeof *mesh->materials;
+    if (mesh->face_start)
+        bytes += ((size_t)mesh->face_count + 1 + mesh->face_start[mesh->face_count]) * sizeof(uint32_t);
+    return bytes + (mesh->index ? triangle_index_memory(mesh->index) : 0);
+}
+
+static void add_cost(struct geom_scratch *scratch, const struct triangle_cost *cost) {
+    scratch->shape_tests++;
+    scratch->triangle_tests += cost->triangle_tests;
+    scratch->voxels += cost->voxels;
+    scratch->hierarchy_steps += cost->hierarchy_steps;
+}
+
+static struct crossing crossing_from(const struct triangle_hit *hit) {
+    return (struct crossing){.t = hit->t, .u = hit->u, .v = hit->v, .part = hit->triangle, .enter = hit->enter};
+}
+
+bool mesh_nearest(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch,
+                  struct crossing *out) {
+    struct triangle_set set = mesh_triangles(mesh);
+    struct triangle_cost cost = {0};
+    struct triangle_hit hit;
+    bool found = mesh->index && accel == ACCEL_GRID ? triangle_index_nearest(mesh->index, &set, ray, &hit, &cost)
+                                                    : triangle_brute_nearest(&set, ray, &hit, &cost);
+    add_cost(scratch, &cost);
+    if (found)
+        *out = crossing_from(&hit);
+    return found;
+}
+
+bool mesh_any(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch) {
+    struct triangle_set set = mesh_triangles(mesh);
+    struct triangle_cost cost = {0};
+    bool found = mesh->index && accel == ACCEL_GRID ? triangle_index_any(mesh->index, &set, ray, &cost)
+                                                    : triangle_brute_any(&set, ray, &cost);
+    add_cost(scratch, &cost);
+    return found;
+}
+
+static bool before(const struct crossing *a, const struct crossing *b) {
+    return a->t != b->t ? a->t < b->t : a->part < b->part;
+}
+
+static void swap(struct crossing *a, struct crossing *b) {
+    struct crossing c = *a;
+    *a = *b;
+    *b = c;
+}
+
+static void sift_down(struct crossing *items, uint32_t root, uint32_t count) {
+    for (uint32_t child; (child = 2 * root + 1) < count; root = child) {
+        if (child + 1 < count && before(&items[child], &items[child + 1]))
+            child++;
+        if (!before(&items[root], &items[child]))
+            return;
+        swap(&items[root], &items[child]);
+    }
+}
+
+/* Without allocating, and never quadratic: a line can meet a hundred thousand leaves. */
+static void sort(struct crossing *items, uint32_t count) {
+    if (count <= 16) {
+        for (uint32_t i = 1; i < count; i++)
+            for (uint32_t j = i; j > 0 && before(&items[j], &items[j - 1]); j--)
+                swap(&items[j], &items[j - 1]);
+        return;
+    }
+    for (uint32_t root = count / 2; root-- > 0;)
+        sift_down(items, root, count);
+    for (uint32_t last = count - 1; last > 0; last--) {
+        swap(&items[0], &items[last]);
+        sift_down(items, 0, last);
+    }
+}
+
+/* The signs of the triangle test make a line enter a closed mesh as often as it leaves it, but where it touches an edge or
+ * passes a thin wall the two t are equal up to rounding and may stand in the wrong order. Within that rounding ways in and
+ * out are made to alternate. */
+static void alternate(struct crossing *items, uint32_t count, bool enter_first, double slack) {
+    for (uint32_t i = 0; i < count; i++) {
+        bool want = i ? !items[i - 1].enter : enter_first;
+        if (items[i].enter == want)
+            continue;
+        for (uint32_t j = i + 1; j < count && items[j].t - items[i].t <= slack; j++) {
+            if (items[j].enter != want)
+                continue;
+            struct crossing moved = items[j];
+            moved.t = items[i].t;
+            memmove(&items[i + 1], &items[i], (j - i) * sizeof *items);
+            items[i] = moved;
+            break;
+        }
+    }
+}
+
+static void push(void *context, const struct triangle_hit *hit) {
+    geom_scratch_push(context, crossing_from(hit));
+}
+
+bool mesh_crossings(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch,
+                    struct crossing_list *out) {
+    struct triangle_set set = mesh_triangles(mesh);
+    struct triangle_cost cost = {0};
+    *out = (struct crossing_list){scratch->used, 0};
+    if (mesh->index && accel == ACCEL_GRID)
+        triangle_index_all(mesh->index, &set, ray, push, scratch, &cost);
+    else
+        triangle_brute_all(&set, ray, push, scratch, &cost);
+    add_cost(scratch, &cost);
+    if (scratch->overflow) {
+        scratch->used = out->first;
+        return false;
+    }
+    struct crossing *items = scratch->items + out->first;
+    uint32_t count = scratch->used - out->first, kept = 0;
+    sort(items, count);
+    for (uint32_t i = 0; i < count; i++)
+        if (i == 0 || items[i].part != items[kept - 1].part)
+            items[kept++] = items[i];
+    if (mesh->closed) {
+        double size = fmax(vec3_max_abs(ray->origin), fmax(vec3_max_abs(mesh->bounds.min), vec3_max_abs(mesh->bounds.max)));
+        alternate(items, kept, mesh->outward, size * 0x1p-46 / vec3_max_abs(ray->direction));
+    }
+    scratch->used = out->first + kept;
+    out->count = kept;
+    return true;
+}
+
+static struct vec3 load(const double v[3]) {
+    return vec3_make(v[0], v[1], v[2]);
+}
+
+static void describe_uv(const struct mesh *mesh, uint32_t triangle, double w, double u, double v, struct vec3 e1,
+                        struct vec3 e2, struct surface *out) {
+    const uint32_t *corner = mesh->uv_corners[triangle];
+    const double *a = mesh->uvs[corner[0]], *b = mesh->uvs[corner[1]], *c = mesh->uvs[corner[2]];
+    out->has_uv = true;
+    out->u = w * a[0] + u * b[0] + v * c[0];
+    out->v = w * a[1] + u * b[1] + v * c[1];
+    double du1 = b[0] - a[0], dv1 = b[1] - a[1], du2 = c[0] - a[0], dv2 = c[1] - a[1];
+    double area = triangle_edge(du1, dv1, du2, dv2);
+    if (area == 0)
+        return;
+    out->dpdu = vec3_scale(vec3_sub(vec3_scale(e1, dv2), vec3_scale(e2, dv1)), 1 / area);
+    out->dpdv = vec3_scale(vec3_sub(vec3_scale(e2, du1), vec3_scale(e1, du2)), 1 / area);
+}
+
+void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct crossing *crossing, struct surface *out) {
+    uint32_t triangle = crossing->part;
+    const uint32_t *corner = mesh->corners[triangle];
+    struct vec3 a = load(mesh->vertices[corner[0]]), b = load(mesh->vertices[corner[1]]),
+                c = load(mesh->vertices[corner[2]]);
+    struct vec3 e1 = vec3_sub(b, a), e2 = vec3_sub(c, a);
+    double u = crossing->u, v = crossing->v, w = 1 - u - v;
+    *out = (struct surface){0};
+    out->point = vec3_add_scaled(vec3_add_scaled(vec3_scale(a, w), b, u), c, v);
+    out->error = 0x1p-49 * fmax(vec3_max_abs(a), fmax(vec3_max_abs(b), vec3_max_abs(c)));
+    out->normal = mesh_triangle_normal(mesh, triangle);
+    /* A triangle without area stands in for the seam it closes: it faces the ray. */
+    if (vec3_max_abs(out->normal) == 0)
+        out->normal = crossing->enter ? vec3_negate(ray->direction) : ray->direction;
+    out->shading_normal = out->normal;
+    if (mesh->normals && mesh->normal_corners[triangle][0] != MESH_NONE) {
+        const uint32_t *n = mesh->normal_corners[triangle];
+        struct vec3 mixed = vec3_scale(load(mesh->normals[n[0]]), w);
+        mixed = vec3_add_scaled(vec3_add_scaled(mixed, load(mesh->normals[n[1]]), u), load(mesh->normals[n[2]]), v);
+        /* Opposite normals cancel; what rounding leaves of them says nothing. */
+        if (vec3_length_squared(mixed) > 0x1p-60)
+            out->shading_normal = mixed;
+    }
+    out->pattern_point = out->point;
+    out->pattern_normal = out->normal;
+    if (mesh->uvs && mesh->uv_corners[triangle][0] != MESH_NONE)
+        describe_uv(mesh, triangle, w, u, v, e1, e2, out);
+    if (mesh->materials)
+        out->material_slot = mesh->materials[triangle];
+}

@@ -1,0 +1,150 @@
+/* Whether a mesh is closed: every edge is used by exactly two triangles, in opposite directions. Vertices count as the
+ * same when their positions are equal, whatever their indices. Edges are gathered at their lower vertex: count, prefix
+ * sum, fill; then each vertex sorts its own few. */
+#include "geom/mesh_internal.h"
+
+#include "base/mem.h"
+#include "base/random.h"
+
+#include <string.h>
+
+static uint64_t position_hash(const double p[3]) {
+    uint64_t key = 0;
+    for (int k = 0; k < 3; k++) {
+        double x = p[k] + 0.0; /* -0 becomes 0 */
+        uint64_t bits;
+        memcpy(&bits, &x, sizeof bits);
+        key = random_combine(key ^ bits, (uint64_t)k);
+    }
+    return key;
+}
+
+static bool same_position(const double a[3], const double b[3]) {
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+/* same[v] becomes the lowest vertex at the position of v. */
+static bool weld(const struct mesh *mesh, uint32_t *same) {
+    size_t slots = 16;
+    while (slots < 2 * (size_t)mesh->vertex_count)
+        slots *= 2;
+    uint32_t *table = mem_alloc(slots * sizeof *table);
+    if (!table)
+        return false;
+    memset(table, 0xff, slots * sizeof *table);
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        size_t at = (size_t)position_hash(mesh->vertices[v]) & (slots - 1);
+        while (table[at] != MESH_NONE && !same_position(mesh->vertices[table[at]], mesh->vertices[v]))
+            at = (at + 1) & (slots - 1);
+        if (table[at] == MESH_NONE)
+            table[at] = v;
+        same[v] = table[at];
+    }
+    mem_free(table);
+    return true;
+}
+
+static void sift_down(uint64_t *items, size_t root, size_t count) {
+    for (size_t child; (child = 2 * root + 1) < count; root = child) {
+        if (child + 1 < count && items[child + 1] > items[child])
+            child++;
+        if (items[root] >= items[child])
+            return;
+        uint64_t swap = items[root];
+        items[root] = items[child];
+        items[child] = swap;
+    }
+}
+
+static void sort(uint64_t *items, size_t count) {
+    if (count <= 24) {
+        for (size_t i = 1; i < count; i++) {
+            uint64_t item = items[i];
+            size_t j = i;
+            for (; j > 0 && items[j - 1] > item; j--)
+                items[j] = items[j - 1];
+            items[j] = item;
+        }
+        return;
+    }
+    for (size_t root = count / 2; root-- > 0;)
+        sift_down(items, root, count);
+    for (size_t last = count - 1; last > 0; last--) {
+        uint64_t swap = items[0];
+        items[0] = items[last];
+        items[last] = swap;
+        sift_down(items, 0, last);
+    }
+}
+
+/* Sorted uses of the edges at one vertex: (other vertex) * 2 + direction. The first edge not used once each way, or the
+ * count when all are. */
+static size_t first_unpaired(const uint64_t *uses, size_t count) {
+    for (size_t i = 0; i < count; i += 2) {
+        bool paired = i + 1 < count && uses[i + 1] == (uses[i] ^ 1) && !(uses[i] & 1);
+        bool third = i + 2 < count && uses[i + 2] >> 1 == uses[i] >> 1;
+        if (!paired || third)
+            return i;
+    }
+    return count;
+}
+
+static double enclosed_volume(const struct mesh *mesh) {
+    double volume = 0;
+    if (mesh->triangle_count == 0)
+        return 0;
+    const double *base = mesh->vertices[mesh->corners[0][0]];
+    for (uint32_t i = 0; i < mesh->triangle_count; i++) {
+        struct vec3 p[3];
+        for (int j = 0; j < 3; j++) {
+            const double *v = mesh->vertices[mesh->corners[i][j]];
+            p[j] = vec3_make(v[0] - base[0], v[1] - base[1], v[2] - base[2]);
+        }
+        volume += vec3_dot(p[0], vec3_cross(p[1], p[2]));
+    }
+    return volume;
+}
+
+static struct vec3 position(const struct mesh *mesh, uint32_t vertex) {
+    const double *v = mesh->vertices[vertex];
+    return vec3_make(v[0], v[1], v[2]);
+}
+
+bool mesh_find_topology(struct mesh *mesh) {
+    uint32_t *same = mem_alloc((size_t)mesh->vertex_count * sizeof *same);
+    size_t *start = mem_alloc_zero((size_t)mesh->vertex_count + 2, sizeof *start);
+    uint64_t *uses = mem_alloc(3 * (size_t)mesh->triangle_count * sizeof *uses);
+    bool enough = same && start && uses && weld(mesh, same);
+    if (enough) {
+        /* Count one place further on, so that filling turns starts into ends of the vertex before. */
+        for (int pass = 0; pass < 2; pass++) {
+            for (uint32_t i = 0; i < mesh->triangle_count; i++)
+                for (int j = 0; j < 3; j++) {
+                    uint64_t a = same[mesh->corners[i][j]], b = same[mesh->corners[i][(j + 1) % 3]];
+                    uint64_t low = a < b ? a : b, high = a < b ? b : a;
+                    if (pass == 0)
+                        start[low + 2]++;
+                    else
+                        uses[start[low + 1]++] = high << 1 | (a > b);
+                }
+            for (size_t v = 2; pass == 0 && v < (size_t)mesh->vertex_count + 2; v++)
+                start[v] += start[v - 1];
+        }
+        mesh->closed = mesh->triangle_count > 0;
+        for (uint32_t v = 0; v < mesh->vertex_count && mesh->closed; v++) {
+            size_t count = start[v + 1] - start[v];
+            sort(uses + start[v], count);
+            size_t bad = first_unpaired(uses + start[v], count);
+            if (bad == count)
+                continue;
+            mesh->closed = false;
+            mesh->open_edge[0] = position(mesh, v);
+            mesh->open_edge[1] = position(mesh, (uint32_t)(uses[start[v] + bad] >> 1));
+        }
+        mesh->outward = mesh->closed && enclosed_volume(mesh) > 0;
+    }
+    mem_free(same);
+    mem_free(start);
+    mem_free(uses);
+    return enough;
+}
