@@ -38,4 +38,34 @@ struct box box_pad(struct box b);
  * direction components and infinite boxes. */
 bool box_clip(const struct box *b, const struct ray *ray, double *t_enter, double *t_exit);
 
+/* The same question asked of many boxes by one ray: reciprocals are taken once. */
+struct box_probe {
+    double origin[3], inverse[3]; /* of the direction; infinite where it is 0 */
+    bool negative[3];             /* sign of the inverse: which plane of a slab comes first */
+};
+
+static inline struct box_probe box_probe_make(const struct ray *ray) {
+    struct box_probe probe = {.origin = {ray->origin.x, ray->origin.y, ray->origin.z},
+                              .inverse = {1 / ray->direction.x, 1 / ray->direction.y, 1 / ray->direction.z}};
+    for (int i = 0; i < 3; i++)
+        probe.negative[i] = probe.inverse[i] < 0;
+    return probe;
+}
+
+/* Whether some t of [t_min, t_max] may lie inside the box; never wrong by rounding in the negative. A direction component
+ * of 0 makes the slab's t infinite on the right side, or NaN on its very plane, which every comparison ignores. */
+static inline bool box_probe_meets(const struct box_probe *probe, const struct box *b, double t_min, double t_max) {
+    const double planes[3][2] = {{b->min.x, b->max.x}, {b->min.y, b->max.y}, {b->min.z, b->max.z}};
+    double enter = t_min, leave = t_max;
+    for (int i = 0; i < 3; i++) {
+        double near = (planes[i][probe->negative[i]] - probe->origin[i]) * probe->inverse[i];
+        double far = (planes[i][!probe->negative[i]] - probe->origin[i]) * probe->inverse[i];
+        near -= fabs(near) * 0x1p-49;
+        far += fabs(far) * 0x1p-49;
+        enter = near > enter ? near : enter;
+        leave = far < leave ? far : leave;
+    }
+    return enter <= leave;
+}
+
 #endif

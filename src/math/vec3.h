@@ -45,13 +45,15 @@ static inline double vec3_length_squared(struct vec3 a) {
     return vec3_dot(a, a);
 }
 static inline double vec3_max_abs(struct vec3 a) {
-    return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z)));
+    double x = fabs(a.x), y = fabs(a.y), z = fabs(a.z), most = x > y ? x : y;
+    return most > z ? most : z;
 }
+/* By comparison, which is one instruction; fmin and fmax are calls because of NaN. */
 static inline struct vec3 vec3_min(struct vec3 a, struct vec3 b) {
-    return (struct vec3){fmin(a.x, b.x), fmin(a.y, b.y), fmin(a.z, b.z)};
+    return (struct vec3){a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z};
 }
 static inline struct vec3 vec3_max(struct vec3 a, struct vec3 b) {
-    return (struct vec3){fmax(a.x, b.x), fmax(a.y, b.y), fmax(a.z, b.z)};
+    return (struct vec3){a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z};
 }
 static inline double vec3_get(struct vec3 a, int axis) {
     return axis == 0 ? a.x : axis == 1 ? a.y : a.z;

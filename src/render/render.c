@@ -41,9 +41,11 @@ static double seconds_now(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static struct vec3 sample(struct run *run, struct worker *worker, int64_t x, int64_t y, double dx, double dy,
+/* share: of the pixel's width that this sample stands for; its footprint on textures. */
+static struct vec3 sample(struct run *run, struct worker *worker, int64_t x, int64_t y, double dx, double dy, double share,
                           uint64_t number) {
     struct ray ray = camera_ray(&run->camera, (double)x + dx, (double)y + dy);
+    ray.footprint.spread *= share;
     uint64_t pixel = (uint64_t)y * run->job->width + (uint64_t)x;
     uint64_t key = random_combine(random_combine(random_combine(run->job->settings.seed, 0), pixel), number);
     worker->camera_rays++;
@@ -53,7 +55,7 @@ static struct vec3 sample(struct run *run, struct worker *worker, int64_t x, int
 /* The first sample has number 0, at the centre or the corner of the pixel. */
 static struct vec3 first_sample(struct run *run, struct worker *worker, int64_t x, int64_t y) {
     double at = run->job->settings.pixel_corner ? 0 : 0.5;
-    return sample(run, worker, x, y, at, at, 0);
+    return sample(run, worker, x, y, at, at, 1, 0);
 }
 
 /* Mean of the N x N samples; where one of them is the first sample again it is not traced twice. */
@@ -68,9 +70,9 @@ static struct vec3 all_samples(struct run *run, struct worker *worker, int64_t x
             if (centre && first)
                 colour = *first;
             else if (centre)
-                colour = sample(run, worker, x, y, 0.5, 0.5, 0);
+                colour = sample(run, worker, x, y, 0.5, 0.5, 1, 0);
             else
-                colour = sample(run, worker, x, y, (i + 0.5) / n, (j + 0.5) / n, (uint64_t)(j * n + i + 1));
+                colour = sample(run, worker, x, y, (i + 0.5) / n, (j + 0.5) / n, 1.0 / n, (uint64_t)(j * n + i + 1));
             sum = vec3_add(sum, colour);
         }
     }

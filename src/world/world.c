@@ -74,6 +74,7 @@ struct search {
     const struct world *world;
     const struct ray *ray;
     struct world_scratch *scratch;
+    struct box_probe probe;
     struct ray limited; /* the ray with t_max just behind the best answer, so that an equal t is still found */
     struct crossing best;
     uint32_t placed;
@@ -85,7 +86,6 @@ static bool ask_nearest(struct search *s, uint32_t index, const struct ray *ray_
     const struct shape *shape = &s->world->placed[index].shape;
     struct geom_scratch *geom = &s->scratch->geom;
     for (;;) {
-        s->scratch->geom.shape_tests++;
         bool found = shape->kind == SHAPE_MESH ? mesh_nearest(shape->mesh, ray_object, s->world->accel, geom, out)
                                                : shape_nearest(shape, ray_object, geom, out);
         if (!geom->overflow)
@@ -98,8 +98,7 @@ static bool ask_nearest(struct search *s, uint32_t index, const struct ray *ray_
 }
 
 static void try_placed(struct search *s, uint32_t index) {
-    double enter, leave;
-    if (!box_clip(&s->world->boxes[index], &s->limited, &enter, &leave))
+    if (!box_probe_meets(&s->probe, &s->world->boxes[index], s->limited.t_min, s->limited.t_max))
         return;
     struct ray ray_object = ray_transform(&s->world->placed[index].world_from_object.inverse, &s->limited);
     struct crossing crossing;
@@ -127,7 +126,8 @@ static bool mailbox_first(struct mailbox *box, uint32_t index) {
 
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
                             uint32_t *placed, struct crossing *crossing) {
-    struct search s = {.world = world, .ray = ray, .scratch = scratch, .limited = *ray};
+    struct search s = {
+        .world = world, .ray = ray, .scratch = scratch, .limited = *ray, .probe = box_probe_make(ray)};
     scratch->rays++;
     if (world->accel == ACCEL_NONE) {
         for (uint32_t i = 0; i < world->placed_count; i++)
@@ -152,14 +152,13 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
     return s.found;
 }
 
-static bool any_placed(const struct world *world, uint32_t index, const struct ray *ray, struct world_scratch *scratch) {
-    double enter, leave;
-    if (!box_clip(&world->boxes[index], ray, &enter, &leave))
+static bool any_placed(const struct world *world, uint32_t index, const struct ray *ray, const struct box_probe *probe,
+                       struct world_scratch *scratch) {
+    if (!box_probe_meets(probe, &world->boxes[index], ray->t_min, ray->t_max))
         return false;
     const struct placed *placed = &world->placed[index];
     struct ray ray_object = ray_transform(&placed->world_from_object.inverse, ray);
     for (;;) {
-        scratch->geom.shape_tests++;
         bool found = placed->shape.kind == SHAPE_MESH
                          ? mesh_any(placed->shape.mesh, &ray_object, world->accel, &scratch->geom)
                          : shape_any(&placed->shape, &ray_object, &scratch->geom);
@@ -174,15 +173,16 @@ static bool any_placed(const struct world *world, uint32_t index, const struct r
 
 bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
     scratch->any_rays++;
+    struct box_probe probe = box_probe_make(ray);
     if (world->accel == ACCEL_NONE) {
         for (uint32_t i = 0; i < world->placed_count; i++) {
-            if (any_placed(world, i, ray, scratch))
+            if (any_placed(world, i, ray, &probe, scratch))
                 return true;
         }
         return false;
     }
     /* Neighbouring shadow rays mostly end at the same thing: it is asked first. The answer cannot depend on it. */
-    if (scratch->last_blocker < world->placed_count && any_placed(world, scratch->last_blocker, ray, scratch))
+    if (scratch->last_blocker < world->placed_count && any_placed(world, scratch->last_blocker, ray, &probe, scratch))
         return true;
     struct mailbox mailbox;
     memset(&mailbox, 0xff, sizeof mailbox);
@@ -192,7 +192,7 @@ bool world_any(const struct world *world, const struct ray *ray, struct world_sc
     for (bool go_on = grid_walk_begin(&walk, &world->grid, ray); go_on && !found; go_on = grid_walk_next(&walk)) {
         for (uint32_t i = 0; i < walk.count && !found; i++) {
             uint32_t index = walk.items[i];
-            found = mailbox_first(&mailbox, index) && any_placed(world, index, ray, scratch);
+            found = mailbox_first(&mailbox, index) && any_placed(world, index, ray, &probe, scratch);
             if (found)
                 scratch->last_blocker = index;
         }
