@@ -1,0 +1,191 @@
+/* Images as assets: creation, mip levels, ownership.
+ *
+ * Idea: a level halves the one below with a box filter. Sizes need not be powers of two: texel i of the smaller level
+ * averages exactly the interval of the larger one that it covers, with fractional weights at both ends (in whole
+ * numbers, so nothing is rounded before the final division). Colours are averaged weighted by alpha. Invariant: a size
+ * divisible by 4 (width) or 3 (height) stays so until a quarter or third is a single texel. So the faces of a sky cross
+ * are whole texels in every level, and no level mixes two of them. */
+#include "image/levels.h"
+
+#include "base/mem.h"
+
+#include <string.h>
+
+/* Half of a size that is made of `parts` equal parts, if it is; plain half (at least 1) otherwise. */
+static uint32_t halve(uint32_t size, uint32_t parts) {
+    if (size % parts == 0 && size / parts > 1)
+        return size / parts / 2 * parts;
+    return size > 1 ? size / 2 : 1;
+}
+
+struct image *image_allocate(const char *name, uint32_t width, uint32_t height, int bits, struct error *error) {
+    if (width == 0 || height == 0) {
+        error_set(error, ERROR_SCENE, "%s: an image needs at least one pixel", name);
+        return NULL;
+    }
+    if (width > IMAGE_MAX_SIDE || height > IMAGE_MAX_SIDE || (uint64_t)width * height > IMAGE_MAX_TEXELS) {
+        error_set(error, ERROR_SCENE, "%s: %u x %u pixels are too many (at most %d a side and %d in all)", name, width,
+                  height, IMAGE_MAX_SIDE, IMAGE_MAX_TEXELS);
+        return NULL;
+    }
+    struct image *image = mem_alloc_zero(1, sizeof *image);
+    if (!image) {
+        error_no_memory(error, name);
+        return NULL;
+    }
+    atomic_init(&image->owners, 1);
+    image->bits = bits;
+
+    /* Sizes first, then one block for all. Offsets are multiples of 8 bytes because a texel is 4 or 8 bytes long and
+     * level 0 is padded. */
+    size_t offsets[IMAGE_MAX_LEVELS], total = 0;
+    uint32_t w = width, h = height;
+    for (;;) {
+        int level = image->level_count++;
+        size_t texel = level == 0 && bits == 8 ? 4 : 8;
+        image->levels[level] = (struct image_level){.width = w, .height = h};
+        offsets[level] = total;
+        total += ((size_t)w * h * texel + 7) / 8 * 8;
+        if (w == 1 && h == 1)
+            break;
+        w = halve(w, 4), h = halve(h, 3);
+    }
+    image->block = mem_alloc(total);
+    size_t length = strlen(name);
+    image->name = mem_alloc(length + 1);
+    if (!image->block || !image->name) {
+        image_release(image);
+        error_no_memory(error, name);
+        return NULL;
+    }
+    image->block_size = total;
+    memcpy(image->name, name, length + 1);
+    for (int level = 0; level < image->level_count; level++)
+        image->levels[level].texels = (char *)image->block + offsets[level];
+    return image;
+}
+
+/* Adds a row of the larger level, times its weight, to the sums of the smaller level's row: premultiplied colour and
+ * alpha. In units of 1 / (large * small) of the width, large texel j covers [j*small, (j+1)*small) and small texel i
+ * covers [i*large, (i+1)*large). Sums stay below 2^62: weights add up to width * height <= 2^28 texels. */
+static void add_row(const struct image *image, int level, uint32_t y, uint64_t weight_y, uint32_t small,
+                    uint64_t *sums) {
+    const struct image_level *from = &image->levels[level];
+    uint32_t large = from->width, j = 0;
+    size_t row = (size_t)y * large * 4;
+    const uint8_t *bytes = level == 0 && image->bits == 8 ? (const uint8_t *)from->texels + row : NULL;
+    const uint16_t *words = bytes ? NULL : (const uint16_t *)from->texels + row;
+    for (uint32_t i = 0; i < small; i++) {
+        uint64_t start = (uint64_t)i * large, end = start + large, r = 0, g = 0, b = 0, a = 0;
+        for (;; j++) {
+            uint64_t left = (uint64_t)j * small, right = left + small;
+            uint64_t weight = (right < end ? right : end) - (left > start ? left : start);
+            uint64_t t[4];
+            for (int k = 0; k < 4; k++)
+                t[k] = bytes ? bytes[(size_t)j * 4 + (size_t)k] * UINT64_C(257) : words[(size_t)j * 4 + (size_t)k];
+            uint64_t alpha = t[3] * weight;
+            r += t[0] * alpha, g += t[1] * alpha, b += t[2] * alpha, a += alpha;
+            if (right >= end) {
+                j += right == end; /* a texel that reaches over the end is met again by the next one */
+                break;
+            }
+        }
+        sums[4 * i] += r * weight_y, sums[4 * i + 1] += g * weight_y, sums[4 * i + 2] += b * weight_y;
+        sums[4 * i + 3] += a * weight_y;
+    }
+}
+
+/* Turns the sums of one row, of total weight `area`, into texels. */
+static void finish_row(const uint64_t *sums, uint32_t width, uint64_t area, uint16_t *texels) {
+    for (size_t i = 0; i < (size_t)width * 4; i += 4) {
+        uint64_t alpha = sums[i + 3];
+        for (size_t k = 0; k < 3; k++)
+            texels[i + k] = (uint16_t)(alpha ? (sums[i + k] + alpha / 2) / alpha : 0);
+        texels[i + 3] = (uint16_t)((alpha + area / 2) / area);
+    }
+}
+
+/* One level from the one below. `sums` has room for four numbers a texel of one row. */
+static void build_level(struct image *image, int level, uint64_t *sums) {
+    const struct image_level *from = &image->levels[level - 1], *to = &image->levels[level];
+    uint64_t area = (uint64_t)from->width * from->height;
+    uint32_t j = 0;
+    for (uint32_t i = 0; i < to->height; i++) {
+        uint64_t start = (uint64_t)i * from->height, end = start + from->height;
+        memset(sums, 0, (size_t)to->width * 4 * sizeof *sums);
+        for (;; j++) {
+            uint64_t top = (uint64_t)j * to->height, bottom = top + to->height;
+            uint64_t weight = (bottom < end ? bottom : end) - (top > start ? top : start);
+            add_row(image, level - 1, j, weight, to->width, sums);
+            if (bottom >= end) {
+                j += bottom == end;
+                break;
+            }
+        }
+        finish_row(sums, to->width, area, (uint16_t *)to->texels + (size_t)i * to->width * 4);
+    }
+}
+
+bool image_build_levels(struct image *image, struct error *error) {
+    if (image->level_count == 1)
+        return true;
+    uint64_t *sums = mem_alloc((size_t)image->levels[1].width * 4 * sizeof *sums);
+    if (!sums)
+        return error_no_memory(error, image->name);
+    for (int level = 1; level < image->level_count; level++)
+        build_level(image, level, sums);
+    mem_free(sums);
+    return true;
+}
+
+struct image *image_create(const char *name, uint32_t width, uint32_t height, int bits, const void *rgba,
+                           struct error *error) {
+    struct image *image = image_allocate(name, width, height, bits, error);
+    if (!image)
+        return NULL;
+    memcpy(image->levels[0].texels, rgba, (size_t)width * height * (bits == 8 ? 4 : 8));
+    if (!image_build_levels(image, error)) {
+        image_release(image);
+        return NULL;
+    }
+    return image;
+}
+
+struct image *image_share(struct image *image) {
+    atomic_fetch_add_explicit(&image->owners, 1, memory_order_relaxed);
+    return image;
+}
+
+void image_release(struct image *image) {
+    if (!image || atomic_fetch_sub_explicit(&image->owners, 1, memory_order_acq_rel) != 1)
+        return;
+    mem_free(image->block);
+    mem_free(image->name);
+    mem_free(image);
+}
+
+uint32_t image_width(const struct image *image) {
+    return image->levels[0].width;
+}
+
+uint32_t image_height(const struct image *image) {
+    return image->levels[0].height;
+}
+
+size_t image_memory(const struct image *image) {
+    return sizeof *image + image->block_size + strlen(image->name) + 1;
+}
+
+const char *image_name(const struct image *image) {
+    return image->name;
+}
+
+struct rgba image_texel(const struct image *image, uint32_t x, uint32_t y) {
+    size_t at = ((size_t)y * image->levels[0].width + x) * 4;
+    if (image->bits == 8) {
+        const uint8_t *t = (const uint8_t *)image->levels[0].texels + at;
+        return (struct rgba){t[0] / 255.0, t[1] / 255.0, t[2] / 255.0, t[3] / 255.0};
+    }
+    const uint16_t *t = (const uint16_t *)image->levels[0].texels + at;
+    return (struct rgba){t[0] / 65535.0, t[1] / 65535.0, t[2] / 65535.0, t[3] / 65535.0};
+}

@@ -1,0 +1,75 @@
+/* The inside of an image, for src/image and for filters that know more than a rectangle (the sky's cube): the mip
+ * levels and single texels of them.
+ *
+ * Every level keeps straight (not premultiplied) RGBA, so that one colour over all of an image is exactly that colour
+ * in every level. Level 0 has the file's 8 or 16 bits; the levels above always have 16, so that rounding does not add
+ * up from level to level. Everything is told in "units": 0 .. 65535 for a channel, premultiplied colours and alpha in
+ * units squared (alpha times 65535). A double holds all of these exactly. */
+#ifndef GRAY_IMAGE_LEVELS_H
+#define GRAY_IMAGE_LEVELS_H
+
+#include "base/error.h"
+#include "image/image.h"
+
+#include <stdatomic.h>
+#include <stdint.h>
+
+enum { IMAGE_MAX_LEVELS = 17, IMAGE_MAX_SIDE = 1 << 15, IMAGE_MAX_TEXELS = 1 << 28 };
+
+struct image_level {
+    uint32_t width, height;
+    void *texels; /* uint8_t[4] or uint16_t[4] each, row-major; points into the image's one block */
+};
+
+/* Immutable once built. Owns `block` (all levels) and `name`. */
+struct image {
+    _Atomic uint32_t owners;
+    int bits; /* of level 0: 8 or 16 */
+    int level_count;
+    struct image_level levels[IMAGE_MAX_LEVELS];
+    void *block;
+    size_t block_size;
+    char *name;
+};
+
+/* All levels allocated, texels not yet set: fill level 0, then call image_build_levels. NULL without memory or when the
+ * size is refused. */
+struct image *image_allocate(const char *name, uint32_t width, uint32_t height, int bits, struct error *error);
+bool image_build_levels(struct image *image, struct error *error);
+/* As image_read_png, from memory; `path` is for messages. */
+struct image *image_parse_png(const char *path, const uint8_t *data, size_t size, struct error *error);
+
+/* Is the rectangle of level-0 texels cut by no texel of this level? If so, the rectangle in texels of this level. */
+bool image_level_part(const struct image *image, int level, const uint32_t part[4], uint32_t out[4]);
+
+/* One texel, premultiplied, in units squared. */
+static inline struct rgba image_level_texel(const struct image *image, int level, uint32_t x, uint32_t y) {
+    const struct image_level *l = &image->levels[level];
+    size_t at = ((size_t)y * l->width + x) * 4;
+    double r, g, b, a;
+    if (level == 0 && image->bits == 8) {
+        const uint8_t *t = (const uint8_t *)l->texels + at;
+        r = (double)(t[0] * 257), g = (double)(t[1] * 257), b = (double)(t[2] * 257), a = (double)(t[3] * 257);
+    } else {
+        const uint16_t *t = (const uint16_t *)l->texels + at;
+        r = (double)t[0], g = (double)t[1], b = (double)t[2], a = (double)t[3];
+    }
+    return (struct rgba){r * a, g * a, b * a, a * 65535};
+}
+
+/* From units squared to 0..1. */
+static inline struct rgba image_from_units(struct rgba c) {
+    const double one = 65535.0 * 65535.0;
+    return (struct rgba){c.r / one, c.g / one, c.b / one, c.a / one};
+}
+
+/* a + (b - a) t: gives a exactly where a = b, so constant pictures stay constant. */
+static inline struct rgba image_mix(struct rgba a, struct rgba b, double t) {
+    return (struct rgba){a.r + (b.r - a.r) * t, a.g + (b.g - a.g) * t, a.b + (b.b - a.b) * t, a.a + (b.a - a.a) * t};
+}
+
+/* The mip level for a footprint of `texels` texels: its binary logarithm, linear between powers of two (0.09 off at
+ * most, continuous, and the same on every machine), at least 0 and at most `last`. NaN gives 0. */
+double image_level_for(double texels, int last);
+
+#endif

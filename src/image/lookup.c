@@ -1,0 +1,161 @@
+/* Filtered lookups.
+ *
+ * Texel (i, j) has its centre at ((i + .5) / width, (j + .5) / height), so u = 0 is the left edge of the first texel.
+ * A footprint wider in one direction than in the other takes several samples along the wide one, each from the level
+ * that suits a piece of it (the axis-aligned case of Feline: McCormack, Perry, Farkas, Jouppi, "Feline: fast elliptical
+ * lines for anisotropic texture mapping", SIGGRAPH 1999): a floor seen at a grazing angle stays sharp across, and the
+ * poles of a sphere do not blur. Lookups work on a rectangle of a level; the whole image is the rectangle that can wrap
+ * around. Nothing outside the rectangle is ever read, whatever u and v are. */
+#include "image/levels.h"
+
+#include <math.h>
+
+enum { MAX_TAPS = 8 };
+
+/* What a lookup reads: for every level up to `last` the rectangle that the same part of the picture has there. */
+struct view {
+    const struct image *image;
+    int last;
+    uint32_t parts[IMAGE_MAX_LEVELS][4]; /* x, y, width, height in texels of the level */
+    enum image_wrap wrap_u, wrap_v;
+};
+
+double image_level_for(double texels, int last) {
+    if (!(texels > 1))
+        return 0;
+    if (!(texels < 0x1p40))
+        return last;
+    int exponent;
+    double mantissa = frexp(texels, &exponent); /* in [.5, 1) */
+    double level = (exponent - 1) + (2 * mantissa - 1);
+    return level < last ? level : last;
+}
+
+bool image_level_part(const struct image *image, int level, const uint32_t part[4], uint32_t out[4]) {
+    const struct image_level *base = &image->levels[0], *l = &image->levels[level];
+    for (int axis = 0; axis < 2; axis++) {
+        uint64_t size = axis ? base->height : base->width, here = axis ? l->height : l->width;
+        uint64_t start = part[axis] * here, length = part[axis + 2] * here;
+        if (start % size != 0 || length % size != 0 || length == 0)
+            return false;
+        out[axis] = (uint32_t)(start / size), out[axis + 2] = (uint32_t)(length / size);
+    }
+    return true;
+}
+
+/* u folded into [0, 1]. NaN gives 0. */
+static double fold(double u, enum image_wrap wrap) {
+    switch (wrap) {
+    case IMAGE_CLAMP:
+        break;
+    case IMAGE_REPEAT:
+        u -= floor(u);
+        break;
+    case IMAGE_MIRROR:
+        u -= 2 * floor(u / 2);
+        u = u > 1 ? 2 - u : u;
+        break;
+    }
+    return u > 0 ? (u < 1 ? u : 1) : 0;
+}
+
+/* The texel under u in [0, 1]; u = 1 is the first one again where the picture repeats. */
+static uint32_t nearest(double u, uint32_t size, enum image_wrap wrap) {
+    uint32_t i = (uint32_t)(u * size);
+    return i < size ? i : wrap == IMAGE_REPEAT ? 0 : size - 1;
+}
+
+/* The two texels whose centres enclose u in [0, 1], and the weight of the second. */
+static double neighbours(double u, uint32_t size, enum image_wrap wrap, uint32_t *first, uint32_t *second) {
+    double x = u * size - 0.5, floor_x = floor(x);
+    int64_t i = (int64_t)floor_x, n = size;
+    *first = (uint32_t)(i >= 0 ? i : wrap == IMAGE_REPEAT ? n - 1 : 0);
+    *second = (uint32_t)(i + 1 < n ? i + 1 : wrap == IMAGE_REPEAT ? 0 : n - 1);
+    return x - floor_x;
+}
+
+static struct rgba bilinear(const struct view *view, int level, double u, double v) {
+    const uint32_t *part = view->parts[level];
+    uint32_t x0, x1, y0, y1;
+    double fx = neighbours(u, part[2], view->wrap_u, &x0, &x1), fy = neighbours(v, part[3], view->wrap_v, &y0, &y1);
+    x0 += part[0], x1 += part[0], y0 += part[1], y1 += part[1];
+    struct rgba top =
+        image_mix(image_level_texel(view->image, level, x0, y0), image_level_texel(view->image, level, x1, y0), fx);
+    struct rgba bottom =
+        image_mix(image_level_texel(view->image, level, x0, y1), image_level_texel(view->image, level, x1, y1), fx);
+    return image_mix(top, bottom, fy);
+}
+
+static struct rgba trilinear(const struct view *view, double level, double u, double v) {
+    int lower = (int)level;
+    u = fold(u, view->wrap_u), v = fold(v, view->wrap_v);
+    struct rgba fine = bilinear(view, lower, u, v);
+    if (lower >= view->last || level == lower)
+        return fine;
+    return image_mix(fine, bilinear(view, lower + 1, u, v), level - lower);
+}
+
+/* Several trilinear samples along the wider side of the footprint, each wide enough for its share. */
+static struct rgba mipmapped(const struct view *view, double u, double v, double width_u, double width_v) {
+    double texels_u = width_u * view->parts[0][2], texels_v = width_v * view->parts[0][3];
+    double wide = fmax(texels_u, texels_v), narrow = fmin(texels_u, texels_v);
+    if (!(wide > 1))
+        return trilinear(view, 0, u, v);
+    double ratio = wide / fmax(narrow, 1);
+    int taps = ratio < MAX_TAPS ? (int)ceil(ratio) : MAX_TAPS;
+    double level = image_level_for(wide / taps, view->last);
+    double step_u = texels_u >= texels_v ? fmin(width_u, 1) / taps : 0;
+    double step_v = texels_u >= texels_v ? 0 : fmin(width_v, 1) / taps;
+    struct rgba sum = {0, 0, 0, 0};
+    for (int i = 0; i < taps; i++) {
+        double at = i - 0.5 * (taps - 1);
+        struct rgba c = trilinear(view, level, u + at * step_u, v + at * step_v);
+        sum.r += c.r, sum.g += c.g, sum.b += c.b, sum.a += c.a;
+    }
+    return (struct rgba){sum.r / taps, sum.g / taps, sum.b / taps, sum.a / taps};
+}
+
+static struct rgba lookup(const struct view *view, double u, double v, double width_u, double width_v,
+                          enum image_filter filter) {
+    switch (filter) {
+    case IMAGE_NEAREST: {
+        const uint32_t *part = view->parts[0];
+        uint32_t x = nearest(fold(u, view->wrap_u), part[2], view->wrap_u);
+        uint32_t y = nearest(fold(v, view->wrap_v), part[3], view->wrap_v);
+        return image_from_units(image_level_texel(view->image, 0, part[0] + x, part[1] + y));
+    }
+    case IMAGE_BILINEAR:
+        return image_from_units(trilinear(view, 0, u, v));
+    case IMAGE_MIPMAP:
+        return image_from_units(mipmapped(view, u, v, width_u, width_v));
+    }
+    return (struct rgba){0, 0, 0, 0};
+}
+
+struct rgba image_lookup(const struct image *image, double u, double v, double width_u, double width_v,
+                         enum image_filter filter, enum image_wrap wrap_u, enum image_wrap wrap_v) {
+    struct view view;
+    view.image = image;
+    view.last = filter == IMAGE_MIPMAP ? image->level_count - 1 : 0;
+    view.wrap_u = wrap_u, view.wrap_v = wrap_v;
+    for (int level = 0; level <= view.last; level++) {
+        view.parts[level][0] = view.parts[level][1] = 0;
+        view.parts[level][2] = image->levels[level].width, view.parts[level][3] = image->levels[level].height;
+    }
+    return lookup(&view, u, v, width_u, width_v, filter);
+}
+
+struct rgba image_lookup_part(const struct image *image, uint32_t x0, uint32_t y0, uint32_t w, uint32_t h, double u,
+                              double v, double width_u, double width_v, enum image_filter filter) {
+    const uint32_t part[4] = {x0, y0, w, h};
+    struct view view;
+    view.image = image;
+    view.wrap_u = view.wrap_v = IMAGE_CLAMP;
+    view.last = -1;
+    int last = filter == IMAGE_MIPMAP ? image->level_count - 1 : 0;
+    while (view.last < last && image_level_part(image, view.last + 1, part, view.parts[view.last + 1]))
+        view.last++;
+    if (view.last < 0) /* an empty rectangle */
+        return (struct rgba){0, 0, 0, 0};
+    return lookup(&view, u, v, width_u, width_v, filter);
+}

@@ -1,0 +1,205 @@
+/* PNG in, through libpng ("Portable Network Graphics Specification (Second Edition)", ISO/IEC 15948:2003).
+ *
+ * libpng reports errors by longjmp. So everything that must be given back is held by one struct reader that lives in
+ * image_parse_png; decode, the function with the setjmp, has no variables of its own that change after it.
+ * Nothing is believed before it is checked: sizes are refused before memory is taken, and so is a picture that the
+ * bytes of the file cannot possibly fill (deflate shrinks by 1032 : 1 at most), so a small hostile file costs little
+ * memory. Chunks that do not change a texel are skipped unread, except for their check sums. */
+#include "image/levels.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+
+#include <png.h>
+#include <setjmp.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Larger files cannot hold a picture of the largest size in any sensible way. */
+#define FILE_LIMIT ((size_t)1 << 32)
+
+enum { SIGNATURE = 8, HEADER = 33 }; /* the signature; with the IHDR chunk that must follow */
+
+struct reader {
+    const char *path;
+    const uint8_t *data;   /* the whole file */
+    size_t size, position; /* of the next byte libpng gets */
+    bool truncated, out_of_memory;
+    char message[160]; /* what libpng said */
+    png_structp png;
+    png_infop info;
+    struct image *image;
+};
+
+static void on_read(png_structp png, png_bytep data, size_t size) {
+    struct reader *reader = png_get_io_ptr(png);
+    if (size > reader->size - reader->position) {
+        reader->truncated = true;
+        png_error(png, "end of file");
+    }
+    memcpy(data, reader->data + reader->position, size);
+    reader->position += size;
+}
+
+static void on_error(png_structp png, png_const_charp message) {
+    struct reader *reader = png_get_error_ptr(png);
+    (void)snprintf(reader->message, sizeof reader->message, "%s", message);
+    png_longjmp(png, 1);
+}
+
+static void on_warning(png_structp png, png_const_charp message) {
+    (void)png, (void)message;
+}
+
+static png_voidp on_alloc(png_structp png, png_alloc_size_t size) {
+    struct reader *reader = png_get_mem_ptr(png);
+    void *block = mem_alloc(size);
+    reader->out_of_memory |= block == NULL;
+    return block;
+}
+
+static void on_free(png_structp png, png_voidp block) {
+    (void)png;
+    mem_free(block);
+}
+
+static uint32_t big_endian(const uint8_t *bytes) {
+    return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
+}
+
+/* What a file without PNG's signature seems to be. */
+static const char *guess_kind(const uint8_t *data, size_t size) {
+    static const struct {
+        const char *kind, *bytes;
+        size_t offset, length;
+    } kinds[] = {
+        {"it looks like a JPEG", "\xff\xd8\xff", 0, 3},
+        {"it looks like a GIF", "GIF8", 0, 4},
+        {"it looks like a WebP", "WEBP", 8, 4},
+        {"it looks like a BMP", "BM", 0, 2},
+        {"it looks like a TIFF", "II*\0", 0, 4},
+        {"it looks like a TIFF", "MM\0*", 0, 4},
+        {"it looks like a Radiance HDR", "#?", 0, 2},
+        {"it looks like an OpenEXR", "v/1\x01", 0, 4},
+        {"it looks like an SVG or XML text", "<", 0, 1},
+        {"it looks like a PNM", "P6", 0, 2},
+        {"it looks like a PNG that was copied as text, which changed its line ends", "\x89PNG", 0, 4},
+    };
+    if (size == 0)
+        return "the file is empty";
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
+        if (size >= kinds[i].offset + kinds[i].length &&
+            memcmp(data + kinds[i].offset, kinds[i].bytes, kinds[i].length) == 0)
+            return kinds[i].kind;
+    return "it starts with other bytes";
+}
+
+static bool report_truncated(const struct reader *reader, struct error *error) {
+    return error_set(error, ERROR_SCENE, "%s: truncated PNG: the file ends at byte %zu, before the picture is complete",
+                     reader->path, reader->size);
+}
+
+/* Signature and sizes, read by hand so that the messages are ours. */
+static bool check_header(const struct reader *reader, struct error *error) {
+    static const uint8_t signature[SIGNATURE] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    const uint8_t *data = reader->data;
+    size_t size = reader->size;
+    if (size > 0 && size < SIGNATURE && memcmp(data, signature, size) == 0)
+        return report_truncated(reader, error);
+    if (size < SIGNATURE || memcmp(data, signature, SIGNATURE) != 0)
+        return error_set(error, ERROR_SCENE, "%s: not a PNG file: %s", reader->path, guess_kind(data, size));
+    if (size < HEADER)
+        return report_truncated(reader, error);
+    if (big_endian(data + 8) != 13 || memcmp(data + 12, "IHDR", 4) != 0)
+        return error_set(error, ERROR_SCENE, "%s: broken PNG: the first chunk is not IHDR (at byte 8)", reader->path);
+    uint32_t width = big_endian(data + 16), height = big_endian(data + 20);
+    if (width == 0 || height == 0)
+        return error_set(error, ERROR_SCENE, "%s: broken PNG: its size is %u x %u (at byte 16)", reader->path, width,
+                         height);
+    if (width > IMAGE_MAX_SIDE || height > IMAGE_MAX_SIDE || (uint64_t)width * height > IMAGE_MAX_TEXELS)
+        return error_set(error, ERROR_SCENE, "%s: %u x %u pixels are too many (at most %d a side and %d in all)",
+                         reader->path, width, height, IMAGE_MAX_SIDE, IMAGE_MAX_TEXELS);
+    return true;
+}
+
+/* Could the bytes after the header inflate to this many? Generous: anything of 1040 : 1 and 64 bytes passes. */
+static bool can_hold(const struct reader *reader, uint64_t bytes) {
+    return bytes <= (reader->size - HEADER) * UINT64_C(1040) + 64;
+}
+
+/* The picture as RGBA rows in reader->image, levels not yet built. Only through `reader` does anything outlive a
+ * longjmp. False: reader->message or *error is set. */
+static bool decode(struct reader *reader, struct error *error) {
+    if (setjmp(png_jmpbuf(reader->png)))
+        return false;
+    png_structp const png = reader->png;
+    png_infop const info = reader->info;
+    png_set_read_fn(png, reader, on_read);
+    png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+    png_set_user_limits(png, IMAGE_MAX_SIDE, IMAGE_MAX_SIDE);
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, -1); /* the known but useless ones as well */
+    png_read_info(png, info);
+
+    png_uint_32 const width = png_get_image_width(png, info), height = png_get_image_height(png, info);
+    int const bits = png_get_bit_depth(png, info) == 16 ? 16 : 8;
+    if (!can_hold(reader, (uint64_t)png_get_rowbytes(png, info) * height)) {
+        (void)snprintf(reader->message, sizeof reader->message, "the file is too short for %lu x %lu pixels",
+                       (unsigned long)width, (unsigned long)height);
+        return false;
+    }
+
+    png_set_expand(png); /* palettes, small depths and tRNS */
+    png_set_gray_to_rgb(png);
+    png_set_add_alpha(png, 0xffff, PNG_FILLER_AFTER);
+    if (bits == 16 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__)
+        png_set_swap(png);
+    int const passes = png_set_interlace_handling(png);
+    png_read_update_info(png, info);
+    size_t const row = (size_t)width * (bits == 16 ? 8 : 4);
+    if (png_get_rowbytes(png, info) != row)
+        png_error(png, "unexpected row size");
+
+    reader->image = image_allocate(reader->path, width, height, bits, error);
+    if (!reader->image)
+        return false;
+    for (int pass = 0; pass < passes; pass++)
+        for (png_uint_32 y = 0; y < height; y++)
+            png_read_row(png, (png_bytep)reader->image->levels[0].texels + y * row, NULL);
+    png_read_end(png, NULL);
+    return true;
+}
+
+struct image *image_parse_png(const char *path, const uint8_t *data, size_t size, struct error *error) {
+    struct reader reader = {.path = path, .data = data, .size = size};
+    if (!check_header(&reader, error))
+        return NULL;
+    error->kind = ERROR_NONE;
+    reader.png =
+        png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &reader, on_error, on_warning, &reader, on_alloc, on_free);
+    reader.info = reader.png ? png_create_info_struct(reader.png) : NULL;
+    bool ok = reader.info ? decode(&reader, error) : error_no_memory(error, path);
+    if (!ok && error->kind == ERROR_NONE) {
+        if (reader.out_of_memory)
+            error_no_memory(error, path);
+        else if (reader.truncated)
+            report_truncated(&reader, error);
+        else
+            error_set(error, ERROR_SCENE, "%s: broken PNG: %s (before byte %zu)", path, reader.message,
+                      reader.position);
+    }
+    png_destroy_read_struct(&reader.png, &reader.info, NULL);
+    ok = ok && image_build_levels(reader.image, error);
+    if (ok)
+        return reader.image;
+    image_release(reader.image);
+    return NULL;
+}
+
+struct image *image_read_png(const char *path, struct error *error) {
+    struct file_bytes file;
+    if (!file_map(path, FILE_LIMIT, &file, error))
+        return NULL;
+    struct image *image = image_parse_png(path, file.data, file.size, error);
+    file_unmap(&file);
+    return image;
+}

@@ -1,0 +1,166 @@
+/* The sky: a constant, the gradient {0, 0, (1 + y)/2}, or six faces cut from a 4 x 3 cross (SPEC 1.5).
+ *
+ * The viewer stands in the middle of a cube whose faces are printed on the inside. Looking along f with the picture's
+ * upward direction u, the picture's right is r = f x u (right-handed). The sides L F R K stand upright (u = +y); going
+ * to the right from F = +z one meets r = z x y = -x, so R = -x, K = -z, L = +x. T joins F's upper edge: its lower side
+ * points to +z, u = -z; B joins F's lower edge: u = +z. That is the table below, and everything follows from it, the
+ * neighbours across each edge too.
+ *
+ * Filtering has no seams: a texel beyond the edge of a face is fetched from the face that lies there, and at a corner
+ * of the cube, where three texels meet and the fourth is missing, their mean stands for it. Both faces at an edge then
+ * mix the same texels with the same weights. The black corners of the cross are never read: no mip level mixes two
+ * cells of the cross (see image.c). */
+#include "look/sky.h"
+
+#include "image/levels.h"
+
+#include <math.h>
+
+struct face {
+    uint32_t column, row; /* cell of the cross */
+    struct vec3 right, up, forward;
+};
+
+static const struct face faces[6] = {
+    {2, 1, {0, 0, -1}, {0, 1, 0}, {-1, 0, 0}}, /* R: -x */
+    {0, 1, {0, 0, 1}, {0, 1, 0}, {1, 0, 0}},   /* L: +x */
+    {1, 2, {-1, 0, 0}, {0, 0, 1}, {0, -1, 0}}, /* B: -y */
+    {1, 0, {-1, 0, 0}, {0, 0, -1}, {0, 1, 0}}, /* T: +y */
+    {3, 1, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}},  /* K: -z */
+    {1, 1, {-1, 0, 0}, {0, 1, 0}, {0, 0, 1}},  /* F: +z */
+};
+
+/* The face that a direction meets: twice its axis, plus one on the positive side. */
+static int face_of(struct vec3 d) {
+    double x = fabs(d.x), y = fabs(d.y), z = fabs(d.z);
+    if (x >= y && x >= z)
+        return d.x > 0;
+    if (y >= z)
+        return 2 + (d.y > 0);
+    return 4 + (d.z > 0);
+}
+
+/* One level of the cross: its faces are `width` x `height` texels. */
+struct level {
+    const struct image *image;
+    int index;
+    uint32_t width, height;
+};
+
+static struct rgba face_texel(const struct level *level, int face, uint32_t x, uint32_t y) {
+    return image_level_texel(level->image, level->index, faces[face].column * level->width + x,
+                             faces[face].row * level->height + y);
+}
+
+static uint32_t index_at(double position, uint32_t size) {
+    double x = floor((position + 1) / 2 * size);
+    return x > 0 ? (x < size ? (uint32_t)x : size - 1) : 0;
+}
+
+/* The texel across an edge: right and up are in [-1, 1] on the face's plane, exactly one of them +-1 (the edge). */
+static struct rgba texel_across(const struct level *level, int face, double right, double up) {
+    const struct face *from = &faces[face];
+    bool sideways = fabs(right) == 1;
+    struct vec3 outward = vec3_scale(sideways ? from->right : from->up, sideways ? right : up);
+    struct vec3 along = vec3_scale(sideways ? from->up : from->right, sideways ? up : right);
+    int other = face_of(outward);
+    struct vec3 p = vec3_add(from->forward, along); /* in the plane of the other face, on the common edge */
+    uint32_t x = index_at(vec3_dot(p, faces[other].right), level->width);
+    uint32_t y = index_at(-vec3_dot(p, faces[other].up), level->height);
+    return face_texel(level, other, x, y);
+}
+
+static struct rgba mean_of_three(struct rgba a, struct rgba b, struct rgba c) {
+    return (struct rgba){(a.r + b.r + c.r) / 3, (a.g + b.g + c.g) / 3, (a.b + b.b + c.b) / 3, (a.a + b.a + c.a) / 3};
+}
+
+/* Texel (x, y) of a face where either may be one off the face. */
+static struct rgba texel_near(const struct level *level, int face, int64_t x, int64_t y) {
+    int64_t w = level->width, h = level->height;
+    bool off_x = x < 0 || x >= w, off_y = y < 0 || y >= h;
+    if (!off_x && !off_y)
+        return face_texel(level, face, (uint32_t)x, (uint32_t)y);
+    int64_t in_x = x < 0 ? 0 : x >= w ? w - 1 : x, in_y = y < 0 ? 0 : y >= h ? h - 1 : y;
+    double right = (double)(2 * in_x + 1 - w) / (double)w, up = (double)(h - 2 * in_y - 1) / (double)h;
+    double edge_x = x < 0 ? -1 : 1, edge_y = y < 0 ? 1 : -1;
+    if (!off_y)
+        return texel_across(level, face, edge_x, up);
+    if (!off_x)
+        return texel_across(level, face, right, edge_y);
+    return mean_of_three(face_texel(level, face, (uint32_t)in_x, (uint32_t)in_y), texel_across(level, face, edge_x, up),
+                         texel_across(level, face, right, edge_y));
+}
+
+/* s from the left and t from the top, both in [0, 1]. */
+static struct rgba bilinear(const struct level *level, int face, double s, double t) {
+    double x = s * level->width - 0.5, y = t * level->height - 0.5;
+    int64_t i = (int64_t)floor(x), j = (int64_t)floor(y);
+    double fx = x - floor(x), fy = y - floor(y);
+    struct rgba top = image_mix(texel_near(level, face, i, j), texel_near(level, face, i + 1, j), fx);
+    struct rgba bottom = image_mix(texel_near(level, face, i, j + 1), texel_near(level, face, i + 1, j + 1), fx);
+    return image_mix(top, bottom, fy);
+}
+
+static struct level level_at(const struct image *image, int index) {
+    const struct image_level *l = &image->levels[index];
+    return (struct level){.image = image, .index = index, .width = l->width / 4, .height = l->height / 3};
+}
+
+/* The last level whose faces are whole texels. */
+static int last_level(const struct image *image) {
+    int last = 0;
+    while (last + 1 < image->level_count && image->levels[last + 1].width >= 4 && image->levels[last + 1].height >= 3)
+        last++;
+    return last;
+}
+
+static struct vec3 cross_colour(const struct sky *sky, struct vec3 d, double spread) {
+    if (sky->mirror)
+        d.x = -d.x;
+    double depth = vec3_max_abs(d);
+    if (!(depth > 0) || !vec3_finite(d))
+        return vec3_all(0);
+    int face = face_of(d);
+    double s = (1 + vec3_dot(d, faces[face].right) / depth) / 2;
+    double t = (1 - vec3_dot(d, faces[face].up) / depth) / 2;
+
+    /* A cone of angle e around the unit direction d cuts the plane at distance 1 in an ellipse of about e / depth by
+     * e / depth^2; the face is 2 wide there. */
+    const struct image *image = sky->image;
+    struct level fine = level_at(image, 0);
+    double texels = spread > 0 ? spread / (2 * depth * sqrt(depth)) * fmax(fine.width, fine.height) : 0;
+    double level = texels > 1 ? image_level_for(texels, last_level(image)) : 0;
+    int lower = (int)level;
+    fine = level_at(image, lower);
+    struct rgba c = bilinear(&fine, face, s, t);
+    if (level > lower) {
+        struct level coarse = level_at(image, lower + 1);
+        c = image_mix(c, bilinear(&coarse, face, s, t), level - lower);
+    }
+    c = image_from_units(c);
+    return (struct vec3){c.r, c.g, c.b};
+}
+
+bool sky_from_cross(struct image *image, bool mirror, struct sky *out, struct error *error) {
+    uint32_t width = image_width(image), height = image_height(image);
+    if (width % 4 != 0 || height % 3 != 0)
+        return error_set(
+            error, ERROR_SCENE,
+            "%s: a sky image is a cross of 4 x 3 faces, so its width must be divisible by 4 and its height "
+            "by 3; it is %u x %u",
+            image_name(image), width, height);
+    *out = (struct sky){.kind = SKY_CROSS, .image = image, .mirror = mirror};
+    return true;
+}
+
+struct vec3 sky_colour(const struct sky *sky, struct vec3 direction, double spread) {
+    switch (sky->kind) {
+    case SKY_GRADIENT:
+        return vec3_make(0, 0, (1 + direction.y) / 2);
+    case SKY_CONSTANT:
+        return sky->colour;
+    case SKY_CROSS:
+        return cross_colour(sky, direction, spread);
+    }
+    return vec3_all(0);
+}
