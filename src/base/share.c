@@ -12,8 +12,7 @@
 #include <unistd.h>
 
 static bool no_memory(struct error *error, size_t size, const char *why) {
-    return error_set(error, ERROR_MACHINE, "out of memory for a picture of %.1f million bytes: %s", 1e-6 * (double)size,
-                     why);
+    return error_set(error, ERROR_MACHINE, "out of memory: the picture needs %.1f MB: %s", 1e-6 * (double)size, why);
 }
 
 /* More than the machine has would not fail in time: the kernel hands pages out until it has to kill somebody. */
@@ -37,7 +36,7 @@ static bool map_block(struct share *share, struct error *error) {
 bool share_create(struct share *share, size_t size, struct error *error) {
     *share = (struct share){.size = size ? size : 1};
     if (!fits_machine(share->size))
-        return no_memory(error, size, "this machine has less");
+        return no_memory(error, size, "this machine has less in all");
     share->descriptor = memfd_create("gray-film", MFD_CLOEXEC | MFD_ALLOW_SEALING);
     if (share->descriptor < 0)
         return no_memory(error, size, strerror(errno));
@@ -45,8 +44,7 @@ bool share_create(struct share *share, size_t size, struct error *error) {
     do {
         failed = fallocate(share->descriptor, 0, 0, (off_t)share->size);
     } while (failed != 0 && errno == EINTR);
-    if (failed != 0 ||
-        fcntl(share->descriptor, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0) {
+    if (failed != 0 || fcntl(share->descriptor, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0) {
         no_memory(error, size, strerror(errno));
         (void)close(share->descriptor);
         return false;

@@ -1,0 +1,94 @@
+/* The channel between supervisor and child: a pair of sockets that keep the borders of frames. A frame is a kind and a
+ * body of fixed size for its kind, or a text. Both processes are the same program, so bodies are plain structs; the
+ * supervisor still checks every size and every text, since the child works on strangers' scenes. */
+#ifndef GRAY_APP_CHANNEL_H
+#define GRAY_APP_CHANNEL_H
+
+#include "base/error.h"
+#include "render/render.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Child to supervisor, then supervisor to child. */
+enum frame_kind {
+    FRAME_LINE = 1, /* struct frame_line: something to tell */
+    FRAME_BEGIN,    /* struct picture_request; answered by FRAME_FILM */
+    FRAME_DONE,     /* struct picture_report; answered by FRAME_ANSWER */
+    FRAME_ABANDON,  /* no body: the picture that was begun will not be finished; no answer */
+    FRAME_SCRIPT,   /* struct frame_script: a script has ended; no answer */
+    FRAME_FILM,     /* struct frame_answer, and on success the descriptor of the film's memory */
+    FRAME_ANSWER,   /* struct frame_answer */
+};
+
+/* What kind of line: decides whether -q or --verbose let it pass. */
+enum line_kind { LINE_ERROR, LINE_WARNING, LINE_NOTICE, LINE_DETAIL };
+
+enum { FRAME_TEXT_LIMIT = 16384, FRAME_SIZE_LIMIT = FRAME_TEXT_LIMIT + 64 };
+
+struct frame_line {
+    enum line_kind kind;
+    char text[FRAME_TEXT_LIMIT]; /* sent only as long as it is, with its final NUL */
+};
+
+/* A picture about to be made. */
+struct picture_request {
+    uint32_t full_width, full_height; /* of the whole picture */
+    uint32_t x0, y0, width, height;   /* the part that is rendered */
+    uint32_t check;                   /* not 0 for --check: only the names are looked at, no film is wanted */
+    char file[4096];                  /* as the script gave it */
+};
+
+/* What a finished picture cost. */
+struct picture_report {
+    struct render_statistics rays;
+    uint64_t primitives, triangles;
+    uint64_t mesh_bytes, grid_bytes, peak_bytes;
+    uint32_t grid_cells[3];
+    int threads;
+};
+
+struct frame_answer {
+    bool ok;
+    struct error error;
+};
+
+struct frame_script {
+    int index;  /* into options.scripts */
+    int status; /* exit status this script alone would give */
+};
+
+struct channel {
+    int descriptor;
+};
+
+/* Two ends of a new channel; both are closed on exec. */
+bool channel_pair(struct channel ends[2], struct error *error);
+void channel_close(struct channel *channel);
+
+/* Blocks until the frame is handed over; false when the other side is gone. descriptor: one to pass along, or -1. */
+bool channel_send(struct channel *channel, enum frame_kind kind, const void *body, size_t size, int descriptor);
+bool channel_send_line(struct channel *channel, enum line_kind kind, const char *text);
+
+/* A frame as it came: `size` bytes of body. */
+struct frame {
+    enum frame_kind kind;
+    size_t size;
+    int descriptor; /* that came along, or -1; owned by whoever received the frame */
+    union {
+        struct frame_line line;
+        struct picture_request request;
+        struct picture_report report;
+        struct frame_answer answer;
+        struct frame_script script;
+        char bytes[FRAME_SIZE_LIMIT];
+    } body;
+};
+
+enum channel_result { CHANNEL_FRAME, CHANNEL_END, CHANNEL_BROKEN };
+/* Blocks for one frame. END: the other side is gone. BROKEN: not a frame of a known kind and right size; texts of
+ * frames that pass end in NUL. */
+enum channel_result channel_receive(struct channel *channel, struct frame *frame);
+
+#endif

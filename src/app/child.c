@@ -1,0 +1,261 @@
+/* Scripts run one after the other in this process, so that meshes and images (assets) outlive the script that read
+ * them. Each gr.render is a job: prepare, begin (names and film), build the world, render, hand over. The world lives
+ * in the arena of the job, which is emptied for the next one. */
+#include "app/child.h"
+
+#include "app/progress.h"
+#include "base/arena.h"
+#include "base/hash.h"
+#include "base/pool.h"
+#include "render/render.h"
+#include "script/script.h"
+#include "world/world.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <sys/resource.h>
+
+enum { TOLD_LIMIT = 256 };
+
+struct child {
+    const struct options *options;
+    const struct child_services *services;
+    const char *script; /* the one that runs */
+    struct pool *pool;  /* made for the first picture */
+    struct arena job;   /* memory of the picture being made */
+    struct assets assets;
+    int status;                /* --check: worst of the problems reported so far in this script */
+    uint64_t told[TOLD_LIMIT]; /* hashes of the warnings about scenes that this script was given */
+    int told_count;
+};
+
+static bool is_cancelled(void *context) {
+    const struct child *child = context;
+    return atomic_load(&child->services->control->cancel) != 0;
+}
+
+static void tell(const struct child *child, enum line_kind kind, const char *text) {
+    (void)fflush(stdout); /* what the script printed before stands before */
+    child->services->line(child->services->context, kind, text);
+}
+
+static void poll_pool(void *context) {
+    struct child *child = context;
+    if (is_cancelled(child))
+        pool_cancel(child->pool);
+    if (child->services->poll)
+        child->services->poll(child->services->context);
+}
+
+static bool need_pool(struct child *child, struct error *error) {
+    char warning[256], line[512];
+    if (child->pool)
+        return true;
+    child->pool = pool_create(child->options->threads, warning);
+    if (!child->pool)
+        return error_no_memory(error, "the threads");
+    if (warning[0] != '\0') {
+        (void)snprintf(line, sizeof line, "gray: warning: %s", warning);
+        tell(child, LINE_WARNING, line);
+    }
+    pool_set_poll(child->pool, poll_pool, child);
+    return true;
+}
+
+/* A script may render hundreds of frames of one scene; each warning about it comes once. */
+static void warn_of_scene(void *context, const char *text) {
+    struct child *child = context;
+    static const char word[] = "warning: ";
+    uint64_t hash = hash_bytes(text, strlen(text), 0);
+    for (int i = 0; i < child->told_count; i++) {
+        if (child->told[i] == hash)
+            return;
+    }
+    if (child->told_count < TOLD_LIMIT)
+        child->told[child->told_count++] = hash;
+    bool has_word = strncmp(text, word, strlen(word)) == 0;
+    char line[2048];
+    (void)snprintf(line, sizeof line, "%s: %s%s", child->script, has_word ? "" : word, text);
+    tell(child, LINE_WARNING, line);
+}
+
+static void tile_done(void *context, uint32_t tile, uint32_t done, uint32_t count) {
+    struct control *control = context;
+    (void)tile;
+    (void)done;
+    atomic_store_explicit(&control->tiles, count, memory_order_relaxed);
+    (void)atomic_fetch_add_explicit(&control->tiles_done, 1, memory_order_relaxed);
+}
+
+static void fill_report(const struct child *child, const struct world *world, struct picture_report *report) {
+    struct rusage usage;
+    report->primitives = world->placed_count;
+    report->triangles = world->triangles;
+    report->mesh_bytes = world->mesh_memory;
+    report->grid_bytes = grid_memory(&world->grid);
+    memcpy(report->grid_cells, world->grid.cells, sizeof report->grid_cells);
+    report->threads = pool_workers(child->pool);
+    if (getrusage(RUSAGE_SELF, &usage) == 0)
+        report->peak_bytes = (uint64_t)usage.ru_maxrss * 1024;
+}
+
+static void tell_world(const struct child *child, const char *file, const struct picture_report *report) {
+    char line[4096 + 512];
+    (void)snprintf(line, sizeof line,
+                   "%s: %s: %llu primitives, %llu triangles, grid of %u x %u x %u, built in %.3f s, %d threads",
+                   child->script, file, (unsigned long long)report->primitives, (unsigned long long)report->triangles,
+                   report->grid_cells[0], report->grid_cells[1], report->grid_cells[2], report->rays.build_seconds,
+                   report->threads);
+    tell(child, LINE_DETAIL, line);
+}
+
+/* From the flattened scene to the finished film. */
+static bool make_picture(struct child *child, const struct render_request *request, struct render_job *job,
+                         struct picture_report *report, struct error *error) {
+    struct world world = {0};
+    double begun = progress_clock();
+    bool ok = world_build(&world, &child->job, request->scene, request->root, request->lights, request->light_count,
+                          &request->sky, job->settings.accel, child->pool, warn_of_scene, child, error);
+    if (!ok)
+        return false;
+    double built = progress_clock();
+    if (!child->options->check) {
+        job->world = &world;
+        ok = render_run(job, child->pool, &report->rays, error);
+    }
+    report->rays.build_seconds = built - begun;
+    report->rays.render_seconds = progress_clock() - built;
+    fill_report(child, &world, report);
+    world_destroy(&world);
+    if (ok)
+        tell_world(child, request->file, report);
+    return ok;
+}
+
+static bool begin_picture(struct child *child, const struct render_request *request, struct render_job *job,
+                          struct film *film, struct error *error) {
+    struct picture_request asked = {
+        .full_width = job->width, .full_height = job->height, .check = child->options->check};
+    char warning[256] = "";
+    size_t length = strlen(request->file);
+    if (length >= sizeof asked.file)
+        return error_set(error, ERROR_SCENE, "the name of the picture is longer than %zu bytes", sizeof asked.file - 1);
+    memcpy(asked.file, request->file, length);
+    if (!render_prepare(job, &asked.x0, &asked.y0, &asked.width, &asked.height, warning, error))
+        return false;
+    if (warning[0] != '\0')
+        warn_of_scene(child, warning);
+    if (!child->services->begin(child->services->context, &asked, film, error))
+        return false;
+    film->x0 = asked.x0;
+    film->y0 = asked.y0;
+    film->full_width = asked.full_width;
+    film->full_height = asked.full_height;
+    return true;
+}
+
+static bool render_job_run(struct child *child, const struct render_request *request, struct error *error) {
+    const struct options *options = child->options;
+    const struct child_services *services = child->services;
+    struct film film = {0};
+    struct picture_report report = {0};
+    struct render_job job = {
+        .camera = request->camera,
+        .settings = request->settings,
+        .width = options->width ? (uint32_t)options->width : (uint32_t)request->width,
+        .height = options->height ? (uint32_t)options->height : (uint32_t)request->height,
+        .ambient = request->ambient,
+        .film = &film,
+        .tile_done = tile_done,
+        .context = services->control,
+    };
+    (void)fflush(stdout);
+    if (is_cancelled(child))
+        return error_set(error, ERROR_CANCELLED, "interrupted");
+    if (!need_pool(child, error) || !begin_picture(child, request, &job, &film, error))
+        return false;
+    bool ok = make_picture(child, request, &job, &report, error);
+    arena_reset(&child->job);
+    if (ok && !options->check)
+        return services->done(services->context, &report, error);
+    services->abandon(services->context);
+    return ok;
+}
+
+/* With --check a scene that cannot be built is reported at once and the script goes on, to find what else is wrong. */
+static bool render(void *context, const struct render_request *request, struct error *error) {
+    struct child *child = context;
+    if (render_job_run(child, request, error))
+        return true;
+    if (!child->options->check || error->kind != ERROR_SCENE)
+        return false;
+    char line[2048];
+    (void)snprintf(line, sizeof line, "%s: gr.render('%.200s'): %s", child->script, request->file, error->text);
+    tell(child, LINE_ERROR, line);
+    child->status = ERROR_SCENE;
+    return true;
+}
+
+static void message(void *context, enum script_message kind, const char *text) {
+    switch (kind) {
+    case SCRIPT_NOTICE:
+        tell(context, LINE_NOTICE, text);
+        return;
+    case SCRIPT_WARNING:
+        tell(context, LINE_WARNING, text);
+        return;
+    }
+}
+
+/* The first line, and below it the traceback. Wrong usage is no fault of the scene: the program speaks. What the
+ * machine refused is told with the script it was for. */
+static void tell_error(const struct child *child, struct arena *arena, const struct error *error,
+                       const char *traceback) {
+    const char *below = traceback ? traceback : "", *who = "";
+    bool named = strncmp(error->text, child->script, strlen(child->script)) == 0;
+    if (error->kind == ERROR_USAGE)
+        who = "gray";
+    else if (error->kind == ERROR_MACHINE && !named)
+        who = child->script;
+    size_t length = strlen(below);
+    while (length > 0 && below[length - 1] == '\n')
+        length--;
+    const char *text = arena_format(arena, "%s%s%s%s%.*s", who, who[0] ? ": " : "", error->text, length > 0 ? "\n" : "",
+                                    (int)length, below);
+    tell(child, LINE_ERROR, text ? text : error->text);
+}
+
+/* Exit status of one script. */
+static int run_script(struct child *child, const char *path) {
+    struct script_host host = {.context = child,
+                               .settings = child->options->settings,
+                               .render = render,
+                               .message = message,
+                               .cancelled = is_cancelled};
+    struct arena arena = {0};
+    struct error error = {0};
+    const char *traceback = NULL;
+    child->script = path;
+    child->status = 0;
+    child->told_count = 0;
+    bool ok = script_run(path, &child->options->script, &host, &child->assets, &arena, &traceback, &error);
+    int status = ok ? child->status : (int)error.kind;
+    if (!ok && error.kind != ERROR_CANCELLED)
+        tell_error(child, &arena, &error, traceback);
+    arena_destroy(&arena);
+    (void)fflush(stdout);
+    return status;
+}
+
+void child_run(const struct options *options, const struct child_services *services, int first) {
+    struct child child = {.options = options, .services = services};
+    for (int i = first; i < options->script_count; i++) {
+        int status = run_script(&child, options->scripts[i]);
+        services->script_ended(services->context, i, status);
+        if (status == ERROR_USAGE || status == ERROR_CANCELLED)
+            break;
+    }
+    pool_destroy(child.pool);
+    arena_destroy(&child.job);
+    assets_destroy(&child.assets);
+}

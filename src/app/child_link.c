@@ -1,0 +1,72 @@
+/* Each question is a frame and, where there is one, its answer. When the supervisor is gone every question fails as
+ * "cancelled", which ends the scripts. */
+#include "app/child_link.h"
+
+static bool nobody_there(struct error *error) {
+    return error_set(error, ERROR_CANCELLED, "the supervising process is gone");
+}
+
+static bool link_begin(void *context, const struct picture_request *request, struct film *film, struct error *error) {
+    struct child_link *link = context;
+    struct frame frame;
+    size_t bytes;
+    if (!film_size(request->width, request->height, &bytes, error))
+        return false;
+    if (!channel_send(&link->channel, FRAME_BEGIN, request, sizeof *request, -1) ||
+        channel_receive(&link->channel, &frame) != CHANNEL_FRAME || frame.kind != FRAME_FILM)
+        return nobody_there(error);
+    if (!frame.body.answer.ok) {
+        *error = frame.body.answer.error;
+        return false;
+    }
+    if (request->check)
+        return true;
+    if (!share_attach(&link->memory, frame.descriptor, bytes, error))
+        return false;
+    film_place(film, link->memory.block, request->width, request->height);
+    return true;
+}
+
+static void link_abandon(void *context) {
+    struct child_link *link = context;
+    share_destroy(&link->memory);
+    (void)channel_send(&link->channel, FRAME_ABANDON, NULL, 0, -1);
+}
+
+static bool link_done(void *context, const struct picture_report *report, struct error *error) {
+    struct child_link *link = context;
+    struct frame frame;
+    share_destroy(&link->memory);
+    if (!channel_send(&link->channel, FRAME_DONE, report, sizeof *report, -1) ||
+        channel_receive(&link->channel, &frame) != CHANNEL_FRAME || frame.kind != FRAME_ANSWER)
+        return nobody_there(error);
+    if (!frame.body.answer.ok)
+        *error = frame.body.answer.error;
+    return frame.body.answer.ok;
+}
+
+static void link_line(void *context, enum line_kind kind, const char *text) {
+    struct child_link *link = context;
+    (void)channel_send_line(&link->channel, kind, text);
+}
+
+static void link_script_ended(void *context, int index, int status) {
+    struct child_link *link = context;
+    struct frame_script script = {index, status};
+    (void)channel_send(&link->channel, FRAME_SCRIPT, &script, sizeof script, -1);
+}
+
+struct child_services child_link_services(struct child_link *link, struct control *control) {
+    return (struct child_services){.context = link,
+                                   .control = control,
+                                   .begin = link_begin,
+                                   .abandon = link_abandon,
+                                   .done = link_done,
+                                   .line = link_line,
+                                   .script_ended = link_script_ended};
+}
+
+void child_link_close(struct child_link *link) {
+    share_destroy(&link->memory);
+    channel_close(&link->channel);
+}

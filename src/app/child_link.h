@@ -1,0 +1,19 @@
+/* What the child asks of the supervisor, said over the channel. */
+#ifndef GRAY_APP_CHILD_LINK_H
+#define GRAY_APP_CHILD_LINK_H
+
+#include "app/channel.h"
+#include "app/child.h"
+#include "app/control.h"
+#include "base/share.h"
+
+struct child_link {
+    struct channel channel; /* to the supervisor */
+    struct share memory;    /* the film of the picture being made */
+};
+
+/* The services point to `link`, which must stay where it is. */
+struct child_services child_link_services(struct child_link *link, struct control *control);
+void child_link_close(struct child_link *link);
+
+#endif

@@ -1,0 +1,49 @@
+/* The desk: the supervisor's half of making a picture. It decides what a picture is called, holds its film, writes the
+ * files, and tells people what happens. It sees no scene. */
+#ifndef GRAY_APP_DESK_H
+#define GRAY_APP_DESK_H
+
+#include "app/channel.h"
+#include "app/control.h"
+#include "app/options.h"
+#include "app/progress.h"
+#include "base/share.h"
+#include "render/film.h"
+
+#include <stdbool.h>
+
+enum { NAME_LIMIT = 4096 };
+
+/* One picture from its beginning until it is written or given up; the film is owned. */
+struct picture {
+    bool open;
+    char name[NAME_LIMIT];
+    struct picture_request request;
+    struct share memory;
+    struct film film;
+};
+
+struct desk {
+    const struct options *options;
+    struct control *control; /* not owned */
+    struct progress progress;
+    unsigned pictures;      /* begun so far, those under --check too */
+    struct picture current; /* being made */
+    struct picture held;    /* finished under -o without %d: written when no second picture came */
+    bool several_under_one_name;
+};
+
+void desk_init(struct desk *desk, const struct options *options, struct control *control);
+/* Names the picture and makes its film; false when it cannot be written for a reason that is known before rendering. */
+bool desk_begin(struct desk *desk, const struct picture_request *request, struct error *error);
+/* The film is complete: the files are written. The picture is closed in any case. */
+bool desk_done(struct desk *desk, const struct picture_report *report, struct error *error);
+void desk_abandon(struct desk *desk); /* fine when no picture is open */
+/* Draws how far the picture is. */
+void desk_show_progress(struct desk *desk);
+/* One line (or several: an error with its traceback) on standard error, as -q and --verbose allow. */
+void desk_line(struct desk *desk, enum line_kind kind, const char *text);
+/* After all scripts: writes the picture that was held. False: error. */
+bool desk_finish(struct desk *desk, struct error *error);
+
+#endif

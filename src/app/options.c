@@ -1,0 +1,610 @@
+/* Parsing goes along the table: the kind of a row says how its value is read, `offset` where it goes. The long spelling
+ * of an option takes one dash or two, and '_' counts as '-'; `--name value` and `--name=value` are the same. Words that
+ * are no options are scripts; after "--" everything is. */
+#include "app/options.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum option_kind {
+    OPTION_FLAG,    /* bool, set to true; takes no value */
+    OPTION_INTEGER, /* int in low..high */
+    OPTION_NUMBER,  /* double in low..high */
+    OPTION_CHOICE,  /* enum or bool: the position of the word in `value`, words parted by '|' */
+    OPTION_TEXT,    /* const char *, not empty */
+    OPTION_ACTION,  /* options.action; `low` says which */
+    OPTION_SIZE,    /* --size */
+    OPTION_CROP,    /* --crop */
+    OPTION_SEED,    /* --seed */
+    OPTION_DEFINE,  /* -D */
+    OPTION_STATS,   /* --stats, --stats=text, --stats=json */
+};
+
+enum option_group { GROUP_PICTURE, GROUP_LOOK, GROUP_FILES, GROUP_OLD, GROUP_RUN, GROUP_TALK, GROUP_COUNT };
+
+struct option {
+    enum option_group group;
+    const char *names; /* parted by '|'; the first is the one that is shown, with its dashes */
+    enum option_kind kind;
+    const char *value; /* what the value is called, or its choices; NULL for none */
+    double low, high;
+    size_t offset, size;
+    const char *initial; /* the default in words, or NULL */
+    const char *help;
+};
+
+#define FIELD(name) offsetof(struct options, name), sizeof(((struct options *)NULL)->name)
+#define NO_FIELD 0, 0
+#define NO_RANGE 0, 0
+
+static const char *const group_titles[GROUP_COUNT] = {
+    [GROUP_PICTURE] = "Anti-aliasing and rays",
+    [GROUP_LOOK] = "Size, part and search",
+    [GROUP_FILES] = "Files",
+    [GROUP_OLD] = "Scenes written for other programs",
+    [GROUP_RUN] = "The run",
+    [GROUP_TALK] = "What is told",
+};
+
+static const struct option table[] = {
+    {GROUP_PICTURE, "-ss", OPTION_INTEGER, "N", 1, 64, FIELD(settings.samples), "3",
+     "N x N samples for a marked pixel"},
+    {GROUP_PICTURE, "-full", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.full), NULL,
+     "N x N samples for every pixel, not only for marked ones"},
+    {GROUP_PICTURE, "-side-tolerance", OPTION_NUMBER, "X", 0, HUGE_VAL, FIELD(settings.side_tolerance), "0.005",
+     "a pixel is marked when the squared RGB distance to a side neighbour exceeds X"},
+    {GROUP_PICTURE, "-corner-tolerance", OPTION_NUMBER, "X", 0, HUGE_VAL, FIELD(settings.corner_tolerance), "0.01",
+     "the same for the corner neighbours"},
+    {GROUP_PICTURE, "-reflect-limit", OPTION_INTEGER, "N", 0, 1000, FIELD(settings.reflect_limit), "2",
+     "how often a path may reflect"},
+    {GROUP_PICTURE, "-refract-limit", OPTION_INTEGER, "N", 0, 1000, FIELD(settings.refract_limit), "4",
+     "how often a path may refract"},
+    {GROUP_PICTURE, "-use-tir", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.use_tir), NULL,
+     "beyond the critical angle the refracted share is reflected instead of lost"},
+    {GROUP_PICTURE, "-al-samples|alsamples", OPTION_INTEGER, "N", 1, 64, FIELD(settings.area_samples), "4",
+     "N x N shadow rays for each area light"},
+    {GROUP_PICTURE, "--seed", OPTION_SEED, "N", NO_RANGE, NO_FIELD, "0",
+     "start of all random numbers, the scripts' math.random included"},
+
+    {GROUP_LOOK, "--size", OPTION_SIZE, "WxH", NO_RANGE, NO_FIELD, "the script's", "size of the pictures in pixels"},
+    {GROUP_LOOK, "--crop", OPTION_CROP, "X,Y,W,H", NO_RANGE, NO_FIELD, "all",
+     "write a W x H picture, exactly that part of the whole; X,Y is its upper left pixel"},
+    {GROUP_LOOK, "--accel", OPTION_CHOICE, "grid|none", NO_RANGE, FIELD(settings.accel), "grid",
+     "how rays find what they hit; the picture is the same"},
+
+    {GROUP_FILES, "-o", OPTION_TEXT, "FILE", NO_RANGE, FIELD(output), "the script's",
+     "name of the picture, '-' for standard output; with several pictures FILE needs %d (or %03d), which counts from "
+     "1"},
+    {GROUP_FILES, "-write-aa-targets", OPTION_TEXT, "X", NO_RANGE, FIELD(targets_prefix), NULL,
+     "for dir/foo.png also write dir/Xfoo.png: the first pass with the marked pixels in red"},
+    {GROUP_FILES, "-write-pre-aa", OPTION_TEXT, "X", NO_RANGE, FIELD(first_pass_prefix), NULL,
+     "for dir/foo.png also write dir/Xfoo.png: the first pass, one sample for each pixel"},
+
+    {GROUP_OLD, "--transform-order", OPTION_CHOICE, "auto|new|old|separate", NO_RANGE, FIELD(script.transform_order),
+     "auto",
+     "new: transforms act in the order they are written; old: the last one acts first; separate: scale, rotate, "
+     "translate are kept apart; auto: decided from the text of the script"},
+    {GROUP_OLD, "--view", OPTION_CHOICE, "direction|target", NO_RANGE, FIELD(settings.view_is_target), "direction",
+     "whether the view argument is a direction or a point to look at"},
+    {GROUP_OLD, "--pixel-sample", OPTION_CHOICE, "centre|corner", NO_RANGE, FIELD(settings.pixel_corner), "centre",
+     "where the first sample of a pixel lies"},
+    {GROUP_OLD, "--specular", OPTION_CHOICE, "phong|blinn", NO_RANGE, FIELD(settings.specular), "phong",
+     "formula of the highlight"},
+    {GROUP_OLD, "--ambient", OPTION_CHOICE, "kd|plain", NO_RANGE, FIELD(settings.ambient_plain), "kd",
+     "ambient light is multiplied with kd, or added as it is"},
+    {GROUP_OLD, "--lenient", OPTION_FLAG, NULL, NO_RANGE, FIELD(script.lenient), NULL,
+     "a gr function that does not exist is a warning and does nothing"},
+
+    {GROUP_RUN, "-j", OPTION_INTEGER, "N", 1, 1024, FIELD(threads), "one for each processor",
+     "number of threads; the picture is the same for any number"},
+    {GROUP_RUN, "-D", OPTION_DEFINE, "name=value", NO_RANGE, NO_FIELD, NULL,
+     "set the Lua global `name` before the script runs: a Lua literal, else a string; may be repeated"},
+    {GROUP_RUN, "--check", OPTION_FLAG, NULL, NO_RANGE, FIELD(check), NULL,
+     "run the scripts and build their scenes, render nothing, report every problem"},
+    {GROUP_RUN, "--no-fork", OPTION_FLAG, NULL, NO_RANGE, FIELD(no_fork), NULL,
+     "render in this process (for debuggers)"},
+
+    {GROUP_TALK, "-q|quiet", OPTION_FLAG, NULL, NO_RANGE, FIELD(quiet), NULL, "say nothing but errors"},
+    {GROUP_TALK, "--verbose", OPTION_FLAG, NULL, NO_RANGE, FIELD(verbose), NULL, "say what is done and why"},
+    {GROUP_TALK, "--stats", OPTION_STATS, "=text|json", NO_RANGE, NO_FIELD, NULL,
+     "what each picture cost: a table on standard error, or one JSON line a picture on standard output"},
+    {GROUP_TALK, "--progress", OPTION_CHOICE, "auto|bar|json|none", NO_RANGE, FIELD(progress), "auto",
+     "how far the picture is, on standard error; auto: a bar on a terminal, else none"},
+    {GROUP_TALK, "--help|h", OPTION_ACTION, NULL, ACTION_HELP, 0, NO_FIELD, NULL, "this text"},
+    {GROUP_TALK, "--man", OPTION_ACTION, NULL, ACTION_MANUAL, 0, NO_FIELD, NULL,
+     "this text and all functions of the scene language"},
+    {GROUP_TALK, "--annotations", OPTION_ACTION, NULL, ACTION_ANNOTATIONS, 0, NO_FIELD, NULL,
+     "the functions as an annotation file for editors (lua/gr.lua)"},
+    {GROUP_TALK, "--version", OPTION_ACTION, NULL, ACTION_VERSION, 0, NO_FIELD, NULL,
+     "version of this program and of its libraries"},
+};
+enum { TABLE_SIZE = sizeof table / sizeof *table };
+
+/* Values are stored through their size: an enum is an int here. */
+_Static_assert(sizeof(enum specular_kind) == sizeof(int) && sizeof(enum accel_kind) == sizeof(int) &&
+                   sizeof(enum script_order) == sizeof(int) && sizeof(enum progress_mode) == sizeof(int),
+               "choices are stored as int");
+
+/* The next piece of a text parted by '|'; *rest moves behind it. Empty at the end. */
+struct piece {
+    const char *text;
+    size_t length;
+};
+
+static struct piece next_piece(const char **rest) {
+    struct piece piece = {*rest, strcspn(*rest, "|")};
+    *rest += piece.length;
+    if (**rest == '|')
+        (*rest)++;
+    return piece;
+}
+
+static struct piece without_dashes(struct piece piece) {
+    for (int i = 0; i < 2 && piece.length > 0 && piece.text[0] == '-'; i++) {
+        piece.text++;
+        piece.length--;
+    }
+    return piece;
+}
+
+static bool same_name(struct piece a, struct piece b) {
+    if (a.length != b.length)
+        return false;
+    for (size_t i = 0; i < a.length; i++) {
+        char x = a.text[i] == '_' ? '-' : a.text[i], y = b.text[i] == '_' ? '-' : b.text[i];
+        if (x != y)
+            return false;
+    }
+    return true;
+}
+
+static const struct option *find_option(struct piece name) {
+    for (int i = 0; i < TABLE_SIZE; i++) {
+        for (const char *rest = table[i].names; *rest;) {
+            if (same_name(name, without_dashes(next_piece(&rest))))
+                return &table[i];
+        }
+    }
+    return NULL;
+}
+
+/* Edits (insert, delete, replace, swap of neighbours) between two short names; names over 31 letters count as far. */
+static int name_distance(struct piece a, struct piece b) {
+    enum { LIMIT = 32 };
+    int rows[3][LIMIT];
+    if (a.length >= LIMIT || b.length >= LIMIT)
+        return LIMIT;
+    int *before = rows[0], *last = rows[1], *row = rows[2];
+    for (size_t j = 0; j <= b.length; j++)
+        last[j] = (int)j;
+    for (size_t i = 1; i <= a.length; i++) {
+        row[0] = (int)i;
+        for (size_t j = 1; j <= b.length; j++) {
+            char x = a.text[i - 1] == '_' ? '-' : a.text[i - 1], y = b.text[j - 1];
+            int best = last[j - 1] + (x != y);
+            if (last[j] + 1 < best)
+                best = last[j] + 1;
+            if (row[j - 1] + 1 < best)
+                best = row[j - 1] + 1;
+            if (i > 1 && j > 1 && x == b.text[j - 2] && a.text[i - 2] == y && before[j - 2] + 1 < best)
+                best = before[j - 2] + 1;
+            row[j] = best;
+        }
+        int *spare = before;
+        before = last;
+        last = row;
+        row = spare;
+    }
+    return last[b.length];
+}
+
+/* The shown spelling of the option nearest to a misspelt name, or an empty piece when none is near. */
+static struct piece nearest_name(struct piece name) {
+    struct piece best = {"", 0};
+    int best_distance = name.length < 4 ? 2 : 3;
+    for (int i = 0; i < TABLE_SIZE; i++) {
+        for (const char *rest = table[i].names; *rest;) {
+            struct piece candidate = next_piece(&rest), bare = without_dashes(candidate);
+            int distance = name_distance(name, bare);
+            if (distance < best_distance && bare.length > 1) {
+                best_distance = distance;
+                best = candidate;
+            }
+        }
+    }
+    return best;
+}
+
+static bool is_word_start(char c) {
+    return c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+/* Decimal digits with an optional sign, nothing else. */
+static bool read_integer(const char *text, size_t length, long long low, long long high, long long *out) {
+    char copy[24];
+    size_t start = length > 0 && (text[0] == '-' || text[0] == '+') ? 1 : 0;
+    if (length <= start || length >= sizeof copy)
+        return false;
+    for (size_t i = start; i < length; i++) {
+        if (!isdigit((unsigned char)text[i]))
+            return false;
+    }
+    memcpy(copy, text, length);
+    copy[length] = '\0';
+    errno = 0;
+    long long value = strtoll(copy, NULL, 10);
+    if (errno != 0 || value < low || value > high)
+        return false;
+    *out = value;
+    return true;
+}
+
+static bool read_number(const char *text, double low, double high, double *out) {
+    if (!isdigit((unsigned char)text[0]) && !strchr("+-.", text[0]))
+        return false;
+    char *end = NULL;
+    double value = strtod(text, &end);
+    if (*text == '\0' || *end != '\0' || !isfinite(value) || value < low || value > high)
+        return false;
+    *out = value;
+    return true;
+}
+
+/* Whole numbers parted by `separator`: exactly `count` of them. */
+static bool read_list(const char *text, char separator, int count, const long long *low, long long high,
+                      long long *out) {
+    for (int i = 0; i < count; i++) {
+        const char *end = i + 1 < count ? strchr(text, separator) : text + strlen(text);
+        if (!end || !read_integer(text, (size_t)(end - text), low[i], high, &out[i]))
+            return false;
+        text = end + 1;
+    }
+    return true;
+}
+
+static bool read_size(struct options *options, const char *text) {
+    static const long long low[] = {1, 1};
+    long long values[2];
+    if (!read_list(text, 'x', 2, low, 1 << 20, values))
+        return false;
+    options->width = (int)values[0];
+    options->height = (int)values[1];
+    return true;
+}
+
+static bool read_crop(struct options *options, const char *text) {
+    static const long long low[] = {0, 0, 1, 1};
+    long long values[4];
+    if (!read_list(text, ',', 4, low, 1 << 20, values))
+        return false;
+    options->settings.cropped = true;
+    options->settings.crop_x = values[0];
+    options->settings.crop_y = values[1];
+    options->settings.crop_width = values[2];
+    options->settings.crop_height = values[3];
+    return true;
+}
+
+static bool read_seed(struct options *options, const char *text) {
+    if (!isdigit((unsigned char)text[0]) || text[strspn(text, "0123456789")] != '\0')
+        return false;
+    errno = 0;
+    unsigned long long value = strtoull(text, NULL, 10);
+    if (errno != 0)
+        return false;
+    options->settings.seed = value;
+    options->script.seed = value;
+    return true;
+}
+
+static bool is_lua_keyword(struct piece name) {
+    const char *rest = "and|break|do|else|elseif|end|false|for|function|goto|if|in|local|nil|not|or|repeat|return|then|"
+                       "true|until|while";
+    while (*rest) {
+        struct piece word = next_piece(&rest);
+        if (word.length == name.length && memcmp(word.text, name.text, word.length) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* Room for one more definition was made by options_parse. */
+static bool read_define(struct options *options, struct script_define *defines, const char *text, struct arena *arena,
+                        struct error *error) {
+    struct piece name = {text, strcspn(text, "=")};
+    bool ok = name.length > 0 && text[name.length] == '=' && is_word_start(text[0]) && !is_lua_keyword(name);
+    for (size_t i = 0; ok && i < name.length; i++)
+        ok = is_word_start(text[i]) || isdigit((unsigned char)text[i]);
+    if (!ok)
+        return error_set(error, ERROR_USAGE, "-D needs name=value with a Lua name, not '%s'", text);
+    char *copy = arena_copy_text(arena, name.text, name.length);
+    if (!copy)
+        return error_no_memory(error, "the command line");
+    defines[options->script.define_count++] = (struct script_define){copy, text + name.length + 1};
+    return true;
+}
+
+static bool read_choice(const struct option *option, void *field, const char *text) {
+    int position = 0;
+    for (const char *rest = option->value; *rest; position++) {
+        struct piece word = next_piece(&rest);
+        if (strlen(text) != word.length || memcmp(text, word.text, word.length) != 0)
+            continue;
+        if (option->size == sizeof(bool))
+            *(bool *)field = position != 0;
+        else
+            memcpy(field, &position, sizeof position);
+        return true;
+    }
+    return false;
+}
+
+static bool value_error(const struct option *option, const char *text, struct error *error) {
+    const char *rest = option->names;
+    int shown = (int)next_piece(&rest).length;
+    switch (option->kind) {
+    case OPTION_INTEGER:
+        return error_set(error, ERROR_USAGE, "%.*s needs a whole number from %.0f to %.0f, not '%s'", shown,
+                         option->names, option->low, option->high, text);
+    case OPTION_NUMBER:
+        return error_set(error, ERROR_USAGE, "%.*s needs a number of at least %g, not '%s'", shown, option->names,
+                         option->low, text);
+    case OPTION_SEED:
+        return error_set(error, ERROR_USAGE, "%.*s needs a whole number from 0 to 18446744073709551615, not '%s'",
+                         shown, option->names, text);
+    case OPTION_CHOICE:
+    case OPTION_STATS:
+        return error_set(error, ERROR_USAGE, "%.*s needs one of %s, not '%s'", shown, option->names,
+                         option->value + (option->value[0] == '='), text);
+    case OPTION_TEXT:
+        return error_set(error, ERROR_USAGE, "%.*s needs a text that is not empty", shown, option->names);
+    case OPTION_SIZE:
+        return error_set(error, ERROR_USAGE, "%.*s needs WxH, two whole numbers from 1 to 1048576, not '%s'", shown,
+                         option->names, text);
+    case OPTION_CROP:
+        return error_set(error, ERROR_USAGE,
+                         "%.*s needs X,Y,W,H, whole numbers with X and Y not negative and W and H at least 1, not '%s'",
+                         shown, option->names, text);
+    case OPTION_FLAG:
+    case OPTION_ACTION:
+    case OPTION_DEFINE:
+        break;
+    }
+    return error_set(error, ERROR_USAGE, "%.*s takes no value", shown, option->names);
+}
+
+static bool apply_option(const struct option *option, const char *text, struct options *options,
+                         struct script_define *defines, struct arena *arena, struct error *error) {
+    void *field = (char *)options + option->offset;
+    long long integer = 0;
+    bool ok = false;
+    switch (option->kind) {
+    case OPTION_FLAG:
+        *(bool *)field = true;
+        return true;
+    case OPTION_ACTION:
+        options->action = (enum options_action)option->low;
+        return true;
+    case OPTION_INTEGER:
+        ok = read_integer(text, strlen(text), (long long)option->low, (long long)option->high, &integer);
+        if (ok)
+            *(int *)field = (int)integer;
+        break;
+    case OPTION_NUMBER:
+        ok = read_number(text, option->low, option->high, field);
+        break;
+    case OPTION_CHOICE:
+        ok = read_choice(option, field, text);
+        break;
+    case OPTION_TEXT:
+        ok = text[0] != '\0';
+        *(const char **)field = text;
+        break;
+    case OPTION_SIZE:
+        ok = read_size(options, text);
+        break;
+    case OPTION_CROP:
+        ok = read_crop(options, text);
+        break;
+    case OPTION_SEED:
+        ok = read_seed(options, text);
+        break;
+    case OPTION_DEFINE:
+        return read_define(options, defines, text, arena, error);
+    case OPTION_STATS:
+        ok = strcmp(text, "text") == 0 || strcmp(text, "json") == 0;
+        options->statistics = strcmp(text, "json") == 0 ? STATISTICS_JSON : STATISTICS_TEXT;
+        break;
+    }
+    return ok || value_error(option, text, error);
+}
+
+/* -j4 and -Dname=value: the one-letter options whose value may follow without a blank. */
+static const struct option *find_attached(const char *word, const char **text) {
+    bool threads = word[0] == '-' && word[1] == 'j' && isdigit((unsigned char)word[2]);
+    bool define = word[0] == '-' && word[1] == 'D' && is_word_start(word[2]);
+    if (!threads && !define)
+        return NULL;
+    *text = word + 2;
+    return find_option((struct piece){word + 1, 1});
+}
+
+static bool unknown_option(const char *word, struct piece name, struct error *error) {
+    struct piece near = nearest_name(name);
+    if (near.length == 0)
+        return error_set(error, ERROR_USAGE, "there is no option '%s'", word);
+    return error_set(error, ERROR_USAGE, "there is no option '%s'; did you mean %.*s?", word, (int)near.length,
+                     near.text);
+}
+
+/* What can only be said of the options together. */
+static bool check_together(const struct options *options, struct error *error) {
+    if (options->action != ACTION_RENDER)
+        return true;
+    if (options->script_count == 0)
+        return error_set(error, ERROR_USAGE, "no scene script was given");
+    for (int i = 0; i < options->script_count; i++) {
+        if (options->scripts[i][0] == '\0')
+            return error_set(error, ERROR_USAGE, "the name of a script is empty");
+        if (strcmp(options->scripts[i], "-") == 0)
+            return error_set(error, ERROR_USAGE, "scripts are not read from standard input; give the name of a file");
+    }
+    if (options->targets_prefix && options->first_pass_prefix &&
+        strcmp(options->targets_prefix, options->first_pass_prefix) == 0)
+        return error_set(error, ERROR_USAGE, "-write-aa-targets and -write-pre-aa would write the same file");
+    if (options->output && strcmp(options->output, "-") == 0 && (options->targets_prefix || options->first_pass_prefix))
+        return error_set(error, ERROR_USAGE, "-o - leaves no name for -write-aa-targets and -write-pre-aa");
+    if (options->output && strcmp(options->output, "-") == 0 && options->statistics == STATISTICS_JSON)
+        return error_set(error, ERROR_USAGE, "-o - and --stats=json both write to standard output");
+    return true;
+}
+
+bool options_parse(struct options *options, int argc, char *const *argv, struct arena *arena, struct error *error) {
+    *options = (struct options){.settings = settings_default()};
+    size_t room = argc > 0 ? (size_t)argc : 1;
+    const char **scripts = arena_alloc_array(arena, room, sizeof *scripts);
+    struct script_define *defines = arena_alloc_array(arena, room, sizeof *defines);
+    if (!scripts || !defines)
+        return error_no_memory(error, "the command line");
+    options->scripts = scripts;
+    options->script.defines = defines;
+    bool only_scripts = false;
+    for (int i = 1; i < argc; i++) {
+        const char *word = argv[i];
+        if (only_scripts || word[0] != '-' || word[1] == '\0') {
+            scripts[options->script_count++] = word;
+            continue;
+        }
+        if (strcmp(word, "--") == 0) {
+            only_scripts = true;
+            continue;
+        }
+        /* The value: behind '=', or attached to a letter, or the next word. */
+        struct piece name = without_dashes((struct piece){word, strcspn(word, "=")});
+        const char *text = strchr(word, '=');
+        text = text ? text + 1 : NULL;
+        const struct option *option = find_option(name);
+        if (!option)
+            option = find_attached(word, &text);
+        if (!option)
+            return unknown_option(word, name, error);
+        if (!option->value && text)
+            return value_error(option, text, error);
+        if (option->kind == OPTION_STATS && !text)
+            text = "text";
+        if (option->value && !text) {
+            if (i + 1 >= argc)
+                return error_set(error, ERROR_USAGE, "%s needs a value: %s", word, option->value);
+            text = argv[++i];
+        }
+        if (!apply_option(option, text, options, defines, arena, error))
+            return false;
+    }
+    options->settings.keep_first = options->targets_prefix || options->first_pass_prefix;
+    return check_together(options, error);
+}
+
+/* Prints words from `column` on, broken so that no line is longer than 100 columns. */
+static void print_wrapped(FILE *stream, const char *text, int column) {
+    enum { INDENT = 36, WIDTH = 100 };
+    if (column >= INDENT) {
+        (void)fputc('\n', stream);
+        column = 0;
+    }
+    (void)fprintf(stream, "%*s", INDENT - column, "");
+    column = INDENT;
+    while (*text) {
+        size_t length = strcspn(text, " ");
+        if (column > INDENT && column + 1 + (int)length > WIDTH) {
+            (void)fprintf(stream, "\n%*s", INDENT, "");
+            column = INDENT;
+        }
+        column += fprintf(stream, "%s%.*s", column > INDENT ? " " : "", (int)length, text);
+        text += length + (text[length] == ' ');
+    }
+    (void)fputc('\n', stream);
+}
+
+static void print_option(FILE *stream, const struct option *option) {
+    int column = fprintf(stream, "  ");
+    for (const char *rest = option->names; *rest;) {
+        bool first = rest == option->names;
+        struct piece name = next_piece(&rest);
+        column += fprintf(stream, "%s%.*s", first ? "" : name.length > 1 ? ", --" : ", -", (int)name.length, name.text);
+    }
+    if (option->value && option->value[0] == '=')
+        column += fprintf(stream, "[%s]", option->value);
+    else if (option->value)
+        column += fprintf(stream, " %s", option->value);
+    char help[512];
+    (void)snprintf(help, sizeof help, "%s%s%s%s", option->help, option->initial ? " (default: " : "",
+                   option->initial ? option->initial : "", option->initial ? ")" : "");
+    print_wrapped(stream, help, column);
+}
+
+void options_print_help(FILE *stream) {
+    (void)fputs(
+        "gray renders scenes that are written as Lua scripts.\n"
+        "usage: gray [options] [--] scene.lua ...\n"
+        "Long options take one dash or two, and '_' or '-' between words; the value follows after a blank or '='.\n",
+        stream);
+    for (int group = 0; group < GROUP_COUNT; group++) {
+        (void)fprintf(stream, "\n%s\n", group_titles[group]);
+        for (int i = 0; i < TABLE_SIZE; i++) {
+            if (table[i].group == (enum option_group)group)
+                print_option(stream, &table[i]);
+        }
+    }
+    (void)fputs(
+        "\nExit status: 0 all pictures were written; 1 a scene or a file was wrong; 2 wrong usage; 3 the machine\n"
+        "failed (disk full, out of memory, a crash); 130 interrupted. Of several scripts each is tried, and the\n"
+        "highest status counts. Wrong usage and an interruption end the run.\n"
+        "Environment: GRAY_LUA names the folder of the Lua library that is searched last by require.\n",
+        stream);
+}
+
+/* The %d of a name pattern: its place and length, or a length of 0. Digits between % and d are a width. */
+static struct piece find_number(const char *pattern) {
+    for (const char *at = pattern; *at; at++) {
+        if (at[0] != '%')
+            continue;
+        if (at[1] == '%') {
+            at++;
+            continue;
+        }
+        size_t digits = strspn(at + 1, "0123456789");
+        if (digits <= 2 && at[1 + digits] == 'd')
+            return (struct piece){at, digits + 2};
+    }
+    return (struct piece){pattern + strlen(pattern), 0};
+}
+
+bool output_name_numbered(const char *pattern) {
+    return find_number(pattern).length > 0;
+}
+
+bool output_name(const char *pattern, unsigned number, char *out, size_t size) {
+    struct piece place = find_number(pattern);
+    size_t length = 0;
+    for (const char *at = pattern; *at && length < size;) {
+        if (place.length > 0 && at == place.text) {
+            int width = atoi(at + 1);
+            bool zeros = at[1] == '0';
+            int printed = snprintf(out + length, size - length, zeros ? "%0*u" : "%*u", width, number);
+            length += (size_t)printed;
+            at += place.length;
+            continue;
+        }
+        if (at[0] == '%' && at[1] == '%')
+            at++;
+        out[length++] = *at++;
+    }
+    if (length >= size)
+        return false;
+    out[length] = '\0';
+    return true;
+}

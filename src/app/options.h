@@ -1,0 +1,44 @@
+/* The command line. One table describes every option: it parses, it checks ranges, it prints the help, and it suggests
+ * the nearest name for a misspelt one. */
+#ifndef GRAY_APP_OPTIONS_H
+#define GRAY_APP_OPTIONS_H
+
+#include "base/arena.h"
+#include "base/error.h"
+#include "render/settings.h"
+#include "script/script.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+
+enum options_action { ACTION_RENDER, ACTION_HELP, ACTION_MANUAL, ACTION_VERSION, ACTION_ANNOTATIONS };
+enum progress_mode { PROGRESS_AUTO, PROGRESS_BAR, PROGRESS_JSON, PROGRESS_NONE };
+enum statistics_mode { STATISTICS_NONE, STATISTICS_TEXT, STATISTICS_JSON };
+
+/* Texts point into argv or into the arena given to options_parse. */
+struct options {
+    enum options_action action;
+    struct settings settings;
+    struct script_options script; /* library_folder is filled in by main */
+    const char *const *scripts;
+    int script_count;
+    const char *output;            /* -o, or NULL: the names the scripts give */
+    int width, height;             /* --size, or 0: the sizes the scripts give */
+    const char *targets_prefix;    /* -write-aa-targets, or NULL */
+    const char *first_pass_prefix; /* -write-pre-aa, or NULL */
+    int threads;                   /* 0: one per processor */
+    bool check, quiet, verbose, no_fork;
+    enum progress_mode progress;
+    enum statistics_mode statistics;
+};
+
+/* False: error is ERROR_USAGE (or no memory) and its text names the option. */
+bool options_parse(struct options *options, int argc, char *const *argv, struct arena *arena, struct error *error);
+/* The options with their defaults, in groups, 100 columns wide. */
+void options_print_help(FILE *stream);
+
+/* The name of picture `number` under -o: %d, %3d or %03d stands for the number, %% for a percent sign. */
+bool output_name_numbered(const char *pattern);
+bool output_name(const char *pattern, unsigned number, char *out, size_t size);
+
+#endif

@@ -1,0 +1,95 @@
+/* One list of figures serves both forms, so they cannot tell different things. */
+#include "app/statistics.h"
+
+#include "app/text.h"
+
+#include <inttypes.h>
+
+enum figure_form { FIGURE_COUNT, FIGURE_SECONDS, FIGURE_BYTES };
+
+struct figure {
+    const char *key, *title;
+    enum figure_form form;
+    double seconds;
+    uint64_t count;
+};
+
+enum { FIGURES = 20 };
+
+static int list_figures(struct figure out[FIGURES], const struct picture_report *report) {
+    const struct render_statistics *rays = &report->rays;
+    const struct figure all[] = {
+        {"build_seconds", "build", FIGURE_SECONDS, rays->build_seconds, 0},
+        {"render_seconds", "render", FIGURE_SECONDS, rays->render_seconds, 0},
+        {"threads", "threads", FIGURE_COUNT, 0, (uint64_t)report->threads},
+        {"pixels", "pixels", FIGURE_COUNT, 0, rays->pixels},
+        {"marked_pixels", "marked pixels", FIGURE_COUNT, 0, rays->marked_pixels},
+        {"samples", "samples", FIGURE_COUNT, 0, rays->samples},
+        {"camera_rays", "camera rays", FIGURE_COUNT, 0, rays->camera_rays},
+        {"reflected_rays", "reflected rays", FIGURE_COUNT, 0, rays->reflected_rays},
+        {"refracted_rays", "refracted rays", FIGURE_COUNT, 0, rays->refracted_rays},
+        {"shadow_rays", "shadow rays", FIGURE_COUNT, 0, rays->shadow_rays},
+        {"shape_tests", "shape tests", FIGURE_COUNT, 0, rays->shape_tests},
+        {"triangle_tests", "triangle tests", FIGURE_COUNT, 0, rays->triangle_tests},
+        {"voxels", "voxels visited", FIGURE_COUNT, 0, rays->voxels},
+        {"primitives", "primitives", FIGURE_COUNT, 0, report->primitives},
+        {"triangles", "triangles", FIGURE_COUNT, 0, report->triangles},
+        {"mesh_bytes", "meshes", FIGURE_BYTES, 0, report->mesh_bytes},
+        {"grid_bytes", "grid of the scene", FIGURE_BYTES, 0, report->grid_bytes},
+        {"peak_bytes", "peak memory", FIGURE_BYTES, 0, report->peak_bytes},
+    };
+    enum { COUNT = sizeof all / sizeof *all };
+    _Static_assert(sizeof all / sizeof *all <= (size_t)FIGURES, "the caller's array is too small");
+    for (int i = 0; i < COUNT; i++)
+        out[i] = all[i];
+    return COUNT;
+}
+
+static uint64_t all_rays(const struct render_statistics *rays) {
+    return rays->camera_rays + rays->reflected_rays + rays->refracted_rays + rays->shadow_rays;
+}
+
+void statistics_print_text(FILE *stream, const char *name, const struct picture_request *request,
+                           const struct picture_report *report) {
+    struct figure figures[FIGURES];
+    int count = list_figures(figures, report);
+    text_print_line(stream, name);
+    (void)fprintf(stream, "  %-20s %14" PRIu32 " x %" PRIu32 "\n", "size", request->width, request->height);
+    for (int i = 0; i < count; i++) {
+        const struct figure *figure = &figures[i];
+        switch (figure->form) {
+        case FIGURE_COUNT:
+            (void)fprintf(stream, "  %-20s %14" PRIu64 "\n", figure->title, figure->count);
+            break;
+        case FIGURE_SECONDS:
+            (void)fprintf(stream, "  %-20s %14.3f s\n", figure->title, figure->seconds);
+            break;
+        case FIGURE_BYTES:
+            (void)fprintf(stream, "  %-20s %14.1f MB\n", figure->title, 1e-6 * (double)figure->count);
+            break;
+        }
+    }
+    (void)fprintf(stream, "  %-20s %14" PRIu32 " x %" PRIu32 " x %" PRIu32 "\n", "voxels of the scene",
+                  report->grid_cells[0], report->grid_cells[1], report->grid_cells[2]);
+    if (report->rays.render_seconds > 0)
+        (void)fprintf(stream, "  %-20s %14.0f\n", "rays per second",
+                      (double)all_rays(&report->rays) / report->rays.render_seconds);
+}
+
+void statistics_print_json(FILE *stream, const char *name, const struct picture_request *request,
+                           const struct picture_report *report) {
+    struct figure figures[FIGURES];
+    int count = list_figures(figures, report);
+    (void)fputs("{\"picture\":", stream);
+    text_print_json(stream, name);
+    (void)fprintf(stream, ",\"width\":%" PRIu32 ",\"height\":%" PRIu32, request->width, request->height);
+    for (int i = 0; i < count; i++) {
+        if (figures[i].form == FIGURE_SECONDS)
+            (void)fprintf(stream, ",\"%s\":%.6f", figures[i].key, figures[i].seconds);
+        else
+            (void)fprintf(stream, ",\"%s\":%" PRIu64, figures[i].key, figures[i].count);
+    }
+    (void)fprintf(stream, ",\"grid_cells\":[%" PRIu32 ",%" PRIu32 ",%" PRIu32 "]}\n", report->grid_cells[0],
+                  report->grid_cells[1], report->grid_cells[2]);
+    (void)fflush(stream);
+}

@@ -1,0 +1,384 @@
+/* One child runs all scripts, so that what one script has read serves the next; when it dies, a new child goes on with
+ * the script after the one that was running. The supervisor starts no thread (it forks) and keeps no state that a
+ * signal handler changes: signals are blocked and read from a descriptor beside the channel. Invariant: files are
+ * written by this process alone, and only from a film that the child has declared complete. */
+#define _GNU_SOURCE
+#include "app/supervisor.h"
+
+#include "app/channel.h"
+#include "app/child.h"
+#include "app/child_link.h"
+#include "app/desk.h"
+#include "base/mem.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/signalfd.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+/* Seconds a cancelled child has to give up politely before it is killed. It writes no files: nothing is lost with it.
+ */
+static const double patience = 1.0;
+
+struct supervisor {
+    const struct options *options;
+    struct desk desk;
+    struct control *control; /* shared with the child */
+    struct channel channel;  /* to the child */
+    pid_t child;
+    int signals; /* descriptor, or -1 */
+    sigset_t signals_before;
+    int status;      /* worst so far */
+    int next_script; /* the one that runs, or comes next */
+    bool stop;       /* no further script */
+    bool broken;     /* the child did not keep to the rules of the channel */
+    double deadline; /* when the cancelled child is killed; 0: not cancelled */
+};
+
+static void note_status(struct supervisor *supervisor, int status) {
+    if (status > supervisor->status)
+        supervisor->status = status;
+}
+
+static void note_error(struct supervisor *supervisor, const struct error *error) {
+    desk_line(&supervisor->desk, LINE_ERROR, error->text);
+    note_status(supervisor, (int)error->kind);
+}
+
+/* SIGINT, SIGTERM and SIGHUP are read from a descriptor, except those that whoever started us wanted ignored. A write
+ * to a closed pipe or past a size limit is an error like any other, not the end of the process. */
+static bool listen_to_signals(struct supervisor *supervisor, struct error *error) {
+    static const int wanted[] = {SIGINT, SIGTERM, SIGHUP};
+    sigset_t set;
+    (void)sigemptyset(&set);
+    for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
+        struct sigaction action;
+        if (sigaction(wanted[i], NULL, &action) == 0 && action.sa_handler != SIG_IGN)
+            (void)sigaddset(&set, wanted[i]);
+    }
+    (void)signal(SIGPIPE, SIG_IGN);
+    (void)signal(SIGXFSZ, SIG_IGN);
+    (void)sigprocmask(SIG_BLOCK, &set, &supervisor->signals_before);
+    supervisor->signals = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
+    if (supervisor->signals < 0)
+        return error_set(error, ERROR_MACHINE, "gray: signals cannot be received: %s", strerror(errno));
+    return true;
+}
+
+static void cancel(struct supervisor *supervisor) {
+    if (supervisor->deadline > 0) {
+        (void)kill(supervisor->child, SIGKILL);
+        return;
+    }
+    supervisor->stop = true;
+    supervisor->deadline = progress_clock() + patience;
+    note_status(supervisor, ERROR_CANCELLED);
+    atomic_store(&supervisor->control->cancel, 1);
+    if (!supervisor->desk.current.open) {
+        desk_line(&supervisor->desk, LINE_ERROR, "gray: interrupted");
+        return;
+    }
+    char line[NAME_LIMIT + 64];
+    (void)snprintf(line, sizeof line, "gray: interrupted, %s is not written", supervisor->desk.current.name);
+    desk_line(&supervisor->desk, LINE_ERROR, line);
+}
+
+static void read_signals(struct supervisor *supervisor) {
+    struct signalfd_siginfo info;
+    while (read(supervisor->signals, &info, sizeof info) == (ssize_t)sizeof info)
+        cancel(supervisor);
+}
+
+/* In the child, after the fork: never returns. What a stranger's scene could do to the machine is to be limited between
+ * here and child_run: from that line on this process needs the channel, the memory it gets, and files it reads. */
+static _Noreturn void be_child(struct supervisor *supervisor, struct channel channel, pid_t parent) {
+    (void)close(supervisor->signals);
+    channel_close(&supervisor->channel);
+    /* Ctrl-C reaches the whole group; the supervisor passes on what it means. */
+    (void)signal(SIGINT, SIG_IGN);
+    (void)signal(SIGTERM, SIG_IGN);
+    (void)signal(SIGHUP, SIG_IGN);
+    (void)sigprocmask(SIG_SETMASK, &supervisor->signals_before, NULL);
+    /* Without its supervisor the child is of no use. */
+    if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != parent)
+        _exit(ERROR_MACHINE);
+    (void)setvbuf(stdout, NULL, _IOLBF, BUFSIZ);
+    struct child_link link = {.channel = channel};
+    struct child_services services = child_link_services(&link, supervisor->control);
+    child_run(supervisor->options, &services, supervisor->next_script);
+    child_link_close(&link);
+    exit(0);
+}
+
+static bool start_child(struct supervisor *supervisor, struct error *error) {
+    struct channel ends[2];
+    if (!channel_pair(ends, error))
+        return false;
+    (void)fflush(NULL);
+    pid_t parent = getpid();
+    supervisor->channel = ends[0];
+    supervisor->child = fork();
+    if (supervisor->child == 0)
+        be_child(supervisor, ends[1], parent);
+    int saved = errno;
+    channel_close(&ends[1]);
+    if (supervisor->child > 0)
+        return true;
+    channel_close(&supervisor->channel);
+    return error_set(error, ERROR_MACHINE, "gray: the rendering process cannot be started: %s", strerror(saved));
+}
+
+static void send_answer(struct supervisor *supervisor, enum frame_kind kind, bool ok, const struct error *error,
+                        int descriptor) {
+    struct frame_answer answer = {.ok = ok};
+    if (!ok)
+        answer.error = *error;
+    (void)channel_send(&supervisor->channel, kind, &answer, sizeof answer, descriptor);
+}
+
+static void answer_begin(struct supervisor *supervisor, const struct frame *frame) {
+    struct desk *desk = &supervisor->desk;
+    struct error error = {0};
+    bool ok = desk_begin(desk, &frame->body.request, &error);
+    bool film = ok && !frame->body.request.check;
+    send_answer(supervisor, FRAME_FILM, ok, &error, film ? desk->current.memory.descriptor : -1);
+}
+
+static void answer_done(struct supervisor *supervisor, const struct frame *frame) {
+    struct error error = {0};
+    bool ok = desk_done(&supervisor->desk, &frame->body.report, &error);
+    send_answer(supervisor, FRAME_ANSWER, ok, &error, -1);
+}
+
+static void note_script(struct supervisor *supervisor, const struct frame_script *script) {
+    static const int known[] = {0, ERROR_SCENE, ERROR_USAGE, ERROR_MACHINE, ERROR_CANCELLED};
+    bool sound = script->index == supervisor->next_script && script->index < supervisor->options->script_count;
+    bool is_known = false;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        is_known = is_known || script->status == known[i];
+    if (!sound || !is_known) {
+        supervisor->broken = true;
+        return;
+    }
+    supervisor->next_script++;
+    supervisor->stop = supervisor->stop || script->status == ERROR_USAGE || script->status == ERROR_CANCELLED;
+    note_status(supervisor, script->status);
+}
+
+/* A frame out of turn (a second picture before the first is finished ...) is not answered: it breaks the rules. */
+static void take_frame(struct supervisor *supervisor, const struct frame *frame) {
+    const struct picture *current = &supervisor->desk.current;
+    switch (frame->kind) {
+    case FRAME_LINE:
+        desk_line(&supervisor->desk, frame->body.line.kind, frame->body.line.text);
+        return;
+    case FRAME_BEGIN:
+        if (current->open)
+            break;
+        answer_begin(supervisor, frame);
+        return;
+    case FRAME_DONE:
+        if (!current->open || current->request.check || supervisor->deadline > 0)
+            break;
+        answer_done(supervisor, frame);
+        return;
+    case FRAME_ABANDON:
+        if (!current->open)
+            break;
+        desk_abandon(&supervisor->desk);
+        return;
+    case FRAME_SCRIPT:
+        note_script(supervisor, &frame->body.script);
+        return;
+    case FRAME_FILM:
+    case FRAME_ANSWER:
+        break;
+    }
+    supervisor->broken = true;
+}
+
+/* Until the child closes its end. */
+static void talk_to_child(struct supervisor *supervisor) {
+    struct frame frame;
+    while (!supervisor->broken) {
+        struct pollfd watched[2] = {{.fd = supervisor->channel.descriptor, .events = POLLIN},
+                                    {.fd = supervisor->signals, .events = POLLIN}};
+        bool timed = supervisor->desk.current.open || supervisor->deadline > 0;
+        if (poll(watched, 2, timed ? 50 : -1) < 0 && errno != EINTR)
+            break;
+        if (watched[1].revents)
+            read_signals(supervisor);
+        if (supervisor->deadline > 0 && progress_clock() > supervisor->deadline)
+            break;
+        desk_show_progress(&supervisor->desk);
+        if (!watched[0].revents)
+            continue;
+        enum channel_result result = channel_receive(&supervisor->channel, &frame);
+        if (result == CHANNEL_END)
+            return;
+        if (result == CHANNEL_FRAME)
+            take_frame(supervisor, &frame);
+        else
+            supervisor->broken = true;
+    }
+    (void)kill(supervisor->child, SIGKILL);
+}
+
+/* The channel is closed before the process is gone: wait, but not for ever. */
+static int reap_child(struct supervisor *supervisor) {
+    const struct timespec pause = {0, 2000000};
+    double limit = progress_clock() + 10 * patience;
+    int how = 0;
+    for (;;) {
+        pid_t got = waitpid(supervisor->child, &how, WNOHANG);
+        if (got == supervisor->child || (got < 0 && errno != EINTR))
+            return how;
+        if (progress_clock() > limit || supervisor->deadline > 0)
+            (void)kill(supervisor->child, SIGKILL);
+        (void)nanosleep(&pause, NULL);
+    }
+}
+
+/* The child is gone in the middle of a script. (os.exit in a script ends the script, not the process.) */
+static void tell_death(struct supervisor *supervisor, int how) {
+    struct error error;
+    const struct picture *picture = &supervisor->desk.current;
+    const char *script = supervisor->options->scripts[supervisor->next_script];
+    char making[NAME_LIMIT + 64] = "";
+    if (picture->open)
+        (void)snprintf(making, sizeof making, " while it made %.400s, which is not written", picture->name);
+    if (supervisor->broken)
+        error_set(&error, ERROR_MACHINE, "%.400s: the rendering process did not keep to its protocol%s", script,
+                  making);
+    else if (WIFSIGNALED(how) && WTERMSIG(how) == SIGKILL)
+        error_set(&error, ERROR_MACHINE, "%.400s: the rendering process was killed%s (out of memory?)", script, making);
+    else if (WIFSIGNALED(how))
+        error_set(&error, ERROR_MACHINE, "%.400s: the rendering process crashed (signal %d, %s)%s", script,
+                  WTERMSIG(how), strsignal(WTERMSIG(how)), making);
+    else
+        error_set(&error, ERROR_MACHINE, "%.400s: the rendering process ended with status %d%s", script,
+                  WEXITSTATUS(how), making);
+    note_error(supervisor, &error);
+}
+
+/* What the end of the child means for the scripts that are left. */
+static void judge_end(struct supervisor *supervisor, int how) {
+    bool all_ended = supervisor->next_script >= supervisor->options->script_count;
+    if (supervisor->deadline > 0) {
+        /* It was told to stop; how it did does not matter. */
+    } else if (!all_ended && !supervisor->stop) {
+        tell_death(supervisor, how);
+        supervisor->next_script++;
+    } else if (how != 0) {
+        struct error error;
+        error_set(&error, ERROR_MACHINE, "gray: the rendering process failed after its work (%s %d)",
+                  WIFSIGNALED(how) ? "signal" : "status", WIFSIGNALED(how) ? WTERMSIG(how) : WEXITSTATUS(how));
+        note_error(supervisor, &error);
+    }
+    desk_abandon(&supervisor->desk);
+}
+
+static void run_children(struct supervisor *supervisor) {
+    struct error error;
+    while (supervisor->next_script < supervisor->options->script_count && !supervisor->stop) {
+        supervisor->broken = false;
+        if (!start_child(supervisor, &error)) {
+            note_error(supervisor, &error);
+            return;
+        }
+        talk_to_child(supervisor);
+        int how = reap_child(supervisor);
+        channel_close(&supervisor->channel);
+        judge_end(supervisor, how);
+    }
+}
+
+int supervisor_run(const struct options *options) {
+    struct supervisor supervisor = {.options = options, .signals = -1, .channel = {.descriptor = -1}};
+    struct error error;
+    supervisor.control = mem_share(sizeof *supervisor.control);
+    desk_init(&supervisor.desk, options, supervisor.control);
+    bool ready =
+        supervisor.control ? listen_to_signals(&supervisor, &error) : error_no_memory(&error, "the rendering process");
+    if (!ready) {
+        note_error(&supervisor, &error);
+    } else {
+        run_children(&supervisor);
+        if (!desk_finish(&supervisor.desk, &error))
+            note_error(&supervisor, &error);
+        (void)close(supervisor.signals);
+    }
+    mem_unshare(supervisor.control, sizeof *supervisor.control);
+    return supervisor.status;
+}
+
+/* The same services, answered on the spot. */
+
+struct alone {
+    struct desk desk;
+    int status;
+};
+
+static bool alone_begin(void *context, const struct picture_request *request, struct film *film, struct error *error) {
+    struct alone *alone = context;
+    if (!desk_begin(&alone->desk, request, error))
+        return false;
+    *film = alone->desk.current.film;
+    return true;
+}
+
+static void alone_abandon(void *context) {
+    struct alone *alone = context;
+    desk_abandon(&alone->desk);
+}
+
+static bool alone_done(void *context, const struct picture_report *report, struct error *error) {
+    struct alone *alone = context;
+    return desk_done(&alone->desk, report, error);
+}
+
+static void alone_line(void *context, enum line_kind kind, const char *text) {
+    struct alone *alone = context;
+    desk_line(&alone->desk, kind, text);
+}
+
+static void alone_script_ended(void *context, int index, int status) {
+    struct alone *alone = context;
+    (void)index;
+    if (status > alone->status)
+        alone->status = status;
+}
+
+static void alone_poll(void *context) {
+    struct alone *alone = context;
+    desk_show_progress(&alone->desk);
+}
+
+int supervisor_run_without_fork(const struct options *options) {
+    struct alone alone = {0};
+    struct control control = {0};
+    struct error error;
+    struct child_services services = {.context = &alone,
+                                      .control = &control,
+                                      .begin = alone_begin,
+                                      .abandon = alone_abandon,
+                                      .done = alone_done,
+                                      .line = alone_line,
+                                      .script_ended = alone_script_ended,
+                                      .poll = alone_poll};
+    (void)signal(SIGPIPE, SIG_IGN);
+    (void)signal(SIGXFSZ, SIG_IGN);
+    desk_init(&alone.desk, options, &control);
+    child_run(options, &services, 0);
+    if (!desk_finish(&alone.desk, &error)) {
+        desk_line(&alone.desk, LINE_ERROR, error.text);
+        alone_script_ended(&alone, 0, (int)error.kind);
+    }
+    return alone.status;
+}

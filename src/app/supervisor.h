@@ -1,0 +1,12 @@
+/* The supervisor: forks the child that runs the scripts, answers it, listens for signals, and survives it. */
+#ifndef GRAY_APP_SUPERVISOR_H
+#define GRAY_APP_SUPERVISOR_H
+
+#include "app/options.h"
+
+/* Makes every picture of every script; returns the exit status of the program. The process must have no threads. */
+int supervisor_run(const struct options *options);
+/* The same in this one process, for debuggers (--no-fork): a crash is a crash, Ctrl-C ends it at once. */
+int supervisor_run_without_fork(const struct options *options);
+
+#endif

@@ -1,0 +1,146 @@
+/* The channel between supervisor and child: frames arrive whole, and what is no sound frame is refused. */
+#include "app/channel.h"
+#include "base/share.h"
+#include "tests/harness.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+static struct channel ends[2];
+
+static void open_channel(void) {
+    struct error error;
+    CHECK(channel_pair(ends, &error));
+}
+
+static enum channel_result receive(struct frame *frame) {
+    return channel_receive(&ends[0], frame);
+}
+
+static struct picture_request sound_request(void) {
+    struct picture_request request = {.full_width = 100, .full_height = 80, .width = 100, .height = 80};
+    memcpy(request.file, "a.png", 6);
+    return request;
+}
+
+TEST(frames_keep_their_borders_and_their_order) {
+    static struct frame frame;
+    open_channel();
+    struct picture_request request = sound_request();
+    CHECK(channel_send_line(&ends[1], LINE_WARNING, "one"));
+    CHECK(channel_send(&ends[1], FRAME_BEGIN, &request, sizeof request, -1));
+    CHECK(channel_send_line(&ends[1], LINE_ERROR, ""));
+    CHECK_EQ_INT(receive(&frame), CHANNEL_FRAME);
+    CHECK_EQ_INT(frame.kind, FRAME_LINE);
+    CHECK_EQ_INT(frame.body.line.kind, LINE_WARNING);
+    CHECK_TEXT(frame.body.line.text, "one");
+    CHECK_EQ_INT(receive(&frame), CHANNEL_FRAME);
+    CHECK_EQ_INT(frame.kind, FRAME_BEGIN);
+    CHECK_TEXT(frame.body.request.file, "a.png");
+    CHECK_EQ_INT(receive(&frame), CHANNEL_FRAME);
+    CHECK_TEXT(frame.body.line.text, "");
+    channel_close(&ends[1]);
+    CHECK_EQ_INT(receive(&frame), CHANNEL_END);
+    CHECK(!channel_send_line(&ends[0], LINE_ERROR, "nobody there"));
+    channel_close(&ends[0]);
+}
+
+TEST(a_line_that_is_too_long_is_cut_with_dots) {
+    static struct frame frame;
+    open_channel();
+    char *text = malloc(3 * FRAME_TEXT_LIMIT);
+    memset(text, 'x', 3 * FRAME_TEXT_LIMIT);
+    text[3 * FRAME_TEXT_LIMIT - 1] = '\0';
+    CHECK(channel_send_line(&ends[1], LINE_NOTICE, text));
+    CHECK_EQ_INT(receive(&frame), CHANNEL_FRAME);
+    CHECK_EQ_INT(strlen(frame.body.line.text), FRAME_TEXT_LIMIT - 1);
+    CHECK_TEXT(frame.body.line.text + FRAME_TEXT_LIMIT - 4, "...");
+    free(text);
+}
+
+static void broken(enum frame_kind kind, const void *body, size_t size) {
+    static struct frame frame;
+    CHECK(channel_send(&ends[1], kind, body, size, -1));
+    CHECK_EQ_INT(receive(&frame), CHANNEL_BROKEN);
+}
+
+TEST(frames_of_wrong_kind_size_or_content_are_refused) {
+    open_channel();
+    char bytes[sizeof(struct picture_request) + 1] = {0};
+    broken(0, bytes, 4);
+    broken(99, bytes, 4);
+    broken(FRAME_BEGIN, bytes, 10);
+    broken(FRAME_BEGIN, bytes, sizeof bytes);
+    broken(FRAME_DONE, bytes, 1);
+    broken(FRAME_ABANDON, bytes, 1);
+    broken(FRAME_SCRIPT, bytes, 3);
+    broken(FRAME_LINE, bytes, 2);
+    struct frame_line line = {.kind = (enum line_kind)77, .text = "x"};
+    broken(FRAME_LINE, &line, offsetof(struct frame_line, text) + 2);
+    line.kind = LINE_ERROR;
+    broken(FRAME_LINE, &line, offsetof(struct frame_line, text) + 1); /* its text does not end */
+    CHECK(send(ends[1].descriptor, "ab", 2, 0) == 2);
+    static struct frame frame;
+    CHECK_EQ_INT(receive(&frame), CHANNEL_BROKEN);
+}
+
+static void broken_request(struct picture_request request) {
+    broken(FRAME_BEGIN, &request, sizeof request);
+}
+
+TEST(requests_for_impossible_pictures_are_refused) {
+    open_channel();
+    struct picture_request request = sound_request();
+    request.width = 0;
+    broken_request(request);
+    request = sound_request();
+    request.width = 101;
+    broken_request(request);
+    request = sound_request();
+    request.x0 = 1;
+    broken_request(request);
+    request = sound_request();
+    request.height = 40;
+    request.y0 = UINT32_MAX - 10;
+    broken_request(request);
+    request = sound_request();
+    request.full_width = request.width = UINT32_MAX;
+    broken_request(request);
+    request = sound_request();
+    memset(request.file, 'x', sizeof request.file);
+    broken_request(request);
+}
+
+TEST(shared_memory_passes_through_the_channel) {
+    static struct frame frame;
+    open_channel();
+    struct share mine, theirs;
+    struct error error;
+    struct frame_answer answer = {.ok = true};
+    CHECK(share_create(&mine, 100000, &error));
+    CHECK(channel_send(&ends[1], FRAME_FILM, &answer, sizeof answer, mine.descriptor));
+    CHECK_EQ_INT(receive(&frame), CHANNEL_FRAME);
+    CHECK(frame.descriptor >= 0);
+    CHECK(share_attach(&theirs, frame.descriptor, 100000, &error));
+    CHECK_EQ_INT(((char *)theirs.block)[99999], 0);
+    ((char *)theirs.block)[99999] = 42;
+    CHECK_EQ_INT(((char *)mine.block)[99999], 42);
+    CHECK(ftruncate(theirs.descriptor, 10) != 0);
+    share_destroy(&theirs);
+    /* A descriptor in a frame that has none, and memory that is too small. */
+    CHECK(channel_send(&ends[1], FRAME_ABANDON, NULL, 0, mine.descriptor));
+    CHECK_EQ_INT(receive(&frame), CHANNEL_BROKEN);
+    CHECK(!share_attach(&theirs, dup(mine.descriptor), 200000, &error));
+    CHECK_EQ_INT(error.kind, ERROR_MACHINE);
+    share_destroy(&mine);
+}
+
+TEST(shared_memory_larger_than_the_machine_is_refused) {
+    struct share share;
+    struct error error;
+    CHECK(!share_create(&share, (size_t)1 << 50, &error));
+    CHECK_EQ_INT(error.kind, ERROR_MACHINE);
+    CHECK(strstr(error.text, "out of memory"));
+}
