@@ -1,0 +1,113 @@
+/* Meshes from tables and from OBJ files. Both are assets: the same tables, or the same file, are one mesh, so that a
+ * script that builds its scene again for every picture builds no mesh again. */
+#include "script/actions.h"
+#include "script/context.h"
+
+#include "base/file.h"
+#include "formats/obj.h"
+
+static struct mesh *mesh_from_file(struct context *context, const char *name, struct error *error) {
+    char path[PATH_SIZE], canonical[PATH_SIZE];
+    if (!files_require(context, name, path, error))
+        return NULL;
+    if (!file_canonical(path, canonical, sizeof canonical)) {
+        error_set(error, ERROR_SCENE, "cannot find '%s'", name);
+        return NULL;
+    }
+    struct mesh *mesh = assets_find_mesh_file(context->scene.assets, canonical);
+    if (mesh)
+        return mesh;
+    mesh = obj_read(path, error);
+    if (mesh && !assets_add_mesh_file(context->scene.assets, canonical, mesh, error))
+        return NULL;
+    return mesh;
+}
+
+/* Every index below count, every face with three corners or more. Places count from 1, as Lua does. */
+static bool check_faces(const struct value *faces, const char *name, uint32_t count, const char *of,
+                        struct error *error) {
+    for (uint32_t f = 0; f < faces->count; f++) {
+        uint32_t corners = faces->starts[f + 1] - faces->starts[f];
+        if (corners < 3)
+            return error_set(error, ERROR_SCENE, "%s[%u] has %u corners, not 3 or more", name, f + 1, corners);
+        for (uint32_t k = 0; k < corners; k++) {
+            uint32_t index = faces->indices[faces->starts[f] + k];
+            if (index >= count && count == 0)
+                return error_set(error, ERROR_SCENE, "%s[%u][%u] is %u, but %s is empty", name, f + 1, k + 1, index,
+                                 of);
+            if (index >= count)
+                return error_set(error, ERROR_SCENE, "%s[%u][%u] is %u, but %s ends with number %u, counted from 0",
+                                 name, f + 1, k + 1, index, of, count - 1);
+        }
+    }
+    return true;
+}
+
+/* The indices of the corners into normals or uvs: those of `own`, or the vertices' when there are none. */
+static bool corner_indices(const struct value *faces, const struct value *own, const char *own_name, uint32_t count,
+                           const char *of, const uint32_t **indices, struct error *error) {
+    const struct value *used = own->given ? own : faces;
+    if (!check_faces(used, own->given ? own_name : "faces", count, of, error))
+        return false;
+    if (used->count != faces->count)
+        return error_set(error, ERROR_SCENE, "%s has %u entries, but faces has %u", own_name, used->count,
+                         faces->count);
+    for (uint32_t f = 0; f < faces->count; f++)
+        if (used->starts[f + 1] != faces->starts[f + 1])
+            return error_set(error, ERROR_SCENE, "%s[%u] and faces[%u] have different numbers of corners", own_name,
+                             f + 1, f + 1);
+    *indices = used->indices;
+    return true;
+}
+
+static struct mesh *mesh_from_tables(struct context *context, const struct value *args, const char *name,
+                                     struct error *error) {
+    const struct value *verts = &args[MESH_VERTS], *faces = &args[MESH_FACES], *normals = &args[MESH_NORMALS];
+    const struct value *uvs = &args[MESH_UVS];
+    struct mesh_input input = {.name = name,
+                               .vertex_count = verts->count,
+                               .face_count = faces->count,
+                               .vertices = verts->points,
+                               .face_start = faces->starts,
+                               .vertex_index = faces->indices};
+    if (!check_faces(faces, "faces", verts->count, "verts", error))
+        return NULL;
+    if (normals->given) {
+        input.normal_count = normals->count;
+        input.normals = normals->points;
+        if (!corner_indices(faces, &args[MESH_FACE_NORMALS], "face_normals", normals->count, "normals",
+                            &input.normal_index, error))
+            return NULL;
+    }
+    if (uvs->given) {
+        input.uv_count = uvs->count;
+        input.uvs = uvs->pairs;
+        if (!corner_indices(faces, &args[MESH_FACE_UVS], "face_uvs", uvs->count, "uvs", &input.uv_index, error))
+            return NULL;
+    }
+    return assets_mesh(context->scene.assets, &input, error);
+}
+
+bool act_mesh(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    bool from_file = args[MESH_FILE].given, from_tables = args[MESH_VERTS].given || args[MESH_FACES].given;
+    if (from_file && from_tables)
+        return error_set(error, ERROR_SCENE, "file and verts exclude each other");
+    if (!from_file && !args[MESH_VERTS].given)
+        return error_set(error, ERROR_SCENE, "verts is missing (or file, the name of an OBJ file)");
+    if (!from_file && !args[MESH_FACES].given)
+        return error_set(error, ERROR_SCENE, "faces is missing");
+
+    const char *name = args[MESH_NAME].given ? args[MESH_NAME].text : "mesh";
+    struct mesh *mesh =
+        from_file ? mesh_from_file(context, args[MESH_FILE].text, error) : mesh_from_tables(context, args, name, error);
+    if (!mesh)
+        return false;
+    struct node *node = scene_node(&context->scene, NODE_GEOMETRY, name, error);
+    if (!node)
+        return false;
+    node->material = args[MESH_MATERIAL].material;
+    node->shape.kind = SHAPE_MESH;
+    node->shape.mesh = mesh;
+    result->pointer = node;
+    return true;
+}

@@ -1,0 +1,100 @@
+/* Methods of nodes. args[SELF] is the node in front of the colon. */
+#include "script/actions.h"
+#include "script/context.h"
+
+bool act_add_child(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    (void)result;
+    return node_add_child(&context->scene, args[SELF].node, args[CHILD_NODE].node, error);
+}
+
+/* What only shapes can have: an error on plain nodes, with --lenient a warning. */
+static bool is_shape(struct context *context, const struct node *node, const char *what, struct error *error) {
+    if (node->kind == NODE_GEOMETRY || node->kind == NODE_CSG)
+        return true;
+    if (!context->options->lenient)
+        return error_set(error, ERROR_SCENE, "a plain node has no %s", what);
+    context_warn(context, "a plain node has no %s", what);
+    return false;
+}
+
+/* False with no error set means: warned, nothing to do. */
+static bool unless_warned(const struct error *error) {
+    return error->kind == ERROR_NONE;
+}
+
+enum { OPERAND_LIMIT = 10000 };
+
+/* The material of a CSG node goes to the operands that have none; `left` bounds the walk through shared operands. */
+static void give_operands(struct node *node, const struct material *material, int *left) {
+    for (int k = 0; k < 2 && *left > 0; k++) {
+        struct node *operand = node->operands[k];
+        --*left;
+        if (operand->kind == NODE_CSG)
+            give_operands(operand, material, left);
+        else if (operand->kind == NODE_GEOMETRY && !operand->material)
+            operand->material = material;
+    }
+}
+
+bool act_set_material(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    (void)result;
+    if (!is_shape(context, args[SELF].node, "material", error))
+        return unless_warned(error);
+    args[SELF].node->material = args[SET_MATERIAL].material;
+    int left = OPERAND_LIMIT;
+    if (args[SELF].node->kind == NODE_CSG)
+        give_operands(args[SELF].node, args[SET_MATERIAL].material, &left);
+    return true;
+}
+
+/* Where the image goes depends on the shape (SPEC 2.1); that is decided when the scene is flattened. */
+bool act_set_texture(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    (void)result;
+    struct node *node = args[SELF].node;
+    if (!is_shape(context, node, "texture", error))
+        return unless_warned(error);
+    if (node->kind == NODE_CSG)
+        return error_set(error, ERROR_SCENE, "a combined solid has no texture; set those of its operands");
+    struct image *image = act_find_image(context, &args[SET_TEXTURE], error);
+    struct material *texture = image ? scene_material(&context->scene, MATERIAL_IMAGE, NULL, error) : NULL;
+    if (!texture)
+        return false;
+    act_image_defaults(texture, &args[SET_TEXTURE], image);
+    node->texture = texture;
+    return true;
+}
+
+static bool step(struct context *context, const struct value *args, enum node_step kind, const struct transform *by,
+                 struct error *error) {
+    return node_transform(&context->scene, args[SELF].node, kind, by) || error_no_memory(error, "a transform");
+}
+
+static struct vec3 step_of(const struct value *args) {
+    if (args[STEP_VECTOR].given)
+        return args[STEP_VECTOR].vector;
+    return (struct vec3){args[STEP_X].number, args[STEP_Y].number, args[STEP_Z].number};
+}
+
+bool act_scale(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    (void)result;
+    struct vec3 factors = step_of(args);
+    if (factors.x == 0 || factors.y == 0 || factors.z == 0) {
+        context_warn_once(context, WARNED_OTHER, "a factor is 0, so nothing under this node is drawn");
+        args[SELF].node->singular = true;
+        return true;
+    }
+    struct transform by = transform_scale(factors);
+    return step(context, args, NODE_SCALE, &by, error);
+}
+
+bool act_rotate(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    (void)result;
+    struct transform by = transform_rotate(args[ROTATE_AXIS].choice, args[ROTATE_ANGLE].number);
+    return step(context, args, NODE_ROTATE, &by, error);
+}
+
+bool act_translate(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    (void)result;
+    struct transform by = transform_translate(step_of(args));
+    return step(context, args, NODE_TRANSLATE, &by, error);
+}

@@ -1,0 +1,153 @@
+/* Nodes and primitives. A primitive is a geometry node: whatever can be placed is a node. */
+#include "script/actions.h"
+#include "script/context.h"
+
+#include <string.h>
+
+/* The middle paragraphs answer true with a result, or false with an error of the callee. */
+static bool give(struct result *result, void *pointer) {
+    result->pointer = pointer;
+    return pointer != NULL;
+}
+
+static const char *text_or(const struct value *value, const char *otherwise) {
+    return value->given ? value->text : otherwise;
+}
+
+static bool add_children(struct context *context, struct node *node, const struct value *children,
+                         struct error *error) {
+    for (uint32_t k = 0; k < children->count; k++)
+        if (!node_add_child(&context->scene, node, children->nodes[k], error))
+            return false;
+    return true;
+}
+
+bool act_node(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct node *node = scene_node(&context->scene, NODE_GROUP, text_or(&args[GROUP_NAME], "node"), error);
+    return node && add_children(context, node, &args[GROUP_CHILDREN], error) && give(result, node);
+}
+
+bool act_joint(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct node *node = scene_node(&context->scene, NODE_JOINT, text_or(&args[JOINT_NAME], "joint"), error);
+    if (!node)
+        return false;
+    struct vec3 x = args[JOINT_X].vector, y = args[JOINT_Y].vector;
+    node->joint_x.min = x.x, node->joint_x.init = x.y, node->joint_x.max = x.z;
+    node->joint_y.min = y.x, node->joint_y.init = y.y, node->joint_y.max = y.z;
+    return add_children(context, node, &args[JOINT_CHILDREN], error) && give(result, node);
+}
+
+bool act_sphere(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct node *node = scene_node(&context->scene, NODE_GEOMETRY, text_or(&args[SPHERE_NAME], "sphere"), error);
+    if (!node)
+        return false;
+    node->material = args[SPHERE_MATERIAL].material;
+    node->shape.kind = SHAPE_SPHERE;
+    node->shape.sphere.centre = args[SPHERE_CENTRE].vector;
+    node->shape.sphere.radius = args[SPHERE_RADIUS].given ? args[SPHERE_RADIUS].number : 1;
+    return give(result, node);
+}
+
+bool act_cube(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct node *node = scene_node(&context->scene, NODE_GEOMETRY, text_or(&args[CUBE_NAME], "cube"), error);
+    if (!node)
+        return false;
+    struct vec3 corner = args[CUBE_CORNER].vector, size = args[CUBE_SIZE].given ? args[CUBE_SIZE].vector : vec3_all(1);
+    struct vec3 other = vec3_add(corner, size);
+    node->material = args[CUBE_MATERIAL].material;
+    node->shape.kind = SHAPE_BOX;
+    node->shape.box = (struct box){vec3_min(corner, other), vec3_max(corner, other)};
+    struct vec3 min = node->shape.box.min, max = node->shape.box.max;
+    bool flat = !(min.x < max.x && min.y < max.y && min.z < max.z);
+    if (flat || !vec3_finite(min) || !vec3_finite(max))
+        return error_set(error, ERROR_SCENE, "size is too %s for this corner", flat ? "small" : "large");
+    return give(result, node);
+}
+
+bool act_geometry(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    const struct node *primitive = args[GEOMETRY_PRIMITIVE].node;
+    if (primitive->kind != NODE_GEOMETRY && primitive->kind != NODE_CSG)
+        return error_set(error, ERROR_SCENE, "primitive must be a shape, not the plain node '%s'", primitive->name);
+    struct node *node = scene_node(&context->scene, primitive->kind, text_or(&args[GEOMETRY_NAME], "geometry"), error);
+    if (!node)
+        return false;
+    node->singular = primitive->singular;
+    node->parent_from_node = primitive->parent_from_node;
+    node->shape = primitive->shape;
+    node->material = args[GEOMETRY_MATERIAL].given ? args[GEOMETRY_MATERIAL].material : primitive->material;
+    node->texture = primitive->texture;
+    node->operation = primitive->operation;
+    node->operands[0] = primitive->operands[0];
+    node->operands[1] = primitive->operands[1];
+    if (primitive->separate) {
+        node->separate = arena_alloc_array(&context->scene.arena, 3, sizeof *node->separate);
+        if (!node->separate)
+            return error_no_memory(error, "a node");
+        memcpy(node->separate, primitive->separate, 3 * sizeof *node->separate);
+    }
+    for (const struct node_child *child = primitive->first_child; child; child = child->next)
+        if (!node_add_child(&context->scene, node, child->node, error))
+            return false;
+    return give(result, node);
+}
+
+/* An open mesh has no inside. Deeper ones are found when the world is built, which knows their instances. */
+static bool check_operand(const struct node *operand, struct error *error) {
+    struct vec3 a, b;
+    if (operand->kind != NODE_GEOMETRY || operand->shape.kind != SHAPE_MESH ||
+        !mesh_open_edge(operand->shape.mesh, &a, &b))
+        return true;
+    return error_set(error, ERROR_SCENE,
+                     "mesh '%s' is not closed, so it has no inside: the edge from {%.6g, %.6g, %.6g} to "
+                     "{%.6g, %.6g, %.6g} is open",
+                     operand->name, a.x, a.y, a.z, b.x, b.y, b.z);
+}
+
+/* With --lenient an operand may be something that does not exist yet: what can be shown is the other one, unless it was
+ * to be subtracted. */
+static bool combine_rest(struct context *context, enum node_csg operation, const struct value *args,
+                         struct result *result, struct error *error) {
+    struct node *node = scene_node(&context->scene, NODE_GROUP, text_or(&args[CSG_NAME], "csg"), error);
+    struct node *rest = args[CSG_A].node;
+    if (!rest && operation != NODE_DIFFERENCE)
+        rest = args[CSG_B].node;
+    if (node && rest && !node_add_child(&context->scene, node, rest, error))
+        return false;
+    return give(result, node);
+}
+
+static bool combine(struct context *context, enum node_csg operation, const struct value *args, struct result *result,
+                    struct error *error) {
+    if (!args[CSG_A].given || !args[CSG_B].given)
+        return combine_rest(context, operation, args, result, error);
+    if (!check_operand(args[CSG_A].node, error) || !check_operand(args[CSG_B].node, error))
+        return false;
+    struct node *node = scene_node(&context->scene, NODE_CSG, text_or(&args[CSG_NAME], "csg"), error);
+    if (!node)
+        return false;
+    node->operation = operation;
+    node->operands[0] = args[CSG_A].node;
+    node->operands[1] = args[CSG_B].node;
+    return give(result, node);
+}
+
+bool act_union(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    return combine(context, NODE_UNION, args, result, error);
+}
+
+bool act_difference(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    return combine(context, NODE_DIFFERENCE, args, result, error);
+}
+
+bool act_intersection(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    return combine(context, NODE_INTERSECTION, args, result, error);
+}
+
+bool act_transform_order(struct context *context, const struct value *args, struct result *result,
+                         struct error *error) {
+    static const enum transform_order orders[] = {ORDER_NEW, ORDER_OLD, ORDER_SEPARATE};
+    (void)result;
+    (void)error;
+    context->scene.order = orders[args[0].choice];
+    return true;
+}

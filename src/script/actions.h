@@ -1,0 +1,90 @@
+/* The middle paragraphs of the gr functions: plain C that cannot raise. The enums number the parameters in table.c. */
+#ifndef GRAY_SCRIPT_ACTIONS_H
+#define GRAY_SCRIPT_ACTIONS_H
+
+#include "script/table.h"
+
+typedef bool action(struct context *context, const struct value *args, struct result *result, struct error *error);
+
+/* act_nodes.c */
+enum { GROUP_NAME, GROUP_CHILDREN, GROUP_COUNT };
+enum { JOINT_NAME, JOINT_X, JOINT_Y, JOINT_CHILDREN, JOINT_COUNT };
+enum { SPHERE_NAME, SPHERE_MATERIAL, SPHERE_CENTRE, SPHERE_RADIUS, SPHERE_COUNT };
+enum { CUBE_NAME, CUBE_MATERIAL, CUBE_CORNER, CUBE_SIZE, CUBE_COUNT };
+enum { GEOMETRY_NAME, GEOMETRY_PRIMITIVE, GEOMETRY_MATERIAL, GEOMETRY_COUNT };
+enum { CSG_NAME, CSG_A, CSG_B, CSG_COUNT };
+action act_node, act_joint, act_sphere, act_cube, act_geometry, act_union, act_difference, act_intersection;
+action act_transform_order;
+
+/* act_methods.c: args[0] is the node itself */
+enum { SELF };
+enum { CHILD_NODE = 1, CHILD_COUNT };
+enum { SET_MATERIAL = 1, SET_MATERIAL_COUNT };
+enum { SET_TEXTURE = 1, SET_TEXTURE_COUNT };
+enum { STEP_X = 1, STEP_Y, STEP_Z, STEP_VECTOR, STEP_COUNT };
+enum { ROTATE_AXIS = 1, ROTATE_ANGLE, ROTATE_COUNT };
+action act_add_child, act_set_material, act_set_texture, act_scale, act_rotate, act_translate;
+
+/* act_mesh.c */
+enum {
+    MESH_NAME,
+    MESH_MATERIAL,
+    MESH_FILE,
+    MESH_VERTS,
+    MESH_NORMALS,
+    MESH_FACES,
+    MESH_FACE_NORMALS,
+    MESH_UVS,
+    MESH_FACE_UVS,
+    MESH_COUNT
+};
+action act_mesh;
+
+/* act_materials.c */
+enum { PHONG_KD, PHONG_KS, PHONG_SHININESS, PHONG_REFLECT, PHONG_REFRACT, PHONG_IOR, PHONG_TWO_SIDED, PHONG_COUNT };
+enum { MARBLE_MATERIAL, MARBLE_F, MARBLE_MULTIPLIER, MARBLE_VEIN, MARBLE_INTERP, MARBLE_MIX, MARBLE_COUNT };
+enum { WOOD_MATERIAL, WOOD_F, WOOD_DENSITY, WOOD_INTERP, WOOD_MIX, WOOD_COUNT };
+enum { IMAGE_MATERIAL, IMAGE_PNG, IMAGE_FILTER, IMAGE_FLIP_U, IMAGE_COUNT };
+enum { TEXTURE_FILE, TEXTURE_FILTER, TEXTURE_WRAP, TEXTURE_FLIP_U, TEXTURE_COUNT };
+enum { FRESNEL_MATERIAL, FRESNEL_COUNT };
+action act_material, act_rr_material, act_marble, act_wood, act_td_cube, act_td_sphere, act_fresnel, act_texture;
+/* What a script gave as an image, from the store or from its file; NULL and error. */
+struct image *act_find_image(struct context *context, const struct value *value, struct error *error);
+
+/* How an image is looked up when nothing is said: as its texture says, else mip-mapped and repeated. */
+void act_image_defaults(struct material *material, const struct value *value, struct image *image);
+
+/* act_render.c */
+enum { LIGHT_POSITION, LIGHT_COLOUR, LIGHT_FALLOFF, LIGHT_COUNT };
+enum { AREA_CORNER, AREA_V1, AREA_V2, AREA_COLOUR, AREA_FALLOFF, AREA_COUNT };
+enum {
+    RENDER_NODE,
+    RENDER_FILE,
+    RENDER_SKY,
+    RENDER_WIDTH,
+    RENDER_HEIGHT,
+    RENDER_EYE,
+    RENDER_VIEW,
+    RENDER_UP,
+    RENDER_FOV,
+    RENDER_AMBIENT,
+    RENDER_LIGHTS,
+    RENDER_TARGET,
+    RENDER_BACKGROUND,
+    RENDER_MIRROR,
+    RENDER_SAMPLES,
+    RENDER_FULL,
+    RENDER_AREA_SAMPLES,
+    RENDER_REFLECT_LIMIT,
+    RENDER_REFRACT_LIMIT,
+    RENDER_SIDE_TOLERANCE,
+    RENDER_CORNER_TOLERANCE,
+    RENDER_USE_TIR,
+    RENDER_SPECULAR,
+    RENDER_SEED,
+    RENDER_ACCEL,
+    RENDER_COUNT
+};
+action act_light, act_area_light, act_render;
+
+#endif

@@ -1,0 +1,565 @@
+/* Reading arguments: the first paragraph of every binding function, driven by the table. It may raise, so it owns
+ * nothing: arrays go to the arena of the call. Tables are read raw, so that no metamethod runs in between and a million
+ * vertices take a fraction of a second. NaN and infinities stop here. */
+#include "script/context.h"
+
+#include <lauxlib.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Where a value stands, for messages: name, name[i], name[i][j]. */
+struct place {
+    const struct parameter *parameter;
+    lua_Integer i, j; /* 0 = none */
+};
+
+static const char *place_words(const struct place *place, char out[128]) {
+    const char *name = place->parameter->name;
+    if (place->j)
+        snprintf(out, 128, "%s[%lld][%lld]", name, (long long)place->i, (long long)place->j);
+    else if (place->i)
+        snprintf(out, 128, "%s[%lld]", name, (long long)place->i);
+    else
+        snprintf(out, 128, "%s", name);
+    return out;
+}
+
+_Noreturn static void wrong_type(struct context *c, const struct place *place, const char *wanted, int index) {
+    char words[128];
+    const char *given = value_words(c->lua, index);
+    context_raise(c, "%s must be %s, not %s", place_words(place, words), wanted, given);
+}
+
+/* "a > 0 and b < 180" in words. */
+static void range_words(const struct parameter *p, char out[128]) {
+    bool low = p->low > -(double)INFINITY, high = p->high < (double)INFINITY, open = p->flags & (LOW_OPEN | HIGH_OPEN);
+    if (low && high && !open)
+        snprintf(out, 128, "between %.15g and %.15g", p->low, p->high);
+    else if (low && high)
+        snprintf(out, 128, "%s %.15g and %s %.15g", p->flags & LOW_OPEN ? ">" : ">=", p->low,
+                 p->flags & HIGH_OPEN ? "<" : "<=", p->high);
+    else if (low)
+        snprintf(out, 128, "%s %.15g", p->flags & LOW_OPEN ? ">" : ">=", p->low);
+    else
+        snprintf(out, 128, "%s %.15g", p->flags & HIGH_OPEN ? "<" : "<=", p->high);
+}
+
+_Noreturn static void out_of_range(struct context *c, const struct place *place) {
+    char words[128], range[128];
+    range_words(place->parameter, range);
+    context_raise(c, "%s must be %s", place_words(place, words), range);
+}
+
+static double read_number(struct context *c, int index, const struct place *place) {
+    int is_number;
+    double x = lua_tonumberx(c->lua, index, &is_number);
+    const struct parameter *p = place->parameter;
+    if (!is_number)
+        wrong_type(c, place, place->i ? "a number" : kind_words(p->kind), index);
+    char words[128];
+    if (isnan(x))
+        context_raise(c, "%s must not be NaN (not a number)", place_words(place, words));
+    if (isinf(x))
+        context_raise(c, "%s must be finite", place_words(place, words));
+    bool bounded = p->low != 0 || p->high != 0;
+    if (bounded && (p->flags & LOW_OPEN ? x <= p->low : x < p->low))
+        out_of_range(c, place);
+    if (bounded && (p->flags & HIGH_OPEN ? x >= p->high : x > p->high))
+        out_of_range(c, place);
+    if ((p->flags & NOT_ZERO) && x == 0)
+        context_raise(c, "%s must not be 0", place_words(place, words));
+    return x;
+}
+
+static double read_whole(struct context *c, int index, const struct place *place) {
+    double x = read_number(c, index, place);
+    char words[128];
+    if (x != floor(x))
+        context_raise(c, "%s must be a whole number", place_words(place, words));
+    return x;
+}
+
+/* The `count` numbers of the table at `index` (absolute). place->i is set for a table inside a list. */
+static void read_tuple(struct context *c, int index, struct place place, int count, double *out) {
+    lua_State *L = c->lua;
+    char words[128];
+    lua_Unsigned length = lua_rawlen(L, index);
+    if (length != (lua_Unsigned)count)
+        context_raise(c, "%s must have %d numbers, not %llu", place_words(&place, words), count,
+                      (unsigned long long)length);
+    for (int k = 0; k < count; k++) {
+        if (lua_rawgeti(L, index, k + 1) == LUA_TNUMBER && place.parameter->low == 0 && place.parameter->high == 0 &&
+            isfinite(out[k] = lua_tonumber(L, -1)) && !(place.parameter->flags & NOT_ZERO)) {
+            lua_pop(L, 1); /* the common case, without the cost of naming the place */
+            continue;
+        }
+        struct place inner = place;
+        *(place.i ? &inner.j : &inner.i) = k + 1;
+        out[k] = read_number(c, -1, &inner);
+        lua_pop(L, 1);
+    }
+}
+
+static struct vec3 read_vector(struct context *c, int index, const struct place *place) {
+    if (!lua_istable(c->lua, index))
+        wrong_type(c, place, kind_words(place->parameter->kind), index);
+    double x[3];
+    read_tuple(c, index, *place, 3, x);
+    return (struct vec3){x[0], x[1], x[2]};
+}
+
+/* Strings stay where they are: on the stack or in the table of the call. Numbers count as text, as everywhere in Lua.
+ */
+static const char *read_text(struct context *c, int index, const struct place *place) {
+    lua_State *L = c->lua;
+    char words[128];
+    if (lua_type(L, index) == LUA_TNUMBER) {
+        const char *text = lua_isinteger(L, index) ? arena_format(&c->call, "%lld", (long long)lua_tointeger(L, index))
+                                                   : arena_format(&c->call, "%.14g", lua_tonumber(L, index));
+        if (!text)
+            context_raise_no_memory(c);
+        return text;
+    }
+    if (lua_type(L, index) != LUA_TSTRING)
+        wrong_type(c, place, kind_words(place->parameter->kind), index);
+    size_t length;
+    const char *text = lua_tolstring(L, index, &length);
+    if (strlen(text) != length)
+        context_raise(c, "%s must not hold a zero byte", place_words(place, words));
+    return text;
+}
+
+static const char *read_file_name(struct context *c, int index, const struct place *place) {
+    const char *text = read_text(c, index, place);
+    char words[128];
+    if (text[0] == '\0')
+        context_raise(c, "%s must not be empty", place_words(place, words));
+    return text;
+}
+
+/* Index of the word among the choices, letters compared as they are (axes: in either case). */
+static int read_choice(struct context *c, int index, const struct place *place) {
+    const struct parameter *p = place->parameter;
+    const char *text = read_text(c, index, place), *word = p->choices;
+    char lowered[2] = {(char)(text[0] | ' '), '\0'}, words[128];
+    if (p->kind == KIND_AXIS && text[0] != '\0' && text[1] == '\0')
+        text = lowered;
+    for (int k = 0; *word; k++) {
+        size_t length = strcspn(word, " ");
+        if (strncmp(word, text, length) == 0 && text[length] == '\0')
+            return k;
+        word += length + (word[length] == ' ');
+    }
+    char list[256];
+    size_t used = 0;
+    for (word = p->choices; *word;) {
+        int length = (int)strcspn(word, " ");
+        const char *next = word + length + (word[length] == ' ');
+        const char *separator = used == 0 ? "" : *next ? ", " : " or ";
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s'%.*s'", separator, length, word);
+        word = next;
+    }
+    context_raise(c, "%s must be %s, not '%.100s'", place_words(place, words), list, text);
+}
+
+/* The handle of that type, or NULL for a ghost. */
+static void *read_handle(struct context *c, int index, const struct place *place, enum handle_type type) {
+    const struct handle *handle = handle_at(c->lua, index);
+    if (handle && handle->type == HANDLE_GHOST)
+        return NULL;
+    if (!handle || handle->type != type)
+        wrong_type(c, place, place->i ? handle_words(type) : kind_words(place->parameter->kind), index);
+    return handle->pointer;
+}
+
+static uint32_t list_length(struct context *c, int index, const struct place *place) {
+    if (!lua_istable(c->lua, index))
+        wrong_type(c, place, kind_words(place->parameter->kind), index);
+    lua_Unsigned length = lua_rawlen(c->lua, index);
+    char words[128];
+    if (length > UINT32_MAX / 4)
+        context_raise(c, "%s has too many entries", place_words(place, words));
+    return (uint32_t)length;
+}
+
+static void *call_array(struct context *c, size_t count, size_t size) {
+    void *array = arena_alloc_array(&c->call, count > 0 ? count : 1, size);
+    if (!array)
+        context_raise_no_memory(c);
+    return array;
+}
+
+/* `{a, nil, b}` may count as one entry or as three: an entry beyond a hole is found and the hole named. */
+static void check_holes(struct context *c, int index, const struct place *place, uint32_t length) {
+    lua_State *L = c->lua;
+    for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1)) {
+        if (lua_isinteger(L, -2) && lua_tointeger(L, -2) > (lua_Integer)length)
+            context_raise(c, "%s[%u] is nil", place->parameter->name, (unsigned)length + 1);
+    }
+}
+
+static void read_list_of_handles(struct context *c, int index, struct place place, struct value *value) {
+    lua_State *L = c->lua;
+    uint32_t length = list_length(c, index, &place);
+    check_holes(c, index, &place, length);
+    bool is_lights = place.parameter->kind == KIND_LIGHTS;
+    struct light *lights = is_lights ? call_array(c, length, sizeof *lights) : NULL;
+    value->nodes = is_lights ? NULL : call_array(c, length, sizeof(struct node *));
+    value->lights = lights;
+    for (uint32_t k = 0; k < length; k++) {
+        place.i = (lua_Integer)k + 1;
+        if (lua_rawgeti(L, index, place.i) == LUA_TNIL)
+            context_raise(c, "%s[%u] is nil", place.parameter->name, (unsigned)k + 1);
+        void *pointer = read_handle(c, -1, &place, is_lights ? HANDLE_LIGHT : HANDLE_NODE);
+        lua_pop(L, 1);
+        if (!pointer)
+            continue;
+        if (is_lights)
+            lights[value->count++] = *(const struct light *)pointer;
+        else
+            value->nodes[value->count++] = pointer;
+    }
+}
+
+static void read_tuples(struct context *c, int index, struct place place, int width, double *out, uint32_t length) {
+    lua_State *L = c->lua;
+    int top = lua_gettop(L) + 1;
+    for (uint32_t k = 0; k < length; k++) {
+        place.i = (lua_Integer)k + 1;
+        if (lua_rawgeti(L, index, place.i) != LUA_TTABLE)
+            wrong_type(c, &place, width == 3 ? "a table of 3 numbers" : "a table of 2 numbers", -1);
+        read_tuple(c, top, place, width, out + (size_t)k * (size_t)width);
+        lua_pop(L, 1);
+    }
+}
+
+/* Two passes: count the corners, then fill arrays of the right size. */
+static void read_faces(struct context *c, int index, struct place place, struct value *value) {
+    lua_State *L = c->lua;
+    uint32_t length = list_length(c, index, &place), *starts = call_array(c, (size_t)length + 1, sizeof *starts);
+    uint64_t corners = 0;
+    for (uint32_t k = 0; k < length; k++) {
+        place.i = (lua_Integer)k + 1;
+        if (lua_rawgeti(L, index, place.i) != LUA_TTABLE)
+            wrong_type(c, &place, "a table of indices", -1);
+        starts[k] = (uint32_t)corners;
+        corners += lua_rawlen(L, -1);
+        lua_pop(L, 1);
+        if (corners >= UINT32_MAX)
+            context_raise(c, "%s have too many corners", place.parameter->name);
+    }
+    starts[length] = (uint32_t)corners;
+    uint32_t *indices = call_array(c, (size_t)corners, sizeof *indices);
+    for (uint32_t k = 0; k < length; k++) {
+        lua_rawgeti(L, index, (lua_Integer)k + 1);
+        for (uint32_t corner = starts[k]; corner < starts[k + 1]; corner++) {
+            place.i = (lua_Integer)k + 1;
+            place.j = (lua_Integer)(corner - starts[k]) + 1;
+            lua_rawgeti(L, -1, place.j);
+            double x = read_whole(c, -1, &place);
+            char words[128];
+            if (x < 0 || x >= UINT32_MAX)
+                context_raise(c, "%s is %.15g: indices count from 0", place_words(&place, words), x);
+            indices[corner] = (uint32_t)x;
+            lua_pop(L, 1);
+        }
+        lua_pop(L, 1);
+    }
+    value->count = length;
+    value->starts = starts;
+    value->indices = indices;
+}
+
+/* One argument at an absolute stack index. False: it is a ghost. */
+static bool read_value(struct context *c, int index, const struct parameter *p, struct value *value) {
+    struct place place = {.parameter = p};
+    lua_State *L = c->lua;
+    char words[128];
+    value->given = true;
+    switch (p->kind) {
+    case KIND_NUMBER:
+        value->number = read_number(c, index, &place);
+        return true;
+    case KIND_WHOLE:
+        value->number = read_whole(c, index, &place);
+        return true;
+    case KIND_BOOLEAN:
+        if (!lua_isboolean(L, index))
+            wrong_type(c, &place, kind_words(p->kind), index);
+        value->boolean = lua_toboolean(L, index);
+        return true;
+    case KIND_TEXT:
+        value->text = read_text(c, index, &place);
+        return true;
+    case KIND_FILE:
+        value->text = read_file_name(c, index, &place);
+        return true;
+    case KIND_OUTPUT:
+        value->text = files_repair_number(c, read_file_name(c, index, &place));
+        if (!value->text)
+            context_raise_no_memory(c);
+        return true;
+    case KIND_CHOICE:
+    case KIND_AXIS:
+        value->choice = read_choice(c, index, &place);
+        return true;
+    case KIND_POINT:
+    case KIND_DIRECTION:
+    case KIND_COLOUR:
+    case KIND_TRIPLE:
+        value->vector = read_vector(c, index, &place);
+        return true;
+    case KIND_SIZE:
+        value->vector = lua_istable(L, index) ? read_vector(c, index, &place) : vec3_all(read_number(c, index, &place));
+        return true;
+    case KIND_NODE:
+        value->node = read_handle(c, index, &place, HANDLE_NODE);
+        return value->node != NULL;
+    case KIND_MATERIAL:
+        value->material = read_handle(c, index, &place, HANDLE_MATERIAL);
+        return value->material != NULL;
+    case KIND_IMAGE:
+        if (lua_isstring(L, index)) {
+            value->text = read_file_name(c, index, &place);
+            return true;
+        }
+        value->material = read_handle(c, index, &place, HANDLE_TEXTURE);
+        value->image = value->material ? value->material->image.image : NULL;
+        return value->material != NULL;
+    case KIND_BACKGROUND:
+        if (lua_type(L, index) != LUA_TSTRING)
+            value->vector = read_vector(c, index, &place);
+        else if (strcmp(value->text = lua_tostring(L, index), "gradient") != 0)
+            context_raise(c, "%s must be %s, not '%.100s'", place_words(&place, words), kind_words(p->kind),
+                          value->text);
+        return true;
+    case KIND_NODES:
+    case KIND_LIGHTS:
+        read_list_of_handles(c, index, place, value);
+        return true;
+    case KIND_POINTS: {
+        uint32_t length = list_length(c, index, &place);
+        double(*points)[3] = call_array(c, length, sizeof *points);
+        read_tuples(c, index, place, 3, points[0], length);
+        value->points = (const double(*)[3])points;
+        value->count = length;
+        return true;
+    }
+    case KIND_PAIRS: {
+        uint32_t length = list_length(c, index, &place);
+        double(*pairs)[2] = call_array(c, length, sizeof *pairs);
+        read_tuples(c, index, place, 2, pairs[0], length);
+        value->pairs = (const double(*)[2])pairs;
+        value->count = length;
+        return true;
+    }
+    case KIND_FACES:
+        if (!lua_istable(L, index))
+            wrong_type(c, &place, kind_words(p->kind), index);
+        read_faces(c, index, place, value);
+        return true;
+    case KIND_COUNT:
+        break;
+    }
+    return true;
+}
+
+/* Reads one parameter unless it is nil. False: the whole call is to be left undone. */
+static bool read_parameter(struct context *c, int index, const struct parameter *p, struct value *value) {
+    if (lua_isnoneornil(c->lua, index) || read_value(c, index, p, value))
+        return true;
+    *value = (struct value){0};
+    return (p->flags & GHOST_IS_NONE) != 0;
+}
+
+/* Whether a value looks like that kind, by its type alone. */
+static bool looks_like(lua_State *L, int index, enum kind kind) {
+    const struct handle *handle = handle_at(L, index);
+    bool ghost = handle && handle->type == HANDLE_GHOST;
+    switch (kind) {
+    case KIND_NUMBER:
+    case KIND_WHOLE:
+        return lua_isnumber(L, index);
+    case KIND_BOOLEAN:
+        return lua_isboolean(L, index);
+    case KIND_TEXT:
+    case KIND_FILE:
+    case KIND_OUTPUT:
+    case KIND_CHOICE:
+    case KIND_AXIS:
+        return lua_isstring(L, index);
+    case KIND_SIZE:
+        return lua_istable(L, index) || lua_isnumber(L, index);
+    case KIND_NODE:
+        return handle && (ghost || handle->type == HANDLE_NODE);
+    case KIND_MATERIAL:
+        return handle && (ghost || handle->type == HANDLE_MATERIAL);
+    case KIND_IMAGE:
+        return lua_isstring(L, index) || (handle && (ghost || handle->type == HANDLE_TEXTURE));
+    case KIND_BACKGROUND:
+        return lua_istable(L, index) || lua_isstring(L, index);
+    case KIND_POINT:
+    case KIND_DIRECTION:
+    case KIND_COLOUR:
+    case KIND_TRIPLE:
+    case KIND_NODES:
+    case KIND_LIGHTS:
+    case KIND_POINTS:
+    case KIND_PAIRS:
+    case KIND_FACES:
+        return lua_istable(L, index);
+    case KIND_COUNT:
+        break;
+    }
+    return false;
+}
+
+/* How well the arguments fit a form: how many of the first ones do, then how near their number is to the form's. */
+struct fit {
+    int leading, difference;
+};
+
+static struct fit form_fit(lua_State *L, const struct function *function, const char *form, int first) {
+    struct fit fit = {0, 0};
+    int count = 0, given = lua_gettop(L) - first + 1, index;
+    bool optional;
+    for (; form_next(function, &form, &index, &optional); count++) {
+        if (fit.leading == count && looks_like(L, first + count, function->parameters[index].kind))
+            fit.leading++;
+    }
+    fit.difference = given < count ? count - given : given - count;
+    return fit;
+}
+
+static bool fits_better(struct fit a, struct fit b) {
+    return a.leading != b.leading ? a.leading > b.leading : a.difference < b.difference;
+}
+
+/* The first argument fits no form: say what any of them would take. */
+_Noreturn static void no_form_fits(struct context *c, const struct function *function, int first) {
+    char names[256] = "", words[512] = "";
+    for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
+        const char *form = function->forms[k];
+        int index = 0;
+        bool optional, known = false;
+        form_next(function, &form, &index, &optional);
+        const struct parameter *p = &function->parameters[index];
+        for (int earlier = 0; earlier < k; earlier++) {
+            const char *other = function->forms[earlier];
+            int other_index = 0;
+            form_next(function, &other, &other_index, &optional);
+            known = known || other_index == index;
+        }
+        if (known)
+            continue;
+        const char *separator = k == 0 ? "" : " or ";
+        snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", separator, p->name);
+        snprintf(words + strlen(words), sizeof words - strlen(words), "%s%s", separator, kind_words(p->kind));
+    }
+    if (lua_isnoneornil(c->lua, first))
+        context_raise(c, "%s is missing", names);
+    context_raise(c, "%s must be %s, not %s", names, words, value_words(c->lua, first));
+}
+
+static bool read_positional(struct context *c, const struct function *function, int first, struct value *args) {
+    lua_State *L = c->lua;
+    const char *best = function->forms[0];
+    struct fit best_fit = form_fit(L, function, best, first);
+    for (int k = 1; k < FORM_LIMIT && function->forms[k]; k++) {
+        struct fit fit = form_fit(L, function, function->forms[k], first);
+        if (fits_better(fit, best_fit)) {
+            best_fit = fit;
+            best = function->forms[k];
+        }
+    }
+    int index = 0, place = first;
+    bool optional;
+    for (const char *form = best; form_next(function, &form, &index, &optional); place++) {
+        /* The name is told in messages about the arguments after it. */
+        if (function->parameters[index].kind == KIND_TEXT && function->owner == OWNER_GR && lua_isstring(L, place))
+            c->subject = read_text(c, place, &(struct place){.parameter = &function->parameters[index]});
+    }
+    if (best_fit.leading == 0 && function->forms[1])
+        no_form_fits(c, function, first);
+    place = first;
+    for (const char *form = best; form_next(function, &form, &index, &optional); place++) {
+        const struct parameter *p = &function->parameters[index];
+        if (!optional && lua_isnoneornil(L, place))
+            context_raise(c, "%s is missing", p->name);
+        if (!read_parameter(c, place, p, &args[index]))
+            return false;
+    }
+    if (lua_gettop(L) >= place)
+        context_warn_once(c, WARNED_EXTRA, "arguments after %s are ignored", function->parameters[index].name);
+    return true;
+}
+
+/* An unknown field is an error: the first in byte order, so that the message is the same every time. */
+static void check_fields(struct context *c, const struct function *function, int table) {
+    lua_State *L = c->lua;
+    const char *unknown = NULL;
+    int skip = function->owner == OWNER_NODE; /* `self` is no field */
+    for (lua_pushnil(L); lua_next(L, table); lua_pop(L, 1)) {
+        if (lua_type(L, -2) != LUA_TSTRING)
+            context_raise(c, "fields need names, as in %s = ...", function->parameters[skip].name);
+        const char *field = lua_tostring(L, -2);
+        bool known = false;
+        for (int k = skip; k < function->parameter_count && !known; k++)
+            known = strcmp(function->parameters[k].name, field) == 0;
+        if (!known && (!unknown || strcmp(field, unknown) < 0))
+            unknown = field;
+    }
+    if (!unknown)
+        return;
+    struct suggestion suggestion;
+    suggest_begin(&suggestion, unknown);
+    for (int k = skip; k < function->parameter_count; k++)
+        suggest_offer(&suggestion, function->parameters[k].name);
+    if (suggestion.best)
+        context_raise(c, "unknown field '%.100s'; did you mean '%s'?", unknown, suggestion.best);
+    context_raise(c, "unknown field '%.100s'", unknown);
+}
+
+static bool read_named(struct context *c, const struct function *function, int table, struct value *args) {
+    lua_State *L = c->lua;
+    int value = lua_gettop(L) + 1;
+    for (int k = 0; k < function->parameter_count; k++) {
+        const struct parameter *p = &function->parameters[k];
+        if (p->kind != KIND_TEXT || function->owner == OWNER_NODE)
+            continue;
+        lua_pushstring(L, p->name);
+        if (lua_rawget(L, table) == LUA_TSTRING)
+            c->subject = lua_tostring(L, value);
+        lua_pop(L, 1);
+    }
+    check_fields(c, function, table);
+    for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
+        const struct parameter *p = &function->parameters[k];
+        lua_pushstring(L, p->name);
+        if (lua_rawget(L, table) == LUA_TNIL && !(p->flags & OPTIONAL))
+            context_raise(c, "%s is missing", p->name);
+        if (!read_parameter(c, value, p, &args[k]))
+            return false;
+        lua_pop(L, 1); /* the table keeps it */
+    }
+    return true;
+}
+
+/* One plain table without an entry 1 holds named fields. Of the methods only node:render has that form: the others take
+ * tuples or handles. */
+static bool is_table_form(lua_State *L, const struct function *function, int first) {
+    if (lua_gettop(L) != first || !lua_istable(L, first))
+        return false;
+    if (function->owner == OWNER_NODE && function->result != RESULT_NOTHING)
+        return false;
+    bool named = lua_rawgeti(L, first, 1) == LUA_TNIL;
+    lua_pop(L, 1);
+    return named;
+}
+
+bool arguments_read(struct context *context, const struct function *function, int first, struct value *args) {
+    if (is_table_form(context->lua, function, first))
+        return read_named(context, function, first, args);
+    return read_positional(context, function, first, args);
+}

@@ -1,0 +1,104 @@
+/* Places, warnings and errors of a running script. A place is the nearest Lua function on the stack with a known line,
+ * so that gr functions called through pcall or other C functions still name the script's line. */
+#include "script/context.h"
+
+#include <lauxlib.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+struct context *context_of(lua_State *L) {
+    return *(struct context **)lua_getextraspace(L);
+}
+
+void context_where(const struct context *context, char *out, size_t size) {
+    lua_Debug place;
+    for (int level = 0; context->lua && lua_getstack(context->lua, level, &place); level++) {
+        lua_getinfo(context->lua, "Sl", &place);
+        if (place.currentline <= 0)
+            continue;
+        const char *name = place.source[0] == '@' ? place.source + 1 : place.short_src;
+        snprintf(out, size, "%s:%d: ", name, place.currentline);
+        return;
+    }
+    snprintf(out, size, "%s: ", context->path);
+}
+
+const char *function_title(const struct function *function, char out[96]) {
+    snprintf(out, 96, "%s%s", function->owner == OWNER_GR ? "gr." : "node:", function->name);
+    return out;
+}
+
+/* "gr.sphere: TEXT (node 'eye')" */
+static void compose(const struct context *context, const char *text, char *out, size_t size) {
+    char title[96] = "";
+    if (context->function)
+        function_title(context->function, title);
+    size_t used = (size_t)snprintf(out, size, "%s%s%s", title, context->function ? ": " : "", text);
+    if (context->subject && used < size)
+        snprintf(out + used, size - used, " (node '%.200s')", context->subject);
+}
+
+static void warn(struct context *context, const char *format, va_list arguments) {
+    char text[1024], where[PATH_SIZE + 32], line[1536], message[PATH_SIZE + 2048];
+    vsnprintf(text, sizeof text, format, arguments);
+    compose(context, text, line, sizeof line);
+    context_where(context, where, sizeof where);
+    snprintf(message, sizeof message, "%swarning: %s", where, line);
+    context->host->message(context->host->context, SCRIPT_WARNING, message);
+}
+
+void context_warn(struct context *context, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    warn(context, format, arguments);
+    va_end(arguments);
+}
+
+void context_warn_once(struct context *context, unsigned bit, const char *format, ...) {
+    uint8_t *bits = &context->warned[context->function - function_table];
+    if (*bits & bit)
+        return;
+    *bits = (uint8_t)(*bits | bit);
+    va_list arguments;
+    va_start(arguments, format);
+    warn(context, format, arguments);
+    va_end(arguments);
+}
+
+_Noreturn static void raise_text(struct context *context, const char *text) {
+    char where[PATH_SIZE + 32];
+    context_where(context, where, sizeof where);
+    lua_pushfstring(context->lua, "%s%s", where, text);
+    lua_error(context->lua);
+    __builtin_unreachable();
+}
+
+void context_raise(struct context *context, const char *format, ...) {
+    char text[1024], line[1536];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    compose(context, text, line, sizeof line);
+    raise_text(context, line);
+}
+
+void context_raise_fatal(lua_State *L) {
+    lua_pushlightuserdata(L, context_of(L));
+    lua_error(L);
+    __builtin_unreachable();
+}
+
+void context_raise_error(struct context *context, const struct error *error) {
+    if (error->kind == ERROR_SCENE)
+        context_raise(context, "%s", error->text);
+    context->fatal = *error;
+    context_raise_fatal(context->lua);
+}
+
+void context_raise_no_memory(struct context *context) {
+    struct error error;
+    error_no_memory(&error, context->function ? context->function->name : "the script");
+    context_raise_error(context, &error);
+}

@@ -1,0 +1,122 @@
+/* What one run of a script carries along: the Lua state, the scene it builds, the host it talks to. Private to
+ * src/script.
+ *
+ * How errors travel. An ordinary error is a Lua error with the complete first line as its string. What a script must
+ * not catch (out of memory, cancelled, os.exit) is kept in `fatal` and `ended` while a light userdata is raised;
+ * whatever could catch it (pcall, xpcall, coroutine.resume, load ...) is replaced by a version that raises it again
+ * (protect.c). */
+#ifndef GRAY_SCRIPT_CONTEXT_H
+#define GRAY_SCRIPT_CONTEXT_H
+
+#include "script/script.h"
+#include "script/table.h"
+
+#include <lua.h>
+
+enum { PATH_SIZE = 4096, FILE_LIMIT = 1 << 28 };
+
+enum handle_type { HANDLE_NODE, HANDLE_MATERIAL, HANDLE_LIGHT, HANDLE_TEXTURE, HANDLE_GHOST, HANDLE_TYPES };
+
+/* What a userdata of ours holds; no finalizer. The serial gives tables with handles as keys a fixed order. */
+struct handle {
+    enum handle_type type;
+    uint32_t serial;
+    void *pointer;
+};
+
+/* Every file whose text was given to Lua, newest first: Lua shortens long names in messages, these are the full ones.
+ */
+struct source_name {
+    const char *path;
+    struct source_name *next;
+};
+
+struct context {
+    lua_State *lua; /* the thread that called last */
+    const struct script_options *options;
+    const struct script_host *host;
+    struct scene scene;
+    struct arena keep;      /* lives as long as the context */
+    struct arena call;      /* arguments of one call */
+    struct arena *out;      /* the caller's: the traceback goes there */
+    const char *path;       /* the scene as the user named it */
+    char folder[PATH_SIZE]; /* its folder with a final slash, or "" */
+    struct source_name *sources;
+    const void *metatables[HANDLE_TYPES];
+    uint32_t handle_count;
+    const struct function *function; /* the one that runs */
+    const char *subject;             /* the node it is about, or NULL */
+    uint8_t *warned;                 /* WARNED_ bits by row of the table */
+    bool number_repaired;            /* the notice about ".0" was given */
+    struct error fatal;
+    bool ended; /* os.exit was called and all is well */
+    const char *traceback;
+    struct error failure; /* what the message handler made of a script error */
+};
+
+enum { WARNED_EXTRA = 1, WARNED_SINCE = 2, WARNED_OTHER = 4 };
+
+struct context *context_of(lua_State *L);
+
+/* "scene.lua:12: " of the nearest Lua function on the stack, or "scene.lua: ". */
+void context_where(const struct context *context, char *out, size_t size);
+/* "scene.lua:12: warning: gr.sphere: TEXT (node 'x')" to the host. */
+void context_warn(struct context *context, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void context_warn_once(struct context *context, unsigned bit, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* "gr.sphere" or "node:scale". */
+const char *function_title(const struct function *function, char out[96]);
+
+/* Raise "scene.lua:12: gr.sphere: TEXT (node 'x')". */
+_Noreturn void context_raise(struct context *context, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Raises an error of the middle paragraph: script errors as above, others so that no script catches them. */
+_Noreturn void context_raise_error(struct context *context, const struct error *error);
+_Noreturn void context_raise_fatal(lua_State *L);
+_Noreturn void context_raise_no_memory(struct context *context);
+
+/* handles.c */
+void handles_open(lua_State *L);
+void handle_push(lua_State *L, enum handle_type type, void *pointer);
+/* The handle at a stack index, or NULL when there is something else. */
+const struct handle *handle_at(lua_State *L, int index);
+const char *handle_words(enum handle_type type);
+const void *handle_key(enum handle_type type); /* the metatable stands in the registry under this pointer */
+/* The name of what stands at an index: "a number", "a material", "nothing". */
+const char *value_words(lua_State *L, int index);
+
+/* dispatch.c */
+void dispatch_open(lua_State *L); /* the global gr */
+
+/* arguments.c: the first paragraph; may raise. Reads into args[0 .. parameter_count-1]. False: an argument is a ghost,
+ * so the call is left undone. `first` is the stack index of the first argument. */
+bool arguments_read(struct context *context, const struct function *function, int first, struct value *args);
+
+/* suggest.c: the nearest of the words by Damerau-Levenshtein distance when it is near enough, else NULL. */
+struct suggestion {
+    const char *word, *best;
+    size_t distance;
+};
+void suggest_begin(struct suggestion *suggestion, const char *word);
+void suggest_offer(struct suggestion *suggestion, const char *candidate);
+
+/* files.c */
+void files_open(lua_State *L);
+/* Looks for a file the scene names; SPEC 2.3. */
+bool files_find(struct context *context, const char *name, char out[PATH_SIZE]);
+/* The same with the number in its name repaired, and with an error that tells where it was looked for. */
+bool files_require(struct context *context, const char *name, char out[PATH_SIZE], struct error *error);
+/* Drops the ".0" of whole numbers. The same pointer when there was none; NULL without memory. */
+const char *files_repair_number(struct context *context, const char *name);
+/* Loads a Lua file as text: pushes the chunk or a message and answers with the status. Raises what cannot be caught. */
+int files_load(lua_State *L, const char *path);
+/* The names Lua shortened are written out again at the start of a message. */
+const char *files_unshorten(struct context *context, const char *message); /* NULL without memory */
+
+/* Others that add to a fresh state. All run protected and may raise. */
+void sandbox_open(lua_State *L);  /* sandbox.c: the libraries, less what a stranger's script must not have */
+void protect_open(lua_State *L);  /* protect.c */
+void compat_open(lua_State *L);   /* compat.c: old Lua */
+void traverse_open(lua_State *L); /* traverse.c: pairs in a fixed order */
+void define_open(lua_State *L);   /* define.c: -D */
+
+#endif

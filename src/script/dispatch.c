@@ -1,0 +1,213 @@
+/* The one C function behind every gr function and node method: reads the arguments as the table's row says, runs the
+ * row's plain C function, answers. Names that do not exist are errors with a suggestion, or with --lenient ghosts. */
+#include "script/context.h"
+
+#include "base/version.h"
+
+#include <lauxlib.h>
+#include <string.h>
+
+_Static_assert(RESULT_TEXTURE == 5, "a new result kind needs its line in answer()");
+
+static int answer(lua_State *L, const struct function *function, const struct result *result) {
+    switch (function->result) {
+    case RESULT_NOTHING:
+        return 0;
+    case RESULT_SELF:
+        lua_pushvalue(L, 1);
+        return 1;
+    case RESULT_NODE:
+        handle_push(L, HANDLE_NODE, result->pointer);
+        return 1;
+    case RESULT_MATERIAL:
+        handle_push(L, HANDLE_MATERIAL, result->pointer);
+        return 1;
+    case RESULT_LIGHT:
+        handle_push(L, HANDLE_LIGHT, result->pointer);
+        return 1;
+    case RESULT_TEXTURE:
+        handle_push(L, HANDLE_TEXTURE, result->pointer);
+        return 1;
+    }
+    return 0;
+}
+
+static int answer_ghost(lua_State *L, const struct function *function) {
+    if (function->result == RESULT_NOTHING)
+        return 0;
+    if (function->result == RESULT_SELF)
+        lua_pushvalue(L, 1);
+    else
+        handle_push(L, HANDLE_GHOST, NULL);
+    return 1;
+}
+
+/* The node in front of the colon; NULL for a ghost. */
+static struct node *self_of(struct context *c, const struct function *function) {
+    const struct handle *handle = handle_at(c->lua, 1);
+    if (handle && handle->type == HANDLE_GHOST)
+        return NULL;
+    if (!handle || handle->type != HANDLE_NODE) {
+        const char *given = value_words(c->lua, 1);
+        char title[96];
+        c->function = NULL;
+        context_raise(c, "%s must be called with a colon on a node, as in n:%s(...), not on %s",
+                      function_title(function, title), function->name, given);
+    }
+    return handle->pointer;
+}
+
+static int dispatch(lua_State *L) {
+    const struct function *function = lua_touserdata(L, lua_upvalueindex(1));
+    struct context *c = context_of(L);
+    struct value args[PARAMETER_LIMIT];
+    if (c->ended || c->fatal.kind != ERROR_NONE) /* a finalizer of the script, after its end */
+        context_raise_fatal(L);
+    memset(args, 0, (size_t)function->parameter_count * sizeof *args);
+    c->lua = L;
+    c->function = function;
+    c->subject = NULL;
+    arena_reset(&c->call);
+
+    int first = 1;
+    if (function->owner == OWNER_NODE) {
+        struct node *node = self_of(c, function);
+        if (!node)
+            return answer_ghost(L, function);
+        args[0] = (struct value){.given = true, .node = node};
+        c->subject = node->name;
+        first = 2;
+    }
+    if (function->since) {
+        char title[96];
+        if (!c->options->lenient) {
+            c->function = NULL;
+            context_raise(c, "%s comes with version %s (this is %s)", function_title(function, title), function->since,
+                          GRAY_VERSION);
+        }
+        context_warn_once(c, WARNED_SINCE, "comes with version %s and is ignored", function->since);
+        return answer_ghost(L, function);
+    }
+    if (!arguments_read(c, function, first, args))
+        return answer_ghost(L, function);
+
+    struct result result = {0};
+    struct error error = {0};
+    if (!function->run(c, args, &result, &error))
+        context_raise_error(c, &error);
+    return answer(L, function, &result);
+}
+
+/* What a name that does not exist becomes: a function that does nothing and returns a ghost. */
+static int ghost_call(lua_State *L) {
+    const struct handle *self = handle_at(L, 1);
+    if (self && self->type == HANDLE_NODE && lua_toboolean(L, lua_upvalueindex(1)))
+        lua_pushvalue(L, 1);
+    else
+        handle_push(L, HANDLE_GHOST, NULL);
+    return 1;
+}
+
+static void no_such_name(struct context *c, enum owner owner, const char *name) {
+    const char *before = owner == OWNER_GR ? "gr." : "node:";
+    c->function = NULL;
+    if (c->options->lenient) {
+        context_warn(c, "%s%.100s does not exist and is ignored", before, name);
+        return;
+    }
+    struct suggestion suggestion;
+    suggest_begin(&suggestion, name);
+    for (int k = 0; k < function_count; k++)
+        if (function_table[k].owner == owner)
+            suggest_offer(&suggestion, function_table[k].name);
+    if (suggestion.best)
+        context_raise(c, "%s%.100s does not exist; did you mean %s%s?", before, name, before, suggestion.best);
+    context_raise(c, "%s%.100s does not exist", before, name);
+}
+
+/* gr.NAME where there is none. With --lenient the ghost is kept in the table, so the warning comes once. */
+static int missing_function(lua_State *L) {
+    struct context *c = context_of(L);
+    c->lua = L;
+    c->subject = NULL;
+    if (lua_type(L, 2) != LUA_TSTRING) {
+        lua_pushnil(L);
+        return 1;
+    }
+    no_such_name(c, OWNER_GR, lua_tostring(L, 2));
+    lua_settop(L, 2);
+    lua_pushboolean(L, 0);
+    lua_pushcclosure(L, ghost_call, 1);
+    lua_pushvalue(L, 2);
+    lua_pushvalue(L, 3);
+    lua_rawset(L, 1);
+    return 1;
+}
+
+/* node.NAME: the methods; upvalue 1 is their table. */
+static int node_index(lua_State *L) {
+    lua_settop(L, 2);
+    lua_pushvalue(L, 2);
+    if (lua_rawget(L, lua_upvalueindex(1)) != LUA_TNIL)
+        return 1;
+    struct context *c = context_of(L);
+    c->lua = L;
+    const struct handle *handle = handle_at(L, 1);
+    c->subject = handle && handle->type == HANDLE_NODE ? ((const struct node *)handle->pointer)->name : NULL;
+    if (lua_type(L, 2) != LUA_TSTRING)
+        return 1;
+    no_such_name(c, OWNER_NODE, lua_tostring(L, 2));
+    lua_settop(L, 2);
+    lua_pushboolean(L, 1);
+    lua_pushcclosure(L, ghost_call, 1);
+    lua_pushvalue(L, 2);
+    lua_pushvalue(L, 3);
+    lua_rawset(L, lua_upvalueindex(1));
+    return 1;
+}
+
+static int ghost_index(lua_State *L) {
+    lua_pushboolean(L, 0);
+    lua_pushcclosure(L, ghost_call, 1);
+    return 1;
+}
+
+static void push_functions(lua_State *L, enum owner owner) {
+    lua_createtable(L, 0, function_count);
+    for (int k = 0; k < function_count; k++) {
+        if (function_table[k].owner != owner)
+            continue;
+        lua_pushlightuserdata(L, (void *)(uintptr_t)&function_table[k]);
+        lua_pushcclosure(L, dispatch, 1);
+        lua_setfield(L, -2, function_table[k].name);
+    }
+}
+
+static void set_index(lua_State *L, const void *metatable_key, lua_CFunction function, int upvalues) {
+    lua_pushcclosure(L, function, upvalues);
+    lua_rawgetp(L, LUA_REGISTRYINDEX, metatable_key);
+    lua_insert(L, -2);
+    lua_setfield(L, -2, "__index");
+    lua_pop(L, 1);
+}
+
+void dispatch_open(lua_State *L) {
+    push_functions(L, OWNER_NODE);
+    set_index(L, handle_key(HANDLE_NODE), node_index, 1);
+    set_index(L, handle_key(HANDLE_GHOST), ghost_index, 0);
+
+    push_functions(L, OWNER_GR);
+    lua_pushstring(L, GRAY_VERSION);
+    lua_setfield(L, -2, "version");
+    lua_createtable(L, 0, 2);
+    lua_pushcfunction(L, missing_function);
+    lua_setfield(L, -2, "__index");
+    lua_pushboolean(L, 0);
+    lua_setfield(L, -2, "__metatable");
+    lua_setmetatable(L, -2);
+    lua_getfield(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
+    lua_pushvalue(L, -2);
+    lua_setfield(L, -2, "gr");
+    lua_pop(L, 1);
+    lua_setglobal(L, "gr");
+}

@@ -1,0 +1,289 @@
+/* The table as documents: the manual page's list of functions (plain text, 100 columns) and the annotation file for
+ * editors (LuaLS, `---@meta`). Text grows in the caller's arena; NULL without memory. */
+#include "script/context.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { COLUMNS = 100, LINE_SIZE = 1024 };
+
+/* Text that grows by doubling; abandoned blocks stay in the arena, at most as much again. */
+struct document {
+    struct arena *arena;
+    char *text;
+    size_t used, capacity;
+    bool failed;
+};
+
+__attribute__((format(printf, 2, 3))) static void add(struct document *document, const char *format, ...) {
+    char line[LINE_SIZE];
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    size_t size = length < (int)sizeof line ? (size_t)length : sizeof line - 1;
+    if (document->used + size + 1 > document->capacity) {
+        size_t capacity = 2 * document->capacity + LINE_SIZE;
+        char *grown = arena_alloc(document->arena, capacity);
+        if (!grown) {
+            document->failed = true;
+            document->used = document->capacity = 0;
+            return;
+        }
+        if (document->used > 0)
+            memcpy(grown, document->text, document->used);
+        document->text = grown;
+        document->capacity = capacity;
+    }
+    memcpy(document->text + document->used, line, size + 1);
+    document->used += size;
+}
+
+/* Words filled into lines of COLUMNS, every line but the first indented; `column` is where the first one begins. */
+static void add_filled(struct document *document, int indent, int column, const char *text) {
+    bool first = true;
+    while (*text) {
+        int length = (int)strcspn(text, " ");
+        if (!first && column + 1 + length > COLUMNS) {
+            add(document, "\n%*s", indent, "");
+            column = indent;
+        } else if (!first) {
+            add(document, " ");
+            column++;
+        }
+        first = false;
+        add(document, "%.*s", length, text);
+        column += length;
+        text += length;
+        while (*text == ' ')
+            text++;
+    }
+    add(document, "\n");
+}
+
+/* "> 0 and < 180", or "". */
+static void range_words(const struct parameter *p, char *out, size_t size) {
+    out[0] = '\0';
+    if (p->low == 0 && p->high == 0) {
+        snprintf(out, size, "%s", p->flags & NOT_ZERO ? "not 0" : "");
+        return;
+    }
+    bool high = p->high < (double)INFINITY;
+    if (high && !(p->flags & (LOW_OPEN | HIGH_OPEN)) && p->low >= 0)
+        snprintf(out, size, "%.15g to %.15g", p->low, p->high);
+    else if (high)
+        snprintf(out, size, "%s %.15g and %s %.15g", p->flags & LOW_OPEN ? ">" : ">=", p->low,
+                 p->flags & HIGH_OPEN ? "<" : "<=", p->high);
+    else
+        snprintf(out, size, "%s %.15g", p->flags & LOW_OPEN ? ">" : ">=", p->low);
+}
+
+static void choices_words(const struct parameter *p, char separator, char *out, size_t size) {
+    size_t used = 0;
+    out[0] = '\0';
+    for (const char *word = p->choices; word && *word;) {
+        int length = (int)strcspn(word, " ");
+        used += (size_t)snprintf(out + used, size - used, "%s'%.*s'", used == 0 ? "" : (char[2]){separator, '\0'},
+                                 length, word);
+        word += length + (word[length] == ' ');
+    }
+}
+
+/* "radius (a number, > 0; default 1): Radius." */
+static void describe_parameter(const struct parameter *p, char out[LINE_SIZE]) {
+    char range[96], choices[200];
+    range_words(p, range, sizeof range);
+    choices_words(p, '|', choices, sizeof choices);
+    size_t used =
+        (size_t)snprintf(out, LINE_SIZE, "%s (%s", p->name, p->kind == KIND_CHOICE ? choices : kind_words(p->kind));
+    if (range[0])
+        used += (size_t)snprintf(out + used, LINE_SIZE - used, ", %s", range);
+    if (p->unit)
+        used += (size_t)snprintf(out + used, LINE_SIZE - used, ", in %s", p->unit);
+    if (p->fallback)
+        used += (size_t)snprintf(out + used, LINE_SIZE - used, "; default %s", p->fallback);
+    else if (p->flags & OPTIONAL)
+        used += (size_t)snprintf(out + used, LINE_SIZE - used, "; optional");
+    snprintf(out + used, LINE_SIZE - used, "): %s", p->help);
+}
+
+static bool has_table_form(const struct function *function) {
+    return function->owner == OWNER_GR || function->result == RESULT_NOTHING;
+}
+
+static void write_function(struct document *document, const struct function *function) {
+    char title[96];
+    function_title(function, title);
+    for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
+        const char *form = function->forms[k], *separator = "";
+        int index;
+        bool optional;
+        add(document, "%s(", title);
+        while (form_next(function, &form, &index, &optional)) {
+            add(document, "%s%s%s", separator, function->parameters[index].name, optional ? "?" : "");
+            separator = ", ";
+        }
+        add(document, ")\n");
+    }
+    if (has_table_form(function) && !function->since)
+        add(document, "%s{%s = ..., ...}\n", title, function->parameters[function->owner == OWNER_NODE].name);
+    add(document, "    ");
+    add_filled(document, 4, 4, function->help);
+    if (function->since)
+        add(document, "    Comes with version %s.\n", function->since);
+    for (int k = function->owner == OWNER_NODE; k < function->parameter_count && !function->since; k++) {
+        char line[LINE_SIZE];
+        describe_parameter(&function->parameters[k], line);
+        add(document, "      ");
+        add_filled(document, 10, 6, line);
+    }
+    add(document, "\n");
+}
+
+const char *script_manual(struct arena *arena) {
+    struct document document = {.arena = arena};
+    for (int k = 0; k < function_count; k++)
+        write_function(&document, &function_table[k]);
+    return document.failed ? NULL : document.text;
+}
+
+static const char *annotation_type(const struct parameter *p, char out[200]) {
+    switch (p->kind) {
+    case KIND_NUMBER:
+        return "number";
+    case KIND_WHOLE:
+        return "integer";
+    case KIND_BOOLEAN:
+        return "boolean";
+    case KIND_TEXT:
+    case KIND_FILE:
+    case KIND_OUTPUT:
+        return "string";
+    case KIND_CHOICE:
+    case KIND_AXIS:
+        choices_words(p, '|', out, 200);
+        return out;
+    case KIND_POINT:
+    case KIND_DIRECTION:
+    case KIND_COLOUR:
+    case KIND_TRIPLE:
+        return "gr.triple";
+    case KIND_SIZE:
+        return "number|gr.triple";
+    case KIND_NODE:
+        return "gr.node";
+    case KIND_MATERIAL:
+        return "gr.material";
+    case KIND_IMAGE:
+        return "string|gr.texture";
+    case KIND_BACKGROUND:
+        return "gr.triple|'gradient'";
+    case KIND_NODES:
+        return "gr.node[]";
+    case KIND_LIGHTS:
+        return "gr.light[]";
+    case KIND_POINTS:
+        return "gr.triple[]";
+    case KIND_PAIRS:
+        return "number[][]";
+    case KIND_FACES:
+        return "integer[][]";
+    case KIND_COUNT:
+        break;
+    }
+    return "any";
+}
+
+static const char *annotation_result(const struct function *function) {
+    switch (function->result) {
+    case RESULT_NOTHING:
+        return NULL;
+    case RESULT_SELF:
+    case RESULT_NODE:
+        return "gr.node";
+    case RESULT_MATERIAL:
+        return "gr.material";
+    case RESULT_LIGHT:
+        return "gr.light";
+    case RESULT_TEXTURE:
+        return "gr.texture";
+    }
+    return NULL;
+}
+
+static void annotate_fields(struct document *document, const struct function *function) {
+    add(document, "---@class gr.%s.fields\n", function->name);
+    for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
+        const struct parameter *p = &function->parameters[k];
+        char type[200], line[LINE_SIZE];
+        describe_parameter(p, line);
+        add(document, "---@field %s%s %s %s\n", p->name, p->flags & OPTIONAL ? "?" : "", annotation_type(p, type),
+            line);
+    }
+    add(document, "\n");
+}
+
+static void annotate_overload(struct document *document, const struct function *function, const char *form) {
+    const char *result = annotation_result(function), *separator = "";
+    int index;
+    bool optional;
+    add(document, "---@overload fun(");
+    if (function->owner == OWNER_NODE) {
+        add(document, "self: gr.node");
+        separator = ", ";
+    }
+    while (form_next(function, &form, &index, &optional)) {
+        char type[200];
+        const struct parameter *p = &function->parameters[index];
+        add(document, "%s%s%s: %s", separator, p->name, optional ? "?" : "", annotation_type(p, type));
+        separator = ", ";
+    }
+    add(document, ")%s%s\n", result ? ": " : "", result ? result : "");
+}
+
+static void annotate_function(struct document *document, const struct function *function) {
+    const char *form = function->forms[0], *result = annotation_result(function), *separator = "";
+    bool table_form = has_table_form(function) && !function->since, optional;
+    int index;
+    char names[LINE_SIZE] = "";
+    add(document, "---%s%s%s%s\n", function->help, function->since ? " Comes with version " : "",
+        function->since ? function->since : "", function->since ? "." : "");
+    while (form_next(function, &form, &index, &optional)) {
+        char type[200], line[LINE_SIZE];
+        const struct parameter *p = &function->parameters[index];
+        describe_parameter(p, line);
+        add(document, "---@param %s%s %s %s\n", p->name, optional ? "?" : "", annotation_type(p, type), line);
+        size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s%s", separator, p->name);
+        separator = ", ";
+    }
+    if (result)
+        add(document, "---@return %s\n", result);
+    for (int k = 1; k < FORM_LIMIT && function->forms[k]; k++)
+        annotate_overload(document, function, function->forms[k]);
+    if (table_form)
+        add(document, "---@overload fun(%sfields: gr.%s.fields)%s%s\n",
+            function->owner == OWNER_NODE ? "self: gr.node, " : "", function->name, result ? ": " : "",
+            result ? result : "");
+    add(document, "function %s%s(%s) end\n\n", function->owner == OWNER_GR ? "gr." : "node:", function->name, names);
+}
+
+const char *script_annotations(struct arena *arena) {
+    struct document document = {.arena = arena};
+    add(&document,
+        "---@meta\n\n"
+        "-- The gr functions for editors that understand LuaLS annotations. Written by `gray --annotations` from\n"
+        "-- the table in src/script/table.c; a test checks that it is current.\n\n"
+        "---@alias gr.triple number[] three numbers: a point, a direction, a colour\n"
+        "---@class gr.material\n---@class gr.light\n---@class gr.texture\n---@class gr.node\n"
+        "local node = {}\n\ngr = {}\n\n---The version of the renderer.\ngr.version = ''\n\n");
+    for (int k = 0; k < function_count; k++) {
+        const struct function *function = &function_table[k];
+        if (function->owner == OWNER_GR && has_table_form(function) && !function->since)
+            annotate_fields(&document, function);
+        annotate_function(&document, function);
+    }
+    return document.failed ? NULL : document.text;
+}

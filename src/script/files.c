@@ -1,0 +1,296 @@
+/* Files a script names: Lua files through require, dofile and loadfile, meshes and images. Everything is read through
+ * base/file.h. Where a relative name is looked for (SPEC 2.3): the scene's folder, the working directory, Assets/
+ * beside and above the scene, and the bare file name in the scene's folder. */
+#include "script/context.h"
+
+#include "base/file.h"
+
+#include <lauxlib.h>
+#include <stdio.h>
+#include <string.h>
+
+static bool try_file(char out[PATH_SIZE], const char *folder, const char *between, const char *name) {
+    int length = snprintf(out, PATH_SIZE, "%s%s%s", folder, between, name);
+    return length > 0 && length < PATH_SIZE && file_is_regular(out);
+}
+
+bool files_find(struct context *context, const char *name, char out[PATH_SIZE]) {
+    if (name[0] == '/')
+        return try_file(out, "", "", name);
+    const char *folder = context->folder, *slash = strrchr(name, '/');
+    return try_file(out, folder, "", name) || try_file(out, "", "", name) || try_file(out, folder, "Assets/", name) ||
+           try_file(out, folder, "../Assets/", name) || (slash && try_file(out, folder, "", slash + 1));
+}
+
+/* A digit, ".0", then no digit: how Lua 5.4 writes 3.0 where older ones wrote 3. */
+static bool is_tail(const char *start, const char *dot) {
+    bool digits = dot > start && dot[-1] >= '0' && dot[-1] <= '9';
+    return digits && dot[0] == '.' && dot[1] == '0' && !(dot[2] >= '0' && dot[2] <= '9');
+}
+
+const char *files_repair_number(struct context *context, const char *name) {
+    const char *dot = name;
+    while (*dot && !is_tail(name, dot))
+        dot++;
+    if (!*dot)
+        return name;
+    char *repaired = arena_alloc(&context->call, strlen(name) + 1);
+    if (!repaired)
+        return NULL;
+    char *to = repaired;
+    for (const char *from = name; *from;) {
+        if (is_tail(name, from))
+            from += 2;
+        else
+            *to++ = *from++;
+    }
+    if (!context->number_repaired) {
+        char where[PATH_SIZE + 32], text[2 * PATH_SIZE];
+        context->number_repaired = true;
+        context_where(context, where, sizeof where);
+        snprintf(text, sizeof text, "%s'%.1000s' is read as '%.1000s': whole numbers in file names lose their .0",
+                 where, name, repaired);
+        context->host->message(context->host->context, SCRIPT_NOTICE, text);
+    }
+    return repaired;
+}
+
+bool files_require(struct context *context, const char *name, char out[PATH_SIZE], struct error *error) {
+    if (files_find(context, name, out))
+        return true;
+    const char *repaired = files_repair_number(context, name);
+    if (!repaired)
+        return error_no_memory(error, "the name of a file");
+    if (repaired != name && files_find(context, repaired, out))
+        return true;
+    if (name[0] == '/')
+        return error_set(error, ERROR_SCENE, "cannot find '%s'", name);
+    const char *folder = context->folder;
+    int length = (int)strlen(folder);
+    if (length == 0)
+        return error_set(error, ERROR_SCENE, "cannot find '%s' (looked in ., Assets, ../Assets)", name);
+    return error_set(error, ERROR_SCENE, "cannot find '%s' (looked in %.*s, ., %sAssets, %s../Assets)", name,
+                     length - 1, folder, folder, folder);
+}
+
+/* Lua shortens a long file name to "..." and its tail, LUA_IDSIZE - 1 characters in all. */
+const char *files_unshorten(struct context *context, const char *message) {
+    enum { TAIL = LUA_IDSIZE - 4 };
+    if (strncmp(message, "...", 3) != 0)
+        return message;
+    for (const struct source_name *source = context->sources; source; source = source->next) {
+        size_t length = strlen(source->path);
+        if (length < LUA_IDSIZE || strncmp(message + 3, source->path + length - TAIL, TAIL) != 0)
+            continue;
+        if (message[3 + TAIL] == ':')
+            return arena_format(&context->keep, "%s%s", source->path, message + 3 + TAIL);
+    }
+    return message;
+}
+
+/* Pushes the chunk, or a message. Raises only before the file is mapped; nothing after that does, so it is unmapped. A
+ * first line that starts with # is left out, but not its end, so that line numbers stay right. */
+int files_load(lua_State *L, const char *path) {
+    struct context *context = context_of(L);
+    struct source_name *source = arena_alloc(&context->keep, sizeof *source);
+    char *name = source ? arena_format(&context->keep, "@%s", path) : NULL;
+    if (!name) {
+        lua_pushliteral(L, "not enough memory");
+        return LUA_ERRMEM;
+    }
+    *source = (struct source_name){.path = name + 1, .next = context->sources};
+    context->sources = source;
+    struct file_bytes bytes;
+    struct error error = {0};
+    if (!file_map(path, FILE_LIMIT, &bytes, &error)) {
+        if (error.kind != ERROR_SCENE) {
+            context->lua = L;
+            context->function = NULL;
+            context_raise_error(context, &error);
+        }
+        lua_pushstring(L, error.text);
+        return LUA_ERRFILE;
+    }
+    const char *text = (const char *)bytes.data;
+    size_t size = bytes.size;
+    if (size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0) {
+        text += 3;
+        size -= 3;
+    }
+    if (size > 0 && text[0] == '#') {
+        const char *end = memchr(text, '\n', size);
+        size -= end ? (size_t)(end - text) : size;
+        text = end ? end : text;
+    }
+    int status = luaL_loadbufferx(L, size > 0 ? text : "", size, name, "t");
+    file_unmap(&bytes);
+    return status;
+}
+
+/* "./mod.lua" is told as "mod.lua". */
+static const char *plain_path(const char *path) {
+    return path[0] == '.' && path[1] == '/' ? path + 2 : path;
+}
+
+/* The templates of package.path with `file` in the place of the question marks, the first that is there. */
+static bool find_on_path(const char *templates, const char *file, char path[PATH_SIZE]) {
+    for (const char *template = templates; *template;) {
+        size_t length = strcspn(template, ";"), used = 0;
+        for (size_t k = 0; k < length && used < PATH_SIZE; k++) {
+            if (template[k] == '?')
+                used += (size_t)snprintf(path + used, PATH_SIZE - used, "%s", file);
+            else
+                path[used++] = template[k];
+        }
+        template += length + (template[length] == ';');
+        if (used == 0 || used >= PATH_SIZE)
+            continue;
+        path[used] = '\0';
+        if (file_is_regular(path))
+            return true;
+    }
+    return false;
+}
+
+/* package.searchers[2]: Lua files along package.path. Upvalue 1: the package table. In the days of Lua 5.0 people wrote
+ * the .lua as well. */
+static int search_module(lua_State *L) {
+    struct context *context = context_of(L);
+    context->lua = L;
+    context->function = NULL;
+    context->subject = NULL;
+    const char *module = luaL_checkstring(L, 1);
+    lua_getfield(L, lua_upvalueindex(1), "path");
+    const char *templates = lua_tostring(L, -1);
+    if (!templates)
+        context_raise(context, "require: package.path must be a string");
+    char path[PATH_SIZE];
+    bool found = find_on_path(templates, luaL_gsub(L, module, ".", "/"), path);
+    size_t length = strlen(module);
+    if (!found && length > 4 && strcmp(module + length - 4, ".lua") == 0) {
+        lua_pushlstring(L, module, length - 4);
+        found = find_on_path(templates, lua_tostring(L, -1), path);
+    }
+    if (found) {
+        if (files_load(L, plain_path(path)) != LUA_OK)
+            return lua_error(L); /* the message names the file and its line */
+        lua_pushstring(L, plain_path(path));
+        return 2;
+    }
+    lua_getfield(L, lua_upvalueindex(1), "searchers");
+    if (lua_type(L, -1) == LUA_TTABLE &&
+        lua_rawlen(L, -1) > 2) { /* the script has added its own: they are asked next */
+        lua_pushfstring(L, "no file '%s.lua' on package.path", module);
+        return 1;
+    }
+    context_raise(context, "require: cannot find module '%.200s' (no such file on package.path)", module);
+}
+
+/* Index 1 holds a file name: finds it and loads it. */
+static int load_named(lua_State *L) {
+    struct context *context = context_of(L);
+    context->lua = L;
+    context->function = NULL;
+    context->subject = NULL;
+    arena_reset(&context->call);
+    char path[PATH_SIZE];
+    struct error error = {0};
+    if (files_require(context, luaL_checkstring(L, 1), path, &error))
+        return files_load(L, path);
+    lua_pushstring(L, error.text);
+    return LUA_ERRFILE;
+}
+
+static int dofile_continue(lua_State *L, int status, lua_KContext base) {
+    (void)status;
+    (void)base;
+    return lua_gettop(L) - 1;
+}
+
+static int file_do(lua_State *L) {
+    lua_settop(L, 1);
+    if (load_named(L) != LUA_OK) {
+        if (lua_type(L, -1) == LUA_TSTRING && strncmp(lua_tostring(L, -1), "cannot find", 11) == 0)
+            return luaL_error(L, "dofile: %s", lua_tostring(L, -1));
+        return lua_error(L);
+    }
+    lua_callk(L, 0, LUA_MULTRET, 0, dofile_continue);
+    return dofile_continue(L, 0, 0);
+}
+
+static int file_load(lua_State *L) {
+    bool has_environment = !lua_isnone(L, 3);
+    lua_settop(L, 3);
+    if (load_named(L) != LUA_OK) {
+        lua_pushnil(L);
+        lua_insert(L, -2);
+        return 2;
+    }
+    if (has_environment) {
+        lua_pushvalue(L, 3);
+        if (!lua_setupvalue(L, -2, 1))
+            lua_pop(L, 1);
+    }
+    return 1;
+}
+
+/* io.open, io.lines and io.input read relative names in the working directory first, as always, then where meshes and
+ * images are looked for. Upvalue 1: Lua's own function. Upvalue 2: whether argument 2 is a mode. */
+static int open_beside(lua_State *L) {
+    struct context *context = context_of(L);
+    const char *mode = lua_toboolean(L, lua_upvalueindex(2)) ? luaL_optstring(L, 2, "r") : "r";
+    if (lua_type(L, 1) == LUA_TSTRING && mode[0] == 'r' && !strchr(mode, '+')) {
+        char path[PATH_SIZE];
+        const char *name = lua_tostring(L, 1);
+        if (!file_is_regular(name) && files_find(context, name, path)) {
+            lua_pushstring(L, path);
+            lua_replace(L, 1);
+        }
+    }
+    lua_pushvalue(L, lua_upvalueindex(1));
+    lua_insert(L, 1);
+    lua_call(L, lua_gettop(L) - 1, LUA_MULTRET);
+    return lua_gettop(L);
+}
+
+static void wrap_io(lua_State *L, const char *name, bool has_mode) {
+    lua_getfield(L, -1, name);
+    lua_pushboolean(L, has_mode);
+    lua_pushcclosure(L, open_beside, 2);
+    lua_setfield(L, -2, name);
+}
+
+void files_open(lua_State *L) {
+    struct context *context = context_of(L);
+    lua_getglobal(L, "package");
+    lua_createtable(L, 2, 0);
+    lua_getfield(L, -2, "searchers");
+    lua_rawgeti(L, -1, 1); /* package.preload */
+    lua_rawseti(L, -3, 1);
+    lua_pop(L, 1);
+    lua_pushvalue(L, -2);
+    lua_pushcclosure(L, search_module, 1);
+    lua_rawseti(L, -2, 2);
+    lua_setfield(L, -2, "searchers");
+
+    const char *f = context->folder, *library = context->options->library_folder;
+    lua_pushfstring(L, "%s?.lua;%s?/init.lua;./?.lua;%slua/?.lua;%s../lua/?.lua", f, f, f, f);
+    if (library && library[0]) {
+        lua_pushfstring(L, "%s;%s/?.lua", lua_tostring(L, -1), library);
+        lua_remove(L, -2);
+    }
+    lua_setfield(L, -2, "path");
+    lua_pushliteral(L, "");
+    lua_setfield(L, -2, "cpath");
+    lua_pop(L, 1);
+
+    lua_pushcfunction(L, file_do);
+    lua_setglobal(L, "dofile");
+    lua_pushcfunction(L, file_load);
+    lua_setglobal(L, "loadfile");
+    lua_getglobal(L, "io");
+    wrap_io(L, "open", true);
+    wrap_io(L, "lines", false);
+    wrap_io(L, "input", false);
+    lua_pop(L, 1);
+}

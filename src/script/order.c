@@ -1,0 +1,424 @@
+/* Evidence for the order of transforms. Facts (SPEC 2.4): the convention of the course changed in autumn 2015 together
+ * with the stock scenes. Signs of the new one: names of the project dialect, tables with named fields, an explicit
+ * call, a mesh by file name, table.unpack. Signs of the old one, which count when there is none of those: readobj, a
+ * bare unpack, meshes given by vertex tables. A gr.mesh whose first argument is a material is project dialect.
+ *
+ * The lexer follows the Lua 5.4 manual, section 3.1, as far as comments, strings and names go. */
+#include "script/order.h"
+
+#include "base/arena.h"
+#include "base/file.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum {
+    PATHS = 4096,
+    SCENE_LIMIT = 1 << 26,
+    SIBLING_LIMIT = 1 << 20,
+    SIBLINGS = 300,
+    DEPTH = 8,
+    FILES = 64,
+    WINDOW = 8
+};
+enum token_kind { TOKEN_END, TOKEN_NAME, TOKEN_STRING, TOKEN_NUMBER, TOKEN_SYMBOL };
+
+struct token {
+    enum token_kind kind;
+    const char *text; /* without quotes */
+    size_t length;
+    int line;
+};
+
+struct lexer {
+    const char *at, *end;
+    int line;
+};
+
+static bool is_letter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+
+static bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+/* At "[": the level of a long bracket, or -1. */
+static int long_level(const struct lexer *lexer) {
+    const char *p = lexer->at + 1;
+    while (p < lexer->end && *p == '=')
+        p++;
+    return p < lexer->end && *p == '[' ? (int)(p - lexer->at - 1) : -1;
+}
+
+static struct token long_text(struct lexer *lexer, int level) {
+    lexer->at += level + 2;
+    struct token token = {TOKEN_STRING, lexer->at, 0, lexer->line};
+    for (; lexer->at < lexer->end; lexer->at++) {
+        if (*lexer->at == '\n')
+            lexer->line++;
+        if (*lexer->at != ']' || lexer->end - lexer->at < level + 2)
+            continue;
+        int k = 1;
+        while (k <= level && lexer->at[k] == '=')
+            k++;
+        if (k == level + 1 && lexer->at[k] == ']') {
+            token.length = (size_t)(lexer->at - token.text);
+            lexer->at += level + 2;
+            return token;
+        }
+    }
+    token.length = (size_t)(lexer->at - token.text);
+    return token;
+}
+
+static struct token quoted_text(struct lexer *lexer) {
+    char quote = *lexer->at++;
+    struct token token = {TOKEN_STRING, lexer->at, 0, lexer->line};
+    while (lexer->at < lexer->end && *lexer->at != quote && *lexer->at != '\n') {
+        if (*lexer->at == '\\' && lexer->at + 1 < lexer->end) {
+            lexer->at++;
+            if (*lexer->at == '\n')
+                lexer->line++;
+        }
+        lexer->at++;
+    }
+    token.length = (size_t)(lexer->at - token.text);
+    if (lexer->at < lexer->end)
+        lexer->at += *lexer->at == quote;
+    return token;
+}
+
+static void skip_line(struct lexer *lexer) {
+    while (lexer->at < lexer->end && *lexer->at != '\n')
+        lexer->at++;
+}
+
+static void skip_blanks_and_comments(struct lexer *lexer) {
+    while (lexer->at < lexer->end) {
+        char c = *lexer->at;
+        if (c == '\n')
+            lexer->line++;
+        if (c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v') {
+            lexer->at++;
+            continue;
+        }
+        if (c != '-' || lexer->end - lexer->at < 2 || lexer->at[1] != '-')
+            return;
+        lexer->at += 2;
+        int level = lexer->at < lexer->end && *lexer->at == '[' ? long_level(lexer) : -1;
+        if (level >= 0)
+            (void)long_text(lexer, level);
+        else
+            skip_line(lexer);
+    }
+}
+
+static struct token next_token(struct lexer *lexer) {
+    skip_blanks_and_comments(lexer);
+    struct token token = {TOKEN_END, lexer->at, 0, lexer->line};
+    if (lexer->at == lexer->end)
+        return token;
+    char c = *lexer->at;
+    if (c == '"' || c == '\'')
+        return quoted_text(lexer);
+    if (c == '[' && long_level(lexer) >= 0)
+        return long_text(lexer, long_level(lexer));
+    const char *p = lexer->at + 1;
+    if (is_letter(c) || is_digit(c)) {
+        token.kind = is_letter(c) ? TOKEN_NAME : TOKEN_NUMBER;
+        while (p < lexer->end && (is_letter(*p) || is_digit(*p) || (token.kind == TOKEN_NUMBER && *p == '.')))
+            p++;
+    } else {
+        token.kind = TOKEN_SYMBOL;
+    }
+    token.length = (size_t)(p - lexer->at);
+    lexer->at = p;
+    return token;
+}
+
+static bool is(const struct token *token, enum token_kind kind, const char *text) {
+    return token->kind == kind && strlen(text) == token->length && memcmp(token->text, text, token->length) == 0;
+}
+
+static bool is_symbol(const struct token *token, char c) {
+    return token->kind == TOKEN_SYMBOL && token->text[0] == c;
+}
+
+/* What has been seen so far, in all files. */
+struct evidence {
+    bool mentions_gr, is_new, is_old;
+    char new_reason[160], old_reason[160];
+};
+
+static void say_new(struct evidence *evidence, const char *what, int line) {
+    if (!evidence->is_new)
+        snprintf(evidence->new_reason, sizeof evidence->new_reason, "%s (line %d)", what, line);
+    evidence->is_new = true;
+}
+
+static void say_old(struct evidence *evidence, const char *what, int line) {
+    if (!evidence->is_old)
+        snprintf(evidence->old_reason, sizeof evidence->old_reason, "%s (line %d)", what, line);
+    evidence->is_old = true;
+}
+
+static bool is_project_name(const struct token *token) {
+    static const char *const names[] = {
+        "fast_mesh",         "vn_mesh",          "fast_vn_mesh",       "rr_material",        "marble_pnd_material",
+        "wood_pnd_material", "td_cube_material", "td_sphere_material", "difresnel_material", "difresneld_material",
+        "geometry",          "csg_union",        "csg_difference",     "csg_intersection",   "area_light",
+        "render_skybox"};
+    for (size_t k = 0; k < sizeof names / sizeof names[0]; k++)
+        if (is(token, TOKEN_NAME, names[k]))
+            return true;
+    return false;
+}
+
+/* Names that were given a material: `m = gr.material(...)`. */
+struct materials {
+    struct token names[64];
+    int count;
+};
+
+static bool is_material(const struct materials *materials, const struct token *token) {
+    for (int k = 0; k < materials->count; k++)
+        if (materials->names[k].length == token->length &&
+            memcmp(materials->names[k].text, token->text, token->length) == 0)
+            return token->kind == TOKEN_NAME;
+    return false;
+}
+
+/* The call of gr.mesh being read: which argument, how deep in brackets, what its first two arguments begin with. */
+struct mesh_call {
+    int depth; /* 0: none */
+    int argument, line;
+    bool at_start, material_first;
+    struct token second;
+};
+
+static void follow_mesh_call(struct mesh_call *call, const struct token *token, const struct materials *materials,
+                             struct evidence *evidence) {
+    bool starts = call->at_start;
+    call->at_start = false;
+    if (starts && call->argument == 1)
+        call->material_first = is_material(materials, token) || is(token, TOKEN_NAME, "gr");
+    if (starts && call->argument == 2) {
+        call->second = *token;
+        if (token->kind == TOKEN_STRING)
+            say_new(evidence, "gr.mesh reads a file", call->line);
+        else if (call->material_first)
+            say_new(evidence, "gr.mesh is given a material", call->line);
+        else if (is_symbol(token, '{'))
+            say_old(evidence, "gr.mesh is given vertex tables", call->line);
+    }
+    bool is_file = call->second.kind == TOKEN_STRING;
+    if (starts && call->argument == 3 && !is_file && !call->material_first && !is_symbol(token, ')'))
+        say_old(evidence, "gr.mesh is given vertex tables", call->line);
+    if (is_symbol(token, '(') || is_symbol(token, '{') || is_symbol(token, '['))
+        call->depth++;
+    if (is_symbol(token, ')') || is_symbol(token, '}') || is_symbol(token, ']'))
+        call->depth--;
+    if (is_symbol(token, ',') && call->depth == 1) {
+        call->argument++;
+        call->at_start = true;
+    }
+}
+
+/* One token with those before it: w[WINDOW - 1] is the newest. */
+static void judge(const struct token *w, struct evidence *evidence, struct materials *materials,
+                  struct mesh_call *call) {
+    const struct token *t = &w[WINDOW - 1];
+    bool after_dot = is_symbol(&w[WINDOW - 2], '.') || is_symbol(&w[WINDOW - 2], ':');
+    if (call->depth > 0)
+        follow_mesh_call(call, t, materials, evidence);
+    if (is(t, TOKEN_NAME, "gr") && !after_dot)
+        evidence->mentions_gr = true;
+    if (is(t, TOKEN_NAME, "readobj") && !after_dot)
+        say_old(evidence, "it uses readobj", t->line);
+    if (is(t, TOKEN_NAME, "unpack") && !after_dot)
+        say_old(evidence, "it calls unpack, not table.unpack", t->line);
+    if (is(t, TOKEN_NAME, "unpack") && after_dot && is(&w[WINDOW - 3], TOKEN_NAME, "table"))
+        say_new(evidence, "it uses table.unpack", t->line);
+
+    bool gr_dot = is_symbol(&w[WINDOW - 2], '.') && is(&w[WINDOW - 3], TOKEN_NAME, "gr");
+    if (gr_dot && is_project_name(t))
+        say_new(evidence, "it uses names of the project dialect", t->line);
+    if (gr_dot && is(t, TOKEN_NAME, "transform_order"))
+        say_new(evidence, "it calls gr.transform_order", t->line);
+    bool assigned = gr_dot && is_symbol(&w[WINDOW - 4], '=') && w[WINDOW - 5].kind == TOKEN_NAME;
+    if (assigned && is(t, TOKEN_NAME, "material") && materials->count < 64)
+        materials->names[materials->count++] = w[WINDOW - 5];
+
+    bool call_begins = is_symbol(&w[WINDOW - 3], '.') && is(&w[WINDOW - 4], TOKEN_NAME, "gr");
+    if (call_begins && is_symbol(t, '{'))
+        say_new(evidence, "it uses tables with named fields", t->line);
+    if (call_begins && is_symbol(t, '(') && is(&w[WINDOW - 2], TOKEN_NAME, "mesh") && call->depth == 0)
+        *call = (struct mesh_call){.depth = 1, .argument = 1, .line = t->line, .at_start = true};
+    bool primitive = is(&w[WINDOW - 3], TOKEN_NAME, "sphere") || is(&w[WINDOW - 3], TOKEN_NAME, "cube");
+    if (primitive && is_symbol(&w[WINDOW - 2], '(') && is_symbol(&w[WINDOW - 4], '.') && is_material(materials, t))
+        say_new(evidence, "a primitive is given its material", t->line);
+    bool named = is_symbol(t, '=') && w[WINDOW - 2].kind == TOKEN_NAME && is_symbol(&w[WINDOW - 3], '{') &&
+                 is_symbol(&w[WINDOW - 4], '(') && is_symbol(&w[WINDOW - 6], '.') &&
+                 is(&w[WINDOW - 7], TOKEN_NAME, "gr");
+    if (named)
+        say_new(evidence, "it uses tables with named fields", t->line);
+}
+
+/* The string of require 'x', require('x'), dofile ..., loadfile ... that the newest token completes. */
+static const struct token *required(const struct token *w, bool *is_module) {
+    const struct token *t = &w[WINDOW - 1], *name = &w[WINDOW - 2];
+    if (t->kind != TOKEN_STRING)
+        return NULL;
+    if (is_symbol(name, '('))
+        name = &w[WINDOW - 3];
+    *is_module = is(name, TOKEN_NAME, "require");
+    bool file = is(name, TOKEN_NAME, "dofile") || is(name, TOKEN_NAME, "loadfile");
+    return *is_module || file ? t : NULL;
+}
+
+struct search {
+    struct arena arena;
+    char folder[PATHS], library[PATHS]; /* the scene's with its final slash; the library's canonical one */
+    const char *visited[FILES];
+    int visited_count;
+    struct evidence evidence;
+    bool no_memory;
+};
+
+static void scan_file(struct search *search, const char *path, int depth);
+
+static bool try_path(char out[PATHS], const char *folder, const char *between, const char *name, const char *end) {
+    int length = snprintf(out, PATHS, "%s%s%s%s", folder, between, name, end);
+    return length > 0 && length < PATHS && file_is_regular(out);
+}
+
+static void follow(struct search *search, const struct token *token, bool is_module, int depth) {
+    char name[512], path[PATHS];
+    if (token->length >= sizeof name || token->length == 0)
+        return;
+    memcpy(name, token->text, token->length);
+    name[token->length] = '\0';
+    for (char *c = name; is_module && *c; c++)
+        if (*c == '.' && strcmp(c, ".lua") != 0)
+            *c = '/';
+    size_t length = strlen(name);
+    bool has_end = length > 4 && strcmp(name + length - 4, ".lua") == 0;
+    const char *end = is_module && !has_end ? ".lua" : "", *folder = name[0] == '/' ? "" : search->folder;
+    if (try_path(path, folder, "", name, end) || try_path(path, "", "", name, end) ||
+        try_path(path, folder, "lua/", name, end) || try_path(path, folder, "../lua/", name, end))
+        scan_file(search, path, depth + 1);
+}
+
+static void scan_text(struct search *search, const char *text, size_t size, int depth) {
+    struct lexer lexer = {text, text + size, 1};
+    if (size > 0 && text[0] == '#')
+        skip_line(&lexer);
+    struct token window[WINDOW] = {0};
+    struct materials materials = {.count = 0};
+    struct mesh_call call = {0};
+    do {
+        memmove(window, window + 1, (WINDOW - 1) * sizeof *window);
+        window[WINDOW - 1] = next_token(&lexer);
+        judge(window, &search->evidence, &materials, &call);
+        bool is_module;
+        const struct token *file = depth < DEPTH ? required(window, &is_module) : NULL;
+        if (file)
+            follow(search, file, is_module, depth);
+    } while (window[WINDOW - 1].kind != TOKEN_END);
+}
+
+static void scan_file(struct search *search, const char *path, int depth) {
+    char canonical[PATHS];
+    if (search->visited_count == FILES || !file_canonical(path, canonical, sizeof canonical))
+        return;
+    size_t library = strlen(search->library);
+    if (library > 0 && strncmp(canonical, search->library, library) == 0 && canonical[library] == '/')
+        return;
+    for (int k = 0; k < search->visited_count; k++)
+        if (strcmp(search->visited[k], canonical) == 0)
+            return;
+    char *copy = arena_copy_text(&search->arena, canonical, strlen(canonical));
+    if (!copy) {
+        search->no_memory = true;
+        return;
+    }
+    search->visited[search->visited_count++] = copy;
+    struct file_bytes bytes;
+    struct error ignored;
+    if (!file_map(path, SCENE_LIMIT, &bytes, &ignored))
+        return;
+    scan_text(search, (const char *)bytes.data, bytes.size, depth);
+    file_unmap(&bytes);
+}
+
+static void conclude(const struct evidence *evidence, struct order_finding *finding) {
+    bool old = evidence->is_old && !evidence->is_new;
+    finding->order = old ? ORDER_OLD : ORDER_NEW;
+    const char *reason = old ? evidence->old_reason : evidence->is_new ? evidence->new_reason : "";
+    snprintf(finding->reason, sizeof finding->reason, "%s", reason);
+}
+
+/* Siblings vote; the first old one is named. */
+struct siblings {
+    struct search *search;
+    const char *self;
+    int votes_new, votes_old;
+    char reason[400];
+};
+
+static bool ask_sibling(void *context, const char *name) {
+    struct siblings *siblings = context;
+    size_t length = strlen(name);
+    char path[PATHS];
+    if (length < 5 || strcmp(name + length - 4, ".lua") != 0 || strcmp(name, siblings->self) == 0)
+        return true;
+    if (!try_path(path, siblings->search->folder, "", name, ""))
+        return true;
+    struct file_bytes bytes;
+    struct error ignored;
+    if (!file_map(path, SIBLING_LIMIT, &bytes, &ignored))
+        return true;
+    struct evidence before = siblings->search->evidence;
+    siblings->search->evidence = (struct evidence){0};
+    scan_text(siblings->search, (const char *)bytes.data, bytes.size, DEPTH);
+    const struct evidence *seen = &siblings->search->evidence;
+    if (seen->mentions_gr && seen->is_new)
+        siblings->votes_new++;
+    else if (seen->mentions_gr && seen->is_old && siblings->votes_old++ == 0)
+        snprintf(siblings->reason, sizeof siblings->reason, "of its neighbour %.200s: %s", name, seen->old_reason);
+    siblings->search->evidence = before;
+    file_unmap(&bytes);
+    return true;
+}
+
+bool order_detect(const char *path, const char *library_folder, struct order_finding *finding, struct error *error) {
+    struct search search = {.visited_count = 0};
+    const char *slash = strrchr(path, '/');
+    size_t folder = slash ? (size_t)(slash - path) + 1 : 0;
+    *finding = (struct order_finding){.order = ORDER_NEW};
+    if (folder >= PATHS)
+        return true;
+    memcpy(search.folder, path, folder);
+    if (library_folder && !file_canonical(library_folder, search.library, sizeof search.library))
+        search.library[0] = '\0';
+
+    scan_file(&search, path, 0);
+    conclude(&search.evidence, finding);
+    if (!search.evidence.is_new && !search.evidence.is_old) {
+        struct siblings siblings = {.search = &search, .self = slash ? slash + 1 : path};
+        (void)file_list(folder > 0 ? search.folder : ".", SIBLINGS, ask_sibling, &siblings);
+        if (siblings.votes_old > siblings.votes_new) {
+            finding->order = ORDER_OLD;
+            memcpy(finding->reason, siblings.reason, sizeof finding->reason);
+        }
+    }
+    arena_destroy(&search.arena);
+    return search.no_memory ? error_no_memory(error, "the order of transforms") : true;
+}
+
+void order_of_text(const char *text, size_t size, struct order_finding *finding) {
+    struct search search = {.visited_count = 0};
+    scan_text(&search, text, size, DEPTH);
+    conclude(&search.evidence, finding);
+}

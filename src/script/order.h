@@ -1,0 +1,22 @@
+/* Which way transforms compose, decided from the text of a scene before it runs (SPEC 2.4). No Lua state is involved: a
+ * lexer skips comments and strings, a few patterns of words are evidence. */
+#ifndef GRAY_SCRIPT_ORDER_H
+#define GRAY_SCRIPT_ORDER_H
+
+#include "base/error.h"
+#include "scene/node.h"
+
+#include <stddef.h>
+
+struct order_finding {
+    enum transform_order order;
+    char reason[400]; /* "it uses readobj (line 3)"; "" when nothing spoke for anything */
+};
+
+/* The scene at `path` and what it requires by literal names; without evidence there, its siblings. Files of
+ * library_folder (may be NULL) say nothing. A file that cannot be read says nothing either: running it will tell. */
+bool order_detect(const char *path, const char *library_folder, struct order_finding *finding, struct error *error);
+/* One text alone. */
+void order_of_text(const char *text, size_t size, struct order_finding *finding);
+
+#endif

@@ -1,0 +1,76 @@
+/* What could catch an error that must not be caught: pcall, xpcall, coroutine.resume and close, load. The replacements
+ * do the same and then raise the light userdata again when the context holds a fatal error or the script has ended. */
+#include "script/context.h"
+
+#include <lauxlib.h>
+
+static void pass_on_fatal(lua_State *L) {
+    const struct context *context = context_of(L);
+    if (context->ended || context->fatal.kind != ERROR_NONE)
+        context_raise_fatal(L);
+}
+
+/* After the call or after a yield in it; `extra` values lie below the results. As in Lua's own lbaselib.c. */
+static int finish_call(lua_State *L, int status, lua_KContext extra) {
+    pass_on_fatal(L);
+    if (status != LUA_OK && status != LUA_YIELD) {
+        lua_pushboolean(L, 0);
+        lua_pushvalue(L, -2);
+        return 2;
+    }
+    return lua_gettop(L) - (int)extra;
+}
+
+static int protected_call(lua_State *L) {
+    luaL_checkany(L, 1);
+    lua_pushboolean(L, 1);
+    lua_insert(L, 1);
+    int status = lua_pcallk(L, lua_gettop(L) - 2, LUA_MULTRET, 0, 0, finish_call);
+    return finish_call(L, status, 0);
+}
+
+static int protected_call_with_handler(lua_State *L) {
+    int count = lua_gettop(L);
+    luaL_checktype(L, 2, LUA_TFUNCTION);
+    lua_pushboolean(L, 1);
+    lua_pushvalue(L, 1);
+    lua_rotate(L, 3, 2); /* function, handler, true, function, arguments */
+    int status = lua_pcallk(L, count - 2, LUA_MULTRET, 2, 2, finish_call);
+    return finish_call(L, status, 2);
+}
+
+/* Calls upvalue 1, Lua's own function, which gives errors back as values. */
+static int call_and_pass_on(lua_State *L) {
+    lua_pushvalue(L, lua_upvalueindex(1));
+    lua_insert(L, 1);
+    lua_call(L, lua_gettop(L) - 1, LUA_MULTRET);
+    pass_on_fatal(L);
+    return lua_gettop(L);
+}
+
+/* load(chunk, name, mode, environment), the mode always "t". */
+static int load_text(lua_State *L) {
+    if (lua_gettop(L) < 3)
+        lua_settop(L, 3);
+    lua_pushliteral(L, "t");
+    lua_replace(L, 3);
+    return call_and_pass_on(L);
+}
+
+static void wrap(lua_State *L, const char *library, const char *name, lua_CFunction function) {
+    lua_getglobal(L, library);
+    lua_getfield(L, -1, name);
+    lua_pushcclosure(L, function, 1);
+    lua_setfield(L, -2, name);
+    lua_pop(L, 1);
+}
+
+void protect_open(lua_State *L) {
+    lua_pushcfunction(L, protected_call);
+    lua_setglobal(L, "pcall");
+    lua_pushcfunction(L, protected_call_with_handler);
+    lua_setglobal(L, "xpcall");
+    wrap(L, "coroutine", "resume", call_and_pass_on);
+    wrap(L, "coroutine", "close", call_and_pass_on);
+    wrap(L, LUA_GNAME, "load", load_text);
+}

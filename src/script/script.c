@@ -1,0 +1,200 @@
+/* Runs one scene: a fresh Lua state on our allocator, one protected call around everything, then the state is closed
+ * and after it the scene. Invariant: whatever fails, lua_close comes first, then the arenas; nothing else is owned
+ * here. */
+#include "script/context.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "script/order.h"
+
+#include <lauxlib.h>
+#include <lualib.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { HOOK_STEPS = 10000 }; /* some tenths of a millisecond */
+
+static void *allocate(void *user, void *block, size_t old_size, size_t size) {
+    (void)user;
+    (void)old_size;
+    if (size > 0)
+        return mem_resize(block, size);
+    mem_free(block);
+    return NULL;
+}
+
+static void poll_host(lua_State *L, lua_Debug *place) {
+    (void)place;
+    struct context *context = context_of(L);
+    if (context->ended || context->fatal.kind != ERROR_NONE || !context->host->cancelled(context->host->context))
+        return;
+    error_set(&context->fatal, ERROR_CANCELLED, "cancelled");
+    context_raise_fatal(L);
+}
+
+/* The length of the place a message begins with, "scene.lua:12: " or that of a chunk from a string; 0 when it has none.
+ */
+static size_t place_length(const struct context *context, const char *message) {
+    size_t length = strncmp(message, "[string \"", 9) == 0 ? strcspn(message, "]") + 1 : 0;
+    for (const struct source_name *source = context->sources; source && length == 0; source = source->next) {
+        size_t name = strlen(source->path);
+        if (strncmp(message, source->path, name) == 0 && message[name] == ':')
+            length = name;
+    }
+    size_t digits = length > 0 && message[length] == ':' ? strspn(message + length + 1, "0123456789") : 0;
+    const char *end = message + length + 1 + digits;
+    return digits > 0 && end[0] == ':' && end[1] == ' ' ? (size_t)(end + 2 - message) : 0;
+}
+
+/* Text with every line indented, a tab counting as two more blanks. */
+static const char *indent(struct arena *arena, const char *text) {
+    size_t size = 3;
+    for (const char *c = text; *c; c++)
+        size += *c == '\n' ? 3 : *c == '\t' ? 2 : 1;
+    char *out = arena_alloc(arena, size), *to = out;
+    if (!out)
+        return NULL;
+    *to++ = ' ';
+    *to++ = ' ';
+    for (const char *c = text; *c; c++) {
+        *to++ = *c == '\t' ? ' ' : *c;
+        if (*c == '\t' || *c == '\n')
+            *to++ = ' ';
+        if (*c == '\n')
+            *to++ = ' ';
+    }
+    *to = '\0';
+    return out;
+}
+
+/* The message handler: makes the complete first line and the traceback while the stack is still there. */
+static int describe_error(lua_State *L) {
+    struct context *context = context_of(L);
+    if (lua_islightuserdata(L, 1) && lua_touserdata(L, 1) == context)
+        return 1;
+    context->lua = L;
+    char where[PATH_SIZE + 32];
+    context_where(context, where, sizeof where);
+    const char *message;
+    if (lua_type(L, 1) == LUA_TSTRING || luaL_getmetafield(L, 1, "__tostring") != LUA_TNIL)
+        message = luaL_tolstring(L, 1, NULL);
+    else
+        message = lua_pushfstring(L, "the script raised %s", value_words(L, 1));
+    message = files_unshorten(context, message);
+    if (!message)
+        return 1;
+    /* coroutine.wrap and error put another place in front: the innermost one tells most. */
+    size_t outer = place_length(context, message);
+    if (outer > 0 && place_length(context, message + outer) > 0)
+        message += outer;
+    size_t first = strcspn(message, "\n");
+    error_set(&context->failure, ERROR_SCENE, "%s%.*s", outer > 0 ? "" : where, (int)first, message);
+    const char *rest = message + first + (message[first] == '\n');
+    luaL_traceback(L, L, *rest ? rest : NULL, 1);
+    context->traceback = indent(context->out, lua_tostring(L, -1));
+    return 1;
+}
+
+static int run_scene(lua_State *L) {
+    struct context *context = context_of(L);
+    sandbox_open(L);
+    protect_open(L);
+    files_open(L);
+    traverse_open(L);
+    compat_open(L);
+    handles_open(L);
+    dispatch_open(L);
+    define_open(L);
+    lua_settop(L, 0);
+    if (context->host->cancelled)
+        lua_sethook(L, poll_host, LUA_MASKCOUNT, HOOK_STEPS);
+    if (files_load(L, context->path) != LUA_OK)
+        return lua_error(L);
+    lua_call(L, 0, 0);
+    return 0;
+}
+
+/* What the protected call came to, as one error. */
+static bool conclude(struct context *context, int status, struct error *error) {
+    if (context->fatal.kind != ERROR_NONE) {
+        *error = context->fatal;
+        return false;
+    }
+    if (status == LUA_OK || context->ended)
+        return true;
+    if (status == LUA_ERRMEM)
+        return error_set(error, ERROR_MACHINE, "%s: out of memory for the script", context->path);
+    if (context->failure.kind == ERROR_NONE)
+        return error_set(error, ERROR_SCENE, "%s: an error while an error was reported", context->path);
+    *error = context->failure;
+    return false;
+}
+
+static bool choose_order(struct context *context, struct error *error) {
+    struct order_finding finding;
+    switch (context->options->transform_order) {
+    case SCRIPT_ORDER_NEW:
+        context->scene.order = ORDER_NEW;
+        return true;
+    case SCRIPT_ORDER_OLD:
+        context->scene.order = ORDER_OLD;
+        return true;
+    case SCRIPT_ORDER_SEPARATE:
+        context->scene.order = ORDER_SEPARATE;
+        return true;
+    case SCRIPT_ORDER_AUTO:
+        break;
+    }
+    if (!order_detect(context->path, context->options->library_folder, &finding, error))
+        return false;
+    context->scene.order = finding.order;
+    if (finding.order != ORDER_OLD)
+        return true;
+    char text[PATH_SIZE + 600];
+    snprintf(text, sizeof text,
+             "%s: old transform order, because %s; pin it with --transform-order old or gr.transform_order('old')",
+             context->path, finding.reason);
+    context->host->message(context->host->context, SCRIPT_NOTICE, text);
+    return true;
+}
+
+static bool prepare(struct context *context, struct error *error) {
+    const char *slash = strrchr(context->path, '/');
+    size_t length = slash ? (size_t)(slash - context->path) + 1 : 0;
+    if (strlen(context->path) >= PATH_SIZE - 64)
+        return error_set(error, ERROR_SCENE, "%.100s...: the path is too long", context->path);
+    memcpy(context->folder, context->path, length);
+    context->warned = arena_alloc(&context->keep, (size_t)function_count);
+    if (!context->warned)
+        return error_no_memory(error, "the script");
+    struct file_bytes bytes; /* whether it can be read at all is told before anything else, in one plain line */
+    if (!file_map(context->path, FILE_LIMIT, &bytes, error))
+        return false;
+    file_unmap(&bytes);
+    return choose_order(context, error);
+}
+
+bool script_run(const char *path, const struct script_options *options, const struct script_host *host,
+                struct assets *assets, struct arena *arena, const char **traceback, struct error *error) {
+    struct context context = {.options = options, .host = host, .out = arena, .path = path};
+    *traceback = NULL;
+    scene_init(&context.scene, assets);
+    bool done = prepare(&context, error);
+    lua_State *L = done ? lua_newstate(allocate, NULL) : NULL;
+    if (done && !L)
+        done = error_no_memory(error, "the script");
+    if (L) {
+        *(struct context **)lua_getextraspace(L) = &context;
+        context.lua = L;
+        lua_pushcfunction(L, describe_error);
+        lua_pushcfunction(L, run_scene);
+        done = conclude(&context, lua_pcall(L, 0, 0, 1), error);
+        context.lua = NULL;
+        *traceback = done || error->kind != ERROR_SCENE ? NULL : context.traceback;
+        lua_close(L);
+    }
+    scene_destroy(&context.scene);
+    arena_destroy(&context.call);
+    arena_destroy(&context.keep);
+    return done;
+}

@@ -1,0 +1,64 @@
+/* The script layer: runs one Lua scene. It reads arguments, raises script errors, hands plain C values on. It never sees a
+ * pixel and opens no file by itself (base/file.h does). The host is what the application gives it. */
+#ifndef GRAY_SCRIPT_SCRIPT_H
+#define GRAY_SCRIPT_SCRIPT_H
+
+#include "base/error.h"
+#include "render/settings.h"
+#include "scene/node.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum script_order { SCRIPT_ORDER_AUTO, SCRIPT_ORDER_NEW, SCRIPT_ORDER_OLD, SCRIPT_ORDER_SEPARATE };
+
+struct script_define {
+    const char *name, *value; /* -D name=value */
+};
+
+struct script_options {
+    enum script_order transform_order;
+    bool lenient;
+    uint64_t seed; /* math.random starts from it */
+    const struct script_define *defines;
+    int define_count;
+    const char *library_folder; /* absolute path of lua/ (data folder of the installation), on package.path last */
+};
+
+/* One gr.render call, complete and checked, every default filled in. Pointers live until the call returns. */
+struct render_request {
+    struct scene *scene;
+    struct node *root;
+    const char *file; /* as the script gave it, compatibility of numbers applied; relative to the working directory */
+    double width, height; /* checked to be whole numbers in 1..2^20 */
+    struct camera camera;
+    struct vec3 ambient;
+    const struct light *lights;
+    uint32_t light_count;
+    struct sky sky;
+    struct settings settings; /* the host's settings with the call's named fields applied */
+};
+
+enum script_message { SCRIPT_NOTICE, SCRIPT_WARNING };
+
+struct script_host {
+    void *context;
+    struct settings settings; /* from the command line */
+    /* Renders at once; false = stop the script with this error (an ERROR_SCENE is raised as a script error at the line of
+     * the call, other kinds end the script without being catchable by pcall). */
+    bool (*render)(void *context, const struct render_request *request, struct error *error);
+    /* One complete line without newline, e.g. "scene.lua:3: warning: gr.sphere: ..." */
+    void (*message)(void *context, enum script_message kind, const char *text);
+    bool (*cancelled)(void *context); /* polled by a count hook; may be NULL */
+};
+
+/* Runs the script at `path`. false: error.text is the complete first line, and *traceback (allocated in `arena`, lines
+ * indented by two spaces, may be NULL) follows for script errors. */
+bool script_run(const char *path, const struct script_options *options, const struct script_host *host,
+                struct assets *assets, struct arena *arena, const char **traceback, struct error *error);
+
+/* The table of functions as documents; text is allocated in arena. */
+const char *script_manual(struct arena *arena);      /* for --man: plain text, 100 columns */
+const char *script_annotations(struct arena *arena); /* lua/gr.lua, LuaLS ---@meta */
+
+#endif

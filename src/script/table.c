@@ -1,0 +1,434 @@
+/* The table of gr functions. One row a function; everything people read about it and every check of its arguments comes
+ * from here. Facts: SPEC parts 1 and 2. A function whose `since` is set exists only to say which version it comes with.
+ */
+#include "script/table.h"
+
+#include "script/actions.h"
+
+#include <string.h>
+
+#define ANY 0, 0, NULL
+#define ABOVE(low) (low), (double)INFINITY, NULL
+#define BETWEEN(low, high) (low), (high), NULL
+
+#define NAME_HELP "Name of the node, for messages."
+#define MATERIAL_HELP "What its surface looks like."
+#define CHILDREN                                                                                                       \
+    { "children", KIND_NODES, OPTIONAL, ANY, NULL, "{}", "Nodes placed under this one." }
+
+static const struct parameter group_parameters[] = {
+    [GROUP_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'node'", NAME_HELP},
+    [GROUP_CHILDREN] = CHILDREN,
+};
+
+static const struct parameter joint_parameters[] = {
+    [JOINT_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'joint'", NAME_HELP},
+    [JOINT_X] = {"x", KIND_TRIPLE, 0, ANY, "degrees", NULL,
+                 "Smallest, initial and largest angle about x; drawn at the initial one."},
+    [JOINT_Y] = {"y", KIND_TRIPLE, 0, ANY, "degrees", NULL, "The same about y."},
+    [JOINT_CHILDREN] = CHILDREN,
+};
+
+static const struct parameter sphere_parameters[] = {
+    [SPHERE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'sphere'", NAME_HELP},
+    [SPHERE_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP},
+    [SPHERE_CENTRE] = {"centre", KIND_POINT, OPTIONAL, ANY, NULL, "{0, 0, 0}", "Centre."},
+    [SPHERE_RADIUS] = {"radius", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "1", "Radius."},
+};
+
+static const struct parameter cube_parameters[] = {
+    [CUBE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'cube'", NAME_HELP},
+    [CUBE_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP},
+    [CUBE_CORNER] = {"corner", KIND_POINT, OPTIONAL, ANY, NULL, "{0, 0, 0}",
+                     "The corner with the smallest coordinates."},
+    [CUBE_SIZE] = {"size", KIND_SIZE, OPTIONAL | NOT_ZERO, ANY, NULL, "1",
+                   "Length of the edges, one number or three; a negative one reaches the other way."},
+};
+
+static const struct parameter mesh_parameters[] = {
+    [MESH_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'mesh'", NAME_HELP},
+    [MESH_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP},
+    [MESH_FILE] = {"file", KIND_FILE, OPTIONAL, ANY, NULL, NULL, "A Wavefront OBJ file, instead of verts and faces."},
+    [MESH_VERTS] = {"verts", KIND_POINTS, OPTIONAL, ANY, NULL, NULL, "The vertices."},
+    [MESH_NORMALS] = {"normals", KIND_POINTS, OPTIONAL, ANY, NULL, "none: flat", "Vertex normals, of any length."},
+    [MESH_FACES] = {"faces", KIND_FACES, OPTIONAL, ANY, NULL, NULL, "Polygons: tuples of 0-based indices into verts."},
+    [MESH_FACE_NORMALS] = {"face_normals", KIND_FACES, OPTIONAL, ANY, NULL, "faces",
+                           "For each face a tuple of 0-based indices into normals."},
+    [MESH_UVS] = {"uvs", KIND_PAIRS, OPTIONAL, ANY, NULL, "none", "Places on an image, {u, v}; v counts from below."},
+    [MESH_FACE_UVS] = {"face_uvs", KIND_FACES, OPTIONAL, ANY, NULL, "faces",
+                       "For each face a tuple of 0-based indices into uvs."},
+};
+
+static const struct parameter geometry_parameters[] = {
+    [GEOMETRY_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'geometry'", NAME_HELP},
+    [GEOMETRY_PRIMITIVE] = {"primitive", KIND_NODE, 0, ANY, NULL, NULL, "A primitive, for instance gr.sphere(mat)."},
+    [GEOMETRY_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "the primitive's",
+                           MATERIAL_HELP},
+};
+
+static const struct parameter csg_parameters[] = {
+    [CSG_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'csg'", NAME_HELP},
+    [CSG_A] = {"a", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL,
+               "A closed solid; a group counts as the union of what is under it."},
+    [CSG_B] = {"b", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL, "The other one."},
+};
+
+static const struct parameter order_parameters[] = {
+    {"order", KIND_CHOICE, 0, 0, 0, "new old separate", NULL, NULL,
+     "new: calls act as they are written; old: the last call acts first; separate: scale, then rotate, then "
+     "translate."},
+};
+
+#define SELF_PARAMETER [SELF] = {"self", KIND_NODE, 0, ANY, NULL, NULL, "The node."}
+
+static const struct parameter child_parameters[] = {
+    SELF_PARAMETER,
+    [CHILD_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL, "The child; under several parents it is an instance."},
+};
+
+static const struct parameter set_material_parameters[] = {
+    SELF_PARAMETER,
+    [SET_MATERIAL] = {"material", KIND_MATERIAL, 0, ANY, NULL, NULL, MATERIAL_HELP},
+};
+
+static const struct parameter set_texture_parameters[] = {
+    SELF_PARAMETER,
+    [SET_TEXTURE] = {"texture", KIND_IMAGE, 0, ANY, NULL, NULL, "A texture, or the name of a PNG file."},
+};
+
+static const struct parameter translate_parameters[] = {
+    SELF_PARAMETER,
+    [STEP_X] = {"x", KIND_NUMBER, 0, ANY, NULL, NULL, "How far along x."},
+    [STEP_Y] = {"y", KIND_NUMBER, 0, ANY, NULL, NULL, "How far along y."},
+    [STEP_Z] = {"z", KIND_NUMBER, 0, ANY, NULL, NULL, "How far along z."},
+    [STEP_VECTOR] = {"vector", KIND_TRIPLE, 0, ANY, NULL, NULL, "All three in one table."},
+};
+
+static const struct parameter scale_parameters[] = {
+    SELF_PARAMETER,
+    [STEP_X] = {"x", KIND_NUMBER, 0, ANY, NULL, NULL, "Factor along x."},
+    [STEP_Y] = {"y", KIND_NUMBER, 0, ANY, NULL, NULL, "Factor along y."},
+    [STEP_Z] = {"z", KIND_NUMBER, 0, ANY, NULL, NULL, "Factor along z."},
+    [STEP_VECTOR] = {"vector", KIND_TRIPLE, 0, ANY, NULL, NULL, "All three in one table."},
+};
+
+static const struct parameter rotate_parameters[] = {
+    SELF_PARAMETER,
+    [ROTATE_AXIS] = {"axis", KIND_AXIS, 0, 0, 0, "x y z", NULL, NULL, "The axis, in either case."},
+    [ROTATE_ANGLE] = {"angle", KIND_NUMBER, 0, ANY, "degrees", NULL,
+                      "How far, counterclockwise seen from the axis' tip."},
+};
+
+#define KD                                                                                                             \
+    { "kd", KIND_COLOUR, 0, ANY, NULL, NULL, "Colour of diffuse and ambient light." }
+#define KS                                                                                                             \
+    { "ks", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0, 0, 0}", "Colour of highlights, filter of secondary rays." }
+#define SHININESS                                                                                                      \
+    { "shininess", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1", "Exponent of the highlight." }
+#define TWO_SIDED                                                                                                      \
+    { "two_sided", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether faces seen from behind are lit as well." }
+
+static const struct parameter material_parameters[] = {
+    [PHONG_KD] = KD,
+    [PHONG_KS] = KS,
+    [PHONG_SHININESS] = SHININESS,
+    [PHONG_REFLECT] = {"reflect", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "0", "Amount of reflected light."},
+    [PHONG_REFRACT] = {"refract", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "0", "Amount of refracted light."},
+    [PHONG_IOR] = {"ior", KIND_NUMBER, OPTIONAL, ABOVE(1), NULL, "none", "Index of refraction of the inside."},
+    [PHONG_TWO_SIDED] = TWO_SIDED,
+};
+
+static const struct parameter rr_parameters[] = {
+    [PHONG_KD] = KD,
+    [PHONG_KS] = KS,
+    [PHONG_SHININESS] = SHININESS,
+    [PHONG_REFLECT] = {"reflect", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "0", "Amount of reflected light."},
+    [PHONG_REFRACT] = {"refract", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "0", "Amount of refracted light."},
+    [PHONG_IOR] = {"ior", KIND_NUMBER, OPTIONAL, ABOVE(1), NULL, "1", "Index of refraction of the inside."},
+    [PHONG_TWO_SIDED] = TWO_SIDED,
+};
+
+#define BASE                                                                                                           \
+    { "material", KIND_MATERIAL, 0, ANY, NULL, NULL, "The material below." }
+#define INTERP                                                                                                         \
+    { "interp", KIND_WHOLE, OPTIONAL, BETWEEN(0, 1), NULL, "0", "How the noise is interpolated: 0 linear, 1 cosine." }
+#define MIX                                                                                                            \
+    { "mix", KIND_COLOUR, 0, ANY, NULL, NULL, "The colour mixed with kd." }
+
+static const struct parameter marble_parameters[] = {
+    [MARBLE_MATERIAL] = BASE,
+    [MARBLE_F] = {"f", KIND_NUMBER, 0, ANY, NULL, NULL, "Factor of the place before the noise."},
+    [MARBLE_MULTIPLIER] = {"multiplier", KIND_NUMBER, 0, ANY, NULL, NULL, "How much the noise bends the veins."},
+    [MARBLE_VEIN] = {"vein_frequency", KIND_NUMBER, 0, ANY, NULL, NULL, "How close the veins are along y."},
+    [MARBLE_INTERP] = INTERP,
+    [MARBLE_MIX] = MIX,
+};
+
+static const struct parameter wood_parameters[] = {
+    [WOOD_MATERIAL] = BASE,
+    [WOOD_F] = {"f", KIND_NUMBER, 0, ANY, NULL, NULL, "Factor of the place before the noise."},
+    [WOOD_DENSITY] = {"density", KIND_NUMBER, 0, ANY, NULL, NULL, "How close the grain is."},
+    [WOOD_INTERP] = INTERP,
+    [WOOD_MIX] = MIX,
+};
+
+#define FILTER                                                                                                         \
+    {                                                                                                                  \
+        "filter", KIND_CHOICE, OPTIONAL, 0, 0, "nearest bilinear mipmap", NULL, "'mipmap'",                            \
+            "How the image is looked up."                                                                              \
+    }
+#define WRAP                                                                                                           \
+    {                                                                                                                  \
+        "wrap", KIND_CHOICE, OPTIONAL, 0, 0, "clamp repeat mirror", NULL, "'repeat'",                                  \
+            "What is beyond its edges, on meshes."                                                                     \
+    }
+#define FLIP_U                                                                                                         \
+    { "flip_u", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether left and right are exchanged." }
+
+static const struct parameter image_parameters[] = {
+    [IMAGE_MATERIAL] = BASE,
+    [IMAGE_PNG] = {"png", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG file, or a texture."},
+    [IMAGE_FILTER] = FILTER,
+    [IMAGE_FLIP_U] = FLIP_U,
+};
+
+static const struct parameter texture_parameters[] = {
+    [TEXTURE_FILE] = {"file", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG file."},
+    [TEXTURE_FILTER] = FILTER,
+    [TEXTURE_WRAP] = WRAP,
+    [TEXTURE_FLIP_U] = FLIP_U,
+};
+
+static const struct parameter fresnel_parameters[] = {[FRESNEL_MATERIAL] = BASE};
+
+#define LIGHT_COLOUR_PARAMETER                                                                                         \
+    { "colour", KIND_COLOUR, 0, ANY, NULL, NULL, "Its colour and strength." }
+#define FALLOFF                                                                                                        \
+    {                                                                                                                  \
+        "falloff", KIND_TRIPLE, OPTIONAL, ANY, NULL, "{1, 0, 0}",                                                      \
+            "Coefficients: light is divided by c0 + c1 d + c2 d^2."                                                    \
+    }
+
+static const struct parameter light_parameters[] = {
+    [LIGHT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Where it stands."},
+    [LIGHT_COLOUR] = LIGHT_COLOUR_PARAMETER,
+    [LIGHT_FALLOFF] = FALLOFF,
+};
+
+static const struct parameter area_parameters[] = {
+    [AREA_CORNER] = {"corner", KIND_POINT, 0, ANY, NULL, NULL, "One corner of the parallelogram."},
+    [AREA_V1] = {"v1", KIND_DIRECTION, 0, ANY, NULL, NULL, "The edge to the next corner."},
+    [AREA_V2] = {"v2", KIND_DIRECTION, 0, ANY, NULL, NULL, "The edge to the corner on the other side."},
+    [AREA_COLOUR] = LIGHT_COLOUR_PARAMETER,
+    [AREA_FALLOFF] = FALLOFF,
+};
+
+static const struct parameter render_parameters[] = {
+    [RENDER_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL, "The root of what is drawn."},
+    [RENDER_FILE] = {"file", KIND_OUTPUT, 0, ANY, NULL, NULL, "The PNG file to write; missing folders are made."},
+    [RENDER_SKY] = {"sky", KIND_IMAGE, OPTIONAL, ANY, NULL, NULL, "A 4 x 3 cross of images all around, as a PNG file."},
+    [RENDER_WIDTH] = {"width", KIND_WHOLE, 0, 1, 1 << 20, NULL, "pixels", NULL, "Width of the picture."},
+    [RENDER_HEIGHT] = {"height", KIND_WHOLE, 0, 1, 1 << 20, NULL, "pixels", NULL, "Height of the picture."},
+    [RENDER_EYE] = {"eye", KIND_POINT, 0, ANY, NULL, NULL, "Where the camera stands."},
+    [RENDER_VIEW] = {"view", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 0, -1}", "The direction it looks in."},
+    [RENDER_UP] = {"up", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 1, 0}", "The direction that is up in the picture."},
+    [RENDER_FOV] = {"fov", KIND_NUMBER, OPTIONAL | LOW_OPEN | HIGH_OPEN, 0, 180, NULL, "degrees", "50",
+                    "The full vertical angle of view."},
+    [RENDER_AMBIENT] = {"ambient", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0, 0, 0}", "Light that is everywhere."},
+    [RENDER_LIGHTS] = {"lights", KIND_LIGHTS, OPTIONAL, ANY, NULL, "{}", "A table of lights."},
+    [RENDER_TARGET] = {"target", KIND_POINT, OPTIONAL, ANY, NULL, NULL, "A point to look at, instead of view."},
+    [RENDER_BACKGROUND] = {"background", KIND_BACKGROUND, OPTIONAL, ANY, NULL, "'gradient'",
+                           "What rays see that meet nothing: a colour, or 'gradient' for {0, 0, (1 + y)/2}."},
+    [RENDER_MIRROR] = {"mirror", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the sky cross is mirrored."},
+    [RENDER_SAMPLES] = {"samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "-ss",
+                        "N x N samples for a marked pixel."},
+    [RENDER_FULL] = {"full", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "-full", "Whether every pixel is sampled so."},
+    [RENDER_AREA_SAMPLES] = {"area_samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "-al-samples",
+                             "N x N shadow rays for an area light."},
+    [RENDER_REFLECT_LIMIT] = {"reflect_limit", KIND_WHOLE, OPTIONAL, BETWEEN(0, 1000), NULL, "-reflect-limit",
+                              "How often a path may reflect."},
+    [RENDER_REFRACT_LIMIT] = {"refract_limit", KIND_WHOLE, OPTIONAL, BETWEEN(0, 1000), NULL, "-refract-limit",
+                              "How often a path may refract."},
+    [RENDER_SIDE_TOLERANCE] = {"side_tolerance", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "-side-tolerance",
+                               "Squared distance of colours between side neighbours that marks a pixel."},
+    [RENDER_CORNER_TOLERANCE] = {"corner_tolerance", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "-corner-tolerance",
+                                 "The same between corner neighbours."},
+    [RENDER_USE_TIR] = {"use_tir", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "-use-tir",
+                        "Whether light beyond the critical angle is reflected."},
+    [RENDER_SPECULAR] = {"specular", KIND_CHOICE, OPTIONAL, 0, 0, "phong blinn", NULL, "--specular",
+                         "The form of highlights."},
+    [RENDER_SEED] = {"seed", KIND_WHOLE, OPTIONAL, BETWEEN(0, 0x1p53 - 1), NULL, "--seed", "Start of random numbers."},
+    [RENDER_ACCEL] = {"accel", KIND_CHOICE, OPTIONAL, 0, 0, "auto grid bvh none", NULL, "'auto'",
+                      "How hits are searched; the picture is the same."},
+};
+
+static const struct parameter named_parameters[] = {
+    {"name", KIND_TEXT, OPTIONAL, ANY, NULL, NULL, NAME_HELP},
+};
+
+#define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
+#define GR(name, parameters, result, run, help, ...)                                                                   \
+    { name, OWNER_GR, parameters, COUNT(parameters), {__VA_ARGS__}, result, run, NULL, help }
+#define NODE(name, parameters, result, run, help, ...)                                                                 \
+    { name, OWNER_NODE, parameters, COUNT(parameters), {__VA_ARGS__}, result, run, NULL, help }
+#define LATER(name, owner, result, since, help)                                                                        \
+    { name, owner, named_parameters, COUNT(named_parameters), {"name?"}, result, NULL, since, help }
+
+#define VN_FORM(first) first " verts normals faces face_normals"
+#define RENDER_TAIL " width height eye view up fov ambient lights"
+
+const struct function function_table[] = {
+    GR("node", group_parameters, RESULT_NODE, act_node, "A node that holds others and carries a transform.", "name?"),
+    GR("joint", joint_parameters, RESULT_NODE, act_joint, "A node with angles about x and y between limits.",
+       "name x y"),
+    GR("sphere", sphere_parameters, RESULT_NODE, act_sphere,
+       "A sphere; of radius 1 at the origin if nothing else is said.", "material", "name"),
+    GR("cube", cube_parameters, RESULT_NODE, act_cube, "A cube; from (0,0,0) to (1,1,1) if nothing else is said.",
+       "material", "name"),
+    GR("nh_sphere", sphere_parameters, RESULT_NODE, act_sphere, "A sphere at a place.", "name centre radius",
+       "material centre radius"),
+    GR("nh_box", cube_parameters, RESULT_NODE, act_cube, "A cube at a place.", "name corner size",
+       "material corner size"),
+    GR("mesh", mesh_parameters, RESULT_NODE, act_mesh, "A mesh of polygons, flat or with vertex normals.",
+       "material verts faces", "name file", "name verts faces", "material file"),
+    GR("fast_mesh", mesh_parameters, RESULT_NODE, act_mesh, "The same as gr.mesh: every mesh is fast.",
+       "material verts faces", "name verts faces"),
+    GR("vn_mesh", mesh_parameters, RESULT_NODE, act_mesh, "A mesh with vertex normals.", VN_FORM("material"),
+       VN_FORM("name")),
+    GR("fast_vn_mesh", mesh_parameters, RESULT_NODE, act_mesh, "The same as gr.vn_mesh.", VN_FORM("material"),
+       VN_FORM("name")),
+    GR("geometry", geometry_parameters, RESULT_NODE, act_geometry, "A node with the shape and look of a primitive.",
+       "name primitive"),
+    GR("csg_union", csg_parameters, RESULT_NODE, act_union, "The solid of what is in a or in b.", "name a b"),
+    GR("csg_difference", csg_parameters, RESULT_NODE, act_difference, "The solid of what is in a and not in b.",
+       "name a b"),
+    GR("csg_intersection", csg_parameters, RESULT_NODE, act_intersection, "The solid of what is in a and in b.",
+       "name a b"),
+    GR("union", csg_parameters, RESULT_NODE, act_union, "The same as gr.csg_union.", "name a b"),
+    GR("difference", csg_parameters, RESULT_NODE, act_difference, "The same as gr.csg_difference.", "name a b"),
+    GR("intersection", csg_parameters, RESULT_NODE, act_intersection, "The same as gr.csg_intersection.", "name a b"),
+    LATER("cylinder", OWNER_GR, RESULT_NODE, "0.2", "A capped cylinder around y, radius 1, y from -1 to 1."),
+    LATER("cone", OWNER_GR, RESULT_NODE, "0.2", "A cone, apex at the origin, base of radius 1 at y = 1."),
+    LATER("torus", OWNER_GR, RESULT_NODE, "0.2", "A torus around y."),
+    LATER("plane", OWNER_GR, RESULT_NODE, "0.2", "The square from -0.5 to 0.5 in x and z at y = 0."),
+
+    GR("material", material_parameters, RESULT_MATERIAL, act_material, "A Phong material.", "kd ks shininess"),
+    GR("rr_material", rr_parameters, RESULT_MATERIAL, act_rr_material, "A Phong material that reflects and refracts.",
+       "kd ks shininess reflect refract ior"),
+    GR("marble_pnd_material", marble_parameters, RESULT_MATERIAL, act_marble, "Marble over another material.",
+       "material f multiplier vein_frequency interp mix"),
+    GR("wood_pnd_material", wood_parameters, RESULT_MATERIAL, act_wood, "Wood over another material.",
+       "material f density interp mix"),
+    GR("td_cube_material", image_parameters, RESULT_MATERIAL, act_td_cube,
+       "An image on each side of the unit cube, over another material.", "material png"),
+    GR("td_sphere_material", image_parameters, RESULT_MATERIAL, act_td_sphere,
+       "An image around the unit sphere, over another material.", "material png"),
+    GR("difresnel_material", fresnel_parameters, RESULT_MATERIAL, act_fresnel,
+       "A dielectric: reflects and refracts by Fresnel's equations.", "material"),
+    GR("difresneld_material", fresnel_parameters, RESULT_MATERIAL, act_fresnel, "The same as gr.difresnel_material.",
+       "material"),
+    GR("texture", texture_parameters, RESULT_TEXTURE, act_texture, "An image for node:set_texture.", "file"),
+    LATER("bump", OWNER_GR, RESULT_TEXTURE, "0.2", "A bump map for node:set_bump."),
+
+    GR("light", light_parameters, RESULT_LIGHT, act_light, "A light at a point.", "position colour falloff?"),
+    GR("area_light", area_parameters, RESULT_LIGHT, act_area_light, "A light that is a parallelogram; soft shadows.",
+       "corner v1 v2 colour falloff?"),
+    LATER("spherical_light", OWNER_GR, RESULT_LIGHT, "0.2", "A light that is a sphere."),
+
+    GR("render", render_parameters, RESULT_NOTHING, act_render, "Renders a picture into a PNG file.",
+       "node file" RENDER_TAIL),
+    GR("render_skybox", render_parameters, RESULT_NOTHING, act_render, "The same with a sky image all around.",
+       "node file sky" RENDER_TAIL),
+    GR("transform_order", order_parameters, RESULT_NOTHING, act_transform_order,
+       "Says how scale, rotate and translate compose in this script.", "order"),
+
+    NODE("add_child", child_parameters, RESULT_SELF, act_add_child, "Places a node under this one.", "node"),
+    NODE("set_material", set_material_parameters, RESULT_SELF, act_set_material, "Gives a shape its material.",
+         "material"),
+    NODE("set_texture", set_texture_parameters, RESULT_SELF, act_set_texture, "Puts an image in the place of kd.",
+         "texture"),
+    LATER("set_bump", OWNER_NODE, RESULT_SELF, "0.2", "Puts a bump map on a shape."),
+    NODE("scale", scale_parameters, RESULT_SELF, act_scale, "Scales this node.", "x y z", "vector"),
+    NODE("rotate", rotate_parameters, RESULT_SELF, act_rotate, "Turns this node about an axis.", "axis angle"),
+    NODE("translate", translate_parameters, RESULT_SELF, act_translate, "Moves this node.", "x y z", "vector"),
+    NODE("render", render_parameters, RESULT_NOTHING, act_render, "The same as gr.render with this node.",
+         "file" RENDER_TAIL),
+};
+
+const int function_count = COUNT(function_table);
+
+const struct function *function_find(enum owner owner, const char *name) {
+    for (int i = 0; i < function_count; i++)
+        if (function_table[i].owner == owner && strcmp(function_table[i].name, name) == 0)
+            return &function_table[i];
+    return NULL;
+}
+
+bool form_next(const struct function *function, const char **form, int *index, bool *optional) {
+    const char *word = *form;
+    while (*word == ' ')
+        word++;
+    if (*word == '\0')
+        return false;
+    size_t length = strcspn(word, " ?");
+    *optional = word[length] == '?';
+    *form = word + length + (*optional ? 1 : 0);
+    for (*index = 0; *index < function->parameter_count; (*index)++) {
+        const char *name = function->parameters[*index].name;
+        if (strncmp(name, word, length) == 0 && name[length] == '\0')
+            return true;
+    }
+    return false;
+}
+
+const char *kind_words(enum kind kind) {
+    switch (kind) {
+    case KIND_NUMBER:
+        return "a number";
+    case KIND_WHOLE:
+        return "a whole number";
+    case KIND_BOOLEAN:
+        return "true or false";
+    case KIND_TEXT:
+        return "a string";
+    case KIND_FILE:
+        return "the name of a file";
+    case KIND_OUTPUT:
+        return "the name of a file";
+    case KIND_CHOICE:
+        return "a word";
+    case KIND_AXIS:
+        return "'x', 'y' or 'z'";
+    case KIND_POINT:
+        return "a point {x, y, z}";
+    case KIND_DIRECTION:
+        return "a direction {x, y, z}";
+    case KIND_COLOUR:
+        return "a colour {r, g, b}";
+    case KIND_TRIPLE:
+        return "a table of 3 numbers";
+    case KIND_SIZE:
+        return "a number or a table of 3 numbers";
+    case KIND_NODE:
+        return "a node";
+    case KIND_MATERIAL:
+        return "a material";
+    case KIND_IMAGE:
+        return "the name of a PNG file or a texture";
+    case KIND_BACKGROUND:
+        return "a colour {r, g, b} or 'gradient'";
+    case KIND_NODES:
+        return "a table of nodes";
+    case KIND_LIGHTS:
+        return "a table of lights";
+    case KIND_POINTS:
+        return "a table of points {x, y, z}";
+    case KIND_PAIRS:
+        return "a table of pairs {u, v}";
+    case KIND_FACES:
+        return "a table of tuples of indices";
+    case KIND_COUNT:
+        break;
+    }
+    return "something else";
+}

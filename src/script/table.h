@@ -1,0 +1,118 @@
+/* One table describes every gr function and node method: name, arguments with type, range, unit and default, result,
+ * help. Argument checking, suggestions, the manual page and the editor annotations are all read from it. Constant data.
+ */
+#ifndef GRAY_SCRIPT_TABLE_H
+#define GRAY_SCRIPT_TABLE_H
+
+#include "base/error.h"
+#include "geom/mesh.h"
+#include "look/light.h"
+#include "look/material.h"
+#include "scene/node.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct context;
+
+/* What an argument may be. The plain C form is in struct value. */
+enum kind {
+    KIND_NUMBER,     /* number */
+    KIND_WHOLE,      /* number: a float with a whole value is fine */
+    KIND_BOOLEAN,    /* boolean */
+    KIND_TEXT,       /* text */
+    KIND_FILE,       /* text: a file to be read, looked for beside the scene */
+    KIND_OUTPUT,     /* text: a file to be written */
+    KIND_CHOICE,     /* choice: index into the words of parameter.choices */
+    KIND_AXIS,       /* choice: 0, 1, 2 */
+    KIND_POINT,      /* vector */
+    KIND_DIRECTION,  /* vector */
+    KIND_COLOUR,     /* vector */
+    KIND_TRIPLE,     /* vector: three numbers that are no place */
+    KIND_SIZE,       /* vector: one number counts for all three */
+    KIND_NODE,       /* node */
+    KIND_MATERIAL,   /* material */
+    KIND_IMAGE,      /* image, or text: the name of its file */
+    KIND_BACKGROUND, /* vector, or text = "gradient" */
+    KIND_NODES,      /* nodes, count */
+    KIND_LIGHTS,     /* lights, count */
+    KIND_POINTS,     /* points, count */
+    KIND_PAIRS,      /* pairs, count */
+    KIND_FACES,      /* starts, indices, count */
+    KIND_COUNT,
+};
+
+/* One argument in plain C. Text belongs to Lua and lives as long as the call, arrays to the call's arena. */
+struct value {
+    bool given;
+    bool boolean;
+    int choice;
+    double number;
+    struct vec3 vector;
+    const char *text;
+    struct node *node;
+    const struct material *material;
+    struct image *image;
+    uint32_t count;
+    struct node **nodes;
+    const struct light *lights;
+    const double (*points)[3];
+    const double (*pairs)[2];
+    const uint32_t *starts, *indices;
+};
+
+enum {
+    OPTIONAL = 1, /* may be left out of the table form */
+    LOW_OPEN = 2, /* value > low, not >= */
+    HIGH_OPEN = 4,
+    NOT_ZERO = 8,
+    GHOST_IS_NONE = 16 /* with --lenient: something that does not exist yet counts as left out, the call goes on */
+};
+
+struct parameter {
+    const char *name;
+    enum kind kind;
+    unsigned flags;
+    double low, high;     /* of each number; both 0 = any finite number */
+    const char *choices;  /* words separated by blanks */
+    const char *unit;     /* or NULL */
+    const char *fallback; /* the default in words, or NULL */
+    const char *help;     /* one sentence */
+};
+
+enum owner { OWNER_GR, OWNER_NODE };
+enum result_kind { RESULT_NOTHING, RESULT_SELF, RESULT_NODE, RESULT_MATERIAL, RESULT_LIGHT, RESULT_TEXTURE };
+
+struct result {
+    void *pointer; /* what the result kind says; owned by the scene or the assets */
+};
+
+enum { FORM_LIMIT = 4, PARAMETER_LIMIT = 32 };
+
+/* `run` is the middle paragraph of a binding function: plain C that cannot raise. args[i] belongs to parameters[i]. */
+struct function {
+    const char *name;
+    enum owner owner;
+    const struct parameter *parameters;
+    int parameter_count;
+    /* The positional forms: parameter names in their order, separated by blanks; "name?" may be left out at the end.
+     * The form whose types fit the arguments best is taken. Parameters in no form exist in the table form only. */
+    const char *forms[FORM_LIMIT];
+    enum result_kind result;
+    bool (*run)(struct context *context, const struct value *args, struct result *result, struct error *error);
+    const char *since; /* the version it comes with when that is not this one, else NULL */
+    const char *help;
+};
+
+extern const struct function function_table[];
+extern const int function_count;
+
+/* The row of that name, or NULL. */
+const struct function *function_find(enum owner owner, const char *name);
+/* Takes the next name off a form: false at its end. *index is its parameter. */
+bool form_next(const struct function *function, const char **form, int *index, bool *optional);
+/* What a script must give: "a number", "a colour {r, g, b}". */
+const char *kind_words(enum kind kind);
+
+#endif

@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: gr.node: name must not hold a zero byte
+gr.node('a\0b')

@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: attempt to load a binary chunk (mode is 't')
+assert(load(string.dump(function() end)))

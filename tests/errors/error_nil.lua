@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: the script raised nil
+error()

@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: the lamp is missing
+error('the lamp is missing')

@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: first
+error('first\nsecond')

@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: one is not two
+assert(1 == 2, 'one is not two')

@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: gr.shpere does not exist; did you mean gr.sphere?
+gr.shpere('a')

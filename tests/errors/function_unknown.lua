@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: gr.frobnicate does not exist
+gr.frobnicate('a')

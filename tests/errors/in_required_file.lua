@@ -1,0 +1,2 @@
+-- expect: lib/raises.lua:2: gr.nh_sphere: radius must be > 0 (node 'deep')
+require 'lib.raises'

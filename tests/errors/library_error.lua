@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: bad argument #1 to 'rep' (string expected, got no value)
+string.rep()

@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: os.exit: the script says that it failed
+os.exit(3)

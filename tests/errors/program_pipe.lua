@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: attempt to call a nil value (field 'popen')
+io.popen('true')

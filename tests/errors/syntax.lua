@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: unexpected symbol near '='
+local a = = 1

@@ -1,0 +1,2 @@
+-- expect: lib/syntax.lua:2: unexpected symbol near '='
+require 'lib.syntax'

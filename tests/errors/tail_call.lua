@@ -1,0 +1,3 @@
+-- expect: SCRIPT:2: gr.sphere: material or name must be a material or a string, not a boolean
+local function f() return gr.sphere(true) end
+f()

@@ -1,0 +1,2 @@
+-- expect: SCRIPT:3: unexpected symbol near <eof>
+local a = {

@@ -1,0 +1,18 @@
+-- With --lenient whatever does not exist is told once and does nothing.
+local root = gr.node('root')
+local torus = gr.torus('ring', 2, 1)
+root:add_child(torus)
+torus:scale(1, 2, 3)
+torus:spin(7)
+local extra = gr.fog({1, 1, 1}, 3)
+gr.fog({0, 0, 0}, 4)
+root:add_child(extra)
+root:wobble(3):wobble(4)
+local ball = gr.sphere(gr.shiny_material({1, 1, 1}))
+root:add_child(ball)
+ball:set_material(extra)
+root:set_material(gr.material({1, 1, 1}, {0, 0, 0}, 1))
+assert(tostring(gr.union('u', ball, torus)) == "node 'u'" and tostring(gr.difference('d', torus, ball)) == "node 'd'")
+local lamp = gr.light({0, 0, 9}, {1, 1, 1}, {1, 0, 0})
+gr.render(root, 'lenient.png', 8, 8, {0, 0, 10}, {0, 0, -1}, {0, 1, 0}, 50, {0, 0, 0},
+    {lamp, gr.spherical_light({0, 0, 0}, {1, 1, 1}, {1, 0, 0}, 1)})

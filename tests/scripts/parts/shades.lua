@@ -1,0 +1,1 @@
+function shade(x) return x * x end

@@ -1,0 +1,392 @@
+/* Generated from the table of functions: every argument of every form of every gr function and node method, left out,
+ * of a wrong type, out of its range, NaN, infinite, with a wrong number of entries: the message names line, function
+ * and argument. And with everything right, every form runs. */
+#include "image/png_write.h"
+#include "script/table.h"
+#include "tests/unit/script_host.h"
+
+#include <math.h>
+
+enum { CALL_SIZE = 2048 };
+
+static void white_row(void *context, uint32_t y, uint8_t *line) {
+    (void)context;
+    (void)y;
+    memset(line, 255, 3 * 8);
+}
+
+/* The files that the right arguments name. */
+static void write_files(void) {
+    char path[512];
+    struct error error = {0};
+    (void)snprintf(path, sizeof path, "%s/cross.png", test_folder());
+    CHECK(png_write(path, 8, 6, white_row, NULL, &error));
+    (void)snprintf(path, sizeof path, "%s/flag.obj", test_folder());
+    test_write_text(path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+}
+
+/* A right argument, as Lua text. */
+static void right_text(const struct parameter *p, char *out, size_t size) {
+    bool bounded = p->low != 0 || p->high != 0;
+    double middle = !bounded ? 1 : isfinite(p->high) ? floor(p->low / 2 + p->high / 2) : p->low + 1;
+    const char *text = "nil";
+    switch (p->kind) {
+    case KIND_NUMBER:
+        (void)snprintf(out, size, "%.17g", middle);
+        return;
+    case KIND_WHOLE:
+        (void)snprintf(out, size, "%.0f", middle > 16 ? 16 : middle);
+        return;
+    case KIND_BOOLEAN:
+        text = "true";
+        break;
+    case KIND_TEXT:
+        text = "'thing'";
+        break;
+    case KIND_FILE:
+        text = "'flag.obj'";
+        break;
+    case KIND_OUTPUT:
+        text = "'out.png'";
+        break;
+    case KIND_CHOICE:
+    case KIND_AXIS:
+        (void)snprintf(out, size, "'%.*s'", (int)strcspn(p->choices, " "), p->choices);
+        return;
+    case KIND_POINT:
+    case KIND_DIRECTION:
+    case KIND_COLOUR:
+    case KIND_TRIPLE:
+    case KIND_BACKGROUND:
+        text = "{1, 2, 3}";
+        break;
+    case KIND_SIZE:
+        text = "2";
+        break;
+    case KIND_NODE:
+        text = "ball";
+        break;
+    case KIND_MATERIAL:
+        text = "glass";
+        break;
+    case KIND_IMAGE:
+        text = "'cross.png'";
+        break;
+    case KIND_NODES:
+        text = "{ball, ball}";
+        break;
+    case KIND_LIGHTS:
+        text = "{lamp, lamp}";
+        break;
+    case KIND_POINTS:
+        text = "{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}";
+        break;
+    case KIND_PAIRS:
+        text = "{{0, 0}, {1, 0}, {0, 1}}";
+        break;
+    case KIND_FACES:
+        text = "{{0, 1, 2}}";
+        break;
+    case KIND_COUNT:
+        break;
+    }
+    (void)snprintf(out, size, "%s", text);
+}
+
+/* Wrong arguments, until NULL. `which` counts from 0. */
+static const char *wrong_text(const struct parameter *p, int which, char *out, size_t size) {
+    const char *list[16] = {NULL};
+    int count = 0;
+    bool number = p->kind == KIND_NUMBER || p->kind == KIND_WHOLE || p->kind == KIND_SIZE;
+    bool triple = p->kind == KIND_POINT || p->kind == KIND_DIRECTION || p->kind == KIND_COLOUR ||
+                  p->kind == KIND_TRIPLE || p->kind == KIND_SIZE || p->kind == KIND_BACKGROUND;
+    list[count++] = p->kind == KIND_BOOLEAN ? "'yes'" : "true";
+    list[count++] = "print";
+    if (number) {
+        list[count++] = "0 / 0";
+        list[count++] = "1 / 0";
+        list[count++] = "-1 / 0";
+    }
+    if (triple) {
+        list[count++] = "{1, 2}";
+        list[count++] = "{1, 2, 3, 4}";
+        list[count++] = "{1, 0 / 0, 3}";
+        list[count++] = "{1, 2, 1 / 0}";
+        list[count++] = "{1, {}, 3}";
+    }
+    if (p->kind == KIND_WHOLE)
+        list[count++] = "1.5";
+    if (p->flags & NOT_ZERO)
+        list[count++] = "0";
+    if (p->kind == KIND_CHOICE || p->kind == KIND_AXIS || p->kind == KIND_BACKGROUND)
+        list[count++] = "'sideways'";
+    if (p->kind == KIND_FILE || p->kind == KIND_OUTPUT || p->kind == KIND_IMAGE)
+        list[count++] = "''";
+    if (p->kind == KIND_NODE || p->kind == KIND_NODES || p->kind == KIND_LIGHTS)
+        list[count++] = p->kind == KIND_NODE ? "glass" : "{glass}";
+    if (p->kind == KIND_LIGHTS || p->kind == KIND_NODES)
+        list[count++] = "{nil, lamp}";
+    if (p->kind == KIND_MATERIAL)
+        list[count++] = "ball";
+    if (p->kind == KIND_POINTS || p->kind == KIND_PAIRS) {
+        list[count++] = "{{0}}";
+        list[count++] = "{7}";
+        list[count++] = p->kind == KIND_POINTS ? "{{0, 0, 0 / 0}}" : "{{0, 0 / 0}}";
+    }
+    if (p->kind == KIND_FACES) {
+        list[count++] = "{{0, 1, 0 / 0}}";
+        list[count++] = "{{0, 1, -1}}";
+        list[count++] = "{{0, 1, 99}}";
+        list[count++] = "{{0, 1}}";
+        list[count++] = "{7}";
+    }
+    bool bounded = number && (p->low != 0 || p->high != 0);
+    if (which < count)
+        return list[which];
+    if (bounded && which == count && isfinite(p->low)) {
+        (void)snprintf(out, size, "%.17g", p->flags & LOW_OPEN ? p->low : p->low - 1);
+        return out;
+    }
+    if (bounded && which == count + 1 && isfinite(p->low)) {
+        (void)snprintf(out, size, "%.17g",
+                       isfinite(p->high) ? (p->flags & HIGH_OPEN ? p->high : p->high + 1) : p->low - 2);
+        return out;
+    }
+    return NULL;
+}
+
+static void begin_call(const struct function *function, char call[CALL_SIZE]) {
+    (void)snprintf(call, CALL_SIZE, "%s%s", function->owner == OWNER_GR ? "gr." : "ball:", function->name);
+}
+
+static void append(char call[CALL_SIZE], const char *text) {
+    size_t used = strlen(call);
+    (void)snprintf(call + used, CALL_SIZE - used, "%s", text);
+}
+
+/* A call in that form; argument `wrong` (a parameter's index, or -1) is replaced. */
+static void positional_call(const struct function *function, const char *form, int wrong, const char *with,
+                            char call[CALL_SIZE]) {
+    int index;
+    bool optional;
+    const char *separator = "(";
+    begin_call(function, call);
+    while (form_next(function, &form, &index, &optional)) {
+        char text[256];
+        right_text(&function->parameters[index], text, sizeof text);
+        append(call, separator);
+        append(call, index == wrong ? with : text);
+        separator = ", ";
+    }
+    append(call, ")");
+}
+
+/* What the table form must have, less `wrong`. Meshes want vertices and faces, or a file. */
+static bool is_needed(const struct function *function, int index) {
+    const struct parameter *p = &function->parameters[index];
+    bool mesh_table = strcmp(p->name, "verts") == 0 || strcmp(p->name, "faces") == 0;
+    bool partner = (strcmp(p->name, "normals") == 0 || strcmp(p->name, "uvs") == 0) && p->kind != KIND_FACES;
+    return !(p->flags & OPTIONAL) || mesh_table || partner;
+}
+
+static void table_call(const struct function *function, int wrong, const char *with, char call[CALL_SIZE]) {
+    const char *separator = "{";
+    begin_call(function, call);
+    for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
+        char text[256];
+        if (k != wrong && !is_needed(function, k))
+            continue;
+        right_text(&function->parameters[k], text, sizeof text);
+        append(call, separator);
+        append(call, function->parameters[k].name);
+        append(call, " = ");
+        append(call, k == wrong ? with : text);
+        separator = ", ";
+    }
+    append(call, separator[0] == '{' ? "{}" : "}");
+}
+
+/* The call stands in line 4. */
+static bool run_call(const char *call, struct error *error) {
+    char text[CALL_SIZE + 512];
+    (void)snprintf(text, sizeof text,
+                   "glass = gr.rr_material({1, 1, 1}, {1, 1, 1}, 10, 0.5, 0.5, 1.5)\n"
+                   "ball = gr.sphere('ball')\n"
+                   "lamp = gr.light({0, 0, 0}, {1, 1, 1}, {1, 0, 0})\n"
+                   "%s\n",
+                   call);
+    struct listener listener = {.renders = 0};
+    return listen_to_text(&listener, text, NULL, error);
+}
+
+static void expect_named(const struct function *function, const struct parameter *p, const char *call) {
+    struct error error;
+    char title[96];
+    (void)snprintf(title, sizeof title, "%s%s", function->owner == OWNER_GR ? "gr." : "node:", function->name);
+    if (run_call(call, &error)) {
+        test_fail(__FILE__, __LINE__, "%s is accepted", call);
+        return;
+    }
+    if (!strstr(error.text, "scene.lua:4: ") || !strstr(error.text, title) || !strstr(error.text, p->name))
+        test_fail(__FILE__, __LINE__, "%s: \"%s\" does not name line 4, %s and %s", call, error.text, title, p->name);
+    if (error.kind != ERROR_SCENE)
+        test_fail(__FILE__, __LINE__, "%s: the kind of the error is %d", call, (int)error.kind);
+}
+
+static bool has_table_form(const struct function *function) {
+    return !function->since && (function->owner == OWNER_GR || function->result == RESULT_NOTHING);
+}
+
+TEST(every_form_of_every_function_runs_with_right_arguments) {
+    write_files();
+    for (int f = 0; f < function_count; f++) {
+        const struct function *function = &function_table[f];
+        if (function->since)
+            continue;
+        for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
+            char call[CALL_SIZE];
+            struct error error;
+            positional_call(function, function->forms[k], -1, "", call);
+            if (strncmp(call, "gr.csg", 6) != 0 && !run_call(call, &error))
+                test_fail(__FILE__, __LINE__, "%s: %s", call, error.text);
+        }
+        for (int p = function->owner == OWNER_NODE; p < function->parameter_count && has_table_form(function); p++) {
+            const char *name = function->parameters[p].name;
+            char call[CALL_SIZE], text[256];
+            struct error error;
+            bool excludes = strcmp(name, "file") == 0 && !(function->parameters[p].kind == KIND_OUTPUT);
+            if ((excludes && strstr(function->name, "mesh")) || strcmp(name, "ior") == 0 ||
+                strcmp(name, "refract") == 0)
+                continue;
+            right_text(&function->parameters[p], text, sizeof text);
+            table_call(function, p, text, call);
+            if (!run_call(call, &error))
+                test_fail(__FILE__, __LINE__, "%s: %s", call, error.text);
+        }
+    }
+}
+
+TEST(every_missing_argument_is_named) {
+    write_files();
+    for (int f = 0; f < function_count; f++) {
+        const struct function *function = &function_table[f];
+        for (int k = 0; k < FORM_LIMIT && function->forms[k] && !function->since; k++) {
+            const char *form = function->forms[k];
+            int index;
+            bool optional;
+            while (form_next(function, &form, &index, &optional)) {
+                char call[CALL_SIZE];
+                positional_call(function, function->forms[k], index, "nil", call);
+                if (!optional)
+                    expect_named(function, &function->parameters[index], call);
+            }
+        }
+        for (int p = function->owner == OWNER_NODE; p < function->parameter_count && has_table_form(function); p++) {
+            char call[CALL_SIZE];
+            table_call(function, p, "nil", call);
+            if (!(function->parameters[p].flags & OPTIONAL))
+                expect_named(function, &function->parameters[p], call);
+        }
+    }
+}
+
+TEST(every_wrong_positional_argument_is_named) {
+    write_files();
+    for (int f = 0; f < function_count; f++) {
+        const struct function *function = &function_table[f];
+        for (int k = 0; k < FORM_LIMIT && function->forms[k] && !function->since; k++) {
+            const char *form = function->forms[k], *with;
+            int index;
+            bool optional;
+            while (form_next(function, &form, &index, &optional)) {
+                char call[CALL_SIZE], buffer[64];
+                for (int w = 0; (with = wrong_text(&function->parameters[index], w, buffer, sizeof buffer)); w++) {
+                    positional_call(function, function->forms[k], index, with, call);
+                    expect_named(function, &function->parameters[index], call);
+                }
+            }
+        }
+    }
+}
+
+TEST(every_wrong_named_field_is_named) {
+    write_files();
+    for (int f = 0; f < function_count; f++) {
+        const struct function *function = &function_table[f];
+        const char *with;
+        for (int p = function->owner == OWNER_NODE; p < function->parameter_count && has_table_form(function); p++) {
+            char call[CALL_SIZE], buffer[64];
+            for (int w = 0; (with = wrong_text(&function->parameters[p], w, buffer, sizeof buffer)); w++) {
+                table_call(function, p, with, call);
+                expect_named(function, &function->parameters[p], call);
+            }
+        }
+    }
+}
+
+TEST(functions_of_later_versions_say_which) {
+    for (int f = 0; f < function_count; f++) {
+        const struct function *function = &function_table[f];
+        char call[CALL_SIZE];
+        struct error error;
+        if (!function->since)
+            continue;
+        begin_call(function, call);
+        append(call, "('x')");
+        CHECK(!run_call(call, &error));
+        CHECK(strstr(error.text, "scene.lua:4: ") && strstr(error.text, "comes with version") &&
+              strstr(error.text, function->name));
+    }
+}
+
+TEST(names_in_the_forms_are_parameters) {
+    for (int f = 0; f < function_count; f++) {
+        const struct function *function = &function_table[f];
+        CHECK(function->parameter_count <= PARAMETER_LIMIT);
+        CHECK(function_find(function->owner, function->name) == function);
+        for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
+            const char *form = function->forms[k];
+            int index, words = 0, found = 0;
+            bool optional;
+            for (const char *c = form; *c; c++)
+                words += *c != ' ' && (c == form || c[-1] == ' ');
+            while (form_next(function, &form, &index, &optional))
+                found++;
+            if (words != found)
+                test_fail(__FILE__, __LINE__, "%s: \"%s\" names no parameter", function->name, form);
+        }
+        for (int p = 0; p < function->parameter_count; p++)
+            CHECK(function->parameters[p].name && function->parameters[p].help);
+    }
+}
+
+TEST(annotation_file_is_current) {
+    struct arena arena = {0};
+    const char *annotations = script_annotations(&arena);
+    char *file = test_read_file("lua/gr.lua", NULL);
+    CHECK(annotations != NULL && file != NULL);
+    if (annotations && file && strcmp(annotations, file) != 0)
+        test_fail(__FILE__, __LINE__, "write it again: ./gray --annotations > lua/gr.lua");
+    free(file);
+    arena_destroy(&arena);
+}
+
+TEST(manual_has_at_most_100_columns_and_every_function) {
+    struct arena arena = {0};
+    const char *manual = script_manual(&arena);
+    CHECK(manual != NULL);
+    for (const char *line = manual; line && *line;) {
+        size_t length = strcspn(line, "\n");
+        if (length > 100)
+            test_fail(__FILE__, __LINE__, "%.*s", (int)length, line);
+        line += length + (line[length] == '\n');
+    }
+    for (int f = 0; f < function_count && manual; f++) {
+        char title[96];
+        (void)snprintf(title, sizeof title, "%s%s(",
+                       function_table[f].owner == OWNER_GR ? "gr." : "node:", function_table[f].name);
+        if (!strstr(manual, title))
+            test_fail(__FILE__, __LINE__, "%s is not in the manual", title);
+    }
+    arena_destroy(&arena);
+}

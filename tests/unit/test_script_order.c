@@ -1,0 +1,168 @@
+/* Which order of transforms the text of a scene asks for (SPEC 2.4), and that the orders do what they say. */
+#include "script/order.h"
+#include "tests/unit/script_host.h"
+
+#include <sys/stat.h>
+
+static struct order_finding order_of(const char *text) {
+    struct order_finding finding;
+    order_of_text(text, strlen(text), &finding);
+    return finding;
+}
+
+static void expect(enum transform_order order, const char *reason, const char *text) {
+    struct order_finding finding = order_of(text);
+    if (finding.order != order || strcmp(finding.reason, reason) != 0)
+        test_fail(__FILE__, __LINE__, "%s: order %d because \"%s\"", text, (int)finding.order, finding.reason);
+}
+
+TEST(names_of_the_project_dialect_mean_new) {
+    static const char *const names[] = {
+        "fast_mesh",         "vn_mesh",          "fast_vn_mesh",       "rr_material",        "marble_pnd_material",
+        "wood_pnd_material", "td_cube_material", "td_sphere_material", "difresnel_material", "geometry",
+        "csg_union",         "csg_difference",   "csg_intersection",   "area_light",         "render_skybox"};
+    for (size_t k = 0; k < sizeof names / sizeof names[0]; k++) {
+        char text[200];
+        (void)snprintf(text, sizeof text, "local x = unpack(t)\nx = gr.%s(a, b)", names[k]);
+        expect(ORDER_NEW, "it uses names of the project dialect (line 2)", text);
+    }
+}
+
+TEST(other_signs_of_the_new_order) {
+    expect(ORDER_NEW, "it uses tables with named fields (line 1)", "gr.sphere{radius = 1} readobj()");
+    expect(ORDER_NEW, "it uses tables with named fields (line 1)", "gr.sphere({radius = 1}) readobj()");
+    expect(ORDER_NEW, "it calls gr.transform_order (line 1)", "gr.transform_order('old') readobj()");
+    expect(ORDER_NEW, "gr.mesh reads a file (line 1)", "c = gr.mesh('cow', 'cow.obj') unpack(x)");
+    expect(ORDER_NEW, "gr.mesh reads a file (line 1)", "c = gr.mesh('cow', \"cow\" .. n .. '.obj')");
+    expect(ORDER_NEW, "it uses table.unpack (line 1)", "local unpack = table.unpack or unpack");
+    expect(ORDER_NEW, "a primitive is given its material (line 2)", "m = gr.material(a, b, 1)\ns = gr.sphere(m)");
+    expect(ORDER_NEW, "gr.mesh is given a material (line 2)",
+           "m = gr.material(a, b, 1)\nx = gr.mesh(m, {{0, 0, 0}}, {})");
+}
+
+TEST(signs_of_the_old_order) {
+    expect(ORDER_OLD, "it uses readobj (line 2)", "-- cow\ncow = gr.mesh('cow', readobj('cow.obj'))");
+    expect(ORDER_OLD, "it calls unpack, not table.unpack (line 1)", "n:translate(unpack(p))");
+    expect(ORDER_OLD, "gr.mesh is given vertex tables (line 1)", "p = gr.mesh('p', {{0, 0, 0}}, {{0, 1, 2}})");
+    expect(ORDER_OLD, "gr.mesh is given vertex tables (line 1)", "p = gr.mesh('p', verts, faces)");
+    expect(ORDER_OLD, "gr.mesh is given vertex tables (line 1)", "p = gr.mesh(name('p', 1), make(1, 2), faces)");
+}
+
+TEST(scenes_without_signs_are_new) {
+    expect(ORDER_NEW, "", "");
+    expect(ORDER_NEW, "", "s = gr.sphere('s') s:scale(1, 2, 3) s:translate(1, 0, 0)");
+    expect(ORDER_NEW, "", "c = gr.mesh('c', load_it())");
+    expect(ORDER_NEW, "", "c = gr.mesh('c', name)");
+}
+
+TEST(comments_and_strings_are_no_signs) {
+    expect(ORDER_NEW, "", "-- readobj unpack gr.vn_mesh\n--[[ readobj\nunpack ]] --[==[ ]] readobj ]==]\nx = 1");
+    expect(ORDER_NEW, "", "x = 'readobj(1)' y = \"unpack \\\" unpack\" z = [[ unpack ]] w = [=[ ]] readobj ]=]");
+    expect(ORDER_NEW, "", "#!readobj\nx = a.unpack(1) y = a:unpack(2) z = my.readobj(3)");
+    expect(ORDER_OLD, "it uses readobj (line 4)", "x = 'a\\\nb' --[[\n]]\ny = 1 readobj()");
+    expect(ORDER_NEW, "", "x = 'never closed\n y = [[ never closed unpack");
+    expect(ORDER_NEW, "", "--[==[ never closed readobj");
+    expect(ORDER_OLD, "it calls unpack, not table.unpack (line 1)", "a[b[1]] = unpack(x)");
+}
+
+static void write_in(const char *folder, const char *name, const char *text) {
+    char path[1000];
+    (void)snprintf(path, sizeof path, "%s/%s", folder, name);
+    test_write_text(path, text);
+}
+
+static void expect_file(const char *name, const char *library, enum transform_order order, const char *reason) {
+    char path[600];
+    struct order_finding finding;
+    struct error error;
+    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    CHECK(order_detect(path, library, &finding, &error));
+    CHECK_EQ_INT(finding.order, order);
+    CHECK_TEXT(finding.reason, reason);
+}
+
+TEST(required_files_are_read_too) {
+    const char *folder = test_folder();
+    write_in(folder, "a.lua", "require 'helper'\nlocal s = gr.sphere('s')\n");
+    write_in(folder, "helper.lua", "require('deeper')\nrequire 'a'\n");
+    write_in(folder, "deeper.lua", "\nfunction place(n, p) n:translate(unpack(p)) end\n");
+    expect_file("a.lua", NULL, ORDER_OLD, "it calls unpack, not table.unpack (line 2)");
+    write_in(folder, "b.lua", "dofile('deeper.lua') g = gr.geometry('g', p)\n");
+    expect_file("b.lua", NULL, ORDER_NEW, "it uses names of the project dialect (line 1)");
+}
+
+TEST(the_library_says_nothing_about_a_scene) {
+    char lua[600];
+    const char *folder = test_folder();
+    (void)snprintf(lua, sizeof lua, "%s/lua", folder);
+    CHECK(mkdir(lua, 0777) == 0);
+    write_in(lua, "thing.lua", "return readobj\n");
+    write_in(folder, "a.lua", "require 'thing'\nlocal s = gr.sphere('s')\n");
+    expect_file("a.lua", lua, ORDER_NEW, "");
+    expect_file("a.lua", NULL, ORDER_OLD, "it uses readobj (line 1)");
+}
+
+TEST(neighbours_decide_when_the_scene_says_nothing) {
+    const char *folder = test_folder();
+    write_in(folder, "a.lua", "local s = gr.sphere('s')\n");
+    expect_file("a.lua", NULL, ORDER_NEW, "");
+    write_in(folder, "no_scene.lua", "print(unpack(x))\n");
+    expect_file("a.lua", NULL, ORDER_NEW, "");
+    write_in(folder, "cow.lua", "gr.mesh('cow', readobj('cow.obj'))\n");
+    expect_file("a.lua", NULL, ORDER_OLD, "of its neighbour cow.lua: it uses readobj (line 1)");
+    write_in(folder, "new.lua", "gr.mesh('cow', 'cow.obj')\n");
+    expect_file("a.lua", NULL, ORDER_NEW, "");
+}
+
+/* Where the point (1,0,0) of the root's first child comes to lie. */
+static void expect_point(enum script_order order, const char *text, double x, double y, double z) {
+    struct listener listener = {.renders = 0};
+    struct script_options options = {.transform_order = order};
+    struct error error;
+    char scene[2000];
+    (void)snprintf(scene, sizeof scene,
+                   "local root, n = gr.node('root'), gr.node('n')\nroot:add_child(n)\n%s\n"
+                   "gr.render(root, 'x.png', 8, 8, {0, 0, 9}, {0, 0, -1}, {0, 1, 0}, 50, {0, 0, 0}, {})\n",
+                   text);
+    CHECK(listen_to_text(&listener, scene, &options, &error));
+    struct vec3 p = affine_point(&listener.first_child[0], (struct vec3){1, 0, 0});
+    if (fabs(p.x - x) > 1e-12 || fabs(p.y - y) > 1e-12 || fabs(p.z - z) > 1e-12)
+        test_fail(__FILE__, __LINE__, "order %d, %s: {%g, %g, %g}, not {%g, %g, %g}", (int)order, text, p.x, p.y, p.z,
+                  x, y, z);
+}
+
+TEST(each_order_composes_as_it_says) {
+    const char *scale_then_move = "n:scale(2, 2, 2) n:translate(1, 0, 0)";
+    expect_point(SCRIPT_ORDER_NEW, scale_then_move, 3, 0, 0);
+    expect_point(SCRIPT_ORDER_OLD, scale_then_move, 4, 0, 0);
+    expect_point(SCRIPT_ORDER_SEPARATE, scale_then_move, 3, 0, 0);
+    const char *move_turn_scale = "n:translate(5, 0, 0) n:rotate('z', 90) n:scale(3, 1, 1)";
+    expect_point(SCRIPT_ORDER_NEW, move_turn_scale, 0, 6, 0);
+    expect_point(SCRIPT_ORDER_OLD, move_turn_scale, 5, 3, 0);
+    expect_point(SCRIPT_ORDER_SEPARATE, move_turn_scale, 5, 3, 0);
+    const char *twice = "n:scale(2, 1, 1) n:rotate('z', 90) n:translate(1, 1, 1) n:rotate('z', 90) n:scale(2, 1, 1)";
+    expect_point(SCRIPT_ORDER_SEPARATE, twice, -3, 1, 1);
+}
+
+TEST(an_explicit_call_wins_over_the_text) {
+    expect_point(SCRIPT_ORDER_AUTO, "gr.transform_order('old') n:scale(2, 2, 2) n:translate(1, 0, 0)", 4, 0, 0);
+    expect_point(SCRIPT_ORDER_AUTO, "gr.transform_order('separate') n:translate(1, 0, 0) n:scale(2, 2, 2)", 3, 0, 0);
+    expect_point(SCRIPT_ORDER_AUTO, "n:translate(unpack({1, 0, 0})) n:scale(2, 2, 2)", 3, 0, 0);
+    expect_point(SCRIPT_ORDER_NEW, "n:translate(unpack({1, 0, 0})) n:scale(2, 2, 2)", 4, 0, 0);
+}
+
+TEST(auto_says_why_and_how_to_pin_it) {
+    struct listener listener = {.renders = 0};
+    struct script_options options = {.transform_order = SCRIPT_ORDER_AUTO};
+    struct error error;
+    CHECK(listen_to_text(&listener, "local x = 1\nlocal a = unpack({1})\n", &options, &error));
+    CHECK(strstr(listener.said,
+                 "scene.lua: old transform order, because it calls unpack, not table.unpack (line 2); pin "
+                 "it with --transform-order old or gr.transform_order('old')\n"));
+    listener = (struct listener){.renders = 0};
+    CHECK(listen_to_text(&listener, "local a = gr.sphere('s')\n", &options, &error));
+    CHECK_EQ_INT(listener.messages, 0);
+    options.transform_order = SCRIPT_ORDER_OLD;
+    CHECK(listen_to_text(&listener, "local a = unpack({1})\n", &options, &error));
+    CHECK_EQ_INT(listener.messages, 0);
+}
