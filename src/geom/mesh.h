@@ -33,9 +33,12 @@ struct mesh_input {
     const double (*uvs)[2];
     const uint32_t *uv_index;
     const uint32_t *face_material; /* material slot per face, or NULL */
+    const float (*colours)[3];     /* of the vertices, or NULL */
 };
 
-enum accel_kind { ACCEL_GRID, ACCEL_NONE }; /* how searches go; the answers are the same */
+/* How searches go; the answers are the same. AUTO: what is fastest; GRID: the uniform grid of Amanatides and Woo over the
+ * placed primitives; BVH: a hierarchy over them; NONE: everything is tried. */
+enum accel_kind { ACCEL_AUTO, ACCEL_GRID, ACCEL_BVH, ACCEL_NONE };
 
 /* Triangulates n-gons (concave ones by ear clipping in their best plane, convex ones fast; thousands of corners fine),
  * drops degenerate faces quietly (counted). NULL and error on no memory. Deterministic. Not more than 2^31 triangles. */
@@ -53,6 +56,11 @@ uint32_t mesh_triangle_count(const struct mesh *mesh);
 uint32_t mesh_dropped_faces(const struct mesh *mesh);
 bool mesh_has_uv(const struct mesh *mesh);
 bool mesh_has_normals(const struct mesh *mesh);
+/* The polygons as they came, for those who want to read them: `corners` numbers of vertices, at most as many as the largest
+ * face of the mesh has; both answers point into the mesh. */
+const double (*mesh_vertices(const struct mesh *mesh, uint32_t *count))[3];
+uint32_t mesh_face_count(const struct mesh *mesh);
+const uint32_t *mesh_face(const struct mesh *mesh, uint32_t face, uint32_t *corners);
 size_t mesh_memory(const struct mesh *mesh); /* bytes, index included */
 /* The exact content as a key, so that the same tables give the same mesh (hash over everything in the input but name). */
 uint64_t mesh_input_hash(const struct mesh_input *input);

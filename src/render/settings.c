@@ -9,5 +9,5 @@ struct settings settings_default(void) {
                              .corner_tolerance = 0.01,
                              .area_samples = 4,
                              .specular = SPECULAR_PHONG,
-                             .accel = ACCEL_GRID};
+                             .accel = ACCEL_AUTO};
 }

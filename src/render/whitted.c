@@ -14,6 +14,8 @@ static struct vec3 trace(struct tracer *tracer, const struct ray *ray, struct pa
 
 /* --- light that arrives directly --- */
 
+enum { AREA_BATCH = 256 }; /* shadow rays of one hit that are asked together */
+
 /* The share of a light that reaches the hit: 0 or 1 for a point, shadow rays to jittered cells for a parallelogram. */
 static double visible_share(struct tracer *tracer, const struct light *light, const struct hit *hit, uint64_t key) {
     const struct world *world = tracer->job->world;
@@ -27,18 +29,20 @@ static double visible_share(struct tracer *tracer, const struct light *light, co
         tracer->shadow_rays++;
         return world_any(world, &shadow, tracer->scratch) ? 0 : 1;
     }
-    int n = tracer->job->settings.area_samples, seen = 0;
-    for (int j = 0; j < n; j++) {
-        for (int i = 0; i < n; i++) {
-            struct sample2 cell = sample_cell(key, (uint32_t)i, (uint32_t)j, (uint32_t)n);
-            struct vec3 target = vec3_add_scaled(light->corner, light->edge1, cell.x);
-            target = vec3_add_scaled(target, light->edge2, cell.y);
-            shadow.direction = vec3_sub(target, shadow.origin);
-            tracer->shadow_rays++;
-            seen += !world_any(world, &shadow, tracer->scratch);
-        }
+    uint32_t n = (uint32_t)tracer->job->settings.area_samples, all = n * n, seen = 0, have = 0;
+    struct vec3 targets[AREA_BATCH];
+    for (uint32_t cell = 0; cell < all; cell++) {
+        struct sample2 place = sample_cell(key, cell % n, cell / n, n);
+        struct vec3 target = vec3_add_scaled(light->corner, light->edge1, place.x);
+        targets[have++] = vec3_add_scaled(target, light->edge2, place.y);
+        if (have < AREA_BATCH && cell + 1 < all)
+            continue;
+        seen += world_count_visible(world, shadow.origin, hit->time, light->corner, light->edge1, light->edge2, targets,
+                                    have, tracer->scratch);
+        have = 0;
     }
-    return (double)seen / ((double)n * (double)n);
+    tracer->shadow_rays += all;
+    return (double)seen / (double)all;
 }
 
 static struct vec3 own_light(struct tracer *tracer, const struct hit *hit, const struct shading *shading,

@@ -22,9 +22,7 @@ void world_scratch_destroy(struct world_scratch *scratch) {
 static void place_boxes(struct world *world) {
     for (uint32_t i = 0; i < world->placed_count; i++) {
         const struct placed *placed = &world->placed[i];
-        struct box object = shape_bounds(&placed->shape);
-        struct box box = box_transform(&placed->world_from_object.forward, &object);
-        world->boxes[i] = box_pad(box);
+        world->boxes[i] = box_pad(shape_bounds_under(&placed->shape, &placed->world_from_object.forward));
         uint32_t need = shape_scratch_need(&placed->shape);
         world->scratch_need = need > world->scratch_need ? need : world->scratch_need;
         if (placed->shape.kind == SHAPE_MESH)
@@ -61,11 +59,21 @@ bool world_build(struct world *world, struct arena *arena, struct scene *scene, 
         return error_no_memory(error, "the boxes of the scene");
     place_boxes(world);
     add_up_meshes(world, scene->assets);
-    return accel != ACCEL_GRID || grid_build(&world->grid, world->boxes, world->placed_count, pool, error);
+    switch (accel) {
+    case ACCEL_GRID:
+        return grid_build(&world->grid, world->boxes, world->placed_count, pool, error);
+    case ACCEL_AUTO:
+    case ACCEL_BVH:
+        return box_tree_build(&world->tree, world->boxes, world->placed_count, pool, error);
+    case ACCEL_NONE:
+        return true;
+    }
+    return true;
 }
 
 void world_destroy(struct world *world) {
     grid_destroy(&world->grid);
+    box_tree_destroy(&world->tree);
 }
 
 /* --- searching --- */
@@ -98,8 +106,6 @@ static bool ask_nearest(struct search *s, uint32_t index, const struct ray *ray_
 }
 
 static void try_placed(struct search *s, uint32_t index) {
-    if (!box_probe_meets(&s->probe, &s->world->boxes[index], s->limited.t_min, s->limited.t_max))
-        return;
     struct ray ray_object = ray_transform(&s->world->placed[index].world_from_object.inverse, &s->limited);
     struct crossing crossing;
     if (!ask_nearest(s, index, &ray_object, &crossing))
@@ -109,7 +115,13 @@ static void try_placed(struct search *s, uint32_t index) {
     s->best = crossing;
     s->placed = index;
     s->found = true;
-    s->limited.t_max = fmin(s->ray->t_max, nextafter(crossing.t, INFINITY));
+    double just_behind = nextafter(crossing.t, INFINITY);
+    s->limited.t_max = just_behind < s->ray->t_max ? just_behind : s->ray->t_max;
+}
+
+static void try_boxed(struct search *s, uint32_t index) {
+    if (box_probe_meets(&s->probe, &s->world->boxes[index], s->limited.t_min, s->limited.t_max))
+        try_placed(s, index);
 }
 
 struct mailbox {
@@ -124,38 +136,57 @@ static bool mailbox_first(struct mailbox *box, uint32_t index) {
     return true;
 }
 
+static void search_grid(struct search *s) {
+    struct mailbox mailbox;
+    memset(&mailbox, 0xff, sizeof mailbox);
+    struct grid_walk walk = {0};
+    for (bool go_on = grid_walk_begin(&walk, &s->world->grid, s->ray); go_on; go_on = grid_walk_next(&walk)) {
+        for (uint32_t i = 0; i < walk.count; i++) {
+            if (mailbox_first(&mailbox, walk.items[i]))
+                try_boxed(s, walk.items[i]);
+        }
+        /* Strictly before the end of the voxel: an equal t may still wait in the next one. */
+        if (s->found && s->best.t < walk.t_exit)
+            break;
+    }
+    s->scratch->geom.voxels += walk.voxels;
+}
+
+static void search_tree(struct search *s) {
+    struct box_tree_walk walk;
+    uint32_t index;
+    box_tree_walk_begin(&walk, &s->world->tree, s->ray);
+    while (box_tree_walk_next(&walk, s->limited.t_max, &index))
+        try_placed(s, index);
+    s->scratch->geom.hierarchy_steps += walk.steps;
+}
+
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
                             uint32_t *placed, struct crossing *crossing) {
     struct search s = {
         .world = world, .ray = ray, .scratch = scratch, .limited = *ray, .probe = box_probe_make(ray)};
     scratch->rays++;
-    if (world->accel == ACCEL_NONE) {
+    switch (world->accel) {
+    case ACCEL_AUTO:
+    case ACCEL_BVH:
+        search_tree(&s);
+        break;
+    case ACCEL_GRID:
+        search_grid(&s);
+        break;
+    case ACCEL_NONE:
         for (uint32_t i = 0; i < world->placed_count; i++)
-            try_placed(&s, i);
-    } else {
-        struct mailbox mailbox;
-        memset(&mailbox, 0xff, sizeof mailbox);
-        struct grid_walk walk = {0};
-        for (bool go_on = grid_walk_begin(&walk, &world->grid, ray); go_on; go_on = grid_walk_next(&walk)) {
-            for (uint32_t i = 0; i < walk.count; i++) {
-                if (mailbox_first(&mailbox, walk.items[i]))
-                    try_placed(&s, walk.items[i]);
-            }
-            /* Strictly before the end of the voxel: an equal t may still wait in the next one. */
-            if (s.found && s.best.t < walk.t_exit)
-                break;
-        }
-        scratch->geom.voxels += walk.voxels;
+            try_boxed(&s, i);
+        break;
     }
     *placed = s.placed;
     *crossing = s.best;
     return s.found;
 }
 
-static bool any_placed(const struct world *world, uint32_t index, const struct ray *ray, const struct box_probe *probe,
-                       struct world_scratch *scratch) {
-    if (!box_probe_meets(probe, &world->boxes[index], ray->t_min, ray->t_max))
-        return false;
+/* --- anything in the way --- */
+
+static bool any_placed(const struct world *world, uint32_t index, const struct ray *ray, struct world_scratch *scratch) {
     const struct placed *placed = &world->placed[index];
     struct ray ray_object = ray_transform(&placed->world_from_object.inverse, ray);
     for (;;) {
@@ -171,19 +202,14 @@ static bool any_placed(const struct world *world, uint32_t index, const struct r
     }
 }
 
-bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
-    scratch->any_rays++;
-    struct box_probe probe = box_probe_make(ray);
-    if (world->accel == ACCEL_NONE) {
-        for (uint32_t i = 0; i < world->placed_count; i++) {
-            if (any_placed(world, i, ray, &probe, scratch))
-                return true;
-        }
-        return false;
-    }
-    /* Neighbouring shadow rays mostly end at the same thing: it is asked first. The answer cannot depend on it. */
-    if (scratch->last_blocker < world->placed_count && any_placed(world, scratch->last_blocker, ray, &probe, scratch))
-        return true;
+static bool any_boxed(const struct world *world, uint32_t index, const struct ray *ray, const struct box_probe *probe,
+                      struct world_scratch *scratch) {
+    return box_probe_meets(probe, &world->boxes[index], ray->t_min, ray->t_max) &&
+           any_placed(world, index, ray, scratch);
+}
+
+static bool any_in_grid(const struct world *world, const struct ray *ray, const struct box_probe *probe,
+                        struct world_scratch *scratch) {
     struct mailbox mailbox;
     memset(&mailbox, 0xff, sizeof mailbox);
     (void)mailbox_first(&mailbox, scratch->last_blocker);
@@ -192,7 +218,7 @@ bool world_any(const struct world *world, const struct ray *ray, struct world_sc
     for (bool go_on = grid_walk_begin(&walk, &world->grid, ray); go_on && !found; go_on = grid_walk_next(&walk)) {
         for (uint32_t i = 0; i < walk.count && !found; i++) {
             uint32_t index = walk.items[i];
-            found = mailbox_first(&mailbox, index) && any_placed(world, index, ray, &probe, scratch);
+            found = mailbox_first(&mailbox, index) && any_boxed(world, index, ray, probe, scratch);
             if (found)
                 scratch->last_blocker = index;
         }
@@ -201,6 +227,70 @@ bool world_any(const struct world *world, const struct ray *ray, struct world_sc
     }
     scratch->geom.voxels += walk.voxels;
     return found;
+}
+
+static bool any_in_tree(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
+    struct box_tree_walk walk;
+    uint32_t index, asked = scratch->last_blocker;
+    bool found = false;
+    box_tree_walk_begin(&walk, &world->tree, ray);
+    while (!found && box_tree_walk_any(&walk, ray->t_max, &index)) {
+        found = index != asked && any_placed(world, index, ray, scratch);
+        if (found)
+            scratch->last_blocker = index;
+    }
+    scratch->geom.hierarchy_steps += walk.steps;
+    return found;
+}
+
+bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
+    scratch->any_rays++;
+    struct box_probe probe = box_probe_make(ray);
+    if (world->accel == ACCEL_NONE) {
+        for (uint32_t i = 0; i < world->placed_count; i++) {
+            if (any_boxed(world, i, ray, &probe, scratch))
+                return true;
+        }
+        return false;
+    }
+    /* Neighbouring shadow rays mostly end at the same thing: it is asked first. The answer cannot depend on it. */
+    if (scratch->last_blocker < world->placed_count && any_boxed(world, scratch->last_blocker, ray, &probe, scratch))
+        return true;
+    return world->accel == ACCEL_GRID ? any_in_grid(world, ray, &probe, scratch) : any_in_tree(world, ray, scratch);
+}
+
+uint32_t world_count_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner,
+                             struct vec3 edge1, struct vec3 edge2, const struct vec3 *targets, uint32_t count,
+                             struct world_scratch *scratch) {
+    enum { CANDIDATES = 24 };
+    uint32_t candidates[CANDIDATES], found = CANDIDATES + 1, seen = 0;
+    if (world->accel == ACCEL_AUTO || world->accel == ACCEL_BVH) {
+        struct shaft shaft = shaft_make(from, corner, edge1, edge2);
+        found = box_tree_in_shaft(&world->tree, &shaft, candidates, CANDIDATES);
+        if (found == 0)
+            return count;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        struct ray ray = {.origin = from, .direction = vec3_sub(targets[i], from), .t_max = 1, .time = time};
+        if (found > CANDIDATES) {
+            seen += !world_any(world, &ray, scratch);
+            continue;
+        }
+        scratch->any_rays++;
+        struct box_probe probe = box_probe_make(&ray);
+        bool blocked = false;
+        for (uint32_t k = 0; k < found && !blocked; k++) {
+            blocked = any_boxed(world, candidates[k], &ray, &probe, scratch);
+            /* What blocked one ray is asked first by the next. */
+            if (blocked && k > 0) {
+                uint32_t swap = candidates[0];
+                candidates[0] = candidates[k];
+                candidates[k] = swap;
+            }
+        }
+        seen += !blocked;
+    }
+    return seen;
 }
 
 /* --- describing --- */

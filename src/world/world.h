@@ -3,6 +3,7 @@
 #ifndef GRAY_WORLD_WORLD_H
 #define GRAY_WORLD_WORLD_H
 
+#include "accel/box_tree.h"
 #include "accel/grid.h"
 #include "base/arena.h"
 #include "base/pool.h"
@@ -28,7 +29,8 @@ struct world {
     const struct light *lights;
     uint32_t light_count;
     struct sky sky;
-    struct grid grid;
+    struct grid grid;     /* ACCEL_GRID */
+    struct box_tree tree; /* ACCEL_AUTO, ACCEL_BVH */
     enum accel_kind accel;
     uint32_t scratch_need;
     uint64_t triangles; /* instances counted */
@@ -54,7 +56,7 @@ typedef void world_warning(void *context, const char *text);
 bool world_build(struct world *world, struct arena *arena, struct scene *scene, struct node *root,
                  const struct light *lights, uint32_t light_count, const struct sky *sky, enum accel_kind accel,
                  struct pool *pool, world_warning *warn, void *warn_context, struct error *error);
-void world_destroy(struct world *world); /* what is not in the arena: the grid */
+void world_destroy(struct world *world); /* what is not in the arena: grid and tree */
 
 /* Nearest hit in the ray's open interval, fully described. Equal t: the primitive that comes first in flattening order. */
 bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit);
@@ -62,6 +64,11 @@ bool world_nearest(const struct world *world, const struct ray *ray, struct worl
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
                             uint32_t *placed, struct crossing *crossing);
 bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch);
+/* How many of the points targets[0 .. count-1], all inside the parallelogram, are seen from `from`: as world_any would
+ * say of every segment, t in (0, 1), with the search for what can stand between done once for all of them. */
+uint32_t world_count_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner,
+                             struct vec3 edge1, struct vec3 edge2, const struct vec3 *targets, uint32_t count,
+                             struct world_scratch *scratch);
 /* The closed primitives whose inside holds `point`, innermost last; at most `limit`. Returns the count. */
 uint32_t world_containing(const struct world *world, struct vec3 point, struct world_scratch *scratch, uint32_t *placed,
                           uint32_t limit);

@@ -1,0 +1,359 @@
+/* Building and walking the hierarchy over boxes. Rounding: with t = (plane - origin) * inverse, each t is wrong by a few
+ * units in its last place, so the far ends are moved outwards by 2^-50 of themselves before they are compared (Ize, "Robust
+ * BVH Ray Traversal", JCGT 2013). A direction component of zero makes its slab's t infinite on the right side, or NaN when
+ * the ray lies in the very plane, which every comparison here ignores. */
+#include "accel/box_tree.h"
+
+#include "base/mem.h"
+
+#include <string.h>
+
+/* --- building --- */
+
+enum { BINS = 16 };
+
+struct build_item {
+    struct box box;
+    struct vec3 centre;
+    uint32_t item;
+};
+
+struct builder {
+    struct build_item *items;
+    struct box_tree *tree;
+    uint32_t capacity;
+    struct pool *pool;
+};
+
+/* A run of items that is to become a child. */
+struct run {
+    uint32_t first, count;
+    struct box box;
+};
+
+static double half_area(const struct box *b) {
+    struct vec3 d = vec3_sub(b->max, b->min);
+    return d.x * d.y + d.y * d.z + d.z * d.x;
+}
+
+static struct box run_box(const struct builder *b, uint32_t first, uint32_t count) {
+    struct box box = box_empty();
+    for (uint32_t i = 0; i < count; i++)
+        box = box_join(box, b->items[first + i].box);
+    return box;
+}
+
+/* Infinite boxes have no middle; they go by a finite stand-in. */
+static double middle(double lo, double hi) {
+    if (isfinite(lo) && isfinite(hi))
+        return lo + (hi - lo) * 0.5;
+    return isfinite(lo) ? lo : isfinite(hi) ? hi : 0;
+}
+
+static int bin_of(double centre, double lo, double scale) {
+    int bin = (int)((centre - lo) * scale);
+    return bin < 0 ? 0 : bin >= BINS ? BINS - 1 : bin;
+}
+
+struct split {
+    int axis, bin; /* axis -1: none found */
+    double lo, scale, cost;
+};
+
+static struct split best_split(const struct builder *b, const struct run *run) {
+    struct box centres = box_empty();
+    for (uint32_t i = 0; i < run->count; i++)
+        centres = box_add_point(centres, b->items[run->first + i].centre);
+    struct split best = {.axis = -1, .cost = INFINITY};
+    for (int axis = 0; axis < 3; axis++) {
+        double lo = vec3_get(centres.min, axis), hi = vec3_get(centres.max, axis);
+        if (!(hi > lo))
+            continue;
+        double scale = BINS / (hi - lo);
+        if (!isfinite(scale))
+            continue;
+        struct box boxes[BINS];
+        uint32_t counts[BINS] = {0};
+        for (int i = 0; i < BINS; i++)
+            boxes[i] = box_empty();
+        for (uint32_t i = 0; i < run->count; i++) {
+            const struct build_item *item = &b->items[run->first + i];
+            int bin = bin_of(vec3_get(item->centre, axis), lo, scale);
+            boxes[bin] = box_join(boxes[bin], item->box);
+            counts[bin]++;
+        }
+        double right_cost[BINS];
+        struct box side = box_empty();
+        uint32_t count = 0;
+        for (int i = BINS - 1; i > 0; i--) {
+            side = box_join(side, boxes[i]);
+            count += counts[i];
+            right_cost[i] = count ? half_area(&side) * count : 0;
+        }
+        side = box_empty();
+        count = 0;
+        for (int i = 0; i < BINS - 1; i++) {
+            side = box_join(side, boxes[i]);
+            count += counts[i];
+            if (count == 0 || count == run->count)
+                continue;
+            double cost = half_area(&side) * count + right_cost[i + 1];
+            /* An infinite area compares equal to itself: the first split is then as good as any. */
+            if (cost < best.cost || best.axis < 0)
+                best = (struct split){axis, i, lo, scale, cost};
+        }
+    }
+    return best;
+}
+
+/* Stable partition keeps flattening order inside both halves: the tree does not depend on addresses or time. */
+static uint32_t partition(struct builder *b, const struct run *run, const struct split *split, struct build_item *spare) {
+    uint32_t left = 0, right = 0;
+    for (uint32_t i = 0; i < run->count; i++) {
+        struct build_item item = b->items[run->first + i];
+        if (bin_of(vec3_get(item.centre, split->axis), split->lo, split->scale) <= split->bin)
+            b->items[run->first + left++] = item;
+        else
+            spare[right++] = item;
+    }
+    memcpy(b->items + run->first + left, spare, right * sizeof *spare);
+    return left;
+}
+
+static void split_run(struct builder *b, const struct run *run, bool halve, struct build_item *spare,
+                      struct run out[2]) {
+    struct split split = {.axis = -1};
+    if (!halve)
+        split = best_split(b, run);
+    uint32_t left = split.axis < 0 ? 0 : partition(b, run, &split, spare);
+    if (left == 0 || left == run->count)
+        left = run->count / 2; /* all centres in one place: halves by order */
+    out[0] = (struct run){run->first, left, run_box(b, run->first, left)};
+    out[1] = (struct run){run->first + left, run->count - left, run_box(b, run->first + left, run->count - left)};
+}
+
+/* Up to four children: the run with the largest area is split again until there are four or all are single. */
+static int children_of(struct builder *b, const struct run *run, bool halve, struct build_item *spare,
+                       struct run out[4]) {
+    int count = 1;
+    out[0] = *run;
+    while (count < BOX_TREE_WIDTH) {
+        int widest = -1;
+        for (int i = 0; i < count; i++) {
+            if (out[i].count <= 1)
+                continue;
+            bool larger = widest < 0 || (halve ? out[i].count > out[widest].count
+                                               : half_area(&out[i].box) > half_area(&out[widest].box));
+            widest = larger ? i : widest;
+        }
+        if (widest < 0)
+            break;
+        struct run halves[2];
+        split_run(b, &out[widest], halve, spare, halves);
+        memmove(out + widest + 2, out + widest + 1, (size_t)(count - widest - 1) * sizeof *out);
+        out[widest] = halves[0];
+        out[widest + 1] = halves[1];
+        count++;
+    }
+    return count;
+}
+
+static void set_child(struct box_tree_node *node, int slot, const struct box *box, uint32_t child) {
+    const double lo[3] = {box->min.x, box->min.y, box->min.z}, hi[3] = {box->max.x, box->max.y, box->max.z};
+    for (int axis = 0; axis < 3; axis++) {
+        node->planes[axis][0][slot] = lo[axis];
+        node->planes[axis][1][slot] = hi[axis];
+    }
+    node->child[slot] = child;
+}
+
+/* Sizes that shrink geometrically make splits by area lop off one item at a time. Below this depth runs are halved by
+ * count, so a tree of 2^31 items is at most DEEP + 16 deep, and a walk's stack (3 entries a level) always suffices. */
+enum { DEEP = 64 };
+_Static_assert((DEEP + 16) * (BOX_TREE_WIDTH - 1) + BOX_TREE_WIDTH <= BOX_TREE_STACK, "the walk's stack is too small");
+
+struct task {
+    struct run run;
+    uint32_t node, depth;
+};
+
+static bool build_nodes(struct builder *b, struct run root, struct build_item *spare, struct task *tasks) {
+    struct box_tree *tree = b->tree;
+    uint32_t waiting = 0;
+    tree->node_count = 1;
+    tasks[waiting++] = (struct task){root, 0, 0};
+    while (waiting > 0) {
+        struct task task = tasks[--waiting];
+        struct run children[BOX_TREE_WIDTH];
+        struct box nothing = box_empty();
+        struct box_tree_node *node = &tree->nodes[task.node];
+        int count = children_of(b, &task.run, task.depth >= DEEP, spare, children);
+        for (int i = 0; i < BOX_TREE_WIDTH; i++) {
+            if (i >= count) {
+                set_child(node, i, &nothing, BOX_TREE_NONE);
+            } else if (children[i].count == 1) {
+                set_child(node, i, &children[i].box, b->items[children[i].first].item | BOX_TREE_ITEM);
+            } else {
+                uint32_t next = tree->node_count++;
+                set_child(node, i, &children[i].box, next);
+                tasks[waiting++] = (struct task){children[i], next, task.depth + 1};
+            }
+        }
+        if ((tree->node_count & 1023) == 0 && pool_cancelled(b->pool))
+            return false;
+    }
+    return true;
+}
+
+bool box_tree_build(struct box_tree *tree, const struct box *boxes, uint32_t count, struct pool *pool,
+                    struct error *error) {
+    *tree = (struct box_tree){.bounds = box_empty()};
+    struct build_item *items = mem_alloc_zero(count, sizeof *items);
+    struct build_item *spare = mem_alloc_zero(count, sizeof *spare);
+    struct task *tasks = mem_alloc_zero((size_t)count + 1, sizeof *tasks);
+    /* Every node has at least two children, so there are fewer nodes than items; one more for the empty tree. */
+    size_t node_bytes = ((size_t)count + 1) * sizeof *tree->nodes;
+    tree->nodes = mem_alloc_aligned(64, node_bytes);
+    bool ok = items && spare && tasks && tree->nodes;
+    if (!ok) {
+        error_no_memory(error, "the hierarchy of the scene");
+    } else {
+        struct builder builder = {.items = items, .tree = tree, .pool = pool};
+        uint32_t used = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            const struct box *box = &boxes[i];
+            if (box_is_empty(box))
+                continue;
+            struct vec3 centre = {middle(box->min.x, box->max.x), middle(box->min.y, box->max.y),
+                                  middle(box->min.z, box->max.z)};
+            items[used++] = (struct build_item){*box, centre, i};
+            tree->bounds = box_join(tree->bounds, *box);
+        }
+        tree->item_count = used;
+        ok = used == 0 || build_nodes(&builder, (struct run){0, used, tree->bounds}, spare, tasks);
+        if (!ok)
+            error_set(error, ERROR_CANCELLED, "stopped while the hierarchy of the scene was built");
+    }
+    mem_free(items);
+    mem_free(spare);
+    mem_free(tasks);
+    if (ok) {
+        struct box_tree_node *fitting = mem_alloc_aligned(64, (size_t)(tree->node_count + 1) * sizeof *fitting);
+        if (fitting) { /* else the roomy block serves as well */
+            memcpy(fitting, tree->nodes, tree->node_count * sizeof *fitting);
+            mem_free(tree->nodes);
+            tree->nodes = fitting;
+        }
+    } else {
+        box_tree_destroy(tree);
+    }
+    return ok;
+}
+
+void box_tree_destroy(struct box_tree *tree) {
+    mem_free(tree->nodes);
+    *tree = (struct box_tree){.bounds = box_empty()};
+}
+
+size_t box_tree_memory(const struct box_tree *tree) {
+    return tree->node_count * sizeof *tree->nodes;
+}
+
+/* --- walking --- */
+
+void box_tree_walk_begin(struct box_tree_walk *walk, const struct box_tree *tree, const struct ray *ray) {
+    walk->tree = tree;
+    walk->origin[0] = ray->origin.x;
+    walk->origin[1] = ray->origin.y;
+    walk->origin[2] = ray->origin.z;
+    walk->inverse[0] = 1 / ray->direction.x;
+    walk->inverse[1] = 1 / ray->direction.y;
+    walk->inverse[2] = 1 / ray->direction.z;
+    for (int i = 0; i < 3; i++)
+        walk->near_side[i] = walk->inverse[i] < 0;
+    walk->t_min = ray->t_min;
+    walk->steps = 0;
+    walk->top = 0;
+    if (tree->item_count > 0) {
+        walk->child[walk->top] = 0;
+        walk->enter[walk->top++] = -INFINITY;
+    }
+}
+
+/* Where the ray enters each child, and whether it meets it at all before t_max. Loops over the four children compile to
+ * the vector instructions there are; the comparisons are written so that each is one of them. */
+static void meet_children(const struct box_tree_walk *walk, const struct box_tree_node *node, double t_max,
+                          double enter[BOX_TREE_WIDTH], bool met[BOX_TREE_WIDTH]) {
+    double leave[BOX_TREE_WIDTH];
+    for (int i = 0; i < BOX_TREE_WIDTH; i++) {
+        enter[i] = walk->t_min;
+        leave[i] = t_max;
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        const double *near_planes = node->planes[axis][walk->near_side[axis]];
+        const double *far_planes = node->planes[axis][!walk->near_side[axis]];
+        double origin = walk->origin[axis], inverse = walk->inverse[axis];
+        for (int i = 0; i < BOX_TREE_WIDTH; i++) {
+            double near = (near_planes[i] - origin) * inverse, far = (far_planes[i] - origin) * inverse;
+            enter[i] = near > enter[i] ? near : enter[i];
+            leave[i] = far < leave[i] ? far : leave[i];
+        }
+    }
+    for (int i = 0; i < BOX_TREE_WIDTH; i++) {
+        double early = enter[i] * (enter[i] > 0 ? 1 - 0x1p-50 : 1 + 0x1p-50);
+        double late = leave[i] * (leave[i] > 0 ? 1 + 0x1p-50 : 1 - 0x1p-50);
+        met[i] = early <= late && node->child[i] != BOX_TREE_NONE;
+    }
+}
+
+bool box_tree_walk_next(struct box_tree_walk *walk, double t_max, uint32_t *item) {
+    while (walk->top > 0) {
+        uint32_t child = walk->child[--walk->top];
+        double enter_child = walk->enter[walk->top];
+        if (enter_child * (enter_child > 0 ? 1 - 0x1p-50 : 1 + 0x1p-50) > t_max)
+            continue;
+        if (child & BOX_TREE_ITEM) {
+            *item = child & ~BOX_TREE_ITEM;
+            return true;
+        }
+        const struct box_tree_node *node = &walk->tree->nodes[child];
+        double enter[BOX_TREE_WIDTH];
+        bool met[BOX_TREE_WIDTH];
+        meet_children(walk, node, t_max, enter, met);
+        walk->steps++;
+        /* The nearest must be on top: insertion into the few that were met, farthest first. */
+        int base = walk->top;
+        for (int i = 0; i < BOX_TREE_WIDTH; i++) {
+            if (!met[i])
+                continue;
+            int at = walk->top++;
+            for (; at > base && walk->enter[at - 1] < enter[i]; at--) {
+                walk->enter[at] = walk->enter[at - 1];
+                walk->child[at] = walk->child[at - 1];
+            }
+            walk->enter[at] = enter[i];
+            walk->child[at] = node->child[i];
+        }
+    }
+    return false;
+}
+
+bool box_tree_walk_any(struct box_tree_walk *walk, double t_max, uint32_t *item) {
+    while (walk->top > 0) {
+        uint32_t child = walk->child[--walk->top];
+        if (child & BOX_TREE_ITEM) {
+            *item = child & ~BOX_TREE_ITEM;
+            return true;
+        }
+        const struct box_tree_node *node = &walk->tree->nodes[child];
+        double enter[BOX_TREE_WIDTH];
+        bool met[BOX_TREE_WIDTH];
+        meet_children(walk, node, t_max, enter, met);
+        walk->steps++;
+        for (int i = 0; i < BOX_TREE_WIDTH; i++) {
+            if (met[i])
+                walk->child[walk->top++] = node->child[i];
+        }
+    }
+    return false;
+}

@@ -1,0 +1,72 @@
+/* A four-wide hierarchy over boxes in double precision: every child of a node is an inner node or one item, so an item's
+ * own box is tested on the way to it and nowhere else. Built by binned surface-area splits (Wald, "On fast Construction of
+ * SAH-based Bounding Volume Hierarchies", RT 2007) and collapsed to four children (Dammertz, Hanika, Keller, "Shallow
+ * Bounding Volume Hierarchies", EGSR 2008). Knows boxes and indices only. Deterministic; scaling all boxes by a power of
+ * two gives the same tree. */
+#ifndef GRAY_ACCEL_BOX_TREE_H
+#define GRAY_ACCEL_BOX_TREE_H
+
+#include "base/error.h"
+#include "base/pool.h"
+#include "math/box.h"
+#include "math/ray.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum { BOX_TREE_WIDTH = 4, BOX_TREE_STACK = 256 };
+
+/* A child: an item (BOX_TREE_ITEM set), an inner node, or nothing (BOX_TREE_NONE; its box is empty). */
+#define BOX_TREE_ITEM UINT32_C(0x80000000)
+#define BOX_TREE_NONE UINT32_MAX
+
+struct box_tree_node {
+    double planes[3][2][BOX_TREE_WIDTH]; /* [axis][0: low side, 1: high side] of the four children */
+    uint32_t child[BOX_TREE_WIDTH];
+    uint32_t padding[4];
+};
+
+struct box_tree {
+    struct box_tree_node *nodes; /* node 0 is the root; aligned to 64 bytes */
+    uint32_t node_count, item_count;
+    struct box bounds;
+};
+
+/* boxes[i] belongs to item i < 2^31; empty boxes are left out, infinite ones are fine. False: no memory or cancelled. */
+bool box_tree_build(struct box_tree *tree, const struct box *boxes, uint32_t count, struct pool *pool,
+                    struct error *error);
+void box_tree_destroy(struct box_tree *tree);
+size_t box_tree_memory(const struct box_tree *tree);
+
+/* Items whose box the ray's interval meets, nearest boxes first:
+ *   box_tree_walk_begin(&walk, tree, ray); while (box_tree_walk_next(&walk, t_max, &item)) ...
+ * t_max may shrink between calls. Boxes that begin at t <= t_max are never left out by rounding. */
+struct box_tree_walk {
+    const struct box_tree *tree;
+    double origin[3], inverse[3];
+    int near_side[3];
+    double t_min;
+    uint32_t steps; /* inner nodes looked at */
+    int top;
+    uint32_t child[BOX_TREE_STACK];
+    double enter[BOX_TREE_STACK];
+};
+void box_tree_walk_begin(struct box_tree_walk *walk, const struct box_tree *tree, const struct ray *ray);
+bool box_tree_walk_next(struct box_tree_walk *walk, double t_max, uint32_t *item);
+/* The same without order, for questions that any item may answer. */
+bool box_tree_walk_any(struct box_tree_walk *walk, double t_max, uint32_t *item);
+
+/* The shaft from one point to a parallelogram (Haines and Wallace, "Shaft Culling for Efficient Ray-Traced Radiosity",
+ * 1991): every segment from the point to the parallelogram lies inside. */
+struct shaft {
+    struct box bounds;
+    struct vec3 normal[5]; /* outward; a box that is on the outer side of one of them is outside */
+    double offset[5];
+    int planes;
+};
+struct shaft shaft_make(struct vec3 from, struct vec3 corner, struct vec3 edge1, struct vec3 edge2);
+bool shaft_meets(const struct shaft *shaft, const struct box *box);
+/* Items whose box meets the shaft, at most `limit`; returns the count, or limit + 1 when there are more. */
+uint32_t box_tree_in_shaft(const struct box_tree *tree, const struct shaft *shaft, uint32_t *items, uint32_t limit);
+
+#endif
