@@ -141,6 +141,8 @@ static double crossing_error(const struct sweep *s, const struct crossing *cross
     shape_describe(&leaf->shape, &ray, &own, &surface);
     struct box bounds = shape_bounds(&leaf->shape);
     struct vec3 n = vec3_normalize(surface.normal), size = vec3_max(vec3_negate(bounds.min), bounds.max);
+    if (!vec3_finite(size)) /* without end: the place itself, which the way has, is all that counts */
+        size = vec3_all(0);
     double error = fabs(n.x) * row_error(to_leaf->m[0], s->ray, crossing->t, fabs(size.x)) +
                    fabs(n.y) * row_error(to_leaf->m[1], s->ray, crossing->t, fabs(size.y)) +
                    fabs(n.z) * row_error(to_leaf->m[2], s->ray, crossing->t, fabs(size.z));
@@ -152,9 +154,14 @@ static double crossing_error(const struct sweep *s, const struct crossing *cross
 static uint32_t group_end(const struct sweep *s, uint32_t first) {
     uint32_t end = first + 1;
     double reach = 0;
+    if (isinf(s->items[first].t)) { /* beginnings or ends of lines inside solids without end: all at once */
+        while (end < s->count && s->items[end].t == s->items[first].t)
+            end++;
+        return end;
+    }
     for (; end < s->count; end++) {
         double before = s->items[end - 1].t, t = s->items[end].t, limit = s->coarse + COARSE * fabs(t);
-        if (!(t - before <= limit))
+        if (!(t - before <= limit) || isinf(t))
             break;
         if (end == first + 1)
             reach = before + crossing_error(s, &s->items[first], limit);

@@ -104,7 +104,8 @@ static void build_nodes(const struct csg *csg, struct csg_plan *plan, struct pen
 }
 
 static double box_middle(const struct box *b, int axis) {
-    return vec3_get(b->min, axis) / 2 + vec3_get(b->max, axis) / 2;
+    double middle = vec3_get(b->min, axis) / 2 + vec3_get(b->max, axis) / 2;
+    return isfinite(middle) ? middle : 0;
 }
 
 /* Quickselect (Hoare, "Algorithm 65: Find", 1961): afterwards the k-th leaf by its middle stands at k, lesser ones
@@ -179,13 +180,13 @@ static bool fill_plan(struct csg *csg, struct csg_plan *plan, struct error *erro
         uint64_t crossings = 0;
         for (uint32_t i = 0; i < leaf_count; i++) {
             const struct csg_leaf *leaf = &csg->leaves[i];
-            struct box b = shape_bounds(&leaf->shape);
-            b = box_pad(box_transform(&leaf->csg_from_leaf.forward, &b));
+            struct box b = box_pad(shape_bounds_under(&leaf->shape, &leaf->csg_from_leaf.forward));
             plan->boxes[i] = b;
             plan->order[i] = i;
             crossings += shape_scratch_need(&leaf->shape);
-            if (!box_is_empty(&b))
-                plan->size = fmax(plan->size, fmax(vec3_max_abs(b.min), vec3_max_abs(b.max)));
+            double reach = box_is_empty(&b) ? 0 : fmax(vec3_max_abs(b.min), vec3_max_abs(b.max));
+            if (isfinite(reach)) /* solids without end have no size */
+                plan->size = fmax(plan->size, reach);
         }
         csg->bounds = program_bounds(csg, plan->boxes, boxes);
         for (uint32_t i = 0; i < length; i++)

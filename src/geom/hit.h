@@ -15,6 +15,8 @@ struct surface {
     struct vec3 pattern_point;  /* in the object space of the operand that made the surface (= point outside CSG) */
     struct vec3 pattern_normal; /* geometric, in that space, as the operand has it (not flipped) */
     bool has_uv;
+    bool has_colour;
+    struct vec3 colour; /* of the vertices, interpolated */
     double u, v;
     struct vec3 dpdu, dpdv; /* object space; zero when has_uv is false */
     double error;           /* bound of the distance between `point` and the true surface, object units, from rounding */
@@ -29,7 +31,8 @@ struct hit {
     struct vec3 normal_geometric; /* unit, outward, world */
     struct vec3 normal;           /* unit, interpolated where there are vertex normals; outward side as given */
     struct vec3 pattern_point, pattern_normal;
-    bool has_uv;
+    bool has_uv, has_colour;
+    struct vec3 colour; /* of the vertices, interpolated */
     double u, v;
     struct vec3 dpdu, dpdv; /* world */
     double offset;          /* a secondary ray starts this far (world units) from point along the normal */

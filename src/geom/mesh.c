@@ -22,6 +22,7 @@ void mesh_release(struct mesh *mesh) {
     mem_free(mesh->normal_corners);
     mem_free(mesh->uvs);
     mem_free(mesh->uv_corners);
+    mem_free(mesh->colours);
     mem_free(mesh->materials);
     mem_free(mesh->face_start);
     mem_free(mesh->face_vertex);
@@ -31,8 +32,7 @@ void mesh_release(struct mesh *mesh) {
 bool mesh_build_index(struct mesh *mesh, struct pool *pool, struct error *error) {
     if (mesh->index)
         return true;
-    struct triangle_set set = mesh_triangles(mesh);
-    return triangle_index_build(&mesh->index, &set, pool, error);
+    return triangle_index_build(&mesh->index, &mesh->set, pool, error);
 }
 
 struct box mesh_bounds(const struct mesh *mesh) {
@@ -67,6 +67,24 @@ bool mesh_has_normals(const struct mesh *mesh) {
     return mesh->normals != NULL;
 }
 
+const double (*mesh_vertices(const struct mesh *mesh, uint32_t *count))[3] {
+    *count = mesh->vertex_count;
+    return (const double (*)[3])mesh->vertices;
+}
+
+uint32_t mesh_face_count(const struct mesh *mesh) {
+    return mesh->face_count;
+}
+
+const uint32_t *mesh_face(const struct mesh *mesh, uint32_t face, uint32_t *corners) {
+    if (!mesh->face_start) { /* nothing but triangles, none dropped */
+        *corners = 3;
+        return mesh->corners[face];
+    }
+    *corners = mesh->face_start[face + 1] - mesh->face_start[face];
+    return mesh->face_vertex + mesh->face_start[face];
+}
+
 size_t mesh_memory(const struct mesh *mesh) {
     size_t triangles = mesh->triangle_count, bytes = sizeof *mesh;
     bytes += mesh->vertex_count * sizeof *mesh->vertices + triangles * sizeof *mesh->corners;
@@ -74,6 +92,8 @@ size_t mesh_memory(const struct mesh *mesh) {
         bytes += mesh->normal_count * sizeof *mesh->normals + triangles * sizeof *mesh->normal_corners;
     if (mesh->uvs)
         bytes += mesh->uv_count * sizeof *mesh->uvs + triangles * sizeof *mesh->uv_corners;
+    if (mesh->colours)
+        bytes += mesh->vertex_count * sizeof *mesh->colours;
     if (mesh->materials)
         bytes += triangles * sizeof *mesh->materials;
     if (mesh->face_start)
@@ -94,11 +114,10 @@ static struct crossing crossing_from(const struct triangle_hit *hit) {
 
 bool mesh_nearest(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch,
                   struct crossing *out) {
-    struct triangle_set set = mesh_triangles(mesh);
     struct triangle_cost cost = {0};
     struct triangle_hit hit;
-    bool found = mesh->index && accel == ACCEL_GRID ? triangle_index_nearest(mesh->index, &set, ray, &hit, &cost)
-                                                    : triangle_brute_nearest(&set, ray, &hit, &cost);
+    bool found = mesh->index && accel != ACCEL_NONE ? triangle_index_nearest(mesh->index, &mesh->set, ray, &hit, &cost)
+                                                    : triangle_brute_nearest(&mesh->set, ray, &hit, &cost);
     add_cost(scratch, &cost);
     if (found)
         *out = crossing_from(&hit);
@@ -106,10 +125,9 @@ bool mesh_nearest(const struct mesh *mesh, const struct ray *ray, enum accel_kin
 }
 
 bool mesh_any(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch) {
-    struct triangle_set set = mesh_triangles(mesh);
     struct triangle_cost cost = {0};
-    bool found = mesh->index && accel == ACCEL_GRID ? triangle_index_any(mesh->index, &set, ray, &cost)
-                                                    : triangle_brute_any(&set, ray, &cost);
+    bool found = mesh->index && accel != ACCEL_NONE ? triangle_index_any(mesh->index, &mesh->set, ray, &cost)
+                                                    : triangle_brute_any(&mesh->set, ray, &cost);
     add_cost(scratch, &cost);
     return found;
 }
@@ -176,13 +194,12 @@ static void push(void *context, const struct triangle_hit *hit) {
 
 bool mesh_crossings(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch,
                     struct crossing_list *out) {
-    struct triangle_set set = mesh_triangles(mesh);
     struct triangle_cost cost = {0};
     *out = (struct crossing_list){scratch->used, 0};
-    if (mesh->index && accel == ACCEL_GRID)
-        triangle_index_all(mesh->index, &set, ray, push, scratch, &cost);
+    if (mesh->index && accel != ACCEL_NONE)
+        triangle_index_all(mesh->index, &mesh->set, ray, push, scratch, &cost);
     else
-        triangle_brute_all(&set, ray, push, scratch, &cost);
+        triangle_brute_all(&mesh->set, ray, push, scratch, &cost);
     add_cost(scratch, &cost);
     if (scratch->overflow) {
         scratch->used = out->first;
@@ -249,6 +266,13 @@ void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct 
     out->pattern_normal = out->normal;
     if (mesh->uvs && mesh->uv_corners[triangle][0] != MESH_NONE)
         describe_uv(mesh, triangle, w, u, v, e1, e2, out);
+    if (mesh->colours) {
+        const float *p = mesh->colours[corner[0]], *q = mesh->colours[corner[1]], *r = mesh->colours[corner[2]];
+        out->has_colour = true;
+        out->colour = vec3_make(w * (double)p[0] + u * (double)q[0] + v * (double)r[0],
+                                w * (double)p[1] + u * (double)q[1] + v * (double)r[1],
+                                w * (double)p[2] + u * (double)q[2] + v * (double)r[2]);
+    }
     if (mesh->materials)
         out->material_slot = mesh->materials[triangle];
 }

@@ -11,8 +11,9 @@
 
 uint64_t mesh_input_hash(const struct mesh_input *input) {
     uint32_t corners = input->face_count ? input->face_start[input->face_count] : 0;
-    uint32_t counts[5] = {input->vertex_count, input->face_count, input->normals ? input->normal_count : MESH_NONE,
-                          input->uvs ? input->uv_count : MESH_NONE, input->face_material != NULL};
+    uint32_t counts[6] = {input->vertex_count, input->face_count, input->normals ? input->normal_count : MESH_NONE,
+                          input->uvs ? input->uv_count : MESH_NONE, input->face_material != NULL,
+                          input->colours != NULL};
     uint64_t h = hash_bytes(counts, sizeof counts, 0);
     h = hash_bytes(input->vertices, input->vertex_count * sizeof *input->vertices, h);
     if (input->face_count)
@@ -28,6 +29,8 @@ uint64_t mesh_input_hash(const struct mesh_input *input) {
     }
     if (input->face_material)
         h = hash_bytes(input->face_material, input->face_count * sizeof *input->face_material, h);
+    if (input->colours)
+        h = hash_bytes(input->colours, input->vertex_count * sizeof *input->colours, h);
     return h;
 }
 
@@ -108,6 +111,13 @@ static bool copy_tables(struct mesh *mesh, const struct mesh_input *input, size_
         mesh->uv_count = input->uv_count;
         if (input->uv_count)
             memcpy(mesh->uvs, input->uvs, input->uv_count * sizeof *mesh->uvs);
+    }
+    if (input->colours) {
+        mesh->colours = mem_alloc(input->vertex_count * sizeof *mesh->colours);
+        if (!mesh->colours)
+            return false;
+        if (input->vertex_count)
+            memcpy(mesh->colours, input->colours, input->vertex_count * sizeof *mesh->colours);
     }
     if (input->face_material) {
         mesh->materials = mem_alloc(triangles * sizeof *mesh->materials);
@@ -246,6 +256,8 @@ static bool fill(struct mesh *mesh, const struct mesh_input *input, size_t trian
         mesh->materials = shrink(mesh->materials, count * sizeof *mesh->materials);
     }
     find_bounds(mesh);
+    mesh->set = (struct triangle_set){(const double (*)[3])mesh->vertices, (const uint32_t (*)[3])mesh->corners,
+                                      mesh->triangle_count, mesh->bounds};
     mesh->input_hash = mesh_input_hash(input);
     return true;
 }

@@ -15,6 +15,7 @@ struct mesh {
     uint32_t (*normal_corners)[3];
     double (*uvs)[2]; /* NULL when the input has none */
     uint32_t (*uv_corners)[3];
+    float (*colours)[3]; /* of the vertices, or NULL */
     uint32_t *materials; /* per triangle, or NULL */
     /* The polygons as they came, kept only where the triangles do not tell them. */
     uint32_t *face_start, *face_vertex;
@@ -22,15 +23,11 @@ struct mesh {
     struct box bounds;
     bool closed, outward; /* outward: of a closed mesh, the volume it encloses is positive */
     struct vec3 open_edge[2];
+    struct triangle_set set; /* the triangles as searches see them: borrows from the tables above */
     struct triangle_index *index;
 };
 
 #define MESH_NONE UINT32_MAX
-
-static inline struct triangle_set mesh_triangles(const struct mesh *mesh) {
-    return (struct triangle_set){(const double (*)[3])mesh->vertices, (const uint32_t (*)[3])mesh->corners,
-                                 mesh->triangle_count, mesh->bounds};
-}
 
 /* (b - a) x (c - a); zero only where the three (rounded differences of) points lie on a line. */
 struct vec3 mesh_triangle_normal(const struct mesh *mesh, uint32_t triangle);

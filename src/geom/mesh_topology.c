@@ -4,45 +4,7 @@
 #include "geom/mesh_internal.h"
 
 #include "base/mem.h"
-#include "base/random.h"
-
-#include <string.h>
-
-static uint64_t position_hash(const double p[3]) {
-    uint64_t key = 0;
-    for (int k = 0; k < 3; k++) {
-        double x = p[k] + 0.0; /* -0 becomes 0 */
-        uint64_t bits;
-        memcpy(&bits, &x, sizeof bits);
-        key = random_combine(key ^ bits, (uint64_t)k);
-    }
-    return key;
-}
-
-static bool same_position(const double a[3], const double b[3]) {
-    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
-}
-
-/* same[v] becomes the lowest vertex at the position of v. */
-static bool weld(const struct mesh *mesh, uint32_t *same) {
-    size_t slots = 16;
-    while (slots < 2 * (size_t)mesh->vertex_count)
-        slots *= 2;
-    uint32_t *table = mem_alloc(slots * sizeof *table);
-    if (!table)
-        return false;
-    memset(table, 0xff, slots * sizeof *table);
-    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        size_t at = (size_t)position_hash(mesh->vertices[v]) & (slots - 1);
-        while (table[at] != MESH_NONE && !same_position(mesh->vertices[table[at]], mesh->vertices[v]))
-            at = (at + 1) & (slots - 1);
-        if (table[at] == MESH_NONE)
-            table[at] = v;
-        same[v] = table[at];
-    }
-    mem_free(table);
-    return true;
-}
+#include "geom/mesh_weld.h"
 
 static void sift_down(uint64_t *items, size_t root, size_t count) {
     for (size_t child; (child = 2 * root + 1) < count; root = child) {
@@ -114,7 +76,8 @@ bool mesh_find_topology(struct mesh *mesh) {
     uint32_t *same = mem_alloc((size_t)mesh->vertex_count * sizeof *same);
     size_t *start = mem_alloc_zero((size_t)mesh->vertex_count + 2, sizeof *start);
     uint64_t *uses = mem_alloc(3 * (size_t)mesh->triangle_count * sizeof *uses);
-    bool enough = same && start && uses && weld(mesh, same);
+    bool enough = same && start && uses &&
+                  mesh_weld((const double (*)[3])mesh->vertices, mesh->vertex_count, same);
     if (enough) {
         /* Count one place further on, so that filling turns starts into ends of the vertex before. */
         for (int pass = 0; pass < 2; pass++) {

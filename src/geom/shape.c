@@ -3,11 +3,82 @@
 
 #include "geom/csg.h"
 #include "geom/mesh.h"
+#include "geom/shape_blob.h"
 #include "geom/shape_box.h"
+#include "geom/shape_curve.h"
+#include "geom/shape_height_field.h"
+#include "geom/shape_lathe.h"
+#include "geom/shape_prism.h"
 #include "geom/shape_sphere.h"
+#include "geom/shape_sweep.h"
 
 /* What a mesh is expected to put on the scratch; when it is more the scratch grows between rays. */
 #define MESH_CROSSINGS_GUESS 256
+/* The most crossings that the shapes answered by analytic_crossings can have. */
+enum { ANALYTIC_MOST = SUPERELLIPSOID_MOST };
+
+/* The least and the greatest dot(g, p) over a shape that knows it in closed form; false for the others. */
+static bool shape_extent(const struct shape *shape, struct vec3 g, double *lo, double *hi) {
+    switch (shape->kind) {
+    case SHAPE_SPHERE: {
+        double middle = vec3_dot(g, shape->sphere.centre), reach = vec3_length(g) * shape->sphere.radius;
+        *lo = middle - reach;
+        *hi = middle + reach;
+        return true;
+    }
+    case SHAPE_CONIC:
+        conic_extent(&shape->conic, g, lo, hi);
+        return true;
+    case SHAPE_ELLIPSOID:
+        ellipsoid_extent(&shape->ellipsoid, g, lo, hi);
+        return true;
+    case SHAPE_TORUS:
+        torus_extent(&shape->torus, g, lo, hi);
+        return true;
+    case SHAPE_SUPERELLIPSOID:
+        superellipsoid_extent(&shape->superellipsoid, g, lo, hi);
+        return true;
+    case SHAPE_FLAT:
+        flat_extent(&shape->flat, g, lo, hi);
+        return true;
+    case SHAPE_LATHE:
+        lathe_extent(shape->lathe, g, lo, hi);
+        return true;
+    case SHAPE_PRISM:
+        prism_extent(shape->prism, g, lo, hi);
+        return true;
+    case SHAPE_SWEEP:
+        sweep_extent(shape->sweep, g, lo, hi);
+        return true;
+    case SHAPE_HEIGHT_FIELD:
+        height_field_extent(shape->height_field, g, lo, hi);
+        return true;
+    case SHAPE_CURVE:
+        curve_extent(shape->curve, g, lo, hi);
+        return true;
+    case SHAPE_BLOB:
+    case SHAPE_BOX:
+    case SHAPE_QUADRIC:
+    case SHAPE_MESH:
+    case SHAPE_CSG:
+        return false;
+    }
+    return false;
+}
+
+struct box shape_bounds_under(const struct shape *shape, const struct affine *map) {
+    double lo[3], hi[3];
+    for (int i = 0; i < 3; i++) {
+        const double *row = map->m[i];
+        if (!shape_extent(shape, vec3_make(row[0], row[1], row[2]), &lo[i], &hi[i])) {
+            struct box own = shape_bounds(shape);
+            return box_transform(map, &own);
+        }
+        lo[i] += row[3];
+        hi[i] += row[3];
+    }
+    return (struct box){{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
+}
 
 struct box shape_bounds(const struct shape *shape) {
     switch (shape->kind) {
@@ -17,6 +88,28 @@ struct box shape_bounds(const struct shape *shape) {
     }
     case SHAPE_BOX:
         return shape->box;
+    case SHAPE_CONIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_FLAT: {
+        struct affine identity = affine_identity();
+        return box_pad(shape_bounds_under(shape, &identity));
+    }
+    case SHAPE_QUADRIC:
+        return box_pad(quadric_bounds(shape->quadric));
+    case SHAPE_LATHE:
+        return lathe_bounds(shape->lathe);
+    case SHAPE_PRISM:
+        return prism_bounds(shape->prism);
+    case SHAPE_SWEEP:
+        return sweep_bounds(shape->sweep);
+    case SHAPE_HEIGHT_FIELD:
+        return height_field_bounds(shape->height_field);
+    case SHAPE_BLOB:
+        return blob_bounds(shape->blob);
+    case SHAPE_CURVE:
+        return curve_bounds(shape->curve);
     case SHAPE_MESH:
         return mesh_bounds(shape->mesh);
     case SHAPE_CSG:
@@ -31,6 +124,30 @@ bool shape_is_closed(const struct shape *shape) {
         return true;
     case SHAPE_BOX:
         return true;
+    case SHAPE_CONIC:
+        return conic_is_closed(&shape->conic);
+    case SHAPE_ELLIPSOID:
+        return true;
+    case SHAPE_QUADRIC:
+        return quadric_is_closed(shape->quadric);
+    case SHAPE_TORUS:
+        return true;
+    case SHAPE_SUPERELLIPSOID:
+        return true;
+    case SHAPE_FLAT:
+        return shape->flat.kind == FLAT_PLANE;
+    case SHAPE_LATHE:
+        return lathe_is_closed(shape->lathe);
+    case SHAPE_PRISM:
+        return true;
+    case SHAPE_SWEEP:
+        return true;
+    case SHAPE_HEIGHT_FIELD:
+        return height_field_is_closed(shape->height_field);
+    case SHAPE_BLOB:
+        return true;
+    case SHAPE_CURVE:
+        return false;
     case SHAPE_MESH:
         return mesh_is_closed(shape->mesh);
     case SHAPE_CSG:
@@ -39,21 +156,96 @@ bool shape_is_closed(const struct shape *shape) {
     return false;
 }
 
-/* The crossing pair of a convex analytic shape. */
-static bool pair_crossings(const struct shape *shape, const struct ray *ray, struct crossing pair[2]) {
-    return shape->kind == SHAPE_SPHERE ? sphere_crossings(shape->sphere.centre, shape->sphere.radius, ray, pair)
-                                       : box_shape_crossings(&shape->box, ray, pair);
+/* All crossings of the whole line in order with a shape that has only a few. */
+static int analytic_crossings(const struct shape *shape, const struct ray *ray, struct crossing out[ANALYTIC_MOST]) {
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+        return sphere_crossings(shape->sphere.centre, shape->sphere.radius, ray, out) ? 2 : 0;
+    case SHAPE_BOX:
+        return box_shape_crossings(&shape->box, ray, out) ? 2 : 0;
+    case SHAPE_CONIC:
+        return conic_crossings(&shape->conic, ray, out);
+    case SHAPE_ELLIPSOID:
+        return ellipsoid_crossings(&shape->ellipsoid, ray, out);
+    case SHAPE_QUADRIC:
+        return quadric_crossings(shape->quadric, ray, out);
+    case SHAPE_TORUS:
+        return torus_crossings(&shape->torus, ray, out);
+    case SHAPE_SUPERELLIPSOID:
+        return superellipsoid_crossings(&shape->superellipsoid, ray, out);
+    case SHAPE_FLAT:
+        return flat_crossings(&shape->flat, ray, out);
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_HEIGHT_FIELD:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE:
+    case SHAPE_MESH:
+    case SHAPE_CSG:
+        break;
+    }
+    return 0;
 }
 
-static bool pair_nearest(const struct shape *shape, const struct ray *ray, struct crossing *out) {
-    struct crossing pair[2];
-    if (!pair_crossings(shape, ray, pair))
-        return false;
-    for (int i = 0; i < 2; i++)
-        if (pair[i].t > ray->t_min && pair[i].t < ray->t_max) {
-            *out = pair[i];
+static bool analytic_nearest(const struct shape *shape, const struct ray *ray, struct crossing *out) {
+    struct crossing all[ANALYTIC_MOST];
+    int count = analytic_crossings(shape, ray, all);
+    for (int i = 0; i < count; i++)
+        if (all[i].t > ray->t_min && all[i].t < ray->t_max) {
+            *out = all[i];
             return true;
         }
+    return false;
+}
+
+/* The lists of the shapes that may have many crossings. */
+static bool listed_crossings(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch,
+                             struct crossing_list *out) {
+    switch (shape->kind) {
+    case SHAPE_LATHE:
+        return lathe_crossings(shape->lathe, ray, scratch, out);
+    case SHAPE_PRISM:
+        return prism_crossings(shape->prism, ray, scratch, out);
+    case SHAPE_SWEEP:
+        return sweep_crossings(shape->sweep, ray, scratch, out);
+    case SHAPE_HEIGHT_FIELD:
+        return height_field_crossings(shape->height_field, ray, scratch, out);
+    case SHAPE_BLOB:
+        return blob_crossings(shape->blob, ray, scratch, out);
+    case SHAPE_CURVE:
+        return curve_crossings(shape->curve, ray, scratch, out);
+    case SHAPE_SPHERE:
+    case SHAPE_BOX:
+    case SHAPE_CONIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_FLAT:
+    case SHAPE_MESH:
+    case SHAPE_CSG:
+        break;
+    }
+    *out = (struct crossing_list){scratch->used, 0};
+    return true;
+}
+
+static bool listed_nearest(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch,
+                           struct crossing *out) {
+    if (shape->kind == SHAPE_HEIGHT_FIELD) /* the same crossings, without those that come later */
+        return height_field_nearest(shape->height_field, ray, scratch, out);
+    struct crossing_list list;
+    if (!listed_crossings(shape, ray, scratch, &list))
+        return false;
+    scratch->used = list.first;
+    for (uint32_t i = 0; i < list.count; i++) {
+        const struct crossing *c = &scratch->items[list.first + i];
+        if (c->t > ray->t_min && c->t < ray->t_max) {
+            *out = *c;
+            return true;
+        }
+    }
     return false;
 }
 
@@ -62,8 +254,22 @@ bool shape_nearest(const struct shape *shape, const struct ray *ray, struct geom
     switch (shape->kind) {
     case SHAPE_SPHERE:
     case SHAPE_BOX:
+    case SHAPE_CONIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_FLAT:
         scratch->shape_tests++;
-        return pair_nearest(shape, ray, out);
+        return analytic_nearest(shape, ray, out);
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_HEIGHT_FIELD:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE:
+        scratch->shape_tests++;
+        return listed_nearest(shape, ray, scratch, out);
     case SHAPE_MESH:
         return mesh_nearest(shape->mesh, ray, ACCEL_GRID, scratch, out);
     case SHAPE_CSG:
@@ -75,10 +281,26 @@ bool shape_nearest(const struct shape *shape, const struct ray *ray, struct geom
 bool shape_any(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch) {
     switch (shape->kind) {
     case SHAPE_SPHERE:
-    case SHAPE_BOX: {
+    case SHAPE_BOX:
+    case SHAPE_CONIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_FLAT: {
         struct crossing ignored;
         scratch->shape_tests++;
-        return pair_nearest(shape, ray, &ignored);
+        return analytic_nearest(shape, ray, &ignored);
+    }
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_HEIGHT_FIELD:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE: {
+        struct crossing ignored;
+        scratch->shape_tests++;
+        return listed_nearest(shape, ray, scratch, &ignored);
     }
     case SHAPE_MESH:
         return mesh_any(shape->mesh, ray, ACCEL_GRID, scratch);
@@ -92,19 +314,32 @@ bool shape_crossings(const struct shape *shape, const struct ray *ray, struct ge
                      struct crossing_list *out) {
     switch (shape->kind) {
     case SHAPE_SPHERE:
-    case SHAPE_BOX: {
-        struct crossing pair[2];
+    case SHAPE_BOX:
+    case SHAPE_CONIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_FLAT: {
+        struct crossing all[ANALYTIC_MOST];
         scratch->shape_tests++;
-        *out = (struct crossing_list){scratch->used, 0};
-        if (!pair_crossings(shape, ray, pair))
-            return true;
-        if (!geom_scratch_push(scratch, pair[0]) || !geom_scratch_push(scratch, pair[1])) {
-            scratch->used = out->first;
-            return false;
-        }
-        out->count = 2;
+        int count = analytic_crossings(shape, ray, all);
+        *out = (struct crossing_list){scratch->used, (uint32_t)count};
+        for (int i = 0; i < count; i++)
+            if (!geom_scratch_push(scratch, all[i])) {
+                scratch->used = out->first;
+                return false;
+            }
         return true;
     }
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_HEIGHT_FIELD:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE:
+        scratch->shape_tests++;
+        return listed_crossings(shape, ray, scratch, out);
     case SHAPE_MESH:
         return mesh_crossings(shape->mesh, ray, ACCEL_GRID, scratch, out);
     case SHAPE_CSG:
@@ -138,6 +373,30 @@ bool shape_contains(const struct shape *shape, struct vec3 point, struct geom_sc
         return sphere_contains(shape->sphere.centre, shape->sphere.radius, point);
     case SHAPE_BOX:
         return box_shape_contains(&shape->box, point);
+    case SHAPE_CONIC:
+        return conic_contains(&shape->conic, point);
+    case SHAPE_ELLIPSOID:
+        return ellipsoid_contains(&shape->ellipsoid, point);
+    case SHAPE_QUADRIC:
+        return quadric_contains(shape->quadric, point);
+    case SHAPE_TORUS:
+        return torus_contains(&shape->torus, point);
+    case SHAPE_SUPERELLIPSOID:
+        return superellipsoid_contains(&shape->superellipsoid, point);
+    case SHAPE_FLAT:
+        return flat_contains(&shape->flat, point);
+    case SHAPE_LATHE:
+        return lathe_contains(shape->lathe, point);
+    case SHAPE_PRISM:
+        return prism_contains(shape->prism, point);
+    case SHAPE_SWEEP:
+        return sweep_contains(shape->sweep, point);
+    case SHAPE_HEIGHT_FIELD:
+        return height_field_contains(shape->height_field, point);
+    case SHAPE_BLOB:
+        return blob_contains(shape->blob, point);
+    case SHAPE_CURVE:
+        return false;
     case SHAPE_MESH:
         return mesh_contains(shape->mesh, point, scratch);
     case SHAPE_CSG:
@@ -155,6 +414,42 @@ void shape_describe(const struct shape *shape, const struct ray *ray, const stru
     case SHAPE_BOX:
         box_shape_describe(&shape->box, ray, crossing, out);
         return;
+    case SHAPE_CONIC:
+        conic_describe(&shape->conic, ray, crossing, out);
+        return;
+    case SHAPE_ELLIPSOID:
+        ellipsoid_describe(&shape->ellipsoid, ray, crossing, out);
+        return;
+    case SHAPE_QUADRIC:
+        quadric_describe(shape->quadric, ray, crossing, out);
+        return;
+    case SHAPE_TORUS:
+        torus_describe(&shape->torus, ray, crossing, out);
+        return;
+    case SHAPE_SUPERELLIPSOID:
+        superellipsoid_describe(&shape->superellipsoid, ray, crossing, out);
+        return;
+    case SHAPE_FLAT:
+        flat_describe(&shape->flat, ray, crossing, out);
+        return;
+    case SHAPE_LATHE:
+        lathe_describe(shape->lathe, ray, crossing, out);
+        return;
+    case SHAPE_PRISM:
+        prism_describe(shape->prism, ray, crossing, out);
+        return;
+    case SHAPE_SWEEP:
+        sweep_describe(shape->sweep, ray, crossing, out);
+        return;
+    case SHAPE_HEIGHT_FIELD:
+        height_field_describe(shape->height_field, ray, crossing, out);
+        return;
+    case SHAPE_BLOB:
+        blob_describe(shape->blob, ray, crossing, out);
+        return;
+    case SHAPE_CURVE:
+        curve_describe(shape->curve, ray, crossing, out);
+        return;
     case SHAPE_MESH:
         mesh_describe(shape->mesh, ray, crossing, out);
         return;
@@ -170,6 +465,27 @@ uint32_t shape_scratch_need(const struct shape *shape) {
         return 2;
     case SHAPE_BOX:
         return 2;
+    case SHAPE_ELLIPSOID:
+    case SHAPE_FLAT:
+        return 2;
+    case SHAPE_CONIC:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+        return 4;
+    case SHAPE_SUPERELLIPSOID:
+        return SUPERELLIPSOID_MOST;
+    case SHAPE_LATHE:
+        return lathe_scratch_need(shape->lathe);
+    case SHAPE_PRISM:
+        return prism_scratch_need(shape->prism);
+    case SHAPE_SWEEP:
+        return sweep_scratch_need(shape->sweep);
+    case SHAPE_HEIGHT_FIELD:
+        return height_field_scratch_need(shape->height_field);
+    case SHAPE_BLOB:
+        return blob_scratch_need(shape->blob);
+    case SHAPE_CURVE:
+        return curve_scratch_need(shape->curve);
     case SHAPE_MESH:
         return MESH_CROSSINGS_GUESS;
     case SHAPE_CSG:

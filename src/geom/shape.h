@@ -7,13 +7,40 @@
 
 #include "geom/crossing.h"
 #include "geom/hit.h"
+#include "geom/shape_flat.h"
+#include "geom/shape_quadric.h"
+#include "geom/shape_superellipsoid.h"
+#include "geom/shape_torus.h"
 #include "math/box.h"
 #include "math/ray.h"
 
 struct mesh;
 struct csg;
+struct lathe;
+struct prism;
+struct sweep_path;
+struct height_field;
+struct blob;
+struct curve;
 
-enum shape_kind { SHAPE_SPHERE, SHAPE_BOX, SHAPE_MESH, SHAPE_CSG };
+enum shape_kind {
+    SHAPE_SPHERE,
+    SHAPE_BOX,
+    SHAPE_CONIC,
+    SHAPE_ELLIPSOID,
+    SHAPE_QUADRIC,
+    SHAPE_TORUS,
+    SHAPE_SUPERELLIPSOID,
+    SHAPE_FLAT,
+    SHAPE_LATHE,
+    SHAPE_PRISM,
+    SHAPE_SWEEP,
+    SHAPE_HEIGHT_FIELD,
+    SHAPE_BLOB,
+    SHAPE_CURVE,
+    SHAPE_MESH,
+    SHAPE_CSG,
+};
 
 struct shape {
     enum shape_kind kind;
@@ -23,13 +50,30 @@ struct shape {
             double radius; /* > 0 */
         } sphere;
         struct box box; /* min < max on every axis */
+        struct conic conic;
+        struct ellipsoid ellipsoid;
+        const struct quadric *quadric;
+        struct torus torus;
+        struct superellipsoid superellipsoid;
+        struct flat flat;
+        const struct lathe *lathe;
+        const struct prism *prism;
+        const struct sweep_path *sweep;
+        const struct height_field *height_field;
+        const struct blob *blob;
+        const struct curve *curve;
         const struct mesh *mesh;
         const struct csg *csg;
     };
 };
 
+/* Sides without an end are infinite. */
 struct box shape_bounds(const struct shape *shape);
-/* Closed: every line crosses it an even number of times, so it has an inside (CSG operand, media). */
+/* The box of the shape as `map` places it: the tightest one for analytic shapes whose reach has a closed form, else the box
+ * of the mapped bounds. */
+struct box shape_bounds_under(const struct shape *shape, const struct affine *map);
+/* Closed: every line crosses it an even number of times, so it has an inside (CSG operand, media). A solid without end (a
+ * half-space) is closed too: a line that begins or ends inside crosses it at t = -INFINITY or INFINITY. */
 bool shape_is_closed(const struct shape *shape);
 /* The crossing with the smallest t in the open interval (ray->t_min, ray->t_max). On equal t the one that comes first in
  * the shape's own order. False also when scratch overflowed (then scratch->overflow is set). */

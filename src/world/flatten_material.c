@@ -88,6 +88,18 @@ static const struct material *textured(struct flattening *f, struct node *node, 
     case SHAPE_BOX:
         material->image.mapping = MAPPING_CUBE;
         break;
+    case SHAPE_CONIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_FLAT:
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_HEIGHT_FIELD:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE:
     case SHAPE_MESH:
     case SHAPE_CSG:
         material->image.mapping = MAPPING_UV;

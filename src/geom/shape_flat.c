@@ -1,0 +1,264 @@
+/* Flat shapes: the line meets the plane at one t, an oblique coordinate system in the plane says the rest. The
+ * coordinates come from the triple products of Cramer's rule divided by normal . normal. Polygons: a point is inside
+ * when a ray along +a crosses the outlines an odd number of times, each edge counted with its lower end and without its
+ * upper one (Shimrat, "Algorithm 112: Position of point relative to polygon", CACM 1962), so corners are counted once.
+ */
+#include "geom/shape_flat.h"
+
+struct polygon {
+    uint32_t outlines;
+    const uint32_t *ends;
+    const double (*points)[2]; /* in (a, b), all within 0 .. 1 */
+    double largest;            /* coordinate of the points in space, for bounds of errors */
+    const struct vec3 *corners;
+};
+
+/* ---- making them ---- */
+
+/* Two unit vectors across the unit vector n, so that an image on the front stands upright: the first is level, the
+ * second goes down. x and z for n = y. */
+static void across(struct vec3 n, struct vec3 *x, struct vec3 *z) {
+    struct vec3 level = vec3_make(n.z, 0, -n.x); /* y cross n */
+    *x = vec3_max_abs(level) > 0x1p-26 ? vec3_normalize(level) : vec3_make(1, 0, 0);
+    *z = vec3_normalize(vec3_cross(*x, n));
+    *x = vec3_cross(n, *z);
+}
+
+struct flat flat_plane(struct vec3 normal, double distance) {
+    struct flat f = {.kind = FLAT_PLANE, .normal = vec3_normalize(normal)};
+    f.origin = vec3_scale(f.normal, distance);
+    across(f.normal, &f.u, &f.v);
+    return f;
+}
+
+struct flat flat_parallelogram(struct vec3 corner, struct vec3 along, struct vec3 up) {
+    return (struct flat){.kind = FLAT_PARALLELOGRAM,
+                         .origin = vec3_add(corner, up),
+                         .u = along,
+                         .v = vec3_negate(up),
+                         .normal = vec3_cross(along, up)};
+}
+
+struct flat flat_square(void) {
+    return flat_parallelogram(vec3_make(-0.5, 0, 0.5), vec3_make(1, 0, 0), vec3_make(0, 0, -1));
+}
+
+struct flat flat_disc(struct vec3 centre, struct vec3 normal, double radius, double inner) {
+    struct flat f = {.kind = FLAT_DISC, .origin = centre, .normal = vec3_normalize(normal), .inner = inner / radius};
+    across(f.normal, &f.u, &f.v);
+    f.u = vec3_scale(f.u, radius);
+    f.v = vec3_scale(f.v, radius);
+    return f;
+}
+
+struct flat flat_triangle(struct vec3 a, struct vec3 b, struct vec3 c) {
+    struct vec3 u = vec3_sub(b, a), v = vec3_sub(c, a);
+    return (struct flat){.kind = FLAT_TRIANGLE, .origin = a, .u = u, .v = v, .normal = vec3_cross(u, v)};
+}
+
+/* Newell's normal of an outline, twice its area long (Sutherland, Sproull, Schumacker 1974). */
+static struct vec3 outline_normal(const struct vec3 *points, uint32_t count) {
+    struct vec3 sum = {0, 0, 0};
+    for (uint32_t i = 1; i + 1 < count; i++)
+        sum = vec3_add(sum, vec3_cross(vec3_sub(points[i], points[0]), vec3_sub(points[i + 1], points[0])));
+    return sum;
+}
+
+bool flat_polygon(struct arena *arena, const struct vec3 *points, const uint32_t *ends, uint32_t outlines,
+                  struct flat *out, const char **why) {
+    uint32_t count = outlines ? ends[outlines - 1] : 0;
+    for (uint32_t i = 0; i < outlines; i++)
+        if (ends[i] < (i ? ends[i - 1] : 0) + 3) {
+            *why = "an outline has fewer than three points";
+            return false;
+        }
+    struct vec3 area = count ? outline_normal(points, ends[0]) : vec3_all(0), n = vec3_normalize(area);
+    struct box box = box_empty();
+    for (uint32_t i = 0; i < count; i++)
+        box = box_add_point(box, points[i]);
+    double size = count ? vec3_length(vec3_sub(box.max, box.min)) : 0;
+    if (!(vec3_length(area) > 0x1p-40 * size * size)) {
+        *why = count ? "the first outline has no area" : "there is no outline";
+        return false;
+    }
+    double largest = fmax(vec3_max_abs(box.min), vec3_max_abs(box.max));
+    for (uint32_t i = 0; i < count; i++)
+        if (fabs(vec3_dot(n, vec3_sub(points[i], points[0]))) > 1e-6 * size) {
+            *why = "its points do not lie in one plane";
+            return false;
+        }
+
+    /* The image is the rectangle round all points, its sides along `across`. */
+    struct vec3 x, z;
+    across(n, &x, &z);
+    double x_lo = INFINITY, x_hi = -INFINITY, z_lo = INFINITY, z_hi = -INFINITY;
+    for (uint32_t i = 0; i < count; i++) {
+        struct vec3 p = vec3_sub(points[i], points[0]);
+        x_lo = fmin(x_lo, vec3_dot(p, x)), x_hi = fmax(x_hi, vec3_dot(p, x));
+        z_lo = fmin(z_lo, vec3_dot(p, z)), z_hi = fmax(z_hi, vec3_dot(p, z));
+    }
+    double(*flat_points)[2] = arena_alloc_array(arena, count, sizeof *flat_points);
+    struct vec3 *corners = arena_alloc_array(arena, count, sizeof *corners);
+    uint32_t *own_ends = arena_alloc_array(arena, outlines, sizeof *own_ends);
+    struct polygon *polygon = arena_alloc(arena, sizeof *polygon);
+    *why = NULL;
+    if (!flat_points || !corners || !own_ends || !polygon)
+        return false;
+    for (uint32_t i = 0; i < count; i++) {
+        struct vec3 p = vec3_sub(points[i], points[0]);
+        flat_points[i][0] = (vec3_dot(p, x) - x_lo) / (x_hi - x_lo);
+        flat_points[i][1] = (vec3_dot(p, z) - z_lo) / (z_hi - z_lo);
+        corners[i] = vec3_add_scaled(points[i], n, -vec3_dot(n, p));
+    }
+    for (uint32_t i = 0; i < outlines; i++)
+        own_ends[i] = ends[i];
+    *polygon = (struct polygon){outlines, own_ends, (const double(*)[2])flat_points, largest, corners};
+    *out = (struct flat){.kind = FLAT_POLYGON,
+                         .origin = vec3_add_scaled(vec3_add_scaled(points[0], x, x_lo), z, z_lo),
+                         .u = vec3_scale(x, x_hi - x_lo),
+                         .v = vec3_scale(z, z_hi - z_lo),
+                         .normal = n,
+                         .polygon = polygon};
+    return true;
+}
+
+/* ---- rays ---- */
+
+static void coordinates(const struct flat *f, struct vec3 p, double *a, double *b) {
+    struct vec3 w = vec3_sub(p, f->origin), n = vec3_cross(f->u, f->v);
+    double nn = vec3_dot(n, n);
+    *a = vec3_dot(vec3_cross(w, f->v), n) / nn;
+    *b = vec3_dot(vec3_cross(f->u, w), n) / nn;
+}
+
+static bool polygon_holds(const struct polygon *polygon, double a, double b) {
+    bool inside = false;
+    if (!(a > 0 && a < 1 && b > 0 && b < 1))
+        return false;
+    uint32_t first = 0;
+    for (uint32_t i = 0; i < polygon->outlines; i++) {
+        const double *p = polygon->points[polygon->ends[i] - 1];
+        for (uint32_t k = first; k < polygon->ends[i]; k++) {
+            const double *q = polygon->points[k];
+            if ((p[1] > b) != (q[1] > b)) {
+                /* From the lower end, so that both neighbours of an edge agree about it. */
+                const double *low = p[1] < q[1] ? p : q, *high = p[1] < q[1] ? q : p;
+                inside ^= (high[0] - low[0]) * (b - low[1]) > (a - low[0]) * (high[1] - low[1]);
+            }
+            p = q;
+        }
+        first = polygon->ends[i];
+    }
+    return inside;
+}
+
+static bool holds(const struct flat *f, double a, double b) {
+    switch (f->kind) {
+    case FLAT_PLANE:
+        return true;
+    case FLAT_PARALLELOGRAM:
+        return a >= 0 && a <= 1 && b >= 0 && b <= 1;
+    case FLAT_DISC: {
+        double square = a * a + b * b;
+        return square <= 1 && square >= f->inner * f->inner;
+    }
+    case FLAT_TRIANGLE:
+        return a >= 0 && b >= 0 && a + b <= 1;
+    case FLAT_POLYGON:
+        return polygon_holds(f->polygon, a, b);
+    }
+    return false;
+}
+
+int flat_crossings(const struct flat *f, const struct ray *ray, struct crossing out[2]) {
+    double climb = vec3_dot(f->normal, ray->direction), height = vec3_dot(f->normal, vec3_sub(ray->origin, f->origin));
+    double t = -height / climb;
+    bool enter = climb < 0;
+    if (f->kind == FLAT_PLANE) {
+        /* A line along the plane is inside as a whole or not at all. */
+        bool crosses = isfinite(t);
+        if (!crosses && !(height < 0 && vec3_max_abs(ray->direction) > 0))
+            return 0;
+        out[0] = (struct crossing){.t = crosses && enter ? t : -INFINITY, .enter = true};
+        out[1] = (struct crossing){.t = crosses && !enter ? t : INFINITY, .enter = false};
+        return 2;
+    }
+    if (!isfinite(t))
+        return 0;
+    double a, b;
+    coordinates(f, ray_at(ray, t), &a, &b);
+    if (!holds(f, a, b))
+        return 0;
+    out[0] = (struct crossing){.t = t, .enter = enter};
+    return 1;
+}
+
+bool flat_contains(const struct flat *f, struct vec3 point) {
+    return f->kind == FLAT_PLANE && vec3_dot(f->normal, vec3_sub(point, f->origin)) < 0;
+}
+
+void flat_describe(const struct flat *f, const struct ray *ray, const struct crossing *crossing, struct surface *out) {
+    struct vec3 p = ray_at(ray, crossing->t), n = f->normal;
+    double off = vec3_dot(n, vec3_sub(p, f->origin)) / vec3_dot(n, n);
+    p = vec3_add_scaled(p, n, -off);
+    *out = (struct surface){.point = p,
+                            .normal = n,
+                            .shading_normal = n,
+                            .pattern_point = p,
+                            .pattern_normal = n,
+                            .has_uv = true,
+                            .dpdu = f->u,
+                            .dpdv = f->v};
+    double largest = fmax(vec3_max_abs(f->origin), vec3_max_abs(p));
+    if (f->kind == FLAT_POLYGON)
+        largest = fmax(largest, f->polygon->largest);
+    out->error = 0x1p-48 * largest;
+    coordinates(f, p, &out->u, &out->v);
+    if (f->kind == FLAT_DISC) { /* the image is the square round the disc */
+        out->u = (1 + out->u) / 2;
+        out->v = (1 + out->v) / 2;
+        out->dpdu = vec3_scale(f->u, 2);
+        out->dpdv = vec3_scale(f->v, 2);
+    }
+}
+
+void flat_extent(const struct flat *f, struct vec3 g, double *lo, double *hi) {
+    double o = vec3_dot(g, f->origin), u = vec3_dot(g, f->u), v = vec3_dot(g, f->v);
+    *lo = *hi = o;
+    switch (f->kind) {
+    case FLAT_PLANE: {
+        /* Behind the plane everything is inside: only along the normal is there an end. */
+        double along = vec3_dot(g, f->normal);
+        struct vec3 rest = vec3_add_scaled(g, f->normal, -along);
+        bool straight = vec3_max_abs(rest) == 0;
+        if (!(straight && along >= 0))
+            *hi = INFINITY;
+        if (!(straight && along <= 0))
+            *lo = -INFINITY;
+        return;
+    }
+    case FLAT_PARALLELOGRAM:
+        *lo += fmin(u, 0) + fmin(v, 0);
+        *hi += fmax(u, 0) + fmax(v, 0);
+        return;
+    case FLAT_DISC: {
+        double reach = vec3_length(vec3_make(u, v, 0));
+        *lo -= reach;
+        *hi += reach;
+        return;
+    }
+    case FLAT_TRIANGLE:
+        *lo += fmin(fmin(u, v), 0);
+        *hi += fmax(fmax(u, v), 0);
+        return;
+    case FLAT_POLYGON:
+        *lo = INFINITY;
+        *hi = -INFINITY;
+        for (uint32_t i = 0; i < f->polygon->ends[f->polygon->outlines - 1]; i++) {
+            double at = vec3_dot(g, f->polygon->corners[i]);
+            *lo = fmin(*lo, at);
+            *hi = fmax(*hi, at);
+        }
+        return;
+    }
+}

@@ -1,0 +1,52 @@
+/* Flat shapes, anywhere in space: infinite plane, parallelogram (rectangle, square), disc and annulus, triangle,
+ * polygon with holes. A point is origin + a u + b v; a and b decide whether it belongs to the shape and are its image
+ * coordinates, so u points along the rows of an image and v down its columns. The normal's side is the front. */
+#ifndef GRAY_GEOM_SHAPE_FLAT_H
+#define GRAY_GEOM_SHAPE_FLAT_H
+
+#include "base/arena.h"
+#include "geom/crossing.h"
+#include "geom/hit.h"
+#include "math/box.h"
+#include "math/ray.h"
+
+enum flat_kind { FLAT_PLANE, FLAT_PARALLELOGRAM, FLAT_DISC, FLAT_TRIANGLE, FLAT_POLYGON };
+
+struct polygon; /* the outlines in (a, b); lives in an arena */
+
+struct flat {
+    enum flat_kind kind;
+    struct vec3 origin, u, v;
+    struct vec3 normal; /* at right angles to u and v, not 0 */
+    double inner;       /* disc: radius of the hole as a share of the disc's */
+    const struct polygon *polygon;
+};
+
+/* { p : normal . p = distance }, normal of any length > 0, distance in units of length. As a solid the plane is the
+ * half- space behind it. */
+struct flat flat_plane(struct vec3 normal, double distance);
+/* From a corner along two edges that are not parallel; the front is where `along` turns to `up` counter-clockwise, and
+ * there an image stands upright. */
+struct flat flat_parallelogram(struct vec3 corner, struct vec3 along, struct vec3 up);
+/* The square of SPEC 2.1: -0.5 .. 0.5 in x and z at y = 0, normal +y. */
+struct flat flat_square(void);
+/* 0 <= inner < radius, normal of any length > 0. */
+struct flat flat_disc(struct vec3 centre, struct vec3 normal, double radius, double inner);
+/* The front sees the corners counter-clockwise. */
+struct flat flat_triangle(struct vec3 a, struct vec3 b, struct vec3 c);
+/* Outlines of points that lie in one plane, one after the other; ends[i] is one past the last point of outline i. A
+ * point is inside when it is so by the even-odd rule over all outlines; the front sees the first outline
+ * counter-clockwise. False, with what is wrong in `why`: fewer than three points, no area, not flat, or (why = NULL) no
+ * memory. */
+bool flat_polygon(struct arena *arena, const struct vec3 *points, const uint32_t *ends, uint32_t outlines,
+                  struct flat *out, const char **why);
+
+/* 0 or 1 crossings; of the plane as a half-space, one more at t = -INFINITY or INFINITY where the line is inside. A
+ * line in the plane does not cross. */
+int flat_crossings(const struct flat *flat, const struct ray *ray, struct crossing out[2]);
+bool flat_contains(const struct flat *flat, struct vec3 point); /* of the half-space; else false */
+void flat_describe(const struct flat *flat, const struct ray *ray, const struct crossing *crossing,
+                   struct surface *out);
+void flat_extent(const struct flat *flat, struct vec3 g, double *lo, double *hi);
+
+#endif
