@@ -3,7 +3,7 @@
 #define GRAY_TESTS_MESH_MAKERS_H
 
 #include "geom/mesh.h"
-#include "harness.h"
+#include "tests/harness.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -59,6 +59,10 @@ static void right_text(const struct parameter *p, char *out, size_t size) {
     case KIND_TRIPLE:
     case KIND_BACKGROUND:
         text = "{1, 2, 3}";
+        if (strcmp(p->name, "max") == 0 || strcmp(p->name, "b") == 0 || strcmp(p->name, "up") == 0)
+            text = "{4, 3, 8}"; /* corners and edges of one shape differ */
+        if (strcmp(p->name, "c") == 0)
+            text = "{-2, 5, 1}";
         break;
     case KIND_SIZE:
         text = "2";

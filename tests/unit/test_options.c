@@ -64,7 +64,7 @@ TEST(options_have_the_defaults_of_the_manual) {
     CHECK(!o->settings.use_tir);
     CHECK_EQ_INT(o->settings.area_samples, 4);
     CHECK_EQ_INT(o->settings.seed, 0);
-    CHECK_EQ_INT(o->settings.accel, ACCEL_GRID);
+    CHECK_EQ_INT(o->settings.accel, ACCEL_AUTO);
     CHECK(!o->settings.cropped && !o->settings.view_is_target && !o->settings.pixel_corner);
     CHECK(!o->settings.ambient_plain && !o->script.lenient);
     CHECK_EQ_INT(o->settings.specular, SPECULAR_PHONG);
@@ -194,7 +194,7 @@ TEST(values_outside_their_range_are_refused_with_the_range) {
     refused("--seed -1 s.lua", "--seed needs a whole number from 0 to 18446744073709551615, not '-1'");
     refused("--seed 18446744073709551616 s.lua",
             "--seed needs a whole number from 0 to 18446744073709551615, not '18446744073709551616'");
-    refused("--accel bvh s.lua", "--accel needs one of grid|none, not 'bvh'");
+    refused("--accel octree s.lua", "--accel needs one of auto|grid|bvh|none, not 'octree'");
     refused("--view targe s.lua", "--view needs one of direction|target, not 'targe'");
     refused("-o= s.lua", "-o needs a text that is not empty");
     refused("-write-pre-aa ~ s.lua", "-write-pre-aa needs a text that is not empty");

@@ -97,7 +97,7 @@ TEST(lenient_scripts_show_what_can_be_shown) {
     CHECK_EQ_INT(listener.renders, 1);
     CHECK_EQ_INT(listener.last.light_count, 1);
     CHECK_TEXT(listener.said,
-               "tests/scripts/lenient.lua:3: warning: gr.torus: comes with version 0.2 and is ignored\n"
+               "tests/scripts/lenient.lua:3: warning: gr.klein_bottle does not exist and is ignored\n"
                "tests/scripts/lenient.lua:7: warning: gr.fog does not exist and is ignored\n"
                "tests/scripts/lenient.lua:10: warning: node:wobble does not exist and is ignored (node 'root')\n"
                "tests/scripts/lenient.lua:11: warning: gr.shiny_material does not exist and is ignored\n"

@@ -1,7 +1,7 @@
 /* Triangulation: the triangles of a polygon cover it once, whatever its shape. */
 #include "geom/triangulate.h"
 
-#include "harness.h"
+#include "tests/harness.h"
 
 #include <math.h>
 #include <stdio.h>

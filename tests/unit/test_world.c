@@ -93,7 +93,7 @@ static struct ray random_ray(struct test_random *random, double spread) {
     return ray;
 }
 
-static void compare_with_brute_force(int worlds, int rays, uint64_t seed) {
+static void compare_with_brute_force(enum accel_kind accel, int worlds, int rays, uint64_t seed) {
     struct test_random random = {seed};
     for (int w = 0; w < worlds; w++) {
         struct stage s;
@@ -103,7 +103,7 @@ static void compare_with_brute_force(int worlds, int rays, uint64_t seed) {
         double spread = w % 3 == 0 ? 2 : w % 3 == 1 ? 10 : 60;
         struct node *root = random_world(&s, &random, count, spread, w % 11 == 10);
         struct stage *stage = &s;
-        if (!stage_build(stage, root, ACCEL_GRID)) {
+        if (!stage_build(stage, root, accel)) {
             test_fail(__FILE__, __LINE__, "%s", s.error.text);
             stage_end(&s);
             return;
@@ -133,11 +133,56 @@ static void compare_with_brute_force(int worlds, int rays, uint64_t seed) {
 }
 
 TEST(world_grid_equals_brute_force_on_random_rays) {
-    compare_with_brute_force(42, 12000, 1);
+    compare_with_brute_force(ACCEL_GRID, 42, 12000, 1);
+}
+
+TEST(world_hierarchy_equals_brute_force_on_random_rays) {
+    compare_with_brute_force(ACCEL_AUTO, 42, 12000, 3);
 }
 
 TEST_LONG(world_grid_equals_brute_force_on_ten_million_rays) {
-    compare_with_brute_force(420, 24000, 2);
+    compare_with_brute_force(ACCEL_GRID, 420, 24000, 2);
+}
+
+TEST_LONG(world_hierarchy_equals_brute_force_on_ten_million_rays) {
+    compare_with_brute_force(ACCEL_AUTO, 420, 24000, 4);
+}
+
+TEST(points_of_a_parallelogram_seen_through_a_shaft_are_those_that_single_rays_see) {
+    struct test_random random = {5};
+    int partly = 0;
+    for (int w = 0; w < 24; w++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        struct node *root = random_world(&s, &random, w % 4 == 0 ? 200 : 12, 6, false);
+        CHECK(stage_build(&s, root, ACCEL_AUTO));
+        struct world_scratch scratch;
+        CHECK(world_scratch_init(&scratch, &s.world));
+        for (int i = 0; i < 1500; i++) {
+            double n[12];
+            for (int k = 0; k < 12; k++)
+                n[k] = test_uniform(&random, -8, 8);
+            struct vec3 from = {n[0], n[1], n[2]}, corner = {n[3], n[4], n[5]};
+            struct vec3 edge1 = {n[6] * 0.2, n[7] * 0.2, n[8] * 0.2}, edge2 = {n[9] * 0.2, n[10] * 0.2, n[11] * 0.2};
+            if (i % 50 == 0)
+                edge2 = vec3_all(0);
+            if (i % 77 == 0)
+                from = vec3_add(corner, vec3_add(edge1, edge2)); /* on the parallelogram itself */
+            struct vec3 targets[16];
+            uint32_t seen = 0;
+            for (int k = 0; k < 16; k++) {
+                targets[k] = vec3_add_scaled(corner, edge1, test_uniform(&random, 0, 1));
+                targets[k] = vec3_add_scaled(targets[k], edge2, test_uniform(&random, 0, 1));
+                struct ray ray = {.origin = from, .direction = vec3_sub(targets[k], from), .t_max = 1};
+                seen += !world_any(&s.world, &ray, &scratch);
+            }
+            partly += seen > 0 && seen < 16;
+            CHECK_EQ_INT(world_count_visible(&s.world, from, 0, corner, edge1, edge2, targets, 16, &scratch), seen);
+        }
+        world_scratch_destroy(&scratch);
+        stage_end(&s);
+    }
+    CHECK(partly > 1000);
 }
 
 TEST(world_names_the_nodes_of_a_cycle) {
