@@ -19,9 +19,7 @@ struct build_item {
 };
 
 struct builder {
-    struct build_item *items;
-    struct box_tree *tree;
-    uint32_t capacity;
+    struct build_item *items, *spare; /* spare: room for partitions, used at the places of the run that is parted */
     struct pool *pool;
 };
 
@@ -107,7 +105,8 @@ static struct split best_split(const struct builder *b, const struct run *run) {
 }
 
 /* Stable partition keeps flattening order inside both halves: the tree does not depend on addresses or time. */
-static uint32_t partition(struct builder *b, const struct run *run, const struct split *split, struct build_item *spare) {
+static uint32_t partition(struct builder *b, const struct run *run, const struct split *split) {
+    struct build_item *spare = b->spare + run->first;
     uint32_t left = 0, right = 0;
     for (uint32_t i = 0; i < run->count; i++) {
         struct build_item item = b->items[run->first + i];
@@ -120,12 +119,11 @@ static uint32_t partition(struct builder *b, const struct run *run, const struct
     return left;
 }
 
-static void split_run(struct builder *b, const struct run *run, bool halve, struct build_item *spare,
-                      struct run out[2]) {
+static void split_run(struct builder *b, const struct run *run, bool halve, struct run out[2]) {
     struct split split = {.axis = -1};
     if (!halve)
         split = best_split(b, run);
-    uint32_t left = split.axis < 0 ? 0 : partition(b, run, &split, spare);
+    uint32_t left = split.axis < 0 ? 0 : partition(b, run, &split);
     if (left == 0 || left == run->count)
         left = run->count / 2; /* all centres in one place: halves by order */
     out[0] = (struct run){run->first, left, run_box(b, run->first, left)};
@@ -133,8 +131,7 @@ static void split_run(struct builder *b, const struct run *run, bool halve, stru
 }
 
 /* Up to four children: the run with the largest area is split again until there are four or all are single. */
-static int children_of(struct builder *b, const struct run *run, bool halve, struct build_item *spare,
-                       struct run out[4]) {
+static int children_of(struct builder *b, const struct run *run, bool halve, struct run out[BOX_TREE_WIDTH]) {
     int count = 1;
     out[0] = *run;
     while (count < BOX_TREE_WIDTH) {
@@ -149,7 +146,7 @@ static int children_of(struct builder *b, const struct run *run, bool halve, str
         if (widest < 0)
             break;
         struct run halves[2];
-        split_run(b, &out[widest], halve, spare, halves);
+        split_run(b, &out[widest], halve, halves);
         memmove(out + widest + 2, out + widest + 1, (size_t)(count - widest - 1) * sizeof *out);
         out[widest] = halves[0];
         out[widest + 1] = halves[1];
@@ -177,76 +174,162 @@ struct task {
     uint32_t node, depth;
 };
 
-static bool build_nodes(struct builder *b, struct run root, struct build_item *spare, struct task *tasks) {
-    struct box_tree *tree = b->tree;
+/* Nodes of one part of the tree, at the places of its items: a run of n items needs fewer than n nodes. Runs of at most
+ * `leave` items are left to others: their child index is the number of an entry in `left`, marked by LEFT_OVER. */
+struct part {
+    struct box_tree_node *nodes;
+    struct task *tasks, *left;
+    uint32_t node_count, left_count, leave;
+    bool cancelled;
+};
+
+#define LEFT_OVER UINT32_C(0x40000000)
+
+static void build_part(struct builder *b, struct part *part, struct run root, uint32_t root_depth) {
+    struct box nothing = box_empty();
     uint32_t waiting = 0;
-    tree->node_count = 1;
-    tasks[waiting++] = (struct task){root, 0, 0};
-    while (waiting > 0) {
-        struct task task = tasks[--waiting];
+    part->node_count = 1;
+    part->tasks[waiting++] = (struct task){root, 0, root_depth};
+    while (waiting > 0 && !part->cancelled) {
+        struct task task = part->tasks[--waiting];
         struct run children[BOX_TREE_WIDTH];
-        struct box nothing = box_empty();
-        struct box_tree_node *node = &tree->nodes[task.node];
-        int count = children_of(b, &task.run, task.depth >= DEEP, spare, children);
+        struct box_tree_node *node = &part->nodes[task.node];
+        int count = children_of(b, &task.run, task.depth >= DEEP, children);
         for (int i = 0; i < BOX_TREE_WIDTH; i++) {
             if (i >= count) {
                 set_child(node, i, &nothing, BOX_TREE_NONE);
             } else if (children[i].count == 1) {
                 set_child(node, i, &children[i].box, b->items[children[i].first].item | BOX_TREE_ITEM);
+            } else if (children[i].count <= part->leave) {
+                set_child(node, i, &children[i].box, LEFT_OVER | part->left_count);
+                part->left[part->left_count++] = (struct task){children[i], 0, task.depth + 1};
             } else {
-                uint32_t next = tree->node_count++;
+                uint32_t next = part->node_count++;
                 set_child(node, i, &children[i].box, next);
-                tasks[waiting++] = (struct task){children[i], next, task.depth + 1};
+                part->tasks[waiting++] = (struct task){children[i], next, task.depth + 1};
             }
         }
-        if ((tree->node_count & 1023) == 0 && pool_cancelled(b->pool))
-            return false;
+        part->cancelled = (part->node_count & 255) == 0 && pool_cancelled(b->pool);
     }
+}
+
+/* --- in parallel: the top of the tree by one thread, what is under it by all --- */
+
+enum { PARTS = 64, PART_ITEMS = 4096 };
+
+struct forest {
+    struct builder *builder;
+    struct box_tree_node *nodes; /* part i of the forest lives at the places of its items */
+    struct task *tasks;
+    const struct task *roots;
+    struct part *parts;
+};
+
+static void build_root(void *context, uint32_t item, int worker) {
+    (void)worker;
+    struct forest *forest = context;
+    struct run run = forest->roots[item].run;
+    forest->parts[item] = (struct part){.nodes = forest->nodes + run.first, .tasks = forest->tasks + run.first};
+    build_part(forest->builder, &forest->parts[item], run, forest->roots[item].depth);
+}
+
+/* Puts the top and the parts behind each other; the numbers do not depend on which thread made what. */
+static bool join_parts(struct box_tree *tree, const struct part *top, const struct part *parts) {
+    uint32_t total = top->node_count;
+    for (uint32_t i = 0; i < top->left_count; i++)
+        total += parts[i].node_count;
+    tree->nodes = mem_alloc_aligned(64, total * sizeof *tree->nodes);
+    if (!tree->nodes)
+        return false;
+    memcpy(tree->nodes, top->nodes, top->node_count * sizeof *tree->nodes);
+    tree->node_count = top->node_count;
+    for (uint32_t i = 0; i < top->left_count; i++) {
+        struct box_tree_node *nodes = tree->nodes + tree->node_count;
+        memcpy(nodes, parts[i].nodes, parts[i].node_count * sizeof *nodes);
+        for (uint32_t n = 0; n < parts[i].node_count; n++) {
+            for (int k = 0; k < BOX_TREE_WIDTH; k++) {
+                if (!(nodes[n].child[k] & BOX_TREE_ITEM))
+                    nodes[n].child[k] += tree->node_count;
+            }
+        }
+        tree->node_count += parts[i].node_count;
+    }
+    uint32_t first = top->node_count, *starts = mem_alloc_zero(top->left_count, sizeof *starts);
+    if (!starts)
+        return false;
+    for (uint32_t i = 0; i < top->left_count; i++) {
+        starts[i] = first;
+        first += parts[i].node_count;
+    }
+    for (uint32_t n = 0; n < top->node_count; n++) {
+        for (int k = 0; k < BOX_TREE_WIDTH; k++) {
+            uint32_t child = tree->nodes[n].child[k];
+            if (!(child & BOX_TREE_ITEM) && (child & LEFT_OVER))
+                tree->nodes[n].child[k] = starts[child & ~LEFT_OVER];
+        }
+    }
+    mem_free(starts);
     return true;
+}
+
+static bool build_forest(struct builder *b, struct box_tree *tree, uint32_t count, struct error *error) {
+    /* The top may visit every place once, and so may the parts: both use the same arrays at different places or times. */
+    struct box_tree_node *top_nodes = mem_alloc_aligned(64, ((size_t)count + 1) * sizeof *top_nodes);
+    struct box_tree_node *nodes = mem_alloc_aligned(64, ((size_t)count + 1) * sizeof *nodes);
+    struct task *tasks = mem_alloc_zero((size_t)count + 1, sizeof *tasks);
+    struct part top = {.nodes = top_nodes, .tasks = tasks};
+    struct part *parts = NULL;
+    if (count > PART_ITEMS) {
+        top.leave = count / PARTS > PART_ITEMS / 4 ? count / PARTS : PART_ITEMS / 4;
+        top.left = mem_alloc_zero(count, sizeof *top.left);
+        parts = mem_alloc_zero(count, sizeof *parts);
+    }
+    bool ok = top_nodes && nodes && tasks && (count <= PART_ITEMS || (top.left && parts));
+    if (!ok)
+        error_no_memory(error, "the hierarchy of the scene");
+    if (ok) {
+        build_part(b, &top, (struct run){0, count, tree->bounds}, 0);
+        struct forest forest = {.builder = b, .nodes = nodes, .tasks = tasks, .roots = top.left, .parts = parts};
+        bool whole = !top.cancelled && (top.left_count == 0 || pool_run(b->pool, top.left_count, build_root, &forest));
+        for (uint32_t i = 0; whole && i < top.left_count; i++)
+            whole = !parts[i].cancelled;
+        if (!whole)
+            ok = error_set(error, ERROR_CANCELLED, "stopped while the hierarchy of the scene was built");
+        else if (!join_parts(tree, &top, parts))
+            ok = error_no_memory(error, "the hierarchy of the scene");
+    }
+    mem_free(top_nodes);
+    mem_free(nodes);
+    mem_free(tasks);
+    mem_free(top.left);
+    mem_free(parts);
+    return ok;
 }
 
 bool box_tree_build(struct box_tree *tree, const struct box *boxes, uint32_t count, struct pool *pool,
                     struct error *error) {
     *tree = (struct box_tree){.bounds = box_empty()};
-    struct build_item *items = mem_alloc_zero(count, sizeof *items);
-    struct build_item *spare = mem_alloc_zero(count, sizeof *spare);
-    struct task *tasks = mem_alloc_zero((size_t)count + 1, sizeof *tasks);
-    /* Every node has at least two children, so there are fewer nodes than items; one more for the empty tree. */
-    size_t node_bytes = ((size_t)count + 1) * sizeof *tree->nodes;
-    tree->nodes = mem_alloc_aligned(64, node_bytes);
-    bool ok = items && spare && tasks && tree->nodes;
-    if (!ok) {
+    struct builder builder = {.items = mem_alloc_zero(count, sizeof *builder.items),
+                              .spare = mem_alloc_zero(count, sizeof *builder.spare),
+                              .pool = pool};
+    bool ok = builder.items && builder.spare;
+    if (!ok)
         error_no_memory(error, "the hierarchy of the scene");
-    } else {
-        struct builder builder = {.items = items, .tree = tree, .pool = pool};
-        uint32_t used = 0;
-        for (uint32_t i = 0; i < count; i++) {
-            const struct box *box = &boxes[i];
-            if (box_is_empty(box))
-                continue;
-            struct vec3 centre = {middle(box->min.x, box->max.x), middle(box->min.y, box->max.y),
-                                  middle(box->min.z, box->max.z)};
-            items[used++] = (struct build_item){*box, centre, i};
-            tree->bounds = box_join(tree->bounds, *box);
-        }
-        tree->item_count = used;
-        ok = used == 0 || build_nodes(&builder, (struct run){0, used, tree->bounds}, spare, tasks);
-        if (!ok)
-            error_set(error, ERROR_CANCELLED, "stopped while the hierarchy of the scene was built");
+    for (uint32_t i = 0; ok && i < count; i++) {
+        const struct box *box = &boxes[i];
+        if (box_is_empty(box))
+            continue;
+        struct vec3 centre = {middle(box->min.x, box->max.x), middle(box->min.y, box->max.y),
+                              middle(box->min.z, box->max.z)};
+        builder.items[tree->item_count++] = (struct build_item){*box, centre, i};
+        tree->bounds = box_join(tree->bounds, *box);
     }
-    mem_free(items);
-    mem_free(spare);
-    mem_free(tasks);
-    if (ok) {
-        struct box_tree_node *fitting = mem_alloc_aligned(64, (size_t)(tree->node_count + 1) * sizeof *fitting);
-        if (fitting) { /* else the roomy block serves as well */
-            memcpy(fitting, tree->nodes, tree->node_count * sizeof *fitting);
-            mem_free(tree->nodes);
-            tree->nodes = fitting;
-        }
-    } else {
+    if (ok && tree->item_count > 0)
+        ok = build_forest(&builder, tree, tree->item_count, error);
+    mem_free(builder.items);
+    mem_free(builder.spare);
+    if (!ok)
         box_tree_destroy(tree);
-    }
     return ok;
 }
 
