@@ -80,9 +80,10 @@ void bernstein_derivative(const double *b, int degree, double *out) {
 static double bracketed_root(const double *b, int degree) {
     double lo = 0, hi = 1, last_step = 1;
     bool rising = b[0] < 0;
-    double x = degree == 1 ? b[0] / (b[0] - b[1]) : fabs(b[0]) / (fabs(b[0]) + fabs(b[degree]));
     if (degree == 1)
-        return x;
+        return b[0] / (b[0] - b[1]);
+    /* Not from an end itself: it may be a zero that counts as positive, and the root elsewhere. */
+    double x = fmin(fmax(fabs(b[0]) / (fabs(b[0]) + fabs(b[degree])), 0.0625), 0.9375);
     for (int i = 0; i < 100; i++) {
         double slope, value = value_and_slope(b, degree, x, &slope);
         if (value == 0)

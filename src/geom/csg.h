@@ -14,6 +14,7 @@ struct csg_leaf {
     struct shape shape;                     /* closed; not SHAPE_CSG (nested programs are flattened into one) */
     struct transform csg_from_leaf;
     uint32_t material;
+    uint32_t slot_count; /* of a mesh: face slot k has material + k; below 2 all have `material` */
 };
 
 struct csg_token {

@@ -82,9 +82,14 @@ static bool same_position(const struct mesh *mesh, uint32_t a, uint32_t b) {
     return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
 }
 
+/* A table that searches jump about in: on large pages when it is large. */
+static void *alloc_searched(size_t size) {
+    return mem_alloc_aligned(size < MEM_LARGE_PAGE ? 64 : MEM_LARGE_PAGE, size);
+}
+
 static bool copy_tables(struct mesh *mesh, const struct mesh_input *input, size_t triangles) {
-    mesh->vertices = mem_alloc(input->vertex_count * sizeof *mesh->vertices);
-    mesh->corners = mem_alloc(triangles * sizeof *mesh->corners);
+    mesh->vertices = alloc_searched(input->vertex_count * sizeof *mesh->vertices);
+    mesh->corners = alloc_searched(triangles * sizeof *mesh->corners);
     if (!mesh->vertices || !mesh->corners)
         return false;
     if (input->vertex_count)

@@ -156,6 +156,37 @@ bool shape_is_closed(const struct shape *shape) {
     return false;
 }
 
+const char *shape_why_open(const struct shape *shape) {
+    if (shape_is_closed(shape))
+        return NULL;
+    switch (shape->kind) {
+    case SHAPE_CONIC:
+    case SHAPE_QUADRIC:
+        return "has no caps (open = true), so it has no inside";
+    case SHAPE_FLAT:
+        return "is flat, so it has no inside; only a plane with a normal stands for the half-space behind it";
+    case SHAPE_CURVE:
+        return "is a curve, a ribbon without inside";
+    case SHAPE_LATHE:
+        return "is an open lathe: its profile ends off the axis, so it has no inside";
+    case SHAPE_HEIGHT_FIELD:
+        return "is a sheet without walls and floor (open = true), so it has no inside";
+    case SHAPE_MESH:
+        return "is a mesh with open edges, so it has no inside";
+    case SHAPE_SPHERE:
+    case SHAPE_BOX:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_BLOB:
+    case SHAPE_CSG:
+        break;
+    }
+    return "is a mere surface, so it has no inside";
+}
+
 /* All crossings of the whole line in order with a shape that has only a few. */
 static int analytic_crossings(const struct shape *shape, const struct ray *ray, struct crossing out[ANALYTIC_MOST]) {
     switch (shape->kind) {

@@ -75,6 +75,8 @@ struct box shape_bounds_under(const struct shape *shape, const struct affine *ma
 /* Closed: every line crosses it an even number of times, so it has an inside (CSG operand, media). A solid without end (a
  * half-space) is closed too: a line that begins or ends inside crosses it at t = -INFINITY or INFINITY. */
 bool shape_is_closed(const struct shape *shape);
+/* Why it is not, as the end of a sentence about it; NULL when it is closed. Of a mesh, mesh_open_edge knows more. */
+const char *shape_why_open(const struct shape *shape);
 /* The crossing with the smallest t in the open interval (ray->t_min, ray->t_max). On equal t the one that comes first in
  * the shape's own order. False also when scratch overflowed (then scratch->overflow is set). */
 bool shape_nearest(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch, struct crossing *out);

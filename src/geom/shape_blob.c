@@ -126,12 +126,13 @@ const struct blob *blob_build(struct arena *arena, const struct blob_input *in, 
     }
     struct cells cells = {.blob = blob, .found = box_empty()};
     find_bounds(&cells, &all, 0);
+    if (box_is_empty(&cells.found)) /* the threshold is nowhere attained: a point */
+        cells.found = (struct box){elements[0].a, elements[0].a};
     blob->bounds = box_pad(cells.found);
     blob->size = fmax(vec3_max_abs(all.min), vec3_max_abs(all.max));
     return blob;
 }
 
-/* Empty when the threshold is nowhere attained. */
 struct box blob_bounds(const struct blob *blob) {
     return blob->bounds;
 }
@@ -239,8 +240,6 @@ bool blob_crossings(const struct blob *blob, const struct ray *ray, struct geom_
                     struct crossing_list *out) {
     *out = (struct crossing_list){scratch->used, 0};
     struct line line;
-    if (box_is_empty(&blob->bounds))
-        return true;
     struct vec3 centre = vec3_add(vec3_scale(blob->bounds.min, 0.5), vec3_scale(blob->bounds.max, 0.5));
     if (!line_init(&line, ray, centre) || !line_meets_box(&line, &blob->bounds))
         return true;

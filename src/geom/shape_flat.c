@@ -16,12 +16,12 @@ struct polygon {
 /* ---- making them ---- */
 
 /* Two unit vectors across the unit vector n, so that an image on the front stands upright: the first is level, the
- * second goes down. x and z for n = y. */
-static void across(struct vec3 n, struct vec3 *x, struct vec3 *z) {
-    struct vec3 level = vec3_make(n.z, 0, -n.x); /* y cross n */
-    *x = vec3_max_abs(level) > 0x1p-26 ? vec3_normalize(level) : vec3_make(1, 0, 0);
-    *z = vec3_normalize(vec3_cross(*x, n));
-    *x = vec3_cross(n, *z);
+ * second goes up. x and -z for n = y. */
+static void across(struct vec3 n, struct vec3 *level, struct vec3 *up) {
+    struct vec3 x = vec3_make(n.z, 0, -n.x); /* y cross n */
+    x = vec3_max_abs(x) > 0x1p-26 ? vec3_normalize(x) : vec3_make(1, 0, 0);
+    *up = vec3_normalize(vec3_cross(n, x));
+    *level = vec3_cross(*up, n);
 }
 
 struct flat flat_plane(struct vec3 normal, double distance) {
@@ -32,11 +32,8 @@ struct flat flat_plane(struct vec3 normal, double distance) {
 }
 
 struct flat flat_parallelogram(struct vec3 corner, struct vec3 along, struct vec3 up) {
-    return (struct flat){.kind = FLAT_PARALLELOGRAM,
-                         .origin = vec3_add(corner, up),
-                         .u = along,
-                         .v = vec3_negate(up),
-                         .normal = vec3_cross(along, up)};
+    return (struct flat){
+        .kind = FLAT_PARALLELOGRAM, .origin = corner, .u = along, .v = up, .normal = vec3_cross(along, up)};
 }
 
 struct flat flat_square(void) {
@@ -88,7 +85,7 @@ bool flat_polygon(struct arena *arena, const struct vec3 *points, const uint32_t
             return false;
         }
 
-    /* The image is the rectangle round all points, its sides along `across`. */
+    /* The image is the rectangle round all points. */
     struct vec3 x, z;
     across(n, &x, &z);
     double x_lo = INFINITY, x_hi = -INFINITY, z_lo = INFINITY, z_hi = -INFINITY;

@@ -1,6 +1,6 @@
 /* Flat shapes, anywhere in space: infinite plane, parallelogram (rectangle, square), disc and annulus, triangle,
  * polygon with holes. A point is origin + a u + b v; a and b decide whether it belongs to the shape and are its image
- * coordinates, so u points along the rows of an image and v down its columns. The normal's side is the front. */
+ * coordinates, so u points along the rows of an image and v up its columns. The normal's side is the front. */
 #ifndef GRAY_GEOM_SHAPE_FLAT_H
 #define GRAY_GEOM_SHAPE_FLAT_H
 

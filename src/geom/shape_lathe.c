@@ -20,9 +20,19 @@
 #include "geom/part_tree.h"
 #include "math/elementary.h"
 
+#include <string.h>
+
 #define TURN 6.28318530717958647692
 
 enum { DEEPEST = 26 };
+
+/* Radius and height at a place of a piece. */
+static inline double radius_at(const struct outline_piece *c, double x) {
+    return c->straight ? c->p[0] + x * (c->p[3] - c->p[0]) : cubic_value(c->p, x);
+}
+static inline double height_at(const struct outline_piece *c, double x) {
+    return c->straight ? c->q[0] + x * (c->q[3] - c->q[0]) : cubic_value(c->q, x);
+}
 
 struct lathe {
     struct outline outline;
@@ -263,7 +273,7 @@ struct search {
 
 static bool push(const struct search *f, double x, double sign) {
     const struct hyperbola *hy = f->hy;
-    double r = cubic_value(f->piece->p, x), y = cubic_value(f->piece->q, x), w = width(hy, r);
+    double r = radius_at(f->piece, x), y = height_at(f->piece, x), w = width(hy, r);
     /* By height or by radius, whichever tells s better. */
     double s = fabs(hy->d) * r >= w * hy->c ? (y - hy->y) / hy->d : hy->foot + sign * w / hy->c;
     if (!isfinite(s))
@@ -271,32 +281,38 @@ static bool push(const struct search *f, double x, double sign) {
     return geom_scratch_push(f->scratch, (struct crossing){.t = s, .u = x, .v = sign, .part = f->part});
 }
 
-/* The root between lo and hi, where G has different signs: Chandrupatla, "A new hybrid quadratic/bisection algorithm"
- * (1997), inverse quadratic steps where they can be trusted, else halves. It does not need G', which is infinite at the
- * ends of the halves of the hyperbola. */
+/* The root between lo and hi, where G has different signs: steps of Newton's inside the bracket while they shrink, else
+ * halves. G' is infinite where w is zero, at the ends of the halves of the hyperbola; there halving starts it off. */
 static double root_between(const struct search *f, double sign, double lo, double hi, double g_lo, double g_hi) {
-    double a = hi, b = lo, c = lo, ga = g_hi, gb = g_lo, gc = g_lo, part = 0.5;
-    for (int i = 0; i < 200; i++) {
-        double x = a + part * (b - a);
-        double g = value(f->hy, sign, cubic_value(f->piece->p, x), cubic_value(f->piece->q, x));
-        if ((g < 0) == (ga < 0)) {
-            c = a, gc = ga;
-        } else {
-            c = b, gc = gb;
-            b = a, gb = ga;
-        }
-        a = x, ga = g;
-        double best = fabs(ga) < fabs(gb) ? a : b, least = 0x1p-53 / fabs(b - c) * (0x1p-2 + fabs(best));
-        if (least > 0.5 || ga == 0)
-            return ga == 0 ? a : best;
-        double xi = (a - b) / (c - b), phi = (ga - gb) / (gc - gb);
-        if (phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi)
-            part = ga / (gb - ga) * gc / (gb - gc) + (c - a) / (b - a) * ga / (gc - ga) * gb / (gc - gb);
+    const struct hyperbola *hy = f->hy;
+    const double *p = f->piece->p, *q = f->piece->q;
+    bool rising = g_lo < 0;
+    double x = lo + (hi - lo) * fmin(fmax(g_lo / (g_lo - g_hi), 0.0625), 0.9375), last_step = hi - lo;
+    for (int i = 0; i < 120; i++) {
+        double r = radius_at(f->piece, x), w = width(hy, r);
+        double g = (hy->c * height_at(f->piece, x) - hy->c * hy->y_foot) - sign * hy->d * w;
+        if (g == 0)
+            return x;
+        if ((g > 0) == rising)
+            hi = x;
         else
-            part = 0.5;
-        part = fmin(fmax(part, least), 1 - least);
+            lo = x;
+        double dr = f->piece->straight ? p[3] - p[0] : cubic_slope(p, x);
+        double dy = f->piece->straight ? q[3] - q[0] : cubic_slope(q, x);
+        double slope = hy->c * dy - sign * hy->d * r * dr / w;
+        double step = g / slope, next = x - step;
+        if (fabs(step) < 0x1p-54)
+            return x;
+        if (!(next > lo && next < hi && fabs(step) <= 0.5 * last_step)) {
+            next = 0.5 * (lo + hi);
+            if (next == lo || next == hi || hi - lo < 0x1p-54)
+                return x;
+            step = x - next;
+        }
+        last_step = fabs(step);
+        x = next;
     }
-    return a;
+    return x;
 }
 
 /* Bounds of a product of two ranges. */
@@ -317,6 +333,16 @@ struct span {
     double lo, hi, g_lo, g_hi;
     int depth;
 };
+
+static void cut_span(const double b[4], double lo, double hi, double out[4]) {
+    double unused[4], rest[4];
+    if (lo == 0 && hi == 1) {
+        memcpy(out, b, 4 * sizeof *b);
+        return;
+    }
+    bernstein_split(b, 3, hi, rest, unused);
+    bernstein_split(rest, 3, lo / hi, unused, out);
+}
 
 /* Whether G may turn round in the span; `none`: it may, but cannot reach zero. */
 static bool may_turn(const struct hyperbola *hy, double sign, const struct span *span, bool *none) {
@@ -350,7 +376,7 @@ static bool roots_of_half(const struct search *f, double sign, double lo, double
             double r = hy->h * fabs(cy) / sqrt(turns), x = (r - f->piece->p[0]) / dr;
             if (x > lo && x < hi) {
                 middle = x;
-                g = value(hy, sign, cubic_value(f->piece->p, x), cubic_value(f->piece->q, x));
+                g = value(hy, sign, radius_at(f->piece, x), height_at(f->piece, x));
             }
         }
         if (middle > lo && (g_lo < 0) != (g < 0) && !push(f, root_between(f, sign, lo, middle, g_lo, g), sign))
@@ -359,11 +385,8 @@ static bool roots_of_half(const struct search *f, double sign, double lo, double
     }
     struct span stack[DEEPEST + 2];
     stack[0] = (struct span){.lo = lo, .hi = hi, .g_lo = g_lo, .g_hi = g_hi};
-    double unused[4], rest[4];
-    bernstein_split(f->piece->p, 3, hi, rest, unused);
-    bernstein_split(rest, 3, lo / hi, unused, stack[0].p);
-    bernstein_split(f->piece->q, 3, hi, rest, unused);
-    bernstein_split(rest, 3, lo / hi, unused, stack[0].q);
+    cut_span(f->piece->p, lo, hi, stack[0].p);
+    cut_span(f->piece->q, lo, hi, stack[0].q);
     int depth = 1;
     while (depth > 0) {
         struct span span = stack[--depth];
@@ -379,7 +402,7 @@ static bool roots_of_half(const struct search *f, double sign, double lo, double
         *left = *right = span;
         left->depth = right->depth = span.depth + 1;
         double middle = span.lo / 2 + span.hi / 2;
-        double g = value(hy, sign, cubic_value(f->piece->p, middle), cubic_value(f->piece->q, middle));
+        double g = value(hy, sign, radius_at(f->piece, middle), height_at(f->piece, middle));
         bernstein_split(span.p, 3, 0.5, left->p, right->p);
         bernstein_split(span.q, 3, 0.5, left->q, right->q);
         left->hi = right->lo = middle;
@@ -416,7 +439,7 @@ static bool piece_crossings(const struct search *f) {
         g_hi[k] = value(hy, sign, c->p[3], c->q[3]);
     }
     if (in0 != in1) {
-        double x = place_of_radius(c, hy->h), g = hy->c * cubic_value(c->q, x) - hy->c * hy->y_foot;
+        double x = place_of_radius(c, hy->h), g = hy->c * height_at(c, x) - hy->c * hy->y_foot;
         if (in0)
             hi = x, g_hi[0] = g_hi[1] = g;
         else
@@ -493,7 +516,7 @@ bool lathe_contains(const struct lathe *lathe, struct vec3 point) {
             b[k] = point.y - c->q[k];
         if (!c->straight)
             x = bernstein_roots(b, 3, roots) > 0 ? roots[0] : 0.5;
-        inside ^= cubic_value(c->p, x) > r;
+        inside ^= radius_at(c, x) > r;
     }
     return inside;
 }
@@ -501,7 +524,7 @@ bool lathe_contains(const struct lathe *lathe, struct vec3 point) {
 void lathe_describe(const struct lathe *lathe, const struct ray *ray, const struct crossing *crossing,
                     struct surface *out) {
     const struct outline_piece *c = &lathe->outline.pieces[crossing->part];
-    double x = crossing->u, r = cubic_value(c->p, x), y = cubic_value(c->q, x), dr, dy;
+    double x = crossing->u, r = radius_at(c, x), y = height_at(c, x), dr, dy;
     struct vec3 p = ray_at(ray, crossing->t), radial = vec3_normalize(vec3_make(p.x, 0, p.z));
     if (!(vec3_max_abs(radial) > 0))
         radial = vec3_make(1, 0, 0);

@@ -201,9 +201,9 @@ static void describe_end(const struct conic *c, struct vec3 f, bool high, struct
     out->normal = high ? c->axis : vec3_negate(c->axis);
     out->error = 0x1p-48 * size;
 
-    /* Like the top and the bottom of the cube, the square round the end being the image. */
+    /* Like the top and the bottom of the cube, the square round the end being the image; v counts from below. */
     around(c->axis, &x, &z);
-    if (!high)
+    if (high)
         z = vec3_negate(z);
     radius = radius > 0 ? radius : 1;
     out->u = 0.5 + vec3_dot(w, x) / (2 * radius);
@@ -238,12 +238,12 @@ static void describe_side(const struct conic *c, const struct ray *ray, struct v
     double cosine = radius > 0 ? p / radius : 1, sine = radius > 0 ? q / radius : 0;
     bool limited = isfinite(c->lo) && isfinite(c->hi);
     double length = limited ? c->hi - c->lo : 1;
-    out->u = 0.5 + el_atan2(q, p) / TURN;
-    out->v = limited ? fmin(fmax((c->hi - s) / length, 0), 1) : -s;
-    out->dpdu = vec3_scale(vec3_add(vec3_scale(x, -sine), vec3_scale(z, cosine)), TURN * radius);
+    out->u = 0.5 - el_atan2(q, p) / TURN; /* to the right, seen from outside */
+    out->v = limited ? fmin(fmax((s - c->lo) / length, 0), 1) : s;
+    out->dpdu = vec3_scale(vec3_sub(vec3_scale(x, sine), vec3_scale(z, cosine)), TURN * radius);
     double widening = radius > 0 ? (c->a * s + c->b / 2) / radius : 0;
     struct vec3 outward = vec3_add(vec3_scale(x, cosine), vec3_scale(z, sine));
-    out->dpdv = vec3_scale(vec3_add_scaled(c->axis, outward, widening), -length);
+    out->dpdv = vec3_scale(vec3_add_scaled(c->axis, outward, widening), length);
 }
 
 void conic_describe(const struct conic *c, const struct ray *ray, const struct crossing *crossing,
@@ -331,8 +331,11 @@ void ellipsoid_describe(const struct ellipsoid *e, const struct ray *ray, const 
     out->normal = divided(out->normal, e->radii);
     out->shading_normal = out->pattern_normal = out->normal;
     out->pattern_point = out->point;
-    out->dpdu = vec3_mul(out->dpdu, e->radii);
-    out->dpdv = vec3_mul(out->dpdv, e->radii);
+    out->dpdu = vec3_negate(vec3_mul(out->dpdu, e->radii));
+    /* Images that are mapped by uv run to the right, seen from outside, and count from below. */
+    out->u = 1 - out->u;
+    out->v = 1 - out->v;
+    out->dpdv = vec3_negate(vec3_mul(out->dpdv, e->radii));
     out->error = 0x1p-49 * (vec3_max_abs(e->centre) + vec3_max_abs(e->radii));
 }
 

@@ -34,6 +34,7 @@ struct conic conic_two_sheets(double gap, double reach, double rim, bool open);
 int conic_crossings(const struct conic *conic, const struct ray *ray, struct crossing out[4]);
 bool conic_is_closed(const struct conic *conic);
 bool conic_contains(const struct conic *conic, struct vec3 point);
+/* u runs round the axis, to the right seen from outside with the axis upwards, v along it. */
 void conic_describe(const struct conic *conic, const struct ray *ray, const struct crossing *crossing,
                     struct surface *out);
 /* The least and the greatest dot(g, p) over the shape; lo > hi when it is empty. */

@@ -262,10 +262,10 @@ void superellipsoid_describe(const struct superellipsoid *s, const struct ray *r
     double radius = vec3_length(p), ring = sqrt(p.x * p.x + p.z * p.z);
     double y = radius > 0 ? fmin(fmax(p.y / radius, -1), 1) : 1, across = radius > 0 ? ring / radius : 0;
     double cosine = ring > 0 ? p.x / ring : 1, sine = ring > 0 ? p.z / ring : 0;
-    out->u = 0.5 + el_atan2(p.z, p.x) / TURN;
-    out->v = 0.5 - el_asin(y) / (TURN / 2);
-    struct vec3 du = vec3_scale(vec3_make(-sine, 0, cosine), TURN * across * radius);
-    struct vec3 dv = vec3_scale(vec3_make(y * cosine, -across, y * sine), TURN / 2 * radius);
+    out->u = 0.5 - el_atan2(p.z, p.x) / TURN;
+    out->v = 0.5 + el_asin(y) / (TURN / 2);
+    struct vec3 du = vec3_scale(vec3_make(sine, 0, -cosine), TURN * across * radius);
+    struct vec3 dv = vec3_scale(vec3_make(-y * cosine, across, -y * sine), TURN / 2 * radius);
     double facing = vec3_dot(n, p);
     if (facing > 0) { /* along the surface: what leaves it is taken back by going along the radius */
         du = vec3_add_scaled(du, p, -vec3_dot(n, du) / facing);

@@ -285,8 +285,14 @@ static struct stretch cover(const struct view *view, const double *d, int degree
     bernstein_multiply(bb1, 2 * b_degree - 2, dd, degree, left);
     bernstein_multiply(d1, degree - 1, d1, degree - 1, right);
     int total = 2 * degree - 2; /* = 2 (b_degree - 1) + degree */
+    double largest = 0;
     for (int k = 0; k <= total; k++)
+        largest = fmax(largest, fmax(4 * fabs(left[k]), right[k]));
+    for (int k = 0; k <= total; k++) {
         left[k] = 4 * left[k] - right[k];
+        if (fabs(left[k]) < 0x1p-48 * largest) /* rounding: where the path stands still all is zero to the fourth order */
+            left[k] = 0;
+    }
     int count = bernstein_roots(left, total, roots);
     for (int k = 0; k < count; k++) {
         /* f' = b' - sign D' / (2 sqrt(D)) is zero where the signs of b' and D' say so. */
@@ -297,6 +303,21 @@ static struct stretch cover(const struct view *view, const double *d, int degree
     return out;
 }
 
+/* The square of a linear or cubic polynomial. */
+static void square_of(const double *a, int degree, double *out) {
+    if (degree == 1) {
+        out[0] = a[0] * a[0], out[1] = a[0] * a[1], out[2] = a[1] * a[1];
+        return;
+    }
+    out[0] = a[0] * a[0];
+    out[1] = a[0] * a[1];
+    out[2] = (2 * a[0] * a[2] + 3 * a[1] * a[1]) / 5;
+    out[3] = (a[0] * a[3] + 9 * a[1] * a[2]) / 10;
+    out[4] = (2 * a[1] * a[3] + 3 * a[2] * a[2]) / 5;
+    out[5] = a[2] * a[3];
+    out[6] = a[3] * a[3];
+}
+
 static bool piece_crossings(const struct sweep_path *sweep, uint32_t part, const struct line *line,
                             struct geom_scratch *scratch) {
     const struct sweep_piece *piece = &sweep->pieces[part];
@@ -305,17 +326,27 @@ static bool piece_crossings(const struct sweep_path *sweep, uint32_t part, const
 
     /* D and b in Bernstein form. */
     int b_degree = piece->straight ? 1 : 3, degree = 2 * b_degree, step = piece->straight ? 3 : 1;
-    double b[4], r[4], p[3][4], d[7], square[7], roots[8];
+    double b[4], r[4], p[3][4], d[7], square[7], roots[8], widest = 0;
+    struct vec3 sum = {0, 0, 0};
     for (int k = 0; k <= b_degree; k++) {
         struct vec3 q = vec3_sub(vec3_make(piece->c[0][k * step], piece->c[1][k * step], piece->c[2][k * step]), view.origin);
         b[k] = vec3_dot(q, view.direction);
         q = vec3_add_scaled(q, view.direction, -b[k]);
         p[0][k] = q.x, p[1][k] = q.y, p[2][k] = q.z;
         r[k] = piece->c[3][k * step];
+        widest = fmax(widest, fabs(r[k]));
+        sum = vec3_add(sum, q);
     }
-    bernstein_multiply(r, b_degree, r, b_degree, d);
+    /* All of it beyond a straight edge that is farther than the balls reach. */
+    struct vec3 outer = vec3_normalize(sum);
+    double nearest = INFINITY;
+    for (int k = 0; k <= b_degree; k++)
+        nearest = fmin(nearest, p[0][k] * outer.x + p[1][k] * outer.y + p[2][k] * outer.z);
+    if (nearest > (1 + 0x1p-30) * widest)
+        return true;
+    square_of(r, b_degree, d);
     for (int axis = 0; axis < 3; axis++) {
-        bernstein_multiply(p[axis], b_degree, p[axis], b_degree, square);
+        square_of(p[axis], b_degree, square);
         for (int k = 0; k <= degree; k++)
             d[k] -= square[k];
     }

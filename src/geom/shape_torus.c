@@ -24,25 +24,26 @@ static double inner(const struct torus *torus, struct vec3 p) {
     return from_ring * from_ring + p.y * p.y - torus->minor * torus->minor;
 }
 
-/* Half the gradient of `inner`; outward. */
-static struct vec3 half_gradient(const struct torus *torus, struct vec3 p) {
-    double rho = ring(p), share = rho > 0 ? (rho - torus->major) / rho : 0;
-    return (struct vec3){p.x * share, p.y, p.z * share};
-}
-
-/* Newton from a root of the quartic, between its neighbours. */
+/* Newton from a root of the quartic, between its neighbours; mostly it is good already. */
 static double polished(const struct torus *torus, struct vec3 o, struct vec3 d, double t, double lo, double hi) {
-    for (int step = 0; step < 3; step++) {
+    double reach = torus->major + torus->minor, enough = reach * reach * 0x1p-51, before = INFINITY, last = t;
+    for (int step = 0; step < 4; step++) {
         struct vec3 p = vec3_add_scaled(o, d, t);
-        double value = inner(torus, p), slope = 2 * vec3_dot(half_gradient(torus, p), d);
-        double next = t - value / slope;
-        if (!(next > lo && next < hi) || next == t) /* also when the slope is zero */
-            break;
-        if (!(fabs(inner(torus, vec3_add_scaled(o, d, next))) < fabs(value)))
-            break;
+        double rho = ring(p), from_ring = rho - torus->major;
+        double value = from_ring * from_ring + p.y * p.y - torus->minor * torus->minor;
+        if (!(fabs(value) < before)) /* no better than the step before */
+            return last;
+        if (fabs(value) <= enough)
+            return t;
+        double share = rho > 0 ? from_ring / rho : 0;
+        double slope = 2 * (share * (p.x * d.x + p.z * d.z) + p.y * d.y), next = t - value / slope;
+        if (!(next > lo && next < hi)) /* also when the slope is zero */
+            return t;
+        before = fabs(value);
+        last = t;
         t = next;
     }
-    return t;
+    return last;
 }
 
 int torus_crossings(const struct torus *torus, const struct ray *ray, struct crossing out[4]) {
@@ -116,10 +117,10 @@ void torus_describe(const struct torus *torus, const struct ray *ray, const stru
                             .pattern_normal = n,
                             .has_uv = true,
                             .error = 0x1p-48 * (torus->major + torus->minor)};
-    out->u = 0.5 + el_atan2(sine, cosine) / TURN;
-    out->v = 0.5 - el_atan2(b, a) / TURN;
-    out->dpdu = vec3_scale(vec3_make(-sine, 0, cosine), TURN * radius);
-    out->dpdv = vec3_scale(vec3_make(b * cosine, -a, b * sine), TURN * torus->minor);
+    out->u = 0.5 - el_atan2(sine, cosine) / TURN;
+    out->v = 0.5 + el_atan2(b, a) / TURN;
+    out->dpdu = vec3_scale(vec3_make(sine, 0, -cosine), TURN * radius);
+    out->dpdv = vec3_scale(vec3_make(-b * cosine, a, -b * sine), TURN * torus->minor);
 }
 
 void torus_extent(const struct torus *torus, struct vec3 g, double *lo, double *hi) {

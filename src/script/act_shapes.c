@@ -1,0 +1,277 @@
+/* Analytic shapes: every row of the table becomes a geometry node with one shape in it. Numbers are checked here for
+ * what the table cannot say about several of them together, and for sizes beyond what the root-finders are made for. */
+#include "script/actions.h"
+#include "script/context.h"
+
+/* Far from where the squares and fourth powers of lengths leave the range of doubles. */
+#define SMALLEST_LENGTH 1e-30
+#define LARGEST_LENGTH 1e30
+
+static struct node *shape_node(struct context *context, const struct value *args, const char *otherwise,
+                               struct error *error) {
+    const struct value *name = &args[SHAPE_NAME];
+    struct node *node = scene_node(&context->scene, NODE_GEOMETRY, name->given ? name->text : otherwise, error);
+    if (node)
+        node->material = args[SHAPE_MATERIAL].material;
+    return node;
+}
+
+static bool give_shape(struct node *node, const struct shape *shape, struct result *result) {
+    node->shape = *shape;
+    result->pointer = node;
+    return true;
+}
+
+static double number_or(const struct value *value, double otherwise) {
+    return value->given ? value->number : otherwise;
+}
+
+static struct vec3 vector_or(const struct value *value, double x, double y, double z) {
+    return value->given ? value->vector : vec3_make(x, y, z);
+}
+
+/* A length that must not be zero. */
+static bool length_is_fine(double length, const char *name, struct error *error) {
+    if (length >= SMALLEST_LENGTH && length <= LARGEST_LENGTH)
+        return true;
+    return error_set(error, ERROR_SCENE, "%s is too %s: %g", name, length > 1 ? "large" : "small", length);
+}
+
+static bool point_is_fine(struct vec3 point, const char *name, struct error *error) {
+    if (vec3_max_abs(point) <= LARGEST_LENGTH)
+        return true;
+    return error_set(error, ERROR_SCENE, "%s is too far away", name);
+}
+
+/* Two ends that are places, and apart. */
+static bool ends_are_fine(struct vec3 from, struct vec3 to, struct error *error) {
+    double length = vec3_length(vec3_sub(to, from));
+    if (!(length > 0))
+        return error_set(error, ERROR_SCENE, "from and to are the same point");
+    return point_is_fine(from, "from", error) && point_is_fine(to, "to", error) &&
+           length_is_fine(length, "the way from from to to", error);
+}
+
+bool act_cylinder(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct vec3 from = vector_or(&args[CYLINDER_FROM], 0, -1, 0), to = vector_or(&args[CYLINDER_TO], 0, 1, 0);
+    double radius = number_or(&args[CYLINDER_RADIUS], 1);
+    if (!ends_are_fine(from, to, error) || !length_is_fine(radius, "radius", error))
+        return false;
+    struct node *node = shape_node(context, args, "cylinder", error);
+    struct shape shape = {.kind = SHAPE_CONIC, .conic = conic_cylinder(from, to, radius, args[CYLINDER_OPEN].boolean)};
+    return node && give_shape(node, &shape, result);
+}
+
+bool act_cone(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct vec3 from = vector_or(&args[CONE_FROM], 0, 0, 0), to = vector_or(&args[CONE_TO], 0, 1, 0);
+    double first = number_or(&args[CONE_FROM_RADIUS], 0), second = number_or(&args[CONE_RADIUS], 1);
+    if (!ends_are_fine(from, to, error) || !length_is_fine(fmax(first, second), "the larger radius", error))
+        return false;
+    struct node *node = shape_node(context, args, "cone", error);
+    struct shape shape = {.kind = SHAPE_CONIC,
+                          .conic = conic_frustum(from, first, to, second, args[CONE_OPEN].boolean)};
+    return node && give_shape(node, &shape, result);
+}
+
+bool act_paraboloid(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    double radius = number_or(&args[PARABOLOID_RADIUS], 1), height = number_or(&args[PARABOLOID_HEIGHT], 1);
+    if (!length_is_fine(radius, "radius", error) || !length_is_fine(height, "height", error))
+        return false;
+    struct node *node = shape_node(context, args, "paraboloid", error);
+    struct shape shape = {.kind = SHAPE_CONIC,
+                          .conic = conic_paraboloid(radius, height, args[PARABOLOID_OPEN].boolean)};
+    return node && give_shape(node, &shape, result);
+}
+
+bool act_hyperboloid(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    double waist = number_or(&args[HYPERBOLOID_WAIST], 0.5), gap = number_or(&args[HYPERBOLOID_GAP], 0.5);
+    double radius = number_or(&args[HYPERBOLOID_RADIUS], 2 * waist),
+           height = number_or(&args[HYPERBOLOID_HEIGHT], 2 * gap);
+    waist = number_or(&args[HYPERBOLOID_WAIST], radius / 2);
+    gap = number_or(&args[HYPERBOLOID_GAP], height / 2);
+    bool two = args[HYPERBOLOID_SHEETS].given ? args[HYPERBOLOID_SHEETS].number == 2 : args[HYPERBOLOID_GAP].given;
+    bool open = args[HYPERBOLOID_OPEN].boolean;
+    if (!length_is_fine(radius, "radius", error) || !length_is_fine(height, "height", error))
+        return false;
+    if (args[two ? HYPERBOLOID_WAIST : HYPERBOLOID_GAP].given)
+        return error_set(error, ERROR_SCENE, "%s",
+                         two ? "waist is for one sheet: with sheets=2 give gap"
+                             : "gap is for two sheets: with sheets=1 give waist");
+    if (!two && !(waist < radius))
+        return error_set(error, ERROR_SCENE, "waist must be smaller than radius: %g, %g", waist, radius);
+    if (two && !(gap < height))
+        return error_set(error, ERROR_SCENE, "gap must be smaller than height: %g, %g", gap, height);
+    if (!length_is_fine(two ? gap : waist, two ? "gap" : "waist", error))
+        return false;
+    struct node *node = shape_node(context, args, "hyperboloid", error);
+    struct shape shape = {.kind = SHAPE_CONIC,
+                          .conic = two ? conic_two_sheets(gap, height, radius, open)
+                                       : conic_one_sheet(waist, radius, -height, height, open)};
+    return node && give_shape(node, &shape, result);
+}
+
+bool act_ellipsoid(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct vec3 centre = args[ELLIPSOID_CENTRE].vector, radii = vector_or(&args[ELLIPSOID_RADII], 1, 1, 1);
+    if (!(radii.x > 0 && radii.y > 0 && radii.z > 0))
+        return error_set(error, ERROR_SCENE, "radii must all be positive: %g, %g, %g", radii.x, radii.y, radii.z);
+    if (!point_is_fine(centre, "centre", error) || !length_is_fine(radii.x, "the first of radii", error) ||
+        !length_is_fine(radii.y, "the second of radii", error) || !length_is_fine(radii.z, "the third of radii", error))
+        return false;
+    struct node *node = shape_node(context, args, "ellipsoid", error);
+    struct shape shape = {.kind = SHAPE_ELLIPSOID, .ellipsoid = {centre, radii}};
+    return node && give_shape(node, &shape, result);
+}
+
+bool act_quadric(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct quadric *quadric = arena_alloc(&context->scene.arena, sizeof *quadric);
+    if (!quadric)
+        return error_no_memory(error, "a quadric");
+    double largest = 0;
+    for (int i = 0; i < 10; i++) {
+        quadric->c[i] = number_or(&args[QUADRIC_XX + i], 0);
+        if (fabs(quadric->c[i]) > LARGEST_LENGTH)
+            return error_set(error, ERROR_SCENE, "a coefficient is too large: %g", quadric->c[i]);
+        if (i < 9)
+            largest = fmax(largest, fabs(quadric->c[i]));
+    }
+    bool none = true;
+    for (int i = 0; i < 9; i++)
+        none = none && !args[QUADRIC_XX + i].given;
+    if (none) {
+        quadric->c[0] = quadric->c[1] = quadric->c[2] = largest = 1;
+        quadric->c[9] = number_or(&args[QUADRIC_CONSTANT], -1);
+    }
+    if (!(largest >= SMALLEST_LENGTH))
+        return error_set(error, ERROR_SCENE, "at least one of xx, yy, zz, xy, xz, yz, x, y, z must not be 0");
+    quadric->limits.min = vector_or(&args[QUADRIC_MIN], -INFINITY, -INFINITY, -INFINITY);
+    quadric->limits.max = vector_or(&args[QUADRIC_MAX], INFINITY, INFINITY, INFINITY);
+    struct vec3 min = quadric->limits.min, max = quadric->limits.max;
+    if (!(min.x < max.x && min.y < max.y && min.z < max.z))
+        return error_set(error, ERROR_SCENE, "min must be smaller than max along every axis");
+    quadric->open = args[QUADRIC_OPEN].boolean;
+    struct node *node = shape_node(context, args, "quadric", error);
+    struct shape shape = {.kind = SHAPE_QUADRIC, .quadric = quadric};
+    return node && give_shape(node, &shape, result);
+}
+
+bool act_torus(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    double major = number_or(&args[TORUS_MAJOR], 1), minor = number_or(&args[TORUS_MINOR], 0.25);
+    if (!length_is_fine(minor, "minor", error) || !length_is_fine(fmax(major, minor), "major", error))
+        return false;
+    if (minor < 1e-6 * major)
+        return error_set(error, ERROR_SCENE, "minor must be at least a millionth of major: %g, %g", minor, major);
+    struct node *node = shape_node(context, args, "torus", error);
+    struct shape shape = {.kind = SHAPE_TORUS, .torus = {major, minor}};
+    return node && give_shape(node, &shape, result);
+}
+
+bool act_superellipsoid(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct node *node = shape_node(context, args, "superellipsoid", error);
+    struct shape shape = {.kind = SHAPE_SUPERELLIPSOID,
+                          .superellipsoid = {number_or(&args[SUPER_E], 1), number_or(&args[SUPER_N], 1)}};
+    return node && give_shape(node, &shape, result);
+}
+
+bool act_box(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct vec3 a = args[BOX_MIN].vector, b = args[BOX_MAX].vector;
+    struct box box = {vec3_min(a, b), vec3_max(a, b)};
+    if (!(box.min.x < box.max.x && box.min.y < box.max.y && box.min.z < box.max.z))
+        return error_set(error, ERROR_SCENE, "min and max must differ along every axis");
+    if (!point_is_fine(a, "min", error) || !point_is_fine(b, "max", error))
+        return false;
+    struct node *node = shape_node(context, args, "box", error);
+    struct shape shape = {.kind = SHAPE_BOX, .box = box};
+    return node && give_shape(node, &shape, result);
+}
+
+static bool give_flat(struct context *context, const struct value *args, const char *otherwise, const struct flat *flat,
+                      struct result *result, struct error *error) {
+    struct node *node = shape_node(context, args, otherwise, error);
+    struct shape shape = {.kind = SHAPE_FLAT, .flat = *flat};
+    return node && give_shape(node, &shape, result);
+}
+
+/* The classic square, or with a normal or a distance the plane without end. */
+bool act_plane(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    bool infinite = args[PLANE_NORMAL].given || args[PLANE_DISTANCE].given;
+    double distance = args[PLANE_DISTANCE].number;
+    if (fabs(distance) > LARGEST_LENGTH)
+        return error_set(error, ERROR_SCENE, "distance is too large: %g", distance);
+    struct flat flat = infinite ? flat_plane(vector_or(&args[PLANE_NORMAL], 0, 1, 0), distance) : flat_square();
+    return give_flat(context, args, "plane", &flat, result, error);
+}
+
+bool act_square(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct flat flat = flat_square();
+    return give_flat(context, args, "square", &flat, result, error);
+}
+
+/* Edges of a length we can use that are not parallel. */
+static bool span_is_fine(struct vec3 corner, struct vec3 u, struct vec3 v, const char *what, struct error *error) {
+    double along = vec3_length(u), up = vec3_length(v);
+    if (!(vec3_length(vec3_cross(u, v)) > 1e-12 * along * up))
+        return error_set(error, ERROR_SCENE, "%s", what);
+    return point_is_fine(corner, "a corner", error) && length_is_fine(along, "the length of an edge", error) &&
+           length_is_fine(up, "the length of an edge", error);
+}
+
+bool act_rectangle(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct vec3 corner = vector_or(&args[RECTANGLE_CORNER], -0.5, 0, 0.5);
+    struct vec3 along = vector_or(&args[RECTANGLE_ALONG], 1, 0, 0), up = vector_or(&args[RECTANGLE_UP], 0, 0, -1);
+    if (!span_is_fine(corner, along, up, "along and up are parallel", error))
+        return false;
+    struct flat flat = flat_parallelogram(corner, along, up);
+    return give_flat(context, args, "rectangle", &flat, result, error);
+}
+
+bool act_disc(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    double inner = number_or(&args[DISC_INNER], 0);
+    double radius = number_or(&args[DISC_RADIUS], inner > 0 ? 2 * inner : 1);
+    struct vec3 centre = args[DISC_CENTRE].vector;
+    if (!length_is_fine(radius, "radius", error) || !point_is_fine(centre, "centre", error))
+        return false;
+    if (!(inner < radius))
+        return error_set(error, ERROR_SCENE, "inner must be smaller than radius: %g, %g", inner, radius);
+    struct flat flat = flat_disc(centre, vector_or(&args[DISC_NORMAL], 0, 1, 0), radius, inner);
+    return give_flat(context, args, "disc", &flat, result, error);
+}
+
+bool act_triangle(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct vec3 a = args[TRIANGLE_A].vector, b = args[TRIANGLE_B].vector, c = args[TRIANGLE_C].vector;
+    if (!span_is_fine(a, vec3_sub(b, a), vec3_sub(c, a), "a, b and c lie on one line", error))
+        return false;
+    struct flat flat = flat_triangle(a, b, c);
+    return give_flat(context, args, "triangle", &flat, result, error);
+}
+
+bool act_polygon(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    const struct value *points = &args[POLYGON_POINTS], *outlines = &args[POLYGON_OUTLINES];
+    uint32_t count = outlines->given ? outlines->starts[outlines->count] : points->count;
+    uint32_t outline_count = outlines->given ? outlines->count : 1;
+    struct vec3 *corners = arena_alloc_array(&context->call, count, sizeof *corners);
+    uint32_t *ends = arena_alloc_array(&context->call, outline_count, sizeof *ends);
+    if (!corners || !ends)
+        return error_no_memory(error, "a polygon");
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t index = outlines->given ? outlines->indices[i] : i;
+        if (index >= points->count)
+            return error_set(error, ERROR_SCENE, "outlines has the index %u, but there are %u points, counted from 0",
+                             index, points->count);
+        corners[i] = vec3_make(points->points[index][0], points->points[index][1], points->points[index][2]);
+        if (!point_is_fine(corners[i], "a point", error))
+            return false;
+    }
+    for (uint32_t i = 0; i < outline_count; i++) {
+        ends[i] = outlines->given ? outlines->starts[i + 1] : count;
+        uint32_t corners_here = ends[i] - (i ? ends[i - 1] : 0);
+        if (corners_here < 3 && outlines->given)
+            return error_set(error, ERROR_SCENE, "outlines[%u] has %u corners, not 3 or more", i + 1, corners_here);
+        if (corners_here < 3)
+            return error_set(error, ERROR_SCENE, "points has %u corners, not 3 or more", corners_here);
+    }
+    struct flat flat;
+    const char *why;
+    if (!flat_polygon(&context->scene.arena, corners, ends, outline_count, &flat, &why))
+        return why ? error_set(error, ERROR_SCENE, "this is no polygon: %s", why) : error_no_memory(error, "a polygon");
+    return give_flat(context, args, "polygon", &flat, result, error);
+}

@@ -1,0 +1,231 @@
+/* Shapes that are made of many parts: lathe, prism, sweep, height field, blob, curve and patches. The parameters of a shape
+ * live in the arena of the scene; what is wrong with them is told by the shape's own builder. */
+#include "script/actions.h"
+#include "script/context.h"
+
+#include "geom/patch.h"
+#include "geom/shape_blob.h"
+#include "geom/shape_curve.h"
+#include "geom/shape_height_field.h"
+#include "geom/shape_lathe.h"
+#include "geom/shape_prism.h"
+#include "geom/shape_sweep.h"
+
+#include <string.h>
+
+static bool give_node(struct context *context, const struct value *args, const char *otherwise, const struct shape *shape,
+                      struct result *result, struct error *error) {
+    const struct value *name = &args[SHAPE_NAME];
+    struct node *node = scene_node(&context->scene, NODE_GEOMETRY, name->given ? name->text : otherwise, error);
+    if (!node)
+        return false;
+    node->material = args[SHAPE_MATERIAL].material;
+    node->shape = *shape;
+    result->pointer = node;
+    return true;
+}
+
+static enum spline_kind spline_or(const struct value *value, enum spline_kind otherwise) {
+    return value->given ? (enum spline_kind)value->choice : otherwise;
+}
+
+/* One number for each of `count` points, or one for all of them. */
+static bool one_each(struct context *context, const struct value *value, const char *name, uint32_t count,
+                     const double **out, struct error *error) {
+    double *all = arena_alloc_array(&context->call, count, sizeof *all);
+    if (!all)
+        return error_no_memory(error, "the numbers of a shape");
+    if (!value->single && value->count != count)
+        return error_set(error, ERROR_SCENE, "%s has %u entries, but points has %u", name, value->count, count);
+    for (uint32_t i = 0; i < count; i++)
+        all[i] = value->numbers[value->single ? 0 : i];
+    *out = all;
+    return true;
+}
+
+bool act_lathe(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct lathe_input in = {.kind = spline_or(&args[LATHE_SPLINE], SPLINE_LINEAR),
+                             .points = args[LATHE_POINTS].pairs,
+                             .count = args[LATHE_POINTS].count,
+                             .loop = args[LATHE_LOOP].boolean,
+                             .open = args[LATHE_OPEN].boolean};
+    if (in.count < 2)
+        return error_set(error, ERROR_SCENE, "points has %u entries, not 2 or more", in.count);
+    struct shape shape = {.kind = SHAPE_LATHE, .lathe = lathe_build(&context->scene.arena, &in, error)};
+    return shape.lathe && give_node(context, args, "lathe", &shape, result, error);
+}
+
+bool act_prism(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    const struct value *outline = &args[PRISM_OUTLINE], *holes = &args[PRISM_HOLES];
+    uint32_t hole_points = holes->given ? holes->starts[holes->count] : 0, curves = 1 + (holes->given ? holes->count : 0);
+    double(*points)[2] = arena_alloc_array(&context->call, (size_t)outline->count + hole_points + 1, sizeof *points);
+    uint32_t *starts = arena_alloc_array(&context->call, (size_t)curves + 1, sizeof *starts);
+    if (!points || !starts)
+        return error_no_memory(error, "a prism");
+    memcpy(points, outline->pairs, outline->count * sizeof *points);
+    if (hole_points > 0)
+        memcpy(points + outline->count, holes->pairs, hole_points * sizeof *points);
+    for (uint32_t k = 1; k <= curves; k++)
+        starts[k] = outline->count + (k > 1 ? holes->starts[k - 1] : 0);
+    struct prism_input in = {.kind = spline_or(&args[PRISM_SPLINE], SPLINE_LINEAR),
+                             .points = (const double(*)[2])points,
+                             .curve_starts = starts,
+                             .curve_count = curves};
+    in.from = args[PRISM_FROM].number;
+    in.to = args[PRISM_TO].given ? args[PRISM_TO].number : in.from + 1;
+    struct shape shape = {.kind = SHAPE_PRISM, .prism = prism_build(&context->scene.arena, &in, error)};
+    return shape.prism && give_node(context, args, "prism", &shape, result, error);
+}
+
+bool act_sweep(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct sweep_input in = {.kind = spline_or(&args[SWEEP_SPLINE], SPLINE_CATMULL_ROM),
+                             .points = args[SWEEP_POINTS].points,
+                             .count = args[SWEEP_POINTS].count,
+                             .loop = args[SWEEP_LOOP].boolean};
+    if (in.count < 2)
+        return error_set(error, ERROR_SCENE, "points has %u entries, not 2 or more", in.count);
+    if (!one_each(context, &args[SWEEP_RADII], "radii", in.count, &in.radii, error))
+        return false;
+    struct shape shape = {.kind = SHAPE_SWEEP, .sweep = sweep_build(&context->scene.arena, &in, error)};
+    return shape.sweep && give_node(context, args, "sweep", &shape, result, error);
+}
+
+bool act_curve(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct curve_input in = {.kind = spline_or(&args[CURVE_SPLINE], SPLINE_CATMULL_ROM),
+                             .points = args[CURVE_POINTS].points,
+                             .count = args[CURVE_POINTS].count,
+                             .flat = args[CURVE_FLAT].boolean};
+    if (in.count < 2)
+        return error_set(error, ERROR_SCENE, "points has %u entries, not 2 or more", in.count);
+    if (!one_each(context, &args[CURVE_WIDTHS], "widths", in.count, &in.widths, error))
+        return false;
+    struct shape shape = {.kind = SHAPE_CURVE, .curve = curve_build(&context->scene.arena, &in, error)};
+    return shape.curve && give_node(context, args, "curve", &shape, result, error);
+}
+
+/* Heights from rows of numbers, which must be equally long. */
+static bool heights_of_rows(const struct value *rows, struct height_field_input *in, struct error *error) {
+    in->rows = rows->count;
+    in->columns = rows->count > 0 ? rows->starts[1] : 0;
+    for (uint32_t j = 0; j < rows->count; j++) {
+        uint32_t length = rows->starts[j + 1] - rows->starts[j];
+        if (length != in->columns)
+            return error_set(error, ERROR_SCENE, "heights[%u] has %u numbers, but heights[1] has %u", j + 1, length,
+                             in->columns);
+    }
+    in->heights = rows->numbers;
+    return in->rows > 1 && in->columns > 1 ? true : error_set(error, ERROR_SCENE, "heights needs 2 rows of 2 numbers at least");
+}
+
+/* Heights 0 to 1 from the mean of red, green and blue; the picture's upper edge is z = 0. */
+static bool heights_of_image(struct context *context, const struct value *value, struct height_field_input *in,
+                             struct error *error) {
+    struct image *image = act_find_image(context, value, error);
+    if (!image)
+        return false;
+    in->columns = image_width(image);
+    in->rows = image_height(image);
+    double *heights = arena_alloc_array(&context->call, (size_t)in->columns * in->rows, sizeof *heights);
+    if (!heights)
+        return error_no_memory(error, "a height field");
+    for (uint32_t j = 0; j < in->rows; j++)
+        for (uint32_t i = 0; i < in->columns; i++) {
+            struct rgba texel = image_texel(image, i, j);
+            heights[(size_t)j * in->columns + i] = (texel.r + texel.g + texel.b) / 3;
+        }
+    in->heights = heights;
+    return true;
+}
+
+bool act_height_field(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    const struct value *rows = &args[FIELD_HEIGHTS], *image = &args[FIELD_IMAGE];
+    struct height_field_input in = {.open = args[FIELD_OPEN].boolean, .smooth = args[FIELD_SMOOTH].boolean};
+    if (rows->given && image->given)
+        return error_set(error, ERROR_SCENE, "heights and image exclude each other");
+    if (!rows->given && !image->given)
+        return error_set(error, ERROR_SCENE, "heights is missing (or image, the name of a file)");
+    if (!(rows->given ? heights_of_rows(rows, &in, error) : heights_of_image(context, image, &in, error)))
+        return false;
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < (size_t)in.columns * in.rows; i++) {
+        low = fmin(low, in.heights[i]);
+        high = fmax(high, in.heights[i]);
+    }
+    in.floor = args[FIELD_FLOOR].given ? args[FIELD_FLOOR].number : low - (high > low ? (high - low) / 10 : 0.1);
+    struct shape shape = {.kind = SHAPE_HEIGHT_FIELD,
+                          .height_field = height_field_build(&context->scene.arena, &in, error)};
+    return shape.height_field && give_node(context, args, "height field", &shape, result, error);
+}
+
+/* Row k of a list of balls or cylinders: `width` numbers and perhaps the strength. */
+static bool blob_rows(const struct value *rows, const char *name, uint32_t width, struct blob_element *out,
+                      struct error *error) {
+    for (uint32_t k = 0; k < rows->count; k++) {
+        const double *row = rows->numbers + rows->starts[k];
+        uint32_t length = rows->starts[k + 1] - rows->starts[k];
+        if (length != width && length != width + 1)
+            return error_set(error, ERROR_SCENE, "%s[%u] has %u numbers, not %u or %u", name, k + 1, length, width,
+                             width + 1);
+        const double *end = row + (width == 7 ? 3 : 0);
+        out[k].a = vec3_make(row[0], row[1], row[2]);
+        out[k].b = vec3_make(end[0], end[1], end[2]);
+        out[k].radius = row[width - 1];
+        out[k].strength = length > width ? row[width] : 1;
+        if (!(out[k].radius > 0) || out[k].strength == 0)
+            return error_set(error, ERROR_SCENE, "%s[%u] has the radius %g and the strength %g", name, k + 1, out[k].radius,
+                             out[k].strength);
+    }
+    return true;
+}
+
+bool act_blob(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    const struct value *balls = &args[BLOB_SPHERES], *rods = &args[BLOB_CYLINDERS];
+    struct blob_input in = {.count = balls->count + rods->count, .threshold = 0.5};
+    struct blob_element *elements = arena_alloc_array(&context->call, (size_t)in.count + 1, sizeof *elements);
+    if (!elements)
+        return error_no_memory(error, "a blob");
+    if (!blob_rows(balls, "spheres", 4, elements, error) || !blob_rows(rods, "cylinders", 7, elements + balls->count, error))
+        return false;
+    if (in.count == 0)
+        return error_set(error, ERROR_SCENE, "spheres is missing (or cylinders)");
+    in.elements = elements;
+    if (args[BLOB_THRESHOLD].given)
+        in.threshold = args[BLOB_THRESHOLD].number;
+    struct shape shape = {.kind = SHAPE_BLOB, .blob = blob_build(&context->scene.arena, &in, error)};
+    return shape.blob && give_node(context, args, "blob", &shape, result, error);
+}
+
+bool act_patch(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    const struct value *points = &args[PATCH_POINTS], *patches = &args[PATCH_PATCHES];
+    const char *name = args[SHAPE_NAME].given ? args[SHAPE_NAME].text : "patch";
+    struct patch_input in = {.name = name, .points = points->points, .flip = args[PATCH_FLIP].boolean};
+    in.tolerance = args[PATCH_TOLERANCE].number;
+    if (patches->given) {
+        double(*all)[3] = arena_alloc_array(&context->call, (size_t)patches->count * 16 + 1, sizeof *all);
+        if (!all)
+            return error_no_memory(error, "patches");
+        for (uint32_t k = 0; k < patches->count; k++) {
+            if (patches->starts[k + 1] - patches->starts[k] != 16)
+                return error_set(error, ERROR_SCENE, "patches[%u] has %u indices, not 16", k + 1,
+                                 patches->starts[k + 1] - patches->starts[k]);
+            for (uint32_t i = 0; i < 16; i++) {
+                uint32_t index = patches->indices[patches->starts[k] + i];
+                if (index >= points->count)
+                    return error_set(error, ERROR_SCENE, "patches[%u][%u] is %u, but there are %u points, counted from 0",
+                                     k + 1, i + 1, index, points->count);
+                memcpy(all[16 * (size_t)k + i], points->points[index], sizeof *all);
+            }
+        }
+        in.points = (const double(*)[3])all;
+        in.count = patches->count;
+    } else if (points->count == 0 || points->count % 16 != 0) {
+        return error_set(error, ERROR_SCENE, "points has %u entries, not 16 for each patch", points->count);
+    } else {
+        in.count = points->count / 16;
+    }
+    struct mesh_input input;
+    if (!patch_tessellate(&context->call, &in, &input, error))
+        return false;
+    struct shape shape = {.kind = SHAPE_MESH, .mesh = assets_mesh(context->scene.assets, &input, error)};
+    return shape.mesh && give_node(context, args, "patch", &shape, result, error);
+}
