@@ -2,6 +2,7 @@
 #   all (default)  ./gray and the link ./rt       test        the tests, at most 8 minutes
 #   test-long      the rest, restartable by name   layers      includes against the order of rooms
 #   bench          benchmarks                      install     PREFIX, DESTDIR
+#   fuzz           every tests/fuzz/fuzz_*.c for FUZZ_SECONDS each (clang; FUZZ=name for some)
 config ?= release
 PREFIX ?= /usr/local
 DESTDIR ?=
@@ -29,11 +30,16 @@ LUA_NAME := $(firstword $(foreach name,lua5.4 lua-5.4 lua54,$(shell $(PKG_CONFIG
 LUA_CFLAGS := $(if $(LUA_NAME),$(shell $(PKG_CONFIG) --cflags $(LUA_NAME)))
 LUA_LIBS := $(if $(LUA_NAME),$(shell $(PKG_CONFIG) --libs $(LUA_NAME)))
 PNG_CFLAGS := $(shell $(PKG_CONFIG) --cflags libpng 2>/dev/null)
-PNG_LIBS := $(shell $(PKG_CONFIG) --libs libpng 2>/dev/null)
+PNG_LIBS := $(shell $(PKG_CONFIG) --libs libpng zlib 2>/dev/null)
+# Optional: without them gray is whole, but reads no JPEG (libjpeg) and no glTF (jansson).
+JPEG_LIBS := $(shell $(PKG_CONFIG) --libs libjpeg 2>/dev/null)
+JANSSON_LIBS := $(shell $(PKG_CONFIG) --libs jansson 2>/dev/null)
+OPTIONAL_CFLAGS := $(if $(JPEG_LIBS),-DHAVE_JPEG $(shell $(PKG_CONFIG) --cflags libjpeg)) \
+    $(if $(JANSSON_LIBS),-DHAVE_JANSSON $(shell $(PKG_CONFIG) --cflags jansson))
 
 override CFLAGS += -std=gnu11 $(WARNINGS) $(EXACT) $(CFLAGS.$(config)) -pthread
-override CPPFLAGS += -Isrc -I. $(LUA_CFLAGS) $(PNG_CFLAGS) -DGRAY_CONFIG='"$(config)"' -DGRAY_PREFIX='"$(PREFIX)"'
-override LDLIBS += $(LUA_LIBS) $(PNG_LIBS) -lm
+override CPPFLAGS += -Isrc -I. $(LUA_CFLAGS) $(PNG_CFLAGS) $(OPTIONAL_CFLAGS) -DGRAY_CONFIG='"$(config)"' -DGRAY_PREFIX='"$(PREFIX)"'
+override LDLIBS += $(LUA_LIBS) $(PNG_LIBS) $(JPEG_LIBS) $(JANSSON_LIBS) -lm
 override LDFLAGS += -pthread
 
 SOURCES := $(sort $(foreach room,$(ROOMS),$(wildcard src/$(room)/*.c)))
@@ -61,9 +67,14 @@ $(BUILD)/gray: $(OBJECTS) $(MAIN_OBJECT)
 $(BUILD)/tests/run: $(OBJECTS) $(TEST_OBJECTS)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
-# Kernels for one instruction set each live in files of their own; fused operations stay off.
-$(BUILD)/src/accel/%_avx2.o: override CFLAGS += -mavx2 -mno-fma
-$(BUILD)/src/accel/%_avx512.o: override CFLAGS += -mavx512f -mavx512vl -mavx512dq -mavx512bw -mno-fma
+# Benchmarks that are programs of their own.
+$(BUILD)/bench/formats $(BUILD)/bench/shapes: $(BUILD)/bench/%: $(BUILD)/bench/%.o $(OBJECTS)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
+# Kernels for one instruction set each live in files of their own; nothing is fused but what they fuse themselves, and
+# only where single precision proposes.
+$(BUILD)/src/accel/%_avx2.o: override CFLAGS += -mavx2 -mfma
+$(BUILD)/src/accel/%_avx512.o: override CFLAGS += -mavx512f -mavx512vl -mavx512dq -mavx512bw -mfma
 # Its functions are the C library's own names: the compiler must not see calls of itself in them.
 $(BUILD)/src/script/libm_override.o: override CFLAGS += -fno-builtin
 
@@ -84,6 +95,20 @@ test-long:
 	@tools/test.sh --long $(ONLY)
 layers:
 	@tools/layers.sh
+FUZZ_SECONDS ?= 60
+FUZZ ?= $(patsubst tests/fuzz/fuzz_%.c,%,$(wildcard tests/fuzz/fuzz_*.c))
+ifeq ($(config),fuzz)
+FUZZERS := $(patsubst %,$(BUILD)/fuzz_%,$(FUZZ))
+$(FUZZERS): $(BUILD)/fuzz_%: $(BUILD)/tests/fuzz/fuzz_%.o $(OBJECTS)
+	$(CC) $(CFLAGS) -fsanitize=fuzzer $(LDFLAGS) -o $@ $^ $(LDLIBS)
+build-fuzz: $(FUZZERS)
+endif
+# What is found is kept in build/fuzz/corpus and helps the next run; an input that fails is left beside it.
+fuzz:
+	@$(MAKE) -s config=fuzz FUZZ='$(FUZZ)' build-fuzz
+	@for name in $(FUZZ); do mkdir -p build/fuzz/corpus/$$name; echo "== $$name, $(FUZZ_SECONDS) s"; \
+	    build/fuzz/fuzz_$$name -max_total_time=$(FUZZ_SECONDS) -timeout=5 -rss_limit_mb=3000 -max_len=65536 \
+	        -artifact_prefix=build/fuzz/$$name- -print_final_stats=1 -verbosity=0 build/fuzz/corpus/$$name || exit 1; done
 bench: all
 	@bench/run.sh
 format:
@@ -99,5 +124,5 @@ clean:
 	rm -rf build gray rt
 
 force:
-.PHONY: all check-libraries build-tests test test-long layers bench format install clean force
+.PHONY: all check-libraries build-tests test test-long layers bench format install clean force build-fuzz fuzz
 -include $(ALL_OBJECTS:.o=.d)

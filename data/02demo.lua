@@ -3,7 +3,7 @@
 -- Author: gray project
 
 local stage = require 'stage'
-local solids = require 'solids'
+local polyhedra = require 'polyhedra'
 local knot = require 'knot'
 
 local root = gr.node('root')
@@ -42,7 +42,7 @@ rope:rotate('x', 70)
 rope:scale(.75, .75, .75)
 rope:translate(.9, 1.05, -4.4)
 root:add_child(rope)
-local gem = gr.geometry('gem', gr.mesh(gr.material({ .16, .30, .62 }, { .5, .5, .5 }, 60), solids.dodecahedron()))
+local gem = gr.geometry('gem', gr.mesh(gr.material({ .16, .30, .62 }, { .5, .5, .5 }, 60), polyhedra.dodecahedron()))
 gem:scale(.55, .55, .55)
 gem:rotate('x', 20)
 gem:translate(3.4, .52, -3.2)
@@ -53,7 +53,7 @@ root:add_child(stage.ball('yellow', gr.material({ .85, .66, .12 }, { .5, .5, .5 
 gr.render {
     node = root, file = '02demo.png', width = 640, height = 480,
     eye = { .3, 2.1, 6.2 }, view = { -.03, -.20, -1 }, fov = 43,
-    ambient = { .28, .28, .30 }, background = { .62, .72, .84 },
+    ambient = { .28, .28, .30 }, background = { .62, .72, .84 }, use_tir = true,
     lights = {
         gr.light({ -5, 8, 6 }, { .70, .68, .62 }, { 1, 0, 0 }),
         gr.light({ 6, 6, 3 }, { .28, .30, .36 }, { 1, 0, 0 }),

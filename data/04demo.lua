@@ -5,7 +5,7 @@
 local stage = require 'stage'
 local knot = require 'knot'
 local teapot = require 'teapot'
-local solids = require 'solids'
+local polyhedra = require 'polyhedra'
 local lathe = require 'lathe'
 
 local root = gr.node('root')
@@ -18,7 +18,7 @@ local slate = gr.material({ .28, .36, .50 }, { .5, .5, .5 }, 50)
 
 local things = {
     { jade, -2.9, .40, 0, { teapot.mesh(3) } },
-    { plum, -.75, .78, .80, { solids.geodesic(1) } },
+    { plum, -.75, .78, .80, { polyhedra.geodesic(1) } },
     { honey, 1.15, .80, 0, { lathe.turn(lathe.spline({ { 0, 0 }, { .55, 0 }, { .75, .5 }, { .3, 1.1 }, { .45, 1.6 }, { 0, 1.75 } }, 2), 10) } },
     { slate, 3.05, .62, .62, { knot.mesh(2, 3, { n = 36, around = 7, big = .85, small = .35, radius = .22 }) } },
 }
@@ -36,7 +36,7 @@ end
 
 gr.render {
     node = root, file = '04demo.png', width = 640, height = 480,
-    eye = { 0, 4.9, 9.2 }, view = { 0, -.47, -1 }, fov = 40,
+    eye = { 0, 4.9, 9.2 }, view = { 0, -.42, -1 }, fov = 38,
     ambient = { .25, .25, .27 }, background = { .52, .58, .64 },
     lights = {
         gr.light({ -6, 9, 7 }, { .72, .70, .64 }, { 1, 0, 0 }),

@@ -31,7 +31,7 @@ checker:translate(-2.1, .001, -.9)
 root:add_child(checker)
 
 -- the formula shows the image mirrored from outside; flip_u turns it
-local globe = gr.geometry('globe', gr.sphere(gr.td_sphere_material(plain, folder .. 'earth.png')))
+local globe = gr.geometry('globe', gr.sphere(gr.td_sphere_material { material = plain, png = folder .. 'earth.png', flip_u = true }))
 globe:rotate('y', 130)
 globe:rotate('z', -23)
 globe:scale(1.15, 1.15, 1.15)

@@ -3,7 +3,7 @@
 -- Author: gray project
 
 local stage = require 'stage'
-local solids = require 'solids'
+local polyhedra = require 'polyhedra'
 local meshes = require 'meshes'
 
 local root = gr.node('root')
@@ -21,7 +21,7 @@ root:add_child(stage.ball('ball', gr.material({ .70, .20, .16 }, { .5, .5, .5 },
 root:add_child(stage.ball('floating', gr.material({ .20, .42, .62 }, { .5, .5, .5 }, 60), { -.45, 1.9, .5 }, .30))
 
 -- a cage: the edges of an icosahedron as thin bars would be meshes; here the faces float apart
-local verts, faces = solids.icosahedron()
+local verts, faces = polyhedra.icosahedron()
 local apart_verts, apart_faces = {}, {}
 for _, face in ipairs(faces) do
     local x, y, z = meshes.unit(meshes.face_normal(verts, face))

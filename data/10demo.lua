@@ -13,5 +13,5 @@ gr.render_skybox {
     eye = place(eye), view = place { -.10, -.085, -1 }, fov = 39,
     ambient = room.ambient, lights = lights,
     -- the carving and the rug are full of edges that nobody would miss
-    side_tolerance = .03, corner_tolerance = .05,
+    side_tolerance = .015, corner_tolerance = .025,
 }

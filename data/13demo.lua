@@ -3,7 +3,7 @@
 -- Author: gray project
 
 local stage = require 'stage'
-local solids = require 'solids'
+local polyhedra = require 'polyhedra'
 
 local root = gr.node('root')
 
@@ -22,7 +22,7 @@ for k, ior in ipairs(indices) do
 end
 
 local green = gr.difresnel_material(gr.rr_material({ 0, .01, 0 }, { .80, .97, .88 }, 300, 0, 1, 1.5))
-local gem = gr.geometry('gem', gr.mesh(green, solids.icosahedron()))
+local gem = gr.geometry('gem', gr.mesh(green, polyhedra.icosahedron()))
 gem:rotate('y', 15)
 gem:scale(.75, .75, .75)
 gem:translate(-2.3, .95, -2.6)

@@ -69,5 +69,5 @@ gr.render_skybox {
     node = root, file = '14demo.png', sky = '../textures/sky_dusk.png', width = 1280, height = 960,
     eye = place(eye), view = place { .49, -.155, -1 }, fov = 43,
     ambient = room.ambient, lights = lights, refract_limit = 6,
-    side_tolerance = .03, corner_tolerance = .05,
+    side_tolerance = .015, corner_tolerance = .025,
 }

@@ -95,7 +95,7 @@ function M.materials()
     m.oak_dark = gr.material({ .22, .12, .06 }, { .12, .10, .08 }, 30)
     m.parquet = gr.td_cube_material(gr.material({ .5, .3, .2 }, { .12, .11, .10 }, 40), '../textures/parquet.png')
     m.rug = gr.td_cube_material(gr.material({ .5, .1, .1 }, { 0, 0, 0 }, 1), '../textures/rug.png')
-    m.gold = gr.material({ .46, .31, .10 }, { .70, .52, .24 }, 24)
+    m.gold = gr.material({ .48, .33, .11 }, { .55, .42, .20 }, 22)
     m.brass = gr.rr_material({ .40, .27, .10 }, { .80, .62, .32 }, 45, .22, 0, 1)
     m.carved = gr.material({ .40, .20, .10 }, { .34, .27, .19 }, 36)
     m.mirror = gr.rr_material({ .02, .02, .02 }, { .88, .90, .90 }, 200, 1, 0, 1)
@@ -129,11 +129,12 @@ M.window = { x0 = -1.95, x1 = -0.45, y0 = 1.02, y1 = 2.42 }
 local function shell(m)
     local room = gr.node('shell')
     local w = M.window
-    -- the wall with the window is one box with a hole
-    local wall = gr.csg_difference('window wall',
-        box('wall', m.wall, { M.left - .3, -.1, M.back - .3 }, { M.right + .3, M.top + .1, M.back }),
-        box('hole', m.white, { w.x0, w.y0, M.back - .4 }, { w.x1, w.y1, M.back + .1 }))
-    room:add_child(wall)
+    -- the wall with the window: two piers, and two pieces between them a hair's breadth behind
+    local behind = M.back - .0002
+    room:add_child(box('left pier', m.wall, { M.left - .3, -.1, M.back - .3 }, { w.x0, M.top + .1, M.back }))
+    room:add_child(box('right pier', m.wall, { w.x1, -.1, M.back - .3 }, { M.right + .3, M.top + .1, M.back }))
+    room:add_child(box('parapet', m.wall, { w.x0 - .001, -.1, M.back - .3 }, { w.x1 + .001, w.y0, behind }))
+    room:add_child(box('lintel', m.wall, { w.x0 - .001, w.y1, M.back - .3 }, { w.x1 + .001, M.top + .1, behind }))
     room:add_child(box('left wall', m.wall, { M.left - .2, -.1, M.back - .1 }, { M.left, M.top + .1, M.front + .1 }))
     room:add_child(box('right wall', m.wall, { M.right, -.1, M.back - .1 }, { M.right + .2, M.top + .1, M.front + .1 }))
     room:add_child(box('front wall', m.wall, { M.left - .1, -.1, M.front }, { M.right + .1, M.top + .1, M.front + .2 }))
@@ -210,7 +211,7 @@ end
 
 local function window(m)
     local w, all = M.window, gr.node('window')
-    local cx, cy = (w.x0 + w.x1) / 2, (w.y0 + w.y1) / 2
+    local cx = (w.x0 + w.x1) / 2
     local z = M.back - .12
     -- sash: a board with six panes cut out
     local sash = box('sash', m.white, { w.x0 - .005, w.y0 - .005, z - .025 }, { w.x1 + .005, w.y1 + .005, z + .025 })
@@ -229,10 +230,10 @@ local function window(m)
     all:add_child(box('glass', m.glass, { w.x0 + .01, w.y0 + .01, z - .003 }, { w.x1 - .01, w.y1 - .01, z + .003 }))
     all:add_child(box('sill', m.white, { w.x0 - .10, w.y0 - .035, M.back - .09 }, { w.x1 + .10, w.y0 + .004, M.back + .055 }))
     -- casing round the hole
-    local casing = gr.csg_difference('casing',
-        box('outside', m.white, { w.x0 - .085, w.y0 - .02, M.back - .01 }, { w.x1 + .085, w.y1 + .10, M.back + .022 }),
-        box('inside', m.white, { w.x0 + .001, w.y0 - .2, M.back - .1 }, { w.x1 - .001, w.y1 - .001, M.back + .1 }))
-    all:add_child(casing)
+    all:add_child(box('casing', m.white, { w.x0 - .085, w.y1 - .001, M.back - .01 }, { w.x1 + .085, w.y1 + .10, M.back + .022 }))
+    for _, x in ipairs { w.x0 - .08, w.x1 - .001 } do
+        all:add_child(box('casing', m.white, { x, w.y0 - .02, M.back - .01 }, { x + .081, w.y1 + .001, M.back + .0215 }))
+    end
     -- curtains on a brass rod
     local rod_y, rod_z = w.y1 + .17, M.back + .11
     local rod = { lathe.turn({ { 0, -1.06 }, { .014, -1.06 }, { .014, -1.06 }, { .014, 1.06 }, { .014, 1.06 }, { 0, 1.06 } }, 16) }
@@ -251,17 +252,13 @@ local function window(m)
             local width = .52 * gather
             local depth = .026 + .010 * (1 - v) + .008 * sin(5 * u + 3 * v)
             local phase = 2 * pi * folds * u + .5 * sin(4 * v + u * 6)
-            local x = side * (1.03 - width * u) - side * .0
+            local x = side * (1.03 - width * u)
             return x, .28 + high * v, depth * sin(phase) + .012 * sin(9 * u)
         end)
     end
     for _, side in ipairs { -1, 1 } do
         local mesh = curtain(side)
-        if side < 0 then
-            mesh = mesh
-        else
-            mesh = meshes.flip(mesh)
-        end
+        if side > 0 then mesh = meshes.flip(mesh) end
         local node = smooth('curtain', m.curtain, mesh)
         node:translate(cx, 0, rod_z)
         all:add_child(node)
@@ -275,7 +272,6 @@ local function window(m)
         tie:translate(cx + side * .885, .28 + (rod_y - .30) * .36, rod_z)
         all:add_child(tie)
     end
-    assert(cy > 0)
     return all
 end
 
@@ -375,7 +371,7 @@ local function table_base(m, fine)
         outline[i + 1] = { c * k, s * k }
     end
     local leg = { sweep.profile(curve, outline, {
-        scale = function(t) return .048 - .026 * sin(pi * math.min(1, t * 1.15) * .9) ^ 1 + .010 * (1 - t) + .004 * carve.smoothstep(.85, 1, t) end,
+        scale = function(t) return .048 - .026 * sin(pi * math.min(1, t * 1.15) * .9) + .010 * (1 - t) + .004 * carve.smoothstep(.85, 1, t) end,
     }) }
     local toe = { lathe.turn(lathe.spline({ { 0, -.004 }, { .03, .002 }, { .052, .03 }, { .05, .058 }, { .03, .085 }, { 0, .098 } }, 8), 48) }
     toe = meshes.translate(toe, .585, 0, 0)
@@ -492,7 +488,6 @@ local function flowers(m, count)
             return r * cos(b) - wide * sin(b), y + math.abs(wide) * .6, r * sin(b) + wide * cos(b)
         end)
         local under = meshes.flip(blade)
-        for i, p in ipairs(under[1]) do under[1][i] = p end
         all:add_child(smooth('leaf', m.leaf, meshes.merge { blade, meshes.translate(under, 0, -.0006, 0) }))
     end
     return all

@@ -123,13 +123,10 @@ function M.frame(width, height, options)
                 h = math.max(h, 1.15 * sqrt(math.max(0, 1 - r2 / petals)) + 0.3 * math.exp(-r2 * 18))
             end
             -- a big leaf over each corner, lying on the diagonal
-            local cx, cy = from_corner, offset * breadth
-            local from, span = -0.02, 1.28
-            local diagonal = ((1 - u) * breadth + cx) / (1.75 * breadth)
-            local aside = (cx - (1 - u) * 0.02 * breadth) / (0.62 * breadth)
-            local corner = M.leaf(1 - from - diagonal * span + 0.22, aside * 0.8)
+            local diagonal = ((1 - u) * breadth + from_corner) / (1.75 * breadth)
+            local aside = (from_corner - (1 - u) * 0.02 * breadth) / (0.62 * breadth)
+            local corner = M.leaf(1.24 - diagonal * 1.28, aside * 0.8)
             h = math.max(h, 1.15 * corner * smoothstep(0.14, 0.22, u) * (1 - smoothstep(0.80, 0.88, u)))
-            assert(cy >= 0)
             z = z + h * 0.42 * depth * smoothstep(0.13, 0.20, u) * (1 - smoothstep(0.80, 0.86, u))
             -- beads along the opening, a rope along the outside
             local q_beads = (u - 0.085) / 0.05

@@ -98,13 +98,17 @@ function gr.nh_box(name, corner, size) end
 ---@class gr.mesh.fields
 ---@field name? string name (a string; default 'mesh'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): What its surface looks like.
----@field file? string file (the name of a file; optional): A Wavefront OBJ file, instead of verts and faces.
+---@field file? string file (the name of a file; optional): An OBJ, PLY, STL, glTF or GLB file, instead of verts and faces.
 ---@field verts? gr.triple[] verts (a table of points {x, y, z}; optional): The vertices.
 ---@field normals? gr.triple[] normals (a table of points {x, y, z}; default none: flat): Vertex normals, of any length.
 ---@field faces? integer[][] faces (a table of tuples of indices; optional): Polygons: tuples of 0-based indices into verts.
 ---@field face_normals? integer[][] face_normals (a table of tuples of indices; default faces): For each face a tuple of 0-based indices into normals.
 ---@field uvs? number[][] uvs (a table of pairs {u, v}; default none): Places on an image, {u, v}; v counts from below.
 ---@field face_uvs? integer[][] face_uvs (a table of tuples of indices; default faces): For each face a tuple of 0-based indices into uvs.
+---@field smooth? number smooth (a number, 0 to 180, in degrees; default as given): Faces that meet at less than this angle are one smooth surface; 0: all are flat.
+---@field weld? boolean weld (true or false; default false): Whether vertices in one place become one.
+---@field flip? boolean flip (true or false; default false): Whether the faces are turned round.
+---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces no ray meets: those seen from behind, or from the front.
 
 ---A mesh of polygons, flat or with vertex normals.
 ---@param material gr.material material (a material; default plain gray): What its surface looks like.
@@ -120,13 +124,17 @@ function gr.mesh(material, verts, faces) end
 ---@class gr.fast_mesh.fields
 ---@field name? string name (a string; default 'mesh'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): What its surface looks like.
----@field file? string file (the name of a file; optional): A Wavefront OBJ file, instead of verts and faces.
+---@field file? string file (the name of a file; optional): An OBJ, PLY, STL, glTF or GLB file, instead of verts and faces.
 ---@field verts? gr.triple[] verts (a table of points {x, y, z}; optional): The vertices.
 ---@field normals? gr.triple[] normals (a table of points {x, y, z}; default none: flat): Vertex normals, of any length.
 ---@field faces? integer[][] faces (a table of tuples of indices; optional): Polygons: tuples of 0-based indices into verts.
 ---@field face_normals? integer[][] face_normals (a table of tuples of indices; default faces): For each face a tuple of 0-based indices into normals.
 ---@field uvs? number[][] uvs (a table of pairs {u, v}; default none): Places on an image, {u, v}; v counts from below.
 ---@field face_uvs? integer[][] face_uvs (a table of tuples of indices; default faces): For each face a tuple of 0-based indices into uvs.
+---@field smooth? number smooth (a number, 0 to 180, in degrees; default as given): Faces that meet at less than this angle are one smooth surface; 0: all are flat.
+---@field weld? boolean weld (true or false; default false): Whether vertices in one place become one.
+---@field flip? boolean flip (true or false; default false): Whether the faces are turned round.
+---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces no ray meets: those seen from behind, or from the front.
 
 ---The same as gr.mesh: every mesh is fast.
 ---@param material gr.material material (a material; default plain gray): What its surface looks like.
@@ -140,13 +148,17 @@ function gr.fast_mesh(material, verts, faces) end
 ---@class gr.vn_mesh.fields
 ---@field name? string name (a string; default 'mesh'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): What its surface looks like.
----@field file? string file (the name of a file; optional): A Wavefront OBJ file, instead of verts and faces.
+---@field file? string file (the name of a file; optional): An OBJ, PLY, STL, glTF or GLB file, instead of verts and faces.
 ---@field verts? gr.triple[] verts (a table of points {x, y, z}; optional): The vertices.
 ---@field normals? gr.triple[] normals (a table of points {x, y, z}; default none: flat): Vertex normals, of any length.
 ---@field faces? integer[][] faces (a table of tuples of indices; optional): Polygons: tuples of 0-based indices into verts.
 ---@field face_normals? integer[][] face_normals (a table of tuples of indices; default faces): For each face a tuple of 0-based indices into normals.
 ---@field uvs? number[][] uvs (a table of pairs {u, v}; default none): Places on an image, {u, v}; v counts from below.
 ---@field face_uvs? integer[][] face_uvs (a table of tuples of indices; default faces): For each face a tuple of 0-based indices into uvs.
+---@field smooth? number smooth (a number, 0 to 180, in degrees; default as given): Faces that meet at less than this angle are one smooth surface; 0: all are flat.
+---@field weld? boolean weld (true or false; default false): Whether vertices in one place become one.
+---@field flip? boolean flip (true or false; default false): Whether the faces are turned round.
+---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces no ray meets: those seen from behind, or from the front.
 
 ---A mesh with vertex normals.
 ---@param material gr.material material (a material; default plain gray): What its surface looks like.
@@ -162,13 +174,17 @@ function gr.vn_mesh(material, verts, normals, faces, face_normals) end
 ---@class gr.fast_vn_mesh.fields
 ---@field name? string name (a string; default 'mesh'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): What its surface looks like.
----@field file? string file (the name of a file; optional): A Wavefront OBJ file, instead of verts and faces.
+---@field file? string file (the name of a file; optional): An OBJ, PLY, STL, glTF or GLB file, instead of verts and faces.
 ---@field verts? gr.triple[] verts (a table of points {x, y, z}; optional): The vertices.
 ---@field normals? gr.triple[] normals (a table of points {x, y, z}; default none: flat): Vertex normals, of any length.
 ---@field faces? integer[][] faces (a table of tuples of indices; optional): Polygons: tuples of 0-based indices into verts.
 ---@field face_normals? integer[][] face_normals (a table of tuples of indices; default faces): For each face a tuple of 0-based indices into normals.
 ---@field uvs? number[][] uvs (a table of pairs {u, v}; default none): Places on an image, {u, v}; v counts from below.
 ---@field face_uvs? integer[][] face_uvs (a table of tuples of indices; default faces): For each face a tuple of 0-based indices into uvs.
+---@field smooth? number smooth (a number, 0 to 180, in degrees; default as given): Faces that meet at less than this angle are one smooth surface; 0: all are flat.
+---@field weld? boolean weld (true or false; default false): Whether vertices in one place become one.
+---@field flip? boolean flip (true or false; default false): Whether the faces are turned round.
+---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces no ray meets: those seen from behind, or from the front.
 
 ---The same as gr.vn_mesh.
 ---@param material gr.material material (a material; default plain gray): What its surface looks like.
@@ -271,25 +287,363 @@ function gr.difference(name, a, b) end
 ---@overload fun(fields: gr.intersection.fields): gr.node
 function gr.intersection(name, a, b) end
 
----A capped cylinder around y, radius 1, y from -1 to 1. Comes with version 0.2.
----@param name? string name (a string; optional): Name of the node, for messages.
----@return gr.node
-function gr.cylinder(name) end
+---@class gr.cylinder.fields
+---@field name? string name (a string; default 'cylinder'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field from? gr.triple from (a point {x, y, z}; default {0, -1, 0}): The middle of one end.
+---@field to? gr.triple to (a point {x, y, z}; default {0, 1, 0}): The middle of the other end.
+---@field radius? number radius (a number, > 0; default 1): Radius.
+---@field open? boolean open (true or false; default false): Whether it is a mere surface without caps; then it is no solid for CSG.
 
----A cone, apex at the origin, base of radius 1 at y = 1. Comes with version 0.2.
----@param name? string name (a string; optional): Name of the node, for messages.
+---A capped cylinder; about y, of radius 1, from y = -1 to 1 if nothing else is said.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
 ---@return gr.node
-function gr.cone(name) end
+---@overload fun(name: string): gr.node
+---@overload fun(fields: gr.cylinder.fields): gr.node
+function gr.cylinder(material) end
 
----A torus around y. Comes with version 0.2.
----@param name? string name (a string; optional): Name of the node, for messages.
----@return gr.node
-function gr.torus(name) end
+---@class gr.cone.fields
+---@field name? string name (a string; default 'cone'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field from? gr.triple from (a point {x, y, z}; default {0, 0, 0}): The apex, or the middle of the end with from_radius.
+---@field to? gr.triple to (a point {x, y, z}; default {0, 1, 0}): The middle of the end with radius.
+---@field from_radius? number from_radius (a number, >= 0; default 0): Radius at from: a frustum.
+---@field radius? number radius (a number, >= 0; default 1): Radius at to.
+---@field open? boolean open (true or false; default false): Whether it is a mere surface without caps; then it is no solid for CSG.
 
----The square from -0.5 to 0.5 in x and z at y = 0. Comes with version 0.2.
----@param name? string name (a string; optional): Name of the node, for messages.
+---A capped cone or frustum; apex at the origin, radius 1 at y = 1 if nothing else is said.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
 ---@return gr.node
-function gr.plane(name) end
+---@overload fun(name: string): gr.node
+---@overload fun(fields: gr.cone.fields): gr.node
+function gr.cone(material) end
+
+---@class gr.torus.fields
+---@field name? string name (a string; default 'torus'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field major? number major (a number, >= 0; default 1): Radius of the circle in y = 0.
+---@field minor? number minor (a number, > 0; default 0.25): Radius of the tube around it.
+
+---A torus about the y axis.
+---@param name string name (a string; default 'torus'): Name of the node, for messages.
+---@param major? number major (a number, >= 0; default 1): Radius of the circle in y = 0.
+---@param minor? number minor (a number, > 0; default 0.25): Radius of the tube around it.
+---@return gr.node
+---@overload fun(material: gr.material, major?: number, minor?: number): gr.node
+---@overload fun(fields: gr.torus.fields): gr.node
+function gr.torus(name, major, minor) end
+
+---@class gr.plane.fields
+---@field name? string name (a string; default 'plane'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field normal? gr.triple normal (a direction {x, y, z}; default none: the square): A plane without end that faces there; a half-space in CSG.
+---@field distance? number distance (a number; default 0): How far from the origin it is, along the normal.
+
+---The square from -0.5 to 0.5 in x and z at y = 0; with a normal a plane without end.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
+---@return gr.node
+---@overload fun(name: string): gr.node
+---@overload fun(fields: gr.plane.fields): gr.node
+function gr.plane(material) end
+
+---@class gr.square.fields
+---@field name? string name (a string; default 'square'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+
+---The square from -0.5 to 0.5 in x and z at y = 0.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
+---@return gr.node
+---@overload fun(name: string): gr.node
+---@overload fun(fields: gr.square.fields): gr.node
+function gr.square(material) end
+
+---@class gr.box.fields
+---@field name? string name (a string; default 'box'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field min gr.triple min (a point {x, y, z}): A corner.
+---@field max gr.triple max (a point {x, y, z}): The opposite corner.
+
+---A box between two corners.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
+---@param min gr.triple min (a point {x, y, z}): A corner.
+---@param max gr.triple max (a point {x, y, z}): The opposite corner.
+---@return gr.node
+---@overload fun(name: string, min: gr.triple, max: gr.triple): gr.node
+---@overload fun(fields: gr.box.fields): gr.node
+function gr.box(material, min, max) end
+
+---@class gr.ellipsoid.fields
+---@field name? string name (a string; default 'ellipsoid'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field centre? gr.triple centre (a point {x, y, z}; default {0, 0, 0}): Centre.
+---@field radii? number|gr.triple radii (a number or a table of 3 numbers; default 1): Radii along x, y and z, one number or three.
+
+---An ellipsoid along the axes.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
+---@param radii? number|gr.triple radii (a number or a table of 3 numbers; default 1): Radii along x, y and z, one number or three.
+---@return gr.node
+---@overload fun(name: string, radii?: number|gr.triple): gr.node
+---@overload fun(fields: gr.ellipsoid.fields): gr.node
+function gr.ellipsoid(material, radii) end
+
+---@class gr.paraboloid.fields
+---@field name? string name (a string; default 'paraboloid'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field radius? number radius (a number, > 0; default 1): Radius of the rim.
+---@field height? number height (a number, > 0; default 1): The tip is at the origin, the rim at this y.
+---@field open? boolean open (true or false; default false): Whether it is a mere surface without caps; then it is no solid for CSG.
+
+---A capped paraboloid that opens along y.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
+---@return gr.node
+---@overload fun(name: string): gr.node
+---@overload fun(fields: gr.paraboloid.fields): gr.node
+function gr.paraboloid(material) end
+
+---@class gr.hyperboloid.fields
+---@field name? string name (a string; default 'hyperboloid'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field sheets? integer sheets (a whole number, 1 to 2; default 1, with gap 2): One sheet with a waist, or two bowls.
+---@field radius? number radius (a number, > 0; default twice waist, or 1): Radius of both rims.
+---@field height? number height (a number, > 0; default twice gap, or 1): The rims are at this y and at minus this y.
+---@field waist? number waist (a number, > 0; default radius/2): One sheet: radius at y = 0.
+---@field gap? number gap (a number, > 0; default height/2): Two sheets: the tips are at this y and at minus this y.
+---@field open? boolean open (true or false; default false): Whether it is a mere surface without caps; then it is no solid for CSG.
+
+---A capped hyperboloid about y, of one sheet or of two.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
+---@return gr.node
+---@overload fun(name: string): gr.node
+---@overload fun(fields: gr.hyperboloid.fields): gr.node
+function gr.hyperboloid(material) end
+
+---@class gr.quadric.fields
+---@field name? string name (a string; default 'quadric'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field xx? number xx (a number; default 0): Coefficient.
+---@field yy? number yy (a number; default 0): Coefficient.
+---@field zz? number zz (a number; default 0): Coefficient.
+---@field xy? number xy (a number; default 0): Coefficient.
+---@field xz? number xz (a number; default 0): Coefficient.
+---@field yz? number yz (a number; default 0): Coefficient.
+---@field x? number x (a number; default 0): Coefficient.
+---@field y? number y (a number; default 0): Coefficient.
+---@field z? number z (a number; default 0): Coefficient.
+---@field constant? number constant (a number; default 0): The solid is where the sum of all is negative.
+---@field min? gr.triple min (a point {x, y, z}; default without end): Corner of the box that limits it.
+---@field max? gr.triple max (a point {x, y, z}; default without end): The opposite corner.
+---@field open? boolean open (true or false; default false): Whether it is a mere surface without caps; then it is no solid for CSG.
+
+---Where xx x^2 + yy y^2 + zz z^2 + xy x y + xz x z + yz y z + x x + y y + z z + constant is negative.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
+---@param xx number xx (a number; default 0): Coefficient.
+---@param yy number yy (a number; default 0): Coefficient.
+---@param zz number zz (a number; default 0): Coefficient.
+---@param constant number constant (a number; default 0): The solid is where the sum of all is negative.
+---@return gr.node
+---@overload fun(name: string, xx: number, yy: number, zz: number, constant: number): gr.node
+---@overload fun(fields: gr.quadric.fields): gr.node
+function gr.quadric(material, xx, yy, zz, constant) end
+
+---@class gr.superellipsoid.fields
+---@field name? string name (a string; default 'superellipsoid'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field e? number e (a number, 0.02 to 20; default 1): Roundness seen along y: near 0 a square, 1 a circle, 2 a diamond.
+---@field n? number n (a number, 0.02 to 20; default 1): Roundness of the profile, likewise.
+
+---A rounded cube, cylinder, double cone or star: (|x|^(2/e) + |z|^(2/e))^(e/n) + |y|^(2/n) = 1.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
+---@param e? number e (a number, 0.02 to 20; default 1): Roundness seen along y: near 0 a square, 1 a circle, 2 a diamond.
+---@param n? number n (a number, 0.02 to 20; default 1): Roundness of the profile, likewise.
+---@return gr.node
+---@overload fun(name: string, e?: number, n?: number): gr.node
+---@overload fun(fields: gr.superellipsoid.fields): gr.node
+function gr.superellipsoid(material, e, n) end
+
+---@class gr.rectangle.fields
+---@field name? string name (a string; default 'rectangle'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field corner? gr.triple corner (a point {x, y, z}; default {-0.5, 0, 0.5}): The lower left corner of an image on it.
+---@field along? gr.triple along (a direction {x, y, z}; default {1, 0, 0}): The edge to the right.
+---@field up? gr.triple up (a direction {x, y, z}; default {0, 0, -1}): The edge upwards; not parallel, or else any.
+
+---A rectangle or parallelogram.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
+---@param corner? gr.triple corner (a point {x, y, z}; default {-0.5, 0, 0.5}): The lower left corner of an image on it.
+---@param along? gr.triple along (a direction {x, y, z}; default {1, 0, 0}): The edge to the right.
+---@param up? gr.triple up (a direction {x, y, z}; default {0, 0, -1}): The edge upwards; not parallel, or else any.
+---@return gr.node
+---@overload fun(name: string, corner?: gr.triple, along?: gr.triple, up?: gr.triple): gr.node
+---@overload fun(fields: gr.rectangle.fields): gr.node
+function gr.rectangle(material, corner, along, up) end
+
+---@class gr.disc.fields
+---@field name? string name (a string; default 'disc'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field centre? gr.triple centre (a point {x, y, z}; default {0, 0, 0}): Centre.
+---@field normal? gr.triple normal (a direction {x, y, z}; default {0, 1, 0}): Where its front looks.
+---@field radius? number radius (a number, > 0; default 1, or twice inner): Radius.
+---@field inner? number inner (a number, >= 0; default 0): Radius of the hole.
+
+---A disc, or a ring.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
+---@return gr.node
+---@overload fun(name: string): gr.node
+---@overload fun(fields: gr.disc.fields): gr.node
+function gr.disc(material) end
+
+---@class gr.triangle.fields
+---@field name? string name (a string; default 'triangle'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field a gr.triple a (a point {x, y, z}): A corner; the front sees a, b, c counter-clockwise.
+---@field b gr.triple b (a point {x, y, z}): The next corner.
+---@field c gr.triple c (a point {x, y, z}): The last corner.
+
+---A triangle.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
+---@param a gr.triple a (a point {x, y, z}): A corner; the front sees a, b, c counter-clockwise.
+---@param b gr.triple b (a point {x, y, z}): The next corner.
+---@param c gr.triple c (a point {x, y, z}): The last corner.
+---@return gr.node
+---@overload fun(name: string, a: gr.triple, b: gr.triple, c: gr.triple): gr.node
+---@overload fun(fields: gr.triangle.fields): gr.node
+function gr.triangle(material, a, b, c) end
+
+---@class gr.polygon.fields
+---@field name? string name (a string; default 'polygon'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field points gr.triple[] points (a table of points {x, y, z}): Corners in one plane; the front sees the first outline counter-clockwise.
+---@field outlines? integer[][] outlines (a table of tuples of indices; default all points in turn): Tuples of 0-based indices into points; what an odd number of them surrounds is filled.
+
+---A polygon of any outline, with holes.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
+---@param points gr.triple[] points (a table of points {x, y, z}): Corners in one plane; the front sees the first outline counter-clockwise.
+---@param outlines? integer[][] outlines (a table of tuples of indices; default all points in turn): Tuples of 0-based indices into points; what an odd number of them surrounds is filled.
+---@return gr.node
+---@overload fun(name: string, points: gr.triple[], outlines?: integer[][]): gr.node
+---@overload fun(fields: gr.polygon.fields): gr.node
+function gr.polygon(material, points, outlines) end
+
+---@class gr.lathe.fields
+---@field name? string name (a string; default 'lathe'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field points number[][] points (a table of pairs {u, v}): The profile: pairs of radius and y.
+---@field spline? 'linear'|'catmull-rom'|'b-spline'|'bezier' spline ('linear'|'catmull-rom'|'b-spline'|'bezier'; default 'linear'): How the points are joined; bezier takes 3 n + 1 of them.
+---@field loop? boolean loop (true or false; default false): Whether the profile goes back to its first point.
+---@field open? boolean open (true or false; default false): Whether ends off the axis stay open, not closed by discs.
+
+---A profile turned about the y axis.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
+---@param points number[][] points (a table of pairs {u, v}): The profile: pairs of radius and y.
+---@param spline? 'linear'|'catmull-rom'|'b-spline'|'bezier' spline ('linear'|'catmull-rom'|'b-spline'|'bezier'; default 'linear'): How the points are joined; bezier takes 3 n + 1 of them.
+---@return gr.node
+---@overload fun(name: string, points: number[][], spline?: 'linear'|'catmull-rom'|'b-spline'|'bezier'): gr.node
+---@overload fun(fields: gr.lathe.fields): gr.node
+function gr.lathe(material, points, spline) end
+
+---@class gr.prism.fields
+---@field name? string name (a string; default 'prism'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field outline number[][] outline (a table of pairs {u, v}): A closed curve: pairs of x and z.
+---@field holes? number[][][] holes (a table of tables of pairs {x, z}; default none): More closed curves; what an odd number of all surrounds is solid.
+---@field from? number from (a number; default 0): Height of the bottom.
+---@field to? number to (a number; default from + 1): Height of the top.
+---@field spline? 'linear'|'catmull-rom'|'b-spline'|'bezier' spline ('linear'|'catmull-rom'|'b-spline'|'bezier'; default 'linear'): How the points are joined; bezier takes 3 n of them.
+
+---An outline drawn out along y, with holes.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
+---@param outline number[][] outline (a table of pairs {u, v}): A closed curve: pairs of x and z.
+---@return gr.node
+---@overload fun(name: string, outline: number[][]): gr.node
+---@overload fun(fields: gr.prism.fields): gr.node
+function gr.prism(material, outline) end
+
+---@class gr.sweep.fields
+---@field name? string name (a string; default 'sweep'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field points gr.triple[] points (a table of points {x, y, z}): Where the centre of the ball goes.
+---@field radii number|number[] radii (a number or a table of numbers, >= 0): Its radius at each point, or one for all.
+---@field spline? 'linear'|'catmull-rom'|'b-spline'|'bezier' spline ('linear'|'catmull-rom'|'b-spline'|'bezier'; default 'catmull-rom'): How the points are joined; bezier takes 3 n + 1 of them.
+---@field loop? boolean loop (true or false; default false): Whether it goes back to the first point.
+
+---What a ball covers that moves along a spline.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
+---@param points gr.triple[] points (a table of points {x, y, z}): Where the centre of the ball goes.
+---@param radii number|number[] radii (a number or a table of numbers, >= 0): Its radius at each point, or one for all.
+---@param spline? 'linear'|'catmull-rom'|'b-spline'|'bezier' spline ('linear'|'catmull-rom'|'b-spline'|'bezier'; default 'catmull-rom'): How the points are joined; bezier takes 3 n + 1 of them.
+---@return gr.node
+---@overload fun(name: string, points: gr.triple[], radii: number|number[], spline?: 'linear'|'catmull-rom'|'b-spline'|'bezier'): gr.node
+---@overload fun(fields: gr.sweep.fields): gr.node
+function gr.sweep(material, points, radii, spline) end
+
+---@class gr.height_field.fields
+---@field name? string name (a string; default 'height field'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field heights? number[][] heights (a table of tables of numbers; optional): Rows of equally many heights; x runs within a row, z from row to row.
+---@field image? string|gr.texture image (the name of a picture file or a texture; optional): A picture instead: black is 0, white is 1, its upper edge is z = 0.
+---@field floor? number floor (a number; default a tenth of the relief below it): Height of the solid's floor.
+---@field open? boolean open (true or false; default false): Whether it is a sheet without walls and floor.
+---@field smooth? boolean smooth (true or false; default false): Whether it is shaded with interpolated normals.
+
+---Land over the square from 0 to 1 in x and z, a solid down to its floor.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
+---@param heights number[][] heights (a table of tables of numbers; optional): Rows of equally many heights; x runs within a row, z from row to row.
+---@return gr.node
+---@overload fun(name: string, heights: number[][]): gr.node
+---@overload fun(fields: gr.height_field.fields): gr.node
+function gr.height_field(material, heights) end
+
+---@class gr.blob.fields
+---@field name? string name (a string; default 'blob'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field spheres? number[][] spheres (a table of tables of numbers; default {}): Balls {x, y, z, radius, strength}; strength 1 may be left out.
+---@field cylinders? number[][] cylinders (a table of tables of numbers; default {}): Rods {x1, y1, z1, x2, y2, z2, radius, strength}.
+---@field threshold? number threshold (a number, > 0; default 0.5): The surface is where the fields, strength (1 - (distance/radius)^2)^2, add up to this.
+
+---Balls and rods that flow into each other.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
+---@param spheres number[][] spheres (a table of tables of numbers; default {}): Balls {x, y, z, radius, strength}; strength 1 may be left out.
+---@param cylinders? number[][] cylinders (a table of tables of numbers; default {}): Rods {x1, y1, z1, x2, y2, z2, radius, strength}.
+---@param threshold? number threshold (a number, > 0; default 0.5): The surface is where the fields, strength (1 - (distance/radius)^2)^2, add up to this.
+---@return gr.node
+---@overload fun(name: string, spheres: number[][], cylinders?: number[][], threshold?: number): gr.node
+---@overload fun(fields: gr.blob.fields): gr.node
+function gr.blob(material, spheres, cylinders, threshold) end
+
+---@class gr.curve.fields
+---@field name? string name (a string; default 'curve'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field points gr.triple[] points (a table of points {x, y, z}): Where it goes.
+---@field widths number|number[] widths (a number or a table of numbers, >= 0): Its width at each point, or one for all.
+---@field spline? 'linear'|'catmull-rom'|'b-spline'|'bezier' spline ('linear'|'catmull-rom'|'b-spline'|'bezier'; default 'catmull-rom'): How the points are joined; bezier takes 3 n + 1 of them.
+---@field flat? boolean flat (true or false; default false): Whether it is shaded as a ribbon, not as a round hair.
+
+---A hair: a ribbon along a spline that faces every ray.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
+---@param points gr.triple[] points (a table of points {x, y, z}): Where it goes.
+---@param widths number|number[] widths (a number or a table of numbers, >= 0): Its width at each point, or one for all.
+---@param spline? 'linear'|'catmull-rom'|'b-spline'|'bezier' spline ('linear'|'catmull-rom'|'b-spline'|'bezier'; default 'catmull-rom'): How the points are joined; bezier takes 3 n + 1 of them.
+---@return gr.node
+---@overload fun(name: string, points: gr.triple[], widths: number|number[], spline?: 'linear'|'catmull-rom'|'b-spline'|'bezier'): gr.node
+---@overload fun(fields: gr.curve.fields): gr.node
+function gr.curve(material, points, widths, spline) end
+
+---@class gr.patch.fields
+---@field name? string name (a string; default 'patch'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): What its surface looks like.
+---@field points gr.triple[] points (a table of points {x, y, z}): Control points, 16 for each patch in 4 rows of 4.
+---@field patches? integer[][] patches (a table of tuples of indices; default points in turn): Tuples of 16 0-based indices into points.
+---@field tolerance? number tolerance (a number, > 0; default a thousandth of the size): The largest distance of the triangles from the true surface.
+---@field flip? boolean flip (true or false; default false): Whether the front is the other side.
+
+---Bicubic Bezier patches, as a mesh.
+---@param material gr.material material (a material; default plain gray): What its surface looks like.
+---@param points gr.triple[] points (a table of points {x, y, z}): Control points, 16 for each patch in 4 rows of 4.
+---@param patches? integer[][] patches (a table of tuples of indices; default points in turn): Tuples of 16 0-based indices into points.
+---@return gr.node
+---@overload fun(name: string, points: gr.triple[], patches?: integer[][]): gr.node
+---@overload fun(fields: gr.patch.fields): gr.node
+function gr.patch(material, points, patches) end
 
 ---@class gr.material.fields
 ---@field kd gr.triple kd (a colour {r, g, b}): Colour of diffuse and ambient light.
@@ -366,26 +720,26 @@ function gr.wood_pnd_material(material, f, density, interp, mix) end
 
 ---@class gr.td_cube_material.fields
 ---@field material gr.material material (a material): The material below.
----@field png string|gr.texture png (the name of a PNG file or a texture): A PNG file, or a texture.
+---@field png string|gr.texture png (the name of a picture file or a texture): A PNG or JPEG file, or a texture.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): How the image is looked up.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether left and right are exchanged.
 
 ---An image on each side of the unit cube, over another material.
 ---@param material gr.material material (a material): The material below.
----@param png string|gr.texture png (the name of a PNG file or a texture): A PNG file, or a texture.
+---@param png string|gr.texture png (the name of a picture file or a texture): A PNG or JPEG file, or a texture.
 ---@return gr.material
 ---@overload fun(fields: gr.td_cube_material.fields): gr.material
 function gr.td_cube_material(material, png) end
 
 ---@class gr.td_sphere_material.fields
 ---@field material gr.material material (a material): The material below.
----@field png string|gr.texture png (the name of a PNG file or a texture): A PNG file, or a texture.
+---@field png string|gr.texture png (the name of a picture file or a texture): A PNG or JPEG file, or a texture.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): How the image is looked up.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether left and right are exchanged.
 
 ---An image around the unit sphere, over another material.
 ---@param material gr.material material (a material): The material below.
----@param png string|gr.texture png (the name of a PNG file or a texture): A PNG file, or a texture.
+---@param png string|gr.texture png (the name of a picture file or a texture): A PNG or JPEG file, or a texture.
 ---@return gr.material
 ---@overload fun(fields: gr.td_sphere_material.fields): gr.material
 function gr.td_sphere_material(material, png) end
@@ -409,13 +763,13 @@ function gr.difresnel_material(material) end
 function gr.difresneld_material(material) end
 
 ---@class gr.texture.fields
----@field file string|gr.texture file (the name of a PNG file or a texture): A PNG file.
+---@field file string|gr.texture file (the name of a picture file or a texture): A PNG or JPEG file.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): How the image is looked up.
 ---@field wrap? 'clamp'|'repeat'|'mirror' wrap ('clamp'|'repeat'|'mirror'; default 'repeat'): What is beyond its edges, on meshes.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether left and right are exchanged.
 
 ---An image for node:set_texture.
----@param file string|gr.texture file (the name of a PNG file or a texture): A PNG file.
+---@param file string|gr.texture file (the name of a picture file or a texture): A PNG or JPEG file.
 ---@return gr.texture
 ---@overload fun(fields: gr.texture.fields): gr.texture
 function gr.texture(file) end
@@ -463,7 +817,7 @@ function gr.spherical_light(name) end
 ---@class gr.render.fields
 ---@field node gr.node node (a node): The root of what is drawn.
 ---@field file string file (the name of a file): The PNG file to write; missing folders are made.
----@field sky? string|gr.texture sky (the name of a PNG file or a texture; optional): A 4 x 3 cross of images all around, as a PNG file.
+---@field sky? string|gr.texture sky (the name of a picture file or a texture; optional): A 4 x 3 cross of images all around, as a PNG or JPEG file.
 ---@field width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@field height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
 ---@field eye gr.triple eye (a point {x, y, z}): Where the camera stands.
@@ -485,7 +839,7 @@ function gr.spherical_light(name) end
 ---@field use_tir? boolean use_tir (true or false; default -use-tir): Whether light beyond the critical angle is reflected.
 ---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): The form of highlights.
 ---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Start of random numbers.
----@field accel? 'grid'|'none' accel ('grid'|'none'; default 'grid'): How hits are searched; the picture is the same.
+---@field accel? 'auto'|'grid'|'bvh'|'none' accel ('auto'|'grid'|'bvh'|'none'; default 'auto'): How hits are searched; the picture is the same.
 
 ---Renders a picture into a PNG file.
 ---@param node gr.node node (a node): The root of what is drawn.
@@ -504,7 +858,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@class gr.render_skybox.fields
 ---@field node gr.node node (a node): The root of what is drawn.
 ---@field file string file (the name of a file): The PNG file to write; missing folders are made.
----@field sky? string|gr.texture sky (the name of a PNG file or a texture; optional): A 4 x 3 cross of images all around, as a PNG file.
+---@field sky? string|gr.texture sky (the name of a picture file or a texture; optional): A 4 x 3 cross of images all around, as a PNG or JPEG file.
 ---@field width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@field height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
 ---@field eye gr.triple eye (a point {x, y, z}): Where the camera stands.
@@ -526,12 +880,12 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field use_tir? boolean use_tir (true or false; default -use-tir): Whether light beyond the critical angle is reflected.
 ---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): The form of highlights.
 ---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Start of random numbers.
----@field accel? 'grid'|'none' accel ('grid'|'none'; default 'grid'): How hits are searched; the picture is the same.
+---@field accel? 'auto'|'grid'|'bvh'|'none' accel ('auto'|'grid'|'bvh'|'none'; default 'auto'): How hits are searched; the picture is the same.
 
 ---The same with a sky image all around.
 ---@param node gr.node node (a node): The root of what is drawn.
 ---@param file string file (the name of a file): The PNG file to write; missing folders are made.
----@param sky string|gr.texture sky (the name of a PNG file or a texture; optional): A 4 x 3 cross of images all around, as a PNG file.
+---@param sky string|gr.texture sky (the name of a picture file or a texture; optional): A 4 x 3 cross of images all around, as a PNG or JPEG file.
 ---@param width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@param height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
 ---@param eye gr.triple eye (a point {x, y, z}): Where the camera stands.
@@ -556,13 +910,21 @@ function gr.transform_order(order) end
 ---@return gr.node
 function node:add_child(node) end
 
+---The box of this node and what is under it, where its transforms have put it: smallest and largest x, y, z.
+---@return number[], number[]
+function node:bounds() end
+
+---The vertices and faces of a mesh, in its own coordinates and as gr.mesh takes them.
+---@return number[][], integer[][]
+function node:faces() end
+
 ---Gives a shape its material.
 ---@param material gr.material material (a material): What its surface looks like.
 ---@return gr.node
 function node:set_material(material) end
 
 ---Puts an image in the place of kd.
----@param texture string|gr.texture texture (the name of a PNG file or a texture): A texture, or the name of a PNG file.
+---@param texture string|gr.texture texture (the name of a picture file or a texture): A texture, or the name of a PNG or JPEG file.
 ---@return gr.node
 function node:set_texture(texture) end
 

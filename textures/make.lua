@@ -44,7 +44,7 @@ local make = {}
 -- An oriental rug: borders with running ornament, corner fans, a medallion.
 function make.rug()
     local w, h = 384, 256
-    local red, dark, blue, cream, gold = { .44, .10, .08 }, { .25, .05, .05 }, { .10, .15, .27 }, { .68, .58, .42 },
+    local red, dark, blue, cream, gold = { .44, .10, .08 }, { .25, .05, .05 }, { .10, .15, .27 }, { .58, .46, .32 },
         { .72, .48, .17 }
     local p = picture.new(w, h, red)
     p:paint(function(x, y)
@@ -99,7 +99,7 @@ function make.rug()
         end
         -- knots and worn dye
         local wear = 1 + 0.05 * noise.noise(x / 2.1, y / 1.3, 4.5) + 0.08 * noise.sum(x / 60, y / 60, 9.3, 3)
-        return times(mix(c, { .40, .29, .20 }, 0.22), wear)
+        return times(mix(c, { .36, .22, .16 }, 0.36), wear)
     end)
     p:write(here .. 'rug.png', 8)
 end
@@ -214,16 +214,16 @@ function make.parquet()
         -- the herringbone: blocks of 1 x 4 along both axes, shifted by one per row
         local k = (a - b) % (2 * length)
         local flat = k < length
-        local u, v, id
+        local u, v
         if flat then
-            u, v, id = i - (a - k), j - b, (a - k) * 7.31 + b * 3.77
+            u, v = i - (a - k), j - b
         else
             local m = (b - a + 2 * length - 1) % (2 * length)
             m = m % length
-            u, v, id = j - (b - m), i - a, a * 5.13 + (b - m) * 9.71
+            u, v = j - (b - m), i - a
         end
         local period = w / unit
-        id = (floor(flat and (a - k) or a) % period) * 7.31 + (floor(flat and b or (b - u // 1)) % period) * 3.77
+        local id = (floor(flat and (a - k) or a) % period) * 7.31 + (floor(flat and b or (b - u // 1)) % period) * 3.77
         local tone = 0.5 + 0.5 * sin(id * 12.9898)
         local grain = noise.sum(u * 1.3 + tone * 40, v * 7 + tone * 90, tone * 10, 3)
         local c = mix({ .40, .24, .13 }, { .52, .33, .18 }, 0.35 * tone + 0.4 + 0.3 * grain)
@@ -303,8 +303,7 @@ function make.star()
         for x = 0, w - 1 do
             local u, v = x + 0.5 - w / 2, y + 0.5 - w / 2
             local r, a = sqrt(u * u + v * v), (math.atan(u, -v) / (2 * pi / 5) + 0.5) % 1 - 0.5
-            local edge = 56 * cos(pi / 5 * 2) / cos(abs(a) * 2 * pi / 5 - pi / 5 * 2)
-            edge = 56 / (1 + 3.2 * abs(a))
+            local edge = 56 / (1 + 3.2 * abs(a))
             local cover = math.max(0, math.min(1, edge - r + 0.5))
             local c = r < edge * 0.8 and { 250, 206, 60 } or { 214, 120, 24 }
             local at = #bytes

@@ -3,7 +3,7 @@
 -- Author: gray project. Dialect: project.
 
 local lathe = require 'lathe'
-local solids = require 'solids'
+local polyhedra = require 'polyhedra'
 local noise = require 'noise'
 
 local root = gr.node('forest')
@@ -18,7 +18,7 @@ for k = 0, 4 do
     fir:add_child(gr.geometry('skirt', gr.vn_mesh(gr.material({ .10 + .02 * k, .27 + .03 * k, .13 }, { .03, .03, .03 }, 5),
         table.unpack(skirt))))
 end
-local bush = gr.geometry('bush', gr.mesh(gr.material({ .34, .40, .14 }, { 0, 0, 0 }, 1), solids.subdivide(solids.loop, 2, solids.icosahedron())))
+local bush = gr.geometry('bush', gr.mesh(gr.material({ .34, .40, .14 }, { 0, 0, 0 }, 1), polyhedra.subdivide(polyhedra.loop, 2, polyhedra.icosahedron())))
 
 -- the land: a height field
 local function height(x, z) return 1.6 * noise.sum(x * .09 + 3.1, .5, z * .09 + 1.7, 3) end

@@ -6,7 +6,7 @@ local here = (debug.getinfo(1, 'S').source:match('^@(.*/)') or './')
 package.path = here .. '../../lua/?.lua;' .. package.path
 
 local meshes = require 'meshes'
-local solids = require 'solids'
+local polyhedra = require 'polyhedra'
 local lathe = require 'lathe'
 local sweep = require 'sweep'
 
@@ -19,7 +19,7 @@ end
 
 -- A cow, four feet on y = 0, looking along +x, about 3.4 long: pushed and pulled spheres.
 local function blob(detail, sx, sy, sz, x, y, z, tilt)
-    local mesh = meshes.scale({ solids.geodesic(detail) }, sx, sy, sz)
+    local mesh = meshes.scale({ polyhedra.geodesic(detail) }, sx, sy, sz)
     if tilt then mesh = meshes.rotate(mesh, 'z', tilt) end
     return meshes.translate(mesh, x, y, z)
 end
@@ -36,7 +36,7 @@ for _, z in ipairs { -1, 1 } do
     end
     parts[#parts + 1] = { sweep.tube({ { 1.72, 2.38, z * .14 }, { 1.72, 2.50, z * .28 }, { 1.78, 2.66, z * .36 },
         { 1.88, 2.80, z * .34 } }, .07, 10, { scale = function(t) return 1 - .85 * t end }) }
-    parts[#parts + 1] = meshes.translate(meshes.rotate(meshes.scale({ solids.geodesic(2) }, .08, .13, .22), 'x', z * 50), 1.62, 2.27, z * .36)
+    parts[#parts + 1] = meshes.translate(meshes.rotate(meshes.scale({ polyhedra.geodesic(2) }, .08, .13, .22), 'x', z * 50), 1.62, 2.27, z * .36)
 end
 parts[#parts + 1] = { sweep.tube({ { -1.28, 1.85, 0 }, { -1.48, 1.72, 0 }, { -1.54, 1.3, .02 }, { -1.52, .85, .03 } }, .045, 10) }
 parts[#parts + 1] = blob(1, .09, .18, .09, -1.52, .75, .03)
@@ -77,7 +77,7 @@ end
 for k = 0, 8 do stone(math.pi * (k + .04) / 9, math.pi * (k + .96) / 9, k == 4 and .28 or .24) end
 for _, x in ipairs { -1, 1 } do
     for k = 0, 2 do
-        local v, f = solids.box({ x - .2, k / 3 + .01, -.24 }, { x + .2, (k + 1) / 3 - .01, .24 })
+        local v, f = polyhedra.box({ x - .2, k / 3 + .01, -.24 }, { x + .2, (k + 1) / 3 - .01, .24 })
         stones[#stones + 1] = { v, nil, f }
     end
 end

@@ -1,107 +1,189 @@
-/* A binary hierarchy of boxes over the triangles. Invariant: a node's box holds its triangles; a ray is tested against the
- * box grown by more than the rounding of the triangle test can move a triangle, so nothing is lost. */
+/* The index of a mesh: frame, voxels, searches. */
 #include "accel/triangle_index.h"
 
+#include "accel/isa.h"
+#include "accel/triangle_build.h"
+#include "accel/triangle_kernels.h"
+#include "accel/triangle_layout.h"
 #include "base/mem.h"
+#include "math/elementary.h"
 
 #include <string.h>
 
-struct index_node {
-    float min[3], max[3];
-    uint32_t first; /* leaf: first entry of order; else the left child, the right one follows it */
-    uint32_t count; /* 0: inner node */
-};
+#ifdef GRAY_DEV
+#include <stdlib.h>
+#define VOXELS_WANTED(count) fmax(1, (getenv("LAMBDA") ? atof(getenv("LAMBDA")) : 0) * (count))
+#else
+#define VOXELS_WANTED(count) 1
+#endif
 
-struct triangle_index {
-    struct index_node *nodes;
-    uint32_t *order;
-    uint32_t node_count, triangle_count;
-    double reach; /* largest absolute coordinate */
-};
+enum { MOST_CELLS = 128 /* along one axis */, BIG_VOXELS = 8 /* a triangle in more of them is kept apart */ };
 
-enum { LEAF_TRIANGLES = 4, STACK_DEPTH = 96 };
-
-static void node_box(const struct triangle_set *set, const uint32_t *order, uint32_t count, struct index_node *node) {
+static void set_space(struct triangle_index *index, const struct triangle_set *set) {
+    struct vec3 extent = vec3_sub(set->bounds.max, set->bounds.min);
+    struct vec3 centre = vec3_scale(vec3_add(set->bounds.min, set->bounds.max), 0.5);
+    double half = vec3_max_abs(extent) / 2;
+    int exponent;
+    (void)frexp(half, &exponent);
+    index->scale = ldexp(1, -exponent);
     for (int k = 0; k < 3; k++) {
-        double lo = INFINITY, hi = -INFINITY;
-        for (uint32_t i = 0; i < count; i++)
-            for (int j = 0; j < 3; j++) {
-                double x = set->vertices[set->corners[order[i]][j]][k];
-                lo = fmin(lo, x);
-                hi = fmax(hi, x);
+        index->centre[k] = vec3_get(centre, k);
+        index->half[k] = vec3_get(extent, k) / 2 * index->scale + (double)VOXEL_MARGIN;
+    }
+}
+
+/* About `wanted` cubical voxels in the local box; axes along which it is thinner than a voxel get one. */
+static void set_cells(struct triangle_index *index, double wanted) {
+    bool active[3] = {true, true, true};
+    double side = 0;
+    for (int round = 0; round < 3; round++) {
+        double volume = 1;
+        int axes = 0;
+        for (int k = 0; k < 3; k++)
+            if (active[k]) {
+                volume *= 2 * index->half[k];
+                axes++;
             }
-        node->min[k] = nextafterf((float)lo, -INFINITY);
-        node->max[k] = nextafterf((float)hi, INFINITY);
+        double each = volume / wanted;
+        side = axes == 3 ? el_cbrt(each) : axes == 2 ? sqrt(each) : each;
+        for (int k = 0; k < 3; k++)
+            active[k] = active[k] && 2 * index->half[k] >= side;
     }
-}
-
-static double centre(const struct triangle_set *set, uint32_t triangle, int axis) {
-    const uint32_t *c = set->corners[triangle];
-    return set->vertices[c[0]][axis] + set->vertices[c[1]][axis] + set->vertices[c[2]][axis];
-}
-
-/* Splits at the middle of the centres' widest extent, in halves when that separates nothing. */
-static uint32_t split(const struct triangle_set *set, uint32_t *order, uint32_t count) {
-    double lo[3], hi[3];
-    int axis = 0;
     for (int k = 0; k < 3; k++) {
-        lo[k] = INFINITY;
-        hi[k] = -INFINITY;
-        for (uint32_t i = 0; i < count; i++) {
-            double x = centre(set, order[i], k);
-            lo[k] = fmin(lo[k], x);
-            hi[k] = fmax(hi[k], x);
-        }
-        if (hi[k] - lo[k] > hi[axis] - lo[axis])
-            axis = k;
+        double cells = floor(2 * index->half[k] / side + 0.5);
+        index->cells[k] = cells < 1 ? 1 : cells > MOST_CELLS ? MOST_CELLS : (uint32_t)cells;
+        index->cell[k] = (float)(2 * index->half[k] / index->cells[k]);
+        index->inverse_cell[k] = 1 / index->cell[k];
     }
-    double middle = (lo[axis] + hi[axis]) / 2;
-    uint32_t left = 0;
-    for (uint32_t i = 0; i < count; i++)
-        if (centre(set, order[i], axis) < middle) {
-            uint32_t other = order[left];
-            order[left++] = order[i];
-            order[i] = other;
-        }
-    return left == 0 || left == count ? count / 2 : left;
+    index->stride[0] = index->cells[0] + 2;
+    index->stride[1] = index->stride[0] * (index->cells[1] + 2);
+    index->voxel_count = (size_t)index->stride[1] * (index->cells[2] + 2);
 }
 
-static void build_node(struct triangle_index *index, const struct triangle_set *set, uint32_t node, uint32_t first,
-                       uint32_t count, int depth) {
-    node_box(set, index->order + first, count, &index->nodes[node]);
-    if (count <= LEAF_TRIANGLES) {
-        index->nodes[node].first = first;
-        index->nodes[node].count = count;
-        return;
+static struct reference whole_reference(const struct triangle_index *index, const struct triangle_set *set, uint32_t i) {
+    struct reference r = {.triangle = i};
+    const double *centre = index->centre;
+    const double *a = set->vertices[set->corners[i][0]], *b = set->vertices[set->corners[i][1]],
+                 *c = set->vertices[set->corners[i][2]];
+    for (int k = 0; k < 3; k++) {
+        double lo = a[k] < b[k] ? a[k] : b[k], hi = a[k] < b[k] ? b[k] : a[k];
+        lo = c[k] < lo ? c[k] : lo;
+        hi = c[k] > hi ? c[k] : hi;
+        r.min[k] = (float)((lo - centre[k]) * index->scale);
+        r.max[k] = (float)((hi - centre[k]) * index->scale);
     }
-    uint32_t left = depth > 48 ? count / 2 : split(set, index->order + first, count);
-    uint32_t child = index->node_count;
-    index->node_count += 2;
-    index->nodes[node].first = child;
-    index->nodes[node].count = 0;
-    build_node(index, set, child, first, left, depth + 1);
-    build_node(index, set, child + 1, first + left, count - left, depth + 1);
+    return r;
+}
+
+/* Voxels low .. high (inclusive) that the grown box touches; their number. */
+static uint32_t touched(const struct triangle_index *index, const struct reference *r, uint32_t low[3],
+                        uint32_t high[3]) {
+    uint32_t number = 1;
+    for (int k = 0; k < 3; k++) {
+        float a = (r->min[k] - VOXEL_MARGIN + (float)index->half[k]) * index->inverse_cell[k];
+        float b = (r->max[k] + VOXEL_MARGIN + (float)index->half[k]) * index->inverse_cell[k];
+        uint32_t last = index->cells[k] - 1;
+        low[k] = a > 0 ? (uint32_t)a : 0;
+        high[k] = b > 0 ? (uint32_t)b : 0;
+        low[k] = low[k] > last ? last : low[k];
+        high[k] = high[k] > last ? last : high[k];
+        number *= high[k] - low[k] + 1;
+    }
+    return number;
+}
+
+static struct reference cut(const struct triangle_index *index, const struct reference *whole, const uint32_t at[3]) {
+    struct reference r = *whole;
+    for (int k = 0; k < 3; k++) {
+        float lo = (float)at[k] * index->cell[k] - (float)index->half[k] - VOXEL_MARGIN;
+        float hi = (float)(at[k] + 1) * index->cell[k] - (float)index->half[k] + VOXEL_MARGIN;
+        r.min[k] = r.min[k] > lo ? r.min[k] : lo;
+        r.max[k] = r.max[k] < hi ? r.max[k] : hi;
+        if (r.min[k] > r.max[k]) /* touches only by the margin */
+            r.min[k] = r.max[k] = whole->min[k] > hi ? hi : lo;
+    }
+    return r;
+}
+
+static size_t voxel_at(const struct triangle_index *index, uint32_t x, uint32_t y, uint32_t z) {
+    return (size_t)(z + 1) * index->stride[1] + (size_t)(y + 1) * index->stride[0] + x + 1;
+}
+
+/* Count, prefix sum, fill: references of every voxel in ascending order of triangles, those of the big ones at the end. */
+static bool fill_voxels(struct triangle_index *index, const struct triangle_set *set, struct pool *pool,
+                        struct error *error) {
+    struct hierarchy *lists = mem_alloc_zero(index->voxel_count + 1, sizeof *lists);
+    struct reference *references = NULL;
+    index->voxels = mem_alloc(index->voxel_count * sizeof *index->voxels);
+    bool enough = lists && index->voxels;
+    uint32_t low[3], high[3];
+    uint64_t total = 0;
+    struct hierarchy *big = lists + (lists ? index->voxel_count : 0);
+    for (uint32_t i = 0; enough && i < set->count; i++) {
+        struct reference r = whole_reference(index, set, i);
+        if (touched(index, &r, low, high) > BIG_VOXELS) {
+            big->count++;
+            continue;
+        }
+        for (uint32_t z = low[2]; z <= high[2]; z++)
+            for (uint32_t y = low[1]; y <= high[1]; y++)
+                for (uint32_t x = low[0]; x <= high[0]; x++)
+                    lists[voxel_at(index, x, y, z)].count++;
+    }
+    for (size_t v = 0; enough && v <= index->voxel_count; v++) {
+        lists[v].first = (uint32_t)total;
+        total += lists[v].count;
+        lists[v].count = 0;
+    }
+    enough = enough && total < UINT32_MAX;
+    if (enough)
+        references = mem_alloc_aligned(64, total * sizeof *references);
+    enough = enough && references;
+    for (uint32_t i = 0; enough && i < set->count; i++) {
+        struct reference r = whole_reference(index, set, i);
+        if (touched(index, &r, low, high) > BIG_VOXELS) {
+            references[big->first + big->count++] = r;
+            continue;
+        }
+        uint32_t at[3];
+        for (at[2] = low[2]; at[2] <= high[2]; at[2]++)
+            for (at[1] = low[1]; at[1] <= high[1]; at[1]++)
+                for (at[0] = low[0]; at[0] <= high[0]; at[0]++) {
+                    struct hierarchy *list = &lists[voxel_at(index, at[0], at[1], at[2])];
+                    references[list->first + list->count++] = cut(index, &r, at);
+                }
+    }
+    bool complete = enough ? hierarchies_build(index, set, references, lists, (uint32_t)index->voxel_count + 1, pool, error)
+                           : error_no_memory(error, "the index of a mesh");
+    if (complete) {
+        for (size_t v = 0; v < index->voxel_count; v++)
+            index->voxels[v] = REF_OUTSIDE;
+        for (uint32_t z = 0; z < index->cells[2]; z++)
+            for (uint32_t y = 0; y < index->cells[1]; y++)
+                for (uint32_t x = 0; x < index->cells[0]; x++) {
+                    size_t v = voxel_at(index, x, y, z);
+                    index->voxels[v] = lists[v].result;
+                }
+        index->big = big->result;
+    }
+    mem_free(lists);
+    mem_free(references);
+    return complete;
 }
 
 bool triangle_index_build(struct triangle_index **out, const struct triangle_set *set, struct pool *pool,
                           struct error *error) {
-    (void)pool;
     struct triangle_index *index = mem_alloc_zero(1, sizeof *index);
     if (!index)
         return error_no_memory(error, "the index of a mesh");
-    index->triangle_count = set->count;
-    index->nodes = mem_alloc_zero(2 * (size_t)set->count + 1, sizeof *index->nodes);
-    index->order = mem_alloc_zero((size_t)set->count + 1, sizeof *index->order);
-    if (!index->nodes || !index->order) {
-        triangle_index_destroy(index);
-        return error_no_memory(error, "the index of a mesh");
+    if (set->count > 0) {
+        set_space(index, set);
+        set_cells(index, VOXELS_WANTED(set->count));
+        if (!fill_voxels(index, set, pool, error)) {
+            triangle_index_destroy(index);
+            return false;
+        }
     }
-    for (uint32_t i = 0; i < set->count; i++)
-        index->order[i] = i;
-    index->node_count = 1;
-    if (set->count)
-        build_node(index, set, 0, 0, set->count, 0);
-    index->reach = set->count ? fmax(vec3_max_abs(set->bounds.min), vec3_max_abs(set->bounds.max)) : 0;
     *out = index;
     return true;
 }
@@ -109,109 +191,57 @@ bool triangle_index_build(struct triangle_index **out, const struct triangle_set
 void triangle_index_destroy(struct triangle_index *index) {
     if (!index)
         return;
+    mem_free(index->voxels);
     mem_free(index->nodes);
-    mem_free(index->order);
+    mem_free(index->blocks);
+    mem_free(index->ids);
     mem_free(index);
 }
 
 size_t triangle_index_memory(const struct triangle_index *index) {
-    return sizeof *index + (2 * (size_t)index->triangle_count + 1) * sizeof *index->nodes +
-           (size_t)index->triangle_count * sizeof *index->order;
-}
-
-struct search {
-    const struct triangle_index *index;
-    const struct triangle_set *set;
-    struct triangle_ray sheared;
-    double origin[3], inverse[3], slack[3];
-};
-
-static bool search_begin(struct search *s, const struct triangle_index *index, const struct triangle_set *set,
-                         const struct ray *ray) {
-    s->index = index;
-    s->set = set;
-    if (set->count == 0 || !triangle_ray_init(&s->sheared, ray))
-        return false;
-    double largest = vec3_max_abs(ray->direction);
-    double reach = fmax(index->reach, vec3_max_abs(ray->origin)) * 0x1p-47;
-    for (int k = 0; k < 3; k++) {
-        double d = vec3_get(ray->direction, k);
-        if (fabs(d) < largest * 0x1p-400)
-            d = copysign(largest * 0x1p-400, d);
-        s->origin[k] = vec3_get(ray->origin, k);
-        s->inverse[k] = 1 / d;
-        s->slack[k] = fabs(s->inverse[k]) * reach;
-    }
-    return true;
-}
-
-static bool meets_box(const struct search *s, const struct index_node *node, double t_min, double t_max) {
-    for (int k = 0; k < 3; k++) {
-        double a = ((double)node->min[k] - s->origin[k]) * s->inverse[k];
-        double b = ((double)node->max[k] - s->origin[k]) * s->inverse[k];
-        t_min = fmax(t_min, fmin(a, b) - s->slack[k]);
-        t_max = fmin(t_max, fmax(a, b) + s->slack[k]);
-    }
-    return t_min <= t_max;
-}
-
-enum search_kind { SEARCH_NEAREST, SEARCH_ANY, SEARCH_ALL };
-
-static bool search(struct search *s, enum search_kind kind, double t_min, double t_max, struct triangle_hit *hit,
-                   triangle_visit *visit, void *context, struct triangle_cost *cost) {
-    uint32_t stack[STACK_DEPTH], top = 0;
-    bool found = false;
-    stack[top++] = 0;
-    while (top) {
-        const struct index_node *node = &s->index->nodes[stack[--top]];
-        cost->hierarchy_steps++;
-        if (!meets_box(s, node, t_min, t_max))
-            continue;
-        if (!node->count) {
-            stack[top++] = node->first + 1;
-            stack[top++] = node->first;
-            continue;
-        }
-        for (uint32_t i = 0; i < node->count; i++) {
-            struct triangle_hit h = {.triangle = s->index->order[node->first + i]};
-            const uint32_t *c = s->set->corners[h.triangle];
-            cost->triangle_tests++;
-            if (!triangle_cross(&s->sheared, s->set->vertices[c[0]], s->set->vertices[c[1]], s->set->vertices[c[2]], &h))
-                continue;
-            if (kind == SEARCH_ALL) {
-                visit(context, &h);
-                continue;
-            }
-            if (!(h.t > t_min && h.t <= t_max) || (h.t == t_max && !(found && h.triangle < hit->triangle)))
-                continue;
-            if (kind == SEARCH_ANY)
-                return true;
-            *hit = h;
-            t_max = h.t;
-            found = true;
-        }
-    }
-    return found;
+    return sizeof *index + index->voxel_count * sizeof *index->voxels + index->node_count * sizeof *index->nodes +
+           index->block_count * (sizeof *index->blocks + sizeof *index->ids);
 }
 
 bool triangle_index_nearest(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
                             struct triangle_hit *hit, struct triangle_cost *cost) {
-    struct search s;
-    return search_begin(&s, index, set, ray) &&
-           search(&s, SEARCH_NEAREST, ray->t_min, ray->t_max, hit, NULL, NULL, cost);
+    if (set->count == 0)
+        return false;
+#if defined(__x86_64__)
+    if (accel_isa() == ACCEL_ISA_AVX512)
+        return triangle_nearest_avx512(index, set, ray, hit, cost);
+    if (accel_isa() == ACCEL_ISA_AVX2)
+        return triangle_nearest_avx2(index, set, ray, hit, cost);
+#endif
+    return triangle_nearest_base(index, set, ray, hit, cost);
 }
 
 bool triangle_index_any(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
                         struct triangle_cost *cost) {
-    struct search s;
-    struct triangle_hit hit;
-    return search_begin(&s, index, set, ray) && search(&s, SEARCH_ANY, ray->t_min, ray->t_max, &hit, NULL, NULL, cost);
+    if (set->count == 0)
+        return false;
+#if defined(__x86_64__)
+    if (accel_isa() == ACCEL_ISA_AVX512)
+        return triangle_any_avx512(index, set, ray, cost);
+    if (accel_isa() == ACCEL_ISA_AVX2)
+        return triangle_any_avx2(index, set, ray, cost);
+#endif
+    return triangle_any_base(index, set, ray, cost);
 }
 
 void triangle_index_all(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
                         triangle_visit *visit, void *context, struct triangle_cost *cost) {
-    struct search s;
-    struct triangle_hit hit;
-    if (search_begin(&s, index, set, ray))
-        search(&s, SEARCH_ALL, -INFINITY, INFINITY, &hit, visit, context, cost);
+    if (set->count == 0)
+        return;
+#if defined(__x86_64__)
+    if (accel_isa() == ACCEL_ISA_AVX512) {
+        triangle_all_avx512(index, set, ray, visit, context, cost);
+        return;
+    }
+    if (accel_isa() == ACCEL_ISA_AVX2) {
+        triangle_all_avx2(index, set, ray, visit, context, cost);
+        return;
+    }
+#endif
+    triangle_all_base(index, set, ray, visit, context, cost);
 }

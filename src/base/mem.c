@@ -60,6 +60,10 @@ void *mem_alloc_aligned(size_t alignment, size_t size) {
     void *block = NULL;
     if (allocation_fails() || posix_memalign(&block, alignment, size ? size : 1) != 0)
         return NULL;
+#ifdef MADV_HUGEPAGE
+    if (alignment >= MEM_LARGE_PAGE)
+        (void)madvise(block, size, MADV_HUGEPAGE);
+#endif
     return block;
 }
 

@@ -1,8 +1,9 @@
 /* Wavefront OBJ in one pass over the bytes.
  *
  * A line is a keyword and blank-separated words; `#` starts a comment, a backslash at the end of a line continues it.
- * Only v, vt, vn and f are read; other keywords must at least look like words, so that a binary file is refused on its
- * first line. Source of the format: Wavefront, "Object Files (.obj)", Appendix B1 of the Advanced Visualizer manual.
+ * Only v, vt, vn, f, usemtl, mtllib, g and o are read; other keywords must at least look like words, so that a binary file
+ * is refused on its first line. The faces behind a usemtl have its material; in a file without any usemtl those of a
+ * group (g, o) have a material slot of its name, so that a script can tell them apart. Source of the format: Wavefront, "Object Files (.obj)", Appendix B1 of the Advanced Visualizer manual.
  * Indices count from 1; negative ones count back from the last element read so far. A positive index may point at an
  * element that comes later in the file, so these are checked at the end: for each of the three lists only the largest
  * index and its line need to be kept.
@@ -12,23 +13,25 @@
 #include "formats/obj.h"
 
 #include "base/file.h"
-#include "base/mem.h"
 #include "formats/decimal.h"
+#include "formats/model.h"
+#include "formats/names.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #define MISSING UINT32_MAX
+#define UNNAMED (UINT32_MAX - 1) /* faces before the first usemtl or g */
 #define FILE_LIMIT ((size_t)1 << 36)
 
-/* A growing array. */
-struct list {
-    void *items;
-    size_t count, capacity;
-};
-
 enum { VERTEX, UV, NORMAL, KINDS };
+
+/* The material slots of the faces by some kind of name. The list is absent while all faces are of one slot. */
+struct slotting {
+    struct names names;
+    struct list faces; /* uint32_t per face */
+    uint32_t current, first;
+};
 
 struct reader {
     const char *path;
@@ -39,6 +42,8 @@ struct reader {
     struct list indices[KINDS];  /* uint32_t per corner */
     struct list starts;          /* uint32_t per face: its first corner */
     size_t largest[KINDS], largest_line[KINDS];
+    struct model *model;
+    struct slotting materials, groups;
 };
 
 static const char *const kind_names[KINDS] = {"vertex", "vt", "vn"};
@@ -51,21 +56,11 @@ static bool is_line_end(char c) {
     return c == '\n' || c == '\r';
 }
 
-/* Room for `more` items behind the last one; NULL without memory. */
-static void *list_room(struct reader *reader, struct list *list, size_t more, size_t size) {
-    if (list->capacity - list->count < more) {
-        size_t capacity = list->capacity ? list->capacity : 64;
-        while (capacity - list->count < more)
-            capacity += capacity / 2;
-        void *items = mem_resize_array(list->items, capacity, size);
-        if (!items) {
-            error_no_memory(reader->error, reader->path);
-            return NULL;
-        }
-        list->items = items;
-        list->capacity = capacity;
-    }
-    return (char *)list->items + list->count * size;
+static void *room(struct reader *reader, struct list *list, size_t more, size_t size) {
+    void *items = list_room(list, more, size);
+    if (!items)
+        error_no_memory(reader->error, reader->path);
+    return items;
 }
 
 static bool fail_at(const struct reader *reader, size_t line, const char *what) {
@@ -152,7 +147,7 @@ static bool read_number(struct reader *reader, double *out) {
 /* The numbers of a v, vt or vn: at least `least`, the first `kept` of them into a new element (0 where missing); what
  * follows (weights, vertex colours, a third texture coordinate) must be numbers too. */
 static bool read_element(struct reader *reader, int kind, int least, int kept) {
-    double *element = list_room(reader, &reader->elements[kind], 1, (size_t)kept * sizeof *element);
+    double *element = room(reader, &reader->elements[kind], 1, (size_t)kept * sizeof *element);
     if (!element)
         return false;
     for (int i = 0; i < kept; i++)
@@ -234,13 +229,13 @@ static bool add_corner(struct reader *reader, const uint32_t corner[KINDS]) {
         if (kind != VERTEX && list->count == 0) {
             if (corner[kind] == MISSING)
                 continue;
-            uint32_t *missing = list_room(reader, list, before + 1, sizeof *missing);
+            uint32_t *missing = room(reader, list, before + 1, sizeof *missing);
             if (!missing)
                 return false;
             memset(missing, 0xff, before * sizeof *missing);
             list->count = before;
         }
-        uint32_t *index = list_room(reader, list, 1, sizeof *index);
+        uint32_t *index = room(reader, list, 1, sizeof *index);
         if (!index)
             return false;
         *index = corner[kind];
@@ -249,9 +244,98 @@ static bool add_corner(struct reader *reader, const uint32_t corner[KINDS]) {
     return true;
 }
 
+static bool add_slot(struct reader *reader, struct slotting *slotting, size_t face) {
+    if (face == 0)
+        slotting->first = slotting->current;
+    if (slotting->faces.count == 0) {
+        if (slotting->current == slotting->first)
+            return true;
+        uint32_t *before = room(reader, &slotting->faces, face, sizeof *before);
+        if (!before)
+            return false;
+        for (size_t i = 0; i < face; i++)
+            before[i] = slotting->first;
+        slotting->faces.count = face;
+    }
+    uint32_t *slot = room(reader, &slotting->faces, 1, sizeof *slot);
+    if (!slot)
+        return false;
+    *slot = slotting->current;
+    slotting->faces.count++;
+    return true;
+}
+
+/* The rest of the line, without blanks at its ends: names may hold some. */
+static size_t read_name(struct reader *reader, const char **name) {
+    while (reader->at < reader->end && is_blank(*reader->at))
+        reader->at++;
+    *name = reader->at;
+    while (reader->at < reader->end && !is_line_end(*reader->at) && !is_continuation(reader, reader->at))
+        reader->at++;
+    const char *end = reader->at;
+    while (end > *name && is_blank(end[-1]))
+        end--;
+    return (size_t)(end - *name);
+}
+
+static bool read_slot(struct reader *reader, struct slotting *slotting) {
+    const char *name;
+    size_t length = read_name(reader, &name);
+    if (length == 0) {
+        slotting->current = UNNAMED;
+        return true;
+    }
+    return names_add(&slotting->names, name, length, &slotting->current) ||
+           error_no_memory(reader->error, reader->path);
+}
+
+/* Reads one library of materials; false only when it is there and broken. *found tells whether it is there. */
+static bool read_library(struct reader *reader, const char *name, size_t length, bool *found) {
+    const char *path;
+    struct file_bytes bytes;
+    if (!model_find(reader->model, name, length, &path, reader->error))
+        return false;
+    *found = path != NULL;
+    if (!path)
+        return true;
+    if (!file_map(path, FILE_LIMIT, &bytes, reader->error))
+        return false;
+    bool ok = mtl_load(reader->model, path, (const char *)bytes.data, bytes.size, reader->error);
+    file_unmap(&bytes);
+    return ok;
+}
+
+/* One name with blanks in it, or several names. */
+static bool read_libraries(struct reader *reader) {
+    const char *name, *end;
+    size_t length = read_name(reader, &name);
+    bool found, all = true;
+    if (reader->model->options.alone)
+        return true;
+    if (!read_library(reader, name, length, &found))
+        return false;
+    if (found)
+        return true;
+    end = name + length;
+    for (const char *at = name; at < end;) {
+        const char *word_end = at;
+        while (word_end < end && !is_blank(*word_end))
+            word_end++;
+        if (!read_library(reader, at, (size_t)(word_end - at), &found))
+            return false;
+        all = all && found;
+        for (at = word_end; at < end && is_blank(*at);)
+            at++;
+    }
+    if (!all)
+        model_warn(reader->model, "%s:%zu: the material library '%.*s' is not there", reader->path, reader->line,
+                   length < 200 ? (int)length : 200, name);
+    return true;
+}
+
 static bool read_face(struct reader *reader) {
     size_t line = reader->line, first = reader->indices[VERTEX].count;
-    uint32_t *start = list_room(reader, &reader->starts, 2, sizeof *start); /* the final end included */
+    uint32_t *start = room(reader, &reader->starts, 2, sizeof *start); /* the final end included */
     if (!start)
         return false;
     while (next_word(reader)) {
@@ -262,8 +346,8 @@ static bool read_face(struct reader *reader) {
     if (reader->indices[VERTEX].count - first < 3)
         return fail_at(reader, line, "f needs at least 3 corners");
     *start = (uint32_t)first;
-    reader->starts.count++;
-    return true;
+    return add_slot(reader, &reader->materials, reader->starts.count) &&
+           add_slot(reader, &reader->groups, reader->starts.count++);
 }
 
 /* The rest of a line whose keyword means nothing to us. */
@@ -274,6 +358,16 @@ static bool skip_unknown(struct reader *reader, const char *word) {
             return fail_word(reader, word, "is not an OBJ keyword: is this a text file?");
     }
     skip_line(reader);
+    return true;
+}
+
+/* Moves behind the word when it is this one. */
+static bool is_keyword(struct reader *reader, const char *word, const char *keyword) {
+    size_t length = strlen(keyword);
+    if ((size_t)(reader->end - word) < length || memcmp(word, keyword, length) != 0 ||
+        !word_ends(reader, word + length))
+        return false;
+    reader->at = word + length;
     return true;
 }
 
@@ -302,6 +396,12 @@ static bool read_line(struct reader *reader) {
     } else if (long_word && *word == 'f' && second == 'o') { /* a face in files older than version 3.0 */
         reader->at += 2;
         ok = read_face(reader);
+    } else if (is_keyword(reader, word, "usemtl")) {
+        ok = read_slot(reader, &reader->materials);
+    } else if (is_keyword(reader, word, "g") || is_keyword(reader, word, "o")) {
+        ok = read_slot(reader, &reader->groups);
+    } else if (is_keyword(reader, word, "mtllib")) {
+        ok = read_libraries(reader);
     } else {
         return skip_unknown(reader, word);
     }
@@ -319,36 +419,65 @@ static bool check_indices(const struct reader *reader) {
     return true;
 }
 
-static struct mesh *make_mesh(const struct reader *reader) {
-    uint32_t *starts = reader->starts.items;
-    starts[reader->starts.count] = (uint32_t)reader->indices[VERTEX].count;
-    struct mesh_input input = {
-        .name = reader->path,
-        .vertex_count = (uint32_t)reader->elements[VERTEX].count,
-        .vertices = reader->elements[VERTEX].items,
-        .face_count = (uint32_t)reader->starts.count,
-        .face_start = starts,
-        .vertex_index = reader->indices[VERTEX].items,
-    };
-    if (reader->indices[NORMAL].count) {
-        input.normal_count = (uint32_t)reader->elements[NORMAL].count;
-        input.normals = reader->elements[NORMAL].items;
-        input.normal_index = reader->indices[NORMAL].items;
+/* The slots of the faces, and the materials in them: the last ones of their names in the libraries. */
+static bool make_slots(struct reader *reader, struct model_mesh *mesh) {
+    bool by_material = reader->materials.names.entries.count > 0;
+    struct slotting *used = by_material ? &reader->materials : &reader->groups;
+    struct names known = {0};
+    struct list last = {0}; /* uint32_t: the material of a known name */
+    bool ok = true;
+    for (uint32_t i = 0; ok && i < reader->model->materials.count; i++) {
+        const char *name = model_materials(reader->model)[i].name;
+        uint32_t number;
+        ok = names_add(&known, name, strlen(name), &number) && (number < last.count || list_add_index(&last, i));
+        if (ok)
+            ((uint32_t *)last.items)[number] = i;
     }
-    if (reader->indices[UV].count) {
-        input.uv_count = (uint32_t)reader->elements[UV].count;
-        input.uvs = reader->elements[UV].items;
-        input.uv_index = reader->indices[UV].items;
+    uint32_t count = (uint32_t)used->names.entries.count;
+    const struct name *names = used->names.entries.items;
+    for (uint32_t i = 0; ok && i <= count; i++) {
+        uint32_t number = by_material && i < count ? names_find(&known, names[i].text, names[i].length) : MISSING;
+        const char **slot_name = list_room(&mesh->slot_names, 1, sizeof *slot_name);
+        ok = slot_name && list_add_index(&mesh->slots, number == MISSING ? MODEL_NONE : ((uint32_t *)last.items)[number]);
+        if (!ok)
+            break;
+        *slot_name = i < count ? arena_copy_text(&reader->model->arena, names[i].text, names[i].length) : "";
+        ok = *slot_name != NULL;
+        mesh->slot_names.count++;
+        if (by_material && i < count && number == MISSING && reader->model->materials.count)
+            model_warn(reader->model, "%s: the material '%.*s' is in no library", reader->path,
+                       names[i].length < 200 ? (int)names[i].length : 200, names[i].text);
     }
-    return mesh_create(&input, reader->error);
+    names_destroy(&known);
+    list_destroy(&last);
+    if (!ok)
+        return error_no_memory(reader->error, reader->path);
+    /* The slot behind the named ones is that of faces without a name. */
+    if (used->faces.count == 0) {
+        uint32_t only = used->first == UNNAMED ? count : used->first;
+        ((uint32_t *)mesh->slots.items)[0] = ((uint32_t *)mesh->slots.items)[only];
+        ((const char **)mesh->slot_names.items)[0] = ((const char **)mesh->slot_names.items)[only];
+        mesh->slots.count = mesh->slot_names.count = 1;
+        return true;
+    }
+    bool unnamed = false;
+    for (size_t f = 0; f < used->faces.count; f++) {
+        uint32_t *slot = (uint32_t *)used->faces.items + f;
+        unnamed |= *slot == UNNAMED;
+        *slot = *slot == UNNAMED ? count : *slot;
+    }
+    if (!unnamed)
+        mesh->slots.count = mesh->slot_names.count = count;
+    mesh->face_slot = used->faces;
+    used->faces = (struct list){0};
+    return true;
 }
 
-struct mesh *obj_parse(const char *path, const char *text, size_t size, struct error *error) {
-    struct reader reader = {.path = path, .at = text, .end = text + size, .line = 1, .error = error};
-    if (size >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0)) {
-        fail(&reader, "this is UTF-16 text; an OBJ file is plain ASCII or UTF-8");
-        return NULL;
-    }
+bool obj_load(struct model *model, const char *text, size_t size, struct error *error) {
+    struct reader reader = {.path = model->path, .at = text, .end = text + size, .line = 1, .error = error, .model = model,
+                            .materials.current = UNNAMED, .groups.current = UNNAMED};
+    if (size >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0))
+        return fail(&reader, "this is UTF-16 text; an OBJ file is plain ASCII or UTF-8");
     if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0)
         reader.at += 3;
 
@@ -356,15 +485,33 @@ struct mesh *obj_parse(const char *path, const char *text, size_t size, struct e
     while (ok && reader.at < reader.end)
         ok = read_line(&reader);
     ok = ok && check_indices(&reader);
-    if (ok && reader.starts.count == 0)
-        ok = error_set(error, ERROR_SCENE, "%s: no faces in this file", path);
-    struct mesh *mesh = ok ? make_mesh(&reader) : NULL;
-
-    for (int kind = VERTEX; kind < KINDS; kind++) {
-        mem_free(reader.elements[kind].items);
-        mem_free(reader.indices[kind].items);
+    struct model_mesh *mesh = ok ? model_add_mesh(model, error) : NULL;
+    if (mesh) {
+        mesh->vertices = reader.elements[VERTEX], mesh->vertex_index = reader.indices[VERTEX];
+        mesh->uvs = reader.elements[UV], mesh->uv_index = reader.indices[UV];
+        mesh->normals = reader.elements[NORMAL], mesh->normal_index = reader.indices[NORMAL];
+        mesh->starts = reader.starts;
+        ok = make_slots(&reader, mesh);
+    } else {
+        for (int kind = VERTEX; kind < KINDS; kind++) {
+            list_destroy(&reader.elements[kind]);
+            list_destroy(&reader.indices[kind]);
+        }
+        list_destroy(&reader.starts);
     }
-    mem_free(reader.starts.items);
+    names_destroy(&reader.materials.names);
+    names_destroy(&reader.groups.names);
+    list_destroy(&reader.materials.faces);
+    list_destroy(&reader.groups.faces);
+    return mesh != NULL && ok;
+}
+
+struct mesh *obj_parse(const char *path, const char *text, size_t size, struct error *error) {
+    struct model model = {.path = path, .options.alone = true};
+    struct mesh *mesh = NULL;
+    if (obj_load(&model, text, size, error) && model_finish(&model, error))
+        mesh = mesh_share(model_meshes(&model)[0].mesh);
+    model_destroy(&model);
     return mesh;
 }
 

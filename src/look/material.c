@@ -66,15 +66,24 @@ static struct image_place place_on_cube(const struct hit *hit) {
     return place;
 }
 
-static struct image_place place_by_uv(const struct hit *hit, enum image_wrap wrap) {
-    double du = vec3_length(hit->dpdu), dv = vec3_length(hit->dpdv);
+static struct image_place place_by_uv(const struct hit *hit, const struct material *material) {
+    double du = vec3_length(hit->dpdu), dv = vec3_length(hit->dpdv), u = hit->u, v = hit->v;
+    enum image_wrap wrap_u = material->image.wrap, wrap_v = wrap_u;
+    if (material->image.apart) {
+        const double *scale = material->image.scale, *offset = material->image.offset;
+        u = scale[0] * u + offset[0];
+        v = scale[1] * v + offset[1];
+        du = scale[0] != 0 ? du / fabs(scale[0]) : 0;
+        dv = scale[1] != 0 ? dv / fabs(scale[1]) : 0;
+        wrap_v = material->image.wrap_v;
+    }
     /* vt counts v from the bottom of the image (OBJ), image rows from the top. */
-    return (struct image_place){.u = hit->u,
-                                .v = 1 - hit->v,
+    return (struct image_place){.u = u,
+                                .v = 1 - v,
                                 .width_u = du > 0 ? hit->footprint / du : 0,
                                 .width_v = dv > 0 ? hit->footprint / dv : 0,
-                                .wrap_u = wrap,
-                                .wrap_v = wrap};
+                                .wrap_u = wrap_u,
+                                .wrap_v = wrap_v};
 }
 
 static void image_over(const struct material *material, const struct hit *hit, struct surface_look *look) {
@@ -92,14 +101,17 @@ static void image_over(const struct material *material, const struct hit *hit, s
     case MAPPING_UV:
         if (!hit->has_uv)
             return;
-        place = place_by_uv(hit, material->image.wrap);
+        place = place_by_uv(hit, material);
         break;
     }
     if (material->image.flip_u)
         place.u = 1 - place.u;
     struct rgba texel = image_lookup(material->image.image, place.u, place.v, place.width_u, place.width_v,
                                      material->image.filter, place.wrap_u, place.wrap_v);
-    look->kd = vec3_add(vec3_make(texel.r, texel.g, texel.b), vec3_scale(look->kd, 1 - texel.a));
+    struct vec3 colour = vec3_make(texel.r, texel.g, texel.b);
+    if (material->image.apart)
+        colour = vec3_mul(colour, material->image.tint);
+    look->kd = vec3_add(colour, vec3_scale(look->kd, 1 - texel.a));
 }
 
 /* One link of the chain over what the links below left. */
@@ -115,6 +127,8 @@ static void material_link(const struct material *material, const struct hit *hit
                                       .ior = material->phong.ior,
                                       .has_ior = material->phong.has_ior,
                                       .two_sided = material->phong.two_sided};
+        if (material->phong.by_vertex && hit->has_colour)
+            look->kd = vec3_mul(look->kd, hit->colour);
         break;
     case MATERIAL_MARBLE: {
         double ratio = noise_marble(p.x, p.y, p.z, material->marble.f, material->marble.multiplier,

@@ -28,6 +28,7 @@ struct material {
             struct vec3 kd, ks;
             double shininess, reflect, refract, ior;
             bool has_ior, two_sided;
+            bool by_vertex; /* kd is multiplied by the colours of a mesh's vertices */
         } phong;
         struct {
             double f, multiplier, vein_frequency;
@@ -43,8 +44,14 @@ struct material {
             struct image *image;
             enum image_mapping mapping;
             enum image_filter filter;
-            enum image_wrap wrap;
+            enum image_wrap wrap; /* of MAPPING_UV */
+            enum image_wrap wrap_v; /* where `apart` says so, else wrap is for both */
             bool flip_u;
+            /* MAPPING_UV of a file's material: the place is scale * uv + offset (v from below), the colour is
+             * multiplied by tint. */
+            bool apart;
+            double scale[2], offset[2];
+            struct vec3 tint;
         } image;
     };
 };

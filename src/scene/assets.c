@@ -1,6 +1,7 @@
 /* The store of assets: what is the same is there once, however often scripts ask for it. Keys are content (tables) or
  * canonical path (files); a list is enough, since a look-up costs far less than making the asset. */
 #include "base/mem.h"
+#include "image/image_file.h"
 #include "scene/node.h"
 
 #include <string.h>
@@ -14,10 +15,16 @@ static char *copy_path(const char *path) {
 }
 
 void assets_destroy(struct assets *assets) {
+    while (assets->objects) {
+        struct asset_object *next = assets->objects->next;
+        assets->objects->destroy(assets->objects->object);
+        mem_free(assets->objects->key);
+        mem_free(assets->objects);
+        assets->objects = next;
+    }
     while (assets->meshes) {
         struct asset_mesh *next = assets->meshes->next;
         mesh_release(assets->meshes->mesh);
-        mem_free(assets->meshes->path);
         mem_free(assets->meshes);
         assets->meshes = next;
     }
@@ -32,16 +39,13 @@ void assets_destroy(struct assets *assets) {
 }
 
 /* Takes over mesh, also when it fails. */
-static bool keep_mesh(struct assets *assets, struct mesh *mesh, uint64_t key, const char *path, struct error *error) {
+static bool keep_mesh(struct assets *assets, struct mesh *mesh, uint64_t key, struct error *error) {
     struct asset_mesh *entry = mem_alloc_zero(1, sizeof *entry);
-    char *copy = path ? copy_path(path) : NULL;
-    if (!entry || (path && !copy)) {
-        mem_free(entry);
-        mem_free(copy);
+    if (!entry) {
         mesh_release(mesh);
         return error_no_memory(error, "the store of meshes");
     }
-    *entry = (struct asset_mesh){.mesh = mesh, .key = key, .path = copy, .next = assets->meshes};
+    *entry = (struct asset_mesh){.mesh = mesh, .key = key, .next = assets->meshes};
     assets->meshes = entry;
     assets->mesh_count++;
     return true;
@@ -50,23 +54,41 @@ static bool keep_mesh(struct assets *assets, struct mesh *mesh, uint64_t key, co
 struct mesh *assets_mesh(struct assets *assets, const struct mesh_input *input, struct error *error) {
     uint64_t key = mesh_input_hash(input);
     for (struct asset_mesh *entry = assets->meshes; entry; entry = entry->next) {
-        if (!entry->path && entry->key == key && mesh_equals_input(entry->mesh, input))
+        if (entry->key == key && mesh_equals_input(entry->mesh, input))
             return entry->mesh;
     }
     struct mesh *mesh = mesh_create(input, error);
-    return mesh && keep_mesh(assets, mesh, key, NULL, error) ? mesh : NULL;
+    return mesh && keep_mesh(assets, mesh, key, error) ? mesh : NULL;
 }
 
-struct mesh *assets_find_mesh_file(struct assets *assets, const char *path) {
-    for (struct asset_mesh *entry = assets->meshes; entry; entry = entry->next) {
-        if (entry->path && strcmp(entry->path, path) == 0)
-            return entry->mesh;
+void *assets_find_object(struct assets *assets, const char *key) {
+    for (struct asset_object *entry = assets->objects; entry; entry = entry->next) {
+        if (strcmp(entry->key, key) == 0)
+            return entry->object;
     }
     return NULL;
 }
 
-bool assets_add_mesh_file(struct assets *assets, const char *path, struct mesh *mesh, struct error *error) {
-    return keep_mesh(assets, mesh, 0, path, error);
+bool assets_add_object(struct assets *assets, const char *key, void *object, void (*destroy)(void *object),
+                       struct error *error) {
+    struct asset_object *entry = mem_alloc_zero(1, sizeof *entry);
+    char *copy = copy_path(key);
+    if (!entry || !copy) {
+        mem_free(entry);
+        mem_free(copy);
+        destroy(object);
+        return error_no_memory(error, "the store of files");
+    }
+    *entry = (struct asset_object){.object = object, .destroy = destroy, .key = copy, .next = assets->objects};
+    assets->objects = entry;
+    return true;
+}
+
+bool assets_keep_mesh(struct assets *assets, struct mesh *mesh, struct error *error) {
+    for (struct asset_mesh *entry = assets->meshes; entry; entry = entry->next)
+        if (entry->mesh == mesh)
+            return true;
+    return keep_mesh(assets, mesh_share(mesh), 0, error);
 }
 
 struct image *assets_image(struct assets *assets, const char *path, struct error *error) {
@@ -74,7 +96,7 @@ struct image *assets_image(struct assets *assets, const char *path, struct error
         if (strcmp(entry->path, path) == 0)
             return entry->image;
     }
-    struct image *image = image_read_png(path, error);
+    struct image *image = image_read(path, error);
     if (!image)
         return NULL;
     struct asset_image *entry = mem_alloc_zero(1, sizeof *entry);

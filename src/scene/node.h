@@ -13,6 +13,8 @@
 #include "math/affine.h"
 
 enum node_kind { NODE_GROUP, NODE_JOINT, NODE_GEOMETRY, NODE_CSG };
+/* Which faces of a mesh no ray sees, by the order of their corners. Operands of CSG are always whole. */
+enum node_cull { CULL_NONE, CULL_BACK, CULL_FRONT };
 enum node_csg { NODE_UNION, NODE_INTERSECTION, NODE_DIFFERENCE };
 
 /* SPEC 2.4: which way later calls compose. NEW: M = T * M; OLD: M = M * T; SEPARATE: T * R * S kept apart. */
@@ -35,6 +37,11 @@ struct node {
     uint32_t child_count;
     struct shape shape;              /* NODE_GEOMETRY; never SHAPE_CSG */
     const struct material *material; /* may be NULL: plain gray and one warning */
+    /* A mesh whose faces have slots: their materials, NULL for plain gray. `material`, where it is set, covers them all. */
+    const struct material *const *slots;
+    const char *const *slot_names; /* as many, or NULL */
+    uint32_t slot_count;
+    enum node_cull cull;
     const struct material *texture;  /* set_texture: a MATERIAL_IMAGE template whose base is filled in when flattened */
     enum node_csg operation;         /* NODE_CSG */
     struct node *operands[2];
@@ -47,8 +54,7 @@ struct node {
 /* The store of assets: outlives scripts and renders. */
 struct asset_mesh {
     struct mesh *mesh;
-    uint64_t key;
-    char *path; /* file it came from, or NULL for tables */
+    uint64_t key; /* of tables; 0 for those of files */
     struct asset_mesh *next;
 };
 struct asset_image {
@@ -56,7 +62,15 @@ struct asset_image {
     char *path;
     struct asset_image *next;
 };
+/* Anything else that was made of a file and is worth keeping: who made it knows what it is. */
+struct asset_object {
+    void *object;
+    void (*destroy)(void *object);
+    char *key;
+    struct asset_object *next;
+};
 struct assets {
+    struct asset_object *objects;
     struct asset_mesh *meshes;
     struct asset_image *images;
     uint32_t mesh_count, image_count;
@@ -65,9 +79,13 @@ void assets_destroy(struct assets *assets);
 /* The mesh of this input: an equal one from the store or a new one. Owned by the store. */
 struct mesh *assets_mesh(struct assets *assets, const struct mesh_input *input, struct error *error);
 struct image *assets_image(struct assets *assets, const char *path, struct error *error);
-/* By canonical path of a mesh file; NULL when it is not there yet; and the way to add it (the store takes over mesh). */
-struct mesh *assets_find_mesh_file(struct assets *assets, const char *path);
-bool assets_add_mesh_file(struct assets *assets, const char *path, struct mesh *mesh, struct error *error);
+/* By key (the canonical path and how it was read); NULL when it is not there yet; and the way to add it: the store takes
+ * over object, also when it fails. */
+void *assets_find_object(struct assets *assets, const char *key);
+bool assets_add_object(struct assets *assets, const char *key, void *object, void (*destroy)(void *object),
+                       struct error *error);
+/* A mesh that something in the store owns is counted with the others. The store becomes one more owner. */
+bool assets_keep_mesh(struct assets *assets, struct mesh *mesh, struct error *error);
 
 struct scene {
     struct arena arena;

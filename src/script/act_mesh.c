@@ -1,26 +1,35 @@
-/* Meshes from tables and from OBJ files. Both are assets: the same tables, or the same file, are one mesh, so that a
+/* Meshes from tables and from files. Both are assets: the same tables, or the same file, are one mesh, so that a
  * script that builds its scene again for every picture builds no mesh again. */
 #include "script/actions.h"
 #include "script/context.h"
 
 #include "base/file.h"
-#include "formats/obj.h"
+#include "formats/model_node.h"
+#include "geom/mesh_smooth.h"
 
-static struct mesh *mesh_from_file(struct context *context, const char *name, struct error *error) {
+static void read_options(const struct value *args, struct model_options *options) {
+    options->smooth = args[MESH_SMOOTH].given;
+    options->smooth_angle = args[MESH_SMOOTH].number;
+    options->weld = args[MESH_WELD].boolean;
+    options->flip = args[MESH_FLIP].boolean;
+}
+
+static const struct model *model_of_file(struct context *context, const struct value *args, struct error *error) {
+    const char *name = args[MESH_FILE].text;
     char path[PATH_SIZE], canonical[PATH_SIZE];
+    struct model_options options = {0};
+    read_options(args, &options);
     if (!files_require(context, name, path, error))
         return NULL;
     if (!file_canonical(path, canonical, sizeof canonical)) {
         error_set(error, ERROR_SCENE, "cannot find '%s'", name);
         return NULL;
     }
-    struct mesh *mesh = assets_find_mesh_file(context->scene.assets, canonical);
-    if (mesh)
-        return mesh;
-    mesh = obj_read(path, error);
-    if (mesh && !assets_add_mesh_file(context->scene.assets, canonical, mesh, error))
-        return NULL;
-    return mesh;
+    bool fresh;
+    const struct model *model = model_asset(context->scene.assets, path, canonical, &options, &fresh, error);
+    for (int i = 0; model && fresh && i < model->warning_count; i++)
+        context_warn(context, "%s", model->warnings[i]);
+    return model;
 }
 
 /* Every index below count, every face with three corners or more. Places count from 1, as Lua does. */
@@ -85,7 +94,16 @@ static struct mesh *mesh_from_tables(struct context *context, const struct value
         if (!corner_indices(faces, &args[MESH_FACE_UVS], "face_uvs", uvs->count, "uvs", &input.uv_index, error))
             return NULL;
     }
-    return assets_mesh(context->scene.assets, &input, error);
+    struct model_options options = {0};
+    struct mesh_tables own = {0};
+    read_options(args, &options);
+    struct mesh *mesh = NULL;
+    if ((!options.weld || mesh_input_weld(&input, &own, error)) &&
+        (!options.flip || mesh_input_flip(&input, &own, error)) &&
+        (!options.smooth || mesh_input_smooth(&input, &own, options.smooth_angle, error)))
+        mesh = assets_mesh(context->scene.assets, &input, error);
+    mesh_tables_destroy(&own);
+    return mesh;
 }
 
 bool act_mesh(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -93,21 +111,35 @@ bool act_mesh(struct context *context, const struct value *args, struct result *
     if (from_file && from_tables)
         return error_set(error, ERROR_SCENE, "file and verts exclude each other");
     if (!from_file && !args[MESH_VERTS].given)
-        return error_set(error, ERROR_SCENE, "verts is missing (or file, the name of an OBJ file)");
+        return error_set(error, ERROR_SCENE, "verts is missing (or file, the name of a mesh file)");
     if (!from_file && !args[MESH_FACES].given)
         return error_set(error, ERROR_SCENE, "faces is missing");
 
     const char *name = args[MESH_NAME].given ? args[MESH_NAME].text : "mesh";
-    struct mesh *mesh =
-        from_file ? mesh_from_file(context, args[MESH_FILE].text, error) : mesh_from_tables(context, args, name, error);
-    if (!mesh)
-        return false;
-    struct node *node = scene_node(&context->scene, NODE_GEOMETRY, name, error);
+    enum node_cull cull = (enum node_cull)args[MESH_CULL].choice;
+    if (from_file) {
+        const struct model *model = model_of_file(context, args, error);
+        struct model_placing placing = {.name = name, .material = args[MESH_MATERIAL].material, .cull = cull};
+        result->pointer = model ? model_place(&context->scene, model, &placing, error) : NULL;
+        return result->pointer != NULL;
+    }
+    struct mesh *mesh = mesh_from_tables(context, args, name, error);
+    struct node *node = mesh ? scene_node(&context->scene, NODE_GEOMETRY, name, error) : NULL;
     if (!node)
         return false;
     node->material = args[MESH_MATERIAL].material;
+    node->cull = cull;
     node->shape.kind = SHAPE_MESH;
     node->shape.mesh = mesh;
     result->pointer = node;
+    return true;
+}
+
+bool act_faces(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    (void)context;
+    const struct node *node = args[SELF].node;
+    if (node->kind != NODE_GEOMETRY || node->shape.kind != SHAPE_MESH)
+        return error_set(error, ERROR_SCENE, "the node is no mesh");
+    result->pointer = (void *)(uintptr_t)node->shape.mesh; /* only read from */
     return true;
 }

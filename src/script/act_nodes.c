@@ -91,11 +91,16 @@ bool act_geometry(struct context *context, const struct value *args, struct resu
     return give(result, node);
 }
 
-/* An open mesh has no inside. Deeper ones are found when the world is built, which knows their instances. */
+/* What is open has no inside. Deeper ones are found when the world is built, which knows their instances. */
 static bool check_operand(const struct node *operand, struct error *error) {
     struct vec3 a, b;
-    if (operand->kind != NODE_GEOMETRY || operand->shape.kind != SHAPE_MESH ||
-        !mesh_open_edge(operand->shape.mesh, &a, &b))
+    if (operand->kind != NODE_GEOMETRY)
+        return true;
+    if (operand->shape.kind != SHAPE_MESH) {
+        const char *why = shape_why_open(&operand->shape);
+        return !why || error_set(error, ERROR_SCENE, "'%s' %s", operand->name, why);
+    }
+    if (!mesh_open_edge(operand->shape.mesh, &a, &b))
         return true;
     return error_set(error, ERROR_SCENE,
                      "mesh '%s' is not closed, so it has no inside: the edge from {%.6g, %.6g, %.6g} to "

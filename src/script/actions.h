@@ -16,6 +16,58 @@ enum { CSG_NAME, CSG_A, CSG_B, CSG_COUNT };
 action act_node, act_joint, act_sphere, act_cube, act_geometry, act_union, act_difference, act_intersection;
 action act_transform_order;
 
+/* act_shapes.c: each begins with name and material */
+enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_FIRST };
+enum { CYLINDER_FROM = SHAPE_FIRST, CYLINDER_TO, CYLINDER_RADIUS, CYLINDER_OPEN, CYLINDER_COUNT };
+enum { CONE_FROM = SHAPE_FIRST, CONE_TO, CONE_FROM_RADIUS, CONE_RADIUS, CONE_OPEN, CONE_COUNT };
+enum { PARABOLOID_RADIUS = SHAPE_FIRST, PARABOLOID_HEIGHT, PARABOLOID_OPEN, PARABOLOID_COUNT };
+enum {
+    HYPERBOLOID_SHEETS = SHAPE_FIRST,
+    HYPERBOLOID_RADIUS,
+    HYPERBOLOID_HEIGHT,
+    HYPERBOLOID_WAIST,
+    HYPERBOLOID_GAP,
+    HYPERBOLOID_OPEN,
+    HYPERBOLOID_COUNT
+};
+enum { ELLIPSOID_CENTRE = SHAPE_FIRST, ELLIPSOID_RADII, ELLIPSOID_COUNT };
+enum {
+    QUADRIC_XX = SHAPE_FIRST,
+    QUADRIC_YY,
+    QUADRIC_ZZ,
+    QUADRIC_XY,
+    QUADRIC_XZ,
+    QUADRIC_YZ,
+    QUADRIC_X,
+    QUADRIC_Y,
+    QUADRIC_Z,
+    QUADRIC_CONSTANT,
+    QUADRIC_MIN,
+    QUADRIC_MAX,
+    QUADRIC_OPEN,
+    QUADRIC_COUNT
+};
+enum { TORUS_MAJOR = SHAPE_FIRST, TORUS_MINOR, TORUS_COUNT };
+enum { SUPER_E = SHAPE_FIRST, SUPER_N, SUPER_COUNT };
+enum { BOX_MIN = SHAPE_FIRST, BOX_MAX, BOX_COUNT };
+enum { PLANE_NORMAL = SHAPE_FIRST, PLANE_DISTANCE, PLANE_COUNT };
+enum { RECTANGLE_CORNER = SHAPE_FIRST, RECTANGLE_ALONG, RECTANGLE_UP, RECTANGLE_COUNT };
+enum { DISC_CENTRE = SHAPE_FIRST, DISC_NORMAL, DISC_RADIUS, DISC_INNER, DISC_COUNT };
+enum { TRIANGLE_A = SHAPE_FIRST, TRIANGLE_B, TRIANGLE_C, TRIANGLE_COUNT };
+enum { POLYGON_POINTS = SHAPE_FIRST, POLYGON_OUTLINES, POLYGON_COUNT };
+action act_cylinder, act_cone, act_paraboloid, act_hyperboloid, act_ellipsoid, act_quadric, act_torus;
+action act_superellipsoid, act_box, act_plane, act_square, act_rectangle, act_disc, act_triangle, act_polygon;
+
+/* act_swept.c: each begins with name and material */
+enum { LATHE_POINTS = SHAPE_FIRST, LATHE_SPLINE, LATHE_LOOP, LATHE_OPEN, LATHE_COUNT };
+enum { PRISM_OUTLINE = SHAPE_FIRST, PRISM_HOLES, PRISM_FROM, PRISM_TO, PRISM_SPLINE, PRISM_COUNT };
+enum { SWEEP_POINTS = SHAPE_FIRST, SWEEP_RADII, SWEEP_SPLINE, SWEEP_LOOP, SWEEP_COUNT };
+enum { FIELD_HEIGHTS = SHAPE_FIRST, FIELD_IMAGE, FIELD_FLOOR, FIELD_OPEN, FIELD_SMOOTH, FIELD_COUNT };
+enum { BLOB_SPHERES = SHAPE_FIRST, BLOB_CYLINDERS, BLOB_THRESHOLD, BLOB_COUNT };
+enum { CURVE_POINTS = SHAPE_FIRST, CURVE_WIDTHS, CURVE_SPLINE, CURVE_FLAT, CURVE_COUNT };
+enum { PATCH_POINTS = SHAPE_FIRST, PATCH_PATCHES, PATCH_TOLERANCE, PATCH_FLIP, PATCH_COUNT };
+action act_lathe, act_prism, act_sweep, act_height_field, act_blob, act_curve, act_patch;
+
 /* act_methods.c: args[0] is the node itself */
 enum { SELF };
 enum { CHILD_NODE = 1, CHILD_COUNT };
@@ -36,9 +88,13 @@ enum {
     MESH_FACE_NORMALS,
     MESH_UVS,
     MESH_FACE_UVS,
+    MESH_SMOOTH,
+    MESH_WELD,
+    MESH_FLIP,
+    MESH_CULL,
     MESH_COUNT
 };
-action act_mesh;
+action act_mesh, act_bounds, act_faces; /* the last two: args[SELF] is the node */
 
 /* act_materials.c */
 enum { PHONG_KD, PHONG_KS, PHONG_SHININESS, PHONG_REFLECT, PHONG_REFRACT, PHONG_IOR, PHONG_TWO_SIDED, PHONG_COUNT };

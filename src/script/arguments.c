@@ -234,6 +234,22 @@ static void read_tuples(struct context *c, int index, struct place place, int wi
     }
 }
 
+/* The pairs of one curve in a list of curves; messages name the curve and the pair. */
+static void read_curve(struct context *c, int index, struct place place, double *out, uint32_t length) {
+    lua_State *L = c->lua;
+    for (uint32_t k = 0; k < length; k++) {
+        place.j = (lua_Integer)k + 1;
+        if (lua_rawgeti(L, index, place.j) != LUA_TTABLE || lua_rawlen(L, -1) != 2)
+            wrong_type(c, &place, "a pair of numbers", -1);
+        for (int d = 0; d < 2; d++) {
+            lua_rawgeti(L, -1, d + 1);
+            out[2 * (size_t)k + (size_t)d] = read_number(c, -1, &place);
+            lua_pop(L, 1);
+        }
+        lua_pop(L, 1);
+    }
+}
+
 /* Two passes: count the corners, then fill arrays of the right size. */
 static void read_faces(struct context *c, int index, struct place place, struct value *value) {
     lua_State *L = c->lua;
@@ -269,6 +285,50 @@ static void read_faces(struct context *c, int index, struct place place, struct 
     value->count = length;
     value->starts = starts;
     value->indices = indices;
+}
+
+/* Numbers of any count from the list at `index` (absolute). */
+static void read_numbers(struct context *c, int index, struct place place, double *out, uint32_t length) {
+    for (uint32_t k = 0; k < length; k++) {
+        struct place inner = place;
+        *(place.i ? &inner.j : &inner.i) = (lua_Integer)k + 1;
+        lua_rawgeti(c->lua, index, (lua_Integer)k + 1);
+        out[k] = read_number(c, -1, &inner);
+        lua_pop(c->lua, 1);
+    }
+}
+
+/* Lists of numbers, or of pairs, of any lengths, one after the other: count first, then fill. */
+static void read_rows(struct context *c, int index, struct place place, bool pairs, struct value *value) {
+    lua_State *L = c->lua;
+    uint32_t length = list_length(c, index, &place), *starts = call_array(c, (size_t)length + 1, sizeof *starts);
+    uint64_t total = 0;
+    for (uint32_t k = 0; k < length; k++) {
+        place.i = (lua_Integer)k + 1;
+        if (lua_rawgeti(L, index, place.i) != LUA_TTABLE)
+            wrong_type(c, &place, pairs ? "a table of pairs" : "a table of numbers", -1);
+        starts[k] = (uint32_t)total;
+        total += lua_rawlen(L, -1);
+        lua_pop(L, 1);
+        if (total >= UINT32_MAX / 4)
+            context_raise(c, "%s has too many entries", place.parameter->name);
+    }
+    starts[length] = (uint32_t)total;
+    double *numbers = call_array(c, (size_t)total, (pairs ? 2 : 1) * sizeof *numbers);
+    int top = lua_gettop(L) + 1;
+    for (uint32_t k = 0; k < length; k++) {
+        place.i = (lua_Integer)k + 1;
+        lua_rawgeti(L, index, place.i);
+        if (pairs)
+            read_curve(c, top, place, numbers + 2 * (size_t)starts[k], starts[k + 1] - starts[k]);
+        else
+            read_numbers(c, top, place, numbers + starts[k], starts[k + 1] - starts[k]);
+        lua_pop(L, 1);
+    }
+    value->count = length;
+    value->starts = starts;
+    value->numbers = pairs ? NULL : numbers;
+    value->pairs = pairs ? (const double(*)[2])(void *)numbers : NULL;
 }
 
 /* One argument at an absolute stack index. False: it is a ghost. */
@@ -359,6 +419,21 @@ static bool read_value(struct context *c, int index, const struct parameter *p, 
             wrong_type(c, &place, kind_words(p->kind), index);
         read_faces(c, index, place, value);
         return true;
+    case KIND_NUMBERS: {
+        value->single = !lua_istable(L, index);
+        value->count = value->single ? 1 : list_length(c, index, &place);
+        double *numbers = call_array(c, value->count, sizeof *numbers);
+        if (value->single)
+            numbers[0] = read_number(c, index, &place);
+        else
+            read_numbers(c, index, place, numbers, value->count);
+        value->numbers = numbers;
+        return true;
+    }
+    case KIND_ROWS:
+    case KIND_CURVES:
+        read_rows(c, index, place, p->kind == KIND_CURVES, value);
+        return true;
     case KIND_COUNT:
         break;
     }
@@ -390,6 +465,7 @@ static bool looks_like(lua_State *L, int index, enum kind kind) {
     case KIND_AXIS:
         return lua_isstring(L, index);
     case KIND_SIZE:
+    case KIND_NUMBERS:
         return lua_istable(L, index) || lua_isnumber(L, index);
     case KIND_NODE:
         return handle && (ghost || handle->type == HANDLE_NODE);
@@ -408,6 +484,8 @@ static bool looks_like(lua_State *L, int index, enum kind kind) {
     case KIND_POINTS:
     case KIND_PAIRS:
     case KIND_FACES:
+    case KIND_ROWS:
+    case KIND_CURVES:
         return lua_istable(L, index);
     case KIND_COUNT:
         break;

@@ -5,9 +5,46 @@
 #include "base/version.h"
 
 #include <lauxlib.h>
+#include <limits.h>
 #include <string.h>
 
-_Static_assert(RESULT_TEXTURE == 5, "a new result kind needs its line in answer()");
+_Static_assert(RESULT_FACES == 7, "a new result kind needs its line in answer()");
+
+static void push_numbers(lua_State *L, const double numbers[3]) {
+    lua_createtable(L, 3, 0);
+    for (int k = 0; k < 3; k++) {
+        lua_pushnumber(L, numbers[k]);
+        lua_rawseti(L, -2, k + 1);
+    }
+}
+
+static int answer_bounds(lua_State *L, const struct box *box) {
+    push_numbers(L, (const double[3]){box->min.x, box->min.y, box->min.z});
+    push_numbers(L, (const double[3]){box->max.x, box->max.y, box->max.z});
+    return 2;
+}
+
+static int answer_faces(lua_State *L, const struct mesh *mesh) {
+    uint32_t count, corners;
+    const double(*vertices)[3] = mesh_vertices(mesh, &count);
+    lua_createtable(L, (int)(count < INT_MAX ? count : 0), 0);
+    for (uint32_t i = 0; i < count; i++) {
+        push_numbers(L, vertices[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    count = mesh_face_count(mesh);
+    lua_createtable(L, (int)(count < INT_MAX ? count : 0), 0);
+    for (uint32_t f = 0; f < count; f++) {
+        const uint32_t *face = mesh_face(mesh, f, &corners);
+        lua_createtable(L, (int)(corners < INT_MAX ? corners : 0), 0);
+        for (uint32_t k = 0; k < corners; k++) {
+            lua_pushinteger(L, (lua_Integer)face[k]);
+            lua_rawseti(L, -2, (lua_Integer)k + 1);
+        }
+        lua_rawseti(L, -2, (lua_Integer)f + 1);
+    }
+    return 2;
+}
 
 static int answer(lua_State *L, const struct function *function, const struct result *result) {
     switch (function->result) {
@@ -28,6 +65,10 @@ static int answer(lua_State *L, const struct function *function, const struct re
     case RESULT_TEXTURE:
         handle_push(L, HANDLE_TEXTURE, result->pointer);
         return 1;
+    case RESULT_BOUNDS:
+        return answer_bounds(L, result->pointer);
+    case RESULT_FACES:
+        return answer_faces(L, result->pointer);
     }
     return 0;
 }

@@ -190,6 +190,12 @@ static const char *annotation_type(const struct parameter *p, char out[200]) {
         return "number[][]";
     case KIND_FACES:
         return "integer[][]";
+    case KIND_NUMBERS:
+        return "number|number[]";
+    case KIND_ROWS:
+        return "number[][]";
+    case KIND_CURVES:
+        return "number[][][]";
     case KIND_COUNT:
         break;
     }
@@ -209,6 +215,10 @@ static const char *annotation_result(const struct function *function) {
         return "gr.light";
     case RESULT_TEXTURE:
         return "gr.texture";
+    case RESULT_BOUNDS:
+        return "number[], number[]";
+    case RESULT_FACES:
+        return "number[][], integer[][]";
     }
     return NULL;
 }

@@ -48,7 +48,7 @@ static const struct parameter cube_parameters[] = {
 static const struct parameter mesh_parameters[] = {
     [MESH_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'mesh'", NAME_HELP},
     [MESH_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP},
-    [MESH_FILE] = {"file", KIND_FILE, OPTIONAL, ANY, NULL, NULL, "A Wavefront OBJ file, instead of verts and faces."},
+    [MESH_FILE] = {"file", KIND_FILE, OPTIONAL, ANY, NULL, NULL, "An OBJ, PLY, STL, glTF or GLB file, instead of verts and faces."},
     [MESH_VERTS] = {"verts", KIND_POINTS, OPTIONAL, ANY, NULL, NULL, "The vertices."},
     [MESH_NORMALS] = {"normals", KIND_POINTS, OPTIONAL, ANY, NULL, "none: flat", "Vertex normals, of any length."},
     [MESH_FACES] = {"faces", KIND_FACES, OPTIONAL, ANY, NULL, NULL, "Polygons: tuples of 0-based indices into verts."},
@@ -57,7 +57,15 @@ static const struct parameter mesh_parameters[] = {
     [MESH_UVS] = {"uvs", KIND_PAIRS, OPTIONAL, ANY, NULL, "none", "Places on an image, {u, v}; v counts from below."},
     [MESH_FACE_UVS] = {"face_uvs", KIND_FACES, OPTIONAL, ANY, NULL, "faces",
                        "For each face a tuple of 0-based indices into uvs."},
+    [MESH_SMOOTH] = {"smooth", KIND_NUMBER, OPTIONAL, BETWEEN(0, 180), "degrees", "as given",
+                     "Faces that meet at less than this angle are one smooth surface; 0: all are flat."},
+    [MESH_WELD] = {"weld", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether vertices in one place become one."},
+    [MESH_FLIP] = {"flip", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the faces are turned round."},
+    [MESH_CULL] = {"cull", KIND_CHOICE, OPTIONAL, 0, 0, "none back front", NULL, "'none'",
+                   "Which faces no ray meets: those seen from behind, or from the front."},
 };
+
+static const struct parameter self_parameters[] = {{"self", KIND_NODE, 0, ANY, NULL, NULL, "The node."}};
 
 static const struct parameter geometry_parameters[] = {
     [GEOMETRY_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'geometry'", NAME_HELP},
@@ -71,6 +79,207 @@ static const struct parameter csg_parameters[] = {
     [CSG_A] = {"a", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL,
                "A closed solid; a group counts as the union of what is under it."},
     [CSG_B] = {"b", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL, "The other one."},
+};
+
+#define SHAPE(otherwise)                                                                                               \
+    [SHAPE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'" otherwise "'", NAME_HELP},                             \
+    [SHAPE_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP}
+#define LENGTH(name, fallback, help)                                                                                   \
+    { name, KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, fallback, help }
+#define PLACE(name, fallback, help)                                                                                    \
+    { name, KIND_POINT, OPTIONAL, ANY, NULL, fallback, help }
+#define OPEN_ENDS                                                                                                      \
+    {                                                                                                                  \
+        "open", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",                                                            \
+            "Whether it is a mere surface without caps; then it is no solid for CSG."                                  \
+    }
+
+static const struct parameter cylinder_parameters[] = {
+    SHAPE("cylinder"),
+    [CYLINDER_FROM] = PLACE("from", "{0, -1, 0}", "The middle of one end."),
+    [CYLINDER_TO] = PLACE("to", "{0, 1, 0}", "The middle of the other end."),
+    [CYLINDER_RADIUS] = LENGTH("radius", "1", "Radius."),
+    [CYLINDER_OPEN] = OPEN_ENDS,
+};
+
+static const struct parameter cone_parameters[] = {
+    SHAPE("cone"),
+    [CONE_FROM] = PLACE("from", "{0, 0, 0}", "The apex, or the middle of the end with from_radius."),
+    [CONE_TO] = PLACE("to", "{0, 1, 0}", "The middle of the end with radius."),
+    [CONE_FROM_RADIUS] = {"from_radius", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0", "Radius at from: a frustum."},
+    [CONE_RADIUS] = {"radius", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1", "Radius at to."},
+    [CONE_OPEN] = OPEN_ENDS,
+};
+
+static const struct parameter paraboloid_parameters[] = {
+    SHAPE("paraboloid"),
+    [PARABOLOID_RADIUS] = LENGTH("radius", "1", "Radius of the rim."),
+    [PARABOLOID_HEIGHT] = LENGTH("height", "1", "The tip is at the origin, the rim at this y."),
+    [PARABOLOID_OPEN] = OPEN_ENDS,
+};
+
+static const struct parameter hyperboloid_parameters[] = {
+    SHAPE("hyperboloid"),
+    [HYPERBOLOID_SHEETS] = {"sheets", KIND_WHOLE, OPTIONAL, BETWEEN(1, 2), NULL, "1, with gap 2",
+                            "One sheet with a waist, or two bowls."},
+    [HYPERBOLOID_RADIUS] = LENGTH("radius", "twice waist, or 1", "Radius of both rims."),
+    [HYPERBOLOID_HEIGHT] = LENGTH("height", "twice gap, or 1", "The rims are at this y and at minus this y."),
+    [HYPERBOLOID_WAIST] = LENGTH("waist", "radius/2", "One sheet: radius at y = 0."),
+    [HYPERBOLOID_GAP] = LENGTH("gap", "height/2", "Two sheets: the tips are at this y and at minus this y."),
+    [HYPERBOLOID_OPEN] = OPEN_ENDS,
+};
+
+static const struct parameter ellipsoid_parameters[] = {
+    SHAPE("ellipsoid"),
+    [ELLIPSOID_CENTRE] = PLACE("centre", "{0, 0, 0}", "Centre."),
+    [ELLIPSOID_RADII] = {"radii", KIND_SIZE, OPTIONAL, ANY, NULL, "1", "Radii along x, y and z, one number or three."},
+};
+
+#define COEFFICIENT(name)                                                                                              \
+    { name, KIND_NUMBER, OPTIONAL, ANY, NULL, "0", "Coefficient." }
+
+static const struct parameter quadric_parameters[] = {
+    SHAPE("quadric"), /* without any coefficient the unit ball */
+    [QUADRIC_XX] = COEFFICIENT("xx"),
+    [QUADRIC_YY] = COEFFICIENT("yy"),
+    [QUADRIC_ZZ] = COEFFICIENT("zz"),
+    [QUADRIC_XY] = COEFFICIENT("xy"),
+    [QUADRIC_XZ] = COEFFICIENT("xz"),
+    [QUADRIC_YZ] = COEFFICIENT("yz"),
+    [QUADRIC_X] = COEFFICIENT("x"),
+    [QUADRIC_Y] = COEFFICIENT("y"),
+    [QUADRIC_Z] = COEFFICIENT("z"),
+    [QUADRIC_CONSTANT] = {"constant", KIND_NUMBER, OPTIONAL, ANY, NULL, "0",
+                          "The solid is where the sum of all is negative."},
+    [QUADRIC_MIN] = PLACE("min", "without end", "Corner of the box that limits it."),
+    [QUADRIC_MAX] = PLACE("max", "without end", "The opposite corner."),
+    [QUADRIC_OPEN] = OPEN_ENDS,
+};
+
+static const struct parameter torus_parameters[] = {
+    SHAPE("torus"),
+    [TORUS_MAJOR] = {"major", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1", "Radius of the circle in y = 0."},
+    [TORUS_MINOR] = LENGTH("minor", "0.25", "Radius of the tube around it."),
+};
+
+static const struct parameter superellipsoid_parameters[] = {
+    SHAPE("superellipsoid"),
+    [SUPER_E] = {"e", KIND_NUMBER, OPTIONAL, BETWEEN(0.02, 20), NULL, "1",
+                 "Roundness seen along y: near 0 a square, 1 a circle, 2 a diamond."},
+    [SUPER_N] = {"n", KIND_NUMBER, OPTIONAL, BETWEEN(0.02, 20), NULL, "1", "Roundness of the profile, likewise."},
+};
+
+static const struct parameter box_parameters[] = {
+    SHAPE("box"),
+    [BOX_MIN] = {"min", KIND_POINT, 0, ANY, NULL, NULL, "A corner."},
+    [BOX_MAX] = {"max", KIND_POINT, 0, ANY, NULL, NULL, "The opposite corner."},
+};
+
+static const struct parameter plane_parameters[] = {
+    SHAPE("plane"),
+    [PLANE_NORMAL] = {"normal", KIND_DIRECTION, OPTIONAL, ANY, NULL, "none: the square",
+                      "A plane without end that faces there; a half-space in CSG."},
+    [PLANE_DISTANCE] = {"distance", KIND_NUMBER, OPTIONAL, ANY, NULL, "0",
+                        "How far from the origin it is, along the normal."},
+};
+
+static const struct parameter square_parameters[] = {SHAPE("square")};
+
+static const struct parameter rectangle_parameters[] = {
+    SHAPE("rectangle"),
+    [RECTANGLE_CORNER] = PLACE("corner", "{-0.5, 0, 0.5}", "The lower left corner of an image on it."),
+    [RECTANGLE_ALONG] = {"along", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{1, 0, 0}", "The edge to the right."},
+    [RECTANGLE_UP] = {"up", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 0, -1}",
+                      "The edge upwards; not parallel, or else any."},
+};
+
+static const struct parameter disc_parameters[] = {
+    SHAPE("disc"),
+    [DISC_CENTRE] = PLACE("centre", "{0, 0, 0}", "Centre."),
+    [DISC_NORMAL] = {"normal", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 1, 0}", "Where its front looks."},
+    [DISC_RADIUS] = LENGTH("radius", "1, or twice inner", "Radius."),
+    [DISC_INNER] = {"inner", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0", "Radius of the hole."},
+};
+
+static const struct parameter triangle_parameters[] = {
+    SHAPE("triangle"),
+    [TRIANGLE_A] = {"a", KIND_POINT, 0, ANY, NULL, NULL, "A corner; the front sees a, b, c counter-clockwise."},
+    [TRIANGLE_B] = {"b", KIND_POINT, 0, ANY, NULL, NULL, "The next corner."},
+    [TRIANGLE_C] = {"c", KIND_POINT, 0, ANY, NULL, NULL, "The last corner."},
+};
+
+static const struct parameter polygon_parameters[] = {
+    SHAPE("polygon"),
+    [POLYGON_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL,
+                        "Corners in one plane; the front sees the first outline counter-clockwise."},
+    [POLYGON_OUTLINES] = {"outlines", KIND_FACES, OPTIONAL, ANY, NULL, "all points in turn",
+                          "Tuples of 0-based indices into points; what an odd number of them surrounds is filled."},
+};
+
+#define SPLINE(otherwise, help)                                                                                        \
+    { "spline", KIND_CHOICE, OPTIONAL, 0, 0, "linear catmull-rom b-spline bezier", NULL, "'" otherwise "'", help }
+#define SPLINE_HELP "How the points are joined; bezier takes 3 n + 1 of them."
+
+static const struct parameter lathe_parameters[] = {
+    SHAPE("lathe"),
+    [LATHE_POINTS] = {"points", KIND_PAIRS, 0, ANY, NULL, NULL, "The profile: pairs of radius and y."},
+    [LATHE_SPLINE] = SPLINE("linear", SPLINE_HELP),
+    [LATHE_LOOP] = {"loop", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the profile goes back to its first point."},
+    [LATHE_OPEN] = {"open", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
+                    "Whether ends off the axis stay open, not closed by discs."},
+};
+
+static const struct parameter prism_parameters[] = {
+    SHAPE("prism"),
+    [PRISM_OUTLINE] = {"outline", KIND_PAIRS, 0, ANY, NULL, NULL, "A closed curve: pairs of x and z."},
+    [PRISM_HOLES] = {"holes", KIND_CURVES, OPTIONAL, ANY, NULL, "none", "More closed curves; what an odd number of all surrounds is solid."},
+    [PRISM_FROM] = {"from", KIND_NUMBER, OPTIONAL, ANY, NULL, "0", "Height of the bottom."},
+    [PRISM_TO] = {"to", KIND_NUMBER, OPTIONAL, ANY, NULL, "from + 1", "Height of the top."},
+    [PRISM_SPLINE] = SPLINE("linear", "How the points are joined; bezier takes 3 n of them."),
+};
+
+static const struct parameter sweep_parameters[] = {
+    SHAPE("sweep"),
+    [SWEEP_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL, "Where the centre of the ball goes."},
+    [SWEEP_RADII] = {"radii", KIND_NUMBERS, 0, ABOVE(0), NULL, NULL, "Its radius at each point, or one for all."},
+    [SWEEP_SPLINE] = SPLINE("catmull-rom", SPLINE_HELP),
+    [SWEEP_LOOP] = {"loop", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether it goes back to the first point."},
+};
+
+static const struct parameter field_parameters[] = {
+    SHAPE("height field"),
+    [FIELD_HEIGHTS] = {"heights", KIND_ROWS, OPTIONAL, ANY, NULL, NULL,
+                       "Rows of equally many heights; x runs within a row, z from row to row."},
+    [FIELD_IMAGE] = {"image", KIND_IMAGE, OPTIONAL, ANY, NULL, NULL,
+                     "A picture instead: black is 0, white is 1, its upper edge is z = 0."},
+    [FIELD_FLOOR] = {"floor", KIND_NUMBER, OPTIONAL, ANY, NULL, "a tenth of the relief below it", "Height of the solid's floor."},
+    [FIELD_OPEN] = {"open", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether it is a sheet without walls and floor."},
+    [FIELD_SMOOTH] = {"smooth", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether it is shaded with interpolated normals."},
+};
+
+static const struct parameter blob_parameters[] = {
+    SHAPE("blob"),
+    [BLOB_SPHERES] = {"spheres", KIND_ROWS, OPTIONAL, ANY, NULL, "{}", "Balls {x, y, z, radius, strength}; strength 1 may be left out."},
+    [BLOB_CYLINDERS] = {"cylinders", KIND_ROWS, OPTIONAL, ANY, NULL, "{}", "Rods {x1, y1, z1, x2, y2, z2, radius, strength}."},
+    [BLOB_THRESHOLD] = {"threshold", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "0.5",
+                        "The surface is where the fields, strength (1 - (distance/radius)^2)^2, add up to this."},
+};
+
+static const struct parameter curve_parameters[] = {
+    SHAPE("curve"),
+    [CURVE_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL, "Where it goes."},
+    [CURVE_WIDTHS] = {"widths", KIND_NUMBERS, 0, ABOVE(0), NULL, NULL, "Its width at each point, or one for all."},
+    [CURVE_SPLINE] = SPLINE("catmull-rom", SPLINE_HELP),
+    [CURVE_FLAT] = {"flat", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether it is shaded as a ribbon, not as a round hair."},
+};
+
+static const struct parameter patch_parameters[] = {
+    SHAPE("patch"),
+    [PATCH_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL, "Control points, 16 for each patch in 4 rows of 4."},
+    [PATCH_PATCHES] = {"patches", KIND_FACES, OPTIONAL, ANY, NULL, "points in turn", "Tuples of 16 0-based indices into points."},
+    [PATCH_TOLERANCE] = {"tolerance", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "a thousandth of the size",
+                         "The largest distance of the triangles from the true surface."},
+    [PATCH_FLIP] = {"flip", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the front is the other side."},
 };
 
 static const struct parameter order_parameters[] = {
@@ -93,7 +302,7 @@ static const struct parameter set_material_parameters[] = {
 
 static const struct parameter set_texture_parameters[] = {
     SELF_PARAMETER,
-    [SET_TEXTURE] = {"texture", KIND_IMAGE, 0, ANY, NULL, NULL, "A texture, or the name of a PNG file."},
+    [SET_TEXTURE] = {"texture", KIND_IMAGE, 0, ANY, NULL, NULL, "A texture, or the name of a PNG or JPEG file."},
 };
 
 static const struct parameter translate_parameters[] = {
@@ -187,13 +396,13 @@ static const struct parameter wood_parameters[] = {
 
 static const struct parameter image_parameters[] = {
     [IMAGE_MATERIAL] = BASE,
-    [IMAGE_PNG] = {"png", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG file, or a texture."},
+    [IMAGE_PNG] = {"png", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file, or a texture."},
     [IMAGE_FILTER] = FILTER,
     [IMAGE_FLIP_U] = FLIP_U,
 };
 
 static const struct parameter texture_parameters[] = {
-    [TEXTURE_FILE] = {"file", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG file."},
+    [TEXTURE_FILE] = {"file", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file."},
     [TEXTURE_FILTER] = FILTER,
     [TEXTURE_WRAP] = WRAP,
     [TEXTURE_FLIP_U] = FLIP_U,
@@ -226,7 +435,7 @@ static const struct parameter area_parameters[] = {
 static const struct parameter render_parameters[] = {
     [RENDER_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL, "The root of what is drawn."},
     [RENDER_FILE] = {"file", KIND_OUTPUT, 0, ANY, NULL, NULL, "The PNG file to write; missing folders are made."},
-    [RENDER_SKY] = {"sky", KIND_IMAGE, OPTIONAL, ANY, NULL, NULL, "A 4 x 3 cross of images all around, as a PNG file."},
+    [RENDER_SKY] = {"sky", KIND_IMAGE, OPTIONAL, ANY, NULL, NULL, "A 4 x 3 cross of images all around, as a PNG or JPEG file."},
     [RENDER_WIDTH] = {"width", KIND_WHOLE, 0, 1, 1 << 20, NULL, "pixels", NULL, "Width of the picture."},
     [RENDER_HEIGHT] = {"height", KIND_WHOLE, 0, 1, 1 << 20, NULL, "pixels", NULL, "Height of the picture."},
     [RENDER_EYE] = {"eye", KIND_POINT, 0, ANY, NULL, NULL, "Where the camera stands."},
@@ -307,10 +516,50 @@ const struct function function_table[] = {
     GR("union", csg_parameters, RESULT_NODE, act_union, "The same as gr.csg_union.", "name a b"),
     GR("difference", csg_parameters, RESULT_NODE, act_difference, "The same as gr.csg_difference.", "name a b"),
     GR("intersection", csg_parameters, RESULT_NODE, act_intersection, "The same as gr.csg_intersection.", "name a b"),
-    LATER("cylinder", OWNER_GR, RESULT_NODE, "0.2", "A capped cylinder around y, radius 1, y from -1 to 1."),
-    LATER("cone", OWNER_GR, RESULT_NODE, "0.2", "A cone, apex at the origin, base of radius 1 at y = 1."),
-    LATER("torus", OWNER_GR, RESULT_NODE, "0.2", "A torus around y."),
-    LATER("plane", OWNER_GR, RESULT_NODE, "0.2", "The square from -0.5 to 0.5 in x and z at y = 0."),
+    GR("cylinder", cylinder_parameters, RESULT_NODE, act_cylinder,
+       "A capped cylinder; about y, of radius 1, from y = -1 to 1 if nothing else is said.", "material", "name"),
+    GR("cone", cone_parameters, RESULT_NODE, act_cone,
+       "A capped cone or frustum; apex at the origin, radius 1 at y = 1 if nothing else is said.", "material", "name"),
+    GR("torus", torus_parameters, RESULT_NODE, act_torus, "A torus about the y axis.", "name major? minor?",
+       "material major? minor?"),
+    GR("plane", plane_parameters, RESULT_NODE, act_plane,
+       "The square from -0.5 to 0.5 in x and z at y = 0; with a normal a plane without end.", "material", "name"),
+    GR("square", square_parameters, RESULT_NODE, act_square, "The square from -0.5 to 0.5 in x and z at y = 0.",
+       "material", "name"),
+    GR("box", box_parameters, RESULT_NODE, act_box, "A box between two corners.", "material min max",
+       "name min max"),
+    GR("ellipsoid", ellipsoid_parameters, RESULT_NODE, act_ellipsoid, "An ellipsoid along the axes.",
+       "material radii?", "name radii?"),
+    GR("paraboloid", paraboloid_parameters, RESULT_NODE, act_paraboloid, "A capped paraboloid that opens along y.",
+       "material", "name"),
+    GR("hyperboloid", hyperboloid_parameters, RESULT_NODE, act_hyperboloid,
+       "A capped hyperboloid about y, of one sheet or of two.", "material", "name"),
+    GR("quadric", quadric_parameters, RESULT_NODE, act_quadric,
+       "Where xx x^2 + yy y^2 + zz z^2 + xy x y + xz x z + yz y z + x x + y y + z z + constant is negative.",
+       "material xx yy zz constant", "name xx yy zz constant"),
+    GR("superellipsoid", superellipsoid_parameters, RESULT_NODE, act_superellipsoid,
+       "A rounded cube, cylinder, double cone or star: (|x|^(2/e) + |z|^(2/e))^(e/n) + |y|^(2/n) = 1.",
+       "material e? n?", "name e? n?"),
+    GR("rectangle", rectangle_parameters, RESULT_NODE, act_rectangle, "A rectangle or parallelogram.",
+       "material corner? along? up?", "name corner? along? up?"),
+    GR("disc", disc_parameters, RESULT_NODE, act_disc, "A disc, or a ring.", "material", "name"),
+    GR("triangle", triangle_parameters, RESULT_NODE, act_triangle, "A triangle.", "material a b c", "name a b c"),
+    GR("polygon", polygon_parameters, RESULT_NODE, act_polygon, "A polygon of any outline, with holes.",
+       "material points outlines?", "name points outlines?"),
+    GR("lathe", lathe_parameters, RESULT_NODE, act_lathe, "A profile turned about the y axis.", "material points spline?",
+       "name points spline?"),
+    GR("prism", prism_parameters, RESULT_NODE, act_prism, "An outline drawn out along y, with holes.",
+       "material outline", "name outline"),
+    GR("sweep", sweep_parameters, RESULT_NODE, act_sweep, "What a ball covers that moves along a spline.",
+       "material points radii spline?", "name points radii spline?"),
+    GR("height_field", field_parameters, RESULT_NODE, act_height_field,
+       "Land over the square from 0 to 1 in x and z, a solid down to its floor.", "material heights", "name heights"),
+    GR("blob", blob_parameters, RESULT_NODE, act_blob, "Balls and rods that flow into each other.",
+       "material spheres cylinders? threshold?", "name spheres cylinders? threshold?"),
+    GR("curve", curve_parameters, RESULT_NODE, act_curve, "A hair: a ribbon along a spline that faces every ray.",
+       "material points widths spline?", "name points widths spline?"),
+    GR("patch", patch_parameters, RESULT_NODE, act_patch, "Bicubic Bezier patches, as a mesh.",
+       "material points patches?", "name points patches?"),
 
     GR("material", material_parameters, RESULT_MATERIAL, act_material, "A Phong material.", "kd ks shininess"),
     GR("rr_material", rr_parameters, RESULT_MATERIAL, act_rr_material, "A Phong material that reflects and refracts.",
@@ -343,6 +592,10 @@ const struct function function_table[] = {
        "Says how scale, rotate and translate compose in this script.", "order"),
 
     NODE("add_child", child_parameters, RESULT_SELF, act_add_child, "Places a node under this one.", "node"),
+    NODE("bounds", self_parameters, RESULT_BOUNDS, act_bounds,
+         "The box of this node and what is under it, where its transforms have put it: smallest and largest x, y, z.", ""),
+    NODE("faces", self_parameters, RESULT_FACES, act_faces,
+         "The vertices and faces of a mesh, in its own coordinates and as gr.mesh takes them.", ""),
     NODE("set_material", set_material_parameters, RESULT_SELF, act_set_material, "Gives a shape its material.",
          "material"),
     NODE("set_texture", set_texture_parameters, RESULT_SELF, act_set_texture, "Puts an image in the place of kd.",
@@ -414,7 +667,7 @@ const char *kind_words(enum kind kind) {
     case KIND_MATERIAL:
         return "a material";
     case KIND_IMAGE:
-        return "the name of a PNG file or a texture";
+        return "the name of a picture file or a texture";
     case KIND_BACKGROUND:
         return "a colour {r, g, b} or 'gradient'";
     case KIND_NODES:
@@ -427,6 +680,12 @@ const char *kind_words(enum kind kind) {
         return "a table of pairs {u, v}";
     case KIND_FACES:
         return "a table of tuples of indices";
+    case KIND_NUMBERS:
+        return "a number or a table of numbers";
+    case KIND_ROWS:
+        return "a table of tables of numbers";
+    case KIND_CURVES:
+        return "a table of tables of pairs {x, z}";
     case KIND_COUNT:
         break;
     }

@@ -40,6 +40,9 @@ enum kind {
     KIND_POINTS,     /* points, count */
     KIND_PAIRS,      /* pairs, count */
     KIND_FACES,      /* starts, indices, count */
+    KIND_NUMBERS,    /* numbers, count; a number alone: single */
+    KIND_ROWS,       /* starts, numbers, count: lists of numbers of any length */
+    KIND_CURVES,     /* starts, pairs, count: lists of pairs */
     KIND_COUNT,
 };
 
@@ -60,6 +63,8 @@ struct value {
     const double (*points)[3];
     const double (*pairs)[2];
     const uint32_t *starts, *indices;
+    const double *numbers;
+    bool single;
 };
 
 enum {
@@ -82,7 +87,7 @@ struct parameter {
 };
 
 enum owner { OWNER_GR, OWNER_NODE };
-enum result_kind { RESULT_NOTHING, RESULT_SELF, RESULT_NODE, RESULT_MATERIAL, RESULT_LIGHT, RESULT_TEXTURE };
+enum result_kind { RESULT_NOTHING, RESULT_SELF, RESULT_NODE, RESULT_MATERIAL, RESULT_LIGHT, RESULT_TEXTURE, RESULT_BOUNDS, RESULT_FACES };
 
 struct result {
     void *pointer; /* what the result kind says; owned by the scene or the assets */

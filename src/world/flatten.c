@@ -142,12 +142,13 @@ static bool count_drawable(struct flattening *f, struct node *root) {
 /* --- placing --- */
 
 static bool place(struct flattening *f, const struct node *node, const struct transform *world_from_node,
-                  const struct shape *shape, uint32_t material) {
+                  const struct shape *shape, uint32_t material, uint32_t slot_count) {
     struct world *world = f->world;
     if (world->placed_count == f->placed_capacity)
         return error_set(f->error, ERROR_MACHINE, "the scene changed while it was flattened");
     struct placed *placed = &f->placed[world->placed_count];
-    *placed = (struct placed){.world_from_object = *world_from_node, .shape = *shape, .material = material};
+    *placed = (struct placed){.world_from_object = *world_from_node, .shape = *shape, .material = material,
+                              .slot_count = slot_count, .cull = node->cull};
     double stretch = 0;
     for (int i = 0; i < 3; i++) {
         const double *row = world_from_node->forward.m[i];
@@ -169,18 +170,18 @@ bool flatten_mesh_index(struct flattening *f, const struct shape *shape) {
 
 static bool place_node(struct flattening *f, struct node *node, const struct transform *world_from_node) {
     if (node->kind == NODE_GEOMETRY) {
-        uint32_t material;
+        uint32_t material, slot_count;
         if (node->shape.kind == SHAPE_MESH && mesh_triangle_count(node->shape.mesh) == 0)
             return true;
-        return flatten_mesh_index(f, &node->shape) && flatten_material(f, node, &material) &&
-               place(f, node, world_from_node, &node->shape, material);
+        return flatten_mesh_index(f, &node->shape) && flatten_material(f, node, &material, &slot_count) &&
+               place(f, node, world_from_node, &node->shape, material, slot_count);
     }
     if (node->kind == NODE_CSG) {
         const struct csg *csg;
         if (!flatten_csg(f, node, &csg))
             return false;
         struct shape shape = {.kind = SHAPE_CSG, .csg = csg};
-        return !csg || place(f, node, world_from_node, &shape, 0);
+        return !csg || place(f, node, world_from_node, &shape, 0, 1);
     }
     return true;
 }

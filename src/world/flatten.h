@@ -26,8 +26,9 @@ bool flatten_scene(struct flattening *f, struct node *root);
 
 /* The CSG primitive of a NODE_CSG in its own space; NULL shape pointer out when it is empty (nothing to draw). */
 bool flatten_csg(struct flattening *f, struct node *node, const struct csg **out);
-/* Index of a node's effective material (texture over material, plain gray without one). */
-bool flatten_material(struct flattening *f, struct node *node, uint32_t *out);
+/* Index of a node's effective material (texture over material, plain gray without one). A mesh with several material
+ * slots has *count of them in a row, from *out on; everything else has 1. */
+bool flatten_material(struct flattening *f, struct node *node, uint32_t *out, uint32_t *count);
 bool flatten_mesh_index(struct flattening *f, const struct shape *shape);
 
 #endif

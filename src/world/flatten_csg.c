@@ -34,12 +34,8 @@ static bool tell_open(struct flattening *f, const struct node *node) {
                          "node '%.100s' is an operand of CSG but its mesh is open: the edge from (%g, %g, %g) to "
                          "(%g, %g, %g) belongs to one face only, or to faces that disagree about the outside",
                          node->name, a.x, a.y, a.z, b.x, b.y, b.z);
-    const char *why = "is not a closed solid";
-    if (node->shape.kind == SHAPE_CONIC || node->shape.kind == SHAPE_QUADRIC)
-        why = "is not a closed solid: it has no caps, because it says open=true";
-    else if (node->shape.kind == SHAPE_FLAT)
-        why = "is flat and has no inside (only gr.plane with a normal is a solid: the half-space behind it)";
-    return error_set(f->error, ERROR_SCENE, "node '%.100s' is an operand of CSG but %s", node->name, why);
+    return error_set(f->error, ERROR_SCENE, "node '%.100s' is an operand of CSG but %s", node->name,
+                     shape_why_open(&node->shape));
 }
 
 static bool add_leaf(struct flattening *f, struct csg_draft *draft, struct node *node,
@@ -57,7 +53,7 @@ static bool add_leaf(struct flattening *f, struct csg_draft *draft, struct node 
         draft->leaf_capacity = capacity;
     }
     struct csg_leaf leaf = {.shape = node->shape, .csg_from_leaf = *csg_from_node};
-    if (!flatten_mesh_index(f, &node->shape) || !flatten_material(f, node, &leaf.material))
+    if (!flatten_mesh_index(f, &node->shape) || !flatten_material(f, node, &leaf.material, &leaf.slot_count))
         return false;
     draft->leaves[draft->leaf_count] = leaf;
     return add_token(f, draft, (struct csg_token){.operation = CSG_LEAF, .leaf = (uint16_t)draft->leaf_count++});

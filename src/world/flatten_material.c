@@ -8,7 +8,8 @@
 #include <stdio.h>
 
 struct material_entry {
-    const struct material *material, *texture;
+    const void *material; /* a material, or the list of those of the slots */
+    const struct material *texture;
     enum shape_kind shape; /* a texture is mapped by the kind of its shape */
     uint32_t index;
     bool used;
@@ -18,7 +19,7 @@ struct material_table {
     struct material_entry *entries; /* capacity a power of two, at most half full */
     uint32_t capacity, count;
     const struct material **list;
-    uint32_t list_capacity;
+    uint32_t list_capacity, list_count;
 };
 
 static const struct material plain_gray = {
@@ -28,7 +29,7 @@ static const struct material plain_gray = {
     .phong = {.kd = {0.5, 0.5, 0.5}, .ks = {0, 0, 0}, .shininess = 1, .ior = 1},
 };
 
-static struct material_entry *find(struct material_table *table, const struct material *material,
+static struct material_entry *find(struct material_table *table, const void *material,
                                    const struct material *texture, enum shape_kind shape) {
     uint64_t key = random_combine(random_combine((uint64_t)(uintptr_t)material, (uint64_t)(uintptr_t)texture), shape);
     for (uint32_t at = (uint32_t)key;; at++) {
@@ -46,18 +47,15 @@ static bool grow(struct flattening *f) {
         table = arena_alloc(f->arena, sizeof *table);
     uint32_t capacity = old.capacity ? old.capacity * 2 : 64;
     struct material_entry *entries = arena_alloc_array(f->arena, capacity, sizeof *entries);
-    const struct material **list = arena_alloc_array(f->arena, capacity, sizeof *list);
-    if (!table || !entries || !list)
+    if (!table || !entries)
         return error_no_memory(f->error, "the materials of the scene");
-    *table = (struct material_table){.entries = entries, .capacity = capacity, .count = old.count, .list = list,
-                                     .list_capacity = capacity};
+    *table = (struct material_table){.entries = entries, .capacity = capacity, .count = old.count, .list = old.list,
+                                     .list_capacity = old.list_capacity, .list_count = old.list_count};
     for (uint32_t i = 0; i < old.capacity; i++) {
         const struct material_entry *entry = &old.entries[i];
         if (entry->used)
             *find(table, entry->material, entry->texture, entry->texture ? entry->shape : SHAPE_SPHERE) = *entry;
     }
-    for (uint32_t i = 0; i < old.count; i++)
-        list[i] = old.list[i];
     f->materials = table;
     return true;
 }
@@ -108,30 +106,66 @@ static const struct material *textured(struct flattening *f, struct node *node, 
     return material;
 }
 
-bool flatten_material(struct flattening *f, struct node *node, uint32_t *out) {
-    const struct material *base = node->material ? node->material : &plain_gray;
-    if (!node->material)
-        warn_once(f, node, "has no material and is shown in plain gray");
+/* Room for `count` more at the end of the list. */
+static bool grow_list(struct flattening *f, uint32_t count) {
+    struct material_table *table = f->materials;
+    if (table->list_capacity - table->list_count >= count)
+        return true;
+    size_t capacity = ((size_t)table->list_count + count) * 2;
+    if (capacity > UINT32_MAX)
+        return error_set(f->error, ERROR_SCENE, "the scene has more than 2^31 materials");
+    const struct material **list = arena_alloc_array(f->arena, capacity, sizeof *list);
+    if (!list)
+        return error_no_memory(f->error, "the materials of the scene");
+    for (uint32_t i = 0; i < table->list_count; i++)
+        list[i] = table->list[i];
+    table->list = list;
+    table->list_capacity = (uint32_t)capacity;
+    return true;
+}
+
+bool flatten_material(struct flattening *f, struct node *node, uint32_t *out, uint32_t *count) {
+    bool by_slot = !node->material && node->slot_count > 0;
+    const struct material *only = node->material;
+    const struct material *const *bases = by_slot ? node->slots : &only;
+    *count = by_slot ? node->slot_count : 1;
     const struct material *texture = node->texture;
-    if (texture && base->depth >= MATERIAL_DEPTH)
-        return error_set(f->error, ERROR_SCENE, "node '%.100s': more than %d materials are stacked on each other",
-                         node->name, MATERIAL_DEPTH);
+    for (uint32_t i = 0; i < *count; i++) {
+        if (!bases[i])
+            warn_once(f, node, by_slot ? "has faces without a material, which are shown in plain gray"
+                                       : "has no material and is shown in plain gray");
+        if (texture && bases[i] && bases[i]->depth >= MATERIAL_DEPTH)
+            return error_set(f->error, ERROR_SCENE, "node '%.100s': more than %d materials are stacked on each other",
+                             node->name, MATERIAL_DEPTH);
+    }
     if (texture && node->shape.kind == SHAPE_MESH && !mesh_has_uv(node->shape.mesh)) {
         warn_once(f, node, "has a texture, but its mesh has no texture coordinates (vt): the texture is not shown");
         texture = NULL;
     }
+    if (texture && node->shape.kind == SHAPE_BLOB) {
+        warn_once(f, node, "has a texture, but a blob has no texture coordinates: the texture is not shown");
+        texture = NULL;
+    }
     if ((!f->materials || f->materials->count * 2 >= f->materials->capacity) && !grow(f))
         return false;
-    struct material_entry *entry = find(f->materials, base, texture, node->shape.kind);
+    const void *key = by_slot ? (const void *)node->slots : only ? (const void *)only : &plain_gray;
+    struct material_entry *entry = find(f->materials, key, texture, node->shape.kind);
     if (!entry->used) {
-        const struct material *effective = texture ? textured(f, node, base) : base;
-        if (!effective)
+        if (!grow_list(f, *count))
             return false;
-        *entry = (struct material_entry){base, texture, node->shape.kind, f->materials->count, true};
-        f->materials->list[f->materials->count++] = effective;
+        struct material_table *table = f->materials;
+        *entry = (struct material_entry){key, texture, node->shape.kind, table->list_count, true};
+        table->count++;
+        for (uint32_t i = 0; i < *count; i++) {
+            const struct material *base = bases[i] ? bases[i] : &plain_gray;
+            const struct material *effective = texture ? textured(f, node, base) : base;
+            if (!effective)
+                return false;
+            table->list[table->list_count++] = effective;
+        }
     }
     f->world->materials = f->materials->list;
-    f->world->material_count = f->materials->count;
+    f->world->material_count = f->materials->list_count;
     *out = entry->index;
     return true;
 }

@@ -89,12 +89,25 @@ struct search {
     bool found;
 };
 
+/* Faces that are not seen are passed: the search goes on behind them. */
+static bool nearest_of_mesh(const struct world *world, uint32_t index, const struct ray *ray_object,
+                            struct geom_scratch *geom, struct crossing *out) {
+    const struct placed *placed = &world->placed[index];
+    bool found = mesh_nearest(placed->shape.mesh, ray_object, world->accel, geom, out);
+    struct ray rest = *ray_object;
+    while (found && placed->cull != CULL_NONE && out->enter == (placed->cull == CULL_FRONT)) {
+        rest.t_min = out->t;
+        found = mesh_nearest(placed->shape.mesh, &rest, world->accel, geom, out);
+    }
+    return found;
+}
+
 /* Runs one question about one placed primitive again with more scratch until it fits. */
 static bool ask_nearest(struct search *s, uint32_t index, const struct ray *ray_object, struct crossing *out) {
     const struct shape *shape = &s->world->placed[index].shape;
     struct geom_scratch *geom = &s->scratch->geom;
     for (;;) {
-        bool found = shape->kind == SHAPE_MESH ? mesh_nearest(shape->mesh, ray_object, s->world->accel, geom, out)
+        bool found = shape->kind == SHAPE_MESH ? nearest_of_mesh(s->world, index, ray_object, geom, out)
                                                : shape_nearest(shape, ray_object, geom, out);
         if (!geom->overflow)
             return found;
@@ -190,7 +203,10 @@ static bool any_placed(const struct world *world, uint32_t index, const struct r
     const struct placed *placed = &world->placed[index];
     struct ray ray_object = ray_transform(&placed->world_from_object.inverse, ray);
     for (;;) {
-        bool found = placed->shape.kind == SHAPE_MESH
+        struct crossing ignored;
+        bool found = placed->shape.kind == SHAPE_MESH && placed->cull != CULL_NONE
+                         ? nearest_of_mesh(world, index, &ray_object, &scratch->geom, &ignored)
+                     : placed->shape.kind == SHAPE_MESH
                          ? mesh_any(placed->shape.mesh, &ray_object, world->accel, &scratch->geom)
                          : shape_any(&placed->shape, &ray_object, &scratch->geom);
         if (!scratch->geom.overflow)
@@ -330,6 +346,10 @@ static void describe(const struct world *world, const struct ray *ray, uint32_t 
     double length = vec3_length(ray->direction);
     bool in_csg = placed->shape.kind == SHAPE_CSG;
     const struct csg_leaf *leaf = in_csg ? &placed->shape.csg->leaves[surface.leaf] : NULL;
+    uint32_t material = in_csg ? leaf->material : placed->material;
+    uint32_t slot_count = in_csg ? leaf->slot_count : placed->slot_count;
+    if (surface.material_slot < slot_count)
+        material += surface.material_slot;
     enum shape_kind kind = in_csg ? leaf->shape.kind : placed->shape.kind;
     *hit = (struct hit){.t = crossing->t,
                         .point = affine_point(&map->forward, surface.point),
@@ -343,7 +363,9 @@ static void describe(const struct world *world, const struct ray *ray, uint32_t 
                         .placed = index,
                         .leaf = surface.leaf,
                         .part = crossing->part,
-                        .material = in_csg ? leaf->material : placed->material,
+                        .material = material,
+                        .has_colour = surface.has_colour,
+                        .colour = surface.colour,
                         .on_sphere = kind == SHAPE_SPHERE,
                         .on_box = kind == SHAPE_BOX,
                         .time = ray->time};

@@ -16,6 +16,8 @@ struct placed {
     struct transform world_from_object;
     struct shape shape;
     uint32_t material; /* unused for CSG: the leaves have their own */
+    uint32_t slot_count; /* of a mesh: face slot k has material + k; below 2 all have `material` */
+    enum node_cull cull; /* of a mesh */
     double scale;      /* largest stretch of world_from_object: bounds errors */
 };
 

@@ -1,2 +1,2 @@
--- expect: SCRIPT:2: gr.mesh: verts is missing (or file, the name of an OBJ file) (node 'flag')
+-- expect: SCRIPT:2: gr.mesh: verts is missing (or file, the name of a mesh file) (node 'flag')
 gr.mesh{name = 'flag'}

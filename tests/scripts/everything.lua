@@ -30,6 +30,16 @@ for _, make in ipairs({gr.mesh, gr.fast_mesh}) do root:add_child(make(plain, ver
 for _, make in ipairs({gr.vn_mesh, gr.fast_vn_mesh}) do root:add_child(make(plain, verts, verts, faces, faces)) end
 root:add_child(gr.mesh{material = plain, verts = verts, faces = faces, uvs = {{0, 0}, {1, 0}, {0, 1}, {1, 1}}})
 root:add_child(gr.mesh('flag', 'flag.obj'))
+root:add_child(gr.lathe(plain, {{0, 0}, {1, 0}, {1, 1}, {0, 2}}, 'catmull-rom'))
+root:add_child(gr.prism{material = plain, outline = {{0, 0}, {3, 0}, {0, 3}}, holes = {{{1, 1}, {1.5, 1}, {1, 1.5}}}, to = 2})
+root:add_child(gr.sweep(plain, {{0, 0, 0}, {1, 1, 0}, {2, 0, 1}}, {0.1, 0.2, 0.1}))
+root:add_child(gr.height_field(plain, {{0, 1, 0}, {1, 0, 1}}))
+root:add_child(gr.height_field{material = plain, image = 'cross.png', smooth = true, open = true})
+root:add_child(gr.blob(plain, {{0, 0, 0, 1}}, {{0, 0, 0, 1, 0, 0, 0.5, 2}}, 0.4))
+root:add_child(gr.curve(plain, {{0, 0, 0}, {1, 1, 0}, {2, 0, 1}}, 0.1, 'b-spline'))
+local net = {}
+for k = 0, 15 do net[k + 1] = {k % 4, k % 3, k // 4} end
+root:add_child(gr.patch{material = plain, points = net, tolerance = 0.05})
 gr.transform_order('separate')
 root:scale(1, 1, 1)
 gr.transform_order('new')

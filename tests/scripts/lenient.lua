@@ -1,6 +1,6 @@
 -- With --lenient whatever does not exist is told once and does nothing.
 local root = gr.node('root')
-local torus = gr.torus('ring', 2, 1)
+local torus = gr.klein_bottle('ring', 2, 1)
 root:add_child(torus)
 torus:scale(1, 2, 3)
 torus:spin(7)

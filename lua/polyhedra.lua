@@ -1,4 +1,4 @@
--- solids: the five Platonic solids, subdivision surfaces, geodesic spheres, boxes.
+-- polyhedra: the five Platonic solids, subdivision surfaces, geodesic spheres, boxes.
 -- Subdivision: C. Loop, "Smooth Subdivision Surfaces Based on Triangles" (Utah 1987); E. Catmull, J. Clark, "Recursively
 -- generated B-spline surfaces on arbitrary topological meshes", CAD 10(6), 1978. Borders follow the cubic B-spline rule.
 -- Invariant: faces are counted counter-clockwise seen from outside and index from 0; shared vertices stay shared.
@@ -69,7 +69,7 @@ function M.dodecahedron()
     end
     local faces = {}
     for corner = 0, #corners - 1 do
-        local start = triangles[1] and next(around[corner])
+        local start = math.huge
         for candidate in pairs(around[corner]) do start = math.min(start, candidate) end
         local face, at = {}, start
         repeat
@@ -198,14 +198,13 @@ end
 function M.catmull_clark(verts, faces)
     local edges, find = edges_of(verts, faces)
     local centres = {}
-    for k, face in ipairs(faces) do
+    for _, face in ipairs(faces) do
         local parts = {}
         for _, index in ipairs(face) do
             parts[#parts + 1] = verts[index + 1]
             parts[#parts + 1] = 1 / #face
         end
         combine(centres, table.unpack(parts))
-        assert(#centres == k)
     end
     local around_faces, around_edges, border = {}, {}, {}
     for k, face in ipairs(faces) do
@@ -270,7 +269,7 @@ function M.catmull_clark(verts, faces)
 end
 
 --- Subdivides several times.
----@param method fun(verts: number[][], faces: integer[][]): number[][], integer[][]  solids.loop or solids.catmull_clark
+---@param method fun(verts: number[][], faces: integer[][]): number[][], integer[][]  polyhedra.loop or polyhedra.catmull_clark
 ---@param times integer
 ---@param verts number[][]
 ---@param faces integer[][]

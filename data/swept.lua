@@ -1,0 +1,150 @@
+-- Shapes made of many parts: lathe, prism, sphere sweep, height field, blob, hair and patches, some of them carved.
+-- Run: ./gray data/swept.lua
+
+local function ceramic(r, g, b) return gr.rr_material({r, g, b}, {0.35, 0.35, 0.35}, 60, 0.12, 0, 1.5) end
+
+local scene = gr.node('scene')
+local sin, cos, pi = math.sin, math.cos, math.pi
+
+-- A small generator of its own, so that the picture is the same everywhere.
+local seed = 7
+local function random(low, high)
+    seed = (seed * 16807) % 2147483647
+    return low + (high - low) * seed / 2147483647
+end
+
+-- The table top: a lathe with a rounded rim.
+scene:add_child(gr.lathe {
+    name = 'table', spline = 'b-spline', material = gr.wood_pnd_material(gr.material({0.55, 0.36, 0.20}, {0.1, 0.1, 0.1}, 20), 0.3, 9, 0, {0.36, 0.21, 0.11}),
+    points = {{0, -0.5}, {8, -0.5}, {8.6, -0.45}, {8.7, -0.2}, {8.5, 0}, {8, 0}, {0, 0}},
+})
+
+-- Mountains behind it: a height field from sums of waves.
+local heights = {}
+for j = 0, 160 do
+    local row = {}
+    for i = 0, 160 do
+        local x, z, h, f, a = i / 160, j / 160, 0, 3, 0.5
+        for octave = 1, 6 do
+            h = h + a * math.abs(sin(f * x * 2.3 + octave * 1.7 + cos(f * z))) * math.abs(cos(f * z * 1.9 + octave + sin(f * x * 0.7)))
+            f, a = f * 2.03, a * 0.47
+        end
+        row[i + 1] = h * (1 - (2 * x - 1) ^ 4) * (1 - (2 * z - 1) ^ 4)
+    end
+    heights[j + 1] = row
+end
+local land = gr.height_field {
+    name = 'mountains', heights = heights, floor = -0.2, smooth = true,
+    material = gr.material({0.52, 0.55, 0.62}, {0, 0, 0}, 1),
+}
+land:translate(-0.5, 0, -0.5):scale(56, 11, 24):translate(0, -4.2, -26)
+scene:add_child(land)
+
+-- A vase of a spline profile with a wall, cut open to show it; its cut face is the knife's.
+local profile = {{0, 0}, {0.75, 0}, {0.85, 0.12}, {1.15, 0.9}, {1.05, 1.7}, {0.5, 2.4}, {0.45, 2.75}, {0.72, 3.1},
+    {0.62, 3.1}, {0.36, 2.75}, {0.40, 2.4}, {0.92, 1.7}, {1.02, 0.95}, {0.72, 0.25}, {0, 0.18}}
+local function vase(colour) return gr.lathe {name = 'vase', points = profile, spline = 'catmull-rom', material = colour} end
+local cut = gr.difference('cut vase', vase(ceramic(0.10, 0.26, 0.55)),
+    gr.box {min = {0, -1, 0}, max = {3, 5, 3}, material = gr.material({0.85, 0.55, 0.35}, {0, 0, 0}, 1)})
+cut:rotate('y', -38):translate(-3.6, 0, 0.4)
+scene:add_child(cut)
+
+-- Grass in another one: hairs along splines, thinner to the tip.
+local pot = gr.node('pot')
+pot:add_child(gr.lathe {
+    name = 'bowl', spline = 'catmull-rom', material = ceramic(0.78, 0.76, 0.70),
+    points = {{0, 0}, {0.8, 0}, {1.2, 0.5}, {1.15, 1.0}, {1.05, 1.0}, {1.0, 0.8}, {0, 0.7}},
+})
+local greens = {
+    gr.material({0.20, 0.42, 0.10}, {0.1, 0.1, 0.1}, 20), gr.material({0.32, 0.52, 0.14}, {0.1, 0.1, 0.1}, 20),
+    gr.material({0.48, 0.56, 0.20}, {0.1, 0.1, 0.1}, 20),
+}
+for k = 1, 700 do
+    local angle, r = random(0, 2 * pi), 0.95 * math.sqrt(random(0, 1))
+    local lean, tall, turn = random(0.1, 0.9) * (0.3 + r), random(1.2, 2.4), angle + random(-0.8, 0.8)
+    local x, z = r * cos(angle), r * sin(angle)
+    pot:add_child(gr.curve {
+        name = 'blade', spline = 'bezier', material = greens[k % 3 + 1], widths = {0.05, 0.045, 0.035, 0.004},
+        points = {{x, 0.7, z}, {x + 0.1 * cos(turn), 0.7 + tall * 0.4, z + 0.1 * sin(turn)},
+            {x + 0.4 * lean * cos(turn), 0.7 + tall * 0.9, z + 0.4 * lean * sin(turn)},
+            {x + 1.3 * lean * cos(turn), 0.7 + tall * (1 - 0.3 * lean), z + 1.3 * lean * sin(turn)}},
+    })
+end
+pot:translate(-0.9, 0, -2.6)
+scene:add_child(pot)
+
+-- A trefoil knot: a ball along a closed spline.
+local knot = {}
+for k = 0, 35 do
+    local t = 2 * pi * k / 36
+    knot[k + 1] = {sin(t) + 2 * sin(2 * t), -sin(3 * t), cos(t) - 2 * cos(2 * t)}
+end
+local gold = gr.rr_material({0.55, 0.38, 0.10}, {0.95, 0.75, 0.35}, 80, 0.45, 0, 1.5)
+scene:add_child(gr.sweep {name = 'knot', points = knot, radii = 0.42, loop = true, material = gold}
+    :rotate('x', 90):scale(0.5, 0.5, 0.5):rotate('y', 20):translate(2.1, 1.62, -1.6))
+
+-- A snake whose radius changes.
+local path, radii = {}, {}
+for k = 0, 16 do
+    radii[k + 1] = k == 0 and 0.10 or k == 1 and 0.17 or 0.15 * (1 - k / 17) + 0.02
+    path[k + 1] = {k * 0.26, radii[k + 1], 0.35 * sin(k * 0.9) * (1 - k / 40)}
+end
+scene:add_child(gr.sweep {name = 'snake', points = path, radii = radii, material = ceramic(0.12, 0.42, 0.22)}
+    :rotate('y', 8):translate(-2.1, 0, 3.3))
+
+-- A gear: a prism with teeth of splines and holes, carved on top by a lathe.
+local teeth, holes = {}, {}
+for k = 0, 47 do
+    local r = k % 4 < 2 and 1.25 or 1.0
+    teeth[k + 1] = {r * cos(k * pi / 24), r * sin(k * pi / 24)}
+end
+for h = 0, 5 do
+    local hole = {}
+    for k = 0, 7 do
+        hole[k + 1] = {0.66 * cos(h * pi / 3) + 0.17 * cos(k * pi / 4), 0.66 * sin(h * pi / 3) + 0.17 * sin(k * pi / 4)}
+    end
+    holes[h + 1] = hole
+end
+local steel = gr.rr_material({0.30, 0.31, 0.34}, {0.6, 0.6, 0.62}, 60, 0.35, 0, 1.5)
+local gear = gr.difference('gear',
+    gr.prism {outline = teeth, holes = holes, to = 0.4, spline = 'catmull-rom', material = steel},
+    gr.lathe {points = {{0.2, -1}, {0.2, 0.3}, {0.36, 0.3}, {0.36, 1}}, material = steel})
+gear:rotate('y', 14):rotate('x', 62):translate(4.7, 1.16, -0.2)
+scene:add_child(gear)
+
+-- A blob: the crown that a drop makes in a liquid, of rods and balls; the last ball takes away.
+local balls, rods = {}, {}
+for k = 0, 11 do
+    local a, b, tall = k * pi / 6, (k + 1) * pi / 6, 0.85 + 0.2 * sin(k * 2.4)
+    rods[#rods + 1] = {cos(a), 0.12, sin(a), cos(b), 0.12, sin(b), 0.38}
+    rods[#rods + 1] = {cos(a), 0.1, sin(a), 1.25 * cos(a), tall, 1.25 * sin(a), 0.30, 0.8}
+    balls[#balls + 1] = {1.34 * cos(a), tall + 0.15 + 0.35 * (k % 3), 1.34 * sin(a), 0.30, 1.2}
+end
+balls[#balls + 1] = {0, 0.75, 0, 0.55, 1.5}
+balls[#balls + 1] = {0, 0.2, 0, 0.7, 1}
+balls[#balls + 1] = {0, 0.45, 0, 0.35, -0.6}
+scene:add_child(gr.blob {
+    name = 'crown', threshold = 0.45, spheres = balls, cylinders = rods,
+    material = gr.rr_material({0.62, 0.10, 0.12}, {0.5, 0.5, 0.5}, 90, 0.15, 0, 1.5),
+}:rotate('y', 10):translate(0.3, 0.05, 1.3))
+
+-- A patch as a dish for three cherries.
+local dish = {}
+for j = 0, 3 do
+    for i = 0, 3 do
+        local x, z = i / 1.5 - 1, j / 1.5 - 1
+        dish[#dish + 1] = {1.3 * x * (1 - 0.25 * z * z), 0.25 + 0.55 * x * x + 0.5 * z * z + 0.35 * x * z, 1.1 * z * (1 - 0.2 * x * x)}
+    end
+end
+scene:add_child(gr.patch {name = 'dish', points = dish, tolerance = 0.001,
+    material = gr.rr_material({0.62, 0.46, 0.22}, {0.3, 0.3, 0.3}, 30, 0.1, 0, 1.5), flip = true}:scale(0.8, 0.8, 0.8):rotate('y', 30):translate(3.3, -0.42, 3.4))
+for k = 0, 2 do
+    scene:add_child(gr.sphere {name = 'cherry', material = ceramic(0.55, 0.03, 0.08), radius = 0.2,
+        centre = {3.3 + 0.22 * cos(k * 2.1 + 0.5), 0.36 + 0.02 * k, 3.4 + 0.22 * sin(k * 2.1 + 0.5)}})
+end
+
+gr.render {
+    node = scene, file = 'swept.png', width = 960, height = 600, eye = {0.3, 5.2, 13.5}, target = {0.2, 1.05, 0}, up = {0, 1, 0}, fov = 32,
+    ambient = {0.34, 0.35, 0.38}, background = {0.62, 0.72, 0.84},
+    lights = {gr.light({-9, 14, 12}, {0.62, 0.60, 0.54}, {1, 0, 0}), gr.light({12, 9, 6}, {0.22, 0.24, 0.30}, {1, 0, 0})},
+}

@@ -1,0 +1,51 @@
+/* The instruction set is asked of the processor once, when the program starts. */
+#include "accel/isa.h"
+
+#include <string.h>
+
+static enum accel_isa chosen;
+
+static bool has_avx2(void) {
+#if defined(__x86_64__)
+    __builtin_cpu_init();
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+#else
+    return false;
+#endif
+}
+
+static bool has_avx512(void) {
+#if defined(__x86_64__)
+    return has_avx2() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+           __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
+#else
+    return false;
+#endif
+}
+
+static __attribute__((constructor)) void choose_at_start(void) {
+    chosen = has_avx512() ? ACCEL_ISA_AVX512 : has_avx2() ? ACCEL_ISA_AVX2 : ACCEL_ISA_BASE;
+}
+
+bool accel_select_isa(const char *name) {
+    if (strcmp(name, "auto") == 0)
+        choose_at_start();
+    else if (strcmp(name, "base") == 0)
+        chosen = ACCEL_ISA_BASE;
+    else if (strcmp(name, "avx2") == 0 && has_avx2())
+        chosen = ACCEL_ISA_AVX2;
+    else if (strcmp(name, "avx512") == 0 && has_avx512())
+        chosen = ACCEL_ISA_AVX512;
+    else
+        return false;
+    return true;
+}
+
+enum accel_isa accel_isa(void) {
+    return chosen;
+}
+
+const char *accel_isa_name(void) {
+    static const char *const names[] = {"base", "avx2", "avx512"};
+    return names[chosen];
+}

@@ -1,0 +1,15 @@
+/* Which instruction set the kernels use: the best the processor has, unless pinned. The answers do not depend on it. */
+#ifndef GRAY_ACCEL_ISA_H
+#define GRAY_ACCEL_ISA_H
+
+#include <stdbool.h>
+
+enum accel_isa { ACCEL_ISA_BASE, ACCEL_ISA_AVX2, ACCEL_ISA_AVX512 };
+
+/* "auto", "base", "avx2" or "avx512"; false when the name is unknown or the processor lacks it (nothing changes then). Call before
+ * the first search and from one thread. */
+bool accel_select_isa(const char *name);
+const char *accel_isa_name(void);
+enum accel_isa accel_isa(void);
+
+#endif

@@ -1,0 +1,445 @@
+/* Four and eight floats at a time, under one set of names for three targets: AVX (files compiled with -mavx2), SSE2 (every
+ * x86-64) and plain loops (any processor). Only what the kernels use. Results of single operations are the same on all
+ * of them except for simd8_multiply_sub and simd8_multiply_add, which may round once or twice: nothing exact may depend
+ * on them. */
+#ifndef GRAY_ACCEL_SIMD_H
+#define GRAY_ACCEL_SIMD_H
+
+#include <math.h>
+#include <stdint.h>
+
+#if defined(__SSE2__) && !defined(GRAY_NO_SIMD)
+#include <immintrin.h>
+
+typedef __m128 simd4;
+
+static inline simd4 simd4_load(const float *p) {
+    return _mm_loadu_ps(p);
+}
+static inline void simd4_store(float *p, simd4 a) {
+    _mm_storeu_ps(p, a);
+}
+static inline simd4 simd4_all(float x) {
+    return _mm_set1_ps(x);
+}
+static inline simd4 simd4_make(float x, float y, float z, float w) {
+    return _mm_setr_ps(x, y, z, w);
+}
+static inline simd4 simd4_add(simd4 a, simd4 b) {
+    return _mm_add_ps(a, b);
+}
+static inline simd4 simd4_sub(simd4 a, simd4 b) {
+    return _mm_sub_ps(a, b);
+}
+static inline simd4 simd4_mul(simd4 a, simd4 b) {
+    return _mm_mul_ps(a, b);
+}
+static inline simd4 simd4_min(simd4 a, simd4 b) {
+    return _mm_min_ps(a, b);
+}
+static inline simd4 simd4_max(simd4 a, simd4 b) {
+    return _mm_max_ps(a, b);
+}
+static inline simd4 simd4_size(simd4 a) {
+    return _mm_andnot_ps(_mm_set1_ps(-0.0f), a);
+}
+/* One bit per lane whose sign is set. */
+static inline unsigned simd4_negative(simd4 a) {
+    return (unsigned)_mm_movemask_ps(a);
+}
+/* Lane 3 becomes 0. */
+static inline simd4 simd4_three(simd4 a) {
+    return _mm_and_ps(a, _mm_castsi128_ps(_mm_setr_epi32(-1, -1, -1, 0)));
+}
+/* Truncated to integers. */
+static inline void simd4_store_int(int32_t *p, simd4 a) {
+    _mm_storeu_si128((__m128i *)(void *)p, _mm_cvttps_epi32(a));
+}
+/* The smallest of lanes 0, 1, 2 in lanes 0, 1, 2; lane 3 of `a` must not be the smallest. */
+static inline simd4 simd4_min_of_three(simd4 a) {
+    simd4 b = _mm_min_ps(a, _mm_shuffle_ps(a, a, _MM_SHUFFLE(3, 0, 2, 1)));
+    return _mm_min_ps(b, _mm_shuffle_ps(a, a, _MM_SHUFFLE(3, 1, 0, 2)));
+}
+static inline float simd4_first(simd4 a) {
+    return _mm_cvtss_f32(a);
+}
+/* Adds b where a <= limit; *lanes tells where. */
+static inline simd4 simd4_add_where_reached(simd4 a, simd4 limit, simd4 b, unsigned *lanes) {
+    simd4 reached = _mm_cmple_ps(a, limit);
+    *lanes = (unsigned)_mm_movemask_ps(reached);
+    return _mm_add_ps(a, _mm_and_ps(reached, b));
+}
+
+#else
+
+typedef struct {
+    float lane[4];
+} simd4;
+
+static inline simd4 simd4_load(const float *p) {
+    return (simd4){{p[0], p[1], p[2], p[3]}};
+}
+static inline void simd4_store(float *p, simd4 a) {
+    for (int i = 0; i < 4; i++)
+        p[i] = a.lane[i];
+}
+static inline simd4 simd4_make(float x, float y, float z, float w) {
+    return (simd4){{x, y, z, w}};
+}
+static inline simd4 simd4_all(float x) {
+    return simd4_make(x, x, x, x);
+}
+#define SIMD4_EACH(name, expression)                                                                                   \
+    static inline simd4 name(simd4 a, simd4 b) {                                                                       \
+        simd4 c;                                                                                                       \
+        for (int i = 0; i < 4; i++) {                                                                                  \
+            float x = a.lane[i], y = b.lane[i];                                                                        \
+            c.lane[i] = expression;                                                                                    \
+        }                                                                                                              \
+        return c;                                                                                                      \
+    }
+SIMD4_EACH(simd4_add, x + y)
+SIMD4_EACH(simd4_sub, x - y)
+SIMD4_EACH(simd4_mul, x *y)
+SIMD4_EACH(simd4_min, x < y ? x : y)
+SIMD4_EACH(simd4_max, x > y ? x : y)
+static inline simd4 simd4_size(simd4 a) {
+    for (int i = 0; i < 4; i++)
+        a.lane[i] = fabsf(a.lane[i]);
+    return a;
+}
+static inline unsigned simd4_negative(simd4 a) {
+    unsigned bits = 0;
+    for (int i = 0; i < 4; i++)
+        bits |= (unsigned)(signbit(a.lane[i]) != 0) << i;
+    return bits;
+}
+static inline simd4 simd4_three(simd4 a) {
+    a.lane[3] = 0;
+    return a;
+}
+static inline void simd4_store_int(int32_t *p, simd4 a) {
+    for (int i = 0; i < 4; i++)
+        p[i] = (int32_t)a.lane[i];
+}
+static inline simd4 simd4_min_of_three(simd4 a) {
+    float m = a.lane[0] < a.lane[1] ? a.lane[0] : a.lane[1];
+    m = m < a.lane[2] ? m : a.lane[2];
+    return simd4_make(m, m, m, a.lane[3]);
+}
+static inline float simd4_first(simd4 a) {
+    return a.lane[0];
+}
+static inline simd4 simd4_add_where_reached(simd4 a, simd4 limit, simd4 b, unsigned *lanes) {
+    *lanes = 0;
+    for (int i = 0; i < 4; i++)
+        if (a.lane[i] <= limit.lane[i]) {
+            *lanes |= 1u << i;
+            a.lane[i] += b.lane[i];
+        }
+    return a;
+}
+#endif
+
+#if defined(__AVX__) && !defined(GRAY_NO_SIMD)
+
+typedef __m256 simd8;
+
+/* One lane of four in all eight. */
+#define simd8_lane(a, i) simd8_all_of(_mm_shuffle_ps(a, a, (i) * 0x55))
+static inline simd8 simd8_all_of(simd4 a) {
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(a), a, 1);
+}
+
+static inline simd8 simd8_load(const float *p) {
+    return _mm256_load_ps(p);
+}
+static inline void simd8_store(float *p, simd8 a) {
+    _mm256_store_ps(p, a);
+}
+static inline simd8 simd8_all(float x) {
+    return _mm256_set1_ps(x);
+}
+static inline simd8 simd8_add(simd8 a, simd8 b) {
+    return _mm256_add_ps(a, b);
+}
+static inline simd8 simd8_sub(simd8 a, simd8 b) {
+    return _mm256_sub_ps(a, b);
+}
+static inline simd8 simd8_mul(simd8 a, simd8 b) {
+    return _mm256_mul_ps(a, b);
+}
+static inline simd8 simd8_min(simd8 a, simd8 b) {
+    return _mm256_min_ps(a, b);
+}
+static inline simd8 simd8_max(simd8 a, simd8 b) {
+    return _mm256_max_ps(a, b);
+}
+/* One bit per lane where a <= b. */
+static inline unsigned simd8_at_most(simd8 a, simd8 b) {
+    return (unsigned)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LE_OQ));
+}
+/* One bit per lane whose sign is not set. */
+static inline unsigned simd8_not_negative(simd8 a) {
+    return (unsigned)_mm256_movemask_ps(a) ^ 255u;
+}
+static inline simd8 simd8_sign(simd8 a) {
+    return _mm256_and_ps(a, _mm256_set1_ps(-0.0f));
+}
+static inline simd8 simd8_size(simd8 a) {
+    return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), a);
+}
+static inline simd8 simd8_flip(simd8 a, simd8 sign) {
+    return _mm256_xor_ps(a, sign);
+}
+
+#elif defined(__SSE2__) && !defined(GRAY_NO_SIMD)
+
+typedef struct {
+    __m128 low, high;
+} simd8;
+
+#define simd8_lane(a, i) simd8_all_of(_mm_shuffle_ps(a, a, (i) * 0x55))
+static inline simd8 simd8_all_of(simd4 a) {
+    return (simd8){a, a};
+}
+
+static inline simd8 simd8_load(const float *p) {
+    return (simd8){_mm_load_ps(p), _mm_load_ps(p + 4)};
+}
+static inline void simd8_store(float *p, simd8 a) {
+    _mm_store_ps(p, a.low);
+    _mm_store_ps(p + 4, a.high);
+}
+static inline simd8 simd8_all(float x) {
+    return (simd8){_mm_set1_ps(x), _mm_set1_ps(x)};
+}
+static inline simd8 simd8_add(simd8 a, simd8 b) {
+    return (simd8){_mm_add_ps(a.low, b.low), _mm_add_ps(a.high, b.high)};
+}
+static inline simd8 simd8_sub(simd8 a, simd8 b) {
+    return (simd8){_mm_sub_ps(a.low, b.low), _mm_sub_ps(a.high, b.high)};
+}
+static inline simd8 simd8_mul(simd8 a, simd8 b) {
+    return (simd8){_mm_mul_ps(a.low, b.low), _mm_mul_ps(a.high, b.high)};
+}
+static inline simd8 simd8_min(simd8 a, simd8 b) {
+    return (simd8){_mm_min_ps(a.low, b.low), _mm_min_ps(a.high, b.high)};
+}
+static inline simd8 simd8_max(simd8 a, simd8 b) {
+    return (simd8){_mm_max_ps(a.low, b.low), _mm_max_ps(a.high, b.high)};
+}
+static inline unsigned simd8_at_most(simd8 a, simd8 b) {
+    return (unsigned)_mm_movemask_ps(_mm_cmple_ps(a.low, b.low)) |
+           (unsigned)_mm_movemask_ps(_mm_cmple_ps(a.high, b.high)) << 4;
+}
+static inline unsigned simd8_not_negative(simd8 a) {
+    return ((unsigned)_mm_movemask_ps(a.low) | (unsigned)_mm_movemask_ps(a.high) << 4) ^ 255u;
+}
+static inline simd8 simd8_sign(simd8 a) {
+    __m128 sign = _mm_set1_ps(-0.0f);
+    return (simd8){_mm_and_ps(a.low, sign), _mm_and_ps(a.high, sign)};
+}
+static inline simd8 simd8_size(simd8 a) {
+    __m128 sign = _mm_set1_ps(-0.0f);
+    return (simd8){_mm_andnot_ps(sign, a.low), _mm_andnot_ps(sign, a.high)};
+}
+static inline simd8 simd8_flip(simd8 a, simd8 sign) {
+    return (simd8){_mm_xor_ps(a.low, sign.low), _mm_xor_ps(a.high, sign.high)};
+}
+
+#else
+
+typedef struct {
+    float lane[8];
+} simd8;
+
+#define simd8_lane(a, i) simd8_all((a).lane[i])
+
+static inline simd8 simd8_load(const float *p) {
+    simd8 a;
+    for (int i = 0; i < 8; i++)
+        a.lane[i] = p[i];
+    return a;
+}
+static inline void simd8_store(float *p, simd8 a) {
+    for (int i = 0; i < 8; i++)
+        p[i] = a.lane[i];
+}
+static inline simd8 simd8_all(float x) {
+    simd8 a;
+    for (int i = 0; i < 8; i++)
+        a.lane[i] = x;
+    return a;
+}
+#define SIMD8_EACH(name, expression)                                                                                   \
+    static inline simd8 name(simd8 a, simd8 b) {                                                                       \
+        simd8 c;                                                                                                       \
+        for (int i = 0; i < 8; i++) {                                                                                  \
+            float x = a.lane[i], y = b.lane[i];                                                                        \
+            c.lane[i] = expression;                                                                                    \
+        }                                                                                                              \
+        return c;                                                                                                      \
+    }
+SIMD8_EACH(simd8_add, x + y)
+SIMD8_EACH(simd8_sub, x - y)
+SIMD8_EACH(simd8_mul, x *y)
+SIMD8_EACH(simd8_min, x < y ? x : y)
+SIMD8_EACH(simd8_max, x > y ? x : y)
+SIMD8_EACH(simd8_flip, signbit(y) ? -x : x)
+static inline simd8 simd8_sign(simd8 a) {
+    for (int i = 0; i < 8; i++)
+        a.lane[i] = signbit(a.lane[i]) ? -0.0f : 0.0f;
+    return a;
+}
+static inline simd8 simd8_size(simd8 a) {
+    for (int i = 0; i < 8; i++)
+        a.lane[i] = fabsf(a.lane[i]);
+    return a;
+}
+static inline unsigned simd8_not_negative(simd8 a) {
+    unsigned bits = 0;
+    for (int i = 0; i < 8; i++)
+        bits |= (unsigned)!signbit(a.lane[i]) << i;
+    return bits;
+}
+static inline unsigned simd8_at_most(simd8 a, simd8 b) {
+    unsigned bits = 0;
+    for (int i = 0; i < 8; i++)
+        bits |= (unsigned)(a.lane[i] <= b.lane[i]) << i;
+    return bits;
+}
+#endif
+
+/* Four doubles, for taking a ray into local space. */
+#if defined(__AVX__) && !defined(GRAY_NO_SIMD)
+
+typedef __m256d wide4;
+
+static inline wide4 wide4_load(const double *p) {
+    return _mm256_loadu_pd(p);
+}
+static inline wide4 wide4_make(double x, double y, double z, double w) {
+    return _mm256_setr_pd(x, y, z, w);
+}
+static inline wide4 wide4_all(double x) {
+    return _mm256_set1_pd(x);
+}
+static inline wide4 wide4_add(wide4 a, wide4 b) {
+    return _mm256_add_pd(a, b);
+}
+static inline wide4 wide4_sub(wide4 a, wide4 b) {
+    return _mm256_sub_pd(a, b);
+}
+static inline wide4 wide4_mul(wide4 a, wide4 b) {
+    return _mm256_mul_pd(a, b);
+}
+static inline wide4 wide4_div(wide4 a, wide4 b) {
+    return _mm256_div_pd(a, b);
+}
+static inline wide4 wide4_min(wide4 a, wide4 b) {
+    return _mm256_min_pd(a, b);
+}
+static inline wide4 wide4_max(wide4 a, wide4 b) {
+    return _mm256_max_pd(a, b);
+}
+static inline wide4 wide4_size(wide4 a) {
+    return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a);
+}
+/* The size of a with the sign of b. */
+static inline wide4 wide4_signed(wide4 a, wide4 b) {
+    return _mm256_or_pd(a, _mm256_and_pd(_mm256_set1_pd(-0.0), b));
+}
+/* Lane 3 replaced. */
+static inline wide4 wide4_with_last(wide4 a, double last) {
+    return _mm256_blend_pd(a, _mm256_set1_pd(last), 8);
+}
+static inline double wide4_largest(wide4 a) {
+    __m128d b = _mm_max_pd(_mm256_castpd256_pd128(a), _mm256_extractf128_pd(a, 1));
+    return _mm_cvtsd_f64(_mm_max_sd(b, _mm_unpackhi_pd(b, b)));
+}
+static inline double wide4_smallest(wide4 a) {
+    __m128d b = _mm_min_pd(_mm256_castpd256_pd128(a), _mm256_extractf128_pd(a, 1));
+    return _mm_cvtsd_f64(_mm_min_sd(b, _mm_unpackhi_pd(b, b)));
+}
+/* Whether a < b in every lane; a NaN is not. */
+static inline int wide4_all_below(wide4 a, wide4 b) {
+    return _mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_LT_OQ)) == 15;
+}
+static inline simd4 wide4_to_single(wide4 a) {
+    return _mm256_cvtpd_ps(a);
+}
+
+#else
+
+typedef struct {
+    double lane[4];
+} wide4;
+
+static inline wide4 wide4_load(const double *p) {
+    return (wide4){{p[0], p[1], p[2], p[3]}};
+}
+static inline wide4 wide4_make(double x, double y, double z, double w) {
+    return (wide4){{x, y, z, w}};
+}
+static inline wide4 wide4_all(double x) {
+    return wide4_make(x, x, x, x);
+}
+#define WIDE4_EACH(name, expression)                                                                                   \
+    static inline wide4 name(wide4 a, wide4 b) {                                                                       \
+        wide4 c;                                                                                                       \
+        for (int i = 0; i < 4; i++) {                                                                                  \
+            double x = a.lane[i], y = b.lane[i];                                                                       \
+            c.lane[i] = expression;                                                                                    \
+        }                                                                                                              \
+        return c;                                                                                                      \
+    }
+WIDE4_EACH(wide4_add, x + y)
+WIDE4_EACH(wide4_sub, x - y)
+WIDE4_EACH(wide4_mul, x *y)
+WIDE4_EACH(wide4_div, x / y)
+WIDE4_EACH(wide4_min, x < y ? x : y)
+WIDE4_EACH(wide4_max, x > y ? x : y)
+WIDE4_EACH(wide4_signed, copysign(x, y))
+static inline wide4 wide4_size(wide4 a) {
+    for (int i = 0; i < 4; i++)
+        a.lane[i] = fabs(a.lane[i]);
+    return a;
+}
+static inline wide4 wide4_with_last(wide4 a, double last) {
+    a.lane[3] = last;
+    return a;
+}
+static inline double wide4_largest(wide4 a) {
+    double x = a.lane[0] > a.lane[1] ? a.lane[0] : a.lane[1], y = a.lane[2] > a.lane[3] ? a.lane[2] : a.lane[3];
+    return x > y ? x : y;
+}
+static inline double wide4_smallest(wide4 a) {
+    double x = a.lane[0] < a.lane[1] ? a.lane[0] : a.lane[1], y = a.lane[2] < a.lane[3] ? a.lane[2] : a.lane[3];
+    return x < y ? x : y;
+}
+static inline int wide4_all_below(wide4 a, wide4 b) {
+    return a.lane[0] < b.lane[0] && a.lane[1] < b.lane[1] && a.lane[2] < b.lane[2] && a.lane[3] < b.lane[3];
+}
+static inline simd4 wide4_to_single(wide4 a) {
+    return simd4_make((float)a.lane[0], (float)a.lane[1], (float)a.lane[2], (float)a.lane[3]);
+}
+#endif
+
+/* a * b - c and a * b + c */
+static inline simd8 simd8_multiply_sub(simd8 a, simd8 b, simd8 c) {
+#if defined(GRAY_KERNEL_FMA)
+    return _mm256_fmsub_ps(a, b, c);
+#else
+    return simd8_sub(simd8_mul(a, b), c);
+#endif
+}
+static inline simd8 simd8_multiply_add(simd8 a, simd8 b, simd8 c) {
+#if defined(GRAY_KERNEL_FMA)
+    return _mm256_fmadd_ps(a, b, c);
+#else
+    return simd8_add(simd8_mul(a, b), c);
+#endif
+}
+
+#endif

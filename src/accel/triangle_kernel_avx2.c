@@ -1,0 +1,11 @@
+/* The searches for processors with AVX2 and FMA (which only single precision uses). This file is compiled for them, and
+ * nothing in it runs before isa.c has asked the processor. */
+#if defined(__AVX2__)
+#define KERNEL(name) triangle_##name##_avx2
+#if defined(__FMA__)
+#define GRAY_KERNEL_FMA
+#endif
+#include "accel/triangle_kernel.h"
+#else
+#include "accel/triangle_kernels.h"
+#endif

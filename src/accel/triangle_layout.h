@@ -1,0 +1,60 @@
+/* How the triangles of a mesh lie in memory once they are indexed. Private to src/accel/triangle_*.
+ *
+ * Local space: (p - centre) * scale, scale a power of two, so that the mesh fills [-1, 1] along its longest axis to half
+ * at least. Scaling a mesh by a power of two changes no bit of its index. Single precision appears in local space only.
+ *
+ * Frame: a uniform grid of voxels over the local box, with a border of outside voxels round it. A voxel holds a reference
+ * to the hierarchy of the triangles that touch it. Triangles that touch very many voxels are in one hierarchy of their
+ * own, which every ray visits first.
+ *
+ * Invariant: a triangle is listed in every voxel that its box, grown by VOXEL_MARGIN, touches (or among the big ones), and
+ * lies in that voxel's hierarchy with its box cut to the voxel grown by VOXEL_MARGIN. */
+#ifndef GRAY_ACCEL_TRIANGLE_LAYOUT_H
+#define GRAY_ACCEL_TRIANGLE_LAYOUT_H
+
+#include "accel/triangle_index.h"
+
+enum { WIDTH = 8 };
+
+/* Local units. The rounding of a walk is below 2^-16 (a few hundred steps at most, each off by 2^-24 of 4 or so). */
+#define VOXEL_MARGIN 0x1p-13f
+
+/* Boxes in nodes are larger by this on every side, local units. It covers what rounding to single precision does to the
+ * ray (2^-24 of 1 for the origin, of 2 for the way along it), to the box (2^-25) and in plane * r - m (2^-22 at most). */
+#define BOX_GROWTH 0x1p-20f
+
+/* A reference: REF_EMPTY, REF_OUTSIDE, REF_LEAF | number of a block, or number of a node (from 1). */
+#define REF_EMPTY 0u
+#define REF_OUTSIDE UINT32_MAX
+#define REF_LEAF (UINT32_C(1) << 31)
+
+/* Boxes of up to eight children; an unused child has a box that nothing meets and comes last. */
+struct wide_node {
+    float bounds[6][WIDTH]; /* min x, max x, min y, max y, min z, max z */
+    uint32_t child[WIDTH];
+    uint32_t unused[WIDTH];
+};
+
+/* Up to eight triangles: corner 0, the two edges from it, and how far rounding reaches (see triangle_kernel.h): at least
+ * the largest component of both edges. An unused lane has no edges, corner 0 outside and a reach of -1. */
+struct triangle_block {
+    float corner[3][WIDTH], edge1[3][WIDTH], edge2[3][WIDTH], reach[WIDTH];
+};
+
+struct triangle_index {
+    double centre[4];  /* the last is not used */
+    double half[4];    /* local half extents, margin included; the last is not used */
+    double scale;
+    uint32_t cells[3]; /* without the border */
+    float cell[3], inverse_cell[3];
+    uint32_t stride[2]; /* of y and z in voxels[] */
+    uint32_t *voxels;   /* (cells + 2) of each axis */
+    uint32_t big;       /* reference to the triangles that touch very many voxels */
+    struct wide_node *nodes; /* nodes[0] is not used */
+    struct triangle_block *blocks;
+    uint32_t (*ids)[WIDTH]; /* the triangles of each block */
+    uint32_t node_count, block_count;
+    size_t voxel_count;
+};
+
+#endif

@@ -1,0 +1,47 @@
+/* A growing array, and the bytes of a file while they are read. Lists grow by half. */
+#ifndef GRAY_FORMATS_LIST_H
+#define GRAY_FORMATS_LIST_H
+
+#include "base/mem.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Owner: whoever holds it, list_destroy gives it back. Zero value: empty. */
+struct list {
+    void *items;
+    size_t count, capacity;
+};
+
+/* Room for `more` items of `size` bytes behind the last one; NULL without memory. The caller raises count. */
+static inline void *list_room(struct list *list, size_t more, size_t size) {
+    if (!list->items || list->capacity - list->count < more) {
+        size_t least, capacity = list->capacity + list->capacity / 2 + 64;
+        if (__builtin_add_overflow(list->count, more, &least))
+            return NULL;
+        if (capacity < least)
+            capacity = least;
+        void *items = mem_resize_array(list->items, capacity, size);
+        if (!items)
+            return NULL;
+        list->items = items;
+        list->capacity = capacity;
+    }
+    return (char *)list->items + list->count * size;
+}
+
+static inline bool list_add_index(struct list *list, uint32_t index) {
+    uint32_t *room = list_room(list, 1, sizeof *room);
+    if (!room)
+        return false;
+    *room = index;
+    list->count++;
+    return true;
+}
+
+static inline void list_destroy(struct list *list) {
+    mem_free(list->items);
+    *list = (struct list){0};
+}
+
+#endif

@@ -1,0 +1,309 @@
+/* The common part of all mesh files: telling them apart, gathering tables, making meshes of them. Tables live from the
+ * reader to model_finish and not longer: a big file is in memory as bytes, as tables and as a mesh, never twice as one of
+ * them. */
+#include "formats/model.h"
+
+#include "base/file.h"
+#include "geom/mesh_smooth.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#define FILE_LIMIT ((size_t)1 << 36)
+
+struct model_mesh *model_add_mesh(struct model *model, struct error *error) {
+    struct model_mesh *mesh = list_room(&model->meshes, 1, sizeof *mesh);
+    if (!mesh) {
+        error_no_memory(error, model->path);
+        return NULL;
+    }
+    *mesh = (struct model_mesh){.name = model->path};
+    model->meshes.count++;
+    return mesh;
+}
+
+struct model_material *model_add_material(struct model *model, struct error *error) {
+    static const struct model_texture none = {.scale = {1, 1},
+                                              .strength = 1,
+                                              .wrap_u = IMAGE_REPEAT,
+                                              .wrap_v = IMAGE_REPEAT,
+                                              .filter = IMAGE_MIPMAP};
+    struct model_material *material = list_room(&model->materials, 1, sizeof *material);
+    if (!material) {
+        error_no_memory(error, model->path);
+        return NULL;
+    }
+    *material = (struct model_material){.name = "", .kd = {0.8, 0.8, 0.8}, .filter = {1, 1, 1}, .dissolve = 1, .ior = 1,
+                                        .illum = -1, .map_kd = none, .map_ks = none, .map_ke = none, .map_bump = none,
+                                        .map_normal = none};
+    model->materials.count++;
+    return material;
+}
+
+struct model_node *model_add_node(struct model *model, struct error *error) {
+    struct model_node *node = list_room(&model->nodes, 1, sizeof *node);
+    if (!node) {
+        error_no_memory(error, model->path);
+        return NULL;
+    }
+    *node = (struct model_node){
+        .name = "", .parent = MODEL_NONE, .mesh = MODEL_NONE, .parent_from_node = transform_identity()};
+    model->nodes.count++;
+    return node;
+}
+
+void model_warn(struct model *model, const char *format, ...) {
+    if (model->warning_count == MODEL_WARNINGS)
+        return;
+    char text[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    for (char *c = text; *c; c++) /* names from the file may hold anything */
+        if ((unsigned char)*c < 0x20 || *c == 0x7f)
+            *c = '?';
+    char *copy = arena_copy_text(&model->arena, text, strlen(text));
+    if (copy)
+        model->warnings[model->warning_count++] = copy;
+}
+
+/* --- files beside the model --- */
+
+bool model_find(struct model *model, const char *name, size_t length, const char **path, struct error *error) {
+    *path = NULL;
+    if (model->options.alone || length == 0 || length > 4000 || memchr(name, '\0', length))
+        return true;
+    const char *slash = strrchr(model->path, '/');
+    int folder = slash ? (int)(slash + 1 - model->path) : 0;
+    char *plain = arena_copy_text(&model->arena, name, length);
+    if (!plain)
+        return error_no_memory(error, model->path);
+    for (char *c = plain; *c; c++)
+        if (*c == '\\')
+            *c = '/';
+    const char *last = strrchr(plain, '/');
+    last = last ? last + 1 : plain;
+    /* Beside the model; where it says; by its bare name beside the model. */
+    for (int attempt = 0; attempt < 3; attempt++) {
+        char *tried = attempt == 1 ? plain
+                                   : arena_format(&model->arena, "%.*s%s", folder, model->path, attempt ? last : plain);
+        if (!tried)
+            return error_no_memory(error, model->path);
+        if (attempt == 1 && plain[0] != '/')
+            continue;
+        if (file_is_regular(tried)) {
+            *path = tried;
+            return true;
+        }
+    }
+    return true;
+}
+
+/* --- from tables to meshes --- */
+
+static void tables_destroy(struct model_mesh *m) {
+    struct list *lists[] = {&m->vertices,     &m->normals,  &m->uvs,      &m->colours,  &m->starts,
+                            &m->vertex_index, &m->normal_index, &m->uv_index, &m->face_slot};
+    for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++)
+        list_destroy(lists[i]);
+}
+
+static struct mesh_input tables_input(const struct model_mesh *m) {
+    struct mesh_input input = {
+        .name = m->name,
+        .vertex_count = (uint32_t)m->vertices.count,
+        .vertices = m->vertices.items,
+        .face_count = (uint32_t)m->starts.count,
+        .face_start = m->starts.items,
+        .vertex_index = m->vertex_index.items,
+    };
+    if (m->normals.count && (m->normals_by_vertex || m->normal_index.count)) {
+        input.normal_count = (uint32_t)m->normals.count;
+        input.normals = m->normals.items;
+        input.normal_index = m->normals_by_vertex ? m->vertex_index.items : m->normal_index.items;
+    }
+    if (m->uvs.count && (m->uvs_by_vertex || m->uv_index.count)) {
+        input.uv_count = (uint32_t)m->uvs.count;
+        input.uvs = m->uvs.items;
+        input.uv_index = m->uvs_by_vertex ? m->vertex_index.items : m->uv_index.items;
+    }
+    if (m->face_slot.count && m->slots.count > 1)
+        input.face_material = m->face_slot.items;
+    if (m->colours.count && m->colours.count == m->vertices.count)
+        input.colours = m->colours.items;
+    return input;
+}
+
+static bool finish_mesh(struct model *model, struct model_mesh *m, struct error *error) {
+    if (m->vertices.count >= MODEL_NONE || m->vertex_index.count >= MODEL_NONE - 1 || m->starts.count >= MODEL_NONE - 1)
+        return error_set(error, ERROR_SCENE, "%s: more than 4294967294 vertices or corners", model->path);
+    uint32_t *start = list_room(&m->starts, 1, sizeof *start);
+    if (!start)
+        return error_no_memory(error, model->path);
+    *start = (uint32_t)m->vertex_index.count;
+    struct mesh_input input = tables_input(m);
+    struct mesh_tables own = {0};
+    bool ok = true;
+    if (model->options.weld)
+        ok = mesh_input_weld(&input, &own, error);
+    if (ok && model->options.flip)
+        ok = mesh_input_flip(&input, &own, error);
+    if (ok && model->options.smooth)
+        ok = mesh_input_smooth(&input, &own, model->options.smooth_angle, error);
+    if (ok) {
+        m->mesh = mesh_create(&input, error);
+        ok = m->mesh != NULL;
+    }
+    mesh_tables_destroy(&own);
+    tables_destroy(m);
+    return ok;
+}
+
+bool model_finish(struct model *model, struct error *error) {
+    size_t faces = 0;
+    for (size_t i = 0; i < model->meshes.count; i++)
+        faces += model_meshes(model)[i].starts.count;
+    if (faces == 0)
+        return error_set(error, ERROR_SCENE, "%s: no faces in this file", model->path);
+    for (size_t i = 0; i < model->meshes.count; i++)
+        if (!finish_mesh(model, &model_meshes(model)[i], error))
+            return false;
+    if (model->nodes.count == 0) {
+        struct model_node *node = model_add_node(model, error);
+        if (!node)
+            return false;
+        node->mesh = 0;
+    }
+    return true;
+}
+
+/* --- which kind of file --- */
+
+enum kind { KIND_OBJ, KIND_PLY, KIND_STL_TEXT, KIND_STL_BINARY, KIND_GLTF };
+
+/* The extension without ".gz", and its length. */
+static const char *extension_of(const char *path, size_t *length) {
+    size_t end = strlen(path);
+    if (end > 3 && strcasecmp(path + end - 3, ".gz") == 0)
+        end -= 3;
+    size_t dot = end;
+    while (dot > 0 && path[dot - 1] != '.' && path[dot - 1] != '/')
+        dot--;
+    *length = dot > 0 && path[dot - 1] == '.' ? end - dot : 0;
+    return path + dot;
+}
+
+static bool is_word(const char *text, size_t length, const char *word) {
+    return strlen(word) == length && strncasecmp(text, word, length) == 0;
+}
+
+static bool holds(const uint8_t *data, size_t size, const char *word) {
+    size_t length = strlen(word);
+    for (size_t i = 0; i + length <= size; i++)
+        if (strncasecmp((const char *)data + i, word, length) == 0)
+            return true;
+    return false;
+}
+
+static enum kind kind_of(const char *path, const uint8_t *data, size_t size) {
+    size_t length, at = 0;
+    const char *extension = extension_of(path, &length);
+    if (size >= 4 && memcmp(data, "glTF", 4) == 0)
+        return KIND_GLTF;
+    if (size >= 4 && memcmp(data, "ply", 3) == 0 && (data[3] == '\n' || data[3] == '\r'))
+        return KIND_PLY;
+    uint64_t claimed = size >= 84 ? (uint64_t)data[80] | (uint64_t)data[81] << 8 | (uint64_t)data[82] << 16 |
+                                        (uint64_t)data[83] << 24
+                                  : 0;
+    if (claimed > 0 && 84 + 50 * claimed == size)
+        return KIND_STL_BINARY;
+    while (at < size && (data[at] <= ' ' || (at < 3 && size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0)))
+        at++;
+    bool solid = size - at >= 6 && strncasecmp((const char *)data + at, "solid", 5) == 0 && data[at + 5] <= ' ';
+    size_t head = size - at < 4096 ? size - at : 4096;
+    if (is_word(extension, length, "stl"))
+        return solid && (holds(data + at, head, "facet") || holds(data + at, head, "endsolid")) ? KIND_STL_TEXT
+                                                                                               : KIND_STL_BINARY;
+    if (solid && holds(data + at, head, "facet normal"))
+        return KIND_STL_TEXT;
+    if (is_word(extension, length, "ply"))
+        return KIND_PLY;
+    if (is_word(extension, length, "gltf") || is_word(extension, length, "glb") || (at < size && data[at] == '{'))
+        return KIND_GLTF;
+    return KIND_OBJ;
+}
+
+static bool load(struct model *model, const uint8_t *data, size_t size, struct error *error) {
+    switch (kind_of(model->path, data, size)) {
+    case KIND_OBJ:
+        return obj_load(model, (const char *)data, size, error);
+    case KIND_PLY:
+        return ply_load(model, data, size, error);
+    case KIND_STL_TEXT:
+        return stl_load(model, data, size, false, error);
+    case KIND_STL_BINARY:
+        return stl_load(model, data, size, true, error);
+    case KIND_GLTF:
+        return gltf_load(model, data, size, error);
+    }
+    return false;
+}
+
+/* Takes the bytes of the file over when they are from file_map: they go before the meshes are made. */
+static bool parse(struct model *model, const char *path, struct file_bytes *file, const uint8_t *data, size_t size,
+                  const struct model_options *options, struct error *error) {
+    *model = (struct model){.options = *options};
+    model->path = arena_copy_text(&model->arena, path, strlen(path));
+    bool ok = model->path || error_no_memory(error, path);
+    uint8_t *unpacked = NULL;
+    if (ok && size >= 2 && data[0] == 0x1f && data[1] == 0x8b) {
+        ok = gunzip(path, data, size, &unpacked, &size, error);
+        data = unpacked;
+    }
+    ok = ok && load(model, data, size, error);
+    mem_free(unpacked);
+    if (file)
+        file_unmap(file);
+    ok = ok && model_finish(model, error);
+    if (!ok)
+        model_destroy(model);
+    return ok;
+}
+
+bool model_parse(struct model *model, const char *path, const uint8_t *data, size_t size,
+                 const struct model_options *options, struct error *error) {
+    return parse(model, path, NULL, data, size, options, error);
+}
+
+bool model_read(struct model *model, const char *path, const struct model_options *options, struct error *error) {
+    struct file_bytes bytes;
+    *model = (struct model){0};
+    if (!file_map(path, FILE_LIMIT, &bytes, error))
+        return false;
+    return parse(model, path, &bytes, bytes.data, bytes.size, options, error);
+}
+
+void model_destroy(struct model *model) {
+    for (size_t i = 0; i < model->meshes.count; i++) {
+        struct model_mesh *m = &model_meshes(model)[i];
+        tables_destroy(m);
+        list_destroy(&m->slots);
+        list_destroy(&m->slot_names);
+        mesh_release(m->mesh);
+    }
+    for (size_t i = 0; i < model->materials.count; i++) {
+        struct model_material *m = &model_materials(model)[i];
+        struct model_texture *maps[] = {&m->map_kd, &m->map_ks, &m->map_ke, &m->map_bump, &m->map_normal};
+        for (size_t k = 0; k < sizeof maps / sizeof maps[0]; k++)
+            if (maps[k]->image)
+                image_release(maps[k]->image);
+    }
+    list_destroy(&model->meshes);
+    list_destroy(&model->materials);
+    list_destroy(&model->nodes);
+    arena_destroy(&model->arena);
+    *model = (struct model){0};
+}

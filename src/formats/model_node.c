@@ -1,0 +1,204 @@
+/* A file's materials speak of more than ours can say. What becomes of them:
+ *   Kd, Ks, Ns, map_Kd (multiplied by Kd, with its -s, -o, -clamp) as they are; illum 0 and 1 switch Ks off, 3 to 9 let it
+ *   mirror. d or Tr below 1: refract = 1 - d, filtered by Tf, with the index Ni where illum (6, 7, or none) asks for
+ *   refraction; illum 7 is a dielectric by Fresnel's equations. Ka is Kd here. Ke and the maps of Ks, Ke, bumps and normals
+ *   are kept in the model for materials that will know them. */
+#include "formats/model_node.h"
+
+#include <stdio.h>
+
+/* A highlight for what is clear and has none of its own. */
+enum { CLEAR_SHININESS = 1000 };
+
+static void destroy_model(void *object) {
+    model_destroy(object);
+    mem_free(object);
+}
+
+const struct model *model_asset(struct assets *assets, const char *path, const char *canonical,
+                                const struct model_options *options, bool *fresh, struct error *error) {
+    char key[4096 + 80];
+    int length = snprintf(key, sizeof key, "%s|%d %.17g %d %d", canonical, options->smooth, options->smooth_angle,
+                          options->weld, options->flip);
+    *fresh = false;
+    if (length < 0 || (size_t)length >= sizeof key) {
+        error_set(error, ERROR_SCENE, "%s: its path is too long", path);
+        return NULL;
+    }
+    struct model *model = assets_find_object(assets, key);
+    if (model)
+        return model;
+    model = mem_alloc_zero(1, sizeof *model);
+    if (!model) {
+        error_no_memory(error, path);
+        return NULL;
+    }
+    if (!model_read(model, path, options, error)) {
+        mem_free(model);
+        return NULL;
+    }
+    for (size_t i = 0; i < model->meshes.count; i++)
+        if (!assets_keep_mesh(assets, model_meshes(model)[i].mesh, error)) {
+            destroy_model(model);
+            return NULL;
+        }
+    *fresh = true;
+    return assets_add_object(assets, key, model, destroy_model, error) ? model : NULL;
+}
+
+/* --- materials --- */
+
+static const struct material *over_with_image(struct scene *scene, const struct model_texture *map,
+                                              const struct material *base, struct vec3 tint, struct error *error) {
+    struct image *image = map->image;
+    if (!image && map->path) {
+        image = assets_image(scene->assets, map->path, error);
+        if (!image)
+            return NULL;
+    }
+    if (!image)
+        return base;
+    struct material *m = scene_material(scene, MATERIAL_IMAGE, base, error);
+    if (!m)
+        return NULL;
+    m->image.image = image;
+    m->image.mapping = MAPPING_UV;
+    m->image.filter = map->filter;
+    m->image.wrap = map->wrap_u;
+    m->image.wrap_v = map->wrap_v;
+    m->image.apart = true;
+    for (int k = 0; k < 2; k++) {
+        m->image.scale[k] = map->scale[k];
+        m->image.offset[k] = map->offset[k];
+    }
+    m->image.tint = tint;
+    return m;
+}
+
+static const struct material *make_material(struct scene *scene, const struct model_material *from, struct error *error) {
+    struct material *m = scene_material(scene, MATERIAL_PHONG, NULL, error);
+    if (!m)
+        return NULL;
+    bool shiny = from->illum != 0 && from->illum != 1, clear = from->dissolve < 1;
+    bool bends = from->has_ior && (from->illum < 0 || from->illum == 6 || from->illum == 7);
+    m->name = from->name;
+    m->phong.kd = vec3_scale(from->kd, from->dissolve);
+    m->phong.ks = shiny ? from->ks : vec3_all(0);
+    m->phong.shininess = from->has_shininess && from->shininess > 0 ? from->shininess : 1;
+    m->phong.reflect = from->illum >= 3 && from->illum <= 9 ? 1 : from->reflect;
+    m->phong.ior = bends && from->ior >= 1 ? from->ior : 1;
+    m->phong.two_sided = from->two_sided;
+    m->phong.by_vertex = from->by_vertex;
+    if (clear) {
+        bool dark = vec3_max_abs(m->phong.ks) == 0;
+        m->phong.shininess = dark ? CLEAR_SHININESS : m->phong.shininess;
+        m->phong.ks = from->filter;
+        m->phong.reflect = 0;
+        m->phong.refract = 1 - from->dissolve;
+        m->phong.has_ior = true;
+    }
+    /* The picture is multiplied by what kd is in the end. */
+    struct vec3 tint = m->phong.kd;
+    if (vec3_max_abs(tint) == 0 && from->map_kd.name && from->illum >= 0)
+        tint = vec3_all(from->dissolve); /* exporters that write a black Kd beside a picture mean the picture */
+    const struct material *top = over_with_image(scene, &from->map_kd, m, tint, error);
+    if (!top || !clear || (from->illum != 7 && !from->fresnel))
+        return top;
+    return scene_material(scene, MATERIAL_FRESNEL, top, error);
+}
+
+/* --- nodes --- */
+
+struct placer {
+    struct scene *scene;
+    const struct model *model;
+    const struct model_placing *placing;
+    struct error *error;
+    const struct material **materials; /* of the model; NULL until first used */
+};
+
+static const struct material *material_of(struct placer *p, uint32_t index) {
+    if (!p->materials[index])
+        p->materials[index] = make_material(p->scene, &model_materials(p->model)[index], p->error);
+    return p->materials[index];
+}
+
+static bool set_shape(struct placer *p, struct node *node, uint32_t index) {
+    const struct model_mesh *mesh = &model_meshes(p->model)[index];
+    const uint32_t *slots = mesh->slots.items;
+    node->shape.kind = SHAPE_MESH;
+    node->shape.mesh = mesh->mesh;
+    node->cull = p->placing->cull;
+    node->material = p->placing->material;
+    bool any = false;
+    for (size_t i = 0; i < mesh->slots.count; i++)
+        any |= slots[i] != MODEL_NONE;
+    if (mesh->slots.count == 0 || (!any && mesh->slots.count == 1))
+        return true;
+    const struct material **list = arena_alloc_array(&p->scene->arena, mesh->slots.count, sizeof *list);
+    const char **names = arena_alloc_array(&p->scene->arena, mesh->slots.count, sizeof *names);
+    if (!list || !names)
+        return error_no_memory(p->error, "the materials of a mesh");
+    for (size_t i = 0; i < mesh->slots.count; i++) {
+        bool named = mesh->slot_names.count > i;
+        names[i] = named ? ((const char *const *)mesh->slot_names.items)[i] : "";
+        /* Below a material of the script the file's are not even made: their pictures may be missing. */
+        if (slots[i] == MODEL_NONE || p->placing->material)
+            continue;
+        list[i] = material_of(p, slots[i]);
+        if (!list[i])
+            return false;
+    }
+    node->slots = list;
+    node->slot_names = names;
+    node->slot_count = (uint32_t)mesh->slots.count;
+    return true;
+}
+
+static struct node *place_single(struct placer *p, uint32_t index) {
+    const struct model_node *nodes = model_nodes(p->model);
+    struct node *node = scene_node(p->scene, NODE_GEOMETRY, p->placing->name, p->error);
+    if (!node || !set_shape(p, node, nodes[index].mesh))
+        return NULL;
+    for (uint32_t at = index; at != MODEL_NONE; at = nodes[at].parent)
+        node->parent_from_node = transform_compose(&nodes[at].parent_from_node, &node->parent_from_node);
+    return node;
+}
+
+static struct node *place_tree(struct placer *p) {
+    const struct model_node *nodes = model_nodes(p->model);
+    struct node *root = scene_node(p->scene, NODE_GROUP, p->placing->name, p->error);
+    struct node **made = mem_alloc_zero(p->model->nodes.count, sizeof *made);
+    bool ok = root && made;
+    if (root && !made)
+        error_no_memory(p->error, p->model->path);
+    for (size_t i = 0; ok && i < p->model->nodes.count; i++) {
+        bool drawn = nodes[i].mesh != MODEL_NONE && mesh_triangle_count(model_meshes(p->model)[nodes[i].mesh].mesh) > 0;
+        const char *name = nodes[i].name[0] ? nodes[i].name : p->placing->name;
+        made[i] = scene_node(p->scene, drawn ? NODE_GEOMETRY : NODE_GROUP, name, p->error);
+        ok = made[i] && (!drawn || set_shape(p, made[i], nodes[i].mesh));
+        if (!ok)
+            break;
+        made[i]->parent_from_node = nodes[i].parent_from_node;
+        ok = node_add_child(p->scene, nodes[i].parent == MODEL_NONE ? root : made[nodes[i].parent], made[i], p->error);
+    }
+    mem_free(made);
+    return ok ? root : NULL;
+}
+
+struct node *model_place(struct scene *scene, const struct model *model, const struct model_placing *placing,
+                         struct error *error) {
+    struct placer p = {.scene = scene, .model = model, .placing = placing, .error = error};
+    p.materials = arena_alloc_array(&scene->arena, model->materials.count, sizeof *p.materials);
+    if (!p.materials && model->materials.count) {
+        error_no_memory(error, model->path);
+        return NULL;
+    }
+    uint32_t drawn = 0, single = 0;
+    for (uint32_t i = 0; i < model->nodes.count; i++)
+        if (model_nodes(model)[i].mesh != MODEL_NONE) {
+            single = i;
+            drawn++;
+        }
+    return drawn == 1 ? place_single(&p, single) : place_tree(&p);
+}

@@ -1,0 +1,24 @@
+/* From a model to nodes and materials of a scene. */
+#ifndef GRAY_FORMATS_MODEL_NODE_H
+#define GRAY_FORMATS_MODEL_NODE_H
+
+#include "formats/model.h"
+#include "scene/node.h"
+
+/* The model of a file, from the store or read into it. `path` is for messages, `canonical` tells files apart. *fresh: it was
+ * read now, so its warnings have not been told yet. Owned by the store. */
+const struct model *model_asset(struct assets *assets, const char *path, const char *canonical,
+                                const struct model_options *options, bool *fresh, struct error *error);
+
+struct model_placing {
+    const char *name;                /* of the node */
+    const struct material *material; /* for everything; NULL: the file's own */
+    enum node_cull cull;
+};
+
+/* A model with one mesh becomes one geometry node, others a group with the file's nodes below it; a mesh that the file
+ * places several times is one mesh. Everything is made in the scene's arena, pictures come from its store. */
+struct node *model_place(struct scene *scene, const struct model *model, const struct model_placing *placing,
+                         struct error *error);
+
+#endif

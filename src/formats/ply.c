@@ -1,0 +1,621 @@
+/* PLY: a header in text names elements and their properties, then come the elements, in text or in binary numbers of
+ * either order. Source: G. Turk, "The PLY Polygon File Format", 1994, and its reference reader's names of types.
+ *
+ * The header is turned into a list of properties per element, each with what it means to us; one loop over elements, rows
+ * and properties then reads everything, and what means nothing is passed over by its size. A row of text is a line.
+ * Nothing is believed: a count claims at least so many bytes and is refused when the file has fewer, before any memory is
+ * taken, so memory is a small multiple of the file. */
+#include "formats/decimal.h"
+#include "formats/model.h"
+#include "formats/scan.h"
+
+#include <math.h>
+
+enum { ELEMENTS = 64, PROPERTIES = 512 };
+
+/* What a property means. Up to BLUE: a number of a vertex. */
+enum meaning { NOTHING, X, Y, Z, NX, NY, NZ, U, V, RED, GREEN, BLUE, SCALARS, CORNERS = SCALARS, CORNER_UVS, STRIPS };
+
+struct property {
+    bool is_list;
+    enum number_type count_type, type;
+    enum meaning meaning;
+};
+
+struct element {
+    char name[32];
+    uint64_t count;
+    int first, property_count; /* in ply.properties */
+    uint64_t least;            /* bytes of the smallest row */
+};
+
+enum format { ASCII, LITTLE, BIG };
+
+struct ply {
+    struct model *model;
+    const char *path;
+    const uint8_t *data, *at, *end;
+    size_t line; /* of text */
+    enum format format;
+    struct error *error;
+    struct element elements[ELEMENTS];
+    int element_count;
+    struct property properties[PROPERTIES];
+    int property_count;
+    struct model_mesh *mesh;
+    bool has[SCALARS];        /* of the vertices */
+    double colour_scale;      /* from the type's range to 0 .. 1 */
+    struct list values;       /* uint32_t: the list that was read last */
+    struct list pending;      /* double: the uvs of one face */
+    uint64_t vertex_total;    /* what the header says */
+};
+
+static bool fail(const struct ply *ply, const char *what) {
+    if (ply->format == ASCII)
+        return error_set(ply->error, ERROR_SCENE, "%s:%zu: %s", ply->path, ply->line, what);
+    return error_set(ply->error, ERROR_SCENE, "%s: byte %zu: %s", ply->path, (size_t)(ply->at - ply->data), what);
+}
+
+static bool no_memory(const struct ply *ply) {
+    return error_no_memory(ply->error, ply->path);
+}
+
+/* --- the header --- */
+
+struct words {
+    const char *text[8];
+    size_t length[8];
+    int count;
+};
+
+/* The next line of the header, cut into words; false at the end of the file. */
+static bool header_line(struct ply *ply, struct words *words) {
+    *words = (struct words){0};
+    if (ply->at >= ply->end)
+        return false;
+    ply->line++;
+    const uint8_t *p = ply->at;
+    while (p < ply->end && *p != '\n' && *p != '\r') {
+        if (*p == ' ' || *p == '\t') {
+            p++;
+            continue;
+        }
+        const uint8_t *first = p;
+        while (p < ply->end && *p > ' ')
+            p++;
+        if (p == first)
+            p++;
+        if (words->count < 8) {
+            words->text[words->count] = (const char *)first;
+            words->length[words->count++] = (size_t)(p - first);
+        }
+    }
+    if (p < ply->end && *p == '\r' && p + 1 < ply->end && p[1] == '\n')
+        p++;
+    ply->at = p < ply->end ? p + 1 : p;
+    return true;
+}
+
+static bool word_is(const struct words *words, int i, const char *word) {
+    return i < words->count && words->length[i] == strlen(word) && memcmp(words->text[i], word, words->length[i]) == 0;
+}
+
+static bool header_fail(const struct ply *ply, const struct words *words, int i, const char *what) {
+    int length = i < words->count ? words->length[i] < 40 ? (int)words->length[i] : 40 : 0;
+    char word[41] = "";
+    for (int k = 0; k < length; k++)
+        word[k] = words->text[i][k] >= 0x20 && words->text[i][k] < 0x7f ? words->text[i][k] : '?';
+    return error_set(ply->error, ERROR_SCENE, "%s:%zu: '%s' %s", ply->path, ply->line, word, what);
+}
+
+static bool read_type(const struct ply *ply, const struct words *words, int i, enum number_type *out) {
+    static const char *const names[NUMBER_TYPES][2] = {{"char", "int8"},   {"uchar", "uint8"},   {"short", "int16"},
+                                                       {"ushort", "uint16"}, {"int", "int32"},     {"uint", "uint32"},
+                                                       {"float", "float32"}, {"double", "float64"}};
+    for (int t = 0; t < NUMBER_TYPES; t++)
+        if (word_is(words, i, names[t][0]) || word_is(words, i, names[t][1])) {
+            *out = (enum number_type)t;
+            return true;
+        }
+    return header_fail(ply, words, i, "is not a type of number (char, uchar, short, ushort, int, uint, float, double)");
+}
+
+static enum meaning meaning_of(const struct words *words, int i, const char *element, bool is_list) {
+    static const struct {
+        const char *name;
+        enum meaning meaning;
+    } scalars[] = {{"x", X},          {"y", Y},          {"z", Z},          {"nx", NX},       {"ny", NY},
+                   {"nz", NZ},        {"s", U},          {"t", V},          {"u", U},         {"v", V},
+                   {"texture_u", U},  {"texture_v", V},  {"texture_s", U},  {"texture_t", V}, {"red", RED},
+                   {"green", GREEN},  {"blue", BLUE},    {"r", RED},        {"g", GREEN},     {"b", BLUE},
+                   {"diffuse_red", RED}, {"diffuse_green", GREEN}, {"diffuse_blue", BLUE}};
+    bool indices = word_is(words, i, "vertex_indices") || word_is(words, i, "vertex_index");
+    if (is_list && strcmp(element, "face") == 0)
+        return indices ? CORNERS : word_is(words, i, "texcoord") ? CORNER_UVS : NOTHING;
+    if (is_list)
+        return indices && strcmp(element, "tristrips") == 0 ? STRIPS : NOTHING;
+    for (size_t k = 0; strcmp(element, "vertex") == 0 && k < sizeof scalars / sizeof scalars[0]; k++)
+        if (word_is(words, i, scalars[k].name))
+            return scalars[k].meaning;
+    return NOTHING;
+}
+
+static bool read_property(struct ply *ply, const struct words *words) {
+    if (ply->element_count == 0)
+        return header_fail(ply, words, 0, "stands before the first element");
+    if (ply->property_count == PROPERTIES)
+        return header_fail(ply, words, 0, "is one too many");
+    struct element *element = &ply->elements[ply->element_count - 1];
+    struct property p = {.is_list = word_is(words, 1, "list")};
+    int name = p.is_list ? 4 : 2;
+    if (words->count <= name)
+        return header_fail(ply, words, 0, "needs a type and a name");
+    if (p.is_list && !read_type(ply, words, 2, &p.count_type))
+        return false;
+    if (!read_type(ply, words, name - 1, &p.type))
+        return false;
+    p.meaning = meaning_of(words, name, element->name, p.is_list);
+    bool whole = p.type < NUMBER_F32;
+    if (p.is_list && p.count_type >= NUMBER_F32)
+        return header_fail(ply, words, 2, "cannot count the entries of a list");
+    if ((p.meaning == CORNERS || p.meaning == STRIPS) && !whole)
+        return header_fail(ply, words, name, "must be whole numbers");
+    for (int k = element->first; k < ply->property_count && p.meaning != NOTHING; k++)
+        if (ply->properties[k].meaning == p.meaning)
+            return header_fail(ply, words, name, "says what an earlier property says");
+    if (p.meaning > NOTHING && p.meaning < SCALARS)
+        ply->has[p.meaning] = true;
+    if (p.meaning == RED && whole)
+        ply->colour_scale = p.type == NUMBER_U8 ? 1 / 255.0 : p.type == NUMBER_U16 ? 1 / 65535.0 : 1 / 255.0;
+    ply->properties[ply->property_count++] = p;
+    element->property_count++;
+    /* In text every number is a digit and a blank or line end at least. */
+    element->least += ply->format == ASCII ? 2 : number_size(p.is_list ? p.count_type : p.type);
+    return true;
+}
+
+static bool read_element(struct ply *ply, const struct words *words) {
+    if (words->count != 3 || words->length[1] >= sizeof ply->elements[0].name)
+        return header_fail(ply, words, 0, "needs a name and a count");
+    if (ply->element_count == ELEMENTS)
+        return header_fail(ply, words, 0, "is one too many");
+    struct element *element = &ply->elements[ply->element_count++];
+    *element = (struct element){.first = ply->property_count};
+    memcpy(element->name, words->text[1], words->length[1]);
+    for (int k = 0; k < ply->element_count - 1; k++)
+        if (strcmp(ply->elements[k].name, element->name) == 0)
+            return header_fail(ply, words, 1, "is the name of an earlier element");
+    for (size_t k = 0; k < words->length[2]; k++) {
+        unsigned digit = (unsigned)(unsigned char)words->text[2][k] - '0';
+        if (digit > 9 || element->count > UINT64_C(1000000000000000000))
+            return header_fail(ply, words, 2, "is not a count");
+        element->count = element->count * 10 + digit;
+    }
+    return true;
+}
+
+static bool read_header(struct ply *ply) {
+    struct words words;
+    bool has_format = false;
+    (void)header_line(ply, &words);
+    if (!word_is(&words, 0, "ply"))
+        return error_set(ply->error, ERROR_SCENE, "%s:1: a PLY file begins with the line 'ply'", ply->path);
+    while (header_line(ply, &words)) {
+        if (words.count == 0 || word_is(&words, 0, "comment") || word_is(&words, 0, "obj_info"))
+            continue;
+        if (word_is(&words, 0, "end_header")) {
+            if (!has_format)
+                return header_fail(ply, &words, 0, "stands before the format");
+            return true;
+        }
+        if (word_is(&words, 0, "format")) {
+            if (has_format)
+                return header_fail(ply, &words, 0, "stands here a second time");
+            if (word_is(&words, 1, "ascii"))
+                ply->format = ASCII;
+            else if (word_is(&words, 1, "binary_little_endian"))
+                ply->format = LITTLE;
+            else if (word_is(&words, 1, "binary_big_endian"))
+                ply->format = BIG;
+            else
+                return header_fail(ply, &words, 1, "is none of ascii, binary_little_endian, binary_big_endian");
+            has_format = true;
+        } else if (!has_format) {
+            return header_fail(ply, &words, 0, "stands before the format");
+        } else if (word_is(&words, 0, "element")) {
+            if (!read_element(ply, &words))
+                return false;
+        } else if (word_is(&words, 0, "property")) {
+            if (!read_property(ply, &words))
+                return false;
+        } else {
+            return header_fail(ply, &words, 0, "is not a word of a PLY header");
+        }
+    }
+    ply->format = ASCII;
+    return fail(ply, "the file ends before end_header");
+}
+
+/* --- numbers --- */
+
+static bool is_blank(uint8_t c) {
+    return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+}
+
+/* Text: to the next word of this line; false when the line ends first. */
+static bool on_word(struct ply *ply) {
+    while (ply->at < ply->end && is_blank(*ply->at))
+        ply->at++;
+    return ply->at < ply->end && *ply->at != '\n' && *ply->at != '\r';
+}
+
+static void over_line_end(struct ply *ply) {
+    if (ply->at >= ply->end)
+        return;
+    if (*ply->at == '\r' && ply->at + 1 < ply->end && ply->at[1] == '\n')
+        ply->at++;
+    ply->at++;
+    ply->line++;
+}
+
+static bool read_text_number(struct ply *ply, double *out) {
+    if (!on_word(ply))
+        return fail(ply, ply->at < ply->end ? "the line ends too early" : "the file ends too early");
+    const char *first = (const char *)ply->at, *after = decimal_read(first, (const char *)ply->end, out);
+    if (!after || (after < (const char *)ply->end && (uint8_t)*after > ' '))
+        return fail(ply, "not a finite number");
+    ply->at = (const uint8_t *)after;
+    return true;
+}
+
+static bool read_number(struct ply *ply, enum number_type type, double *out) {
+    if (ply->format == ASCII)
+        return read_text_number(ply, out);
+    unsigned size = number_size(type);
+    if ((size_t)(ply->end - ply->at) < size)
+        return fail(ply, "the file ends too early");
+    *out = scan_number(ply->at, type, ply->format == BIG);
+    ply->at += size;
+    return true;
+}
+
+/* The number of entries of a list, which the file can surely hold. */
+static bool read_count(struct ply *ply, const struct property *p, uint32_t *out) {
+    double count;
+    const uint8_t *before = ply->at;
+    if (!read_number(ply, p->count_type, &count))
+        return false;
+    uint64_t each = ply->format == ASCII ? 2 : number_size(p->type), left = (uint64_t)(ply->end - ply->at);
+    if (!(count >= 0 && count == floor(count) && count <= UINT32_MAX / 2) || count > (double)(left / each + 1)) {
+        ply->at = before;
+        return error_set(ply->error, ERROR_SCENE,
+                         ply->format == ASCII ? "%s:%zu: a list of %.0f entries does not fit into the file"
+                                              : "%s: byte %zu: a list of %.0f entries does not fit into the file",
+                         ply->path, ply->format == ASCII ? ply->line : (size_t)(before - ply->data), count);
+    }
+    *out = (uint32_t)count;
+    return true;
+}
+
+static bool skip_list(struct ply *ply, const struct property *p) {
+    uint32_t count;
+    if (!read_count(ply, p, &count))
+        return false;
+    if (ply->format != ASCII) {
+        uint64_t bytes = (uint64_t)count * number_size(p->type);
+        if ((uint64_t)(ply->end - ply->at) < bytes)
+            return fail(ply, "the file ends too early");
+        ply->at += bytes;
+        return true;
+    }
+    double ignored;
+    for (uint32_t i = 0; i < count; i++)
+        if (!read_text_number(ply, &ignored))
+            return false;
+    return true;
+}
+
+/* --- elements --- */
+
+static bool read_vertex(struct ply *ply, const struct element *element, double value[SCALARS]) {
+    for (int k = 0; k < element->property_count; k++) {
+        const struct property *p = &ply->properties[element->first + k];
+        if (p->is_list) {
+            if (!skip_list(ply, p))
+                return false;
+            continue;
+        }
+        const uint8_t *before = ply->at;
+        if (!read_number(ply, p->type, &value[p->meaning]))
+            return false;
+        if (p->meaning != NOTHING && !isfinite(value[p->meaning])) {
+            ply->at = before;
+            return fail(ply, "not a finite number");
+        }
+    }
+    return true;
+}
+
+static float colour_of(const struct ply *ply, double value) {
+    value *= ply->colour_scale;
+    return (float)(value < 0 ? 0 : value > 1 ? 1 : value);
+}
+
+static bool add_vertex(struct ply *ply, const double value[SCALARS]) {
+    struct model_mesh *mesh = ply->mesh;
+    double *v = list_room(&mesh->vertices, 1, 3 * sizeof *v);
+    if (!v)
+        return no_memory(ply);
+    v[0] = value[X], v[1] = value[Y], v[2] = value[Z];
+    mesh->vertices.count++;
+    if (mesh->normals_by_vertex) {
+        double *n = list_room(&mesh->normals, 1, 3 * sizeof *n);
+        if (!n)
+            return no_memory(ply);
+        n[0] = value[NX], n[1] = value[NY], n[2] = value[NZ];
+        mesh->normals.count++;
+    }
+    if (mesh->uvs_by_vertex) {
+        double *uv = list_room(&mesh->uvs, 1, 2 * sizeof *uv);
+        if (!uv)
+            return no_memory(ply);
+        uv[0] = value[U], uv[1] = value[V];
+        mesh->uvs.count++;
+    }
+    if (ply->has[RED] && ply->has[GREEN] && ply->has[BLUE]) {
+        float *c = list_room(&mesh->colours, 1, 3 * sizeof *c);
+        if (!c)
+            return no_memory(ply);
+        c[0] = colour_of(ply, value[RED]), c[1] = colour_of(ply, value[GREEN]), c[2] = colour_of(ply, value[BLUE]);
+        mesh->colours.count++;
+    }
+    return true;
+}
+
+static bool add_face(struct ply *ply, const uint32_t *corners, uint32_t count) {
+    struct model_mesh *mesh = ply->mesh;
+    uint32_t *start = list_room(&mesh->starts, 2, sizeof *start);
+    uint32_t *index = start ? list_room(&mesh->vertex_index, count, sizeof *index) : NULL;
+    if (!index)
+        return no_memory(ply);
+    if (mesh->vertex_index.count > UINT32_MAX - 4 - (size_t)count)
+        return fail(ply, "more than 4294967290 corners");
+    *start = (uint32_t)mesh->vertex_index.count;
+    mesh->starts.count++;
+    memcpy(index, corners, count * sizeof *index);
+    mesh->vertex_index.count += count;
+    return true;
+}
+
+/* A list of vertices into ply->values; MODEL_NONE for -1 where that is allowed. */
+static bool read_indices(struct ply *ply, const struct property *p, bool restarts) {
+    uint32_t count;
+    if (!read_count(ply, p, &count))
+        return false;
+    ply->values.count = 0;
+    uint32_t *out = list_room(&ply->values, count ? count : 1, sizeof *out);
+    if (!out)
+        return no_memory(ply);
+    /* The usual case, 4-byte numbers in the order of this machine, without a call for each. */
+    unsigned size = number_size(p->type);
+    bool quick = ply->format != ASCII && size == 4;
+    if (quick && (uint64_t)(ply->end - ply->at) < (uint64_t)count * size)
+        return fail(ply, "the file ends too early");
+    for (uint32_t i = 0; i < count; i++) {
+        const uint8_t *before = ply->at;
+        double value;
+        if (quick) {
+            uint32_t bits = scan_u32(ply->at, ply->format == BIG);
+            value = p->type == NUMBER_I32 ? (double)(int32_t)bits : (double)bits;
+            ply->at += 4;
+        } else if (!read_number(ply, p->type, &value)) {
+            return false;
+        }
+        if (restarts && value == -1) {
+            out[i] = MODEL_NONE;
+            continue;
+        }
+        if (!(value >= 0 && value < (double)ply->vertex_total && value == floor(value))) {
+            size_t place = ply->format == ASCII ? ply->line : (size_t)(before - ply->data);
+            return error_set(ply->error, ERROR_SCENE,
+                             ply->format == ASCII ? "%s:%zu: vertex %.15g, but the file has %llu, counted from 0"
+                                                  : "%s: byte %zu: vertex %.15g, but the file has %llu, counted from 0",
+                             ply->path, place, value, (unsigned long long)ply->vertex_total);
+        }
+        out[i] = (uint32_t)value;
+    }
+    ply->values.count = count;
+    return true;
+}
+
+/* (u, v) for each corner of the face. */
+static bool read_corner_uvs(struct ply *ply, const struct property *p) {
+    uint32_t count;
+    if (!read_count(ply, p, &count))
+        return false;
+    ply->pending.count = 0;
+    double *out = list_room(&ply->pending, count ? count : 1, sizeof *out);
+    if (!out)
+        return no_memory(ply);
+    for (uint32_t i = 0; i < count; i++) {
+        if (!read_number(ply, p->type, &out[i]))
+            return false;
+        if (!isfinite(out[i]))
+            return fail(ply, "not a finite number");
+    }
+    ply->pending.count = count;
+    return true;
+}
+
+/* Triangles of strips have no uvs of their own corners: the list says so up to this corner. */
+static bool pad_corner_uvs(struct ply *ply, size_t corner) {
+    struct list *index = &ply->mesh->uv_index;
+    while (index->count < corner)
+        if (!list_add_index(index, MODEL_NONE))
+            return no_memory(ply);
+    return true;
+}
+
+static bool add_corner_uvs(struct ply *ply, uint32_t corners) {
+    struct model_mesh *mesh = ply->mesh;
+    if (!pad_corner_uvs(ply, mesh->vertex_index.count - corners))
+        return false;
+    bool given = ply->pending.count == 2 * (size_t)corners;
+    double *uv = list_room(&mesh->uvs, corners, 2 * sizeof *uv);
+    uint32_t *index = uv ? list_room(&mesh->uv_index, corners, sizeof *index) : NULL;
+    if (!index)
+        return no_memory(ply);
+    for (uint32_t i = 0; i < corners; i++)
+        index[i] = given ? (uint32_t)(mesh->uvs.count + i) : MODEL_NONE;
+    mesh->uv_index.count += corners;
+    if (given) {
+        memcpy(uv, ply->pending.items, 2 * (size_t)corners * sizeof *uv);
+        mesh->uvs.count += corners;
+    }
+    return true;
+}
+
+static bool read_face(struct ply *ply, const struct element *element, bool corner_uvs) {
+    bool any = false;
+    double ignored;
+    ply->pending.count = 0;
+    for (int k = 0; k < element->property_count; k++) {
+        const struct property *p = &ply->properties[element->first + k];
+        bool ok = p->meaning == CORNERS      ? read_indices(ply, p, false)
+                  : p->meaning == CORNER_UVS ? read_corner_uvs(ply, p)
+                  : p->is_list               ? skip_list(ply, p)
+                                             : read_number(ply, p->type, &ignored);
+        if (!ok)
+            return false;
+        any |= p->meaning == CORNERS;
+    }
+    if (!any)
+        return true;
+    if (ply->values.count < 3)
+        return fail(ply, "a face needs at least 3 corners");
+    uint32_t count = (uint32_t)ply->values.count;
+    return add_face(ply, ply->values.items, count) && (!corner_uvs || add_corner_uvs(ply, count));
+}
+
+/* Every vertex from the third on makes a triangle, turned round at every second one. */
+static bool add_strips(struct ply *ply) {
+    const uint32_t *v = ply->values.items;
+    size_t first = 0;
+    for (size_t i = 0; i < ply->values.count; i++) {
+        if (v[i] == MODEL_NONE) {
+            first = i + 1;
+            continue;
+        }
+        if (i < first + 2)
+            continue;
+        bool odd = (i - first) % 2;
+        const uint32_t corners[3] = {v[i - 2], odd ? v[i] : v[i - 1], odd ? v[i - 1] : v[i]};
+        /* Strips are joined by triangles that are lines. */
+        if (corners[0] != corners[1] && corners[1] != corners[2] && corners[0] != corners[2] &&
+            !add_face(ply, corners, 3))
+            return false;
+    }
+    return true;
+}
+
+static bool read_row(struct ply *ply, const struct element *element, bool corner_uvs) {
+    if (strcmp(element->name, "vertex") == 0) {
+        double value[SCALARS] = {0};
+        return read_vertex(ply, element, value) && add_vertex(ply, value);
+    }
+    if (strcmp(element->name, "face") == 0)
+        return read_face(ply, element, corner_uvs);
+    double ignored;
+    for (int k = 0; k < element->property_count; k++) {
+        const struct property *p = &ply->properties[element->first + k];
+        bool ok = p->meaning == STRIPS ? read_indices(ply, p, true) && add_strips(ply)
+                  : p->is_list         ? skip_list(ply, p)
+                                       : read_number(ply, p->type, &ignored);
+        if (!ok)
+            return false;
+    }
+    return true;
+}
+
+/* Rows of binary numbers without lists that mean nothing to us go by at once. */
+static bool skip_at_once(struct ply *ply, const struct element *element) {
+    for (int k = 0; k < element->property_count; k++)
+        if (ply->properties[element->first + k].is_list)
+            return false;
+    bool used = strcmp(element->name, "vertex") == 0 || strcmp(element->name, "face") == 0;
+    return ply->format != ASCII && !used;
+}
+
+static bool read_rows(struct ply *ply, const struct element *element) {
+    uint64_t left = (uint64_t)(ply->end - ply->at);
+    if (element->property_count == 0)
+        return true;
+    /* The last line of a text needs no line end. */
+    if (element->count > (left + 1) / element->least)
+        return error_set(ply->error, ERROR_SCENE,
+                         ply->format == ASCII
+                             ? "%s:%zu: the header promises %llu of '%s', but the file is too short for them"
+                             : "%s: byte %zu: the header promises %llu of '%s', but the file is too short for them",
+                         ply->path, ply->format == ASCII ? ply->line : (size_t)(ply->at - ply->data),
+                         (unsigned long long)element->count, element->name);
+    if (skip_at_once(ply, element)) {
+        if (element->count > left / element->least)
+            return fail(ply, "the file ends too early");
+        ply->at += element->count * element->least;
+        return true;
+    }
+    bool corner_uvs = false;
+    for (int k = 0; k < element->property_count; k++)
+        corner_uvs |= ply->properties[element->first + k].meaning == CORNER_UVS && !ply->mesh->uvs_by_vertex;
+    for (uint64_t row = 0; row < element->count; row++) {
+        while (ply->format == ASCII && !on_word(ply) && ply->at < ply->end)
+            over_line_end(ply); /* empty lines */
+        if (!read_row(ply, element, corner_uvs))
+            return false;
+        if (ply->format == ASCII && on_word(ply))
+            return fail(ply, "more numbers on this line than the header says");
+        if (ply->format == ASCII)
+            over_line_end(ply);
+    }
+    return true;
+}
+
+static bool load(struct ply *ply) {
+    if (!read_header(ply))
+        return false;
+    ply->line++;
+    struct model_mesh *mesh = ply->mesh;
+    for (int i = 0; i < ply->element_count; i++)
+        if (strcmp(ply->elements[i].name, "vertex") == 0)
+            ply->vertex_total = ply->elements[i].count;
+    if (ply->vertex_total >= UINT32_MAX - 1)
+        return error_set(ply->error, ERROR_SCENE, "%s: %llu vertices are too many", ply->path,
+                         (unsigned long long)ply->vertex_total);
+    if (ply->vertex_total && !(ply->has[X] && ply->has[Y] && ply->has[Z]))
+        return error_set(ply->error, ERROR_SCENE, "%s: the vertices have no x, y and z", ply->path);
+    mesh->normals_by_vertex = ply->has[NX] && ply->has[NY] && ply->has[NZ];
+    mesh->uvs_by_vertex = ply->has[U] && ply->has[V];
+    for (int i = 0; i < ply->element_count; i++)
+        if (!read_rows(ply, &ply->elements[i]))
+            return false;
+    return mesh->uv_index.count == 0 || pad_corner_uvs(ply, mesh->vertex_index.count);
+}
+
+bool ply_load(struct model *model, const uint8_t *data, size_t size, struct error *error) {
+    struct ply ply = {.model = model, .path = model->path, .data = data, .at = data, .end = data + size, .error = error,
+                      .colour_scale = 1};
+    ply.mesh = model_add_mesh(model, error);
+    if (!ply.mesh)
+        return false;
+    bool ok = load(&ply);
+    list_destroy(&ply.values);
+    list_destroy(&ply.pending);
+    if (!ok || ply.mesh->colours.count == 0)
+        return ok;
+    struct model_material *material = model_add_material(model, error);
+    if (!material || !list_add_index(&ply.mesh->slots, 0))
+        return error_no_memory(error, model->path);
+    material->kd = vec3_all(1);
+    material->by_vertex = true;
+    return true;
+}

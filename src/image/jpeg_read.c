@@ -1,0 +1,161 @@
+/* JPEG in ("Information technology - Digital compression and coding of continuous-tone still images", ITU-T T.81).
+ *
+ * libjpeg reports errors by a callback that must not return: it jumps. So everything that must be given back is held by
+ * one struct reader in image_parse_jpeg, and decode, the function with the setjmp, has no variables of its own that change
+ * after it. What libjpeg only warns of (data that end early, codes that do not exist) means missing or wrong texels, so it
+ * is an error here. Sizes that the bytes of the file cannot possibly fill are refused before memory is taken: a block of
+ * 64 texels costs at least a bit. A progressive file may repaint itself as often as it likes: that is counted. */
+#include "image/jpeg_read.h"
+
+#ifndef HAVE_JPEG
+
+struct image *image_parse_jpeg(const char *path, const uint8_t *data, size_t size, struct error *error) {
+    (void)data, (void)size;
+    error_set(error, ERROR_SCENE, "%s: this is a JPEG, which this build cannot read (it was made without libjpeg)", path);
+    return NULL;
+}
+
+const char *jpeg_library(void) {
+    return "none";
+}
+
+#else
+
+#include "image/levels.h"
+
+#include <setjmp.h>
+#include <stdio.h>
+#include <string.h>
+
+/* These come last: jpeglib.h needs stdio.h. */
+#include <jerror.h>
+#include <jpeglib.h>
+
+enum { SCAN_LIMIT = 200, TEXELS_PER_BYTE = 1024 };
+
+#define TEXT_OF(x) #x
+#define TEXT(x) TEXT_OF(x)
+
+struct reader {
+    struct jpeg_error_mgr errors; /* first, so that cinfo->err leads here */
+    struct jpeg_progress_mgr progress;
+    struct jpeg_decompress_struct jpeg;
+    jmp_buf back;
+    char message[JMSG_LENGTH_MAX];
+    int code;
+    const char *path;
+    size_t size;
+    struct image *image;
+};
+
+static _Noreturn void on_error(j_common_ptr jpeg) {
+    struct reader *reader = (struct reader *)(void *)jpeg->err;
+    reader->code = jpeg->err->msg_code;
+    jpeg->err->format_message(jpeg, reader->message);
+    longjmp(reader->back, 1);
+}
+
+static void on_message(j_common_ptr jpeg, int level) {
+    int code = jpeg->err->msg_code;
+    bool harmless = code == JWRN_EXTRANEOUS_DATA || code == JWRN_JFIF_MAJOR || code == JWRN_ADOBE_XFORM;
+    if (level < 0 && !harmless)
+        on_error(jpeg);
+}
+
+static void on_progress(j_common_ptr jpeg) {
+    if (((j_decompress_ptr)jpeg)->input_scan_number > SCAN_LIMIT) {
+        struct reader *reader = (struct reader *)(void *)jpeg->err;
+        (void)snprintf(reader->message, sizeof reader->message, "more than %d scans", SCAN_LIMIT);
+        longjmp(reader->back, 1);
+    }
+}
+
+/* From what libjpeg gave, 1, 3 or 4 bytes a texel, to RGBA; the row may lie at the end of its own target. */
+static __attribute__((noinline)) void to_rgba(const uint8_t *from, int components, uint32_t width, uint8_t *to) {
+    for (uint32_t x = 0; x < width; x++, from += components, to += 4) {
+        uint8_t c[4] = {from[0], components > 1 ? from[1] : from[0], components > 1 ? from[2] : from[0], 255};
+        if (components == 4) /* CMYK as everybody writes it: 255 is no ink */
+            for (int k = 0; k < 3; k++)
+                c[k] = (uint8_t)((c[k] * from[3] + 127) / 255);
+        memcpy(to, c, 4);
+    }
+}
+
+static bool decode(struct reader *reader, const uint8_t *data, struct error *error) {
+    struct jpeg_decompress_struct *const jpeg = &reader->jpeg;
+    if (setjmp(reader->back))
+        return false;
+    jpeg_create_decompress(jpeg);
+    jpeg->progress = &reader->progress;
+    jpeg_mem_src(jpeg, data, (unsigned long)reader->size);
+    (void)jpeg_read_header(jpeg, TRUE);
+    uint32_t const width = jpeg->image_width, height = jpeg->image_height;
+    if (width > IMAGE_MAX_SIDE || height > IMAGE_MAX_SIDE || (uint64_t)width * height > IMAGE_MAX_TEXELS)
+        return error_set(error, ERROR_SCENE, "%s: %u x %u pixels are too many (at most %d a side and %d in all)",
+                         reader->path, width, height, IMAGE_MAX_SIDE, IMAGE_MAX_TEXELS);
+    if ((uint64_t)width * height > reader->size * (uint64_t)TEXELS_PER_BYTE) {
+        (void)snprintf(reader->message, sizeof reader->message, "the file is too short for %u x %u pixels", width,
+                       height);
+        return false;
+    }
+    if (jpeg->jpeg_color_space == JCS_CMYK || jpeg->jpeg_color_space == JCS_YCCK)
+        jpeg->out_color_space = JCS_CMYK;
+    else if (jpeg->jpeg_color_space != JCS_GRAYSCALE)
+        jpeg->out_color_space = JCS_RGB;
+    jpeg->dct_method = JDCT_ISLOW;
+    (void)jpeg_start_decompress(jpeg);
+    int const components = jpeg->output_components;
+    if (components != 1 && components != 3 && components != 4) {
+        (void)snprintf(reader->message, sizeof reader->message, "%d components are unknown", components);
+        return false;
+    }
+    reader->image = image_allocate(reader->path, width, height, 8, error);
+    if (!reader->image)
+        return false;
+    while (jpeg->output_scanline < height) {
+        uint8_t *target = (uint8_t *)reader->image->levels[0].texels + (size_t)jpeg->output_scanline * width * 4;
+        /* At the end of its place: expanding from the front never overtakes what is still to be read. */
+        JSAMPROW row = target + (size_t)width * (size_t)(4 - components);
+        (void)jpeg_read_scanlines(jpeg, &row, 1);
+        to_rgba(row, components, width, target);
+    }
+    (void)jpeg_finish_decompress(jpeg);
+    return true;
+}
+
+struct image *image_parse_jpeg(const char *path, const uint8_t *data, size_t size, struct error *error) {
+    struct reader reader = {.path = path, .size = size};
+    reader.jpeg.err = jpeg_std_error(&reader.errors);
+    reader.errors.error_exit = on_error;
+    reader.errors.emit_message = on_message;
+    reader.progress.progress_monitor = on_progress;
+    error->kind = ERROR_NONE;
+    bool ok = decode(&reader, data, error);
+    size_t left = reader.jpeg.src ? reader.jpeg.src->bytes_in_buffer : 0;
+    if (!ok && error->kind == ERROR_NONE) {
+        if (reader.code == JERR_OUT_OF_MEMORY)
+            error_no_memory(error, path);
+        else if (reader.code == JWRN_JPEG_EOF || reader.code == JERR_INPUT_EOF)
+            error_set(error, ERROR_SCENE,
+                      "%s: truncated JPEG: the file ends at byte %zu, before the picture is complete", path, size);
+        else
+            error_set(error, ERROR_SCENE, "%s: broken JPEG: %s (before byte %zu)", path, reader.message,
+                      left <= size ? size - left : size);
+    }
+    jpeg_destroy_decompress(&reader.jpeg);
+    ok = ok && image_build_levels(reader.image, error);
+    if (ok)
+        return reader.image;
+    image_release(reader.image);
+    return NULL;
+}
+
+const char *jpeg_library(void) {
+#ifdef LIBJPEG_TURBO_VERSION
+    return "libjpeg-turbo " TEXT(LIBJPEG_TURBO_VERSION);
+#else
+    return "libjpeg " TEXT(JPEG_LIB_VERSION);
+#endif
+}
+
+#endif

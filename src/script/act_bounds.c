@@ -1,0 +1,103 @@
+/* node:bounds(): the box round everything under a node, by a walk over all paths below it. Vertices of meshes are mapped
+ * one by one, so that the box is tight under any transform; nodes that place millions of things are measured more coarsely
+ * or refused, so that the answer never takes longer than a moment. */
+#include "script/actions.h"
+#include "script/context.h"
+
+enum { DEPTH_LIMIT = 2000, STEPS = 1 << 24 };
+
+struct measuring {
+    long long steps; /* left */
+    struct error *error;
+};
+
+static bool measure(struct measuring *m, const struct node *node, const struct transform *map, int depth,
+                    struct box *box);
+
+/* A box of vertices in their place; only those that a face uses. */
+static struct box measure_mesh(const struct mesh *mesh, const struct affine *map) {
+    uint32_t count, corners;
+    const double(*vertices)[3] = mesh_vertices(mesh, &count);
+    struct box box = box_empty();
+    for (uint32_t f = 0; f < mesh_face_count(mesh); f++) {
+        const uint32_t *face = mesh_face(mesh, f, &corners);
+        for (uint32_t k = 0; k < corners; k++) {
+            const double *v = vertices[face[k]];
+            box = box_add_point(box, affine_point(map, vec3_make(v[0], v[1], v[2])));
+        }
+    }
+    return box;
+}
+
+static bool measure_csg(struct measuring *m, const struct node *node, const struct transform *map, int depth,
+                        struct box *box) {
+    struct box a, b = box_empty();
+    if (!measure(m, node->operands[0], map, depth + 1, &a) ||
+        (node->operation != NODE_DIFFERENCE && !measure(m, node->operands[1], map, depth + 1, &b)))
+        return false;
+    switch (node->operation) {
+    case NODE_UNION:
+        *box = box_join(a, b);
+        break;
+    case NODE_INTERSECTION:
+        *box = box_meet(a, b);
+        break;
+    case NODE_DIFFERENCE:
+        *box = a;
+        break;
+    }
+    if (box_is_empty(box))
+        *box = box_empty();
+    return true;
+}
+
+/* What the node is itself, without its children. */
+static bool measure_self(struct measuring *m, const struct node *node, const struct transform *map, int depth,
+                         struct box *box) {
+    *box = box_empty();
+    if (node->kind == NODE_CSG)
+        return measure_csg(m, node, map, depth, box);
+    if (node->kind != NODE_GEOMETRY)
+        return true;
+    uint32_t faces = node->shape.kind == SHAPE_MESH ? mesh_face_count(node->shape.mesh) : 0;
+    bool exact = faces > 0 && faces < m->steps / 2;
+    m->steps -= exact ? faces : 0;
+    *box = exact ? measure_mesh(node->shape.mesh, &map->forward) : shape_bounds_under(&node->shape, &map->forward);
+    return true;
+}
+
+static bool measure(struct measuring *m, const struct node *node, const struct transform *map, int depth,
+                    struct box *box) {
+    *box = box_empty();
+    if (node->singular)
+        return true;
+    if (depth > DEPTH_LIMIT)
+        return error_set(m->error, ERROR_SCENE, "nodes are nested more than %d deep, or in a cycle", DEPTH_LIMIT);
+    if (--m->steps < 0)
+        return error_set(m->error, ERROR_SCENE, "more than %d things are under this node", STEPS);
+    struct transform parent_from_node = node_parent_from_node(node);
+    struct transform own = transform_compose(map, &parent_from_node);
+    if (!measure_self(m, node, &own, depth, box))
+        return false;
+    for (const struct node_child *child = node->first_child; child; child = child->next) {
+        struct box below;
+        if (!measure(m, child->node, &own, depth + 1, &below))
+            return false;
+        *box = box_join(*box, below);
+    }
+    return true;
+}
+
+bool act_bounds(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct measuring m = {.steps = STEPS, .error = error};
+    struct transform identity = transform_identity();
+    struct box *box = arena_alloc(&context->call, sizeof *box);
+    if (!box)
+        return error_no_memory(error, "a box");
+    if (!measure(&m, args[SELF].node, &identity, 0, box))
+        return false;
+    if (box_is_empty(box))
+        return error_set(error, ERROR_SCENE, "nothing is under this node");
+    result->pointer = box;
+    return true;
+}

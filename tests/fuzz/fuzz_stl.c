@@ -1,0 +1,6 @@
+#include "fuzz_model.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    fuzz_model("fuzz.stl", data, size);
+    return 0;
+}

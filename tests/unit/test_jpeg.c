@@ -1,0 +1,177 @@
+#include "base/mem.h"
+#include "tests/harness.h"
+#include "image/image_file.h"
+#include "image/jpeg_read.h"
+
+#include <math.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifndef HAVE_JPEG
+
+TEST(jpeg_without_its_library_says_so) {
+    static const uint8_t start[] = {0xff, 0xd8, 0xff, 0xe0};
+    struct error error = {0};
+    CHECK(image_parse("t.jpg", start, sizeof start, &error) == NULL);
+    CHECK(strstr(error.text, "t.jpg: this is a JPEG, which this build cannot read") == error.text);
+    CHECK_TEXT(jpeg_library(), "none");
+}
+
+#else
+
+#include <jpeglib.h>
+
+enum { WIDTH = 40, HEIGHT = 24 };
+
+/* A smooth picture of 1, 3 or 4 components. */
+static void sample(int x, int y, int components, uint8_t *out) {
+    for (int k = 0; k < components && k < 4; k++)
+        out[k] = (uint8_t)(k == 0 ? 6 * x : k == 1 ? 10 * y : k == 2 ? 240 - 3 * x - 4 * y : 200);
+}
+
+static uint8_t *encode(int components, bool progressive, size_t *size) {
+    struct jpeg_compress_struct jpeg;
+    struct jpeg_error_mgr errors;
+    uint8_t *data = NULL;
+    unsigned long length = 0;
+    jpeg.err = jpeg_std_error(&errors);
+    jpeg_create_compress(&jpeg);
+    jpeg_mem_dest(&jpeg, &data, &length);
+    jpeg.image_width = WIDTH;
+    jpeg.image_height = HEIGHT;
+    jpeg.input_components = components;
+    jpeg.in_color_space = components == 1 ? JCS_GRAYSCALE : components == 3 ? JCS_RGB : JCS_CMYK;
+    jpeg_set_defaults(&jpeg);
+    jpeg_set_quality(&jpeg, 98, TRUE);
+    if (progressive)
+        jpeg_simple_progression(&jpeg);
+    jpeg_start_compress(&jpeg, TRUE);
+    for (int y = 0; y < HEIGHT; y++) {
+        uint8_t line[WIDTH * 4];
+        JSAMPROW row = line;
+        for (int x = 0; x < WIDTH; x++)
+            sample(x, y, components, line + x * components);
+        (void)jpeg_write_scanlines(&jpeg, &row, 1);
+    }
+    jpeg_finish_compress(&jpeg);
+    jpeg_destroy_compress(&jpeg);
+    *size = length;
+    return data;
+}
+
+/* A copy of exactly this size, so that the sanitizer sees every byte read beside it. */
+static struct image *parse(const uint8_t *data, size_t size, struct error *error) {
+    uint8_t *copy = malloc(size ? size : 1);
+    if (size)
+        memcpy(copy, data, size);
+    *error = (struct error){0};
+    struct image *image = image_parse("t.jpg", copy, size, error);
+    free(copy);
+    return image;
+}
+
+TEST(jpeg_of_every_kind_has_its_colours) {
+    for (int kind = 0; kind < 6; kind++) {
+        static const int components[] = {1, 3, 4};
+        int n = components[kind % 3];
+        size_t size;
+        uint8_t *data = encode(n, kind >= 3, &size);
+        struct error error;
+        struct image *image = parse(data, size, &error);
+        CHECK_TEXT(error.text, "");
+        if (image) {
+            CHECK_EQ_INT(image_width(image), WIDTH);
+            CHECK_EQ_INT(image_height(image), HEIGHT);
+            double worst = 0;
+            for (int y = 0; y < HEIGHT; y++)
+                for (int x = 0; x < WIDTH; x++) {
+                    uint8_t c[4];
+                    sample(x, y, n, c);
+                    struct rgba texel = image_texel(image, (uint32_t)x, (uint32_t)y);
+                    double ink = n == 4 ? c[3] / 255.0 : 1;
+                    double wanted[3] = {c[0] * ink, c[n > 1 ? 1 : 0] * ink, c[n > 1 ? 2 : 0] * ink};
+                    double got[3] = {texel.r * 255, texel.g * 255, texel.b * 255};
+                    for (int k = 0; k < 3; k++)
+                        worst = fmax(worst, fabs(wanted[k] - got[k]));
+                    CHECK_NEAR(texel.a, 1, 0);
+                }
+            CHECK_NEAR(worst, 0, 16);
+        }
+        image_release(image);
+        free(data);
+    }
+}
+
+TEST(jpeg_cut_anywhere_is_one_line) {
+    for (int progressive = 0; progressive < 2; progressive++) {
+        size_t size;
+        uint8_t *data = encode(3, progressive, &size);
+        for (size_t cut = 0; cut < size; cut++) {
+            struct error error;
+            struct image *image = parse(data, cut, &error);
+            if (image && cut < size - 2)
+                test_fail(__FILE__, __LINE__, "%zu of %zu bytes are a picture", cut, size);
+            if (!image && (strncmp(error.text, "t.jpg: ", 7) != 0 || strchr(error.text, '\n')))
+                test_fail(__FILE__, __LINE__, "cut at %zu: %s", cut, error.text);
+            image_release(image);
+        }
+        struct error error;
+        CHECK(parse(data, size / 2, &error) == NULL);
+        CHECK(strstr(error.text, "truncated JPEG: the file ends at byte") != NULL);
+        free(data);
+    }
+}
+
+TEST(jpeg_changed_anywhere_is_a_picture_or_one_line) {
+    struct test_random random = {5};
+    for (int round = 0; round < 3000; round++) {
+        size_t size;
+        uint8_t *data = encode(3, round % 2, &size);
+        for (int k = 0; k <= round % 3; k++)
+            data[(size_t)test_uniform(&random, 2, (double)size)] = (uint8_t)test_uniform(&random, 0, 256);
+        struct error error;
+        struct image *image = parse(data, size, &error);
+        if (!image && (strncmp(error.text, "t.jpg: ", 7) != 0 || strchr(error.text, '\n')))
+            test_fail(__FILE__, __LINE__, "round %d: %s", round, error.text);
+        image_release(image);
+        free(data);
+    }
+}
+
+TEST(jpeg_that_claims_to_be_huge_is_refused_before_memory_is_taken) {
+    size_t size;
+    uint8_t *data = encode(3, false, &size);
+    for (size_t i = 2; i + 9 < size; i++)
+        if (data[i] == 0xff && data[i + 1] == 0xc0) {
+            struct error error;
+            memcpy(data + i + 5, "\x7f\xff\x1f\xff", 4);
+            CHECK(parse(data, size, &error) == NULL);
+            CHECK(strstr(error.text, "the file is too short for 8191 x 32767 pixels") != NULL);
+            memcpy(data + i + 5, "\xff\xff\xff\xff", 4);
+            CHECK(parse(data, size, &error) == NULL);
+            CHECK(strncmp(error.text, "t.jpg: ", 7) == 0);
+            break;
+        }
+    free(data);
+}
+
+TEST(jpeg_survives_every_failed_allocation) {
+    size_t size;
+    uint8_t *data = encode(3, false, &size);
+    struct error error;
+    uint64_t before = mem_allocations();
+    image_release(parse(data, size, &error));
+    uint64_t count = mem_allocations() - before;
+    for (uint64_t k = 1; k <= count; k++) {
+        mem_fail_at(k);
+        struct image *image = parse(data, size, &error);
+        mem_fail_at(0);
+        CHECK(image == NULL && error.kind == ERROR_MACHINE);
+        image_release(image);
+    }
+    free(data);
+}
+
+#endif

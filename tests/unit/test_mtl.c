@@ -1,0 +1,327 @@
+#include "model_makers.h"
+
+#include "formats/model_node.h"
+#include "geom/mesh_smooth.h"
+
+#define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+
+static const char *in_folder(const char *name) {
+    static char path[4][400];
+    static int turn;
+    char *out = path[turn++ % 4];
+    (void)snprintf(out, sizeof path[0], "%s/%s", test_folder(), name);
+    return out;
+}
+
+/* Reads a model from the test's folder. */
+static bool read_model(struct model *model, const char *name) {
+    struct model_options options = {0};
+    struct error error = {0};
+    bool ok = model_read(model, in_folder(name), &options, &error);
+    CHECK_TEXT(error.text, "");
+    return ok;
+}
+
+static const struct model_material *material(const struct model *model, const char *name) {
+    for (size_t i = 0; i < model->materials.count; i++)
+        if (strcmp(model_materials(model)[i].name, name) == 0)
+            return &model_materials(model)[i];
+    test_fail(__FILE__, __LINE__, "no material '%s'", name);
+    return &model_materials(model)[0];
+}
+
+TEST(mtl_statements_become_materials) {
+    test_write_text(in_folder("a.mtl"),
+                    "# comment\r\nKd 9 9 9\r\n\r\nnewmtl plain\r\nKd 0.1 0.2 0.3\r\nKs .5\r\nKa 1 1 1\r\nNs 32\r\nKe 0 2 0\r\n"
+                    "d 0.25\r\nNi 1.5\r\nillum 7\r\nTf 0.5 0.5 0.5\r\n  newmtl two words \r\n\tTr 0.75\r\nsharpness 60\r\n"
+                    "Kd spectral file.rfl 1\r\nnewmtl halo\r\nd -halo 0.5\r\nillum 2");
+    test_write_text(in_folder("a.obj"), SQUARE "mtllib a.mtl\nusemtl plain\nf 1 2 3\nusemtl two words\nf 1 3 4\n");
+    struct model model;
+    if (!read_model(&model, "a.obj"))
+        return;
+    const struct model_material *m = material(&model, "plain");
+    CHECK_NEAR(m->kd.y, 0.2, 0);
+    CHECK_NEAR(m->ks.z, 0.5, 0);
+    CHECK_NEAR(m->ka.x, 1, 0);
+    CHECK_NEAR(m->ke.y, 2, 0);
+    CHECK_NEAR(m->shininess, 32, 0);
+    CHECK_NEAR(m->dissolve, 0.25, 0);
+    CHECK_NEAR(m->ior, 1.5, 0);
+    CHECK_NEAR(m->filter.x, 0.5, 0);
+    CHECK_EQ_INT(m->illum, 7);
+    CHECK_NEAR(material(&model, "two words")->dissolve, 0.25, 0);
+    CHECK_NEAR(material(&model, "halo")->dissolve, 0.5, 0);
+    const struct model_mesh *mesh = model_meshes(&model);
+    CHECK_EQ_INT(mesh->slots.count, 2);
+    CHECK_EQ_INT(((uint32_t *)mesh->slots.items)[0], 0);
+    CHECK_EQ_INT(((uint32_t *)mesh->slots.items)[1], 1);
+    CHECK_EQ_INT(model.warning_count, 0);
+    model_destroy(&model);
+}
+
+TEST(mtl_maps_have_their_options_and_are_found) {
+    test_write_text(in_folder("my picture.png"), "not looked into here");
+    test_write_text(in_folder("plain.png"), "x");
+    test_write_text(in_folder("maps.mtl"),
+                    "newmtl a\nmap_Kd -s 2 3 1 -o 0.5 -clamp on -blendu off my picture.png\n"
+                    "map_Bump -bm 0.25 C:\\pictures\\plain.png\nmap_Ks -mm 0 1 -imfchan l folder/plain.png\nnorm gone.png\n"
+                    "newmtl b\nbump -t 1 1 1 -odd name.png\n");
+    test_write_text(in_folder("maps.obj"), SQUARE "mtllib maps.mtl\nusemtl a\nf 1/1 2/2 3/3\n");
+    struct model model;
+    if (!read_model(&model, "maps.obj"))
+        return;
+    const struct model_material *m = material(&model, "a");
+    CHECK_TEXT(m->map_kd.name, "my picture.png");
+    CHECK_TEXT(m->map_kd.path, in_folder("my picture.png"));
+    CHECK_NEAR(m->map_kd.scale[0], 2, 0);
+    CHECK_NEAR(m->map_kd.scale[1], 3, 0);
+    CHECK_NEAR(m->map_kd.offset[0], 0.5, 0);
+    CHECK_EQ_INT(m->map_kd.wrap_u, IMAGE_CLAMP);
+    CHECK_NEAR(m->map_bump.strength, 0.25, 0);
+    CHECK_TEXT(m->map_bump.path, in_folder("plain.png"));
+    CHECK_TEXT(m->map_ks.path, in_folder("plain.png"));
+    CHECK(m->map_normal.name && !m->map_normal.path);
+    CHECK_TEXT(material(&model, "b")->map_bump.name, "-odd name.png");
+    CHECK_EQ_INT(model.warning_count, 2);
+    CHECK(strstr(model.warnings[0], "the picture 'gone.png' is not there") != NULL);
+    model_destroy(&model);
+}
+
+TEST(mtl_that_is_missing_is_a_warning_and_one_that_is_broken_an_error) {
+    test_write_text(in_folder("b.obj"), SQUARE "\nmtllib no where.mtl\nusemtl x\nf 1 2 3\n");
+    struct model model;
+    if (!read_model(&model, "b.obj"))
+        return;
+    CHECK_EQ_INT(model.warning_count, 1);
+    CHECK(strstr(model.warnings[0], "b.obj:10: the material library 'no where.mtl' is not there") != NULL);
+    model_destroy(&model);
+    static const struct {
+        const char *text, *message;
+    } cases[] = {{"newmtl a\nKd 1 x 1\n", "c.mtl:2: 'x' is not a finite number"},
+                 {"newmtl a\nKd\n", "c.mtl:2: '' is not a finite number"},
+                 {"newmtl a\nNs nan\n", "c.mtl:2: 'nan' is not a finite number"},
+                 {"\nnewmtl  \n", "c.mtl:2: newmtl needs a name"},
+                 {"newmtl a\nmap_Kd -s 1 1\n", "c.mtl:2: the name of a picture is missing"}};
+    test_write_text(in_folder("c.obj"), SQUARE "mtllib c.mtl\nf 1 2 3\n");
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct model_options options = {0};
+        struct error error = {0};
+        test_write_text(in_folder("c.mtl"), cases[i].text);
+        CHECK(!model_read(&model, in_folder("c.obj"), &options, &error));
+        CHECK(strlen(error.text) > strlen(test_folder()));
+        CHECK_TEXT(error.text + strlen(test_folder()) + 1, cases[i].message);
+    }
+}
+
+TEST(mtl_materials_of_faces_keep_their_slots) {
+    static const struct {
+        const char *text;
+        uint32_t count, slots[4]; /* of the faces */
+        const char *names[4];
+    } cases[] = {
+        {SQUARE "f 1 2 3\nf 1 3 4\n", 1, {0, 0}, {""}},
+        {SQUARE "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\nusemtl a\nf 2 3 4\n", 2, {0, 1, 0}, {"a", "b"}},
+        {SQUARE "f 1 2 3\nusemtl b\nf 1 3 4\n", 2, {1, 0}, {"b", ""}},
+        {SQUARE "g one\nf 1 2 3\ng two\nf 1 3 4\ng one\nf 2 3 4\n", 2, {0, 1, 0}, {"one", "two"}},
+        {SQUARE "g one\nusemtl a\nf 1 2 3\ng two\nf 1 3 4\n", 1, {0, 0}, {"a"}},
+        {SQUARE "usemtl unused\nusemtl a\nf 1 2 3\nf 1 3 4\n", 1, {0, 0}, {"a"}},
+        {SQUARE "usemtl\tred  paint \r\nf 1 2 3\r\nusemtl blue\nf 1 3 4\n", 2, {0, 1}, {"red  paint", "blue"}},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct model model;
+        struct error error;
+        CHECK(parse_model(&model, "t.obj", cases[i].text, strlen(cases[i].text), NULL, &error));
+        const struct model_mesh *mesh = model_meshes(&model);
+        CHECK_EQ_INT(mesh->slots.count, cases[i].count);
+        for (uint32_t k = 0; k < cases[i].count; k++)
+            CHECK_TEXT(((const char **)mesh->slot_names.items)[k], cases[i].names[k]);
+        for (uint32_t f = 0; f < mesh_face_count(mesh->mesh); f++) {
+            struct crossing crossing = {.part = f, .u = 0.25, .v = 0.25};
+            struct ray ray = test_ray(vec3_make(0, 0, 1), vec3_make(0, 0, -1));
+            struct surface surface;
+            mesh_describe(mesh->mesh, &ray, &crossing, &surface);
+            CHECK_EQ_INT(surface.material_slot, cases[i].slots[f]);
+        }
+        model_destroy(&model);
+    }
+}
+
+TEST(mtl_materials_are_placed_with_the_mesh) {
+    test_write_text(in_folder("p.mtl"), "newmtl red\nKd 1 0 0\nillum 1\nKs 1 1 1\nnewmtl glass\nKd .5 .5 .5\nd 0.25\n"
+                                        "Ni 1.5\nillum 7\nnewmtl mirror\nKd 0 0 0\nKs 1 1 1\nillum 3\n");
+    test_write_text(in_folder("p.obj"), SQUARE "mtllib p.mtl\nusemtl red\nf 1 2 3\nusemtl glass\nf 1 3 4\nusemtl mirror\n"
+                                               "f 2 3 4\nusemtl other\nf 1 2 4\n");
+    struct assets assets = {0};
+    struct scene scene;
+    struct error error = {0};
+    struct model_options options = {0};
+    struct model_placing placing = {.name = "p"};
+    bool fresh;
+    scene_init(&scene, &assets);
+    const struct model *model = model_asset(&assets, in_folder("p.obj"), "p", &options, &fresh, &error);
+    CHECK(model && fresh);
+    CHECK(model_asset(&assets, in_folder("p.obj"), "p", &options, &fresh, &error) == model && !fresh);
+    struct node *node = model ? model_place(&scene, model, &placing, &error) : NULL;
+    CHECK_TEXT(error.text, "");
+    if (node) {
+        CHECK_EQ_INT(node->slot_count, 4);
+        CHECK_TEXT(node->slot_names[3], "other");
+        CHECK(node->slots[3] == NULL);
+        CHECK_NEAR(node->slots[0]->phong.kd.x, 1, 0);
+        CHECK_NEAR(node->slots[0]->phong.ks.x, 0, 0);
+        CHECK_EQ_INT(node->slots[1]->kind, MATERIAL_FRESNEL);
+        double ior = 0;
+        CHECK(material_is_transparent(node->slots[1], &ior));
+        CHECK_NEAR(ior, 1.5, 0);
+        CHECK_NEAR(node->slots[2]->phong.reflect, 1, 0);
+    }
+    scene_destroy(&scene);
+    assets_destroy(&assets);
+}
+
+/* --- crease angles, welding, turning round --- */
+
+/* The cube with a vertex of its own for every corner of every face, as exporters write hard edges. */
+static void cube(struct maker *m, bool shared) {
+    static const int sides[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    for (int v = 0; shared && v < 8; v++)
+        maker_vertex(m, v & 1, v >> 1 & 1, v >> 2 & 1);
+    for (int f = 0; f < 6; f++) {
+        uint32_t corners[4];
+        for (int k = 0; k < 4; k++) {
+            int v = sides[f][k];
+            corners[k] = shared ? (uint32_t)v : maker_vertex(m, v & 1, v >> 1 & 1, v >> 2 & 1);
+        }
+        maker_face(m, corners, 4);
+    }
+}
+
+static struct mesh *smoothed(const struct maker *m, double degrees, bool weld, bool flip) {
+    struct mesh_input input = maker_input(m);
+    struct mesh_tables own = {0};
+    struct error error = {0};
+    CHECK(!weld || mesh_input_weld(&input, &own, &error));
+    CHECK(!flip || mesh_input_flip(&input, &own, &error));
+    CHECK(degrees < 0 || mesh_input_smooth(&input, &own, degrees, &error));
+    struct mesh *mesh = mesh_create(&input, &error);
+    CHECK_TEXT(error.text, "");
+    mesh_tables_destroy(&own);
+    return mesh;
+}
+
+static struct surface surface_at(const struct mesh *mesh, uint32_t triangle, double u, double v) {
+    struct crossing crossing = {.part = triangle, .u = u, .v = v};
+    struct ray ray = test_ray(vec3_make(0, 0, 9), vec3_make(0, 0, -1));
+    struct surface surface;
+    mesh_describe(mesh, &ray, &crossing, &surface);
+    return surface;
+}
+
+TEST(smooth_cube_has_corner_normals_at_91_degrees_and_flat_faces_at_89) {
+    for (int shared = 0; shared < 2; shared++) {
+        struct maker m = {0};
+        cube(&m, shared);
+        struct mesh *soft = smoothed(&m, 91, false, false), *hard = smoothed(&m, 89, false, false);
+        struct mesh *exact = smoothed(&m, 90, false, false), *flat = smoothed(&m, 0, false, false);
+        CHECK(mesh_has_normals(soft) && mesh_has_normals(hard) && !mesh_has_normals(flat));
+        for (uint32_t t = 0; t < 12; t++)
+            for (int k = 0; k < 3; k++) {
+                struct surface s = surface_at(soft, t, k == 1, k == 2), h = surface_at(hard, t, k == 1, k == 2);
+                struct surface e = surface_at(exact, t, k == 1, k == 2);
+                struct vec3 out = vec3_normalize(vec3_sub(s.point, vec3_all(0.5)));
+                CHECK_NEAR(vec3_dot(vec3_normalize(s.shading_normal), out), 1, 1e-12);
+                CHECK_NEAR(vec3_dot(vec3_normalize(e.shading_normal), out), 1, 1e-12);
+                CHECK_NEAR(vec3_dot(vec3_normalize(h.shading_normal), vec3_normalize(h.normal)), 1, 1e-12);
+            }
+        mesh_release(soft), mesh_release(hard), mesh_release(exact), mesh_release(flat);
+        maker_free(&m);
+    }
+}
+
+TEST(smooth_normals_do_not_depend_on_how_faces_are_cut_into_triangles) {
+    /* The tip of a pyramid over a square, one side cut into many slivers: weights by angle see no difference. */
+    struct maker m = {0}, n = {0};
+    for (int cut = 0; cut < 2; cut++) {
+        struct maker *p = cut ? &n : &m;
+        uint32_t tip = maker_vertex(p, 0, 1, 0), a = maker_vertex(p, 1, 0, 1), b = maker_vertex(p, 1, 0, -1),
+                 c = maker_vertex(p, -1, 0, -1), d = maker_vertex(p, -1, 0, 1);
+        maker_triangle(p, tip, a, b);
+        maker_triangle(p, tip, b, c);
+        maker_triangle(p, tip, c, d);
+        uint32_t last = d;
+        for (int i = 1; cut && i < 8; i++) {
+            uint32_t next = maker_vertex(p, -1 + 2 * i / 8.0, 0, 1);
+            maker_triangle(p, tip, last, next);
+            last = next;
+        }
+        maker_triangle(p, tip, last, a);
+    }
+    struct mesh *whole = smoothed(&m, 180, false, false), *slivers = smoothed(&n, 180, false, false);
+    struct vec3 p = vec3_normalize(surface_at(whole, 0, 0, 0).shading_normal);
+    struct vec3 q = vec3_normalize(surface_at(slivers, 0, 0, 0).shading_normal);
+    CHECK_NEAR(p.x, q.x, 1e-12);
+    CHECK_NEAR(p.y, q.y, 1e-12);
+    CHECK_NEAR(p.y, 1, 1e-12);
+    mesh_release(whole), mesh_release(slivers);
+    maker_free(&m), maker_free(&n);
+}
+
+TEST(smooth_normals_are_the_same_bits_at_any_power_of_two) {
+    struct maker m = {0};
+    maker_twisted_torus(&m, 12, 8, 1);
+    struct mesh *one = smoothed(&m, 60, true, false);
+    for (int power = -900; power <= 900; power += 300) {
+        struct maker n = {0};
+        maker_twisted_torus(&n, 12, 8, 1);
+        maker_scale(&n, ldexp(1, power), 0, 0, 0);
+        struct mesh *scaled = smoothed(&n, 60, true, false);
+        for (uint32_t t = 0; t < mesh_triangle_count(one); t++) {
+            struct vec3 a = surface_at(one, t, 0.25, 0.5).shading_normal, b = surface_at(scaled, t, 0.25, 0.5).shading_normal;
+            CHECK(memcmp(&a, &b, sizeof a) == 0);
+        }
+        mesh_release(scaled);
+        maker_free(&n);
+    }
+    mesh_release(one);
+    maker_free(&m);
+}
+
+TEST(smooth_fan_of_a_hundred_thousand_faces_takes_a_moment) {
+    struct maker m = {0};
+    uint32_t tip = maker_vertex(&m, 0, 1, 0), first = 0, last = 0;
+    for (int i = 0; i < 100000; i++) {
+        uint32_t v = maker_vertex(&m, cos(i * 2 * M_PI / 100000), 0, -sin(i * 2 * M_PI / 100000));
+        if (i)
+            maker_triangle(&m, tip, last, v);
+        else
+            first = v;
+        last = v;
+    }
+    maker_triangle(&m, tip, last, first);
+    struct mesh *mesh = smoothed(&m, 60, true, false);
+    struct vec3 n = vec3_normalize(surface_at(mesh, 0, 0, 0).shading_normal);
+    CHECK_NEAR(n.y, 1, 1e-9);
+    mesh_release(mesh);
+    maker_free(&m);
+}
+
+TEST(weld_makes_one_vertex_of_each_place_and_flip_turns_the_outside) {
+    struct maker m = {0};
+    cube(&m, false);
+    maker_vertex(&m, 5, 5, 5); /* used by no face */
+    struct mesh *plain = smoothed(&m, -1, false, false), *welded = smoothed(&m, -1, true, false),
+                *flipped = smoothed(&m, 91, true, true);
+    uint32_t count;
+    (void)mesh_vertices(plain, &count);
+    CHECK_EQ_INT(count, 25);
+    (void)mesh_vertices(welded, &count);
+    CHECK_EQ_INT(count, 8);
+    CHECK(same_faces(plain, welded));
+    CHECK(mesh_is_closed(welded) && mesh_is_closed(flipped));
+    struct surface s = surface_at(flipped, 0, 0, 0);
+    struct vec3 out = vec3_sub(s.point, vec3_all(0.5));
+    CHECK(vec3_dot(s.normal, out) < 0);
+    CHECK(vec3_dot(s.shading_normal, out) < 0);
+    mesh_release(plain), mesh_release(welded), mesh_release(flipped);
+    maker_free(&m);
+}
