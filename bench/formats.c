@@ -3,6 +3,7 @@
 #include "formats/model.h"
 
 #include <stdio.h>
+#include <string.h>
 #include <sys/stat.h>
 #include <time.h>
 
@@ -12,7 +13,43 @@ static double now(void) {
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+static void put32(FILE *file, uint32_t bits) {
+    for (int i = 0; i < 4; i++)
+        (void)fputc((int)(bits >> 8 * i & 255), file);
+}
+
+/* The first mesh of a file as binary STL: shells cannot write that. */
+static int write_stl(const char *from, const char *to) {
+    struct model model;
+    struct error error = {0};
+    struct model_options options = {0};
+    FILE *file = model_read(&model, from, &options, &error) ? fopen(to, "wb") : NULL;
+    if (!file)
+        return 1;
+    uint32_t ignored;
+    const struct mesh *mesh = model_meshes(&model)[0].mesh;
+    const double(*vertices)[3] = mesh_vertices(mesh, &ignored);
+    for (int i = 0; i < 80; i++)
+        (void)fputc(0, file);
+    put32(file, mesh_face_count(mesh));
+    for (uint32_t f = 0; f < mesh_face_count(mesh); f++) {
+        const uint32_t *face = mesh_face(mesh, f, &ignored);
+        for (int i = -3; i < 9; i++) {
+            float x = i < 0 ? 0 : (float)vertices[face[i / 3]][i % 3];
+            uint32_t bits;
+            memcpy(&bits, &x, 4);
+            put32(file, bits);
+        }
+        (void)fputc(0, file);
+        (void)fputc(0, file);
+    }
+    model_destroy(&model);
+    return fclose(file);
+}
+
 int main(int count, char **paths) {
+    if (count == 4 && strcmp(paths[1], "--stl") == 0)
+        return write_stl(paths[2], paths[3]);
     for (int i = 1; i < count; i++) {
         double best = 1e9;
         unsigned triangles = 0;

@@ -19,7 +19,7 @@ fi
 # A wavy sheet of 1000 x 500 quads.
 [ -s "$out/sheet.obj" ] || awk -v out="$out/sheet" 'BEGIN {
     w = 1000; h = 500
-    obj = out ".obj"; ply = out ".ply"; stl = out ".stl"
+    obj = out ".obj"; ply = out ".ply"
     printf "ply\nformat ascii 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n", (w+1)*(h+1) > ply
     printf "element face %d\nproperty list uchar int vertex_indices\nend_header\n", 2*w*h > ply
     for (y = 0; y <= h; y++) for (x = 0; x <= w; x++) {
@@ -33,7 +33,8 @@ fi
         printf "3 %d %d %d\n3 %d %d %d\n", a, b, d, a, d, c > ply
     }
 }'
-set -- "$out/sheet.obj" "$out/sheet.ply"
+[ -s "$out/sheet.stl" ] || "$out/formats" --stl "$out/sheet.obj" "$out/sheet.stl"
+set -- "$out/sheet.obj" "$out/sheet.ply" "$out/sheet.stl"
 for model in ../shared/models/igea.ply ../shared/models/nefertiti.obj ../shared/models/stanford-bunny.obj; do
     [ -f "$model" ] && set -- "$@" "$model"
 done

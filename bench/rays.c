@@ -21,7 +21,6 @@
 
 #if defined(HAVE_EMBREE)
 #include <embree3/rtcore.h>
-#include <pmmintrin.h>
 #include <xmmintrin.h>
 #endif
 
@@ -294,6 +293,7 @@ static void secondary_rays(const struct bench_scene *scene, const struct mesh *m
     }
 }
 
+#if defined(HAVE_EMBREE)
 static void explain(const struct bench_scene *scene, const char *kind, const struct bench_hit *ours,
                     const struct bench_hit *theirs) {
     const struct bench_hit *h = ours->triangle != UINT32_MAX ? ours : theirs;
@@ -302,6 +302,7 @@ static void explain(const struct bench_scene *scene, const char *kind, const str
            (double)fminf(h->u, fminf(h->v, 1 - h->u - h->v)),
            (double)fminf(theirs->u, fminf(theirs->v, 1 - theirs->u - theirs->v)));
 }
+#endif
 
 static void measure(const struct bench_scene *scene, const struct options *options, struct result *result) {
     *result = (struct result){.triangles = scene->triangle_count};
@@ -322,7 +323,6 @@ static void measure(const struct bench_scene *scene, const struct options *optio
         hits[i] = calloc(pixels, sizeof *hits[i]);
     camera_rays(scene, options->size, rays[0]);
     gray_trace(mesh, rays[0], hits[0], pixels, false, &scratch);
-    dice = 1; if (getenv("COUNTS")) scratch.hierarchy_steps=scratch.triangle_tests=scratch.voxels=0;
     secondary_rays(scene, mesh, rays[0], hits[0], pixels, rays[1], rays[2], &result->rays[1]);
     result->rays[0] = pixels;
     result->rays[2] = result->rays[1];
@@ -335,12 +335,9 @@ static void measure(const struct bench_scene *scene, const struct options *optio
             double start = cpu_seconds();
             gray_trace(mesh, rays[kind], hits[0], count, kind == 1, &scratch);
             seconds[0][rep] = cpu_seconds() - start;
-if (rep==0 && getenv("COUNTS")) { static uint64_t a,b,c; printf("%s nodes %.2f blocks %.2f voxels %.2f per ray\n", kind_names[kind], (double)(scratch.hierarchy_steps-a)/count,(double)(scratch.triangle_tests-b)/8/count,(double)(scratch.voxels-c)/count);}
-if (getenv("COUNTS")) {scratch.hierarchy_steps=scratch.triangle_tests=scratch.voxels=0;}
 #if defined(HAVE_EMBREE)
             unsigned mode = _mm_getcsr();
-            _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-            _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+            _mm_setcsr(mode | 0x8040); /* Embree wants denormals flushed */
             start = cpu_seconds();
             embree_trace(&embree, rays[kind], hits[1], count, kind == 1);
             seconds[1][rep] = cpu_seconds() - start;

@@ -106,7 +106,8 @@ static void measure_swept(int argc, char **argv, struct arena *arena, struct geo
         for (int j = 0; j < side; j++)
             for (int i = 0; i < side; i++)
                 heights[j * side + i] = 0.1 * sin(9.0 * i / side) * cos(11.0 * j / side) + 0.01 * uniform(&state);
-        struct height_field_input land = {.heights = heights, .columns = (uint32_t)side, .rows = (uint32_t)side, .floor = -0.2};
+        struct height_field_input land = {
+            .heights = heights, .columns = (uint32_t)side, .rows = (uint32_t)side, .floor = -0.2};
         for (int i = 0; i < balls; i++) {
             elements[i].a = elements[i].b = somewhere(&state);
             elements[i].radius = many ? 0.2 : 0.8;
@@ -118,7 +119,7 @@ static void measure_swept(int argc, char **argv, struct arena *arena, struct geo
             {.kind = SHAPE_HEIGHT_FIELD, .height_field = height_field_build(arena, &land, &error)},
             {.kind = SHAPE_BLOB, .blob = blob_build(arena, &blob, &error)},
             {.kind = SHAPE_CURVE, .curve = curve_build(arena, &curve, &error)}};
-        static const char *const names[] = {"height field of 17 x 17", "blob of 5 balls", "curve, 9 points",
+        static const char *const names[] = {"height field of 17 x 17",   "blob of 5 balls",   "curve, 9 points",
                                             "height field of 513 x 513", "blob of 200 balls", "curve, 1001 points"};
         for (int k = 0; k < 3; k++)
             if (is_wanted(argc, argv, names[3 * many + k]))

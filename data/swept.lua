@@ -15,7 +15,8 @@ end
 
 -- The table top: a lathe with a rounded rim.
 scene:add_child(gr.lathe {
-    name = 'table', spline = 'b-spline', material = gr.wood_pnd_material(gr.material({0.55, 0.36, 0.20}, {0.1, 0.1, 0.1}, 20), 0.3, 9, 0, {0.36, 0.21, 0.11}),
+    name = 'table', spline = 'b-spline',
+    material = gr.wood_pnd_material(gr.material({0.55, 0.36, 0.20}, {0.1, 0.1, 0.1}, 20), 0.3, 9, 0, {0.36, 0.21, 0.11}),
     points = {{0, -0.5}, {8, -0.5}, {8.6, -0.45}, {8.7, -0.2}, {8.5, 0}, {8, 0}, {0, 0}},
 })
 
@@ -26,7 +27,8 @@ for j = 0, 160 do
     for i = 0, 160 do
         local x, z, h, f, a = i / 160, j / 160, 0, 3, 0.5
         for octave = 1, 6 do
-            h = h + a * math.abs(sin(f * x * 2.3 + octave * 1.7 + cos(f * z))) * math.abs(cos(f * z * 1.9 + octave + sin(f * x * 0.7)))
+            local ridge = math.abs(sin(f * x * 2.3 + octave * 1.7 + cos(f * z)))
+            h = h + a * ridge * math.abs(cos(f * z * 1.9 + octave + sin(f * x * 0.7)))
             f, a = f * 2.03, a * 0.47
         end
         row[i + 1] = h * (1 - (2 * x - 1) ^ 4) * (1 - (2 * z - 1) ^ 4)
@@ -43,8 +45,8 @@ scene:add_child(land)
 -- A vase of a spline profile with a wall, cut open to show it; its cut face is the knife's.
 local profile = {{0, 0}, {0.75, 0}, {0.85, 0.12}, {1.15, 0.9}, {1.05, 1.7}, {0.5, 2.4}, {0.45, 2.75}, {0.72, 3.1},
     {0.62, 3.1}, {0.36, 2.75}, {0.40, 2.4}, {0.92, 1.7}, {1.02, 0.95}, {0.72, 0.25}, {0, 0.18}}
-local function vase(colour) return gr.lathe {name = 'vase', points = profile, spline = 'catmull-rom', material = colour} end
-local cut = gr.difference('cut vase', vase(ceramic(0.10, 0.26, 0.55)),
+local cut = gr.difference('cut vase',
+    gr.lathe {name = 'vase', points = profile, spline = 'catmull-rom', material = ceramic(0.10, 0.26, 0.55)},
     gr.box {min = {0, -1, 0}, max = {3, 5, 3}, material = gr.material({0.85, 0.55, 0.35}, {0, 0, 0}, 1)})
 cut:rotate('y', -38):translate(-3.6, 0, 0.4)
 scene:add_child(cut)
@@ -101,7 +103,8 @@ end
 for h = 0, 5 do
     local hole = {}
     for k = 0, 7 do
-        hole[k + 1] = {0.66 * cos(h * pi / 3) + 0.17 * cos(k * pi / 4), 0.66 * sin(h * pi / 3) + 0.17 * sin(k * pi / 4)}
+        local around, about = h * pi / 3, k * pi / 4
+        hole[k + 1] = {0.66 * cos(around) + 0.17 * cos(about), 0.66 * sin(around) + 0.17 * sin(about)}
     end
     holes[h + 1] = hole
 end
@@ -133,18 +136,22 @@ local dish = {}
 for j = 0, 3 do
     for i = 0, 3 do
         local x, z = i / 1.5 - 1, j / 1.5 - 1
-        dish[#dish + 1] = {1.3 * x * (1 - 0.25 * z * z), 0.25 + 0.55 * x * x + 0.5 * z * z + 0.35 * x * z, 1.1 * z * (1 - 0.2 * x * x)}
+        local y = 0.25 + 0.55 * x * x + 0.5 * z * z + 0.35 * x * z
+        dish[#dish + 1] = {1.3 * x * (1 - 0.25 * z * z), y, 1.1 * z * (1 - 0.2 * x * x)}
     end
 end
-scene:add_child(gr.patch {name = 'dish', points = dish, tolerance = 0.001,
-    material = gr.rr_material({0.62, 0.46, 0.22}, {0.3, 0.3, 0.3}, 30, 0.1, 0, 1.5), flip = true}:scale(0.8, 0.8, 0.8):rotate('y', 30):translate(3.3, -0.42, 3.4))
+scene:add_child(gr.patch {
+    name = 'dish', points = dish, tolerance = 0.001, flip = true,
+    material = gr.rr_material({0.62, 0.46, 0.22}, {0.3, 0.3, 0.3}, 30, 0.1, 0, 1.5),
+}:scale(0.8, 0.8, 0.8):rotate('y', 30):translate(3.3, -0.42, 3.4))
 for k = 0, 2 do
     scene:add_child(gr.sphere {name = 'cherry', material = ceramic(0.55, 0.03, 0.08), radius = 0.2,
         centre = {3.3 + 0.22 * cos(k * 2.1 + 0.5), 0.36 + 0.02 * k, 3.4 + 0.22 * sin(k * 2.1 + 0.5)}})
 end
 
 gr.render {
-    node = scene, file = 'swept.png', width = 960, height = 600, eye = {0.3, 5.2, 13.5}, target = {0.2, 1.05, 0}, up = {0, 1, 0}, fov = 32,
+    node = scene, file = 'swept.png', width = 960, height = 600, fov = 32,
+    eye = {0.3, 5.2, 13.5}, target = {0.2, 1.05, 0}, up = {0, 1, 0},
     ambient = {0.34, 0.35, 0.38}, background = {0.62, 0.72, 0.84},
     lights = {gr.light({-9, 14, 12}, {0.62, 0.60, 0.54}, {1, 0, 0}), gr.light({12, 9, 6}, {0.22, 0.24, 0.30}, {1, 0, 0})},
 }

@@ -28,6 +28,7 @@ need libc6-dev have_headers
 need pkg-config command -v pkg-config
 need liblua5.4-dev have_lua
 need libpng-dev pkg-config --exists libpng
+need zlib1g-dev pkg-config --exists zlib
 [ -z "$missing" ] && exit 0
 
 echo "missing:$missing" >&2

@@ -7,6 +7,9 @@
 #include "base/mem.h"
 
 #include <string.h>
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
 
 /* --- building --- */
 
@@ -363,31 +366,50 @@ void box_tree_walk_begin(struct box_tree_walk *walk, const struct box_tree *tree
     }
 }
 
-/* Where the ray enters each child, and whether it meets it at all before t_max. Loops over the four children compile to
- * the vector instructions there are; the comparisons are written so that each is one of them. */
-static void meet_children(const struct box_tree_walk *walk, const struct box_tree_node *node, double t_max,
-                          double enter[BOX_TREE_WIDTH], bool met[BOX_TREE_WIDTH]) {
-    double leave[BOX_TREE_WIDTH];
-    for (int i = 0; i < BOX_TREE_WIDTH; i++) {
-        enter[i] = walk->t_min;
-        leave[i] = t_max;
-    }
-    for (int axis = 0; axis < 3; axis++) {
-        const double *near_planes = node->planes[axis][walk->near_side[axis]];
-        const double *far_planes = node->planes[axis][!walk->near_side[axis]];
-        double origin = walk->origin[axis], inverse = walk->inverse[axis];
-        for (int i = 0; i < BOX_TREE_WIDTH; i++) {
-            double near = (near_planes[i] - origin) * inverse, far = (far_planes[i] - origin) * inverse;
-            enter[i] = near > enter[i] ? near : enter[i];
-            leave[i] = far < leave[i] ? far : leave[i];
+/* Where the ray enters each child, and which children it meets before t_max (bit i for child i). */
+#ifdef __SSE2__
+static unsigned meet_children(const struct box_tree_walk *walk, const struct box_tree_node *node, double t_max,
+                              double enter_out[BOX_TREE_WIDTH]) {
+    unsigned met = 0;
+    for (int half = 0; half < BOX_TREE_WIDTH; half += 2) {
+        __m128d enter = _mm_set1_pd(walk->t_min), leave = _mm_set1_pd(t_max);
+        for (int axis = 0; axis < 3; axis++) {
+            const double *near_planes = node->planes[axis][walk->near_side[axis]] + half;
+            const double *far_planes = node->planes[axis][!walk->near_side[axis]] + half;
+            __m128d origin = _mm_set1_pd(walk->origin[axis]), inverse = _mm_set1_pd(walk->inverse[axis]);
+            /* max and min give their second operand when the first is NaN. */
+            enter = _mm_max_pd(_mm_mul_pd(_mm_sub_pd(_mm_loadu_pd(near_planes), origin), inverse), enter);
+            leave = _mm_min_pd(_mm_mul_pd(_mm_sub_pd(_mm_loadu_pd(far_planes), origin), inverse), leave);
         }
+        _mm_storeu_pd(enter_out + half, enter);
+        /* Whichever of the two factors moves outwards. */
+        __m128d less = _mm_set1_pd(1 - 0x1p-50), more = _mm_set1_pd(1 + 0x1p-50);
+        __m128d early = _mm_min_pd(_mm_mul_pd(enter, less), _mm_mul_pd(enter, more));
+        __m128d late = _mm_max_pd(_mm_mul_pd(leave, less), _mm_mul_pd(leave, more));
+        met |= (unsigned)_mm_movemask_pd(_mm_cmple_pd(early, late)) << half;
     }
-    for (int i = 0; i < BOX_TREE_WIDTH; i++) {
-        double early = enter[i] * (enter[i] > 0 ? 1 - 0x1p-50 : 1 + 0x1p-50);
-        double late = leave[i] * (leave[i] > 0 ? 1 + 0x1p-50 : 1 - 0x1p-50);
-        met[i] = early <= late && node->child[i] != BOX_TREE_NONE;
-    }
+    return met;
 }
+#else
+static unsigned meet_children(const struct box_tree_walk *walk, const struct box_tree_node *node, double t_max,
+                              double enter_out[BOX_TREE_WIDTH]) {
+    unsigned met = 0;
+    for (int i = 0; i < BOX_TREE_WIDTH; i++) {
+        double enter = walk->t_min, leave = t_max;
+        for (int axis = 0; axis < 3; axis++) {
+            double near = (node->planes[axis][walk->near_side[axis]][i] - walk->origin[axis]) * walk->inverse[axis];
+            double far = (node->planes[axis][!walk->near_side[axis]][i] - walk->origin[axis]) * walk->inverse[axis];
+            enter = near > enter ? near : enter;
+            leave = far < leave ? far : leave;
+        }
+        enter_out[i] = enter;
+        double early = enter * (enter > 0 ? 1 - 0x1p-50 : 1 + 0x1p-50);
+        double late = leave * (leave > 0 ? 1 + 0x1p-50 : 1 - 0x1p-50);
+        met |= (unsigned)(early <= late) << i;
+    }
+    return met;
+}
+#endif
 
 bool box_tree_walk_next(struct box_tree_walk *walk, double t_max, uint32_t *item) {
     while (walk->top > 0) {
@@ -401,15 +423,12 @@ bool box_tree_walk_next(struct box_tree_walk *walk, double t_max, uint32_t *item
         }
         const struct box_tree_node *node = &walk->tree->nodes[child];
         double enter[BOX_TREE_WIDTH];
-        bool met[BOX_TREE_WIDTH];
-        meet_children(walk, node, t_max, enter, met);
+        unsigned met = meet_children(walk, node, t_max, enter);
         walk->steps++;
         /* The nearest must be on top: insertion into the few that were met, farthest first. */
         int base = walk->top;
-        for (int i = 0; i < BOX_TREE_WIDTH; i++) {
-            if (!met[i])
-                continue;
-            int at = walk->top++;
+        for (; met; met &= met - 1) {
+            int i = __builtin_ctz(met), at = walk->top++;
             for (; at > base && walk->enter[at - 1] < enter[i]; at--) {
                 walk->enter[at] = walk->enter[at - 1];
                 walk->child[at] = walk->child[at - 1];
@@ -430,13 +449,10 @@ bool box_tree_walk_any(struct box_tree_walk *walk, double t_max, uint32_t *item)
         }
         const struct box_tree_node *node = &walk->tree->nodes[child];
         double enter[BOX_TREE_WIDTH];
-        bool met[BOX_TREE_WIDTH];
-        meet_children(walk, node, t_max, enter, met);
+        unsigned met = meet_children(walk, node, t_max, enter);
         walk->steps++;
-        for (int i = 0; i < BOX_TREE_WIDTH; i++) {
-            if (met[i])
-                walk->child[walk->top++] = node->child[i];
-        }
+        for (; met; met &= met - 1)
+            walk->child[walk->top++] = node->child[__builtin_ctz(met)];
     }
     return false;
 }

@@ -55,6 +55,13 @@ static inline simd4 simd4_three(simd4 a) {
 static inline void simd4_store_int(int32_t *p, simd4 a) {
     _mm_storeu_si128((__m128i *)(void *)p, _mm_cvttps_epi32(a));
 }
+/* Truncated to whole numbers. */
+static inline simd4 simd4_whole(simd4 a) {
+    return _mm_cvtepi32_ps(_mm_cvttps_epi32(a));
+}
+static inline simd4 simd4_one_unless_negative(simd4 a) {
+    return _mm_andnot_ps(_mm_castsi128_ps(_mm_srai_epi32(_mm_castps_si128(a), 31)), _mm_set1_ps(1));
+}
 /* The smallest of lanes 0, 1, 2 in lanes 0, 1, 2; lane 3 of `a` must not be the smallest. */
 static inline simd4 simd4_min_of_three(simd4 a) {
     simd4 b = _mm_min_ps(a, _mm_shuffle_ps(a, a, _MM_SHUFFLE(3, 0, 2, 1)));
@@ -121,6 +128,16 @@ static inline simd4 simd4_three(simd4 a) {
 static inline void simd4_store_int(int32_t *p, simd4 a) {
     for (int i = 0; i < 4; i++)
         p[i] = (int32_t)a.lane[i];
+}
+static inline simd4 simd4_whole(simd4 a) {
+    for (int i = 0; i < 4; i++)
+        a.lane[i] = (float)(int32_t)a.lane[i];
+    return a;
+}
+static inline simd4 simd4_one_unless_negative(simd4 a) {
+    for (int i = 0; i < 4; i++)
+        a.lane[i] = signbit(a.lane[i]) ? 0 : 1;
+    return a;
 }
 static inline simd4 simd4_min_of_three(simd4 a) {
     float m = a.lane[0] < a.lane[1] ? a.lane[0] : a.lane[1];

@@ -3,26 +3,28 @@
 
 __extension__ typedef unsigned __int128 wide;
 
-bool triangle_ray_init(struct triangle_ray *out, const struct ray *ray) {
-    struct vec3 d = ray->direction;
-    double x = fabs(d.x), y = fabs(d.y), z = fabs(d.z);
-    out->z = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
-    out->x = (out->z + 1) % 3;
-    out->y = (out->z + 2) % 3;
-    double along = vec3_get(d, out->z);
-    if (!vec3_finite(d) || !(fabs(along) > 0) || !vec3_finite(ray->origin))
-        return false;
-    if (along < 0) { /* keeps the winding as it is seen along the ray */
-        int swap = out->x;
-        out->x = out->y;
-        out->y = swap;
-    }
-    out->shear_x = vec3_get(d, out->x) / along;
-    out->shear_y = vec3_get(d, out->y) / along;
-    out->scale_z = 1 / along;
+void triangle_ray_set(struct triangle_ray *out, const struct ray *ray) {
+    const double d[3] = {ray->direction.x, ray->direction.y, ray->direction.z};
+    /* Without branches: which axis is the longest is anybody's guess. */
+    int z = fabs(d[1]) > fabs(d[0]);
+    z = fabs(d[2]) > fabs(d[z]) ? 2 : z;
+    static const int after[4] = {1, 2, 0, 1};
+    int backwards = d[z] < 0; /* then x and y change places, which keeps the winding as it is seen along the ray */
+    out->z = z;
+    out->x = after[z + backwards];
+    out->y = after[z + !backwards];
+    out->scale_z = 1 / d[z];
+    out->shear_x = d[out->x] / d[z];
+    out->shear_y = d[out->y] / d[z];
     out->origin[0] = ray->origin.x;
     out->origin[1] = ray->origin.y;
     out->origin[2] = ray->origin.z;
+}
+
+bool triangle_ray_init(struct triangle_ray *out, const struct ray *ray) {
+    if (!vec3_finite(ray->direction) || !vec3_finite(ray->origin) || !(vec3_max_abs(ray->direction) > 0))
+        return false;
+    triangle_ray_set(out, ray);
     return true;
 }
 

@@ -35,6 +35,8 @@ struct triangle_hit {
 
 /* False for a direction that is zero or not finite: such a ray meets nothing. */
 bool triangle_ray_init(struct triangle_ray *out, const struct ray *ray);
+/* The same for a ray known to be good. */
+void triangle_ray_set(struct triangle_ray *out, const struct ray *ray);
 
 /* ax * by - ay * bx, exact up to the last rounding. */
 double triangle_edge_exact(double ax, double ay, double bx, double by);

@@ -369,19 +369,26 @@ static uint32_t resolve(const struct builder *builder, uint32_t tag) {
 static void set_lane(const struct triangle_index *index, const struct triangle_set *set, uint32_t triangle,
                      struct triangle_block *block, uint32_t lane) {
     const uint32_t *corner = set->corners[triangle];
-    double p[3][3], longest = 0;
+    double p[3][3];
     const double *centre = index->centre;
     for (int j = 0; j < 3; j++)
         for (int k = 0; k < 3; k++)
             p[j][k] = (set->vertices[corner[j]][k] - centre[k]) * index->scale;
     for (int k = 0; k < 3; k++) {
-        double e1 = p[1][k] - p[0][k], e2 = p[2][k] - p[0][k];
         block->corner[k][lane] = (float)p[0][k];
-        block->edge1[k][lane] = (float)e1;
-        block->edge2[k][lane] = (float)e2;
-        longest = fmax(longest, fmax(fabs(e1), fabs(e2)));
+        block->edge1[k][lane] = (float)(p[1][k] - p[0][k]);
+        block->edge2[k][lane] = (float)(p[2][k] - p[0][k]);
     }
-    block->reach[lane] = (float)fmax(longest * (1 + 0x1p-20), 0x1p-60);
+    block->ids[lane] = triangle;
+}
+
+static void set_unused_lane(struct triangle_block *block, uint32_t lane) {
+    for (int k = 0; k < 3; k++) {
+        block->corner[k][lane] = 8;
+        block->edge1[k][lane] = k == 0 ? 0x1p-4f : 0;
+        block->edge2[k][lane] = k == 1 ? 0x1p-4f : 0;
+    }
+    block->ids[lane] = 0;
 }
 
 /* Moves a job's nodes into the index and fills its blocks. */
@@ -400,19 +407,11 @@ static void finish_job(void *context, uint32_t item, int worker) {
     for (uint32_t i = 0; i < job->leaf_count; i++) {
         struct leaf leaf = job->leaves[i];
         struct triangle_block *block = &index->blocks[job->leaf_base + i];
-        uint32_t *ids = index->ids[job->leaf_base + i];
-        memset(block, 0, sizeof *block);
-        for (uint32_t lane = 0; lane < WIDTH; lane++) {
-            bool used = lane < leaf.count;
-            ids[lane] = used ? builder->references[leaf.first + lane].triangle : 0;
-            if (used) {
-                set_lane(index, builder->set, ids[lane], block, lane);
-                continue;
-            }
-            /* Far outside, so that its slack is negative: nothing meets it. */
-            block->corner[0][lane] = 4;
-            block->reach[lane] = -1;
-        }
+        for (uint32_t lane = 0; lane < WIDTH; lane++)
+            if (lane < leaf.count)
+                set_lane(index, builder->set, builder->references[leaf.first + lane].triangle, block, lane);
+            else
+                set_unused_lane(block, lane);
     }
 }
 
@@ -435,8 +434,7 @@ static bool assemble(struct builder *builder) {
     }
     index->nodes = alloc_table(nodes * sizeof *index->nodes);
     index->blocks = alloc_table(blocks * sizeof *index->blocks);
-    index->ids = alloc_table(blocks * sizeof *index->ids);
-    if (!index->nodes || !index->blocks || !index->ids)
+    if (!index->nodes || !index->blocks)
         return false;
     index->node_count = nodes;
     index->block_count = blocks;

@@ -1,4 +1,13 @@
-/* The index of a mesh: frame, voxels, searches. */
+/* The index of a mesh: frame, voxels, searches.
+ *
+ * How many voxels? A voxel spares a ray the upper levels of the hierarchy and costs it a step (about a third of a node
+ * visit), every occupied voxel on its way the start of a hierarchy (about one and a half), and memory for what lies in
+ * several. With eight children to a node and lambda voxels to a triangle the levels spared are log8 of the number of
+ * occupied voxels, at best, that is, if all are filled alike: 1.3 for 16 of them, 2 for 64; but a ray through a body of
+ * that many meets 2 to 4 occupied ones before it is done. So the account is about even for compact bodies, where 0.001
+ * voxels a triangle were measured 0 to 4 % faster, and is lost where much is open or filled unevenly (docs/performance.md
+ * has the numbers: terrain 4 % slower, a pyramid of Sierpinski's 10 %, rooms and worlds 20 to 60 %). Hence one voxel,
+ * unless the caller asks for more; then the frame is only the box every ray is cut to. */
 #include "accel/triangle_index.h"
 
 #include "accel/isa.h"
@@ -9,13 +18,6 @@
 #include "math/elementary.h"
 
 #include <string.h>
-
-#ifdef GRAY_DEV
-#include <stdlib.h>
-#define VOXELS_WANTED(count) fmax(1, (getenv("LAMBDA") ? atof(getenv("LAMBDA")) : 0) * (count))
-#else
-#define VOXELS_WANTED(count) 1
-#endif
 
 enum { MOST_CELLS = 128 /* along one axis */, BIG_VOXELS = 8 /* a triangle in more of them is kept apart */ };
 
@@ -54,9 +56,19 @@ static void set_cells(struct triangle_index *index, double wanted) {
         index->cells[k] = cells < 1 ? 1 : cells > MOST_CELLS ? MOST_CELLS : (uint32_t)cells;
         index->cell[k] = (float)(2 * index->half[k] / index->cells[k]);
         index->inverse_cell[k] = 1 / index->cell[k];
+        index->half_single[k] = (float)index->half[k];
+        index->last_cell[k] = (float)(index->cells[k] - 1);
     }
     index->stride[0] = index->cells[0] + 2;
     index->stride[1] = index->stride[0] * (index->cells[1] + 2);
+    const int32_t stride[3] = {1, (int32_t)index->stride[0], (int32_t)index->stride[1]};
+    for (int negative = 0; negative < 8; negative++)
+        for (int axes = 0; axes < 8; axes++) {
+            index->offset[negative][axes] = 0;
+            for (int k = 0; k < 3; k++)
+                if (axes >> k & 1)
+                    index->offset[negative][axes] += negative >> k & 1 ? -stride[k] : stride[k];
+        }
     index->voxel_count = (size_t)index->stride[1] * (index->cells[2] + 2);
 }
 
@@ -171,14 +183,14 @@ static bool fill_voxels(struct triangle_index *index, const struct triangle_set 
     return complete;
 }
 
-bool triangle_index_build(struct triangle_index **out, const struct triangle_set *set, struct pool *pool,
-                          struct error *error) {
+bool triangle_index_build(struct triangle_index **out, const struct triangle_set *set, uint32_t voxels,
+                          struct pool *pool, struct error *error) {
     struct triangle_index *index = mem_alloc_zero(1, sizeof *index);
     if (!index)
         return error_no_memory(error, "the index of a mesh");
     if (set->count > 0) {
         set_space(index, set);
-        set_cells(index, VOXELS_WANTED(set->count));
+        set_cells(index, voxels > 1 ? voxels : 1);
         if (!fill_voxels(index, set, pool, error)) {
             triangle_index_destroy(index);
             return false;
@@ -194,13 +206,12 @@ void triangle_index_destroy(struct triangle_index *index) {
     mem_free(index->voxels);
     mem_free(index->nodes);
     mem_free(index->blocks);
-    mem_free(index->ids);
     mem_free(index);
 }
 
 size_t triangle_index_memory(const struct triangle_index *index) {
     return sizeof *index + index->voxel_count * sizeof *index->voxels + index->node_count * sizeof *index->nodes +
-           index->block_count * (sizeof *index->blocks + sizeof *index->ids);
+           index->block_count * sizeof *index->blocks;
 }
 
 bool triangle_index_nearest(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,

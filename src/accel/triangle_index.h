@@ -25,9 +25,10 @@ struct triangle_cost {
     uint64_t triangle_tests, voxels, hierarchy_steps;
 };
 
-/* Owner: the caller, triangle_index_destroy. False: no memory or cancelled. pool may be NULL. */
-bool triangle_index_build(struct triangle_index **out, const struct triangle_set *set, struct pool *pool,
-                          struct error *error);
+/* `voxels`: about how many the frame is to have; 0 leaves it to the index. Owner: the caller, triangle_index_destroy.
+ * False: no memory or cancelled. pool may be NULL; the bytes of the index do not depend on it. */
+bool triangle_index_build(struct triangle_index **out, const struct triangle_set *set, uint32_t voxels,
+                          struct pool *pool, struct error *error);
 void triangle_index_destroy(struct triangle_index *index); /* NULL is fine */
 size_t triangle_index_memory(const struct triangle_index *index);
 

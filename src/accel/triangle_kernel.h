@@ -1,10 +1,10 @@
 /* The search, compiled once per instruction set: a file defines KERNEL(name) and includes this one.
  *
- * Single precision proposes, doubles decide. A ray is taken into local space in double precision, moved to where it enters
- * the frame (so its origin is at most 1 + VOXEL_MARGIN in size) and rounded; its direction's largest component is 1/2 to 1. Hits
- * are then looked for with every comparison slack by more than all rounding can do, and what is found is tried again with
- * the test of triangle.h on the original ray and vertices. So the answer is the same bits as trying every triangle,
- * whatever the instruction set.
+ * Single precision proposes, doubles decide. A ray is taken into local space in double precision, moved to where it
+ * enters the frame (so its origin is at most 1 + VOXEL_MARGIN in size) and rounded; its direction's largest component is
+ * 1/2 to 1. Hits are then looked for with every comparison slack by more than all rounding can do, and what is found is
+ * tried again with the test of triangle.h on the original ray and vertices. So the answer is the same bits as trying
+ * every triangle, whatever the instruction set.
  *
  * How far rounding reaches, in units of e = 2^-24 (unit roundoff), with |o| <= 1, |d| <= 1, s = o - corner, S = |s| and
  * L the largest component of the two edges; D bounds what the double arithmetic of either side may move the line, about
@@ -18,8 +18,8 @@
  * always has u, v >= -E, u + v <= |det| + 3 E and T within E L, and what passes with these turned round is certainly a
  * hit. S counts, not its bound: a ray that starts on a surface would else find its own triangle doubtful too often.
  *
- * A certain hit ends an "any" search at once; in a "nearest" search its upper bound of t shortens the ray, and it is kept
- * as a candidate; the candidates that are left at the end, nearly always one, are decided in double. */
+ * A certain hit ends an "any" search at once. A "nearest" search decides what is proposed at once, too: since near
+ * boxes come first, there is hardly more than one proposal for every ray that hits. */
 
 #include "accel/simd.h"
 #include "accel/triangle_kernels.h"
@@ -27,15 +27,10 @@
 
 #include <string.h>
 
-enum { STACK_ENTRIES = 256, CANDIDATES = 16 };
+enum { STACK_ENTRIES = 256 };
 
 /* In local units. Up to here BOX_GROWTH covers what the distance adds to the rounding. */
 #define FAR_AWAY 0x1p20
-
-struct candidate {
-    uint32_t triangle;
-    float low; /* t is at least this */
-};
 
 struct search {
     const struct triangle_index *index;
@@ -45,12 +40,11 @@ struct search {
     simd8 ox, oy, oz, dx, dy, dz;
     simd8 rx, ry, rz;                /* 1 / direction */
     simd8 mx, my, mz;                /* origin / direction: a plane is met at plane * r - m */
+    simd8 wx, wy, wz;                /* for rays from far away: how much the boxes' growth falls short, in local t */
     uint32_t row_x, row_y, row_z;    /* where the near row of a node starts, in floats; the far one is at row ^ WIDTH */
     float error;                     /* 15 e + 8 D */
-    float extra;                     /* for rays from far away: how much the boxes' growth falls short, in local t */
     float limit;                     /* local t beyond which nothing matters */
     float certain;                   /* local t below which the ray's own interval surely has not ended */
-    uint32_t candidate_count;
     bool found, sheared_ready, far_away;
     double t_to_local, t_offset;     /* local t = t * t_to_local - t_offset */
     double best;                     /* as decided */
@@ -59,13 +53,12 @@ struct search {
     void *context;
     uint32_t blocks, nodes, voxels;
     struct triangle_ray sheared;
-    struct candidate candidates[CANDIDATES];
 };
 
 /* The answer for one proposed triangle. True when an "any" search is over. */
 static __attribute__((noinline)) bool decide(struct search *s, uint32_t triangle) {
     if (!s->sheared_ready) {
-        triangle_ray_init(&s->sheared, s->ray); /* search_begin has seen that the ray is good */
+        triangle_ray_set(&s->sheared, s->ray); /* search_begin has seen that the ray is good */
         s->sheared_ready = true;
     }
     const uint32_t *c = s->set->corners[triangle];
@@ -91,56 +84,17 @@ static __attribute__((noinline)) bool decide(struct search *s, uint32_t triangle
     return false;
 }
 
-static void decide_candidates(struct search *s) {
-    for (uint32_t i = 0; i < s->candidate_count; i++)
-        if (s->candidates[i].low <= s->limit)
-            decide(s, s->candidates[i].triangle);
-    s->candidate_count = 0;
-}
-
-/* A hit that is certain, at a local t between low and high. */
-static void add_candidate(struct search *s, uint32_t triangle, float low, float high) {
-    if (low > s->limit)
-        return;
-    if (high < s->limit)
-        s->limit = high;
-    uint32_t kept = 0;
-    for (uint32_t i = 0; i < s->candidate_count; i++)
-        if (s->candidates[i].low <= s->limit)
-            s->candidates[kept++] = s->candidates[i];
-    s->candidate_count = kept;
-    const uint32_t *corner = s->set->corners[triangle];
-    for (int j = 0; j < 3; j++)
-        __builtin_prefetch(s->set->vertices[corner[j]]);
-    if (kept == CANDIDATES)
-        decide_candidates(s);
-    s->candidates[s->candidate_count++] = (struct candidate){triangle, low};
-}
-
-/* What a block's lanes are worth, one lane after the other. True when an "any" search is over. */
-static __attribute__((noinline)) bool propose(struct search *s, const uint32_t *ids, unsigned lanes,
-                                              const struct triangle_block *block, const float (*value)[WIDTH]) {
-    const float *u = value[0], *v = value[1], *det = value[2], *t = value[3];
+/* Decides a block's proposals. True when an "any" search is over. */
+static __attribute__((noinline)) bool decide_lanes(struct search *s, const uint32_t *ids, unsigned lanes) {
     do {
-        unsigned lane = (unsigned)__builtin_ctz(lanes);
+        if (decide(s, ids[__builtin_ctz(lanes)]))
+            return true;
         lanes &= lanes - 1;
-        float e = value[4][lane], slack = e * block->reach[lane];
-        bool certain = u[lane] >= e && v[lane] >= e && det[lane] - 3 * e >= u[lane] + v[lane] && t[lane] >= slack &&
-                       t[lane] + slack <= s->certain * det[lane];
-        if (certain && s->kind == TRIANGLE_ANY)
-            return true;
-        if (certain && s->kind == TRIANGLE_NEAREST) {
-            float low = (t[lane] - slack) / det[lane], high = (t[lane] + slack) / det[lane];
-            add_candidate(s, ids[lane], low * (1 - 0x1p-20f), high * (1 + 0x1p-20f));
-            continue;
-        }
-        if (decide(s, ids[lane]))
-            return true;
     } while (lanes);
     return false;
 }
 
-static inline bool try_block(struct search *s, uint32_t number) {
+static inline __attribute__((always_inline)) bool try_block(struct search *s, uint32_t number, const bool any) {
     const struct triangle_block *b = s->index->blocks + number;
     simd8 e1x = simd8_load(b->edge1[0]), e1y = simd8_load(b->edge1[1]), e1z = simd8_load(b->edge1[2]);
     simd8 e2x = simd8_load(b->edge2[0]), e2y = simd8_load(b->edge2[1]), e2z = simd8_load(b->edge2[2]);
@@ -162,7 +116,9 @@ static inline bool try_block(struct search *s, uint32_t number) {
     u = simd8_flip(u, sign);
     v = simd8_flip(v, sign);
     t = simd8_flip(t, sign);
-    simd8 reach = simd8_load(b->reach);
+    simd8 reach = simd8_max(simd8_max(simd8_size(e1x), simd8_size(e1y)), simd8_max(simd8_size(e1z), simd8_size(e2x)));
+    reach = simd8_max(reach, simd8_max(simd8_size(e2y), simd8_size(e2z)));
+    reach = simd8_max(reach, simd8_all(0x1p-40f)); /* no slack at all would make points certain hits */
     simd8 distance = simd8_max(simd8_size(sx), simd8_max(simd8_size(sy), simd8_size(sz)));
     simd8 w = simd8_multiply_add(reach, simd8_all(180 * 0x1p-24f), simd8_all(s->error));
     simd8 e = simd8_mul(simd8_multiply_add(distance, simd8_all(140 * 0x1p-24f), w), reach);
@@ -174,13 +130,15 @@ static inline bool try_block(struct search *s, uint32_t number) {
     unsigned lanes = simd8_not_negative(simd8_min(simd8_min(a, c), simd8_min(f, g)));
     if (__builtin_expect(!lanes, 1))
         return false;
-    _Alignas(32) float value[5][WIDTH];
-    simd8_store(value[0], u);
-    simd8_store(value[1], v);
-    simd8_store(value[2], det);
-    simd8_store(value[3], t);
-    simd8_store(value[4], e);
-    return propose(s, s->index->ids[number], lanes, b, (const float (*)[WIDTH])value);
+    if (any) {
+        a = simd8_sub(simd8_min(u, v), e);
+        c = simd8_sub(simd8_sub(det, e3), simd8_add(u, v));
+        f = simd8_sub(t, slack);
+        g = simd8_sub(simd8_multiply_sub(det, simd8_all(s->certain), slack), t);
+        if (lanes & simd8_not_negative(simd8_min(simd8_min(a, c), simd8_min(f, g))))
+            return true;
+    }
+    return decide_lanes(s, b->ids, lanes);
 }
 
 static inline uint64_t stack_entry(float t, uint32_t reference) {
@@ -197,9 +155,9 @@ static inline float stack_t(uint64_t entry) {
 }
 
 /* One hierarchy. True when an "any" search is over. */
-static inline __attribute__((always_inline)) bool descend(struct search *s, uint32_t reference, const bool ordered,
-                                                          const bool far_away) {
-    uint64_t stack[STACK_ENTRIES]; /* t, whose bits order as it does since it is not negative, then the reference */
+static inline __attribute__((always_inline)) bool descend(struct search *s, uint32_t reference,
+                                                          const enum triangle_search kind, const bool far_away) {
+    uint64_t stack[STACK_ENTRIES]; /* t, whose bits order as it does (it is not negative), then the reference */
     uint32_t top = 0;
     bool found = false;
     const struct wide_node *nodes = s->index->nodes;
@@ -218,10 +176,16 @@ static inline __attribute__((always_inline)) bool descend(struct search *s, uint
             simd8 bx = simd8_multiply_sub(simd8_load(bounds + far_x), rx, mx);
             simd8 by = simd8_multiply_sub(simd8_load(bounds + far_y), ry, my);
             simd8 bz = simd8_multiply_sub(simd8_load(bounds + far_z), rz, mz);
+            if (far_away) {
+                ax = simd8_sub(ax, s->wx);
+                ay = simd8_sub(ay, s->wy);
+                az = simd8_sub(az, s->wz);
+                bx = simd8_add(bx, s->wx);
+                by = simd8_add(by, s->wy);
+                bz = simd8_add(bz, s->wz);
+            }
             simd8 enter = simd8_max(simd8_max(ax, ay), simd8_max(az, simd8_all(0)));
             simd8 leave = simd8_min(simd8_min(bx, by), simd8_min(bz, simd8_all(s->limit)));
-            if (far_away) /* enter is too late by less than this, too */
-                leave = simd8_add(leave, simd8_all(2 * s->extra));
             unsigned lanes = simd8_at_most(enter, leave);
             if (!lanes)
                 goto pop;
@@ -231,7 +195,7 @@ static inline __attribute__((always_inline)) bool descend(struct search *s, uint
                 reference = n->child[i];
                 continue;
             }
-            if (!ordered) { /* which child comes first matters less than sorting costs */
+            if (kind != TRIANGLE_NEAREST) { /* which child comes first matters less than sorting costs */
                 reference = n->child[i];
                 do {
                     stack[top++] = n->child[__builtin_ctz(lanes)];
@@ -264,7 +228,7 @@ static inline __attribute__((always_inline)) bool descend(struct search *s, uint
             reference = (uint32_t)stack[--top];
         }
         tried++;
-        if (try_block(s, reference & ~REF_LEAF)) {
+        if (try_block(s, reference & ~REF_LEAF, kind == TRIANGLE_ANY)) {
             found = true;
             break;
         }
@@ -273,7 +237,7 @@ static inline __attribute__((always_inline)) bool descend(struct search *s, uint
             if (!top)
                 goto done;
             top--;
-        } while (ordered && stack_t(stack[top]) > s->limit + (far_away ? s->extra : 0));
+        } while (kind == TRIANGLE_NEAREST && stack_t(stack[top]) > s->limit);
         reference = (uint32_t)stack[top];
     }
 done:
@@ -282,38 +246,28 @@ done:
     return found;
 }
 
-static inline __attribute__((always_inline)) bool walk(struct search *s, simd4 origin4, simd4 reciprocal4,
-                                                       const bool ordered, const bool far_away) {
+static inline __attribute__((always_inline)) bool walk(struct search *s, simd4 origin, simd4 reciprocal,
+                                                       const enum triangle_search kind, const bool far_away) {
     const struct triangle_index *index = s->index;
-    if (index->big && descend(s, index->big, ordered, far_away))
+    if (index->big && descend(s, index->big, kind, far_away))
         return true;
     if (index->voxel_count == 27) { /* one voxel: nothing to walk */
         uint32_t only = index->voxels[13];
-        return only != REF_EMPTY && descend(s, only, ordered, far_away);
+        return only != REF_EMPTY && descend(s, only, kind, far_away);
     }
-    float next[4], step[4], origin[4], reciprocal[4];
-    simd4_store(origin, origin4);
-    simd4_store(reciprocal, reciprocal4);
-    int64_t offset[8] = {0};
-    uint32_t at = 1 + index->stride[0] + index->stride[1];
-    for (int k = 0; k < 3; k++) {
-        float place = (origin[k] + (float)index->half[k]) * index->inverse_cell[k];
-        float last = (float)(index->cells[k] - 1);
-        float voxel = place > 0 ? place < last ? (float)(int32_t)place : last : 0;
-        bool forwards = !signbit(reciprocal[k]);
-        float across = index->cell[k] * reciprocal[k];
-        next[k] = (voxel + (float)forwards - place) * across;
-        step[k] = fabsf(across);
-        int64_t stride = k ? index->stride[k - 1] : 1;
-        at += (uint32_t)((int64_t)voxel * stride);
-        for (int i = 0; i < 8; i++)
-            if (i >> k & 1)
-                offset[i] += forwards ? stride : -stride;
-    }
-    next[3] = INFINITY;
-    step[3] = 0;
-    simd4 next_t = simd4_load(next), step_t = simd4_load(step);
-    const uint32_t *voxel = index->voxels + at;
+    simd4 cell = simd4_load(index->cell), place = simd4_mul(simd4_add(origin, simd4_load(index->half_single)),
+                                                            simd4_load(index->inverse_cell));
+    int32_t at[4];
+    simd4 start = simd4_max(simd4_all(0), simd4_min(place, simd4_load(index->last_cell)));
+    simd4_store_int(at, start);
+    start = simd4_whole(start);
+    simd4 across = simd4_mul(cell, reciprocal);
+    simd4 next_t = simd4_mul(simd4_sub(simd4_add(start, simd4_one_unless_negative(reciprocal)), place), across);
+    simd4 step_t = simd4_size(across);
+    next_t = simd4_add(next_t, simd4_make(0, 0, 0, INFINITY));
+    const int32_t *offset = index->offset[simd4_negative(reciprocal) & 7];
+    const uint32_t *voxel = index->voxels + 1 + index->stride[0] + index->stride[1] + (uint32_t)at[0] +
+                            (uint32_t)at[1] * index->stride[0] + (uint32_t)at[2] * index->stride[1];
     for (;;) {
         uint32_t reference = *voxel;
         simd4 leave = simd4_min_of_three(next_t);
@@ -321,7 +275,7 @@ static inline __attribute__((always_inline)) bool walk(struct search *s, simd4 o
             if (reference == REF_OUTSIDE)
                 return false;
             s->voxels++;
-            if (descend(s, reference, ordered, far_away))
+            if (descend(s, reference, kind, far_away))
                 return true;
         }
         if (s->limit <= simd4_first(leave))
@@ -348,28 +302,28 @@ static inline bool search_begin(struct search *s, simd4 *origin, simd4 *reciproc
     /* Number by number: the caller has just stored them, and a wider load would have to wait for the stores. */
     wide4 o = wide4_make(ray->origin.x, ray->origin.y, ray->origin.z, 0);
     wide4 d = wide4_mul(wide4_make(ray->direction.x, ray->direction.y, ray->direction.z, 0), scale);
-    o = wide4_with_last(wide4_mul(wide4_sub(o, wide4_load(index->centre)), scale), 1);
-    wide4 o_size = wide4_size(o), d_size = wide4_size(d);
+    o = wide4_mul(wide4_sub(o, wide4_load(index->centre)), scale);
+    /* A zero becomes so small that no way along it counts. */
+    wide4 d_size = wide4_size(d), r = wide4_div(wide4_all(1), wide4_signed(wide4_max(d_size, wide4_all(0x1p-980)), d));
+    wide4 half = wide4_load(index->half), o_size = wide4_with_last(wide4_size(o), 1);
+    wide4 a = wide4_mul(wide4_sub(wide4_sub(wide4_all(0), half), o), r), b = wide4_mul(wide4_sub(half, o), r);
+    double enter = wide4_largest(wide4_with_last(wide4_min(a, b), ray->t_min));
+    double leave = wide4_smallest(wide4_with_last(wide4_max(a, b), ray->t_max));
     double largest = wide4_largest(d_size), far = wide4_largest(o_size);
     *usable = wide4_all_below(o_size, wide4_all(0x1p30)) && wide4_all_below(d_size, wide4_all(0x1p900)) &&
               largest > 0x1p-900;
-    if (!*usable)
+    if (!*usable || !(enter <= leave))
         return false;
-    /* The direction's largest component becomes at least 1/2 and less than 1. */
+    /* The local direction's largest component becomes at least 1/2 and less than 1, by a power of two. */
     uint64_t exponent;
     memcpy(&exponent, &largest, sizeof exponent);
     exponent >>= 52;
     double to_local = power_of_two(exponent + 1), shrink = power_of_two(2045 - exponent);
-    d = wide4_mul(d, wide4_all(shrink));
-    wide4 along = wide4_signed(wide4_max(wide4_size(d), wide4_all(0x1p-60)), d);
-    wide4 r = wide4_div(wide4_all(1), along), half = wide4_load(index->half);
-    wide4 a = wide4_mul(wide4_sub(wide4_sub(wide4_all(0), half), o), r), b = wide4_mul(wide4_sub(half, o), r);
-    double enter = wide4_largest(wide4_with_last(wide4_min(a, b), ray->t_min * to_local));
-    double leave = wide4_smallest(wide4_with_last(wide4_max(a, b), ray->t_max * to_local));
-    if (!(enter <= leave))
-        return false;
     simd4 o4 = wide4_to_single(wide4_add(o, wide4_mul(d, wide4_all(enter))));
-    simd4 d4 = wide4_to_single(d), r4 = wide4_to_single(r);
+    simd4 d4 = wide4_to_single(wide4_mul(d, wide4_all(shrink)));
+    r = wide4_mul(r, wide4_all(to_local));
+    r = wide4_signed(wide4_min(wide4_size(r), wide4_all(0x1p60)), r);
+    simd4 r4 = wide4_to_single(r);
     simd4 m4 = simd4_mul(o4, r4);
     s->ox = simd8_lane(o4, 0);
     s->oy = simd8_lane(o4, 1);
@@ -388,16 +342,18 @@ static inline bool search_begin(struct search *s, simd4 *origin, simd4 *reciproc
     s->row_y = (2 + (negative >> 1 & 1)) * WIDTH;
     s->row_z = (4 + (negative >> 2 & 1)) * WIDTH;
     s->t_to_local = to_local;
-    s->t_offset = enter;
-    s->limit = (float)(leave - enter) * (1 + 0x1p-20f) + 0x1p-20f;
-    double certain = (ray->t_max * to_local - enter) * (1 - 0x1p-20) - 0x1p-20;
+    s->t_offset = enter * to_local;
+    s->limit = (float)((leave - enter) * to_local) * (1 + 0x1p-20f) + 0x1p-20f;
+    double certain = (ray->t_max - enter) * to_local * (1 - 0x1p-20) - 0x1p-20;
     s->certain = certain < 16 ? (float)certain : 16;
     s->error = 16 * 0x1p-24f + (float)(far * 8 * 0x1p-46);
     s->far_away = far > FAR_AWAY;
-    s->extra = 0;
-    if (s->far_away)
-        s->extra = (float)(far * 0x1p-45 * wide4_largest(wide4_size(r)));
-    s->candidate_count = 0;
+    if (s->far_away) {
+        simd4 w4 = simd4_mul(simd4_size(r4), simd4_all((float)(far * 0x1p-45)));
+        s->wx = simd8_lane(w4, 0);
+        s->wy = simd8_lane(w4, 1);
+        s->wz = simd8_lane(w4, 2);
+    }
     s->found = s->sheared_ready = false;
     s->best = ray->t_max;
     s->blocks = s->nodes = s->voxels = 0;
@@ -425,10 +381,9 @@ bool KERNEL(nearest)(const struct triangle_index *index, const struct triangle_s
     if (!search_begin(&s, &origin, &reciprocal, &usable))
         return usable ? false : triangle_brute_nearest(set, ray, hit, cost);
     if (s.far_away)
-        walk(&s, origin, reciprocal, true, true);
+        walk(&s, origin, reciprocal, TRIANGLE_NEAREST, true);
     else
-        walk(&s, origin, reciprocal, true, false);
-    decide_candidates(&s);
+        walk(&s, origin, reciprocal, TRIANGLE_NEAREST, false);
     add_cost(&s, cost);
     return s.found;
 }
@@ -444,7 +399,8 @@ bool KERNEL(any)(const struct triangle_index *index, const struct triangle_set *
     s.kind = TRIANGLE_ANY;
     if (!search_begin(&s, &origin, &reciprocal, &usable))
         return usable ? false : triangle_brute_any(set, ray, cost);
-    bool found = s.far_away ? walk(&s, origin, reciprocal, false, true) : walk(&s, origin, reciprocal, false, false);
+    bool found = s.far_away ? walk(&s, origin, reciprocal, TRIANGLE_ANY, true)
+                            : walk(&s, origin, reciprocal, TRIANGLE_ANY, false);
     add_cost(&s, cost);
     return found;
 }
@@ -464,7 +420,7 @@ void KERNEL(all)(const struct triangle_index *index, const struct triangle_set *
     s.visit = visit;
     s.context = context;
     if (search_begin(&s, &origin, &reciprocal, &usable)) {
-        walk(&s, origin, reciprocal, false, true);
+        walk(&s, origin, reciprocal, TRIANGLE_ALL, true);
         add_cost(&s, cost);
     } else if (!usable)
         triangle_brute_all(set, &line, visit, context, cost);

@@ -35,10 +35,11 @@ struct wide_node {
     uint32_t unused[WIDTH];
 };
 
-/* Up to eight triangles: corner 0, the two edges from it, and how far rounding reaches (see triangle_kernel.h): at least
- * the largest component of both edges. An unused lane has no edges, corner 0 outside and a reach of -1. */
+/* Up to eight triangles: corner 0, the two edges from it, their numbers. An unused lane holds a small triangle outside
+ * the frame, where no search looks. */
 struct triangle_block {
-    float corner[3][WIDTH], edge1[3][WIDTH], edge2[3][WIDTH], reach[WIDTH];
+    float corner[3][WIDTH], edge1[3][WIDTH], edge2[3][WIDTH];
+    uint32_t ids[WIDTH];
 };
 
 struct triangle_index {
@@ -46,13 +47,14 @@ struct triangle_index {
     double half[4];    /* local half extents, margin included; the last is not used */
     double scale;
     uint32_t cells[3]; /* without the border */
-    float cell[3], inverse_cell[3];
+    /* Each with a fourth number, 0, so that they load as vectors. */
+    float cell[4], inverse_cell[4], half_single[4], last_cell[4]; /* last_cell: cells - 1 */
+    int32_t offset[8][8]; /* where the next voxel is: by the direction's negative axes, then by the axes stepped along */
     uint32_t stride[2]; /* of y and z in voxels[] */
     uint32_t *voxels;   /* (cells + 2) of each axis */
     uint32_t big;       /* reference to the triangles that touch very many voxels */
     struct wide_node *nodes; /* nodes[0] is not used */
     struct triangle_block *blocks;
-    uint32_t (*ids)[WIDTH]; /* the triangles of each block */
     uint32_t node_count, block_count;
     size_t voxel_count;
 };

@@ -5,6 +5,8 @@
 #include "base/arena.h"
 #include "base/file.h"
 #include "base/version.h"
+#include "formats/model.h"
+#include "image/jpeg_read.h"
 #include "script/script.h"
 
 #include <lua.h>
@@ -39,8 +41,8 @@ static const char *find_library(struct arena *arena) {
 }
 
 static void print_version(void) {
-    (void)printf("gray %s\n%s\nlibpng %s\noptional libraries: none are known to this version\n", GRAY_VERSION,
-                 LUA_RELEASE, png_get_libpng_ver(NULL));
+    (void)printf("gray %s\n%s\nlibpng %s\noptional: JPEG pictures by %s, glTF by %s\n", GRAY_VERSION, LUA_RELEASE,
+                 png_get_libpng_ver(NULL), jpeg_library(), gltf_library());
 }
 
 /* Text that the script layer makes of its table. */

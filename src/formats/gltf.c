@@ -15,6 +15,10 @@ bool gltf_load(struct model *model, const uint8_t *data, size_t size, struct err
     return error_set(error, ERROR_SCENE, "%s: this build cannot read glTF (it was made without jansson)", model->path);
 }
 
+const char *gltf_library(void) {
+    return "none";
+}
+
 #else
 
 #include "base/hash.h"
@@ -568,19 +572,30 @@ static bool check_json(const struct gltf *g, const char *text, size_t size) {
     return true;
 }
 
+/* jansson tells a lack of memory as broken text, and its allocator has no context to say so in: hence this one variable,
+ * which lives from the start of a parse to its end. */
+static _Thread_local bool json_memory_failed;
+
+static void *json_memory(size_t size) {
+    void *block = mem_alloc(size);
+    json_memory_failed |= block == NULL;
+    return block;
+}
+
 static bool parse_json(struct gltf *g, const char *text, size_t size) {
     if (!check_json(g, text, size))
         return false;
     /* Its memory comes from our room, its hash from the file: a file cannot choose names that collide, and no random
      * numbers are asked for. */
-    json_set_alloc_funcs(mem_alloc, (void (*)(void *))mem_free);
+    json_set_alloc_funcs(json_memory, mem_free);
     json_object_seed((size_t)hash_bytes(text, size, 1) | 1);
     json_error_t error;
+    json_memory_failed = false;
     g->root = json_loadb(text, size, 0, &error);
+    if (json_memory_failed) /* even a text that seems whole may lack characters then */
+        return error_no_memory(g->error, g->path);
     if (g->root)
         return json_is_object(g->root) || gltf_fail(g, "its JSON", "an object must be at the top");
-    if (json_error_code(&error) == json_error_out_of_memory)
-        return error_no_memory(g->error, g->path);
     for (char *c = error.text; *c; c++)
         if ((unsigned char)*c < 0x20 || *c == 0x7f)
             *c = '?';
@@ -623,6 +638,10 @@ static bool split(struct gltf *g, const uint8_t *data, size_t size, const char *
         at += 8 + bytes;
     }
     return true;
+}
+
+const char *gltf_library(void) {
+    return "jansson " JANSSON_VERSION;
 }
 
 bool gltf_load(struct model *model, const uint8_t *data, size_t size, struct error *error) {

@@ -109,6 +109,8 @@ bool model_finish(struct model *model, struct error *error);
 bool ply_load(struct model *model, const uint8_t *data, size_t size, struct error *error);
 bool stl_load(struct model *model, const uint8_t *data, size_t size, bool binary, struct error *error);
 bool gltf_load(struct model *model, const uint8_t *data, size_t size, struct error *error);
+/* What --version tells of its JSON parser: "jansson 2.14" or "none". */
+const char *gltf_library(void);
 bool obj_load(struct model *model, const char *text, size_t size, struct error *error);
 /* A library of materials; `line` of the model names it. */
 bool mtl_load(struct model *model, const char *path, const char *text, size_t size, struct error *error);

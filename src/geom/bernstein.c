@@ -1,6 +1,6 @@
-/* Roots in Bernstein form. The number of sign changes among the coefficients is the number of roots in (0, 1), or more by
- * an even number (Descartes; Lane and Riesenfeld, "Bounds on a polynomial", BIT 1981). None: no root. One: exactly one,
- * which is bracketed and found by Newton's steps inside the bracket. More: de Casteljau halves the interval.
+/* Roots in Bernstein form. The number of sign changes among the coefficients is the number of roots in (0, 1), or more
+ * by an even number (Descartes; Lane and Riesenfeld, "Bounds on a polynomial", BIT 1981). None: no root. One: exactly
+ * one, which is bracketed and found by Newton's steps inside the bracket. More: de Casteljau halves the interval.
  * Halving stops when the piece is too short or the coefficients are mere rounding: then only the ends' signs count. The
  * sign at a middle is taken once and used by both halves, hence the parity. */
 #include "geom/bernstein.h"

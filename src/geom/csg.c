@@ -241,16 +241,16 @@ static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray
     struct ray line = *ray;
     line.t_min = t_from - coarse - COARSE * fabs(t_from);
     line.t_max = t_to + coarse + COARSE * fabs(t_to);
+    struct box_probe probe = box_probe_make(&line);
     for (uint32_t b = 0; b < plan->bound_count;) {
         const struct csg_bound *bound = &plan->bounds[b];
-        double enter, leave;
-        if (!box_clip(&bound->box, &line, &enter, &leave)) {
+        if (!box_probe_meets(&probe, &bound->box, line.t_min, line.t_max)) {
             b = bound->skip;
             continue;
         }
         for (uint32_t i = 0; i < bound->count; i++) {
             uint32_t leaf = plan->order[bound->first + i];
-            if (bound->count > 1 && !box_clip(&plan->boxes[leaf], &line, &enter, &leave))
+            if (bound->count > 1 && !box_probe_meets(&probe, &plan->boxes[leaf], line.t_min, line.t_max))
                 continue;
             struct ray leaf_ray = ray_transform(&csg->leaves[leaf].csg_from_leaf.inverse, ray);
             struct crossing_list list = {scratch->used, 0};

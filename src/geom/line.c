@@ -59,7 +59,8 @@ void crossings_sort(struct crossing *items, uint32_t count) {
     }
 }
 
-void line_finish_open(const struct line *line, struct geom_scratch *scratch, uint32_t first, struct crossing_list *out) {
+void line_finish_open(const struct line *line, struct geom_scratch *scratch, uint32_t first,
+                      struct crossing_list *out) {
     uint32_t count = scratch->used - first;
     struct crossing *items = &scratch->items[first];
     crossings_sort(items, count);
@@ -68,7 +69,8 @@ void line_finish_open(const struct line *line, struct geom_scratch *scratch, uin
     *out = (struct crossing_list){first, count};
 }
 
-void line_finish_closed(const struct line *line, struct geom_scratch *scratch, uint32_t first, struct crossing_list *out) {
+void line_finish_closed(const struct line *line, struct geom_scratch *scratch, uint32_t first,
+                        struct crossing_list *out) {
     line_finish_open(line, scratch, first, out);
     struct crossing *items = &scratch->items[first];
     uint32_t kept = 0;

@@ -1,6 +1,7 @@
-/* The line of a ray in a shape's own measure: the origin is moved along it to where it passes the shape, the direction is a
- * unit vector, s counts object units from there. So the numbers that a root-finder sees do not depend on how far away the
- * ray began, nor on the length of its direction. Scaling by powers of two scales s and changes nothing else. */
+/* The line of a ray in a shape's own measure: the origin is moved along it to where it passes the shape, the direction
+ * is a unit vector, s counts object units from there. So the numbers that a root-finder sees do not depend on how far
+ * away the ray began, nor on the length of its direction. Scaling by powers of two scales s and changes nothing else.
+ */
 #ifndef GRAY_GEOM_LINE_H
 #define GRAY_GEOM_LINE_H
 
@@ -42,9 +43,10 @@ static inline bool line_meets_box(const struct line *line, const struct box *box
 
 /* Sorts crossings by t (then part, then u). */
 void crossings_sort(struct crossing *items, uint32_t count);
-/* Turns everything above `first` on the scratch, whose t holds s in any order, into the list of an open or closed shape:
- * by ascending t, and for a closed one without pairs at one t and with enter and leave alternating. */
+/* Turns everything above `first` on the scratch, whose t holds s in any order, into the list of an open or closed
+ * shape: by ascending t, and for a closed one without pairs at one t and with enter and leave alternating. */
 void line_finish_open(const struct line *line, struct geom_scratch *scratch, uint32_t first, struct crossing_list *out);
-void line_finish_closed(const struct line *line, struct geom_scratch *scratch, uint32_t first, struct crossing_list *out);
+void line_finish_closed(const struct line *line, struct geom_scratch *scratch, uint32_t first,
+                        struct crossing_list *out);
 
 #endif

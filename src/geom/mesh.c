@@ -32,7 +32,7 @@ void mesh_release(struct mesh *mesh) {
 bool mesh_build_index(struct mesh *mesh, struct pool *pool, struct error *error) {
     if (mesh->index)
         return true;
-    return triangle_index_build(&mesh->index, &mesh->set, pool, error);
+    return triangle_index_build(&mesh->index, &mesh->set, 0, pool, error);
 }
 
 struct box mesh_bounds(const struct mesh *mesh) {

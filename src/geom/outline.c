@@ -1,5 +1,5 @@
-/* A cubic is cut where p' or q' is zero, then halved until its inner Bezier points lie close to its chord. The number of
- * pieces is counted by the same recursion that writes them. */
+/* A cubic is cut where p' or q' is zero, then halved until its inner Bezier points lie close to its chord. The number
+ * of pieces is counted by the same recursion that writes them. */
 #include "geom/outline.h"
 
 #include "geom/bernstein.h"

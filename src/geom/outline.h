@@ -1,6 +1,6 @@
-/* A planar curve cut into pieces that a root-finder likes: each piece is monotone in both coordinates (so its end points
- * are its box) and turns little. Neighbouring pieces share their common point bit by bit, on which the parity of crossings
- * rests. Used by the lathe (p is the radius, q the height) and the prism (p is x, q is z). */
+/* A planar curve cut into pieces that a root-finder likes: each piece is monotone in both coordinates (so its end
+ * points are its box) and turns little. Neighbouring pieces share their common point bit by bit, on which the parity of
+ * crossings rests. Used by the lathe (p is the radius, q the height) and the prism (p is x, q is z). */
 #ifndef GRAY_GEOM_OUTLINE_H
 #define GRAY_GEOM_OUTLINE_H
 

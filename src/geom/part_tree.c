@@ -1,5 +1,5 @@
-/* The tree is split at the median of the boxes' middles along the longest axis of the box that holds them, which keeps the
- * depth at the logarithm of the number of parts. Parts of splines come in order along a curve; the median of a few
+/* The tree is split at the median of the boxes' middles along the longest axis of the box that holds them, which keeps
+ * the depth at the logarithm of the number of parts. Parts of splines come in order along a curve; the median of a few
  * thousand is found by a heap sort per level, which is quick enough at build time and has no bad case. */
 #include "geom/part_tree.h"
 

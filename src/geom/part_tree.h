@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 struct part_node {
-    struct box box;        /* padded for rounding: by 2^-40 of the largest coordinate in the tree */
+    struct box box; /* padded for rounding: by 2^-40 of the largest coordinate in the tree */
     uint32_t skip;
     uint32_t first, count; /* into `order`; count 0: has children instead */
 };

@@ -1,9 +1,9 @@
-/* Bicubic patches. A patch of n x n equal steps is off the surface by at most (M1 + 2 M2 + M3) / (8 n^2), M being bounds of
- * the second derivatives (Filip, Magedson, Markot, "Surface algorithms using bounds on derivatives", CAGD 1986), which the
- * differences of the control points give. All patches take the largest n, and a border is evaluated from its own four
- * points, the same bits in either direction: the weights of a place i of n are (n - i) / n and i / n, whose roles change when
- * the border is run backwards, and every sum is of two terms. So common borders give the same vertices, and vertices are
- * found again by their bits. */
+/* Bicubic patches. A patch of n x n equal steps is off the surface by at most (M1 + 2 M2 + M3) / (8 n^2), M being
+ * bounds of the second derivatives (Filip, Magedson, Markot, "Surface algorithms using bounds on derivatives", CAGD
+ * 1986), which the differences of the control points give. All patches take the largest n, and a border is evaluated
+ * from its own four points, the same bits in either direction: the weights of a place i of n are (n - i) / n and i / n,
+ * whose roles change when the border is run backwards, and every sum is of two terms. So common borders give the same
+ * vertices, and vertices are found again by their bits. */
 #include "geom/patch.h"
 
 #include <math.h>
@@ -122,8 +122,8 @@ bool patch_tessellate(struct arena *arena, const struct patch_input *in, struct 
     for (size_t i = 0; i < (size_t)in->count * 16; i++) {
         struct vec3 p = vec3_make(in->points[i][0], in->points[i][1], in->points[i][2]);
         if (!(vec3_max_abs(p) < 0x1p300) || !vec3_finite(p))
-            return error_set(error, ERROR_SCENE, "%s: point %zu of patch %zu is no number to work with", in->name, i % 16 + 1,
-                             i / 16 + 1);
+            return error_set(error, ERROR_SCENE, "%s: point %zu of patch %zu is no number to work with", in->name,
+                             i % 16 + 1, i / 16 + 1);
         lo = vec3_min(lo, p);
         hi = vec3_max(hi, p);
     }

@@ -1,11 +1,11 @@
-/* The blob (Blinn, "A generalization of algebraic surface drawing", ACM TOG 1982; the polynomial field is that of Wyvill,
- * McPheeters, Wyvill, "Data structure for soft objects", 1986, in the form that POV-Ray uses). Along a line the squared
- * distance from a ball's centre or a cylinder's axis is a quadratic, so its field is a polynomial of degree 4 between two
- * places and zero elsewhere; a cylinder has up to three such stretches. The ends of all stretches cut the line into
- * intervals; in each the polynomials that act are summed up in Bernstein form on that very interval, which loses nothing
- * however long the line is, and its roots are the crossings.
- * Inside or outside is carried from interval to interval, so rounding where two of them meet cannot upset the parity.
- * The bounds come from an octree over the fields' reach: cells in which the sum cannot attain the threshold are left out. */
+/* The blob (Blinn, "A generalization of algebraic surface drawing", ACM TOG 1982; the polynomial field is that of
+ * Wyvill, McPheeters, Wyvill, "Data structure for soft objects", 1986, in the form that POV-Ray uses). Along a line the
+ * squared distance from a ball's centre or a cylinder's axis is a quadratic, so its field is a polynomial of degree 4
+ * between two places and zero elsewhere; a cylinder has up to three such stretches. The ends of all stretches cut the
+ * line into intervals; in each the polynomials that act are summed up in Bernstein form on that very interval, which
+ * loses nothing however long the line is, and its roots are the crossings. Inside or outside is carried from interval
+ * to interval, so rounding where two of them meet cannot upset the parity. The bounds come from an octree over the
+ * fields' reach: cells in which the sum cannot attain the threshold are left out. */
 #include "geom/shape_blob.h"
 
 #include "geom/bernstein.h"
@@ -74,10 +74,9 @@ static void find_bounds(struct cells *cells, const struct box *cell, int depth) 
         if (depth < CELL_DEPTH) {
             struct vec3 middle = vec3_add(vec3_scale(cell->min, 0.5), vec3_scale(cell->max, 0.5));
             for (int i = 0; i < 8; i++) {
-                struct box child = {{i & 1 ? middle.x : cell->min.x, i & 2 ? middle.y : cell->min.y,
-                                     i & 4 ? middle.z : cell->min.z},
-                                    {i & 1 ? cell->max.x : middle.x, i & 2 ? cell->max.y : middle.y,
-                                     i & 4 ? cell->max.z : middle.z}};
+                struct box child = {
+                    {i & 1 ? middle.x : cell->min.x, i & 2 ? middle.y : cell->min.y, i & 4 ? middle.z : cell->min.z},
+                    {i & 1 ? cell->max.x : middle.x, i & 2 ? cell->max.y : middle.y, i & 4 ? cell->max.z : middle.z}};
                 find_bounds(cells, &child, depth + 1);
             }
             return;
@@ -179,7 +178,8 @@ static bool add_stretch(const struct line *line, const struct blob_element *e, u
            geom_scratch_push(scratch, (struct crossing){.t = hi, .part = part});
 }
 
-static bool add_element(const struct line *line, const struct blob *blob, uint32_t index, struct geom_scratch *scratch) {
+static bool add_element(const struct line *line, const struct blob *blob, uint32_t index,
+                        struct geom_scratch *scratch) {
     const struct blob_element *e = &blob->elements[index];
     struct vec3 axis = vec3_sub(e->b, e->a);
     double squared = vec3_dot(axis, axis);
@@ -207,7 +207,8 @@ static void sum_fields(const struct blob *blob, const struct line *line, const s
     for (uint32_t i = 0; i < count; i++) {
         const struct blob_element *e = &blob->elements[acting[i].part / REGIONS];
         int region = (int)(acting[i].part % REGIONS);
-        struct vec3 p = vec3_scale(arm(e, region, from), 1 / e->radius), r = vec3_scale(arm(e, region, to), 1 / e->radius);
+        struct vec3 p = vec3_scale(arm(e, region, from), 1 / e->radius),
+                    r = vec3_scale(arm(e, region, to), 1 / e->radius);
         /* 1 - d^2 in Bernstein form (its polar form is p . r), and its square. */
         double a = 1 - vec3_dot(p, p), b = 1 - vec3_dot(p, r), c = 1 - vec3_dot(r, r), k = e->strength;
         sum[0] += k * a * a;
@@ -219,8 +220,8 @@ static void sum_fields(const struct blob *blob, const struct line *line, const s
 }
 
 /* The first of the elements that have most to say at a place. */
-static uint32_t strongest(const struct blob *blob, const struct line *line, const struct crossing *acting, uint32_t count,
-                          double s) {
+static uint32_t strongest(const struct blob *blob, const struct line *line, const struct crossing *acting,
+                          uint32_t count, double s) {
     struct vec3 p = line_at(line, s);
     uint32_t best = UINT32_MAX;
     double most = -INFINITY;
@@ -273,7 +274,8 @@ bool blob_crossings(const struct blob *blob, const struct ray *ray, struct geom_
     for (uint32_t i = 0; room && i < end_count; i++) {
         bool later = i > 0 && ends[i].t > ends[i - 1].t;
         if (inside && later && acting == 0) { /* by rounding: where nothing acts is outside */
-            room = geom_scratch_push(scratch, (struct crossing){.t = ends[i - 1].t, .part = ends[i - 1].part / REGIONS});
+            room =
+                geom_scratch_push(scratch, (struct crossing){.t = ends[i - 1].t, .part = ends[i - 1].part / REGIONS});
             inside = false;
         }
         if (room && later && acting > 0) {
@@ -284,8 +286,8 @@ bool blob_crossings(const struct blob *blob, const struct ray *ray, struct geom_
             int count = bernstein_roots(sum, 4, roots);
             for (int k = 0; room && k < count; k++) {
                 double s = lo + (hi - lo) * roots[k];
-                room = geom_scratch_push(
-                    scratch, (struct crossing){.t = s, .part = strongest(blob, &line, active, acting, s)});
+                room = geom_scratch_push(scratch,
+                                         (struct crossing){.t = s, .part = strongest(blob, &line, active, acting, s)});
             }
             inside = !(sum[4] < 0);
         }
@@ -300,8 +302,8 @@ bool blob_crossings(const struct blob *blob, const struct ray *ray, struct geom_
             }
     }
     if (room && inside)
-        room = geom_scratch_push(scratch,
-                                 (struct crossing){.t = ends[end_count - 1].t, .part = ends[end_count - 1].part / REGIONS});
+        room = geom_scratch_push(
+            scratch, (struct crossing){.t = ends[end_count - 1].t, .part = ends[end_count - 1].part / REGIONS});
     if (!room) {
         scratch->used = out->first;
         return false;
@@ -344,7 +346,8 @@ bool blob_contains(const struct blob *blob, struct vec3 point) {
     return box_contains(&blob->bounds, point) && field_at(blob, point, &gradient) >= 0;
 }
 
-void blob_describe(const struct blob *blob, const struct ray *ray, const struct crossing *crossing, struct surface *out) {
+void blob_describe(const struct blob *blob, const struct ray *ray, const struct crossing *crossing,
+                   struct surface *out) {
     struct vec3 point = ray_at(ray, crossing->t), gradient;
     double off = field_at(blob, point, &gradient), steep = vec3_length(gradient);
     double least = 0x1p-20 * blob->threshold / blob->elements[crossing->part].radius;
@@ -357,10 +360,6 @@ void blob_describe(const struct blob *blob, const struct ray *ray, const struct 
     struct vec3 n = vec3_normalize(vec3_negate(gradient));
     if (!(vec3_max_abs(n) > 0))
         n = vec3_normalize(vec3_scale(ray->direction, crossing->enter ? -1 : 1));
-    *out = (struct surface){.point = point,
-                            .normal = n,
-                            .shading_normal = n,
-                            .pattern_point = point,
-                            .pattern_normal = n,
-                            .error = error};
+    *out = (struct surface){
+        .point = point, .normal = n, .shading_normal = n, .pattern_point = point, .pattern_normal = n, .error = error};
 }

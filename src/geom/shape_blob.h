@@ -1,6 +1,6 @@
-/* The blob: where the fields of some balls and cylinders add up to a threshold. A ball of radius R and strength k has the
- * field k (1 - (d/R)^2)^2 within R, nothing outside; a cylinder the same with the distance from its axis, rounded by half
- * balls at its ends (POV-Ray's blob). Closed. Owner: the arena it was built in. */
+/* The blob: where the fields of some balls and cylinders add up to a threshold. A ball of radius R and strength k has
+ * the field k (1 - (d/R)^2)^2 within R, nothing outside; a cylinder the same with the distance from its axis, rounded
+ * by half balls at its ends (POV-Ray's blob). Closed. Owner: the arena it was built in. */
 #ifndef GRAY_GEOM_SHAPE_BLOB_H
 #define GRAY_GEOM_SHAPE_BLOB_H
 
@@ -31,7 +31,8 @@ struct box blob_bounds(const struct blob *blob);
 bool blob_crossings(const struct blob *blob, const struct ray *ray, struct geom_scratch *scratch,
                     struct crossing_list *out);
 bool blob_contains(const struct blob *blob, struct vec3 point);
-void blob_describe(const struct blob *blob, const struct ray *ray, const struct crossing *crossing, struct surface *out);
+void blob_describe(const struct blob *blob, const struct ray *ray, const struct crossing *crossing,
+                   struct surface *out);
 uint32_t blob_scratch_need(const struct blob *blob);
 
 #endif

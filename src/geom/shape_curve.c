@@ -1,10 +1,10 @@
-/* The curve. Looked at along the ray it is a plane curve p(x) with a width w(x); the ray meets the ribbon where the curve is
- * nearest and not farther than half the width: at local minima of p^2, roots of the polynomial p . p' of degree 5 where its
- * sign goes from - to +, with 2 |p| <= w. This is what the recursive bisection of Nakamaru and Ohno ("Ray tracing for
- * curves primitive", 2002; pbrt's Curve) converges to. At a corner between two pieces the corner itself may be nearest. The
- * ends are cut straight across.
- * A ray that starts at the ribbon, one width above it, does not meet it again if it leads away: with e = w and a hit x <=
- * w/2 off the middle, the nearest approach ahead is at least (w - w/4) sin > w/2 away. Hence the error that is reported. */
+/* The curve. Looked at along the ray it is a plane curve p(x) with a width w(x); the ray meets the ribbon where the
+ * curve is nearest and not farther than half the width: at local minima of p^2, roots of the polynomial p . p' of
+ * degree 5 where its sign goes from - to +, with 2 |p| <= w. This is what the recursive bisection of Nakamaru and Ohno
+ * ("Ray tracing for curves primitive", 2002; pbrt's Curve) converges to. At a corner between two pieces the corner
+ * itself may be nearest. The ends are cut straight across. A ray that starts at the ribbon, one width above it, does
+ * not meet it again if it leads away: with e = w and a hit x <= w/2 off the middle, the nearest approach ahead is at
+ * least (w - w/4) sin > w/2 away. Hence the error that is reported. */
 #include "geom/shape_curve.h"
 
 #include "geom/bernstein.h"
@@ -195,7 +195,8 @@ static bool piece_crossings(const struct curve *curve, uint32_t part, const stru
     /* A corner at the beginning: towards it on the piece before, away from it on this one. */
     if (piece->before != part) {
         struct vec3 t0 = tangent(&curve->pieces[piece->before], 1), t1 = tangent(piece, 0);
-        bool towards = vec3_dot(p[0], across(t0, line->direction)) < 0, away = !(vec3_dot(p[0], across(t1, line->direction)) < 0);
+        bool towards = vec3_dot(p[0], across(t0, line->direction)) < 0,
+             away = !(vec3_dot(p[0], across(t1, line->direction)) < 0);
         if (towards && away && !offer(piece, part, 0, line, scratch))
             return false;
     }

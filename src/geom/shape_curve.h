@@ -1,5 +1,6 @@
-/* The curve with thickness, for hair, fur and grass: a ribbon of given width along a spline that always faces the ray. It is
- * as wide as the curve's width across the ray and has no thickness along it; open. Owner: the arena it was built in. */
+/* The curve with thickness, for hair, fur and grass: a ribbon of given width along a spline that always faces the ray.
+ * It is as wide as the curve's width across the ray and has no thickness along it; open. Owner: the arena it was built
+ * in. */
 #ifndef GRAY_GEOM_SHAPE_CURVE_H
 #define GRAY_GEOM_SHAPE_CURVE_H
 
@@ -28,8 +29,8 @@ void curve_extent(const struct curve *curve, struct vec3 g, double *lo, double *
 /* The part is a piece of the spline, u the place on it. Every crossing enters: the ribbon faces the ray. */
 bool curve_crossings(const struct curve *curve, const struct ray *ray, struct geom_scratch *scratch,
                      struct crossing_list *out);
-/* u runs along the curve from 0 to 1, v across from 0 to 1. `error` is the width, so that a secondary ray leaves the hair
- * that it comes from. */
+/* u runs along the curve from 0 to 1, v across from 0 to 1. `error` is the width, so that a secondary ray leaves the
+ * hair that it comes from. */
 void curve_describe(const struct curve *curve, const struct ray *ray, const struct crossing *crossing,
                     struct surface *out);
 uint32_t curve_scratch_need(const struct curve *curve);

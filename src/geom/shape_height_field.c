@@ -1,10 +1,10 @@
-/* The height field. Above the line or below it: phi(s) = y(s) - h(x(s), z(s)) is continuous and, between the places where
- * the line passes an edge of a cell or its diagonal, linear; the surface is where its sign changes. Only the sign at the end
- * of each stretch is asked, and carried on, so the crossings alternate whatever rounding does; the solid's walls and floor
- * are the ends of the part of the line over the square and above the floor.
- * A pyramid of least and greatest heights over blocks of 2^k x 2^k cells (Musgrave, "Grid tracing", Yale 1988; the pyramid
- * as in Tevs, Ihrke, Seidel, "Maximum mipmaps", I3D 2008) lets the line pass over or under whole blocks. A block that it
- * does not is divided in four; the line meets at most three of them, one after the other. */
+/* The height field. Above the line or below it: phi(s) = y(s) - h(x(s), z(s)) is continuous and, between the places
+ * where the line passes an edge of a cell or its diagonal, linear; the surface is where its sign changes. Only the sign
+ * at the end of each stretch is asked, and carried on, so the crossings alternate whatever rounding does; the solid's
+ * walls and floor are the ends of the part of the line over the square and above the floor. A pyramid of least and
+ * greatest heights over blocks of 2^k x 2^k cells (Musgrave, "Grid tracing", Yale 1988; the pyramid as in Tevs, Ihrke,
+ * Seidel, "Maximum mipmaps", I3D 2008) lets the line pass over or under whole blocks. A block that it does not is
+ * divided in four; the line meets at most three of them, one after the other. */
 #include "geom/shape_height_field.h"
 
 #include "geom/line.h"
@@ -73,7 +73,8 @@ static bool build_levels(struct height_field *f, struct arena *arena) {
 const struct height_field *height_field_build(struct arena *arena, const struct height_field_input *in,
                                               struct error *error) {
     if (in->columns < 2 || in->rows < 2 || in->columns > 32768 || in->rows > 32768) {
-        error_set(error, ERROR_SCENE, "a height field has 2 to 32768 columns and rows, not %u by %u", in->columns, in->rows);
+        error_set(error, ERROR_SCENE, "a height field has 2 to 32768 columns and rows, not %u by %u", in->columns,
+                  in->rows);
         return NULL;
     }
     size_t count = (size_t)in->columns * in->rows;
@@ -105,8 +106,8 @@ const struct height_field *height_field_build(struct arena *arena, const struct 
     f->lo = all.lo;
     f->hi = all.hi;
     if (!in->open && !(f->floor < f->lo && isfinite(f->floor))) {
-        error_set(error, ERROR_SCENE, "the floor of the height field (%g) must be below its lowest place (%g)", f->floor,
-                  f->lo);
+        error_set(error, ERROR_SCENE, "the floor of the height field (%g) must be below its lowest place (%g)",
+                  f->floor, f->lo);
         return NULL;
     }
     if (in->open)
@@ -167,8 +168,8 @@ static bool cross(struct walk *w, double s, uint32_t part) {
 }
 
 /* The ground of one triangle of a cell: h = h0 + a (x - column) + b (z - row). */
-static void triangle_plane(const struct height_field *f, uint32_t column, uint32_t row, bool upper, double *h0, double *a,
-                           double *b) {
+static void triangle_plane(const struct height_field *f, uint32_t column, uint32_t row, bool upper, double *h0,
+                           double *a, double *b) {
     double h00 = height(f, column, row), h11 = height(f, column + 1, row + 1);
     double h = upper ? height(f, column, row + 1) : height(f, column + 1, row);
     *h0 = h00;
@@ -204,7 +205,8 @@ static bool walk_cell(struct walk *w, uint32_t column, uint32_t row, double from
     if ((before > 0) == (after > 0))
         return walk_triangle(w, column, row, before > 0, from, to);
     double middle = from + (to - from) * (before / (before - after));
-    return walk_triangle(w, column, row, before > 0, from, middle) && walk_triangle(w, column, row, after > 0, middle, to);
+    return walk_triangle(w, column, row, before > 0, from, middle) &&
+           walk_triangle(w, column, row, after > 0, middle, to);
 }
 
 /* The line over or under a whole block. */
@@ -229,7 +231,8 @@ struct block {
 static int divide(const struct walk *w, const struct block *block, struct block *stack, int depth) {
     double edge = ldexp(1, block->level - 1);
     double x_middle = (2.0 * block->column + 1) * edge, z_middle = (2.0 * block->row + 1) * edge;
-    double sx = w->dx != 0 ? (x_middle - w->x) / w->dx : INFINITY, sz = w->dz != 0 ? (z_middle - w->z) / w->dz : INFINITY;
+    double sx = w->dx != 0 ? (x_middle - w->x) / w->dx : INFINITY,
+           sz = w->dz != 0 ? (z_middle - w->z) / w->dz : INFINITY;
     /* Which half comes first. */
     uint32_t x_side = w->dx != 0 ? w->dx < 0 : w->x >= x_middle, z_side = w->dz != 0 ? w->dz < 0 : w->z >= z_middle;
     double cuts[4] = {block->from, fmin(fmax(fmin(sx, sz), block->from), block->to),
@@ -279,7 +282,8 @@ static bool collect(const struct height_field *f, const struct ray *ray, bool ne
     struct vec3 o = w.line.origin, d = w.line.direction;
     struct end enter = {-INFINITY, 0}, leave = {INFINITY, 0};
     double above = (f->hi - f->floor) * 0x1p-10 + f->size * 0x1p-30;
-    if (!clip(o.x, d.x, 0, 1, WALL_X0, WALL_X1, &enter, &leave) || !clip(o.z, d.z, 0, 1, WALL_Z0, WALL_Z1, &enter, &leave) ||
+    if (!clip(o.x, d.x, 0, 1, WALL_X0, WALL_X1, &enter, &leave) ||
+        !clip(o.z, d.z, 0, 1, WALL_Z0, WALL_Z1, &enter, &leave) ||
         !clip(o.y, d.y, f->open ? f->lo - above : f->floor, f->hi + above, FLOOR, FLOOR, &enter, &leave) ||
         !(enter.s < leave.s) || !isfinite(enter.s) || !isfinite(leave.s))
         return true;
@@ -395,7 +399,8 @@ bool height_field_contains(const struct height_field *f, struct vec3 point) {
 }
 
 /* Slopes at a corner by the difference of its neighbours. */
-static void corner_slopes(const struct height_field *f, uint32_t column, uint32_t row, double *x_slope, double *z_slope) {
+static void corner_slopes(const struct height_field *f, uint32_t column, uint32_t row, double *x_slope,
+                          double *z_slope) {
     uint32_t c0 = column > 0 ? column - 1 : 0, c1 = column < f->columns ? column + 1 : column;
     uint32_t r0 = row > 0 ? row - 1 : 0, r1 = row < f->rows ? row + 1 : row;
     *x_slope = (height(f, c1, row) - height(f, c0, row)) * f->columns / (c1 - c0);
@@ -422,7 +427,8 @@ static void describe_ground(const struct height_field *f, uint32_t triangle, str
     corner_slopes(f, column, row, &gx[0], &gz[0]);
     corner_slopes(f, column + 1, row + 1, &gx[1], &gz[1]);
     corner_slopes(f, upper ? column : column + 1, upper ? row + 1 : row, &gx[2], &gz[2]);
-    out->shading_normal = vec3_make(-(w00 * gx[0] + w11 * gx[1] + w * gx[2]), 1, -(w00 * gz[0] + w11 * gz[1] + w * gz[2]));
+    out->shading_normal =
+        vec3_make(-(w00 * gx[0] + w11 * gx[1] + w * gx[2]), 1, -(w00 * gz[0] + w11 * gz[1] + w * gz[2]));
 }
 
 void height_field_describe(const struct height_field *f, const struct ray *ray, const struct crossing *crossing,
@@ -440,10 +446,18 @@ void height_field_describe(const struct height_field *f, const struct ray *ray, 
         out->dpdu = crossing->part == WALL_Z0 || crossing->part == WALL_Z1 ? vec3_make(1, 0, 0) : vec3_make(0, 0, 1);
         out->dpdv = vec3_make(0, -tall, 0);
         switch (crossing->part) {
-        case WALL_X0: p.x = 0, n.x = -1; break;
-        case WALL_X1: p.x = 1, n.x = 1; break;
-        case WALL_Z0: p.z = 0, n.z = -1; break;
-        case WALL_Z1: p.z = 1, n.z = 1; break;
+        case WALL_X0:
+            p.x = 0, n.x = -1;
+            break;
+        case WALL_X1:
+            p.x = 1, n.x = 1;
+            break;
+        case WALL_Z0:
+            p.z = 0, n.z = -1;
+            break;
+        case WALL_Z1:
+            p.z = 1, n.z = 1;
+            break;
         default:
             p.y = f->floor, n.y = -1;
             out->u = p.x, out->v = p.z;

@@ -1,5 +1,6 @@
-/* The height field: a table of heights over the unit square 0 <= x, z <= 1, two triangles to a cell (cut from the corner at
- * least x and z to the opposite one), closed downwards by walls and a floor, or a sheet. Owner: the arena it was built in. */
+/* The height field: a table of heights over the unit square 0 <= x, z <= 1, two triangles to a cell (cut from the
+ * corner at least x and z to the opposite one), closed downwards by walls and a floor, or a sheet. Owner: the arena it
+ * was built in. */
 #ifndef GRAY_GEOM_SHAPE_HEIGHT_FIELD_H
 #define GRAY_GEOM_SHAPE_HEIGHT_FIELD_H
 

@@ -1,13 +1,13 @@
 /* The lathe. In the half-plane of radius r and height y a line is one branch of a hyperbola, r^2 = h^2 + c^2 s^2 with
- * y = y0 + d s: h is its distance from the axis, s counts from the foot there, c and d are its speeds across and along the
- * axis (c^2 + d^2 = 1). A crossing is a place x on the profile (r(x), y(x)) with
- *     G(x) = c (y(x) - y0) - sign * d w(x) = 0,   w = sqrt(r^2 - h^2),
- * one function for each half of the hyperbola (s = sign * w / c). Squared it is the polynomial of degree 6 of van Wijk,
- * "Ray tracing objects defined by sweeping planar cubic splines" (ACM TOG 1984), whose roots come in almost equal pairs
- * for a ray that is almost level; unsquared it stays well behaved for every ray, so that is what is solved:
+ * y = y0 + d s: h is its distance from the axis, s counts from the foot there, c and d are its speeds across and along
+ * the axis (c^2 + d^2 = 1). A crossing is a place x on the profile (r(x), y(x)) with G(x) = c (y(x) - y0) - sign * d
+ * w(x) = 0,   w = sqrt(r^2 - h^2), one function for each half of the hyperbola (s = sign * w / c). Squared it is the
+ * polynomial of degree 6 of van Wijk, "Ray tracing objects defined by sweeping planar cubic splines" (ACM TOG 1984),
+ * whose roots come in almost equal pairs for a ray that is almost level; unsquared it stays well behaved for every ray,
+ * so that is what is solved:
  *   - the profile is cut into pieces monotone in r and y, so that a piece lies where r > h from one place on;
- *   - there w G'(x) = c w y' - sign d r r' is bounded by intervals; where it does not change sign G has one root or none,
- *     by the signs at the ends; where it may, the piece is halved (a straight piece is cut where w G' is zero).
+ *   - there w G'(x) = c w y' - sign d r r' is bounded by intervals; where it does not change sign G has one root or
+ * none, by the signs at the ends; where it may, the piece is halved (a straight piece is cut where w G' is zero).
  * Parity: a point of the profile with r > h lies between the halves of the hyperbola if its two G differ in sign. The
  * number of crossings on a piece is odd just if one of its ends does, decided from the end's coordinates alone, which
  * neighbours share; so on a loop, or from axis to axis, it is even whatever rounding does.

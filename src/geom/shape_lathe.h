@@ -1,4 +1,5 @@
-/* The lathe: a profile in the half-plane of radius and height, turned about the y axis. Owner: the arena it was built in. */
+/* The lathe: a profile in the half-plane of radius and height, turned about the y axis. Owner: the arena it was built
+ * in. */
 #ifndef GRAY_GEOM_SHAPE_LATHE_H
 #define GRAY_GEOM_SHAPE_LATHE_H
 
@@ -20,8 +21,8 @@ struct lathe_input {
     bool open; /* no discs from the ends to the axis: a sheet, unless both ends are on it */
 };
 
-/* A profile that is a loop (also when its last point is its first) or whose ends are on the axis, or joined to it by discs,
- * bounds a solid; inside is by even-odd. Errors say what is wrong with the points. */
+/* A profile that is a loop (also when its last point is its first) or whose ends are on the axis, or joined to it by
+ * discs, bounds a solid; inside is by even-odd. Errors say what is wrong with the points. */
 const struct lathe *lathe_build(struct arena *arena, const struct lathe_input *input, struct error *error);
 struct box lathe_bounds(const struct lathe *lathe);
 /* The least and the greatest dot(g, p) over the shape. */

@@ -1,9 +1,9 @@
-/* The prism. Seen along y the line is a line in the plane of the outline, (o + u d) with a unit direction d; a piece of the
- * outline is crossed where n . (P(x) - o) = 0, n across d: a cubic in Bernstein form whose end values depend on the end
- * points alone, so on closed curves the number of crossings is even whatever rounding does. Sorted, they are the parts of
- * the line inside the outline, drawn out without end; each is cut to the slab between the two heights. A line along y
- * takes the outline's word at its one point. (Kajiya, "New techniques for ray tracing procedurally defined objects",
- * SIGGRAPH 1983, has the prism as a problem of the plane.) */
+/* The prism. Seen along y the line is a line in the plane of the outline, (o + u d) with a unit direction d; a piece of
+ * the outline is crossed where n . (P(x) - o) = 0, n across d: a cubic in Bernstein form whose end values depend on the
+ * end points alone, so on closed curves the number of crossings is even whatever rounding does. Sorted, they are the
+ * parts of the line inside the outline, drawn out without end; each is cut to the slab between the two heights. A line
+ * along y takes the outline's word at its one point. (Kajiya, "New techniques for ray tracing procedurally defined
+ * objects", SIGGRAPH 1983, has the prism as a problem of the plane.) */
 #include "geom/shape_prism.h"
 
 #include "geom/bernstein.h"
@@ -37,7 +37,8 @@ const struct prism *prism_build(struct arena *arena, const struct prism_input *i
         for (uint32_t i = 0; i < count; i++)
             if (!isfinite(points[i][0]) || !isfinite(points[i][1]) ||
                 fmax(fabs(points[i][0]), fabs(points[i][1])) > 0x1p300) {
-                error_set(error, ERROR_SCENE, "point %u of curve %u of the outline is no number to work with", i + 1, k + 1);
+                error_set(error, ERROR_SCENE, "point %u of curve %u of the outline is no number to work with", i + 1,
+                          k + 1);
                 return NULL;
             }
         if (count > 1 && points[0][0] == points[count - 1][0] && points[0][1] == points[count - 1][1] &&

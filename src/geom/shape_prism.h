@@ -1,5 +1,5 @@
-/* The prism: an outline in the xz plane, of one or more closed curves, drawn out along y. Inside is by even-odd, so a curve
- * within another is a hole. Owner: the arena it was built in. */
+/* The prism: an outline in the xz plane, of one or more closed curves, drawn out along y. Inside is by even-odd, so a
+ * curve within another is a hole. Owner: the arena it was built in. */
 #ifndef GRAY_GEOM_SHAPE_PRISM_H
 #define GRAY_GEOM_SHAPE_PRISM_H
 

@@ -327,6 +327,7 @@ void ellipsoid_describe(const struct ellipsoid *e, const struct ray *ray, const 
                         struct surface *out) {
     struct ray unit = to_sphere(e, ray);
     sphere_describe(vec3_all(0), 1, &unit, crossing, out);
+    sphere_uv(1, out);
     out->point = vec3_add(e->centre, vec3_mul(out->point, e->radii));
     out->normal = divided(out->normal, e->radii);
     out->shading_normal = out->pattern_normal = out->normal;

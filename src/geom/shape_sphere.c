@@ -77,15 +77,18 @@ void sphere_describe(struct vec3 centre, double radius, const struct ray *ray, c
                             .shading_normal = n,
                             .pattern_point = point,
                             .pattern_normal = n,
-                            .has_uv = true,
                             .error = 0x1p-49 * (vec3_max_abs(centre) + radius)};
+}
 
+void sphere_uv(double radius, struct surface *surface) {
+    struct vec3 n = surface->normal;
     /* u = 1/2 + atan2(z, x) / 2 pi, v = 1/2 - asin(y) / pi counts from the top. */
     double y = n.y < -1 ? -1 : n.y > 1 ? 1 : n.y;
-    out->u = 0.5 + el_atan2(n.z, n.x) / TURN;
-    out->v = 0.5 - el_asin(y) / (TURN / 2);
+    surface->has_uv = true;
+    surface->u = 0.5 + el_atan2(n.z, n.x) / TURN;
+    surface->v = 0.5 - el_asin(y) / (TURN / 2);
     double ring = sqrt(n.x * n.x + n.z * n.z);
     double cosine = ring > 0 ? n.x / ring : 1, sine = ring > 0 ? n.z / ring : 0;
-    out->dpdu = vec3_scale(vec3_make(-n.z, 0, n.x), TURN * radius);
-    out->dpdv = vec3_scale(vec3_make(n.y * cosine, -ring, n.y * sine), TURN / 2 * radius);
+    surface->dpdu = vec3_scale(vec3_make(-n.z, 0, n.x), TURN * radius);
+    surface->dpdv = vec3_scale(vec3_make(n.y * cosine, -ring, n.y * sine), TURN / 2 * radius);
 }

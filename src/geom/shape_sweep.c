@@ -1,12 +1,12 @@
-/* The sphere sweep. Seen from the line, ball x of the path covers the stretch b(x) -+ sqrt(D(x)), where b is its centre's
- * place along the line, D = R^2 - p^2, p its distance from the line. D is a polynomial of degree 6 (2 for straight
- * pieces); between two of its roots the balls that the line meets follow each other without a gap, so what they cover is one
- * stretch, from the least b - sqrt(D) to the greatest b + sqrt(D) there. These lie at the ends or where
- * 4 b'^2 D = D'^2, the polynomial of degree 10 that is known from van Wijk, "Ray tracing objects defined by sweeping a
- * sphere" (Eurographics 1984). A place that is a little wrong costs s only the square of the error, and one root too many
- * costs nothing, since the least of all candidates is taken: so the envelope needs no care for double roots, and it never
- * shows the inner walls that the envelope's equation alone has. The stretches of all pieces are united.
- * Each piece is solved from the point of the line next to it; D is evaluated as (R - p)(R + p) at the end. */
+/* The sphere sweep. Seen from the line, ball x of the path covers the stretch b(x) -+ sqrt(D(x)), where b is its
+ * centre's place along the line, D = R^2 - p^2, p its distance from the line. D is a polynomial of degree 6 (2 for
+ * straight pieces); between two of its roots the balls that the line meets follow each other without a gap, so what
+ * they cover is one stretch, from the least b - sqrt(D) to the greatest b + sqrt(D) there. These lie at the ends or
+ * where 4 b'^2 D = D'^2, the polynomial of degree 10 that is known from van Wijk, "Ray tracing objects defined by
+ * sweeping a sphere" (Eurographics 1984). A place that is a little wrong costs s only the square of the error, and one
+ * root too many costs nothing, since the least of all candidates is taken: so the envelope needs no care for double
+ * roots, and it never shows the inner walls that the envelope's equation alone has. The stretches of all pieces are
+ * united. Each piece is solved from the point of the line next to it; D is evaluated as (R - p)(R + p) at the end. */
 #include "geom/shape_sweep.h"
 
 #include "geom/bernstein.h"
@@ -22,10 +22,10 @@
 enum { DEEPEST = 6 };
 
 struct sweep_piece {
-    double c[4][4];             /* Bezier points of x, y, z and the radius */
-    struct vec3 centre;         /* of its box */
-    struct vec3 side0, side1;   /* where u = 0 points, at both ends */
-    double from, to;            /* part of the path */
+    double c[4][4];           /* Bezier points of x, y, z and the radius */
+    struct vec3 centre;       /* of its box */
+    struct vec3 side0, side1; /* where u = 0 points, at both ends */
+    double from, to;          /* part of the path */
     bool straight;
 };
 
@@ -85,8 +85,8 @@ static void extent(const double c[4], const double r[4], double *lo, double *hi)
     }
 }
 
-/* Carries the direction of u = 0 along the path with least turning (Wang, Juettler, Zheng, Liu, "Computation of rotation
- * minimizing frames", ACM TOG 2008: two reflections per step). */
+/* Carries the direction of u = 0 along the path with least turning (Wang, Juettler, Zheng, Liu, "Computation of
+ * rotation minimizing frames", ACM TOG 2008: two reflections per step). */
 static void carry_sides(struct sweep_path *sweep) {
     struct vec3 t = vec3_normalize(tangent_at(&sweep->pieces[0], 0));
     struct vec3 axis = fabs(t.y) < 0.9 ? vec3_make(0, 1, 0) : vec3_make(1, 0, 0);
@@ -196,8 +196,8 @@ void sweep_extent(const struct sweep_path *sweep, struct vec3 g, double *lo, dou
         for (int sign = -1; sign <= 1; sign += 2) {
             double sum[4];
             for (int k = 0; k < 4; k++)
-                sum[k] = g.x * piece->c[0][k] + g.y * piece->c[1][k] + g.z * piece->c[2][k] +
-                         sign * length * piece->c[3][k];
+                sum[k] =
+                    g.x * piece->c[0][k] + g.y * piece->c[1][k] + g.z * piece->c[2][k] + sign * length * piece->c[3][k];
             outline_range(sum, lo, hi);
         }
     }
@@ -234,7 +234,8 @@ static void consider(const struct view *view, double x, struct stretch *out) {
         out->leave = b + half, out->x_leave = x;
 }
 
-/* A step of Newton's towards f' = 0, f = b - sign sqrt(D), if it makes |f'| smaller. D and b are Bernstein on [lo, hi]. */
+/* A step of Newton's towards f' = 0, f = b - sign sqrt(D), if it makes |f'| smaller. D and b are Bernstein on [lo, hi].
+ */
 static double polish(const double *d, int degree, const double *b, int b_degree, double sign, double x) {
     double d1[6], d2[5], b1[3], b2[2] = {0};
     bernstein_derivative(d, degree, d1);
@@ -261,8 +262,8 @@ static double polish(const double *d, int degree, const double *b, int b_degree,
 }
 
 /* What the balls from x = lo to hi cover, all of which the line meets. */
-static struct stretch cover(const struct view *view, const double *d, int degree, const double *b, int b_degree, double lo,
-                            double hi) {
+static struct stretch cover(const struct view *view, const double *d, int degree, const double *b, int b_degree,
+                            double lo, double hi) {
     struct stretch out = {INFINITY, -INFINITY, lo, hi};
     consider(view, lo, &out);
     consider(view, hi, &out);
@@ -290,7 +291,8 @@ static struct stretch cover(const struct view *view, const double *d, int degree
         largest = fmax(largest, fmax(4 * fabs(left[k]), right[k]));
     for (int k = 0; k <= total; k++) {
         left[k] = 4 * left[k] - right[k];
-        if (fabs(left[k]) < 0x1p-48 * largest) /* rounding: where the path stands still all is zero to the fourth order */
+        if (fabs(left[k]) <
+            0x1p-48 * largest) /* rounding: where the path stands still all is zero to the fourth order */
             left[k] = 0;
     }
     int count = bernstein_roots(left, total, roots);
@@ -329,7 +331,8 @@ static bool piece_crossings(const struct sweep_path *sweep, uint32_t part, const
     double b[4], r[4], p[3][4], d[7], square[7], roots[8], widest = 0;
     struct vec3 sum = {0, 0, 0};
     for (int k = 0; k <= b_degree; k++) {
-        struct vec3 q = vec3_sub(vec3_make(piece->c[0][k * step], piece->c[1][k * step], piece->c[2][k * step]), view.origin);
+        struct vec3 q =
+            vec3_sub(vec3_make(piece->c[0][k * step], piece->c[1][k * step], piece->c[2][k * step]), view.origin);
         b[k] = vec3_dot(q, view.direction);
         q = vec3_add_scaled(q, view.direction, -b[k]);
         p[0][k] = q.x, p[1][k] = q.y, p[2][k] = q.z;
@@ -357,7 +360,8 @@ static bool piece_crossings(const struct sweep_path *sweep, uint32_t part, const
         double to = k < count ? roots[k] : 1;
         if (meets && from <= to && to > 0) {
             struct stretch s = cover(&view, d, degree, b, b_degree, from, to);
-            if (!geom_scratch_push(scratch, (struct crossing){.t = s.enter + shift, .u = s.x_enter, .part = part, .enter = true}) ||
+            if (!geom_scratch_push(
+                    scratch, (struct crossing){.t = s.enter + shift, .u = s.x_enter, .part = part, .enter = true}) ||
                 !geom_scratch_push(scratch, (struct crossing){.t = s.leave + shift, .u = s.x_leave, .part = part}))
                 return false;
         }

@@ -1,5 +1,5 @@
-/* The sphere sweep: everything that a ball of changing radius covers while its centre runs along a spline. Closed. Owner:
- * the arena it was built in. */
+/* The sphere sweep: everything that a ball of changing radius covers while its centre runs along a spline. Closed.
+ * Owner: the arena it was built in. */
 #ifndef GRAY_GEOM_SHAPE_SWEEP_H
 #define GRAY_GEOM_SHAPE_SWEEP_H
 

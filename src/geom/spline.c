@@ -1,6 +1,6 @@
-/* The usual conversions: Catmull and Rom, "A class of local interpolating splines" (1974); the uniform cubic B-spline by
- * its Bezier points (Farin, "Curves and Surfaces for CAGD", chapter 8). An open B-spline gets its first and last point
- * three times, so that it begins and ends there. */
+/* The usual conversions: Catmull and Rom, "A class of local interpolating splines" (1974); the uniform cubic B-spline
+ * by its Bezier points (Farin, "Curves and Surfaces for CAGD", chapter 8). An open B-spline gets its first and last
+ * point three times, so that it begins and ends there. */
 #include "geom/spline.h"
 
 static const double *point_at(const struct spline_input *in, int64_t i, double mirrored[4]) {

@@ -99,9 +99,9 @@ static void image_over(const struct material *material, const struct hit *hit, s
         place = place_on_cube(hit);
         break;
     case MAPPING_UV:
-        if (!hit->has_uv)
+        if (!hit->has_uv && !hit->on_sphere)
             return;
-        place = place_by_uv(hit, material);
+        place = hit->on_sphere ? place_on_sphere(hit, true) : place_by_uv(hit, material);
         break;
     }
     if (material->image.flip_u)

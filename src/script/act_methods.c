@@ -31,7 +31,7 @@ static void give_operands(struct node *node, const struct material *material, in
         --*left;
         if (operand->kind == NODE_CSG)
             give_operands(operand, material, left);
-        else if (operand->kind == NODE_GEOMETRY && !operand->material)
+        else if (operand->kind == NODE_GEOMETRY && !operand->material && operand->slot_count == 0)
             operand->material = material;
     }
 }

@@ -75,6 +75,10 @@ bool act_geometry(struct context *context, const struct value *args, struct resu
     node->parent_from_node = primitive->parent_from_node;
     node->shape = primitive->shape;
     node->material = args[GEOMETRY_MATERIAL].given ? args[GEOMETRY_MATERIAL].material : primitive->material;
+    node->slots = primitive->slots;
+    node->slot_names = primitive->slot_names;
+    node->slot_count = primitive->slot_count;
+    node->cull = primitive->cull;
     node->texture = primitive->texture;
     node->operation = primitive->operation;
     node->operands[0] = primitive->operands[0];

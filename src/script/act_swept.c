@@ -1,5 +1,5 @@
-/* Shapes that are made of many parts: lathe, prism, sweep, height field, blob, curve and patches. The parameters of a shape
- * live in the arena of the scene; what is wrong with them is told by the shape's own builder. */
+/* Shapes that are made of many parts: lathe, prism, sweep, height field, blob, curve and patches. The parameters of a
+ * shape live in the arena of the scene; what is wrong with them is told by the shape's own builder. */
 #include "script/actions.h"
 #include "script/context.h"
 
@@ -13,8 +13,8 @@
 
 #include <string.h>
 
-static bool give_node(struct context *context, const struct value *args, const char *otherwise, const struct shape *shape,
-                      struct result *result, struct error *error) {
+static bool give_node(struct context *context, const struct value *args, const char *otherwise,
+                      const struct shape *shape, struct result *result, struct error *error) {
     const struct value *name = &args[SHAPE_NAME];
     struct node *node = scene_node(&context->scene, NODE_GEOMETRY, name->given ? name->text : otherwise, error);
     if (!node)
@@ -57,7 +57,8 @@ bool act_lathe(struct context *context, const struct value *args, struct result 
 
 bool act_prism(struct context *context, const struct value *args, struct result *result, struct error *error) {
     const struct value *outline = &args[PRISM_OUTLINE], *holes = &args[PRISM_HOLES];
-    uint32_t hole_points = holes->given ? holes->starts[holes->count] : 0, curves = 1 + (holes->given ? holes->count : 0);
+    uint32_t hole_points = holes->given ? holes->starts[holes->count] : 0,
+             curves = 1 + (holes->given ? holes->count : 0);
     double(*points)[2] = arena_alloc_array(&context->call, (size_t)outline->count + hole_points + 1, sizeof *points);
     uint32_t *starts = arena_alloc_array(&context->call, (size_t)curves + 1, sizeof *starts);
     if (!points || !starts)
@@ -114,7 +115,9 @@ static bool heights_of_rows(const struct value *rows, struct height_field_input 
                              in->columns);
     }
     in->heights = rows->numbers;
-    return in->rows > 1 && in->columns > 1 ? true : error_set(error, ERROR_SCENE, "heights needs 2 rows of 2 numbers at least");
+    return in->rows > 1 && in->columns > 1
+               ? true
+               : error_set(error, ERROR_SCENE, "heights needs 2 rows of 2 numbers at least");
 }
 
 /* Heights 0 to 1 from the mean of red, green and blue; the picture's upper edge is z = 0. */
@@ -172,8 +175,8 @@ static bool blob_rows(const struct value *rows, const char *name, uint32_t width
         out[k].radius = row[width - 1];
         out[k].strength = length > width ? row[width] : 1;
         if (!(out[k].radius > 0) || out[k].strength == 0)
-            return error_set(error, ERROR_SCENE, "%s[%u] has the radius %g and the strength %g", name, k + 1, out[k].radius,
-                             out[k].strength);
+            return error_set(error, ERROR_SCENE, "%s[%u] has the radius %g and the strength %g", name, k + 1,
+                             out[k].radius, out[k].strength);
     }
     return true;
 }
@@ -184,7 +187,8 @@ bool act_blob(struct context *context, const struct value *args, struct result *
     struct blob_element *elements = arena_alloc_array(&context->call, (size_t)in.count + 1, sizeof *elements);
     if (!elements)
         return error_no_memory(error, "a blob");
-    if (!blob_rows(balls, "spheres", 4, elements, error) || !blob_rows(rods, "cylinders", 7, elements + balls->count, error))
+    if (!blob_rows(balls, "spheres", 4, elements, error) ||
+        !blob_rows(rods, "cylinders", 7, elements + balls->count, error))
         return false;
     if (in.count == 0)
         return error_set(error, ERROR_SCENE, "spheres is missing (or cylinders)");
@@ -211,8 +215,9 @@ bool act_patch(struct context *context, const struct value *args, struct result 
             for (uint32_t i = 0; i < 16; i++) {
                 uint32_t index = patches->indices[patches->starts[k] + i];
                 if (index >= points->count)
-                    return error_set(error, ERROR_SCENE, "patches[%u][%u] is %u, but there are %u points, counted from 0",
-                                     k + 1, i + 1, index, points->count);
+                    return error_set(error, ERROR_SCENE,
+                                     "patches[%u][%u] is %u, but there are %u points, counted from 0", k + 1, i + 1,
+                                     index, points->count);
                 memcpy(all[16 * (size_t)k + i], points->points[index], sizeof *all);
             }
         }

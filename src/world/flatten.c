@@ -7,6 +7,7 @@
 #include "base/mem.h"
 
 #include <stdio.h>
+#include <string.h>
 
 enum { PLACED_LIMIT = 1 << 28 };
 
@@ -155,6 +156,8 @@ static bool place(struct flattening *f, const struct node *node, const struct tr
         stretch = fmax(stretch, fabs(row[0]) + fabs(row[1]) + fabs(row[2]));
     }
     placed->scale = stretch;
+    struct transform nothing = transform_identity();
+    placed->identity = memcmp(&nothing, world_from_node, sizeof nothing) == 0;
     f->nodes[world->placed_count] = node;
     world->placed_count++;
     return true;

@@ -57,6 +57,13 @@ bool world_build(struct world *world, struct arena *arena, struct scene *scene, 
     world->boxes = arena_alloc_array(arena, world->placed_count, sizeof *world->boxes);
     if (!world->boxes)
         return error_no_memory(error, "the boxes of the scene");
+    world->material_has_image = arena_alloc_array(arena, world->material_count, sizeof *world->material_has_image);
+    if (!world->material_has_image)
+        return error_no_memory(error, "the materials of the scene");
+    for (uint32_t i = 0; i < world->material_count; i++) {
+        for (const struct material *link = world->materials[i]; link; link = link->base)
+            world->material_has_image[i] = world->material_has_image[i] || link->kind == MATERIAL_IMAGE;
+    }
     place_boxes(world);
     add_up_meshes(world, scene->assets);
     switch (accel) {
@@ -119,16 +126,19 @@ static bool ask_nearest(struct search *s, uint32_t index, const struct ray *ray_
 }
 
 static void try_placed(struct search *s, uint32_t index) {
-    struct ray ray_object = ray_transform(&s->world->placed[index].world_from_object.inverse, &s->limited);
+    const struct placed *placed = &s->world->placed[index];
+    struct ray ray_object;
     struct crossing crossing;
-    if (!ask_nearest(s, index, &ray_object, &crossing))
+    if (!placed->identity)
+        ray_object = ray_transform(&placed->world_from_object.inverse, &s->limited);
+    if (!ask_nearest(s, index, placed->identity ? &s->limited : &ray_object, &crossing))
         return;
     if (s->found && !(crossing.t < s->best.t || (crossing.t == s->best.t && index < s->placed)))
         return;
     s->best = crossing;
     s->placed = index;
     s->found = true;
-    double just_behind = nextafter(crossing.t, INFINITY);
+    double just_behind = crossing.t + fabs(crossing.t) * 0x1p-52;
     s->limited.t_max = just_behind < s->ray->t_max ? just_behind : s->ray->t_max;
 }
 
@@ -201,7 +211,7 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
 
 static bool any_placed(const struct world *world, uint32_t index, const struct ray *ray, struct world_scratch *scratch) {
     const struct placed *placed = &world->placed[index];
-    struct ray ray_object = ray_transform(&placed->world_from_object.inverse, ray);
+    struct ray ray_object = placed->identity ? *ray : ray_transform(&placed->world_from_object.inverse, ray);
     for (;;) {
         struct crossing ignored;
         bool found = placed->shape.kind == SHAPE_MESH && placed->cull != CULL_NONE
@@ -340,7 +350,7 @@ static void describe(const struct world *world, const struct ray *ray, uint32_t 
                      struct hit *hit) {
     const struct placed *placed = &world->placed[index];
     const struct transform *map = &placed->world_from_object;
-    struct ray ray_object = ray_transform(&map->inverse, ray);
+    struct ray ray_object = placed->identity ? *ray : ray_transform(&map->inverse, ray);
     struct surface surface;
     shape_describe(&placed->shape, &ray_object, crossing, &surface);
     double length = vec3_length(ray->direction);
@@ -376,8 +386,8 @@ static void describe(const struct world *world, const struct ray *ray, uint32_t 
     }
     hit->front = vec3_dot(hit->view, hit->normal_geometric) >= 0;
     hit->offset = offset_of(placed, &surface, hit->point);
-    if (ray->footprint.width > 0 || ray->footprint.spread > 0) {
-        hit->footprint = ray->footprint.width + ray->footprint.spread * crossing->t * length;
+    hit->footprint = ray->footprint.width + ray->footprint.spread * crossing->t * length;
+    if (hit->footprint > 0 && world->material_has_image[material]) {
         struct vec3 a, b;
         tangents(hit->normal_geometric, &a, &b);
         a = affine_vector(&map->inverse, a);

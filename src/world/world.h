@@ -18,7 +18,8 @@ struct placed {
     uint32_t material; /* unused for CSG: the leaves have their own */
     uint32_t slot_count; /* of a mesh: face slot k has material + k; below 2 all have `material` */
     enum node_cull cull; /* of a mesh */
-    double scale;      /* largest stretch of world_from_object: bounds errors */
+    bool identity; /* world_from_object changes nothing: a placed sphere or box of an old scene, mostly */
+    double scale;  /* largest stretch of world_from_object: bounds errors */
 };
 
 struct world {
@@ -26,6 +27,7 @@ struct world {
     struct box *boxes; /* world box of each placed primitive */
     uint32_t placed_count;
     const struct material **materials;
+    bool *material_has_image; /* such materials need to know the footprint on the surface */
     uint32_t material_count;
     const struct node **nodes; /* nodes[i]: the node that placed[i] came from */
     const struct light *lights;

@@ -1,0 +1,186 @@
+/* The index of triangles by itself: every instruction set, one voxel and many, any number of threads. */
+#include "accel/isa.h"
+#include "accel/triangle_layout.h"
+#include "mesh_makers.h"
+
+/* Triangles of a maker as a set; corners are taken over. */
+static struct triangle_set set_of(const struct maker *m) {
+    struct box box = box_empty();
+    for (uint32_t i = 0; i < m->vertex_count; i++)
+        box = box_add_point(box, vec3_make(m->vertices[i][0], m->vertices[i][1], m->vertices[i][2]));
+    return (struct triangle_set){(const double(*)[3])m->vertices, (const uint32_t(*)[3])(const void *)m->corners,
+                                 m->face_count, box};
+}
+
+static struct triangle_index *build(const struct triangle_set *set, uint32_t voxels, struct pool *pool) {
+    struct triangle_index *index = NULL;
+    struct error error = {0};
+    if (!triangle_index_build(&index, set, voxels, pool, &error)) {
+        test_fail(__FILE__, __LINE__, "no index: %s", error.text);
+        exit(1);
+    }
+    return index;
+}
+
+struct tally {
+    uint64_t once[64]; /* one bit for every triangle met; sets here are small */
+    double sum;
+};
+
+static void count_hit(void *context, const struct triangle_hit *hit) {
+    struct tally *tally = context;
+    uint64_t bit = UINT64_C(1) << (hit->triangle & 63), *word = &tally->once[hit->triangle >> 6];
+    if (!(*word & bit))
+        tally->sum += hit->t * (1 + hit->triangle);
+    *word |= bit;
+}
+
+static void check_searches(const struct maker *m, uint32_t voxels, int rays, struct test_random *random,
+                           const char *what) {
+    struct triangle_set set = set_of(m);
+    struct triangle_index *index = build(&set, voxels, NULL);
+    struct mesh *mesh = maker_mesh(m);
+    struct triangle_cost cost = {0};
+    for (int i = 0; i < rays; i++) {
+        struct ray ray = test_any_ray(m, mesh, random);
+        struct triangle_hit expected = {0}, hit = {0};
+        bool found = triangle_brute_nearest(&set, &ray, &expected, &cost);
+        bool same = triangle_index_nearest(index, &set, &ray, &hit, &cost) == found;
+        if (found)
+            same = same && hit.triangle == expected.triangle && memcmp(&hit.t, &expected.t, sizeof hit.t) == 0 &&
+                   memcmp(&hit.u, &expected.u, sizeof hit.u) == 0 && memcmp(&hit.v, &expected.v, sizeof hit.v) == 0;
+        same = same && triangle_index_any(index, &set, &ray, &cost) == found;
+        struct tally all = {0}, every = {0};
+        triangle_index_all(index, &set, &ray, count_hit, &all, &cost);
+        triangle_brute_all(&set, &ray, count_hit, &every, &cost);
+        same = same && memcmp(all.once, every.once, sizeof all.once) == 0;
+        if (!same)
+            test_fail(__FILE__, __LINE__, "%s, %u voxels, %s: ray %d differs from trying every triangle", what, voxels,
+                      accel_isa_name(), i);
+    }
+    mesh_release(mesh);
+    triangle_index_destroy(index);
+}
+
+TEST(every_instruction_set_and_number_of_voxels_answers_as_trying_every_triangle) {
+    static const char *const sets[] = {"base", "avx2", "avx512"};
+    int tried = 0;
+    for (int isa = 0; isa < 3; isa++) {
+        if (!accel_select_isa(sets[isa]))
+            continue;
+        tried++;
+        struct test_random random = {11}; /* the same rays for each */
+        for (int kind = 0; kind < SOUP_KINDS; kind++) {
+            struct maker m = {0};
+            maker_soup(&m, (enum soup)kind, 400, &random);
+            const uint32_t voxels[] = {1, 30, 400, 4000};
+            for (int k = 0; k < 4; k++)
+                check_searches(&m, voxels[k], 500, &random, "soup");
+            maker_free(&m);
+        }
+        struct maker m = {0};
+        maker_twisted_torus(&m, 40, 16, 1);
+        check_searches(&m, 1, 1000, &random, "torus");
+        check_searches(&m, 500, 1000, &random, "torus");
+        maker_free(&m);
+    }
+    CHECK(accel_select_isa("auto"));
+    CHECK(!accel_select_isa("avx3"));
+    CHECK(tried >= 1);
+}
+
+TEST(rays_from_a_million_sizes_away_are_answered_as_by_trying_every_triangle) {
+    struct test_random random = {12};
+    struct maker m = {0};
+    maker_sphere(&m, 8);
+    struct triangle_set set = set_of(&m);
+    struct triangle_index *index = build(&set, 0, NULL);
+    struct triangle_cost cost = {0};
+    int hits = 0;
+    for (int i = 0; i < 20000; i++) {
+        double distance = pow(10, test_uniform(&random, 3, 12));
+        struct vec3 origin = vec3_scale(vec3_normalize(test_point(&random, 1)), distance);
+        struct ray ray = test_ray(origin, vec3_sub(test_point(&random, 1), origin));
+        struct triangle_hit expected = {0}, hit = {0};
+        bool found = triangle_brute_nearest(&set, &ray, &expected, &cost);
+        CHECK(triangle_index_nearest(index, &set, &ray, &hit, &cost) == found);
+        CHECK(triangle_index_any(index, &set, &ray, &cost) == found);
+        CHECK(!found || (hit.triangle == expected.triangle && hit.t == expected.t));
+        hits += found;
+    }
+    CHECK(hits > 5000);
+    triangle_index_destroy(index);
+    maker_free(&m);
+}
+
+TEST(rays_that_are_not_finite_or_have_no_direction_meet_nothing) {
+    struct maker m = {0};
+    maker_sphere(&m, 4);
+    struct triangle_set set = set_of(&m);
+    struct triangle_index *index = build(&set, 0, NULL);
+    struct triangle_cost cost = {0};
+    struct triangle_hit hit;
+    const struct vec3 odd[] = {{0, 0, 0}, {NAN, 0, 1}, {INFINITY, 0, 0}, {1, -INFINITY, NAN}};
+    for (int i = 0; i < 4; i++) {
+        struct ray ray = test_ray(vec3_all(0), odd[i]);
+        CHECK(!triangle_index_nearest(index, &set, &ray, &hit, &cost));
+        CHECK(!triangle_index_any(index, &set, &ray, &cost));
+        ray = test_ray(odd[i], vec3_make(0, 0, 1));
+        CHECK(triangle_index_any(index, &set, &ray, &cost) == (i == 0));
+    }
+    triangle_index_destroy(index);
+    maker_free(&m);
+}
+
+TEST(the_index_has_the_same_bytes_for_any_number_of_threads) {
+    struct maker m = {0};
+    maker_twisted_torus(&m, 400, 150, 2);
+    struct test_random random = {13};
+    maker_soup(&m, SOUP_MIXED_SIZES, 30000, &random);
+    struct triangle_set set = set_of(&m);
+    for (uint32_t voxels = 0; voxels <= 300; voxels += 300) {
+        struct triangle_index *first = build(&set, voxels, NULL);
+        const int threads[] = {1, 2, 7};
+        for (int k = 0; k < 3; k++) {
+            char warning[256];
+            struct pool *pool = pool_create(threads[k], warning);
+            struct triangle_index *other = build(&set, voxels, pool);
+            CHECK(first->node_count == other->node_count && first->block_count == other->block_count &&
+                  first->voxel_count == other->voxel_count && first->big == other->big);
+            CHECK(memcmp(first->nodes, other->nodes, first->node_count * sizeof *first->nodes) == 0);
+            CHECK(memcmp(first->blocks, other->blocks, first->block_count * sizeof *first->blocks) == 0);
+            CHECK(memcmp(first->voxels, other->voxels, first->voxel_count * sizeof *first->voxels) == 0);
+            triangle_index_destroy(other);
+            pool_destroy(pool);
+        }
+        triangle_index_destroy(first);
+    }
+    maker_free(&m);
+}
+
+TEST(a_cancelled_build_leaves_nothing_behind) {
+    struct maker m = {0};
+    maker_sphere(&m, 60);
+    struct triangle_set set = set_of(&m);
+    char warning[256];
+    struct pool *pool = pool_create(2, warning);
+    struct error error = {0};
+    struct triangle_index *index = NULL;
+    pool_cancel(pool);
+    CHECK(!triangle_index_build(&index, &set, 0, pool, &error));
+    CHECK(error.kind == ERROR_CANCELLED && index == NULL);
+    pool_destroy(pool);
+    maker_free(&m);
+}
+
+TEST(products_that_cancel_are_compared_exactly) {
+    CHECK(triangle_edge(3, 5, 6, 10) == 0);
+    CHECK(triangle_edge(1 + 0x1p-52, 1, 1, 1 - 0x1p-53) > 0);
+    /* (1 + e)(1 - e) - 1 = -e^2, lost by rounding */
+    CHECK(triangle_edge(1 + 0x1p-30, 1, 1, 1 - 0x1p-30) == -0x1p-60);
+    CHECK(triangle_edge(1, 1 + 0x1p-30, 1 - 0x1p-30, 1) == 0x1p-60);
+    CHECK(triangle_edge(-1 - 0x1p-30, 1, -1, 1 - 0x1p-30) == -triangle_edge(-1, 1 - 0x1p-30, -1 - 0x1p-30, 1));
+    CHECK(triangle_edge_tie(0, 1, 0, 2) == -triangle_edge_tie(0, 2, 0, 1));
+    CHECK(triangle_edge_tie(1, 1, 2, 1) == -triangle_edge_tie(2, 1, 1, 1));
+    CHECK(triangle_edge_tie(3, 3, 3, 3) == 0);
+}

@@ -1,0 +1,188 @@
+/* Materials by face, culling, and what scripts ask of meshes. */
+#include "model_makers.h"
+
+#include "script_host.h"
+#include "tests/stage.h"
+
+/* A cube whose six faces have slots 0 .. 5: -z, +z, -y, +y, -x, +x. */
+static struct mesh *cube(struct stage *s) {
+    static const double vertices[8][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}};
+    static const uint32_t corners[24] = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
+    static const uint32_t starts[7] = {0, 4, 8, 12, 16, 20, 24}, slots[6] = {0, 1, 2, 3, 4, 5};
+    struct mesh_input input = {.name = "cube", .vertex_count = 8, .face_count = 6, .vertices = vertices,
+                               .face_start = starts, .vertex_index = corners, .face_material = slots};
+    return assets_mesh(&s->assets, &input, &s->error);
+}
+
+static struct node *cube_node(struct stage *s, const struct material *const *slots) {
+    struct node *node = scene_node(&s->scene, NODE_GEOMETRY, "cube", &s->error);
+    node->shape = (struct shape){.kind = SHAPE_MESH, .mesh = cube(s)};
+    node->slots = slots;
+    node->slot_count = 6;
+    return node;
+}
+
+/* The material that a ray along an axis meets, or NULL. */
+static const struct material *seen(const struct stage *s, struct vec3 from, struct vec3 along, double *t) {
+    struct world_scratch scratch;
+    struct hit hit;
+    struct ray ray = test_ray(from, along);
+    CHECK(world_scratch_init(&scratch, &s->world));
+    bool found = world_nearest(&s->world, &ray, &scratch, &hit);
+    struct ray shadow = ray;
+    CHECK_EQ_INT(world_any(&s->world, &shadow, &scratch), found);
+    world_scratch_destroy(&scratch);
+    if (t)
+        *t = found ? hit.t : INFINITY;
+    return found ? s->world.materials[hit.material] : NULL;
+}
+
+static void make_slots(struct stage *s, const struct material *slots[6]) {
+    for (int i = 0; i < 6; i++)
+        slots[i] = stage_phong(s, vec3_all(i), vec3_all(0), 1);
+}
+
+static const struct vec3 from[6] = {{0.4, 0.6, -5}, {0.4, 0.6, 5}, {0.4, -5, 0.6}, {0.4, 5, 0.6}, {-5, 0.4, 0.6}, {5, 0.4, 0.6}};
+static const struct vec3 along[6] = {{0, 0, 1}, {0, 0, -1}, {0, 1, 0}, {0, -1, 0}, {1, 0, 0}, {-1, 0, 0}};
+
+TEST(mesh_faces_have_the_material_of_their_slot) {
+    struct stage s;
+    stage_begin(&s, 1);
+    const struct material *slots[6], *others[6];
+    make_slots(&s, slots);
+    make_slots(&s, others);
+    slots[4] = NULL; /* plain gray, with a warning */
+    struct node *far_away = cube_node(&s, others), *node = cube_node(&s, slots), *copy = cube_node(&s, slots);
+    stage_move(&s, far_away, 50, 50, 50);
+    stage_move(&s, copy, 0, 0, 40);
+    CHECK(node_add_child(&s.scene, s.root, far_away, &s.error));
+    CHECK(node_add_child(&s.scene, s.root, node, &s.error));
+    CHECK(node_add_child(&s.scene, s.root, copy, &s.error));
+    CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+    CHECK_EQ_INT(s.world.material_count, 12); /* the copy shares its row */
+    CHECK(s.warnings > 0);
+    for (int i = 0; i < 6; i++) {
+        const struct material *m = seen(&s, from[i], along[i], NULL);
+        CHECK(i == 4 ? m->phong.kd.x == 0.5 : m == slots[i]);
+    }
+    /* One material for all covers them. */
+    world_destroy(&s.world);
+    node->material = slots[2];
+    CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+    for (int i = 0; i < 6; i++)
+        CHECK(seen(&s, from[i], along[i], NULL) == slots[2]);
+    stage_end(&s);
+}
+
+TEST(mesh_faces_keep_their_materials_as_operands_of_csg) {
+    struct stage s;
+    stage_begin(&s, 1);
+    const struct material *slots[6];
+    make_slots(&s, slots);
+    struct node *csg = scene_node(&s.scene, NODE_CSG, "csg", &s.error);
+    const struct material *red = stage_phong(&s, vec3_make(9, 0, 0), vec3_all(0), 1);
+    csg->operation = NODE_DIFFERENCE;
+    csg->operands[0] = cube_node(&s, slots);
+    csg->operands[1] = stage_sphere(&s, scene_node(&s.scene, NODE_GROUP, "aside", &s.error), red);
+    stage_scale(&s, csg->operands[1], 0.3, 0.3, 0.3);
+    CHECK(node_add_child(&s.scene, s.root, csg, &s.error));
+    CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+    for (int i = 0; i < 6; i++)
+        CHECK(seen(&s, from[i], along[i], NULL) == slots[i]);
+    CHECK(seen(&s, vec3_make(0.1, 0.1, -5), vec3_make(0, 0, 1), NULL) == red);
+    stage_end(&s);
+}
+
+TEST(mesh_faces_that_are_culled_are_passed_by_every_ray) {
+    struct stage s;
+    const struct material *slots[6];
+    double t;
+    for (int cull = CULL_NONE; cull <= CULL_FRONT; cull++) {
+        stage_begin(&s, 1);
+        make_slots(&s, slots);
+        struct node *node = cube_node(&s, slots);
+        node->cull = (enum node_cull)cull;
+        stage_scale(&s, node, -1, 1, 1); /* a mirror image keeps its outside */
+        stage_scale(&s, node, -1, 1, 1);
+        CHECK(node_add_child(&s.scene, s.root, node, &s.error));
+        CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+        const struct material *m = seen(&s, from[0], along[0], &t);
+        CHECK(m == slots[cull == CULL_FRONT ? 1 : 0]);
+        CHECK_NEAR(t, cull == CULL_FRONT ? 6 : 5, 1e-12);
+        struct vec3 inside = {0.4, 0.6, 0.5};
+        CHECK(seen(&s, inside, along[0], &t) == (cull == CULL_BACK ? NULL : slots[1]));
+        stage_end(&s);
+    }
+}
+
+TEST(script_asks_meshes_for_their_bounds_and_faces) {
+    static const char text[] =
+        "local m = gr.mesh{verts={{0,0,0},{1,0,0},{1,1,0},{0,1,0},{9,9,9}}, faces={{0,1,2,3},{0,2,1}}, name='m'}\n"
+        "local v, f = m:faces()\n"
+        "assert(#v == 5 and #f == 2 and #f[1] == 4 and f[1][4] == 3 and f[2][2] == 2 and v[3][2] == 1)\n"
+        "local again = gr.mesh(gr.material({1,1,1},{0,0,0},1), m:faces())\n"
+        "m:rotate('z', 90) m:translate(0, 0, 7)\n"
+        "local lo, hi = m:bounds()\n"
+        "assert(lo[1] == -1 and lo[2] == 0 and lo[3] == 7 and hi[1] == 0 and hi[2] == 1 and hi[3] == 7)\n"
+        "local g = gr.node('g') g:add_child(m) g:scale(2, 2, 2)\n"
+        "local ball = gr.sphere('ball') g:add_child(ball) ball:translate(0, 0, 9)\n"
+        "lo, hi = g:bounds()\n"
+        "assert(lo[3] == 14 and math.abs(hi[3] - 20) < 1e-12 and math.abs(lo[1] + 2) < 1e-12)\n"
+        "local cut = gr.csg_intersection('c', gr.cube('a'), gr.nh_box('b', {0.5,0.5,0.5}, 5))\n"
+        "lo, hi = cut:bounds()\n"
+        "assert(lo[1] == 0.5 and hi[3] == 1)\n"
+        "local ok, what = pcall(g.faces, g)\n"
+        "assert(not ok and what:find('is no mesh'), what)\n"
+        "ok, what = pcall(function() gr.node('empty'):bounds() end)\n"
+        "assert(not ok and what:find('nothing is under this node'), what)\n"
+        "g:add_child(g)\n"
+        "ok, what = pcall(g.bounds, g)\n"
+        "assert(not ok and what:find('in a cycle'), what)\n";
+    struct listener listener = {0};
+    struct error error = {0};
+    CHECK(listen_to_text(&listener, text, NULL, &error));
+    CHECK_TEXT(error.text, "");
+}
+
+TEST(script_reads_models_of_every_format_with_its_options) {
+    static const char text[] =
+        "local two = gr.geometry('two', gr.mesh('one', 'm.obj'))\n"
+        "gr.render(two, 'x.png', 1, 1, {0,0,5}, {0,0,-1}, {0,1,0}, 50, {0,0,0}, {})\n"
+        "local names = {'a.obj', 'a.ply', 'a.stl', 'a.PLY'}\n"
+        "for _, name in ipairs(names) do\n"
+        "    local m = gr.mesh{file=name, smooth=30, flip=true, cull='back', weld=true}\n"
+        "    local v, f = m:faces()\n"
+        "    assert(#f == 8 and #v == 6, name .. ' ' .. #f .. ' ' .. #v)\n"
+        "    assert(gr.mesh('n', name))\n"
+        "end\n";
+    static const enum ply_kind kinds[] = {PLY_LITTLE, PLY_BIG};
+    struct maker m = {0};
+    maker_sphere(&m, 1);
+    maker_round(&m);
+    for (int i = 0; i < 4; i++) {
+        struct bytes b = {0};
+        char path[400];
+        static const char *const names[] = {"a.obj", "a.ply", "a.stl", "a.PLY"};
+        if (i == 0)
+            write_obj(&b, &m);
+        else if (i == 2)
+            write_stl(&b, &m, true, "x");
+        else
+            write_ply(&b, &m, kinds[i == 3]);
+        (void)snprintf(path, sizeof path, "%s/%s", test_folder(), names[i]);
+        test_write_file(path, b.data, b.size);
+        bytes_free(&b);
+    }
+    maker_free(&m);
+    char path[400];
+    (void)snprintf(path, sizeof path, "%s/m.mtl", test_folder());
+    test_write_text(path, "newmtl red\nKd 1 0 0\n");
+    (void)snprintf(path, sizeof path, "%s/m.obj", test_folder());
+    test_write_text(path, "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nusemtl red\nf 3 2 1\n");
+    struct listener listener = {0};
+    struct error error = {0};
+    CHECK(listen_to_text(&listener, text, NULL, &error));
+    CHECK_TEXT(error.text, "");
+    CHECK_TEXT(listener.said, "");
+    CHECK_EQ_INT(listener.renders, 1);
+}
