@@ -484,3 +484,139 @@ TEST(patterns_stick_to_the_object_before_any_transform_in_combined_solids_too) {
         }
     }
 }
+
+/* --- nodes, switches, backgrounds --- */
+
+static void expect_rgb(const char *name, uint32_t x, uint32_t y, double r, double g, double b) {
+    struct test_picture p = picture(name);
+    const double want[3] = {r, g, b};
+    const uint8_t *found = pixel(&p, x, y);
+    for (int k = 0; k < 3; k++)
+        if (fabs(fmin(1, fmax(0, want[k])) * 255 - found[k]) > 0.51)
+            test_fail(__FILE__, __LINE__, "%s: channel %d is %d, not %g", name, k, found[k], want[k] * 255);
+    free(p.rgb);
+}
+
+/* The ray of the one pixel meets the plane z = 0 at the origin; l = (0, .6, .8), n = v = (0, 0, 1). */
+#define ONE_PIXEL                                                                                                      \
+    "local m = gr.material({.5,.25,.125}, {.2,.4,.6}, 3)\n"                                                            \
+    "local r = gr.node('r') r:add_child(gr.nh_box(m, {-1,-1,-2}, 2))\n"                                                \
+    "gr.render(r, 't.png', 1, 1, {0,0,5}, {0,0,-1}, {0,1,0}, 20, {.1,.2,.3}, {gr.light({0,3,4}, {.5,.6,.7}, {0,0,0})})\n"
+
+TEST(switches_for_scenes_of_other_programs_do_what_they_say) {
+    double phong = .8 * .8 * .8, n_h = 1.8 / sqrt(.36 + 1.8 * 1.8), blinn = n_h * n_h * n_h;
+    renders(ONE_PIXEL, "");
+    expect_rgb("t.png", 0, 0, .1 * .5 + .5 * (.5 * .8 + .2 * phong), .2 * .25 + .6 * (.25 * .8 + .4 * phong),
+               .3 * .125 + .7 * (.125 * .8 + .6 * phong));
+    renders(ONE_PIXEL, "--specular blinn");
+    expect_rgb("t.png", 0, 0, .1 * .5 + .5 * (.5 * .8 + .2 * blinn), .2 * .25 + .6 * (.25 * .8 + .4 * blinn),
+               .3 * .125 + .7 * (.125 * .8 + .6 * blinn));
+    renders(ONE_PIXEL, "--ambient plain");
+    expect_rgb("t.png", 0, 0, .1 + .5 * (.5 * .8 + .2 * phong), .2 + .6 * (.25 * .8 + .4 * phong),
+               .3 + .7 * (.125 * .8 + .6 * phong));
+    /* (0, 0, -1) as a point to look at is the same here; from (3, 0, 4) it is not. */
+    renders("local r = gr.node('r') r:add_child(gr.nh_sphere(gr.material({1,0,0}, {0,0,0}, 1), {1,2,3}, .1))\n"
+            "gr.render(r, 't.png', 3, 3, {3,7,4}, {1,2,3}, {0,1,0}, 5, {1,1,1}, {})\n",
+            "--view target -side-tolerance 9 -corner-tolerance 9");
+    expect_rgb("t.png", 1, 1, 1, 0, 0);
+}
+
+TEST(colours_outside_0_and_1_are_used_as_they_are) {
+    renders("local m = gr.material({2,-1,.5}, {-1,3,0}, 1)\n"
+            "local r = gr.node('r') r:add_child(gr.nh_box(m, {-1,-1,-2}, 2))\n"
+            "gr.render(r, 't.png', 1, 1, {0,0,5}, {0,0,-1}, {0,1,0}, 20, {.1,.1,-.2}, {gr.light({0,3,4}, {.3,.3,2}, "
+            "{0,0,0}), gr.light({0,3,4}, {-.1,0,-1}, {0,0,0})})\n",
+            "");
+    expect_rgb("t.png", 0, 0, .2 + .2 * (1.6 - .8), -.1 + .3 * (-.8 + 2.4), -.1 + 1 * .4);
+}
+
+TEST(children_inherit_the_transform_of_a_shape_and_not_its_material) {
+    renders("local red, green = gr.material({1,0,0},{0,0,0},1), gr.material({0,1,0},{0,0,0},1)\n"
+            "local parent, child = gr.sphere('p'), gr.sphere('c')\n"
+            "parent:add_child(child)\n"
+            "child:translate(3,0,0) child:scale({.5,.5,.5}) child:set_material(green) parent:set_material(red)\n"
+            "parent:rotate('Z', 90) parent:translate({0,-1,0})\n" /* all after add_child */
+            "gr.render{node=parent, file='t.png', width=41, height=41, eye={0,0,30}, fov=20, ambient={1,1,1}, "
+            "background={0,0,0}}\n",
+            "");
+    double per_unit = 41 / (2 * 30 * tan(10 * 3.14159265358979323846 / 180));
+    expect_rgb("t.png", 20, (uint32_t)(20.5 + per_unit), 1, 0, 0);
+    expect_rgb("t.png", 20, (uint32_t)(20.5 - .5 * per_unit), 0, 1, 0); /* (1.5, 0) turned, moved down by 1 */
+    expect_rgb("t.png", (uint32_t)(20.5 + 1.5 * per_unit), 20, 0, 0, 0);
+}
+
+TEST(an_instance_follows_the_shape_it_is_of) {
+    renders("local red, green = gr.material({1,0,0},{0,0,0},1), gr.material({0,1,0},{0,0,0},1)\n"
+            "local ball = gr.sphere(red) local left, right, root = gr.node('l'), gr.node('r'), gr.node('t')\n"
+            "left:add_child(ball) right:add_child(ball) root:add_child(left) root:add_child(right)\n"
+            "left:translate(-3,0,0) right:translate(3,0,0)\n"
+            "local function show(f) gr.render{node=root, file=f, width=41, height=41, eye={0,0,30}, fov=20, "
+            "ambient={1,1,1}, background={0,0,0}} end\n"
+            "show('1.png') ball:set_material(green) ball:translate(0,2,0) show('2.png')\n",
+            "");
+    double per_unit = 41 / (2 * 30 * tan(10 * 3.14159265358979323846 / 180));
+    for (int side = -1; side <= 1; side += 2) {
+        uint32_t x = (uint32_t)(20.5 + side * 3 * per_unit);
+        expect_rgb("1.png", x, 20, 1, 0, 0);
+        expect_rgb("2.png", x, 20, 0, 0, 0);
+        expect_rgb("2.png", x, (uint32_t)(20.5 - 2 * per_unit), 0, 1, 0);
+    }
+}
+
+TEST(a_joint_is_drawn_at_its_initial_angles) {
+    renders("local j, s = gr.joint('j', {-10,90,120}, {0,0,0}), gr.sphere('s')\n"
+            "s:set_material(gr.material({1,0,0},{0,0,0},1)) s:translate(0,0,2) j:add_child(s)\n"
+            "local k, q = gr.joint('k', {0,0,0}, {-90,-90,0}), gr.sphere('q')\n"
+            "q:set_material(gr.material({0,1,0},{0,0,0},1)) q:translate(0,0,2) k:add_child(q)\n"
+            "local r = gr.node('r') r:add_child(j) r:add_child(k)\n"
+            "gr.render{node=r, file='t.png', width=41, height=41, eye={0,0,30}, fov=20, ambient={1,1,1}, "
+            "background={0,0,0}}\n",
+            "");
+    double per_unit = 41 / (2 * 30 * tan(10 * 3.14159265358979323846 / 180));
+    expect_rgb("t.png", 20, (uint32_t)(20.5 + 2 * per_unit), 1, 0, 0); /* +z about x by 90: -y */
+    expect_rgb("t.png", (uint32_t)(20.5 - 2 * per_unit), 20, 0, 1, 0); /* +z about y by -90: -x */
+}
+
+TEST(meshes_take_images_by_their_vt_with_v_counted_from_below) {
+    char path[600];
+    (void)snprintf(path, sizeof path, "%s/q.obj", test_folder());
+    test_write_text(path, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
+    write_texels("t.png", 5, 3);
+    renders("local q = gr.mesh('q', 'q.obj') q:set_material(gr.material({1,1,1},{0,0,0},1))\n"
+            "q:set_texture(gr.texture{file='t.png', filter='nearest'})\n"
+            "gr.render{node=q, file='p.png', width=40, height=40, eye={.5,.5,1}, fov=90, ambient={1,1,1}, "
+            "background={0,0,0}, side_tolerance=9, corner_tolerance=9}\n",
+            "");
+    struct test_picture p = picture("p.png");
+    int wrong = 0;
+    for (uint32_t y = 10; y < 30; y++)
+        for (uint32_t x = 10; x < 30; x++)
+            wrong += wrong_texel(pixel(&p, x, y), (x + .5 - 10) / 20, (y + .5 - 10) / 20, 5, 3);
+    CHECK_EQ_INT(wrong, 0);
+    free(p.rgb);
+}
+
+TEST(the_alpha_of_an_image_mixes_with_the_base_and_gamma_chunks_are_ignored) {
+    static const uint8_t rgba[4] = {200, 100, 0, 102};
+    char path[600];
+    (void)snprintf(path, sizeof path, "%s/a.png", test_folder());
+    png_image image = {.version = PNG_IMAGE_VERSION, .width = 1, .height = 1, .format = PNG_FORMAT_RGBA};
+    CHECK(png_image_write_to_file(&image, path, 0, rgba, 0, NULL)); /* writes an sRGB chunk, too */
+    renders("local m = gr.td_cube_material(gr.material({0,.5,1},{0,0,0},1), 'a.png')\n"
+            "local c = gr.cube(m)\n"
+            "gr.render{node=c, file='t.png', width=1, height=1, eye={.5,.5,3}, ambient={1,1,1}}\n",
+            "");
+    expect_rgb("t.png", 0, 0, .4 * 200 / 255, .4 * 100 / 255 + .6 * .5, .6);
+}
+
+TEST(the_background_is_the_gradient_of_the_unit_direction_unless_the_scene_says_otherwise) {
+    renders("local n = gr.node('n')\n"
+            "gr.render(n, 'a.png', 1, 1, {5,5,5}, {0,6,-8}, {0,1,0}, 50, {0,0,0}, {})\n"
+            "gr.render{node=n, file='b.png', width=1, height=1, eye={0,0,0}, background={.1,.2,.3}}\n"
+            "gr.render{node=gr.nh_sphere(gr.rr_material({0,0,0},{1,.5,1},1,.5,0,1), {0,0,0}, 1), file='c.png', width=1, "
+            "height=1, eye={0,0,5}, background={.4,.8,.2}}\n",
+            "");
+    expect_rgb("a.png", 0, 0, 0, 0, .8);
+    expect_rgb("b.png", 0, 0, .1, .2, .3);
+    expect_rgb("c.png", 0, 0, .2, .2, .1);
+}
