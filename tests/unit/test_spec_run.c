@@ -268,7 +268,7 @@ TEST(the_library_works_in_scripts_that_use_the_names_of_luas_own_libraries) {
             "for _, n in ipairs{'string','math','io','os','package','debug','ipairs','pairs','tostring','type','error',"
             "'assert','select','next','setmetatable','tonumber','pcall','print','unpack','rawget','require'} do "
             "_G[n] = nil end\n"
-            "local names = {'readobj','bezier','carve','font','knot','lathe','meshes','noise','picture','png','solids',"
+            "local names = {'readobj','bezier','carve','font','knot','lathe','meshes','noise','picture','png','polyhedra',"
             "'sweep','teapot'}\n"
             "for i = 1, #names do load(names[i]) end\n"
             "local vertices, faces = readobj('tetra.obj')\n"
