@@ -620,3 +620,43 @@ TEST(the_background_is_the_gradient_of_the_unit_direction_unless_the_scene_says_
     expect_rgb("b.png", 0, 0, .1, .2, .3);
     expect_rgb("c.png", 0, 0, .2, .2, .1);
 }
+
+TEST(every_spelling_of_a_shape_gives_the_same_picture) {
+    static const char *const same[][6] = {
+        {"gr.cube(m)", "gr.geometry('g', gr.cube(m))", "with(gr.cube('c'))", "with(gr.nh_box('b', {1,1,1}, -1))",
+         "gr.nh_box(m, {0,0,0}, 1)", "gr.cube{material=m, corner={0,0,0}, size=1}"},
+        {"gr.nh_sphere(m, {1,0,0}, .5)", "with(gr.nh_sphere('s', {1,0,0}, .5))",
+         "gr.sphere{material=m, centre={1,0,0}, radius=.5}", "gr.geometry('g', gr.nh_sphere(m, {1,0,0}, .5))", NULL, NULL},
+        {"gr.mesh(m, v, f)", "gr.fast_mesh(m, v, f)", "with(gr.mesh('n', v, f))", "with(gr.mesh('n', 'q.obj'))",
+         "gr.geometry('g', gr.mesh{material=m, verts=v, faces=f})", "gr.mesh(m, 'q.obj')"},
+        {"gr.vn_mesh(m, v, n, f, f)", "gr.fast_vn_mesh(m, v, n, f, f)", "with(gr.vn_mesh('n', v, n, f, f))",
+         "gr.mesh{material=m, verts=v, normals=n, faces=f, face_normals=f}", "gr.vn_mesh(m, v, longer, f, f)", NULL},
+    };
+    char path[600], scene[6000];
+    (void)snprintf(path, sizeof path, "%s/q.obj", test_folder());
+    test_write_text(path, "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 .5 .2\nv 0 2 0\nf 1 2 3 4 5\n"); /* a concave pentagon */
+    for (size_t k = 0; k < sizeof same / sizeof same[0]; k++) {
+        int used = snprintf(scene, sizeof scene,
+                            "local m = gr.material({.8,.3,.2}, {.4,.4,.4}, 9)\n"
+                            "local function with(n) n:set_material(m) return n end\n"
+                            "local v = {{0,0,0},{2,0,0},{2,2,0},{1,.5,.2},{0,2,0}} local f = {{0,1,2,3,4}}\n"
+                            "local n = {{0,0,1},{.5,0,1},{.5,.5,1},{0,0,1},{0,.5,1}}\n"
+                            "local longer = {} for i, a in ipairs(n) do longer[i] = {3*a[1], 3*a[2], 3*a[3]} end\n");
+        for (int j = 0; j < 6 && same[k][j]; j++)
+            used += snprintf(scene + used, sizeof scene - (size_t)used,
+                             "do local r = gr.node('r') r:add_child(%s) gr.render(r, '%d.png', 40, 30, {2,2,5}, "
+                             "{-1,-1,-4}, {0,1,0}, 40, {.2,.2,.2}, {gr.light({3,4,5}, {.9,.9,.9}, {1,0,0})}) end\n",
+                             same[k][j], j);
+        renders(scene, "--transform-order new");
+        struct test_picture first = picture("0.png");
+        for (int j = 1; j < 6 && same[k][j]; j++) {
+            char name[20];
+            (void)snprintf(name, sizeof name, "%d.png", j);
+            struct test_picture p = picture(name);
+            if (!p.rgb || !first.rgb || memcmp(p.rgb, first.rgb, 3 * 40 * 30) != 0)
+                test_fail(__FILE__, __LINE__, "%s and %s differ", same[k][0], same[k][j]);
+            free(p.rgb);
+        }
+        free(first.rgb);
+    }
+}
