@@ -190,7 +190,7 @@ static bool render(void *context, const struct render_request *request, struct e
     if (!child->options->check || error->kind != ERROR_SCENE)
         return false;
     char line[2048];
-    (void)snprintf(line, sizeof line, "%s: gr.render('%.200s'): %s", child->script, request->file, error->text);
+    (void)snprintf(line, sizeof line, "%s: %s", request->where, error->text);
     tell(child, LINE_ERROR, line);
     child->status = ERROR_SCENE;
     return true;

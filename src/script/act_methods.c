@@ -22,28 +22,12 @@ static bool unless_warned(const struct error *error) {
     return error->kind == ERROR_NONE;
 }
 
-enum { OPERAND_LIMIT = 10000 };
-
-/* The material of a CSG node goes to the operands that have none; `left` bounds the walk through shared operands. */
-static void give_operands(struct node *node, const struct material *material, int *left) {
-    for (int k = 0; k < 2 && *left > 0; k++) {
-        struct node *operand = node->operands[k];
-        --*left;
-        if (operand->kind == NODE_CSG)
-            give_operands(operand, material, left);
-        else if (operand->kind == NODE_GEOMETRY && !operand->material && operand->slot_count == 0)
-            operand->material = material;
-    }
-}
-
+/* On a CSG node it is the material of the operands that have none of their own; the world sees to that. */
 bool act_set_material(struct context *context, const struct value *args, struct result *result, struct error *error) {
     (void)result;
     if (!is_shape(context, args[SELF].node, "material", error))
         return unless_warned(error);
     args[SELF].node->material = args[SET_MATERIAL].material;
-    int left = OPERAND_LIMIT;
-    if (args[SELF].node->kind == NODE_CSG)
-        give_operands(args[SELF].node, args[SET_MATERIAL].material, &left);
     return true;
 }
 

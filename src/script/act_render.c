@@ -84,7 +84,13 @@ bool act_render(struct context *context, const struct value *args, struct result
     (void)result;
     if (args[RENDER_VIEW].given && args[RENDER_TARGET].given)
         return error_set(error, ERROR_SCENE, "view and target exclude each other");
+    char where[PATH_SIZE + 32], title[96];
+    context_where(context, where, sizeof where);
+    const char *call = arena_format(&context->call, "%s%s", where, function_title(context->function, title));
+    if (!call)
+        return error_no_memory(error, "a picture");
     struct render_request request = {
+        .where = call,
         .scene = &context->scene,
         .root = args[RENDER_NODE].node,
         .file = args[RENDER_FILE].text,

@@ -117,6 +117,10 @@ void sandbox_open(lua_State *L);  /* sandbox.c: the libraries, less what a stran
 void protect_open(lua_State *L);  /* protect.c */
 void compat_open(lua_State *L);   /* compat.c: old Lua */
 void traverse_open(lua_State *L); /* traverse.c: pairs in a fixed order */
+void library_open(lua_State *L);  /* library.c: remembers the globals for our own modules; after all of these */
 void define_open(lua_State *L);   /* define.c: -D */
+
+/* library.c: the chunk on top of the stack, from the file `path`, sees the remembered globals if it is one of ours. */
+void library_adopt(lua_State *L, const char *path);
 
 #endif

@@ -124,6 +124,8 @@ int files_load(lua_State *L, const char *path) {
     }
     int status = luaL_loadbufferx(L, size > 0 ? text : "", size, name, "t");
     file_unmap(&bytes);
+    if (status == LUA_OK)
+        library_adopt(L, path);
     return status;
 }
 

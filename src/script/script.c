@@ -104,6 +104,7 @@ static int run_scene(lua_State *L) {
     compat_open(L);
     handles_open(L);
     dispatch_open(L);
+    library_open(L);
     define_open(L);
     lua_settop(L, 0);
     if (context->host->cancelled)

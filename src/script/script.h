@@ -37,6 +37,7 @@ struct render_request {
     uint32_t light_count;
     struct sky sky;
     struct settings settings; /* the host's settings with the call's named fields applied */
+    const char *where;        /* "scene.lua:12: gr.render", for messages that do not stop the script */
 };
 
 enum script_message { SCRIPT_NOTICE, SCRIPT_WARNING };

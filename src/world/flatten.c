@@ -176,7 +176,7 @@ static bool place_node(struct flattening *f, struct node *node, const struct tra
         uint32_t material, slot_count;
         if (node->shape.kind == SHAPE_MESH && mesh_triangle_count(node->shape.mesh) == 0)
             return true;
-        return flatten_mesh_index(f, &node->shape) && flatten_material(f, node, &material, &slot_count) &&
+        return flatten_mesh_index(f, &node->shape) && flatten_material(f, node, NULL, &material, &slot_count) &&
                place(f, node, world_from_node, &node->shape, material, slot_count);
     }
     if (node->kind == NODE_CSG) {

@@ -39,7 +39,7 @@ static bool tell_open(struct flattening *f, const struct node *node) {
 }
 
 static bool add_leaf(struct flattening *f, struct csg_draft *draft, struct node *node,
-                     const struct transform *csg_from_node) {
+                     const struct transform *csg_from_node, const struct material *inherited) {
     if (!shape_is_closed(&node->shape))
         return tell_open(f, node);
     if (draft->leaf_count == CSG_LEAVES)
@@ -53,24 +53,28 @@ static bool add_leaf(struct flattening *f, struct csg_draft *draft, struct node 
         draft->leaf_capacity = capacity;
     }
     struct csg_leaf leaf = {.shape = node->shape, .csg_from_leaf = *csg_from_node};
-    if (!flatten_mesh_index(f, &node->shape) || !flatten_material(f, node, &leaf.material, &leaf.slot_count))
+    if (!flatten_mesh_index(f, &node->shape) ||
+        !flatten_material(f, node, inherited, &leaf.material, &leaf.slot_count))
         return false;
     draft->leaves[draft->leaf_count] = leaf;
     return add_token(f, draft, (struct csg_token){.operation = CSG_LEAF, .leaf = (uint16_t)draft->leaf_count++});
 }
 
 static bool add_operand(struct flattening *f, struct csg_draft *draft, struct node *node,
-                        const struct transform *csg_from_parent, int nesting, bool *empty);
+                        const struct transform *csg_from_parent, const struct material *inherited, int nesting,
+                        bool *empty);
 
-/* The node's operation over its two operands, in csg space. */
+/* The node's operation over its two operands, in csg space. Its material goes to what has none under it. */
 static bool add_operation(struct flattening *f, struct csg_draft *draft, struct node *node,
-                          const struct transform *csg_from_node, int nesting, bool *empty) {
+                          const struct transform *csg_from_node, const struct material *inherited, int nesting,
+                          bool *empty) {
+    inherited = node->material ? node->material : inherited;
     bool first_empty = true, second_empty = true;
     uint32_t start = draft->length, leaves = draft->leaf_count;
-    if (!add_operand(f, draft, node->operands[0], csg_from_node, nesting + 1, &first_empty))
+    if (!add_operand(f, draft, node->operands[0], csg_from_node, inherited, nesting + 1, &first_empty))
         return false;
     uint32_t middle = draft->length, middle_leaves = draft->leaf_count;
-    if (!add_operand(f, draft, node->operands[1], csg_from_node, nesting + 1, &second_empty))
+    if (!add_operand(f, draft, node->operands[1], csg_from_node, inherited, nesting + 1, &second_empty))
         return false;
     enum csg_operation operation = CSG_UNION;
     switch (node->operation) {
@@ -102,7 +106,8 @@ static bool add_operation(struct flattening *f, struct csg_draft *draft, struct 
 
 /* Everything under a node as one operand: its own surface and its children, united. */
 static bool add_operand(struct flattening *f, struct csg_draft *draft, struct node *node,
-                        const struct transform *csg_from_parent, int nesting, bool *empty) {
+                        const struct transform *csg_from_parent, const struct material *inherited, int nesting,
+                        bool *empty) {
     *empty = true;
     if (nesting > CSG_NESTING)
         return error_set(f->error, ERROR_SCENE, "CSG solids are nested more than %d deep", CSG_NESTING);
@@ -112,16 +117,16 @@ static bool add_operand(struct flattening *f, struct csg_draft *draft, struct no
     struct transform csg_from_node = transform_compose(csg_from_parent, &parent_from_node);
     if (node->kind == NODE_GEOMETRY) {
         bool nothing = node->shape.kind == SHAPE_MESH && mesh_triangle_count(node->shape.mesh) == 0;
-        if (!nothing && !add_leaf(f, draft, node, &csg_from_node))
+        if (!nothing && !add_leaf(f, draft, node, &csg_from_node, inherited))
             return false;
         *empty = nothing;
     } else if (node->kind == NODE_CSG) {
-        if (!add_operation(f, draft, node, &csg_from_node, nesting, empty))
+        if (!add_operation(f, draft, node, &csg_from_node, inherited, nesting, empty))
             return false;
     }
     for (struct node_child *child = node->first_child; child; child = child->next) {
         bool child_empty;
-        if (!add_operand(f, draft, child->node, &csg_from_node, nesting + 1, &child_empty))
+        if (!add_operand(f, draft, child->node, &csg_from_node, inherited, nesting + 1, &child_empty))
             return false;
         if (!child_empty && !*empty && !add_token(f, draft, (struct csg_token){.operation = CSG_UNION}))
             return false;
@@ -135,7 +140,7 @@ bool flatten_csg(struct flattening *f, struct node *node, const struct csg **out
     bool empty = true;
     struct transform identity = transform_identity();
     *out = NULL;
-    bool ok = add_operation(f, &draft, node, &identity, 0, &empty);
+    bool ok = add_operation(f, &draft, node, &identity, NULL, 0, &empty);
     if (ok && !empty) {
         *out = csg_build(f->arena, draft.leaves, draft.leaf_count, draft.program, draft.length, f->error);
         ok = *out != NULL;

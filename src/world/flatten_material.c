@@ -124,9 +124,10 @@ static bool grow_list(struct flattening *f, uint32_t count) {
     return true;
 }
 
-bool flatten_material(struct flattening *f, struct node *node, uint32_t *out, uint32_t *count) {
+bool flatten_material(struct flattening *f, struct node *node, const struct material *inherited, uint32_t *out,
+                      uint32_t *count) {
     bool by_slot = !node->material && node->slot_count > 0;
-    const struct material *only = node->material;
+    const struct material *only = node->material ? node->material : inherited;
     const struct material *const *bases = by_slot ? node->slots : &only;
     *count = by_slot ? node->slot_count : 1;
     const struct material *texture = node->texture;

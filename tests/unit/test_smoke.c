@@ -1,0 +1,98 @@
+/* Every demo and every classic scene of the repository, tiny: they render, and what they show is no empty picture. Run
+ * under the sanitizers by make test. */
+#include "tests/harness.h"
+
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { SCENES = 200, PICTURES = 20 };
+
+static int by_name(const void *a, const void *b) {
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+/* The names in a folder that end so, sorted; from malloc. */
+static int names_in(const char *folder, const char *end, char *names[SCENES]) {
+    DIR *all = opendir(folder);
+    int count = 0;
+    for (struct dirent *entry; all && (entry = readdir(all)) && count < SCENES;) {
+        size_t length = strlen(entry->d_name), tail = strlen(end);
+        if (length > tail && strcmp(entry->d_name + length - tail, end) == 0)
+            names[count++] = strdup(entry->d_name);
+    }
+    if (all)
+        (void)closedir(all);
+    qsort(names, (size_t)count, sizeof *names, by_name);
+    return count;
+}
+
+/* Writes the models that the scenes read: not beside other tests. */
+static bool is_maker(const char *name) {
+    return strncmp(name, "make_", 5) == 0;
+}
+
+static bool is_heavy(const char *name) {
+    return strcmp(name, "10demo.lua") == 0 || strcmp(name, "14demo.lua") == 0;
+}
+
+/* At least one picture of the asked size that shows more than one colour. */
+static void check_pictures(const char *scene, int number) {
+    int seen = 0;
+    for (int k = 1; k <= PICTURES; k++) {
+        char path[700];
+        (void)snprintf(path, sizeof path, "%s/%d-%02d.png", test_folder(), number, k);
+        if (access(path, F_OK) != 0)
+            break;
+        struct test_picture p = test_read_picture(path);
+        bool varied = false;
+        for (size_t i = 3; p.rgb && i < 3 * (size_t)p.width * p.height; i++)
+            varied = varied || p.rgb[i] != p.rgb[i - 3];
+        if (p.width != 64 || p.height != 48 || !varied)
+            test_fail(__FILE__, __LINE__, "%s: picture %d of %u x %u is not as it should be", scene, k, p.width, p.height);
+        seen++;
+        free(p.rgb);
+    }
+    if (seen == 0)
+        test_fail(__FILE__, __LINE__, "%s: no picture", scene);
+}
+
+static void smoke(const char *folder, const char *end, bool heavy) {
+    char root[2048], *names[SCENES];
+    if (!getcwd(root, sizeof root))
+        test_fail(__FILE__, __LINE__, "no working directory");
+    int count = names_in(folder, end, names);
+    CHECK(count > 0);
+    for (int k = 0; k < count; k++) {
+        char arguments[4096];
+        (void)snprintf(arguments, sizeof arguments, "-q --size 64x48 -ss 1 -al-samples 1 -o %d-%%02d.png %s/%s/%s", k, root,
+                       folder, names[k]);
+        if (heavy == is_heavy(names[k]) && !is_maker(names[k])) {
+            struct test_result result = test_gray(NULL, arguments);
+            if (result.status != 0)
+                test_fail(__FILE__, __LINE__, "%s/%s: status %d: %s", folder, names[k], result.status, result.err);
+            else
+                check_pictures(names[k], k);
+            free(result.out);
+            free(result.err);
+        }
+        free(names[k]);
+    }
+}
+
+TEST(smoke_every_demo_renders_in_small) {
+    smoke("data", "demo.lua", false);
+}
+
+TEST(smoke_every_classic_scene_renders_in_small) {
+    smoke("data/classic", ".lua", false);
+}
+
+/* A hundred thousand polygons: without the sanitizers a second or two. */
+TEST(smoke_the_final_scenes_render_in_small) {
+    if (strcmp(GRAY_CONFIG, "release") != 0)
+        test_skip("too slow in this build; the release build renders them");
+    smoke("data", "demo.lua", true);
+}
