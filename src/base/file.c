@@ -16,12 +16,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-bool file_map(const char *path, size_t limit, struct file_bytes *out, struct error *error) {
+bool file_map_descriptor(int descriptor, const char *path, size_t limit, struct file_bytes *out, struct error *error) {
     *out = (struct file_bytes){0};
-    /* O_NONBLOCK: opening a named pipe must not wait for a writer. */
-    int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (descriptor < 0)
-        return error_set(error, ERROR_SCENE, "%s: cannot be read: %s", path, strerror(errno));
     struct stat status;
     bool ok = false;
     if (fstat(descriptor, &status) != 0) {
@@ -64,6 +60,15 @@ bool file_map(const char *path, size_t limit, struct file_bytes *out, struct err
     return ok;
 }
 
+bool file_map(const char *path, size_t limit, struct file_bytes *out, struct error *error) {
+    *out = (struct file_bytes){0};
+    /* O_NONBLOCK: opening a named pipe must not wait for a writer. */
+    int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (descriptor < 0)
+        return error_set(error, ERROR_SCENE, "%s: cannot be read: %s", path, strerror(errno));
+    return file_map_descriptor(descriptor, path, limit, out, error);
+}
+
 void file_unmap(struct file_bytes *bytes) {
     if (bytes->size)
         mem_free((void *)(uintptr_t)bytes->data);
@@ -78,6 +83,18 @@ bool file_is_regular(const char *path) {
 bool file_is_folder(const char *path) {
     struct stat status;
     return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
+}
+
+int file_open_place(const char *path) {
+    return open(path, O_PATH | O_CLOEXEC);
+}
+
+bool file_null_input(void) {
+    int descriptor = open("/dev/null", O_RDONLY | O_CLOEXEC);
+    bool done = descriptor >= 0 && dup2(descriptor, STDIN_FILENO) == STDIN_FILENO;
+    if (descriptor > STDIN_FILENO)
+        (void)close(descriptor);
+    return done;
 }
 
 bool file_canonical(const char *path, char *out, size_t size) {
