@@ -136,7 +136,7 @@ static int script_patience(const struct supervisor *supervisor) {
     double limit = script_time_limit(&supervisor->options->script);
     if (limit <= 0 || !supervisor->script_runs)
         return -1;
-    double left = limit * 1.04 + 0.02 - script_time(supervisor);
+    double left = limit * 1.03 + 0.005 - script_time(supervisor);
     return left <= 0 ? 0 : left > 1000 ? 1000000 : (int)(left * 1000) + 1;
 }
 
@@ -385,14 +385,14 @@ int supervisor_run(const struct options *options) {
         supervisor.control ? listen_to_signals(&supervisor, &error) : error_no_memory(&error, "the rendering process");
     if (options->script.no_sandbox)
         desk_line(&supervisor.desk, LINE_WARNING, no_sandbox_warning);
-    if (!ready) {
-        note_error(&supervisor, &error);
-    } else {
+    if (ready)
         run_children(&supervisor);
-        if (!desk_finish(&supervisor.desk, &error))
-            note_error(&supervisor, &error);
+    else
+        note_error(&supervisor, &error);
+    if (!desk_finish(&supervisor.desk, &error))
+        note_error(&supervisor, &error);
+    if (supervisor.signals >= 0)
         (void)close(supervisor.signals);
-    }
     mem_unshare(supervisor.control, sizeof *supervisor.control);
     return supervisor.status;
 }

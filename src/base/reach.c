@@ -277,6 +277,34 @@ static const struct reach_folder *writable(const struct reach *reach, const char
     return folder;
 }
 
+/* The part that exists is looked at where it leads; what follows is taken as it is written. */
+bool reach_may_create(const struct reach *reach, const char *path) {
+    char folder[PATH_MAX], canonical[2 * PATH_MAX];
+    size_t length = strlen(path), existing = length;
+    const char *rest = NULL;
+    if (length >= sizeof folder)
+        return false;
+    for (;;) {
+        while (existing > 0 && path[existing - 1] != '/')
+            existing--;
+        memcpy(folder, path, existing);
+        memcpy(folder + existing, existing == 0 ? "." : "", existing == 0 ? 2 : 1);
+        if (realpath(folder, canonical))
+            break;
+        if (existing == 0 || errno != ENOENT)
+            return false;
+        existing--;
+    }
+    const char *missing = path + existing;
+    if (strncmp(missing, "../", 3) == 0 || strstr(missing, "/../") || strstr(missing, "/.") || missing[0] == '.')
+        return false;
+    size_t used = strlen(canonical);
+    used -= used == 1;
+    (void)snprintf(canonical + used, sizeof canonical - used, "/%s", missing);
+    const struct reach_folder *found = find(reach, canonical, true, &rest);
+    return found && rest[0] != '.' && !strstr(rest, "/.");
+}
+
 bool reach_remove(const struct reach *reach, const char *path) {
     char canonical[PATH_MAX];
     const char *rest;

@@ -39,7 +39,7 @@ struct limits {
     uint32_t known_meshes, known_images;      /* counted so far, or there before */
     const void *refused_block;                /* the request that was refused last: Lua asks again after a collection */
     size_t refused_size;
-    bool memory_out;                          /* refused twice: the script ends */
+    bool memory_out;                          /* refused for good: the script ends */
     double time_begun, time_limit;            /* seconds of this thread's processor time; a limit of 0 is none */
     uint64_t output, output_limit;            /* bytes printed and written */
 };
@@ -94,6 +94,7 @@ void limits_begin(struct context *context);
 void *limits_allocate(void *context, void *block, size_t old_size, size_t size); /* a lua_Alloc */
 void limits_open(lua_State *L);               /* sets the hook */
 void limits_check(lua_State *L);              /* raises when time or memory is used up or somebody wants to stop */
+void limits_check_memory(lua_State *L);       /* the part of it that is about what the scene holds */
 void limits_output(lua_State *L, size_t size); /* so many bytes are about to be written; may raise */
 void limits_count_output(struct context *context, size_t size); /* the same without raising; the next check does */
 /* Around what is not the script's own work. */

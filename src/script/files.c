@@ -214,7 +214,7 @@ static int dofile_continue(lua_State *L, int status, lua_KContext base) {
 static int file_do(lua_State *L) {
     lua_settop(L, 1);
     if (load_named(L) != LUA_OK) {
-        if (lua_type(L, -1) == LUA_TSTRING && strncmp(lua_tostring(L, -1), "cannot find", 11) == 0)
+        if (lua_type(L, -1) == LUA_TSTRING && (lua_tostring(L, -1)[0] == '\'' || strncmp(lua_tostring(L, -1), "cannot find", 11) == 0))
             return luaL_error(L, "dofile: %s", lua_tostring(L, -1));
         return lua_error(L);
     }

@@ -55,7 +55,8 @@ static uint64_t cost(size_t size) {
     return size == 0 ? 0 : whole < 32 ? 32 : whole;
 }
 
-/* Lua asks again for what was refused after it has collected its garbage; refused twice means out of memory. */
+/* What is refused is refused for good, unless Lua asks for the same again after it has collected its garbage and gets
+ * it: that comes at once, so whoever looks at `memory_out` later sees what became of it. */
 void *limits_allocate(void *user, void *block, size_t old_size, size_t size) {
     struct limits *limits = &((struct context *)user)->limits;
     uint64_t before = block ? cost(old_size) : 0, after = cost(size);
@@ -65,18 +66,17 @@ void *limits_allocate(void *user, void *block, size_t old_size, size_t size) {
         return NULL;
     }
     if (limits->memory_limit > 0 && after > before && limits->memory - before + after > limits->memory_limit) {
-        if (limits->refused_size == size && limits->refused_block == block)
-            limits->memory_out = true;
+        limits->memory_out = true;
         limits->refused_size = size;
         limits->refused_block = block;
         return NULL;
     }
     void *moved = mem_resize(block, size);
-    if (moved) {
-        limits->memory = limits->memory - before + after;
-        if (after > before)
-            limits->refused_size = 0;
-    }
+    if (!moved)
+        return NULL;
+    limits->memory = limits->memory - before + after;
+    if (limits->memory_out && limits->refused_size == size && limits->refused_block == block)
+        limits->memory_out = false;
     return moved;
 }
 
@@ -108,6 +108,13 @@ static void end_for_memory(lua_State *L) {
     end_script(L, ERROR_SCENE, what);
 }
 
+void limits_check_memory(lua_State *L) {
+    struct context *context = context_of(L);
+    const struct limits *limits = &context->limits;
+    if (limits->memory_limit > 0 && limits->memory + scene_memory(context) > limits->memory_limit)
+        end_for_memory(L);
+}
+
 void limits_check(lua_State *L) {
     struct context *context = context_of(L);
     struct limits *limits = &context->limits;
@@ -115,9 +122,9 @@ void limits_check(lua_State *L) {
         context_raise_fatal(L);
     if (context->host->cancelled && context->host->cancelled(context->host->context))
         end_script(L, ERROR_CANCELLED, "cancelled");
-    if (limits->memory_out ||
-        (limits->memory_limit > 0 && limits->memory + scene_memory(context) > limits->memory_limit))
+    if (limits->memory_out)
         end_for_memory(L);
+    limits_check_memory(L);
     if (limits->output_limit > 0 && limits->output > limits->output_limit)
         limits_output(L, 0);
     if (limits->time_limit > 0 && processor_time() - limits->time_begun > limits->time_limit) {

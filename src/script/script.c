@@ -71,6 +71,7 @@ static int describe_error(lua_State *L) {
     const char *rest = message + first + (message[first] == '\n');
     luaL_traceback(L, L, *rest ? rest : NULL, 1);
     context->traceback = indent(context->out, lua_tostring(L, -1));
+    lua_settop(L, 1); /* load runs this too, when its text nests too deep, and gives the message back */
     return 1;
 }
 

@@ -354,7 +354,7 @@ TEST(a_folder_in_the_place_of_the_picture_is_an_error_before_rendering) {
 
 TEST(a_full_device_is_an_error_of_the_machine) {
     ends_saying(test_gray_scene(SMALL, "-o /dev/full scene.lua", NULL), 3, "No space left");
-    ends_saying(test_gray_scene(BALL "picture('/dev/full', 9, 9)\n", "scene.lua", NULL), 3, "No space left");
+    ends_saying(test_gray_scene(BALL "picture('/dev/full', 9, 9)\n", "scene.lua", NULL), 1, "below the working directory");
 }
 
 /* A file system of eight kilobytes, seen only by this process and its children, with an old picture on it. The program
