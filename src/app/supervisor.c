@@ -24,9 +24,11 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Seconds a cancelled child has to give up politely before it is killed. It writes no files: nothing is lost with it.
- */
-static const double patience = 1.0;
+/* Seconds a cancelled child has to give up politely before it is killed. It writes no files: nothing is lost with it,
+ * and giving back the memory of a large scene takes longer than a kill. */
+static const double patience = 0.03;
+/* Seconds from the end of the channel to the end of the process. */
+static const double farewell = 10;
 
 static const char no_sandbox_warning[] =
     "gray: warning: --no-sandbox: scenes may read and write all your files and start programs";
@@ -279,7 +281,7 @@ static void talk_to_child(struct supervisor *supervisor) {
         struct pollfd watched[2] = {{.fd = supervisor->channel.descriptor, .events = POLLIN},
                                     {.fd = supervisor->signals, .events = POLLIN}};
         bool timed = supervisor->desk.current.open || supervisor->deadline > 0;
-        if (poll(watched, 2, timed ? 50 : script_patience(supervisor)) < 0 && errno != EINTR)
+        if (poll(watched, 2, supervisor->deadline > 0 ? 5 : timed ? 50 : script_patience(supervisor)) < 0 && errno != EINTR)
             break;
         if (script_patience(supervisor) == 0) {
             supervisor->out_of_time = supervisor->deadline == 0;
@@ -306,7 +308,7 @@ static void talk_to_child(struct supervisor *supervisor) {
 /* The channel is closed before the process is gone: wait, but not for ever. */
 static int reap_child(struct supervisor *supervisor) {
     const struct timespec pause = {0, 2000000};
-    double limit = progress_clock() + 10 * patience;
+    double limit = progress_clock() + farewell;
     int how = 0;
     for (;;) {
         pid_t got = waitpid(supervisor->child, &how, WNOHANG);

@@ -39,6 +39,7 @@ bool file_list(const char *folder, size_t limit, bool (*fn)(void *context, const
 struct file_output {
     int descriptor;
     bool open, direct; /* direct: target is a pipe, a device or "-" and is written in place */
+    bool nameless;     /* the temporary file has no name yet */
     uint64_t written;
     char target[4096], temporary[4096 + 32];
 };
