@@ -40,9 +40,7 @@ static void tell(const struct child *child, enum line_kind kind, const char *tex
 }
 
 static void poll_pool(void *context) {
-    struct child *child = context;
-    if (is_cancelled(child))
-        pool_cancel(child->pool);
+    const struct child *child = context;
     if (child->services->poll)
         child->services->poll(child->services->context);
 }
@@ -59,6 +57,7 @@ static bool need_pool(struct child *child, struct error *error) {
         tell(child, LINE_WARNING, line);
     }
     pool_set_poll(child->pool, poll_pool, child);
+    pool_watch(child->pool, &child->services->control->cancel);
     return true;
 }
 

@@ -15,6 +15,10 @@ void desk_init(struct desk *desk, const struct options *options, struct control 
     desk->options = options;
     desk->control = control;
     progress_init(&desk->progress, options->progress, options->quiet);
+    struct error error; /* a folder that is missing is told by whoever lets scripts write there */
+    (void)reach_add(&desk->places, ".", REACH_WRITE, &error);
+    for (int i = 0; i < options->script.allow_write_count; i++)
+        (void)reach_add(&desk->places, options->script.allow_write[i], REACH_WRITE, &error);
 }
 
 static bool one_name_for_all(const struct desk *desk) {
@@ -34,6 +38,11 @@ static bool choose_name(struct desk *desk, const char *from_script, char name[NA
         return error_set(error, ERROR_SCENE, "the name of the picture is longer than %d bytes", NAME_LIMIT - 1);
     if (!output)
         memcpy(name, from_script, length + 1);
+    if (!output && !desk->options->script.no_sandbox && !reach_may_create(&desk->places, name))
+        return error_set(error, ERROR_SCENE,
+                         "%s: scripts have pictures written below the working directory only, and under no hidden name "
+                         "(-o FILE or --allow-write DIR allow other places)",
+                         name);
     if (file_is_folder(name) || name[strlen(name) - 1] == '/')
         return error_set(error, ERROR_SCENE, "%s: is a folder, a picture cannot be written there", name);
     return true;
@@ -171,5 +180,6 @@ bool desk_finish(struct desk *desk, struct error *error) {
     if (desk->held.open && !desk->several_under_one_name)
         ok = write_picture(desk, &desk->held, error);
     close_picture(&desk->held);
+    reach_destroy(&desk->places);
     return ok;
 }

@@ -7,6 +7,7 @@
 #include "app/control.h"
 #include "app/options.h"
 #include "app/progress.h"
+#include "base/reach.h"
 #include "base/share.h"
 #include "render/film.h"
 
@@ -27,6 +28,7 @@ struct desk {
     const struct options *options;
     struct control *control; /* not owned */
     struct progress progress;
+    struct reach places;    /* where scripts may have pictures written: the working directory and --allow-write */
     unsigned pictures;      /* begun so far, those under --check too */
     struct picture current; /* being made */
     struct picture held;    /* finished under -o without %d: written when no second picture came */

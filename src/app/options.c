@@ -21,10 +21,11 @@ enum option_kind {
     OPTION_CROP,    /* --crop */
     OPTION_SEED,    /* --seed */
     OPTION_DEFINE,  /* -D */
+    OPTION_FOLDER,  /* --allow-read, --allow-write: `low` says which */
     OPTION_STATS,   /* --stats, --stats=text, --stats=json */
 };
 
-enum option_group { GROUP_PICTURE, GROUP_LOOK, GROUP_FILES, GROUP_OLD, GROUP_RUN, GROUP_TALK, GROUP_COUNT };
+enum option_group { GROUP_PICTURE, GROUP_LOOK, GROUP_FILES, GROUP_OLD, GROUP_TRUST, GROUP_RUN, GROUP_TALK, GROUP_COUNT };
 
 struct option {
     enum option_group group;
@@ -46,6 +47,7 @@ static const char *const group_titles[GROUP_COUNT] = {
     [GROUP_LOOK] = "Size, part and search",
     [GROUP_FILES] = "Files",
     [GROUP_OLD] = "Scenes written for other programs",
+    [GROUP_TRUST] = "What scenes may do",
     [GROUP_RUN] = "The run",
     [GROUP_TALK] = "What is told",
 };
@@ -103,6 +105,20 @@ static const struct option table[] = {
      "number of threads; the picture is the same for any number"},
     {GROUP_RUN, "-D", OPTION_DEFINE, "name=value", NO_RANGE, NO_FIELD, NULL,
      "set the Lua global `name` before the script runs: a Lua literal, else a string; may be repeated"},
+    {GROUP_TRUST, "--allow-read", OPTION_FOLDER, "DIR", 0, 0, NO_FIELD, NULL,
+     "scenes may read below DIR too; without it: below their own folder, the folder above it, the working directory "
+     "and the library; may be repeated"},
+    {GROUP_TRUST, "--allow-write", OPTION_FOLDER, "DIR", 1, 0, NO_FIELD, NULL,
+     "scenes may write files below DIR; without it they write none (pictures are written by gray); may be repeated"},
+    {GROUP_TRUST, "--script-memory", OPTION_INTEGER, "MIB", 1, 1 << 24, FIELD(script.memory_limit), "4096",
+     "memory a script may use, in MiB"},
+    {GROUP_TRUST, "--script-time", OPTION_NUMBER, "SECONDS", 0.001, HUGE_VAL, FIELD(script.time_limit), "60",
+     "processor time a script may use for itself; rendering is not counted"},
+    {GROUP_TRUST, "--script-output", OPTION_INTEGER, "MIB", 1, 1 << 24, FIELD(script.output_limit), "64",
+     "how much a script may print and write, in MiB"},
+    {GROUP_TRUST, "--no-sandbox", OPTION_FLAG, NULL, NO_RANGE, FIELD(script.no_sandbox), NULL,
+     "scenes may do whatever the user may: read and write all files, start programs; for scenes you trust"},
+
     {GROUP_RUN, "--check", OPTION_FLAG, NULL, NO_RANGE, FIELD(check), NULL,
      "run the scripts and build their scenes, render nothing, report every problem"},
     {GROUP_RUN, "--no-fork", OPTION_FLAG, NULL, NO_RANGE, FIELD(no_fork), NULL,
@@ -369,6 +385,8 @@ static bool value_error(const struct option *option, const char *text, struct er
         return error_set(error, ERROR_USAGE,
                          "%.*s needs X,Y,W,H, whole numbers with X and Y not negative and W and H at least 1, not '%s'",
                          shown, option->names, text);
+    case OPTION_FOLDER:
+        return error_set(error, ERROR_USAGE, "%.*s needs the name of a folder", shown, option->names);
     case OPTION_FLAG:
     case OPTION_ACTION:
     case OPTION_DEFINE:
@@ -377,8 +395,14 @@ static bool value_error(const struct option *option, const char *text, struct er
     return error_set(error, ERROR_USAGE, "%.*s takes no value", shown, option->names);
 }
 
+/* Room for lists that grow with the words of the command line. */
+struct lists {
+    struct script_define *defines;
+    const char **folders[2]; /* --allow-read, --allow-write */
+};
+
 static bool apply_option(const struct option *option, const char *text, struct options *options,
-                         struct script_define *defines, struct arena *arena, struct error *error) {
+                         const struct lists *lists, struct arena *arena, struct error *error) {
     void *field = (char *)options + option->offset;
     long long integer = 0;
     bool ok = false;
@@ -414,7 +438,12 @@ static bool apply_option(const struct option *option, const char *text, struct o
         ok = read_seed(options, text);
         break;
     case OPTION_DEFINE:
-        return read_define(options, defines, text, arena, error);
+        return read_define(options, lists->defines, text, arena, error);
+    case OPTION_FOLDER:
+        ok = text[0] != '\0';
+        lists->folders[(int)option->low][option->low == 0 ? options->script.allow_read_count++
+                                                          : options->script.allow_write_count++] = text;
+        break;
     case OPTION_STATS:
         ok = strcmp(text, "text") == 0 || strcmp(text, "json") == 0;
         options->statistics = strcmp(text, "json") == 0 ? STATISTICS_JSON : STATISTICS_TEXT;
@@ -467,11 +496,15 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
     *options = (struct options){.settings = settings_default()};
     size_t room = argc > 0 ? (size_t)argc : 1;
     const char **scripts = arena_alloc_array(arena, room, sizeof *scripts);
-    struct script_define *defines = arena_alloc_array(arena, room, sizeof *defines);
-    if (!scripts || !defines)
+    struct lists lists = {.defines = arena_alloc_array(arena, room, sizeof *lists.defines),
+                          .folders = {arena_alloc_array(arena, room, sizeof *lists.folders[0]),
+                                      arena_alloc_array(arena, room, sizeof *lists.folders[1])}};
+    if (!scripts || !lists.defines || !lists.folders[0] || !lists.folders[1])
         return error_no_memory(error, "the command line");
     options->scripts = scripts;
-    options->script.defines = defines;
+    options->script.defines = lists.defines;
+    options->script.allow_read = lists.folders[0];
+    options->script.allow_write = lists.folders[1];
     bool only_scripts = false;
     for (int i = 1; i < argc; i++) {
         const char *word = argv[i];
@@ -501,7 +534,7 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
                 return error_set(error, ERROR_USAGE, "%s needs a value: %s", word, option->value);
             text = argv[++i];
         }
-        if (!apply_option(option, text, options, defines, arena, error))
+        if (!apply_option(option, text, options, &lists, arena, error))
             return false;
     }
     options->settings.keep_first = options->targets_prefix || options->first_pass_prefix;

@@ -8,7 +8,9 @@
 #include "app/channel.h"
 #include "app/child.h"
 #include "app/child_link.h"
+#include "app/confine.h"
 #include "app/desk.h"
+#include "base/file.h"
 #include "base/mem.h"
 
 #include <errno.h>
@@ -22,9 +24,14 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Seconds a cancelled child has to give up politely before it is killed. It writes no files: nothing is lost with it.
- */
-static const double patience = 1.0;
+/* Seconds a cancelled child has to give up politely before it is killed. It writes no files: nothing is lost with it,
+ * and giving back the memory of a large scene takes longer than a kill. */
+static const double patience = 0.03;
+/* Seconds from the end of the channel to the end of the process. */
+static const double farewell = 10;
+
+static const char no_sandbox_warning[] =
+    "gray: warning: --no-sandbox: scenes may read and write all your files and start programs";
 
 struct supervisor {
     const struct options *options;
@@ -39,6 +46,11 @@ struct supervisor {
     bool stop;       /* no further script */
     bool broken;     /* the child did not keep to the rules of the channel */
     double deadline; /* when the cancelled child is killed; 0: not cancelled */
+    /* The script's own processor time: the child's clock while no picture is being made. */
+    double script_used;  /* seconds of earlier stretches of the script that runs */
+    double script_since; /* the child's clock when this stretch began */
+    bool script_runs;
+    bool out_of_time; /* the child was killed for that */
 };
 
 static void note_status(struct supervisor *supervisor, int status) {
@@ -95,8 +107,43 @@ static void read_signals(struct supervisor *supervisor) {
         cancel(supervisor);
 }
 
-/* In the child, after the fork: never returns. What a stranger's scene could do to the machine is to be limited between
- * here and child_run: from that line on this process needs the channel, the memory it gets, and files it reads. */
+/* The processor time of the child: all of it is the script's while no picture is being made, since then the threads of
+ * the pool sleep. */
+static double child_clock(const struct supervisor *supervisor) {
+    clockid_t clock;
+    struct timespec now;
+    if (clock_getcpuclockid(supervisor->child, &clock) != 0 || clock_gettime(clock, &now) != 0)
+        return 0;
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static double script_time(const struct supervisor *supervisor) {
+    double running = supervisor->script_runs ? child_clock(supervisor) - supervisor->script_since : 0;
+    return supervisor->script_used + (running > 0 ? running : 0);
+}
+
+static void script_stops(struct supervisor *supervisor) {
+    supervisor->script_used = script_time(supervisor);
+    supervisor->script_runs = false;
+}
+
+static void script_goes_on(struct supervisor *supervisor) {
+    supervisor->script_since = child_clock(supervisor);
+    supervisor->script_runs = true;
+}
+
+/* Milliseconds until the script could have used up its time and did not notice; the process itself ends it a little
+ * earlier, with its line, unless it is inside one of Lua's own functions. -1: no limit. 0: it has. */
+static int script_patience(const struct supervisor *supervisor) {
+    double limit = script_time_limit(&supervisor->options->script);
+    if (limit <= 0 || !supervisor->script_runs)
+        return -1;
+    double left = limit * 1.03 + 0.005 - script_time(supervisor);
+    return left <= 0 ? 0 : left > 1000 ? 1000000 : (int)(left * 1000) + 1;
+}
+
+/* In the child, after the fork: never returns. From child_run on this process needs the channel, the memory it gets,
+ * and the files that scenes may read: confine_process takes the rest away. */
 static _Noreturn void be_child(struct supervisor *supervisor, struct channel channel, pid_t parent) {
     (void)close(supervisor->signals);
     channel_close(&supervisor->channel);
@@ -111,6 +158,20 @@ static _Noreturn void be_child(struct supervisor *supervisor, struct channel cha
     (void)setvbuf(stdout, NULL, _IOLBF, BUFSIZ);
     struct child_link link = {.channel = channel};
     struct child_services services = child_link_services(&link, supervisor->control);
+    const char *output = supervisor->options->output;
+    if (output && strcmp(output, "-") == 0) /* standard output is the picture's: what scripts print goes beside it */
+        (void)dup2(STDERR_FILENO, STDOUT_FILENO);
+    if (!supervisor->options->script.no_sandbox) {
+        struct error error;
+        char report[4096];
+        (void)file_null_input();
+        if (!confine_process(supervisor->options, channel.descriptor, report, sizeof report, &error)) {
+            services.line(services.context, LINE_ERROR, error.text);
+            services.script_ended(services.context, supervisor->next_script, (int)error.kind);
+            _exit(0);
+        }
+        services.line(services.context, LINE_DETAIL, report);
+    }
     child_run(supervisor->options, &services, supervisor->next_script);
     child_link_close(&link);
     exit(0);
@@ -127,6 +188,9 @@ static bool start_child(struct supervisor *supervisor, struct error *error) {
     if (supervisor->child == 0)
         be_child(supervisor, ends[1], parent);
     int saved = errno;
+    supervisor->script_used = 0;
+    supervisor->out_of_time = false;
+    script_goes_on(supervisor);
     channel_close(&ends[1]);
     if (supervisor->child > 0)
         return true;
@@ -167,6 +231,8 @@ static void note_script(struct supervisor *supervisor, const struct frame_script
         return;
     }
     supervisor->next_script++;
+    supervisor->script_used = 0;
+    script_goes_on(supervisor);
     supervisor->stop = supervisor->stop || script->status == ERROR_USAGE || script->status == ERROR_CANCELLED;
     note_status(supervisor, script->status);
 }
@@ -181,17 +247,22 @@ static void take_frame(struct supervisor *supervisor, const struct frame *frame)
     case FRAME_BEGIN:
         if (current->open)
             break;
+        script_stops(supervisor);
         answer_begin(supervisor, frame);
+        if (!current->open)
+            script_goes_on(supervisor);
         return;
     case FRAME_DONE:
         if (!current->open || current->request.check || supervisor->deadline > 0)
             break;
+        script_goes_on(supervisor);
         answer_done(supervisor, frame);
         return;
     case FRAME_ABANDON:
         if (!current->open)
             break;
         desk_abandon(&supervisor->desk);
+        script_goes_on(supervisor);
         return;
     case FRAME_SCRIPT:
         note_script(supervisor, &frame->body.script);
@@ -210,8 +281,12 @@ static void talk_to_child(struct supervisor *supervisor) {
         struct pollfd watched[2] = {{.fd = supervisor->channel.descriptor, .events = POLLIN},
                                     {.fd = supervisor->signals, .events = POLLIN}};
         bool timed = supervisor->desk.current.open || supervisor->deadline > 0;
-        if (poll(watched, 2, timed ? 50 : -1) < 0 && errno != EINTR)
+        if (poll(watched, 2, supervisor->deadline > 0 ? 5 : timed ? 50 : script_patience(supervisor)) < 0 && errno != EINTR)
             break;
+        if (script_patience(supervisor) == 0) {
+            supervisor->out_of_time = supervisor->deadline == 0;
+            break;
+        }
         if (watched[1].revents)
             read_signals(supervisor);
         if (supervisor->deadline > 0 && progress_clock() > supervisor->deadline)
@@ -233,7 +308,7 @@ static void talk_to_child(struct supervisor *supervisor) {
 /* The channel is closed before the process is gone: wait, but not for ever. */
 static int reap_child(struct supervisor *supervisor) {
     const struct timespec pause = {0, 2000000};
-    double limit = progress_clock() + 10 * patience;
+    double limit = progress_clock() + farewell;
     int how = 0;
     for (;;) {
         pid_t got = waitpid(supervisor->child, &how, WNOHANG);
@@ -253,7 +328,11 @@ static void tell_death(struct supervisor *supervisor, int how) {
     char making[NAME_LIMIT + 64] = "";
     if (picture->open)
         (void)snprintf(making, sizeof making, " while it made %.400s, which is not written", picture->name);
-    if (supervisor->broken)
+    if (supervisor->out_of_time)
+        error_set(&error, ERROR_SCENE,
+                  "%.400s: the script used up its %g s of processor time (--script-time allows more)", script,
+                  script_time_limit(&supervisor->options->script));
+    else if (supervisor->broken)
         error_set(&error, ERROR_MACHINE, "%.400s: the rendering process did not keep to its protocol%s", script,
                   making);
     else if (WIFSIGNALED(how) && WTERMSIG(how) == SIGKILL)
@@ -306,14 +385,16 @@ int supervisor_run(const struct options *options) {
     desk_init(&supervisor.desk, options, supervisor.control);
     bool ready =
         supervisor.control ? listen_to_signals(&supervisor, &error) : error_no_memory(&error, "the rendering process");
-    if (!ready) {
-        note_error(&supervisor, &error);
-    } else {
+    if (options->script.no_sandbox)
+        desk_line(&supervisor.desk, LINE_WARNING, no_sandbox_warning);
+    if (ready)
         run_children(&supervisor);
-        if (!desk_finish(&supervisor.desk, &error))
-            note_error(&supervisor, &error);
+    else
+        note_error(&supervisor, &error);
+    if (!desk_finish(&supervisor.desk, &error))
+        note_error(&supervisor, &error);
+    if (supervisor.signals >= 0)
         (void)close(supervisor.signals);
-    }
     mem_unshare(supervisor.control, sizeof *supervisor.control);
     return supervisor.status;
 }
@@ -375,6 +456,8 @@ int supervisor_run_without_fork(const struct options *options) {
     (void)signal(SIGPIPE, SIG_IGN);
     (void)signal(SIGXFSZ, SIG_IGN);
     desk_init(&alone.desk, options, &control);
+    if (options->script.no_sandbox)
+        desk_line(&alone.desk, LINE_WARNING, no_sandbox_warning);
     child_run(options, &services, 0);
     if (!desk_finish(&alone.desk, &error)) {
         desk_line(&alone.desk, LINE_ERROR, error.text);

@@ -1,5 +1,6 @@
 /* Files. Everything that leaves a name in a folder goes through struct file_output: the temporary file stands beside the
- * target (a rename works only inside one file system) and is named after the process, so that two runs cannot mix. */
+ * target (a rename works only inside one file system), has no name until it is whole, and then one by chance, so that
+ * two runs cannot mix. */
 #define _GNU_SOURCE
 #include "base/file.h"
 
@@ -13,15 +14,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-bool file_map(const char *path, size_t limit, struct file_bytes *out, struct error *error) {
+bool file_map_descriptor(int descriptor, const char *path, size_t limit, struct file_bytes *out, struct error *error) {
     *out = (struct file_bytes){0};
-    /* O_NONBLOCK: opening a named pipe must not wait for a writer. */
-    int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (descriptor < 0)
-        return error_set(error, ERROR_SCENE, "%s: cannot be read: %s", path, strerror(errno));
     struct stat status;
     bool ok = false;
     if (fstat(descriptor, &status) != 0) {
@@ -64,6 +62,15 @@ bool file_map(const char *path, size_t limit, struct file_bytes *out, struct err
     return ok;
 }
 
+bool file_map(const char *path, size_t limit, struct file_bytes *out, struct error *error) {
+    *out = (struct file_bytes){0};
+    /* O_NONBLOCK: opening a named pipe must not wait for a writer. */
+    int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (descriptor < 0)
+        return error_set(error, ERROR_SCENE, "%s: cannot be read: %s", path, strerror(errno));
+    return file_map_descriptor(descriptor, path, limit, out, error);
+}
+
 void file_unmap(struct file_bytes *bytes) {
     if (bytes->size)
         mem_free((void *)(uintptr_t)bytes->data);
@@ -78,6 +85,18 @@ bool file_is_regular(const char *path) {
 bool file_is_folder(const char *path) {
     struct stat status;
     return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
+}
+
+int file_open_place(const char *path) {
+    return open(path, O_PATH | O_CLOEXEC);
+}
+
+bool file_null_input(void) {
+    int descriptor = open("/dev/null", O_RDONLY | O_CLOEXEC);
+    bool done = descriptor >= 0 && dup2(descriptor, STDIN_FILENO) == STDIN_FILENO;
+    if (descriptor > STDIN_FILENO)
+        (void)close(descriptor);
+    return done;
 }
 
 bool file_canonical(const char *path, char *out, size_t size) {
@@ -141,6 +160,56 @@ static bool is_direct_target(const char *target) {
            (stat(target, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode));
 }
 
+/* The folder of a path with its final slash, "" when it has none. */
+static int folder_length(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? (int)(slash - path) + 1 : 0;
+}
+
+/* A name that nobody can have prepared, in the target's folder: the length of the target's own name does not matter. */
+static void name_temporary(struct file_output *file) {
+    uint64_t number = 0;
+    if (getrandom(&number, sizeof number, 0) != (ssize_t)sizeof number)
+        number = (uint64_t)getpid();
+    (void)snprintf(file->temporary, sizeof file->temporary, "%.*s.gray.part-%016llx", folder_length(file->target),
+                   file->target, (unsigned long long)number);
+}
+
+/* A file without a name, where the file system knows such files (O_TMPFILE, Linux 3.11): even a kill leaves nothing
+ * behind. It gets its name when it is whole. Elsewhere a new file under a name of its own. */
+static int open_temporary(struct file_output *file) {
+    char folder[sizeof file->target + 2];
+    (void)snprintf(folder, sizeof folder, "%.*s.", folder_length(file->target), file->target);
+    int descriptor = open(folder, O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+    if (descriptor >= 0) {
+        file->nameless = true;
+        return descriptor;
+    }
+    for (int i = 0; i < 100; i++) {
+        name_temporary(file);
+        descriptor = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
+        if (descriptor >= 0 || errno != EEXIST)
+            break;
+    }
+    return descriptor;
+}
+
+/* False with errno. */
+static bool give_name(struct file_output *file) {
+    char link[64];
+    (void)snprintf(link, sizeof link, "/proc/self/fd/%d", file->descriptor);
+    for (int i = 0; i < 100; i++) {
+        name_temporary(file);
+        if (linkat(AT_FDCWD, link, AT_FDCWD, file->temporary, AT_SYMLINK_FOLLOW) == 0) {
+            file->nameless = false;
+            return true;
+        }
+        if (errno != EEXIST)
+            return false;
+    }
+    return false;
+}
+
 bool file_output_open(struct file_output *file, const char *target, struct error *error) {
     memset(file, 0, sizeof *file);
     if (target[0] == '\0')
@@ -157,8 +226,7 @@ bool file_output_open(struct file_output *file, const char *target, struct error
     } else {
         if (!file_make_folders_for(target, error))
             return false;
-        (void)snprintf(file->temporary, sizeof file->temporary, "%s.part-%ld", target, (long)getpid());
-        file->descriptor = open(file->temporary, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
+        file->descriptor = open_temporary(file);
     }
     if (file->descriptor < 0)
         return error_set(error, ERROR_MACHINE, "%s: cannot be written: %s", target, strerror(errno));
@@ -207,7 +275,7 @@ bool file_output_commit(struct file_output *file, struct error *error) {
     if (!file->direct) {
         if (stat(file->target, &status) == 0)
             (void)fchmod(file->descriptor, status.st_mode & 07777);
-        ok = fsync(file->descriptor) == 0;
+        ok = fsync(file->descriptor) == 0 && (!file->nameless || give_name(file));
     }
     int saved = errno;
     if (close(file->descriptor) != 0 && ok) {
@@ -220,7 +288,7 @@ bool file_output_commit(struct file_output *file, struct error *error) {
         saved = errno;
     }
     if (!ok) {
-        if (!file->direct)
+        if (!file->direct && !file->nameless)
             (void)unlink(file->temporary);
         return error_set(error, ERROR_MACHINE, "%s: cannot be written: %s", file->target, strerror(saved));
     }
@@ -234,6 +302,6 @@ void file_output_abandon(struct file_output *file) {
         return;
     (void)close(file->descriptor);
     file->open = false;
-    if (!file->direct)
+    if (!file->direct && !file->nameless)
         (void)unlink(file->temporary);
 }

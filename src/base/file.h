@@ -18,10 +18,16 @@ struct file_bytes {
 /* Maps a regular file; an empty file gives size 0. A pipe or device is refused as "not a regular file".
  * A file larger than `limit` bytes is an error. Errors name the path. */
 bool file_map(const char *path, size_t limit, struct file_bytes *out, struct error *error);
+/* The same of an open descriptor, which is closed in any case; `path` is what it is called. */
+bool file_map_descriptor(int descriptor, const char *path, size_t limit, struct file_bytes *out, struct error *error);
 void file_unmap(struct file_bytes *bytes);
 
 bool file_is_regular(const char *path);
 bool file_is_folder(const char *path);
+/* A descriptor (O_PATH) that only stands for a place in the file system; -1 when there is none. */
+int file_open_place(const char *path);
+/* Standard input gives nothing from now on: a scene that waits for it would wait for ever. */
+bool file_null_input(void);
 /* The canonical absolute path (realpath) into out; false when it does not exist or does not fit. */
 bool file_canonical(const char *path, char *out, size_t size);
 /* mkdir -p of the folder part of `path`. */
@@ -33,6 +39,7 @@ bool file_list(const char *folder, size_t limit, bool (*fn)(void *context, const
 struct file_output {
     int descriptor;
     bool open, direct; /* direct: target is a pipe, a device or "-" and is written in place */
+    bool nameless;     /* the temporary file has no name yet */
     uint64_t written;
     char target[4096], temporary[4096 + 32];
 };

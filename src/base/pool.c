@@ -30,6 +30,7 @@ struct pool {
     uint32_t count;
     _Atomic uint64_t next;
     _Atomic bool cancelled;
+    const _Atomic int *watched; /* cancels too, or NULL */
     void (*poll)(void *context);
     void *poll_context;
     int workers;
@@ -52,7 +53,7 @@ static void work(struct pool *pool, int worker) {
                 polled = now;
             }
         }
-        if (atomic_load_explicit(&pool->cancelled, memory_order_relaxed))
+        if (pool_cancelled(pool))
             return;
         uint64_t item = atomic_fetch_add_explicit(&pool->next, 1, memory_order_relaxed);
         if (item >= pool->count)
@@ -178,12 +179,17 @@ void pool_cancel(struct pool *pool) {
     atomic_store_explicit(&pool->cancelled, true, memory_order_relaxed);
 }
 
+void pool_watch(struct pool *pool, const _Atomic int *flag) {
+    pool->watched = flag;
+}
+
 void pool_reset_cancel(struct pool *pool) {
     atomic_store_explicit(&pool->cancelled, false, memory_order_relaxed);
 }
 
 bool pool_cancelled(const struct pool *pool) {
-    return atomic_load_explicit(&pool->cancelled, memory_order_relaxed);
+    return atomic_load_explicit(&pool->cancelled, memory_order_relaxed) ||
+           (pool->watched && atomic_load_explicit(pool->watched, memory_order_relaxed) != 0);
 }
 
 void pool_set_poll(struct pool *pool, void (*poll)(void *context), void *context) {

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -24,6 +25,8 @@ bool pool_run(struct pool *pool, uint32_t count, pool_function *fn, void *contex
 
 /* Async-signal-safe and thread-safe. The flag stays until pool_reset_cancel. */
 void pool_cancel(struct pool *pool);
+/* A flag elsewhere (in memory shared with another process, say) that cancels as well, as soon as it is not 0. */
+void pool_watch(struct pool *pool, const _Atomic int *flag);
 void pool_reset_cancel(struct pool *pool);
 bool pool_cancelled(const struct pool *pool);
 /* Called (from worker 0's thread, every 10 ms or so while it works) during pool_run; may call pool_cancel. */

@@ -29,6 +29,8 @@ static bool map_block(struct share *share, struct error *error) {
         *share = (struct share){0};
         return false;
     }
+    /* Shared through the descriptor alone: a process forked later has no business with it. */
+    (void)madvise(block, share->size, MADV_DONTFORK);
     share->block = block;
     return true;
 }

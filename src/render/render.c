@@ -169,7 +169,8 @@ static void tile_item(void *context, uint32_t item, int index) {
     int64_t left = film->x0, top = film->y0, right = left + film->width, bottom = top + film->height;
     struct rectangle tile = {x0 < left ? left : x0, y0 < top ? top : y0, x0 + FILM_TILE > right ? right : x0 + FILM_TILE,
                              y0 + FILM_TILE > bottom ? bottom : y0 + FILM_TILE};
-    bool whole = render_tile(run, worker, tile);
+    /* A ray that was given up leaves a wrong colour: what ends after a wish to stop counts as not done. */
+    bool whole = render_tile(run, worker, tile) && !stopped(run, worker);
     if (worker->scratch.failed) {
         atomic_store(&run->failed, true);
         pool_cancel(run->pool);
@@ -229,7 +230,7 @@ static bool start_workers(struct run *run, int workers) {
         if (!world_scratch_init(&worker->scratch, run->job->world))
             return false;
         worker->tracer =
-            (struct tracer){.job = run->job, .scratch = &worker->scratch, .eye_media = &run->eye_media};
+            (struct tracer){.job = run->job, .pool = run->pool, .scratch = &worker->scratch, .eye_media = &run->eye_media};
     }
     return true;
 }

@@ -40,6 +40,8 @@ static double visible_share(struct tracer *tracer, const struct light *light, co
         seen += world_count_visible(world, shadow.origin, hit->time, light->corner, light->edge1, light->edge2, targets,
                                     have, tracer->scratch);
         have = 0;
+        if (tracer->pool && pool_cancelled(tracer->pool))
+            return 0;
     }
     tracer->shadow_rays += all;
     return (double)seen / (double)all;
@@ -186,6 +188,8 @@ static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const str
 static struct vec3 trace(struct tracer *tracer, const struct ray *ray, struct path path) {
     const struct world *world = tracer->job->world;
     struct hit hit;
+    if (tracer->pool && pool_cancelled(tracer->pool))
+        return vec3_all(0); /* deep paths through glass grow exponentially */
     if (!world_nearest(world, ray, tracer->scratch, &hit))
         return sky_colour(&world->sky, vec3_normalize(ray->direction), ray->footprint.spread);
     return shade(tracer, ray, &hit, path);

@@ -9,6 +9,7 @@
 /* One worker's view of a job. */
 struct tracer {
     const struct render_job *job;
+    const struct pool *pool; /* asked whether to stop; NULL: never */
     struct world_scratch *scratch;
     const struct media *eye_media; /* what the camera stands in */
     uint64_t reflected_rays, refracted_rays, shadow_rays;

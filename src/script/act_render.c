@@ -108,6 +108,10 @@ bool act_render(struct context *context, const struct value *args, struct result
         .settings = context->host->settings,
     };
     apply_settings(args, &request.settings);
-    return choose_sky(context, args, &request.sky, error) &&
-           context->host->render(context->host->context, &request, error);
+    if (!choose_sky(context, args, &request.sky, error))
+        return false;
+    limits_pause(context);
+    bool done = context->host->render(context->host->context, &request, error);
+    limits_resume(context);
+    return done;
 }

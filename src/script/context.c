@@ -45,6 +45,7 @@ static void warn(struct context *context, const char *format, va_list arguments)
     compose(context, text, line, sizeof line);
     context_where(context, where, sizeof where);
     snprintf(message, sizeof message, "%swarning: %s", where, line);
+    limits_count_output(context, strlen(message));
     context->host->message(context->host->context, SCRIPT_WARNING, message);
 }
 

@@ -8,6 +8,7 @@
 #ifndef GRAY_SCRIPT_CONTEXT_H
 #define GRAY_SCRIPT_CONTEXT_H
 
+#include "base/reach.h"
 #include "script/script.h"
 #include "script/table.h"
 
@@ -31,8 +32,22 @@ struct source_name {
     struct source_name *next;
 };
 
+/* What the script has used of what it was given (limits.c). */
+struct limits {
+    uint64_t memory, memory_limit;            /* bytes of the Lua state, as the allocator rounds them */
+    uint64_t asset_memory;                    /* bytes of meshes and images made for this script */
+    uint32_t known_meshes, known_images;      /* counted so far, or there before */
+    const void *refused_block;                /* the request that was refused last: Lua asks again after a collection */
+    size_t refused_size;
+    bool memory_out;                          /* refused for good: the script ends */
+    double time_begun, time_limit;            /* seconds of this thread's processor time; a limit of 0 is none */
+    uint64_t output, output_limit;            /* bytes printed and written */
+};
+
 struct context {
     lua_State *lua; /* the thread that called last */
+    struct limits limits;
+    const struct reach *reach; /* what may be read and written; NULL: everything */
     const struct script_options *options;
     const struct script_host *host;
     struct scene scene;
@@ -74,6 +89,18 @@ _Noreturn void context_raise_error(struct context *context, const struct error *
 _Noreturn void context_raise_fatal(lua_State *L);
 _Noreturn void context_raise_no_memory(struct context *context);
 
+/* limits.c */
+void limits_begin(struct context *context);
+void *limits_allocate(void *context, void *block, size_t old_size, size_t size); /* a lua_Alloc */
+void limits_open(lua_State *L);               /* sets the hook */
+void limits_check(lua_State *L);              /* raises when time or memory is used up or somebody wants to stop */
+void limits_check_memory(lua_State *L);       /* the part of it that is about what the scene holds */
+void limits_output(lua_State *L, size_t size); /* so many bytes are about to be written; may raise */
+void limits_count_output(struct context *context, size_t size); /* the same without raising; the next check does */
+/* Around what is not the script's own work. */
+void limits_pause(struct context *context);
+void limits_resume(struct context *context);
+
 /* handles.c */
 void handles_open(lua_State *L);
 void handle_push(lua_State *L, enum handle_type type, void *pointer);
@@ -105,6 +132,8 @@ void files_open(lua_State *L);
 bool files_find(struct context *context, const char *name, char out[PATH_SIZE]);
 /* The same with the number in its name repaired, and with an error that tells where it was looked for. */
 bool files_require(struct context *context, const char *name, char out[PATH_SIZE], struct error *error);
+/* The templates of package.path with `file` in the place of the question marks, the first that may be read. */
+bool files_on_path(const struct context *context, const char *templates, const char *file, char path[PATH_SIZE]);
 /* Drops the ".0" of whole numbers. The same pointer when there was none; NULL without memory. */
 const char *files_repair_number(struct context *context, const char *name);
 /* Loads a Lua file as text: pushes the chunk or a message and answers with the status. Raises what cannot be caught. */
@@ -114,6 +143,7 @@ const char *files_unshorten(struct context *context, const char *message); /* NU
 
 /* Others that add to a fresh state. All run protected and may raise. */
 void sandbox_open(lua_State *L);  /* sandbox.c: the libraries, less what a stranger's script must not have */
+void streams_open(lua_State *L);  /* streams.c: files and printing within what the scene was given */
 void protect_open(lua_State *L);  /* protect.c */
 void compat_open(lua_State *L);   /* compat.c: old Lua */
 void traverse_open(lua_State *L); /* traverse.c: pairs in a fixed order */

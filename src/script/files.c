@@ -9,17 +9,17 @@
 #include <stdio.h>
 #include <string.h>
 
-static bool try_file(char out[PATH_SIZE], const char *folder, const char *between, const char *name) {
+static bool try_file(const struct context *context, char out[PATH_SIZE], const char *folder, const char *between, const char *name) {
     int length = snprintf(out, PATH_SIZE, "%s%s%s", folder, between, name);
-    return length > 0 && length < PATH_SIZE && file_is_regular(out);
+    return length > 0 && length < PATH_SIZE && reach_is_readable(context->reach, out);
 }
 
 bool files_find(struct context *context, const char *name, char out[PATH_SIZE]) {
     if (name[0] == '/')
-        return try_file(out, "", "", name);
+        return try_file(context, out, "", "", name);
     const char *folder = context->folder, *slash = strrchr(name, '/');
-    return try_file(out, folder, "", name) || try_file(out, "", "", name) || try_file(out, folder, "Assets/", name) ||
-           try_file(out, folder, "../Assets/", name) || (slash && try_file(out, folder, "", slash + 1));
+    return try_file(context, out, folder, "", name) || try_file(context, out, "", "", name) || try_file(context, out, folder, "Assets/", name) ||
+           try_file(context, out, folder, "../Assets/", name) || (slash && try_file(context, out, folder, "", slash + 1));
 }
 
 /* A digit, ".0", then no digit: how Lua 5.4 writes 3.0 where older ones wrote 3. */
@@ -63,6 +63,9 @@ bool files_require(struct context *context, const char *name, char out[PATH_SIZE
         return error_no_memory(error, "the name of a file");
     if (repaired != name && files_find(context, repaired, out))
         return true;
+    if (reach_is_outside(context->reach, name))
+        return error_set(error, ERROR_SCENE,
+                         "'%s' lies outside the folders that scenes may read (--allow-read DIR adds one)", name);
     if (name[0] == '/')
         return error_set(error, ERROR_SCENE, "cannot find '%s'", name);
     const char *folder = context->folder;
@@ -102,7 +105,9 @@ int files_load(lua_State *L, const char *path) {
     context->sources = source;
     struct file_bytes bytes;
     struct error error = {0};
-    if (!file_map(path, FILE_LIMIT, &bytes, &error)) {
+    /* The scene itself was named by the user; it may be a link to anywhere. */
+    const struct reach *reach = strcmp(path, context->path) == 0 ? NULL : context->reach;
+    if (!reach_map(reach, path, FILE_LIMIT, &bytes, &error)) {
         if (error.kind != ERROR_SCENE) {
             context->lua = L;
             context->function = NULL;
@@ -122,7 +127,7 @@ int files_load(lua_State *L, const char *path) {
         size -= end ? (size_t)(end - text) : size;
         text = end ? end : text;
     }
-    int status = luaL_loadbufferx(L, size > 0 ? text : "", size, name, "t");
+    int status = luaL_loadbufferx(L, size > 0 ? text : "", size, name, context->options->no_sandbox ? "bt" : "t");
     file_unmap(&bytes);
     if (status == LUA_OK)
         library_adopt(L, path);
@@ -134,8 +139,7 @@ static const char *plain_path(const char *path) {
     return path[0] == '.' && path[1] == '/' ? path + 2 : path;
 }
 
-/* The templates of package.path with `file` in the place of the question marks, the first that is there. */
-static bool find_on_path(const char *templates, const char *file, char path[PATH_SIZE]) {
+bool files_on_path(const struct context *context, const char *templates, const char *file, char path[PATH_SIZE]) {
     for (const char *template = templates; *template;) {
         size_t length = strcspn(template, ";"), used = 0;
         for (size_t k = 0; k < length && used < PATH_SIZE; k++) {
@@ -148,7 +152,7 @@ static bool find_on_path(const char *templates, const char *file, char path[PATH
         if (used == 0 || used >= PATH_SIZE)
             continue;
         path[used] = '\0';
-        if (file_is_regular(path))
+        if (reach_is_readable(context->reach, path))
             return true;
     }
     return false;
@@ -167,11 +171,11 @@ static int search_module(lua_State *L) {
     if (!templates)
         context_raise(context, "require: package.path must be a string");
     char path[PATH_SIZE];
-    bool found = find_on_path(templates, luaL_gsub(L, module, ".", "/"), path);
+    bool found = files_on_path(context, templates, luaL_gsub(L, module, ".", "/"), path);
     size_t length = strlen(module);
     if (!found && length > 4 && strcmp(module + length - 4, ".lua") == 0) {
         lua_pushlstring(L, module, length - 4);
-        found = find_on_path(templates, lua_tostring(L, -1), path);
+        found = files_on_path(context, templates, lua_tostring(L, -1), path);
     }
     if (found) {
         if (files_load(L, plain_path(path)) != LUA_OK)
@@ -212,7 +216,7 @@ static int dofile_continue(lua_State *L, int status, lua_KContext base) {
 static int file_do(lua_State *L) {
     lua_settop(L, 1);
     if (load_named(L) != LUA_OK) {
-        if (lua_type(L, -1) == LUA_TSTRING && strncmp(lua_tostring(L, -1), "cannot find", 11) == 0)
+        if (lua_type(L, -1) == LUA_TSTRING && (lua_tostring(L, -1)[0] == '\'' || strncmp(lua_tostring(L, -1), "cannot find", 11) == 0))
             return luaL_error(L, "dofile: %s", lua_tostring(L, -1));
         return lua_error(L);
     }
@@ -234,32 +238,6 @@ static int file_load(lua_State *L) {
             lua_pop(L, 1);
     }
     return 1;
-}
-
-/* io.open, io.lines and io.input read relative names in the working directory first, as always, then where meshes and
- * images are looked for. Upvalue 1: Lua's own function. Upvalue 2: whether argument 2 is a mode. */
-static int open_beside(lua_State *L) {
-    struct context *context = context_of(L);
-    const char *mode = lua_toboolean(L, lua_upvalueindex(2)) ? luaL_optstring(L, 2, "r") : "r";
-    if (lua_type(L, 1) == LUA_TSTRING && mode[0] == 'r' && !strchr(mode, '+')) {
-        char path[PATH_SIZE];
-        const char *name = lua_tostring(L, 1);
-        if (!file_is_regular(name) && files_find(context, name, path)) {
-            lua_pushstring(L, path);
-            lua_replace(L, 1);
-        }
-    }
-    lua_pushvalue(L, lua_upvalueindex(1));
-    lua_insert(L, 1);
-    lua_call(L, lua_gettop(L) - 1, LUA_MULTRET);
-    return lua_gettop(L);
-}
-
-static void wrap_io(lua_State *L, const char *name, bool has_mode) {
-    lua_getfield(L, -1, name);
-    lua_pushboolean(L, has_mode);
-    lua_pushcclosure(L, open_beside, 2);
-    lua_setfield(L, -2, name);
 }
 
 void files_open(lua_State *L) {
@@ -290,9 +268,4 @@ void files_open(lua_State *L) {
     lua_setglobal(L, "dofile");
     lua_pushcfunction(L, file_load);
     lua_setglobal(L, "loadfile");
-    lua_getglobal(L, "io");
-    wrap_io(L, "open", true);
-    wrap_io(L, "lines", false);
-    wrap_io(L, "input", false);
-    lua_pop(L, 1);
 }

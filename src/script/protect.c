@@ -1,13 +1,17 @@
 /* What could catch an error that must not be caught: pcall, xpcall, coroutine.resume and close, load. The replacements
- * do the same and then raise the light userdata again when the context holds a fatal error or the script has ended. */
+ * do the same and then raise the light userdata again when the context holds a fatal error or the script has ended.
+ *
+ * Two more ways past the limits are closed here. Lua runs the handler of xpcall with hooks off when the error came from
+ * the hook: ours answers a fatal error itself. Lua runs finalizers (__gc) with hooks off always: setmetatable leaves
+ * them out, so that no code of a scene runs while garbage is collected or the state is closed. */
 #include "script/context.h"
 
 #include <lauxlib.h>
 
 static void pass_on_fatal(lua_State *L) {
     const struct context *context = context_of(L);
-    if (context->ended || context->fatal.kind != ERROR_NONE)
-        context_raise_fatal(L);
+    if (context->ended || context->fatal.kind != ERROR_NONE || context->limits.memory_out)
+        limits_check(L);
 }
 
 /* After the call or after a yield in it; `extra` values lie below the results. As in Lua's own lbaselib.c. */
@@ -29,9 +33,23 @@ static int protected_call(lua_State *L) {
     return finish_call(L, status, 0);
 }
 
+/* Upvalue 1: the script's handler. */
+static int guarded_handler(lua_State *L) {
+    const struct context *context = context_of(L);
+    if (context->ended || context->fatal.kind != ERROR_NONE || context->limits.memory_out)
+        return 1;
+    lua_pushvalue(L, lua_upvalueindex(1));
+    lua_insert(L, 1);
+    lua_call(L, lua_gettop(L) - 1, 1);
+    return 1;
+}
+
 static int protected_call_with_handler(lua_State *L) {
     int count = lua_gettop(L);
     luaL_checktype(L, 2, LUA_TFUNCTION);
+    lua_pushvalue(L, 2);
+    lua_pushcclosure(L, guarded_handler, 1);
+    lua_replace(L, 2);
     lua_pushboolean(L, 1);
     lua_pushvalue(L, 1);
     lua_rotate(L, 3, 2); /* function, handler, true, function, arguments */
@@ -39,13 +57,52 @@ static int protected_call_with_handler(lua_State *L) {
     return finish_call(L, status, 2);
 }
 
-/* Calls upvalue 1, Lua's own function, which gives errors back as values. */
+/* Calls upvalue 1, Lua's own function, which gives errors back as values. A coroutine counts its steps from zero, so
+ * many short ones would never meet the hook: the clock is looked at here too. */
 static int call_and_pass_on(lua_State *L) {
+    limits_check(L);
     lua_pushvalue(L, lua_upvalueindex(1));
     lua_insert(L, 1);
     lua_call(L, lua_gettop(L) - 1, LUA_MULTRET);
     pass_on_fatal(L);
     return lua_gettop(L);
+}
+
+/* coroutine.wrap(f): as Lua's own, around our resume. Upvalue of the result: Lua's own result. */
+static int wrap_coroutine(lua_State *L) {
+    lua_pushvalue(L, lua_upvalueindex(1));
+    lua_insert(L, 1);
+    lua_call(L, lua_gettop(L) - 1, 1);
+    lua_pushcclosure(L, call_and_pass_on, 1);
+    return 1;
+}
+
+static int set_metatable(lua_State *L) {
+    int type = lua_type(L, 2);
+    luaL_argexpected(L, type == LUA_TNIL || type == LUA_TTABLE, 2, "nil or table");
+    luaL_checktype(L, 1, LUA_TTABLE);
+    if (luaL_getmetafield(L, 1, "__metatable") != LUA_TNIL)
+        return luaL_error(L, "cannot change a protected metatable");
+    lua_settop(L, 2);
+    bool finalizer = false;
+    if (type == LUA_TTABLE) {
+        lua_pushliteral(L, "__gc");
+        finalizer = lua_rawget(L, 2) != LUA_TNIL; /* its value, at 3 */
+    }
+    if (finalizer) {
+        lua_pushliteral(L, "__gc");
+        lua_pushnil(L);
+        lua_rawset(L, 2);
+    }
+    lua_pushvalue(L, 2);
+    lua_setmetatable(L, 1);
+    if (finalizer) {
+        lua_pushliteral(L, "__gc");
+        lua_pushvalue(L, 3);
+        lua_rawset(L, 2);
+    }
+    lua_settop(L, 1);
+    return 1;
 }
 
 /* load(chunk, name, mode, environment), the mode always "t". */
@@ -72,5 +129,12 @@ void protect_open(lua_State *L) {
     lua_setglobal(L, "xpcall");
     wrap(L, "coroutine", "resume", call_and_pass_on);
     wrap(L, "coroutine", "close", call_and_pass_on);
+    wrap(L, "coroutine", "wrap", wrap_coroutine);
+    if (context_of(L)->options->no_sandbox) {
+        wrap(L, LUA_GNAME, "load", call_and_pass_on);
+        return;
+    }
     wrap(L, LUA_GNAME, "load", load_text);
+    lua_pushcfunction(L, set_metatable);
+    lua_setglobal(L, "setmetatable");
 }

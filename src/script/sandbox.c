@@ -1,10 +1,15 @@
-/* Which of Lua's libraries a scene gets. Scenes are written by strangers: nothing here starts programs or loads machine
- * code, and debug shows but does not change. Text is all that load accepts (protect.c), since crafted byte code can
- * crash the interpreter. */
+/* Which of Lua's libraries a scene gets. Scenes are written by strangers: the lists below name what is known to be
+ * harmless, and whatever else a library holds (in this or a later Lua) is taken out. Nothing starts programs, loads
+ * machine code or byte code, changes the locale or looks into the environment; debug shows where a script is and no
+ * more. Files are in files.c and streams.c, what could catch or escape a limit in protect.c. With --no-sandbox
+ * everything stays. */
 #include "script/context.h"
 
 #include <lauxlib.h>
 #include <lualib.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* os.exit ends the script, not the program: pictures that are finished stay, the next script runs. */
 static int end_script(lua_State *L) {
@@ -20,12 +25,104 @@ static int end_script(lua_State *L) {
     context_raise_fatal(L);
 }
 
-static void remove_names(lua_State *L, const char *library, const char *const *names) {
-    lua_getglobal(L, library);
-    for (; *names; names++) {
-        lua_pushnil(L);
-        lua_setfield(L, -2, *names);
+/* debug.getinfo([thread,] function or level [, what]): source, short_src, currentline, and nothing that can be called. */
+static int place_info(lua_State *L) {
+    lua_State *from = L;
+    int at = 1;
+    lua_Debug place;
+    if (lua_isthread(L, 1)) {
+        from = lua_tothread(L, 1);
+        at = 2;
     }
+    if (lua_isfunction(L, at)) {
+        lua_pushvalue(L, at);
+        lua_xmove(L, from, 1);
+        lua_getinfo(from, ">Sl", &place);
+    } else {
+        lua_Integer level = luaL_checkinteger(L, at);
+        if (level < 0 || level > 1000000 || !lua_getstack(from, (int)level, &place)) {
+            lua_pushnil(L);
+            return 1;
+        }
+        lua_getinfo(from, "Sl", &place);
+    }
+    lua_createtable(L, 0, 3);
+    lua_pushlstring(L, place.source, place.srclen);
+    lua_setfield(L, -2, "source");
+    lua_pushstring(L, place.short_src);
+    lua_setfield(L, -2, "short_src");
+    lua_pushinteger(L, place.currentline);
+    lua_setfield(L, -2, "currentline");
+    return 1;
+}
+
+/* The environment may hold secrets; what is meant for this program is shown. */
+static int environment_variable(lua_State *L) {
+    const char *name = luaL_checkstring(L, 1);
+    lua_pushstring(L, strncmp(name, "GRAY_", 5) == 0 ? getenv(name) : NULL);
+    return 1;
+}
+
+/* Generational collection has been the source of most memory errors of Lua 5.4 (lua.org/bugs.html): asked for, it
+ * answers and changes nothing. Upvalue 1: Lua's own. */
+static int collect_garbage(lua_State *L) {
+    const char *option = luaL_optstring(L, 1, "collect");
+    if (strcmp(option, "generational") == 0 || strcmp(option, "incremental") == 0) {
+        lua_pushliteral(L, "incremental");
+        return 1;
+    }
+    lua_pushvalue(L, lua_upvalueindex(1));
+    lua_insert(L, 1);
+    lua_call(L, lua_gettop(L) - 1, LUA_MULTRET);
+    return lua_gettop(L);
+}
+
+struct allowed {
+    const char *library, *names; /* parted by blanks, one before and one after */
+};
+
+static const struct allowed allowed_names[] = {
+    {LUA_GNAME, " _G _VERSION assert collectgarbage dofile error getmetatable ipairs load loadfile next pairs pcall "
+                "print rawequal rawget rawlen rawset require select setmetatable tonumber tostring type warn xpcall "
+                "coroutine debug io math os package string table utf8 "},
+    {LUA_COLIBNAME, " close create isyieldable resume running status wrap yield "},
+    {LUA_TABLIBNAME, " concat insert move pack remove sort unpack "},
+    {LUA_STRLIBNAME,
+     " byte char dump find format gmatch gsub len lower match pack packsize rep reverse sub unpack upper "},
+    {LUA_MATHLIBNAME, " abs acos asin atan atan2 ceil cos cosh deg exp floor fmod frexp huge ldexp log log10 max "
+                      "maxinteger min mininteger modf pi pow rad random randomseed sin sinh sqrt tan tanh tointeger "
+                      "type ult "},
+    {LUA_UTF8LIBNAME, " char charpattern codepoint codes len offset "},
+    {LUA_OSLIBNAME, " clock date difftime exit getenv remove rename time "},
+    {LUA_IOLIBNAME, " close flush input lines open output read stderr stdin stdout type write "},
+    {LUA_LOADLIBNAME, " config cpath loaded path preload searchers searchpath "},
+    {LUA_DBLIBNAME, " getinfo traceback "},
+};
+
+static bool is_allowed(const char *names, const char *name) {
+    char word[64];
+    int length = snprintf(word, sizeof word, " %s ", name);
+    return length > 0 && (size_t)length < sizeof word && strstr(names, word);
+}
+
+static void keep_allowed(lua_State *L, const struct allowed *allowed) {
+    lua_getglobal(L, allowed->library);
+    lua_pushnil(L);
+    while (lua_next(L, -2)) {
+        lua_pop(L, 1);
+        if (lua_type(L, -1) == LUA_TSTRING && is_allowed(allowed->names, lua_tostring(L, -1)))
+            continue;
+        lua_pushvalue(L, -1); /* a field may be cleared while its table is traversed */
+        lua_pushnil(L);
+        lua_rawset(L, -4);
+    }
+    lua_pop(L, 1);
+}
+
+static void set_function(lua_State *L, const char *library, const char *name, lua_CFunction function) {
+    lua_getglobal(L, library);
+    lua_pushcfunction(L, function);
+    lua_setfield(L, -2, name);
     lua_pop(L, 1);
 }
 
@@ -40,26 +137,19 @@ void sandbox_open(lua_State *L) {
         luaL_requiref(L, libraries[k].name, libraries[k].func, 1);
         lua_pop(L, 1);
     }
-    remove_names(L, "os", (const char *const[]){"execute", NULL});
-    remove_names(L, "io", (const char *const[]){"popen", NULL});
-    remove_names(L, "package", (const char *const[]){"loadlib", NULL});
-
-    lua_getglobal(L, "os");
-    lua_pushcfunction(L, end_script);
-    lua_setfield(L, -2, "exit");
+    set_function(L, "os", "exit", end_script);
+    if (context_of(L)->options->no_sandbox)
+        return;
+    for (size_t k = 0; k < sizeof allowed_names / sizeof allowed_names[0]; k++)
+        keep_allowed(L, &allowed_names[k]);
+    set_function(L, "debug", "getinfo", place_info);
+    set_function(L, "os", "getenv", environment_variable);
+    lua_getglobal(L, "collectgarbage");
+    lua_pushcclosure(L, collect_garbage, 1);
+    lua_setglobal(L, "collectgarbage");
+    /* Files are userdata with finalizers; a script that could reach their metatable could put its own there. */
+    luaL_getmetatable(L, LUA_FILEHANDLE);
+    lua_pushliteral(L, "file");
+    lua_setfield(L, -2, "__metatable");
     lua_pop(L, 1);
-
-    lua_createtable(L, 0, 2);
-    lua_getglobal(L, "debug");
-    static const char *const kept[] = {"traceback", "getinfo"};
-    for (size_t k = 0; k < sizeof kept / sizeof kept[0]; k++) {
-        lua_getfield(L, -1, kept[k]);
-        lua_setfield(L, -3, kept[k]);
-    }
-    lua_pop(L, 1);
-    lua_getfield(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
-    lua_pushvalue(L, -2);
-    lua_setfield(L, -2, "debug");
-    lua_pop(L, 1);
-    lua_setglobal(L, "debug");
 }

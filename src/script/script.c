@@ -4,33 +4,12 @@
 #include "script/context.h"
 
 #include "base/file.h"
-#include "base/mem.h"
 #include "script/order.h"
 
 #include <lauxlib.h>
 #include <lualib.h>
 #include <stdio.h>
 #include <string.h>
-
-enum { HOOK_STEPS = 10000 }; /* some tenths of a millisecond */
-
-static void *allocate(void *user, void *block, size_t old_size, size_t size) {
-    (void)user;
-    (void)old_size;
-    if (size > 0)
-        return mem_resize(block, size);
-    mem_free(block);
-    return NULL;
-}
-
-static void poll_host(lua_State *L, lua_Debug *place) {
-    (void)place;
-    struct context *context = context_of(L);
-    if (context->ended || context->fatal.kind != ERROR_NONE || !context->host->cancelled(context->host->context))
-        return;
-    error_set(&context->fatal, ERROR_CANCELLED, "cancelled");
-    context_raise_fatal(L);
-}
 
 /* The length of the place a message begins with, "scene.lua:12: " or that of a chunk from a string; 0 when it has none.
  */
@@ -92,6 +71,7 @@ static int describe_error(lua_State *L) {
     const char *rest = message + first + (message[first] == '\n');
     luaL_traceback(L, L, *rest ? rest : NULL, 1);
     context->traceback = indent(context->out, lua_tostring(L, -1));
+    lua_settop(L, 1); /* load runs this too, when its text nests too deep, and gives the message back */
     return 1;
 }
 
@@ -100,6 +80,7 @@ static int run_scene(lua_State *L) {
     sandbox_open(L);
     protect_open(L);
     files_open(L);
+    streams_open(L);
     traverse_open(L);
     compat_open(L);
     handles_open(L);
@@ -107,8 +88,7 @@ static int run_scene(lua_State *L) {
     library_open(L);
     define_open(L);
     lua_settop(L, 0);
-    if (context->host->cancelled)
-        lua_sethook(L, poll_host, LUA_MASKCOUNT, HOOK_STEPS);
+    limits_open(L);
     if (files_load(L, context->path) != LUA_OK)
         return lua_error(L);
     lua_call(L, 0, 0);
@@ -123,6 +103,9 @@ static bool conclude(struct context *context, int status, struct error *error) {
     }
     if (status == LUA_OK || context->ended)
         return true;
+    if (context->limits.memory_out)
+        return error_set(error, ERROR_SCENE, "%s: the script used up its memory of %llu MiB (--script-memory allows more)",
+                         context->path, (unsigned long long)(context->limits.memory_limit >> 20));
     if (status == LUA_ERRMEM)
         return error_set(error, ERROR_MACHINE, "%s: out of memory for the script", context->path);
     if (context->failure.kind == ERROR_NONE)
@@ -175,13 +158,25 @@ static bool prepare(struct context *context, struct error *error) {
     return choose_order(context, error);
 }
 
+bool script_reach(const char *path, const struct script_options *options, struct reach *reach, struct error *error) {
+    bool ok = reach_add_scene(reach, path, options->library_folder, error);
+    for (int k = 0; ok && k < options->allow_read_count; k++)
+        ok = reach_add(reach, options->allow_read[k], REACH_READ, error);
+    for (int k = 0; ok && k < options->allow_write_count; k++)
+        ok = reach_add(reach, options->allow_write[k], REACH_WRITE, error);
+    return ok;
+}
+
 bool script_run(const char *path, const struct script_options *options, const struct script_host *host,
                 struct assets *assets, struct arena *arena, const char **traceback, struct error *error) {
     struct context context = {.options = options, .host = host, .out = arena, .path = path};
     *traceback = NULL;
     scene_init(&context.scene, assets);
-    bool done = prepare(&context, error);
-    lua_State *L = done ? lua_newstate(allocate, NULL) : NULL;
+    struct reach reach = {0};
+    context.reach = options->no_sandbox ? NULL : &reach;
+    limits_begin(&context);
+    bool done = prepare(&context, error) && (options->no_sandbox || script_reach(path, options, &reach, error));
+    lua_State *L = done ? lua_newstate(limits_allocate, &context) : NULL;
     if (done && !L)
         done = error_no_memory(error, "the script");
     if (L) {
@@ -194,6 +189,7 @@ bool script_run(const char *path, const struct script_options *options, const st
         *traceback = done || error->kind != ERROR_SCENE ? NULL : context.traceback;
         lua_close(L);
     }
+    reach_destroy(&reach);
     scene_destroy(&context.scene);
     arena_destroy(&context.call);
     arena_destroy(&context.keep);

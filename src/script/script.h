@@ -22,6 +22,13 @@ struct script_options {
     uint64_t seed; /* math.random starts from it */
     const struct script_define *defines;
     int define_count;
+    /* The sandbox: what a script may read, write and use up beside what is usual (docs/security.md). */
+    bool no_sandbox;
+    const char *const *allow_read, *const *allow_write; /* folders */
+    int allow_read_count, allow_write_count;
+    int memory_limit; /* MiB; 0: 4096, without the sandbox none */
+    double time_limit; /* seconds of processor time, rendering not counted; 0: 60, without the sandbox none */
+    int output_limit; /* MiB printed and written; 0: 64, without the sandbox none */
     const char *library_folder; /* absolute path of lua/ (data folder of the installation), on package.path last */
 };
 
@@ -52,6 +59,12 @@ struct script_host {
     void (*message)(void *context, enum script_message kind, const char *text);
     bool (*cancelled)(void *context); /* polled by a count hook; may be NULL */
 };
+
+/* The time limit that holds under these options; 0: none. */
+double script_time_limit(const struct script_options *options);
+struct reach;
+/* Adds the folders that the script at `path` may read and write. */
+bool script_reach(const char *path, const struct script_options *options, struct reach *reach, struct error *error);
 
 /* Runs the script at `path`. false: error.text is the complete first line, and *traceback (allocated in `arena`, lines
  * indented by two spaces, may be NULL) follows for script errors. */

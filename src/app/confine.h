@@ -1,0 +1,18 @@
+/* Takes away from the process, before a stranger's scene runs, what it will not need: files outside the scene's folders
+ * (Landlock), and system calls other than those of a program that computes (seccomp). Both stay for good and hold for
+ * every thread made later. docs/security.md tells what is promised. */
+#ifndef GRAY_APP_CONFINE_H
+#define GRAY_APP_CONFINE_H
+
+#include "app/options.h"
+#include "base/error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Call while there is one thread. `keep` is a descriptor that stays open beside the standard streams. report: one line
+ * on what is active and why not more. False: the folders of a scene cannot be listed, or what the kernel promised
+ * failed half-way. */
+bool confine_process(const struct options *options, int keep, char *report, size_t size, struct error *error);
+
+#endif

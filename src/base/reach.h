@@ -1,0 +1,58 @@
+/* The folders a scene may read and write: a list, decided before the scene starts. A name is looked at where it really
+ * leads (symbolic links and ".." followed), and what is opened is opened below the folder's own descriptor, so that
+ * nothing changed in between can lead out. For reading and streams NULL in the place of a reach means "no limits". */
+#ifndef GRAY_BASE_REACH_H
+#define GRAY_BASE_REACH_H
+
+#include "base/error.h"
+#include "base/file.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+/* How a folder came into the list. Below one that nobody named, names that begin with a dot stay out of reach: the
+ * folder above a scene may be somebody's home. */
+enum reach_kind {
+    REACH_IMPLIED, /* read; not below "/", no hidden names */
+    REACH_READ,    /* read */
+    REACH_WRITE,   /* read and write */
+};
+
+struct reach_folder {
+    char *path; /* canonical, without a final slash; "" for the root */
+    size_t length;
+    enum reach_kind kind;
+    int descriptor;
+};
+
+/* Zero value: nothing may be read. Owner: the caller; reach_destroy gives everything back. */
+struct reach {
+    struct reach_folder *folders;
+    size_t count;
+};
+
+/* An implied folder that does not exist, or is "/", is left out; one that was asked for must be there. */
+bool reach_add(struct reach *reach, const char *folder, enum reach_kind kind, struct error *error);
+/* The usual folders of a scene: its own, the one above it, the working directory, the library (may be NULL). */
+bool reach_add_scene(struct reach *reach, const char *scene, const char *library, struct error *error);
+void reach_destroy(struct reach *reach);
+
+/* A regular file that exists and may be read. */
+bool reach_is_readable(const struct reach *reach, const char *path);
+/* Whether the name as it is written, links not followed, lies outside of everything: such a name is refused whether
+ * there is a file or not, so that a scene cannot ask what exists elsewhere. */
+bool reach_is_outside(const struct reach *reach, const char *path);
+/* As file_map. */
+bool reach_map(const struct reach *reach, const char *path, size_t limit, struct file_bytes *out, struct error *error);
+/* A stream for fopen's modes r, w, a with + and b; NULL with errno: EACCES when it is out of reach. Only regular files;
+ * nothing that could block. */
+FILE *reach_stream(const struct reach *reach, const char *path, const char *mode);
+/* Whether a file of this name, which need not exist and whose folders need not either, would lie below a folder that may
+ * be written, with no hidden name on the way. */
+bool reach_may_create(const struct reach *reach, const char *path);
+/* remove and rename of files below folders that may be written; false with errno. */
+bool reach_remove(const struct reach *reach, const char *path);
+bool reach_rename(const struct reach *reach, const char *from, const char *to);
+
+#endif

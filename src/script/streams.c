@@ -1,0 +1,206 @@
+/* Reading, writing and printing within what the scene was given. Files are opened by base/reach.h: regular files only,
+ * below the folders of the list. Whatever is written counts towards the limit on output, on standard output too. What
+ * is refused comes back the way io.open tells of every failure: nil, a sentence, a number. */
+#include "script/context.h"
+
+#include <errno.h>
+#include <lauxlib.h>
+#include <lualib.h>
+#include <stdio.h>
+#include <string.h>
+
+static int close_stream(lua_State *L) {
+    luaL_Stream *stream = luaL_checkudata(L, 1, LUA_FILEHANDLE);
+    return luaL_fileresult(L, fclose(stream->f) == 0, NULL);
+}
+
+/* Why a name was refused, for people. */
+static const char *refusal(const struct context *context, const char *name, bool write) {
+    if (errno != EACCES || !context->reach)
+        return strerror(errno);
+    if (write)
+        return "scenes write no files (--allow-write DIR lets them)";
+    if (reach_is_outside(context->reach, name))
+        return "lies outside the folders that scenes may read (--allow-read DIR adds one)";
+    return "may not be read by scenes, or is no regular file";
+}
+
+static bool is_mode(const char *mode) {
+    if (*mode == '\0' || !strchr("rwa", *mode))
+        return false;
+    mode++;
+    mode += *mode == '+';
+    return strspn(mode, "b") == strlen(mode);
+}
+
+/* Pushes the stream, or nil, a sentence and a number. Reading looks in the working directory first, as always, then
+ * where meshes and images are looked for. */
+static int open_stream(lua_State *L, const char *name, const char *mode) {
+    struct context *context = context_of(L);
+    char found[PATH_SIZE];
+    bool write = mode[0] != 'r' || strchr(mode, '+');
+    const char *path = name;
+    if (!write && !reach_is_readable(context->reach, name) && files_find(context, name, found))
+        path = found;
+    luaL_Stream *stream = lua_newuserdatauv(L, sizeof *stream, 0);
+    stream->closef = NULL; /* closed, as far as its finalizer is concerned */
+    luaL_setmetatable(L, LUA_FILEHANDLE);
+    stream->f = reach_stream(context->reach, path, mode);
+    if (stream->f) {
+        stream->closef = close_stream;
+        return 1;
+    }
+    int why = errno;
+    lua_pushnil(L);
+    lua_pushfstring(L, "%s: %s", name, refusal(context, name, write));
+    lua_pushinteger(L, why);
+    return 3;
+}
+
+static int io_open(lua_State *L) {
+    const char *name = luaL_checkstring(L, 1), *mode = luaL_optstring(L, 2, "r");
+    luaL_argcheck(L, is_mode(mode), 2, "invalid mode");
+    return open_stream(L, name, mode);
+}
+
+static void open_or_raise(lua_State *L, const char *name, const char *mode) {
+    if (open_stream(L, name, mode) > 1)
+        luaL_error(L, "%s", lua_tostring(L, -2));
+}
+
+/* io.lines(name, ...): the lines of a stream of its own, with that stream as the value to be closed. Upvalue 1: Lua's
+ * own, for the default input. */
+static int io_lines(lua_State *L) {
+    if (lua_isnoneornil(L, 1)) {
+        lua_pushvalue(L, lua_upvalueindex(1));
+        lua_insert(L, 1);
+        lua_call(L, lua_gettop(L) - 1, LUA_MULTRET);
+        return lua_gettop(L);
+    }
+    int formats = lua_gettop(L) - 1;
+    open_or_raise(L, luaL_checkstring(L, 1), "r");
+    lua_replace(L, 1);
+    lua_getfield(L, 1, "lines");
+    lua_pushvalue(L, 1);
+    for (int k = 0; k < formats; k++)
+        lua_pushvalue(L, 2 + k);
+    lua_call(L, 1 + formats, 1);
+    lua_pushnil(L);
+    lua_pushnil(L);
+    lua_pushvalue(L, 1);
+    return 4;
+}
+
+/* io.input and io.output: a name becomes a stream first. Upvalues: Lua's own function, the mode. */
+static int io_default(lua_State *L) {
+    lua_settop(L, 1);
+    if (lua_type(L, 1) == LUA_TSTRING) {
+        open_or_raise(L, lua_tostring(L, 1), lua_tostring(L, lua_upvalueindex(2)));
+        lua_replace(L, 1);
+    }
+    lua_pushvalue(L, lua_upvalueindex(1));
+    lua_insert(L, 1);
+    lua_call(L, 1, 1);
+    return 1;
+}
+
+/* io.write and file:write. Upvalue 1: Lua's own. */
+static int counted_write(lua_State *L) {
+    size_t size = 0;
+    for (int k = 1; k <= lua_gettop(L); k++)
+        size += lua_type(L, k) == LUA_TSTRING ? (size_t)lua_rawlen(L, k) : lua_type(L, k) == LUA_TNUMBER ? 24 : 0;
+    limits_output(L, size);
+    lua_pushvalue(L, lua_upvalueindex(1));
+    lua_insert(L, 1);
+    lua_call(L, lua_gettop(L) - 1, LUA_MULTRET);
+    return lua_gettop(L);
+}
+
+static int print(lua_State *L) {
+    int count = lua_gettop(L);
+    for (int k = 1; k <= count; k++) {
+        size_t size;
+        const char *text = luaL_tolstring(L, k, &size);
+        limits_output(L, size + 1);
+        if (k > 1)
+            (void)fputc('\t', stdout);
+        (void)fwrite(text, 1, size, stdout);
+        lua_pop(L, 1);
+    }
+    (void)fputc('\n', stdout);
+    return 0;
+}
+
+static int answer_change(lua_State *L, bool done, const char *name) {
+    if (done) {
+        lua_pushboolean(L, 1);
+        return 1;
+    }
+    int why = errno;
+    lua_pushnil(L);
+    lua_pushfstring(L, "%s: %s", name, refusal(context_of(L), name, true));
+    lua_pushinteger(L, why);
+    return 3;
+}
+
+static int os_remove(lua_State *L) {
+    const char *name = luaL_checkstring(L, 1);
+    return answer_change(L, reach_remove(context_of(L)->reach, name), name);
+}
+
+static int os_rename(lua_State *L) {
+    const char *from = luaL_checkstring(L, 1), *to = luaL_checkstring(L, 2);
+    return answer_change(L, reach_rename(context_of(L)->reach, from, to), from);
+}
+
+/* package.searchpath(name, templates [, separator [, replacement]]). */
+static int search_path(lua_State *L) {
+    const char *name = luaL_checkstring(L, 1), *templates = luaL_checkstring(L, 2);
+    const char *separator = luaL_optstring(L, 3, "."), *replacement = luaL_optstring(L, 4, "/");
+    char path[PATH_SIZE];
+    if (*separator)
+        name = luaL_gsub(L, name, separator, replacement);
+    if (files_on_path(context_of(L), templates, name, path)) {
+        lua_pushstring(L, path);
+        return 1;
+    }
+    lua_pushnil(L);
+    lua_pushfstring(L, "no file '%s' on the path", name);
+    return 2;
+}
+
+/* Puts a function in the place of another, which becomes its upvalue 1; further upvalues stand above. */
+static void replace(lua_State *L, const char *name, lua_CFunction function, const char *mode) {
+    lua_getfield(L, -1, name);
+    if (mode)
+        lua_pushstring(L, mode);
+    lua_pushcclosure(L, function, mode ? 2 : 1);
+    lua_setfield(L, -2, name);
+}
+
+void streams_open(lua_State *L) {
+    lua_getglobal(L, "io");
+    replace(L, "open", io_open, NULL);
+    replace(L, "lines", io_lines, NULL);
+    replace(L, "input", io_default, "r");
+    replace(L, "output", io_default, "w");
+    replace(L, "write", counted_write, NULL);
+    luaL_getmetatable(L, LUA_FILEHANDLE);
+    lua_getfield(L, -1, "__index");
+    replace(L, "write", counted_write, NULL);
+    lua_pop(L, 3);
+    lua_pushcfunction(L, print);
+    lua_setglobal(L, "print");
+    if (context_of(L)->options->no_sandbox)
+        return;
+    lua_getglobal(L, "os");
+    lua_pushcfunction(L, os_remove);
+    lua_setfield(L, -2, "remove");
+    lua_pushcfunction(L, os_rename);
+    lua_setfield(L, -2, "rename");
+    lua_pop(L, 1);
+    lua_getglobal(L, "package");
+    lua_pushcfunction(L, search_path);
+    lua_setfield(L, -2, "searchpath");
+    lua_pop(L, 1);
+}

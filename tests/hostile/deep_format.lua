@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: *
+string.format('%99999d', 1)

@@ -1,0 +1,2 @@
+-- expect: *overflow
+assert(load(('('):rep(1000000)))

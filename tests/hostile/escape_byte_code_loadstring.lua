@@ -1,0 +1,2 @@
+-- expect: *attempt to load a binary chunk (mode is 't')
+assert(loadstring(string.dump(function() end)))

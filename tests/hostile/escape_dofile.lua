@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: dofile: *lies outside
+dofile('/etc/passwd')

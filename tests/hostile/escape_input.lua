@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: /etc/passwd: lies outside*
+io.input('/etc/passwd')

@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: *lies outside
+assert(io.open('../hostile/../../../../../../../../../../../../../etc/passwd'))

@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: harm.txt: scenes write no files*
+io.output('harm.txt')

@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: /proc/self/mem: lies outside*
+assert(io.open('/proc/self/mem'))

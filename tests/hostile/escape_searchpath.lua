@@ -1,0 +1,3 @@
+-- expect:
+-- status: 0
+assert(package.searchpath('passwd', '/etc/?') == nil and package.loadlib == nil)

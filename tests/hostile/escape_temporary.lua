@@ -1,0 +1,3 @@
+-- expect:
+-- status: 0
+assert(os.tmpname == nil and io.tmpfile == nil)

@@ -1,0 +1,3 @@
+-- expect: *
+-- arguments: --script-time 5
+string.pack('s4', ('x'):rep(40 << 20))

@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: the script used up its 0.1 s of processor time (--script-time allows more)
+coroutine.wrap(function() while true do end end)()

@@ -1,0 +1,2 @@
+-- expect: *
+table.foreachi(setmetatable({}, {__len = function() return 1 << 60 end, __index = type}), print)

@@ -1,0 +1,2 @@
+-- expect: *used up its
+load(function() return 'x = 1 ' end)

@@ -1,0 +1,2 @@
+-- expect: *used up its
+table.concat(setmetatable({}, {__index = type}), '', 1, 1 << 60)

@@ -1,0 +1,194 @@
+/* A wish to stop reaches the threads at once: the flag lies in memory that another process may set, and whatever takes
+ * long asks for it. Measured from the flag to the return, at several moments, the best of some runs at each: other
+ * programs run beside. */
+#include "tests/unit/mesh_makers.h"
+#include "tests/stage.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <time.h>
+
+static const double allowed = 0.010;
+
+struct alarm {
+    _Atomic int flag;
+    double after, rung;
+};
+
+static double now(void) {
+    struct timespec time;
+    (void)clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+static void *ring(void *context) {
+    struct alarm *alarm = context;
+    struct timespec pause = {0, (long)(alarm->after * 1e9)};
+    (void)nanosleep(&pause, NULL);
+    alarm->rung = now();
+    atomic_store(&alarm->flag, 1);
+    return NULL;
+}
+
+/* Seconds from the flag to the end of `work`, or 0 when it was done before. */
+static double answer(struct pool *pool, double after, bool (*work)(void *context), void *context) {
+    struct alarm alarm = {.after = after};
+    pthread_t thread;
+    pool_watch(pool, &alarm.flag);
+    CHECK(pthread_create(&thread, NULL, ring, &alarm) == 0);
+    bool done = work(context);
+    double ended = now();
+    (void)pthread_join(thread, NULL);
+    pool_watch(pool, NULL);
+    return done ? 0 : ended - alarm.rung;
+}
+
+static void expect_quick(const char *what, struct pool *pool, bool (*work)(void *context), void *context) {
+    for (int moment = 1; moment <= 8; moment++) {
+        double best = 1e9;
+        for (int i = 0; i < 4 && best > allowed; i++) {
+            double took = answer(pool, 0.04 * moment * moment / 8, work, context);
+            best = took < best ? took : best;
+        }
+        if (best > allowed)
+            test_fail(__FILE__, __LINE__, "%s after %.3f s: %.1f ms", what, 0.04 * moment * moment / 8, 1e3 * best);
+    }
+}
+
+struct build {
+    struct mesh_input input;
+    struct pool *pool;
+};
+
+/* What mesh_create does comes before any pool: only the index is timed, so the mesh is made first. */
+struct index_build {
+    struct build build;
+    struct mesh *mesh;
+};
+
+static bool build_index(void *context) {
+    struct index_build *work = context;
+    struct error error = {0};
+    return mesh_build_index(work->mesh, work->build.pool, &error);
+}
+
+TEST(the_index_of_a_mesh_stops_within_ten_milliseconds) {
+    enum { COUNT = 400000 };
+    struct test_random random = {7};
+    char warning[256];
+    double(*vertices)[3] = calloc(COUNT + 2, sizeof *vertices);
+    uint32_t *corners = calloc(3 * COUNT, sizeof *corners), *starts = calloc(COUNT + 1, sizeof *starts);
+    for (int i = 0; i < COUNT + 2; i++)
+        for (int k = 0; k < 3; k++)
+            vertices[i][k] = test_uniform(&random, -1, 1) + i * 1e-5;
+    for (uint32_t i = 0; i < COUNT; i++) {
+        for (uint32_t k = 0; k < 3; k++)
+            corners[3 * i + k] = i + k;
+        starts[i + 1] = 3 * (i + 1);
+    }
+    struct index_build work = {.build = {.input = {.name = "soup",
+                                                   .vertex_count = COUNT + 2,
+                                                   .face_count = COUNT,
+                                                   .vertices = (const double(*)[3])vertices,
+                                                   .face_start = starts,
+                                                   .vertex_index = corners},
+                                         .pool = pool_create(2, warning)}};
+    struct error error = {0};
+    for (int moment = 1; moment <= 8; moment++) {
+        double best = 1e9, after = 0.04 * moment * moment / 8;
+        for (int i = 0; i < 4 && best > allowed; i++) {
+            work.mesh = mesh_create(&work.build.input, &error);
+            CHECK(work.mesh != NULL);
+            double took = answer(work.build.pool, after, build_index, &work);
+            best = took < best ? took : best;
+            mesh_release(work.mesh);
+        }
+        if (best > allowed)
+            test_fail(__FILE__, __LINE__, "after %.3f s: %.1f ms", after, 1e3 * best);
+    }
+    pool_destroy(work.build.pool);
+    free(vertices);
+    free(corners);
+    free(starts);
+}
+
+struct world_work {
+    struct stage *stage;
+    enum accel_kind accel;
+};
+
+static bool build_world(void *context) {
+    struct world_work *work = context;
+    struct stage *s = work->stage;
+    struct world world = {0};
+    struct arena arena = {0};
+    bool done = world_build(&world, &arena, &s->scene, s->root, s->lights, s->light_count, &s->sky, work->accel, s->pool,
+                            NULL, NULL, &s->error);
+    if (done)
+        world_destroy(&world);
+    arena_destroy(&arena);
+    return done;
+}
+
+TEST(the_building_of_a_world_stops_within_ten_milliseconds) {
+    struct stage s;
+    struct test_random random = {3};
+    stage_begin(&s, 2);
+    struct material *material = stage_phong(&s, vec3_all(1), vec3_all(0), 1);
+    for (int i = 0; i < 150000; i++) {
+        struct node *ball = stage_sphere(&s, s.root, material);
+        stage_move(&s, ball, test_uniform(&random, -50, 50), test_uniform(&random, -50, 50),
+                   test_uniform(&random, -50, 50));
+    }
+    struct world_work grid = {&s, ACCEL_GRID}, tree = {&s, ACCEL_BVH};
+    expect_quick("the grid", s.pool, build_world, &grid);
+    expect_quick("the hierarchy", s.pool, build_world, &tree);
+    stage_end(&s);
+}
+
+static bool render(void *context) {
+    struct stage *s = context;
+    struct film film = {0};
+    struct render_statistics statistics = {0};
+    struct error error = {0};
+    size_t bytes;
+    CHECK(film_size(64, 64, &bytes, &error));
+    void *block = calloc(1, bytes);
+    film_place(&film, block, 64, 64);
+    film.full_width = film.full_height = 64;
+    struct render_job job = {.world = &s->world,
+                             .camera = s->camera,
+                             .settings = s->settings,
+                             .width = 64,
+                             .height = 64,
+                             .ambient = s->ambient,
+                             .film = &film};
+    bool done = render_run(&job, s->pool, &statistics, &error);
+    free(block);
+    return done;
+}
+
+TEST(long_pixels_of_glass_and_soft_light_stop_within_ten_milliseconds) {
+    struct stage s;
+    stage_begin(&s, 2);
+    struct material *glass = stage_glass(&s, 0.5, 0.5, 1.5);
+    for (int i = 0; i < 9; i++) {
+        struct node *ball = stage_sphere(&s, s.root, glass);
+        stage_move(&s, ball, i % 3 * 1.5 - 1.5, (double)(i / 3) * 1.5 - 1.5, 0);
+    }
+    s.settings.full = true;
+    s.settings.samples = 64;
+    s.settings.reflect_limit = s.settings.refract_limit = 40;
+    s.settings.area_samples = 64;
+    s.light_count = 1;
+    s.lights[0] = (struct light){.kind = LIGHT_PARALLELOGRAM,
+                                 .position = {3, 8, 8},
+                                 .corner = {2, 8, 7},
+                                 .edge1 = {2, 0, 0},
+                                 .edge2 = {0, 0, 2},
+                                 .colour = {1, 1, 1},
+                                 .falloff = {1, 0, 0}};
+    CHECK(stage_build(&s, s.root, ACCEL_GRID));
+    expect_quick("a render", s.pool, render, &s);
+    stage_end(&s);
+}
