@@ -445,14 +445,14 @@ static inline simd4 wide4_to_single(wide4 a) {
 
 /* a * b - c and a * b + c */
 static inline simd8 simd8_multiply_sub(simd8 a, simd8 b, simd8 c) {
-#if defined(GRAY_KERNEL_FMA)
+#if defined(GRAY_KERNEL_FMA) && !defined(GRAY_NO_SIMD)
     return _mm256_fmsub_ps(a, b, c);
 #else
     return simd8_sub(simd8_mul(a, b), c);
 #endif
 }
 static inline simd8 simd8_multiply_add(simd8 a, simd8 b, simd8 c) {
-#if defined(GRAY_KERNEL_FMA)
+#if defined(GRAY_KERNEL_FMA) && !defined(GRAY_NO_SIMD)
     return _mm256_fmadd_ps(a, b, c);
 #else
     return simd8_add(simd8_mul(a, b), c);

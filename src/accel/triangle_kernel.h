@@ -348,7 +348,7 @@ static inline bool search_begin(struct search *s, simd4 *origin, simd4 *reciproc
     s->certain = certain < 16 ? (float)certain : 16;
     s->error = 16 * 0x1p-24f + (float)(far * 8 * 0x1p-46);
     s->far_away = far > FAR_AWAY;
-    if (s->far_away) {
+    if (s->far_away || s->kind == TRIANGLE_ALL) { /* which is compiled for far rays only */
         simd4 w4 = simd4_mul(simd4_size(r4), simd4_all((float)(far * 0x1p-45)));
         s->wx = simd8_lane(w4, 0);
         s->wy = simd8_lane(w4, 1);

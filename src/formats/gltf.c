@@ -164,6 +164,9 @@ static bool read_attribute(struct gltf *g, const struct primitive *p, uint32_t a
     if (a.count != available)
         return gltf_fail(g, p->where, "accessors[%u] has %llu elements for %llu vertices", accessor,
                          (unsigned long long)a.count, (unsigned long long)available);
+    /* The sparse part is walked through once for every primitive that uses it. */
+    if (!produce(g, a.sparse_count, p->where))
+        return false;
     size_t count;
     if (__builtin_mul_overflow((size_t)corners->vertices, (size_t)a.components, &count))
         return error_no_memory(g->error, g->path);

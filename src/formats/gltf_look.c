@@ -14,6 +14,8 @@
 
 #include <stdio.h>
 
+enum { MATERIAL_LIMIT = 65536 };
+
 static double number_or(const json_t *object, const char *key, double otherwise) {
     const json_t *value = json_object_get(object, key);
     return json_is_number(value) ? json_number_value(value) : otherwise;
@@ -173,6 +175,8 @@ static bool read_material(struct gltf *g, const json_t *source, struct model_mat
 
 bool gltf_read_materials(struct gltf *g) {
     const json_t *materials = gltf_array(g, "materials");
+    if (json_array_size(materials) > MATERIAL_LIMIT)
+        return gltf_fail(g, "materials", "more than %d", MATERIAL_LIMIT);
     g->image_count = json_array_size(gltf_array(g, "images"));
     g->images = mem_alloc_zero(g->image_count ? g->image_count : 1, sizeof(struct image *));
     if (!g->images)

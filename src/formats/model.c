@@ -94,7 +94,7 @@ bool model_find(struct model *model, const char *name, size_t length, const char
             return error_no_memory(error, model->path);
         if (attempt == 1 && plain[0] != '/')
             continue;
-        if (file_is_regular(tried)) {
+        if (reach_is_readable(model->options.reach, tried)) {
             *path = tried;
             return true;
         }
@@ -281,7 +281,7 @@ bool model_parse(struct model *model, const char *path, const uint8_t *data, siz
 bool model_read(struct model *model, const char *path, const struct model_options *options, struct error *error) {
     struct file_bytes bytes;
     *model = (struct model){0};
-    if (!file_map(path, FILE_LIMIT, &bytes, error))
+    if (!reach_map(options->reach, path, FILE_LIMIT, &bytes, error))
         return false;
     return parse(model, path, &bytes, bytes.data, bytes.size, options, error);
 }

@@ -6,6 +6,7 @@
 
 #include "base/arena.h"
 #include "base/error.h"
+#include "base/reach.h"
 #include "formats/list.h"
 #include "geom/mesh.h"
 #include "image/image.h"
@@ -60,6 +61,7 @@ struct model_options {
     bool smooth;         /* normals of our own instead of the file's */
     double smooth_angle; /* degrees: faces that meet at less are one smooth surface; 0: flat */
     bool weld, flip;     /* one vertex for each place; faces turned round */
+    const struct reach *reach; /* where files may be read; NULL: everywhere */
     bool alone;          /* no other file is opened (tests of readers with strangers' bytes) */
 };
 

@@ -4,7 +4,6 @@
  * behind its options. */
 #include "formats/model.h"
 
-#include "base/file.h"
 #include "formats/decimal.h"
 
 #include <string.h>
@@ -161,7 +160,7 @@ static bool read_map(struct library *l, struct model_texture *map) {
         char *beside = arena_format(&l->model->arena, "%.*s%s", (int)(slash + 1 - l->path), l->path, map->name);
         if (!beside)
             return error_no_memory(l->error, l->path);
-        if (file_is_regular(beside)) {
+        if (reach_is_readable(l->model->options.reach, beside)) {
             map->path = beside;
             return true;
         }

@@ -298,7 +298,7 @@ static bool read_library(struct reader *reader, const char *name, size_t length,
     *found = path != NULL;
     if (!path)
         return true;
-    if (!file_map(path, FILE_LIMIT, &bytes, reader->error))
+    if (!reach_map(reader->model->options.reach, path, FILE_LIMIT, &bytes, reader->error))
         return false;
     bool ok = mtl_load(reader->model, path, (const char *)bytes.data, bytes.size, reader->error);
     file_unmap(&bytes);

@@ -1,5 +1,6 @@
 #include "model_makers.h"
 
+#include "base/reach.h"
 #include "formats/model_node.h"
 #include "geom/mesh_smooth.h"
 
@@ -111,6 +112,36 @@ TEST(mtl_that_is_missing_is_a_warning_and_one_that_is_broken_an_error) {
         CHECK(strlen(error.text) > strlen(test_folder()));
         CHECK_TEXT(error.text + strlen(test_folder()) + 1, cases[i].message);
     }
+}
+
+TEST(mtl_and_pictures_out_of_reach_are_not_there) {
+    char inner[400], path[500];
+    (void)snprintf(inner, sizeof inner, "%s/inner/deep", test_folder());
+    (void)snprintf(path, sizeof path, "%s/r.obj", inner);
+    struct error error = {0};
+    CHECK(file_make_folders_for(path, &error));
+    test_write_text(in_folder("far.mtl"), "newmtl a\nKd 1 0 0\n");
+    test_write_text(in_folder("far.png"), "x");
+    test_write_text(path, SQUARE "mtllib ../../far.mtl near.mtl\nf 1 2 3\n");
+    char near[500];
+    (void)snprintf(near, sizeof near, "%s/near.mtl", inner);
+    char text[1000];
+    (void)snprintf(text, sizeof text, "newmtl b\nmap_Kd ../../far.png\nmap_Ks %s\n", in_folder("far.png"));
+    test_write_text(near, text);
+    struct reach reach = {0};
+    CHECK(reach_add(&reach, inner, REACH_READ, &error));
+    struct model_options options = {.reach = &reach};
+    struct model model;
+    CHECK(model_read(&model, path, &options, &error));
+    CHECK_TEXT(error.text, "");
+    if (error.kind == ERROR_NONE) {
+        CHECK_EQ_INT(model.materials.count, 1);
+        CHECK(!model_materials(&model)[0].map_kd.path && !model_materials(&model)[0].map_ks.path);
+        CHECK_EQ_INT(model.warning_count, 3);
+        model_destroy(&model);
+    }
+    CHECK(!model_read(&model, in_folder("a.obj"), &options, &error));
+    reach_destroy(&reach);
 }
 
 TEST(mtl_materials_of_faces_keep_their_slots) {
