@@ -109,6 +109,12 @@ fuzz:
 	@for name in $(FUZZ); do mkdir -p build/fuzz/corpus/$$name; echo "== $$name, $(FUZZ_SECONDS) s"; \
 	    build/fuzz/fuzz_$$name -max_total_time=$(FUZZ_SECONDS) -timeout=5 -rss_limit_mb=3000 -max_len=65536 \
 	        -artifact_prefix=build/fuzz/$$name- -print_final_stats=1 -verbosity=0 build/fuzz/corpus/$$name || exit 1; done
+# Embree, where it is installed, is the peer of the ray benchmark; the program itself never uses it.
+HAVE_EMBREE := $(shell echo '\#include <embree3/rtcore.h>' | $(CC) -E -x c - >/dev/null 2>&1 && echo yes)
+$(BUILD)/bench/rays: $(BUILD)/bench/rays.o $(BUILD)/bench/rays_scenes.o $(OBJECTS)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(if $(HAVE_EMBREE),-lembree3) $(LDLIBS)
+$(BUILD)/bench/rays.o: override CPPFLAGS += $(if $(HAVE_EMBREE),-DHAVE_EMBREE)
+
 bench: all
 	@bench/run.sh
 format:

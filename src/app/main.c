@@ -1,4 +1,5 @@
 /* gray: reads the command line and hands on. */
+#include "accel/isa.h"
 #include "app/options.h"
 #include "app/supervisor.h"
 #include "app/text.h"
@@ -71,6 +72,10 @@ static int act(struct options *options, struct arena *arena) {
         return 0;
     case ACTION_RENDER:
         break;
+    }
+    if (!accel_select_isa(options_isa_name(options))) {
+        (void)fprintf(stderr, "gray: --isa %s: this processor does not have it\n", options_isa_name(options));
+        return ERROR_USAGE;
     }
     options->script.library_folder = find_library(arena);
     return options->no_fork ? supervisor_run_without_fork(options) : supervisor_run(options);

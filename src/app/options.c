@@ -77,6 +77,8 @@ static const struct option table[] = {
      "write a W x H picture, exactly that part of the whole; X,Y is its upper left pixel"},
     {GROUP_LOOK, "--accel", OPTION_CHOICE, "auto|grid|bvh|none", NO_RANGE, FIELD(settings.accel), "auto",
      "how rays find what they hit; the picture is the same"},
+    {GROUP_LOOK, "--isa", OPTION_CHOICE, "auto|base|avx2|avx512", NO_RANGE, FIELD(isa), "auto",
+     "instruction set of the kernels; the picture is the same"},
 
     {GROUP_FILES, "-o", OPTION_TEXT, "FILE", NO_RANGE, FIELD(output), "the script's",
      "name of the picture, '-' for standard output; with several pictures FILE needs %d (or %03d), which counts from "
@@ -640,4 +642,9 @@ bool output_name(const char *pattern, unsigned number, char *out, size_t size) {
         return false;
     out[length] = '\0';
     return true;
+}
+
+const char *options_isa_name(const struct options *options) {
+    static const char *const names[] = {"auto", "base", "avx2", "avx512"};
+    return names[options->isa];
 }

@@ -28,12 +28,15 @@ struct options {
     const char *first_pass_prefix; /* -write-pre-aa, or NULL */
     int threads;                   /* 0: one per processor */
     bool check, quiet, verbose, no_fork;
+    int isa; /* --isa: an index into options_isa_name */
     enum progress_mode progress;
     enum statistics_mode statistics;
 };
 
 /* False: error is ERROR_USAGE (or no memory) and its text names the option. */
 bool options_parse(struct options *options, int argc, char *const *argv, struct arena *arena, struct error *error);
+/* What accel_select_isa understands. */
+const char *options_isa_name(const struct options *options);
 /* The options with their defaults, in groups, 100 columns wide. */
 void options_print_help(FILE *stream);
 
