@@ -212,7 +212,8 @@ static void build_part(struct builder *b, struct part *part, struct run root, ui
                 part->tasks[waiting++] = (struct task){children[i], next, task.depth + 1};
             }
         }
-        part->cancelled = (part->node_count & 255) == 0 && pool_cancelled(b->pool);
+        bool is_long = task.run.count > 1000 || (part->node_count & 255) == 0;
+        part->cancelled = is_long && pool_cancelled(b->pool);
     }
 }
 

@@ -264,6 +264,12 @@ static void node_set_bounds(struct wide_node *node, const struct range *part, ui
     }
 }
 
+enum { POLL_COUNT = 2000 }; /* references that are split without asking whether to stop */
+
+static bool is_cancelled(const struct builder *builder) {
+    return builder->pool && pool_cancelled(builder->pool);
+}
+
 /* Relative reference to the hierarchy of a range; marks the job when memory is out. */
 static uint32_t build_range(struct builder *builder, struct job *job, const struct range *range, uint32_t depth) {
     if (range->count <= LEAF_TRIANGLES) {
@@ -274,6 +280,8 @@ static uint32_t build_range(struct builder *builder, struct job *job, const stru
         job->leaves[job->leaf_count] = (struct leaf){range->first, range->count};
         return REF_LEAF | job->leaf_count++;
     }
+    if (range->count > POLL_COUNT && is_cancelled(builder))
+        job->failed = true; /* told apart from a lack of memory at the end */
     struct range part[WIDTH];
     uint32_t parts = split_wide(builder->references, range, LEAF_TRIANGLES, depth > MEDIAN_DEPTH, part);
     if (!reserve((void **)&job->nodes, &job->node_capacity, job->node_count, sizeof *job->nodes)) {
@@ -313,6 +321,8 @@ static bool add_root(struct builder *builder, uint32_t first, uint32_t count, ui
 static bool plan_range(struct builder *builder, const struct range *range, uint32_t depth, uint32_t *result) {
     if (range->count <= builder->job_limit)
         return add_root(builder, range->first, range->count, depth, result);
+    if (is_cancelled(builder))
+        return false;
     struct range part[WIDTH];
     uint32_t parts = split_wide(builder->references, range, LEAF_TRIANGLES, depth > MEDIAN_DEPTH, part);
     if (!reserve((void **)&builder->top, &builder->top_capacity, builder->top_count, sizeof *builder->top))
@@ -491,7 +501,7 @@ bool hierarchies_build(struct triangle_index *index, const struct triangle_set *
     mem_free(builder.top);
     mem_free(builder.roots);
     mem_free(builder.jobs);
-    if (!enough)
+    if (!enough && !is_cancelled(&builder))
         return error_no_memory(error, "the index of a mesh");
-    return complete || error_set(error, ERROR_CANCELLED, "cancelled while indexing a mesh");
+    return (enough && complete) || error_set(error, ERROR_CANCELLED, "cancelled while indexing a mesh");
 }

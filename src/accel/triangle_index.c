@@ -121,6 +121,11 @@ static size_t voxel_at(const struct triangle_index *index, uint32_t x, uint32_t 
     return (size_t)(z + 1) * index->stride[1] + (size_t)(y + 1) * index->stride[0] + x + 1;
 }
 
+/* Asked for every triangle, answered every few thousand. */
+static bool is_time_to_stop(const struct pool *pool, uint32_t i) {
+    return i % 4096 == 0 && pool && pool_cancelled(pool);
+}
+
 /* Count, prefix sum, fill: references of every voxel in ascending order of triangles, those of the big ones at the end. */
 static bool fill_voxels(struct triangle_index *index, const struct triangle_set *set, struct pool *pool,
                         struct error *error) {
@@ -131,7 +136,9 @@ static bool fill_voxels(struct triangle_index *index, const struct triangle_set 
     uint32_t low[3], high[3];
     uint64_t total = 0;
     struct hierarchy *big = lists + (lists ? index->voxel_count : 0);
-    for (uint32_t i = 0; enough && i < set->count; i++) {
+    bool go_on = true;
+    for (uint32_t i = 0; enough && go_on && i < set->count; i++) {
+        go_on = !is_time_to_stop(pool, i);
         struct reference r = whole_reference(index, set, i);
         if (touched(index, &r, low, high) > BIG_VOXELS) {
             big->count++;
@@ -151,7 +158,8 @@ static bool fill_voxels(struct triangle_index *index, const struct triangle_set 
     if (enough)
         references = mem_alloc_aligned(64, total * sizeof *references);
     enough = enough && references;
-    for (uint32_t i = 0; enough && i < set->count; i++) {
+    for (uint32_t i = 0; enough && go_on && i < set->count; i++) {
+        go_on = !is_time_to_stop(pool, i);
         struct reference r = whole_reference(index, set, i);
         if (touched(index, &r, low, high) > BIG_VOXELS) {
             references[big->first + big->count++] = r;
@@ -164,6 +172,11 @@ static bool fill_voxels(struct triangle_index *index, const struct triangle_set 
                     struct hierarchy *list = &lists[voxel_at(index, at[0], at[1], at[2])];
                     references[list->first + list->count++] = cut(index, &r, at);
                 }
+    }
+    if (enough && !go_on) {
+        mem_free(lists);
+        mem_free(references);
+        return error_set(error, ERROR_CANCELLED, "cancelled while indexing a mesh");
     }
     bool complete = enough ? hierarchies_build(index, set, references, lists, (uint32_t)index->voxel_count + 1, pool, error)
                            : error_no_memory(error, "the index of a mesh");
