@@ -217,7 +217,8 @@ bool file_output_open(struct file_output *file, const char *target, struct error
     if (strlen(target) >= sizeof file->target)
         return error_set(error, ERROR_SCENE, "%.100s...: the file name is longer than %zu bytes", target,
                          sizeof file->target - 1);
-    memcpy(file->target, target, strlen(target) + 1);
+    const char *name = strcmp(target, "-") == 0 ? "standard output" : target;
+    memcpy(file->target, name, strlen(name) + 1);
     if (file_is_folder(target))
         return error_set(error, ERROR_SCENE, "%s: is a folder, a picture cannot be written there", target);
     file->direct = is_direct_target(target);

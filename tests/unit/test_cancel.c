@@ -8,16 +8,22 @@
 #include <stdatomic.h>
 #include <time.h>
 
+#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
+static const double allowed = 0.2;
+#elif defined __OPTIMIZE__
 static const double allowed = 0.010;
+#else
+static const double allowed = 0.1;
+#endif
 
 struct alarm {
     _Atomic int flag;
-    double after, rung;
+    double after, rung, rung_cpu;
 };
 
-static double now(void) {
+static double clock_of(clockid_t clock) {
     struct timespec time;
-    (void)clock_gettime(CLOCK_MONOTONIC, &time);
+    (void)clock_gettime(clock, &time);
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
@@ -25,22 +31,25 @@ static void *ring(void *context) {
     struct alarm *alarm = context;
     struct timespec pause = {0, (long)(alarm->after * 1e9)};
     (void)nanosleep(&pause, NULL);
-    alarm->rung = now();
+    alarm->rung = clock_of(CLOCK_MONOTONIC);
+    alarm->rung_cpu = clock_of(CLOCK_PROCESS_CPUTIME_ID);
     atomic_store(&alarm->flag, 1);
     return NULL;
 }
 
-/* Seconds from the flag to the end of `work`, or 0 when it was done before. */
+/* Seconds from the flag to the end of `work`, or 0 when it was done before. On a busy machine the processor time of all
+ * threads together says more than the clock: the smaller one counts. */
 static double answer(struct pool *pool, double after, bool (*work)(void *context), void *context) {
     struct alarm alarm = {.after = after};
     pthread_t thread;
     pool_watch(pool, &alarm.flag);
     CHECK(pthread_create(&thread, NULL, ring, &alarm) == 0);
     bool done = work(context);
-    double ended = now();
+    double ended = clock_of(CLOCK_MONOTONIC), ended_cpu = clock_of(CLOCK_PROCESS_CPUTIME_ID);
     (void)pthread_join(thread, NULL);
     pool_watch(pool, NULL);
-    return done ? 0 : ended - alarm.rung;
+    double took = ended - alarm.rung, took_cpu = ended_cpu - alarm.rung_cpu;
+    return done ? 0 : took < took_cpu ? took : took_cpu;
 }
 
 static void expect_quick(const char *what, struct pool *pool, bool (*work)(void *context), void *context) {

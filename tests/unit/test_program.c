@@ -197,6 +197,18 @@ static pid_t start_endless(void) {
     return program;
 }
 
+/* Runs a line of shell in the folder of the test; $gray is the program. */
+static int shell(const char *line) {
+    char *command = NULL, binary[4096];
+    const char *named = getenv("GRAY_TEST_BINARY");
+    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
+    if (asprintf(&command, "cd '%s' && gray='%s' && { %s; }", test_folder(), binary, line) < 0)
+        exit(1);
+    int how = system(command);
+    free(command);
+    return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
+}
+
 TEST(program_ends_with_0_when_all_pictures_are_written) {
     struct test_result result = test_gray_scene(SMALL, "scene.lua", NULL);
     CHECK_TEXT(result.err, "");
@@ -457,6 +469,68 @@ static void interrupted_script(const char *script) {
     CHECK_EQ_INT(finish(program), 130);
 }
 
+TEST(a_hang_up_ends_the_run_with_130_and_the_old_picture_stays) {
+    interrupted_by(SIGHUP);
+}
+
+TEST(the_mode_bits_of_a_picture_that_was_there_stay) {
+    struct stat status;
+    char *path = path_in(test_folder(), "out.png");
+    write_in_folder("out.png", "an old picture");
+    CHECK(chmod(path, 0640) == 0);
+    ends(test_gray_scene(SMALL, "scene.lua", NULL), 0);
+    CHECK(stat(path, &status) == 0 && (status.st_mode & 07777) == 0640);
+    CHECK_EQ_INT(picture_of("out.png").width, 70);
+    free(path);
+}
+
+TEST(a_name_as_long_as_the_file_system_allows_can_be_written) {
+    char name[256], arguments[512];
+    memset(name, 'n', 255);
+    name[255] = '\0';
+    (void)snprintf(arguments, sizeof arguments, "-o %s scene.lua", name);
+    ends(test_gray_scene(SMALL, arguments, NULL), 0);
+    CHECK_EQ_INT(picture_of(name).width, 70);
+}
+
+TEST(a_folder_that_cannot_be_written_is_one_line_and_status_3) {
+    struct test_result result = test_gray_scene(SMALL, "-o /proc/out.png scene.lua", NULL);
+    CHECK(strchr(result.err, '\n') == strrchr(result.err, '\n'));
+    ends_saying(result, 3, "/proc/out.png: cannot be written: ");
+}
+
+TEST(a_reader_of_the_picture_that_goes_away_is_one_line_and_status_3) {
+    write_in_folder("scene.lua", BALL "picture('out.png', 700, 500)\n");
+    CHECK_EQ_INT(shell("(\"$gray\" -o - scene.lua 2>err.txt; echo $? >status.txt) | head -c 8 >start.txt"), 0);
+    holds_text("status.txt", "3\n");
+    holds_text("err.txt", "standard output: cannot be written: Broken pipe\n");
+}
+
+TEST(a_picture_on_standard_output_is_the_picture_and_nothing_a_script_prints) {
+    ends(test_gray_scene(SMALL, "scene.lua", NULL), 0);
+    write_in_folder("scene.lua", "print('hello')\n" SMALL "io.write('end')\n");
+    CHECK_EQ_INT(shell("\"$gray\" -o - scene.lua >piped.png 2>err.txt"), 0);
+    same_bytes("out.png", "piped.png");
+    holds_text("err.txt", "hello\nend");
+}
+
+TEST(a_kill_while_the_picture_is_written_leaves_the_old_one_and_no_other_file) {
+    static const char *const words[] = {"-q", "scene.lua", NULL};
+    write_in_folder("scene.lua", BALL "picture('out.png', 1000, 1000)\n");
+    for (int i = 0; i < 12; i++) {
+        write_in_folder("out.png", "an old picture");
+        pid_t program = start(words, NULL);
+        for (double limit = now() + 0.05 + 0.03 * i; now() < limit;)
+            rest();
+        (void)kill(program, SIGKILL);
+        (void)finish(program);
+        char *bytes = bytes_of("out.png", NULL);
+        CHECK(bytes && (strcmp(bytes, "an old picture") == 0 || memcmp(bytes, "\x89PNG", 4) == 0));
+        free(bytes);
+        CHECK_EQ_INT(leftovers(test_folder()), 0);
+    }
+}
+
 TEST(a_script_in_an_endless_loop_can_be_interrupted) {
     interrupted_script("while true do pcall(error, 1) end\n");
 }
@@ -576,18 +650,6 @@ TEST(texts_of_a_scene_cannot_steer_the_terminal) {
     CHECK(strstr(result.err, "?[2J?gone?"));
     CHECK(!strchr(result.err, '\33') && !strchr(result.err, '\r') && !strchr(result.err, '\b'));
     ends(result, 1);
-}
-
-/* Runs a line of shell in the folder of the test; $gray is the program. */
-static int shell(const char *line) {
-    char *command = NULL, binary[4096];
-    const char *named = getenv("GRAY_TEST_BINARY");
-    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
-    if (asprintf(&command, "cd '%s' && gray='%s' && { %s; }", test_folder(), binary, line) < 0)
-        exit(1);
-    int how = system(command);
-    free(command);
-    return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
 }
 
 TEST(a_reader_of_standard_output_that_goes_away_does_no_harm) {
