@@ -125,14 +125,16 @@ static const char *prepare(void) {
     CHECK(mkdir(folder, 0777) == 0);
     DIR *stream = opendir("tests/hostile");
     for (struct dirent *entry; stream && (entry = readdir(stream)) != NULL;) {
-        if (!strstr(entry->d_name, ".lua"))
+        if (entry->d_name[0] == '.')
             continue;
         char from[512];
         (void)snprintf(from, sizeof from, "tests/hostile/%.200s", entry->d_name);
         (void)snprintf(to, sizeof to, "%s/%.200s", folder, entry->d_name);
-        char *text = test_read_file(from, NULL);
-        test_write_text(to, text ? text : "");
-        free(text);
+        size_t size = 0;
+        char *bytes = test_read_file(from, &size);
+        if (bytes)
+            test_write_file(to, bytes, size);
+        free(bytes);
     }
     if (stream)
         (void)closedir(stream);
