@@ -15,10 +15,9 @@ void desk_init(struct desk *desk, const struct options *options, struct control 
     desk->options = options;
     desk->control = control;
     progress_init(&desk->progress, options->progress, options->quiet);
-    struct error error; /* a folder that is missing is told by whoever lets scripts write there */
-    (void)reach_add(&desk->places, ".", REACH_WRITE, &error);
-    for (int i = 0; i < options->script.allow_write_count; i++)
-        (void)reach_add(&desk->places, options->script.allow_write[i], REACH_WRITE, &error);
+    bool ok = reach_add(&desk->places, ".", REACH_WRITE, &desk->places_error);
+    for (int i = 0; ok && i < options->script.allow_write_count; i++)
+        ok = reach_add(&desk->places, options->script.allow_write[i], REACH_WRITE, &desk->places_error);
 }
 
 static bool one_name_for_all(const struct desk *desk) {
@@ -38,6 +37,10 @@ static bool choose_name(struct desk *desk, const char *from_script, char name[NA
         return error_set(error, ERROR_SCENE, "the name of the picture is longer than %d bytes", NAME_LIMIT - 1);
     if (!output)
         memcpy(name, from_script, length + 1);
+    if (!output && desk->places_error.kind != ERROR_NONE) {
+        *error = desk->places_error;
+        return false;
+    }
     if (!output && !desk->options->script.no_sandbox && !reach_may_create(&desk->places, name))
         return error_set(error, ERROR_SCENE,
                          "%s: scripts have pictures written below the working directory only, and under no hidden name "

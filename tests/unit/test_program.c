@@ -480,7 +480,9 @@ TEST(the_mode_bits_of_a_picture_that_was_there_stay) {
     CHECK(chmod(path, 0640) == 0);
     ends(test_gray_scene(SMALL, "scene.lua", NULL), 0);
     CHECK(stat(path, &status) == 0 && (status.st_mode & 07777) == 0640);
-    CHECK_EQ_INT(picture_of("out.png").width, 70);
+    struct test_picture picture = picture_of("out.png");
+    CHECK_EQ_INT(picture.width, 70);
+    free(picture.rgb);
     free(path);
 }
 
@@ -490,7 +492,9 @@ TEST(a_name_as_long_as_the_file_system_allows_can_be_written) {
     name[255] = '\0';
     (void)snprintf(arguments, sizeof arguments, "-o %s scene.lua", name);
     ends(test_gray_scene(SMALL, arguments, NULL), 0);
-    CHECK_EQ_INT(picture_of(name).width, 70);
+    struct test_picture picture = picture_of(name);
+    CHECK_EQ_INT(picture.width, 70);
+    free(picture.rgb);
 }
 
 TEST(a_folder_that_cannot_be_written_is_one_line_and_status_3) {
