@@ -409,3 +409,18 @@ TEST(pictures_can_be_named_after_their_script) {
     free(result.out);
     free(result.err);
 }
+
+TEST(a_name_that_no_picture_can_have_is_an_error_of_the_scene_at_its_line) {
+    struct test_result result = test_gray_scene(
+        "local n = gr.node('n')\n"
+        "print(pcall(gr.render, n, 'scene.lua/x.png', 2, 2, {0,0,5}, {0,0,-1}, {0,1,0}, 50, {0,0,0}, {}))\n"
+        "print(pcall(gr.render, n, 'scene.lua/y/x.png', 2, 2, {0,0,5}, {0,0,-1}, {0,1,0}, 50, {0,0,0}, {}))\n"
+        "gr.render(n, 'scene.lua/x.png', 2, 2, {0,0,5}, {0,0,-1}, {0,1,0}, 50, {0,0,0}, {})\n",
+        "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 1);
+    CHECK(strstr(result.out, "false\tscene.lua:2: gr.render: scene.lua/x.png: "));
+    CHECK(strstr(result.out, "false\tscene.lua:3: gr.render: scene.lua/y/x.png: "));
+    CHECK(strncmp(result.err, "scene.lua:4: gr.render: scene.lua/x.png: ", 41) == 0);
+    free(result.out);
+    free(result.err);
+}
