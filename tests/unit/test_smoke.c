@@ -68,8 +68,9 @@ static void smoke(const char *folder, const char *end, bool heavy) {
     CHECK(count > 0);
     for (int k = 0; k < count; k++) {
         char arguments[4096];
-        (void)snprintf(arguments, sizeof arguments, "-q --allow-read %s --size 64x48 -ss 1 -al-samples 1 -o %d-%%02d.png %s/%s/%s", k,
-                       root, folder, names[k]);
+        (void)snprintf(arguments, sizeof arguments,
+                       "-q --allow-read %s --size 64x48 -ss 1 -al-samples 1 -o %d-%%02d.png %s/%s/%s", root, k, root,
+                       folder, names[k]);
         if (heavy == is_heavy(names[k]) && !is_maker(names[k])) {
             struct test_result result = test_gray(NULL, arguments);
             if (result.status != 0)
