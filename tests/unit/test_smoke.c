@@ -67,7 +67,7 @@ static void smoke(const char *folder, const char *end, bool heavy) {
     int count = names_in(folder, end, names);
     CHECK(count > 0);
     for (int k = 0; k < count; k++) {
-        char arguments[4096];
+        char arguments[8192];
         (void)snprintf(arguments, sizeof arguments,
                        "-q --allow-read %s --size 64x48 -ss 1 -al-samples 1 -o %d-%%02d.png %s/%s/%s", root, k, root,
                        folder, names[k]);
