@@ -76,6 +76,7 @@ section() { # section TITLE CLASS SCRIPT...
     echo "<h2>$heading</h2><div class=\"$class\">" >>"$gallery/body.html"
     for script in "$@"; do
         [ -f "$script" ] || continue
+        case $script in */make_*) continue ;; esac # writes models, is no scene
         base=$(basename "$script" .lua)
         [ "$class" = small ] && base="classic-$base"
         render "$script" "$base"

@@ -2,7 +2,7 @@
 -- Makes every picture in this folder: rug, painting, panels, tiles, label, letters, skies, the globe, the ball.
 -- Author: gray project
 --
--- Run it with `lua5.4 textures/make.lua [name ...]` from the root of the repository (or with gray itself); without names
+-- Run it with `lua5.4 textures/make.lua [name ...]` from the root of the repository (or `./gray --allow-write textures --script-time 600 textures/make.lua`); without names
 -- all are made. The same script gives the same bytes, always: the only noise is Perlin's.
 
 local here = (debug.getinfo(1, 'S').source:match('^@(.*/)') or './')

@@ -107,6 +107,24 @@ bool file_canonical(const char *path, char *out, size_t size) {
     return true;
 }
 
+/* A place that cannot hold the file is a wrong name; a full disk is none. */
+static enum error_kind kind_of_refusal(int number) {
+    switch (number) {
+    case ENOENT:
+    case ENOTDIR:
+    case EISDIR:
+    case EEXIST:
+    case EACCES:
+    case EPERM:
+    case EROFS:
+    case ELOOP:
+    case ENAMETOOLONG:
+        return ERROR_SCENE;
+    default:
+        return ERROR_MACHINE;
+    }
+}
+
 bool file_make_folders_for(const char *path, struct error *error) {
     char folder[4096];
     size_t length = strlen(path);
@@ -117,7 +135,8 @@ bool file_make_folders_for(const char *path, struct error *error) {
     for (char *at = folder + 1; (at = strchr(at, '/')) != NULL; at++) {
         *at = '\0';
         if (mkdir(folder, 0777) != 0 && errno != EEXIST)
-            return error_set(error, ERROR_MACHINE, "%s: the folder %s cannot be made: %s", path, folder, strerror(errno));
+            return error_set(error, kind_of_refusal(errno), "%s: the folder %s cannot be made: %s", path, folder,
+                             strerror(errno));
         *at = '/';
     }
     return true;
@@ -230,7 +249,7 @@ bool file_output_open(struct file_output *file, const char *target, struct error
         file->descriptor = open_temporary(file);
     }
     if (file->descriptor < 0)
-        return error_set(error, ERROR_MACHINE, "%s: cannot be written: %s", target, strerror(errno));
+        return error_set(error, kind_of_refusal(errno), "%s: cannot be written: %s", target, strerror(errno));
     file->open = true;
     return true;
 }

@@ -1,6 +1,6 @@
-/* Scripts use names of Lua's libraries for their own things (`table = gr.node('table')`). The modules that come with the
- * program must not stumble over that: their files see the globals as they were before the script began. What such a file
- * adds (`readobj`) becomes a global of the script, and names it does not find are looked for there. */
+/* Scripts use names of Lua's libraries for their own things (`table = gr.node('table')`). The modules that come with
+ * the program must not stumble over that: their files see the globals as they were before the script began. What such a
+ * file adds (`readobj`) becomes a global of the script, and names it does not find are looked for there. */
 #include "script/context.h"
 
 #include "base/file.h"

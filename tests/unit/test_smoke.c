@@ -51,7 +51,8 @@ static void check_pictures(const char *scene, int number) {
         for (size_t i = 3; p.rgb && i < 3 * (size_t)p.width * p.height; i++)
             varied = varied || p.rgb[i] != p.rgb[i - 3];
         if (p.width != 64 || p.height != 48 || !varied)
-            test_fail(__FILE__, __LINE__, "%s: picture %d of %u x %u is not as it should be", scene, k, p.width, p.height);
+            test_fail(__FILE__, __LINE__, "%s: picture %d of %u x %u is not as it should be", scene, k, p.width,
+                      p.height);
         seen++;
         free(p.rgb);
     }
@@ -66,8 +67,9 @@ static void smoke(const char *folder, const char *end, bool heavy) {
     int count = names_in(folder, end, names);
     CHECK(count > 0);
     for (int k = 0; k < count; k++) {
-        char arguments[4096];
-        (void)snprintf(arguments, sizeof arguments, "-q --size 64x48 -ss 1 -al-samples 1 -o %d-%%02d.png %s/%s/%s", k, root,
+        char arguments[8192];
+        (void)snprintf(arguments, sizeof arguments,
+                       "-q --allow-read %s --size 64x48 -ss 1 -al-samples 1 -o %d-%%02d.png %s/%s/%s", root, k, root,
                        folder, names[k]);
         if (heavy == is_heavy(names[k]) && !is_maker(names[k])) {
             struct test_result result = test_gray(NULL, arguments);

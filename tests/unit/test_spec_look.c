@@ -1,6 +1,6 @@
-/* What a picture must show, pixel by pixel, recomputed here from the formulas of the language alone (SPEC 1.2, 1.3, 2.1):
- * a small tracer of its own for spheres with light, mirrors, glass and nested media; images on spheres and cubes; the
- * materials of combined solids. Nothing of src/ but the noise is used. */
+/* What a picture must show, pixel by pixel, recomputed here from the formulas of the language alone
+ * (SPEC 1.2, 1.3, 2.1): a small tracer of its own for spheres with light, mirrors, glass and nested media; images on
+ * spheres and cubes; the materials of combined solids. Nothing of src/ but the noise is used. */
 #include "math/noise.h"
 #include "tests/harness.h"
 
@@ -59,15 +59,15 @@ struct lamp {
 };
 
 static const struct look looks[] = {
-    {{.8, .3, .2}, {.5, .4, .3}, 12, 0, 0, 1, false},    {{.1, .1, .1}, {.9, .8, .7}, 40, .8, 0, 1, false},
+    {{.8, .3, .2}, {.5, .4, .3}, 12, 0, 0, 1, false},        {{.1, .1, .1}, {.9, .8, .7}, 40, .8, 0, 1, false},
     {{.02, .05, .1}, {.9, .95, 1}, 90, .15, .8, 1.5, false}, {{0, .02, .05}, {1, 1, .9}, 50, .1, .85, 1.33, false},
-    {{.01, 0, 0}, {1, .9, 1}, 120, .3, .3, 1.7, true},   {{0, 0, 0}, {1, 1, 1}, 10, 0, 1, 1, false},
+    {{.01, 0, 0}, {1, .9, 1}, 120, .3, .3, 1.7, true},       {{0, 0, 0}, {1, 1, 1}, 10, 0, 1, 1, false},
 };
 /* Glass in glass, a bubble in glass, two that overlap, one that sticks out, mirrors and a ground. */
 static const struct ball balls[] = {
-    {0, {-2.2, -.3, -1}, .9},  {1, {2.1, .2, -1.5}, 1.1}, {2, {0, 0, 0}, 1.2},      {3, {-1.1, 1.5, .6}, .7},
-    {4, {1.1, -1.2, 1}, .6},   {5, {.2, .1, .1}, .5},     {4, {0, -.7, .1}, .25},   {0, {0, -31.8, 0}, 30},
-    {0, {-.4, .4, .2}, .2},    {2, {-1.1, 1.4, .7}, .3},  {3, {2.2, -.9, .4}, .5},  {2, {2.5, -.9, .3}, .45},
+    {0, {-2.2, -.3, -1}, .9}, {1, {2.1, .2, -1.5}, 1.1}, {2, {0, 0, 0}, 1.2},     {3, {-1.1, 1.5, .6}, .7},
+    {4, {1.1, -1.2, 1}, .6},  {5, {.2, .1, .1}, .5},     {4, {0, -.7, .1}, .25},  {0, {0, -31.8, 0}, 30},
+    {0, {-.4, .4, .2}, .2},   {2, {-1.1, 1.4, .7}, .3},  {3, {2.2, -.9, .4}, .5}, {2, {2.5, -.9, .3}, .45},
 };
 static const struct lamp lamps[] = {
     {{4, 6, 5}, {.9, .8, .7}, {1, .05, .002}},
@@ -203,7 +203,8 @@ static const char *spheres_scene(char text[TEXT]) {
     return text;
 }
 
-static void compare(const char *name, struct v eye, double fov, const struct stack *stack, const struct limits *limits) {
+static void compare(const char *name, struct v eye, double fov, const struct stack *stack,
+                    const struct limits *limits) {
     struct test_picture p = picture(name);
     struct v view = unit((struct v){-.05, -.03, -2}), right = unit(cross(view, (struct v){.1, 1, .2}));
     struct v up = cross(right, view);
@@ -248,7 +249,7 @@ TEST(light_mirrors_glass_and_nested_media_are_the_formulas_at_every_pixel) {
 #define CSG                                                                                                            \
     "local red, green, blue = gr.material({1,0,0},{0,0,0},1), gr.material({0,1,0},{0,0,0},1), "                        \
     "gr.material({0,0,1},{0,0,0},1)\n"                                                                                 \
-    "local function show(n, f) local r = gr.node('r') r:add_child(n) gr.render{node=r, file=f, width=32, height=32, " \
+    "local function show(n, f) local r = gr.node('r') r:add_child(n) gr.render{node=r, file=f, width=32, height=32, "  \
     "eye={.5,.5,5}, fov=30, ambient={1,1,1}, background={0,0,0}} end\n"                                                \
     "local function hole(m) return gr.nh_sphere(m, {.5,.5,1}, .2) end\n"
 
@@ -275,17 +276,18 @@ TEST(a_cut_face_shows_the_material_of_the_solid_that_cut_it) {
 }
 
 TEST(the_material_of_a_combined_solid_is_that_of_its_operands_without_one) {
-    renders(CSG "local a, b = gr.cube('a'), gr.nh_sphere('b', {.5,.5,1}, .2)\n"
-                "local d = gr.difference('d', a, b)\n"
-                "d:set_material(red) show(d, '1.png')\n"
-                "d:set_material(blue) show(d, '2.png')\n"
-                "a:set_material(green) show(d, '3.png')\n"
-                "local g = gr.node('g') g:add_child(gr.cube('c'))\n"
-                "local e = gr.difference('e', g, gr.nh_sphere('b', {.5,.5,1}, .2)) e:set_material(red) show(e, '4.png')\n"
-                "local inner = gr.difference('f', gr.cube('c'), gr.nh_sphere('s', {.5,.5,1}, .2)) "
-                "inner:set_material(green)\n"
-                "local outer = gr.union('u', inner, gr.nh_box('x', {.4,.4,.5}, .2)) outer:set_material(blue) "
-                "show(outer, '5.png')\n",
+    renders(CSG
+            "local a, b = gr.cube('a'), gr.nh_sphere('b', {.5,.5,1}, .2)\n"
+            "local d = gr.difference('d', a, b)\n"
+            "d:set_material(red) show(d, '1.png')\n"
+            "d:set_material(blue) show(d, '2.png')\n"
+            "a:set_material(green) show(d, '3.png')\n"
+            "local g = gr.node('g') g:add_child(gr.cube('c'))\n"
+            "local e = gr.difference('e', g, gr.nh_sphere('b', {.5,.5,1}, .2)) e:set_material(red) show(e, '4.png')\n"
+            "local inner = gr.difference('f', gr.cube('c'), gr.nh_sphere('s', {.5,.5,1}, .2)) "
+            "inner:set_material(green)\n"
+            "local outer = gr.union('u', inner, gr.nh_box('x', {.4,.4,.5}, .2)) outer:set_material(blue) "
+            "show(outer, '5.png')\n",
             "");
     expect_colours("1.png", 0xff0000, 0xff0000);
     expect_colours("2.png", 0x0000ff, 0x0000ff);
@@ -322,7 +324,8 @@ static void write_texels(const char *name, uint32_t w, uint32_t h) {
     free(rgb);
 }
 
-/* Counts pixels whose texel is not the one at fractions (u, v) of columns and rows; those near an edge are passed over. */
+/* Counts pixels whose texel is not the one at fractions (u, v) of columns and rows; those near an edge are passed over.
+ */
 static int wrong_texel(const uint8_t *found, double u, double v, uint32_t w, uint32_t h) {
     double x = u * w, y = v * h;
     if (fabs(x - round(x)) < 1e-6 || fabs(y - round(y)) < 1e-6)
@@ -334,8 +337,8 @@ static void check_cube_face(const char *name, double low, double high, int face)
     static const struct {
         struct v eye, view, up;
     } cameras[6] = {
-        {{0, 0, 9}, {0, 0, -1}, {0, 1, 0}},  {{0, 0, -9}, {0, 0, 1}, {0, 1, 0}}, {{9, 0, 0}, {-1, 0, 0}, {0, 1, 0}},
-        {{-9, 0, 0}, {1, 0, 0}, {0, 1, 0}},  {{0, 9, 0}, {0, -1, 0}, {0, 0, -1}}, {{0, -9, 0}, {0, 1, 0}, {0, 0, 1}},
+        {{0, 0, 9}, {0, 0, -1}, {0, 1, 0}}, {{0, 0, -9}, {0, 0, 1}, {0, 1, 0}},  {{9, 0, 0}, {-1, 0, 0}, {0, 1, 0}},
+        {{-9, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 9, 0}, {0, -1, 0}, {0, 0, -1}}, {{0, -9, 0}, {0, 1, 0}, {0, 0, 1}},
     };
     struct v view = cameras[face].view, right = cross(view, cameras[face].up), up = cameras[face].up;
     struct test_picture p = picture(name);
@@ -361,17 +364,18 @@ static void check_cube_face(const char *name, double low, double high, int face)
 
 TEST(images_on_cubes_lie_on_the_six_sides_as_the_table_says) {
     write_texels("t.png", 5, 3);
-    renders("local m = gr.material({1,1,1},{0,0,0},1)\n"
-            "local function show(s, name) local r = gr.node('r') r:add_child(s)\n"
-            "local eyes = {{0,0,9},{0,0,-9},{9,0,0},{-9,0,0},{0,9,0},{0,-9,0}}\n"
-            "for k, e in ipairs(eyes) do gr.render{node=r, file=name..k..'.png', width=40, height=40, eye=e, "
-            "target={0,0,0}, up=k==5 and {0,0,-1} or k==6 and {0,0,1} or {0,1,0}, fov=20, ambient={1,1,1}, "
-            "side_tolerance=9, corner_tolerance=9} end end\n"
-            "show(gr.geometry('c', gr.cube(gr.td_cube_material{material=m, png='t.png', filter='nearest'})), 'project')\n"
-            "local box = gr.nh_box('b', {-1,-1,-1}, 2) box:set_material(m)\n"
-            "box:set_texture(gr.texture{file='t.png', filter='nearest'})\n"
-            "show(box, 'classic')\n",
-            "");
+    renders(
+        "local m = gr.material({1,1,1},{0,0,0},1)\n"
+        "local function show(s, name) local r = gr.node('r') r:add_child(s)\n"
+        "local eyes = {{0,0,9},{0,0,-9},{9,0,0},{-9,0,0},{0,9,0},{0,-9,0}}\n"
+        "for k, e in ipairs(eyes) do gr.render{node=r, file=name..k..'.png', width=40, height=40, eye=e, "
+        "target={0,0,0}, up=k==5 and {0,0,-1} or k==6 and {0,0,1} or {0,1,0}, fov=20, ambient={1,1,1}, "
+        "side_tolerance=9, corner_tolerance=9} end end\n"
+        "show(gr.geometry('c', gr.cube(gr.td_cube_material{material=m, png='t.png', filter='nearest'})), 'project')\n"
+        "local box = gr.nh_box('b', {-1,-1,-1}, 2) box:set_material(m)\n"
+        "box:set_texture(gr.texture{file='t.png', filter='nearest'})\n"
+        "show(box, 'classic')\n",
+        "");
     for (int face = 0; face < 6; face++) {
         char name[40];
         (void)snprintf(name, sizeof name, "project%d.png", face + 1);
@@ -413,16 +417,17 @@ static void check_sphere(const char *name, double angle, enum sphere_mapping map
 
 TEST(images_on_spheres_follow_both_formulas_from_all_around) {
     write_texels("t.png", 51, 17);
-    renders("local m = gr.material({1,1,1},{0,0,0},1)\n"
-            "local function show(s, name) local r = gr.node('r') r:add_child(s)\n"
-            "for k = 0, 3 do local a = k * 1.4\n"
-            "gr.render{node=r, file=name..k..'.png', width=50, height=50, eye={8*math.sin(a), 0, 8*math.cos(a)}, "
-            "target={0,0,0}, fov=15, ambient={1,1,1}, side_tolerance=9, corner_tolerance=9} end end\n"
-            "show(gr.sphere(gr.td_sphere_material{material=m, png='t.png', filter='nearest'}), 'project')\n"
-            "show(gr.sphere(gr.td_sphere_material{material=m, png='t.png', filter='nearest', flip_u=true}), 'flipped')\n"
-            "local s = gr.sphere('s') s:set_material(m) s:set_texture(gr.texture{file='t.png', filter='nearest'})\n"
-            "show(s, 'classic')\n",
-            "");
+    renders(
+        "local m = gr.material({1,1,1},{0,0,0},1)\n"
+        "local function show(s, name) local r = gr.node('r') r:add_child(s)\n"
+        "for k = 0, 3 do local a = k * 1.4\n"
+        "gr.render{node=r, file=name..k..'.png', width=50, height=50, eye={8*math.sin(a), 0, 8*math.cos(a)}, "
+        "target={0,0,0}, fov=15, ambient={1,1,1}, side_tolerance=9, corner_tolerance=9} end end\n"
+        "show(gr.sphere(gr.td_sphere_material{material=m, png='t.png', filter='nearest'}), 'project')\n"
+        "show(gr.sphere(gr.td_sphere_material{material=m, png='t.png', filter='nearest', flip_u=true}), 'flipped')\n"
+        "local s = gr.sphere('s') s:set_material(m) s:set_texture(gr.texture{file='t.png', filter='nearest'})\n"
+        "show(s, 'classic')\n",
+        "");
     static const char *const names[] = {"project", "flipped", "classic"};
     for (int mapping = PROJECT; mapping <= CLASSIC; mapping++) {
         for (int k = 0; k < 4; k++) {
@@ -445,7 +450,8 @@ static void check_pattern(const char *name, bool wood, int interpolation, bool t
                 continue;
             double ratio = wood ? noise_wood(q.x, q.y, q.z, 2.5, 6, interpolation)
                                 : noise_marble(q.x, q.y, q.z, 1.5, 5, 4, interpolation);
-            double want[3] = {ratio * .9 + (1 - ratio) * .1, ratio * .5 + (1 - ratio) * .2, ratio * .1 + (1 - ratio) * .7};
+            double want[3] = {ratio * .9 + (1 - ratio) * .1, ratio * .5 + (1 - ratio) * .2,
+                              ratio * .1 + (1 - ratio) * .7};
             for (int k = 0; k < 3; k++)
                 wrong += fabs(want[k] * 255 - pixel(&p, x, y)[k]) > 0.51;
             seen++;
@@ -457,21 +463,22 @@ static void check_pattern(const char *name, bool wood, int interpolation, bool t
 }
 
 TEST(patterns_stick_to_the_object_before_any_transform_in_combined_solids_too) {
-    renders("local base = gr.material({.9,.5,.1},{0,0,0},1)\n"
-            "for i = 0, 1 do\n"
-            "local wood = gr.wood_pnd_material(base, 2.5, 6, i, {.1,.2,.7})\n"
-            "local marble = gr.marble_pnd_material(base, 1.5, 5, 4, i, {.1,.2,.7})\n"
-            "for name, m in pairs{wood=wood, marble=marble} do\n"
-            "local function show(n, f) local r = gr.node('r') r:add_child(n) gr.render{node=r, file=name..i..f..'.png', "
-            "width=40, height=40, eye={0,0,2}, fov=90, ambient={1,1,1}, side_tolerance=9, corner_tolerance=9} end\n"
-            "local plain = gr.geometry('p', gr.cube(m)) plain:translate(-.5,-.5,-1) show(plain, 'plain')\n"
-            "local turned = gr.geometry('t', gr.cube(m)) turned:scale(2,3,1) turned:rotate('z',90) "
-            "turned:translate(0,0,-1) show(turned, 'turned')\n"
-            "local a = gr.geometry('a', gr.cube(m)) a:scale(2,3,1)\n"
-            "local far = gr.nh_sphere(base, {0,0,-9}, 1)\n"
-            "local d = gr.csg_difference('d', a, far) d:rotate('z',90) d:translate(0,0,-1) show(d, 'solid')\n"
-            "end end\n",
-            "");
+    renders(
+        "local base = gr.material({.9,.5,.1},{0,0,0},1)\n"
+        "for i = 0, 1 do\n"
+        "local wood = gr.wood_pnd_material(base, 2.5, 6, i, {.1,.2,.7})\n"
+        "local marble = gr.marble_pnd_material(base, 1.5, 5, 4, i, {.1,.2,.7})\n"
+        "for name, m in pairs{wood=wood, marble=marble} do\n"
+        "local function show(n, f) local r = gr.node('r') r:add_child(n) gr.render{node=r, file=name..i..f..'.png', "
+        "width=40, height=40, eye={0,0,2}, fov=90, ambient={1,1,1}, side_tolerance=9, corner_tolerance=9} end\n"
+        "local plain = gr.geometry('p', gr.cube(m)) plain:translate(-.5,-.5,-1) show(plain, 'plain')\n"
+        "local turned = gr.geometry('t', gr.cube(m)) turned:scale(2,3,1) turned:rotate('z',90) "
+        "turned:translate(0,0,-1) show(turned, 'turned')\n"
+        "local a = gr.geometry('a', gr.cube(m)) a:scale(2,3,1)\n"
+        "local far = gr.nh_sphere(base, {0,0,-9}, 1)\n"
+        "local d = gr.csg_difference('d', a, far) d:rotate('z',90) d:translate(0,0,-1) show(d, 'solid')\n"
+        "end end\n",
+        "");
     for (int wood = 0; wood < 2; wood++) {
         for (int i = 0; i < 2; i++) {
             char name[60];
@@ -501,7 +508,8 @@ static void expect_rgb(const char *name, uint32_t x, uint32_t y, double r, doubl
 #define ONE_PIXEL                                                                                                      \
     "local m = gr.material({.5,.25,.125}, {.2,.4,.6}, 3)\n"                                                            \
     "local r = gr.node('r') r:add_child(gr.nh_box(m, {-1,-1,-2}, 2))\n"                                                \
-    "gr.render(r, 't.png', 1, 1, {0,0,5}, {0,0,-1}, {0,1,0}, 20, {.1,.2,.3}, {gr.light({0,3,4}, {.5,.6,.7}, {0,0,0})})\n"
+    "gr.render(r, 't.png', 1, 1, {0,0,5}, {0,0,-1}, {0,1,0}, 20, {.1,.2,.3}, {gr.light({0,3,4}, {.5,.6,.7}, "          \
+    "{0,0,0})})\n"
 
 TEST(switches_for_scenes_of_other_programs_do_what_they_say) {
     double phong = .8 * .8 * .8, n_h = 1.8 / sqrt(.36 + 1.8 * 1.8), blinn = n_h * n_h * n_h;
@@ -610,12 +618,13 @@ TEST(the_alpha_of_an_image_mixes_with_the_base_and_gamma_chunks_are_ignored) {
 }
 
 TEST(the_background_is_the_gradient_of_the_unit_direction_unless_the_scene_says_otherwise) {
-    renders("local n = gr.node('n')\n"
-            "gr.render(n, 'a.png', 1, 1, {5,5,5}, {0,6,-8}, {0,1,0}, 50, {0,0,0}, {})\n"
-            "gr.render{node=n, file='b.png', width=1, height=1, eye={0,0,0}, background={.1,.2,.3}}\n"
-            "gr.render{node=gr.nh_sphere(gr.rr_material({0,0,0},{1,.5,1},1,.5,0,1), {0,0,0}, 1), file='c.png', width=1, "
-            "height=1, eye={0,0,5}, background={.4,.8,.2}}\n",
-            "");
+    renders(
+        "local n = gr.node('n')\n"
+        "gr.render(n, 'a.png', 1, 1, {5,5,5}, {0,6,-8}, {0,1,0}, 50, {0,0,0}, {})\n"
+        "gr.render{node=n, file='b.png', width=1, height=1, eye={0,0,0}, background={.1,.2,.3}}\n"
+        "gr.render{node=gr.nh_sphere(gr.rr_material({0,0,0},{1,.5,1},1,.5,0,1), {0,0,0}, 1), file='c.png', width=1, "
+        "height=1, eye={0,0,5}, background={.4,.8,.2}}\n",
+        "");
     expect_rgb("a.png", 0, 0, 0, 0, .8);
     expect_rgb("b.png", 0, 0, .1, .2, .3);
     expect_rgb("c.png", 0, 0, .2, .2, .1);
@@ -626,7 +635,8 @@ TEST(every_spelling_of_a_shape_gives_the_same_picture) {
         {"gr.cube(m)", "gr.geometry('g', gr.cube(m))", "with(gr.cube('c'))", "with(gr.nh_box('b', {1,1,1}, -1))",
          "gr.nh_box(m, {0,0,0}, 1)", "gr.cube{material=m, corner={0,0,0}, size=1}"},
         {"gr.nh_sphere(m, {1,0,0}, .5)", "with(gr.nh_sphere('s', {1,0,0}, .5))",
-         "gr.sphere{material=m, centre={1,0,0}, radius=.5}", "gr.geometry('g', gr.nh_sphere(m, {1,0,0}, .5))", NULL, NULL},
+         "gr.sphere{material=m, centre={1,0,0}, radius=.5}", "gr.geometry('g', gr.nh_sphere(m, {1,0,0}, .5))", NULL,
+         NULL},
         {"gr.mesh(m, v, f)", "gr.fast_mesh(m, v, f)", "with(gr.mesh('n', v, f))", "with(gr.mesh('n', 'q.obj'))",
          "gr.geometry('g', gr.mesh{material=m, verts=v, faces=f})", "gr.mesh(m, 'q.obj')"},
         {"gr.vn_mesh(m, v, n, f, f)", "gr.fast_vn_mesh(m, v, n, f, f)", "with(gr.vn_mesh('n', v, n, f, f))",
@@ -659,4 +669,30 @@ TEST(every_spelling_of_a_shape_gives_the_same_picture) {
         }
         free(first.rgb);
     }
+}
+
+/* Decorators that change different things may change places; two patterns may not. */
+TEST(decorators_compose_in_any_order) {
+    renders(
+        "local glass = gr.rr_material({.2,.3,.1}, {1,1,1}, 40, .2, .5, 1.5)\n"
+        "local function wood(m) return gr.wood_pnd_material(m, 2, 5, 1, {.9,.5,.1}) end\n"
+        "local function marble(m) return gr.marble_pnd_material(m, 2, 4, 3, 0, {.1,.5,.9}) end\n"
+        "local fresnel = gr.difresnel_material\n"
+        "local all = {fresnel(wood(marble(glass))), wood(fresnel(marble(glass))), wood(marble(fresnel(glass))), "
+        "fresnel(fresnel(wood(marble(fresnel(glass))))), marble(wood(fresnel(glass))), wood(marble(glass))}\n"
+        "for i, m in ipairs(all) do local r = gr.node('r') r:add_child(gr.sphere(m))\n"
+        "gr.render(r, i .. '.png', 30, 30, {0,0,5}, {0,0,-1}, {0,1,0}, 25, {.6,.6,.6}, {gr.light({3,4,5}, {.5,.5,.5}, "
+        "{1,0,0})}) end\n",
+        "-ss 1");
+    struct test_picture first = picture("1.png");
+    for (int i = 2; i <= 6; i++) {
+        char name[20];
+        (void)snprintf(name, sizeof name, "%d.png", i);
+        struct test_picture p = picture(name);
+        bool same = memcmp(p.rgb, first.rgb, 3 * 30 * 30) == 0;
+        if (same != (i <= 4))
+            test_fail(__FILE__, __LINE__, "picture %d is %s", i, same ? "the same" : "different");
+        free(p.rgb);
+    }
+    free(first.rgb);
 }

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static struct test_picture picture(const char *name) {
@@ -85,14 +86,13 @@ TEST(marked_pixels_are_those_of_the_rule_recomputed_from_the_first_pass) {
 
 /* The right edge of a white square runs through the pixels of column 10 at the fraction 0.3 of their width. */
 TEST(samples_of_a_pixel_stand_at_the_middles_of_n_by_n_cells) {
-    static const struct {
-        int n, covered;
-    } cases[] = {{1, 0}, {2, 1}, {3, 1}, {4, 1}, {6, 2}, {10, 3}};
+    static const struct { int n, covered; } cases[] = {{1, 0}, {2, 1}, {3, 1}, {4, 1}, {6, 2}, {10, 3}};
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         for (int full = 0; full < 2; full++) {
             char arguments[100];
             (void)snprintf(arguments, sizeof arguments, "-ss %d %s scene.lua", cases[k].n, full ? "-full" : "");
-            renders("local r = gr.node('r') r:add_child(gr.nh_box(gr.material({1,1,1},{0,0,0},1), {-99.7, -50, -100}, 100))\n"
+            renders("local r = gr.node('r') r:add_child(gr.nh_box(gr.material({1,1,1},{0,0,0},1), {-99.7, -50, -100}, "
+                    "100))\n"
                     "gr.render{node=r, file='t.png', width=20, height=20, eye={0,0,10}, fov=90, ambient={1,1,1}, "
                     "background={0,0,0}}\n",
                     arguments);
@@ -141,9 +141,11 @@ TEST(the_share_of_an_area_light_is_counted_in_cells_and_true_to_one_column) {
     for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++) {
         char arguments[200];
         int n = sizes[s], fractions = 0, wrong = 0, off = 0;
-        (void)snprintf(arguments, sizeof arguments, "-al-samples %d -side-tolerance 9 -corner-tolerance 9 scene.lua", n);
-        /* Ground y = 0, wall x < 0 from y = 4 to 5, light x in [-1, 1] at y = 10: at ground x the wall's edge (0, 4 or 5)
-         * covers the light's part below x_l = x - x * 10 / 4 (seen past the lower edge) ... and to the right of it. */
+        (void)snprintf(arguments, sizeof arguments, "-al-samples %d -side-tolerance 9 -corner-tolerance 9 scene.lua",
+                       n);
+        /* Ground y = 0, wall x < 0 from y = 4 to 5, light x in [-1, 1] at y = 10: at ground x the wall's edge (0, 4 or
+         * 5) covers the light's part below x_l = x - x * 10 / 4 (seen past the lower edge) ... and to the right of it.
+         */
         renders("local r = gr.node('r') local m = gr.material({1,1,1},{0,0,0},1)\n"
                 "r:add_child(gr.nh_box(m, {-50,-100,-50}, 100))\n"
                 "r:add_child(gr.nh_box(m, {-60,4,-30}, {60,1,60}))\n"
@@ -242,14 +244,14 @@ TEST(three_hundred_pictures_with_one_moving_node_build_the_mesh_once) {
 }
 
 TEST(a_hundred_thousand_nodes_are_scripted_and_drawn_in_seconds) {
-    struct test_result result = test_gray_scene(
-        "local begun = os.clock()\n"
-        "local m, r = gr.material({1,0,0},{0,0,0},1), gr.node('r')\n"
-        "for i = 1, 100000 do local n = gr.sphere('s'..i) n:set_material(m) n:scale(.4,.4,.4) "
-        "n:translate(i%300 - 150, i//300 - 150, -300) r:add_child(n) end\n"
-        "io.write(os.clock() - begun)\n"
-        "gr.render(r, 'p.png', 64, 64, {0,0,0}, {0,0,-1}, {0,1,0}, 50, {1,1,1}, {})\n",
-        "scene.lua", NULL);
+    struct test_result result =
+        test_gray_scene("local begun = os.clock()\n"
+                        "local m, r = gr.material({1,0,0},{0,0,0},1), gr.node('r')\n"
+                        "for i = 1, 100000 do local n = gr.sphere('s'..i) n:set_material(m) n:scale(.4,.4,.4) "
+                        "n:translate(i%300 - 150, i//300 - 150, -300) r:add_child(n) end\n"
+                        "io.write(os.clock() - begun)\n"
+                        "gr.render(r, 'p.png', 64, 64, {0,0,0}, {0,0,-1}, {0,1,0}, 50, {1,1,1}, {})\n",
+                        "scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     if (!strstr(GRAY_CONFIG, "san"))
         CHECK(strtod(result.out, NULL) < 1);
@@ -263,27 +265,28 @@ TEST(the_library_works_in_scripts_that_use_the_names_of_luas_own_libraries) {
     char path[600];
     (void)snprintf(path, sizeof path, "%s/tetra.obj", test_folder());
     test_write_text(path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
-    renders("table = gr.node('table')\n"
-            "local load, say = require, print\n"
-            "for _, n in ipairs{'string','math','io','os','package','debug','ipairs','pairs','tostring','type','error',"
-            "'assert','select','next','setmetatable','tonumber','pcall','print','unpack','rawget','require'} do "
-            "_G[n] = nil end\n"
-            "local names = {'readobj','bezier','carve','font','knot','lathe','meshes','noise','picture','png','polyhedra',"
-            "'sweep','teapot'}\n"
-            "for i = 1, #names do load(names[i]) end\n"
-            "local vertices, faces = readobj('tetra.obj')\n"
-            "local thing = gr.mesh('thing', vertices, faces) thing:set_material(gr.material({1,0,0},{0,0,0},1))\n"
-            "table:add_child(thing)\n"
-            "gr.render(table, 't.png', 8, 8, {0,0,5}, {0,0,-1}, {0,1,0}, 50, {1,1,1}, {})\n"
-            "if string ~= nil or math ~= nil then gr.node(gr) end\n",
-            "-q --transform-order new scene.lua");
+    renders(
+        "table = gr.node('table')\n"
+        "local load, say = require, print\n"
+        "for _, n in ipairs{'string','math','io','os','package','debug','ipairs','pairs','tostring','type','error',"
+        "'assert','select','next','setmetatable','tonumber','pcall','print','unpack','rawget','require'} do "
+        "_G[n] = nil end\n"
+        "local names = {'readobj','bezier','carve','font','knot','lathe','meshes','noise','picture','png','polyhedra',"
+        "'sweep','teapot'}\n"
+        "for i = 1, #names do load(names[i]) end\n"
+        "local vertices, faces = readobj('tetra.obj')\n"
+        "local thing = gr.mesh('thing', vertices, faces) thing:set_material(gr.material({1,0,0},{0,0,0},1))\n"
+        "table:add_child(thing)\n"
+        "gr.render(table, 't.png', 8, 8, {0,0,5}, {0,0,-1}, {0,1,0}, 50, {1,1,1}, {})\n"
+        "if string ~= nil or math ~= nil then gr.node(gr) end\n",
+        "-q --transform-order new scene.lua");
 }
 
 TEST(missing_folders_are_made_and_whole_numbers_in_names_lose_their_fraction) {
-    struct test_result result =
-        test_gray_scene("for i = 1, 3 do gr.render{node=gr.node('r'), file='a/b' .. i/1 .. '/x' .. i/1 .. '.png', width=2, "
-                        "height=2, eye={0,0,0}} end\n",
-                        "scene.lua", NULL);
+    struct test_result result = test_gray_scene(
+        "for i = 1, 3 do gr.render{node=gr.node('r'), file='a/b' .. i/1 .. '/x' .. i/1 .. '.png', width=2, "
+        "height=2, eye={0,0,0}} end\n",
+        "scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     const char *notice = strstr(result.err, "lose their .0");
     CHECK(notice && !strstr(notice + 1, "lose their .0"));
@@ -348,6 +351,76 @@ TEST_LONG(an_obj_of_a_million_triangles_is_a_picture_in_seconds_and_200_bytes_a_
     if (!strstr(GRAY_CONFIG, "san"))
         CHECK(peak < 200 * triangles); /* the whole process, the text it reads included */
     CHECK(number_after(result.out, "\"build_seconds\":") < 30);
+    free(result.out);
+    free(result.err);
+}
+
+static void write_in(const char *name, const char *text) {
+    char path[600];
+    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    test_write_text(path, text);
+}
+
+static void make_folder(const char *name) {
+    char path[600];
+    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    CHECK(mkdir(path, 0777) == 0);
+}
+
+/* In a mesh file of its own each place gets so many triangles as its rank: the count tells which one was read. */
+TEST(files_are_looked_for_beside_the_scene_then_here_then_in_assets_then_by_their_bare_name) {
+    static const char *const places[] = {"a/s/m/x.obj", "m/x.obj", "a/s/Assets/m/x.obj", "a/Assets/m/x.obj",
+                                         "a/s/x.obj"};
+    static const char *const folders[] = {"a",          "a/s",          "a/s/m",    "m",
+                                          "a/s/Assets", "a/s/Assets/m", "a/Assets", "a/Assets/m"};
+    for (size_t k = 0; k < sizeof folders / sizeof folders[0]; k++)
+        make_folder(folders[k]);
+    write_in("a/s/scene.lua", "local n = gr.mesh('n', 'm/x.obj') n:set_material(gr.material({1,0,0},{0,0,0},1))\n"
+                              "gr.render{node=n, file='t.png', width=2, height=2, eye={0,0,5}}\n");
+    for (size_t k = 0; k < 5; k++) {
+        char text[400] = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+        for (size_t i = 0; i <= k; i++)
+            strcat(text, "f 1 2 3\n");
+        write_in(places[k], text);
+    }
+    for (size_t k = 0; k < 5; k++) {
+        struct test_result result = test_gray(NULL, "--stats=json a/s/scene.lua");
+        CHECK_EQ_INT(result.status, 0);
+        CHECK_EQ_INT((int)number_after(result.out, "\"triangles\":"), (int)k + 1);
+        free(result.out);
+        free(result.err);
+        char path[600];
+        (void)snprintf(path, sizeof path, "%s/%s", test_folder(), places[k]);
+        CHECK(unlink(path) == 0);
+    }
+}
+
+TEST(pictures_can_be_named_after_their_script) {
+    write_in("ball.lua",
+             "#!/usr/bin/env gray\n"
+             "local me = debug.getinfo(1, 'S').source\n"
+             "local name = string.gsub(string.gsub(me, '@', ''), '.lua', '')\n"
+             "gr.render(gr.node('n'), name .. '.png', 3, 2, {0,0,5}, {0,0,-1}, {0,1,0}, 50, {0,0,0}, {})\n");
+    struct test_result result = test_gray(NULL, "ball.lua");
+    CHECK_EQ_INT(result.status, 0);
+    struct test_picture p = picture("ball.png");
+    CHECK(p.width == 3 && p.height == 2);
+    free(p.rgb);
+    free(result.out);
+    free(result.err);
+}
+
+TEST(a_name_that_no_picture_can_have_is_an_error_of_the_scene_at_its_line) {
+    struct test_result result = test_gray_scene(
+        "local n = gr.node('n')\n"
+        "print(pcall(gr.render, n, 'scene.lua/x.png', 2, 2, {0,0,5}, {0,0,-1}, {0,1,0}, 50, {0,0,0}, {}))\n"
+        "print(pcall(gr.render, n, 'scene.lua/y/x.png', 2, 2, {0,0,5}, {0,0,-1}, {0,1,0}, 50, {0,0,0}, {}))\n"
+        "gr.render(n, 'scene.lua/x.png', 2, 2, {0,0,5}, {0,0,-1}, {0,1,0}, 50, {0,0,0}, {})\n",
+        "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 1);
+    CHECK(strstr(result.out, "false\tscene.lua:2: gr.render: scene.lua/x.png: "));
+    CHECK(strstr(result.out, "false\tscene.lua:3: gr.render: scene.lua/y/x.png: "));
+    CHECK(strncmp(result.err, "scene.lua:4: gr.render: scene.lua/x.png: ", 41) == 0);
     free(result.out);
     free(result.err);
 }
