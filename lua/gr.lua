@@ -780,9 +780,13 @@ function gr.texture(file) end
 function gr.bump(name) end
 
 ---@class gr.light.fields
----@field position gr.triple position (a point {x, y, z}): Where it stands.
 ---@field colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
+---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
+---@field exclude? gr.node[] exclude (a table of nodes; default none): The nodes that it does not light.
 ---@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients: light is divided by c0 + c1 d + c2 d^2.
+---@field range? number range (a number, > 0; optional): How far it reaches, instead of falloff: light is multiplied by 1 - d / range.
+---@field intensity? number intensity (a number, >= 0; optional): Physical fading, instead of falloff: light is multiplied by intensity / d^2.
+---@field position gr.triple position (a point {x, y, z}): Where it stands.
 
 ---A light at a point.
 ---@param position gr.triple position (a point {x, y, z}): Where it stands.
@@ -793,26 +797,113 @@ function gr.bump(name) end
 function gr.light(position, colour, falloff) end
 
 ---@class gr.area_light.fields
+---@field colour? gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Its colour and strength.
+---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
+---@field exclude? gr.node[] exclude (a table of nodes; default none): The nodes that it does not light.
+---@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients: light is divided by c0 + c1 d + c2 d^2.
+---@field range? number range (a number, > 0; optional): How far it reaches, instead of falloff: light is multiplied by 1 - d / range.
+---@field intensity? number intensity (a number, >= 0; optional): Physical fading, instead of falloff: light is multiplied by intensity / d^2.
+---@field emission? gr.triple emission (a colour {r, g, b}; optional): Radiance of its surface, times colour: what it lights follows its true shape, without falloff.
+---@field samples? integer samples (a whole number, 1 to 64; default area_samples): N x N shadow rays for this light.
+---@field visible? boolean visible (true or false; default false): Whether the light itself is seen.
 ---@field corner gr.triple corner (a point {x, y, z}): One corner of the parallelogram.
 ---@field v1 gr.triple v1 (a direction {x, y, z}): The edge to the next corner.
 ---@field v2 gr.triple v2 (a direction {x, y, z}): The edge to the corner on the other side.
----@field colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
----@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients: light is divided by c0 + c1 d + c2 d^2.
+---@field one_sided? boolean one_sided (true or false; default false): Whether it is seen, and emits, only on the side of v1 x v2.
 
 ---A light that is a parallelogram; soft shadows.
 ---@param corner gr.triple corner (a point {x, y, z}): One corner of the parallelogram.
 ---@param v1 gr.triple v1 (a direction {x, y, z}): The edge to the next corner.
 ---@param v2 gr.triple v2 (a direction {x, y, z}): The edge to the corner on the other side.
----@param colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
+---@param colour gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Its colour and strength.
 ---@param falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients: light is divided by c0 + c1 d + c2 d^2.
 ---@return gr.light
 ---@overload fun(fields: gr.area_light.fields): gr.light
 function gr.area_light(corner, v1, v2, colour, falloff) end
 
----A light that is a sphere. Comes with version 0.2.
----@param name? string name (a string; optional): Name of the node, for messages.
+---@class gr.spherical_light.fields
+---@field colour? gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Its colour and strength.
+---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
+---@field exclude? gr.node[] exclude (a table of nodes; default none): The nodes that it does not light.
+---@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients: light is divided by c0 + c1 d + c2 d^2.
+---@field range? number range (a number, > 0; optional): How far it reaches, instead of falloff: light is multiplied by 1 - d / range.
+---@field intensity? number intensity (a number, >= 0; optional): Physical fading, instead of falloff: light is multiplied by intensity / d^2.
+---@field emission? gr.triple emission (a colour {r, g, b}; optional): Radiance of its surface, times colour: what it lights follows its true shape, without falloff.
+---@field samples? integer samples (a whole number, 1 to 64; default area_samples): N x N shadow rays for this light.
+---@field visible? boolean visible (true or false; default false): Whether the light itself is seen.
+---@field position gr.triple position (a point {x, y, z}): Its centre.
+---@field radius number radius (a number, > 0): Its radius.
+
+---A light that is a sphere; soft shadows.
+---@param position gr.triple position (a point {x, y, z}): Its centre.
+---@param colour gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Its colour and strength.
+---@param falloff gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients: light is divided by c0 + c1 d + c2 d^2.
+---@param radius number radius (a number, > 0): Its radius.
 ---@return gr.light
-function gr.spherical_light(name) end
+---@overload fun(fields: gr.spherical_light.fields): gr.light
+function gr.spherical_light(position, colour, falloff, radius) end
+
+---@class gr.disc_light.fields
+---@field colour? gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Its colour and strength.
+---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
+---@field exclude? gr.node[] exclude (a table of nodes; default none): The nodes that it does not light.
+---@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients: light is divided by c0 + c1 d + c2 d^2.
+---@field range? number range (a number, > 0; optional): How far it reaches, instead of falloff: light is multiplied by 1 - d / range.
+---@field intensity? number intensity (a number, >= 0; optional): Physical fading, instead of falloff: light is multiplied by intensity / d^2.
+---@field emission? gr.triple emission (a colour {r, g, b}; optional): Radiance of its surface, times colour: what it lights follows its true shape, without falloff.
+---@field samples? integer samples (a whole number, 1 to 64; default area_samples): N x N shadow rays for this light.
+---@field visible? boolean visible (true or false; default false): Whether the light itself is seen.
+---@field position gr.triple position (a point {x, y, z}): Its centre.
+---@field normal gr.triple normal (a direction {x, y, z}): The direction it faces.
+---@field radius number radius (a number, > 0): Its radius.
+---@field one_sided? boolean one_sided (true or false; default false): Whether it is seen, and emits, only on the side of its normal.
+
+---A light that is a disc; soft shadows.
+---@param position gr.triple position (a point {x, y, z}): Its centre.
+---@param normal gr.triple normal (a direction {x, y, z}): The direction it faces.
+---@param radius number radius (a number, > 0): Its radius.
+---@param colour gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Its colour and strength.
+---@param falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients: light is divided by c0 + c1 d + c2 d^2.
+---@return gr.light
+---@overload fun(fields: gr.disc_light.fields): gr.light
+function gr.disc_light(position, normal, radius, colour, falloff) end
+
+---@class gr.directional_light.fields
+---@field colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
+---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
+---@field exclude? gr.node[] exclude (a table of nodes; default none): The nodes that it does not light.
+---@field direction gr.triple direction (a direction {x, y, z}): The direction its light goes in.
+
+---Light of one direction from infinitely far away.
+---@param direction gr.triple direction (a direction {x, y, z}): The direction its light goes in.
+---@param colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
+---@return gr.light
+---@overload fun(fields: gr.directional_light.fields): gr.light
+function gr.directional_light(direction, colour) end
+
+---@class gr.spot_light.fields
+---@field colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
+---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
+---@field exclude? gr.node[] exclude (a table of nodes; default none): The nodes that it does not light.
+---@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients: light is divided by c0 + c1 d + c2 d^2.
+---@field range? number range (a number, > 0; optional): How far it reaches, instead of falloff: light is multiplied by 1 - d / range.
+---@field intensity? number intensity (a number, >= 0; optional): Physical fading, instead of falloff: light is multiplied by intensity / d^2.
+---@field position gr.triple position (a point {x, y, z}): Where it stands.
+---@field direction? gr.triple direction (a direction {x, y, z}; default {0, -1, 0}): The axis of its cone.
+---@field target? gr.triple target (a point {x, y, z}; optional): A point on the axis, instead of direction.
+---@field inner? number inner (a number, 0 to 180, in degrees; default three quarters of outer): Angle from the axis up to which its light is full.
+---@field outer? number outer (a number, > 0 and <= 180, in degrees; default 30, or inner if that is more): Angle from the axis where its light ends.
+
+---A light at a point that shines into a cone.
+---@param position gr.triple position (a point {x, y, z}): Where it stands.
+---@param direction gr.triple direction (a direction {x, y, z}; default {0, -1, 0}): The axis of its cone.
+---@param colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
+---@param inner number inner (a number, 0 to 180, in degrees; default three quarters of outer): Angle from the axis up to which its light is full.
+---@param outer number outer (a number, > 0 and <= 180, in degrees; default 30, or inner if that is more): Angle from the axis where its light ends.
+---@param falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients: light is divided by c0 + c1 d + c2 d^2.
+---@return gr.light
+---@overload fun(fields: gr.spot_light.fields): gr.light
+function gr.spot_light(position, direction, colour, inner, outer, falloff) end
 
 ---@class gr.render.fields
 ---@field node gr.node node (a node): The root of what is drawn.

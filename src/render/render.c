@@ -47,7 +47,11 @@ static struct vec3 sample(struct run *run, struct worker *worker, int64_t x, int
     struct ray ray = camera_ray(&run->camera, (double)x + dx, (double)y + dy);
     ray.footprint.spread *= share;
     uint64_t pixel = (uint64_t)y * run->job->width + (uint64_t)x;
-    uint64_t key = random_combine(random_combine(random_combine(run->job->settings.seed, 0), pixel), number);
+    uint64_t key_of_pixel = random_combine(random_combine(run->job->settings.seed, 0), pixel);
+    uint64_t key = random_combine(key_of_pixel, number);
+    /* Number 0 is the first sample, which stands alone; the others are number - 1 of N x N. */
+    uint32_t side = number > 0 ? (uint32_t)run->job->settings.samples : 1;
+    worker->tracer.strata = (struct strata){number > 0 ? (uint32_t)number - 1 : 0, side, random_combine(key_of_pixel, 1)};
     worker->camera_rays++;
     return whitted_trace(&worker->tracer, &ray, key);
 }

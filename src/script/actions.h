@@ -111,8 +111,25 @@ struct image *act_find_image(struct context *context, const struct value *value,
 void act_image_defaults(struct material *material, const struct value *value, struct image *image);
 
 /* act_render.c */
-enum { LIGHT_POSITION, LIGHT_COLOUR, LIGHT_FALLOFF, LIGHT_COUNT };
-enum { AREA_CORNER, AREA_V1, AREA_V2, AREA_COLOUR, AREA_FALLOFF, AREA_COUNT };
+/* Every light begins with these; LAMP_ and FADING_ fields only where the kind has them. */
+enum {
+    LIGHT_COLOUR,
+    LIGHT_INCLUDE,
+    LIGHT_EXCLUDE,
+    LIGHT_FALLOFF,
+    LIGHT_RANGE,
+    LIGHT_INTENSITY,
+    LIGHT_EMISSION,
+    LIGHT_SAMPLES,
+    LIGHT_VISIBLE,
+    LIGHT_OWN /* the first field of the kind's own */
+};
+enum { DISTANT_DIRECTION = LIGHT_EXCLUDE + 1, DISTANT_COUNT };
+enum { POINT_POSITION = LIGHT_INTENSITY + 1, POINT_COUNT };
+enum { SPOT_POSITION = LIGHT_INTENSITY + 1, SPOT_DIRECTION, SPOT_TARGET, SPOT_INNER, SPOT_OUTER, SPOT_COUNT };
+enum { AREA_CORNER = LIGHT_OWN, AREA_V1, AREA_V2, AREA_ONE_SIDED, AREA_COUNT };
+enum { BALL_POSITION = LIGHT_OWN, BALL_RADIUS, BALL_COUNT };
+enum { DISC_POSITION = LIGHT_OWN, DISC_NORMAL, DISC_RADIUS, DISC_ONE_SIDED, DISC_COUNT };
 enum {
     RENDER_NODE,
     RENDER_FILE,
@@ -141,6 +158,6 @@ enum {
     RENDER_ACCEL,
     RENDER_COUNT
 };
-action act_light, act_area_light, act_render;
+action act_light, act_directional_light, act_spot_light, act_area_light, act_spherical_light, act_disc_light, act_render;
 
 #endif

@@ -420,26 +420,80 @@ static const struct parameter texture_parameters[] = {
 
 static const struct parameter fresnel_parameters[] = {[FRESNEL_MATERIAL] = BASE};
 
-#define LIGHT_COLOUR_PARAMETER                                                                                         \
-    { "colour", KIND_COLOUR, 0, ANY, NULL, NULL, "Its colour and strength." }
-#define FALLOFF                                                                                                        \
-    {                                                                                                                  \
-        "falloff", KIND_TRIPLE, OPTIONAL, ANY, NULL, "{1, 0, 0}",                                                      \
-            "Coefficients: light is divided by c0 + c1 d + c2 d^2."                                                    \
-    }
+#define LIGHT_LISTS                                                                                                    \
+    [LIGHT_INCLUDE] = {"include", KIND_NODES, OPTIONAL, ANY, NULL, "all",                                              \
+                       "The nodes that it lights, with everything under them."},                                       \
+    [LIGHT_EXCLUDE] = {"exclude", KIND_NODES, OPTIONAL, ANY, NULL, "none", "The nodes that it does not light."}
+#define LIGHT_FIELDS(colour_flags)                                                                                     \
+    [LIGHT_COLOUR] = {"colour", KIND_COLOUR, colour_flags, ANY, NULL, colour_flags ? "{1, 1, 1} with emission" : NULL, \
+                      "Its colour and strength."},                                                                     \
+    LIGHT_LISTS
+#define FADING_FIELDS                                                                                                  \
+    [LIGHT_FALLOFF] = {"falloff", KIND_TRIPLE, OPTIONAL, ANY, NULL, "{1, 0, 0}",                                       \
+                       "Coefficients: light is divided by c0 + c1 d + c2 d^2."},                                       \
+    [LIGHT_RANGE] = {"range", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, NULL,                                  \
+                     "How far it reaches, instead of falloff: light is multiplied by 1 - d / range."},                 \
+    [LIGHT_INTENSITY] = {"intensity", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, NULL,                                     \
+                         "Physical fading, instead of falloff: light is multiplied by intensity / d^2."}
+#define LAMP_FIELDS                                                                                                    \
+    [LIGHT_EMISSION] = {"emission", KIND_COLOUR, OPTIONAL, ANY, NULL, NULL,                                            \
+                        "Radiance of its surface, times colour: what it lights follows its true shape, without "       \
+                        "falloff."},                                                                                   \
+    [LIGHT_SAMPLES] = {"samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "area_samples",                          \
+                       "N x N shadow rays for this light."},                                                           \
+    [LIGHT_VISIBLE] = {"visible", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the light itself is seen."}
+#define ONE_SIDED(text)                                                                                                \
+    { "one_sided", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether it is seen, and emits, only on the side of " text "." }
 
 static const struct parameter light_parameters[] = {
-    [LIGHT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Where it stands."},
-    [LIGHT_COLOUR] = LIGHT_COLOUR_PARAMETER,
-    [LIGHT_FALLOFF] = FALLOFF,
+    LIGHT_FIELDS(0),
+    FADING_FIELDS,
+    [POINT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Where it stands."},
+};
+
+static const struct parameter directional_parameters[] = {
+    LIGHT_FIELDS(0),
+    [DISTANT_DIRECTION] = {"direction", KIND_DIRECTION, 0, ANY, NULL, NULL, "The direction its light goes in."},
+};
+
+static const struct parameter spot_parameters[] = {
+    LIGHT_FIELDS(0),
+    FADING_FIELDS,
+    [SPOT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Where it stands."},
+    [SPOT_DIRECTION] = {"direction", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, -1, 0}", "The axis of its cone."},
+    [SPOT_TARGET] = {"target", KIND_POINT, OPTIONAL, ANY, NULL, NULL, "A point on the axis, instead of direction."},
+    [SPOT_INNER] = {"inner", KIND_NUMBER, OPTIONAL, BETWEEN(0, 180), "degrees", "three quarters of outer",
+                    "Angle from the axis up to which its light is full."},
+    [SPOT_OUTER] = {"outer", KIND_NUMBER, OPTIONAL | LOW_OPEN, BETWEEN(0, 180), "degrees", "30, or inner if that is more",
+                    "Angle from the axis where its light ends."},
 };
 
 static const struct parameter area_parameters[] = {
+    LIGHT_FIELDS(OPTIONAL),
+    FADING_FIELDS,
+    LAMP_FIELDS,
     [AREA_CORNER] = {"corner", KIND_POINT, 0, ANY, NULL, NULL, "One corner of the parallelogram."},
     [AREA_V1] = {"v1", KIND_DIRECTION, 0, ANY, NULL, NULL, "The edge to the next corner."},
     [AREA_V2] = {"v2", KIND_DIRECTION, 0, ANY, NULL, NULL, "The edge to the corner on the other side."},
-    [AREA_COLOUR] = LIGHT_COLOUR_PARAMETER,
-    [AREA_FALLOFF] = FALLOFF,
+    [AREA_ONE_SIDED] = ONE_SIDED("v1 x v2"),
+};
+
+static const struct parameter ball_light_parameters[] = {
+    LIGHT_FIELDS(OPTIONAL),
+    FADING_FIELDS,
+    LAMP_FIELDS,
+    [BALL_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Its centre."},
+    [BALL_RADIUS] = {"radius", KIND_NUMBER, LOW_OPEN, ABOVE(0), NULL, NULL, "Its radius."},
+};
+
+static const struct parameter disc_light_parameters[] = {
+    LIGHT_FIELDS(OPTIONAL),
+    FADING_FIELDS,
+    LAMP_FIELDS,
+    [DISC_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Its centre."},
+    [DISC_NORMAL] = {"normal", KIND_DIRECTION, 0, ANY, NULL, NULL, "The direction it faces."},
+    [DISC_RADIUS] = {"radius", KIND_NUMBER, LOW_OPEN, ABOVE(0), NULL, NULL, "Its radius."},
+    [DISC_ONE_SIDED] = ONE_SIDED("its normal"),
 };
 
 static const struct parameter render_parameters[] = {
@@ -592,7 +646,14 @@ const struct function function_table[] = {
     GR("light", light_parameters, RESULT_LIGHT, act_light, "A light at a point.", "position colour falloff?"),
     GR("area_light", area_parameters, RESULT_LIGHT, act_area_light, "A light that is a parallelogram; soft shadows.",
        "corner v1 v2 colour falloff?"),
-    LATER("spherical_light", OWNER_GR, RESULT_LIGHT, "0.2", "A light that is a sphere."),
+    GR("spherical_light", ball_light_parameters, RESULT_LIGHT, act_spherical_light,
+       "A light that is a sphere; soft shadows.", "position colour falloff radius"),
+    GR("disc_light", disc_light_parameters, RESULT_LIGHT, act_disc_light, "A light that is a disc; soft shadows.",
+       "position normal radius colour falloff?"),
+    GR("directional_light", directional_parameters, RESULT_LIGHT, act_directional_light,
+       "Light of one direction from infinitely far away.", "direction colour"),
+    GR("spot_light", spot_parameters, RESULT_LIGHT, act_spot_light, "A light at a point that shines into a cone.",
+       "position direction colour inner outer falloff?"),
 
     GR("render", render_parameters, RESULT_NOTHING, act_render, "Renders a picture into a PNG file.",
        "node file" RENDER_TAIL),
