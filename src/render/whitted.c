@@ -74,7 +74,7 @@ static double visible_share(struct tracer *tracer, const struct light *light, ui
         if (have < AREA_BATCH && cell + 1 < all)
             continue;
         seen += world_count_visible(world, fan.from, hit->time, fan.frame.corner, fan.frame.edge1, fan.frame.edge2,
-                                    targets, have, tracer->scratch, NULL);
+                                    targets, have, tracer->scratch);
         have = 0;
         if (tracer->pool && pool_cancelled(tracer->pool))
             return 0;
@@ -106,8 +106,8 @@ static struct vec3 lamp_light(struct tracer *tracer, const struct light *light, 
         }
         if (have == 0 || (have < AREA_BATCH && cell + 1 < all))
             continue;
-        (void)world_count_visible(tracer->job->world, fan.from, hit->time, fan.frame.corner, fan.frame.edge1,
-                                  fan.frame.edge2, targets, have, tracer->scratch, visible);
+        (void)world_visible(tracer->job->world, fan.from, hit->time, fan.frame.corner, fan.frame.edge1,
+                            fan.frame.edge2, targets, have, tracer->scratch, visible);
         tracer->shadow_rays += have;
         for (uint32_t i = 0; i < have; i++)
             sum = visible[i] ? vec3_add(sum, carried[i]) : sum;

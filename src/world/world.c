@@ -287,9 +287,9 @@ bool world_any(const struct world *world, const struct ray *ray, struct world_sc
     return world->accel == ACCEL_GRID ? any_in_grid(world, ray, &probe, scratch) : any_in_tree(world, ray, scratch);
 }
 
-uint32_t world_count_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner,
-                             struct vec3 edge1, struct vec3 edge2, const struct vec3 *targets, uint32_t count,
-                             struct world_scratch *scratch, bool *visible) {
+uint32_t world_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner, struct vec3 edge1,
+                       struct vec3 edge2, const struct vec3 *targets, uint32_t count, struct world_scratch *scratch,
+                       bool *visible) {
     enum { CANDIDATES = 24 };
     uint32_t candidates[CANDIDATES], found = CANDIDATES + 1, seen = 0;
     if (world->accel == ACCEL_AUTO || world->accel == ACCEL_BVH) {
@@ -327,6 +327,12 @@ uint32_t world_count_visible(const struct world *world, struct vec3 from, double
             visible[i] = !blocked;
     }
     return seen;
+}
+
+uint32_t world_count_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner,
+                             struct vec3 edge1, struct vec3 edge2, const struct vec3 *targets, uint32_t count,
+                             struct world_scratch *scratch) {
+    return world_visible(world, from, time, corner, edge1, edge2, targets, count, scratch, NULL);
 }
 
 /* --- describing --- */

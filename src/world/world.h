@@ -69,11 +69,14 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
                             uint32_t *placed, struct crossing *crossing);
 bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch);
 /* How many of the points targets[0 .. count-1], all inside the parallelogram, are seen from `from`: as world_any would
- * say of every segment, t in (0, 1), with the search for what can stand between done once for all of them. visible
- * (count entries, or NULL) says it of each. */
+ * say of every segment, t in (0, 1), with the search for what can stand between done once for all of them. */
 uint32_t world_count_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner,
                              struct vec3 edge1, struct vec3 edge2, const struct vec3 *targets, uint32_t count,
-                             struct world_scratch *scratch, bool *visible);
+                             struct world_scratch *scratch);
+/* The same; visible (count entries, or NULL) says it of each. */
+uint32_t world_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner, struct vec3 edge1,
+                       struct vec3 edge2, const struct vec3 *targets, uint32_t count, struct world_scratch *scratch,
+                       bool *visible);
 /* The closed primitives whose inside holds `point`, innermost last; at most `limit`. Returns the count. */
 uint32_t world_containing(const struct world *world, struct vec3 point, struct world_scratch *scratch, uint32_t *placed,
                           uint32_t limit);

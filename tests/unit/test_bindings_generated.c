@@ -58,7 +58,7 @@ static void right_text(const struct parameter *p, char *out, size_t size) {
     case KIND_COLOUR:
     case KIND_TRIPLE:
     case KIND_BACKGROUND:
-        text = "{1, 2, 3}";
+        text = strcmp(p->name, "target") == 0 ? "{3, 2, 1}" : "{1, 2, 3}"; /* not where a light or the eye stands */
         if (strcmp(p->name, "max") == 0 || strcmp(p->name, "b") == 0 || strcmp(p->name, "up") == 0)
             text = "{4, 3, 8}"; /* corners and edges of one shape differ */
         if (strcmp(p->name, "c") == 0)
