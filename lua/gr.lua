@@ -653,6 +653,12 @@ function gr.patch(material, points, patches) end
 ---@field refract? number refract (a number, 0 to 1; default 0): Amount of refracted light.
 ---@field ior? number ior (a number, >= 1; default none): Index of refraction of the inside.
 ---@field two_sided? boolean two_sided (true or false; default false): Whether faces seen from behind are lit as well.
+---@field highlight? 'phong'|'blinn' highlight ('phong'|'blinn'; default specular of the render): The form of its highlight.
+---@field lit? boolean lit (true or false; default true): Whether light is looked for; false: kd is shown as it is.
+---@field emission? gr.triple emission (a colour {r, g, b}; default {0, 0, 0}): Light of its own, added to what it reflects.
+---@field roughness? number roughness (a number, 0 to 1; default 0): Of reflection and refraction: 0 is polished.
+---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): N x N rays where it is rough; one ray after another rough surface.
+---@field absorption? gr.triple absorption (a colour {r, g, b}, 0 to 1e+300; default {0, 0, 0}): Inside, light fades by exp(-absorption * distance).
 
 ---A Phong material.
 ---@param kd gr.triple kd (a colour {r, g, b}): Colour of diffuse and ambient light.
@@ -670,6 +676,12 @@ function gr.material(kd, ks, shininess) end
 ---@field refract? number refract (a number, 0 to 1; default 0): Amount of refracted light.
 ---@field ior? number ior (a number, >= 1; default 1): Index of refraction of the inside.
 ---@field two_sided? boolean two_sided (true or false; default false): Whether faces seen from behind are lit as well.
+---@field highlight? 'phong'|'blinn' highlight ('phong'|'blinn'; default specular of the render): The form of its highlight.
+---@field lit? boolean lit (true or false; default true): Whether light is looked for; false: kd is shown as it is.
+---@field emission? gr.triple emission (a colour {r, g, b}; default {0, 0, 0}): Light of its own, added to what it reflects.
+---@field roughness? number roughness (a number, 0 to 1; default 0): Of reflection and refraction: 0 is polished.
+---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): N x N rays where it is rough; one ray after another rough surface.
+---@field absorption? gr.triple absorption (a colour {r, g, b}, 0 to 1e+300; default {0, 0, 0}): Inside, light fades by exp(-absorption * distance).
 
 ---A Phong material that reflects and refracts.
 ---@param kd gr.triple kd (a colour {r, g, b}): Colour of diffuse and ambient light.

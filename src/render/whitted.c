@@ -3,11 +3,14 @@
 #include "render/whitted.h"
 
 #include "base/random.h"
+#include "look/microfacet.h"
+#include "math/elementary.h"
 #include "math/sampling.h"
 
 struct path {
     uint64_t key;
     int reflections, refractions; /* so far, from the camera */
+    bool rough;                   /* after a rough surface: the next ones get one ray each */
 };
 
 static struct vec3 trace(struct tracer *tracer, const struct ray *ray, struct path path);
@@ -169,11 +172,12 @@ static const struct light *visible_light(const struct world *world, const struct
 /* --- secondary rays --- */
 
 /* The two sides of the surface for a ray that crosses it here: the relative index of refraction, and the stack behind. */
-static double cross_surface(const struct hit *hit, double ior, const struct media *media, struct media *behind) {
+static double cross_surface(const struct hit *hit, double ior, struct vec3 absorption, const struct media *media,
+                            struct media *behind) {
     media_copy(behind, media);
     double here = media_ior(media);
     if (hit->front) {
-        media_enter(behind, hit->placed, ior);
+        media_enter_absorbing(behind, hit->placed, ior, absorption);
         return here / ior;
     }
     bool known = false;
@@ -213,8 +217,9 @@ static struct vec3 follow_mirror(struct tracer *tracer, const struct hit *hit, c
         return vec3_all(0);
     struct ray reflected = secondary_ray(hit, ray, direction, ray->media);
     tracer->reflected_rays++;
-    return trace(tracer, &reflected,
-                 (struct path){random_combine(path.key, UINT32_MAX), path.reflections + 1, path.refractions});
+    path.key = random_combine(path.key, UINT32_MAX);
+    path.reflections++;
+    return trace(tracer, &reflected, path);
 }
 
 static struct vec3 follow_refraction(struct tracer *tracer, const struct hit *hit, const struct ray *ray,
@@ -223,8 +228,59 @@ static struct vec3 follow_refraction(struct tracer *tracer, const struct hit *hi
         return vec3_all(0);
     struct ray refracted = secondary_ray(hit, ray, direction, behind);
     tracer->refracted_rays++;
-    return trace(tracer, &refracted,
-                 (struct path){random_combine(path.key, (uint64_t)UINT32_MAX + 1), path.reflections, path.refractions + 1});
+    path.key = random_combine(path.key, (uint64_t)UINT32_MAX + 1);
+    path.refractions++;
+    return trace(tracer, &refracted, path);
+}
+
+/* A rough surface: the mean over facets of what each reflects and refracts. No energy is lost: light that a facet sends
+ * to the wrong side of the surface is turned back, as by one more facet, and a facet that reflects totally where the
+ * surface as a whole does not gives way to the surface. */
+struct rough {
+    const struct hit *hit;
+    const struct ray *ray;
+    const struct media *behind;
+    struct vec3 side, geometric_side, through;
+    double eta, alpha;
+    int samples;
+};
+
+enum { GLOSSY_SAMPLES = 4 };
+
+static struct vec3 fold(struct vec3 direction, struct vec3 to_side) {
+    double height = vec3_dot(direction, to_side);
+    return height < 0 ? vec3_add_scaled(direction, to_side, -2 * height) : direction;
+}
+
+static struct vec3 follow_rough(struct tracer *tracer, const struct rough *rough, struct vec3 mirror,
+                                struct vec3 refraction, struct path path) {
+    const struct hit *hit = rough->hit;
+    uint32_t n = path.rough ? 1 : rough->samples ? (uint32_t)rough->samples : GLOSSY_SAMPLES;
+    uint32_t turns = tracer->strata.side, turn = turns > 1 ? sample_turn(&tracer->strata, path.key) : 0;
+    uint64_t key = random_combine(path.key, (uint64_t)UINT32_MAX + 2);
+    struct vec3 sum = {0, 0, 0};
+    for (uint32_t cell = 0; cell < n * n; cell++) {
+        struct sample2 place = turns > 1 ? sample_cell_part(key, cell % n, cell / n, n, turn, turns)
+                                         : sample_cell(key, cell % n, cell / n, n);
+        struct vec3 facet = microfacet_normal(rough->side, hit->view, rough->alpha, place);
+        struct path branch = path;
+        branch.key = random_combine(key, cell);
+        branch.rough = true;
+        if (!is_black(mirror)) {
+            struct vec3 direction = fold(shading_reflect(facet, hit->view), rough->geometric_side);
+            sum = vec3_add(sum, vec3_mul(mirror, follow_mirror(tracer, hit, rough->ray, direction, branch)));
+        }
+        if (!is_black(refraction)) {
+            struct vec3 direction;
+            if (shading_refract(facet, hit->view, rough->eta, &direction))
+                direction = fold(direction, vec3_negate(rough->geometric_side));
+            else
+                direction = rough->through;
+            struct vec3 light = follow_refraction(tracer, hit, rough->ray, direction, rough->behind, branch);
+            sum = vec3_add(sum, vec3_mul(refraction, light));
+        }
+    }
+    return vec3_scale(sum, 1 / ((double)n * (double)n));
 }
 
 /* --- one hit --- */
@@ -242,9 +298,10 @@ static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const str
     /* What the interface does to the amounts. */
     struct media behind;
     struct vec3 through = {0, 0, 0};
+    double eta = 1;
     bool passes = false;
     if (look.fresnel || look.refract != 0) {
-        double eta = cross_surface(hit, look.has_ior ? look.ior : 1, ray->media, &behind);
+        eta = cross_surface(hit, look.has_ior ? look.ior : 1, look.absorption, ray->media, &behind);
         passes = shading_refract(side, hit->view, eta, &through);
         if (look.fresnel) {
             look.reflect = shading_fresnel(vec3_dot(side, hit->view), eta);
@@ -256,6 +313,7 @@ static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const str
     struct shading shading;
     material_shading(&look, settings->specular, settings->ambient_plain, &shading);
     struct vec3 colour = own_light(tracer, hit, &shading, normal, dark_side, path.key);
+    colour = vec3_add(colour, shading.emission);
 
     struct vec3 mirror = {0, 0, 0}, refraction = {0, 0, 0};
     for (int i = 0; i < shading.count; i++) {
@@ -270,6 +328,10 @@ static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const str
             mirror = vec3_add(mirror, refraction);
         refraction = vec3_all(0);
     }
+    if (shading.alpha > 0) {
+        struct rough rough = {hit, ray, &behind, side, geometric_side, through, eta, shading.alpha, look.glossy_samples};
+        return vec3_add(colour, follow_rough(tracer, &rough, mirror, refraction, path));
+    }
     if (!is_black(mirror)) {
         struct vec3 direction = reflect_outwards(hit, side, geometric_side);
         colour = vec3_add(colour, vec3_mul(mirror, follow_mirror(tracer, hit, ray, direction, path)));
@@ -281,6 +343,16 @@ static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const str
     return colour;
 }
 
+/* The law of Beer, Lambert and Bouguer over a way inside the current medium. */
+static struct vec3 absorbed(struct vec3 colour, const struct media *media, double distance) {
+    struct vec3 a = media->entries[media->count - 1].absorption;
+    if (is_black(a))
+        return colour;
+    return (struct vec3){a.x > 0 ? colour.x * el_exp(-a.x * distance) : colour.x,
+                         a.y > 0 ? colour.y * el_exp(-a.y * distance) : colour.y,
+                         a.z > 0 ? colour.z * el_exp(-a.z * distance) : colour.z};
+}
+
 static struct vec3 trace(struct tracer *tracer, const struct ray *ray, struct path path) {
     const struct world *world = tracer->job->world;
     struct hit hit;
@@ -289,11 +361,16 @@ static struct vec3 trace(struct tracer *tracer, const struct ray *ray, struct pa
     bool met = world_nearest(world, ray, tracer->scratch, &hit);
     double lamp_t;
     const struct light *lamp = visible_light(world, ray, met ? hit.t : ray->t_max, &lamp_t);
+    struct vec3 colour;
     if (lamp)
-        return lamp->colour;
-    if (!met)
-        return sky_colour(&world->sky, vec3_normalize(ray->direction), ray->footprint.spread);
-    return shade(tracer, ray, &hit, path);
+        colour = lamp->colour;
+    else if (met)
+        colour = shade(tracer, ray, &hit, path);
+    else
+        colour = sky_colour(&world->sky, vec3_normalize(ray->direction), ray->footprint.spread);
+    if (!ray->media || ray->media->count == 0)
+        return colour;
+    return absorbed(colour, ray->media, lamp || met ? lamp_t * vec3_length(ray->direction) : INFINITY);
 }
 
 struct vec3 whitted_trace(struct tracer *tracer, const struct ray *ray, uint64_t key) {
@@ -311,6 +388,6 @@ void whitted_eye_media(const struct world *world, struct vec3 eye, struct world_
         uint32_t material = placed->shape.kind == SHAPE_CSG ? placed->shape.csg->leaves[0].material : placed->material;
         double ior;
         if (material_is_transparent(world->materials[material], &ior))
-            media_enter(out, inside[i], ior);
+            media_enter_absorbing(out, inside[i], ior, material_absorption(world->materials[material]));
     }
 }

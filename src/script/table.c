@@ -347,6 +347,20 @@ static const struct parameter rotate_parameters[] = {
 #define TWO_SIDED                                                                                                      \
     { "two_sided", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether faces seen from behind are lit as well." }
 
+#define SURFACE_FIELDS                                                                                                 \
+    [PHONG_HIGHLIGHT] = {"highlight", KIND_CHOICE, OPTIONAL, 0, 0, "phong blinn", NULL, "specular of the render",      \
+                         "The form of its highlight."},                                                                \
+    [PHONG_LIT] = {"lit", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "true",                                                   \
+                   "Whether light is looked for; false: kd is shown as it is."},                                       \
+    [PHONG_EMISSION] = {"emission", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0, 0, 0}",                                     \
+                        "Light of its own, added to what it reflects."},                                               \
+    [PHONG_ROUGHNESS] = {"roughness", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "0",                                 \
+                         "Of reflection and refraction: 0 is polished."},                                              \
+    [PHONG_GLOSSY_SAMPLES] = {"glossy_samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "4",                       \
+                              "N x N rays where it is rough; one ray after another rough surface."},                   \
+    [PHONG_ABSORPTION] = {"absorption", KIND_COLOUR, OPTIONAL, BETWEEN(0, 1e300), NULL, "{0, 0, 0}",                   \
+                          "Inside, light fades by exp(-absorption * distance)."}
+
 static const struct parameter material_parameters[] = {
     [PHONG_KD] = KD,
     [PHONG_KS] = KS,
@@ -355,6 +369,7 @@ static const struct parameter material_parameters[] = {
     [PHONG_REFRACT] = {"refract", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "0", "Amount of refracted light."},
     [PHONG_IOR] = {"ior", KIND_NUMBER, OPTIONAL, ABOVE(1), NULL, "none", "Index of refraction of the inside."},
     [PHONG_TWO_SIDED] = TWO_SIDED,
+    SURFACE_FIELDS,
 };
 
 static const struct parameter rr_parameters[] = {
@@ -365,6 +380,7 @@ static const struct parameter rr_parameters[] = {
     [PHONG_REFRACT] = {"refract", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "0", "Amount of refracted light."},
     [PHONG_IOR] = {"ior", KIND_NUMBER, OPTIONAL, ABOVE(1), NULL, "1", "Index of refraction of the inside."},
     [PHONG_TWO_SIDED] = TWO_SIDED,
+    SURFACE_FIELDS,
 };
 
 #define BASE                                                                                                           \
