@@ -943,6 +943,19 @@ function gr.spot_light(position, direction, colour, inner, outer, falloff) end
 ---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): The form of highlights.
 ---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Start of random numbers.
 ---@field accel? 'auto'|'grid'|'bvh'|'none' accel ('auto'|'grid'|'bvh'|'none'; default 'auto'): How hits are searched; the picture is the same.
+---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye is equidistant inside a circle; panorama is all around, longitude by latitude.
+---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture in the scene.
+---@field angle? number angle (a number, > 0 and <= 360, in degrees; default 180): Full angle of a fisheye across the height.
+---@field shift_x? number shift_x (a number, in widths; default 0): How far the window is off to the right.
+---@field shift_y? number shift_y (a number, in heights; default 0): How far the window is off upwards.
+---@field aperture? number aperture (a number, >= 0; default 0): Radius of the lens in the scene; 0 is a pinhole. With a lens every pixel is resampled.
+---@field focus? number focus (a number, > 0; default target, else 1): Distance of the plane that is sharp, along the view.
+---@field focus_point? gr.triple focus_point (a point {x, y, z}; optional): A point of that plane, instead of focus.
+---@field blades? integer blades (a whole number, 3 to 64; default round): Number of blades: the aperture is a polygon.
+---@field blade_angle? number blade_angle (a number, in degrees; default 0): How far that polygon is turned.
+---@field stereo? 'none'|'side'|'anaglyph' stereo ('none'|'side'|'anaglyph'; default 'none'): Two eyes: pictures side by side, left one left, or red and cyan.
+---@field eye_distance? number eye_distance (a number, >= 0; default screen / 30): How far the eyes are apart.
+---@field screen? number screen (a number, > 0; default focus): Distance along the view that both eyes see in the same place.
 
 ---Renders a picture into a PNG file.
 ---@param node gr.node node (a node): The root of what is drawn.
@@ -984,6 +997,19 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): The form of highlights.
 ---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Start of random numbers.
 ---@field accel? 'auto'|'grid'|'bvh'|'none' accel ('auto'|'grid'|'bvh'|'none'; default 'auto'): How hits are searched; the picture is the same.
+---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye is equidistant inside a circle; panorama is all around, longitude by latitude.
+---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture in the scene.
+---@field angle? number angle (a number, > 0 and <= 360, in degrees; default 180): Full angle of a fisheye across the height.
+---@field shift_x? number shift_x (a number, in widths; default 0): How far the window is off to the right.
+---@field shift_y? number shift_y (a number, in heights; default 0): How far the window is off upwards.
+---@field aperture? number aperture (a number, >= 0; default 0): Radius of the lens in the scene; 0 is a pinhole. With a lens every pixel is resampled.
+---@field focus? number focus (a number, > 0; default target, else 1): Distance of the plane that is sharp, along the view.
+---@field focus_point? gr.triple focus_point (a point {x, y, z}; optional): A point of that plane, instead of focus.
+---@field blades? integer blades (a whole number, 3 to 64; default round): Number of blades: the aperture is a polygon.
+---@field blade_angle? number blade_angle (a number, in degrees; default 0): How far that polygon is turned.
+---@field stereo? 'none'|'side'|'anaglyph' stereo ('none'|'side'|'anaglyph'; default 'none'): Two eyes: pictures side by side, left one left, or red and cyan.
+---@field eye_distance? number eye_distance (a number, >= 0; default screen / 30): How far the eyes are apart.
+---@field screen? number screen (a number, > 0; default focus): Distance along the view that both eyes see in the same place.
 
 ---The same with a sky image all around.
 ---@param node gr.node node (a node): The root of what is drawn.

@@ -174,6 +174,32 @@ static void apply_settings(const struct value *args, struct settings *settings) 
         settings->view_is_target = true;
 }
 
+static bool apply_lens(const struct value *args, struct lens *lens, const struct camera *camera, struct error *error) {
+    if (args[RENDER_FOCUS].given && args[RENDER_FOCUS_POINT].given)
+        return error_set(error, ERROR_SCENE, "focus and focus_point exclude each other");
+    if (args[RENDER_PROJECTION].given)
+        lens->projection = (enum projection)args[RENDER_PROJECTION].choice; /* listed in the order of the enum */
+    if (args[RENDER_VIEW_HEIGHT].given)
+        lens->view_height = args[RENDER_VIEW_HEIGHT].number;
+    if (args[RENDER_ANGLE].given)
+        lens->angle = args[RENDER_ANGLE].number;
+    lens->shift_x = args[RENDER_SHIFT_X].number;
+    lens->shift_y = args[RENDER_SHIFT_Y].number;
+    lens->aperture = args[RENDER_APERTURE].number;
+    double to_target = vec3_length(vec3_sub(args[RENDER_TARGET].vector, camera->eye));
+    double fallback = args[RENDER_TARGET].given && to_target > 0 ? to_target : 1;
+    lens->focus = args[RENDER_FOCUS].given ? args[RENDER_FOCUS].number : args[RENDER_FOCUS_POINT].given ? 0 : fallback;
+    lens->focus_point = args[RENDER_FOCUS_POINT].vector;
+    lens->blades = (int)args[RENDER_BLADES].number;
+    lens->blade_angle = args[RENDER_BLADE_ANGLE].number;
+    lens->stereo = (enum stereo)args[RENDER_STEREO].choice;
+    lens->screen = args[RENDER_SCREEN].given ? args[RENDER_SCREEN].number
+                   : lens->focus > 0         ? lens->focus
+                                             : fallback;
+    lens->eye_distance = args[RENDER_EYE_DISTANCE].given ? args[RENDER_EYE_DISTANCE].number : lens->screen / 30;
+    return true;
+}
+
 bool act_render(struct context *context, const struct value *args, struct result *result, struct error *error) {
     (void)result;
     if (args[RENDER_VIEW].given && args[RENDER_TARGET].given)
@@ -202,7 +228,8 @@ bool act_render(struct context *context, const struct value *args, struct result
         .settings = context->host->settings,
     };
     apply_settings(args, &request.settings);
-    if (!choose_sky(context, args, &request.sky, error))
+    if (!apply_lens(args, &request.settings.lens, &request.camera, error) ||
+        !choose_sky(context, args, &request.sky, error))
         return false;
     limits_pause(context);
     bool done = context->host->render(context->host->context, &request, error);

@@ -171,6 +171,19 @@ enum {
     RENDER_SPECULAR,
     RENDER_SEED,
     RENDER_ACCEL,
+    RENDER_PROJECTION,
+    RENDER_VIEW_HEIGHT,
+    RENDER_ANGLE,
+    RENDER_SHIFT_X,
+    RENDER_SHIFT_Y,
+    RENDER_APERTURE,
+    RENDER_FOCUS,
+    RENDER_FOCUS_POINT,
+    RENDER_BLADES,
+    RENDER_BLADE_ANGLE,
+    RENDER_STEREO,
+    RENDER_EYE_DISTANCE,
+    RENDER_SCREEN,
     RENDER_COUNT
 };
 action act_light, act_directional_light, act_spot_light, act_area_light, act_spherical_light, act_disc_light, act_render;

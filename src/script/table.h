@@ -93,7 +93,7 @@ struct result {
     void *pointer; /* what the result kind says; owned by the scene or the assets */
 };
 
-enum { FORM_LIMIT = 4, PARAMETER_LIMIT = 32 };
+enum { FORM_LIMIT = 4, PARAMETER_LIMIT = 64 };
 
 /* `run` is the middle paragraph of a binding function: plain C that cannot raise. args[i] belongs to parameters[i]. */
 struct function {
