@@ -7,6 +7,8 @@
 ---@class gr.material
 ---@class gr.light
 ---@class gr.texture
+---@class gr.fog
+---@class gr.sky
 ---@class gr.node
 local node = {}
 
@@ -917,6 +919,79 @@ function gr.directional_light(direction, colour) end
 ---@overload fun(fields: gr.spot_light.fields): gr.light
 function gr.spot_light(position, direction, colour, inner, outer, falloff) end
 
+---@class gr.fog.fields
+---@field colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@field clear_sky? boolean clear_sky (true or false; default false): Whether the sky is seen without fog.
+---@field density number density (a number, >= 0): What is d away keeps the share exp(-density d).
+---@field squared? boolean squared (true or false; default false): The share is exp(-(density d)^2) instead: clear near, then closing fast.
+
+---Fog that is the same everywhere.
+---@param density number density (a number, >= 0): What is d away keeps the share exp(-density d).
+---@param colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@return gr.fog
+---@overload fun(fields: gr.fog.fields): gr.fog
+function gr.fog(density, colour) end
+
+---@class gr.linear_fog.fields
+---@field colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@field clear_sky? boolean clear_sky (true or false; default false): Whether the sky is seen without fog.
+---@field near? number near (a number, >= 0; default 0): Where it begins.
+---@field far number far (a number, > 0): Where nothing else is seen any more.
+
+---Fog that closes linearly with distance.
+---@param near number near (a number, >= 0; default 0): Where it begins.
+---@param far number far (a number, > 0): Where nothing else is seen any more.
+---@param colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@return gr.fog
+---@overload fun(fields: gr.linear_fog.fields): gr.fog
+function gr.linear_fog(near, far, colour) end
+
+---@class gr.height_fog.fields
+---@field colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@field clear_sky? boolean clear_sky (true or false; default false): Whether the sky is seen without fog.
+---@field density number density (a number, >= 0): Density at the base.
+---@field base? number base (a number; default 0): Height y of the base.
+---@field scale? number scale (a number, > 0; default 1): How much higher it is thinner by the factor e.
+
+---Fog that thins out upwards.
+---@param density number density (a number, >= 0): Density at the base.
+---@param base number base (a number; default 0): Height y of the base.
+---@param scale number scale (a number, > 0; default 1): How much higher it is thinner by the factor e.
+---@param colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@return gr.fog
+---@overload fun(fields: gr.height_fog.fields): gr.fog
+function gr.height_fog(density, base, scale, colour) end
+
+---@class gr.fog_profile.fields
+---@field colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@field clear_sky? boolean clear_sky (true or false; default false): Whether the sky is seen without fog.
+---@field profile number[][] profile (a table of pairs {u, v}): Densities by height, {y, density}; linear between, constant beyond.
+
+---Fog with a density for every height.
+---@param profile number[][] profile (a table of pairs {u, v}): Densities by height, {y, density}; linear between, constant beyond.
+---@param colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@return gr.fog
+---@overload fun(fields: gr.fog_profile.fields): gr.fog
+function gr.fog_profile(profile, colour) end
+
+---@class gr.fog_grid.fields
+---@field colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@field clear_sky? boolean clear_sky (true or false; default false): Whether the sky is seen without fog.
+---@field corner gr.triple corner (a point {x, y, z}): The corner with the smallest coordinates.
+---@field size number|gr.triple size (a number or a table of 3 numbers, > 0): Length of the edges, one number or three.
+---@field cells gr.triple cells (a table of 3 numbers, 1 to 1024): How many cells along x, y and z.
+---@field densities number|number[] densities (a number or a table of numbers, >= 0): The density of each cell, x running fastest, then y, then z.
+
+---Fog in the cells of a box, none outside.
+---@param corner gr.triple corner (a point {x, y, z}): The corner with the smallest coordinates.
+---@param size number|gr.triple size (a number or a table of 3 numbers, > 0): Length of the edges, one number or three.
+---@param cells gr.triple cells (a table of 3 numbers, 1 to 1024): How many cells along x, y and z.
+---@param densities number|number[] densities (a number or a table of numbers, >= 0): The density of each cell, x running fastest, then y, then z.
+---@param colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@return gr.fog
+---@overload fun(fields: gr.fog_grid.fields): gr.fog
+function gr.fog_grid(corner, size, cells, densities, colour) end
+
 ---@class gr.render.fields
 ---@field node gr.node node (a node): The root of what is drawn.
 ---@field file string file (the name of a file): The PNG file to write; missing folders are made.
@@ -930,7 +1005,7 @@ function gr.spot_light(position, direction, colour, inner, outer, falloff) end
 ---@field ambient? gr.triple ambient (a colour {r, g, b}; default {0, 0, 0}): Light that is everywhere.
 ---@field lights? gr.light[] lights (a table of lights; default {}): A table of lights.
 ---@field target? gr.triple target (a point {x, y, z}; optional): A point to look at, instead of view.
----@field background? gr.triple|'gradient' background (a colour {r, g, b} or 'gradient'; default 'gradient'): What rays see that meet nothing: a colour, or 'gradient' for {0, 0, (1 + y)/2}.
+---@field background? gr.triple|gr.sky|'gradient' background (a colour {r, g, b}, a sky or 'gradient'; default 'gradient'): What rays see that meet nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}.
 ---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
 ---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
 ---@field full? boolean full (true or false; default -full): Whether every pixel is sampled so.
@@ -943,6 +1018,8 @@ function gr.spot_light(position, direction, colour, inner, outer, falloff) end
 ---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): The form of highlights.
 ---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Start of random numbers.
 ---@field accel? 'auto'|'grid'|'bvh'|'none' accel ('auto'|'grid'|'bvh'|'none'; default 'auto'): How hits are searched; the picture is the same.
+---@field fog? gr.fog fog (a fog; default none): A fog.
+---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Rays that can change a pixel by less than this are not followed.
 ---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye is equidistant inside a circle; panorama is all around, longitude by latitude.
 ---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture in the scene.
 ---@field angle? number angle (a number, > 0 and <= 360, in degrees; default 180): Full angle of a fisheye across the height.
@@ -984,7 +1061,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field ambient? gr.triple ambient (a colour {r, g, b}; default {0, 0, 0}): Light that is everywhere.
 ---@field lights? gr.light[] lights (a table of lights; default {}): A table of lights.
 ---@field target? gr.triple target (a point {x, y, z}; optional): A point to look at, instead of view.
----@field background? gr.triple|'gradient' background (a colour {r, g, b} or 'gradient'; default 'gradient'): What rays see that meet nothing: a colour, or 'gradient' for {0, 0, (1 + y)/2}.
+---@field background? gr.triple|gr.sky|'gradient' background (a colour {r, g, b}, a sky or 'gradient'; default 'gradient'): What rays see that meet nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}.
 ---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
 ---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
 ---@field full? boolean full (true or false; default -full): Whether every pixel is sampled so.
@@ -997,6 +1074,8 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): The form of highlights.
 ---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Start of random numbers.
 ---@field accel? 'auto'|'grid'|'bvh'|'none' accel ('auto'|'grid'|'bvh'|'none'; default 'auto'): How hits are searched; the picture is the same.
+---@field fog? gr.fog fog (a fog; default none): A fog.
+---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Rays that can change a pixel by less than this are not followed.
 ---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye is equidistant inside a circle; panorama is all around, longitude by latitude.
 ---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture in the scene.
 ---@field angle? number angle (a number, > 0 and <= 360, in degrees; default 180): Full angle of a fisheye across the height.

@@ -164,6 +164,7 @@ static bool render_job_run(struct child *child, const struct render_request *req
         .width = options->width ? (uint32_t)options->width : (uint32_t)request->width,
         .height = options->height ? (uint32_t)options->height : (uint32_t)request->height,
         .ambient = request->ambient,
+        .fog = request->fog,
         .film = &film,
         .tile_done = tile_done,
         .context = services->control,

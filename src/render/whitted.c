@@ -11,6 +11,7 @@ struct path {
     uint64_t key;
     int reflections, refractions; /* so far, from the camera */
     bool rough;                   /* after a rough surface: the next ones get one ray each */
+    double weight;                /* how much of what this ray brings can arrive in the pixel */
 };
 
 static struct vec3 trace(struct tracer *tracer, const struct ray *ray, struct path path);
@@ -211,26 +212,32 @@ static bool is_black(struct vec3 c) {
     return c.x == 0 && c.y == 0 && c.z == 0;
 }
 
+/* Times the filter. What cannot change the pixel by the cut-off is not followed. */
 static struct vec3 follow_mirror(struct tracer *tracer, const struct hit *hit, const struct ray *ray,
-                                 struct vec3 direction, struct path path) {
-    if (path.reflections >= tracer->job->settings.reflect_limit)
+                                 struct vec3 direction, struct vec3 filter, struct path path) {
+    const struct settings *settings = &tracer->job->settings;
+    path.weight *= vec3_max_abs(filter);
+    if (path.reflections >= settings->reflect_limit || path.weight < settings->cutoff)
         return vec3_all(0);
     struct ray reflected = secondary_ray(hit, ray, direction, ray->media);
     tracer->reflected_rays++;
     path.key = random_combine(path.key, UINT32_MAX);
     path.reflections++;
-    return trace(tracer, &reflected, path);
+    return vec3_mul(filter, trace(tracer, &reflected, path));
 }
 
 static struct vec3 follow_refraction(struct tracer *tracer, const struct hit *hit, const struct ray *ray,
-                                     struct vec3 direction, const struct media *behind, struct path path) {
-    if (path.refractions >= tracer->job->settings.refract_limit)
+                                     struct vec3 direction, const struct media *behind, struct vec3 filter,
+                                     struct path path) {
+    const struct settings *settings = &tracer->job->settings;
+    path.weight *= vec3_max_abs(filter);
+    if (path.refractions >= settings->refract_limit || path.weight < settings->cutoff)
         return vec3_all(0);
     struct ray refracted = secondary_ray(hit, ray, direction, behind);
     tracer->refracted_rays++;
     path.key = random_combine(path.key, (uint64_t)UINT32_MAX + 1);
     path.refractions++;
-    return trace(tracer, &refracted, path);
+    return vec3_mul(filter, trace(tracer, &refracted, path));
 }
 
 /* A rough surface: the mean over facets of what each reflects and refracts. No energy is lost: light that a facet sends
@@ -268,7 +275,7 @@ static struct vec3 follow_rough(struct tracer *tracer, const struct rough *rough
         branch.rough = true;
         if (!is_black(mirror)) {
             struct vec3 direction = fold(shading_reflect(facet, hit->view), rough->geometric_side);
-            sum = vec3_add(sum, vec3_mul(mirror, follow_mirror(tracer, hit, rough->ray, direction, branch)));
+            sum = vec3_add(sum, follow_mirror(tracer, hit, rough->ray, direction, mirror, branch));
         }
         if (!is_black(refraction)) {
             struct vec3 direction;
@@ -276,8 +283,9 @@ static struct vec3 follow_rough(struct tracer *tracer, const struct rough *rough
                 direction = fold(direction, vec3_negate(rough->geometric_side));
             else
                 direction = rough->through;
-            struct vec3 light = follow_refraction(tracer, hit, rough->ray, direction, rough->behind, branch);
-            sum = vec3_add(sum, vec3_mul(refraction, light));
+            struct vec3 light =
+                follow_refraction(tracer, hit, rough->ray, direction, rough->behind, refraction, branch);
+            sum = vec3_add(sum, light);
         }
     }
     return vec3_scale(sum, 1 / ((double)n * (double)n));
@@ -334,49 +342,63 @@ static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const str
     }
     if (!is_black(mirror)) {
         struct vec3 direction = reflect_outwards(hit, side, geometric_side);
-        colour = vec3_add(colour, vec3_mul(mirror, follow_mirror(tracer, hit, ray, direction, path)));
+        colour = vec3_add(colour, follow_mirror(tracer, hit, ray, direction, mirror, path));
     }
     if (!is_black(refraction)) {
-        struct vec3 light = follow_refraction(tracer, hit, ray, through, &behind, path);
-        colour = vec3_add(colour, vec3_mul(refraction, light));
+        colour = vec3_add(colour, follow_refraction(tracer, hit, ray, through, &behind, refraction, path));
     }
     return colour;
 }
 
-/* The law of Beer, Lambert and Bouguer over a way inside the current medium. */
-static struct vec3 absorbed(struct vec3 colour, const struct media *media, double distance) {
+/* The law of Beer, Lambert and Bouguer over a way inside the current medium: what is left of white light. */
+static struct vec3 left_by_medium(const struct media *media, double distance) {
     struct vec3 a = media->entries[media->count - 1].absorption;
-    if (is_black(a))
-        return colour;
-    return (struct vec3){a.x > 0 ? colour.x * el_exp(-a.x * distance) : colour.x,
-                         a.y > 0 ? colour.y * el_exp(-a.y * distance) : colour.y,
-                         a.z > 0 ? colour.z * el_exp(-a.z * distance) : colour.z};
+    return (struct vec3){a.x > 0 ? el_exp(-a.x * distance) : 1, a.y > 0 ? el_exp(-a.y * distance) : 1,
+                         a.z > 0 ? el_exp(-a.z * distance) : 1};
 }
 
 static struct vec3 trace(struct tracer *tracer, const struct ray *ray, struct path path) {
     const struct world *world = tracer->job->world;
+    const struct fog *fog = tracer->job->fog;
     struct hit hit;
     if (tracer->pool && pool_cancelled(tracer->pool))
         return vec3_all(0); /* deep paths through glass grow exponentially */
     bool met = world_nearest(world, ray, tracer->scratch, &hit);
-    double lamp_t;
-    const struct light *lamp = visible_light(world, ray, met ? hit.t : ray->t_max, &lamp_t);
-    struct vec3 colour;
-    if (lamp)
+    double end;
+    const struct light *lamp = visible_light(world, ray, met ? hit.t : ray->t_max, &end);
+
+    /* What is between here and there. */
+    bool inside = ray->media && ray->media->count > 0, endless = !met && !lamp, clear = true;
+    double length = vec3_length(ray->direction), distance = endless ? INFINITY : end * length;
+    struct vec3 left = {1, 1, 1};
+    if (inside) {
+        left = left_by_medium(ray->media, distance);
+        clear = false;
+    } else if (fog && !(endless && fog->clear_sky)) {
+        left = vec3_all(fog_transmittance(fog, ray->origin, vec3_scale(ray->direction, 1 / length), distance));
+        clear = false;
+    }
+    path.weight *= vec3_max_abs(left);
+
+    struct vec3 colour = {0, 0, 0};
+    if (path.weight < tracer->job->settings.cutoff)
+        left = vec3_all(0);
+    else if (lamp)
         colour = lamp->colour;
     else if (met)
         colour = shade(tracer, ray, &hit, path);
     else
         colour = sky_colour(&world->sky, vec3_normalize(ray->direction), ray->footprint.spread);
-    if (!ray->media || ray->media->count == 0)
+    if (clear)
         return colour;
-    return absorbed(colour, ray->media, lamp || met ? lamp_t * vec3_length(ray->direction) : INFINITY);
+    colour = vec3_mul(colour, left);
+    return inside ? colour : vec3_add_scaled(colour, fog->colour, 1 - left.x);
 }
 
 struct vec3 whitted_trace(struct tracer *tracer, const struct ray *ray, uint64_t key) {
     struct ray from_eye = *ray;
     from_eye.media = tracer->eye_media;
-    return trace(tracer, &from_eye, (struct path){.key = key});
+    return trace(tracer, &from_eye, (struct path){.key = key, .weight = 1});
 }
 
 void whitted_eye_media(const struct world *world, struct vec3 eye, struct world_scratch *scratch, struct media *out) {

@@ -123,10 +123,10 @@ bool act_spherical_light(struct context *context, const struct value *args, stru
 
 bool act_disc_light(struct context *context, const struct value *args, struct result *result, struct error *error) {
     struct light light = {.kind = LIGHT_DISC,
-                          .position = args[DISC_POSITION].vector,
-                          .radius = args[DISC_RADIUS].number,
-                          .one_sided = args[DISC_ONE_SIDED].boolean};
-    return set_direction(&light, args[DISC_NORMAL].vector, "normal", error) &&
+                          .position = args[PANEL_POSITION].vector,
+                          .radius = args[PANEL_RADIUS].number,
+                          .one_sided = args[PANEL_ONE_SIDED].boolean};
+    return set_direction(&light, args[PANEL_NORMAL].vector, "normal", error) &&
            give_lamp(context, &light, args, result, error);
 }
 
@@ -172,6 +172,8 @@ static void apply_settings(const struct value *args, struct settings *settings) 
         settings->accel = (enum accel_kind)args[RENDER_ACCEL].choice; /* listed in the order of the enum */
     if (args[RENDER_TARGET].given)
         settings->view_is_target = true;
+    if (args[RENDER_CUTOFF].given)
+        settings->cutoff = args[RENDER_CUTOFF].number;
 }
 
 static bool apply_lens(const struct value *args, struct lens *lens, const struct camera *camera, struct error *error) {
@@ -225,6 +227,7 @@ bool act_render(struct context *context, const struct value *args, struct result
         .ambient = args[RENDER_AMBIENT].vector,
         .lights = args[RENDER_LIGHTS].lights,
         .light_count = args[RENDER_LIGHTS].count,
+        .fog = args[RENDER_FOG].fog,
         .settings = context->host->settings,
     };
     apply_settings(args, &request.settings);

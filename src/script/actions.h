@@ -125,6 +125,15 @@ struct image *act_find_image(struct context *context, const struct value *value,
 /* How an image is looked up when nothing is said: as its texture says, else mip-mapped and repeated. */
 void act_image_defaults(struct material *material, const struct value *value, struct image *image);
 
+/* act_fog.c */
+enum { FOG_COLOUR, FOG_CLEAR_SKY, FOG_OWN };
+enum { FOG_AMOUNT = FOG_OWN, FOG_IS_SQUARED, FOG_COUNT };
+enum { FOG_NEAR = FOG_OWN, FOG_FAR };
+enum { FOG_BASE = FOG_AMOUNT + 1, FOG_SCALE };
+enum { FOG_PROFILE_TABLE = FOG_OWN };
+enum { FOG_CORNER = FOG_OWN, FOG_SIZE, FOG_CELLS, FOG_DENSITIES };
+action act_fog, act_linear_fog, act_height_fog, act_fog_profile, act_fog_grid;
+
 /* act_render.c */
 /* Every light begins with these; LAMP_ and FADING_ fields only where the kind has them. */
 enum {
@@ -144,7 +153,7 @@ enum { POINT_POSITION = LIGHT_INTENSITY + 1, POINT_COUNT };
 enum { SPOT_POSITION = LIGHT_INTENSITY + 1, SPOT_DIRECTION, SPOT_TARGET, SPOT_INNER, SPOT_OUTER, SPOT_COUNT };
 enum { AREA_CORNER = LIGHT_OWN, AREA_V1, AREA_V2, AREA_ONE_SIDED, AREA_COUNT };
 enum { BALL_POSITION = LIGHT_OWN, BALL_RADIUS, BALL_COUNT };
-enum { DISC_POSITION = LIGHT_OWN, DISC_NORMAL, DISC_RADIUS, DISC_ONE_SIDED, DISC_COUNT };
+enum { PANEL_POSITION = LIGHT_OWN, PANEL_NORMAL, PANEL_RADIUS, PANEL_ONE_SIDED, PANEL_COUNT };
 enum {
     RENDER_NODE,
     RENDER_FILE,
@@ -171,6 +180,8 @@ enum {
     RENDER_SPECULAR,
     RENDER_SEED,
     RENDER_ACCEL,
+    RENDER_FOG,
+    RENDER_CUTOFF,
     RENDER_PROJECTION,
     RENDER_VIEW_HEIGHT,
     RENDER_ANGLE,

@@ -506,10 +506,53 @@ static const struct parameter disc_light_parameters[] = {
     LIGHT_FIELDS(OPTIONAL),
     FADING_FIELDS,
     LAMP_FIELDS,
-    [DISC_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Its centre."},
-    [DISC_NORMAL] = {"normal", KIND_DIRECTION, 0, ANY, NULL, NULL, "The direction it faces."},
-    [DISC_RADIUS] = {"radius", KIND_NUMBER, LOW_OPEN, ABOVE(0), NULL, NULL, "Its radius."},
-    [DISC_ONE_SIDED] = ONE_SIDED("its normal"),
+    [PANEL_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Its centre."},
+    [PANEL_NORMAL] = {"normal", KIND_DIRECTION, 0, ANY, NULL, NULL, "The direction it faces."},
+    [PANEL_RADIUS] = {"radius", KIND_NUMBER, LOW_OPEN, ABOVE(0), NULL, NULL, "Its radius."},
+    [PANEL_ONE_SIDED] = ONE_SIDED("its normal"),
+};
+
+#define FOG_FIELDS                                                                                                     \
+    [FOG_COLOUR] = {"colour", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0.5, 0.5, 0.5}", "Its colour."},                     \
+    [FOG_CLEAR_SKY] = {"clear_sky", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",                                        \
+                       "Whether the sky is seen without fog."}
+#define FOG_DENSITY(text)                                                                                              \
+    [FOG_AMOUNT] = {"density", KIND_NUMBER, 0, ABOVE(0), NULL, NULL, text}
+
+static const struct parameter fog_parameters[] = {
+    FOG_FIELDS,
+    FOG_DENSITY("What is d away keeps the share exp(-density d)."),
+    [FOG_IS_SQUARED] = {"squared", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
+                        "The share is exp(-(density d)^2) instead: clear near, then closing fast."},
+};
+
+static const struct parameter linear_fog_parameters[] = {
+    FOG_FIELDS,
+    [FOG_NEAR] = {"near", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0", "Where it begins."},
+    [FOG_FAR] = {"far", KIND_NUMBER, LOW_OPEN, ABOVE(0), NULL, NULL, "Where nothing else is seen any more."},
+};
+
+static const struct parameter height_fog_parameters[] = {
+    FOG_FIELDS,
+    FOG_DENSITY("Density at the base."),
+    [FOG_BASE] = {"base", KIND_NUMBER, OPTIONAL, ANY, NULL, "0", "Height y of the base."},
+    [FOG_SCALE] = {"scale", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "1",
+                   "How much higher it is thinner by the factor e."},
+};
+
+static const struct parameter fog_profile_parameters[] = {
+    FOG_FIELDS,
+    [FOG_PROFILE_TABLE] = {"profile", KIND_PAIRS, 0, ANY, NULL, NULL,
+                           "Densities by height, {y, density}; linear between, constant beyond."},
+};
+
+static const struct parameter fog_grid_parameters[] = {
+    FOG_FIELDS,
+    [FOG_CORNER] = {"corner", KIND_POINT, 0, ANY, NULL, NULL, "The corner with the smallest coordinates."},
+    [FOG_SIZE] = {"size", KIND_SIZE, LOW_OPEN, ABOVE(0), NULL, NULL, "Length of the edges, one number or three."},
+    [FOG_CELLS] = {"cells", KIND_TRIPLE, 0, 1, 1024, NULL, NULL, NULL, "How many cells along x, y and z."},
+    [FOG_DENSITIES] = {"densities", KIND_NUMBERS, 0, ABOVE(0), NULL, NULL,
+                       "The density of each cell, x running fastest, then y, then z."},
 };
 
 static const struct parameter render_parameters[] = {
@@ -528,7 +571,7 @@ static const struct parameter render_parameters[] = {
     [RENDER_LIGHTS] = {"lights", KIND_LIGHTS, OPTIONAL, ANY, NULL, "{}", "A table of lights."},
     [RENDER_TARGET] = {"target", KIND_POINT, OPTIONAL, ANY, NULL, NULL, "A point to look at, instead of view."},
     [RENDER_BACKGROUND] = {"background", KIND_BACKGROUND, OPTIONAL, ANY, NULL, "'gradient'",
-                           "What rays see that meet nothing: a colour, or 'gradient' for {0, 0, (1 + y)/2}."},
+                           "What rays see that meet nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}."},
     [RENDER_MIRROR] = {"mirror", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the sky cross is mirrored."},
     [RENDER_SAMPLES] = {"samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "-ss",
                         "N x N samples for a marked pixel."},
@@ -550,6 +593,9 @@ static const struct parameter render_parameters[] = {
     [RENDER_SEED] = {"seed", KIND_WHOLE, OPTIONAL, BETWEEN(0, 0x1p53 - 1), NULL, "--seed", "Start of random numbers."},
     [RENDER_ACCEL] = {"accel", KIND_CHOICE, OPTIONAL, 0, 0, "auto grid bvh none", NULL, "'auto'",
                       "How hits are searched; the picture is the same."},
+    [RENDER_FOG] = {"fog", KIND_FOG, OPTIONAL, ANY, NULL, "none", "A fog."},
+    [RENDER_CUTOFF] = {"cutoff", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "--cutoff",
+                       "Rays that can change a pixel by less than this are not followed."},
     [RENDER_PROJECTION] = {"projection", KIND_CHOICE, OPTIONAL, 0, 0, "perspective orthographic fisheye panorama", NULL,
                            "'perspective'",
                            "Fisheye is equidistant inside a circle; panorama is all around, longitude by latitude."},
@@ -694,6 +740,16 @@ const struct function function_table[] = {
     GR("spot_light", spot_parameters, RESULT_LIGHT, act_spot_light, "A light at a point that shines into a cone.",
        "position direction colour inner outer falloff?"),
 
+    GR("fog", fog_parameters, RESULT_FOG, act_fog, "Fog that is the same everywhere.", "density colour?"),
+    GR("linear_fog", linear_fog_parameters, RESULT_FOG, act_linear_fog, "Fog that closes linearly with distance.",
+       "near far colour?"),
+    GR("height_fog", height_fog_parameters, RESULT_FOG, act_height_fog, "Fog that thins out upwards.",
+       "density base scale colour?"),
+    GR("fog_profile", fog_profile_parameters, RESULT_FOG, act_fog_profile, "Fog with a density for every height.",
+       "profile colour?"),
+    GR("fog_grid", fog_grid_parameters, RESULT_FOG, act_fog_grid, "Fog in the cells of a box, none outside.",
+       "corner size cells densities colour?"),
+
     GR("render", render_parameters, RESULT_NOTHING, act_render, "Renders a picture into a PNG file.",
        "node file" RENDER_TAIL),
     GR("render_skybox", render_parameters, RESULT_NOTHING, act_render, "The same with a sky image all around.",
@@ -780,7 +836,11 @@ const char *kind_words(enum kind kind) {
     case KIND_IMAGE:
         return "the name of a picture file or a texture";
     case KIND_BACKGROUND:
-        return "a colour {r, g, b} or 'gradient'";
+        return "a colour {r, g, b}, a sky or 'gradient'";
+    case KIND_FOG:
+        return "a fog";
+    case KIND_STOPS:
+        return "a table of stops {height, r, g, b}";
     case KIND_NODES:
         return "a table of nodes";
     case KIND_LIGHTS:

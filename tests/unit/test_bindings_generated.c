@@ -89,7 +89,7 @@ static void right_text(const struct parameter *p, char *out, size_t size) {
                    "{0,2,0},{1,2,0},{2,2,0},{3,2,0},{0,3,0},{1,3,0},{2,3,0},{3,3,0}}";
         break;
     case KIND_NUMBERS:
-        text = "{1, 2, 1}";
+        text = strcmp(p->name, "densities") == 0 ? "{1, 2, 3, 4, 5, 6}" : "{1, 2, 1}"; /* {1, 2, 3} cells */
         break;
     case KIND_ROWS:
         text = strcmp(p->name, "heights") == 0   ? "{{2, 3}, {3, 2}}"
@@ -100,10 +100,16 @@ static void right_text(const struct parameter *p, char *out, size_t size) {
         text = "{{{0.1, 0.1}, {0.2, 0.1}, {0.1, 0.2}}}";
         break;
     case KIND_PAIRS:
-        text = "{{0, 0}, {1, 0}, {0, 1}}";
+        text = "{{0, 0}, {1, 0}, {1, 1}}";
         break;
     case KIND_FACES:
         text = strstr(p->help, "16") ? "{{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15}}" : "{{0, 1, 2}}";
+        break;
+    case KIND_FOG:
+        text = "mist";
+        break;
+    case KIND_STOPS:
+        text = "{{-1, 0, 0, 0}, {1, 1, 1, 1}}";
         break;
     case KIND_COUNT:
         break;
@@ -150,6 +156,13 @@ static const char *wrong_text(const struct parameter *p, int which, char *out, s
         list[count++] = "{{0}}";
         list[count++] = "{7}";
         list[count++] = p->kind == KIND_POINTS ? "{{0, 0, 0 / 0}}" : "{{0, 0 / 0}}";
+    }
+    if (p->kind == KIND_FOG)
+        list[count++] = "glass";
+    if (p->kind == KIND_STOPS) {
+        list[count++] = "{{0, 1, 1}}";
+        list[count++] = "{7}";
+        list[count++] = "{{0, 1, 1, 0 / 0}}";
     }
     if (p->kind == KIND_NUMBERS) {
         list[count++] = "{1, 0 / 0, 1}";
@@ -249,7 +262,7 @@ static bool run_call(const char *call, struct error *error) {
                    "glass = gr.rr_material({1, 1, 1}, {1, 1, 1}, 10, 0.5, 0.5, 1.5) "
                    "sheet = gr.mesh(glass, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}})\n"
                    "ball = gr.sphere('ball')\n"
-                   "lamp = gr.light({0, 0, 0}, {1, 1, 1}, {1, 0, 0})\n"
+                   "lamp = gr.light({0, 0, 0}, {1, 1, 1}, {1, 0, 0}); mist = gr.fog{density = 1}\n"
                    "%s\n",
                    call);
     struct listener listener = {.renders = 0};
