@@ -919,6 +919,86 @@ function gr.directional_light(direction, colour) end
 ---@overload fun(fields: gr.spot_light.fields): gr.light
 function gr.spot_light(position, direction, colour, inner, outer, falloff) end
 
+---@class gr.sun_light.fields
+---@field colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
+---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
+---@field exclude? gr.node[] exclude (a table of nodes; default none): The nodes that it does not light.
+---@field sun? gr.triple sun (a direction {x, y, z}; optional): The direction to the sun, instead of time and place.
+---@field hour? number hour (a number, 0 to 24; default 12): Hour of the clock.
+---@field day? integer day (a whole number, 1 to 366; default 172, 21 June): Day of the year.
+---@field latitude? number latitude (a number, >= -90 and <= 90, in degrees; default 45): North is positive; -z is north and +x is east.
+---@field longitude? number longitude (a number, >= -180 and <= 180, in degrees; default 0): East is positive.
+---@field zone? number zone (a number, >= -14 and <= 14, in hours; default 0): How far the clock is ahead of Greenwich.
+
+---Directional light from where the sun stands.
+---@param sun gr.triple sun (a direction {x, y, z}; optional): The direction to the sun, instead of time and place.
+---@param colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
+---@return gr.light
+---@overload fun(fields: gr.sun_light.fields): gr.light
+function gr.sun_light(sun, colour) end
+
+---@class gr.sky_faces.fields
+---@field intensity? number intensity (a number, >= 0; default 1): Factor of its brightness.
+---@field rotation? number rotation (a number, in degrees; default 0): How far it is turned about y, counterclockwise seen from above.
+---@field front string|gr.texture front (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@field right string|gr.texture right (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@field back string|gr.texture back (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@field left string|gr.texture left (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@field top string|gr.texture top (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@field bottom string|gr.texture bottom (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+
+---A sky of six pictures on a cube: front is +z, right -x, back -z, left +x.
+---@param front string|gr.texture front (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@param right string|gr.texture right (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@param back string|gr.texture back (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@param left string|gr.texture left (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@param top string|gr.texture top (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@param bottom string|gr.texture bottom (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@return gr.sky
+---@overload fun(fields: gr.sky_faces.fields): gr.sky
+function gr.sky_faces(front, right, back, left, top, bottom) end
+
+---@class gr.sky_map.fields
+---@field intensity? number intensity (a number, >= 0; default 1): Factor of its brightness.
+---@field rotation? number rotation (a number, in degrees; default 0): How far it is turned about y, counterclockwise seen from above.
+---@field image string|gr.texture image (the name of a picture file or a texture): The whole sphere, longitude by latitude; -z is in its middle, +x right of it.
+
+---A sky from one picture of the whole sphere.
+---@param image string|gr.texture image (the name of a picture file or a texture): The whole sphere, longitude by latitude; -z is in its middle, +x right of it.
+---@return gr.sky
+---@overload fun(fields: gr.sky_map.fields): gr.sky
+function gr.sky_map(image) end
+
+---@class gr.sky_gradient.fields
+---@field intensity? number intensity (a number, >= 0; default 1): Factor of its brightness.
+---@field rotation? number rotation (a number, in degrees; default 0): How far it is turned about y, counterclockwise seen from above.
+---@field stops number[][] stops (a table of stops {height, r, g, b}): Colours by height, {y, r, g, b}: y of the unit direction, from -1 to 1.
+
+---A sky of colours by height.
+---@param stops number[][] stops (a table of stops {height, r, g, b}): Colours by height, {y, r, g, b}: y of the unit direction, from -1 to 1.
+---@return gr.sky
+---@overload fun(fields: gr.sky_gradient.fields): gr.sky
+function gr.sky_gradient(stops) end
+
+---@class gr.clear_sky.fields
+---@field intensity? number intensity (a number, >= 0; default 1): Factor of its brightness.
+---@field rotation? number rotation (a number, in degrees; default 0): How far it is turned about y, counterclockwise seen from above.
+---@field sun? gr.triple sun (a direction {x, y, z}; optional): The direction to the sun, instead of time and place.
+---@field hour? number hour (a number, 0 to 24; default 12): Hour of the clock.
+---@field day? integer day (a whole number, 1 to 366; default 172, 21 June): Day of the year.
+---@field latitude? number latitude (a number, >= -90 and <= 90, in degrees; default 45): North is positive; -z is north and +x is east.
+---@field longitude? number longitude (a number, >= -180 and <= 180, in degrees; default 0): East is positive.
+---@field zone? number zone (a number, >= -14 and <= 14, in hours; default 0): How far the clock is ahead of Greenwich.
+---@field turbidity? number turbidity (a number, 1.7 to 10; default 2.5): How hazy the air is: 2 is very clear, 10 hazy.
+---@field ground? gr.triple ground (a colour {r, g, b}; default {0.15, 0.15, 0.15}): What is below the horizon.
+
+---The physical clear sky of Preetham, Shirley and Smits, 1999.
+---@param sun gr.triple sun (a direction {x, y, z}; optional): The direction to the sun, instead of time and place.
+---@param turbidity? number turbidity (a number, 1.7 to 10; default 2.5): How hazy the air is: 2 is very clear, 10 hazy.
+---@return gr.sky
+---@overload fun(fields: gr.clear_sky.fields): gr.sky
+function gr.clear_sky(sun, turbidity) end
+
 ---@class gr.fog.fields
 ---@field colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
 ---@field clear_sky? boolean clear_sky (true or false; default false): Whether the sky is seen without fog.

@@ -139,7 +139,9 @@ static bool choose_sky(struct context *context, const struct value *args, struct
         struct image *image = act_find_image(context, &args[RENDER_SKY], error);
         return image && sky_from_cross(image, args[RENDER_MIRROR].boolean, sky, error);
     }
-    if (background->given && !background->text) {
+    if (background->sky) {
+        *sky = *background->sky;
+    } else if (background->given && !background->text) {
         sky->kind = SKY_CONSTANT;
         sky->colour = background->vector;
     }

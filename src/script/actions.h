@@ -125,6 +125,15 @@ struct image *act_find_image(struct context *context, const struct value *value,
 /* How an image is looked up when nothing is said: as its texture says, else mip-mapped and repeated. */
 void act_image_defaults(struct material *material, const struct value *value, struct image *image);
 
+/* act_sky.c; the fields of the sun come together, counted from SUN_DIRECTION */
+enum { SUN_DIRECTION, SUN_HOUR, SUN_DAY, SUN_LATITUDE, SUN_LONGITUDE, SUN_ZONE, SUN_FIELDS };
+enum { SKY_INTENSITY, SKY_ROTATION, SKY_OWN };
+enum { FACES_FRONT = SKY_OWN, FACES_RIGHT, FACES_BACK, FACES_LEFT, FACES_TOP, FACES_BOTTOM };
+enum { MAP_IMAGE = SKY_OWN };
+enum { GRADIENT_STOPS = SKY_OWN };
+enum { CLEAR_SUN = SKY_OWN, CLEAR_TURBIDITY = CLEAR_SUN + SUN_FIELDS, CLEAR_GROUND };
+action act_sky_faces, act_sky_map, act_sky_gradient, act_clear_sky, act_sun_light;
+
 /* act_fog.c */
 enum { FOG_COLOUR, FOG_CLEAR_SKY, FOG_OWN };
 enum { FOG_AMOUNT = FOG_OWN, FOG_IS_SQUARED, FOG_COUNT };
@@ -149,6 +158,7 @@ enum {
     LIGHT_OWN /* the first field of the kind's own */
 };
 enum { DISTANT_DIRECTION = LIGHT_EXCLUDE + 1, DISTANT_COUNT };
+enum { SUNLIGHT_SUN = LIGHT_EXCLUDE + 1 };
 enum { POINT_POSITION = LIGHT_INTENSITY + 1, POINT_COUNT };
 enum { SPOT_POSITION = LIGHT_INTENSITY + 1, SPOT_DIRECTION, SPOT_TARGET, SPOT_INNER, SPOT_OUTER, SPOT_COUNT };
 enum { AREA_CORNER = LIGHT_OWN, AREA_V1, AREA_V2, AREA_ONE_SIDED, AREA_COUNT };

@@ -512,6 +512,59 @@ static const struct parameter disc_light_parameters[] = {
     [PANEL_ONE_SIDED] = ONE_SIDED("its normal"),
 };
 
+#define SKY_FIELDS                                                                                                     \
+    [SKY_INTENSITY] = {"intensity", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1", "Factor of its brightness."},          \
+    [SKY_ROTATION] = {"rotation", KIND_NUMBER, OPTIONAL, ANY, "degrees", "0",                                          \
+                      "How far it is turned about y, counterclockwise seen from above."}
+#define SKY_FACE(text)                                                                                                 \
+    { text, KIND_IMAGE, 0, ANY, NULL, NULL, "A square picture, as somebody in the middle sees it." }
+#define SUN(first)                                                                                                     \
+    [(first) + SUN_DIRECTION] = {"sun", KIND_DIRECTION, OPTIONAL, ANY, NULL, NULL,                                     \
+                                 "The direction to the sun, instead of time and place."},                              \
+    [(first) + SUN_HOUR] = {"hour", KIND_NUMBER, OPTIONAL, BETWEEN(0, 24), NULL, "12", "Hour of the clock."},          \
+    [(first) + SUN_DAY] = {"day", KIND_WHOLE, OPTIONAL, BETWEEN(1, 366), NULL, "172, 21 June", "Day of the year."},    \
+    [(first) + SUN_LATITUDE] = {"latitude", KIND_NUMBER, OPTIONAL, BETWEEN(-90, 90), "degrees", "45",                  \
+                                "North is positive; -z is north and +x is east."},                                     \
+    [(first) + SUN_LONGITUDE] = {"longitude", KIND_NUMBER, OPTIONAL, BETWEEN(-180, 180), "degrees", "0",               \
+                                 "East is positive."},                                                                 \
+    [(first) + SUN_ZONE] = {"zone", KIND_NUMBER, OPTIONAL, BETWEEN(-14, 14), "hours", "0",                             \
+                            "How far the clock is ahead of Greenwich."}
+
+static const struct parameter sky_faces_parameters[] = {
+    SKY_FIELDS,
+    [FACES_FRONT] = SKY_FACE("front"),
+    [FACES_RIGHT] = SKY_FACE("right"),
+    [FACES_BACK] = SKY_FACE("back"),
+    [FACES_LEFT] = SKY_FACE("left"),
+    [FACES_TOP] = SKY_FACE("top"),
+    [FACES_BOTTOM] = SKY_FACE("bottom"),
+};
+
+static const struct parameter sky_map_parameters[] = {
+    SKY_FIELDS,
+    [MAP_IMAGE] = {"image", KIND_IMAGE, 0, ANY, NULL, NULL,
+                   "The whole sphere, longitude by latitude; -z is in its middle, +x right of it."},
+};
+
+static const struct parameter sky_gradient_parameters[] = {
+    SKY_FIELDS,
+    [GRADIENT_STOPS] = {"stops", KIND_STOPS, 0, ANY, NULL, NULL,
+                        "Colours by height, {y, r, g, b}: y of the unit direction, from -1 to 1."},
+};
+
+static const struct parameter clear_sky_parameters[] = {
+    SKY_FIELDS,
+    SUN(CLEAR_SUN),
+    [CLEAR_TURBIDITY] = {"turbidity", KIND_NUMBER, OPTIONAL, BETWEEN(1.7, 10), NULL, "2.5",
+                         "How hazy the air is: 2 is very clear, 10 hazy."},
+    [CLEAR_GROUND] = {"ground", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0.15, 0.15, 0.15}", "What is below the horizon."},
+};
+
+static const struct parameter sun_light_parameters[] = {
+    LIGHT_FIELDS(0),
+    SUN(SUNLIGHT_SUN),
+};
+
 #define FOG_FIELDS                                                                                                     \
     [FOG_COLOUR] = {"colour", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0.5, 0.5, 0.5}", "Its colour."},                     \
     [FOG_CLEAR_SKY] = {"clear_sky", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",                                        \
@@ -739,6 +792,15 @@ const struct function function_table[] = {
        "Light of one direction from infinitely far away.", "direction colour"),
     GR("spot_light", spot_parameters, RESULT_LIGHT, act_spot_light, "A light at a point that shines into a cone.",
        "position direction colour inner outer falloff?"),
+
+    GR("sun_light", sun_light_parameters, RESULT_LIGHT, act_sun_light, "Directional light from where the sun stands.",
+       "sun colour"),
+    GR("sky_faces", sky_faces_parameters, RESULT_SKY, act_sky_faces,
+       "A sky of six pictures on a cube: front is +z, right -x, back -z, left +x.", "front right back left top bottom"),
+    GR("sky_map", sky_map_parameters, RESULT_SKY, act_sky_map, "A sky from one picture of the whole sphere.", "image"),
+    GR("sky_gradient", sky_gradient_parameters, RESULT_SKY, act_sky_gradient, "A sky of colours by height.", "stops"),
+    GR("clear_sky", clear_sky_parameters, RESULT_SKY, act_clear_sky,
+       "The physical clear sky of Preetham, Shirley and Smits, 1999.", "sun turbidity?"),
 
     GR("fog", fog_parameters, RESULT_FOG, act_fog, "Fog that is the same everywhere.", "density colour?"),
     GR("linear_fog", linear_fog_parameters, RESULT_FOG, act_linear_fog, "Fog that closes linearly with distance.",

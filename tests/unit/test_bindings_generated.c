@@ -21,8 +21,14 @@ static void write_files(void) {
     struct error error = {0};
     (void)snprintf(path, sizeof path, "%s/cross.png", test_folder());
     CHECK(png_write(path, 8, 6, white_row, NULL, &error));
+    (void)snprintf(path, sizeof path, "%s/square.png", test_folder());
+    CHECK(png_write(path, 8, 8, white_row, NULL, &error));
     (void)snprintf(path, sizeof path, "%s/flag.obj", test_folder());
     test_write_text(path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+}
+
+static bool function_is_square(const char *help) {
+    return strncmp(help, "A square picture", 16) == 0;
 }
 
 /* A right argument, as Lua text. */
@@ -73,8 +79,8 @@ static void right_text(const struct parameter *p, char *out, size_t size) {
     case KIND_MATERIAL:
         text = "glass";
         break;
-    case KIND_IMAGE:
-        text = "'cross.png'";
+    case KIND_IMAGE: /* faces of a sky are square */
+        text = function_is_square(p->help) ? "'square.png'" : "'cross.png'";
         break;
     case KIND_NODES:
         text = "{ball, ball}";
