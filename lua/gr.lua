@@ -1074,7 +1074,7 @@ function gr.fog_grid(corner, size, cells, densities, colour) end
 
 ---@class gr.render.fields
 ---@field node gr.node node (a node): The root of what is drawn.
----@field file string file (the name of a file): The PNG file to write; missing folders are made.
+---@field file string file (the name of a file): The picture to write: .png, or .pfm or .hdr for linear light; missing folders are made.
 ---@field sky? string|gr.texture sky (the name of a picture file or a texture; optional): A 4 x 3 cross of images all around, as a PNG or JPEG file.
 ---@field width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@field height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
@@ -1100,6 +1100,10 @@ function gr.fog_grid(corner, size, cells, densities, colour) end
 ---@field accel? 'auto'|'grid'|'bvh'|'none' accel ('auto'|'grid'|'bvh'|'none'; default 'auto'): How hits are searched; the picture is the same.
 ---@field fog? gr.fog fog (a fog; default none): A fog.
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Rays that can change a pixel by less than this are not followed.
+---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure on its way into a PNG file.
+---@field tone? 'none'|'reinhard'|'filmic' tone ('none'|'reinhard'|'filmic'; default --tone): The curve that brings bright light into the range of a PNG file.
+---@field srgb? boolean srgb (true or false; default --srgb): Whether values of a PNG file follow the sRGB transfer function.
+---@field deep? boolean deep (true or false; default --deep): Whether a PNG file has 16 bits a channel.
 ---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye is equidistant inside a circle; panorama is all around, longitude by latitude.
 ---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture in the scene.
 ---@field angle? number angle (a number, > 0 and <= 360, in degrees; default 180): Full angle of a fisheye across the height.
@@ -1116,7 +1120,7 @@ function gr.fog_grid(corner, size, cells, densities, colour) end
 
 ---Renders a picture into a PNG file.
 ---@param node gr.node node (a node): The root of what is drawn.
----@param file string file (the name of a file): The PNG file to write; missing folders are made.
+---@param file string file (the name of a file): The picture to write: .png, or .pfm or .hdr for linear light; missing folders are made.
 ---@param width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@param height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
 ---@param eye gr.triple eye (a point {x, y, z}): Where the camera stands.
@@ -1130,7 +1134,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 
 ---@class gr.render_skybox.fields
 ---@field node gr.node node (a node): The root of what is drawn.
----@field file string file (the name of a file): The PNG file to write; missing folders are made.
+---@field file string file (the name of a file): The picture to write: .png, or .pfm or .hdr for linear light; missing folders are made.
 ---@field sky? string|gr.texture sky (the name of a picture file or a texture; optional): A 4 x 3 cross of images all around, as a PNG or JPEG file.
 ---@field width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@field height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
@@ -1156,6 +1160,10 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field accel? 'auto'|'grid'|'bvh'|'none' accel ('auto'|'grid'|'bvh'|'none'; default 'auto'): How hits are searched; the picture is the same.
 ---@field fog? gr.fog fog (a fog; default none): A fog.
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Rays that can change a pixel by less than this are not followed.
+---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure on its way into a PNG file.
+---@field tone? 'none'|'reinhard'|'filmic' tone ('none'|'reinhard'|'filmic'; default --tone): The curve that brings bright light into the range of a PNG file.
+---@field srgb? boolean srgb (true or false; default --srgb): Whether values of a PNG file follow the sRGB transfer function.
+---@field deep? boolean deep (true or false; default --deep): Whether a PNG file has 16 bits a channel.
 ---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye is equidistant inside a circle; panorama is all around, longitude by latitude.
 ---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture in the scene.
 ---@field angle? number angle (a number, > 0 and <= 360, in degrees; default 180): Full angle of a fisheye across the height.
@@ -1172,7 +1180,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 
 ---The same with a sky image all around.
 ---@param node gr.node node (a node): The root of what is drawn.
----@param file string file (the name of a file): The PNG file to write; missing folders are made.
+---@param file string file (the name of a file): The picture to write: .png, or .pfm or .hdr for linear light; missing folders are made.
 ---@param sky string|gr.texture sky (the name of a picture file or a texture; optional): A 4 x 3 cross of images all around, as a PNG or JPEG file.
 ---@param width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@param height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
@@ -1244,7 +1252,7 @@ function node:rotate(axis, angle) end
 function node:translate(x, y, z) end
 
 ---The same as gr.render with this node.
----@param file string file (the name of a file): The PNG file to write; missing folders are made.
+---@param file string file (the name of a file): The picture to write: .png, or .pfm or .hdr for linear light; missing folders are made.
 ---@param width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@param height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
 ---@param eye gr.triple eye (a point {x, y, z}): Where the camera stands.

@@ -119,6 +119,13 @@ static double clamp01(double c) {
     return c >= 1 ? 1 : c > 0 ? c : 0;
 }
 
+/* What counts is the difference in the picture file. */
+static struct vec3 toned(const struct tone *tone, struct vec3 c) {
+    if (tone_is_plain(tone))
+        return c;
+    return vec3_make(tone_apply(tone, c.x), tone_apply(tone, c.y), tone_apply(tone, c.z));
+}
+
 static double squared_distance(struct vec3 a, struct vec3 b) {
     struct vec3 d = {clamp01(a.x) - clamp01(b.x), clamp01(a.y) - clamp01(b.y), clamp01(a.z) - clamp01(b.z)};
     return vec3_dot(d, d);
@@ -132,14 +139,14 @@ static const struct vec3 *first_at(const struct worker *worker, const struct rec
 static bool is_marked(const struct run *run, const struct worker *worker, const struct rectangle *area, int64_t x,
                       int64_t y) {
     const struct settings *settings = &run->job->settings;
-    struct vec3 own = *first_at(worker, area, x, y);
+    struct vec3 own = toned(&settings->tone, *first_at(worker, area, x, y));
     for (int dy = -1; dy <= 1; dy++) {
         for (int dx = -1; dx <= 1; dx++) {
             int64_t nx = x + dx, ny = y + dy;
             if ((dx == 0 && dy == 0) || nx < area->x0 || nx >= area->x1 || ny < area->y0 || ny >= area->y1)
                 continue;
             double tolerance = dx == 0 || dy == 0 ? settings->side_tolerance : settings->corner_tolerance;
-            if (squared_distance(own, *first_at(worker, area, nx, ny)) > tolerance)
+            if (squared_distance(own, toned(&settings->tone, *first_at(worker, area, nx, ny))) > tolerance)
                 return true;
         }
     }

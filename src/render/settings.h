@@ -4,6 +4,7 @@
 #define GRAY_RENDER_SETTINGS_H
 
 #include "geom/mesh.h"
+#include "image/tone.h"
 #include "look/shading.h"
 #include "math/vec3.h"
 
@@ -31,6 +32,8 @@ struct lens {
 
 struct settings {
     struct lens lens;
+    struct tone tone; /* of the picture file; the film stays linear */
+    bool deep;        /* 16 bits a channel in PNG files */
     int samples;                             /* -ss: N x N for a marked pixel; 1..64 */
     bool full;                               /* -full: every pixel */
     int reflect_limit, refract_limit;        /* 0..1000 */

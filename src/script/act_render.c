@@ -174,6 +174,14 @@ static void apply_settings(const struct value *args, struct settings *settings) 
         settings->accel = (enum accel_kind)args[RENDER_ACCEL].choice; /* listed in the order of the enum */
     if (args[RENDER_TARGET].given)
         settings->view_is_target = true;
+    if (args[RENDER_EXPOSURE].given)
+        settings->tone.exposure = args[RENDER_EXPOSURE].number;
+    if (args[RENDER_TONE].given)
+        settings->tone.curve = (enum tone_curve)args[RENDER_TONE].choice; /* listed in the order of the enum */
+    if (args[RENDER_SRGB].given)
+        settings->tone.srgb = args[RENDER_SRGB].boolean;
+    if (args[RENDER_DEEP].given)
+        settings->deep = args[RENDER_DEEP].boolean;
     if (args[RENDER_CUTOFF].given)
         settings->cutoff = args[RENDER_CUTOFF].number;
 }

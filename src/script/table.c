@@ -610,7 +610,8 @@ static const struct parameter fog_grid_parameters[] = {
 
 static const struct parameter render_parameters[] = {
     [RENDER_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL, "The root of what is drawn."},
-    [RENDER_FILE] = {"file", KIND_OUTPUT, 0, ANY, NULL, NULL, "The PNG file to write; missing folders are made."},
+    [RENDER_FILE] = {"file", KIND_OUTPUT, 0, ANY, NULL, NULL,
+                     "The picture to write: .png, or .pfm or .hdr for linear light; missing folders are made."},
     [RENDER_SKY] = {"sky", KIND_IMAGE, OPTIONAL, ANY, NULL, NULL,
                     "A 4 x 3 cross of images all around, as a PNG or JPEG file."},
     [RENDER_WIDTH] = {"width", KIND_WHOLE, 0, 1, 1 << 20, NULL, "pixels", NULL, "Width of the picture."},
@@ -649,6 +650,13 @@ static const struct parameter render_parameters[] = {
     [RENDER_FOG] = {"fog", KIND_FOG, OPTIONAL, ANY, NULL, "none", "A fog."},
     [RENDER_CUTOFF] = {"cutoff", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "--cutoff",
                        "Rays that can change a pixel by less than this are not followed."},
+    [RENDER_EXPOSURE] = {"exposure", KIND_NUMBER, OPTIONAL, BETWEEN(-100, 100), "stops", "--exposure",
+                         "Light is multiplied by 2^exposure on its way into a PNG file."},
+    [RENDER_TONE] = {"tone", KIND_CHOICE, OPTIONAL, 0, 0, "none reinhard filmic", NULL, "--tone",
+                     "The curve that brings bright light into the range of a PNG file."},
+    [RENDER_SRGB] = {"srgb", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--srgb",
+                     "Whether values of a PNG file follow the sRGB transfer function."},
+    [RENDER_DEEP] = {"deep", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--deep", "Whether a PNG file has 16 bits a channel."},
     [RENDER_PROJECTION] = {"projection", KIND_CHOICE, OPTIONAL, 0, 0, "perspective orthographic fisheye panorama", NULL,
                            "'perspective'",
                            "Fisheye is equidistant inside a circle; panorama is all around, longitude by latitude."},

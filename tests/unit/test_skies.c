@@ -67,7 +67,7 @@ TEST(a_map_of_the_sphere_is_looked_up_by_longitude_and_latitude) {
     struct sky sky = {.kind = SKY_MAP, .image = map_image()};
     for (uint32_t y = 0; y < 32; y += 3) {
         for (uint32_t x = 0; x < 64; x += 5) {
-            struct vec3 d = direction_at((x + 0.5 - 32) / 64 * 2 * pi, (16 - y - 0.5) / 32 * pi);
+            struct vec3 d = direction_at((x - 31.5) / 64 * 2 * pi, (15.5 - y) / 32 * pi);
             struct rgba texel = image_texel(sky.image, x, y);
             struct vec3 c = sky_colour(&sky, d, 0);
             CHECK_NEAR(c.x, texel.r, 1e-9);
