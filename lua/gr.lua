@@ -7,6 +7,8 @@
 ---@class gr.material
 ---@class gr.light
 ---@class gr.texture
+---@class gr.fog
+---@class gr.sky
 ---@class gr.node
 local node = {}
 
@@ -653,6 +655,12 @@ function gr.patch(material, points, patches) end
 ---@field refract? number refract (a number, 0 to 1; default 0): Amount of refracted light.
 ---@field ior? number ior (a number, >= 1; default none): Index of refraction of the inside.
 ---@field two_sided? boolean two_sided (true or false; default false): Whether faces seen from behind are lit as well.
+---@field highlight? 'phong'|'blinn' highlight ('phong'|'blinn'; default specular of the render): The form of its highlight.
+---@field lit? boolean lit (true or false; default true): Whether light is looked for; false: kd is shown as it is.
+---@field emission? gr.triple emission (a colour {r, g, b}; default {0, 0, 0}): Light of its own, added to what it reflects.
+---@field roughness? number roughness (a number, 0 to 1; default 0): Of reflection and refraction: 0 is polished.
+---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): N x N rays where it is rough; one ray after another rough surface.
+---@field absorption? gr.triple absorption (a colour {r, g, b}, 0 to 1e+300; default {0, 0, 0}): Inside, light fades by exp(-absorption * distance).
 
 ---A Phong material.
 ---@param kd gr.triple kd (a colour {r, g, b}): Colour of diffuse and ambient light.
@@ -670,6 +678,12 @@ function gr.material(kd, ks, shininess) end
 ---@field refract? number refract (a number, 0 to 1; default 0): Amount of refracted light.
 ---@field ior? number ior (a number, >= 1; default 1): Index of refraction of the inside.
 ---@field two_sided? boolean two_sided (true or false; default false): Whether faces seen from behind are lit as well.
+---@field highlight? 'phong'|'blinn' highlight ('phong'|'blinn'; default specular of the render): The form of its highlight.
+---@field lit? boolean lit (true or false; default true): Whether light is looked for; false: kd is shown as it is.
+---@field emission? gr.triple emission (a colour {r, g, b}; default {0, 0, 0}): Light of its own, added to what it reflects.
+---@field roughness? number roughness (a number, 0 to 1; default 0): Of reflection and refraction: 0 is polished.
+---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): N x N rays where it is rough; one ray after another rough surface.
+---@field absorption? gr.triple absorption (a colour {r, g, b}, 0 to 1e+300; default {0, 0, 0}): Inside, light fades by exp(-absorption * distance).
 
 ---A Phong material that reflects and refracts.
 ---@param kd gr.triple kd (a colour {r, g, b}): Colour of diffuse and ambient light.
@@ -780,9 +794,13 @@ function gr.texture(file) end
 function gr.bump(name) end
 
 ---@class gr.light.fields
----@field position gr.triple position (a point {x, y, z}): Where it stands.
 ---@field colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
+---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
+---@field exclude? gr.node[] exclude (a table of nodes; default none): The nodes that it does not light.
 ---@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients: light is divided by c0 + c1 d + c2 d^2.
+---@field range? number range (a number, > 0; optional): How far it reaches, instead of falloff: light is multiplied by 1 - d / range.
+---@field intensity? number intensity (a number, >= 0; optional): Physical fading, instead of falloff: light is multiplied by intensity / d^2.
+---@field position gr.triple position (a point {x, y, z}): Where it stands.
 
 ---A light at a point.
 ---@param position gr.triple position (a point {x, y, z}): Where it stands.
@@ -793,30 +811,270 @@ function gr.bump(name) end
 function gr.light(position, colour, falloff) end
 
 ---@class gr.area_light.fields
+---@field colour? gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Its colour and strength.
+---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
+---@field exclude? gr.node[] exclude (a table of nodes; default none): The nodes that it does not light.
+---@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients: light is divided by c0 + c1 d + c2 d^2.
+---@field range? number range (a number, > 0; optional): How far it reaches, instead of falloff: light is multiplied by 1 - d / range.
+---@field intensity? number intensity (a number, >= 0; optional): Physical fading, instead of falloff: light is multiplied by intensity / d^2.
+---@field emission? gr.triple emission (a colour {r, g, b}; optional): Radiance of its surface, times colour: what it lights follows its true shape, without falloff.
+---@field samples? integer samples (a whole number, 1 to 64; default area_samples): N x N shadow rays for this light.
+---@field visible? boolean visible (true or false; default false): Whether the light itself is seen.
 ---@field corner gr.triple corner (a point {x, y, z}): One corner of the parallelogram.
 ---@field v1 gr.triple v1 (a direction {x, y, z}): The edge to the next corner.
 ---@field v2 gr.triple v2 (a direction {x, y, z}): The edge to the corner on the other side.
----@field colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
----@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients: light is divided by c0 + c1 d + c2 d^2.
+---@field one_sided? boolean one_sided (true or false; default false): Whether it is seen, and emits, only on the side of v1 x v2.
 
 ---A light that is a parallelogram; soft shadows.
 ---@param corner gr.triple corner (a point {x, y, z}): One corner of the parallelogram.
 ---@param v1 gr.triple v1 (a direction {x, y, z}): The edge to the next corner.
 ---@param v2 gr.triple v2 (a direction {x, y, z}): The edge to the corner on the other side.
----@param colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
+---@param colour gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Its colour and strength.
 ---@param falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients: light is divided by c0 + c1 d + c2 d^2.
 ---@return gr.light
 ---@overload fun(fields: gr.area_light.fields): gr.light
 function gr.area_light(corner, v1, v2, colour, falloff) end
 
----A light that is a sphere. Comes with version 0.2.
----@param name? string name (a string; optional): Name of the node, for messages.
+---@class gr.spherical_light.fields
+---@field colour? gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Its colour and strength.
+---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
+---@field exclude? gr.node[] exclude (a table of nodes; default none): The nodes that it does not light.
+---@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients: light is divided by c0 + c1 d + c2 d^2.
+---@field range? number range (a number, > 0; optional): How far it reaches, instead of falloff: light is multiplied by 1 - d / range.
+---@field intensity? number intensity (a number, >= 0; optional): Physical fading, instead of falloff: light is multiplied by intensity / d^2.
+---@field emission? gr.triple emission (a colour {r, g, b}; optional): Radiance of its surface, times colour: what it lights follows its true shape, without falloff.
+---@field samples? integer samples (a whole number, 1 to 64; default area_samples): N x N shadow rays for this light.
+---@field visible? boolean visible (true or false; default false): Whether the light itself is seen.
+---@field position gr.triple position (a point {x, y, z}): Its centre.
+---@field radius number radius (a number, > 0): Its radius.
+
+---A light that is a sphere; soft shadows.
+---@param position gr.triple position (a point {x, y, z}): Its centre.
+---@param colour gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Its colour and strength.
+---@param falloff gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients: light is divided by c0 + c1 d + c2 d^2.
+---@param radius number radius (a number, > 0): Its radius.
 ---@return gr.light
-function gr.spherical_light(name) end
+---@overload fun(fields: gr.spherical_light.fields): gr.light
+function gr.spherical_light(position, colour, falloff, radius) end
+
+---@class gr.disc_light.fields
+---@field colour? gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Its colour and strength.
+---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
+---@field exclude? gr.node[] exclude (a table of nodes; default none): The nodes that it does not light.
+---@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients: light is divided by c0 + c1 d + c2 d^2.
+---@field range? number range (a number, > 0; optional): How far it reaches, instead of falloff: light is multiplied by 1 - d / range.
+---@field intensity? number intensity (a number, >= 0; optional): Physical fading, instead of falloff: light is multiplied by intensity / d^2.
+---@field emission? gr.triple emission (a colour {r, g, b}; optional): Radiance of its surface, times colour: what it lights follows its true shape, without falloff.
+---@field samples? integer samples (a whole number, 1 to 64; default area_samples): N x N shadow rays for this light.
+---@field visible? boolean visible (true or false; default false): Whether the light itself is seen.
+---@field position gr.triple position (a point {x, y, z}): Its centre.
+---@field normal gr.triple normal (a direction {x, y, z}): The direction it faces.
+---@field radius number radius (a number, > 0): Its radius.
+---@field one_sided? boolean one_sided (true or false; default false): Whether it is seen, and emits, only on the side of its normal.
+
+---A light that is a disc; soft shadows.
+---@param position gr.triple position (a point {x, y, z}): Its centre.
+---@param normal gr.triple normal (a direction {x, y, z}): The direction it faces.
+---@param radius number radius (a number, > 0): Its radius.
+---@param colour gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Its colour and strength.
+---@param falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients: light is divided by c0 + c1 d + c2 d^2.
+---@return gr.light
+---@overload fun(fields: gr.disc_light.fields): gr.light
+function gr.disc_light(position, normal, radius, colour, falloff) end
+
+---@class gr.directional_light.fields
+---@field colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
+---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
+---@field exclude? gr.node[] exclude (a table of nodes; default none): The nodes that it does not light.
+---@field direction gr.triple direction (a direction {x, y, z}): The direction its light goes in.
+
+---Light of one direction from infinitely far away.
+---@param direction gr.triple direction (a direction {x, y, z}): The direction its light goes in.
+---@param colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
+---@return gr.light
+---@overload fun(fields: gr.directional_light.fields): gr.light
+function gr.directional_light(direction, colour) end
+
+---@class gr.spot_light.fields
+---@field colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
+---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
+---@field exclude? gr.node[] exclude (a table of nodes; default none): The nodes that it does not light.
+---@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients: light is divided by c0 + c1 d + c2 d^2.
+---@field range? number range (a number, > 0; optional): How far it reaches, instead of falloff: light is multiplied by 1 - d / range.
+---@field intensity? number intensity (a number, >= 0; optional): Physical fading, instead of falloff: light is multiplied by intensity / d^2.
+---@field position gr.triple position (a point {x, y, z}): Where it stands.
+---@field direction? gr.triple direction (a direction {x, y, z}; default {0, -1, 0}): The axis of its cone.
+---@field target? gr.triple target (a point {x, y, z}; optional): A point on the axis, instead of direction.
+---@field inner? number inner (a number, 0 to 180, in degrees; default three quarters of outer): Angle from the axis up to which its light is full.
+---@field outer? number outer (a number, > 0 and <= 180, in degrees; default 30, or inner if that is more): Angle from the axis where its light ends.
+
+---A light at a point that shines into a cone.
+---@param position gr.triple position (a point {x, y, z}): Where it stands.
+---@param direction gr.triple direction (a direction {x, y, z}; default {0, -1, 0}): The axis of its cone.
+---@param colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
+---@param inner number inner (a number, 0 to 180, in degrees; default three quarters of outer): Angle from the axis up to which its light is full.
+---@param outer number outer (a number, > 0 and <= 180, in degrees; default 30, or inner if that is more): Angle from the axis where its light ends.
+---@param falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients: light is divided by c0 + c1 d + c2 d^2.
+---@return gr.light
+---@overload fun(fields: gr.spot_light.fields): gr.light
+function gr.spot_light(position, direction, colour, inner, outer, falloff) end
+
+---@class gr.sun_light.fields
+---@field colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
+---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
+---@field exclude? gr.node[] exclude (a table of nodes; default none): The nodes that it does not light.
+---@field sun? gr.triple sun (a direction {x, y, z}; optional): The direction to the sun, instead of time and place.
+---@field hour? number hour (a number, 0 to 24; default 12): Hour of the clock.
+---@field day? integer day (a whole number, 1 to 366; default 172, 21 June): Day of the year.
+---@field latitude? number latitude (a number, >= -90 and <= 90, in degrees; default 45): North is positive; -z is north and +x is east.
+---@field longitude? number longitude (a number, >= -180 and <= 180, in degrees; default 0): East is positive.
+---@field zone? number zone (a number, >= -14 and <= 14, in hours; default 0): How far the clock is ahead of Greenwich.
+
+---Directional light from where the sun stands.
+---@param sun gr.triple sun (a direction {x, y, z}; optional): The direction to the sun, instead of time and place.
+---@param colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
+---@return gr.light
+---@overload fun(fields: gr.sun_light.fields): gr.light
+function gr.sun_light(sun, colour) end
+
+---@class gr.sky_faces.fields
+---@field intensity? number intensity (a number, >= 0; default 1): Factor of its brightness.
+---@field rotation? number rotation (a number, in degrees; default 0): How far it is turned about y, counterclockwise seen from above.
+---@field front string|gr.texture front (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@field right string|gr.texture right (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@field back string|gr.texture back (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@field left string|gr.texture left (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@field top string|gr.texture top (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@field bottom string|gr.texture bottom (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+
+---A sky of six pictures on a cube: front is +z, right -x, back -z, left +x.
+---@param front string|gr.texture front (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@param right string|gr.texture right (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@param back string|gr.texture back (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@param left string|gr.texture left (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@param top string|gr.texture top (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@param bottom string|gr.texture bottom (the name of a picture file or a texture): A square picture, as somebody in the middle sees it.
+---@return gr.sky
+---@overload fun(fields: gr.sky_faces.fields): gr.sky
+function gr.sky_faces(front, right, back, left, top, bottom) end
+
+---@class gr.sky_map.fields
+---@field intensity? number intensity (a number, >= 0; default 1): Factor of its brightness.
+---@field rotation? number rotation (a number, in degrees; default 0): How far it is turned about y, counterclockwise seen from above.
+---@field image string|gr.texture image (the name of a picture file or a texture): The whole sphere, longitude by latitude; -z is in its middle, +x right of it.
+
+---A sky from one picture of the whole sphere.
+---@param image string|gr.texture image (the name of a picture file or a texture): The whole sphere, longitude by latitude; -z is in its middle, +x right of it.
+---@return gr.sky
+---@overload fun(fields: gr.sky_map.fields): gr.sky
+function gr.sky_map(image) end
+
+---@class gr.sky_gradient.fields
+---@field intensity? number intensity (a number, >= 0; default 1): Factor of its brightness.
+---@field rotation? number rotation (a number, in degrees; default 0): How far it is turned about y, counterclockwise seen from above.
+---@field stops number[][] stops (a table of stops {height, r, g, b}): Colours by height, {y, r, g, b}: y of the unit direction, from -1 to 1.
+
+---A sky of colours by height.
+---@param stops number[][] stops (a table of stops {height, r, g, b}): Colours by height, {y, r, g, b}: y of the unit direction, from -1 to 1.
+---@return gr.sky
+---@overload fun(fields: gr.sky_gradient.fields): gr.sky
+function gr.sky_gradient(stops) end
+
+---@class gr.clear_sky.fields
+---@field intensity? number intensity (a number, >= 0; default 1): Factor of its brightness.
+---@field rotation? number rotation (a number, in degrees; default 0): How far it is turned about y, counterclockwise seen from above.
+---@field sun? gr.triple sun (a direction {x, y, z}; optional): The direction to the sun, instead of time and place.
+---@field hour? number hour (a number, 0 to 24; default 12): Hour of the clock.
+---@field day? integer day (a whole number, 1 to 366; default 172, 21 June): Day of the year.
+---@field latitude? number latitude (a number, >= -90 and <= 90, in degrees; default 45): North is positive; -z is north and +x is east.
+---@field longitude? number longitude (a number, >= -180 and <= 180, in degrees; default 0): East is positive.
+---@field zone? number zone (a number, >= -14 and <= 14, in hours; default 0): How far the clock is ahead of Greenwich.
+---@field turbidity? number turbidity (a number, 1.7 to 10; default 2.5): How hazy the air is: 2 is very clear, 10 hazy.
+---@field ground? gr.triple ground (a colour {r, g, b}; default {0.15, 0.15, 0.15}): What is below the horizon.
+
+---The physical clear sky of Preetham, Shirley and Smits, 1999.
+---@param sun gr.triple sun (a direction {x, y, z}; optional): The direction to the sun, instead of time and place.
+---@param turbidity? number turbidity (a number, 1.7 to 10; default 2.5): How hazy the air is: 2 is very clear, 10 hazy.
+---@return gr.sky
+---@overload fun(fields: gr.clear_sky.fields): gr.sky
+function gr.clear_sky(sun, turbidity) end
+
+---@class gr.fog.fields
+---@field colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@field clear_sky? boolean clear_sky (true or false; default false): Whether the sky is seen without fog.
+---@field density number density (a number, >= 0): What is d away keeps the share exp(-density d).
+---@field squared? boolean squared (true or false; default false): The share is exp(-(density d)^2) instead: clear near, then closing fast.
+
+---Fog that is the same everywhere.
+---@param density number density (a number, >= 0): What is d away keeps the share exp(-density d).
+---@param colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@return gr.fog
+---@overload fun(fields: gr.fog.fields): gr.fog
+function gr.fog(density, colour) end
+
+---@class gr.linear_fog.fields
+---@field colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@field clear_sky? boolean clear_sky (true or false; default false): Whether the sky is seen without fog.
+---@field near? number near (a number, >= 0; default 0): Where it begins.
+---@field far number far (a number, > 0): Where nothing else is seen any more.
+
+---Fog that closes linearly with distance.
+---@param near number near (a number, >= 0; default 0): Where it begins.
+---@param far number far (a number, > 0): Where nothing else is seen any more.
+---@param colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@return gr.fog
+---@overload fun(fields: gr.linear_fog.fields): gr.fog
+function gr.linear_fog(near, far, colour) end
+
+---@class gr.height_fog.fields
+---@field colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@field clear_sky? boolean clear_sky (true or false; default false): Whether the sky is seen without fog.
+---@field density number density (a number, >= 0): Density at the base.
+---@field base? number base (a number; default 0): Height y of the base.
+---@field scale? number scale (a number, > 0; default 1): How much higher it is thinner by the factor e.
+
+---Fog that thins out upwards.
+---@param density number density (a number, >= 0): Density at the base.
+---@param base number base (a number; default 0): Height y of the base.
+---@param scale number scale (a number, > 0; default 1): How much higher it is thinner by the factor e.
+---@param colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@return gr.fog
+---@overload fun(fields: gr.height_fog.fields): gr.fog
+function gr.height_fog(density, base, scale, colour) end
+
+---@class gr.fog_profile.fields
+---@field colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@field clear_sky? boolean clear_sky (true or false; default false): Whether the sky is seen without fog.
+---@field profile number[][] profile (a table of pairs {u, v}): Densities by height, {y, density}; linear between, constant beyond.
+
+---Fog with a density for every height.
+---@param profile number[][] profile (a table of pairs {u, v}): Densities by height, {y, density}; linear between, constant beyond.
+---@param colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@return gr.fog
+---@overload fun(fields: gr.fog_profile.fields): gr.fog
+function gr.fog_profile(profile, colour) end
+
+---@class gr.fog_grid.fields
+---@field colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@field clear_sky? boolean clear_sky (true or false; default false): Whether the sky is seen without fog.
+---@field corner gr.triple corner (a point {x, y, z}): The corner with the smallest coordinates.
+---@field size number|gr.triple size (a number or a table of 3 numbers, > 0): Length of the edges, one number or three.
+---@field cells gr.triple cells (a table of 3 numbers, 1 to 1024): How many cells along x, y and z.
+---@field densities number|number[] densities (a number or a table of numbers, >= 0): The density of each cell, x running fastest, then y, then z.
+
+---Fog in the cells of a box, none outside.
+---@param corner gr.triple corner (a point {x, y, z}): The corner with the smallest coordinates.
+---@param size number|gr.triple size (a number or a table of 3 numbers, > 0): Length of the edges, one number or three.
+---@param cells gr.triple cells (a table of 3 numbers, 1 to 1024): How many cells along x, y and z.
+---@param densities number|number[] densities (a number or a table of numbers, >= 0): The density of each cell, x running fastest, then y, then z.
+---@param colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@return gr.fog
+---@overload fun(fields: gr.fog_grid.fields): gr.fog
+function gr.fog_grid(corner, size, cells, densities, colour) end
 
 ---@class gr.render.fields
 ---@field node gr.node node (a node): The root of what is drawn.
----@field file string file (the name of a file): The PNG file to write; missing folders are made.
+---@field file string file (the name of a file): The picture to write: .png, or .pfm or .hdr for linear light; missing folders are made.
 ---@field sky? string|gr.texture sky (the name of a picture file or a texture; optional): A 4 x 3 cross of images all around, as a PNG or JPEG file.
 ---@field width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@field height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
@@ -827,7 +1085,7 @@ function gr.spherical_light(name) end
 ---@field ambient? gr.triple ambient (a colour {r, g, b}; default {0, 0, 0}): Light that is everywhere.
 ---@field lights? gr.light[] lights (a table of lights; default {}): A table of lights.
 ---@field target? gr.triple target (a point {x, y, z}; optional): A point to look at, instead of view.
----@field background? gr.triple|'gradient' background (a colour {r, g, b} or 'gradient'; default 'gradient'): What rays see that meet nothing: a colour, or 'gradient' for {0, 0, (1 + y)/2}.
+---@field background? gr.triple|gr.sky|'gradient' background (a colour {r, g, b}, a sky or 'gradient'; default 'gradient'): What rays see that meet nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}.
 ---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
 ---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
 ---@field full? boolean full (true or false; default -full): Whether every pixel is sampled so.
@@ -840,10 +1098,29 @@ function gr.spherical_light(name) end
 ---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): The form of highlights.
 ---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Start of random numbers.
 ---@field accel? 'auto'|'grid'|'bvh'|'none' accel ('auto'|'grid'|'bvh'|'none'; default 'auto'): How hits are searched; the picture is the same.
+---@field fog? gr.fog fog (a fog; default none): A fog.
+---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Rays that can change a pixel by less than this are not followed.
+---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure on its way into a PNG file.
+---@field tone? 'none'|'reinhard'|'filmic' tone ('none'|'reinhard'|'filmic'; default --tone): The curve that brings bright light into the range of a PNG file.
+---@field srgb? boolean srgb (true or false; default --srgb): Whether values of a PNG file follow the sRGB transfer function.
+---@field deep? boolean deep (true or false; default --deep): Whether a PNG file has 16 bits a channel.
+---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye is equidistant inside a circle; panorama is all around, longitude by latitude.
+---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture in the scene.
+---@field angle? number angle (a number, > 0 and <= 360, in degrees; default 180): Full angle of a fisheye across the height.
+---@field shift_x? number shift_x (a number, in widths; default 0): How far the window is off to the right.
+---@field shift_y? number shift_y (a number, in heights; default 0): How far the window is off upwards.
+---@field aperture? number aperture (a number, >= 0; default 0): Radius of the lens in the scene; 0 is a pinhole. With a lens every pixel is resampled.
+---@field focus? number focus (a number, > 0; default target, else 1): Distance of the plane that is sharp, along the view.
+---@field focus_point? gr.triple focus_point (a point {x, y, z}; optional): A point of that plane, instead of focus.
+---@field blades? integer blades (a whole number, 3 to 64; default round): Number of blades: the aperture is a polygon.
+---@field blade_angle? number blade_angle (a number, in degrees; default 0): How far that polygon is turned.
+---@field stereo? 'none'|'side'|'anaglyph' stereo ('none'|'side'|'anaglyph'; default 'none'): Two eyes: pictures side by side, left one left, or red and cyan.
+---@field eye_distance? number eye_distance (a number, >= 0; default screen / 30): How far the eyes are apart.
+---@field screen? number screen (a number, > 0; default focus): Distance along the view that both eyes see in the same place.
 
 ---Renders a picture into a PNG file.
 ---@param node gr.node node (a node): The root of what is drawn.
----@param file string file (the name of a file): The PNG file to write; missing folders are made.
+---@param file string file (the name of a file): The picture to write: .png, or .pfm or .hdr for linear light; missing folders are made.
 ---@param width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@param height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
 ---@param eye gr.triple eye (a point {x, y, z}): Where the camera stands.
@@ -857,7 +1134,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 
 ---@class gr.render_skybox.fields
 ---@field node gr.node node (a node): The root of what is drawn.
----@field file string file (the name of a file): The PNG file to write; missing folders are made.
+---@field file string file (the name of a file): The picture to write: .png, or .pfm or .hdr for linear light; missing folders are made.
 ---@field sky? string|gr.texture sky (the name of a picture file or a texture; optional): A 4 x 3 cross of images all around, as a PNG or JPEG file.
 ---@field width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@field height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
@@ -868,7 +1145,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field ambient? gr.triple ambient (a colour {r, g, b}; default {0, 0, 0}): Light that is everywhere.
 ---@field lights? gr.light[] lights (a table of lights; default {}): A table of lights.
 ---@field target? gr.triple target (a point {x, y, z}; optional): A point to look at, instead of view.
----@field background? gr.triple|'gradient' background (a colour {r, g, b} or 'gradient'; default 'gradient'): What rays see that meet nothing: a colour, or 'gradient' for {0, 0, (1 + y)/2}.
+---@field background? gr.triple|gr.sky|'gradient' background (a colour {r, g, b}, a sky or 'gradient'; default 'gradient'): What rays see that meet nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}.
 ---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
 ---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
 ---@field full? boolean full (true or false; default -full): Whether every pixel is sampled so.
@@ -881,10 +1158,29 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): The form of highlights.
 ---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Start of random numbers.
 ---@field accel? 'auto'|'grid'|'bvh'|'none' accel ('auto'|'grid'|'bvh'|'none'; default 'auto'): How hits are searched; the picture is the same.
+---@field fog? gr.fog fog (a fog; default none): A fog.
+---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Rays that can change a pixel by less than this are not followed.
+---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure on its way into a PNG file.
+---@field tone? 'none'|'reinhard'|'filmic' tone ('none'|'reinhard'|'filmic'; default --tone): The curve that brings bright light into the range of a PNG file.
+---@field srgb? boolean srgb (true or false; default --srgb): Whether values of a PNG file follow the sRGB transfer function.
+---@field deep? boolean deep (true or false; default --deep): Whether a PNG file has 16 bits a channel.
+---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye is equidistant inside a circle; panorama is all around, longitude by latitude.
+---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture in the scene.
+---@field angle? number angle (a number, > 0 and <= 360, in degrees; default 180): Full angle of a fisheye across the height.
+---@field shift_x? number shift_x (a number, in widths; default 0): How far the window is off to the right.
+---@field shift_y? number shift_y (a number, in heights; default 0): How far the window is off upwards.
+---@field aperture? number aperture (a number, >= 0; default 0): Radius of the lens in the scene; 0 is a pinhole. With a lens every pixel is resampled.
+---@field focus? number focus (a number, > 0; default target, else 1): Distance of the plane that is sharp, along the view.
+---@field focus_point? gr.triple focus_point (a point {x, y, z}; optional): A point of that plane, instead of focus.
+---@field blades? integer blades (a whole number, 3 to 64; default round): Number of blades: the aperture is a polygon.
+---@field blade_angle? number blade_angle (a number, in degrees; default 0): How far that polygon is turned.
+---@field stereo? 'none'|'side'|'anaglyph' stereo ('none'|'side'|'anaglyph'; default 'none'): Two eyes: pictures side by side, left one left, or red and cyan.
+---@field eye_distance? number eye_distance (a number, >= 0; default screen / 30): How far the eyes are apart.
+---@field screen? number screen (a number, > 0; default focus): Distance along the view that both eyes see in the same place.
 
 ---The same with a sky image all around.
 ---@param node gr.node node (a node): The root of what is drawn.
----@param file string file (the name of a file): The PNG file to write; missing folders are made.
+---@param file string file (the name of a file): The picture to write: .png, or .pfm or .hdr for linear light; missing folders are made.
 ---@param sky string|gr.texture sky (the name of a picture file or a texture; optional): A 4 x 3 cross of images all around, as a PNG or JPEG file.
 ---@param width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@param height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
@@ -956,7 +1252,7 @@ function node:rotate(axis, angle) end
 function node:translate(x, y, z) end
 
 ---The same as gr.render with this node.
----@param file string file (the name of a file): The PNG file to write; missing folders are made.
+---@param file string file (the name of a file): The picture to write: .png, or .pfm or .hdr for linear light; missing folders are made.
 ---@param width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@param height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
 ---@param eye gr.triple eye (a point {x, y, z}): Where the camera stands.

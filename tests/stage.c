@@ -45,6 +45,7 @@ bool stage_render(struct stage *s, uint32_t width, uint32_t height) {
                              .width = width,
                              .height = height,
                              .ambient = s->ambient,
+                             .fog = s->fog,
                              .film = &s->film};
     char warning[256];
     size_t bytes;

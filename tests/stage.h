@@ -18,6 +18,7 @@ struct stage {
     uint32_t light_count;
     struct sky sky;
     struct vec3 ambient;
+    const struct fog *fog;
     struct settings settings;
     struct camera camera;
     struct render_statistics statistics;

@@ -36,6 +36,9 @@ struct frame_line {
 struct picture_request {
     uint32_t full_width, full_height; /* of the whole picture */
     uint32_t x0, y0, width, height;   /* the part that is rendered */
+    double exposure;                  /* of its file, as in struct tone */
+    uint32_t curve, srgb;             /* the same; an enum tone_curve, and not 0 for sRGB */
+    uint32_t deep;                    /* not 0: 16 bits a channel in a PNG file */
     uint32_t check;                   /* not 0 for --check: only the names are looked at, no film is wanted */
     char file[4096];                  /* as the script gave it */
 };

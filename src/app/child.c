@@ -134,7 +134,8 @@ static bool make_picture(struct child *child, const struct render_request *reque
 static bool begin_picture(struct child *child, const struct render_request *request, struct render_job *job,
                           struct film *film, struct error *error) {
     struct picture_request asked = {
-        .full_width = job->width, .full_height = job->height, .check = child->options->check};
+        .full_width = job->width, .full_height = job->height, .exposure = job->settings.tone.exposure,
+        .curve = (uint32_t)job->settings.tone.curve, .srgb = job->settings.tone.srgb, .deep = job->settings.deep, .check = child->options->check};
     char warning[256] = "";
     size_t length = strlen(request->file);
     if (length >= sizeof asked.file)
@@ -164,6 +165,7 @@ static bool render_job_run(struct child *child, const struct render_request *req
         .width = options->width ? (uint32_t)options->width : (uint32_t)request->width,
         .height = options->height ? (uint32_t)options->height : (uint32_t)request->height,
         .ambient = request->ambient,
+        .fog = request->fog,
         .film = &film,
         .tile_done = tile_done,
         .context = services->control,

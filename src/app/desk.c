@@ -6,9 +6,11 @@
 #include "app/statistics.h"
 #include "app/text.h"
 #include "base/file.h"
+#include "image/float_write.h"
 #include "image/png_write.h"
 
 #include <string.h>
+#include <strings.h>
 
 void desk_init(struct desk *desk, const struct options *options, struct control *control) {
     memset(desk, 0, sizeof *desk);
@@ -97,16 +99,41 @@ void desk_abandon(struct desk *desk) {
 struct rows {
     const struct film *film;
     enum film_view view;
+    const struct tone *tone;
 };
 
 static void row(void *context, uint32_t y, uint8_t *line) {
     const struct rows *rows = context;
-    film_row(rows->film, rows->view, y, line);
+    film_row_toned(rows->film, rows->view, rows->tone, y, line);
 }
 
+static void row_16(void *context, uint32_t y, uint16_t *line) {
+    const struct rows *rows = context;
+    film_row_16(rows->film, rows->view, rows->tone, y, line);
+}
+
+static void row_linear(void *context, uint32_t y, float *line) {
+    const struct rows *rows = context;
+    film_row_linear(rows->film, rows->view, y, line);
+}
+
+static bool ends_in(const char *name, const char *extension) {
+    size_t length = strlen(name), wanted = strlen(extension);
+    return length >= wanted && strcasecmp(name + length - wanted, extension) == 0;
+}
+
+/* The extension says the format; whatever is not .pfm or .hdr is PNG. Tone is for PNG alone: the other two hold light. */
 static bool write_view(const struct picture *picture, const char *name, enum film_view view, struct error *error) {
-    struct rows rows = {&picture->film, view};
-    return png_write(name, picture->request.width, picture->request.height, row, &rows, error);
+    const struct picture_request *request = &picture->request;
+    struct tone tone = {request->exposure, (enum tone_curve)request->curve, request->srgb != 0};
+    struct rows rows = {&picture->film, view, &tone};
+    if (ends_in(name, ".pfm"))
+        return pfm_write(name, request->width, request->height, row_linear, &rows, error);
+    if (ends_in(name, ".hdr"))
+        return hdr_write(name, request->width, request->height, row_linear, &rows, error);
+    if (request->deep)
+        return png_write_16(name, request->width, request->height, row_16, &rows, error);
+    return png_write(name, request->width, request->height, row, &rows, error);
 }
 
 static bool write_prefixed(const struct picture *picture, const char *prefix, enum film_view view,

@@ -69,6 +69,8 @@ static const struct option table[] = {
      "beyond the critical angle the refracted share is reflected instead of lost"},
     {GROUP_PICTURE, "-al-samples|alsamples", OPTION_INTEGER, "N", 1, 64, FIELD(settings.area_samples), "4",
      "N x N shadow rays for each area light"},
+    {GROUP_PICTURE, "--cutoff", OPTION_NUMBER, "X", 0, 1, FIELD(settings.cutoff), "0",
+     "rays that can change a pixel by less than X (of 1) are not followed"},
     {GROUP_PICTURE, "--seed", OPTION_SEED, "N", NO_RANGE, NO_FIELD, "0",
      "start of all random numbers, the scripts' math.random included"},
 
@@ -80,8 +82,17 @@ static const struct option table[] = {
     {GROUP_LOOK, "--isa", OPTION_CHOICE, "auto|base|avx2|avx512", NO_RANGE, FIELD(isa), "auto",
      "instruction set of the kernels; the picture is the same"},
 
+    {GROUP_LOOK, "--exposure", OPTION_NUMBER, "STOPS", -100, 100, FIELD(settings.tone.exposure), "0",
+     "light is multiplied by 2^STOPS on its way into a PNG file"},
+    {GROUP_LOOK, "--tone", OPTION_CHOICE, "none|reinhard|filmic", NO_RANGE, FIELD(settings.tone.curve), "none",
+     "the curve that brings bright light into the range of a PNG file"},
+    {GROUP_LOOK, "--srgb", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.tone.srgb), NULL,
+     "values of a PNG file follow the sRGB transfer function instead of light itself"},
+    {GROUP_LOOK, "--deep", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.deep), NULL,
+     "16 bits a channel in PNG files"},
+
     {GROUP_FILES, "-o", OPTION_TEXT, "FILE", NO_RANGE, FIELD(output), "the script's",
-     "name of the picture, '-' for standard output; with several pictures FILE needs %d (or %03d), which counts from "
+     "name of the picture (.png, or .pfm and .hdr for light as it is), '-' for standard output; with several pictures FILE needs %d (or %03d), which counts from "
      "1"},
     {GROUP_FILES, "-write-aa-targets", OPTION_TEXT, "X", NO_RANGE, FIELD(targets_prefix), NULL,
      "for dir/foo.png also write dir/Xfoo.png: the first pass with the marked pixels in red"},
@@ -144,7 +155,7 @@ enum { TABLE_SIZE = sizeof table / sizeof *table };
 
 /* Values are stored through their size: an enum is an int here. */
 _Static_assert(sizeof(enum specular_kind) == sizeof(int) && sizeof(enum accel_kind) == sizeof(int) &&
-                   sizeof(enum script_order) == sizeof(int) && sizeof(enum progress_mode) == sizeof(int),
+                   sizeof(enum script_order) == sizeof(int) && sizeof(enum tone_curve) == sizeof(int) && sizeof(enum progress_mode) == sizeof(int),
                "choices are stored as int");
 
 /* The next piece of a text parted by '|'; *rest moves behind it. Empty at the end. */

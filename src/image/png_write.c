@@ -23,7 +23,19 @@ struct writer {
     png_structp png;
     png_infop info;
     uint8_t *line;
+    int bits;        /* 8 or 16 */
+    uint16_t *words; /* of a row, with 16 bits */
+    void (*rows_16)(void *context, uint32_t y, uint16_t *line);
 };
+
+/* PNG has the upper byte first. */
+static void row_of_words(struct writer *writer, void *context, uint32_t width, uint32_t y) {
+    writer->rows_16(context, y, writer->words);
+    for (size_t i = 0; i < (size_t)width * 3; i++) {
+        writer->line[2 * i] = (uint8_t)(writer->words[i] >> 8);
+        writer->line[2 * i + 1] = (uint8_t)writer->words[i];
+    }
+}
 
 static void on_write(png_structp png, png_bytep data, size_t size) {
     struct writer *writer = png_get_io_ptr(png);
@@ -70,27 +82,32 @@ static bool encode(struct writer *writer, uint32_t width, uint32_t height,
     png_set_compression_mem_level(png, MEMORY_LEVEL);
     png_set_compression_strategy(png, STRATEGY);
     png_set_filter(png, PNG_FILTER_TYPE_BASE, FILTERS);
-    png_set_IHDR(png, writer->info, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+    png_set_IHDR(png, writer->info, width, height, writer->bits, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_write_info(png, writer->info);
     for (uint32_t y = 0; y < height; y++) {
-        rows(context, y, writer->line);
+        if (rows)
+            rows(context, y, writer->line);
+        else
+            row_of_words(writer, context, width, y);
         png_write_row(png, writer->line);
     }
     png_write_end(png, writer->info);
     return true;
 }
 
-bool png_write(const char *path, uint32_t width, uint32_t height,
-               void (*rows)(void *context, uint32_t y, uint8_t *line), void *context, struct error *error) {
+static bool write_file(const char *path, uint32_t width, uint32_t height,
+                       void (*rows)(void *context, uint32_t y, uint8_t *line),
+                       void (*rows_16)(void *context, uint32_t y, uint16_t *line), void *context, struct error *error) {
     if (width == 0 || height == 0 || width > PNG_UINT_31_MAX / 8 || height > PNG_UINT_31_MAX)
         return error_set(error, ERROR_SCENE, "%s: a PNG file cannot have %u x %u pixels", path, width, height);
-    struct writer writer = {.path = path, .error = error};
+    struct writer writer = {.path = path, .error = error, .bits = rows_16 ? 16 : 8, .rows_16 = rows_16};
     if (!file_output_open(&writer.output, path, error))
         return false;
     error->kind = ERROR_NONE;
-    writer.line = mem_alloc((size_t)width * 3);
-    writer.png = writer.line ? png_create_write_struct_2(PNG_LIBPNG_VER_STRING, &writer, on_error, on_warning, &writer,
+    writer.line = mem_alloc((size_t)width * 3 * (rows_16 ? 2 : 1));
+    writer.words = rows_16 ? mem_alloc_zero((size_t)width * 3, sizeof *writer.words) : NULL;
+    writer.png = writer.line && (writer.words || !rows_16) ? png_create_write_struct_2(PNG_LIBPNG_VER_STRING, &writer, on_error, on_warning, &writer,
                                                          on_alloc, on_free)
                              : NULL;
     writer.info = writer.png ? png_create_info_struct(writer.png) : NULL;
@@ -103,11 +120,22 @@ bool png_write(const char *path, uint32_t width, uint32_t height,
     }
     png_destroy_write_struct(&writer.png, &writer.info);
     mem_free(writer.line);
+    mem_free(writer.words);
     if (!ok) {
         file_output_abandon(&writer.output);
         return false;
     }
     return file_output_commit(&writer.output, error);
+}
+
+bool png_write(const char *path, uint32_t width, uint32_t height,
+               void (*rows)(void *context, uint32_t y, uint8_t *line), void *context, struct error *error) {
+    return write_file(path, width, height, rows, NULL, context, error);
+}
+
+bool png_write_16(const char *path, uint32_t width, uint32_t height,
+                  void (*rows)(void *context, uint32_t y, uint16_t *line), void *context, struct error *error) {
+    return write_file(path, width, height, NULL, rows, context, error);
 }
 
 uint8_t png_write_byte(double c) {

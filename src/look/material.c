@@ -126,7 +126,13 @@ static void material_link(const struct material *material, const struct hit *hit
                                       .refract = material->phong.refract,
                                       .ior = material->phong.ior,
                                       .has_ior = material->phong.has_ior,
-                                      .two_sided = material->phong.two_sided};
+                                      .two_sided = material->phong.two_sided,
+                                      .unlit = material->phong.unlit,
+                                      .highlight = material->phong.highlight,
+                                      .emission = material->phong.emission,
+                                      .absorption = material->phong.absorption,
+                                      .roughness = material->phong.roughness,
+                                      .glossy_samples = material->phong.glossy_samples};
         if (material->phong.by_vertex && hit->has_colour)
             look->kd = vec3_mul(look->kd, hit->colour);
         break;
@@ -163,11 +169,20 @@ void material_look(const struct material *material, const struct hit *hit, struc
 void material_shading(const struct surface_look *look, enum specular_kind specular, bool ambient_plain,
                       struct shading *out) {
     out->count = 0;
-    out->ambient = ambient_plain ? vec3_all(1) : look->kd;
-    out->lobes[out->count++] = (struct lobe){.kind = LOBE_DIFFUSE, .weight = look->kd};
-    out->lobes[out->count++] = (struct lobe){.kind = specular == SPECULAR_BLINN ? LOBE_BLINN : LOBE_PHONG,
-                                             .weight = vec3_scale(look->ks, 1 - look->refract),
-                                             .exponent = look->shininess};
+    out->emission = look->emission;
+    /* The square spreads the useful values over 0..1 (Burley, "Physically-Based Shading at Disney", 2012). */
+    out->alpha = look->roughness * look->roughness;
+    bool blinn = look->highlight == HIGHLIGHT_AS_SET ? specular == SPECULAR_BLINN : look->highlight == HIGHLIGHT_BLINN;
+    if (look->unlit) {
+        out->emission = vec3_add(out->emission, look->kd);
+        out->ambient = vec3_all(0);
+    } else {
+        out->ambient = ambient_plain ? vec3_all(1) : look->kd;
+        out->lobes[out->count++] = (struct lobe){.kind = LOBE_DIFFUSE, .weight = look->kd};
+        out->lobes[out->count++] = (struct lobe){.kind = blinn ? LOBE_BLINN : LOBE_PHONG,
+                                                 .weight = vec3_scale(look->ks, 1 - look->refract),
+                                                 .exponent = look->shininess};
+    }
     if (look->reflect != 0)
         out->lobes[out->count++] = (struct lobe){.kind = LOBE_MIRROR, .weight = vec3_scale(look->ks, look->reflect)};
     if (look->refract != 0)
@@ -183,6 +198,13 @@ bool material_is_transparent(const struct material *material, double *ior) {
         return false;
     *ior = link->phong.ior;
     return fresnel || link->phong.refract > 0;
+}
+
+struct vec3 material_absorption(const struct material *material) {
+    const struct material *link = material;
+    while (link->base)
+        link = link->base;
+    return link->kind == MATERIAL_PHONG ? link->phong.absorption : vec3_all(0);
 }
 
 bool material_has_ior(const struct material *material) {

@@ -14,6 +14,9 @@ enum { MATERIAL_DEPTH = 1000 };
 
 enum material_kind { MATERIAL_PHONG, MATERIAL_MARBLE, MATERIAL_WOOD, MATERIAL_IMAGE, MATERIAL_FRESNEL };
 
+/* AS_SET: what the settings of the picture say. */
+enum material_highlight { HIGHLIGHT_AS_SET, HIGHLIGHT_PHONG, HIGHLIGHT_BLINN };
+
 /* How a hit becomes a place on an image. SPHERE, CUBE: the decorators td_sphere_material and td_cube_material;
  * SPHERE_CLASSIC: set_texture on a sphere (the formulas stand in material.c); UV: the shape's own parameters. */
 enum image_mapping { MAPPING_SPHERE, MAPPING_CUBE, MAPPING_SPHERE_CLASSIC, MAPPING_UV };
@@ -27,7 +30,11 @@ struct material {
         struct {
             struct vec3 kd, ks;
             double shininess, reflect, refract, ior;
-            bool has_ior, two_sided;
+            bool has_ior, two_sided, unlit;
+            enum material_highlight highlight;
+            struct vec3 emission, absorption;
+            double roughness;
+            int glossy_samples;
             bool by_vertex; /* kd is multiplied by the colours of a mesh's vertices */
         } phong;
         struct {
@@ -61,6 +68,12 @@ struct surface_look {
     struct vec3 kd, ks;
     double shininess, reflect, refract, ior;
     bool has_ior, two_sided;
+    bool unlit; /* kd is shown as it is, whatever light there is */
+    enum material_highlight highlight;
+    struct vec3 emission;   /* added to what is reflected */
+    struct vec3 absorption; /* inside: light fades by exp(-absorption * distance) */
+    double roughness;       /* of reflection and refraction; 0: a mirror */
+    int glossy_samples;     /* N x N rays where it is rough; 0: the default */
     bool fresnel; /* the integrator, which knows the media, replaces reflect and refract by F and 1 - F */
 };
 
@@ -70,6 +83,8 @@ void material_shading(const struct surface_look *look, enum specular_kind specul
                       struct shading *out);
 /* Of the base below all decorators: whether light passes into the solid (refract > 0 or Fresnel), and its index. */
 bool material_is_transparent(const struct material *material, double *ior);
+/* Of the base: how the inside absorbs light, per unit of length. */
+struct vec3 material_absorption(const struct material *material);
 bool material_has_ior(const struct material *material);
 
 #endif

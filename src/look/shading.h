@@ -28,7 +28,9 @@ enum { SHADING_LOBES = 4 };
 struct shading {
     int count;
     struct lobe lobes[SHADING_LOBES];
-    struct vec3 ambient; /* multiplied with the scene's ambient colour */
+    struct vec3 ambient;  /* multiplied with the scene's ambient colour */
+    struct vec3 emission; /* added as it is */
+    double alpha;         /* width of the facets' slopes for mirror and refraction; 0: smooth */
 };
 
 /* Light reflected towards `view` for unit light arriving from `to_light`, by the lobes of finite width (SPEC 1.2). */

@@ -13,6 +13,7 @@
 #include "look/sky.h"
 
 #include "image/levels.h"
+#include "look/sky_parts.h"
 
 #include <math.h>
 
@@ -43,11 +44,14 @@ static int face_of(struct vec3 d) {
 /* One level of the cross: its faces are `width` x `height` texels. */
 struct level {
     const struct image *image;
+    struct image *const *six; /* an image for every face, or NULL: cells of the cross */
     int index;
     uint32_t width, height;
 };
 
 static struct rgba face_texel(const struct level *level, int face, uint32_t x, uint32_t y) {
+    if (level->six)
+        return image_level_texel(level->six[face], level->index, x, y);
     return image_level_texel(level->image, level->index, faces[face].column * level->width + x,
                              faces[face].row * level->height + y);
 }
@@ -101,14 +105,23 @@ static struct rgba bilinear(const struct level *level, int face, double s, doubl
     return image_mix(top, bottom, fy);
 }
 
-static struct level level_at(const struct image *image, int index) {
+static struct level level_at(const struct sky *sky, int index) {
+    bool six = sky->kind == SKY_FACES;
+    const struct image *image = six ? sky->faces[0] : sky->image;
     const struct image_level *l = &image->levels[index];
-    return (struct level){.image = image, .index = index, .width = l->width / 4, .height = l->height / 3};
+    return (struct level){.image = image,
+                          .six = six ? sky->faces : NULL,
+                          .index = index,
+                          .width = six ? l->width : l->width / 4,
+                          .height = six ? l->height : l->height / 3};
 }
 
 /* The last level whose faces are whole texels. */
-static int last_level(const struct image *image) {
+static int last_level(const struct sky *sky) {
+    const struct image *image = sky->image;
     int last = 0;
+    if (sky->kind == SKY_FACES)
+        return sky->faces[0]->level_count - 1;
     while (last + 1 < image->level_count && image->levels[last + 1].width >= 4 && image->levels[last + 1].height >= 3)
         last++;
     return last;
@@ -126,15 +139,14 @@ static struct vec3 cross_colour(const struct sky *sky, struct vec3 d, double spr
 
     /* A cone of angle e around the unit direction d cuts the plane at distance 1 in an ellipse of about e / depth by
      * e / depth^2; the face is 2 wide there. */
-    const struct image *image = sky->image;
-    struct level fine = level_at(image, 0);
+    struct level fine = level_at(sky, 0);
     double texels = spread > 0 ? spread / (2 * depth * sqrt(depth)) * fmax(fine.width, fine.height) : 0;
-    double level = texels > 1 ? image_level_for(texels, last_level(image)) : 0;
+    double level = texels > 1 ? image_level_for(texels, last_level(sky)) : 0;
     int lower = (int)level;
-    fine = level_at(image, lower);
+    fine = level_at(sky, lower);
     struct rgba c = bilinear(&fine, face, s, t);
     if (level > lower) {
-        struct level coarse = level_at(image, lower + 1);
+        struct level coarse = level_at(sky, lower + 1);
         c = image_mix(c, bilinear(&coarse, face, s, t), level - lower);
     }
     c = image_from_units(c);
@@ -153,14 +165,55 @@ bool sky_from_cross(struct image *image, bool mirror, struct sky *out, struct er
     return true;
 }
 
-struct vec3 sky_colour(const struct sky *sky, struct vec3 direction, double spread) {
+bool sky_from_faces(struct image *const images[6], struct sky *out, struct error *error) {
+    *out = (struct sky){.kind = SKY_FACES};
+    for (int i = 0; i < 6; i++) {
+        uint32_t width = image_width(images[i]), height = image_height(images[i]);
+        if (width != height || width != image_width(images[0]))
+            return error_set(error, ERROR_SCENE,
+                             "%s: the six faces of a sky must be square and of one size; this one is %u x %u",
+                             image_name(images[i]), width, height);
+        out->faces[i] = images[i];
+    }
+    return true;
+}
+
+static struct vec3 stops_colour(const struct sky *sky, double y) {
+    const double(*stops)[4] = sky->stops;
+    uint32_t last = sky->stop_count - 1, i = 0;
+    while (i < last && stops[i + 1][0] <= y)
+        i++;
+    if (y <= stops[0][0] || i == last)
+        return vec3_make(stops[i][1], stops[i][2], stops[i][3]);
+    double share = (y - stops[i][0]) / (stops[i + 1][0] - stops[i][0]);
+    struct vec3 low = {stops[i][1], stops[i][2], stops[i][3]};
+    struct vec3 high = {stops[i + 1][1], stops[i + 1][2], stops[i + 1][3]};
+    return vec3_add_scaled(low, vec3_sub(high, low), share);
+}
+
+static struct vec3 unturned_colour(const struct sky *sky, struct vec3 direction, double spread) {
     switch (sky->kind) {
     case SKY_GRADIENT:
         return vec3_make(0, 0, (1 + direction.y) / 2);
     case SKY_CONSTANT:
         return sky->colour;
     case SKY_CROSS:
+    case SKY_FACES:
         return cross_colour(sky, direction, spread);
+    case SKY_MAP:
+        return sky_map_colour(sky->image, direction, spread);
+    case SKY_STOPS:
+        return stops_colour(sky, direction.y);
+    case SKY_CLEAR:
+        return sky_clear_colour(&sky->clear, direction);
     }
     return vec3_all(0);
+}
+
+struct vec3 sky_colour(const struct sky *sky, struct vec3 direction, double spread) {
+    if (!sky->adjusted)
+        return unturned_colour(sky, direction, spread);
+    double s = sky->turn_sine, c = sky->turn_cosine;
+    struct vec3 d = {c * direction.x - s * direction.z, direction.y, s * direction.x + c * direction.z};
+    return vec3_scale(unturned_colour(sky, d, spread), sky->intensity);
 }

@@ -6,17 +6,36 @@
 #include "image/image.h"
 #include "math/vec3.h"
 
-enum sky_kind { SKY_GRADIENT, SKY_CONSTANT, SKY_CROSS };
+enum sky_kind { SKY_GRADIENT, SKY_CONSTANT, SKY_CROSS, SKY_FACES, SKY_MAP, SKY_STOPS, SKY_CLEAR };
 
 struct sky {
     enum sky_kind kind;
     struct vec3 colour;  /* of SKY_CONSTANT */
     struct image *image; /* of SKY_CROSS: a 4 x 3 cross `#T##` / `LFRK` / `#B##`, seen from inside */
     bool mirror;
+    struct image *faces[6]; /* of SKY_FACES: -x, +x, -y, +y, -z, +z as somebody in the middle sees them */
+    /* Of SKY_STOPS: {y of the unit direction, r, g, b}, y never falling; linear between, constant beyond. */
+    const double (*stops)[4];
+    uint32_t stop_count;
+    struct clear_sky {
+        struct vec3 sun, ground; /* unit, to the sun; what lies below the horizon */
+        double perez[3][5];      /* for Y, x, y */
+        double scale[3];         /* zenith over Perez' function there */
+    } clear;
+    /* The whole sky turned about the y axis and made brighter; looked at only when `adjusted`. */
+    bool adjusted;
+    double turn_sine, turn_cosine, intensity;
 };
 
 /* Checks the proportions of the cross. */
 bool sky_from_cross(struct image *image, bool mirror, struct sky *out, struct error *error);
+/* Six square images of one size; SKY_MAP: longitude along the rows, -z in the middle and +x right of it. */
+bool sky_from_faces(struct image *const faces[6], struct sky *out, struct error *error);
+/* Turbidity: 2 is very clear, 10 hazy. sun: unit, at or above the horizon. */
+void sky_make_clear(struct vec3 sun, double turbidity, struct vec3 ground, struct sky *out);
+/* The unit direction to the sun: y up, -z north, +x east. day: 1..365; hour: of the clock; degrees, east and north
+ * positive; zone: hours that the clock is ahead of Greenwich. */
+struct vec3 sky_sun(double day, double hour, double latitude, double longitude, double zone);
 /* `spread`: angle of the ray's cone in radians, for filtering; 0 = unknown. */
 struct vec3 sky_colour(const struct sky *sky, struct vec3 direction, double spread);
 

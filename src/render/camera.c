@@ -1,4 +1,10 @@
-/* The frame of the camera. view, up and eye may have any length; what matters is the plane they span. */
+/* The frame of the camera. view, up and eye may have any length; what matters is the plane they span.
+ *
+ * Planar projections keep a direction whose part along the view is 1, so a plane at distance D is met at t = D. A thin
+ * lens (Potmesil and Chakravarty, "A Lens and Aperture Camera Model", SIGGRAPH 1981) moves the origin by `a` over the
+ * lens and the direction by -a / focus: all rays of a point of the picture meet again in the plane in focus. A second
+ * eye is the same with the plane of the screen. A point at depth z is then blurred to a disc of radius
+ * aperture * |1 / focus - 1 / z| on the window, and seen by the two eyes eye_distance * (1 / z - 1 / screen) apart. */
 #include "render/camera.h"
 
 #include "math/elementary.h"
@@ -11,6 +17,38 @@ static struct vec3 nearest_axis(struct vec3 forward) {
     if (y <= x && y <= z)
         return vec3_make(0, 1, 0);
     return z <= x ? vec3_make(0, 0, 1) : vec3_make(1, 0, 0);
+}
+
+/* The parts of the frame that only a lens, another projection or a second eye needs. */
+static bool prepare_lens(const struct camera *camera, const struct lens *lens, struct camera_frame *out,
+                         struct error *error) {
+    bool planar = lens->projection == PROJECTION_PERSPECTIVE || lens->projection == PROJECTION_ORTHOGRAPHIC;
+    out->lens = *lens;
+    if (lens->aperture > 0 && !planar)
+        return error_set(error, ERROR_SCENE, "a lens (aperture) goes with perspective and orthographic pictures only");
+    if (lens->stereo != STEREO_NONE && lens->projection != PROJECTION_PERSPECTIVE)
+        return error_set(error, ERROR_SCENE, "stereo goes with perspective pictures only");
+    if (lens->stereo == STEREO_SIDE) {
+        if (floor(out->width / 2) != out->width / 2)
+            return error_set(error, ERROR_SCENE, "a stereo pair side by side needs an even width");
+        out->width /= 2;
+    }
+    out->focus = lens->focus > 0 ? lens->focus : vec3_dot(vec3_sub(lens->focus_point, camera->eye), out->forward);
+    if (lens->aperture > 0 && !(out->focus > 0))
+        return error_set(error, ERROR_SCENE, "the place in focus must lie in front of the camera");
+    if (lens->projection == PROJECTION_ORTHOGRAPHIC) {
+        double pixel = lens->view_height / out->height;
+        out->right = vec3_scale(out->unit_right, pixel);
+        out->down = vec3_scale(out->unit_down, pixel);
+        out->spread = pixel;
+    }
+    if (lens->projection == PROJECTION_FISHEYE) {
+        out->radian = lens->angle * (3.14159265358979323846 / 360);
+        out->spread = 2 * out->radian / out->height;
+    }
+    if (lens->projection == PROJECTION_PANORAMA)
+        out->spread = 3.14159265358979323846 / out->height;
+    return true;
 }
 
 bool camera_prepare(const struct camera *camera, const struct settings *settings, double width, double height,
@@ -41,7 +79,9 @@ bool camera_prepare(const struct camera *camera, const struct settings *settings
     out->width = width;
     out->height = height;
     out->spread = pixel;
-    return true;
+    out->unit_right = right;
+    out->unit_down = vec3_normalize(down);
+    return prepare_lens(camera, &settings->lens, out, error);
 }
 
 struct ray camera_ray(const struct camera_frame *frame, double x, double y) {
@@ -52,4 +92,85 @@ struct ray camera_ray(const struct camera_frame *frame, double x, double y) {
                         .t_min = 0,
                         .t_max = INFINITY,
                         .footprint = {0, frame->spread}};
+}
+
+/* A place of the unit square on the lens: a disc, or a regular polygon made of triangles round the middle. */
+static struct sample2 place_on_lens(const struct lens *lens, struct sample2 place) {
+    if (lens->blades < 3)
+        return sample_disc(place);
+    double turn = 2 * 3.14159265358979323846 / lens->blades, sector = floor(place.x * lens->blades);
+    double along = place.x * lens->blades - sector, out = sqrt(place.y), s0, c0, s1, c1;
+    double start = lens->blade_angle * (3.14159265358979323846 / 180) + sector * turn;
+    el_sincos(start, &s0, &c0);
+    el_sincos(start + turn, &s1, &c1);
+    return (struct sample2){out * (c0 + along * (c1 - c0)), out * (s0 + along * (s1 - s0))};
+}
+
+/* Equidistant: the angle from the axis grows with the distance from the middle; black outside of the circle. */
+static bool fisheye_direction(const struct camera_frame *frame, double x, double y, struct vec3 *direction) {
+    double px = (x - frame->width / 2) / (frame->height / 2), py = (y - frame->height / 2) / (frame->height / 2);
+    double r = sqrt(px * px + py * py), sine, cosine;
+    if (r > 1)
+        return false;
+    el_sincos(r * frame->radian, &sine, &cosine);
+    *direction = vec3_scale(frame->forward, cosine);
+    if (r > 0) {
+        *direction = vec3_add_scaled(*direction, frame->unit_right, sine * px / r);
+        *direction = vec3_add_scaled(*direction, frame->unit_down, sine * py / r);
+    }
+    return true;
+}
+
+/* Longitude along the rows, the view in the middle; latitude down the columns. */
+static struct vec3 panorama_direction(const struct camera_frame *frame, double x, double y) {
+    const double pi = 3.14159265358979323846;
+    double s_lon, c_lon, s_lat, c_lat;
+    el_sincos((x / frame->width - 0.5) * 2 * pi, &s_lon, &c_lon);
+    el_sincos((y / frame->height - 0.5) * pi, &s_lat, &c_lat);
+    struct vec3 level = vec3_add_scaled(vec3_scale(frame->forward, c_lon), frame->unit_right, s_lon);
+    return vec3_add_scaled(vec3_scale(level, c_lat), frame->unit_down, s_lat);
+}
+
+bool camera_ray_through(const struct camera_frame *frame, double x, double y, struct sample2 place, int eye,
+                        struct ray *out) {
+    const struct lens *lens = &frame->lens;
+    if (lens->stereo == STEREO_SIDE && eye == 0) {
+        eye = x < frame->width ? -1 : 1;
+        x = x < frame->width ? x : x - frame->width;
+    }
+    x += lens->shift_x * frame->width;
+    y -= lens->shift_y * frame->height;
+    switch (lens->projection) {
+    case PROJECTION_PERSPECTIVE:
+        *out = camera_ray(frame, x, y);
+        break;
+    case PROJECTION_ORTHOGRAPHIC:
+        out->origin = vec3_add_scaled(frame->eye, frame->right, x - frame->width / 2);
+        out->origin = vec3_add_scaled(out->origin, frame->down, y - frame->height / 2);
+        *out = (struct ray){.origin = out->origin,
+                            .direction = frame->forward,
+                            .t_max = INFINITY,
+                            .footprint = {frame->spread, 0}};
+        break;
+    case PROJECTION_FISHEYE:
+    case PROJECTION_PANORAMA:
+        *out = (struct ray){.origin = frame->eye, .t_max = INFINITY, .footprint = {0, frame->spread}};
+        if (lens->projection == PROJECTION_FISHEYE)
+            return fisheye_direction(frame, x, y, &out->direction);
+        out->direction = panorama_direction(frame, x, y);
+        return true;
+    }
+    if (lens->stereo != STEREO_NONE) {
+        struct vec3 offset = vec3_scale(frame->unit_right, 0.5 * eye * lens->eye_distance);
+        out->origin = vec3_add(out->origin, offset);
+        out->direction = vec3_add_scaled(out->direction, offset, -1 / lens->screen);
+    }
+    if (lens->aperture > 0) {
+        struct sample2 p = place_on_lens(lens, place);
+        struct vec3 offset = vec3_scale(frame->unit_right, lens->aperture * p.x);
+        offset = vec3_add_scaled(offset, frame->unit_down, lens->aperture * p.y);
+        out->origin = vec3_add(out->origin, offset);
+        out->direction = vec3_add_scaled(out->direction, offset, -1 / frame->focus);
+    }
+    return true;
 }

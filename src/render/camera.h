@@ -1,9 +1,11 @@
-/* A pinhole camera: an eye and a window one unit along the view (SPEC 1.5). */
+/* The camera: an eye and a window one unit along the view (SPEC 1.5), and what a lens, another projection or a second eye
+ * makes of it. */
 #ifndef GRAY_RENDER_CAMERA_H
 #define GRAY_RENDER_CAMERA_H
 
 #include "base/error.h"
 #include "math/ray.h"
+#include "math/sampling.h"
 #include "render/settings.h"
 
 #include <stdbool.h>
@@ -11,14 +13,33 @@
 struct camera_frame {
     struct vec3 eye;
     struct vec3 forward, right, down; /* forward unit; right and down span one pixel */
-    double width, height;             /* pixels */
+    double width, height;             /* pixels; of one eye's half in a stereo pair side by side */
     double spread;                    /* angle of a pixel, radians: the ray's footprint */
+    struct vec3 unit_right, unit_down;
+    struct lens lens;
+    double focus;  /* distance of the plane in focus */
+    double radian; /* fisheye: angle of half the height */
 };
 
-/* Errors: view zero or not finite. Sets *warning to a sentence when up had to be replaced. */
+/* Errors: view zero or not finite, a lens that cannot be. Sets *warning to a sentence when up had to be replaced. */
 bool camera_prepare(const struct camera *camera, const struct settings *settings, double width, double height,
                     struct camera_frame *out, char warning[256], struct error *error);
-/* The ray through (x, y), pixels from the upper left corner of the picture. */
+/* The ray of a pinhole through (x, y), pixels from the upper left corner of the picture. */
 struct ray camera_ray(const struct camera_frame *frame, double x, double y);
+
+/* A pinhole in the middle: camera_ray is all there is. */
+static inline bool camera_is_plain(const struct camera_frame *frame) {
+    const struct lens *lens = &frame->lens;
+    return lens->projection == PROJECTION_PERSPECTIVE && lens->aperture == 0 && lens->stereo == STEREO_NONE &&
+           lens->shift_x == 0 && lens->shift_y == 0;
+}
+/* Rays start in places that may lie in different media. */
+static inline bool camera_moves_eye(const struct camera_frame *frame) {
+    return frame->lens.projection == PROJECTION_ORTHOGRAPHIC || frame->lens.stereo != STEREO_NONE;
+}
+/* The ray through (x, y) from a place on the lens (of the unit square) for an eye: -1 left, 1 right, 0 as the picture
+ * has it (by halves side by side, else the middle). False: nothing is shown there. */
+bool camera_ray_through(const struct camera_frame *frame, double x, double y, struct sample2 place, int eye,
+                        struct ray *out);
 
 #endif

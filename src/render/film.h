@@ -4,6 +4,7 @@
 #define GRAY_RENDER_FILM_H
 
 #include "base/error.h"
+#include "image/tone.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -32,5 +33,9 @@ void film_place(struct film *film, void *block, uint32_t width, uint32_t height)
 enum film_view { FILM_FINAL, FILM_FIRST, FILM_TARGETS }; /* TARGETS: first pass with marked pixels in pure red */
 /* 3 * width bytes of row y. */
 void film_row(const struct film *film, enum film_view view, uint32_t y, uint8_t *line);
+/* The same through a tone, with 8 or 16 bits; and as the film has it. */
+void film_row_toned(const struct film *film, enum film_view view, const struct tone *tone, uint32_t y, uint8_t *line);
+void film_row_16(const struct film *film, enum film_view view, const struct tone *tone, uint32_t y, uint16_t *line);
+void film_row_linear(const struct film *film, enum film_view view, uint32_t y, float *line);
 
 #endif

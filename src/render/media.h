@@ -3,6 +3,8 @@
 #ifndef GRAY_RENDER_MEDIA_H
 #define GRAY_RENDER_MEDIA_H
 
+#include "math/vec3.h"
+
 #include <stdint.h>
 #include <string.h>
 
@@ -13,6 +15,7 @@ struct media {
     struct medium {
         uint32_t placed;
         double ior;
+        struct vec3 absorption; /* light fades by exp(-absorption * distance) */
     } entries[MEDIA_LIMIT];
 };
 
@@ -30,7 +33,12 @@ static inline void media_enter(struct media *media, uint32_t placed, double ior)
         memmove(media->entries, media->entries + 1, (MEDIA_LIMIT - 1) * sizeof *media->entries);
         media->count--;
     }
-    media->entries[media->count++] = (struct medium){placed, ior};
+    media->entries[media->count++] = (struct medium){.placed = placed, .ior = ior};
+}
+
+static inline void media_enter_absorbing(struct media *media, uint32_t placed, double ior, struct vec3 absorption) {
+    media_enter(media, placed, ior);
+    media->entries[media->count - 1].absorption = absorption;
 }
 
 /* The latest entry of the solid goes; nothing happens when it is not there (an open surface, a camera on it). */

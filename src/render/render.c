@@ -16,6 +16,7 @@ struct worker {
     struct world_scratch scratch;
     struct tracer tracer;
     uint64_t camera_rays, marked, samples;
+    struct media ray_media;
     struct vec3 first[(FILM_TILE + 2) * (FILM_TILE + 2)];
 };
 
@@ -24,6 +25,8 @@ struct run {
     struct pool *pool;
     struct camera_frame camera;
     struct media eye_media;
+    bool full;          /* -full, or a lens: what is out of focus differs from sample to sample, not by its neighbours */
+    bool media_by_ray;  /* rays start in different places, and something is transparent */
     struct worker *workers;
     uint32_t tiles_x, tiles_y, tile_x0, tile_y0;
     _Atomic uint32_t done;
@@ -41,15 +44,48 @@ static double seconds_now(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+static struct vec3 trace_from_eye(struct run *run, struct worker *worker, struct ray *ray, double share, uint64_t key) {
+    ray->footprint.spread *= share;
+    ray->footprint.width *= share;
+    worker->camera_rays++;
+    if (run->media_by_ray) {
+        whitted_eye_media(run->job->world, ray->origin, &worker->scratch, &worker->ray_media);
+        worker->tracer.eye_media = &worker->ray_media;
+    }
+    return whitted_trace(&worker->tracer, ray, key);
+}
+
+/* Through a lens, in another projection, for two eyes. The places on the lens of a pixel's samples are parted into as many
+ * cells as there are samples, visited in an order of the pixel's own, so that pixel and lens are stratified together. */
+static struct vec3 sample_through(struct run *run, struct worker *worker, double x, double y, double share, uint64_t key) {
+    const struct strata *strata = &worker->tracer.strata;
+    uint32_t side = strata->side, cell = sample_turn(strata, UINT64_MAX);
+    struct sample2 place = sample_cell(random_combine(strata->key, 2), cell % side, cell / side, side);
+    struct ray ray, right_ray;
+    bool anaglyph = run->camera.lens.stereo == STEREO_ANAGLYPH;
+    if (!camera_ray_through(&run->camera, x, y, place, anaglyph ? -1 : 0, &ray))
+        return vec3_all(0);
+    struct vec3 colour = trace_from_eye(run, worker, &ray, share, key);
+    if (!anaglyph)
+        return colour;
+    (void)camera_ray_through(&run->camera, x, y, place, 1, &right_ray);
+    struct vec3 right = trace_from_eye(run, worker, &right_ray, share, random_combine(key, UINT64_MAX));
+    return vec3_make(colour.x, right.y, right.z);
+}
+
 /* share: of the pixel's width that this sample stands for; its footprint on textures. */
 static struct vec3 sample(struct run *run, struct worker *worker, int64_t x, int64_t y, double dx, double dy, double share,
                           uint64_t number) {
-    struct ray ray = camera_ray(&run->camera, (double)x + dx, (double)y + dy);
-    ray.footprint.spread *= share;
     uint64_t pixel = (uint64_t)y * run->job->width + (uint64_t)x;
-    uint64_t key = random_combine(random_combine(random_combine(run->job->settings.seed, 0), pixel), number);
-    worker->camera_rays++;
-    return whitted_trace(&worker->tracer, &ray, key);
+    uint64_t key_of_pixel = random_combine(random_combine(run->job->settings.seed, 0), pixel);
+    uint64_t key = random_combine(key_of_pixel, number);
+    /* Number 0 is the first sample, which stands alone; the others are number - 1 of N x N. */
+    uint32_t side = number > 0 ? (uint32_t)run->job->settings.samples : 1;
+    worker->tracer.strata = (struct strata){number > 0 ? (uint32_t)number - 1 : 0, side, random_combine(key_of_pixel, 1)};
+    if (!camera_is_plain(&run->camera))
+        return sample_through(run, worker, (double)x + dx, (double)y + dy, share, key);
+    struct ray ray = camera_ray(&run->camera, (double)x + dx, (double)y + dy);
+    return trace_from_eye(run, worker, &ray, share, key);
 }
 
 /* The first sample has number 0, at the centre or the corner of the pixel. */
@@ -61,7 +97,7 @@ static struct vec3 first_sample(struct run *run, struct worker *worker, int64_t 
 /* Mean of the N x N samples; where one of them is the first sample again it is not traced twice. */
 static struct vec3 all_samples(struct run *run, struct worker *worker, int64_t x, int64_t y, const struct vec3 *first) {
     int n = run->job->settings.samples;
-    bool reuse = (n & 1) && !run->job->settings.pixel_corner;
+    bool reuse = (n & 1) && !run->job->settings.pixel_corner && run->camera.lens.aperture == 0;
     struct vec3 sum = {0, 0, 0};
     for (int j = 0; j < n; j++) {
         for (int i = 0; i < n; i++) {
@@ -83,6 +119,13 @@ static double clamp01(double c) {
     return c >= 1 ? 1 : c > 0 ? c : 0;
 }
 
+/* What counts is the difference in the picture file. */
+static struct vec3 toned(const struct tone *tone, struct vec3 c) {
+    if (tone_is_plain(tone))
+        return c;
+    return vec3_make(tone_apply(tone, c.x), tone_apply(tone, c.y), tone_apply(tone, c.z));
+}
+
 static double squared_distance(struct vec3 a, struct vec3 b) {
     struct vec3 d = {clamp01(a.x) - clamp01(b.x), clamp01(a.y) - clamp01(b.y), clamp01(a.z) - clamp01(b.z)};
     return vec3_dot(d, d);
@@ -96,14 +139,14 @@ static const struct vec3 *first_at(const struct worker *worker, const struct rec
 static bool is_marked(const struct run *run, const struct worker *worker, const struct rectangle *area, int64_t x,
                       int64_t y) {
     const struct settings *settings = &run->job->settings;
-    struct vec3 own = *first_at(worker, area, x, y);
+    struct vec3 own = toned(&settings->tone, *first_at(worker, area, x, y));
     for (int dy = -1; dy <= 1; dy++) {
         for (int dx = -1; dx <= 1; dx++) {
             int64_t nx = x + dx, ny = y + dy;
             if ((dx == 0 && dy == 0) || nx < area->x0 || nx >= area->x1 || ny < area->y0 || ny >= area->y1)
                 continue;
             double tolerance = dx == 0 || dy == 0 ? settings->side_tolerance : settings->corner_tolerance;
-            if (squared_distance(own, *first_at(worker, area, nx, ny)) > tolerance)
+            if (squared_distance(own, toned(&settings->tone, *first_at(worker, area, nx, ny))) > tolerance)
                 return true;
         }
     }
@@ -125,7 +168,7 @@ static void finish_pixel(struct run *run, struct worker *worker, const struct re
     struct film *film = run->job->film;
     size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
     const struct vec3 *first = have_first ? first_at(worker, area, x, y) : NULL;
-    bool full = run->job->settings.full, marked = full || is_marked(run, worker, area, x, y);
+    bool marked = run->full || is_marked(run, worker, area, x, y);
     struct vec3 colour = marked ? all_samples(run, worker, x, y, first) : *first;
     store(film->pixels[at].rgb, colour);
     store(film->pixels[at].first, first ? *first : colour);
@@ -135,8 +178,8 @@ static void finish_pixel(struct run *run, struct worker *worker, const struct re
 
 static bool render_tile(struct run *run, struct worker *worker, struct rectangle tile) {
     const struct settings *settings = &run->job->settings;
-    bool have_first = !settings->full || settings->keep_first;
-    int64_t rim = settings->full ? 0 : 1;
+    bool have_first = !run->full || settings->keep_first;
+    int64_t rim = run->full ? 0 : 1;
     struct rectangle area = {tile.x0 - rim, tile.y0 - rim, tile.x1 + rim, tile.y1 + rim};
     area.x0 = area.x0 < 0 ? 0 : area.x0;
     area.y0 = area.y0 < 0 ? 0 : area.y0;
@@ -235,6 +278,15 @@ static bool start_workers(struct run *run, int workers) {
     return true;
 }
 
+static bool anything_is_transparent(const struct world *world) {
+    double ior;
+    for (uint32_t i = 0; i < world->material_count; i++) {
+        if (material_is_transparent(world->materials[i], &ior))
+            return true;
+    }
+    return false;
+}
+
 bool render_run(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
                 struct error *error) {
     struct run run = {.job = job, .pool = pool};
@@ -246,6 +298,8 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
     bool ok = start_workers(&run, workers);
     if (ok) {
         const struct film *film = job->film;
+        run.full = job->settings.full || run.camera.lens.aperture > 0;
+        run.media_by_ray = camera_moves_eye(&run.camera) && anything_is_transparent(job->world);
         whitted_eye_media(job->world, run.camera.eye, &run.workers[0].scratch, &run.eye_media);
         run.tile_x0 = film->x0 / FILM_TILE;
         run.tile_y0 = film->y0 / FILM_TILE;

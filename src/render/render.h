@@ -5,6 +5,7 @@
 #define GRAY_RENDER_RENDER_H
 
 #include "base/pool.h"
+#include "look/fog.h"
 #include "render/film.h"
 #include "render/settings.h"
 #include "world/world.h"
@@ -22,6 +23,7 @@ struct render_job {
     struct settings settings;
     uint32_t width, height; /* of the whole picture */
     struct vec3 ambient;
+    const struct fog *fog; /* or NULL */
     struct film *film;      /* placed for the crop */
     /* Called from any worker when a tile is final; may be NULL. done counts from 1. */
     void (*tile_done)(void *context, uint32_t tile, uint32_t done, uint32_t count);

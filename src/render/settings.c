@@ -9,5 +9,6 @@ struct settings settings_default(void) {
                              .corner_tolerance = 0.01,
                              .area_samples = 4,
                              .specular = SPECULAR_PHONG,
-                             .accel = ACCEL_AUTO};
+                             .accel = ACCEL_AUTO,
+                             .lens = {.view_height = 2, .angle = 180, .screen = 1}};
 }

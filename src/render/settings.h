@@ -4,13 +4,36 @@
 #define GRAY_RENDER_SETTINGS_H
 
 #include "geom/mesh.h"
+#include "image/tone.h"
 #include "look/shading.h"
 #include "math/vec3.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
+enum projection { PROJECTION_PERSPECTIVE, PROJECTION_ORTHOGRAPHIC, PROJECTION_FISHEYE, PROJECTION_PANORAMA };
+enum stereo { STEREO_NONE, STEREO_SIDE, STEREO_ANAGLYPH };
+
+/* What is in front of the film. The zero value is a pinhole in the middle of the window. */
+struct lens {
+    enum projection projection;
+    double view_height;      /* orthographic: height of the window, world units */
+    double angle;            /* fisheye: full angle across the picture's height, degrees, in (0, 360] */
+    double shift_x, shift_y; /* how far the window is off the axis, in widths to the right and heights upwards */
+    double aperture;         /* radius of the lens, world units; 0: a pinhole */
+    double focus;            /* distance of the plane in focus along the view; 0: the one through focus_point */
+    struct vec3 focus_point;
+    int blades;         /* of the diaphragm, its corners at the radius; 0: round */
+    double blade_angle; /* degrees */
+    enum stereo stereo;
+    double eye_distance; /* between the two eyes */
+    double screen;       /* distance along the view where both eyes see the same place of the picture */
+};
+
 struct settings {
+    struct lens lens;
+    struct tone tone; /* of the picture file; the film stays linear */
+    bool deep;        /* 16 bits a channel in PNG files */
     int samples;                             /* -ss: N x N for a marked pixel; 1..64 */
     bool full;                               /* -full: every pixel */
     int reflect_limit, refract_limit;        /* 0..1000 */
@@ -23,6 +46,7 @@ struct settings {
     enum specular_kind specular;             /* --specular */
     bool ambient_plain;                      /* --ambient plain: ambient is added itself, not times kd */
     enum accel_kind accel;
+    double cutoff;                           /* rays that can change a pixel by less (of 1) are not followed; 0: none */
     bool keep_first;                         /* the first pass is wanted even where -full makes it needless */
     bool cropped;
     int64_t crop_x, crop_y, crop_width, crop_height;

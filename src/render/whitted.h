@@ -3,6 +3,7 @@
 #ifndef GRAY_RENDER_WHITTED_H
 #define GRAY_RENDER_WHITTED_H
 
+#include "math/sampling.h"
 #include "render/media.h"
 #include "render/render.h"
 
@@ -12,6 +13,7 @@ struct tracer {
     const struct pool *pool; /* asked whether to stop; NULL: never */
     struct world_scratch *scratch;
     const struct media *eye_media; /* what the camera stands in */
+    struct strata strata;          /* of the pixel sample that is traced */
     uint64_t reflected_rays, refracted_rays, shadow_rays;
 };
 

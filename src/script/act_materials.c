@@ -23,6 +23,13 @@ static struct material *phong(struct context *context, const struct value *args,
     m->phong.has_ior = args[PHONG_IOR].given;
     m->phong.ior = args[PHONG_IOR].given ? args[PHONG_IOR].number : 1;
     m->phong.two_sided = args[PHONG_TWO_SIDED].boolean;
+    if (args[PHONG_HIGHLIGHT].given)
+        m->phong.highlight = args[PHONG_HIGHLIGHT].choice == 0 ? HIGHLIGHT_PHONG : HIGHLIGHT_BLINN;
+    m->phong.unlit = args[PHONG_LIT].given && !args[PHONG_LIT].boolean;
+    m->phong.emission = args[PHONG_EMISSION].vector;
+    m->phong.absorption = args[PHONG_ABSORPTION].vector;
+    m->phong.roughness = args[PHONG_ROUGHNESS].number;
+    m->phong.glossy_samples = (int)args[PHONG_GLOSSY_SAMPLES].number;
     return m;
 }
 

@@ -1,28 +1,107 @@
 /* Lights, and the call that everything is for. */
+#include "math/elementary.h"
 #include "script/actions.h"
 #include "script/context.h"
 
-static bool give_light(struct context *context, const struct light *light, struct result *result, struct error *error) {
+/* The nodes of a list, kept as long as the scene. */
+static bool keep_nodes(struct context *context, const struct value *value, const struct node *const **nodes,
+                       uint32_t *count) {
+    *nodes = NULL;
+    *count = value->count;
+    if (!value->given)
+        return true;
+    const struct node **kept = arena_alloc_array(&context->scene.arena, value->count + 1, sizeof *kept);
+    for (uint32_t i = 0; kept && i < value->count; i++)
+        kept[i] = value->nodes[i];
+    *nodes = kept;
+    return kept != NULL;
+}
+
+/* What every light has, and the light itself into the arena of the scene. */
+static bool give_light(struct context *context, struct light *light, const struct value *args, struct result *result,
+                       struct error *error) {
     struct light *kept = arena_alloc(&context->scene.arena, sizeof *kept);
-    if (!kept)
+    light->colour = args[LIGHT_COLOUR].vector;
+    if (!kept || !keep_nodes(context, &args[LIGHT_INCLUDE], &light->include, &light->include_count) ||
+        !keep_nodes(context, &args[LIGHT_EXCLUDE], &light->exclude, &light->exclude_count))
         return error_no_memory(error, "a light");
     *kept = *light;
     result->pointer = kept;
     return true;
 }
 
-static void set_falloff(struct light *light, const struct value *falloff) {
-    struct vec3 c = falloff->given ? falloff->vector : (struct vec3){1, 0, 0};
+static bool set_fading(struct light *light, const struct value *args, struct error *error) {
+    struct vec3 c = args[LIGHT_FALLOFF].given ? args[LIGHT_FALLOFF].vector : (struct vec3){1, 0, 0};
+    if (args[LIGHT_FALLOFF].given + args[LIGHT_RANGE].given + args[LIGHT_INTENSITY].given > 1)
+        return error_set(error, ERROR_SCENE, "falloff, range and intensity exclude each other");
     light->falloff[0] = c.x;
     light->falloff[1] = c.y;
     light->falloff[2] = c.z;
+    light->range = args[LIGHT_RANGE].number;
+    light->intensity = args[LIGHT_INTENSITY].number;
+    light->fading = args[LIGHT_RANGE].given       ? FADING_RANGE
+                    : args[LIGHT_INTENSITY].given ? FADING_INVERSE_SQUARE
+                                                  : FADING_COEFFICIENTS;
+    return true;
+}
+
+/* A light with an extent: fading as from its centre, or a lamp whose surface emits. */
+static bool give_lamp(struct context *context, struct light *light, const struct value *args, struct result *result,
+                      struct error *error) {
+    struct value lamp[LIGHT_OWN];
+    for (int i = 0; i < LIGHT_OWN; i++)
+        lamp[i] = args[i];
+    light->emits = args[LIGHT_EMISSION].given;
+    light->samples = (int)args[LIGHT_SAMPLES].number;
+    light->visible = args[LIGHT_VISIBLE].boolean;
+    if (!args[LIGHT_COLOUR].given && !light->emits)
+        return error_set(error, ERROR_SCENE, "colour is missing");
+    if (light->emits && (args[LIGHT_FALLOFF].given || args[LIGHT_RANGE].given || args[LIGHT_INTENSITY].given))
+        return error_set(error, ERROR_SCENE, "a light with emission fades by its shape alone, without falloff, range "
+                                             "or intensity");
+    if (light->emits && !args[LIGHT_COLOUR].given)
+        lamp[LIGHT_COLOUR].vector = vec3_all(1);
+    if (light->emits)
+        lamp[LIGHT_COLOUR].vector = vec3_mul(lamp[LIGHT_COLOUR].vector, args[LIGHT_EMISSION].vector);
+    return set_fading(light, args, error) && give_light(context, light, lamp, result, error);
+}
+
+static bool set_direction(struct light *light, struct vec3 direction, const char *name, struct error *error) {
+    if (!(vec3_length(direction) > 0))
+        return error_set(error, ERROR_SCENE, "%s must not be zero", name);
+    light->direction = vec3_normalize(direction);
+    return true;
 }
 
 bool act_light(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    struct light light = {
-        .kind = LIGHT_POINT, .position = args[LIGHT_POSITION].vector, .colour = args[LIGHT_COLOUR].vector};
-    set_falloff(&light, &args[LIGHT_FALLOFF]);
-    return give_light(context, &light, result, error);
+    struct light light = {.kind = LIGHT_POINT, .position = args[POINT_POSITION].vector};
+    return set_fading(&light, args, error) && give_light(context, &light, args, result, error);
+}
+
+bool act_directional_light(struct context *context, const struct value *args, struct result *result,
+                           struct error *error) {
+    struct light light = {.kind = LIGHT_DIRECTIONAL};
+    return set_direction(&light, args[DISTANT_DIRECTION].vector, "direction", error) &&
+           give_light(context, &light, args, result, error);
+}
+
+bool act_spot_light(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct light light = {.kind = LIGHT_SPOT, .position = args[SPOT_POSITION].vector};
+    const struct value *inner = &args[SPOT_INNER], *outer = &args[SPOT_OUTER];
+    if (args[SPOT_DIRECTION].given && args[SPOT_TARGET].given)
+        return error_set(error, ERROR_SCENE, "direction and target exclude each other");
+    double outer_angle = outer->given ? outer->number : inner->given && inner->number > 30 ? inner->number : 30;
+    double inner_angle = inner->given ? inner->number : 0.75 * outer_angle;
+    if (inner_angle > outer_angle)
+        return error_set(error, ERROR_SCENE, "inner must be at most outer, the angle where the light ends");
+    const double degree = 3.14159265358979323846 / 180;
+    light.cos_inner = el_cos(inner_angle * degree);
+    light.cos_outer = el_cos(outer_angle * degree);
+    struct vec3 axis = args[SPOT_TARGET].given      ? vec3_sub(args[SPOT_TARGET].vector, light.position)
+                       : args[SPOT_DIRECTION].given ? args[SPOT_DIRECTION].vector
+                                                    : (struct vec3){0, -1, 0};
+    return set_direction(&light, axis, args[SPOT_TARGET].given ? "the way to target" : "direction", error) &&
+           set_fading(&light, args, error) && give_light(context, &light, args, result, error);
 }
 
 bool act_area_light(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -30,10 +109,25 @@ bool act_area_light(struct context *context, const struct value *args, struct re
                           .corner = args[AREA_CORNER].vector,
                           .edge1 = args[AREA_V1].vector,
                           .edge2 = args[AREA_V2].vector,
-                          .colour = args[AREA_COLOUR].vector};
+                          .one_sided = args[AREA_ONE_SIDED].boolean};
     light.position = vec3_add_scaled(vec3_add_scaled(light.corner, light.edge1, 0.5), light.edge2, 0.5);
-    set_falloff(&light, &args[AREA_FALLOFF]);
-    return give_light(context, &light, result, error);
+    return give_lamp(context, &light, args, result, error);
+}
+
+bool act_spherical_light(struct context *context, const struct value *args, struct result *result,
+                         struct error *error) {
+    struct light light = {
+        .kind = LIGHT_SPHERE, .position = args[BALL_POSITION].vector, .radius = args[BALL_RADIUS].number};
+    return give_lamp(context, &light, args, result, error);
+}
+
+bool act_disc_light(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct light light = {.kind = LIGHT_DISC,
+                          .position = args[PANEL_POSITION].vector,
+                          .radius = args[PANEL_RADIUS].number,
+                          .one_sided = args[PANEL_ONE_SIDED].boolean};
+    return set_direction(&light, args[PANEL_NORMAL].vector, "normal", error) &&
+           give_lamp(context, &light, args, result, error);
 }
 
 static bool choose_sky(struct context *context, const struct value *args, struct sky *sky, struct error *error) {
@@ -45,7 +139,9 @@ static bool choose_sky(struct context *context, const struct value *args, struct
         struct image *image = act_find_image(context, &args[RENDER_SKY], error);
         return image && sky_from_cross(image, args[RENDER_MIRROR].boolean, sky, error);
     }
-    if (background->given && !background->text) {
+    if (background->sky) {
+        *sky = *background->sky;
+    } else if (background->given && !background->text) {
         sky->kind = SKY_CONSTANT;
         sky->colour = background->vector;
     }
@@ -78,6 +174,42 @@ static void apply_settings(const struct value *args, struct settings *settings) 
         settings->accel = (enum accel_kind)args[RENDER_ACCEL].choice; /* listed in the order of the enum */
     if (args[RENDER_TARGET].given)
         settings->view_is_target = true;
+    if (args[RENDER_EXPOSURE].given)
+        settings->tone.exposure = args[RENDER_EXPOSURE].number;
+    if (args[RENDER_TONE].given)
+        settings->tone.curve = (enum tone_curve)args[RENDER_TONE].choice; /* listed in the order of the enum */
+    if (args[RENDER_SRGB].given)
+        settings->tone.srgb = args[RENDER_SRGB].boolean;
+    if (args[RENDER_DEEP].given)
+        settings->deep = args[RENDER_DEEP].boolean;
+    if (args[RENDER_CUTOFF].given)
+        settings->cutoff = args[RENDER_CUTOFF].number;
+}
+
+static bool apply_lens(const struct value *args, struct lens *lens, const struct camera *camera, struct error *error) {
+    if (args[RENDER_FOCUS].given && args[RENDER_FOCUS_POINT].given)
+        return error_set(error, ERROR_SCENE, "focus and focus_point exclude each other");
+    if (args[RENDER_PROJECTION].given)
+        lens->projection = (enum projection)args[RENDER_PROJECTION].choice; /* listed in the order of the enum */
+    if (args[RENDER_VIEW_HEIGHT].given)
+        lens->view_height = args[RENDER_VIEW_HEIGHT].number;
+    if (args[RENDER_ANGLE].given)
+        lens->angle = args[RENDER_ANGLE].number;
+    lens->shift_x = args[RENDER_SHIFT_X].number;
+    lens->shift_y = args[RENDER_SHIFT_Y].number;
+    lens->aperture = args[RENDER_APERTURE].number;
+    double to_target = vec3_length(vec3_sub(args[RENDER_TARGET].vector, camera->eye));
+    double fallback = args[RENDER_TARGET].given && to_target > 0 ? to_target : 1;
+    lens->focus = args[RENDER_FOCUS].given ? args[RENDER_FOCUS].number : args[RENDER_FOCUS_POINT].given ? 0 : fallback;
+    lens->focus_point = args[RENDER_FOCUS_POINT].vector;
+    lens->blades = (int)args[RENDER_BLADES].number;
+    lens->blade_angle = args[RENDER_BLADE_ANGLE].number;
+    lens->stereo = (enum stereo)args[RENDER_STEREO].choice;
+    lens->screen = args[RENDER_SCREEN].given ? args[RENDER_SCREEN].number
+                   : lens->focus > 0         ? lens->focus
+                                             : fallback;
+    lens->eye_distance = args[RENDER_EYE_DISTANCE].given ? args[RENDER_EYE_DISTANCE].number : lens->screen / 30;
+    return true;
 }
 
 bool act_render(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -105,10 +237,12 @@ bool act_render(struct context *context, const struct value *args, struct result
         .ambient = args[RENDER_AMBIENT].vector,
         .lights = args[RENDER_LIGHTS].lights,
         .light_count = args[RENDER_LIGHTS].count,
+        .fog = args[RENDER_FOG].fog,
         .settings = context->host->settings,
     };
     apply_settings(args, &request.settings);
-    if (!choose_sky(context, args, &request.sky, error))
+    if (!apply_lens(args, &request.settings.lens, &request.camera, error) ||
+        !choose_sky(context, args, &request.sky, error))
         return false;
     limits_pause(context);
     bool done = context->host->render(context->host->context, &request, error);

@@ -97,7 +97,22 @@ enum {
 action act_mesh, act_bounds, act_faces; /* the last two: args[SELF] is the node */
 
 /* act_materials.c */
-enum { PHONG_KD, PHONG_KS, PHONG_SHININESS, PHONG_REFLECT, PHONG_REFRACT, PHONG_IOR, PHONG_TWO_SIDED, PHONG_COUNT };
+enum {
+    PHONG_KD,
+    PHONG_KS,
+    PHONG_SHININESS,
+    PHONG_REFLECT,
+    PHONG_REFRACT,
+    PHONG_IOR,
+    PHONG_TWO_SIDED,
+    PHONG_HIGHLIGHT,
+    PHONG_LIT,
+    PHONG_EMISSION,
+    PHONG_ROUGHNESS,
+    PHONG_GLOSSY_SAMPLES,
+    PHONG_ABSORPTION,
+    PHONG_COUNT
+};
 enum { MARBLE_MATERIAL, MARBLE_F, MARBLE_MULTIPLIER, MARBLE_VEIN, MARBLE_INTERP, MARBLE_MIX, MARBLE_COUNT };
 enum { WOOD_MATERIAL, WOOD_F, WOOD_DENSITY, WOOD_INTERP, WOOD_MIX, WOOD_COUNT };
 enum { IMAGE_MATERIAL, IMAGE_PNG, IMAGE_FILTER, IMAGE_FLIP_U, IMAGE_COUNT };
@@ -110,9 +125,45 @@ struct image *act_find_image(struct context *context, const struct value *value,
 /* How an image is looked up when nothing is said: as its texture says, else mip-mapped and repeated. */
 void act_image_defaults(struct material *material, const struct value *value, struct image *image);
 
+/* act_sky.c; the fields of the sun come together, counted from SUN_DIRECTION */
+enum { SUN_DIRECTION, SUN_HOUR, SUN_DAY, SUN_LATITUDE, SUN_LONGITUDE, SUN_ZONE, SUN_FIELDS };
+enum { SKY_INTENSITY, SKY_ROTATION, SKY_OWN };
+enum { FACES_FRONT = SKY_OWN, FACES_RIGHT, FACES_BACK, FACES_LEFT, FACES_TOP, FACES_BOTTOM };
+enum { MAP_IMAGE = SKY_OWN };
+enum { GRADIENT_STOPS = SKY_OWN };
+enum { CLEAR_SUN = SKY_OWN, CLEAR_TURBIDITY = CLEAR_SUN + SUN_FIELDS, CLEAR_GROUND };
+action act_sky_faces, act_sky_map, act_sky_gradient, act_clear_sky, act_sun_light;
+
+/* act_fog.c */
+enum { FOG_COLOUR, FOG_CLEAR_SKY, FOG_OWN };
+enum { FOG_AMOUNT = FOG_OWN, FOG_IS_SQUARED, FOG_COUNT };
+enum { FOG_NEAR = FOG_OWN, FOG_FAR };
+enum { FOG_BASE = FOG_AMOUNT + 1, FOG_SCALE };
+enum { FOG_PROFILE_TABLE = FOG_OWN };
+enum { FOG_CORNER = FOG_OWN, FOG_SIZE, FOG_CELLS, FOG_DENSITIES };
+action act_fog, act_linear_fog, act_height_fog, act_fog_profile, act_fog_grid;
+
 /* act_render.c */
-enum { LIGHT_POSITION, LIGHT_COLOUR, LIGHT_FALLOFF, LIGHT_COUNT };
-enum { AREA_CORNER, AREA_V1, AREA_V2, AREA_COLOUR, AREA_FALLOFF, AREA_COUNT };
+/* Every light begins with these; LAMP_ and FADING_ fields only where the kind has them. */
+enum {
+    LIGHT_COLOUR,
+    LIGHT_INCLUDE,
+    LIGHT_EXCLUDE,
+    LIGHT_FALLOFF,
+    LIGHT_RANGE,
+    LIGHT_INTENSITY,
+    LIGHT_EMISSION,
+    LIGHT_SAMPLES,
+    LIGHT_VISIBLE,
+    LIGHT_OWN /* the first field of the kind's own */
+};
+enum { DISTANT_DIRECTION = LIGHT_EXCLUDE + 1, DISTANT_COUNT };
+enum { SUNLIGHT_SUN = LIGHT_EXCLUDE + 1 };
+enum { POINT_POSITION = LIGHT_INTENSITY + 1, POINT_COUNT };
+enum { SPOT_POSITION = LIGHT_INTENSITY + 1, SPOT_DIRECTION, SPOT_TARGET, SPOT_INNER, SPOT_OUTER, SPOT_COUNT };
+enum { AREA_CORNER = LIGHT_OWN, AREA_V1, AREA_V2, AREA_ONE_SIDED, AREA_COUNT };
+enum { BALL_POSITION = LIGHT_OWN, BALL_RADIUS, BALL_COUNT };
+enum { PANEL_POSITION = LIGHT_OWN, PANEL_NORMAL, PANEL_RADIUS, PANEL_ONE_SIDED, PANEL_COUNT };
 enum {
     RENDER_NODE,
     RENDER_FILE,
@@ -139,8 +190,27 @@ enum {
     RENDER_SPECULAR,
     RENDER_SEED,
     RENDER_ACCEL,
+    RENDER_FOG,
+    RENDER_CUTOFF,
+    RENDER_EXPOSURE,
+    RENDER_TONE,
+    RENDER_SRGB,
+    RENDER_DEEP,
+    RENDER_PROJECTION,
+    RENDER_VIEW_HEIGHT,
+    RENDER_ANGLE,
+    RENDER_SHIFT_X,
+    RENDER_SHIFT_Y,
+    RENDER_APERTURE,
+    RENDER_FOCUS,
+    RENDER_FOCUS_POINT,
+    RENDER_BLADES,
+    RENDER_BLADE_ANGLE,
+    RENDER_STEREO,
+    RENDER_EYE_DISTANCE,
+    RENDER_SCREEN,
     RENDER_COUNT
 };
-action act_light, act_area_light, act_render;
+action act_light, act_directional_light, act_spot_light, act_area_light, act_spherical_light, act_disc_light, act_render;
 
 #endif

@@ -228,7 +228,11 @@ static void read_tuples(struct context *c, int index, struct place place, int wi
     for (uint32_t k = 0; k < length; k++) {
         place.i = (lua_Integer)k + 1;
         if (lua_rawgeti(L, index, place.i) != LUA_TTABLE)
-            wrong_type(c, &place, width == 3 ? "a table of 3 numbers" : "a table of 2 numbers", -1);
+            wrong_type(c, &place,
+                       width == 2   ? "a table of 2 numbers"
+                       : width == 3 ? "a table of 3 numbers"
+                                    : "a table of 4 numbers",
+                       -1);
         read_tuple(c, top, place, width, out + (size_t)k * (size_t)width);
         lua_pop(L, 1);
     }
@@ -388,12 +392,19 @@ static bool read_value(struct context *c, int index, const struct parameter *p, 
         value->image = value->material ? value->material->image.image : NULL;
         return value->material != NULL;
     case KIND_BACKGROUND:
+        if (handle_at(L, index)) {
+            value->sky = read_handle(c, index, &place, HANDLE_SKY);
+            return value->sky != NULL;
+        }
         if (lua_type(L, index) != LUA_TSTRING)
             value->vector = read_vector(c, index, &place);
         else if (strcmp(value->text = lua_tostring(L, index), "gradient") != 0)
             context_raise(c, "%s must be %s, not '%.100s'", place_words(&place, words), kind_words(p->kind),
                           value->text);
         return true;
+    case KIND_FOG:
+        value->fog = read_handle(c, index, &place, HANDLE_FOG);
+        return value->fog != NULL;
     case KIND_NODES:
     case KIND_LIGHTS:
         read_list_of_handles(c, index, place, value);
@@ -411,6 +422,14 @@ static bool read_value(struct context *c, int index, const struct parameter *p, 
         double(*pairs)[2] = call_array(c, length, sizeof *pairs);
         read_tuples(c, index, place, 2, pairs[0], length);
         value->pairs = (const double(*)[2])pairs;
+        value->count = length;
+        return true;
+    }
+    case KIND_STOPS: {
+        uint32_t length = list_length(c, index, &place);
+        double(*stops)[4] = call_array(c, length, sizeof *stops);
+        read_tuples(c, index, place, 4, stops[0], length);
+        value->stops = (const double(*)[4])stops;
         value->count = length;
         return true;
     }
@@ -474,7 +493,9 @@ static bool looks_like(lua_State *L, int index, enum kind kind) {
     case KIND_IMAGE:
         return lua_isstring(L, index) || (handle && (ghost || handle->type == HANDLE_TEXTURE));
     case KIND_BACKGROUND:
-        return lua_istable(L, index) || lua_isstring(L, index);
+        return lua_istable(L, index) || lua_isstring(L, index) || (handle && (ghost || handle->type == HANDLE_SKY));
+    case KIND_FOG:
+        return handle && (ghost || handle->type == HANDLE_FOG);
     case KIND_POINT:
     case KIND_DIRECTION:
     case KIND_COLOUR:
@@ -483,6 +504,7 @@ static bool looks_like(lua_State *L, int index, enum kind kind) {
     case KIND_LIGHTS:
     case KIND_POINTS:
     case KIND_PAIRS:
+    case KIND_STOPS:
     case KIND_FACES:
     case KIND_ROWS:
     case KIND_CURVES:

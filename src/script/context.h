@@ -16,7 +16,7 @@
 
 enum { PATH_SIZE = 4096, FILE_LIMIT = 1 << 28 };
 
-enum handle_type { HANDLE_NODE, HANDLE_MATERIAL, HANDLE_LIGHT, HANDLE_TEXTURE, HANDLE_GHOST, HANDLE_TYPES };
+enum handle_type { HANDLE_NODE, HANDLE_MATERIAL, HANDLE_LIGHT, HANDLE_TEXTURE, HANDLE_FOG, HANDLE_SKY, HANDLE_GHOST, HANDLE_TYPES };
 
 /* What a userdata of ours holds; no finalizer. The serial gives tables with handles as keys a fixed order. */
 struct handle {

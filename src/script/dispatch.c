@@ -8,7 +8,6 @@
 #include <limits.h>
 #include <string.h>
 
-_Static_assert(RESULT_FACES == 7, "a new result kind needs its line in answer()");
 
 static void push_numbers(lua_State *L, const double numbers[3]) {
     lua_createtable(L, 3, 0);
@@ -45,6 +44,7 @@ static int answer_faces(lua_State *L, const struct mesh *mesh) {
     }
     return 2;
 }
+_Static_assert(RESULT_SKY == 9, "a new result kind needs its line in answer()");
 
 static int answer(lua_State *L, const struct function *function, const struct result *result) {
     switch (function->result) {
@@ -69,6 +69,12 @@ static int answer(lua_State *L, const struct function *function, const struct re
         return answer_bounds(L, result->pointer);
     case RESULT_FACES:
         return answer_faces(L, result->pointer);
+    case RESULT_FOG:
+        handle_push(L, HANDLE_FOG, result->pointer);
+        return 1;
+    case RESULT_SKY:
+        handle_push(L, HANDLE_SKY, result->pointer);
+        return 1;
     }
     return 0;
 }

@@ -179,7 +179,11 @@ static const char *annotation_type(const struct parameter *p, char out[200]) {
     case KIND_IMAGE:
         return "string|gr.texture";
     case KIND_BACKGROUND:
-        return "gr.triple|'gradient'";
+        return "gr.triple|gr.sky|'gradient'";
+    case KIND_FOG:
+        return "gr.fog";
+    case KIND_STOPS:
+        return "number[][]";
     case KIND_NODES:
         return "gr.node[]";
     case KIND_LIGHTS:
@@ -219,6 +223,10 @@ static const char *annotation_result(const struct function *function) {
         return "number[], number[]";
     case RESULT_FACES:
         return "number[][], integer[][]";
+    case RESULT_FOG:
+        return "gr.fog";
+    case RESULT_SKY:
+        return "gr.sky";
     }
     return NULL;
 }
@@ -287,7 +295,7 @@ const char *script_annotations(struct arena *arena) {
         "-- The gr functions for editors that understand LuaLS annotations. Written by `gray --annotations` from\n"
         "-- the table in src/script/table.c; a test checks that it is current.\n\n"
         "---@alias gr.triple number[] three numbers: a point, a direction, a colour\n"
-        "---@class gr.material\n---@class gr.light\n---@class gr.texture\n---@class gr.node\n"
+        "---@class gr.material\n---@class gr.light\n---@class gr.texture\n---@class gr.fog\n---@class gr.sky\n---@class gr.node\n"
         "local node = {}\n\ngr = {}\n\n---The version of the renderer.\ngr.version = ''\n\n");
     for (int k = 0; k < function_count; k++) {
         const struct function *function = &function_table[k];

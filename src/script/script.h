@@ -4,6 +4,7 @@
 #define GRAY_SCRIPT_SCRIPT_H
 
 #include "base/error.h"
+#include "look/fog.h"
 #include "render/settings.h"
 #include "scene/node.h"
 
@@ -40,6 +41,7 @@ struct render_request {
     double width, height; /* checked to be whole numbers in 1..2^20 */
     struct camera camera;
     struct vec3 ambient;
+    const struct fog *fog; /* or NULL */
     const struct light *lights;
     uint32_t light_count;
     struct sky sky;

@@ -347,6 +347,20 @@ static const struct parameter rotate_parameters[] = {
 #define TWO_SIDED                                                                                                      \
     { "two_sided", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether faces seen from behind are lit as well." }
 
+#define SURFACE_FIELDS                                                                                                 \
+    [PHONG_HIGHLIGHT] = {"highlight", KIND_CHOICE, OPTIONAL, 0, 0, "phong blinn", NULL, "specular of the render",      \
+                         "The form of its highlight."},                                                                \
+    [PHONG_LIT] = {"lit", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "true",                                                   \
+                   "Whether light is looked for; false: kd is shown as it is."},                                       \
+    [PHONG_EMISSION] = {"emission", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0, 0, 0}",                                     \
+                        "Light of its own, added to what it reflects."},                                               \
+    [PHONG_ROUGHNESS] = {"roughness", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "0",                                 \
+                         "Of reflection and refraction: 0 is polished."},                                              \
+    [PHONG_GLOSSY_SAMPLES] = {"glossy_samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "4",                       \
+                              "N x N rays where it is rough; one ray after another rough surface."},                   \
+    [PHONG_ABSORPTION] = {"absorption", KIND_COLOUR, OPTIONAL, BETWEEN(0, 1e300), NULL, "{0, 0, 0}",                   \
+                          "Inside, light fades by exp(-absorption * distance)."}
+
 static const struct parameter material_parameters[] = {
     [PHONG_KD] = KD,
     [PHONG_KS] = KS,
@@ -355,6 +369,7 @@ static const struct parameter material_parameters[] = {
     [PHONG_REFRACT] = {"refract", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "0", "Amount of refracted light."},
     [PHONG_IOR] = {"ior", KIND_NUMBER, OPTIONAL, ABOVE(1), NULL, "none", "Index of refraction of the inside."},
     [PHONG_TWO_SIDED] = TWO_SIDED,
+    SURFACE_FIELDS,
 };
 
 static const struct parameter rr_parameters[] = {
@@ -365,6 +380,7 @@ static const struct parameter rr_parameters[] = {
     [PHONG_REFRACT] = {"refract", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "0", "Amount of refracted light."},
     [PHONG_IOR] = {"ior", KIND_NUMBER, OPTIONAL, ABOVE(1), NULL, "1", "Index of refraction of the inside."},
     [PHONG_TWO_SIDED] = TWO_SIDED,
+    SURFACE_FIELDS,
 };
 
 #define BASE                                                                                                           \
@@ -420,31 +436,182 @@ static const struct parameter texture_parameters[] = {
 
 static const struct parameter fresnel_parameters[] = {[FRESNEL_MATERIAL] = BASE};
 
-#define LIGHT_COLOUR_PARAMETER                                                                                         \
-    { "colour", KIND_COLOUR, 0, ANY, NULL, NULL, "Its colour and strength." }
-#define FALLOFF                                                                                                        \
-    {                                                                                                                  \
-        "falloff", KIND_TRIPLE, OPTIONAL, ANY, NULL, "{1, 0, 0}",                                                      \
-            "Coefficients: light is divided by c0 + c1 d + c2 d^2."                                                    \
-    }
+#define LIGHT_LISTS                                                                                                    \
+    [LIGHT_INCLUDE] = {"include", KIND_NODES, OPTIONAL, ANY, NULL, "all",                                              \
+                       "The nodes that it lights, with everything under them."},                                       \
+    [LIGHT_EXCLUDE] = {"exclude", KIND_NODES, OPTIONAL, ANY, NULL, "none", "The nodes that it does not light."}
+#define LIGHT_FIELDS(colour_flags)                                                                                     \
+    [LIGHT_COLOUR] = {"colour", KIND_COLOUR, colour_flags, ANY, NULL, colour_flags ? "{1, 1, 1} with emission" : NULL, \
+                      "Its colour and strength."},                                                                     \
+    LIGHT_LISTS
+#define FADING_FIELDS                                                                                                  \
+    [LIGHT_FALLOFF] = {"falloff", KIND_TRIPLE, OPTIONAL, ANY, NULL, "{1, 0, 0}",                                       \
+                       "Coefficients: light is divided by c0 + c1 d + c2 d^2."},                                       \
+    [LIGHT_RANGE] = {"range", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, NULL,                                  \
+                     "How far it reaches, instead of falloff: light is multiplied by 1 - d / range."},                 \
+    [LIGHT_INTENSITY] = {"intensity", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, NULL,                                     \
+                         "Physical fading, instead of falloff: light is multiplied by intensity / d^2."}
+#define LAMP_FIELDS                                                                                                    \
+    [LIGHT_EMISSION] = {"emission", KIND_COLOUR, OPTIONAL, ANY, NULL, NULL,                                            \
+                        "Radiance of its surface, times colour: what it lights follows its true shape, without "       \
+                        "falloff."},                                                                                   \
+    [LIGHT_SAMPLES] = {"samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "area_samples",                          \
+                       "N x N shadow rays for this light."},                                                           \
+    [LIGHT_VISIBLE] = {"visible", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the light itself is seen."}
+#define ONE_SIDED(text)                                                                                                \
+    { "one_sided", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether it is seen, and emits, only on the side of " text "." }
 
 static const struct parameter light_parameters[] = {
-    [LIGHT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Where it stands."},
-    [LIGHT_COLOUR] = LIGHT_COLOUR_PARAMETER,
-    [LIGHT_FALLOFF] = FALLOFF,
+    LIGHT_FIELDS(0),
+    FADING_FIELDS,
+    [POINT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Where it stands."},
+};
+
+static const struct parameter directional_parameters[] = {
+    LIGHT_FIELDS(0),
+    [DISTANT_DIRECTION] = {"direction", KIND_DIRECTION, 0, ANY, NULL, NULL, "The direction its light goes in."},
+};
+
+static const struct parameter spot_parameters[] = {
+    LIGHT_FIELDS(0),
+    FADING_FIELDS,
+    [SPOT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Where it stands."},
+    [SPOT_DIRECTION] = {"direction", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, -1, 0}", "The axis of its cone."},
+    [SPOT_TARGET] = {"target", KIND_POINT, OPTIONAL, ANY, NULL, NULL, "A point on the axis, instead of direction."},
+    [SPOT_INNER] = {"inner", KIND_NUMBER, OPTIONAL, BETWEEN(0, 180), "degrees", "three quarters of outer",
+                    "Angle from the axis up to which its light is full."},
+    [SPOT_OUTER] = {"outer", KIND_NUMBER, OPTIONAL | LOW_OPEN, BETWEEN(0, 180), "degrees", "30, or inner if that is more",
+                    "Angle from the axis where its light ends."},
 };
 
 static const struct parameter area_parameters[] = {
+    LIGHT_FIELDS(OPTIONAL),
+    FADING_FIELDS,
+    LAMP_FIELDS,
     [AREA_CORNER] = {"corner", KIND_POINT, 0, ANY, NULL, NULL, "One corner of the parallelogram."},
     [AREA_V1] = {"v1", KIND_DIRECTION, 0, ANY, NULL, NULL, "The edge to the next corner."},
     [AREA_V2] = {"v2", KIND_DIRECTION, 0, ANY, NULL, NULL, "The edge to the corner on the other side."},
-    [AREA_COLOUR] = LIGHT_COLOUR_PARAMETER,
-    [AREA_FALLOFF] = FALLOFF,
+    [AREA_ONE_SIDED] = ONE_SIDED("v1 x v2"),
+};
+
+static const struct parameter ball_light_parameters[] = {
+    LIGHT_FIELDS(OPTIONAL),
+    FADING_FIELDS,
+    LAMP_FIELDS,
+    [BALL_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Its centre."},
+    [BALL_RADIUS] = {"radius", KIND_NUMBER, LOW_OPEN, ABOVE(0), NULL, NULL, "Its radius."},
+};
+
+static const struct parameter disc_light_parameters[] = {
+    LIGHT_FIELDS(OPTIONAL),
+    FADING_FIELDS,
+    LAMP_FIELDS,
+    [PANEL_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Its centre."},
+    [PANEL_NORMAL] = {"normal", KIND_DIRECTION, 0, ANY, NULL, NULL, "The direction it faces."},
+    [PANEL_RADIUS] = {"radius", KIND_NUMBER, LOW_OPEN, ABOVE(0), NULL, NULL, "Its radius."},
+    [PANEL_ONE_SIDED] = ONE_SIDED("its normal"),
+};
+
+#define SKY_FIELDS                                                                                                     \
+    [SKY_INTENSITY] = {"intensity", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1", "Factor of its brightness."},          \
+    [SKY_ROTATION] = {"rotation", KIND_NUMBER, OPTIONAL, ANY, "degrees", "0",                                          \
+                      "How far it is turned about y, counterclockwise seen from above."}
+#define SKY_FACE(text)                                                                                                 \
+    { text, KIND_IMAGE, 0, ANY, NULL, NULL, "A square picture, as somebody in the middle sees it." }
+#define SUN(first)                                                                                                     \
+    [(first) + SUN_DIRECTION] = {"sun", KIND_DIRECTION, OPTIONAL, ANY, NULL, NULL,                                     \
+                                 "The direction to the sun, instead of time and place."},                              \
+    [(first) + SUN_HOUR] = {"hour", KIND_NUMBER, OPTIONAL, BETWEEN(0, 24), NULL, "12", "Hour of the clock."},          \
+    [(first) + SUN_DAY] = {"day", KIND_WHOLE, OPTIONAL, BETWEEN(1, 366), NULL, "172, 21 June", "Day of the year."},    \
+    [(first) + SUN_LATITUDE] = {"latitude", KIND_NUMBER, OPTIONAL, BETWEEN(-90, 90), "degrees", "45",                  \
+                                "North is positive; -z is north and +x is east."},                                     \
+    [(first) + SUN_LONGITUDE] = {"longitude", KIND_NUMBER, OPTIONAL, BETWEEN(-180, 180), "degrees", "0",               \
+                                 "East is positive."},                                                                 \
+    [(first) + SUN_ZONE] = {"zone", KIND_NUMBER, OPTIONAL, BETWEEN(-14, 14), "hours", "0",                             \
+                            "How far the clock is ahead of Greenwich."}
+
+static const struct parameter sky_faces_parameters[] = {
+    SKY_FIELDS,
+    [FACES_FRONT] = SKY_FACE("front"),
+    [FACES_RIGHT] = SKY_FACE("right"),
+    [FACES_BACK] = SKY_FACE("back"),
+    [FACES_LEFT] = SKY_FACE("left"),
+    [FACES_TOP] = SKY_FACE("top"),
+    [FACES_BOTTOM] = SKY_FACE("bottom"),
+};
+
+static const struct parameter sky_map_parameters[] = {
+    SKY_FIELDS,
+    [MAP_IMAGE] = {"image", KIND_IMAGE, 0, ANY, NULL, NULL,
+                   "The whole sphere, longitude by latitude; -z is in its middle, +x right of it."},
+};
+
+static const struct parameter sky_gradient_parameters[] = {
+    SKY_FIELDS,
+    [GRADIENT_STOPS] = {"stops", KIND_STOPS, 0, ANY, NULL, NULL,
+                        "Colours by height, {y, r, g, b}: y of the unit direction, from -1 to 1."},
+};
+
+static const struct parameter clear_sky_parameters[] = {
+    SKY_FIELDS,
+    SUN(CLEAR_SUN),
+    [CLEAR_TURBIDITY] = {"turbidity", KIND_NUMBER, OPTIONAL, BETWEEN(1.7, 10), NULL, "2.5",
+                         "How hazy the air is: 2 is very clear, 10 hazy."},
+    [CLEAR_GROUND] = {"ground", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0.15, 0.15, 0.15}", "What is below the horizon."},
+};
+
+static const struct parameter sun_light_parameters[] = {
+    LIGHT_FIELDS(0),
+    SUN(SUNLIGHT_SUN),
+};
+
+#define FOG_FIELDS                                                                                                     \
+    [FOG_COLOUR] = {"colour", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0.5, 0.5, 0.5}", "Its colour."},                     \
+    [FOG_CLEAR_SKY] = {"clear_sky", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",                                        \
+                       "Whether the sky is seen without fog."}
+#define FOG_DENSITY(text)                                                                                              \
+    [FOG_AMOUNT] = {"density", KIND_NUMBER, 0, ABOVE(0), NULL, NULL, text}
+
+static const struct parameter fog_parameters[] = {
+    FOG_FIELDS,
+    FOG_DENSITY("What is d away keeps the share exp(-density d)."),
+    [FOG_IS_SQUARED] = {"squared", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
+                        "The share is exp(-(density d)^2) instead: clear near, then closing fast."},
+};
+
+static const struct parameter linear_fog_parameters[] = {
+    FOG_FIELDS,
+    [FOG_NEAR] = {"near", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0", "Where it begins."},
+    [FOG_FAR] = {"far", KIND_NUMBER, LOW_OPEN, ABOVE(0), NULL, NULL, "Where nothing else is seen any more."},
+};
+
+static const struct parameter height_fog_parameters[] = {
+    FOG_FIELDS,
+    FOG_DENSITY("Density at the base."),
+    [FOG_BASE] = {"base", KIND_NUMBER, OPTIONAL, ANY, NULL, "0", "Height y of the base."},
+    [FOG_SCALE] = {"scale", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "1",
+                   "How much higher it is thinner by the factor e."},
+};
+
+static const struct parameter fog_profile_parameters[] = {
+    FOG_FIELDS,
+    [FOG_PROFILE_TABLE] = {"profile", KIND_PAIRS, 0, ANY, NULL, NULL,
+                           "Densities by height, {y, density}; linear between, constant beyond."},
+};
+
+static const struct parameter fog_grid_parameters[] = {
+    FOG_FIELDS,
+    [FOG_CORNER] = {"corner", KIND_POINT, 0, ANY, NULL, NULL, "The corner with the smallest coordinates."},
+    [FOG_SIZE] = {"size", KIND_SIZE, LOW_OPEN, ABOVE(0), NULL, NULL, "Length of the edges, one number or three."},
+    [FOG_CELLS] = {"cells", KIND_TRIPLE, 0, 1, 1024, NULL, NULL, NULL, "How many cells along x, y and z."},
+    [FOG_DENSITIES] = {"densities", KIND_NUMBERS, 0, ABOVE(0), NULL, NULL,
+                       "The density of each cell, x running fastest, then y, then z."},
 };
 
 static const struct parameter render_parameters[] = {
     [RENDER_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL, "The root of what is drawn."},
-    [RENDER_FILE] = {"file", KIND_OUTPUT, 0, ANY, NULL, NULL, "The PNG file to write; missing folders are made."},
+    [RENDER_FILE] = {"file", KIND_OUTPUT, 0, ANY, NULL, NULL,
+                     "The picture to write: .png, or .pfm or .hdr for linear light; missing folders are made."},
     [RENDER_SKY] = {"sky", KIND_IMAGE, OPTIONAL, ANY, NULL, NULL,
                     "A 4 x 3 cross of images all around, as a PNG or JPEG file."},
     [RENDER_WIDTH] = {"width", KIND_WHOLE, 0, 1, 1 << 20, NULL, "pixels", NULL, "Width of the picture."},
@@ -458,7 +625,7 @@ static const struct parameter render_parameters[] = {
     [RENDER_LIGHTS] = {"lights", KIND_LIGHTS, OPTIONAL, ANY, NULL, "{}", "A table of lights."},
     [RENDER_TARGET] = {"target", KIND_POINT, OPTIONAL, ANY, NULL, NULL, "A point to look at, instead of view."},
     [RENDER_BACKGROUND] = {"background", KIND_BACKGROUND, OPTIONAL, ANY, NULL, "'gradient'",
-                           "What rays see that meet nothing: a colour, or 'gradient' for {0, 0, (1 + y)/2}."},
+                           "What rays see that meet nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}."},
     [RENDER_MIRROR] = {"mirror", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the sky cross is mirrored."},
     [RENDER_SAMPLES] = {"samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "-ss",
                         "N x N samples for a marked pixel."},
@@ -480,6 +647,39 @@ static const struct parameter render_parameters[] = {
     [RENDER_SEED] = {"seed", KIND_WHOLE, OPTIONAL, BETWEEN(0, 0x1p53 - 1), NULL, "--seed", "Start of random numbers."},
     [RENDER_ACCEL] = {"accel", KIND_CHOICE, OPTIONAL, 0, 0, "auto grid bvh none", NULL, "'auto'",
                       "How hits are searched; the picture is the same."},
+    [RENDER_FOG] = {"fog", KIND_FOG, OPTIONAL, ANY, NULL, "none", "A fog."},
+    [RENDER_CUTOFF] = {"cutoff", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "--cutoff",
+                       "Rays that can change a pixel by less than this are not followed."},
+    [RENDER_EXPOSURE] = {"exposure", KIND_NUMBER, OPTIONAL, BETWEEN(-100, 100), "stops", "--exposure",
+                         "Light is multiplied by 2^exposure on its way into a PNG file."},
+    [RENDER_TONE] = {"tone", KIND_CHOICE, OPTIONAL, 0, 0, "none reinhard filmic", NULL, "--tone",
+                     "The curve that brings bright light into the range of a PNG file."},
+    [RENDER_SRGB] = {"srgb", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--srgb",
+                     "Whether values of a PNG file follow the sRGB transfer function."},
+    [RENDER_DEEP] = {"deep", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--deep", "Whether a PNG file has 16 bits a channel."},
+    [RENDER_PROJECTION] = {"projection", KIND_CHOICE, OPTIONAL, 0, 0, "perspective orthographic fisheye panorama", NULL,
+                           "'perspective'",
+                           "Fisheye is equidistant inside a circle; panorama is all around, longitude by latitude."},
+    [RENDER_VIEW_HEIGHT] = {"view_height", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "2",
+                            "Height of an orthographic picture in the scene."},
+    [RENDER_ANGLE] = {"angle", KIND_NUMBER, OPTIONAL | LOW_OPEN, BETWEEN(0, 360), "degrees", "180",
+                      "Full angle of a fisheye across the height."},
+    [RENDER_SHIFT_X] = {"shift_x", KIND_NUMBER, OPTIONAL, ANY, "widths", "0", "How far the window is off to the right."},
+    [RENDER_SHIFT_Y] = {"shift_y", KIND_NUMBER, OPTIONAL, ANY, "heights", "0", "How far the window is off upwards."},
+    [RENDER_APERTURE] = {"aperture", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0",
+                         "Radius of the lens in the scene; 0 is a pinhole. With a lens every pixel is resampled."},
+    [RENDER_FOCUS] = {"focus", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "target, else 1",
+                      "Distance of the plane that is sharp, along the view."},
+    [RENDER_FOCUS_POINT] = {"focus_point", KIND_POINT, OPTIONAL, ANY, NULL, NULL, "A point of that plane, instead of focus."},
+    [RENDER_BLADES] = {"blades", KIND_WHOLE, OPTIONAL, BETWEEN(3, 64), NULL, "round",
+                       "Number of blades: the aperture is a polygon."},
+    [RENDER_BLADE_ANGLE] = {"blade_angle", KIND_NUMBER, OPTIONAL, ANY, "degrees", "0", "How far that polygon is turned."},
+    [RENDER_STEREO] = {"stereo", KIND_CHOICE, OPTIONAL, 0, 0, "none side anaglyph", NULL, "'none'",
+                       "Two eyes: pictures side by side, left one left, or red and cyan."},
+    [RENDER_EYE_DISTANCE] = {"eye_distance", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "screen / 30",
+                             "How far the eyes are apart."},
+    [RENDER_SCREEN] = {"screen", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "focus",
+                       "Distance along the view that both eyes see in the same place."},
 };
 
 static const struct parameter named_parameters[] = {
@@ -592,7 +792,33 @@ const struct function function_table[] = {
     GR("light", light_parameters, RESULT_LIGHT, act_light, "A light at a point.", "position colour falloff?"),
     GR("area_light", area_parameters, RESULT_LIGHT, act_area_light, "A light that is a parallelogram; soft shadows.",
        "corner v1 v2 colour falloff?"),
-    LATER("spherical_light", OWNER_GR, RESULT_LIGHT, "0.2", "A light that is a sphere."),
+    GR("spherical_light", ball_light_parameters, RESULT_LIGHT, act_spherical_light,
+       "A light that is a sphere; soft shadows.", "position colour falloff radius"),
+    GR("disc_light", disc_light_parameters, RESULT_LIGHT, act_disc_light, "A light that is a disc; soft shadows.",
+       "position normal radius colour falloff?"),
+    GR("directional_light", directional_parameters, RESULT_LIGHT, act_directional_light,
+       "Light of one direction from infinitely far away.", "direction colour"),
+    GR("spot_light", spot_parameters, RESULT_LIGHT, act_spot_light, "A light at a point that shines into a cone.",
+       "position direction colour inner outer falloff?"),
+
+    GR("sun_light", sun_light_parameters, RESULT_LIGHT, act_sun_light, "Directional light from where the sun stands.",
+       "sun colour"),
+    GR("sky_faces", sky_faces_parameters, RESULT_SKY, act_sky_faces,
+       "A sky of six pictures on a cube: front is +z, right -x, back -z, left +x.", "front right back left top bottom"),
+    GR("sky_map", sky_map_parameters, RESULT_SKY, act_sky_map, "A sky from one picture of the whole sphere.", "image"),
+    GR("sky_gradient", sky_gradient_parameters, RESULT_SKY, act_sky_gradient, "A sky of colours by height.", "stops"),
+    GR("clear_sky", clear_sky_parameters, RESULT_SKY, act_clear_sky,
+       "The physical clear sky of Preetham, Shirley and Smits, 1999.", "sun turbidity?"),
+
+    GR("fog", fog_parameters, RESULT_FOG, act_fog, "Fog that is the same everywhere.", "density colour?"),
+    GR("linear_fog", linear_fog_parameters, RESULT_FOG, act_linear_fog, "Fog that closes linearly with distance.",
+       "near far colour?"),
+    GR("height_fog", height_fog_parameters, RESULT_FOG, act_height_fog, "Fog that thins out upwards.",
+       "density base scale colour?"),
+    GR("fog_profile", fog_profile_parameters, RESULT_FOG, act_fog_profile, "Fog with a density for every height.",
+       "profile colour?"),
+    GR("fog_grid", fog_grid_parameters, RESULT_FOG, act_fog_grid, "Fog in the cells of a box, none outside.",
+       "corner size cells densities colour?"),
 
     GR("render", render_parameters, RESULT_NOTHING, act_render, "Renders a picture into a PNG file.",
        "node file" RENDER_TAIL),
@@ -680,7 +906,11 @@ const char *kind_words(enum kind kind) {
     case KIND_IMAGE:
         return "the name of a picture file or a texture";
     case KIND_BACKGROUND:
-        return "a colour {r, g, b} or 'gradient'";
+        return "a colour {r, g, b}, a sky or 'gradient'";
+    case KIND_FOG:
+        return "a fog";
+    case KIND_STOPS:
+        return "a table of stops {height, r, g, b}";
     case KIND_NODES:
         return "a table of nodes";
     case KIND_LIGHTS:

@@ -6,8 +6,10 @@
 
 #include "base/error.h"
 #include "geom/mesh.h"
+#include "look/fog.h"
 #include "look/light.h"
 #include "look/material.h"
+#include "look/sky.h"
 #include "scene/node.h"
 
 #include <stdbool.h>
@@ -34,11 +36,13 @@ enum kind {
     KIND_NODE,       /* node */
     KIND_MATERIAL,   /* material */
     KIND_IMAGE,      /* image, or text: the name of its file */
-    KIND_BACKGROUND, /* vector, or text = "gradient" */
+    KIND_BACKGROUND, /* vector, or text = "gradient", or sky */
+    KIND_FOG,        /* fog */
     KIND_NODES,      /* nodes, count */
     KIND_LIGHTS,     /* lights, count */
     KIND_POINTS,     /* points, count */
     KIND_PAIRS,      /* pairs, count */
+    KIND_STOPS,      /* stops, count: tables of 4 numbers */
     KIND_FACES,      /* starts, indices, count */
     KIND_NUMBERS,    /* numbers, count; a number alone: single */
     KIND_ROWS,       /* starts, numbers, count: lists of numbers of any length */
@@ -62,6 +66,9 @@ struct value {
     const struct light *lights;
     const double (*points)[3];
     const double (*pairs)[2];
+    const double (*stops)[4];
+    const struct fog *fog;
+    const struct sky *sky;
     const uint32_t *starts, *indices;
     const double *numbers;
     bool single;
@@ -87,13 +94,24 @@ struct parameter {
 };
 
 enum owner { OWNER_GR, OWNER_NODE };
-enum result_kind { RESULT_NOTHING, RESULT_SELF, RESULT_NODE, RESULT_MATERIAL, RESULT_LIGHT, RESULT_TEXTURE, RESULT_BOUNDS, RESULT_FACES };
+enum result_kind {
+    RESULT_NOTHING,
+    RESULT_SELF,
+    RESULT_NODE,
+    RESULT_MATERIAL,
+    RESULT_LIGHT,
+    RESULT_TEXTURE,
+    RESULT_BOUNDS,
+    RESULT_FACES,
+    RESULT_FOG,
+    RESULT_SKY
+};
 
 struct result {
     void *pointer; /* what the result kind says; owned by the scene or the assets */
 };
 
-enum { FORM_LIMIT = 4, PARAMETER_LIMIT = 32 };
+enum { FORM_LIMIT = 4, PARAMETER_LIMIT = 64 };
 
 /* `run` is the middle paragraph of a binding function: plain C that cannot raise. args[i] belongs to parameters[i]. */
 struct function {

@@ -3,7 +3,9 @@
 #include "world/world.h"
 
 #include "base/mem.h"
+#include "math/frame.h"
 #include "world/flatten.h"
+#include "world/light_lists.h"
 
 #include <string.h>
 
@@ -52,7 +54,7 @@ bool world_build(struct world *world, struct arena *arena, struct scene *scene, 
                                     .warn = warn,
                                     .warn_context = warn_context,
                                     .error = error};
-    if (!flatten_scene(&flattening, root))
+    if (!flatten_scene(&flattening, root) || !light_lists_resolve(world, copied, arena, root, error))
         return false;
     world->boxes = arena_alloc_array(arena, world->placed_count, sizeof *world->boxes);
     if (!world->boxes)
@@ -285,21 +287,27 @@ bool world_any(const struct world *world, const struct ray *ray, struct world_sc
     return world->accel == ACCEL_GRID ? any_in_grid(world, ray, &probe, scratch) : any_in_tree(world, ray, scratch);
 }
 
-uint32_t world_count_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner,
-                             struct vec3 edge1, struct vec3 edge2, const struct vec3 *targets, uint32_t count,
-                             struct world_scratch *scratch) {
+uint32_t world_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner, struct vec3 edge1,
+                       struct vec3 edge2, const struct vec3 *targets, uint32_t count, struct world_scratch *scratch,
+                       bool *visible) {
     enum { CANDIDATES = 24 };
     uint32_t candidates[CANDIDATES], found = CANDIDATES + 1, seen = 0;
     if (world->accel == ACCEL_AUTO || world->accel == ACCEL_BVH) {
         struct shaft shaft = shaft_make(from, corner, edge1, edge2);
         found = box_tree_in_shaft(&world->tree, &shaft, candidates, CANDIDATES);
-        if (found == 0)
+        if (found == 0) {
+            for (uint32_t i = 0; i < count && visible; i++)
+                visible[i] = true;
             return count;
+        }
     }
     for (uint32_t i = 0; i < count; i++) {
         struct ray ray = {.origin = from, .direction = vec3_sub(targets[i], from), .t_max = 1, .time = time};
         if (found > CANDIDATES) {
-            seen += !world_any(world, &ray, scratch);
+            bool free_way = !world_any(world, &ray, scratch);
+            seen += free_way;
+            if (visible)
+                visible[i] = free_way;
             continue;
         }
         scratch->any_rays++;
@@ -315,19 +323,19 @@ uint32_t world_count_visible(const struct world *world, struct vec3 from, double
             }
         }
         seen += !blocked;
+        if (visible)
+            visible[i] = !blocked;
     }
     return seen;
 }
 
-/* --- describing --- */
-
-/* Any two unit vectors at right angles to n and each other (Duff et al., "Building an Orthonormal Basis, Revisited",
- * JCGT 2017). */
-static void tangents(struct vec3 n, struct vec3 *a, struct vec3 *b) {
-    double sign = n.z < 0 ? -1 : 1, s = -1 / (sign + n.z), c = n.x * n.y * s;
-    *a = vec3_make(1 + sign * n.x * n.x * s, sign * c, -sign * n.x);
-    *b = vec3_make(c, sign + n.y * n.y * s, -n.y);
+uint32_t world_count_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner,
+                             struct vec3 edge1, struct vec3 edge2, const struct vec3 *targets, uint32_t count,
+                             struct world_scratch *scratch) {
+    return world_visible(world, from, time, corner, edge1, edge2, targets, count, scratch, NULL);
 }
+
+/* --- describing --- */
 
 static double row_sum(const struct affine *a, struct vec3 p) {
     double largest = 0;
@@ -389,7 +397,7 @@ static void describe(const struct world *world, const struct ray *ray, uint32_t 
     hit->footprint = ray->footprint.width + ray->footprint.spread * crossing->t * length;
     if (hit->footprint > 0 && world->material_has_image[material]) {
         struct vec3 a, b;
-        tangents(hit->normal_geometric, &a, &b);
+        frame_tangents(hit->normal_geometric, &a, &b);
         a = affine_vector(&map->inverse, a);
         b = affine_vector(&map->inverse, b);
         if (leaf) {

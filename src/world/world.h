@@ -73,6 +73,10 @@ bool world_any(const struct world *world, const struct ray *ray, struct world_sc
 uint32_t world_count_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner,
                              struct vec3 edge1, struct vec3 edge2, const struct vec3 *targets, uint32_t count,
                              struct world_scratch *scratch);
+/* The same; visible (count entries, or NULL) says it of each. */
+uint32_t world_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner, struct vec3 edge1,
+                       struct vec3 edge2, const struct vec3 *targets, uint32_t count, struct world_scratch *scratch,
+                       bool *visible);
 /* The closed primitives whose inside holds `point`, innermost last; at most `limit`. Returns the count. */
 uint32_t world_containing(const struct world *world, struct vec3 point, struct world_scratch *scratch, uint32_t *placed,
                           uint32_t limit);

@@ -21,8 +21,14 @@ static void write_files(void) {
     struct error error = {0};
     (void)snprintf(path, sizeof path, "%s/cross.png", test_folder());
     CHECK(png_write(path, 8, 6, white_row, NULL, &error));
+    (void)snprintf(path, sizeof path, "%s/square.png", test_folder());
+    CHECK(png_write(path, 8, 8, white_row, NULL, &error));
     (void)snprintf(path, sizeof path, "%s/flag.obj", test_folder());
     test_write_text(path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+}
+
+static bool function_is_square(const char *help) {
+    return strncmp(help, "A square picture", 16) == 0;
 }
 
 /* A right argument, as Lua text. */
@@ -58,7 +64,7 @@ static void right_text(const struct parameter *p, char *out, size_t size) {
     case KIND_COLOUR:
     case KIND_TRIPLE:
     case KIND_BACKGROUND:
-        text = "{1, 2, 3}";
+        text = strcmp(p->name, "target") == 0 ? "{3, 2, 1}" : "{1, 2, 3}"; /* not where a light or the eye stands */
         if (strcmp(p->name, "max") == 0 || strcmp(p->name, "b") == 0 || strcmp(p->name, "up") == 0)
             text = "{4, 3, 8}"; /* corners and edges of one shape differ */
         if (strcmp(p->name, "c") == 0)
@@ -73,8 +79,8 @@ static void right_text(const struct parameter *p, char *out, size_t size) {
     case KIND_MATERIAL:
         text = "glass";
         break;
-    case KIND_IMAGE:
-        text = "'cross.png'";
+    case KIND_IMAGE: /* faces of a sky are square */
+        text = function_is_square(p->help) ? "'square.png'" : "'cross.png'";
         break;
     case KIND_NODES:
         text = "{ball, ball}";
@@ -89,7 +95,7 @@ static void right_text(const struct parameter *p, char *out, size_t size) {
                    "{0,2,0},{1,2,0},{2,2,0},{3,2,0},{0,3,0},{1,3,0},{2,3,0},{3,3,0}}";
         break;
     case KIND_NUMBERS:
-        text = "{1, 2, 1}";
+        text = strcmp(p->name, "densities") == 0 ? "{1, 2, 3, 4, 5, 6}" : "{1, 2, 1}"; /* {1, 2, 3} cells */
         break;
     case KIND_ROWS:
         text = strcmp(p->name, "heights") == 0   ? "{{2, 3}, {3, 2}}"
@@ -100,10 +106,16 @@ static void right_text(const struct parameter *p, char *out, size_t size) {
         text = "{{{0.1, 0.1}, {0.2, 0.1}, {0.1, 0.2}}}";
         break;
     case KIND_PAIRS:
-        text = "{{0, 0}, {1, 0}, {0, 1}}";
+        text = "{{0, 0}, {1, 0}, {1, 1}}";
         break;
     case KIND_FACES:
         text = strstr(p->help, "16") ? "{{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15}}" : "{{0, 1, 2}}";
+        break;
+    case KIND_FOG:
+        text = "mist";
+        break;
+    case KIND_STOPS:
+        text = "{{-1, 0, 0, 0}, {1, 1, 1, 1}}";
         break;
     case KIND_COUNT:
         break;
@@ -150,6 +162,13 @@ static const char *wrong_text(const struct parameter *p, int which, char *out, s
         list[count++] = "{{0}}";
         list[count++] = "{7}";
         list[count++] = p->kind == KIND_POINTS ? "{{0, 0, 0 / 0}}" : "{{0, 0 / 0}}";
+    }
+    if (p->kind == KIND_FOG)
+        list[count++] = "glass";
+    if (p->kind == KIND_STOPS) {
+        list[count++] = "{{0, 1, 1}}";
+        list[count++] = "{7}";
+        list[count++] = "{{0, 1, 1, 0 / 0}}";
     }
     if (p->kind == KIND_NUMBERS) {
         list[count++] = "{1, 0 / 0, 1}";
@@ -221,7 +240,8 @@ static bool is_needed(const struct function *function, int index) {
     bool mesh_table = strcmp(p->name, "verts") == 0 || strcmp(p->name, "faces") == 0;
     bool partner = (strcmp(p->name, "normals") == 0 || strcmp(p->name, "uvs") == 0) && p->kind != KIND_FACES;
     bool one_of = strcmp(p->name, "heights") == 0 || strcmp(p->name, "spheres") == 0;
-    return !(p->flags & OPTIONAL) || mesh_table || partner || one_of;
+    bool lamp_colour = function->result == RESULT_LIGHT && strcmp(p->name, "colour") == 0; /* or an emission */
+    return !(p->flags & OPTIONAL) || mesh_table || partner || one_of || lamp_colour;
 }
 
 static void table_call(const struct function *function, int wrong, const char *with, char call[CALL_SIZE]) {
@@ -248,7 +268,7 @@ static bool run_call(const char *call, struct error *error) {
                    "glass = gr.rr_material({1, 1, 1}, {1, 1, 1}, 10, 0.5, 0.5, 1.5) "
                    "sheet = gr.mesh(glass, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}})\n"
                    "ball = gr.sphere('ball')\n"
-                   "lamp = gr.light({0, 0, 0}, {1, 1, 1}, {1, 0, 0})\n"
+                   "lamp = gr.light({0, 0, 0}, {1, 1, 1}, {1, 0, 0}); mist = gr.fog{density = 1}\n"
                    "%s\n",
                    call);
     struct listener listener = {.renders = 0};

@@ -1,0 +1,132 @@
+/* PFM is the floats as they are. Radiance pictures have 8 bits a channel and a common exponent; each row is coded channel
+ * by channel in runs (more than 2 equal bytes) and literal stretches, as the Radiance file format reference says for
+ * widths from 8 to 32767; other widths are written flat. */
+#include "image/float_write.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { HDR_LEAST = 8, HDR_MOST = 32767, RUN_LEAST = 3, RUN_MOST = 127, LITERAL_MOST = 128 };
+
+struct writing {
+    struct file_output output;
+    float *line;
+    uint8_t *bytes, *coded;
+};
+
+static bool begin(struct writing *writing, const char *path, uint32_t width, struct error *error) {
+    *writing = (struct writing){0};
+    if (!file_output_open(&writing->output, path, error))
+        return false;
+    size_t channels = (size_t)width * 3;
+    writing->line = mem_alloc_zero(channels, sizeof *writing->line);
+    writing->bytes = mem_alloc_zero((size_t)width, 4 * sizeof(float)); /* either format's row */
+    writing->coded = mem_alloc_zero((size_t)width + 64, 8);            /* a literal costs one byte in 128 more */
+    if (writing->line && writing->bytes && writing->coded)
+        return true;
+    return error_no_memory(error, path);
+}
+
+static bool finish(struct writing *writing, bool ok, struct error *error) {
+    mem_free(writing->line);
+    mem_free(writing->bytes);
+    mem_free(writing->coded);
+    if (!writing->output.open)
+        return false;
+    if (ok)
+        return file_output_commit(&writing->output, error);
+    file_output_abandon(&writing->output);
+    return false;
+}
+
+bool pfm_write(const char *path, uint32_t width, uint32_t height, float_rows *rows, void *context, struct error *error) {
+    struct writing writing;
+    char header[64];
+    bool ok = begin(&writing, path, width, error);
+    int length = snprintf(header, sizeof header, "PF\n%u %u\n-1.0\n", width, height);
+    ok = ok && file_output_write(&writing.output, header, (size_t)length, error);
+    for (uint32_t y = height; ok && y-- > 0;) {
+        rows(context, y, writing.line);
+        for (size_t i = 0; i < (size_t)width * 3; i++) {
+            uint32_t bits;
+            memcpy(&bits, &writing.line[i], sizeof bits);
+            for (size_t k = 0; k < 4; k++)
+                writing.bytes[4 * i + k] = (uint8_t)(bits >> (8 * k));
+        }
+        ok = file_output_write(&writing.output, writing.bytes, (size_t)width * 12, error);
+    }
+    return finish(&writing, ok, error);
+}
+
+void hdr_pixel(const float rgb[3], uint8_t out[4]) {
+    double c[3], most = 0;
+    for (int i = 0; i < 3; i++) {
+        c[i] = rgb[i] > 0 ? fmin((double)rgb[i], 0x1p126) : 0; /* NaN is 0, infinity the largest there is */
+        most = fmax(most, c[i]);
+    }
+    memset(out, 0, 4);
+    if (most < 0x1p-126)
+        return;
+    int exponent;
+    (void)frexp(most, &exponent);
+    for (int i = 0; i < 3; i++)
+        out[i] = (uint8_t)floor(ldexp(c[i], 8 - exponent));
+    out[3] = (uint8_t)(exponent + 128);
+}
+
+/* One channel of a row, every fourth byte. Returns the number of bytes. */
+static size_t code_channel(const uint8_t *bytes, uint32_t width, uint8_t *out) {
+    size_t used = 0;
+    for (uint32_t at = 0; at < width;) {
+        uint32_t begun = at, run = 0;
+        /* Literal bytes up to the next run that is worth its two bytes. */
+        while (at < width && at - begun < LITERAL_MOST) {
+            run = 1;
+            while (run < RUN_MOST && at + run < width && bytes[4 * (at + run)] == bytes[4 * at])
+                run++;
+            if (run >= RUN_LEAST)
+                break;
+            at++;
+            run = 0;
+        }
+        if (at > begun) {
+            out[used++] = (uint8_t)(at - begun);
+            for (uint32_t i = begun; i < at; i++)
+                out[used++] = bytes[4 * i];
+        }
+        if (run >= RUN_LEAST) {
+            out[used++] = (uint8_t)(128 + run);
+            out[used++] = bytes[4 * at];
+            at += run;
+        }
+    }
+    return used;
+}
+
+bool hdr_write(const char *path, uint32_t width, uint32_t height, float_rows *rows, void *context, struct error *error) {
+    struct writing writing;
+    char header[128];
+    bool ok = begin(&writing, path, width, error);
+    int length = snprintf(header, sizeof header, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %u +X %u\n", height, width);
+    ok = ok && file_output_write(&writing.output, header, (size_t)length, error);
+    for (uint32_t y = 0; ok && y < height; y++) {
+        rows(context, y, writing.line);
+        for (uint32_t x = 0; x < width; x++)
+            hdr_pixel(writing.line + 3 * (size_t)x, writing.bytes + 4 * (size_t)x);
+        if (width < HDR_LEAST || width > HDR_MOST) {
+            ok = file_output_write(&writing.output, writing.bytes, (size_t)width * 4, error);
+            continue;
+        }
+        size_t used = 4;
+        const uint8_t start[4] = {2, 2, (uint8_t)(width >> 8), (uint8_t)width};
+        memcpy(writing.coded, start, sizeof start);
+        for (int channel = 0; channel < 4; channel++)
+            used += code_channel(writing.bytes + channel, width, writing.coded + used);
+        ok = file_output_write(&writing.output, writing.coded, used, error);
+    }
+    return finish(&writing, ok, error);
+}

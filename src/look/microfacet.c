@@ -1,0 +1,29 @@
+/* The distribution of Trowbridge and Reitz ("GGX"; Walter, Marschner, Li, Torrance, "Microfacet Models for Refraction
+ * through Rough Surfaces", EGSR 2007), sampled by the normals that are seen (Heitz, "Sampling the GGX Distribution of
+ * Visible Normals", JCGT 2018): no sample is wasted on facets that face away. Seen head on, the share of facets steeper
+ * than theta is alpha^2 / (alpha^2 + tan^2 theta). */
+#include "look/microfacet.h"
+
+#include "math/frame.h"
+
+struct vec3 microfacet_normal(struct vec3 normal, struct vec3 view, double alpha, struct sample2 place) {
+    struct vec3 a, b;
+    frame_tangents(normal, &a, &b);
+    /* The view in the frame of the surface, stretched to where the facets form a hemisphere. */
+    struct vec3 v = {alpha * vec3_dot(view, a), alpha * vec3_dot(view, b), vec3_dot(view, normal)};
+    v = vec3_normalize(v);
+    double across = v.x * v.x + v.y * v.y;
+    struct vec3 t1 = across > 0 ? vec3_scale(vec3_make(-v.y, v.x, 0), 1 / sqrt(across)) : vec3_make(1, 0, 0);
+    struct vec3 t2 = vec3_cross(v, t1);
+    /* A point of the hemisphere's projection along the view: half a disc and half an ellipse. */
+    struct sample2 round = sample_disc(place);
+    double x = round.x, s = 0.5 * (1 + v.z);
+    double y = (1 - s) * sqrt(x * x < 1 ? 1 - x * x : 0) + s * round.y;
+    double z = 1 - x * x - y * y;
+    struct vec3 h = vec3_add_scaled(vec3_scale(t1, x), t2, y);
+    h = vec3_add_scaled(h, v, z > 0 ? sqrt(z) : 0);
+    /* Back from the stretched frame. */
+    struct vec3 local = vec3_normalize(vec3_make(alpha * h.x, alpha * h.y, h.z > 0 ? h.z : 0));
+    struct vec3 out = vec3_add_scaled(vec3_add_scaled(vec3_scale(normal, local.z), a, local.x), b, local.y);
+    return vec3_normalize(out);
+}

@@ -1,0 +1,12 @@
+/* The kinds of sky that fill a file of their own, for sky.c. */
+#ifndef GRAY_LOOK_SKY_PARTS_H
+#define GRAY_LOOK_SKY_PARTS_H
+
+#include "look/sky.h"
+
+/* sky_map.c: an image of longitude by latitude. */
+struct vec3 sky_map_colour(const struct image *image, struct vec3 direction, double spread);
+/* sky_clear.c: never negative. */
+struct vec3 sky_clear_colour(const struct clear_sky *clear, struct vec3 direction);
+
+#endif

@@ -1,0 +1,90 @@
+/* Skies, and the light of the sun. */
+#include "math/elementary.h"
+#include "script/actions.h"
+#include "script/context.h"
+
+static bool give_sky(struct context *context, struct sky *sky, const struct value *args, struct result *result,
+                     struct error *error) {
+    struct sky *kept = arena_alloc(&context->scene.arena, sizeof *kept);
+    if (!kept)
+        return error_no_memory(error, "a sky");
+    sky->adjusted = args[SKY_INTENSITY].given || args[SKY_ROTATION].given;
+    sky->intensity = args[SKY_INTENSITY].given ? args[SKY_INTENSITY].number : 1;
+    el_sincos(args[SKY_ROTATION].number * (3.14159265358979323846 / 180), &sky->turn_sine, &sky->turn_cosine);
+    *kept = *sky;
+    result->pointer = kept;
+    return true;
+}
+
+bool act_sky_faces(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    static const int fields[6] = {FACES_RIGHT, FACES_LEFT, FACES_BOTTOM, FACES_TOP, FACES_BACK, FACES_FRONT};
+    struct image *images[6];
+    struct sky sky;
+    for (int i = 0; i < 6; i++) {
+        images[i] = act_find_image(context, &args[fields[i]], error);
+        if (!images[i])
+            return false;
+    }
+    return sky_from_faces(images, &sky, error) && give_sky(context, &sky, args, result, error);
+}
+
+bool act_sky_map(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct sky sky = {.kind = SKY_MAP, .image = act_find_image(context, &args[MAP_IMAGE], error)};
+    return sky.image && give_sky(context, &sky, args, result, error);
+}
+
+bool act_sky_gradient(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    const struct value *given = &args[GRADIENT_STOPS];
+    double(*stops)[4] = arena_alloc_array(&context->scene.arena, (size_t)given->count + 1, sizeof *stops);
+    if (!stops)
+        return error_no_memory(error, "a sky");
+    if (given->count == 0)
+        return error_set(error, ERROR_SCENE, "stops must not be empty");
+    for (uint32_t i = 0; i < given->count; i++) {
+        if (i > 0 && given->stops[i][0] < given->stops[i - 1][0])
+            return error_set(error, ERROR_SCENE, "stops[%u][1] must be at least the height before it", i + 1);
+        for (int k = 0; k < 4; k++)
+            stops[i][k] = given->stops[i][k];
+    }
+    struct sky sky = {.kind = SKY_STOPS, .stops = (const double(*)[4])stops, .stop_count = given->count};
+    return give_sky(context, &sky, args, result, error);
+}
+
+/* The unit direction to the sun, from a direction or from time and place. `sun` points at the first of the fields. */
+static bool find_sun(const struct value *sun, struct vec3 *out, struct error *error) {
+    bool by_time = sun[SUN_HOUR].given || sun[SUN_DAY].given || sun[SUN_LATITUDE].given || sun[SUN_LONGITUDE].given ||
+                   sun[SUN_ZONE].given;
+    if (sun[SUN_DIRECTION].given && by_time)
+        return error_set(error, ERROR_SCENE, "sun and time and place (hour, day, latitude, longitude, zone) exclude "
+                                             "each other");
+    if (sun[SUN_DIRECTION].given) {
+        if (!(vec3_length(sun[SUN_DIRECTION].vector) > 0))
+            return error_set(error, ERROR_SCENE, "sun must not be zero");
+        *out = vec3_normalize(sun[SUN_DIRECTION].vector);
+        return true;
+    }
+    *out = sky_sun(sun[SUN_DAY].given ? sun[SUN_DAY].number : 172, sun[SUN_HOUR].given ? sun[SUN_HOUR].number : 12,
+                   sun[SUN_LATITUDE].given ? sun[SUN_LATITUDE].number : 45, sun[SUN_LONGITUDE].number,
+                   sun[SUN_ZONE].number);
+    return true;
+}
+
+bool act_clear_sky(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct vec3 sun;
+    struct sky sky;
+    if (!find_sun(&args[CLEAR_SUN], &sun, error))
+        return false;
+    sky_make_clear(sun, args[CLEAR_TURBIDITY].given ? args[CLEAR_TURBIDITY].number : 2.5,
+                   args[CLEAR_GROUND].given ? args[CLEAR_GROUND].vector : vec3_all(0.15), &sky);
+    return give_sky(context, &sky, args, result, error);
+}
+
+bool act_sun_light(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct value distant[DISTANT_COUNT];
+    if (!find_sun(&args[SUNLIGHT_SUN], &distant[DISTANT_DIRECTION].vector, error))
+        return false;
+    for (int i = 0; i < DISTANT_DIRECTION; i++)
+        distant[i] = args[i];
+    distant[DISTANT_DIRECTION].vector = vec3_negate(distant[DISTANT_DIRECTION].vector);
+    return act_directional_light(context, distant, result, error);
+}

@@ -1,0 +1,12 @@
+/* Which placed primitives each light reaches, from its lists of nodes. */
+#ifndef GRAY_WORLD_LIGHT_LISTS_H
+#define GRAY_WORLD_LIGHT_LISTS_H
+
+#include "world/world.h"
+
+/* Fills `lit` of every light that has a list: a primitive counts as listed when its node or any node on the way to it
+ * from the root is. After flattening. lights: the world's own copy. Errors: no memory. */
+bool light_lists_resolve(const struct world *world, struct light *lights, struct arena *arena, struct node *root,
+                         struct error *error);
+
+#endif

@@ -1,0 +1,359 @@
+/* Lights against closed forms. What a small patch of a white floor gets from a lamp of radiance 1 is the view factor of
+ * the lamp; the formulas are those of Howell, "A Catalog of Radiation Heat Transfer Configuration Factors": B-12 (disc),
+ * B-3 (rectangle over its corner), B-38 (sphere). */
+#include "math/elementary.h"
+#include "math/sampling.h"
+#include "tests/harness.h"
+#include "tests/stage.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* A white floor at y = 0 (normal +y), seen at one point from far up by a camera of almost no angle. */
+static void floor_stage(struct stage *s) {
+    stage_begin(s, 1);
+    struct node *node = stage_cube(s, s->root, stage_phong(s, vec3_all(1), vec3_all(0), 1));
+    stage_move(s, node, -0.5, -1, -0.5);
+    stage_scale(s, node, 40, 1, 40);
+    s->settings.full = true;
+    s->settings.samples = 1;
+    s->light_count = 1;
+}
+
+static double patch_at(struct stage *s, double x, double z) {
+    s->camera = (struct camera){{x + 3, 1000, z}, {-3, -1000, 0}, {0, 0, -1}, 1e-4};
+    CHECK(stage_render(s, 1, 1));
+    return stage_pixel(s, 0, 0).x;
+}
+
+static struct light lamp(enum light_kind kind, struct vec3 position, double radius) {
+    return (struct light){.kind = kind,
+                          .position = position,
+                          .direction = {0, -1, 0},
+                          .radius = radius,
+                          .colour = {1, 1, 1},
+                          .falloff = {1, 0, 0},
+                          .emits = true,
+                          .samples = 32};
+}
+
+static struct light rectangle(struct vec3 corner, struct vec3 edge1, struct vec3 edge2) {
+    struct light light = lamp(LIGHT_PARALLELOGRAM, corner, 0);
+    light.corner = corner;
+    light.edge1 = edge1;
+    light.edge2 = edge2;
+    light.position = vec3_add(corner, vec3_scale(vec3_add(edge1, edge2), 0.5));
+    return light;
+}
+
+TEST(disc_lamp_gives_its_view_factor) {
+    struct stage s;
+    floor_stage(&s);
+    static const double radius[] = {0.25, 1, 4};
+    for (int i = 0; i < 3; i++) {
+        double r = radius[i], h = 2;
+        s.lights[0] = lamp(LIGHT_DISC, vec3_make(0, h, 0), r);
+        CHECK_NEAR(patch_at(&s, 0, 0), r * r / (r * r + h * h), 2e-3);
+        /* Off the axis by a: B-13. */
+        double a = 1.5, hh = h / a, rr = r / a, z = 1 + hh * hh + rr * rr;
+        CHECK_NEAR(patch_at(&s, a, 0), 0.5 * (1 - (z - 2 * rr * rr) / sqrt(z * z - 4 * rr * rr)), 2e-3);
+    }
+    stage_end(&s);
+}
+
+TEST(rectangle_lamp_gives_its_view_factor) {
+    struct stage s;
+    floor_stage(&s);
+    static const double sides[][3] = {{1, 1, 1}, {3, 0.5, 1}, {2, 5, 1.5}, {3, 3, 1}};
+    for (int i = 0; i < 4; i++) {
+        double h = sides[i][2], a = sides[i][0] / h, b = sides[i][1] / h, p = sqrt(1 + a * a), q = sqrt(1 + b * b);
+        double factor = (a / p * atan(b / p) + b / q * atan(a / q)) / (2 * pi);
+        s.lights[0] = rectangle(vec3_make(0, h, 0), vec3_make(sides[i][0], 0, 0), vec3_make(0, 0, sides[i][1]));
+        CHECK_NEAR(patch_at(&s, 0, 0), factor, 2e-3);
+    }
+    stage_end(&s);
+}
+
+TEST(sphere_lamp_gives_its_view_factor) {
+    struct stage s;
+    floor_stage(&s);
+    for (int i = 0; i < 3; i++) {
+        double r = 0.3 + 0.6 * i, h = 2, x = 0.8 * i, distance = sqrt(h * h + x * x);
+        s.lights[0] = lamp(LIGHT_SPHERE, vec3_make(x, h, 0), r);
+        CHECK_NEAR(patch_at(&s, 0, 0), r * r / (distance * distance) * h / distance, 2e-4);
+    }
+    /* Half below the horizon: the centre lies in the plane of the patch; B-38 for an angle of 90 degrees. */
+    double r = 1, d = 2, root = sqrt(d * d / (r * r) - 1);
+    s.lights[0] = lamp(LIGHT_SPHERE, vec3_make(d, 0, 0), r);
+    CHECK_NEAR(patch_at(&s, 0, 0), (atan(1 / root) - root * r * r / (d * d)) / pi, 1e-3);
+    stage_end(&s);
+}
+
+TEST(a_one_sided_lamp_lights_its_side_only) {
+    struct stage s;
+    floor_stage(&s);
+    for (int flip = 0; flip < 2; flip++) {
+        s.lights[0] = lamp(LIGHT_DISC, vec3_make(0, 2, 0), 1);
+        s.lights[0].one_sided = true;
+        s.lights[0].direction.y = flip ? 1 : -1;
+        CHECK_NEAR(patch_at(&s, 0, 0), flip ? 0 : 0.2, 1e-3);
+    }
+    stage_end(&s);
+}
+
+TEST(directional_light_is_the_cosine_without_fading) {
+    struct stage s;
+    floor_stage(&s);
+    s.lights[0] = (struct light){.kind = LIGHT_DIRECTIONAL, .direction = {0.6, -0.8, 0}, .colour = {1, 1, 1}};
+    CHECK_NEAR(patch_at(&s, 0, 0), 0.8, 1e-7);
+    CHECK_NEAR(patch_at(&s, 15, -9), 0.8, 1e-7);
+    /* A ball of radius 1 at height 4 over x = -3: its shadow falls on the origin. */
+    struct node *ball = stage_sphere(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+    stage_move(&s, ball, -3, 4, 0);
+    CHECK_NEAR(patch_at(&s, 0, 0), 0, 0);
+    CHECK_NEAR(patch_at(&s, 0, 1.01), 0.8, 1e-7);
+    CHECK_NEAR(patch_at(&s, 0, 0.99), 0, 0);
+    stage_end(&s);
+}
+
+TEST(fading_by_range_and_by_inverse_square) {
+    struct stage s;
+    floor_stage(&s);
+    s.lights[0] = (struct light){.kind = LIGHT_POINT, .position = {0, 3, 0}, .colour = {1, 1, 1}};
+    s.lights[0].fading = FADING_RANGE;
+    s.lights[0].range = 4;
+    CHECK_NEAR(patch_at(&s, 0, 0), 0.25, 1e-7);
+    s.lights[0].range = 2.5;
+    CHECK_NEAR(patch_at(&s, 0, 0), 0, 0);
+    s.lights[0].fading = FADING_INVERSE_SQUARE;
+    s.lights[0].intensity = 4;
+    CHECK_NEAR(patch_at(&s, 0, 0), 4.0 / 9, 1e-7);
+    CHECK_NEAR(patch_at(&s, 4, 0), 4.0 / 25 * 0.6, 1e-7);
+    stage_end(&s);
+}
+
+TEST(spot_is_full_inside_smooth_between_and_dark_outside) {
+    struct stage s;
+    floor_stage(&s);
+    s.lights[0] = (struct light){.kind = LIGHT_SPOT,
+                                 .position = {0, 1, 0},
+                                 .direction = {0, -1, 0},
+                                 .colour = {1, 1, 1},
+                                 .cos_inner = cos(20 * pi / 180),
+                                 .cos_outer = cos(40 * pi / 180)};
+    CHECK_NEAR(patch_at(&s, tan(19.9 * pi / 180), 0), cos(19.9 * pi / 180), 1e-6);
+    CHECK_NEAR(patch_at(&s, tan(40.1 * pi / 180), 0), 0, 0);
+    /* Where the cosine is half way between the two, the share is one half. */
+    double middle = acos((cos(20 * pi / 180) + cos(40 * pi / 180)) / 2);
+    CHECK_NEAR(patch_at(&s, 0, tan(middle)), cos(middle) / 2, 1e-6);
+    double before = 2;
+    for (int i = 0; i <= 20; i++) {
+        double share = patch_at(&s, tan((20 + i) * pi / 180), 0) / cos((20 + i) * pi / 180);
+        CHECK(share <= before + 1e-7);
+        before = share;
+    }
+    stage_end(&s);
+}
+
+TEST(lists_of_nodes_decide_what_a_light_reaches) {
+    /* Two balls, the left one under a group; both seen face on with the light at the eye. */
+    for (int mode = 0; mode < 4; mode++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        struct material *white = stage_phong(&s, vec3_all(1), vec3_all(0), 1);
+        struct node *group = stage_group(&s, s.root), *left = stage_sphere(&s, group, white);
+        struct node *right = stage_sphere(&s, s.root, white);
+        stage_move(&s, left, -2, 0, 0);
+        stage_move(&s, right, 2, 0, 0);
+        s.settings.samples = 1;
+        stage_point_light(&s, vec3_make(0, 0, 10), vec3_all(1));
+        const struct node *list[] = {mode < 2 ? group : right};
+        if (mode % 2 == 0) {
+            s.lights[0].include = list;
+            s.lights[0].include_count = 1;
+        } else {
+            s.lights[0].exclude = list;
+            s.lights[0].exclude_count = 1;
+        }
+        CHECK(stage_render(&s, 101, 101));
+        bool left_lit = stage_pixel(&s, 28, 50).x > 0, right_lit = stage_pixel(&s, 72, 50).x > 0;
+        CHECK(left_lit == (mode == 0 || mode == 3));
+        CHECK(right_lit == (mode == 1 || mode == 2));
+        stage_end(&s);
+    }
+}
+
+TEST(an_empty_list_of_included_nodes_lights_nothing) {
+    struct stage s;
+    floor_stage(&s);
+    const struct node *none[1] = {NULL};
+    s.lights[0] = (struct light){.kind = LIGHT_POINT, .position = {0, 3, 0}, .colour = {1, 1, 1}, .include = none};
+    CHECK_NEAR(patch_at(&s, 0, 0), 0, 0);
+    stage_end(&s);
+}
+
+TEST(a_visible_lamp_shows_its_radiance_and_its_outline) {
+    static const enum light_kind kinds[] = {LIGHT_DISC, LIGHT_SPHERE, LIGHT_PARALLELOGRAM};
+    for (int i = 0; i < 3; i++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        s.settings.full = true;
+        s.settings.samples = 4;
+        s.lights[0] = lamp(kinds[i], vec3_make(0, 0, 0), 2);
+        s.lights[0].direction = vec3_make(0, 0, 1);
+        if (kinds[i] == LIGHT_PARALLELOGRAM)
+            s.lights[0] = rectangle(vec3_make(-1, -1, 0), vec3_make(3, 0, 0), vec3_make(1, 2, 0));
+        s.lights[0].visible = true;
+        s.lights[0].colour = vec3_make(0.5, 0.25, 3);
+        s.light_count = 1;
+        CHECK(stage_render(&s, 200, 200));
+        CHECK_NEAR(stage_pixel(&s, 100, 100).z, 3, 1e-6);
+        double sum = 0, pixel = 2 * tan(25 * pi / 180) / 200 * 10;
+        for (uint32_t p = 0; p < 200 * 200; p++)
+            sum += stage_pixel(&s, p % 200, p / 200).x / 0.5;
+        double silhouette = 10 * tan(asin(0.2)), expected[] = {4 * pi, pi * silhouette * silhouette, 6};
+        CHECK_NEAR(sum * pixel * pixel, expected[i], 0.02);
+        stage_end(&s);
+    }
+}
+
+TEST(a_light_may_say_how_many_shadow_rays_it_wants) {
+    struct stage s;
+    floor_stage(&s);
+    for (int n = 1; n <= 20; n += 19) {
+        s.lights[0] = lamp(LIGHT_SPHERE, vec3_make(0, 2, 0), 1);
+        s.lights[0].samples = n;
+        s.statistics.shadow_rays = 0;
+        (void)patch_at(&s, 0, 0);
+        CHECK_EQ_INT(s.statistics.shadow_rays, n * n);
+    }
+    stage_end(&s);
+}
+
+TEST(half_of_a_lamp_behind_a_wall_gives_half_of_the_light) {
+    struct stage s;
+    floor_stage(&s);
+    struct node *wall = stage_cube(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+    stage_move(&s, wall, 0, 0, -0.5);
+    stage_scale(&s, wall, 10, 1e-3, 10);
+    stage_move(&s, wall, 0, 1, 0);
+    s.lights[0] = lamp(LIGHT_SPHERE, vec3_make(0, 2, 0), 0.5);
+    s.camera = (struct camera){{-1, 0.5, 0}, {1, -0.5, 0}, {0, 1, 0}, 1e-4}; /* below the wall's edge */
+    CHECK(stage_render(&s, 1, 1));
+    CHECK_NEAR(stage_pixel(&s, 0, 0).x, 0.5 * 0.25 / 4, 3e-4);
+    stage_end(&s);
+}
+
+/* All kinds at once over things that throw shadows. */
+static void lit_scene(struct stage *s, double unit) {
+    struct node *top = stage_group(s, s->root);
+    struct material *white = stage_phong(s, vec3_make(0.8, 0.7, 0.6), vec3_all(0.2), 20);
+    struct node *node = stage_cube(s, top, white);
+    stage_move(s, node, -0.5, -1, -0.5);
+    stage_scale(s, node, 20, 1, 20);
+    for (int i = 0; i < 5; i++)
+        stage_move(s, stage_sphere(s, top, white), 3 * i - 6, 1, i % 2);
+    stage_scale(s, top, unit, unit, unit);
+    s->lights[0] = lamp(LIGHT_SPHERE, vec3_make(-3 * unit, 4 * unit, unit), unit);
+    s->lights[1] = lamp(LIGHT_DISC, vec3_make(3 * unit, 5 * unit, 2 * unit), unit);
+    s->lights[2] = rectangle(vec3_make(0, 6 * unit, 0), vec3_make(unit, 0, 0), vec3_make(0, 0.5 * unit, unit));
+    s->lights[3] = (struct light){.kind = LIGHT_DIRECTIONAL, .direction = {0, -0.6, -0.8}, .colour = {0.2, 0.1, 0}};
+    s->lights[4] = (struct light){.kind = LIGHT_SPOT,
+                                  .position = {-5 * unit, 5 * unit, 0},
+                                  .direction = {0.6, -0.8, 0},
+                                  .colour = {0, 0.5, 0},
+                                  .cos_inner = 0.95,
+                                  .cos_outer = 0.9,
+                                  .fading = FADING_RANGE,
+                                  .range = 9 * unit};
+    s->lights[5] = lamp(LIGHT_SPHERE, vec3_make(0, 3 * unit, 3 * unit), 0.5 * unit);
+    s->lights[5].emits = false;
+    s->lights[5].colour = vec3_all(0.3);
+    for (int i = 0; i < 6; i++) {
+        s->lights[i].samples = 2;
+        s->lights[i].visible = i == 0;
+    }
+    s->light_count = 6;
+    s->camera = (struct camera){{0, 4 * unit, 12 * unit}, {0, -0.25, -1}, {0, 1, 0}, 50};
+    s->settings.samples = 2;
+}
+
+TEST(all_lights_give_the_same_bits_for_any_threads_search_and_power_of_two) {
+    struct film_pixel *reference = NULL;
+    static const struct {
+        int threads;
+        enum accel_kind accel;
+        double unit;
+    } runs[] = {{1, ACCEL_AUTO, 1},    {2, ACCEL_AUTO, 1},     {7, ACCEL_GRID, 1},     {2, ACCEL_NONE, 1},
+                {2, ACCEL_AUTO, 0x1p-10}, {2, ACCEL_BVH, 0x1p20}};
+    for (int i = 0; i < 6; i++) {
+        struct stage s;
+        stage_begin(&s, runs[i].threads);
+        lit_scene(&s, runs[i].unit);
+        s.settings.accel = runs[i].accel;
+        CHECK(stage_render(&s, 80, 60));
+        size_t size = (size_t)80 * 60 * sizeof *reference;
+        if (!reference)
+            reference = memcpy(malloc(size), s.film.pixels, size);
+        else
+            CHECK(memcmp(reference, s.film.pixels, size) == 0);
+        stage_end(&s);
+    }
+    free(reference);
+}
+
+TEST(permutations_are_bijections_and_differ_by_key) {
+    for (uint32_t count = 1; count <= 70; count++) {
+        uint8_t seen[70] = {0};
+        int same = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            uint32_t p = sample_permute(i, count, 12345), q = sample_permute(i, count, random_mix(99));
+            CHECK(p < count);
+            seen[p]++;
+            same += p == q;
+        }
+        for (uint32_t i = 0; i < count; i++)
+            CHECK_EQ_INT(seen[i], 1);
+        CHECK(count < 20 || same < (int)count / 2);
+    }
+}
+
+TEST(disc_map_keeps_areas_and_stays_inside) {
+    int inside = 0;
+    for (int i = 0; i < 200; i++) {
+        for (int j = 0; j < 200; j++) {
+            struct sample2 p = sample_disc((struct sample2){(i + 0.5) / 200, (j + 0.5) / 200});
+            double r = p.x * p.x + p.y * p.y;
+            CHECK(r <= 1);
+            inside += r < 0.36;
+        }
+    }
+    CHECK_NEAR(inside / 40000.0, 0.36, 2e-3);
+}
+
+/* With one shadow ray a sample, the samples of a pixel together must do better than as many independent ones. */
+TEST(samples_of_pixel_and_lamp_are_stratified_together) {
+    struct stage s;
+    floor_stage(&s);
+    double h = 1, r = 2, exact = r * r / (r * r + h * h), together = 0, alone = 0;
+    s.lights[0] = lamp(LIGHT_DISC, vec3_make(0, h, 0), r);
+    s.lights[0].samples = 1;
+    for (uint64_t seed = 0; seed < 64; seed++) {
+        s.settings.seed = seed;
+        s.settings.samples = 8;
+        double off = patch_at(&s, 0, 0) - exact;
+        together += off * off;
+        s.settings.samples = 1;
+        double mean = 0;
+        for (uint64_t i = 0; i < 64; i++) {
+            s.settings.seed = 1000 + seed * 64 + i;
+            mean += patch_at(&s, 0, 0) / 64;
+        }
+        alone += (mean - exact) * (mean - exact);
+    }
+    CHECK(together < 0.2 * alone);
+    stage_end(&s);
+}

@@ -1,0 +1,163 @@
+/* Skies beyond the cross: six pictures, a map of the sphere, stops, the clear sky and its sun. */
+#include "image/image.h"
+#include "look/sky.h"
+#include "tests/harness.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+static struct vec3 any_direction(struct test_random *random) {
+    for (;;) {
+        struct vec3 d;
+        d.x = test_uniform(random, -1, 1), d.y = test_uniform(random, -1, 1), d.z = test_uniform(random, -1, 1);
+        if (vec3_length(d) > 0.1 && vec3_length(d) < 1)
+            return vec3_normalize(d);
+    }
+}
+
+TEST(six_pictures_are_the_cross_they_were_cut_from) {
+    enum { SIDE = 16 };
+    static const int cells[6][2] = {{2, 1}, {0, 1}, {1, 2}, {1, 0}, {3, 1}, {1, 1}}; /* -x +x -y +y -z +z */
+    uint8_t *cross = calloc(SIDE * SIDE * 12, 4), face[SIDE * SIDE * 4];
+    struct test_random random = {3};
+    for (int i = 0; i < SIDE * SIDE * 48; i++)
+        cross[i] = i % 4 == 3 ? 255 : (uint8_t)test_uniform(&random, 0, 256);
+    struct error error = {0};
+    struct image *images[6], *whole = image_create("cross", SIDE * 4, SIDE * 3, 8, cross, &error);
+    for (int f = 0; f < 6; f++) {
+        for (int y = 0; y < SIDE; y++)
+            memcpy(face + y * SIDE * 4, cross + ((cells[f][1] * SIDE + y) * SIDE * 4 + cells[f][0] * SIDE) * 4, SIDE * 4);
+        images[f] = image_create("face", SIDE, SIDE, 8, face, &error);
+    }
+    struct sky of_cross, of_faces;
+    CHECK(sky_from_cross(whole, false, &of_cross, &error) && sky_from_faces(images, &of_faces, &error));
+    for (int i = 0; i < 2000; i++) {
+        struct vec3 d = any_direction(&random);
+        double spread = i % 2 ? 0.2 : 0;
+        struct vec3 off = vec3_sub(sky_colour(&of_cross, d, spread), sky_colour(&of_faces, d, spread));
+        CHECK(vec3_max_abs(off) == 0);
+    }
+    image_release(images[3]);
+    images[3] = whole;
+    CHECK(!sky_from_faces(images, &of_faces, &error));
+    CHECK(strstr(error.text, "square") != NULL);
+    for (int f = 0; f < 6; f++)
+        image_release(images[f]);
+    free(cross);
+}
+
+static struct image *map_image(void) {
+    enum { W = 64, H = 32 };
+    static uint8_t texels[W * H * 4];
+    struct error error = {0};
+    struct test_random random = {8};
+    for (int i = 0; i < W * H * 4; i++)
+        texels[i] = i % 4 == 3 ? 255 : (uint8_t)test_uniform(&random, 0, 256);
+    return image_create("map", W, H, 8, texels, &error);
+}
+
+static struct vec3 direction_at(double longitude, double latitude) {
+    return vec3_make(cos(latitude) * sin(longitude), sin(latitude), -cos(latitude) * cos(longitude));
+}
+
+TEST(a_map_of_the_sphere_is_looked_up_by_longitude_and_latitude) {
+    struct sky sky = {.kind = SKY_MAP, .image = map_image()};
+    for (uint32_t y = 0; y < 32; y += 3) {
+        for (uint32_t x = 0; x < 64; x += 5) {
+            struct vec3 d = direction_at((x - 31.5) / 64 * 2 * pi, (15.5 - y) / 32 * pi);
+            struct rgba texel = image_texel(sky.image, x, y);
+            struct vec3 c = sky_colour(&sky, d, 0);
+            CHECK_NEAR(c.x, texel.r, 1e-9);
+            CHECK_NEAR(c.y, texel.g, 1e-9);
+            CHECK_NEAR(c.z, texel.b, 1e-9);
+        }
+    }
+    image_release(sky.image);
+}
+
+TEST(a_map_of_the_sphere_has_no_seam_at_the_back_nor_at_the_poles) {
+    struct sky sky = {.kind = SKY_MAP, .image = map_image()};
+    struct test_random random = {11};
+    const double step = 1e-7;
+    for (int i = 0; i < 500; i++) {
+        double spread = i % 2 ? 0.3 : 0, latitude = test_uniform(&random, -1.5, 1.5);
+        struct vec3 a = sky_colour(&sky, direction_at(pi - step, latitude), spread);
+        struct vec3 b = sky_colour(&sky, direction_at(-pi + step, latitude), spread);
+        CHECK(vec3_max_abs(vec3_sub(a, b)) < 1e-4);
+        double longitude = test_uniform(&random, -3, 3), pole = i % 4 < 2 ? pi / 2 : -pi / 2;
+        a = sky_colour(&sky, direction_at(longitude, pole - step), spread);
+        b = sky_colour(&sky, direction_at(longitude, pole + step), spread);
+        CHECK(vec3_max_abs(vec3_sub(a, b)) < 1e-4);
+    }
+    image_release(sky.image);
+}
+
+TEST(a_sky_is_turned_counterclockwise_seen_from_above_and_made_brighter) {
+    struct sky sky = {.kind = SKY_MAP, .image = map_image()}, turned = sky;
+    turned.adjusted = true;
+    turned.intensity = 3;
+    turned.turn_sine = 1;
+    turned.turn_cosine = 0;
+    /* What stood at -z stands at -x after a quarter turn. */
+    struct vec3 a = sky_colour(&sky, vec3_make(0, 0.6, -0.8), 0), b = sky_colour(&turned, vec3_make(-0.8, 0.6, 0), 0);
+    CHECK(vec3_max_abs(vec3_sub(vec3_scale(a, 3), b)) < 1e-9);
+    image_release(sky.image);
+}
+
+TEST(stops_are_met_and_linear_between) {
+    static const double stops[][4] = {{-0.5, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}, {1, 1, 1, 1}};
+    struct sky sky = {.kind = SKY_STOPS, .stops = stops, .stop_count = 4};
+    static const double expected[][4] = {
+        {-1, 1, 0, 0}, {-0.5, 1, 0, 0}, {-0.25, 0.5, 0.5, 0}, {0, 0, 0, 1}, {0.5, 0.5, 0.5, 1}, {1, 1, 1, 1}};
+    for (int i = 0; i < 6; i++) {
+        double y = expected[i][0];
+        struct vec3 c = sky_colour(&sky, vec3_make(sqrt(1 - y * y), y, 0), 0);
+        CHECK_NEAR(c.x, expected[i][1], 1e-12);
+        CHECK_NEAR(c.y, expected[i][2], 1e-12);
+        CHECK_NEAR(c.z, expected[i][3], 1e-12);
+    }
+}
+
+static double luminance(struct vec3 c) {
+    return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
+}
+
+TEST(the_clear_sky_has_the_zenith_luminance_and_symmetry_of_its_model) {
+    for (int i = 0; i < 4; i++) {
+        double theta = 0.3 + 0.25 * i, turbidity = 2 + i;
+        struct sky sky;
+        sky_make_clear(vec3_make(sin(theta), cos(theta), 0), turbidity, vec3_all(0.1), &sky);
+        double chi = (4.0 / 9 - turbidity / 120) * (pi - 2 * theta);
+        double zenith = (4.0453 * turbidity - 4.9710) * tan(chi) - 0.2155 * turbidity + 2.4192;
+        CHECK_NEAR(luminance(sky_colour(&sky, vec3_make(0, 1, 0), 0)), zenith / 20, 2e-3 * zenith);
+        struct test_random random = {21};
+        for (int k = 0; k < 100; k++) {
+            struct vec3 d = any_direction(&random), mirrored = {d.x, d.y, -d.z};
+            CHECK(vec3_max_abs(vec3_sub(sky_colour(&sky, d, 0), sky_colour(&sky, mirrored, 0))) < 1e-12);
+            CHECK(luminance(sky_colour(&sky, d, 0)) <= luminance(sky_colour(&sky, sky.clear.sun, 0)) * 1.3 + 1e-9 ||
+                  d.y < 0.1); /* bright round the sun and at the horizon */
+        }
+        struct vec3 away = sky_colour(&sky, vec3_make(-sin(0.8), cos(0.8), 0), 0);
+        CHECK(away.z > away.y && away.y > away.x); /* blue */
+        CHECK(sky_colour(&sky, vec3_make(0.6, -0.8, 0), 0).x == 0.1);
+    }
+}
+
+TEST(the_sun_stands_where_the_almanac_says) {
+    /* Altitude at true noon is 90 - latitude + declination; 23.4 degrees on 21 June, 0 at the equinoxes. */
+    struct vec3 june = sky_sun(172, 12, 51.5, 0, 0), december = sky_sun(355, 12, 51.5, 0, 0);
+    CHECK_NEAR(asin(june.y) * 180 / pi, 90 - 51.5 + 23.4, 0.5);
+    CHECK_NEAR(asin(december.y) * 180 / pi, 90 - 51.5 - 23.4, 0.5);
+    CHECK(june.z > 0.4); /* in the south */
+    struct vec3 morning = sky_sun(80, 6, 0, 0, 0), equator = sky_sun(80, 12, 0, 0, 0);
+    CHECK(morning.x > 0.99 && fabs(morning.y) < 0.05); /* rises in the east */
+    CHECK(equator.y > 0.998);
+    /* An hour of the clock is fifteen degrees of longitude; a zone takes them back. */
+    struct vec3 a = sky_sun(172, 9, 40, 15, 0), b = sky_sun(172, 10, 40, 0, 0), c = sky_sun(172, 11, 40, 15, 2);
+    CHECK(vec3_max_abs(vec3_sub(a, b)) < 1e-12);
+    CHECK(vec3_max_abs(vec3_sub(a, c)) < 1e-12);
+    CHECK_NEAR(vec3_length(a), 1, 1e-14);
+}

@@ -1,0 +1,169 @@
+/* Surfaces beyond Phong: roughness, absorption, emission, by closed forms. */
+#include "look/microfacet.h"
+#include "tests/harness.h"
+#include "tests/stage.h"
+
+#include <math.h>
+
+static double centre_of(struct stage *s, uint32_t size) {
+    CHECK(stage_render(s, size, size));
+    return stage_pixel(s, size / 2, size / 2).x;
+}
+
+TEST(light_fades_exponentially_with_the_way_inside_glass) {
+    static const double thickness[] = {0.25, 1, 4};
+    for (int i = 0; i < 3; i++) {
+        for (int inside = 0; inside < 2; inside++) {
+            struct stage s;
+            stage_begin(&s, 1);
+            struct material *glass = stage_glass(&s, 0, 1, 1.5);
+            glass->phong.absorption = vec3_make(0.7, 0.1, 0);
+            struct node *slab = stage_cube(&s, s.root, glass);
+            stage_move(&s, slab, -0.5, -0.5, -1);
+            stage_scale(&s, slab, 100, 100, thickness[i]);
+            s.sky.colour = vec3_all(1);
+            s.settings.samples = 1;
+            s.camera.fov = 0.01;
+            double way = thickness[i];
+            if (inside) {
+                s.camera.eye.z = -0.25 * thickness[i];
+                way *= 0.75;
+            }
+            CHECK_NEAR(centre_of(&s, 1), exp(-0.7 * way), 1e-6);
+            CHECK_NEAR(stage_pixel(&s, 0, 0).y, exp(-0.1 * way), 1e-6);
+            CHECK_NEAR(stage_pixel(&s, 0, 0).z, 1, 1e-6);
+            stage_end(&s);
+        }
+    }
+}
+
+TEST(a_rough_mirror_vanishes_in_uniform_light) {
+    for (int i = 0; i <= 4; i++) {
+        struct stage s;
+        stage_begin(&s, 2);
+        struct material *metal = stage_glass(&s, 1, 0, 1);
+        metal->phong.roughness = 0.25 * i;
+        (void)stage_sphere(&s, s.root, metal);
+        s.camera.fov = 14;
+        s.sky.colour = vec3_all(1);
+        CHECK(stage_render(&s, 24, 24));
+        double worst = 0;
+        for (uint32_t p = 0; p < 24 * 24; p++)
+            worst = fmax(worst, fabs(stage_pixel(&s, p % 24, p / 24).x - 1));
+        CHECK(worst < 1e-6);
+        stage_end(&s);
+    }
+}
+
+TEST(rough_glass_vanishes_in_uniform_light) {
+    for (int i = 0; i <= 2; i++) {
+        struct stage s;
+        stage_begin(&s, 2);
+        struct material *glass = stage_glass(&s, 0, 1, 1.5);
+        glass->phong.roughness = 0.3 * i;
+        glass->phong.glossy_samples = 2;
+        struct material *dielectric = scene_material(&s.scene, MATERIAL_FRESNEL, glass, &s.error);
+        (void)stage_sphere(&s, s.root, dielectric);
+        s.camera.fov = 14;
+        s.settings.samples = 1;
+        s.settings.reflect_limit = s.settings.refract_limit = 100;
+        s.sky.colour = vec3_all(1);
+        CHECK(stage_render(&s, 12, 12));
+        double sum = 0;
+        for (uint32_t p = 0; p < 12 * 12; p++)
+            sum += stage_pixel(&s, p % 12, p / 12).x / 144;
+        CHECK_NEAR(sum, 1, 1e-3); /* what is missing goes round inside more than 100 times */
+        stage_end(&s);
+    }
+}
+
+/* A visible disc over a rough floor, both seen from the axis: the share of rays that meet the disc is the share of
+ * facets flatter than half its angle. */
+TEST(rough_reflection_spreads_as_its_distribution_says) {
+    static const double roughness[] = {0.2, 0.4, 0.7};
+    for (int i = 0; i < 3; i++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        struct material *metal = stage_glass(&s, 1, 0, 1);
+        metal->phong.roughness = roughness[i];
+        metal->phong.glossy_samples = 32;
+        struct node *floor_node = stage_cube(&s, s.root, metal);
+        stage_move(&s, floor_node, -0.5, -1, -0.5);
+        stage_scale(&s, floor_node, 100, 1, 100);
+        double radius = 0.9, height = 2, flat = tan(atan(radius / height) / 2), alpha = roughness[i] * roughness[i];
+        s.lights[0] = (struct light){.kind = LIGHT_DISC,
+                                     .position = {0, height, 0},
+                                     .direction = {0, -1, 0},
+                                     .radius = radius,
+                                     .colour = {1, 1, 1},
+                                     .emits = true,
+                                     .visible = true};
+        s.light_count = 1;
+        metal->phong.ks = vec3_make(1, 0, 0);
+        s.camera = (struct camera){{0, 1, 0}, {0, -1, 0}, {0, 0, -1}, 1e-3};
+        s.settings.area_samples = 1;
+        s.settings.samples = 1;
+        s.lights[0].include = (const struct node *const[]){NULL}; /* seen, but lights nothing */
+        /* Facets so steep that they send light downwards have it turned back up: the mirrored cone counts too. */
+        double turned = alpha * alpha / (alpha * alpha + 1 / (flat * flat));
+        CHECK_NEAR(centre_of(&s, 1), flat * flat / (alpha * alpha + flat * flat) + turned, 8e-3);
+        stage_end(&s);
+    }
+}
+
+TEST(facets_are_seen_from_the_view_and_have_the_mean_of_the_normal) {
+    struct vec3 normal = vec3_normalize(vec3_make(1, 2, -3)), sum = {0, 0, 0};
+    for (uint32_t i = 0; i < 64 * 64; i++) {
+        struct sample2 place = sample_cell(7, i % 64, i / 64, 64);
+        struct vec3 h = microfacet_normal(normal, normal, 0.5, place);
+        CHECK(vec3_dot(h, normal) > 0);
+        sum = vec3_add(sum, vec3_sub(h, vec3_scale(normal, vec3_dot(h, normal))));
+        struct vec3 grazing = vec3_normalize(vec3_make(2, -1, 0.01));
+        h = microfacet_normal(normal, grazing, 0.5, place);
+        CHECK(vec3_dot(h, normal) >= 0 && vec3_dot(h, grazing) >= -1e-12);
+    }
+    CHECK(vec3_length(sum) / 4096 < 1e-3);
+}
+
+TEST(an_unlit_surface_shows_kd_and_emission_adds) {
+    struct stage s;
+    stage_begin(&s, 1);
+    struct material *material = stage_phong(&s, vec3_make(0.3, 0.4, 0.5), vec3_all(1), 10);
+    (void)stage_sphere(&s, s.root, material);
+    stage_point_light(&s, vec3_make(0, 0, 20), vec3_all(1));
+    s.ambient = vec3_all(0.7);
+    s.camera.fov = 5;
+    material->phong.unlit = true;
+    CHECK_NEAR(centre_of(&s, 3), 0.3, 1e-7);
+    material->phong.emission = vec3_make(2, 0, 0);
+    CHECK_NEAR(centre_of(&s, 3), 2.3, 1e-6);
+    CHECK_EQ_INT(s.statistics.shadow_rays, 0);
+    material->phong.unlit = false;
+    double lit = centre_of(&s, 3);
+    material->phong.emission = vec3_all(0);
+    CHECK_NEAR(lit - centre_of(&s, 3), 2, 1e-6);
+    stage_end(&s);
+}
+
+TEST(blinn_of_a_material_is_blinn_of_the_picture) {
+    double of_material[3], of_picture[3];
+    for (int highlight = 0; highlight < 3; highlight++) {
+        for (int picture = 0; picture < 2; picture++) {
+            struct stage s;
+            stage_begin(&s, 1);
+            struct material *material = stage_phong(&s, vec3_all(0), vec3_all(1), 20);
+            material->phong.highlight = (enum material_highlight)highlight;
+            (void)stage_sphere(&s, s.root, material);
+            stage_point_light(&s, vec3_make(9, 3, 9), vec3_all(1));
+            s.settings.specular = picture ? SPECULAR_BLINN : SPECULAR_PHONG;
+            s.camera.fov = 5;
+            (picture ? of_picture : of_material)[highlight] = centre_of(&s, 3);
+            stage_end(&s);
+        }
+    }
+    CHECK(of_material[HIGHLIGHT_PHONG] == of_material[HIGHLIGHT_AS_SET]);
+    CHECK(of_picture[HIGHLIGHT_BLINN] == of_picture[HIGHLIGHT_AS_SET]);
+    CHECK(of_picture[HIGHLIGHT_PHONG] == of_material[HIGHLIGHT_PHONG]);
+    CHECK(of_material[HIGHLIGHT_BLINN] == of_picture[HIGHLIGHT_BLINN]);
+    CHECK(of_material[HIGHLIGHT_BLINN] != of_material[HIGHLIGHT_PHONG]);
+}

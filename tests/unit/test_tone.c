@@ -1,0 +1,213 @@
+/* From light to files: curves, 16-bit PNG, PFM, Radiance HDR. */
+#include "image/float_write.h"
+#include "image/image.h"
+#include "image/png_write.h"
+#include "image/tone.h"
+#include "tests/harness.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+TEST(tone_curves_follow_their_formulas) {
+    struct tone tone = {0};
+    CHECK(tone_is_plain(&tone));
+    CHECK_NEAR(tone_apply(&tone, 1.7), 1.7, 0);
+    tone.exposure = 2.5;
+    CHECK_NEAR(tone_apply(&tone, 0.3), 0.3 * pow(2, 2.5), 1e-15);
+    tone = (struct tone){.curve = TONE_REINHARD};
+    CHECK_NEAR(tone_apply(&tone, 3), 0.75, 1e-15);
+    tone.curve = TONE_FILMIC;
+    CHECK_NEAR(tone_apply(&tone, 1), 2.54 / 3.16, 1e-15);
+    /* Values of the standard: 0.5 is 0.735357, 0.001 is on the straight part; the ends stay. */
+    tone = (struct tone){.srgb = true};
+    CHECK_NEAR(tone_apply(&tone, 0.5), 0.735357, 1e-6);
+    CHECK_NEAR(tone_apply(&tone, 0.001), 0.01292, 1e-12);
+    CHECK_NEAR(tone_apply(&tone, 1), 1, 1e-12);
+    CHECK_NEAR(tone_apply(&tone, 0), 0, 0);
+}
+
+TEST(tone_curves_rise_and_stay_below_their_limit) {
+    for (int curve = TONE_REINHARD; curve <= TONE_FILMIC; curve++) {
+        struct tone tone = {.curve = (enum tone_curve)curve};
+        double before = -1;
+        for (double c = 0; c < 1e6; c = c * 1.1 + 1e-3) {
+            double now = tone_apply(&tone, c);
+            CHECK(now > before && now < 1.04);
+            before = now;
+        }
+    }
+}
+
+enum { W = 300, H = 7 };
+
+static float light(uint32_t x, uint32_t y, int channel) {
+    if (y == 3) /* long runs */
+        return channel == 1 ? 0 : 0.5f;
+    if (y == 4)
+        return 0;
+    return (float)(ldexp(1 + (double)(x * 7 + y * 13 + (unsigned)channel * 29) / 4096, (int)(x / (y == 5 ? 1 : 40)) % 60 - 30));
+}
+
+static void light_row(void *context, uint32_t y, float *line) {
+    uint32_t width = *(uint32_t *)context;
+    for (uint32_t x = 0; x < width; x++)
+        for (int c = 0; c < 3; c++)
+            line[3 * x + (uint32_t)c] = light(x, y, c);
+}
+
+TEST(pfm_holds_the_very_floats_from_the_bottom_up) {
+    char path[512], header[32];
+    uint32_t width = W;
+    struct error error = {0};
+    (void)snprintf(path, sizeof path, "%s/a.pfm", test_folder());
+    CHECK(pfm_write(path, W, H, light_row, &width, &error));
+    size_t size, start = (size_t)snprintf(header, sizeof header, "PF\n%d %d\n-1.0\n", W, H);
+    char *file = test_read_file(path, &size);
+    CHECK_EQ_INT(size, start + W * H * 12);
+    CHECK(memcmp(file, header, start) == 0);
+    for (uint32_t y = 0; y < H; y++) {
+        for (uint32_t x = 0; x < W; x++) {
+            float rgb[3];
+            memcpy(rgb, file + start + ((size_t)(H - 1 - y) * W + x) * 12, 12);
+            CHECK(rgb[0] == light(x, y, 0) && rgb[1] == light(x, y, 1) && rgb[2] == light(x, y, 2));
+        }
+    }
+    free(file);
+}
+
+/* A reader of its own, by the format's description. */
+static void read_hdr(const uint8_t *data, size_t size, uint32_t width, uint8_t *pixels) {
+    size_t at = 0;
+    for (uint32_t y = 0; y < H; y++) {
+        uint8_t *row = pixels + (size_t)y * width * 4;
+        if (width < 8) {
+            memcpy(row, data + at, (size_t)width * 4);
+            at += (size_t)width * 4;
+            continue;
+        }
+        CHECK(data[at] == 2 && data[at + 1] == 2 && data[at + 2] == width >> 8 && data[at + 3] == (width & 255));
+        at += 4;
+        for (uint32_t c = 0; c < 4; c++) {
+            for (uint32_t x = 0; x < width;) {
+                uint32_t count = data[at++];
+                bool run = count > 128;
+                count = run ? count - 128 : count;
+                CHECK(count > 0 && x + count <= width && at < size);
+                for (uint32_t i = 0; i < count; i++)
+                    row[4 * (x + i) + c] = data[run ? at : at + i];
+                at += run ? 1 : count;
+                x += count;
+            }
+        }
+    }
+    CHECK_EQ_INT(at, size);
+}
+
+TEST(radiance_pictures_read_back_within_their_mantissa) {
+    static const uint32_t widths[] = {W, 8, 5};
+    for (int i = 0; i < 3; i++) {
+        char path[512], header[128];
+        uint32_t width = widths[i];
+        struct error error = {0};
+        (void)snprintf(path, sizeof path, "%s/a.hdr", test_folder());
+        CHECK(hdr_write(path, width, H, light_row, &width, &error));
+        size_t size, start = (size_t)snprintf(header, sizeof header,
+                                              "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %u\n", H, width);
+        char *file = test_read_file(path, &size);
+        CHECK(size > start && memcmp(file, header, start) == 0);
+        uint8_t *pixels = calloc((size_t)width * H, 4);
+        read_hdr((const uint8_t *)file + start, size - start, width, pixels);
+        for (uint32_t p = 0; p < width * H; p++) {
+            const uint8_t *rgbe = pixels + 4 * (size_t)p;
+            double most = 0;
+            for (int c = 0; c < 3; c++)
+                most = fmax(most, (double)light(p % width, p / width, c));
+            for (int c = 0; c < 3; c++) {
+                double value = rgbe[3] ? ldexp(rgbe[c], rgbe[3] - 136) : 0, wanted = (double)light(p % width, p / width, c);
+                CHECK(value <= wanted && wanted - value <= most / 128);
+            }
+        }
+        free(pixels);
+        free(file);
+    }
+}
+
+TEST(radiance_pixels_of_odd_light_are_defined) {
+    uint8_t out[4];
+    hdr_pixel((const float[3]){-1, 0, NAN}, out);
+    CHECK(out[0] == 0 && out[1] == 0 && out[2] == 0 && out[3] == 0);
+    hdr_pixel((const float[3]){1, 0.5f, 0}, out);
+    CHECK(out[0] == 128 && out[1] == 64 && out[2] == 0 && out[3] == 129);
+    hdr_pixel((const float[3]){INFINITY, 1, 0}, out);
+    CHECK(out[0] == 128 && out[3] == 255);
+}
+
+static void word_row(void *context, uint32_t y, uint16_t *line) {
+    (void)context;
+    for (uint32_t i = 0; i < 3 * 64; i++)
+        line[i] = (uint16_t)(i * 341 + y * 77);
+}
+
+TEST(deep_png_holds_sixteen_bits) {
+    char path[512];
+    struct error error = {0};
+    (void)snprintf(path, sizeof path, "%s/a.png", test_folder());
+    CHECK(png_write_16(path, 64, 5, word_row, NULL, &error));
+    struct image *image = image_read_png(path, &error);
+    CHECK(image != NULL);
+    for (uint32_t y = 0; y < 5 && image; y++) {
+        for (uint32_t x = 0; x < 64; x++) {
+            struct rgba c = image_texel(image, x, y);
+            CHECK_NEAR(c.r * 65535, (uint16_t)(3 * x * 341 + y * 77), 1e-6);
+            CHECK_NEAR(c.b * 65535, (uint16_t)((3 * x + 2) * 341 + y * 77), 1e-6);
+        }
+    }
+    if (image)
+        image_release(image);
+    CHECK_EQ_INT(tone_word(0.5), 32768);
+    CHECK_EQ_INT(tone_word(7), 65535);
+    CHECK_EQ_INT(tone_word((double)NAN), 0);
+}
+
+static const char bright_scene[] =
+    "local function r(t) t.node = gr.node('n'); t.width = 4; t.height = 4; t.eye = {0, 0, 0}\n"
+    "t.background = {0.25, 2, 0.5}; gr.render(t) end\n"
+    "r{file = 'plain.png'} r{file = 'light.HDR'} r{file = 'light.pfm', exposure = 3}\n"
+    "r{file = 'bright.png', exposure = 1} r{file = 'curve.png', tone = 'reinhard'} r{file = 'srgb.png', srgb = true}\n"
+    "r{file = 'deep.png', deep = true}\n";
+
+static void expect_pixel(const char *name, uint8_t r, uint8_t g, uint8_t b) {
+    char path[512];
+    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    struct test_picture picture = test_read_picture(path);
+    if (!picture.rgb || picture.rgb[0] != r || picture.rgb[1] != g || picture.rgb[2] != b)
+        test_fail(__FILE__, __LINE__, "%s is not %d %d %d", name, r, g, b);
+    free(picture.rgb);
+}
+
+TEST(the_extension_says_the_format_and_tone_is_for_png_alone) {
+    struct test_result result = test_gray_scene(bright_scene, "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    expect_pixel("plain.png", 64, 255, 128);
+    expect_pixel("bright.png", 128, 255, 255);
+    expect_pixel("curve.png", 51, 170, 85);
+    expect_pixel("srgb.png", 137, 255, 188);
+    char path[512];
+    size_t size;
+    float rgb[3] = {0};
+    (void)snprintf(path, sizeof path, "%s/light.pfm", test_folder());
+    char *file = test_read_file(path, &size);
+    CHECK(file && size == 12 + 1 + 48 * 4 - 1);
+    if (file)
+        memcpy(rgb, file + size - 12, 12);
+    CHECK(rgb[0] == 0.25f && rgb[1] == 2 && rgb[2] == 0.5f);
+    free(file);
+    (void)snprintf(path, sizeof path, "%s/light.HDR", test_folder());
+    file = test_read_file(path, &size);
+    CHECK(file && strncmp(file, "#?RADIANCE\n", 11) == 0);
+    free(file);
+    free(result.out);
+    free(result.err);
+}
