@@ -24,7 +24,7 @@ local orbit_line = gr.material({ .5, .5, .6 }, { 0, 0, 0 }, 1)
 local planets = {
     { 2.0, .16, 40, gr.material({ .6, .55, .5 }, { .1, .1, .1 }, 10) },
     { 2.9, .28, 200, gr.material({ .85, .7, .45 }, { .2, .2, .2 }, 10) },
-    { 4.1, .36, 305, gr.td_sphere_material(gr.material({ .5, .5, .5 }, { .3, .3, .3 }, 30), '../../textures/earth.png') },
+    { 4.1, .36, 305, gr.marble_pnd_material(gr.material({ .15, .3, .75 }, { .3, .3, .3 }, 30), 2.5, 5, 2, 1, { .9, .95, 1 }) },
     { 5.2, .24, 120, gr.material({ .75, .35, .2 }, { .1, .1, .1 }, 10) },
     { 7.2, .75, 250, gr.marble_pnd_material(gr.material({ .8, .65, .5 }, { .1, .1, .1 }, 10), 1.2, 1.5, 11, 1, { .6, .4, .3 }) },
 }

@@ -311,6 +311,9 @@ static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const str
     if (look.fresnel || look.refract != 0) {
         eta = cross_surface(hit, look.has_ior ? look.ior : 1, look.absorption, ray->media, &behind);
         passes = shading_refract(side, hit->view, eta, &through);
+        /* About an interpolated normal the ray may not leave its side of the surface: the geometric one takes over. */
+        if (passes && vec3_dot(through, geometric_side) >= 0)
+            passes = shading_refract(geometric_side, hit->view, eta, &through);
         if (look.fresnel) {
             look.reflect = shading_fresnel(vec3_dot(side, hit->view), eta);
             look.refract = 1 - look.reflect;

@@ -497,10 +497,10 @@ TEST(a_name_as_long_as_the_file_system_allows_can_be_written) {
     free(picture.rgb);
 }
 
-TEST(a_folder_that_cannot_be_written_is_one_line_and_status_3) {
+TEST(a_place_that_cannot_hold_a_file_is_one_line_and_status_1) {
     struct test_result result = test_gray_scene(SMALL, "-o /proc/out.png scene.lua", NULL);
     CHECK(strchr(result.err, '\n') == strrchr(result.err, '\n'));
-    ends_saying(result, 3, "/proc/out.png: cannot be written: ");
+    ends_saying(result, 1, "/proc/out.png: cannot be written: ");
 }
 
 TEST(a_reader_of_the_picture_that_goes_away_is_one_line_and_status_3) {
