@@ -39,7 +39,7 @@ local lights = {
     gr.directional_light{ direction = { 1, -1.4, -.8 }, colour = { .85, .75, .6 } },
     gr.light({ -20, 30, 30 }, { .25, .28, .35 }, { 1, 0, 0 }),
 }
-local mist = gr.height_fog{ density = .09, base = 0, scale = 3.2, colour = { .72, .74, .78 } }
+local mist = gr.height_fog{ density = .17, base = 0, scale = 3, colour = { .72, .74, .78 } }
 gr.render{ node = root, file = 'pyramid-fog.png', width = 640, height = 400, eye = { -2.4, 2.5, 10 }, target = { .6, 1.6, 0 },
     fov = 42, ambient = { .2, .2, .22 }, lights = lights, fog = mist, reflect_limit = 8,
     background = { .38, .52, .74 } }

@@ -999,7 +999,7 @@ function gr.sky_gradient(stops) end
 ---@overload fun(fields: gr.clear_sky.fields): gr.sky
 function gr.clear_sky(sun, turbidity) end
 
----@class gr.fog.fields
+---@class gr.uniform_fog.fields
 ---@field colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
 ---@field clear_sky? boolean clear_sky (true or false; default false): Whether the sky is seen without fog.
 ---@field density number density (a number, >= 0): What is d away keeps the share exp(-density d).
@@ -1009,8 +1009,8 @@ function gr.clear_sky(sun, turbidity) end
 ---@param density number density (a number, >= 0): What is d away keeps the share exp(-density d).
 ---@param colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
 ---@return gr.fog
----@overload fun(fields: gr.fog.fields): gr.fog
-function gr.fog(density, colour) end
+---@overload fun(fields: gr.uniform_fog.fields): gr.fog
+function gr.uniform_fog(density, colour) end
 
 ---@class gr.linear_fog.fields
 ---@field colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.

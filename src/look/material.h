@@ -71,7 +71,7 @@ struct surface_look {
     bool unlit; /* kd is shown as it is, whatever light there is */
     enum material_highlight highlight;
     struct vec3 emission;   /* added to what is reflected */
-    struct vec3 absorption; /* inside: light fades by exp(-absorption * distance) */
+    struct vec3 absorption; /* inside: the logarithm of light falls by this per unit */
     double roughness;       /* of reflection and refraction; 0: a mirror */
     int glossy_samples;     /* N x N rays where it is rough; 0: the default */
     bool fresnel; /* the integrator, which knows the media, replaces reflect and refract by F and 1 - F */

@@ -15,7 +15,7 @@ struct media {
     struct medium {
         uint32_t placed;
         double ior;
-        struct vec3 absorption; /* light fades by exp(-absorption * distance) */
+        struct vec3 absorption; /* the logarithm of light falls by this per unit */
     } entries[MEDIA_LIMIT];
 };
 

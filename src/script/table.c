@@ -810,7 +810,7 @@ const struct function function_table[] = {
     GR("clear_sky", clear_sky_parameters, RESULT_SKY, act_clear_sky,
        "The physical clear sky of Preetham, Shirley and Smits, 1999.", "sun turbidity?"),
 
-    GR("fog", fog_parameters, RESULT_FOG, act_fog, "Fog that is the same everywhere.", "density colour?"),
+    GR("uniform_fog", fog_parameters, RESULT_FOG, act_fog, "Fog that is the same everywhere.", "density colour?"),
     GR("linear_fog", linear_fog_parameters, RESULT_FOG, act_linear_fog, "Fog that closes linearly with distance.",
        "near far colour?"),
     GR("height_fog", height_fog_parameters, RESULT_FOG, act_height_fog, "Fog that thins out upwards.",

@@ -268,7 +268,7 @@ static bool run_call(const char *call, struct error *error) {
                    "glass = gr.rr_material({1, 1, 1}, {1, 1, 1}, 10, 0.5, 0.5, 1.5) "
                    "sheet = gr.mesh(glass, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}})\n"
                    "ball = gr.sphere('ball')\n"
-                   "lamp = gr.light({0, 0, 0}, {1, 1, 1}, {1, 0, 0}); mist = gr.fog{density = 1}\n"
+                   "lamp = gr.light({0, 0, 0}, {1, 1, 1}, {1, 0, 0}); mist = gr.uniform_fog{density = 1}\n"
                    "%s\n",
                    call);
     struct listener listener = {.renders = 0};
