@@ -15,4 +15,4 @@ root:set_material(gr.material({1, 1, 1}, {0, 0, 0}, 1))
 assert(tostring(gr.union('u', ball, torus)) == "node 'u'" and tostring(gr.difference('d', torus, ball)) == "node 'd'")
 local lamp = gr.light({0, 0, 9}, {1, 1, 1}, {1, 0, 0})
 gr.render(root, 'lenient.png', 8, 8, {0, 0, 10}, {0, 0, -1}, {0, 1, 0}, 50, {0, 0, 0},
-    {lamp, gr.spherical_light({0, 0, 0}, {1, 1, 1}, {1, 0, 0}, 1)})
+    {lamp, gr.moon_light({0, 0, 0}, {1, 1, 1}, {1, 0, 0}, 1)})

@@ -102,7 +102,7 @@ TEST(lenient_scripts_show_what_can_be_shown) {
                "tests/scripts/lenient.lua:10: warning: node:wobble does not exist and is ignored (node 'root')\n"
                "tests/scripts/lenient.lua:11: warning: gr.shiny_material does not exist and is ignored\n"
                "tests/scripts/lenient.lua:14: warning: node:set_material: a plain node has no material (node 'root')\n"
-               "tests/scripts/lenient.lua:18: warning: gr.spherical_light: comes with version 0.2 and is ignored\n");
+               "tests/scripts/lenient.lua:18: warning: gr.moon_light does not exist and is ignored\n");
 }
 
 TEST(a_factor_of_zero_is_a_warning) {
