@@ -86,7 +86,7 @@ section() { # section TITLE CLASS SCRIPT...
 }
 
 : >"$gallery/body.html"
-section "Demos" large data/*demo.lua
+section "Demos" large data/*demo.lua data/pyramid-fog.lua
 section "Classic scenes" small data/classic/*.lua
 
 {

@@ -8,12 +8,12 @@
 #include <stdatomic.h>
 #include <time.h>
 
+/* Quiet machines show some milliseconds (docs/reliability.md). A test must hold on a busy one too: what never asks for the
+ * flag goes on for longer than this. */
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
-static const double allowed = 0.2;
-#elif defined __OPTIMIZE__
-static const double allowed = 0.010;
+static const double allowed = 1;
 #else
-static const double allowed = 0.1;
+static const double allowed = 0.2;
 #endif
 
 struct alarm {
@@ -81,7 +81,7 @@ static bool build_index(void *context) {
     return mesh_build_index(work->mesh, work->build.pool, &error);
 }
 
-TEST(the_index_of_a_mesh_stops_within_ten_milliseconds) {
+TEST(the_index_of_a_mesh_stops_soon) {
     enum { COUNT = 400000 };
     struct test_random random = {7};
     char warning[256];
@@ -139,7 +139,7 @@ static bool build_world(void *context) {
     return done;
 }
 
-TEST(the_building_of_a_world_stops_within_ten_milliseconds) {
+TEST(the_building_of_a_world_stops_soon) {
     struct stage s;
     struct test_random random = {3};
     stage_begin(&s, 2);
@@ -177,7 +177,7 @@ static bool render(void *context) {
     return done;
 }
 
-TEST(long_pixels_of_glass_and_soft_light_stop_within_ten_milliseconds) {
+TEST(long_pixels_of_glass_and_soft_light_stop_soon) {
     struct stage s;
     stage_begin(&s, 2);
     struct material *glass = stage_glass(&s, 0.5, 0.5, 1.5);
