@@ -144,7 +144,7 @@ TEST(the_building_of_a_world_stops_soon) {
     struct test_random random = {3};
     stage_begin(&s, 2);
     struct material *material = stage_phong(&s, vec3_all(1), vec3_all(0), 1);
-    for (int i = 0; i < 150000; i++) {
+    for (int i = 0; i < 80000; i++) {
         struct node *ball = stage_sphere(&s, s.root, material);
         stage_move(&s, ball, test_uniform(&random, -50, 50), test_uniform(&random, -50, 50),
                    test_uniform(&random, -50, 50));
