@@ -16,6 +16,7 @@ void mesh_release(struct mesh *mesh) {
     if (!mesh || --mesh->references > 0)
         return;
     triangle_index_destroy(mesh->index);
+    triangle_index_destroy(mesh->grid);
     mem_free(mesh->vertices);
     mem_free(mesh->corners);
     mem_free(mesh->normals);
@@ -33,6 +34,13 @@ bool mesh_build_index(struct mesh *mesh, struct pool *pool, struct error *error)
     if (mesh->index)
         return true;
     return triangle_index_build(&mesh->index, &mesh->set, 0, pool, error);
+}
+
+bool mesh_build_grid(struct mesh *mesh, struct pool *pool, struct error *error) {
+    enum { TRIANGLES_PER_VOXEL = 8, MOST_VOXELS = 1 << 18 };
+    uint32_t voxels = mesh->set.count / TRIANGLES_PER_VOXEL;
+    voxels = voxels < 1 ? 1 : voxels > MOST_VOXELS ? MOST_VOXELS : voxels;
+    return mesh->grid || triangle_index_build(&mesh->grid, &mesh->set, voxels, pool, error);
 }
 
 struct box mesh_bounds(const struct mesh *mesh) {
@@ -98,6 +106,7 @@ size_t mesh_memory(const struct mesh *mesh) {
         bytes += triangles * sizeof *mesh->materials;
     if (mesh->face_start)
         bytes += ((size_t)mesh->face_count + 1 + mesh->face_start[mesh->face_count]) * sizeof(uint32_t);
+    bytes += mesh->grid ? triangle_index_memory(mesh->grid) : 0;
     return bytes + (mesh->index ? triangle_index_memory(mesh->index) : 0);
 }
 
@@ -112,12 +121,27 @@ static struct crossing crossing_from(const struct triangle_hit *hit) {
     return (struct crossing){.t = hit->t, .u = hit->u, .v = hit->v, .part = hit->triangle, .enter = hit->enter};
 }
 
+/* What searches go through; NULL: every triangle is tried. */
+static const struct triangle_index *index_for(const struct mesh *mesh, enum accel_kind accel) {
+    switch (accel) {
+    case ACCEL_GRID:
+        return mesh->grid ? mesh->grid : mesh->index;
+    case ACCEL_AUTO:
+    case ACCEL_BVH:
+        return mesh->index ? mesh->index : mesh->grid;
+    case ACCEL_NONE:
+        return NULL;
+    }
+    return NULL;
+}
+
 bool mesh_nearest(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch,
                   struct crossing *out) {
     struct triangle_cost cost = {0};
     struct triangle_hit hit;
-    bool found = mesh->index && accel != ACCEL_NONE ? triangle_index_nearest(mesh->index, &mesh->set, ray, &hit, &cost)
-                                                    : triangle_brute_nearest(&mesh->set, ray, &hit, &cost);
+    const struct triangle_index *index = index_for(mesh, accel);
+    bool found = index ? triangle_index_nearest(index, &mesh->set, ray, &hit, &cost)
+                       : triangle_brute_nearest(&mesh->set, ray, &hit, &cost);
     add_cost(scratch, &cost);
     if (found)
         *out = crossing_from(&hit);
@@ -126,8 +150,9 @@ bool mesh_nearest(const struct mesh *mesh, const struct ray *ray, enum accel_kin
 
 bool mesh_any(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch) {
     struct triangle_cost cost = {0};
-    bool found = mesh->index && accel != ACCEL_NONE ? triangle_index_any(mesh->index, &mesh->set, ray, &cost)
-                                                    : triangle_brute_any(&mesh->set, ray, &cost);
+    const struct triangle_index *index = index_for(mesh, accel);
+    bool found = index ? triangle_index_any(index, &mesh->set, ray, &cost)
+                       : triangle_brute_any(&mesh->set, ray, &cost);
     add_cost(scratch, &cost);
     return found;
 }
@@ -196,8 +221,9 @@ bool mesh_crossings(const struct mesh *mesh, const struct ray *ray, enum accel_k
                     struct crossing_list *out) {
     struct triangle_cost cost = {0};
     *out = (struct crossing_list){scratch->used, 0};
-    if (mesh->index && accel != ACCEL_NONE)
-        triangle_index_all(mesh->index, &mesh->set, ray, push, scratch, &cost);
+    const struct triangle_index *index = index_for(mesh, accel);
+    if (index)
+        triangle_index_all(index, &mesh->set, ray, push, scratch, &cost);
     else
         triangle_brute_all(&mesh->set, ray, push, scratch, &cost);
     add_cost(scratch, &cost);

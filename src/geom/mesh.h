@@ -48,6 +48,10 @@ void mesh_release(struct mesh *mesh);
 /* Thread-compatible: call from one thread; returns at once when the index exists. False: no memory or cancelled. */
 bool mesh_build_index(struct mesh *mesh, struct pool *pool, struct error *error);
 
+/* The same for ACCEL_GRID: a frame of many voxels that Amanatides and Woo's steps walk through, for teaching and for doubt.
+ * The index that mesh_build_index makes has the resolution that measured best, which is mostly one voxel. */
+bool mesh_build_grid(struct mesh *mesh, struct pool *pool, struct error *error);
+
 struct box mesh_bounds(const struct mesh *mesh);
 bool mesh_is_closed(const struct mesh *mesh); /* every edge is used by exactly two triangles in opposite directions */
 /* For a mesh that is not closed: one open edge by its two positions; false when closed. */

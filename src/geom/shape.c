@@ -302,7 +302,7 @@ bool shape_nearest(const struct shape *shape, const struct ray *ray, struct geom
         scratch->shape_tests++;
         return listed_nearest(shape, ray, scratch, out);
     case SHAPE_MESH:
-        return mesh_nearest(shape->mesh, ray, ACCEL_GRID, scratch, out);
+        return mesh_nearest(shape->mesh, ray, ACCEL_AUTO, scratch, out);
     case SHAPE_CSG:
         return csg_nearest(shape->csg, ray, scratch, out);
     }
@@ -334,7 +334,7 @@ bool shape_any(const struct shape *shape, const struct ray *ray, struct geom_scr
         return listed_nearest(shape, ray, scratch, &ignored);
     }
     case SHAPE_MESH:
-        return mesh_any(shape->mesh, ray, ACCEL_GRID, scratch);
+        return mesh_any(shape->mesh, ray, ACCEL_AUTO, scratch);
     case SHAPE_CSG:
         return csg_any(shape->csg, ray, scratch);
     }
@@ -372,7 +372,7 @@ bool shape_crossings(const struct shape *shape, const struct ray *ray, struct ge
         scratch->shape_tests++;
         return listed_crossings(shape, ray, scratch, out);
     case SHAPE_MESH:
-        return mesh_crossings(shape->mesh, ray, ACCEL_GRID, scratch, out);
+        return mesh_crossings(shape->mesh, ray, ACCEL_AUTO, scratch, out);
     case SHAPE_CSG:
         return csg_crossings(shape->csg, ray, scratch, out);
     }
@@ -389,7 +389,7 @@ static bool mesh_contains(const struct mesh *mesh, struct vec3 point, struct geo
                       .t_min = -INFINITY,
                       .t_max = INFINITY};
     struct crossing_list list;
-    if (!mesh_crossings(mesh, &ray, ACCEL_GRID, scratch, &list))
+    if (!mesh_crossings(mesh, &ray, ACCEL_AUTO, scratch, &list))
         return false;
     bool inside = false;
     for (uint32_t i = 0; i < list.count; i++)

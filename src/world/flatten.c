@@ -168,7 +168,8 @@ bool flatten_mesh_index(struct flattening *f, const struct shape *shape) {
         return true;
     /* The mesh is an asset: immutable but for its index, which is made at its first render. */
     struct mesh *mesh = (struct mesh *)(uintptr_t)shape->mesh;
-    return mesh_build_index(mesh, f->pool, f->error);
+    return f->world->accel == ACCEL_GRID ? mesh_build_grid(mesh, f->pool, f->error)
+                                         : mesh_build_index(mesh, f->pool, f->error);
 }
 
 static bool place_node(struct flattening *f, struct node *node, const struct transform *world_from_node) {
