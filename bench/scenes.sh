@@ -46,8 +46,8 @@ printf '%-12s %9s %9s %8s\n' scene 'pov s' 'gray s' ratio
 pair primitives -reflect-limit 4 -refract-limit 4
 pair solids
 if [ -f "$models/stanford-bunny.obj" ]; then
-    "$gray" -q -D MODEL="$models/stanford-bunny.obj" -D EXPORT=yes "$here/bench/pov/bunny.lua" >mesh.inc &&
-        pair bunny -reflect-limit 4 -D MODEL="$models/stanford-bunny.obj"
+    "$gray" -q --allow-read "$models" -D MODEL="$models/stanford-bunny.obj" -D EXPORT=yes "$here/bench/pov/bunny.lua" >mesh.inc &&
+        pair bunny -reflect-limit 4 --allow-read "$models" -D MODEL="$models/stanford-bunny.obj"
 else
     echo "bunny: no $models/stanford-bunny.obj: left out"
 fi

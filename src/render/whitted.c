@@ -67,9 +67,12 @@ static double visible_share(struct tracer *tracer, const struct light *light, ui
         struct vec3 to_light = vec3_negate(light->direction);
         return is_free(tracer, off_surface(hit, to_light), to_light, INFINITY, hit->time);
     }
+    struct vec3 from = off_surface(hit, vec3_sub(light->position, hit->point));
+    if (!light_has_extent(light))
+        return is_free(tracer, from, vec3_sub(light->position, from), 1, hit->time);
     struct fan fan = fan_make(tracer, light, number, key);
-    fan.from = off_surface(hit, vec3_sub(light->position, hit->point));
-    if (!light_has_extent(light) || !light_frame_make(light, fan.from, &fan.frame))
+    fan.from = from;
+    if (!light_frame_make(light, fan.from, &fan.frame))
         return is_free(tracer, fan.from, vec3_sub(light->position, fan.from), 1, hit->time);
     uint32_t all = fan.side * fan.side, seen = 0, have = 0;
     struct vec3 targets[AREA_BATCH];
