@@ -71,8 +71,8 @@ int main(int count, char **paths) {
             model_destroy(&model);
         }
         (void)stat(paths[i], &status);
-        (void)printf("%-28s gray            %8.1f MB/s  %6.3f s  %u triangles\n", paths[i], (double)status.st_size / best / 1e6,
-                     best, triangles);
+        (void)printf("%-28s gray            %8.1f MB/s  %6.3f s  %u triangles\n", paths[i],
+                     (double)status.st_size / best / 1e6, best, triangles);
     }
     return 0;
 }

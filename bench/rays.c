@@ -5,10 +5,10 @@
  *
  *   rays [--models FOLDER] [--seed N] [--reps N] [--size N] [--json] [--isa NAME] [SCENE ...]
  *
- * SCENE is a part of a scene's name; without one all are run. Meshes that are not in FOLDER are skipped, and said to be.
- * A disagreement is a ray where one kernel hits and the other does not, or the t differ by more than 1e-4 of their size;
- * both test in different precision, so rays past edges may differ: --explain lists the first few with the distance to the
- * nearest edge of the triangle in barycentric units. */
+ * SCENE is a part of a scene's name; without one all are run. Meshes that are not in FOLDER are skipped, and said to
+ * be. A disagreement is a ray where one kernel hits and the other does not, or the t differ by more than 1e-4 of their
+ * size; both test in different precision, so rays past edges may differ: --explain lists the first few with the
+ * distance to the nearest edge of the triangle in barycentric units. */
 #include "accel/isa.h"
 #include "bench/rays_scenes.h"
 #include "geom/mesh.h"
@@ -116,8 +116,8 @@ static void gray_trace(const struct mesh *mesh, const struct bench_ray *rays, st
     for (uint64_t i = 0; i < count; i++) {
         struct ray ray = gray_ray(&rays[i]);
         struct crossing crossing = {0};
-        bool found = any ? mesh_any(mesh, &ray, ACCEL_GRID, scratch)
-                         : mesh_nearest(mesh, &ray, ACCEL_GRID, scratch, &crossing);
+        bool found =
+            any ? mesh_any(mesh, &ray, ACCEL_GRID, scratch) : mesh_nearest(mesh, &ray, ACCEL_GRID, scratch, &crossing);
         hits[i] = (struct bench_hit){(float)crossing.t, found ? crossing.part : UINT32_MAX, (float)crossing.u,
                                      (float)crossing.v};
     }
@@ -277,8 +277,8 @@ static void secondary_rays(const struct bench_scene *scene, const struct mesh *m
         struct ray ray = gray_ray(&camera[i]);
         const uint32_t *c = scene->corners[hits[i].triangle];
         struct vec3 a = load(scene->vertices[c[0]]);
-        struct vec3 normal = vec3_normalize(vec3_cross(vec3_sub(load(scene->vertices[c[1]]), a),
-                                                       vec3_sub(load(scene->vertices[c[2]]), a)));
+        struct vec3 normal = vec3_normalize(
+            vec3_cross(vec3_sub(load(scene->vertices[c[1]]), a), vec3_sub(load(scene->vertices[c[2]]), a)));
         if (vec3_dot(normal, ray.direction) > 0)
             normal = vec3_negate(normal);
         struct vec3 point = vec3_add_scaled(ray_at(&ray, (double)hits[i].t), normal, lift);
@@ -342,7 +342,8 @@ static void measure(const struct bench_scene *scene, const struct options *optio
             embree_trace(&embree, rays[kind], hits[1], count, kind == 1);
             seconds[1][rep] = cpu_seconds() - start;
             for (uint64_t i = 0; rep == 0 && i < count; i++)
-                if (!agree(&hits[0][i], &hits[1][i], kind == 1) && result->disagreements[kind]++ < 5 && options->explain)
+                if (!agree(&hits[0][i], &hits[1][i], kind == 1) && result->disagreements[kind]++ < 5 &&
+                    options->explain)
                     explain(scene, kind_names[kind], &hits[0][i], &hits[1][i]);
             start = cpu_seconds();
             if (kind == 0)
@@ -373,8 +374,8 @@ static void measure(const struct bench_scene *scene, const struct options *optio
 }
 
 static void print_row(const struct result *r) {
-    printf("%-18s %8u | %7.1f %5.2f | %6.1f %5.2f |", r->name, r->triangles, 1e3 * r->build[0], r->build[0] / r->build[1],
-           r->memory[0] / r->triangles, r->memory[0] / r->memory[1]);
+    printf("%-18s %8u | %7.1f %5.2f | %6.1f %5.2f |", r->name, r->triangles, 1e3 * r->build[0],
+           r->build[0] / r->build[1], r->memory[0] / r->triangles, r->memory[0] / r->memory[1]);
     for (int k = 0; k < KINDS; k++)
         printf(" %6.2f", r->speed[0][k]);
     printf(" | %5.2f %5.2f %5.2f | %5.2f |", r->ratio[0], r->ratio[1], r->ratio[2], r->speed[0][0] / r->packet_speed);
@@ -405,8 +406,12 @@ static void print_summary(const struct result *results, int count) {
         worst[k] = k < KINDS + 1 ? INFINITY : 0;
     for (int i = 0; i < count; i++) {
         const struct result *r = &results[i];
-        double value[KINDS + 3] = {r->ratio[0], r->ratio[1], r->ratio[2], r->speed[0][0] / r->packet_speed,
-                                   r->build[0] / r->build[1], r->memory[0] / r->memory[1]};
+        double value[KINDS + 3] = {r->ratio[0],
+                                   r->ratio[1],
+                                   r->ratio[2],
+                                   r->speed[0][0] / r->packet_speed,
+                                   r->build[0] / r->build[1],
+                                   r->memory[0] / r->memory[1]};
         for (int k = 0; k < KINDS + 3; k++) {
             log_sum[k] += log(value[k]);
             worst[k] = k < KINDS + 1 ? fmin(worst[k], value[k]) : fmax(worst[k], value[k]);

@@ -132,7 +132,7 @@ static void sierpinski(struct bench_scene *s, const double p[4][3], int depth) {
         double q[4][3];
         for (int j = 0; j < 4; j++)
             middle(p[i], p[j], q[j]);
-        sierpinski(s, (const double (*)[3])q, depth - 1);
+        sierpinski(s, (const double(*)[3])q, depth - 1);
     }
 }
 
@@ -161,8 +161,8 @@ static double value_noise(double x, double y, double z) {
     fy *= fy * (3 - 2 * fy);
     fz *= fz * (3 - 2 * fz);
     for (int i = 0; i < 8; i++)
-        sum += lattice(ix + (i & 1), iy + (i >> 1 & 1), iz + (i >> 2)) * (i & 1 ? fx : 1 - fx) *
-               (i & 2 ? fy : 1 - fy) * (i & 4 ? fz : 1 - fz);
+        sum += lattice(ix + (i & 1), iy + (i >> 1 & 1), iz + (i >> 2)) * (i & 1 ? fx : 1 - fx) * (i & 2 ? fy : 1 - fy) *
+               (i & 4 ? fz : 1 - fz);
     return sum;
 }
 
@@ -278,8 +278,8 @@ void bench_stadium(struct bench_scene *s, const struct bench_scene *mesh) {
             ring_point(61 + t, 0.8 * t + 0.8, i, SECTORS, q[3]);
             memcpy(q[0], p[3], sizeof q[0]);
             memcpy(q[1], p[2], sizeof q[1]);
-            add_quad(s, (const double (*)[3])p);
-            add_quad(s, (const double (*)[3])q);
+            add_quad(s, (const double(*)[3])p);
+            add_quad(s, (const double(*)[3])q);
         }
     set_view(s, (const float[10]){1.1f, 1, 1.9f, 0, 0.3f, 0, 20, 60, 30, 60});
 }
@@ -294,7 +294,7 @@ void bench_room(struct bench_scene *s, const struct bench_scene *const *meshes, 
             p[j][1] = corner & 2 ? 6 : 0;
             p[j][2] = corner & 4 ? 6 : -6;
         }
-        add_quad(s, (const double (*)[3])p);
+        add_quad(s, (const double(*)[3])p);
     }
     for (int i = 0; i < count; i++)
         place(s, meshes[i], -4 + 8.0 * (i / 2) / fmax(1, (count + 1) / 2 - 1), 0, i % 2 ? -2 : 1.2, i % 2 ? 3.4 : 2.2);
@@ -358,7 +358,8 @@ void bench_world(struct bench_scene *s, uint64_t seed) {
                 uint32_t v = 0;
                 for (int j = 0; j < 3; j++)
                     v = add_vertex(s, p[0] + each * roll(&dice, -0.3, 0.3), p[1] + each * roll(&dice, -0.3, 0.3),
-                                   p[2] + each * roll(&dice, -0.3, 0.3)) - (uint32_t)j;
+                                   p[2] + each * roll(&dice, -0.3, 0.3)) -
+                        (uint32_t)j;
                 add_triangle(s, v, v + 1, v + 2);
             } else { /* boxes */
                 static const int sides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
@@ -371,12 +372,12 @@ void bench_world(struct bench_scene *s, uint64_t seed) {
                         q[j][1] = centre[1] + (sides[f][j] & 2 ? e[1] : 0);
                         q[j][2] = p[2] + (sides[f][j] & 4 ? e[2] : 0);
                     }
-                    add_quad(s, (const double (*)[3])q);
+                    add_quad(s, (const double(*)[3])q);
                 }
             }
         }
     }
-    float view[10] = {(float)(0.9 * size), (float)(0.35 * size), (float)(0.9 * size), 0, 0, 0,
-                      (float)(-0.3 * size), (float)(1.5 * size), (float)(0.5 * size), 45};
+    float view[10] = {(float)(0.9 * size),  (float)(0.35 * size), (float)(0.9 * size), 0, 0, 0,
+                      (float)(-0.3 * size), (float)(1.5 * size),  (float)(0.5 * size), 45};
     set_view(s, view);
 }

@@ -70,7 +70,8 @@ struct test_result {
     char *out, *err;
 };
 struct test_result test_gray(const char *folder, const char *arguments);
-/* The same with an environment addition "NAME=value" (or NULL) and a scene text written to scene.lua first (or NULL). */
+/* The same with an environment addition "NAME=value" (or NULL) and a scene text written to scene.lua first (or NULL).
+ */
 struct test_result test_gray_scene(const char *scene_text, const char *arguments, const char *environment);
 
 /* A picture read back through libpng: 8-bit RGB. */

@@ -1,7 +1,7 @@
-/* Building and walking the hierarchy over boxes. Rounding: with t = (plane - origin) * inverse, each t is wrong by a few
- * units in its last place, so the far ends are moved outwards by 2^-50 of themselves before they are compared (Ize, "Robust
- * BVH Ray Traversal", JCGT 2013). A direction component of zero makes its slab's t infinite on the right side, or NaN when
- * the ray lies in the very plane, which every comparison here ignores. */
+/* Building and walking the hierarchy over boxes. Rounding: with t = (plane - origin) * inverse, each t is wrong by a
+ * few units in its last place, so the far ends are moved outwards by 2^-50 of themselves before they are compared (Ize,
+ * "Robust BVH Ray Traversal", JCGT 2013). A direction component of zero makes its slab's t infinite on the right side,
+ * or NaN when the ray lies in the very plane, which every comparison here ignores. */
 #include "accel/box_tree.h"
 
 #include "base/mem.h"
@@ -277,7 +277,8 @@ static bool join_parts(struct box_tree *tree, const struct part *top, const stru
 }
 
 static bool build_forest(struct builder *b, struct box_tree *tree, uint32_t count, struct error *error) {
-    /* The top may visit every place once, and so may the parts: both use the same arrays at different places or times. */
+    /* The top may visit every place once, and so may the parts: both use the same arrays at different places or times.
+     */
     struct box_tree_node *top_nodes = mem_alloc_aligned(64, ((size_t)count + 1) * sizeof *top_nodes);
     struct box_tree_node *nodes = mem_alloc_aligned(64, ((size_t)count + 1) * sizeof *nodes);
     struct task *tasks = mem_alloc_zero((size_t)count + 1, sizeof *tasks);

@@ -1,8 +1,8 @@
-/* A four-wide hierarchy over boxes in double precision: every child of a node is an inner node or one item, so an item's
- * own box is tested on the way to it and nowhere else. Built by binned surface-area splits (Wald, "On fast Construction of
- * SAH-based Bounding Volume Hierarchies", RT 2007) and collapsed to four children (Dammertz, Hanika, Keller, "Shallow
- * Bounding Volume Hierarchies", EGSR 2008). Knows boxes and indices only. Deterministic; scaling all boxes by a power of
- * two gives the same tree. */
+/* A four-wide hierarchy over boxes in double precision: every child of a node is an inner node or one item, so an
+ * item's own box is tested on the way to it and nowhere else. Built by binned surface-area splits (Wald, "On fast
+ * Construction of SAH-based Bounding Volume Hierarchies", RT 2007) and collapsed to four children (Dammertz, Hanika,
+ * Keller, "Shallow Bounding Volume Hierarchies", EGSR 2008). Knows boxes and indices only. Deterministic; scaling all
+ * boxes by a power of two gives the same tree. */
 #ifndef GRAY_ACCEL_BOX_TREE_H
 #define GRAY_ACCEL_BOX_TREE_H
 
@@ -32,7 +32,8 @@ struct box_tree {
     struct box bounds;
 };
 
-/* boxes[i] belongs to item i < 2^31; empty boxes are left out, infinite ones are fine. False: no memory or cancelled. */
+/* boxes[i] belongs to item i < 2^31; empty boxes are left out, infinite ones are fine. False: no memory or cancelled.
+ */
 bool box_tree_build(struct box_tree *tree, const struct box *boxes, uint32_t count, struct pool *pool,
                     struct error *error);
 void box_tree_destroy(struct box_tree *tree);

@@ -1,6 +1,6 @@
-/* A uniform voxel grid over boxes, walked with the steps of Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray
- * Tracing", Eurographics 1987. Invariant: every item is listed in every voxel its box touches. Knows boxes and indices
- * only. Infinite boxes are kept in a list of their own that every ray looks at first. */
+/* A uniform voxel grid over boxes, walked with the steps of Amanatides and Woo, "A Fast Voxel Traversal Algorithm for
+ * Ray Tracing", Eurographics 1987. Invariant: every item is listed in every voxel its box touches. Knows boxes and
+ * indices only. Infinite boxes are kept in a list of their own that every ray looks at first. */
 #ifndef GRAY_ACCEL_GRID_H
 #define GRAY_ACCEL_GRID_H
 
@@ -13,12 +13,12 @@
 #include <stdint.h>
 
 struct grid {
-    struct box bounds;         /* of the finite items, padded */
-    uint32_t cells[3];         /* 0 when there is no finite item */
+    struct box bounds; /* of the finite items, padded */
+    uint32_t cells[3]; /* 0 when there is no finite item */
     struct vec3 cell_size, inverse_cell_size;
-    uint32_t *cell_start;      /* cells product + 1 */
-    uint32_t *cell_items;      /* item indices, ascending inside a voxel */
-    uint32_t *unbounded;       /* items with an infinite box, ascending */
+    uint32_t *cell_start; /* cells product + 1 */
+    uint32_t *cell_items; /* item indices, ascending inside a voxel */
+    uint32_t *unbounded;  /* items with an infinite box, ascending */
     uint32_t unbounded_count;
     uint32_t item_count;
 };

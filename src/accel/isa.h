@@ -6,8 +6,8 @@
 
 enum accel_isa { ACCEL_ISA_BASE, ACCEL_ISA_AVX2, ACCEL_ISA_AVX512 };
 
-/* "auto", "base", "avx2" or "avx512"; false when the name is unknown or the processor lacks it (nothing changes then). Call before
- * the first search and from one thread. */
+/* "auto", "base", "avx2" or "avx512"; false when the name is unknown or the processor lacks it (nothing changes then).
+ * Call before the first search and from one thread. */
 bool accel_select_isa(const char *name);
 const char *accel_isa_name(void);
 enum accel_isa accel_isa(void);

@@ -1,5 +1,5 @@
-/* Shafts: what can stand between a point and a parallelogram. Only ever conservative: an item is left out when its box is
- * certainly outside of one plane, with slack for the rounding of plane and box. */
+/* Shafts: what can stand between a point and a parallelogram. Only ever conservative: an item is left out when its box
+ * is certainly outside of one plane, with slack for the rounding of plane and box. */
 #include "accel/box_tree.h"
 
 static void add_plane(struct shaft *shaft, struct vec3 normal, struct vec3 on_plane, struct vec3 inside, double size) {

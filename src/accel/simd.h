@@ -1,7 +1,7 @@
-/* Four and eight floats at a time, under one set of names for three targets: AVX (files compiled with -mavx2), SSE2 (every
- * x86-64) and plain loops (any processor). Only what the kernels use. Results of single operations are the same on all
- * of them except for simd8_multiply_sub and simd8_multiply_add, which may round once or twice: nothing exact may depend
- * on them. */
+/* Four and eight floats at a time, under one set of names for three targets: AVX (files compiled with -mavx2), SSE2
+ * (every x86-64) and plain loops (any processor). Only what the kernels use. Results of single operations are the same
+ * on all of them except for simd8_multiply_sub and simd8_multiply_add, which may round once or twice: nothing exact may
+ * depend on them. */
 #ifndef GRAY_ACCEL_SIMD_H
 #define GRAY_ACCEL_SIMD_H
 
@@ -163,7 +163,7 @@ static inline simd4 simd4_add_where_reached(simd4 a, simd4 limit, simd4 b, unsig
 typedef __m256 simd8;
 
 /* One lane of four in all eight. */
-#define simd8_lane(a, i) simd8_all_of(_mm_shuffle_ps(a, a, (i) * 0x55))
+#define simd8_lane(a, i) simd8_all_of(_mm_shuffle_ps(a, a, (i)*0x55))
 static inline simd8 simd8_all_of(simd4 a) {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(a), a, 1);
 }
@@ -216,7 +216,7 @@ typedef struct {
     __m128 low, high;
 } simd8;
 
-#define simd8_lane(a, i) simd8_all_of(_mm_shuffle_ps(a, a, (i) * 0x55))
+#define simd8_lane(a, i) simd8_all_of(_mm_shuffle_ps(a, a, (i)*0x55))
 static inline simd8 simd8_all_of(simd4 a) {
     return (simd8){a, a};
 }

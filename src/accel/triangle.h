@@ -5,8 +5,8 @@
  * axis by a shear, which takes each vertex to a point of the plane by itself, the same point for every triangle round
  * it. What is left is whether the origin of that plane lies inside the projected triangle, by the signs of three edge
  * functions x1 y2 - y1 x2. Two things make the answer exact for the (rounded) plane points:
- *   - rounding is monotonic, so a difference of products has the right sign or is zero; where it cancels, the difference
- *     is worked out with integers;
+ *   - rounding is monotonic, so a difference of products has the right sign or is zero; where it cancels, the
+ * difference is worked out with integers;
  *   - a true zero (the ray meets an edge or a vertex) is decided as if the ray had been moved by (e, e^2) for an
  *     infinitely small e (Edelsbrunner and Muecke, "Simulation of Simplicity", 1990), the same for all triangles.
  * So a line crosses a closed surface as often inwards as outwards, through edges and vertices too, and never slips

@@ -3,9 +3,9 @@
  * Packets", RT 2008). The cost of a leaf counts blocks of eight triangles, not triangles.
  *
  * Parallel and deterministic: ranges above a size that only the data decides are split one after the other into top
- * nodes, until what is left can be shared out; each job then builds its own nodes and list of leaves, and since the jobs'
- * numbers are known only then, references are moved to their final place while the parts are put together. Blocks are
- * made at the end, when their number is known: no memory beyond the result and the references. */
+ * nodes, until what is left can be shared out; each job then builds its own nodes and list of leaves, and since the
+ * jobs' numbers are known only then, references are moved to their final place while the parts are put together. Blocks
+ * are made at the end, when their number is known: no memory beyond the result and the references. */
 #include "accel/triangle_build.h"
 
 #include "accel/simd.h"

@@ -5,9 +5,9 @@
  * several. With eight children to a node and lambda voxels to a triangle the levels spared are log8 of the number of
  * occupied voxels, at best, that is, if all are filled alike: 1.3 for 16 of them, 2 for 64; but a ray through a body of
  * that many meets 2 to 4 occupied ones before it is done. So the account is about even for compact bodies, where 0.001
- * voxels a triangle were measured 0 to 4 % faster, and is lost where much is open or filled unevenly (docs/performance.md
- * has the numbers: terrain 4 % slower, a pyramid of Sierpinski's 10 %, rooms and worlds 20 to 60 %). Hence one voxel,
- * unless the caller asks for more; then the frame is only the box every ray is cut to. */
+ * voxels a triangle were measured 0 to 4 % faster, and is lost where much is open or filled unevenly
+ * (docs/performance.md has the numbers: terrain 4 % slower, a pyramid of Sierpinski's 10 %, rooms and worlds 20 to 60
+ * %). Hence one voxel, unless the caller asks for more; then the frame is only the box every ray is cut to. */
 #include "accel/triangle_index.h"
 
 #include "accel/isa.h"
@@ -72,7 +72,8 @@ static void set_cells(struct triangle_index *index, double wanted) {
     index->voxel_count = (size_t)index->stride[1] * (index->cells[2] + 2);
 }
 
-static struct reference whole_reference(const struct triangle_index *index, const struct triangle_set *set, uint32_t i) {
+static struct reference whole_reference(const struct triangle_index *index, const struct triangle_set *set,
+                                        uint32_t i) {
     struct reference r = {.triangle = i};
     const double *centre = index->centre;
     const double *a = set->vertices[set->corners[i][0]], *b = set->vertices[set->corners[i][1]],
@@ -126,7 +127,8 @@ static bool is_time_to_stop(const struct pool *pool, uint32_t i) {
     return i % 4096 == 0 && pool && pool_cancelled(pool);
 }
 
-/* Count, prefix sum, fill: references of every voxel in ascending order of triangles, those of the big ones at the end. */
+/* Count, prefix sum, fill: references of every voxel in ascending order of triangles, those of the big ones at the end.
+ */
 static bool fill_voxels(struct triangle_index *index, const struct triangle_set *set, struct pool *pool,
                         struct error *error) {
     struct hierarchy *lists = mem_alloc_zero(index->voxel_count + 1, sizeof *lists);
@@ -178,8 +180,9 @@ static bool fill_voxels(struct triangle_index *index, const struct triangle_set 
         mem_free(references);
         return error_set(error, ERROR_CANCELLED, "cancelled while indexing a mesh");
     }
-    bool complete = enough ? hierarchies_build(index, set, references, lists, (uint32_t)index->voxel_count + 1, pool, error)
-                           : error_no_memory(error, "the index of a mesh");
+    bool complete =
+        enough ? hierarchies_build(index, set, references, lists, (uint32_t)index->voxel_count + 1, pool, error)
+               : error_no_memory(error, "the index of a mesh");
     if (complete) {
         for (size_t v = 0; v < index->voxel_count; v++)
             index->voxels[v] = REF_OUTSIDE;

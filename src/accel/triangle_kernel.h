@@ -1,9 +1,9 @@
 /* The search, compiled once per instruction set: a file defines KERNEL(name) and includes this one.
  *
  * Single precision proposes, doubles decide. A ray is taken into local space in double precision, moved to where it
- * enters the frame (so its origin is at most 1 + VOXEL_MARGIN in size) and rounded; its direction's largest component is
- * 1/2 to 1. Hits are then looked for with every comparison slack by more than all rounding can do, and what is found is
- * tried again with the test of triangle.h on the original ray and vertices. So the answer is the same bits as trying
+ * enters the frame (so its origin is at most 1 + VOXEL_MARGIN in size) and rounded; its direction's largest component
+ * is 1/2 to 1. Hits are then looked for with every comparison slack by more than all rounding can do, and what is found
+ * is tried again with the test of triangle.h on the original ray and vertices. So the answer is the same bits as trying
  * every triangle, whatever the instruction set.
  *
  * How far rounding reaches, in units of e = 2^-24 (unit roundoff), with |o| <= 1, |d| <= 1, s = o - corner, S = |s| and
@@ -38,16 +38,16 @@ struct search {
     const struct ray *ray;
     enum triangle_search kind;
     simd8 ox, oy, oz, dx, dy, dz;
-    simd8 rx, ry, rz;                /* 1 / direction */
-    simd8 mx, my, mz;                /* origin / direction: a plane is met at plane * r - m */
-    simd8 wx, wy, wz;                /* for rays from far away: how much the boxes' growth falls short, in local t */
-    uint32_t row_x, row_y, row_z;    /* where the near row of a node starts, in floats; the far one is at row ^ WIDTH */
-    float error;                     /* 15 e + 8 D */
-    float limit;                     /* local t beyond which nothing matters */
-    float certain;                   /* local t below which the ray's own interval surely has not ended */
+    simd8 rx, ry, rz;             /* 1 / direction */
+    simd8 mx, my, mz;             /* origin / direction: a plane is met at plane * r - m */
+    simd8 wx, wy, wz;             /* for rays from far away: how much the boxes' growth falls short, in local t */
+    uint32_t row_x, row_y, row_z; /* where the near row of a node starts, in floats; the far one is at row ^ WIDTH */
+    float error;                  /* 15 e + 8 D */
+    float limit;                  /* local t beyond which nothing matters */
+    float certain;                /* local t below which the ray's own interval surely has not ended */
     bool found, sheared_ready, far_away;
-    double t_to_local, t_offset;     /* local t = t * t_to_local - t_offset */
-    double best;                     /* as decided */
+    double t_to_local, t_offset; /* local t = t * t_to_local - t_offset */
+    double best;                 /* as decided */
     struct triangle_hit *hit;
     triangle_visit *visit;
     void *context;
@@ -255,8 +255,8 @@ static inline __attribute__((always_inline)) bool walk(struct search *s, simd4 o
         uint32_t only = index->voxels[13];
         return only != REF_EMPTY && descend(s, only, kind, far_away);
     }
-    simd4 cell = simd4_load(index->cell), place = simd4_mul(simd4_add(origin, simd4_load(index->half_single)),
-                                                            simd4_load(index->inverse_cell));
+    simd4 cell = simd4_load(index->cell),
+          place = simd4_mul(simd4_add(origin, simd4_load(index->half_single)), simd4_load(index->inverse_cell));
     int32_t at[4];
     simd4 start = simd4_max(simd4_all(0), simd4_min(place, simd4_load(index->last_cell)));
     simd4_store_int(at, start);
@@ -310,8 +310,8 @@ static inline bool search_begin(struct search *s, simd4 *origin, simd4 *reciproc
     double enter = wide4_largest(wide4_with_last(wide4_min(a, b), ray->t_min));
     double leave = wide4_smallest(wide4_with_last(wide4_max(a, b), ray->t_max));
     double largest = wide4_largest(d_size), far = wide4_largest(o_size);
-    *usable = wide4_all_below(o_size, wide4_all(0x1p30)) && wide4_all_below(d_size, wide4_all(0x1p900)) &&
-              largest > 0x1p-900;
+    *usable =
+        wide4_all_below(o_size, wide4_all(0x1p30)) && wide4_all_below(d_size, wide4_all(0x1p900)) && largest > 0x1p-900;
     if (!*usable || !(enter <= leave))
         return false;
     /* The local direction's largest component becomes at least 1/2 and less than 1, by a power of two. */

@@ -1,14 +1,15 @@
 /* How the triangles of a mesh lie in memory once they are indexed. Private to src/accel/triangle_*.
  *
- * Local space: (p - centre) * scale, scale a power of two, so that the mesh fills [-1, 1] along its longest axis to half
- * at least. Scaling a mesh by a power of two changes no bit of its index. Single precision appears in local space only.
+ * Local space: (p - centre) * scale, scale a power of two, so that the mesh fills [-1, 1] along its longest axis to
+ * half at least. Scaling a mesh by a power of two changes no bit of its index. Single precision appears in local space
+ * only.
  *
- * Frame: a uniform grid of voxels over the local box, with a border of outside voxels round it. A voxel holds a reference
- * to the hierarchy of the triangles that touch it. Triangles that touch very many voxels are in one hierarchy of their
- * own, which every ray visits first.
+ * Frame: a uniform grid of voxels over the local box, with a border of outside voxels round it. A voxel holds a
+ * reference to the hierarchy of the triangles that touch it. Triangles that touch very many voxels are in one hierarchy
+ * of their own, which every ray visits first.
  *
- * Invariant: a triangle is listed in every voxel that its box, grown by VOXEL_MARGIN, touches (or among the big ones), and
- * lies in that voxel's hierarchy with its box cut to the voxel grown by VOXEL_MARGIN. */
+ * Invariant: a triangle is listed in every voxel that its box, grown by VOXEL_MARGIN, touches (or among the big ones),
+ * and lies in that voxel's hierarchy with its box cut to the voxel grown by VOXEL_MARGIN. */
 #ifndef GRAY_ACCEL_TRIANGLE_LAYOUT_H
 #define GRAY_ACCEL_TRIANGLE_LAYOUT_H
 
@@ -20,7 +21,8 @@ enum { WIDTH = 8 };
 #define VOXEL_MARGIN 0x1p-13f
 
 /* Boxes in nodes are larger by this on every side, local units. It covers what rounding to single precision does to the
- * ray (2^-24 of 1 for the origin, of 2 for the way along it), to the box (2^-25) and in plane * r - m (2^-22 at most). */
+ * ray (2^-24 of 1 for the origin, of 2 for the way along it), to the box (2^-25) and in plane * r - m (2^-22 at most).
+ */
 #define BOX_GROWTH 0x1p-20f
 
 /* A reference: REF_EMPTY, REF_OUTSIDE, REF_LEAF | number of a block, or number of a node (from 1). */
@@ -43,13 +45,14 @@ struct triangle_block {
 };
 
 struct triangle_index {
-    double centre[4];  /* the last is not used */
-    double half[4];    /* local half extents, margin included; the last is not used */
+    double centre[4]; /* the last is not used */
+    double half[4];   /* local half extents, margin included; the last is not used */
     double scale;
     uint32_t cells[3]; /* without the border */
     /* Each with a fourth number, 0, so that they load as vectors. */
     float cell[4], inverse_cell[4], half_single[4], last_cell[4]; /* last_cell: cells - 1 */
-    int32_t offset[8][8]; /* where the next voxel is: by the direction's negative axes, then by the axes stepped along */
+    int32_t offset[8]
+                  [8];  /* where the next voxel is: by the direction's negative axes, then by the axes stepped along */
     uint32_t stride[2]; /* of y and z in voxels[] */
     uint32_t *voxels;   /* (cells + 2) of each axis */
     uint32_t big;       /* reference to the triangles that touch very many voxels */

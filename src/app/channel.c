@@ -83,8 +83,8 @@ static bool frame_is_sound(const struct frame *frame) {
                request->width >= 1 && request->height >= 1 && request->full_width <= 1u << 20 &&
                request->full_height <= 1u << 20 && request->width <= request->full_width &&
                request->height <= request->full_height && request->x0 <= request->full_width - request->width &&
-               request->y0 <= request->full_height - request->height &&
-               request->exposure >= -100 && request->exposure <= 100 && request->curve <= TONE_FILMIC;
+               request->y0 <= request->full_height - request->height && request->exposure >= -100 &&
+               request->exposure <= 100 && request->curve <= TONE_FILMIC;
     case FRAME_DONE:
         return frame->size == sizeof frame->body.report;
     case FRAME_ABANDON:

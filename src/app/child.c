@@ -133,9 +133,13 @@ static bool make_picture(struct child *child, const struct render_request *reque
 
 static bool begin_picture(struct child *child, const struct render_request *request, struct render_job *job,
                           struct film *film, struct error *error) {
-    struct picture_request asked = {
-        .full_width = job->width, .full_height = job->height, .exposure = job->settings.tone.exposure,
-        .curve = (uint32_t)job->settings.tone.curve, .srgb = job->settings.tone.srgb, .deep = job->settings.deep, .check = child->options->check};
+    struct picture_request asked = {.full_width = job->width,
+                                    .full_height = job->height,
+                                    .exposure = job->settings.tone.exposure,
+                                    .curve = (uint32_t)job->settings.tone.curve,
+                                    .srgb = job->settings.tone.srgb,
+                                    .deep = job->settings.deep,
+                                    .check = child->options->check};
     char warning[256] = "";
     size_t length = strlen(request->file);
     if (length >= sizeof asked.file)

@@ -3,7 +3,8 @@
  * first arguments of each system call, read from the table below: what is not listed does not exist (ENOSYS), so a C
  * library that tries something newer falls back; what only an attack would call ends the process.
  *
- * The sanitizers need ptrace, personality and more of /proc than this leaves, so their builds run without the filter. */
+ * The sanitizers need ptrace, personality and more of /proc than this leaves, so their builds run without the filter.
+ */
 #define _GNU_SOURCE
 #include "app/confine.h"
 
@@ -101,7 +102,8 @@ static bool add_rules(int ruleset, const struct options *options, const struct r
     ok = ok && add_path(ruleset, "/sys/devices/system/cpu", read_rights);
     if (SANITIZED) {
         ok = ok && add_path(ruleset, "/proc", read_rights) && add_path(ruleset, "/usr", read_rights) &&
-             add_path(ruleset, "/lib", read_rights) && add_path(ruleset, "/proc/self/exe", LANDLOCK_ACCESS_FS_READ_FILE);
+             add_path(ruleset, "/lib", read_rights) &&
+             add_path(ruleset, "/proc/self/exe", LANDLOCK_ACCESS_FS_READ_FILE);
     }
     return ok;
 }
@@ -131,12 +133,12 @@ static long confine_files(const struct options *options, const struct reach *rea
 /* What a system call is allowed for. */
 enum rule_kind {
     RULE_ALLOW,
-    RULE_KILL,      /* only an attack calls it */
-    RULE_CLEAR,     /* allowed when the bits `bits` of argument `argument` are all 0 */
-    RULE_SET,       /* allowed when the bits are all 1 */
-    RULE_EQUAL,     /* allowed when the low half of the argument is `bits` */
-    RULE_WRITING,   /* allowed when some folder may be written */
-    RULE_BENEATH,   /* allowed when Landlock is active: its arguments lie in memory */
+    RULE_KILL,    /* only an attack calls it */
+    RULE_CLEAR,   /* allowed when the bits `bits` of argument `argument` are all 0 */
+    RULE_SET,     /* allowed when the bits are all 1 */
+    RULE_EQUAL,   /* allowed when the low half of the argument is `bits` */
+    RULE_WRITING, /* allowed when some folder may be written */
+    RULE_BENEATH, /* allowed when Landlock is active: its arguments lie in memory */
 };
 
 struct rule {

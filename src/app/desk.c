@@ -122,7 +122,8 @@ static bool ends_in(const char *name, const char *extension) {
     return length >= wanted && strcasecmp(name + length - wanted, extension) == 0;
 }
 
-/* The extension says the format; whatever is not .pfm or .hdr is PNG. Tone is for PNG alone: the other two hold light. */
+/* The extension says the format; whatever is not .pfm or .hdr is PNG. Tone is for PNG alone: the other two hold light.
+ */
 static bool write_view(const struct picture *picture, const char *name, enum film_view view, struct error *error) {
     const struct picture_request *request = &picture->request;
     struct tone tone = {request->exposure, (enum tone_curve)request->curve, request->srgb != 0};

@@ -28,11 +28,11 @@ struct desk {
     const struct options *options;
     struct control *control; /* not owned */
     struct progress progress;
-    struct reach places;    /* where scripts may have pictures written: the working directory and --allow-write */
+    struct reach places;       /* where scripts may have pictures written: the working directory and --allow-write */
     struct error places_error; /* why there may be fewer */
-    unsigned pictures;      /* begun so far, those under --check too */
-    struct picture current; /* being made */
-    struct picture held;    /* finished under -o without %d: written when no second picture came */
+    unsigned pictures;         /* begun so far, those under --check too */
+    struct picture current;    /* being made */
+    struct picture held;       /* finished under -o without %d: written when no second picture came */
     bool several_under_one_name;
 };
 

@@ -25,7 +25,16 @@ enum option_kind {
     OPTION_STATS,   /* --stats, --stats=text, --stats=json */
 };
 
-enum option_group { GROUP_PICTURE, GROUP_LOOK, GROUP_FILES, GROUP_OLD, GROUP_TRUST, GROUP_RUN, GROUP_TALK, GROUP_COUNT };
+enum option_group {
+    GROUP_PICTURE,
+    GROUP_LOOK,
+    GROUP_FILES,
+    GROUP_OLD,
+    GROUP_TRUST,
+    GROUP_RUN,
+    GROUP_TALK,
+    GROUP_COUNT
+};
 
 struct option {
     enum option_group group;
@@ -88,11 +97,11 @@ static const struct option table[] = {
      "the curve that brings bright light into the range of a PNG file"},
     {GROUP_LOOK, "--srgb", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.tone.srgb), NULL,
      "values of a PNG file follow the sRGB transfer function instead of light itself"},
-    {GROUP_LOOK, "--deep", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.deep), NULL,
-     "16 bits a channel in PNG files"},
+    {GROUP_LOOK, "--deep", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.deep), NULL, "16 bits a channel in PNG files"},
 
     {GROUP_FILES, "-o", OPTION_TEXT, "FILE", NO_RANGE, FIELD(output), "the script's",
-     "name of the picture (.png, or .pfm and .hdr for light as it is), '-' for standard output; with several pictures FILE needs %d (or %03d), which counts from "
+     "name of the picture (.png, or .pfm and .hdr for light as it is), '-' for standard output; with several pictures "
+     "FILE needs %d (or %03d), which counts from "
      "1"},
     {GROUP_FILES, "-write-aa-targets", OPTION_TEXT, "X", NO_RANGE, FIELD(targets_prefix), NULL,
      "for dir/foo.png also write dir/Xfoo.png: the first pass with the marked pixels in red"},
@@ -155,7 +164,8 @@ enum { TABLE_SIZE = sizeof table / sizeof *table };
 
 /* Values are stored through their size: an enum is an int here. */
 _Static_assert(sizeof(enum specular_kind) == sizeof(int) && sizeof(enum accel_kind) == sizeof(int) &&
-                   sizeof(enum script_order) == sizeof(int) && sizeof(enum tone_curve) == sizeof(int) && sizeof(enum progress_mode) == sizeof(int),
+                   sizeof(enum script_order) == sizeof(int) && sizeof(enum tone_curve) == sizeof(int) &&
+                   sizeof(enum progress_mode) == sizeof(int),
                "choices are stored as int");
 
 /* The next piece of a text parted by '|'; *rest moves behind it. Empty at the end. */

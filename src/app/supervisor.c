@@ -281,7 +281,11 @@ static void talk_to_child(struct supervisor *supervisor) {
         struct pollfd watched[2] = {{.fd = supervisor->channel.descriptor, .events = POLLIN},
                                     {.fd = supervisor->signals, .events = POLLIN}};
         bool timed = supervisor->desk.current.open || supervisor->deadline > 0;
-        if (poll(watched, 2, supervisor->deadline > 0 ? 5 : timed ? 50 : script_patience(supervisor)) < 0 && errno != EINTR)
+        if (poll(watched, 2,
+                 supervisor->deadline > 0 ? 5
+                 : timed                  ? 50
+                                          : script_patience(supervisor)) < 0 &&
+            errno != EINTR)
             break;
         if (script_patience(supervisor) == 0) {
             supervisor->out_of_time = supervisor->deadline == 0;

@@ -19,7 +19,8 @@ struct error {
 };
 
 /* Fill and return false, so that `return error_set(...)` reads as a failure. Over-long text is cut with "...". */
-bool error_set(struct error *error, enum error_kind kind, const char *format, ...) __attribute__((format(printf, 3, 4)));
+bool error_set(struct error *error, enum error_kind kind, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 bool error_no_memory(struct error *error, const char *what); /* "out of memory for WHAT" */
 /* Puts "PREFIX: " before the text that is already there. */
 bool error_prefix(struct error *error, const char *format, ...) __attribute__((format(printf, 2, 3)));

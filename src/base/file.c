@@ -1,6 +1,6 @@
-/* Files. Everything that leaves a name in a folder goes through struct file_output: the temporary file stands beside the
- * target (a rename works only inside one file system), has no name until it is whole, and then one by chance, so that
- * two runs cannot mix. */
+/* Files. Everything that leaves a name in a folder goes through struct file_output: the temporary file stands beside
+ * the target (a rename works only inside one file system), has no name until it is whole, and then one by chance, so
+ * that two runs cannot mix. */
 #define _GNU_SOURCE
 #include "base/file.h"
 

@@ -32,7 +32,8 @@ bool file_null_input(void);
 bool file_canonical(const char *path, char *out, size_t size);
 /* mkdir -p of the folder part of `path`. */
 bool file_make_folders_for(const char *path, struct error *error);
-/* Calls fn for every entry name of a folder in byte order, at most `limit` entries; stops early when fn returns false. */
+/* Calls fn for every entry name of a folder in byte order, at most `limit` entries; stops early when fn returns false.
+ */
 bool file_list(const char *folder, size_t limit, bool (*fn)(void *context, const char *name), void *context);
 
 /* A file being written. Zero value = closed. After file_output_open either commit or abandon must follow. */

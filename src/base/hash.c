@@ -1,4 +1,5 @@
-/* See hash.h: eight bytes at a time, mixed with multiplications; the tail is padded with zeros and the length mixed in. */
+/* See hash.h: eight bytes at a time, mixed with multiplications; the tail is padded with zeros and the length mixed in.
+ */
 #include "base/hash.h"
 
 #include "base/random.h"

@@ -1,5 +1,5 @@
-/* The pool: threads sleep on a condition until a run begins; then everybody, the caller too, claims items from one atomic
- * counter until none is left. The run is over when the last worker that joined it has left. */
+/* The pool: threads sleep on a condition until a run begins; then everybody, the caller too, claims items from one
+ * atomic counter until none is left. The run is over when the last worker that joined it has left. */
 #include "base/pool.h"
 
 #include "base/mem.h"

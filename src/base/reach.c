@@ -41,8 +41,8 @@ static bool add_canonical(struct reach *reach, const char *canonical, enum reach
     if (descriptor < 0) {
         int why = errno;
         mem_free(path);
-        return kind == REACH_IMPLIED || error_set(error, ERROR_SCENE, "%s: cannot be opened: %s", canonical,
-                                                  strerror(why));
+        return kind == REACH_IMPLIED ||
+               error_set(error, ERROR_SCENE, "%s: cannot be opened: %s", canonical, strerror(why));
     }
     reach->folders[reach->count++] = (struct reach_folder){path, length, kind, descriptor};
     return true;
@@ -225,8 +225,7 @@ static int open_checked(const struct reach *reach, const char *path, int flags) 
     return descriptor;
 }
 
-bool reach_map(const struct reach *reach, const char *path, size_t limit, struct file_bytes *out,
-               struct error *error) {
+bool reach_map(const struct reach *reach, const char *path, size_t limit, struct file_bytes *out, struct error *error) {
     if (!reach)
         return file_map(path, limit, out, error);
     *out = (struct file_bytes){0};

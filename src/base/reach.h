@@ -48,8 +48,8 @@ bool reach_map(const struct reach *reach, const char *path, size_t limit, struct
 /* A stream for fopen's modes r, w, a with + and b; NULL with errno: EACCES when it is out of reach. Only regular files;
  * nothing that could block. */
 FILE *reach_stream(const struct reach *reach, const char *path, const char *mode);
-/* Whether a file of this name, which need not exist and whose folders need not either, would lie below a folder that may
- * be written, with no hidden name on the way. */
+/* Whether a file of this name, which need not exist and whose folders need not either, would lie below a folder that
+ * may be written, with no hidden name on the way. */
 bool reach_may_create(const struct reach *reach, const char *path);
 /* remove and rename of files below folders that may be written; false with errno. */
 bool reach_remove(const struct reach *reach, const char *path);

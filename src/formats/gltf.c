@@ -1,11 +1,11 @@
 /* glTF 2.0, as JSON with buffers beside it or inside it, and as GLB. Source: Khronos Group, "glTF 2.0 Specification"
  * (ISO/IEC 12113:2022). The JSON is parsed by jansson. Read: the nodes of the scene with their transforms, their meshes
- * (triangles, strips, fans; position, normal, first texture coordinates, first colour), materials and pictures. Not read:
- * skins, morphs, animations, cameras, lights. An extension that the file calls required and that is not among those we
- * know is an error.
+ * (triangles, strips, fans; position, normal, first texture coordinates, first colour), materials and pictures. Not
+ * read: skins, morphs, animations, cameras, lights. An extension that the file calls required and that is not among
+ * those we know is an error.
  *
- * One accessor may be used by any number of primitives, so a small file can ask for very large meshes: what is made of it
- * is bounded by a multiple of its bytes. */
+ * One accessor may be used by any number of primitives, so a small file can ask for very large meshes: what is made of
+ * it is bounded by a multiple of its bytes. */
 #include "formats/model.h"
 
 #ifndef HAVE_JANSSON
@@ -78,7 +78,8 @@ bool gltf_index(const struct gltf *g, const json_t *object, const char *key, con
     return true;
 }
 
-bool gltf_numbers(const struct gltf *g, const json_t *object, const char *key, double *out, int count, const char *where) {
+bool gltf_numbers(const struct gltf *g, const json_t *object, const char *key, double *out, int count,
+                  const char *where) {
     const json_t *array = json_object_get(object, key);
     if (!array)
         return true;
@@ -223,13 +224,13 @@ static bool add_vertices(struct gltf *g, const struct primitive *p, const struct
         bool given = tables[t].accessor != MODEL_NONE;
         if (!given && !(tables[t].colour && plan->colours))
             continue;
-        bool ok = !given || read_attribute(g, p, tables[t].accessor, corners, tables[t].least, available, &numbers,
-                                           &components);
+        bool ok = !given ||
+                  read_attribute(g, p, tables[t].accessor, corners, tables[t].least, available, &numbers, &components);
         for (uint64_t i = 0; ok && t == 2 && i < corners->vertices; i++) /* v from below */
             numbers[i * (uint64_t)components + 1] = 1 - numbers[i * (uint64_t)components + 1];
-        ok = ok && (tables[t].colour
-                        ? append_colours(g, tables[t].list, numbers, corners->vertices, components)
-                        : append(g, tables[t].list, numbers, corners->vertices, components, tables[t].kept));
+        ok = ok &&
+             (tables[t].colour ? append_colours(g, tables[t].list, numbers, corners->vertices, components)
+                               : append(g, tables[t].list, numbers, corners->vertices, components, tables[t].kept));
         mem_free(numbers);
         if (!ok)
             return false;
@@ -242,8 +243,8 @@ struct bases {
     uint32_t vertex, normal, uv;
 };
 
-static bool add_triangle(struct gltf *g, struct model_mesh *mesh, const struct mesh_plan *plan, const struct bases *bases,
-                         const uint32_t corner[3], uint32_t slot) {
+static bool add_triangle(struct gltf *g, struct model_mesh *mesh, const struct mesh_plan *plan,
+                         const struct bases *bases, const uint32_t corner[3], uint32_t slot) {
     uint32_t *start = list_room(&mesh->starts, 1, sizeof *start);
     uint32_t *index = list_room(&mesh->vertex_index, 3, sizeof *index);
     uint32_t *normal = plan->normals ? list_room(&mesh->normal_index, 3, sizeof *normal) : NULL;
@@ -518,9 +519,10 @@ static bool read_nodes(struct gltf *g) {
 
 static bool check_extensions(const struct gltf *g) {
     static const char *const known[] = {
-        "KHR_materials_ior",      "KHR_materials_transmission",       "KHR_materials_specular", "KHR_materials_volume",
-        "KHR_materials_unlit",    "KHR_materials_emissive_strength",  "KHR_texture_transform",  "KHR_mesh_quantization",
-        "KHR_materials_clearcoat", "KHR_materials_sheen",             "KHR_lights_punctual",    "KHR_materials_iridescence",
+        "KHR_materials_ior",        "KHR_materials_transmission", "KHR_materials_specular",
+        "KHR_materials_volume",     "KHR_materials_unlit",        "KHR_materials_emissive_strength",
+        "KHR_texture_transform",    "KHR_mesh_quantization",      "KHR_materials_clearcoat",
+        "KHR_materials_sheen",      "KHR_lights_punctual",        "KHR_materials_iridescence",
         "KHR_materials_anisotropy", "KHR_materials_dispersion",
     };
     const json_t *required = gltf_array(g, "extensionsRequired");
@@ -575,8 +577,8 @@ static bool check_json(const struct gltf *g, const char *text, size_t size) {
     return true;
 }
 
-/* jansson tells a lack of memory as broken text, and its allocator has no context to say so in: hence this one variable,
- * which lives from the start of a parse to its end. */
+/* jansson tells a lack of memory as broken text, and its allocator has no context to say so in: hence this one
+ * variable, which lives from the start of a parse to its end. */
 static _Thread_local bool json_memory_failed;
 
 static void *json_memory(size_t size) {

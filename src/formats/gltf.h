@@ -56,7 +56,8 @@ bool gltf_whole(const struct gltf *g, const json_t *object, const char *key, uin
 bool gltf_index(const struct gltf *g, const json_t *object, const char *key, const char *of, uint32_t *out,
                 const char *where);
 /* The numbers of an array, all or none of them; what is not there stays as it was. */
-bool gltf_numbers(const struct gltf *g, const json_t *object, const char *key, double *out, int count, const char *where);
+bool gltf_numbers(const struct gltf *g, const json_t *object, const char *key, double *out, int count,
+                  const char *where);
 
 /* gltf_data.c */
 bool gltf_view(struct gltf *g, uint32_t index, const uint8_t **data, size_t *size, size_t *stride);

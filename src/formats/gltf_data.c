@@ -1,6 +1,6 @@
 /* Buffers, views and accessors of glTF: where numbers stand and what they mean. Source: Khronos Group, "glTF 2.0
- * Specification" (ISO/IEC 12113:2022), sections 3.6 and 4.4. Every range is checked against the bytes that are there, once,
- * when an accessor is made; reading then checks nothing but the numbers themselves. */
+ * Specification" (ISO/IEC 12113:2022), sections 3.6 and 4.4. Every range is checked against the bytes that are there,
+ * once, when an accessor is made; reading then checks nothing but the numbers themselves. */
 #ifdef HAVE_JANSSON
 
 #include "formats/gltf.h"
@@ -57,7 +57,10 @@ bool gltf_decode_data(const struct gltf *g, const char *uri, uint8_t **out, size
 }
 
 static int hex(char c) {
-    return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+    return c >= '0' && c <= '9'   ? c - '0'
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                  : -1;
 }
 
 char *gltf_decode_uri(const struct gltf *g, const char *uri) {
@@ -141,8 +144,8 @@ bool gltf_view(struct gltf *g, uint32_t index, const uint8_t **data, size_t *siz
 }
 
 static bool type_of(const struct gltf *g, const json_t *object, enum number_type *out, const char *where) {
-    static const enum number_type types[] = {NUMBER_I8, NUMBER_U8, NUMBER_I16, NUMBER_U16, NUMBER_TYPES, NUMBER_U32,
-                                             NUMBER_F32};
+    static const enum number_type types[] = {NUMBER_I8,    NUMBER_U8,  NUMBER_I16, NUMBER_U16,
+                                             NUMBER_TYPES, NUMBER_U32, NUMBER_F32};
     uint64_t code;
     if (!gltf_whole(g, object, "componentType", 0, &code, where))
         return false;
@@ -174,8 +177,8 @@ static bool part_of_view(struct gltf *g, const json_t *object, uint64_t count, s
     bool fits = count == 0 || (offset <= size && size - offset >= element &&
                                count - 1 <= (size - (size_t)offset - element) / *stride);
     if (!fits)
-        return gltf_fail(g, where, "%llu elements of %zu bytes do not fit into its %zu bytes", (unsigned long long)count,
-                         element, size);
+        return gltf_fail(g, where, "%llu elements of %zu bytes do not fit into its %zu bytes",
+                         (unsigned long long)count, element, size);
     *data += offset;
     return true;
 }
@@ -183,14 +186,13 @@ static bool part_of_view(struct gltf *g, const json_t *object, uint64_t count, s
 static bool sparse_part(struct gltf *g, const json_t *sparse, struct gltf_accessor *out, const char *where) {
     const json_t *indices = json_object_get(sparse, "indices"), *values = json_object_get(sparse, "values");
     size_t stride;
-    if (!gltf_whole(g, sparse, "count", 0, &out->sparse_count, where) ||
-        !type_of(g, indices, &out->sparse_type, where))
+    if (!gltf_whole(g, sparse, "count", 0, &out->sparse_count, where) || !type_of(g, indices, &out->sparse_type, where))
         return false;
     if (out->sparse_type != NUMBER_U8 && out->sparse_type != NUMBER_U16 && out->sparse_type != NUMBER_U32)
         return gltf_fail(g, where, "its sparse indices are not unsigned");
     size_t element = number_size(out->type) * (size_t)out->components;
-    if (!part_of_view(g, indices, out->sparse_count, number_size(out->sparse_type), false, &out->sparse_indices, &stride,
-                      where) ||
+    if (!part_of_view(g, indices, out->sparse_count, number_size(out->sparse_type), false, &out->sparse_indices,
+                      &stride, where) ||
         !part_of_view(g, values, out->sparse_count, element, false, &out->sparse_values, &stride, where))
         return false;
     if (out->sparse_count && (!out->sparse_indices || !out->sparse_values))
@@ -228,15 +230,20 @@ static double value_of(const uint8_t *p, enum number_type type, bool normalized)
     if (!normalized)
         return x;
     switch (type) {
-    case NUMBER_I8: return fmax(x / 127, -1);
-    case NUMBER_U8: return x / 255;
-    case NUMBER_I16: return fmax(x / 32767, -1);
-    case NUMBER_U16: return x / 65535;
+    case NUMBER_I8:
+        return fmax(x / 127, -1);
+    case NUMBER_U8:
+        return x / 255;
+    case NUMBER_I16:
+        return fmax(x / 32767, -1);
+    case NUMBER_U16:
+        return x / 65535;
     case NUMBER_I32:
     case NUMBER_U32:
     case NUMBER_F32:
     case NUMBER_F64:
-    case NUMBER_TYPES: break;
+    case NUMBER_TYPES:
+        break;
     }
     return x;
 }

@@ -1,11 +1,12 @@
 /* Materials of glTF, turned into ours as they are read. Source: glTF 2.0, section 3.9 and appendix B; extensions
  * KHR_materials_ior, _transmission, _specular, KHR_texture_transform.
  *
- * A metallic-roughness surface is not a Phong surface; this is what we take for it. Base colour c, metallic m, roughness r:
- * kd = c (1 - m); ks = F0 (1 - m) + c m, F0 = ((ior - 1) / (ior + 1))^2; the width of the highlight is that of the
- * microfacet distribution at the same roughness, n = 2 / r^4 - 2 (B. Walter et al., "Microfacet Models for Refraction
- * through Rough Surfaces", EGSR 2007, section 5.2), at most 2000; what is smooth mirrors: reflect = (1 - r)^2 for metals,
- * and for others by Fresnel when they let light through. Pictures are used as they are stored, as all ours. */
+ * A metallic-roughness surface is not a Phong surface; this is what we take for it. Base colour c, metallic m,
+ * roughness r: kd = c (1 - m); ks = F0 (1 - m) + c m, F0 = ((ior - 1) / (ior + 1))^2; the width of the highlight is
+ * that of the microfacet distribution at the same roughness, n = 2 / r^4 - 2 (B. Walter et al., "Microfacet Models for
+ * Refraction through Rough Surfaces", EGSR 2007, section 5.2), at most 2000; what is smooth mirrors: reflect = (1 -
+ * r)^2 for metals, and for others by Fresnel when they let light through. Pictures are used as they are stored, as all
+ * ours. */
 #ifdef HAVE_JANSSON
 
 #include "formats/gltf.h"
@@ -79,14 +80,14 @@ static enum image_wrap wrap_of(uint64_t code) {
 }
 
 /* A texture reference such as baseColorTexture; nothing when it is absent. */
-static bool read_map(struct gltf *g, const json_t *object, const char *key, struct model_texture *map, const char *where) {
+static bool read_map(struct gltf *g, const json_t *object, const char *key, struct model_texture *map,
+                     const char *where) {
     const json_t *info = json_object_get(object, key);
     uint32_t texture, image, sampler;
     uint64_t set;
     if (!info)
         return true;
-    if (!gltf_index(g, info, "index", "textures", &texture, where) ||
-        !gltf_whole(g, info, "texCoord", 0, &set, where))
+    if (!gltf_index(g, info, "index", "textures", &texture, where) || !gltf_whole(g, info, "texCoord", 0, &set, where))
         return false;
     if (texture == MODEL_NONE)
         return gltf_fail(g, where, "%s has no index", key);

@@ -1,6 +1,6 @@
 /* gzip out of memory into memory, through zlib (RFC 1951, 1952). Deflate can grow a thousandfold, so what comes out is
- * bounded by what a mesh file can reasonably be: a small hostile file costs little memory. A file may be several members
- * one behind the other; zeros behind the last one are padding. */
+ * bounded by what a mesh file can reasonably be: a small hostile file costs little memory. A file may be several
+ * members one behind the other; zeros behind the last one are padding. */
 #include "formats/model.h"
 
 #include <string.h>

@@ -1,6 +1,6 @@
 /* The common part of all mesh files: telling them apart, gathering tables, making meshes of them. Tables live from the
- * reader to model_finish and not longer: a big file is in memory as bytes, as tables and as a mesh, never twice as one of
- * them. */
+ * reader to model_finish and not longer: a big file is in memory as bytes, as tables and as a mesh, never twice as one
+ * of them. */
 #include "formats/model.h"
 
 #include "base/file.h"
@@ -25,18 +25,23 @@ struct model_mesh *model_add_mesh(struct model *model, struct error *error) {
 }
 
 struct model_material *model_add_material(struct model *model, struct error *error) {
-    static const struct model_texture none = {.scale = {1, 1},
-                                              .strength = 1,
-                                              .wrap_u = IMAGE_REPEAT,
-                                              .wrap_v = IMAGE_REPEAT,
-                                              .filter = IMAGE_MIPMAP};
+    static const struct model_texture none = {
+        .scale = {1, 1}, .strength = 1, .wrap_u = IMAGE_REPEAT, .wrap_v = IMAGE_REPEAT, .filter = IMAGE_MIPMAP};
     struct model_material *material = list_room(&model->materials, 1, sizeof *material);
     if (!material) {
         error_no_memory(error, model->path);
         return NULL;
     }
-    *material = (struct model_material){.name = "", .kd = {0.8, 0.8, 0.8}, .filter = {1, 1, 1}, .dissolve = 1, .ior = 1,
-                                        .illum = -1, .map_kd = none, .map_ks = none, .map_ke = none, .map_bump = none,
+    *material = (struct model_material){.name = "",
+                                        .kd = {0.8, 0.8, 0.8},
+                                        .filter = {1, 1, 1},
+                                        .dissolve = 1,
+                                        .ior = 1,
+                                        .illum = -1,
+                                        .map_kd = none,
+                                        .map_ks = none,
+                                        .map_ke = none,
+                                        .map_bump = none,
                                         .map_normal = none};
     model->materials.count++;
     return material;
@@ -88,8 +93,8 @@ bool model_find(struct model *model, const char *name, size_t length, const char
     last = last ? last + 1 : plain;
     /* Beside the model; where it says; by its bare name beside the model. */
     for (int attempt = 0; attempt < 3; attempt++) {
-        char *tried = attempt == 1 ? plain
-                                   : arena_format(&model->arena, "%.*s%s", folder, model->path, attempt ? last : plain);
+        char *tried =
+            attempt == 1 ? plain : arena_format(&model->arena, "%.*s%s", folder, model->path, attempt ? last : plain);
         if (!tried)
             return error_no_memory(error, model->path);
         if (attempt == 1 && plain[0] != '/')
@@ -105,7 +110,7 @@ bool model_find(struct model *model, const char *name, size_t length, const char
 /* --- from tables to meshes --- */
 
 static void tables_destroy(struct model_mesh *m) {
-    struct list *lists[] = {&m->vertices,     &m->normals,  &m->uvs,      &m->colours,  &m->starts,
+    struct list *lists[] = {&m->vertices,     &m->normals,      &m->uvs,      &m->colours,  &m->starts,
                             &m->vertex_index, &m->normal_index, &m->uv_index, &m->face_slot};
     for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++)
         list_destroy(lists[i]);
@@ -215,9 +220,9 @@ static enum kind kind_of(const char *path, const uint8_t *data, size_t size) {
         return KIND_GLTF;
     if (size >= 4 && memcmp(data, "ply", 3) == 0 && (data[3] == '\n' || data[3] == '\r'))
         return KIND_PLY;
-    uint64_t claimed = size >= 84 ? (uint64_t)data[80] | (uint64_t)data[81] << 8 | (uint64_t)data[82] << 16 |
-                                        (uint64_t)data[83] << 24
-                                  : 0;
+    uint64_t claimed =
+        size >= 84 ? (uint64_t)data[80] | (uint64_t)data[81] << 8 | (uint64_t)data[82] << 16 | (uint64_t)data[83] << 24
+                   : 0;
     if (claimed > 0 && 84 + 50 * claimed == size)
         return KIND_STL_BINARY;
     while (at < size && (data[at] <= ' ' || (at < 3 && size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0)))
@@ -226,7 +231,7 @@ static enum kind kind_of(const char *path, const uint8_t *data, size_t size) {
     size_t head = size - at < 4096 ? size - at : 4096;
     if (is_word(extension, length, "stl"))
         return solid && (holds(data + at, head, "facet") || holds(data + at, head, "endsolid")) ? KIND_STL_TEXT
-                                                                                               : KIND_STL_BINARY;
+                                                                                                : KIND_STL_BINARY;
     if (solid && holds(data + at, head, "facet normal"))
         return KIND_STL_TEXT;
     if (is_word(extension, length, "ply"))

@@ -1,6 +1,7 @@
-/* What a mesh file holds: meshes with a material slot per face, materials, and a tree of nodes that place the meshes. The
- * reader is chosen by content, then by the extension: glTF and GLB, PLY, STL, else OBJ; each of them may be compressed
- * with gzip. A model is an asset like the meshes it owns: immutable once read, without anything of a script in it. */
+/* What a mesh file holds: meshes with a material slot per face, materials, and a tree of nodes that place the meshes.
+ * The reader is chosen by content, then by the extension: glTF and GLB, PLY, STL, else OBJ; each of them may be
+ * compressed with gzip. A model is an asset like the meshes it owns: immutable once read, without anything of a script
+ * in it. */
 #ifndef GRAY_FORMATS_MODEL_H
 #define GRAY_FORMATS_MODEL_H
 
@@ -16,11 +17,11 @@
 
 /* A picture that a material names. */
 struct model_texture {
-    const char *name;   /* as the file has it; NULL: none */
-    const char *path;   /* where it was found; NULL: embedded or missing */
-    struct image *image; /* embedded ones, owned by the model */
+    const char *name;           /* as the file has it; NULL: none */
+    const char *path;           /* where it was found; NULL: embedded or missing */
+    struct image *image;        /* embedded ones, owned by the model */
     double scale[2], offset[2]; /* place on the picture = scale * uv + offset, v counted from below */
-    double strength;    /* of bumps and normals */
+    double strength;            /* of bumps and normals */
     enum image_wrap wrap_u, wrap_v;
     enum image_filter filter;
 };
@@ -39,13 +40,13 @@ struct model_material {
 /* Tables while the file is read; a finished mesh afterwards. */
 struct model_mesh {
     const char *name;
-    struct list vertices, normals, uvs, colours;           /* double[3], double[3], double[2], float[3] by vertex */
-    struct list starts;                                    /* uint32_t: faces, and once finished the end */
-    struct list vertex_index, normal_index, uv_index;      /* uint32_t per corner; MODEL_NONE: this corner has none */
-    struct list face_slot;                                 /* uint32_t per face, or empty */
-    bool normals_by_vertex, uvs_by_vertex;                 /* their index lists are vertex_index */
-    struct list slots;                                     /* uint32_t: the material of a slot, or MODEL_NONE */
-    struct list slot_names;                                /* const char *, as many, or none */
+    struct list vertices, normals, uvs, colours;      /* double[3], double[3], double[2], float[3] by vertex */
+    struct list starts;                               /* uint32_t: faces, and once finished the end */
+    struct list vertex_index, normal_index, uv_index; /* uint32_t per corner; MODEL_NONE: this corner has none */
+    struct list face_slot;                            /* uint32_t per face, or empty */
+    bool normals_by_vertex, uvs_by_vertex;            /* their index lists are vertex_index */
+    struct list slots;                                /* uint32_t: the material of a slot, or MODEL_NONE */
+    struct list slot_names;                           /* const char *, as many, or none */
     struct mesh *mesh;
 };
 
@@ -58,11 +59,11 @@ struct model_node {
 
 /* The zero value: as the file has it. */
 struct model_options {
-    bool smooth;         /* normals of our own instead of the file's */
-    double smooth_angle; /* degrees: faces that meet at less are one smooth surface; 0: flat */
-    bool weld, flip;     /* one vertex for each place; faces turned round */
+    bool smooth;               /* normals of our own instead of the file's */
+    double smooth_angle;       /* degrees: faces that meet at less are one smooth surface; 0: flat */
+    bool weld, flip;           /* one vertex for each place; faces turned round */
     const struct reach *reach; /* where files may be read; NULL: everywhere */
-    bool alone;          /* no other file is opened (tests of readers with strangers' bytes) */
+    bool alone;                /* no other file is opened (tests of readers with strangers' bytes) */
 };
 
 enum { MODEL_WARNINGS = 16 };

@@ -1,8 +1,8 @@
 /* A file's materials speak of more than ours can say. What becomes of them:
- *   Kd, Ks, Ns, map_Kd (multiplied by Kd, with its -s, -o, -clamp) as they are; illum 0 and 1 switch Ks off, 3 to 9 let it
- *   mirror. d or Tr below 1: refract = 1 - d, filtered by Tf, with the index Ni where illum (6, 7, or none) asks for
- *   refraction; illum 7 is a dielectric by Fresnel's equations. Ka is Kd here. Ke and the maps of Ks, Ke, bumps and normals
- *   are kept in the model for materials that will know them. */
+ *   Kd, Ks, Ns, map_Kd (multiplied by Kd, with its -s, -o, -clamp) as they are; illum 0 and 1 switch Ks off, 3 to 9 let
+ * it mirror. d or Tr below 1: refract = 1 - d, filtered by Tf, with the index Ni where illum (6, 7, or none) asks for
+ *   refraction; illum 7 is a dielectric by Fresnel's equations. Ka is Kd here. Ke and the maps of Ks, Ke, bumps and
+ * normals are kept in the model for materials that will know them. */
 #include "formats/model_node.h"
 
 #include <stdio.h>
@@ -75,7 +75,8 @@ static const struct material *over_with_image(struct scene *scene, const struct 
     return m;
 }
 
-static const struct material *make_material(struct scene *scene, const struct model_material *from, struct error *error) {
+static const struct material *make_material(struct scene *scene, const struct model_material *from,
+                                            struct error *error) {
     struct material *m = scene_material(scene, MATERIAL_PHONG, NULL, error);
     if (!m)
         return NULL;

@@ -212,12 +212,17 @@ static bool read_statement(struct library *l) {
     static const struct {
         const char *word;
         size_t offset;
-    } colours[] = {{"Ka", offsetof(struct model_material, ka)}, {"Kd", offsetof(struct model_material, kd)},
-                   {"Ks", offsetof(struct model_material, ks)}, {"Ke", offsetof(struct model_material, ke)},
+    } colours[] = {{"Ka", offsetof(struct model_material, ka)},
+                   {"Kd", offsetof(struct model_material, kd)},
+                   {"Ks", offsetof(struct model_material, ks)},
+                   {"Ke", offsetof(struct model_material, ke)},
                    {"Tf", offsetof(struct model_material, filter)}},
-      maps[] = {{"map_Kd", offsetof(struct model_material, map_kd)},   {"map_Ks", offsetof(struct model_material, map_ks)},
-                {"map_Ke", offsetof(struct model_material, map_ke)},   {"map_bump", offsetof(struct model_material, map_bump)},
-                {"bump", offsetof(struct model_material, map_bump)},   {"norm", offsetof(struct model_material, map_normal)},
+      maps[] = {{"map_Kd", offsetof(struct model_material, map_kd)},
+                {"map_Ks", offsetof(struct model_material, map_ks)},
+                {"map_Ke", offsetof(struct model_material, map_ke)},
+                {"map_bump", offsetof(struct model_material, map_bump)},
+                {"bump", offsetof(struct model_material, map_bump)},
+                {"norm", offsetof(struct model_material, map_normal)},
                 {"map_Kn", offsetof(struct model_material, map_normal)}};
     for (size_t i = 0; i < sizeof colours / sizeof colours[0]; i++)
         if (is_word(&word, length, colours[i].word))

@@ -1,4 +1,5 @@
-/* A hash table with open addressing. Where a name stands in it decides nothing: numbers are given in order of arrival. */
+/* A hash table with open addressing. Where a name stands in it decides nothing: numbers are given in order of arrival.
+ */
 #include "formats/names.h"
 
 #include "base/hash.h"

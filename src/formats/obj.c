@@ -1,15 +1,16 @@
 /* Wavefront OBJ in one pass over the bytes.
  *
  * A line is a keyword and blank-separated words; `#` starts a comment, a backslash at the end of a line continues it.
- * Only v, vt, vn, f, usemtl, mtllib, g and o are read; other keywords must at least look like words, so that a binary file
- * is refused on its first line. The faces behind a usemtl have its material; in a file without any usemtl those of a
- * group (g, o) have a material slot of its name, so that a script can tell them apart. Source of the format: Wavefront, "Object Files (.obj)", Appendix B1 of the Advanced Visualizer manual.
- * Indices count from 1; negative ones count back from the last element read so far. A positive index may point at an
- * element that comes later in the file, so these are checked at the end: for each of the three lists only the largest
- * index and its line need to be kept.
+ * Only v, vt, vn, f, usemtl, mtllib, g and o are read; other keywords must at least look like words, so that a binary
+ * file is refused on its first line. The faces behind a usemtl have its material; in a file without any usemtl those of
+ * a group (g, o) have a material slot of its name, so that a script can tell them apart. Source of the format:
+ * Wavefront, "Object Files (.obj)", Appendix B1 of the Advanced Visualizer manual. Indices count from 1; negative ones
+ * count back from the last element read so far. A positive index may point at an element that comes later in the file,
+ * so these are checked at the end: for each of the three lists only the largest index and its line need to be kept.
  * Invariant: the index lists of uvs and normals are either absent or as long as that of vertices; they appear with the
- * first corner that names one and say MISSING for all corners before. Memory: lists grow by half, and the shortest way to
- * cost much is a corner of two bytes in three lists, so nine times the file's size is an upper bound; two is usual. */
+ * first corner that names one and say MISSING for all corners before. Memory: lists grow by half, and the shortest way
+ * to cost much is a corner of two bytes in three lists, so nine times the file's size is an upper bound; two is usual.
+ */
 #include "formats/obj.h"
 
 #include "base/file.h"
@@ -438,7 +439,8 @@ static bool make_slots(struct reader *reader, struct model_mesh *mesh) {
     for (uint32_t i = 0; ok && i <= count; i++) {
         uint32_t number = by_material && i < count ? names_find(&known, names[i].text, names[i].length) : MISSING;
         const char **slot_name = list_room(&mesh->slot_names, 1, sizeof *slot_name);
-        ok = slot_name && list_add_index(&mesh->slots, number == MISSING ? MODEL_NONE : ((uint32_t *)last.items)[number]);
+        ok = slot_name &&
+             list_add_index(&mesh->slots, number == MISSING ? MODEL_NONE : ((uint32_t *)last.items)[number]);
         if (!ok)
             break;
         *slot_name = i < count ? arena_copy_text(&reader->model->arena, names[i].text, names[i].length) : "";
@@ -474,8 +476,14 @@ static bool make_slots(struct reader *reader, struct model_mesh *mesh) {
 }
 
 bool obj_load(struct model *model, const char *text, size_t size, struct error *error) {
-    struct reader reader = {.path = model->path, .at = text, .end = text + size, .line = 1, .error = error, .model = model,
-                            .materials.current = UNNAMED, .groups.current = UNNAMED};
+    struct reader reader = {.path = model->path,
+                            .at = text,
+                            .end = text + size,
+                            .line = 1,
+                            .error = error,
+                            .model = model,
+                            .materials.current = UNNAMED,
+                            .groups.current = UNNAMED};
     if (size >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0))
         return fail(&reader, "this is UTF-16 text; an OBJ file is plain ASCII or UTF-8");
     if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0)

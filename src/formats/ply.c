@@ -1,10 +1,10 @@
 /* PLY: a header in text names elements and their properties, then come the elements, in text or in binary numbers of
  * either order. Source: G. Turk, "The PLY Polygon File Format", 1994, and its reference reader's names of types.
  *
- * The header is turned into a list of properties per element, each with what it means to us; one loop over elements, rows
- * and properties then reads everything, and what means nothing is passed over by its size. A row of text is a line.
- * Nothing is believed: a count claims at least so many bytes and is refused when the file has fewer, before any memory is
- * taken, so memory is a small multiple of the file. */
+ * The header is turned into a list of properties per element, each with what it means to us; one loop over elements,
+ * rows and properties then reads everything, and what means nothing is passed over by its size. A row of text is a
+ * line. Nothing is believed: a count claims at least so many bytes and is refused when the file has fewer, before any
+ * memory is taken, so memory is a small multiple of the file. */
 #include "formats/decimal.h"
 #include "formats/model.h"
 #include "formats/scan.h"
@@ -43,11 +43,11 @@ struct ply {
     struct property properties[PROPERTIES];
     int property_count;
     struct model_mesh *mesh;
-    bool has[SCALARS];        /* of the vertices */
-    double colour_scale;      /* from the type's range to 0 .. 1 */
-    struct list values;       /* uint32_t: the list that was read last */
-    struct list pending;      /* double: the uvs of one face */
-    uint64_t vertex_total;    /* what the header says */
+    bool has[SCALARS];     /* of the vertices */
+    double colour_scale;   /* from the type's range to 0 .. 1 */
+    struct list values;    /* uint32_t: the list that was read last */
+    struct list pending;   /* double: the uvs of one face */
+    uint64_t vertex_total; /* what the header says */
 };
 
 static bool fail(const struct ply *ply, const char *what) {
@@ -81,7 +81,7 @@ static bool header_line(struct ply *ply, struct words *words) {
             continue;
         }
         const uint8_t *first = p;
-        while (p < ply->end && *p > ' ')
+        while (p<ply->end && * p> ' ')
             p++;
         if (p == first)
             p++;
@@ -109,7 +109,7 @@ static bool header_fail(const struct ply *ply, const struct words *words, int i,
 }
 
 static bool read_type(const struct ply *ply, const struct words *words, int i, enum number_type *out) {
-    static const char *const names[NUMBER_TYPES][2] = {{"char", "int8"},   {"uchar", "uint8"},   {"short", "int16"},
+    static const char *const names[NUMBER_TYPES][2] = {{"char", "int8"},     {"uchar", "uint8"},   {"short", "int16"},
                                                        {"ushort", "uint16"}, {"int", "int32"},     {"uint", "uint32"},
                                                        {"float", "float32"}, {"double", "float64"}};
     for (int t = 0; t < NUMBER_TYPES; t++)
@@ -124,11 +124,29 @@ static enum meaning meaning_of(const struct words *words, int i, const char *ele
     static const struct {
         const char *name;
         enum meaning meaning;
-    } scalars[] = {{"x", X},          {"y", Y},          {"z", Z},          {"nx", NX},       {"ny", NY},
-                   {"nz", NZ},        {"s", U},          {"t", V},          {"u", U},         {"v", V},
-                   {"texture_u", U},  {"texture_v", V},  {"texture_s", U},  {"texture_t", V}, {"red", RED},
-                   {"green", GREEN},  {"blue", BLUE},    {"r", RED},        {"g", GREEN},     {"b", BLUE},
-                   {"diffuse_red", RED}, {"diffuse_green", GREEN}, {"diffuse_blue", BLUE}};
+    } scalars[] = {{"x", X},
+                   {"y", Y},
+                   {"z", Z},
+                   {"nx", NX},
+                   {"ny", NY},
+                   {"nz", NZ},
+                   {"s", U},
+                   {"t", V},
+                   {"u", U},
+                   {"v", V},
+                   {"texture_u", U},
+                   {"texture_v", V},
+                   {"texture_s", U},
+                   {"texture_t", V},
+                   {"red", RED},
+                   {"green", GREEN},
+                   {"blue", BLUE},
+                   {"r", RED},
+                   {"g", GREEN},
+                   {"b", BLUE},
+                   {"diffuse_red", RED},
+                   {"diffuse_green", GREEN},
+                   {"diffuse_blue", BLUE}};
     bool indices = word_is(words, i, "vertex_indices") || word_is(words, i, "vertex_index");
     if (is_list && strcmp(element, "face") == 0)
         return indices ? CORNERS : word_is(words, i, "texcoord") ? CORNER_UVS : NOTHING;
@@ -602,7 +620,12 @@ static bool load(struct ply *ply) {
 }
 
 bool ply_load(struct model *model, const uint8_t *data, size_t size, struct error *error) {
-    struct ply ply = {.model = model, .path = model->path, .data = data, .at = data, .end = data + size, .error = error,
+    struct ply ply = {.model = model,
+                      .path = model->path,
+                      .data = data,
+                      .at = data,
+                      .end = data + size,
+                      .error = error,
                       .colour_scale = 1};
     ply.mesh = model_add_mesh(model, error);
     if (!ply.mesh)

@@ -1,7 +1,7 @@
 /* STL, text and binary. Source of both: 3D Systems, "StereoLithography Interface Specification", 1988-1989 (binary: 80
  * bytes of anything, a count, per triangle twelve little-endian floats and two bytes of attributes). The file repeats
- * every corner, so corners in one place become one vertex, exactly: closed solids are closed. The normals in the file say
- * no more than the order of the corners does, are often zero or wrong, and are not used. */
+ * every corner, so corners in one place become one vertex, exactly: closed solids are closed. The normals in the file
+ * say no more than the order of the corners does, are often zero or wrong, and are not used. */
 #include "formats/decimal.h"
 #include "formats/model.h"
 #include "formats/scan.h"
@@ -150,7 +150,8 @@ static void skip_line(struct text *t) {
         t->at++;
 }
 
-static bool load_text(struct model *model, struct model_mesh *mesh, const char *data, size_t size, struct error *error) {
+static bool load_text(struct model *model, struct model_mesh *mesh, const char *data, size_t size,
+                      struct error *error) {
     struct text t = {.path = model->path, .at = data, .end = data + size, .line = 1, .error = error};
     if (size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0)
         t.at += 3;
@@ -181,7 +182,7 @@ bool stl_load(struct model *model, const uint8_t *data, size_t size, bool binary
     struct model_mesh *mesh = model_add_mesh(model, error);
     if (!mesh)
         return false;
-    bool ok = binary ? load_binary(model, mesh, data, size, error)
-                     : load_text(model, mesh, (const char *)data, size, error);
+    bool ok =
+        binary ? load_binary(model, mesh, data, size, error) : load_text(model, mesh, (const char *)data, size, error);
     return ok && weld(model, mesh, error);
 }

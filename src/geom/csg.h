@@ -1,6 +1,7 @@
-/* CSG as one primitive: a postfix program over leaves. The crossings of the whole line with every leaf are merged in one
- * pass by ascending t while the truth value of the program is tracked; where it changes, the surface is there. Difference
- * flips the normal. A cut face keeps the leaf that made it, hence its material. Owner: the arena it was built in. */
+/* CSG as one primitive: a postfix program over leaves. The crossings of the whole line with every leaf are merged in
+ * one pass by ascending t while the truth value of the program is tracked; where it changes, the surface is there.
+ * Difference flips the normal. A cut face keeps the leaf that made it, hence its material. Owner: the arena it was
+ * built in. */
 #ifndef GRAY_GEOM_CSG_H
 #define GRAY_GEOM_CSG_H
 
@@ -11,7 +12,7 @@
 enum csg_operation { CSG_LEAF, CSG_UNION, CSG_INTERSECTION, CSG_DIFFERENCE }; /* binary ones take the two above them */
 
 struct csg_leaf {
-    struct shape shape;                     /* closed; not SHAPE_CSG (nested programs are flattened into one) */
+    struct shape shape; /* closed; not SHAPE_CSG (nested programs are flattened into one) */
     struct transform csg_from_leaf;
     uint32_t material;
     uint32_t slot_count; /* of a mesh: face slot k has material + k; below 2 all have `material` */
@@ -29,8 +30,8 @@ struct csg {
     uint32_t program_length;
     struct box bounds;
     uint32_t stack_depth;
-    uint32_t max_crossings;  /* scratch items one ray needs, a guess when meshes are leaves */
-    const void *plan;        /* whatever csg_build prepares for the search (private to csg.c) */
+    uint32_t max_crossings; /* scratch items one ray needs, a guess when meshes are leaves */
+    const void *plan;       /* whatever csg_build prepares for the search (private to csg.c) */
 };
 
 /* Copies leaves and program into the arena, works out bounds and a plan. Fails on no memory, on an empty or malformed
@@ -39,7 +40,8 @@ const struct csg *csg_build(struct arena *arena, const struct csg_leaf *leaves, 
                             const struct csg_token *program, uint32_t program_length, struct error *error);
 bool csg_nearest(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch, struct crossing *out);
 bool csg_any(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch);
-bool csg_crossings(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch, struct crossing_list *out);
+bool csg_crossings(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch,
+                   struct crossing_list *out);
 bool csg_contains(const struct csg *csg, struct vec3 point, struct geom_scratch *scratch);
 void csg_describe(const struct csg *csg, const struct ray *ray, const struct crossing *crossing, struct surface *out);
 

@@ -19,8 +19,8 @@ struct surface {
     struct vec3 colour; /* of the vertices, interpolated */
     double u, v;
     struct vec3 dpdu, dpdv; /* object space; zero when has_uv is false */
-    double error;           /* bound of the distance between `point` and the true surface, object units, from rounding */
-    uint32_t leaf;          /* CSG operand, else 0 */
+    double error;  /* bound of the distance between `point` and the true surface, object units, from rounding */
+    uint32_t leaf; /* CSG operand, else 0 */
     uint32_t material_slot; /* per-face materials of a mesh; 0 = the only one */
 };
 

@@ -1,5 +1,5 @@
-/* What a finished mesh answers. Every search ends in the one watertight triangle test of accel/triangle.h; the index only
- * says which triangles are worth trying. */
+/* What a finished mesh answers. Every search ends in the one watertight triangle test of accel/triangle.h; the index
+ * only says which triangles are worth trying. */
 #include "geom/mesh.h"
 
 #include "base/mem.h"
@@ -77,7 +77,7 @@ bool mesh_has_normals(const struct mesh *mesh) {
 
 const double (*mesh_vertices(const struct mesh *mesh, uint32_t *count))[3] {
     *count = mesh->vertex_count;
-    return (const double (*)[3])mesh->vertices;
+    return (const double(*)[3])mesh->vertices;
 }
 
 uint32_t mesh_face_count(const struct mesh *mesh) {
@@ -151,8 +151,7 @@ bool mesh_nearest(const struct mesh *mesh, const struct ray *ray, enum accel_kin
 bool mesh_any(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch) {
     struct triangle_cost cost = {0};
     const struct triangle_index *index = index_for(mesh, accel);
-    bool found = index ? triangle_index_any(index, &mesh->set, ray, &cost)
-                       : triangle_brute_any(&mesh->set, ray, &cost);
+    bool found = index ? triangle_index_any(index, &mesh->set, ray, &cost) : triangle_brute_any(&mesh->set, ray, &cost);
     add_cost(scratch, &cost);
     return found;
 }
@@ -193,9 +192,9 @@ static void sort(struct crossing *items, uint32_t count) {
     }
 }
 
-/* The signs of the triangle test make a line enter a closed mesh as often as it leaves it, but where it touches an edge or
- * passes a thin wall the two t are equal up to rounding and may stand in the wrong order. Within that rounding ways in and
- * out are made to alternate. */
+/* The signs of the triangle test make a line enter a closed mesh as often as it leaves it, but where it touches an edge
+ * or passes a thin wall the two t are equal up to rounding and may stand in the wrong order. Within that rounding ways
+ * in and out are made to alternate. */
 static void alternate(struct crossing *items, uint32_t count, bool enter_first, double slack) {
     for (uint32_t i = 0; i < count; i++) {
         bool want = i ? !items[i - 1].enter : enter_first;
@@ -238,7 +237,8 @@ bool mesh_crossings(const struct mesh *mesh, const struct ray *ray, enum accel_k
         if (i == 0 || items[i].part != items[kept - 1].part)
             items[kept++] = items[i];
     if (mesh->closed) {
-        double size = fmax(vec3_max_abs(ray->origin), fmax(vec3_max_abs(mesh->bounds.min), vec3_max_abs(mesh->bounds.max)));
+        double size =
+            fmax(vec3_max_abs(ray->origin), fmax(vec3_max_abs(mesh->bounds.min), vec3_max_abs(mesh->bounds.max)));
         alternate(items, kept, mesh->outward, size * 0x1p-46 / vec3_max_abs(ray->direction));
     }
     scratch->used = out->first + kept;
@@ -265,7 +265,8 @@ static void describe_uv(const struct mesh *mesh, uint32_t triangle, double w, do
     out->dpdv = vec3_scale(vec3_sub(vec3_scale(e2, du1), vec3_scale(e1, du2)), 1 / area);
 }
 
-void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct crossing *crossing, struct surface *out) {
+void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct crossing *crossing,
+                   struct surface *out) {
     uint32_t triangle = crossing->part;
     const uint32_t *corner = mesh->corners[triangle];
     struct vec3 a = load(mesh->vertices[corner[0]]), b = load(mesh->vertices[corner[1]]),

@@ -1,6 +1,7 @@
-/* A triangle mesh with its own acceleration structure, an immutable asset once built: mesh_create copies and triangulates,
- * mesh_build_index (lazily, before the first render, in parallel on the pool) makes the grid. A mesh answers nearest, any
- * and all crossings with one and the same watertight triangle test. Owner: the asset store, by reference count. */
+/* A triangle mesh with its own acceleration structure, an immutable asset once built: mesh_create copies and
+ * triangulates, mesh_build_index (lazily, before the first render, in parallel on the pool) makes the grid. A mesh
+ * answers nearest, any and all crossings with one and the same watertight triangle test. Owner: the asset store, by
+ * reference count. */
 #ifndef GRAY_GEOM_MESH_H
 #define GRAY_GEOM_MESH_H
 
@@ -18,8 +19,8 @@ struct mesh;
 
 /* Polygons as they come from a script or a file. Face f has corners face_start[f] .. face_start[f+1]-1 in the index
  * arrays (at least 3 corners). normals/normal_index and uvs/uv_index are NULL when absent; an index of UINT32_MAX there
- * means "this corner has none" (the face is then shaded flat / has no uv). Indices are 0-based and already checked to be
- * in range by the caller, coordinates finite. */
+ * means "this corner has none" (the face is then shaded flat / has no uv). Indices are 0-based and already checked to
+ * be in range by the caller, coordinates finite. */
 struct mesh_input {
     const char *name; /* for messages: file name or node name */
     uint32_t vertex_count, face_count;
@@ -36,20 +37,21 @@ struct mesh_input {
     const float (*colours)[3];     /* of the vertices, or NULL */
 };
 
-/* How searches go; the answers are the same. AUTO: what is fastest; GRID: the uniform grid of Amanatides and Woo over the
- * placed primitives; BVH: a hierarchy over them; NONE: everything is tried. */
+/* How searches go; the answers are the same. AUTO: what is fastest; GRID: the uniform grid of Amanatides and Woo over
+ * the placed primitives; BVH: a hierarchy over them; NONE: everything is tried. */
 enum accel_kind { ACCEL_AUTO, ACCEL_GRID, ACCEL_BVH, ACCEL_NONE };
 
 /* Triangulates n-gons (concave ones by ear clipping in their best plane, convex ones fast; thousands of corners fine),
- * drops degenerate faces quietly (counted). NULL and error on no memory. Deterministic. Not more than 2^31 triangles. */
+ * drops degenerate faces quietly (counted). NULL and error on no memory. Deterministic. Not more than 2^31 triangles.
+ */
 struct mesh *mesh_create(const struct mesh_input *input, struct error *error);
 struct mesh *mesh_share(struct mesh *mesh); /* one more owner */
 void mesh_release(struct mesh *mesh);
 /* Thread-compatible: call from one thread; returns at once when the index exists. False: no memory or cancelled. */
 bool mesh_build_index(struct mesh *mesh, struct pool *pool, struct error *error);
 
-/* The same for ACCEL_GRID: a frame of many voxels that Amanatides and Woo's steps walk through, for teaching and for doubt.
- * The index that mesh_build_index makes has the resolution that measured best, which is mostly one voxel. */
+/* The same for ACCEL_GRID: a frame of many voxels that Amanatides and Woo's steps walk through, for teaching and for
+ * doubt. The index that mesh_build_index makes has the resolution that measured best, which is mostly one voxel. */
 bool mesh_build_grid(struct mesh *mesh, struct pool *pool, struct error *error);
 
 struct box mesh_bounds(const struct mesh *mesh);
@@ -60,13 +62,14 @@ uint32_t mesh_triangle_count(const struct mesh *mesh);
 uint32_t mesh_dropped_faces(const struct mesh *mesh);
 bool mesh_has_uv(const struct mesh *mesh);
 bool mesh_has_normals(const struct mesh *mesh);
-/* The polygons as they came, for those who want to read them: `corners` numbers of vertices, at most as many as the largest
- * face of the mesh has; both answers point into the mesh. */
+/* The polygons as they came, for those who want to read them: `corners` numbers of vertices, at most as many as the
+ * largest face of the mesh has; both answers point into the mesh. */
 const double (*mesh_vertices(const struct mesh *mesh, uint32_t *count))[3];
 uint32_t mesh_face_count(const struct mesh *mesh);
 const uint32_t *mesh_face(const struct mesh *mesh, uint32_t face, uint32_t *corners);
 size_t mesh_memory(const struct mesh *mesh); /* bytes, index included */
-/* The exact content as a key, so that the same tables give the same mesh (hash over everything in the input but name). */
+/* The exact content as a key, so that the same tables give the same mesh (hash over everything in the input but name).
+ */
 uint64_t mesh_input_hash(const struct mesh_input *input);
 bool mesh_equals_input(const struct mesh *mesh, const struct mesh_input *input); /* vertices and faces the same */
 
@@ -75,6 +78,7 @@ bool mesh_nearest(const struct mesh *mesh, const struct ray *ray, enum accel_kin
 bool mesh_any(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch);
 bool mesh_crossings(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch,
                     struct crossing_list *out);
-void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct crossing *crossing, struct surface *out);
+void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct crossing *crossing,
+                   struct surface *out);
 
 #endif

@@ -11,8 +11,11 @@
 
 uint64_t mesh_input_hash(const struct mesh_input *input) {
     uint32_t corners = input->face_count ? input->face_start[input->face_count] : 0;
-    uint32_t counts[6] = {input->vertex_count, input->face_count, input->normals ? input->normal_count : MESH_NONE,
-                          input->uvs ? input->uv_count : MESH_NONE, input->face_material != NULL,
+    uint32_t counts[6] = {input->vertex_count,
+                          input->face_count,
+                          input->normals ? input->normal_count : MESH_NONE,
+                          input->uvs ? input->uv_count : MESH_NONE,
+                          input->face_material != NULL,
                           input->colours != NULL};
     uint64_t h = hash_bytes(counts, sizeof counts, 0);
     h = hash_bytes(input->vertices, input->vertex_count * sizeof *input->vertices, h);
@@ -44,8 +47,7 @@ bool mesh_equals_input(const struct mesh *mesh, const struct mesh_input *input) 
         return false;
     if (mesh->input_hash != mesh_input_hash(input))
         return false;
-    if (mesh->vertex_count &&
-        memcmp(mesh->vertices, input->vertices, mesh->vertex_count * sizeof *mesh->vertices) != 0)
+    if (mesh->vertex_count && memcmp(mesh->vertices, input->vertices, mesh->vertex_count * sizeof *mesh->vertices) != 0)
         return false;
     if (mesh->face_count == 0)
         return true;
@@ -56,7 +58,8 @@ bool mesh_equals_input(const struct mesh *mesh, const struct mesh_input *input) 
                 return false;
         return memcmp(mesh->corners, input->vertex_index, corners * sizeof *input->vertex_index) == 0;
     }
-    return memcmp(mesh->face_start, input->face_start, ((size_t)mesh->face_count + 1) * sizeof *mesh->face_start) == 0 &&
+    return memcmp(mesh->face_start, input->face_start, ((size_t)mesh->face_count + 1) * sizeof *mesh->face_start) ==
+               0 &&
            memcmp(mesh->face_vertex, input->vertex_index, corners * sizeof *input->vertex_index) == 0;
 }
 
@@ -178,13 +181,13 @@ static void add_face(struct mesh *mesh, const struct mesh_input *input, uint32_t
 
 static bool add_faces(struct mesh *mesh, const struct mesh_input *input, uint32_t *face_of) {
     struct triangulate_scratch scratch = {0};
-    uint32_t (*local)[3] = NULL;
+    uint32_t(*local)[3] = NULL;
     uint32_t capacity = 0;
     bool good = true;
     for (uint32_t f = 0; f < input->face_count && good; f++) {
         uint32_t first = input->face_start[f], count = input->face_start[f + 1] - first;
         if (count > capacity) {
-            uint32_t (*grown)[3] = mem_resize_array(local, count, sizeof *grown);
+            uint32_t(*grown)[3] = mem_resize_array(local, count, sizeof *grown);
             good = grown != NULL;
             if (!good)
                 break;
@@ -193,7 +196,7 @@ static bool add_faces(struct mesh *mesh, const struct mesh_input *input, uint32_
         }
         good = triangulate_polygon(input->vertices, input->vertex_index + first, count, local, &scratch);
         if (good)
-            add_face(mesh, input, f, (const uint32_t (*)[3])local, face_of);
+            add_face(mesh, input, f, (const uint32_t(*)[3])local, face_of);
     }
     mem_free(local);
     triangulate_scratch_destroy(&scratch);
@@ -261,7 +264,7 @@ static bool fill(struct mesh *mesh, const struct mesh_input *input, size_t trian
         mesh->materials = shrink(mesh->materials, count * sizeof *mesh->materials);
     }
     find_bounds(mesh);
-    mesh->set = (struct triangle_set){(const double (*)[3])mesh->vertices, (const uint32_t (*)[3])mesh->corners,
+    mesh->set = (struct triangle_set){(const double(*)[3])mesh->vertices, (const uint32_t(*)[3])mesh->corners,
                                       mesh->triangle_count, mesh->bounds};
     mesh->input_hash = mesh_input_hash(input);
     return true;

@@ -23,7 +23,7 @@ struct mesh {
     struct box bounds;
     bool closed, outward; /* outward: of a closed mesh, the volume it encloses is positive */
     struct vec3 open_edge[2];
-    struct triangle_set set; /* the triangles as searches see them: borrows from the tables above */
+    struct triangle_set set;             /* the triangles as searches see them: borrows from the tables above */
     struct triangle_index *index, *grid; /* grid: only once somebody asked for ACCEL_GRID */
 };
 

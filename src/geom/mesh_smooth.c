@@ -1,7 +1,7 @@
 /* Corners are united across smooth edges (union-find over corners), then every set of corners has one normal. Edges are
- * gathered at their lower vertex: count, prefix sum, fill; then each vertex sorts its own few. All sums run in the order of
- * the corners, so nothing depends on the shape of the forest. Lengths are first scaled by a power of two to about 1, so
- * that no product under- or overflows and a scaled mesh has the same normals bit for bit. */
+ * gathered at their lower vertex: count, prefix sum, fill; then each vertex sorts its own few. All sums run in the
+ * order of the corners, so nothing depends on the shape of the forest. Lengths are first scaled by a power of two to
+ * about 1, so that no product under- or overflows and a scaled mesh has the same normals bit for bit. */
 #include "geom/mesh_smooth.h"
 
 #include "base/mem.h"

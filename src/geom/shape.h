@@ -1,7 +1,7 @@
-/* Shapes: a closed tagged union; one file per shape's mathematics, this module switches (no default, so that the compiler
- * names the switch a new kind forgot). All rays are in the shape's object space; their directions are not normalised.
- * For analytic shapes one root-finder serves all: shape_crossings gives every crossing of the whole line in order, the
- * nearest hit is the first of them inside the ray's interval, CSG merges the lists. */
+/* Shapes: a closed tagged union; one file per shape's mathematics, this module switches (no default, so that the
+ * compiler names the switch a new kind forgot). All rays are in the shape's object space; their directions are not
+ * normalised. For analytic shapes one root-finder serves all: shape_crossings gives every crossing of the whole line in
+ * order, the nearest hit is the first of them inside the ray's interval, CSG merges the lists. */
 #ifndef GRAY_GEOM_SHAPE_H
 #define GRAY_GEOM_SHAPE_H
 
@@ -69,17 +69,18 @@ struct shape {
 
 /* Sides without an end are infinite. */
 struct box shape_bounds(const struct shape *shape);
-/* The box of the shape as `map` places it: the tightest one for analytic shapes whose reach has a closed form, else the box
- * of the mapped bounds. */
+/* The box of the shape as `map` places it: the tightest one for analytic shapes whose reach has a closed form, else the
+ * box of the mapped bounds. */
 struct box shape_bounds_under(const struct shape *shape, const struct affine *map);
-/* Closed: every line crosses it an even number of times, so it has an inside (CSG operand, media). A solid without end (a
- * half-space) is closed too: a line that begins or ends inside crosses it at t = -INFINITY or INFINITY. */
+/* Closed: every line crosses it an even number of times, so it has an inside (CSG operand, media). A solid without end
+ * (a half-space) is closed too: a line that begins or ends inside crosses it at t = -INFINITY or INFINITY. */
 bool shape_is_closed(const struct shape *shape);
 /* Why it is not, as the end of a sentence about it; NULL when it is closed. Of a mesh, mesh_open_edge knows more. */
 const char *shape_why_open(const struct shape *shape);
-/* The crossing with the smallest t in the open interval (ray->t_min, ray->t_max). On equal t the one that comes first in
- * the shape's own order. False also when scratch overflowed (then scratch->overflow is set). */
-bool shape_nearest(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch, struct crossing *out);
+/* The crossing with the smallest t in the open interval (ray->t_min, ray->t_max). On equal t the one that comes first
+ * in the shape's own order. False also when scratch overflowed (then scratch->overflow is set). */
+bool shape_nearest(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch,
+                   struct crossing *out);
 bool shape_any(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch);
 /* All crossings of the whole line (the ray's interval is ignored), by ascending t, pushed on the scratch. The caller
  * pops by setting scratch->used = list.first. Tangential touches appear twice (enter, leave) or not at all. */

@@ -12,8 +12,8 @@ bool sphere_contains(struct vec3 centre, double radius, struct vec3 point);
 void sphere_describe(struct vec3 centre, double radius, const struct ray *ray, const struct crossing *crossing,
                      struct surface *out);
 
-/* Adds the parameters of the classic image mapping to a surface that sphere_describe has filled: apart, because they cost
- * more than all the rest and few materials ask (those that do work from the normal: look/material.c). */
+/* Adds the parameters of the classic image mapping to a surface that sphere_describe has filled: apart, because they
+ * cost more than all the rest and few materials ask (those that do work from the normal: look/material.c). */
 void sphere_uv(double radius, struct surface *surface);
 
 #endif

@@ -1,10 +1,10 @@
 /* Ear clipping. An ear is a corner that turns left and whose triangle with its two neighbours holds no other corner; a
- * simple polygon has two of them (G. H. Meisters, "Polygons have ears", 1975), and only corners that do not turn left can
- * lie in the way. Cost: number of corners times number of those that do not turn left; nothing for convex polygons.
+ * simple polygon has two of them (G. H. Meisters, "Polygons have ears", 1975), and only corners that do not turn left
+ * can lie in the way. Cost: number of corners times number of those that do not turn left; nothing for convex polygons.
  *
  * Coordinates are those of the vertices, one axis left out: no rotation, so straight runs stay exactly straight and
- * scaling by a power of two changes nothing. A corner in the middle of a straight run is never skipped over, because the
- * polygon next door may use it. */
+ * scaling by a power of two changes nothing. A corner in the middle of a straight run is never skipped over, because
+ * the polygon next door may use it. */
 #include "geom/triangulate.h"
 
 #include "accel/triangle.h"

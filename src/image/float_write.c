@@ -1,6 +1,6 @@
-/* PFM is the floats as they are. Radiance pictures have 8 bits a channel and a common exponent; each row is coded channel
- * by channel in runs (more than 2 equal bytes) and literal stretches, as the Radiance file format reference says for
- * widths from 8 to 32767; other widths are written flat. */
+/* PFM is the floats as they are. Radiance pictures have 8 bits a channel and a common exponent; each row is coded
+ * channel by channel in runs (more than 2 equal bytes) and literal stretches, as the Radiance file format reference
+ * says for widths from 8 to 32767; other widths are written flat. */
 #include "image/float_write.h"
 
 #include "base/file.h"
@@ -43,7 +43,8 @@ static bool finish(struct writing *writing, bool ok, struct error *error) {
     return false;
 }
 
-bool pfm_write(const char *path, uint32_t width, uint32_t height, float_rows *rows, void *context, struct error *error) {
+bool pfm_write(const char *path, uint32_t width, uint32_t height, float_rows *rows, void *context,
+               struct error *error) {
     struct writing writing;
     char header[64];
     bool ok = begin(&writing, path, width, error);
@@ -107,7 +108,8 @@ static size_t code_channel(const uint8_t *bytes, uint32_t width, uint8_t *out) {
     return used;
 }
 
-bool hdr_write(const char *path, uint32_t width, uint32_t height, float_rows *rows, void *context, struct error *error) {
+bool hdr_write(const char *path, uint32_t width, uint32_t height, float_rows *rows, void *context,
+               struct error *error) {
     struct writing writing;
     char header[128];
     bool ok = begin(&writing, path, width, error);

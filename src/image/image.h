@@ -1,6 +1,7 @@
-/* A picture as a texture: an immutable asset with its mip levels. Texels hold what the file holds (no gamma), 8 or 16 bits
- * a channel, always expanded to RGBA; lookups are in premultiplied doubles so that transparent texels have no colour.
- * u counts from the left edge to the right in [0,1], v from the top edge down. Owner: the asset store, counted. */
+/* A picture as a texture: an immutable asset with its mip levels. Texels hold what the file holds (no gamma), 8 or 16
+ * bits a channel, always expanded to RGBA; lookups are in premultiplied doubles so that transparent texels have no
+ * colour. u counts from the left edge to the right in [0,1], v from the top edge down. Owner: the asset store, counted.
+ */
 #ifndef GRAY_IMAGE_IMAGE_H
 #define GRAY_IMAGE_IMAGE_H
 
@@ -23,7 +24,8 @@ struct image;
 struct image *image_create(const char *name, uint32_t width, uint32_t height, int bits, const void *rgba,
                            struct error *error);
 /* A whole PNG file: every colour type, bit depth and interlace; gAMA, sRGB and iCCP are ignored; tRNS gives alpha.
- * Errors name the path and what libpng said; sizes over 2^15 a side or 2^28 pixels are errors before memory is taken. */
+ * Errors name the path and what libpng said; sizes over 2^15 a side or 2^28 pixels are errors before memory is taken.
+ */
 struct image *image_read_png(const char *path, struct error *error);
 struct image *image_share(struct image *image);
 void image_release(struct image *image);
@@ -33,12 +35,12 @@ size_t image_memory(const struct image *image);
 const char *image_name(const struct image *image);
 /* Level 0 texel, not premultiplied, 0..1; x, y in range. */
 struct rgba image_texel(const struct image *image, uint32_t x, uint32_t y);
-/* Filtered, premultiplied. width_u, width_v: size of the footprint in u and v (0 = unknown: level 0 is used). Finite u, v
- * of any size. */
+/* Filtered, premultiplied. width_u, width_v: size of the footprint in u and v (0 = unknown: level 0 is used). Finite u,
+ * v of any size. */
 struct rgba image_lookup(const struct image *image, double u, double v, double width_u, double width_v,
                          enum image_filter filter, enum image_wrap wrap_u, enum image_wrap wrap_v);
-/* The same inside a rectangle of texels [x0, x0+w) x [y0, y0+h) of level 0: u, v in [0,1] span the rectangle, lookups never
- * leave it (faces of a sky cross; the mips used must not bleed over its edge: clamp). */
+/* The same inside a rectangle of texels [x0, x0+w) x [y0, y0+h) of level 0: u, v in [0,1] span the rectangle, lookups
+ * never leave it (faces of a sky cross; the mips used must not bleed over its edge: clamp). */
 struct rgba image_lookup_part(const struct image *image, uint32_t x0, uint32_t y0, uint32_t w, uint32_t h, double u,
                               double v, double width_u, double width_v, enum image_filter filter);
 

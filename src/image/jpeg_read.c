@@ -1,17 +1,19 @@
 /* JPEG in ("Information technology - Digital compression and coding of continuous-tone still images", ITU-T T.81).
  *
  * libjpeg reports errors by a callback that must not return: it jumps. So everything that must be given back is held by
- * one struct reader in image_parse_jpeg, and decode, the function with the setjmp, has no variables of its own that change
- * after it. What libjpeg only warns of (data that end early, codes that do not exist) means missing or wrong texels, so it
- * is an error here. Sizes that the bytes of the file cannot possibly fill are refused before memory is taken: a block of
- * 64 texels costs at least a bit. A progressive file may repaint itself as often as it likes: that is counted. */
+ * one struct reader in image_parse_jpeg, and decode, the function with the setjmp, has no variables of its own that
+ * change after it. What libjpeg only warns of (data that end early, codes that do not exist) means missing or wrong
+ * texels, so it is an error here. Sizes that the bytes of the file cannot possibly fill are refused before memory is
+ * taken: a block of 64 texels costs at least a bit. A progressive file may repaint itself as often as it likes: that is
+ * counted. */
 #include "image/jpeg_read.h"
 
 #ifndef HAVE_JPEG
 
 struct image *image_parse_jpeg(const char *path, const uint8_t *data, size_t size, struct error *error) {
     (void)data, (void)size;
-    error_set(error, ERROR_SCENE, "%s: this is a JPEG, which this build cannot read (it was made without libjpeg)", path);
+    error_set(error, ERROR_SCENE, "%s: this is a JPEG, which this build cannot read (it was made without libjpeg)",
+              path);
     return NULL;
 }
 

@@ -107,9 +107,10 @@ static bool write_file(const char *path, uint32_t width, uint32_t height,
     error->kind = ERROR_NONE;
     writer.line = mem_alloc((size_t)width * 3 * (rows_16 ? 2 : 1));
     writer.words = rows_16 ? mem_alloc_zero((size_t)width * 3, sizeof *writer.words) : NULL;
-    writer.png = writer.line && (writer.words || !rows_16) ? png_create_write_struct_2(PNG_LIBPNG_VER_STRING, &writer, on_error, on_warning, &writer,
-                                                         on_alloc, on_free)
-                             : NULL;
+    writer.png = writer.line && (writer.words || !rows_16)
+                     ? png_create_write_struct_2(PNG_LIBPNG_VER_STRING, &writer, on_error, on_warning, &writer,
+                                                 on_alloc, on_free)
+                     : NULL;
     writer.info = writer.png ? png_create_info_struct(writer.png) : NULL;
     bool ok = writer.info != NULL && encode(&writer, width, height, rows, context);
     if (!ok && error->kind == ERROR_NONE) {

@@ -7,8 +7,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* rows(context, y, line) fills 3 * width bytes for row y, called once per row from the top. Missing folders of `path` are
- * made. The bytes of the file depend on the pixels only (no time chunk, fixed zlib level and filter). */
+/* rows(context, y, line) fills 3 * width bytes for row y, called once per row from the top. Missing folders of `path`
+ * are made. The bytes of the file depend on the pixels only (no time chunk, fixed zlib level and filter). */
 bool png_write(const char *path, uint32_t width, uint32_t height,
                void (*rows)(void *context, uint32_t y, uint8_t *line), void *context, struct error *error);
 /* The same with 16 bits a channel: rows fills 3 * width words in the machine's own order. */

@@ -1,5 +1,5 @@
-/* Fog: what is seen fades with the way to it, and the fog's colour takes its place. It fills the open air, not the inside
- * of transparent solids, and dims sight only, not the light of lamps. */
+/* Fog: what is seen fades with the way to it, and the fog's colour takes its place. It fills the open air, not the
+ * inside of transparent solids, and dims sight only, not the light of lamps. */
 #ifndef GRAY_LOOK_FOG_H
 #define GRAY_LOOK_FOG_H
 

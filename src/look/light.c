@@ -1,7 +1,7 @@
-/* Places on lights. A disc is the square mapped concentrically (Shirley and Chiu, "A Low Distortion Map Between Disk and
- * Square", JGT 1997). A lamp that is a sphere is sampled by solid angle within its cone (Shirley, Wang, Zimmerman,
- * "Monte Carlo Techniques for Direct Lighting Calculations", TOG 1996), so every sample counts the same and the emitter's
- * cosine is in it already; other kinds are sampled by area with weight cos / (pi d^2) each. */
+/* Places on lights. A disc is the square mapped concentrically (Shirley and Chiu, "A Low Distortion Map Between Disk
+ * and Square", JGT 1997). A lamp that is a sphere is sampled by solid angle within its cone (Shirley, Wang, Zimmerman,
+ * "Monte Carlo Techniques for Direct Lighting Calculations", TOG 1996), so every sample counts the same and the
+ * emitter's cosine is in it already; other kinds are sampled by area with weight cos / (pi d^2) each. */
 #include "look/light.h"
 
 #include "math/elementary.h"

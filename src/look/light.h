@@ -1,9 +1,9 @@
 /* Lights. Positions are world coordinates; falloff {0,0,0} counts as {1,0,0}.
  *
- * Two ways of shading. Without `emits` a light with an extent is shaded as from its centre, once, times the share of its
- * shadow rays that reach it (SPEC 1.4). With `emits` it is a lamp of uniform radiance `colour`: every shadow ray carries
- * its own direction, distance and cosine at the lamp. The sum is normalised so that a white diffuse surface that sees
- * nothing but the lamp has the lamp's radiance: what arrives is radiance times view factor. */
+ * Two ways of shading. Without `emits` a light with an extent is shaded as from its centre, once, times the share of
+ * its shadow rays that reach it (SPEC 1.4). With `emits` it is a lamp of uniform radiance `colour`: every shadow ray
+ * carries its own direction, distance and cosine at the lamp. The sum is normalised so that a white diffuse surface
+ * that sees nothing but the lamp has the lamp's radiance: what arrives is radiance times view factor. */
 #ifndef GRAY_LOOK_LIGHT_H
 #define GRAY_LOOK_LIGHT_H
 

@@ -1,5 +1,5 @@
-/* Evaluating a chain of decorators from the base outwards: each link changes what the links below left. Patterns use the
- * point in the object space of the operand that made the surface, so they stick to the object. */
+/* Evaluating a chain of decorators from the base outwards: each link changes what the links below left. Patterns use
+ * the point in the object space of the operand that made the surface, so they stick to the object. */
 #include "look/material.h"
 
 #include "math/elementary.h"

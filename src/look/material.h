@@ -1,5 +1,6 @@
 /* Materials: a base (Phong) plus decorators that hold the material below them as `base`. Evaluated once per hit into a
- * struct shading. Immutable, in the arena of the script; images are shared assets. A chain is at most MATERIAL_DEPTH long. */
+ * struct shading. Immutable, in the arena of the script; images are shared assets. A chain is at most MATERIAL_DEPTH
+ * long. */
 #ifndef GRAY_LOOK_MATERIAL_H
 #define GRAY_LOOK_MATERIAL_H
 
@@ -51,7 +52,7 @@ struct material {
             struct image *image;
             enum image_mapping mapping;
             enum image_filter filter;
-            enum image_wrap wrap; /* of MAPPING_UV */
+            enum image_wrap wrap;   /* of MAPPING_UV */
             enum image_wrap wrap_v; /* where `apart` says so, else wrap is for both */
             bool flip_u;
             /* MAPPING_UV of a file's material: the place is scale * uv + offset (v from below), the colour is
@@ -74,11 +75,12 @@ struct surface_look {
     struct vec3 absorption; /* inside: the logarithm of light falls by this per unit */
     double roughness;       /* of reflection and refraction; 0: a mirror */
     int glossy_samples;     /* N x N rays where it is rough; 0: the default */
-    bool fresnel; /* the integrator, which knows the media, replaces reflect and refract by F and 1 - F */
+    bool fresnel;           /* the integrator, which knows the media, replaces reflect and refract by F and 1 - F */
 };
 
 void material_look(const struct material *material, const struct hit *hit, struct surface_look *out);
-/* The lobes of a look whose reflect and refract are final. ambient_plain: the ambient colour is not multiplied by kd. */
+/* The lobes of a look whose reflect and refract are final. ambient_plain: the ambient colour is not multiplied by kd.
+ */
 void material_shading(const struct surface_look *look, enum specular_kind specular, bool ambient_plain,
                       struct shading *out);
 /* Of the base below all decorators: whether light passes into the solid (refract > 0 or Fresnel), and its index. */

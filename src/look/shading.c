@@ -9,7 +9,8 @@ static double lobe_power(double cosine, double exponent) {
     return el_pow(cosine, exponent);
 }
 
-struct vec3 shading_evaluate(const struct shading *shading, struct vec3 normal, struct vec3 view, struct vec3 to_light) {
+struct vec3 shading_evaluate(const struct shading *shading, struct vec3 normal, struct vec3 view,
+                             struct vec3 to_light) {
     double n_l = vec3_dot(normal, to_light);
     struct vec3 sum = {0, 0, 0};
     if (!(n_l > 0))

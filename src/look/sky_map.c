@@ -1,6 +1,6 @@
-/* An image of the whole sphere, longitude along its rows and latitude down its columns. A texel left of the first is the
- * last of its row; a texel above the first row is the one of the first row on the other side of the pole. So a way over
- * the pole or round the back meets no seam. The mip level follows the rows, whose width on the sphere is the same
+/* An image of the whole sphere, longitude along its rows and latitude down its columns. A texel left of the first is
+ * the last of its row; a texel above the first row is the one of the first row on the other side of the pole. So a way
+ * over the pole or round the back meets no seam. The mip level follows the rows, whose width on the sphere is the same
  * everywhere. */
 #include "image/levels.h"
 #include "look/sky_parts.h"

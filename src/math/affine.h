@@ -1,6 +1,6 @@
 /* Affine maps kept with their inverse. A transform is named by its two spaces: world_from_object.forward takes object
- * coordinates to world coordinates, .inverse back. Built by composition, so the inverse is never computed by elimination
- * unless a map comes from outside as a matrix. */
+ * coordinates to world coordinates, .inverse back. Built by composition, so the inverse is never computed by
+ * elimination unless a map comes from outside as a matrix. */
 #ifndef GRAY_MATH_AFFINE_H
 #define GRAY_MATH_AFFINE_H
 
@@ -35,7 +35,7 @@ static inline struct vec3 affine_transpose_vector(const struct affine *a, struct
 
 struct affine affine_identity(void);
 struct affine affine_compose(const struct affine *outer, const struct affine *inner); /* outer after inner */
-double affine_determinant(const struct affine *a);                                   /* of the linear part */
+double affine_determinant(const struct affine *a);                                    /* of the linear part */
 
 struct transform transform_identity(void);
 struct transform transform_compose(const struct transform *outer, const struct transform *inner);

@@ -28,14 +28,15 @@ static inline struct box box_add_point(struct box a, struct vec3 p) {
     return (struct box){vec3_min(a.min, p), vec3_max(a.max, p)};
 }
 static inline bool box_contains(const struct box *b, struct vec3 p) {
-    return p.x >= b->min.x && p.x <= b->max.x && p.y >= b->min.y && p.y <= b->max.y && p.z >= b->min.z && p.z <= b->max.z;
+    return p.x >= b->min.x && p.x <= b->max.x && p.y >= b->min.y && p.y <= b->max.y && p.z >= b->min.z &&
+           p.z <= b->max.z;
 }
 /* The box of the eight mapped corners; infinite sides stay infinite, empty stays empty. */
 struct box box_transform(const struct affine *to_from, const struct box *b);
 /* Grows by a few units in the last place of the largest coordinate, so that rounding cannot lose a touching ray. */
 struct box box_pad(struct box b);
-/* The part of the ray's closed interval inside the box, conservative by rounding; false when there is none. Handles zero
- * direction components and infinite boxes. */
+/* The part of the ray's closed interval inside the box, conservative by rounding; false when there is none. Handles
+ * zero direction components and infinite boxes. */
 bool box_clip(const struct box *b, const struct ray *ray, double *t_enter, double *t_exit);
 
 /* The same question asked of many boxes by one ray: reciprocals are taken once. */
@@ -52,8 +53,9 @@ static inline struct box_probe box_probe_make(const struct ray *ray) {
     return probe;
 }
 
-/* Whether some t of [t_min, t_max] may lie inside the box; never wrong by rounding in the negative. A direction component
- * of 0 makes the slab's t infinite on the right side, or NaN on its very plane, which every comparison ignores. */
+/* Whether some t of [t_min, t_max] may lie inside the box; never wrong by rounding in the negative. A direction
+ * component of 0 makes the slab's t infinite on the right side, or NaN on its very plane, which every comparison
+ * ignores. */
 static inline bool box_probe_meets(const struct box_probe *probe, const struct box *b, double t_min, double t_max) {
     const double planes[3][2] = {{b->min.x, b->max.x}, {b->min.y, b->max.y}, {b->min.z, b->max.z}};
     double enter = t_min, leave = t_max;

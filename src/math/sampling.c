@@ -1,6 +1,6 @@
 /* The concentric map of Shirley and Chiu, "A Low Distortion Map Between Disk and Square", JGT 1997, and the keyed
- * permutation of Kensler, "Correlated Multi-Jittered Sampling", Pixar Technical Memo 13-01, 2013: bijective mixing steps
- * within the next power of two, repeated until the result is in range (cycle walking). */
+ * permutation of Kensler, "Correlated Multi-Jittered Sampling", Pixar Technical Memo 13-01, 2013: bijective mixing
+ * steps within the next power of two, repeated until the result is in range (cycle walking). */
 #include "math/sampling.h"
 
 #include "math/elementary.h"

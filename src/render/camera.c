@@ -67,8 +67,8 @@ bool camera_prepare(const struct camera *camera, const struct settings *settings
     if (!(vec3_length(right) > 0x1p-40)) {
         up = nearest_axis(out->forward);
         right = vec3_cross(out->forward, up);
-        (void)snprintf(warning, 256, "up is parallel to view (or zero): the axis (%g, %g, %g) is used instead", up.x, up.y,
-                       up.z);
+        (void)snprintf(warning, 256, "up is parallel to view (or zero): the axis (%g, %g, %g) is used instead", up.x,
+                       up.y, up.z);
     }
     right = vec3_normalize(right);
     struct vec3 down = vec3_cross(out->forward, right);
@@ -87,11 +87,8 @@ bool camera_prepare(const struct camera *camera, const struct settings *settings
 struct ray camera_ray(const struct camera_frame *frame, double x, double y) {
     struct vec3 direction = vec3_add_scaled(frame->forward, frame->right, x - frame->width / 2);
     direction = vec3_add_scaled(direction, frame->down, y - frame->height / 2);
-    return (struct ray){.origin = frame->eye,
-                        .direction = direction,
-                        .t_min = 0,
-                        .t_max = INFINITY,
-                        .footprint = {0, frame->spread}};
+    return (struct ray){
+        .origin = frame->eye, .direction = direction, .t_min = 0, .t_max = INFINITY, .footprint = {0, frame->spread}};
 }
 
 /* A place of the unit square on the lens: a disc, or a regular polygon made of triangles round the middle. */
@@ -147,10 +144,8 @@ bool camera_ray_through(const struct camera_frame *frame, double x, double y, st
     case PROJECTION_ORTHOGRAPHIC:
         out->origin = vec3_add_scaled(frame->eye, frame->right, x - frame->width / 2);
         out->origin = vec3_add_scaled(out->origin, frame->down, y - frame->height / 2);
-        *out = (struct ray){.origin = out->origin,
-                            .direction = frame->forward,
-                            .t_max = INFINITY,
-                            .footprint = {frame->spread, 0}};
+        *out = (struct ray){
+            .origin = out->origin, .direction = frame->forward, .t_max = INFINITY, .footprint = {frame->spread, 0}};
         break;
     case PROJECTION_FISHEYE:
     case PROJECTION_PANORAMA:

@@ -9,8 +9,8 @@
 bool film_size(uint32_t width, uint32_t height, size_t *bytes, struct error *error) {
     size_t pixels, size;
     if (width == 0 || height == 0 || !checked_mul(width, height, &pixels) || pixels > (size_t)1 << 31)
-        return error_set(error, ERROR_SCENE, "a picture of %u x %u pixels is more than gray can hold (2^31 pixels)", width,
-                         height);
+        return error_set(error, ERROR_SCENE, "a picture of %u x %u pixels is more than gray can hold (2^31 pixels)",
+                         width, height);
     if (!checked_mul(pixels, sizeof(struct film_pixel) + 1, &size))
         return error_no_memory(error, "the picture");
     *bytes = size;

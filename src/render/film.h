@@ -1,5 +1,5 @@
-/* The film: one picture in memory that supervisor and child share. The child's workers write pixels, the supervisor reads
- * whole tiles. Colours are linear floats, nothing is clamped. */
+/* The film: one picture in memory that supervisor and child share. The child's workers write pixels, the supervisor
+ * reads whole tiles. Colours are linear floats, nothing is clamped. */
 #ifndef GRAY_RENDER_FILM_H
 #define GRAY_RENDER_FILM_H
 

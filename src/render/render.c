@@ -1,6 +1,6 @@
-/* Tiles. A tile samples its pixels and the rim of one pixel round them once (a pixel's first sample is a function of the
- * pixel alone, so two tiles that share a rim agree), marks by neighbours' differences, resamples what is marked, and is
- * final. No barrier, nothing shared but the film, of which every tile writes its own pixels. */
+/* Tiles. A tile samples its pixels and the rim of one pixel round them once (a pixel's first sample is a function of
+ * the pixel alone, so two tiles that share a rim agree), marks by neighbours' differences, resamples what is marked,
+ * and is final. No barrier, nothing shared but the film, of which every tile writes its own pixels. */
 #include "render/render.h"
 
 #include "base/mem.h"
@@ -25,8 +25,8 @@ struct run {
     struct pool *pool;
     struct camera_frame camera;
     struct media eye_media;
-    bool full;          /* -full, or a lens: what is out of focus differs from sample to sample, not by its neighbours */
-    bool media_by_ray;  /* rays start in different places, and something is transparent */
+    bool full;         /* -full, or a lens: what is out of focus differs from sample to sample, not by its neighbours */
+    bool media_by_ray; /* rays start in different places, and something is transparent */
     struct worker *workers;
     uint32_t tiles_x, tiles_y, tile_x0, tile_y0;
     _Atomic uint32_t done;
@@ -55,9 +55,11 @@ static struct vec3 trace_from_eye(struct run *run, struct worker *worker, struct
     return whitted_trace(&worker->tracer, ray, key);
 }
 
-/* Through a lens, in another projection, for two eyes. The places on the lens of a pixel's samples are parted into as many
- * cells as there are samples, visited in an order of the pixel's own, so that pixel and lens are stratified together. */
-static struct vec3 sample_through(struct run *run, struct worker *worker, double x, double y, double share, uint64_t key) {
+/* Through a lens, in another projection, for two eyes. The places on the lens of a pixel's samples are parted into as
+ * many cells as there are samples, visited in an order of the pixel's own, so that pixel and lens are stratified
+ * together. */
+static struct vec3 sample_through(struct run *run, struct worker *worker, double x, double y, double share,
+                                  uint64_t key) {
     const struct strata *strata = &worker->tracer.strata;
     uint32_t side = strata->side, cell = sample_turn(strata, UINT64_MAX);
     struct sample2 place = sample_cell(random_combine(strata->key, 2), cell % side, cell / side, side);
@@ -74,14 +76,15 @@ static struct vec3 sample_through(struct run *run, struct worker *worker, double
 }
 
 /* share: of the pixel's width that this sample stands for; its footprint on textures. */
-static struct vec3 sample(struct run *run, struct worker *worker, int64_t x, int64_t y, double dx, double dy, double share,
-                          uint64_t number) {
+static struct vec3 sample(struct run *run, struct worker *worker, int64_t x, int64_t y, double dx, double dy,
+                          double share, uint64_t number) {
     uint64_t pixel = (uint64_t)y * run->job->width + (uint64_t)x;
     uint64_t key_of_pixel = random_combine(random_combine(run->job->settings.seed, 0), pixel);
     uint64_t key = random_combine(key_of_pixel, number);
     /* Number 0 is the first sample, which stands alone; the others are number - 1 of N x N. */
     uint32_t side = number > 0 ? (uint32_t)run->job->settings.samples : 1;
-    worker->tracer.strata = (struct strata){number > 0 ? (uint32_t)number - 1 : 0, side, random_combine(key_of_pixel, 1)};
+    worker->tracer.strata =
+        (struct strata){number > 0 ? (uint32_t)number - 1 : 0, side, random_combine(key_of_pixel, 1)};
     if (!camera_is_plain(&run->camera))
         return sample_through(run, worker, (double)x + dx, (double)y + dy, share, key);
     struct ray ray = camera_ray(&run->camera, (double)x + dx, (double)y + dy);
@@ -131,7 +134,8 @@ static double squared_distance(struct vec3 a, struct vec3 b) {
     return vec3_dot(d, d);
 }
 
-/* First-pass colours of the tile and its rim, as far as they are in the picture. `area` is the rectangle with the rim. */
+/* First-pass colours of the tile and its rim, as far as they are in the picture. `area` is the rectangle with the rim.
+ */
 static const struct vec3 *first_at(const struct worker *worker, const struct rectangle *area, int64_t x, int64_t y) {
     return &worker->first[(size_t)(y - area->y0) * (FILM_TILE + 2) + (size_t)(x - area->x0)];
 }
@@ -210,7 +214,8 @@ static void tile_item(void *context, uint32_t item, int index) {
     int64_t x0 = ((int64_t)run->tile_x0 + item % run->tiles_x) * FILM_TILE;
     int64_t y0 = ((int64_t)run->tile_y0 + item / run->tiles_x) * FILM_TILE;
     int64_t left = film->x0, top = film->y0, right = left + film->width, bottom = top + film->height;
-    struct rectangle tile = {x0 < left ? left : x0, y0 < top ? top : y0, x0 + FILM_TILE > right ? right : x0 + FILM_TILE,
+    struct rectangle tile = {x0 < left ? left : x0, y0 < top ? top : y0,
+                             x0 + FILM_TILE > right ? right : x0 + FILM_TILE,
                              y0 + FILM_TILE > bottom ? bottom : y0 + FILM_TILE};
     /* A ray that was given up leaves a wrong colour: what ends after a wish to stop counts as not done. */
     bool whole = render_tile(run, worker, tile) && !stopped(run, worker);
@@ -235,12 +240,12 @@ bool render_prepare(struct render_job *job, uint32_t *x0, uint32_t *y0, uint32_t
     *height = job->height;
     if (!s->cropped)
         return true;
-    if (s->crop_x < 0 || s->crop_y < 0 || s->crop_width < 1 || s->crop_height < 1 ||
-        s->crop_x >= (int64_t)job->width || s->crop_width > (int64_t)job->width - s->crop_x ||
-        s->crop_y >= (int64_t)job->height || s->crop_height > (int64_t)job->height - s->crop_y)
+    if (s->crop_x < 0 || s->crop_y < 0 || s->crop_width < 1 || s->crop_height < 1 || s->crop_x >= (int64_t)job->width ||
+        s->crop_width > (int64_t)job->width - s->crop_x || s->crop_y >= (int64_t)job->height ||
+        s->crop_height > (int64_t)job->height - s->crop_y)
         return error_set(error, ERROR_USAGE, "--crop %lld,%lld,%lld,%lld does not lie inside the picture of %u x %u",
-                         (long long)s->crop_x, (long long)s->crop_y, (long long)s->crop_width, (long long)s->crop_height,
-                         job->width, job->height);
+                         (long long)s->crop_x, (long long)s->crop_y, (long long)s->crop_width,
+                         (long long)s->crop_height, job->width, job->height);
     *x0 = (uint32_t)s->crop_x;
     *y0 = (uint32_t)s->crop_y;
     *width = (uint32_t)s->crop_width;
@@ -272,8 +277,8 @@ static bool start_workers(struct run *run, int workers) {
         struct worker *worker = &run->workers[i];
         if (!world_scratch_init(&worker->scratch, run->job->world))
             return false;
-        worker->tracer =
-            (struct tracer){.job = run->job, .pool = run->pool, .scratch = &worker->scratch, .eye_media = &run->eye_media};
+        worker->tracer = (struct tracer){
+            .job = run->job, .pool = run->pool, .scratch = &worker->scratch, .eye_media = &run->eye_media};
     }
     return true;
 }

@@ -24,7 +24,7 @@ struct render_job {
     uint32_t width, height; /* of the whole picture */
     struct vec3 ambient;
     const struct fog *fog; /* or NULL */
-    struct film *film;      /* placed for the crop */
+    struct film *film;     /* placed for the crop */
     /* Called from any worker when a tile is final; may be NULL. done counts from 1. */
     void (*tile_done)(void *context, uint32_t tile, uint32_t done, uint32_t count);
     void *context;

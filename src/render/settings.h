@@ -32,22 +32,22 @@ struct lens {
 
 struct settings {
     struct lens lens;
-    struct tone tone; /* of the picture file; the film stays linear */
-    bool deep;        /* 16 bits a channel in PNG files */
+    struct tone tone;                        /* of the picture file; the film stays linear */
+    bool deep;                               /* 16 bits a channel in PNG files */
     int samples;                             /* -ss: N x N for a marked pixel; 1..64 */
     bool full;                               /* -full: every pixel */
     int reflect_limit, refract_limit;        /* 0..1000 */
     double side_tolerance, corner_tolerance; /* squared RGB distance, >= 0 */
     bool use_tir;
-    int area_samples;                        /* -al-samples: N x N shadow rays; 1..64 */
+    int area_samples; /* -al-samples: N x N shadow rays; 1..64 */
     uint64_t seed;
-    bool view_is_target;                     /* --view target */
-    bool pixel_corner;                       /* --pixel-sample corner */
-    enum specular_kind specular;             /* --specular */
-    bool ambient_plain;                      /* --ambient plain: ambient is added itself, not times kd */
+    bool view_is_target;         /* --view target */
+    bool pixel_corner;           /* --pixel-sample corner */
+    enum specular_kind specular; /* --specular */
+    bool ambient_plain;          /* --ambient plain: ambient is added itself, not times kd */
     enum accel_kind accel;
-    double cutoff;                           /* rays that can change a pixel by less (of 1) are not followed; 0: none */
-    bool keep_first;                         /* the first pass is wanted even where -full makes it needless */
+    double cutoff;   /* rays that can change a pixel by less (of 1) are not followed; 0: none */
+    bool keep_first; /* the first pass is wanted even where -full makes it needless */
     bool cropped;
     int64_t crop_x, crop_y, crop_width, crop_height;
 };
@@ -55,8 +55,9 @@ struct settings {
 struct settings settings_default(void);
 
 struct camera {
-    struct vec3 eye, view, up; /* view: direction, or point with view_is_target; nothing needs to be unit or at right angles */
-    double fov;                /* full vertical angle, degrees, in (0, 180) */
+    struct vec3 eye, view,
+        up;     /* view: direction, or point with view_is_target; nothing needs to be unit or at right angles */
+    double fov; /* full vertical angle, degrees, in (0, 180) */
 };
 
 #endif

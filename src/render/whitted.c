@@ -90,7 +90,8 @@ static double visible_share(struct tracer *tracer, const struct light *light, ui
     return (double)seen / (double)all;
 }
 
-/* A lamp: every shadow ray shades by itself, with the cosine at the lamp. Rays that cannot bring light are not asked. */
+/* A lamp: every shadow ray shades by itself, with the cosine at the lamp. Rays that cannot bring light are not asked.
+ */
 static struct vec3 lamp_light(struct tracer *tracer, const struct light *light, uint32_t number, const struct hit *hit,
                               const struct shading *shading, struct vec3 normal, uint64_t key) {
     struct vec3 sum = {0, 0, 0};
@@ -113,8 +114,8 @@ static struct vec3 lamp_light(struct tracer *tracer, const struct light *light, 
         }
         if (have == 0 || (have < AREA_BATCH && cell + 1 < all))
             continue;
-        (void)world_visible(tracer->job->world, fan.from, hit->time, fan.frame.corner, fan.frame.edge1,
-                            fan.frame.edge2, targets, have, tracer->scratch, visible);
+        (void)world_visible(tracer->job->world, fan.from, hit->time, fan.frame.corner, fan.frame.edge1, fan.frame.edge2,
+                            targets, have, tracer->scratch, visible);
         tracer->shadow_rays += have;
         for (uint32_t i = 0; i < have; i++)
             sum = visible[i] ? vec3_add(sum, carried[i]) : sum;
@@ -175,7 +176,8 @@ static const struct light *visible_light(const struct world *world, const struct
 
 /* --- secondary rays --- */
 
-/* The two sides of the surface for a ray that crosses it here: the relative index of refraction, and the stack behind. */
+/* The two sides of the surface for a ray that crosses it here: the relative index of refraction, and the stack behind.
+ */
 static double cross_surface(const struct hit *hit, double ior, struct vec3 absorption, const struct media *media,
                             struct media *behind) {
     media_copy(behind, media);
@@ -204,8 +206,8 @@ static struct ray secondary_ray(const struct hit *hit, const struct ray *from, s
                         .media = media};
 }
 
-/* `side`: the normal turned to the ray's side. A reflection about an interpolated normal may point into the surface: the
- * geometric normal then takes its place. */
+/* `side`: the normal turned to the ray's side. A reflection about an interpolated normal may point into the surface:
+ * the geometric normal then takes its place. */
 static struct vec3 reflect_outwards(const struct hit *hit, struct vec3 side, struct vec3 geometric_side) {
     struct vec3 direction = shading_reflect(side, hit->view);
     return vec3_dot(direction, geometric_side) > 0 ? direction : shading_reflect(geometric_side, hit->view);
@@ -343,7 +345,8 @@ static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const str
         refraction = vec3_all(0);
     }
     if (shading.alpha > 0) {
-        struct rough rough = {hit, ray, &behind, side, geometric_side, through, eta, shading.alpha, look.glossy_samples};
+        struct rough rough = {
+            hit, ray, &behind, side, geometric_side, through, eta, shading.alpha, look.glossy_samples};
         return vec3_add(colour, follow_rough(tracer, &rough, mirror, refraction, path));
     }
     if (!is_black(mirror)) {

@@ -1,5 +1,5 @@
-/* The recursive integrator of Whitted, "An Improved Illumination Model for Shaded Display", CACM 1980, with the rules of
- * SPEC 1.2: own light, reflected and refracted rays with independent counters, media stack, Fresnel. */
+/* The recursive integrator of Whitted, "An Improved Illumination Model for Shaded Display", CACM 1980, with the rules
+ * of SPEC 1.2: own light, reflected and refracted rays with independent counters, media stack, Fresnel. */
 #ifndef GRAY_RENDER_WHITTED_H
 #define GRAY_RENDER_WHITTED_H
 

@@ -39,7 +39,8 @@ bool node_add_child(struct scene *scene, struct node *parent, struct node *child
     return true;
 }
 
-static bool compose_separately(struct scene *scene, struct node *node, enum node_step step, const struct transform *by) {
+static bool compose_separately(struct scene *scene, struct node *node, enum node_step step,
+                               const struct transform *by) {
     if (!node->separate) {
         node->separate = arena_alloc_array(&scene->arena, NODE_STEPS, sizeof *node->separate);
         if (!node->separate)

@@ -1,6 +1,6 @@
 /* The authoring tree: nodes with transforms, shapes, materials; a DAG, since a node may hang under several parents (an
- * instance, not a copy). Everything lives in the arena of the scene; nothing is freed singly. Adding 100,000 children is
- * linear. Cycles can be built here and are found by world_build, which names the nodes. */
+ * instance, not a copy). Everything lives in the arena of the scene; nothing is freed singly. Adding 100,000 children
+ * is linear. Cycles can be built here and are found by world_build, which names the nodes. */
 #ifndef GRAY_SCENE_NODE_H
 #define GRAY_SCENE_NODE_H
 
@@ -28,27 +28,30 @@ struct node_child {
 
 struct node {
     enum node_kind kind;
-    const char *name;  /* never NULL */
-    uint32_t serial;   /* order of creation, unique in a scene */
-    bool singular;     /* some scale factor was 0: nothing under it is drawn */
+    const char *name; /* never NULL */
+    uint32_t serial;  /* order of creation, unique in a scene */
+    bool singular;    /* some scale factor was 0: nothing under it is drawn */
     struct transform parent_from_node;
     struct transform *separate; /* ORDER_SEPARATE only: translation, rotation, scaling; else NULL */
     struct node_child *first_child, *last_child;
     uint32_t child_count;
     struct shape shape;              /* NODE_GEOMETRY; never SHAPE_CSG */
     const struct material *material; /* may be NULL: plain gray and one warning */
-    /* A mesh whose faces have slots: their materials, NULL for plain gray. `material`, where it is set, covers them all. */
+    /* A mesh whose faces have slots: their materials, NULL for plain gray. `material`, where it is set, covers them
+     * all. */
     const struct material *const *slots;
     const char *const *slot_names; /* as many, or NULL */
     uint32_t slot_count;
     enum node_cull cull;
-    const struct material *texture;  /* set_texture: a MATERIAL_IMAGE template whose base is filled in when flattened */
-    enum node_csg operation;         /* NODE_CSG */
+    const struct material *texture; /* set_texture: a MATERIAL_IMAGE template whose base is filled in when flattened */
+    enum node_csg operation;        /* NODE_CSG */
     struct node *operands[2];
-    struct { double min, init, max; } joint_x, joint_y; /* NODE_JOINT, degrees */
-    bool warned;            /* this node's oddity has been told once */
-    int mark;               /* used by walks over the tree: 0 not seen, 1 on the path, 2 finished */
-    uint64_t drawable;      /* primitives under it, worked out by such a walk; saturates */
+    struct {
+        double min, init, max;
+    } joint_x, joint_y; /* NODE_JOINT, degrees */
+    bool warned;        /* this node's oddity has been told once */
+    int mark;           /* used by walks over the tree: 0 not seen, 1 on the path, 2 finished */
+    uint64_t drawable;  /* primitives under it, worked out by such a walk; saturates */
 };
 
 /* The store of assets: outlives scripts and renders. */
@@ -79,8 +82,8 @@ void assets_destroy(struct assets *assets);
 /* The mesh of this input: an equal one from the store or a new one. Owned by the store. */
 struct mesh *assets_mesh(struct assets *assets, const struct mesh_input *input, struct error *error);
 struct image *assets_image(struct assets *assets, const char *path, struct error *error);
-/* By key (the canonical path and how it was read); NULL when it is not there yet; and the way to add it: the store takes
- * over object, also when it fails. */
+/* By key (the canonical path and how it was read); NULL when it is not there yet; and the way to add it: the store
+ * takes over object, also when it fails. */
 void *assets_find_object(struct assets *assets, const char *key);
 bool assets_add_object(struct assets *assets, const char *key, void *object, void (*destroy)(void *object),
                        struct error *error);

@@ -1,6 +1,6 @@
-/* node:bounds(): the box round everything under a node, by a walk over all paths below it. Vertices of meshes are mapped
- * one by one, so that the box is tight under any transform; nodes that place millions of things are measured more coarsely
- * or refused, so that the answer never takes longer than a moment. */
+/* node:bounds(): the box round everything under a node, by a walk over all paths below it. Vertices of meshes are
+ * mapped one by one, so that the box is tight under any transform; nodes that place millions of things are measured
+ * more coarsely or refused, so that the answer never takes longer than a moment. */
 #include "script/actions.h"
 #include "script/context.h"
 

@@ -51,8 +51,7 @@ bool act_fog_profile(struct context *context, const struct value *args, struct r
             return error_set(error, ERROR_SCENE, "profile[%u][1] must be at least the height before it", i + 1);
         heights[i] = table->pairs[i][0];
         densities[i] = table->pairs[i][1];
-        sums[i] = i == 0 ? 0
-                         : sums[i - 1] + (heights[i] - heights[i - 1]) * 0.5 * (densities[i] + densities[i - 1]);
+        sums[i] = i == 0 ? 0 : sums[i - 1] + (heights[i] - heights[i - 1]) * 0.5 * (densities[i] + densities[i - 1]);
     }
     struct fog fog = {.kind = FOG_PROFILE, .count = count, .heights = heights, .densities = densities, .sums = sums};
     return give_fog(context, &fog, args, result, error);

@@ -57,8 +57,9 @@ static bool give_lamp(struct context *context, struct light *light, const struct
     if (!args[LIGHT_COLOUR].given && !light->emits)
         return error_set(error, ERROR_SCENE, "colour is missing");
     if (light->emits && (args[LIGHT_FALLOFF].given || args[LIGHT_RANGE].given || args[LIGHT_INTENSITY].given))
-        return error_set(error, ERROR_SCENE, "a light with emission fades by its shape alone, without falloff, range "
-                                             "or intensity");
+        return error_set(error, ERROR_SCENE,
+                         "a light with emission fades by its shape alone, without falloff, range "
+                         "or intensity");
     if (light->emits && !args[LIGHT_COLOUR].given)
         lamp[LIGHT_COLOUR].vector = vec3_all(1);
     if (light->emits)
@@ -205,9 +206,7 @@ static bool apply_lens(const struct value *args, struct lens *lens, const struct
     lens->blades = (int)args[RENDER_BLADES].number;
     lens->blade_angle = args[RENDER_BLADE_ANGLE].number;
     lens->stereo = (enum stereo)args[RENDER_STEREO].choice;
-    lens->screen = args[RENDER_SCREEN].given ? args[RENDER_SCREEN].number
-                   : lens->focus > 0         ? lens->focus
-                                             : fallback;
+    lens->screen = args[RENDER_SCREEN].given ? args[RENDER_SCREEN].number : lens->focus > 0 ? lens->focus : fallback;
     lens->eye_distance = args[RENDER_EYE_DISTANCE].given ? args[RENDER_EYE_DISTANCE].number : lens->screen / 30;
     return true;
 }

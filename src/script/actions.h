@@ -211,6 +211,7 @@ enum {
     RENDER_SCREEN,
     RENDER_COUNT
 };
-action act_light, act_directional_light, act_spot_light, act_area_light, act_spherical_light, act_disc_light, act_render;
+action act_light, act_directional_light, act_spot_light, act_area_light, act_spherical_light, act_disc_light,
+    act_render;
 
 #endif

@@ -16,7 +16,16 @@
 
 enum { PATH_SIZE = 4096, FILE_LIMIT = 1 << 28 };
 
-enum handle_type { HANDLE_NODE, HANDLE_MATERIAL, HANDLE_LIGHT, HANDLE_TEXTURE, HANDLE_FOG, HANDLE_SKY, HANDLE_GHOST, HANDLE_TYPES };
+enum handle_type {
+    HANDLE_NODE,
+    HANDLE_MATERIAL,
+    HANDLE_LIGHT,
+    HANDLE_TEXTURE,
+    HANDLE_FOG,
+    HANDLE_SKY,
+    HANDLE_GHOST,
+    HANDLE_TYPES
+};
 
 /* What a userdata of ours holds; no finalizer. The serial gives tables with handles as keys a fixed order. */
 struct handle {
@@ -34,14 +43,14 @@ struct source_name {
 
 /* What the script has used of what it was given (limits.c). */
 struct limits {
-    uint64_t memory, memory_limit;            /* bytes of the Lua state, as the allocator rounds them */
-    uint64_t asset_memory;                    /* bytes of meshes and images made for this script */
-    uint32_t known_meshes, known_images;      /* counted so far, or there before */
-    const void *refused_block;                /* the request that was refused last: Lua asks again after a collection */
+    uint64_t memory, memory_limit;       /* bytes of the Lua state, as the allocator rounds them */
+    uint64_t asset_memory;               /* bytes of meshes and images made for this script */
+    uint32_t known_meshes, known_images; /* counted so far, or there before */
+    const void *refused_block;           /* the request that was refused last: Lua asks again after a collection */
     size_t refused_size;
-    bool memory_out;                          /* refused for good: the script ends */
-    double time_begun, time_limit;            /* seconds of this thread's processor time; a limit of 0 is none */
-    uint64_t output, output_limit;            /* bytes printed and written */
+    bool memory_out;               /* refused for good: the script ends */
+    double time_begun, time_limit; /* seconds of this thread's processor time; a limit of 0 is none */
+    uint64_t output, output_limit; /* bytes printed and written */
 };
 
 struct context {
@@ -92,9 +101,9 @@ _Noreturn void context_raise_no_memory(struct context *context);
 /* limits.c */
 void limits_begin(struct context *context);
 void *limits_allocate(void *context, void *block, size_t old_size, size_t size); /* a lua_Alloc */
-void limits_open(lua_State *L);               /* sets the hook */
-void limits_check(lua_State *L);              /* raises when time or memory is used up or somebody wants to stop */
-void limits_check_memory(lua_State *L);       /* the part of it that is about what the scene holds */
+void limits_open(lua_State *L);                                                  /* sets the hook */
+void limits_check(lua_State *L);               /* raises when time or memory is used up or somebody wants to stop */
+void limits_check_memory(lua_State *L);        /* the part of it that is about what the scene holds */
 void limits_output(lua_State *L, size_t size); /* so many bytes are about to be written; may raise */
 void limits_count_output(struct context *context, size_t size); /* the same without raising; the next check does */
 /* Around what is not the script's own work. */

@@ -8,7 +8,6 @@
 #include <limits.h>
 #include <string.h>
 
-
 static void push_numbers(lua_State *L, const double numbers[3]) {
     lua_createtable(L, 3, 0);
     for (int k = 0; k < 3; k++) {

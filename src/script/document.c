@@ -295,7 +295,8 @@ const char *script_annotations(struct arena *arena) {
         "-- The gr functions for editors that understand LuaLS annotations. Written by `gray --annotations` from\n"
         "-- the table in src/script/table.c; a test checks that it is current.\n\n"
         "---@alias gr.triple number[] three numbers: a point, a direction, a colour\n"
-        "---@class gr.material\n---@class gr.light\n---@class gr.texture\n---@class gr.fog\n---@class gr.sky\n---@class gr.node\n"
+        "---@class gr.material\n---@class gr.light\n---@class gr.texture\n---@class gr.fog\n---@class "
+        "gr.sky\n---@class gr.node\n"
         "local node = {}\n\ngr = {}\n\n---The version of the renderer.\ngr.version = ''\n\n");
     for (int k = 0; k < function_count; k++) {
         const struct function *function = &function_table[k];

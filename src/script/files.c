@@ -9,7 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static bool try_file(const struct context *context, char out[PATH_SIZE], const char *folder, const char *between, const char *name) {
+static bool try_file(const struct context *context, char out[PATH_SIZE], const char *folder, const char *between,
+                     const char *name) {
     int length = snprintf(out, PATH_SIZE, "%s%s%s", folder, between, name);
     return length > 0 && length < PATH_SIZE && reach_is_readable(context->reach, out);
 }
@@ -18,8 +19,9 @@ bool files_find(struct context *context, const char *name, char out[PATH_SIZE]) 
     if (name[0] == '/')
         return try_file(context, out, "", "", name);
     const char *folder = context->folder, *slash = strrchr(name, '/');
-    return try_file(context, out, folder, "", name) || try_file(context, out, "", "", name) || try_file(context, out, folder, "Assets/", name) ||
-           try_file(context, out, folder, "../Assets/", name) || (slash && try_file(context, out, folder, "", slash + 1));
+    return try_file(context, out, folder, "", name) || try_file(context, out, "", "", name) ||
+           try_file(context, out, folder, "Assets/", name) || try_file(context, out, folder, "../Assets/", name) ||
+           (slash && try_file(context, out, folder, "", slash + 1));
 }
 
 /* A digit, ".0", then no digit: how Lua 5.4 writes 3.0 where older ones wrote 3. */
@@ -216,7 +218,8 @@ static int dofile_continue(lua_State *L, int status, lua_KContext base) {
 static int file_do(lua_State *L) {
     lua_settop(L, 1);
     if (load_named(L) != LUA_OK) {
-        if (lua_type(L, -1) == LUA_TSTRING && (lua_tostring(L, -1)[0] == '\'' || strncmp(lua_tostring(L, -1), "cannot find", 11) == 0))
+        if (lua_type(L, -1) == LUA_TSTRING &&
+            (lua_tostring(L, -1)[0] == '\'' || strncmp(lua_tostring(L, -1), "cannot find", 11) == 0))
             return luaL_error(L, "dofile: %s", lua_tostring(L, -1));
         return lua_error(L);
     }

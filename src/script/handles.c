@@ -8,9 +8,8 @@
 static const char *const type_names[HANDLE_TYPES] = {"node", "material", "light", "texture", "fog", "sky", "ghost"};
 
 const char *handle_words(enum handle_type type) {
-    static const char *const words[HANDLE_TYPES] = {"a node", "a material", "a light", "a texture",
-                                                    "a fog", "a sky",
-                                                    "something this version does not have"};
+    static const char *const words[HANDLE_TYPES] = {
+        "a node", "a material", "a light", "a texture", "a fog", "a sky", "something this version does not have"};
     return words[type];
 }
 

@@ -25,7 +25,8 @@ static int end_script(lua_State *L) {
     context_raise_fatal(L);
 }
 
-/* debug.getinfo([thread,] function or level [, what]): source, short_src, currentline, and nothing that can be called. */
+/* debug.getinfo([thread,] function or level [, what]): source, short_src, currentline, and nothing that can be called.
+ */
 static int place_info(lua_State *L) {
     lua_State *from = L;
     int at = 1;

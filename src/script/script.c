@@ -104,8 +104,9 @@ static bool conclude(struct context *context, int status, struct error *error) {
     if (status == LUA_OK || context->ended)
         return true;
     if (context->limits.memory_out)
-        return error_set(error, ERROR_SCENE, "%s: the script used up its memory of %llu MiB (--script-memory allows more)",
-                         context->path, (unsigned long long)(context->limits.memory_limit >> 20));
+        return error_set(error, ERROR_SCENE,
+                         "%s: the script used up its memory of %llu MiB (--script-memory allows more)", context->path,
+                         (unsigned long long)(context->limits.memory_limit >> 20));
     if (status == LUA_ERRMEM)
         return error_set(error, ERROR_MACHINE, "%s: out of memory for the script", context->path);
     if (context->failure.kind == ERROR_NONE)

@@ -1,5 +1,5 @@
-/* The script layer: runs one Lua scene. It reads arguments, raises script errors, hands plain C values on. It never sees a
- * pixel and opens no file by itself (base/file.h does). The host is what the application gives it. */
+/* The script layer: runs one Lua scene. It reads arguments, raises script errors, hands plain C values on. It never
+ * sees a pixel and opens no file by itself (base/file.h does). The host is what the application gives it. */
 #ifndef GRAY_SCRIPT_SCRIPT_H
 #define GRAY_SCRIPT_SCRIPT_H
 
@@ -27,9 +27,9 @@ struct script_options {
     bool no_sandbox;
     const char *const *allow_read, *const *allow_write; /* folders */
     int allow_read_count, allow_write_count;
-    int memory_limit; /* MiB; 0: 4096, without the sandbox none */
-    double time_limit; /* seconds of processor time, rendering not counted; 0: 60, without the sandbox none */
-    int output_limit; /* MiB printed and written; 0: 64, without the sandbox none */
+    int memory_limit;           /* MiB; 0: 4096, without the sandbox none */
+    double time_limit;          /* seconds of processor time, rendering not counted; 0: 60, without the sandbox none */
+    int output_limit;           /* MiB printed and written; 0: 64, without the sandbox none */
     const char *library_folder; /* absolute path of lua/ (data folder of the installation), on package.path last */
 };
 
@@ -54,8 +54,8 @@ enum script_message { SCRIPT_NOTICE, SCRIPT_WARNING };
 struct script_host {
     void *context;
     struct settings settings; /* from the command line */
-    /* Renders at once; false = stop the script with this error (an ERROR_SCENE is raised as a script error at the line of
-     * the call, other kinds end the script without being catchable by pcall). */
+    /* Renders at once; false = stop the script with this error (an ERROR_SCENE is raised as a script error at the line
+     * of the call, other kinds end the script without being catchable by pcall). */
     bool (*render)(void *context, const struct render_request *request, struct error *error);
     /* One complete line without newline, e.g. "scene.lua:3: warning: gr.sphere: ..." */
     void (*message)(void *context, enum script_message kind, const char *text);

@@ -348,17 +348,44 @@ static const struct parameter rotate_parameters[] = {
     { "two_sided", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether faces seen from behind are lit as well." }
 
 #define SURFACE_FIELDS                                                                                                 \
-    [PHONG_HIGHLIGHT] = {"highlight", KIND_CHOICE, OPTIONAL, 0, 0, "phong blinn", NULL, "specular of the render",      \
+    [PHONG_HIGHLIGHT] = {"highlight",                                                                                  \
+                         KIND_CHOICE,                                                                                  \
+                         OPTIONAL,                                                                                     \
+                         0,                                                                                            \
+                         0,                                                                                            \
+                         "phong blinn",                                                                                \
+                         NULL,                                                                                         \
+                         "specular of the render",                                                                     \
                          "The form of its highlight."},                                                                \
-    [PHONG_LIT] = {"lit", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "true",                                                   \
+    [PHONG_LIT] = {"lit",                                                                                              \
+                   KIND_BOOLEAN,                                                                                       \
+                   OPTIONAL,                                                                                           \
+                   ANY,                                                                                                \
+                   NULL,                                                                                               \
+                   "true",                                                                                             \
                    "Whether light is looked for; false: kd is shown as it is."},                                       \
-    [PHONG_EMISSION] = {"emission", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0, 0, 0}",                                     \
-                        "Light of its own, added to what it reflects."},                                               \
-    [PHONG_ROUGHNESS] = {"roughness", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "0",                                 \
+    [PHONG_EMISSION] =                                                                                                 \
+        {"emission", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0, 0, 0}", "Light of its own, added to what it reflects."},   \
+    [PHONG_ROUGHNESS] = {"roughness",                                                                                  \
+                         KIND_NUMBER,                                                                                  \
+                         OPTIONAL,                                                                                     \
+                         BETWEEN(0, 1),                                                                                \
+                         NULL,                                                                                         \
+                         "0",                                                                                          \
                          "Of reflection and refraction: 0 is polished."},                                              \
-    [PHONG_GLOSSY_SAMPLES] = {"glossy_samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "4",                       \
+    [PHONG_GLOSSY_SAMPLES] = {"glossy_samples",                                                                        \
+                              KIND_WHOLE,                                                                              \
+                              OPTIONAL,                                                                                \
+                              BETWEEN(1, 64),                                                                          \
+                              NULL,                                                                                    \
+                              "4",                                                                                     \
                               "N x N rays where it is rough; one ray after another rough surface."},                   \
-    [PHONG_ABSORPTION] = {"absorption", KIND_COLOUR, OPTIONAL, BETWEEN(0, 1e300), NULL, "{0, 0, 0}",                   \
+    [PHONG_ABSORPTION] = {"absorption",                                                                                \
+                          KIND_COLOUR,                                                                                 \
+                          OPTIONAL,                                                                                    \
+                          BETWEEN(0, 1e300),                                                                           \
+                          NULL,                                                                                        \
+                          "{0, 0, 0}",                                                                                 \
                           "Inside, light fades by exp(-absorption * distance)."}
 
 static const struct parameter material_parameters[] = {
@@ -437,29 +464,57 @@ static const struct parameter texture_parameters[] = {
 static const struct parameter fresnel_parameters[] = {[FRESNEL_MATERIAL] = BASE};
 
 #define LIGHT_LISTS                                                                                                    \
-    [LIGHT_INCLUDE] = {"include", KIND_NODES, OPTIONAL, ANY, NULL, "all",                                              \
-                       "The nodes that it lights, with everything under them."},                                       \
+    [LIGHT_INCLUDE] =                                                                                                  \
+        {"include", KIND_NODES, OPTIONAL, ANY, NULL, "all", "The nodes that it lights, with everything under them."},  \
     [LIGHT_EXCLUDE] = {"exclude", KIND_NODES, OPTIONAL, ANY, NULL, "none", "The nodes that it does not light."}
 #define LIGHT_FIELDS(colour_flags)                                                                                     \
-    [LIGHT_COLOUR] = {"colour", KIND_COLOUR, colour_flags, ANY, NULL, colour_flags ? "{1, 1, 1} with emission" : NULL, \
+    [LIGHT_COLOUR] = {"colour",                                                                                        \
+                      KIND_COLOUR,                                                                                     \
+                      colour_flags,                                                                                    \
+                      ANY,                                                                                             \
+                      NULL,                                                                                            \
+                      colour_flags ? "{1, 1, 1} with emission" : NULL,                                                 \
                       "Its colour and strength."},                                                                     \
     LIGHT_LISTS
 #define FADING_FIELDS                                                                                                  \
-    [LIGHT_FALLOFF] = {"falloff", KIND_TRIPLE, OPTIONAL, ANY, NULL, "{1, 0, 0}",                                       \
+    [LIGHT_FALLOFF] = {"falloff",                                                                                      \
+                       KIND_TRIPLE,                                                                                    \
+                       OPTIONAL,                                                                                       \
+                       ANY,                                                                                            \
+                       NULL,                                                                                           \
+                       "{1, 0, 0}",                                                                                    \
                        "Coefficients: light is divided by c0 + c1 d + c2 d^2."},                                       \
-    [LIGHT_RANGE] = {"range", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, NULL,                                  \
+    [LIGHT_RANGE] = {"range",                                                                                          \
+                     KIND_NUMBER,                                                                                      \
+                     OPTIONAL | LOW_OPEN,                                                                              \
+                     ABOVE(0),                                                                                         \
+                     NULL,                                                                                             \
+                     NULL,                                                                                             \
                      "How far it reaches, instead of falloff: light is multiplied by 1 - d / range."},                 \
-    [LIGHT_INTENSITY] = {"intensity", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, NULL,                                     \
+    [LIGHT_INTENSITY] = {"intensity",                                                                                  \
+                         KIND_NUMBER,                                                                                  \
+                         OPTIONAL,                                                                                     \
+                         ABOVE(0),                                                                                     \
+                         NULL,                                                                                         \
+                         NULL,                                                                                         \
                          "Physical fading, instead of falloff: light is multiplied by intensity / d^2."}
 #define LAMP_FIELDS                                                                                                    \
-    [LIGHT_EMISSION] = {"emission", KIND_COLOUR, OPTIONAL, ANY, NULL, NULL,                                            \
+    [LIGHT_EMISSION] = {"emission",                                                                                    \
+                        KIND_COLOUR,                                                                                   \
+                        OPTIONAL,                                                                                      \
+                        ANY,                                                                                           \
+                        NULL,                                                                                          \
+                        NULL,                                                                                          \
                         "Radiance of its surface, times colour: what it lights follows its true shape, without "       \
                         "falloff."},                                                                                   \
-    [LIGHT_SAMPLES] = {"samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "area_samples",                          \
-                       "N x N shadow rays for this light."},                                                           \
+    [LIGHT_SAMPLES] =                                                                                                  \
+        {"samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "area_samples", "N x N shadow rays for this light."},  \
     [LIGHT_VISIBLE] = {"visible", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the light itself is seen."}
 #define ONE_SIDED(text)                                                                                                \
-    { "one_sided", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether it is seen, and emits, only on the side of " text "." }
+    {                                                                                                                  \
+        "one_sided", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",                                                       \
+            "Whether it is seen, and emits, only on the side of " text "."                                             \
+    }
 
 static const struct parameter light_parameters[] = {
     LIGHT_FIELDS(0),
@@ -480,8 +535,8 @@ static const struct parameter spot_parameters[] = {
     [SPOT_TARGET] = {"target", KIND_POINT, OPTIONAL, ANY, NULL, NULL, "A point on the axis, instead of direction."},
     [SPOT_INNER] = {"inner", KIND_NUMBER, OPTIONAL, BETWEEN(0, 180), "degrees", "three quarters of outer",
                     "Angle from the axis up to which its light is full."},
-    [SPOT_OUTER] = {"outer", KIND_NUMBER, OPTIONAL | LOW_OPEN, BETWEEN(0, 180), "degrees", "30, or inner if that is more",
-                    "Angle from the axis where its light ends."},
+    [SPOT_OUTER] = {"outer", KIND_NUMBER, OPTIONAL | LOW_OPEN, BETWEEN(0, 180), "degrees",
+                    "30, or inner if that is more", "Angle from the axis where its light ends."},
 };
 
 static const struct parameter area_parameters[] = {
@@ -514,21 +569,33 @@ static const struct parameter disc_light_parameters[] = {
 
 #define SKY_FIELDS                                                                                                     \
     [SKY_INTENSITY] = {"intensity", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1", "Factor of its brightness."},          \
-    [SKY_ROTATION] = {"rotation", KIND_NUMBER, OPTIONAL, ANY, "degrees", "0",                                          \
+    [SKY_ROTATION] = {"rotation",                                                                                      \
+                      KIND_NUMBER,                                                                                     \
+                      OPTIONAL,                                                                                        \
+                      ANY,                                                                                             \
+                      "degrees",                                                                                       \
+                      "0",                                                                                             \
                       "How far it is turned about y, counterclockwise seen from above."}
 #define SKY_FACE(text)                                                                                                 \
     { text, KIND_IMAGE, 0, ANY, NULL, NULL, "A square picture, as somebody in the middle sees it." }
 #define SUN(first)                                                                                                     \
-    [(first) + SUN_DIRECTION] = {"sun", KIND_DIRECTION, OPTIONAL, ANY, NULL, NULL,                                     \
-                                 "The direction to the sun, instead of time and place."},                              \
-    [(first) + SUN_HOUR] = {"hour", KIND_NUMBER, OPTIONAL, BETWEEN(0, 24), NULL, "12", "Hour of the clock."},          \
-    [(first) + SUN_DAY] = {"day", KIND_WHOLE, OPTIONAL, BETWEEN(1, 366), NULL, "172, 21 June", "Day of the year."},    \
-    [(first) + SUN_LATITUDE] = {"latitude", KIND_NUMBER, OPTIONAL, BETWEEN(-90, 90), "degrees", "45",                  \
-                                "North is positive; -z is north and +x is east."},                                     \
-    [(first) + SUN_LONGITUDE] = {"longitude", KIND_NUMBER, OPTIONAL, BETWEEN(-180, 180), "degrees", "0",               \
-                                 "East is positive."},                                                                 \
-    [(first) + SUN_ZONE] = {"zone", KIND_NUMBER, OPTIONAL, BETWEEN(-14, 14), "hours", "0",                             \
-                            "How far the clock is ahead of Greenwich."}
+    [(first) +                                                                                                         \
+        SUN_DIRECTION] =                                                                                               \
+        {"sun", KIND_DIRECTION, OPTIONAL, ANY, NULL, NULL, "The direction to the sun, instead of time and place."},    \
+        [(first) + SUN_HOUR] = {"hour", KIND_NUMBER, OPTIONAL, BETWEEN(0, 24), NULL, "12", "Hour of the clock."},      \
+        [(first) +                                                                                                     \
+            SUN_DAY] = {"day", KIND_WHOLE, OPTIONAL, BETWEEN(1, 366), NULL, "172, 21 June", "Day of the year."},       \
+        [(first) + SUN_LATITUDE] = {"latitude",                                                                        \
+                                    KIND_NUMBER,                                                                       \
+                                    OPTIONAL,                                                                          \
+                                    BETWEEN(-90, 90),                                                                  \
+                                    "degrees",                                                                         \
+                                    "45",                                                                              \
+                                    "North is positive; -z is north and +x is east."},                                 \
+        [(first) + SUN_LONGITUDE] = {"longitude", KIND_NUMBER, OPTIONAL,           BETWEEN(-180, 180),                 \
+                                     "degrees",   "0",         "East is positive."},                                   \
+        [(first) + SUN_ZONE] = {                                                                                       \
+            "zone", KIND_NUMBER, OPTIONAL, BETWEEN(-14, 14), "hours", "0", "How far the clock is ahead of Greenwich."}
 
 static const struct parameter sky_faces_parameters[] = {
     SKY_FIELDS,
@@ -567,10 +634,9 @@ static const struct parameter sun_light_parameters[] = {
 
 #define FOG_FIELDS                                                                                                     \
     [FOG_COLOUR] = {"colour", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0.5, 0.5, 0.5}", "Its colour."},                     \
-    [FOG_CLEAR_SKY] = {"clear_sky", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",                                        \
-                       "Whether the sky is seen without fog."}
-#define FOG_DENSITY(text)                                                                                              \
-    [FOG_AMOUNT] = {"density", KIND_NUMBER, 0, ABOVE(0), NULL, NULL, text}
+    [FOG_CLEAR_SKY] = {                                                                                                \
+        "clear_sky", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the sky is seen without fog."}
+#define FOG_DENSITY(text) [FOG_AMOUNT] = {"density", KIND_NUMBER, 0, ABOVE(0), NULL, NULL, text}
 
 static const struct parameter fog_parameters[] = {
     FOG_FIELDS,
@@ -664,16 +730,19 @@ static const struct parameter render_parameters[] = {
                             "Height of an orthographic picture in the scene."},
     [RENDER_ANGLE] = {"angle", KIND_NUMBER, OPTIONAL | LOW_OPEN, BETWEEN(0, 360), "degrees", "180",
                       "Full angle of a fisheye across the height."},
-    [RENDER_SHIFT_X] = {"shift_x", KIND_NUMBER, OPTIONAL, ANY, "widths", "0", "How far the window is off to the right."},
+    [RENDER_SHIFT_X] = {"shift_x", KIND_NUMBER, OPTIONAL, ANY, "widths", "0",
+                        "How far the window is off to the right."},
     [RENDER_SHIFT_Y] = {"shift_y", KIND_NUMBER, OPTIONAL, ANY, "heights", "0", "How far the window is off upwards."},
     [RENDER_APERTURE] = {"aperture", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0",
                          "Radius of the lens in the scene; 0 is a pinhole. With a lens every pixel is resampled."},
     [RENDER_FOCUS] = {"focus", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "target, else 1",
                       "Distance of the plane that is sharp, along the view."},
-    [RENDER_FOCUS_POINT] = {"focus_point", KIND_POINT, OPTIONAL, ANY, NULL, NULL, "A point of that plane, instead of focus."},
+    [RENDER_FOCUS_POINT] = {"focus_point", KIND_POINT, OPTIONAL, ANY, NULL, NULL,
+                            "A point of that plane, instead of focus."},
     [RENDER_BLADES] = {"blades", KIND_WHOLE, OPTIONAL, BETWEEN(3, 64), NULL, "round",
                        "Number of blades: the aperture is a polygon."},
-    [RENDER_BLADE_ANGLE] = {"blade_angle", KIND_NUMBER, OPTIONAL, ANY, "degrees", "0", "How far that polygon is turned."},
+    [RENDER_BLADE_ANGLE] = {"blade_angle", KIND_NUMBER, OPTIONAL, ANY, "degrees", "0",
+                            "How far that polygon is turned."},
     [RENDER_STEREO] = {"stereo", KIND_CHOICE, OPTIONAL, 0, 0, "none side anaglyph", NULL, "'none'",
                        "Two eyes: pictures side by side, left one left, or red and cyan."},
     [RENDER_EYE_DISTANCE] = {"eye_distance", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "screen / 30",

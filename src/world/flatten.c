@@ -148,8 +148,11 @@ static bool place(struct flattening *f, const struct node *node, const struct tr
     if (world->placed_count == f->placed_capacity)
         return error_set(f->error, ERROR_MACHINE, "the scene changed while it was flattened");
     struct placed *placed = &f->placed[world->placed_count];
-    *placed = (struct placed){.world_from_object = *world_from_node, .shape = *shape, .material = material,
-                              .slot_count = slot_count, .cull = node->cull};
+    *placed = (struct placed){.world_from_object = *world_from_node,
+                              .shape = *shape,
+                              .material = material,
+                              .slot_count = slot_count,
+                              .cull = node->cull};
     double stretch = 0;
     for (int i = 0; i < 3; i++) {
         const double *row = world_from_node->forward.m[i];

@@ -26,9 +26,10 @@ bool flatten_scene(struct flattening *f, struct node *root);
 
 /* The CSG primitive of a NODE_CSG in its own space; NULL shape pointer out when it is empty (nothing to draw). */
 bool flatten_csg(struct flattening *f, struct node *node, const struct csg **out);
-/* Index of a node's effective material: its texture over its material; without one that of the CSG solid it is a part of
- * (`inherited`, may be NULL), else plain gray. A mesh with several material slots has *count of them in a row, from *out
- * on; everything else has 1. */
+/* Index of a node's effective material: its texture over its material; without one that of the CSG solid it is a part
+ * of
+ * (`inherited`, may be NULL), else plain gray. A mesh with several material slots has *count of them in a row, from
+ * *out on; everything else has 1. */
 bool flatten_material(struct flattening *f, struct node *node, const struct material *inherited, uint32_t *out,
                       uint32_t *count);
 bool flatten_mesh_index(struct flattening *f, const struct shape *shape);

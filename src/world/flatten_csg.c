@@ -5,7 +5,6 @@
 
 #include "base/mem.h"
 
-
 enum { CSG_NESTING = 10000, CSG_LEAVES = 65535 };
 
 struct csg_draft {
@@ -53,8 +52,7 @@ static bool add_leaf(struct flattening *f, struct csg_draft *draft, struct node 
         draft->leaf_capacity = capacity;
     }
     struct csg_leaf leaf = {.shape = node->shape, .csg_from_leaf = *csg_from_node};
-    if (!flatten_mesh_index(f, &node->shape) ||
-        !flatten_material(f, node, inherited, &leaf.material, &leaf.slot_count))
+    if (!flatten_mesh_index(f, &node->shape) || !flatten_material(f, node, inherited, &leaf.material, &leaf.slot_count))
         return false;
     draft->leaves[draft->leaf_count] = leaf;
     return add_token(f, draft, (struct csg_token){.operation = CSG_LEAF, .leaf = (uint16_t)draft->leaf_count++});
@@ -91,9 +89,7 @@ static bool add_operation(struct flattening *f, struct csg_draft *draft, struct 
         *empty = false;
         return add_token(f, draft, (struct csg_token){.operation = operation});
     }
-    *empty = operation == CSG_UNION ? first_empty && second_empty
-             : operation == CSG_DIFFERENCE ? first_empty
-                                           : true;
+    *empty = operation == CSG_UNION ? first_empty && second_empty : operation == CSG_DIFFERENCE ? first_empty : true;
     if (*empty) {
         draft->length = start;
         draft->leaf_count = leaves;

@@ -1,6 +1,6 @@
-/* Effective materials: a node's texture (set_texture) goes over its material, a node without material is plain gray. Each
- * distinct pair gets one index, in order of first use; the table that finds pairs again is hashed by address, which
- * decides where an entry stands and never which index it gets. */
+/* Effective materials: a node's texture (set_texture) goes over its material, a node without material is plain gray.
+ * Each distinct pair gets one index, in order of first use; the table that finds pairs again is hashed by address,
+ * which decides where an entry stands and never which index it gets. */
 #include "world/flatten.h"
 
 #include "base/random.h"
@@ -29,8 +29,8 @@ static const struct material plain_gray = {
     .phong = {.kd = {0.5, 0.5, 0.5}, .ks = {0, 0, 0}, .shininess = 1, .ior = 1},
 };
 
-static struct material_entry *find(struct material_table *table, const void *material,
-                                   const struct material *texture, enum shape_kind shape) {
+static struct material_entry *find(struct material_table *table, const void *material, const struct material *texture,
+                                   enum shape_kind shape) {
     uint64_t key = random_combine(random_combine((uint64_t)(uintptr_t)material, (uint64_t)(uintptr_t)texture), shape);
     for (uint32_t at = (uint32_t)key;; at++) {
         struct material_entry *entry = &table->entries[at & (table->capacity - 1)];
@@ -49,8 +49,12 @@ static bool grow(struct flattening *f) {
     struct material_entry *entries = arena_alloc_array(f->arena, capacity, sizeof *entries);
     if (!table || !entries)
         return error_no_memory(f->error, "the materials of the scene");
-    *table = (struct material_table){.entries = entries, .capacity = capacity, .count = old.count, .list = old.list,
-                                     .list_capacity = old.list_capacity, .list_count = old.list_count};
+    *table = (struct material_table){.entries = entries,
+                                     .capacity = capacity,
+                                     .count = old.count,
+                                     .list = old.list,
+                                     .list_capacity = old.list_capacity,
+                                     .list_count = old.list_count};
     for (uint32_t i = 0; i < old.capacity; i++) {
         const struct material_entry *entry = &old.entries[i];
         if (entry->used)
@@ -133,8 +137,9 @@ bool flatten_material(struct flattening *f, struct node *node, const struct mate
     const struct material *texture = node->texture;
     for (uint32_t i = 0; i < *count; i++) {
         if (!bases[i])
-            warn_once(f, node, by_slot ? "has faces without a material, which are shown in plain gray"
-                                       : "has no material and is shown in plain gray");
+            warn_once(f, node,
+                      by_slot ? "has faces without a material, which are shown in plain gray"
+                              : "has no material and is shown in plain gray");
         if (texture && bases[i] && bases[i]->depth >= MATERIAL_DEPTH)
             return error_set(f->error, ERROR_SCENE, "node '%.100s': more than %d materials are stacked on each other",
                              node->name, MATERIAL_DEPTH);

@@ -15,7 +15,7 @@ struct walk {
     struct walk_frame {
         const struct node_child *next;
         bool listed;
-    } *frames;
+    } * frames;
     size_t count, capacity;
 };
 

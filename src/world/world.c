@@ -188,8 +188,7 @@ static void search_tree(struct search *s) {
 
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
                             uint32_t *placed, struct crossing *crossing) {
-    struct search s = {
-        .world = world, .ray = ray, .scratch = scratch, .limited = *ray, .probe = box_probe_make(ray)};
+    struct search s = {.world = world, .ray = ray, .scratch = scratch, .limited = *ray, .probe = box_probe_make(ray)};
     scratch->rays++;
     switch (world->accel) {
     case ACCEL_AUTO:
@@ -211,7 +210,8 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
 
 /* --- anything in the way --- */
 
-static bool any_placed(const struct world *world, uint32_t index, const struct ray *ray, struct world_scratch *scratch) {
+static bool any_placed(const struct world *world, uint32_t index, const struct ray *ray,
+                       struct world_scratch *scratch) {
     const struct placed *placed = &world->placed[index];
     struct ray ray_object = placed->identity ? *ray : ray_transform(&placed->world_from_object.inverse, ray);
     for (;;) {
@@ -346,8 +346,8 @@ static double row_sum(const struct affine *a, struct vec3 p) {
     return largest;
 }
 
-/* How far a secondary ray must start off the surface. The point is known up to the surface's own error and the rounding of
- * both transforms; everything scales with the numbers involved, so no length is wired in. */
+/* How far a secondary ray must start off the surface. The point is known up to the surface's own error and the rounding
+ * of both transforms; everything scales with the numbers involved, so no length is wired in. */
 static double offset_of(const struct placed *placed, const struct surface *surface, struct vec3 point) {
     double mapped = row_sum(&placed->world_from_object.forward, surface->point);
     double back = row_sum(&placed->world_from_object.inverse, point) * placed->scale;

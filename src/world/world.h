@@ -15,11 +15,11 @@
 struct placed {
     struct transform world_from_object;
     struct shape shape;
-    uint32_t material; /* unused for CSG: the leaves have their own */
+    uint32_t material;   /* unused for CSG: the leaves have their own */
     uint32_t slot_count; /* of a mesh: face slot k has material + k; below 2 all have `material` */
     enum node_cull cull; /* of a mesh */
-    bool identity; /* world_from_object changes nothing: a placed sphere or box of an old scene, mostly */
-    double scale;  /* largest stretch of world_from_object: bounds errors */
+    bool identity;       /* world_from_object changes nothing: a placed sphere or box of an old scene, mostly */
+    double scale;        /* largest stretch of world_from_object: bounds errors */
 };
 
 struct world {
@@ -55,14 +55,15 @@ void world_scratch_destroy(struct world_scratch *scratch);
 typedef void world_warning(void *context, const char *text);
 
 /* Flattens the tree under root as it stands now; mesh indices are built where they are missing. The world points into
- * the scene's arena (materials, names), so it must not outlive the script. Errors: cycles (naming the nodes), no memory,
- * cancelled. lights and sky are copied. */
+ * the scene's arena (materials, names), so it must not outlive the script. Errors: cycles (naming the nodes), no
+ * memory, cancelled. lights and sky are copied. */
 bool world_build(struct world *world, struct arena *arena, struct scene *scene, struct node *root,
                  const struct light *lights, uint32_t light_count, const struct sky *sky, enum accel_kind accel,
                  struct pool *pool, world_warning *warn, void *warn_context, struct error *error);
 void world_destroy(struct world *world); /* what is not in the arena: grid and tree */
 
-/* Nearest hit in the ray's open interval, fully described. Equal t: the primitive that comes first in flattening order. */
+/* Nearest hit in the ray's open interval, fully described. Equal t: the primitive that comes first in flattening order.
+ */
 bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit);
 /* Only which primitive and where; for tests and counters. */
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,

@@ -59,7 +59,7 @@ static inline struct mesh_input maker_input(const struct maker *m) {
     return (struct mesh_input){.name = "test",
                                .vertex_count = m->vertex_count,
                                .face_count = m->face_count,
-                               .vertices = (const double (*)[3])m->vertices,
+                               .vertices = (const double(*)[3])m->vertices,
                                .face_start = m->starts ? m->starts : none,
                                .vertex_index = m->corners};
 }
@@ -83,8 +83,8 @@ static inline void maker_scale(struct maker *m, double scale, double dx, double 
     }
 }
 
-/* An octahedron, each face divided into size * size triangles, pushed out to the unit sphere. Corners that fall together
- * are given the same coordinates bit for bit. */
+/* An octahedron, each face divided into size * size triangles, pushed out to the unit sphere. Corners that fall
+ * together are given the same coordinates bit for bit. */
 static inline void maker_sphere(struct maker *m, int size) {
     for (int side = 0; side < 8; side++) {
         double sx = side & 1 ? -1 : 1, sy = side & 2 ? -1 : 1, sz = side & 4 ? -1 : 1;
@@ -128,7 +128,16 @@ static inline void maker_twisted_torus(struct maker *m, int around, int section,
         }
 }
 
-enum soup { SOUP_EVEN, SOUP_SLIVERS, SOUP_FLAT, SOUP_MIXED_SIZES, SOUP_TINY_IN_HUGE, SOUP_LATTICE, SOUP_LINE, SOUP_KINDS };
+enum soup {
+    SOUP_EVEN,
+    SOUP_SLIVERS,
+    SOUP_FLAT,
+    SOUP_MIXED_SIZES,
+    SOUP_TINY_IN_HUGE,
+    SOUP_LATTICE,
+    SOUP_LINE,
+    SOUP_KINDS
+};
 
 static inline void maker_soup(struct maker *m, enum soup kind, uint32_t triangles, struct test_random *random) {
     for (uint32_t i = 0; i < triangles; i++) {

@@ -1,15 +1,15 @@
 /* A wish to stop reaches the threads at once: the flag lies in memory that another process may set, and whatever takes
  * long asks for it. Measured from the flag to the return, at several moments, the best of some runs at each: other
  * programs run beside. */
-#include "tests/unit/mesh_makers.h"
 #include "tests/stage.h"
+#include "tests/unit/mesh_makers.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
 #include <time.h>
 
-/* Quiet machines show some milliseconds (docs/reliability.md). A test must hold on a busy one too: what never asks for the
- * flag goes on for longer than this. */
+/* Quiet machines show some milliseconds (docs/reliability.md). A test must hold on a busy one too: what never asks for
+ * the flag goes on for longer than this. */
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
 static const double allowed = 1;
 #else
@@ -131,8 +131,8 @@ static bool build_world(void *context) {
     struct stage *s = work->stage;
     struct world world = {0};
     struct arena arena = {0};
-    bool done = world_build(&world, &arena, &s->scene, s->root, s->lights, s->light_count, &s->sky, work->accel, s->pool,
-                            NULL, NULL, &s->error);
+    bool done = world_build(&world, &arena, &s->scene, s->root, s->lights, s->light_count, &s->sky, work->accel,
+                            s->pool, NULL, NULL, &s->error);
     if (done)
         world_destroy(&world);
     arena_destroy(&arena);

@@ -51,7 +51,8 @@ TEST(fog_is_the_exponential_of_its_integral) {
         cells[i] = test_uniform(&random, 0, 1);
     struct fog height = {.kind = FOG_HEIGHT, .density = 0.4, .base = 0.3, .scale = 0.7};
     struct fog profile = {.kind = FOG_PROFILE, .count = 4, .heights = heights, .densities = levels, .sums = sums};
-    struct fog grid = {.kind = FOG_GRID, .corner = {-1, -1, -2}, .size = {3, 2, 2}, .cells = {4, 3, 2}, .densities = cells};
+    struct fog grid = {
+        .kind = FOG_GRID, .corner = {-1, -1, -2}, .size = {3, 2, 2}, .cells = {4, 3, 2}, .densities = cells};
     for (int i = 0; i < 40; i++) {
         struct vec3 o, d;
         o.x = test_uniform(&random, -3, 3), o.y = test_uniform(&random, -3, 3), o.z = test_uniform(&random, -3, 3);
@@ -60,7 +61,8 @@ TEST(fog_is_the_exponential_of_its_integral) {
         d = vec3_normalize(d);
         double distance = test_uniform(&random, 0.1, 6);
         CHECK_NEAR(fog_transmittance(&height, o, d, distance), by_steps(height_density, &height, o, d, distance), 1e-7);
-        CHECK_NEAR(fog_transmittance(&profile, o, d, distance), by_steps(profile_density, &profile, o, d, distance), 2e-5);
+        CHECK_NEAR(fog_transmittance(&profile, o, d, distance), by_steps(profile_density, &profile, o, d, distance),
+                   2e-5);
         CHECK_NEAR(fog_transmittance(&grid, o, d, distance), by_steps(grid_density, &grid, o, d, distance), 2e-4);
     }
     struct vec3 o = {0, 0.3, 0}, up = {0, 1, 0}, down = {0, -1, 0};

@@ -13,11 +13,11 @@ TEST(gltf_without_its_parser_says_so) {
 
 #define ASSET "\"asset\":{\"version\":\"2.0\"}"
 /* Three corners (float), three indices (u8) behind them. */
-#define TRIANGLE_URI                                                                                                   \
-    "data:application/gltf-buffer;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAECAA=="
+#define TRIANGLE_URI "data:application/gltf-buffer;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAECAA=="
 #define TRIANGLE                                                                                                       \
-    "\"buffers\":[{\"byteLength\":40,\"uri\":\"" TRIANGLE_URI "\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},"   \
-    "{\"buffer\":0,\"byteOffset\":36,\"byteLength\":3}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,"          \
+    "\"buffers\":[{\"byteLength\":40,\"uri\":\"" TRIANGLE_URI                                                          \
+    "\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},"                                                          \
+    "{\"buffer\":0,\"byteOffset\":36,\"byteLength\":3}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,"      \
     "\"count\":3,\"type\":\"VEC3\"},{\"bufferView\":1,\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"}]"
 #define MESH "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}]"
 
@@ -59,7 +59,8 @@ TEST(gltf_buffers_and_pictures_may_be_files_beside_it) {
     test_write_file(path, b.data, b.size);
     bytes = b.data;
     (void)snprintf(path, sizeof path, "%s/t.gltf", test_folder());
-    test_write_text(path, "{" ASSET ",\"buffers\":[{\"byteLength\":40,\"uri\":\"my%20data.bin\"}],\"bufferViews\":[{\"buffer\":0,"
+    test_write_text(path, "{" ASSET
+                          ",\"buffers\":[{\"byteLength\":40,\"uri\":\"my%20data.bin\"}],\"bufferViews\":[{\"buffer\":0,"
                           "\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":3}],\"accessors\":[{"
                           "\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},{\"bufferView\":1,"
                           "\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"}]," MESH
@@ -93,12 +94,12 @@ static struct vec3 place_of(const struct node *node, const char *name, struct ve
 }
 
 TEST(gltf_nodes_are_placed_by_matrix_and_by_parts_and_share_their_mesh) {
-    static const char text[] =
-        "{" ASSET "," TRIANGLE "," MESH ",\"scene\":0,\"scenes\":[{\"nodes\":[2]}],\"nodes\":["
-        "{\"name\":\"a\",\"mesh\":0,\"translation\":[1,2,3],\"scale\":[2,2,2],\"rotation\":[0,0,0.7071067811865476,0.7071067811865476]},"
-        "{\"name\":\"b\",\"mesh\":0,\"matrix\":[0,1,0,0,-1,0,0,0,0,0,1,0,5,0,0,1]},"
-        "{\"name\":\"root\",\"children\":[0,1,4],\"translation\":[0,0,10]},"
-        "{\"name\":\"elsewhere\",\"mesh\":0},{\"name\":\"flat\",\"mesh\":0,\"scale\":[1,0,1]}]}";
+    static const char text[] = "{" ASSET "," TRIANGLE "," MESH ",\"scene\":0,\"scenes\":[{\"nodes\":[2]}],\"nodes\":["
+                               "{\"name\":\"a\",\"mesh\":0,\"translation\":[1,2,3],\"scale\":[2,2,2],\"rotation\":[0,0,"
+                               "0.7071067811865476,0.7071067811865476]},"
+                               "{\"name\":\"b\",\"mesh\":0,\"matrix\":[0,1,0,0,-1,0,0,0,0,0,1,0,5,0,0,1]},"
+                               "{\"name\":\"root\",\"children\":[0,1,4],\"translation\":[0,0,10]},"
+                               "{\"name\":\"elsewhere\",\"mesh\":0},{\"name\":\"flat\",\"mesh\":0,\"scale\":[1,0,1]}]}";
     struct model model;
     struct error error;
     CHECK(parse_text(&model, text, &error));
@@ -136,8 +137,10 @@ TEST(gltf_nodes_are_placed_by_matrix_and_by_parts_and_share_their_mesh) {
 TEST(gltf_file_with_one_mesh_is_one_geometry_node) {
     struct model model;
     struct error error;
-    CHECK(parse_text(&model, "{" ASSET "," TRIANGLE "," MESH ",\"nodes\":[{\"children\":[1],\"translation\":[0,0,1]},"
-                             "{\"mesh\":0,\"translation\":[0,1,0]}]}", &error));
+    CHECK(parse_text(&model,
+                     "{" ASSET "," TRIANGLE "," MESH ",\"nodes\":[{\"children\":[1],\"translation\":[0,0,1]},"
+                     "{\"mesh\":0,\"translation\":[0,1,0]}]}",
+                     &error));
     CHECK_TEXT(error.text, "");
     struct assets assets = {0};
     struct scene scene;
@@ -200,7 +203,8 @@ TEST(gltf_strips_fans_and_lists_without_indices_are_triangles) {
 }
 
 TEST(gltf_accessors_of_all_kinds_are_read) {
-    /* Interleaved: position (u16 normalized, 3 + pad), uv (u8 normalized, 2 + pad), colour (u8, 4), normal (i8, 3 + pad). */
+    /* Interleaved: position (u16 normalized, 3 + pad), uv (u8 normalized, 2 + pad), colour (u8, 4), normal (i8, 3 +
+     * pad). */
     struct bytes buffer = {0};
     static const uint16_t positions[3][3] = {{0, 0, 0}, {65535, 0, 0}, {0, 65535, 0}};
     static const uint8_t uvs[3][2] = {{0, 0}, {255, 0}, {0, 255}};
@@ -221,18 +225,19 @@ TEST(gltf_accessors_of_all_kinds_are_read) {
     bytes_number(&buffer, 0, 2, false);
     struct model model;
     struct error error;
-    bool ok = parse_parts(&model, &buffer,
-                "\"extensionsRequired\":[\"KHR_mesh_quantization\"],\"meshes\":[{\"primitives\":[{\"attributes\":{"
-                "\"POSITION\":0,\"TEXCOORD_0\":1,\"COLOR_0\":2,\"NORMAL\":3},\"indices\":4}]}],\"bufferViews\":["
-                "{\"buffer\":0,\"byteLength\":60,\"byteStride\":20},{\"buffer\":0,\"byteOffset\":60,\"byteLength\":6},"
-                "{\"buffer\":0,\"byteOffset\":68,\"byteLength\":4},{\"buffer\":0,\"byteOffset\":72,\"byteLength\":6}],"
-                "\"accessors\":[{\"bufferView\":0,\"componentType\":5123,\"normalized\":true,\"count\":3,\"type\":\"VEC3\","
-                "\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":2,\"componentType\":5125},\"values\":{\"bufferView\":3}}},"
-                "{\"bufferView\":0,\"byteOffset\":8,\"componentType\":5121,\"normalized\":true,\"count\":3,\"type\":\"VEC2\"},"
-                "{\"bufferView\":0,\"byteOffset\":12,\"componentType\":5121,\"normalized\":true,\"count\":3,\"type\":\"VEC4\"},"
-                "{\"bufferView\":0,\"byteOffset\":16,\"componentType\":5120,\"normalized\":true,\"count\":3,\"type\":\"VEC3\"},"
-                "{\"bufferView\":1,\"componentType\":5123,\"count\":3,\"type\":\"SCALAR\"}]",
-                &error);
+    bool ok = parse_parts(
+        &model, &buffer,
+        "\"extensionsRequired\":[\"KHR_mesh_quantization\"],\"meshes\":[{\"primitives\":[{\"attributes\":{"
+        "\"POSITION\":0,\"TEXCOORD_0\":1,\"COLOR_0\":2,\"NORMAL\":3},\"indices\":4}]}],\"bufferViews\":["
+        "{\"buffer\":0,\"byteLength\":60,\"byteStride\":20},{\"buffer\":0,\"byteOffset\":60,\"byteLength\":6},"
+        "{\"buffer\":0,\"byteOffset\":68,\"byteLength\":4},{\"buffer\":0,\"byteOffset\":72,\"byteLength\":6}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5123,\"normalized\":true,\"count\":3,\"type\":\"VEC3\","
+        "\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":2,\"componentType\":5125},\"values\":{\"bufferView\":3}}},"
+        "{\"bufferView\":0,\"byteOffset\":8,\"componentType\":5121,\"normalized\":true,\"count\":3,\"type\":\"VEC2\"},"
+        "{\"bufferView\":0,\"byteOffset\":12,\"componentType\":5121,\"normalized\":true,\"count\":3,\"type\":\"VEC4\"},"
+        "{\"bufferView\":0,\"byteOffset\":16,\"componentType\":5120,\"normalized\":true,\"count\":3,\"type\":\"VEC3\"},"
+        "{\"bufferView\":1,\"componentType\":5123,\"count\":3,\"type\":\"SCALAR\"}]",
+        &error);
     CHECK_TEXT(error.text, "");
     bytes_free(&buffer);
     if (!ok)
@@ -280,16 +285,22 @@ TEST(gltf_materials_and_embedded_pictures_become_ours) {
     bytes_add(&buffer, png, size);
     free(png);
     char json[3000];
-    (void)snprintf(json, sizeof json,
-        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1},\"material\":0},{\"attributes\":{"
+    (void)snprintf(
+        json, sizeof json,
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1},\"material\":0},{"
+        "\"attributes\":{"
         "\"POSITION\":0},\"material\":1},{\"attributes\":{\"POSITION\":0}}]}],\"accessors\":[{\"bufferView\":0,"
         "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},{\"bufferView\":1,\"componentType\":5126,\"count\":3,"
         "\"type\":\"VEC2\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,"
-        "\"byteLength\":24},{\"buffer\":0,\"byteOffset\":60,\"byteLength\":%zu}],\"images\":[{\"bufferView\":2,\"mimeType\":"
-        "\"image/png\"}],\"samplers\":[{\"wrapS\":33071,\"wrapT\":33648,\"magFilter\":9728}],\"textures\":[{\"source\":0,"
+        "\"byteLength\":24},{\"buffer\":0,\"byteOffset\":60,\"byteLength\":%zu}],\"images\":[{\"bufferView\":2,"
+        "\"mimeType\":"
+        "\"image/"
+        "png\"}],\"samplers\":[{\"wrapS\":33071,\"wrapT\":33648,\"magFilter\":9728}],\"textures\":[{\"source\":0,"
         "\"sampler\":0}],\"materials\":[{\"name\":\"picture\",\"doubleSided\":true,\"pbrMetallicRoughness\":{"
-        "\"baseColorFactor\":[0.5,1,1,1],\"metallicFactor\":0,\"roughnessFactor\":0.5,\"baseColorTexture\":{\"index\":0,"
-        "\"extensions\":{\"KHR_texture_transform\":{\"scale\":[2,3],\"offset\":[0.5,0.25]}}}}},{\"pbrMetallicRoughness\":{"
+        "\"baseColorFactor\":[0.5,1,1,1],\"metallicFactor\":0,\"roughnessFactor\":0.5,\"baseColorTexture\":{\"index\":"
+        "0,"
+        "\"extensions\":{\"KHR_texture_transform\":{\"scale\":[2,3],\"offset\":[0.5,0.25]}}}}},{"
+        "\"pbrMetallicRoughness\":{"
         "\"baseColorFactor\":[1,0.5,0,1],\"roughnessFactor\":0}}]",
         size);
     struct model model;
@@ -339,7 +350,8 @@ TEST(gltf_errors_name_the_place) {
         {"{\n\"asset\":{]", "t.gltf:2: broken JSON: string or '}' expected near ']'"},
         {"[]", "t.gltf: its JSON: an object must be at the top"},
         {"{}", "t.gltf: asset: glTF of version 2 is read, this file is of version 'none'"},
-        {"{\"asset\":{\"version\":\"1.0\"}}", "t.gltf: asset: glTF of version 2 is read, this file is of version '1.0'"},
+        {"{\"asset\":{\"version\":\"1.0\"}}",
+         "t.gltf: asset: glTF of version 2 is read, this file is of version '1.0'"},
         {"{" ASSET "}", "t.gltf: no faces in this file"},
         {"{" ASSET ",\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]}",
          "t.gltf: extensionsRequired: the file needs 'KHR_draco_mesh_compression', which is not supported"},
@@ -350,17 +362,21 @@ TEST(gltf_errors_name_the_place) {
          "t.gltf: accessors[0]: it cannot be the indices of vertices"},
         {"{" ASSET "," TRIANGLE ",\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"mode\":7}]}]}",
          "t.gltf: meshes[0].primitives[0]: the mode 7 is unknown"},
-        {"{" ASSET "," TRIANGLE "," MESH ",\"nodes\":[{\"mesh\":1}]}", "t.gltf: nodes[0]: mesh is 1, but there are only 1 meshes"},
+        {"{" ASSET "," TRIANGLE "," MESH ",\"nodes\":[{\"mesh\":1}]}",
+         "t.gltf: nodes[0]: mesh is 1, but there are only 1 meshes"},
         {"{" ASSET "," TRIANGLE "," MESH ",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"children\":[0]}]}",
          "t.gltf: nodes[0]: it has two parents, or is below itself"},
         {"{" ASSET "," TRIANGLE "," MESH ",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"children\":[9]}]}",
          "t.gltf: nodes[0]: a child that does not exist"},
         {"{" ASSET "," TRIANGLE "," MESH ",\"nodes\":[{\"mesh\":0,\"scale\":[1,2]}]}",
          "t.gltf: nodes[0]: scale is not an array of 3 numbers"},
-        {"{" ASSET ",\"buffers\":[{\"byteLength\":10000000000,\"uri\":\"" TRIANGLE_URI "\"}],\"bufferViews\":[{\"buffer\":0,"
-         "\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}]," MESH "}",
+        {"{" ASSET ",\"buffers\":[{\"byteLength\":10000000000,\"uri\":\"" TRIANGLE_URI
+         "\"}],\"bufferViews\":[{\"buffer\":0,"
+         "\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}]"
+         "," MESH "}",
          "t.gltf: meshes[0].primitives[0]: indices is 1, but there are only 1 accessors"},
-        {"{" ASSET ",\"buffers\":[{\"byteLength\":10000000000,\"uri\":\"" TRIANGLE_URI "\"}],\"bufferViews\":[{\"buffer\":0,"
+        {"{" ASSET ",\"buffers\":[{\"byteLength\":10000000000,\"uri\":\"" TRIANGLE_URI
+         "\"}],\"bufferViews\":[{\"buffer\":0,"
          "\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
          "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}",
          "t.gltf: buffers[0]: it promises 10000000000 bytes, but there are only 40"},
@@ -389,7 +405,8 @@ TEST(gltf_numbers_that_are_none_and_vertices_that_do_not_exist_are_errors) {
     struct error error;
     struct model model;
     static const char json[] =
-        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],\"accessors\":[{\"bufferView\":0,"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],\"accessors\":[{"
+        "\"bufferView\":0,"
         "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},{\"bufferView\":1,\"componentType\":5121,\"count\":3,"
         "\"type\":\"SCALAR\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,"
         "\"byteLength\":3}]";

@@ -112,8 +112,8 @@ static void check_script(const char *folder, const char *name) {
 
 /* A PNG that claims 30000 x 30000 pixels and holds none. */
 static void write_huge_image(const char *path) {
-    static const unsigned char start[] = {137, 80, 78, 71, 13, 10, 26, 10, 0,    0,    0, 13, 'I', 'H', 'D', 'R',
-                                          0,   0,  117, 48, 0,  0,  117, 48, 16,   6,    0, 0,  0,   0x3b, 0x7c, 0x5f, 0x4e};
+    static const unsigned char start[] = {137, 80,  78, 71, 13, 10,  26, 10, 0, 0, 0, 13, 'I',  'H',  'D',  'R', 0,
+                                          0,   117, 48, 0,  0,  117, 48, 16, 6, 0, 0, 0,  0x3b, 0x7c, 0x5f, 0x4e};
     test_write_file(path, start, sizeof start);
 }
 
@@ -243,7 +243,8 @@ static void confine_here(void) {
         _exit(77); /* not in this kernel or build: said in the report */
 }
 
-/* How a process ends that is confined and then does something: the signal, or -1 when it goes on, -2 without seccomp. */
+/* How a process ends that is confined and then does something: the signal, or -1 when it goes on, -2 without seccomp.
+ */
 static int end_of(void (*deed)(void)) {
     fflush(stdout);
     pid_t child = fork();
@@ -285,11 +286,13 @@ TEST(hostile_a_confined_process_reads_its_folders_only_writes_nothing_and_still_
         ok = ok && open("tests/hostile/harm.txt", O_WRONLY | O_CREAT, 0666) < 0;
         ok = ok && open("/proc/self/mem", O_RDWR) < 0 && open("/dev/null", O_WRONLY) < 0;
         ok = ok && unlink("tests/hostile/time_loop.lua") < 0 && mkdir("tests/hostile/harm", 0777) < 0;
-        ok = ok && mmap(NULL, 4096, PROT_READ | PROT_WRITE | PROT_EXEC, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) == MAP_FAILED;
+        ok = ok &&
+             mmap(NULL, 4096, PROT_READ | PROT_WRITE | PROT_EXEC, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) == MAP_FAILED;
         ok = ok && fork() < 0;
         pthread_t thread;
         int number = 0;
-        ok = ok && pthread_create(&thread, NULL, add_one, &number) == 0 && pthread_join(thread, NULL) == 0 && number == 1;
+        ok = ok && pthread_create(&thread, NULL, add_one, &number) == 0 && pthread_join(thread, NULL) == 0 &&
+             number == 1;
         void *large = malloc(100 << 20);
         ok = ok && large;
         free(large);
@@ -306,8 +309,8 @@ TEST(hostile_a_confined_process_reads_its_folders_only_writes_nothing_and_still_
 TEST(hostile_verbose_says_what_confines_and_no_sandbox_is_one_warning) {
     struct test_result plain = test_gray_scene("print('x')", "--verbose scene.lua", NULL);
     CHECK(strstr(plain.err, "gray: confined by ") && strstr(plain.err, "; scenes may read below "));
-    struct test_result without = test_gray_scene("assert(os.execute and io.open('/etc/passwd'))", "--no-sandbox scene.lua",
-                                                 NULL);
+    struct test_result without =
+        test_gray_scene("assert(os.execute and io.open('/etc/passwd'))", "--no-sandbox scene.lua", NULL);
     CHECK_EQ_INT(without.status, 0);
     CHECK_TEXT(without.err,
                "gray: warning: --no-sandbox: scenes may read and write all your files and start programs\n");
@@ -321,16 +324,17 @@ TEST(hostile_folders_that_are_allowed_can_be_read_and_written_and_only_those) {
     char *arguments = NULL, *inner = NULL;
     CHECK(asprintf(&inner, "%s/inner", test_folder()) > 0 && mkdir(inner, 0777) == 0);
     CHECK(asprintf(&arguments, "--allow-write inner --allow-read /etc scene.lua") > 0);
-    struct test_result result = test_gray_scene("assert(io.open('/etc/passwd')):close()\n"
-                                                "local f = assert(io.open('inner/a.txt', 'w')) f:write('well') f:close()\n"
-                                                "assert(io.open('inner/a.txt', 'r+')):close()\n"
-                                                "assert(os.rename('inner/a.txt', 'inner/b.txt'))\n"
-                                                "assert(io.open('inner/b.txt', 'a')):write('!')\n"
-                                                "assert(os.remove('inner/missing') == nil)\n"
-                                                "assert(io.open('a.txt', 'w') == nil and io.open('/etc/x', 'w') == nil)\n"
-                                                "assert(os.rename('inner/b.txt', 'b.txt') == nil)\n"
-                                                "assert(os.remove('scene.lua') == nil)",
-                                                arguments, NULL);
+    struct test_result result =
+        test_gray_scene("assert(io.open('/etc/passwd')):close()\n"
+                        "local f = assert(io.open('inner/a.txt', 'w')) f:write('well') f:close()\n"
+                        "assert(io.open('inner/a.txt', 'r+')):close()\n"
+                        "assert(os.rename('inner/a.txt', 'inner/b.txt'))\n"
+                        "assert(io.open('inner/b.txt', 'a')):write('!')\n"
+                        "assert(os.remove('inner/missing') == nil)\n"
+                        "assert(io.open('a.txt', 'w') == nil and io.open('/etc/x', 'w') == nil)\n"
+                        "assert(os.rename('inner/b.txt', 'b.txt') == nil)\n"
+                        "assert(os.remove('scene.lua') == nil)",
+                        arguments, NULL);
     if (result.status != 0)
         test_fail(__FILE__, __LINE__, "status %d: %s", result.status, result.err);
     free(result.out);

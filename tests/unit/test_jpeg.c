@@ -1,7 +1,7 @@
 #include "base/mem.h"
-#include "tests/harness.h"
 #include "image/image_file.h"
 #include "image/jpeg_read.h"
+#include "tests/harness.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* Lights against closed forms. What a small patch of a white floor gets from a lamp of radiance 1 is the view factor of
- * the lamp; the formulas are those of Howell, "A Catalog of Radiation Heat Transfer Configuration Factors": B-12 (disc),
- * B-3 (rectangle over its corner), B-38 (sphere). */
+ * the lamp; the formulas are those of Howell, "A Catalog of Radiation Heat Transfer Configuration Factors": B-12
+ * (disc), B-3 (rectangle over its corner), B-38 (sphere). */
 #include "math/elementary.h"
 #include "math/sampling.h"
 #include "tests/harness.h"
@@ -287,8 +287,8 @@ TEST(all_lights_give_the_same_bits_for_any_threads_search_and_power_of_two) {
         int threads;
         enum accel_kind accel;
         double unit;
-    } runs[] = {{1, ACCEL_AUTO, 1},    {2, ACCEL_AUTO, 1},     {7, ACCEL_GRID, 1},     {2, ACCEL_NONE, 1},
-                {2, ACCEL_AUTO, 0x1p-10}, {2, ACCEL_BVH, 0x1p20}};
+    } runs[] = {{1, ACCEL_AUTO, 1}, {2, ACCEL_AUTO, 1},       {7, ACCEL_GRID, 1},
+                {2, ACCEL_NONE, 1}, {2, ACCEL_AUTO, 0x1p-10}, {2, ACCEL_BVH, 0x1p20}};
     for (int i = 0; i < 6; i++) {
         struct stage s;
         stage_begin(&s, runs[i].threads);

@@ -133,9 +133,18 @@ TEST(mesh_describe_interpolates_normals_uv_and_their_derivatives) {
     const double uvs[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     const uint32_t start[3] = {0, 4, 7}, corner[7] = {0, 1, 2, 3, 0, 1, 2}, none[7] = {0, 1, 2, 3, UINT32_MAX, 1, 2};
     const uint32_t material[2] = {7, 9};
-    struct mesh_input input = {.name = "t", .vertex_count = 4, .face_count = 2, .vertices = vertices,
-                               .face_start = start, .vertex_index = corner, .normal_count = 4, .normals = normals,
-                               .normal_index = none, .uv_count = 4, .uvs = uvs, .uv_index = none,
+    struct mesh_input input = {.name = "t",
+                               .vertex_count = 4,
+                               .face_count = 2,
+                               .vertices = vertices,
+                               .face_start = start,
+                               .vertex_index = corner,
+                               .normal_count = 4,
+                               .normals = normals,
+                               .normal_index = none,
+                               .uv_count = 4,
+                               .uvs = uvs,
+                               .uv_index = none,
                                .face_material = material};
     struct error error;
     struct mesh *mesh = mesh_create(&input, &error);
@@ -254,8 +263,8 @@ static uint64_t check_against_brute(const struct maker *m, const char *what, int
         bool expected = mesh_nearest(mesh, &ray, ACCEL_NONE, &scratch, &slow);
         hits += expected;
         if (found != expected || (found && !same_crossing(&fast, &slow)))
-            test_fail(__FILE__, __LINE__, "%s, ray %d: %d at %.17g of %u, not %d at %.17g of %u", what, i, found, fast.t,
-                      fast.part, expected, slow.t, slow.part);
+            test_fail(__FILE__, __LINE__, "%s, ray %d: %d at %.17g of %u, not %d at %.17g of %u", what, i, found,
+                      fast.t, fast.part, expected, slow.t, slow.part);
         if (mesh_any(mesh, &ray, ACCEL_GRID, &scratch) != expected)
             test_fail(__FILE__, __LINE__, "%s, ray %d: any is not %d", what, i, expected);
         if (i % 8)

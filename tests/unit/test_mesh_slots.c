@@ -6,11 +6,17 @@
 
 /* A cube whose six faces have slots 0 .. 5: -z, +z, -y, +y, -x, +x. */
 static struct mesh *cube(struct stage *s) {
-    static const double vertices[8][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}};
+    static const double vertices[8][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0},
+                                          {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}};
     static const uint32_t corners[24] = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
     static const uint32_t starts[7] = {0, 4, 8, 12, 16, 20, 24}, slots[6] = {0, 1, 2, 3, 4, 5};
-    struct mesh_input input = {.name = "cube", .vertex_count = 8, .face_count = 6, .vertices = vertices,
-                               .face_start = starts, .vertex_index = corners, .face_material = slots};
+    struct mesh_input input = {.name = "cube",
+                               .vertex_count = 8,
+                               .face_count = 6,
+                               .vertices = vertices,
+                               .face_start = starts,
+                               .vertex_index = corners,
+                               .face_material = slots};
     return assets_mesh(&s->assets, &input, &s->error);
 }
 
@@ -42,7 +48,8 @@ static void make_slots(struct stage *s, const struct material *slots[6]) {
         slots[i] = stage_phong(s, vec3_all(i), vec3_all(0), 1);
 }
 
-static const struct vec3 from[6] = {{0.4, 0.6, -5}, {0.4, 0.6, 5}, {0.4, -5, 0.6}, {0.4, 5, 0.6}, {-5, 0.4, 0.6}, {5, 0.4, 0.6}};
+static const struct vec3 from[6] = {{0.4, 0.6, -5}, {0.4, 0.6, 5},  {0.4, -5, 0.6},
+                                    {0.4, 5, 0.6},  {-5, 0.4, 0.6}, {5, 0.4, 0.6}};
 static const struct vec3 along[6] = {{0, 0, 1}, {0, 0, -1}, {0, 1, 0}, {0, -1, 0}, {1, 0, 0}, {-1, 0, 0}};
 
 TEST(mesh_faces_have_the_material_of_their_slot) {
@@ -145,16 +152,15 @@ TEST(script_asks_meshes_for_their_bounds_and_faces) {
 }
 
 TEST(script_reads_models_of_every_format_with_its_options) {
-    static const char text[] =
-        "local two = gr.geometry('two', gr.mesh('one', 'm.obj'))\n"
-        "gr.render(two, 'x.png', 1, 1, {0,0,5}, {0,0,-1}, {0,1,0}, 50, {0,0,0}, {})\n"
-        "local names = {'a.obj', 'a.ply', 'a.stl', 'a.PLY'}\n"
-        "for _, name in ipairs(names) do\n"
-        "    local m = gr.mesh{file=name, smooth=30, flip=true, cull='back', weld=true}\n"
-        "    local v, f = m:faces()\n"
-        "    assert(#f == 8 and #v == 6, name .. ' ' .. #f .. ' ' .. #v)\n"
-        "    assert(gr.mesh('n', name))\n"
-        "end\n";
+    static const char text[] = "local two = gr.geometry('two', gr.mesh('one', 'm.obj'))\n"
+                               "gr.render(two, 'x.png', 1, 1, {0,0,5}, {0,0,-1}, {0,1,0}, 50, {0,0,0}, {})\n"
+                               "local names = {'a.obj', 'a.ply', 'a.stl', 'a.PLY'}\n"
+                               "for _, name in ipairs(names) do\n"
+                               "    local m = gr.mesh{file=name, smooth=30, flip=true, cull='back', weld=true}\n"
+                               "    local v, f = m:faces()\n"
+                               "    assert(#f == 8 and #v == 6, name .. ' ' .. #f .. ' ' .. #v)\n"
+                               "    assert(gr.mesh('n', name))\n"
+                               "end\n";
     static const enum ply_kind kinds[] = {PLY_LITTLE, PLY_BIG};
     struct maker m = {0};
     maker_sphere(&m, 1);

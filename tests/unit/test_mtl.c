@@ -32,10 +32,11 @@ static const struct model_material *material(const struct model *model, const ch
 }
 
 TEST(mtl_statements_become_materials) {
-    test_write_text(in_folder("a.mtl"),
-                    "# comment\r\nKd 9 9 9\r\n\r\nnewmtl plain\r\nKd 0.1 0.2 0.3\r\nKs .5\r\nKa 1 1 1\r\nNs 32\r\nKe 0 2 0\r\n"
-                    "d 0.25\r\nNi 1.5\r\nillum 7\r\nTf 0.5 0.5 0.5\r\n  newmtl two words \r\n\tTr 0.75\r\nsharpness 60\r\n"
-                    "Kd spectral file.rfl 1\r\nnewmtl halo\r\nd -halo 0.5\r\nillum 2");
+    test_write_text(
+        in_folder("a.mtl"),
+        "# comment\r\nKd 9 9 9\r\n\r\nnewmtl plain\r\nKd 0.1 0.2 0.3\r\nKs .5\r\nKa 1 1 1\r\nNs 32\r\nKe 0 2 0\r\n"
+        "d 0.25\r\nNi 1.5\r\nillum 7\r\nTf 0.5 0.5 0.5\r\n  newmtl two words \r\n\tTr 0.75\r\nsharpness 60\r\n"
+        "Kd spectral file.rfl 1\r\nnewmtl halo\r\nd -halo 0.5\r\nillum 2");
     test_write_text(in_folder("a.obj"), SQUARE "mtllib a.mtl\nusemtl plain\nf 1 2 3\nusemtl two words\nf 1 3 4\n");
     struct model model;
     if (!read_model(&model, "a.obj"))
@@ -63,10 +64,11 @@ TEST(mtl_statements_become_materials) {
 TEST(mtl_maps_have_their_options_and_are_found) {
     test_write_text(in_folder("my picture.png"), "not looked into here");
     test_write_text(in_folder("plain.png"), "x");
-    test_write_text(in_folder("maps.mtl"),
-                    "newmtl a\nmap_Kd -s 2 3 1 -o 0.5 -clamp on -blendu off my picture.png\n"
-                    "map_Bump -bm 0.25 C:\\pictures\\plain.png\nmap_Ks -mm 0 1 -imfchan l folder/plain.png\nnorm gone.png\n"
-                    "newmtl b\nbump -t 1 1 1 -odd name.png\n");
+    test_write_text(
+        in_folder("maps.mtl"),
+        "newmtl a\nmap_Kd -s 2 3 1 -o 0.5 -clamp on -blendu off my picture.png\n"
+        "map_Bump -bm 0.25 C:\\pictures\\plain.png\nmap_Ks -mm 0 1 -imfchan l folder/plain.png\nnorm gone.png\n"
+        "newmtl b\nbump -t 1 1 1 -odd name.png\n");
     test_write_text(in_folder("maps.obj"), SQUARE "mtllib maps.mtl\nusemtl a\nf 1/1 2/2 3/3\n");
     struct model model;
     if (!read_model(&model, "maps.obj"))
@@ -180,8 +182,9 @@ TEST(mtl_materials_of_faces_keep_their_slots) {
 TEST(mtl_materials_are_placed_with_the_mesh) {
     test_write_text(in_folder("p.mtl"), "newmtl red\nKd 1 0 0\nillum 1\nKs 1 1 1\nnewmtl glass\nKd .5 .5 .5\nd 0.25\n"
                                         "Ni 1.5\nillum 7\nnewmtl mirror\nKd 0 0 0\nKs 1 1 1\nillum 3\n");
-    test_write_text(in_folder("p.obj"), SQUARE "mtllib p.mtl\nusemtl red\nf 1 2 3\nusemtl glass\nf 1 3 4\nusemtl mirror\n"
-                                               "f 2 3 4\nusemtl other\nf 1 2 4\n");
+    test_write_text(in_folder("p.obj"),
+                    SQUARE "mtllib p.mtl\nusemtl red\nf 1 2 3\nusemtl glass\nf 1 3 4\nusemtl mirror\n"
+                           "f 2 3 4\nusemtl other\nf 1 2 4\n");
     struct assets assets = {0};
     struct scene scene;
     struct error error = {0};
@@ -307,7 +310,8 @@ TEST(smooth_normals_are_the_same_bits_at_any_power_of_two) {
         maker_scale(&n, ldexp(1, power), 0, 0, 0);
         struct mesh *scaled = smoothed(&n, 60, true, false);
         for (uint32_t t = 0; t < mesh_triangle_count(one); t++) {
-            struct vec3 a = surface_at(one, t, 0.25, 0.5).shading_normal, b = surface_at(scaled, t, 0.25, 0.5).shading_normal;
+            struct vec3 a = surface_at(one, t, 0.25, 0.5).shading_normal,
+                        b = surface_at(scaled, t, 0.25, 0.5).shading_normal;
             CHECK(memcmp(&a, &b, sizeof a) == 0);
         }
         mesh_release(scaled);

@@ -9,8 +9,8 @@
 static struct mesh_input triangle_input(void) {
     static const double vertices[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     static const uint32_t starts[2] = {0, 3}, corners[3] = {0, 1, 2};
-    return (struct mesh_input){.vertex_count = 3, .face_count = 1, .vertices = vertices, .face_start = starts,
-                               .vertex_index = corners};
+    return (struct mesh_input){
+        .vertex_count = 3, .face_count = 1, .vertices = vertices, .face_start = starts, .vertex_index = corners};
 }
 
 TEST(ply_of_every_kind_gives_the_same_mesh) {
@@ -47,12 +47,17 @@ TEST(ply_properties_of_all_types_in_any_order_are_read) {
             struct bytes b = {0};
             bool real = types[t].size == 8;
             /* unknown elements of every shape before, between and behind */
-            bytes_print(&b, "ply\r\nformat binary_%s_endian 1.0\r\nelement junk 3\r\nproperty %s a\r\nproperty double b\r\n",
-                        big ? "big" : "little", types[t].name);
+            bytes_print(
+                &b, "ply\r\nformat binary_%s_endian 1.0\r\nelement junk 3\r\nproperty %s a\r\nproperty double b\r\n",
+                big ? "big" : "little", types[t].name);
             bytes_print(&b, "element lists 2\r\nproperty list ushort %s c\r\nproperty char d\r\n", types[t].name);
-            bytes_print(&b, "element vertex 3\r\nproperty %s z\r\nproperty short confidence\r\nproperty %s y\r\nproperty %s x\r\n",
-                        types[t].name, types[t].name, types[t].name);
-            bytes_print(&b, "element face 1\r\nproperty float quality\r\nproperty list %s %s vertex_index\r\nproperty uchar flags\r\n",
+            bytes_print(
+                &b,
+                "element vertex 3\r\nproperty %s z\r\nproperty short confidence\r\nproperty %s y\r\nproperty %s x\r\n",
+                types[t].name, types[t].name, types[t].name);
+            bytes_print(&b,
+                        "element face 1\r\nproperty float quality\r\nproperty list %s %s vertex_index\r\nproperty "
+                        "uchar flags\r\n",
                         real ? "uint" : types[t].name, real ? "int" : types[t].name);
             bytes_print(&b, "element tail 1\r\nproperty int e\r\nend_header\r\n");
             for (int i = 0; i < 3; i++) {
@@ -93,9 +98,10 @@ TEST(ply_properties_of_all_types_in_any_order_are_read) {
 }
 
 TEST(ply_strips_are_triangles_that_all_face_one_way) {
-    static const char text[] = HEAD "element vertex 6\n" XYZ "element tristrips 1\nproperty list int int vertex_indices\n"
-                                    "end_header\n0 0 0\n0 1 0\n1 0 0\n1 1 0\n2 0 0\n2 1 0\n"
-                                    "11 0 1 2 3 4 5 -1 1 0 1 2\n";
+    static const char text[] =
+        HEAD "element vertex 6\n" XYZ "element tristrips 1\nproperty list int int vertex_indices\n"
+             "end_header\n0 0 0\n0 1 0\n1 0 0\n1 1 0\n2 0 0\n2 1 0\n"
+             "11 0 1 2 3 4 5 -1 1 0 1 2\n";
     static const uint32_t corners[15] = {0, 1, 2, 1, 3, 2, 2, 3, 4, 3, 5, 4, 0, 2, 1};
     struct model model;
     struct error error;
@@ -187,8 +193,10 @@ TEST(ply_errors_name_the_place) {
         {HEAD "element vertex 1\nproperty half x\n",
          "t.ply:4: 'half' is not a type of number (char, uchar, short, ushort, int, uint, float, double)"},
         {HEAD "element vertex 1\n" XYZ "property float x\n", "t.ply:7: 'x' says what an earlier property says"},
-        {HEAD "element face 1\nproperty list float int vertex_indices\n", "t.ply:4: 'float' cannot count the entries of a list"},
-        {HEAD "element face 1\nproperty list int float vertex_indices\n", "t.ply:4: 'vertex_indices' must be whole numbers"},
+        {HEAD "element face 1\nproperty list float int vertex_indices\n",
+         "t.ply:4: 'float' cannot count the entries of a list"},
+        {HEAD "element face 1\nproperty list int float vertex_indices\n",
+         "t.ply:4: 'vertex_indices' must be whole numbers"},
         {HEAD "elephant 1\n", "t.ply:3: 'elephant' is not a word of a PLY header"},
         {HEAD "element vertex 1\nproperty float x\nend_header\n0\n", "t.ply: the vertices have no x, y and z"},
         {PLAIN POINTS, "t.ply:13: the header promises 1 of 'face', but the file is too short for them"},
@@ -229,8 +237,8 @@ TEST(ply_binary_errors_name_the_byte) {
     memcpy(b.data + body + 16, saved, 4);
     size_t face = body + m.vertex_count * 12;
     b.data[face + 5] = 200;
-    (void)snprintf(message, sizeof message, "t.ply: byte %zu: vertex 200, but the file has %u, counted from 0", face + 5,
-                   m.vertex_count);
+    (void)snprintf(message, sizeof message, "t.ply: byte %zu: vertex 200, but the file has %u, counted from 0",
+                   face + 5, m.vertex_count);
     check_refused("t.ply", b.data, b.size, message);
     b.data[face] = 255;
     (void)snprintf(message, sizeof message, "t.ply: byte %zu: a list of 255 entries does not fit into the file", face);

@@ -366,7 +366,8 @@ TEST(a_folder_in_the_place_of_the_picture_is_an_error_before_rendering) {
 
 TEST(a_full_device_is_an_error_of_the_machine) {
     ends_saying(test_gray_scene(SMALL, "-o /dev/full scene.lua", NULL), 3, "No space left");
-    ends_saying(test_gray_scene(BALL "picture('/dev/full', 9, 9)\n", "scene.lua", NULL), 1, "below the working directory");
+    ends_saying(test_gray_scene(BALL "picture('/dev/full', 9, 9)\n", "scene.lua", NULL), 1,
+                "below the working directory");
 }
 
 /* A file system of eight kilobytes, seen only by this process and its children, with an old picture on it. The program
@@ -564,24 +565,25 @@ static double shortest_goodbye(const char *scene, const char *const *words, doub
 
 TEST(a_rendering_in_long_pixels_ends_soon) {
     static const char *const words[] = {"-full", "-ss", "64", "-al-samples", "64", "-q", "scene.lua", NULL};
-    double took = shortest_goodbye(BALL "gr.render(r, 'out.png', 200, 200, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40, {1, 1, 1},\n"
-                                        "  {gr.area_light({4, 5, 6}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1}, {1, 0, 0})})\n",
-                                   words, 0.3);
+    double took =
+        shortest_goodbye(BALL "gr.render(r, 'out.png', 200, 200, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40, {1, 1, 1},\n"
+                              "  {gr.area_light({4, 5, 6}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1}, {1, 0, 0})})\n",
+                         words, 0.3);
     printf("    %.1f ms\n", 1e3 * took);
     CHECK(took < 0.5); /* some milliseconds on a quiet machine */
 }
 
 TEST(a_build_ends_soon_with_its_memory) {
     static const char *const words[] = {"-q", "scene.lua", NULL};
-    double took = shortest_goodbye(
-        "local v, f = {}, {}\n"
-        "for k = 1, 600000 do local a = k * 0.61 v[k] = {a % 7, a * a % 5, k % 13 + a % 1} end\n"
-        "for k = 1, 599997 do f[k] = {k - 1, k, k + 1} end\n"
-        "local m, r = gr.mesh(gr.material({1, 1, 1}, {0, 0, 0}, 1), v, f), gr.node('r')\n"
-        "r:add_child(gr.geometry('m', m))\n"
-        "io.stderr:write('made\\n')\n"
-        "gr.render(r, 'out.png', 2000, 2000, {0, 0, 60}, {0, 0, -1}, {0, 1, 0}, 40, {1, 1, 1}, {})\n",
-        words, 1.2);
+    double took =
+        shortest_goodbye("local v, f = {}, {}\n"
+                         "for k = 1, 600000 do local a = k * 0.61 v[k] = {a % 7, a * a % 5, k % 13 + a % 1} end\n"
+                         "for k = 1, 599997 do f[k] = {k - 1, k, k + 1} end\n"
+                         "local m, r = gr.mesh(gr.material({1, 1, 1}, {0, 0, 0}, 1), v, f), gr.node('r')\n"
+                         "r:add_child(gr.geometry('m', m))\n"
+                         "io.stderr:write('made\\n')\n"
+                         "gr.render(r, 'out.png', 2000, 2000, {0, 0, 60}, {0, 0, -1}, {0, 1, 0}, 40, {1, 1, 1}, {})\n",
+                         words, 1.2);
     printf("    %.1f ms\n", 1e3 * took);
     CHECK(took < 2);
 }

@@ -480,7 +480,8 @@ TEST(overlapping_solids_are_left_wherever_they_stand_in_the_stack) {
 }
 
 TEST(fresnel_reflectance_at_tabulated_angles) {
-    /* Unpolarised reflectance of glass 1.5 in air: Hecht, "Optics", normal 0.04, 45 degrees 0.0502, 60 degrees 0.0892. */
+    /* Unpolarised reflectance of glass 1.5 in air: Hecht, "Optics", normal 0.04, 45 degrees 0.0502, 60 degrees 0.0892.
+     */
     CHECK_NEAR(shading_fresnel(1, 1 / 1.5), 0.04, 1e-12);
     CHECK_NEAR(shading_fresnel(cos(pi / 4), 1 / 1.5), 0.050240, 2e-6);
     CHECK_NEAR(shading_fresnel(0.5, 1 / 1.5), 0.089186, 2e-5);

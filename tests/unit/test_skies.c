@@ -29,7 +29,8 @@ TEST(six_pictures_are_the_cross_they_were_cut_from) {
     struct image *images[6], *whole = image_create("cross", SIDE * 4, SIDE * 3, 8, cross, &error);
     for (int f = 0; f < 6; f++) {
         for (int y = 0; y < SIDE; y++)
-            memcpy(face + y * SIDE * 4, cross + ((cells[f][1] * SIDE + y) * SIDE * 4 + cells[f][0] * SIDE) * 4, SIDE * 4);
+            memcpy(face + y * SIDE * 4, cross + ((cells[f][1] * SIDE + y) * SIDE * 4 + cells[f][0] * SIDE) * 4,
+                   SIDE * 4);
         images[f] = image_create("face", SIDE, SIDE, 8, face, &error);
     }
     struct sky of_cross, of_faces;
@@ -110,8 +111,8 @@ TEST(a_sky_is_turned_counterclockwise_seen_from_above_and_made_brighter) {
 TEST(stops_are_met_and_linear_between) {
     static const double stops[][4] = {{-0.5, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}, {1, 1, 1, 1}};
     struct sky sky = {.kind = SKY_STOPS, .stops = stops, .stop_count = 4};
-    static const double expected[][4] = {
-        {-1, 1, 0, 0}, {-0.5, 1, 0, 0}, {-0.25, 0.5, 0.5, 0}, {0, 0, 0, 1}, {0.5, 0.5, 0.5, 1}, {1, 1, 1, 1}};
+    static const double expected[][4] = {{-1, 1, 0, 0}, {-0.5, 1, 0, 0},    {-0.25, 0.5, 0.5, 0},
+                                         {0, 0, 0, 1},  {0.5, 0.5, 0.5, 1}, {1, 1, 1, 1}};
     for (int i = 0; i < 6; i++) {
         double y = expected[i][0];
         struct vec3 c = sky_colour(&sky, vec3_make(sqrt(1 - y * y), y, 0), 0);

@@ -51,7 +51,8 @@ TEST(stl_errors_name_the_place) {
         {"solid a\n" FACET "endsolid\nfacet\n", "t.stl:10: 'facet' stands where solid must be"},
         {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid",
          "t.stl:6: 'vertex' stands where a finite number must be"},
-        {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 nan\n", "t.stl:4: 'nan' stands where a finite number must be"},
+        {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 nan\n",
+         "t.stl:4: 'nan' stands where a finite number must be"},
         {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1e999\n",
          "t.stl:4: '1e999' stands where a finite number must be"},
         {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nvertex 1 1 0\n",
@@ -115,7 +116,8 @@ TEST(gzip_of_every_format_is_read) {
     maker_sphere(&m, 4);
     maker_round(&m);
     struct mesh *wanted = maker_mesh(&m);
-    static const char *const paths[] = {"t.obj.gz", "t.ply.gz", "t.ply.GZ", "t.stl.gz", "t.stl.gz", "t.gltf.gz", "t.glb.gz"};
+    static const char *const paths[] = {"t.obj.gz", "t.ply.gz",  "t.ply.GZ", "t.stl.gz",
+                                        "t.stl.gz", "t.gltf.gz", "t.glb.gz"};
     for (int kind = 0; kind < 7; kind++) {
         struct bytes plain = {0}, packed = {0};
         struct model model;

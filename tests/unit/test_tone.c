@@ -47,7 +47,8 @@ static float light(uint32_t x, uint32_t y, int channel) {
         return channel == 1 ? 0 : 0.5f;
     if (y == 4)
         return 0;
-    return (float)(ldexp(1 + (double)(x * 7 + y * 13 + (unsigned)channel * 29) / 4096, (int)(x / (y == 5 ? 1 : 40)) % 60 - 30));
+    return (float)(ldexp(1 + (double)(x * 7 + y * 13 + (unsigned)channel * 29) / 4096,
+                         (int)(x / (y == 5 ? 1 : 40)) % 60 - 30));
 }
 
 static void light_row(void *context, uint32_t y, float *line) {
@@ -125,7 +126,8 @@ TEST(radiance_pictures_read_back_within_their_mantissa) {
             for (int c = 0; c < 3; c++)
                 most = fmax(most, (double)light(p % width, p / width, c));
             for (int c = 0; c < 3; c++) {
-                double value = rgbe[3] ? ldexp(rgbe[c], rgbe[3] - 136) : 0, wanted = (double)light(p % width, p / width, c);
+                double value = rgbe[3] ? ldexp(rgbe[c], rgbe[3] - 136) : 0,
+                       wanted = (double)light(p % width, p / width, c);
                 CHECK(value <= wanted && wanted - value <= most / 128);
             }
         }

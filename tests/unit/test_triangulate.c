@@ -47,7 +47,7 @@ static double polygon_area(const struct polygon *p) {
 static void check_cover(const struct polygon *p, const char *what) {
     uint32_t(*triangles)[3] = malloc(p->count * sizeof *triangles);
     struct triangulate_scratch scratch = {0};
-    CHECK(triangulate_polygon((const double (*)[3])p->points, p->corners, p->count, triangles, &scratch));
+    CHECK(triangulate_polygon((const double(*)[3])p->points, p->corners, p->count, triangles, &scratch));
     double whole = polygon_area(p), sum = 0;
     uint32_t *uses = calloc(p->count, sizeof *uses);
     for (uint32_t i = 0; i + 2 < p->count; i++) {
@@ -87,7 +87,7 @@ TEST(convex_polygons_become_a_fan_from_the_first_corner) {
         add(&p, cos(i * 2 * M_PI / 9), sin(i * 2 * M_PI / 9));
     uint32_t triangles[7][3];
     struct triangulate_scratch scratch = {0};
-    CHECK(triangulate_polygon((const double (*)[3])p.points, p.corners, 9, triangles, &scratch));
+    CHECK(triangulate_polygon((const double(*)[3])p.points, p.corners, 9, triangles, &scratch));
     for (uint32_t i = 0; i < 7; i++)
         CHECK(triangles[i][0] == 0 && triangles[i][1] == i + 1 && triangles[i][2] == i + 2);
     triangulate_scratch_destroy(&scratch);
@@ -113,7 +113,7 @@ TEST(triangles_of_concave_polygons_cover_them_once) {
         add(&p, (3 - 0.1 * i) * cos(i * 0.8), (3 - 0.1 * i) * sin(i * 0.8));
     uint32_t triangles[12][3];
     struct triangulate_scratch scratch = {0};
-    CHECK(triangulate_polygon((const double (*)[3])p.points, p.corners, p.count, triangles, &scratch));
+    CHECK(triangulate_polygon((const double(*)[3])p.points, p.corners, p.count, triangles, &scratch));
     triangulate_scratch_destroy(&scratch);
     clear(&p);
 }
@@ -145,8 +145,8 @@ static void ring(struct polygon *p, double x, double y, double r, int corners, i
 
 TEST(holes_joined_by_bridges_stay_open) {
     struct polygon p = {0};
-    ring(&p, 0, 0, 5, 24, 0, false);  /* ends where it began: there the bridge starts */
-    ring(&p, 2, 0, 1, 16, 0, true);   /* and back */
+    ring(&p, 0, 0, 5, 24, 0, false); /* ends where it began: there the bridge starts */
+    ring(&p, 2, 0, 1, 16, 0, true);  /* and back */
     check_turns(&p, "ring");
     /* A square with eight holes, each joined to the corner at the origin; seen from there, from left to right. */
     add(&p, 0, 0), add(&p, 10, 0), add(&p, 10, 10), add(&p, 0, 10), add(&p, 0, 0);

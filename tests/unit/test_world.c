@@ -21,8 +21,9 @@ static struct mesh *small_mesh(struct stage *s, struct test_random *random, bool
 }
 
 static void random_place(struct stage *s, struct test_random *random, struct node *node, double spread) {
-    struct transform t = transform_scale(vec3_make(test_uniform(random, 0.2, 2) * (test_uniform(random, 0, 1) < 0.2 ? -1 : 1),
-                                                   test_uniform(random, 0.2, 2), test_uniform(random, 0.2, 2)));
+    struct transform t =
+        transform_scale(vec3_make(test_uniform(random, 0.2, 2) * (test_uniform(random, 0, 1) < 0.2 ? -1 : 1),
+                                  test_uniform(random, 0.2, 2), test_uniform(random, 0.2, 2)));
     node_transform(&s->scene, node, NODE_SCALE, &t);
     t = transform_rotate((int)test_uniform(random, 0, 3), test_uniform(random, -180, 180));
     node_transform(&s->scene, node, NODE_ROTATE, &t);
@@ -123,8 +124,8 @@ static void compare_with_brute_force(enum accel_kind accel, int worlds, int rays
             same = same && world_any(&s.world, &ray, &scratch) == hit_b;
             wrong += !same;
             if (!same && wrong < 3)
-                test_fail(__FILE__, __LINE__, "world %d ray %d: grid %d #%u t=%.17g, brute force %d #%u t=%.17g", w, i, hit_a,
-                          a, x.t, hit_b, b, y.t);
+                test_fail(__FILE__, __LINE__, "world %d ray %d: grid %d #%u t=%.17g, brute force %d #%u t=%.17g", w, i,
+                          hit_a, a, x.t, hit_b, b, y.t);
         }
         CHECK_EQ_INT(wrong, 0);
         world_scratch_destroy(&scratch);
