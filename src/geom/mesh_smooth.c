@@ -5,6 +5,7 @@
 #include "geom/mesh_smooth.h"
 
 #include "base/mem.h"
+#include "base/sort.h"
 #include "geom/mesh_weld.h"
 #include "math/elementary.h"
 
@@ -184,39 +185,6 @@ static void unite(uint32_t *set, uint32_t a, uint32_t b) {
         set[a] = b;
 }
 
-static void sift_down(uint64_t *items, size_t root, size_t count) {
-    for (size_t child; (child = 2 * root + 1) < count; root = child) {
-        if (child + 1 < count && items[child + 1] > items[child])
-            child++;
-        if (items[root] >= items[child])
-            return;
-        uint64_t swap = items[root];
-        items[root] = items[child];
-        items[child] = swap;
-    }
-}
-
-static void sort(uint64_t *items, size_t count) {
-    if (count <= 24) {
-        for (size_t i = 1; i < count; i++) {
-            uint64_t item = items[i];
-            size_t j = i;
-            for (; j > 0 && items[j - 1] > item; j--)
-                items[j] = items[j - 1];
-            items[j] = item;
-        }
-        return;
-    }
-    for (size_t root = count / 2; root-- > 0;)
-        sift_down(items, root, count);
-    for (size_t last = count - 1; last > 0; last--) {
-        uint64_t swap = items[0];
-        items[0] = items[last];
-        items[last] = swap;
-        sift_down(items, 0, last);
-    }
-}
-
 /* Edges at their lower vertex: uses[start[v]] .. uses[start[v + 1] - 1]. */
 static void gather_edges(struct smoothing *s) {
     uint32_t corners = corner_count(s->input);
@@ -252,7 +220,7 @@ static void unite_smooth_edges(struct smoothing *s, double degrees) {
     for (uint32_t v = 0; v < s->input->vertex_count; v++) {
         uint64_t *uses = s->uses + s->start[v];
         size_t count = s->start[v + 1] - s->start[v], end;
-        sort(uses, count);
+        sort_words(uses, count);
         for (size_t i = 0; i < count; i = end) {
             for (end = i + 1; end < count && uses[end] >> 32 == uses[i] >> 32; end++)
                 continue;
