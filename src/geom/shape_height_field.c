@@ -458,7 +458,7 @@ void height_field_describe(const struct height_field *f, const struct ray *ray, 
         case WALL_Z1:
             p.z = 1, n.z = 1;
             break;
-        default:
+        case FLOOR:
             p.y = f->floor, n.y = -1;
             out->u = p.x, out->v = p.z;
             out->dpdu = vec3_make(1, 0, 0), out->dpdv = vec3_make(0, 0, 1);
