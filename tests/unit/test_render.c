@@ -134,10 +134,8 @@ TEST(shadow_of_a_sphere_ends_where_geometry_says) {
     s.settings.samples = 4;
     CHECK(stage_render(&s, 240, 240));
     /* Light 5 above the centre, radius 1: half angle asin(1/5); the shadow's radius on the floor, 8 below the light. */
-    double radius = 8 * tan(asin(0.2)), dark = 0;
-    for (uint32_t x = 120; x < 240; x++)
-        dark += stage_pixel(&s, x, 120).x < 1e-9 || x < 125 ? 1 : 0;
-    /* The ball itself hides the middle: its lit top does not count as dark. */
+    double radius = 8 * tan(asin(0.2));
+    /* From the outside in: the ball itself hides the middle. */
     double edge = 0;
     for (uint32_t x = 239; x > 120; x--) {
         if (stage_pixel(&s, x, 120).x < 1e-9) {
@@ -145,7 +143,6 @@ TEST(shadow_of_a_sphere_ends_where_geometry_says) {
             break;
         }
     }
-    CHECK(dark > 0);
     CHECK_NEAR(edge, radius, 0.06);
     stage_end(&s);
 }
@@ -224,22 +221,27 @@ static unsigned char *copy_film(const struct stage *s, size_t *size) {
     return copy;
 }
 
+/* The first film is kept, every later one must have its bytes. The caller frees *reference. */
+static void check_same_film(const struct stage *s, unsigned char **reference) {
+    size_t size;
+    unsigned char *bytes = copy_film(s, &size);
+    if (*reference) {
+        CHECK(memcmp(*reference, bytes, size) == 0);
+        free(bytes);
+    } else {
+        *reference = bytes;
+    }
+}
+
 TEST(scaling_a_scene_by_a_power_of_two_gives_the_same_bits) {
     unsigned char *reference = NULL;
     static const double units[] = {1, 0x1p-10, 0x1p20};
     for (int i = 0; i < 3; i++) {
         struct stage s;
-        size_t size;
         stage_begin(&s, 2);
         busy_scene(&s, units[i], false);
         CHECK(stage_render(&s, 120, 90));
-        unsigned char *bytes = copy_film(&s, &size);
-        if (!reference)
-            reference = bytes;
-        else {
-            CHECK(memcmp(reference, bytes, size) == 0);
-            free(bytes);
-        }
+        check_same_film(&s, &reference);
         stage_end(&s);
     }
     free(reference);
@@ -269,7 +271,7 @@ TEST(scaling_a_scene_by_other_factors_changes_at_most_one_level_in_one_pixel_of_
                 different += worst > 0;
                 CHECK(worst <= 1);
             }
-            CHECK(different <= 160 * 120 / 10000 + 1);
+            CHECK(different * 10000 <= 160 * 120);
             free(pixels);
         }
         stage_end(&s);
@@ -282,17 +284,10 @@ TEST(threads_do_not_change_a_bit) {
     static const int threads[] = {1, 2, 7};
     for (int i = 0; i < 3; i++) {
         struct stage s;
-        size_t size;
         stage_begin(&s, threads[i]);
         busy_scene(&s, 1, false);
         CHECK(stage_render(&s, 130, 70));
-        unsigned char *bytes = copy_film(&s, &size);
-        if (!reference)
-            reference = bytes;
-        else {
-            CHECK(memcmp(reference, bytes, size) == 0);
-            free(bytes);
-        }
+        check_same_film(&s, &reference);
         stage_end(&s);
     }
     free(reference);
@@ -302,19 +297,12 @@ TEST(every_accelerator_gives_the_same_picture) {
     unsigned char *reference = NULL;
     for (int i = 0; i < 4; i++) {
         struct stage s;
-        size_t size;
         stage_begin(&s, 2);
         busy_scene(&s, 1, false);
         static const enum accel_kind kinds[4] = {ACCEL_NONE, ACCEL_AUTO, ACCEL_GRID, ACCEL_BVH};
         s.settings.accel = kinds[i];
         CHECK(stage_render(&s, 100, 70));
-        unsigned char *bytes = copy_film(&s, &size);
-        if (!reference)
-            reference = bytes;
-        else {
-            CHECK(memcmp(reference, bytes, size) == 0);
-            free(bytes);
-        }
+        check_same_film(&s, &reference);
         stage_end(&s);
     }
     free(reference);
