@@ -1097,7 +1097,7 @@ function gr.fog_grid(corner, size, cells, densities, colour) end
 ---@field use_tir? boolean use_tir (true or false; default -use-tir): Whether light beyond the critical angle is reflected.
 ---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): The form of highlights.
 ---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Start of random numbers.
----@field accel? 'auto'|'grid'|'bvh'|'none' accel ('auto'|'grid'|'bvh'|'none'; default 'auto'): How hits are searched; the picture is the same.
+---@field accel? 'auto'|'grid'|'bvh'|'kdtree'|'none' accel ('auto'|'grid'|'bvh'|'kdtree'|'none'; default 'auto'): How hits are searched; the picture is the same.
 ---@field fog? gr.fog fog (a fog; default none): A fog.
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Rays that can change a pixel by less than this are not followed.
 ---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure on its way into a PNG file.
@@ -1157,7 +1157,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field use_tir? boolean use_tir (true or false; default -use-tir): Whether light beyond the critical angle is reflected.
 ---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): The form of highlights.
 ---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Start of random numbers.
----@field accel? 'auto'|'grid'|'bvh'|'none' accel ('auto'|'grid'|'bvh'|'none'; default 'auto'): How hits are searched; the picture is the same.
+---@field accel? 'auto'|'grid'|'bvh'|'kdtree'|'none' accel ('auto'|'grid'|'bvh'|'kdtree'|'none'; default 'auto'): How hits are searched; the picture is the same.
 ---@field fog? gr.fog fog (a fog; default none): A fog.
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Rays that can change a pixel by less than this are not followed.
 ---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure on its way into a PNG file.

@@ -86,7 +86,7 @@ static const struct option table[] = {
     {GROUP_LOOK, "--size", OPTION_SIZE, "WxH", NO_RANGE, NO_FIELD, "the script's", "size of the pictures in pixels"},
     {GROUP_LOOK, "--crop", OPTION_CROP, "X,Y,W,H", NO_RANGE, NO_FIELD, "all",
      "write a W x H picture, exactly that part of the whole; X,Y is its upper left pixel"},
-    {GROUP_LOOK, "--accel", OPTION_CHOICE, "auto|grid|bvh|none", NO_RANGE, FIELD(settings.accel), "auto",
+    {GROUP_LOOK, "--accel", OPTION_CHOICE, "auto|grid|bvh|kdtree|none", NO_RANGE, FIELD(settings.accel), "auto",
      "how rays find what they hit; the picture is the same"},
     {GROUP_LOOK, "--isa", OPTION_CHOICE, "auto|base|avx2|avx512", NO_RANGE, FIELD(isa), "auto",
      "instruction set of the kernels; the picture is the same"},

@@ -17,6 +17,7 @@ void mesh_release(struct mesh *mesh) {
         return;
     triangle_index_destroy(mesh->index);
     triangle_index_destroy(mesh->grid);
+    kd_triangles_destroy(mesh->kd_tree);
     mem_free(mesh->vertices);
     mem_free(mesh->corners);
     mem_free(mesh->normals);
@@ -41,6 +42,10 @@ bool mesh_build_grid(struct mesh *mesh, struct pool *pool, struct error *error) 
     uint32_t voxels = mesh->set.count / TRIANGLES_PER_VOXEL;
     voxels = voxels < 1 ? 1 : voxels > MOST_VOXELS ? MOST_VOXELS : voxels;
     return mesh->grid || triangle_index_build(&mesh->grid, &mesh->set, voxels, pool, error);
+}
+
+bool mesh_build_kd_tree(struct mesh *mesh, struct pool *pool, struct error *error) {
+    return mesh->kd_tree || kd_triangles_build(&mesh->kd_tree, &mesh->set, pool, error);
 }
 
 struct box mesh_bounds(const struct mesh *mesh) {
@@ -107,6 +112,7 @@ size_t mesh_memory(const struct mesh *mesh) {
     if (mesh->face_start)
         bytes += ((size_t)mesh->face_count + 1 + mesh->face_start[mesh->face_count]) * sizeof(uint32_t);
     bytes += mesh->grid ? triangle_index_memory(mesh->grid) : 0;
+    bytes += mesh->kd_tree ? kd_triangles_memory(mesh->kd_tree) : 0;
     return bytes + (mesh->index ? triangle_index_memory(mesh->index) : 0);
 }
 
@@ -121,27 +127,35 @@ static struct crossing crossing_from(const struct triangle_hit *hit) {
     return (struct crossing){.t = hit->t, .u = hit->u, .v = hit->v, .part = hit->triangle, .enter = hit->enter};
 }
 
-/* What searches go through; NULL: every triangle is tried. */
-static const struct triangle_index *index_for(const struct mesh *mesh, enum accel_kind accel) {
+/* What searches go through; with neither every triangle is tried. */
+struct way {
+    const struct triangle_index *index;
+    const struct kd_triangles *kd_tree;
+};
+
+static struct way way_for(const struct mesh *mesh, enum accel_kind accel) {
     switch (accel) {
     case ACCEL_GRID:
-        return mesh->grid ? mesh->grid : mesh->index;
+        return (struct way){.index = mesh->grid ? mesh->grid : mesh->index};
     case ACCEL_AUTO:
     case ACCEL_BVH:
-        return mesh->index ? mesh->index : mesh->grid;
+        return (struct way){.index = mesh->index ? mesh->index : mesh->grid, .kd_tree = mesh->kd_tree};
+    case ACCEL_KDTREE:
+        return (struct way){.index = mesh->kd_tree ? NULL : mesh->index, .kd_tree = mesh->kd_tree};
     case ACCEL_NONE:
-        return NULL;
+        return (struct way){0};
     }
-    return NULL;
+    return (struct way){0};
 }
 
 bool mesh_nearest(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch,
                   struct crossing *out) {
     struct triangle_cost cost = {0};
     struct triangle_hit hit;
-    const struct triangle_index *index = index_for(mesh, accel);
-    bool found = index ? triangle_index_nearest(index, &mesh->set, ray, &hit, &cost)
-                       : triangle_brute_nearest(&mesh->set, ray, &hit, &cost);
+    struct way way = way_for(mesh, accel);
+    bool found = way.index     ? triangle_index_nearest(way.index, &mesh->set, ray, &hit, &cost)
+                 : way.kd_tree ? kd_triangles_nearest(way.kd_tree, &mesh->set, ray, &hit, &cost)
+                               : triangle_brute_nearest(&mesh->set, ray, &hit, &cost);
     add_cost(scratch, &cost);
     if (found)
         *out = crossing_from(&hit);
@@ -150,8 +164,10 @@ bool mesh_nearest(const struct mesh *mesh, const struct ray *ray, enum accel_kin
 
 bool mesh_any(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch) {
     struct triangle_cost cost = {0};
-    const struct triangle_index *index = index_for(mesh, accel);
-    bool found = index ? triangle_index_any(index, &mesh->set, ray, &cost) : triangle_brute_any(&mesh->set, ray, &cost);
+    struct way way = way_for(mesh, accel);
+    bool found = way.index     ? triangle_index_any(way.index, &mesh->set, ray, &cost)
+                 : way.kd_tree ? kd_triangles_any(way.kd_tree, &mesh->set, ray, &cost)
+                               : triangle_brute_any(&mesh->set, ray, &cost);
     add_cost(scratch, &cost);
     return found;
 }
@@ -220,9 +236,11 @@ bool mesh_crossings(const struct mesh *mesh, const struct ray *ray, enum accel_k
                     struct crossing_list *out) {
     struct triangle_cost cost = {0};
     *out = (struct crossing_list){scratch->used, 0};
-    const struct triangle_index *index = index_for(mesh, accel);
-    if (index)
-        triangle_index_all(index, &mesh->set, ray, push, scratch, &cost);
+    struct way way = way_for(mesh, accel);
+    if (way.index)
+        triangle_index_all(way.index, &mesh->set, ray, push, scratch, &cost);
+    else if (way.kd_tree)
+        kd_triangles_all(way.kd_tree, &mesh->set, ray, push, scratch, &cost);
     else
         triangle_brute_all(&mesh->set, ray, push, scratch, &cost);
     add_cost(scratch, &cost);

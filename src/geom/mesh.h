@@ -37,9 +37,9 @@ struct mesh_input {
     const float (*colours)[3];     /* of the vertices, or NULL */
 };
 
-/* How searches go; the answers are the same. AUTO: what is fastest; GRID: the uniform grid of Amanatides and Woo over
- * the placed primitives; BVH: a hierarchy over them; NONE: everything is tried. */
-enum accel_kind { ACCEL_AUTO, ACCEL_GRID, ACCEL_BVH, ACCEL_NONE };
+/* How searches go, over placed primitives and inside of meshes; the answers are the same. AUTO: what is fastest; GRID:
+ * the uniform grid of Amanatides and Woo; BVH: a hierarchy; KDTREE: a kd-tree; NONE: everything is tried. */
+enum accel_kind { ACCEL_AUTO, ACCEL_GRID, ACCEL_BVH, ACCEL_KDTREE, ACCEL_NONE };
 
 /* Triangulates n-gons (concave ones by ear clipping in their best plane, convex ones fast; thousands of corners fine),
  * drops degenerate faces quietly (counted). NULL and error on no memory. Deterministic. Not more than 2^31 triangles.
@@ -53,6 +53,7 @@ bool mesh_build_index(struct mesh *mesh, struct pool *pool, struct error *error)
 /* The same for ACCEL_GRID: a frame of many voxels that Amanatides and Woo's steps walk through, for teaching and for
  * doubt. The index that mesh_build_index makes has the resolution that measured best, which is mostly one voxel. */
 bool mesh_build_grid(struct mesh *mesh, struct pool *pool, struct error *error);
+bool mesh_build_kd_tree(struct mesh *mesh, struct pool *pool, struct error *error); /* for ACCEL_KDTREE */
 
 struct box mesh_bounds(const struct mesh *mesh);
 bool mesh_is_closed(const struct mesh *mesh); /* every edge is used by exactly two triangles in opposite directions */

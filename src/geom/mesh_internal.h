@@ -2,6 +2,7 @@
 #ifndef GRAY_GEOM_MESH_INTERNAL_H
 #define GRAY_GEOM_MESH_INTERNAL_H
 
+#include "accel/kd_triangles.h"
 #include "accel/triangle_index.h"
 #include "geom/mesh.h"
 
@@ -25,6 +26,7 @@ struct mesh {
     struct vec3 open_edge[2];
     struct triangle_set set;             /* the triangles as searches see them: borrows from the tables above */
     struct triangle_index *index, *grid; /* grid: only once somebody asked for ACCEL_GRID */
+    struct kd_triangles *kd_tree;        /* the same for ACCEL_KDTREE */
 };
 
 #define MESH_NONE UINT32_MAX

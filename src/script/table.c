@@ -711,7 +711,7 @@ static const struct parameter render_parameters[] = {
     [RENDER_SPECULAR] = {"specular", KIND_CHOICE, OPTIONAL, 0, 0, "phong blinn", NULL, "--specular",
                          "The form of highlights."},
     [RENDER_SEED] = {"seed", KIND_WHOLE, OPTIONAL, BETWEEN(0, 0x1p53 - 1), NULL, "--seed", "Start of random numbers."},
-    [RENDER_ACCEL] = {"accel", KIND_CHOICE, OPTIONAL, 0, 0, "auto grid bvh none", NULL, "'auto'",
+    [RENDER_ACCEL] = {"accel", KIND_CHOICE, OPTIONAL, 0, 0, "auto grid bvh kdtree none", NULL, "'auto'",
                       "How hits are searched; the picture is the same."},
     [RENDER_FOG] = {"fog", KIND_FOG, OPTIONAL, ANY, NULL, "none", "A fog."},
     [RENDER_CUTOFF] = {"cutoff", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "--cutoff",

@@ -171,8 +171,17 @@ bool flatten_mesh_index(struct flattening *f, const struct shape *shape) {
         return true;
     /* The mesh is an asset: immutable but for its index, which is made at its first render. */
     struct mesh *mesh = (struct mesh *)(uintptr_t)shape->mesh;
-    return f->world->accel == ACCEL_GRID ? mesh_build_grid(mesh, f->pool, f->error)
-                                         : mesh_build_index(mesh, f->pool, f->error);
+    switch (f->world->accel) {
+    case ACCEL_GRID:
+        return mesh_build_grid(mesh, f->pool, f->error);
+    case ACCEL_KDTREE:
+        return mesh_build_kd_tree(mesh, f->pool, f->error);
+    case ACCEL_AUTO:
+    case ACCEL_BVH:
+    case ACCEL_NONE:
+        return mesh_build_index(mesh, f->pool, f->error);
+    }
+    return true;
 }
 
 static bool place_node(struct flattening *f, struct node *node, const struct transform *world_from_node) {

@@ -5,6 +5,7 @@
 
 #include "accel/box_tree.h"
 #include "accel/grid.h"
+#include "accel/kd_tree.h"
 #include "base/arena.h"
 #include "base/pool.h"
 #include "geom/csg.h"
@@ -35,6 +36,7 @@ struct world {
     struct sky sky;
     struct grid grid;     /* ACCEL_GRID */
     struct box_tree tree; /* ACCEL_AUTO, ACCEL_BVH */
+    struct kd_tree kd_tree;
     enum accel_kind accel;
     uint32_t scratch_need;
     uint64_t triangles; /* instances counted */

@@ -149,9 +149,10 @@ TEST(the_building_of_a_world_stops_soon) {
         stage_move(&s, ball, test_uniform(&random, -50, 50), test_uniform(&random, -50, 50),
                    test_uniform(&random, -50, 50));
     }
-    struct world_work grid = {&s, ACCEL_GRID}, tree = {&s, ACCEL_BVH};
+    struct world_work grid = {&s, ACCEL_GRID}, tree = {&s, ACCEL_BVH}, kd_tree = {&s, ACCEL_KDTREE};
     expect_quick("the grid", s.pool, build_world, &grid);
     expect_quick("the hierarchy", s.pool, build_world, &tree);
+    expect_quick("the kd-tree", s.pool, build_world, &kd_tree);
     stage_end(&s);
 }
 

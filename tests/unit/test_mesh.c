@@ -252,26 +252,29 @@ static bool same_crossing(const struct crossing *a, const struct crossing *b) {
            a->enter == b->enter;
 }
 
-static uint64_t check_against_brute(const struct maker *m, const char *what, int rays, struct test_random *random) {
+static uint64_t check_against_brute(const struct maker *m, enum accel_kind accel, const char *what, int rays,
+                                    struct test_random *random) {
     struct mesh *mesh = maker_mesh(m);
+    struct error error;
+    CHECK(accel != ACCEL_KDTREE || mesh_build_kd_tree(mesh, NULL, &error));
     struct geom_scratch scratch = scratch_make();
     uint64_t hits = 0;
     for (int i = 0; i < rays; i++) {
         struct ray ray = test_any_ray(m, mesh, random);
         struct crossing fast = {0}, slow = {0};
-        bool found = mesh_nearest(mesh, &ray, ACCEL_GRID, &scratch, &fast);
+        bool found = mesh_nearest(mesh, &ray, accel, &scratch, &fast);
         bool expected = mesh_nearest(mesh, &ray, ACCEL_NONE, &scratch, &slow);
         hits += expected;
         if (found != expected || (found && !same_crossing(&fast, &slow)))
             test_fail(__FILE__, __LINE__, "%s, ray %d: %d at %.17g of %u, not %d at %.17g of %u", what, i, found,
                       fast.t, fast.part, expected, slow.t, slow.part);
-        if (mesh_any(mesh, &ray, ACCEL_GRID, &scratch) != expected)
+        if (mesh_any(mesh, &ray, accel, &scratch) != expected)
             test_fail(__FILE__, __LINE__, "%s, ray %d: any is not %d", what, i, expected);
         if (i % 8)
             continue;
         struct crossing_list all, every;
         scratch.used = 0;
-        CHECK(mesh_crossings(mesh, &ray, ACCEL_GRID, &scratch, &all));
+        CHECK(mesh_crossings(mesh, &ray, accel, &scratch, &all));
         CHECK(mesh_crossings(mesh, &ray, ACCEL_NONE, &scratch, &every));
         bool same = all.count == every.count;
         for (uint32_t j = 0; same && j < all.count; j++)
@@ -284,7 +287,7 @@ static uint64_t check_against_brute(const struct maker *m, const char *what, int
     return hits;
 }
 
-static void many_meshes_against_brute(uint64_t rays, uint64_t seed) {
+static void many_meshes_against_brute(enum accel_kind accel, uint64_t rays, uint64_t seed) {
     struct test_random random = {seed};
     const char *names[SOUP_KINDS] = {"even", "slivers", "flat", "mixed sizes", "tiny in huge", "lattice", "line"};
     const uint32_t counts[] = {1, 3, 9, 40, 170, 600};
@@ -302,7 +305,7 @@ static void many_meshes_against_brute(uint64_t rays, uint64_t seed) {
         double scale = pow(10, floor(test_uniform(&random, -3, 7)));
         maker_scale(&m, scale, round % 5 == 0 ? 100 * scale : 0, 0, 0);
         int share = count > 100 ? 2500 : 12500;
-        hits += check_against_brute(&m, kind < SOUP_KINDS ? names[kind] : "solid", share, &random);
+        hits += check_against_brute(&m, accel, kind < SOUP_KINDS ? names[kind] : "solid", share, &random);
         done += (uint64_t)share;
         maker_free(&m);
     }
@@ -310,11 +313,19 @@ static void many_meshes_against_brute(uint64_t rays, uint64_t seed) {
 }
 
 TEST(mesh_index_gives_the_bits_of_trying_every_triangle_on_a_million_rays) {
-    many_meshes_against_brute(1000000, 2);
+    many_meshes_against_brute(ACCEL_GRID, 1000000, 2);
 }
 
 TEST_LONG(mesh_index_gives_the_bits_of_trying_every_triangle_on_ten_million_rays) {
-    many_meshes_against_brute(10000000, 3);
+    many_meshes_against_brute(ACCEL_GRID, 10000000, 3);
+}
+
+TEST(kd_tree_of_a_mesh_gives_the_bits_of_trying_every_triangle_on_a_million_rays) {
+    many_meshes_against_brute(ACCEL_KDTREE, 1000000, 12);
+}
+
+TEST_LONG(kd_tree_of_a_mesh_gives_the_bits_of_trying_every_triangle_on_ten_million_rays) {
+    many_meshes_against_brute(ACCEL_KDTREE, 10000000, 13);
 }
 
 TEST(scaling_a_mesh_by_a_power_of_two_keeps_every_bit) {

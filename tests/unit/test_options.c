@@ -194,7 +194,7 @@ TEST(values_outside_their_range_are_refused_with_the_range) {
     refused("--seed -1 s.lua", "--seed needs a whole number from 0 to 18446744073709551615, not '-1'");
     refused("--seed 18446744073709551616 s.lua",
             "--seed needs a whole number from 0 to 18446744073709551615, not '18446744073709551616'");
-    refused("--accel octree s.lua", "--accel needs one of auto|grid|bvh|none, not 'octree'");
+    refused("--accel octree s.lua", "--accel needs one of auto|grid|bvh|kdtree|none, not 'octree'");
     refused("--view targe s.lua", "--view needs one of direction|target, not 'targe'");
     refused("-o= s.lua", "-o needs a text that is not empty");
     refused("-write-pre-aa ~ s.lua", "-write-pre-aa needs a text that is not empty");

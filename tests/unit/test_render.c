@@ -295,11 +295,11 @@ TEST(threads_do_not_change_a_bit) {
 
 TEST(every_accelerator_gives_the_same_picture) {
     unsigned char *reference = NULL;
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 5; i++) {
         struct stage s;
         stage_begin(&s, 2);
         busy_scene(&s, 1, false);
-        static const enum accel_kind kinds[4] = {ACCEL_NONE, ACCEL_AUTO, ACCEL_GRID, ACCEL_BVH};
+        static const enum accel_kind kinds[5] = {ACCEL_NONE, ACCEL_AUTO, ACCEL_GRID, ACCEL_BVH, ACCEL_KDTREE};
         s.settings.accel = kinds[i];
         CHECK(stage_render(&s, 100, 70));
         check_same_film(&s, &reference);

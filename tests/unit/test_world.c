@@ -141,6 +141,14 @@ TEST(world_hierarchy_equals_brute_force_on_random_rays) {
     compare_with_brute_force(ACCEL_AUTO, 42, 12000, 3);
 }
 
+TEST(world_kd_tree_equals_brute_force_on_random_rays) {
+    compare_with_brute_force(ACCEL_KDTREE, 42, 12000, 6);
+}
+
+TEST_LONG(world_kd_tree_equals_brute_force_on_ten_million_rays) {
+    compare_with_brute_force(ACCEL_KDTREE, 420, 24000, 7);
+}
+
 TEST_LONG(world_grid_equals_brute_force_on_ten_million_rays) {
     compare_with_brute_force(ACCEL_GRID, 420, 24000, 2);
 }
