@@ -3,7 +3,7 @@
 #ifndef GRAY_RENDER_MEDIA_H
 #define GRAY_RENDER_MEDIA_H
 
-#include "math/vec3.h"
+#include "world/world.h"
 
 #include <stdint.h>
 #include <string.h>
@@ -51,5 +51,11 @@ static inline void media_leave(struct media *media, uint32_t placed) {
         return;
     }
 }
+
+/* The law of Beer, Lambert and Bouguer over a way inside the current medium: what is left of white light. The stack is
+ * not empty. */
+struct vec3 media_left(const struct media *media, double distance);
+/* The media round a point, found by counting crossings. */
+void media_around(const struct world *world, struct vec3 point, struct world_scratch *scratch, struct media *out);
 
 #endif

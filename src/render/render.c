@@ -49,7 +49,7 @@ static struct vec3 trace_from_eye(struct run *run, struct worker *worker, struct
     ray->footprint.width *= share;
     worker->camera_rays++;
     if (run->media_by_ray) {
-        whitted_eye_media(run->job->world, ray->origin, &worker->scratch, &worker->ray_media);
+        media_around(run->job->world, ray->origin, &worker->scratch, &worker->ray_media);
         worker->tracer.eye_media = &worker->ray_media;
     }
     return whitted_trace(&worker->tracer, ray, key);
@@ -305,7 +305,7 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
         const struct film *film = job->film;
         run.full = job->settings.full || run.camera.lens.aperture > 0;
         run.media_by_ray = camera_moves_eye(&run.camera) && anything_is_transparent(job->world);
-        whitted_eye_media(job->world, run.camera.eye, &run.workers[0].scratch, &run.eye_media);
+        media_around(job->world, run.camera.eye, &run.workers[0].scratch, &run.eye_media);
         run.tile_x0 = film->x0 / FILM_TILE;
         run.tile_y0 = film->y0 / FILM_TILE;
         run.tiles_x = (film->x0 + film->width - 1) / FILM_TILE - run.tile_x0 + 1;

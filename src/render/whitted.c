@@ -4,8 +4,8 @@
 
 #include "base/random.h"
 #include "look/microfacet.h"
-#include "math/elementary.h"
 #include "math/sampling.h"
+#include "render/interface.h"
 
 struct path {
     uint64_t key;
@@ -176,43 +176,6 @@ static const struct light *visible_light(const struct world *world, const struct
 
 /* --- secondary rays --- */
 
-/* The two sides of the surface for a ray that crosses it here: the relative index of refraction, and the stack behind.
- */
-static double cross_surface(const struct hit *hit, double ior, struct vec3 absorption, const struct media *media,
-                            struct media *behind) {
-    media_copy(behind, media);
-    double here = media_ior(media);
-    if (hit->front) {
-        media_enter_absorbing(behind, hit->placed, ior, absorption);
-        return here / ior;
-    }
-    bool known = false;
-    for (uint32_t i = 0; i < media->count; i++)
-        known = known || media->entries[i].placed == hit->placed;
-    media_leave(behind, hit->placed);
-    /* An open surface seen from behind: the ray was in this material although nobody saw it enter. */
-    return (known ? here : ior) / media_ior(behind);
-}
-
-static struct ray secondary_ray(const struct hit *hit, const struct ray *from, struct vec3 direction,
-                                const struct media *media) {
-    double side = vec3_dot(direction, hit->normal_geometric) < 0 ? -hit->offset : hit->offset;
-    return (struct ray){.origin = vec3_add_scaled(hit->point, hit->normal_geometric, side),
-                        .direction = direction,
-                        .t_min = 0,
-                        .t_max = INFINITY,
-                        .time = from->time,
-                        .footprint = {hit->footprint, from->footprint.spread},
-                        .media = media};
-}
-
-/* `side`: the normal turned to the ray's side. A reflection about an interpolated normal may point into the surface:
- * the geometric normal then takes its place. */
-static struct vec3 reflect_outwards(const struct hit *hit, struct vec3 side, struct vec3 geometric_side) {
-    struct vec3 direction = shading_reflect(side, hit->view);
-    return vec3_dot(direction, geometric_side) > 0 ? direction : shading_reflect(geometric_side, hit->view);
-}
-
 static bool is_black(struct vec3 c) {
     return c.x == 0 && c.y == 0 && c.z == 0;
 }
@@ -224,7 +187,7 @@ static struct vec3 follow_mirror(struct tracer *tracer, const struct hit *hit, c
     path.weight *= vec3_max_abs(filter);
     if (path.reflections >= settings->reflect_limit || path.weight < settings->cutoff)
         return vec3_all(0);
-    struct ray reflected = secondary_ray(hit, ray, direction, ray->media);
+    struct ray reflected = interface_ray(hit, ray, direction, ray->media);
     tracer->reflected_rays++;
     path.key = random_combine(path.key, UINT32_MAX);
     path.reflections++;
@@ -238,31 +201,23 @@ static struct vec3 follow_refraction(struct tracer *tracer, const struct hit *hi
     path.weight *= vec3_max_abs(filter);
     if (path.refractions >= settings->refract_limit || path.weight < settings->cutoff)
         return vec3_all(0);
-    struct ray refracted = secondary_ray(hit, ray, direction, behind);
+    struct ray refracted = interface_ray(hit, ray, direction, behind);
     tracer->refracted_rays++;
     path.key = random_combine(path.key, (uint64_t)UINT32_MAX + 1);
     path.refractions++;
     return vec3_mul(filter, trace(tracer, &refracted, path));
 }
 
-/* A rough surface: the mean over facets of what each reflects and refracts. No energy is lost: light that a facet sends
- * to the wrong side of the surface is turned back, as by one more facet, and a facet that reflects totally where the
- * surface as a whole does not gives way to the surface. */
+/* A rough surface: the mean over facets of what each reflects and refracts. */
 struct rough {
     const struct hit *hit;
     const struct ray *ray;
-    const struct media *behind;
-    struct vec3 side, geometric_side, through;
-    double eta, alpha;
+    const struct interface *interface;
+    double alpha;
     int samples;
 };
 
 enum { GLOSSY_SAMPLES = 4 };
-
-static struct vec3 fold(struct vec3 direction, struct vec3 to_side) {
-    double height = vec3_dot(direction, to_side);
-    return height < 0 ? vec3_add_scaled(direction, to_side, -2 * height) : direction;
-}
 
 static struct vec3 follow_rough(struct tracer *tracer, const struct rough *rough, struct vec3 mirror,
                                 struct vec3 refraction, struct path path) {
@@ -274,22 +229,18 @@ static struct vec3 follow_rough(struct tracer *tracer, const struct rough *rough
     for (uint32_t cell = 0; cell < n * n; cell++) {
         struct sample2 place = turns > 1 ? sample_cell_part(key, cell % n, cell / n, n, turn, turns)
                                          : sample_cell(key, cell % n, cell / n, n);
-        struct vec3 facet = microfacet_normal(rough->side, hit->view, rough->alpha, place);
+        struct vec3 facet = microfacet_normal(rough->interface->side, hit->view, rough->alpha, place);
         struct path branch = path;
         branch.key = random_combine(key, cell);
         branch.rough = true;
         if (!is_black(mirror)) {
-            struct vec3 direction = fold(shading_reflect(facet, hit->view), rough->geometric_side);
+            struct vec3 direction = interface_facet_mirror(rough->interface, facet, hit->view);
             sum = vec3_add(sum, follow_mirror(tracer, hit, rough->ray, direction, mirror, branch));
         }
         if (!is_black(refraction)) {
-            struct vec3 direction;
-            if (shading_refract(facet, hit->view, rough->eta, &direction))
-                direction = fold(direction, vec3_negate(rough->geometric_side));
-            else
-                direction = rough->through;
+            struct vec3 direction = interface_facet_through(rough->interface, facet, hit->view);
             struct vec3 light =
-                follow_refraction(tracer, hit, rough->ray, direction, rough->behind, refraction, branch);
+                follow_refraction(tracer, hit, rough->ray, direction, &rough->interface->behind, refraction, branch);
             sum = vec3_add(sum, light);
         }
     }
@@ -302,28 +253,8 @@ static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const str
     const struct settings *settings = &tracer->job->settings;
     struct surface_look look;
     material_look(tracer->job->world->materials[hit->material], hit, &look);
-    /* The ray's side of the surface; interpolated normals follow the geometric one. */
-    struct vec3 geometric_side = hit->front ? hit->normal_geometric : vec3_negate(hit->normal_geometric);
-    struct vec3 side = hit->front ? hit->normal : vec3_negate(hit->normal);
-    if (!(vec3_dot(side, hit->view) > 0))
-        side = geometric_side;
-
-    /* What the interface does to the amounts. */
-    struct media behind;
-    struct vec3 through = {0, 0, 0};
-    double eta = 1;
-    bool passes = false;
-    if (look.fresnel || look.refract != 0) {
-        eta = cross_surface(hit, look.has_ior ? look.ior : 1, look.absorption, ray->media, &behind);
-        passes = shading_refract(side, hit->view, eta, &through);
-        /* About an interpolated normal the ray may not leave its side of the surface: the geometric one takes over. */
-        if (passes && vec3_dot(through, geometric_side) >= 0)
-            passes = shading_refract(geometric_side, hit->view, eta, &through);
-        if (look.fresnel) {
-            look.reflect = shading_fresnel(vec3_dot(side, hit->view), eta);
-            look.refract = 1 - look.reflect;
-        }
-    }
+    struct interface interface;
+    interface_make(hit, ray->media, &look, &interface);
     bool dark_side = !hit->front && !look.two_sided;
     struct vec3 normal = look.two_sided && !hit->front ? vec3_negate(hit->normal) : hit->normal;
     struct shading shading;
@@ -339,31 +270,24 @@ static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const str
             refraction = vec3_add(refraction, shading.lobes[i].weight);
     }
     /* Total internal reflection: the refracted share turns back, or is lost. Fresnel's has none left by itself. */
-    if (!passes) {
+    if (!interface.passes) {
         if (settings->use_tir)
             mirror = vec3_add(mirror, refraction);
         refraction = vec3_all(0);
     }
     if (shading.alpha > 0) {
-        struct rough rough = {
-            hit, ray, &behind, side, geometric_side, through, eta, shading.alpha, look.glossy_samples};
+        struct rough rough = {hit, ray, &interface, shading.alpha, look.glossy_samples};
         return vec3_add(colour, follow_rough(tracer, &rough, mirror, refraction, path));
     }
     if (!is_black(mirror)) {
-        struct vec3 direction = reflect_outwards(hit, side, geometric_side);
+        struct vec3 direction = interface_mirror(&interface, hit->view);
         colour = vec3_add(colour, follow_mirror(tracer, hit, ray, direction, mirror, path));
     }
     if (!is_black(refraction)) {
-        colour = vec3_add(colour, follow_refraction(tracer, hit, ray, through, &behind, refraction, path));
+        colour = vec3_add(colour,
+                          follow_refraction(tracer, hit, ray, interface.through, &interface.behind, refraction, path));
     }
     return colour;
-}
-
-/* The law of Beer, Lambert and Bouguer over a way inside the current medium: what is left of white light. */
-static struct vec3 left_by_medium(const struct media *media, double distance) {
-    struct vec3 a = media->entries[media->count - 1].absorption;
-    return (struct vec3){a.x > 0 ? el_exp(-a.x * distance) : 1, a.y > 0 ? el_exp(-a.y * distance) : 1,
-                         a.z > 0 ? el_exp(-a.z * distance) : 1};
 }
 
 static struct vec3 trace(struct tracer *tracer, const struct ray *ray, struct path path) {
@@ -381,7 +305,7 @@ static struct vec3 trace(struct tracer *tracer, const struct ray *ray, struct pa
     double length = vec3_length(ray->direction), distance = endless ? INFINITY : end * length;
     struct vec3 left = {1, 1, 1};
     if (inside) {
-        left = left_by_medium(ray->media, distance);
+        left = media_left(ray->media, distance);
         clear = false;
     } else if (fog && !(endless && fog->clear_sky)) {
         left = vec3_all(fog_transmittance(fog, ray->origin, vec3_scale(ray->direction, 1 / length), distance));
@@ -408,17 +332,4 @@ struct vec3 whitted_trace(struct tracer *tracer, const struct ray *ray, uint64_t
     struct ray from_eye = *ray;
     from_eye.media = tracer->eye_media;
     return trace(tracer, &from_eye, (struct path){.key = key, .weight = 1});
-}
-
-void whitted_eye_media(const struct world *world, struct vec3 eye, struct world_scratch *scratch, struct media *out) {
-    uint32_t inside[MEDIA_LIMIT];
-    uint32_t count = world_containing(world, eye, scratch, inside, MEDIA_LIMIT);
-    out->count = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        const struct placed *placed = &world->placed[inside[i]];
-        uint32_t material = placed->shape.kind == SHAPE_CSG ? placed->shape.csg->leaves[0].material : placed->material;
-        double ior;
-        if (material_is_transparent(world->materials[material], &ior))
-            media_enter_absorbing(out, inside[i], ior, material_absorption(world->materials[material]));
-    }
 }

@@ -19,7 +19,5 @@ struct tracer {
 
 /* The colour a camera ray brings; key: the random key of this pixel and sample. */
 struct vec3 whitted_trace(struct tracer *tracer, const struct ray *ray, uint64_t key);
-/* The media round the eye, found by counting crossings. */
-void whitted_eye_media(const struct world *world, struct vec3 eye, struct world_scratch *scratch, struct media *out);
 
 #endif
