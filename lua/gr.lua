@@ -1117,6 +1117,11 @@ function gr.fog_grid(corner, size, cells, densities, colour) end
 ---@field stereo? 'none'|'side'|'anaglyph' stereo ('none'|'side'|'anaglyph'; default 'none'): Two eyes: pictures side by side, left one left, or red and cyan.
 ---@field eye_distance? number eye_distance (a number, >= 0; default screen / 30): How far the eyes are apart.
 ---@field screen? number screen (a number, > 0; default focus): Distance along the view that both eyes see in the same place.
+---@field shutter? number[] shutter (a table of two rising numbers; default {0, 1}): When the shutter opens and closes, {open, close}; what moves meanwhile is blurred.
+---@field eye_to? gr.triple eye_to (a point {x, y, z}; default eye): Where a moving camera stands at time 1.
+---@field view_to? gr.triple view_to (a direction {x, y, z}; default view): The direction it looks in then.
+---@field target_to? gr.triple target_to (a point {x, y, z}; default target): The point it looks at then.
+---@field up_to? gr.triple up_to (a direction {x, y, z}; default up): The direction that is up then.
 
 ---Renders a picture into a PNG file.
 ---@param node gr.node node (a node): The root of what is drawn.
@@ -1177,6 +1182,11 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field stereo? 'none'|'side'|'anaglyph' stereo ('none'|'side'|'anaglyph'; default 'none'): Two eyes: pictures side by side, left one left, or red and cyan.
 ---@field eye_distance? number eye_distance (a number, >= 0; default screen / 30): How far the eyes are apart.
 ---@field screen? number screen (a number, > 0; default focus): Distance along the view that both eyes see in the same place.
+---@field shutter? number[] shutter (a table of two rising numbers; default {0, 1}): When the shutter opens and closes, {open, close}; what moves meanwhile is blurred.
+---@field eye_to? gr.triple eye_to (a point {x, y, z}; default eye): Where a moving camera stands at time 1.
+---@field view_to? gr.triple view_to (a direction {x, y, z}; default view): The direction it looks in then.
+---@field target_to? gr.triple target_to (a point {x, y, z}; default target): The point it looks at then.
+---@field up_to? gr.triple up_to (a direction {x, y, z}; default up): The direction that is up then.
 
 ---The same with a sky image all around.
 ---@param node gr.node node (a node): The root of what is drawn.
@@ -1242,6 +1252,19 @@ function node:scale(x, y, z) end
 ---@param angle number angle (a number, in degrees): How far, counterclockwise seen from the axis' tip.
 ---@return gr.node
 function node:rotate(axis, angle) end
+
+---Lets this node move while the shutter is open; where its transforms put it is its place at time 0.
+---@param x number x (a number): How far along x in a unit of time, as the parent measures.
+---@param y number y (a number): How far along y.
+---@param z number z (a number): How far along z.
+---@return gr.node
+---@overload fun(self: gr.node, vector: gr.triple): gr.node
+function node:velocity(x, y, z) end
+
+---Lets this node move from where its transforms put it at time 0 to where another's do at time 1, turning the short way.
+---@param node gr.node node (a node): A node whose own transforms say where this one is at time 1; it need not be in the scene.
+---@return gr.node
+function node:moves_to(node) end
 
 ---Moves this node.
 ---@param x number x (a number): How far along x.

@@ -34,8 +34,8 @@ void stage_end(struct stage *s) {
 bool stage_build(struct stage *s, struct node *root, enum accel_kind accel) {
     world_destroy(&s->world);
     arena_reset(&s->arena);
-    return world_build(&s->world, &s->arena, &s->scene, root, s->lights, s->light_count, &s->sky, accel, s->pool,
-                       count_warning, s, &s->error);
+    return world_build(&s->world, &s->arena, &s->scene, root, s->lights, s->light_count, &s->sky, s->settings.shutter,
+                       accel, s->pool, count_warning, s, &s->error);
 }
 
 bool stage_render(struct stage *s, uint32_t width, uint32_t height) {

@@ -114,7 +114,8 @@ static bool make_picture(struct child *child, const struct render_request *reque
     struct world world = {0};
     double begun = progress_clock();
     bool ok = world_build(&world, &child->job, request->scene, request->root, request->lights, request->light_count,
-                          &request->sky, job->settings.accel, child->pool, warn_of_scene, child, error);
+                          &request->sky, job->settings.shutter, job->settings.accel, child->pool, warn_of_scene, child,
+                          error);
     if (!ok)
         return false;
     double built = progress_clock();

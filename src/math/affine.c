@@ -104,6 +104,15 @@ struct transform transform_rotate_about(struct vec3 axis, double degrees) {
     return out;
 }
 
+double transform_stretch(const struct transform *t) {
+    double stretch = 0;
+    for (int i = 0; i < 3; i++) {
+        const double *row = t->forward.m[i];
+        stretch = fmax(stretch, fabs(row[0]) + fabs(row[1]) + fabs(row[2]));
+    }
+    return stretch;
+}
+
 bool transform_from_affine(const struct affine *forward, struct transform *out) {
     double determinant = affine_determinant(forward);
     if (!isfinite(determinant) || determinant == 0)

@@ -84,6 +84,26 @@ bool camera_prepare(const struct camera *camera, const struct settings *settings
     return prepare_lens(camera, &settings->lens, out, error);
 }
 
+struct camera camera_at(const struct camera *camera, const struct camera_motion *motion, double time) {
+    struct camera out = *camera;
+    out.eye = vec3_add_scaled(camera->eye, vec3_sub(motion->eye, camera->eye), time);
+    out.view = vec3_add_scaled(camera->view, vec3_sub(motion->view, camera->view), time);
+    out.up = vec3_add_scaled(camera->up, vec3_sub(motion->up, camera->up), time);
+    return out;
+}
+
+struct box camera_origins(const struct camera_frame *frame) {
+    const struct lens *lens = &frame->lens;
+    double radius = lens->aperture;
+    if (lens->stereo != STEREO_NONE)
+        radius += lens->eye_distance / 2;
+    if (lens->projection == PROJECTION_ORTHOGRAPHIC)
+        radius += vec3_length(frame->right) * frame->width * (0.5 + fabs(lens->shift_x)) +
+                  vec3_length(frame->down) * frame->height * (0.5 + fabs(lens->shift_y));
+    struct box box = {vec3_sub(frame->eye, vec3_all(radius)), vec3_add(frame->eye, vec3_all(radius))};
+    return box_pad(box);
+}
+
 struct ray camera_ray(const struct camera_frame *frame, double x, double y) {
     struct vec3 direction = vec3_add_scaled(frame->forward, frame->right, x - frame->width / 2);
     direction = vec3_add_scaled(direction, frame->down, y - frame->height / 2);

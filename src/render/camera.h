@@ -4,6 +4,7 @@
 #define GRAY_RENDER_CAMERA_H
 
 #include "base/error.h"
+#include "math/box.h"
 #include "math/ray.h"
 #include "math/sampling.h"
 #include "render/settings.h"
@@ -24,6 +25,10 @@ struct camera_frame {
 /* Errors: view zero or not finite, a lens that cannot be. Sets *warning to a sentence when up had to be replaced. */
 bool camera_prepare(const struct camera *camera, const struct settings *settings, double width, double height,
                     struct camera_frame *out, char warning[256], struct error *error);
+/* The camera at a moment. */
+struct camera camera_at(const struct camera *camera, const struct camera_motion *motion, double time);
+/* A box that holds every place where rays start. */
+struct box camera_origins(const struct camera_frame *frame);
 /* The ray of a pinhole through (x, y), pixels from the upper left corner of the picture. */
 struct ray camera_ray(const struct camera_frame *frame, double x, double y);
 
@@ -34,8 +39,9 @@ static inline bool camera_is_plain(const struct camera_frame *frame) {
            lens->shift_x == 0 && lens->shift_y == 0;
 }
 /* Rays start in places that may lie in different media. */
-static inline bool camera_moves_eye(const struct camera_frame *frame) {
-    return frame->lens.projection == PROJECTION_ORTHOGRAPHIC || frame->lens.stereo != STEREO_NONE;
+static inline bool camera_spreads(const struct camera_frame *frame) {
+    const struct lens *lens = &frame->lens;
+    return lens->projection == PROJECTION_ORTHOGRAPHIC || lens->stereo != STEREO_NONE || lens->aperture > 0;
 }
 /* The ray through (x, y) from a place on the lens (of the unit square) for an eye: -1 left, 1 right, 0 as the picture
  * has it (by halves side by side, else the middle). False: nothing is shown there. */

@@ -9,9 +9,10 @@ struct vec3 media_left(const struct media *media, double distance) {
                          a.z > 0 ? el_exp(-a.z * distance) : 1};
 }
 
-void media_around(const struct world *world, struct vec3 point, struct world_scratch *scratch, struct media *out) {
+void media_around(const struct world *world, struct vec3 point, double ray_time, const uint32_t *closed,
+                  uint32_t closed_count, struct world_scratch *scratch, struct media *out) {
     uint32_t inside[MEDIA_LIMIT];
-    uint32_t count = world_containing(world, point, scratch, inside, MEDIA_LIMIT);
+    uint32_t count = world_containing(world, point, ray_time, closed, closed_count, scratch, inside, MEDIA_LIMIT);
     out->count = 0;
     for (uint32_t i = 0; i < count; i++) {
         const struct placed *placed = &world->placed[inside[i]];

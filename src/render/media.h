@@ -55,7 +55,9 @@ static inline void media_leave(struct media *media, uint32_t placed) {
 /* The law of Beer, Lambert and Bouguer over a way inside the current medium: what is left of white light. The stack is
  * not empty. */
 struct vec3 media_left(const struct media *media, double distance);
-/* The media round a point, found by counting crossings. */
-void media_around(const struct world *world, struct vec3 point, struct world_scratch *scratch, struct media *out);
+/* The media round a point at a ray's time, found by counting crossings; closed[0 .. closed_count-1] are the solids in
+ * question (world_closed_in). */
+void media_around(const struct world *world, struct vec3 point, double ray_time, const uint32_t *closed,
+                  uint32_t closed_count, struct world_scratch *scratch, struct media *out);
 
 #endif

@@ -17,6 +17,7 @@ struct worker {
     struct tracer tracer;
     uint64_t camera_rays, marked, samples;
     struct media ray_media;
+    struct camera_frame camera; /* of the sample's moment, when the camera moves */
     struct vec3 first[(FILM_TILE + 2) * (FILM_TILE + 2)];
 };
 
@@ -25,8 +26,12 @@ struct run {
     struct pool *pool;
     struct camera_frame camera;
     struct media eye_media;
-    bool full;         /* -full, or a lens: what is out of focus differs from sample to sample, not by its neighbours */
-    bool media_by_ray; /* rays start in different places, and something is transparent */
+    /* -full, or a lens or moving things: what is blurred differs from sample to sample, not from its neighbours */
+    bool full;
+    bool timed;        /* something moves while the shutter is open */
+    bool media_by_ray; /* rays start in different places or moments, and solids are near */
+    uint32_t *closed;  /* the solids that the eye can stand in */
+    uint32_t closed_count;
     struct worker *workers;
     uint32_t tiles_x, tiles_y, tile_x0, tile_y0;
     _Atomic uint32_t done;
@@ -44,12 +49,23 @@ static double seconds_now(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+/* The camera at a ray's time. */
+static bool prepare_at(const struct render_job *job, double ray_time, struct camera_frame *out, char warning[256],
+                       struct error *error) {
+    const struct settings *settings = &job->settings;
+    struct camera camera = job->camera;
+    if (settings->motion.moves)
+        camera = camera_at(&job->camera, &settings->motion, shutter_time(settings->shutter, ray_time));
+    return camera_prepare(&camera, settings, job->width, job->height, out, warning, error);
+}
+
 static struct vec3 trace_from_eye(struct run *run, struct worker *worker, struct ray *ray, double share, uint64_t key) {
     ray->footprint.spread *= share;
     ray->footprint.width *= share;
     worker->camera_rays++;
     if (run->media_by_ray) {
-        media_around(run->job->world, ray->origin, &worker->scratch, &worker->ray_media);
+        media_around(run->job->world, ray->origin, ray->time, run->closed, run->closed_count, &worker->scratch,
+                     &worker->ray_media);
         worker->tracer.eye_media = &worker->ray_media;
     }
     return whitted_trace(&worker->tracer, ray, key);
@@ -58,21 +74,29 @@ static struct vec3 trace_from_eye(struct run *run, struct worker *worker, struct
 /* Through a lens, in another projection, for two eyes. The places on the lens of a pixel's samples are parted into as
  * many cells as there are samples, visited in an order of the pixel's own, so that pixel and lens are stratified
  * together. */
-static struct vec3 sample_through(struct run *run, struct worker *worker, double x, double y, double share,
-                                  uint64_t key) {
+static struct vec3 sample_through(struct run *run, struct worker *worker, const struct camera_frame *camera, double x,
+                                  double y, double time, double share, uint64_t key) {
     const struct strata *strata = &worker->tracer.strata;
     uint32_t side = strata->side, cell = sample_turn(strata, UINT64_MAX);
     struct sample2 place = sample_cell(random_combine(strata->key, 2), cell % side, cell / side, side);
     struct ray ray, right_ray;
-    bool anaglyph = run->camera.lens.stereo == STEREO_ANAGLYPH;
-    if (!camera_ray_through(&run->camera, x, y, place, anaglyph ? -1 : 0, &ray))
+    bool anaglyph = camera->lens.stereo == STEREO_ANAGLYPH;
+    if (!camera_ray_through(camera, x, y, place, anaglyph ? -1 : 0, &ray))
         return vec3_all(0);
+    ray.time = time;
     struct vec3 colour = trace_from_eye(run, worker, &ray, share, key);
     if (!anaglyph)
         return colour;
-    (void)camera_ray_through(&run->camera, x, y, place, 1, &right_ray);
+    (void)camera_ray_through(camera, x, y, place, 1, &right_ray);
+    right_ray.time = time;
     struct vec3 right = trace_from_eye(run, worker, &right_ray, share, random_combine(key, UINT64_MAX));
     return vec3_make(colour.x, right.y, right.z);
+}
+
+/* The moment of a sample, from 0 to 1: the shutter's time is parted among the samples of a pixel like the lens. */
+static double sample_time(const struct strata *strata, uint64_t key) {
+    uint32_t all = strata->side * strata->side, cell = sample_turn(strata, UINT64_MAX - 1);
+    return ((double)cell + random_unit(random_combine(key, UINT64_MAX - 1))) / (double)all;
 }
 
 /* share: of the pixel's width that this sample stands for; its footprint on textures. */
@@ -85,9 +109,19 @@ static struct vec3 sample(struct run *run, struct worker *worker, int64_t x, int
     uint32_t side = number > 0 ? (uint32_t)run->job->settings.samples : 1;
     worker->tracer.strata =
         (struct strata){number > 0 ? (uint32_t)number - 1 : 0, side, random_combine(key_of_pixel, 1)};
-    if (!camera_is_plain(&run->camera))
-        return sample_through(run, worker, (double)x + dx, (double)y + dy, share, key);
-    struct ray ray = camera_ray(&run->camera, (double)x + dx, (double)y + dy);
+    const struct camera_frame *camera = &run->camera;
+    double time = run->timed ? sample_time(&worker->tracer.strata, key) : 0;
+    if (run->timed && run->job->settings.motion.moves) {
+        char warning[256];
+        struct error error;
+        camera = &worker->camera;
+        if (!prepare_at(run->job, time, &worker->camera, warning, &error))
+            return vec3_all(0); /* the one moment in which a view turns through zero */
+    }
+    if (!camera_is_plain(camera))
+        return sample_through(run, worker, camera, (double)x + dx, (double)y + dy, time, share, key);
+    struct ray ray = camera_ray(camera, (double)x + dx, (double)y + dy);
+    ray.time = time;
     return trace_from_eye(run, worker, &ray, share, key);
 }
 
@@ -100,7 +134,7 @@ static struct vec3 first_sample(struct run *run, struct worker *worker, int64_t 
 /* Mean of the N x N samples; where one of them is the first sample again it is not traced twice. */
 static struct vec3 all_samples(struct run *run, struct worker *worker, int64_t x, int64_t y, const struct vec3 *first) {
     int n = run->job->settings.samples;
-    bool reuse = (n & 1) && !run->job->settings.pixel_corner && run->camera.lens.aperture == 0;
+    bool reuse = (n & 1) && !run->job->settings.pixel_corner && run->camera.lens.aperture == 0 && !run->timed;
     struct vec3 sum = {0, 0, 0};
     for (int j = 0; j < n; j++) {
         for (int i = 0; i < n; i++) {
@@ -233,7 +267,8 @@ bool render_prepare(struct render_job *job, uint32_t *x0, uint32_t *y0, uint32_t
                     char warning[256], struct error *error) {
     const struct settings *s = &job->settings;
     struct camera_frame frame;
-    if (!camera_prepare(&job->camera, s, job->width, job->height, &frame, warning, error))
+    char ignored[256];
+    if (!prepare_at(job, 0, &frame, warning, error) || !prepare_at(job, 1, &frame, ignored, error))
         return false;
     *x0 = *y0 = 0;
     *width = job->width;
@@ -292,26 +327,44 @@ static bool anything_is_transparent(const struct world *world) {
     return false;
 }
 
+/* The solids that rays may start in, and whether each ray must ask for itself. */
+static bool find_eye_media(struct run *run, const struct box *origins, bool spread) {
+    const struct world *world = run->job->world;
+    run->closed_count = anything_is_transparent(world) ? world_closed_in(world, origins, NULL, 0) : 0;
+    run->closed = mem_alloc_zero((size_t)run->closed_count + 1, sizeof *run->closed);
+    if (!run->closed)
+        return false;
+    if (run->closed_count > 0)
+        (void)world_closed_in(world, origins, run->closed, run->closed_count);
+    run->media_by_ray = run->closed_count > 0 && spread;
+    media_around(world, run->camera.eye, 0, run->closed, run->closed_count, &run->workers[0].scratch, &run->eye_media);
+    return !run->workers[0].scratch.failed;
+}
+
+static bool prepare_run(struct run *run, const struct camera_frame *at_close) {
+    const struct render_job *job = run->job;
+    const struct film *film = job->film;
+    const struct shutter *shutter = &job->settings.shutter;
+    run->timed = shutter->close > shutter->open && (job->world->moves || job->settings.motion.moves);
+    run->full = job->settings.full || run->timed || run->camera.lens.aperture > 0;
+    run->tile_x0 = film->x0 / FILM_TILE;
+    run->tile_y0 = film->y0 / FILM_TILE;
+    run->tiles_x = (film->x0 + film->width - 1) / FILM_TILE - run->tile_x0 + 1;
+    run->tiles_y = (film->y0 + film->height - 1) / FILM_TILE - run->tile_y0 + 1;
+    struct box origins = box_join(camera_origins(&run->camera), camera_origins(at_close));
+    return find_eye_media(run, &origins, run->timed || camera_spreads(&run->camera));
+}
+
 bool render_run(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
                 struct error *error) {
     struct run run = {.job = job, .pool = pool};
     char warning[256];
     int workers = pool_workers(pool);
     double begin = seconds_now();
-    if (!camera_prepare(&job->camera, &job->settings, job->width, job->height, &run.camera, warning, error))
+    struct camera_frame at_close;
+    if (!prepare_at(job, 0, &run.camera, warning, error) || !prepare_at(job, 1, &at_close, warning, error))
         return false;
-    bool ok = start_workers(&run, workers);
-    if (ok) {
-        const struct film *film = job->film;
-        run.full = job->settings.full || run.camera.lens.aperture > 0;
-        run.media_by_ray = camera_moves_eye(&run.camera) && anything_is_transparent(job->world);
-        media_around(job->world, run.camera.eye, &run.workers[0].scratch, &run.eye_media);
-        run.tile_x0 = film->x0 / FILM_TILE;
-        run.tile_y0 = film->y0 / FILM_TILE;
-        run.tiles_x = (film->x0 + film->width - 1) / FILM_TILE - run.tile_x0 + 1;
-        run.tiles_y = (film->y0 + film->height - 1) / FILM_TILE - run.tile_y0 + 1;
-        ok = !run.workers[0].scratch.failed;
-    }
+    bool ok = start_workers(&run, workers) && prepare_run(&run, &at_close);
     if (!ok) {
         error_no_memory(error, "the workers of a render");
     } else if (!pool_run(pool, run.tiles_x * run.tiles_y, tile_item, &run)) {
@@ -328,6 +381,7 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
             world_scratch_destroy(&run.workers[i].scratch);
     }
     mem_free(run.workers);
+    mem_free(run.closed);
     statistics->render_seconds += seconds_now() - begin;
     return ok;
 }

@@ -10,5 +10,6 @@ struct settings settings_default(void) {
                              .area_samples = 4,
                              .specular = SPECULAR_PHONG,
                              .accel = ACCEL_AUTO,
+                             .shutter = {0, 1},
                              .lens = {.view_height = 2, .angle = 180, .screen = 1}};
 }

@@ -6,6 +6,7 @@
 #include "geom/mesh.h"
 #include "image/tone.h"
 #include "look/shading.h"
+#include "math/motion.h"
 #include "math/vec3.h"
 
 #include <stdbool.h>
@@ -30,8 +31,17 @@ struct lens {
     double screen;       /* distance along the view where both eyes see the same place of the picture */
 };
 
+/* Where the camera is at time 1 when it moves; it is where it is said to be at time 0, and all three change linearly.
+ */
+struct camera_motion {
+    bool moves;
+    struct vec3 eye, view, up;
+};
+
 struct settings {
     struct lens lens;
+    struct shutter shutter;
+    struct camera_motion motion;
     struct tone tone;                        /* of the picture file; the film stays linear */
     bool deep;                               /* 16 bits a channel in PNG files */
     int samples;                             /* -ss: N x N for a marked pixel; 1..64 */

@@ -48,10 +48,13 @@ struct node {
     struct node *operands[2];
     struct {
         double min, init, max;
-    } joint_x, joint_y; /* NODE_JOINT, degrees */
-    bool warned;        /* this node's oddity has been told once */
-    int mark;           /* used by walks over the tree: 0 not seen, 1 on the path, 2 finished */
-    uint64_t drawable;  /* primitives under it, worked out by such a walk; saturates */
+    } joint_x, joint_y;   /* NODE_JOINT, degrees */
+    struct vec3 velocity; /* in the parent's space, of every unit of time */
+    /* Or NULL: at time 1 this node stands where that node's own transforms would put it. */
+    const struct node *moves_to;
+    bool warned;       /* this node's oddity has been told once */
+    int mark;          /* used by walks over the tree: 0 not seen, 1 on the path, 2 finished */
+    uint64_t drawable; /* primitives under it, worked out by such a walk; saturates */
 };
 
 /* The store of assets: outlives scripts and renders. */
@@ -106,6 +109,9 @@ enum node_step { NODE_TRANSLATE, NODE_ROTATE, NODE_SCALE, NODE_STEPS };
 bool node_transform(struct scene *scene, struct node *node, enum node_step step, const struct transform *by);
 /* Everything from the node to its parent, joint angles included (y after x). */
 struct transform node_parent_from_node(const struct node *node);
+static inline bool node_moves(const struct node *node) {
+    return (node->moves_to && node->moves_to != node) || vec3_max_abs(node->velocity) > 0;
+}
 struct material *scene_material(struct scene *scene, enum material_kind kind, const struct material *base,
                                 struct error *error);
 

@@ -59,6 +59,19 @@ static struct vec3 step_of(const struct value *args) {
     return (struct vec3){args[STEP_X].number, args[STEP_Y].number, args[STEP_Z].number};
 }
 
+bool act_velocity(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    (void)context, (void)result, (void)error;
+    args[SELF].node->velocity = step_of(args);
+    return true;
+}
+
+/* Only the other node's own transforms count, as they are when the picture is made. */
+bool act_moves_to(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    (void)context, (void)result, (void)error;
+    args[SELF].node->moves_to = args[MOVES_TO_NODE].node;
+    return true;
+}
+
 bool act_scale(struct context *context, const struct value *args, struct result *result, struct error *error) {
     (void)result;
     struct vec3 factors = step_of(args);

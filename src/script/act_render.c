@@ -211,6 +211,23 @@ static bool apply_lens(const struct value *args, struct lens *lens, const struct
     return true;
 }
 
+static bool apply_motion(const struct value *args, struct settings *settings, const struct camera *camera,
+                         struct error *error) {
+    if (args[RENDER_VIEW_TO].given && args[RENDER_TARGET].given)
+        return error_set(error, ERROR_SCENE, "view_to goes with view, target_to with target");
+    if (args[RENDER_TARGET_TO].given && !args[RENDER_TARGET].given)
+        return error_set(error, ERROR_SCENE, "target_to needs target");
+    if (args[RENDER_SHUTTER].given)
+        settings->shutter = (struct shutter){args[RENDER_SHUTTER].vector.x, args[RENDER_SHUTTER].vector.y};
+    const struct value *eye = &args[RENDER_EYE_TO], *up = &args[RENDER_UP_TO];
+    const struct value *view = &args[args[RENDER_TARGET].given ? RENDER_TARGET_TO : RENDER_VIEW_TO];
+    settings->motion = (struct camera_motion){.moves = eye->given || view->given || up->given,
+                                              .eye = eye->given ? eye->vector : camera->eye,
+                                              .view = view->given ? view->vector : camera->view,
+                                              .up = up->given ? up->vector : camera->up};
+    return true;
+}
+
 bool act_render(struct context *context, const struct value *args, struct result *result, struct error *error) {
     (void)result;
     if (args[RENDER_VIEW].given && args[RENDER_TARGET].given)
@@ -241,6 +258,7 @@ bool act_render(struct context *context, const struct value *args, struct result
     };
     apply_settings(args, &request.settings);
     if (!apply_lens(args, &request.settings.lens, &request.camera, error) ||
+        !apply_motion(args, &request.settings, &request.camera, error) ||
         !choose_sky(context, args, &request.sky, error))
         return false;
     limits_pause(context);

@@ -75,7 +75,9 @@ enum { SET_MATERIAL = 1, SET_MATERIAL_COUNT };
 enum { SET_TEXTURE = 1, SET_TEXTURE_COUNT };
 enum { STEP_X = 1, STEP_Y, STEP_Z, STEP_VECTOR, STEP_COUNT };
 enum { ROTATE_AXIS = 1, ROTATE_ANGLE, ROTATE_COUNT };
+enum { MOVES_TO_NODE = 1, MOVES_TO_COUNT };
 action act_add_child, act_set_material, act_set_texture, act_scale, act_rotate, act_translate;
+action act_velocity, act_moves_to;
 
 /* act_mesh.c */
 enum {
@@ -209,6 +211,11 @@ enum {
     RENDER_STEREO,
     RENDER_EYE_DISTANCE,
     RENDER_SCREEN,
+    RENDER_SHUTTER,
+    RENDER_EYE_TO,
+    RENDER_VIEW_TO,
+    RENDER_TARGET_TO,
+    RENDER_UP_TO,
     RENDER_COUNT
 };
 action act_light, act_directional_light, act_spot_light, act_area_light, act_spherical_light, act_disc_light,

@@ -109,6 +109,17 @@ static struct vec3 read_vector(struct context *c, int index, const struct place 
     return (struct vec3){x[0], x[1], x[2]};
 }
 
+static struct vec3 read_interval(struct context *c, int index, const struct place *place) {
+    if (!lua_istable(c->lua, index))
+        wrong_type(c, place, kind_words(place->parameter->kind), index);
+    double x[2];
+    char words[128];
+    read_tuple(c, index, *place, 2, x);
+    if (x[0] > x[1])
+        context_raise(c, "%s must not end before it begins", place_words(place, words));
+    return (struct vec3){x[0], x[1], 0};
+}
+
 /* Strings stay where they are: on the stack or in the table of the call. Numbers count as text, as everywhere in Lua.
  */
 static const char *read_text(struct context *c, int index, const struct place *place) {
@@ -377,6 +388,9 @@ static bool read_value(struct context *c, int index, const struct parameter *p, 
     case KIND_SIZE:
         value->vector = lua_istable(L, index) ? read_vector(c, index, &place) : vec3_all(read_number(c, index, &place));
         return true;
+    case KIND_INTERVAL:
+        value->vector = read_interval(c, index, &place);
+        return true;
     case KIND_NODE:
         value->node = read_handle(c, index, &place, HANDLE_NODE);
         return value->node != NULL;
@@ -500,6 +514,7 @@ static bool looks_like(lua_State *L, int index, enum kind kind) {
     case KIND_DIRECTION:
     case KIND_COLOUR:
     case KIND_TRIPLE:
+    case KIND_INTERVAL:
     case KIND_NODES:
     case KIND_LIGHTS:
     case KIND_POINTS:

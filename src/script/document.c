@@ -170,6 +170,8 @@ static const char *annotation_type(const struct parameter *p, char out[200]) {
     case KIND_COLOUR:
     case KIND_TRIPLE:
         return "gr.triple";
+    case KIND_INTERVAL:
+        return "number[]";
     case KIND_SIZE:
         return "number|gr.triple";
     case KIND_NODE:

@@ -323,6 +323,20 @@ static const struct parameter translate_parameters[] = {
     [STEP_VECTOR] = {"vector", KIND_TRIPLE, 0, ANY, NULL, NULL, "All three in one table."},
 };
 
+static const struct parameter velocity_parameters[] = {
+    SELF_PARAMETER,
+    [STEP_X] = {"x", KIND_NUMBER, 0, ANY, NULL, NULL, "How far along x in a unit of time, as the parent measures."},
+    [STEP_Y] = {"y", KIND_NUMBER, 0, ANY, NULL, NULL, "How far along y."},
+    [STEP_Z] = {"z", KIND_NUMBER, 0, ANY, NULL, NULL, "How far along z."},
+    [STEP_VECTOR] = {"vector", KIND_TRIPLE, 0, ANY, NULL, NULL, "All three in one table."},
+};
+
+static const struct parameter moves_to_parameters[] = {
+    SELF_PARAMETER,
+    [MOVES_TO_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL,
+                       "A node whose own transforms say where this one is at time 1; it need not be in the scene."},
+};
+
 static const struct parameter scale_parameters[] = {
     SELF_PARAMETER,
     [STEP_X] = {"x", KIND_NUMBER, 0, ANY, NULL, NULL, "Factor along x."},
@@ -749,6 +763,12 @@ static const struct parameter render_parameters[] = {
                              "How far the eyes are apart."},
     [RENDER_SCREEN] = {"screen", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "focus",
                        "Distance along the view that both eyes see in the same place."},
+    [RENDER_SHUTTER] = {"shutter", KIND_INTERVAL, OPTIONAL, ANY, NULL, "{0, 1}",
+                        "When the shutter opens and closes, {open, close}; what moves meanwhile is blurred."},
+    [RENDER_EYE_TO] = {"eye_to", KIND_POINT, OPTIONAL, ANY, NULL, "eye", "Where a moving camera stands at time 1."},
+    [RENDER_VIEW_TO] = {"view_to", KIND_DIRECTION, OPTIONAL, ANY, NULL, "view", "The direction it looks in then."},
+    [RENDER_TARGET_TO] = {"target_to", KIND_POINT, OPTIONAL, ANY, NULL, "target", "The point it looks at then."},
+    [RENDER_UP_TO] = {"up_to", KIND_DIRECTION, OPTIONAL, ANY, NULL, "up", "The direction that is up then."},
 };
 
 static const struct parameter named_parameters[] = {
@@ -909,6 +929,13 @@ const struct function function_table[] = {
     LATER("set_bump", OWNER_NODE, RESULT_SELF, "0.2", "Puts a bump map on a shape."),
     NODE("scale", scale_parameters, RESULT_SELF, act_scale, "Scales this node.", "x y z", "vector"),
     NODE("rotate", rotate_parameters, RESULT_SELF, act_rotate, "Turns this node about an axis.", "axis angle"),
+    NODE("velocity", velocity_parameters, RESULT_SELF, act_velocity,
+         "Lets this node move while the shutter is open; where its transforms put it is its place at time 0.", "x y z",
+         "vector"),
+    NODE("moves_to", moves_to_parameters, RESULT_SELF, act_moves_to,
+         "Lets this node move from where its transforms put it at time 0 to where another's do at time 1, turning the "
+         "short way.",
+         "node"),
     NODE("translate", translate_parameters, RESULT_SELF, act_translate, "Moves this node.", "x y z", "vector"),
     NODE("render", render_parameters, RESULT_NOTHING, act_render, "The same as gr.render with this node.",
          "file" RENDER_TAIL),
@@ -966,6 +993,8 @@ const char *kind_words(enum kind kind) {
         return "a colour {r, g, b}";
     case KIND_TRIPLE:
         return "a table of 3 numbers";
+    case KIND_INTERVAL:
+        return "a table of two rising numbers";
     case KIND_SIZE:
         return "a number or a table of 3 numbers";
     case KIND_NODE:

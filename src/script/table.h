@@ -33,6 +33,7 @@ enum kind {
     KIND_COLOUR,     /* vector */
     KIND_TRIPLE,     /* vector: three numbers that are no place */
     KIND_SIZE,       /* vector: one number counts for all three */
+    KIND_INTERVAL,   /* vector: x and y, two numbers, the second not below the first */
     KIND_NODE,       /* node */
     KIND_MATERIAL,   /* material */
     KIND_IMAGE,      /* image, or text: the name of its file */

@@ -142,25 +142,34 @@ static bool count_drawable(struct flattening *f, struct node *root) {
 
 /* --- placing --- */
 
-static bool place(struct flattening *f, const struct node *node, const struct transform *world_from_node,
-                  const struct shape *shape, uint32_t material, uint32_t slot_count) {
+/* Where a node stands: fixed to the world, or to the moving node above it. */
+struct stand {
+    const struct moving_link *above; /* NULL: nothing above moves */
+    struct transform from_node;      /* to the space of `above`, or to the world */
+};
+
+static bool place(struct flattening *f, const struct node *node, const struct stand *stand, const struct shape *shape,
+                  uint32_t material, uint32_t slot_count) {
     struct world *world = f->world;
     if (world->placed_count == f->placed_capacity)
         return error_set(f->error, ERROR_MACHINE, "the scene changed while it was flattened");
     struct placed *placed = &f->placed[world->placed_count];
-    *placed = (struct placed){.world_from_object = *world_from_node,
+    *placed = (struct placed){.world_from_object = stand->from_node,
                               .shape = *shape,
                               .material = material,
                               .slot_count = slot_count,
                               .cull = node->cull};
-    double stretch = 0;
-    for (int i = 0; i < 3; i++) {
-        const double *row = world_from_node->forward.m[i];
-        stretch = fmax(stretch, fabs(row[0]) + fabs(row[1]) + fabs(row[2]));
+    if (stand->above) {
+        struct moving *moving = arena_alloc(f->arena, sizeof *moving);
+        if (!moving)
+            return error_no_memory(f->error, "what moves in the scene");
+        *moving = (struct moving){stand->above, stand->from_node};
+        placed->moving = moving;
+        placed->world_from_object = world_moved(moving, world->shutter, 0.5);
     }
-    placed->scale = stretch;
+    placed->scale = transform_stretch(&placed->world_from_object);
     struct transform nothing = transform_identity();
-    placed->identity = memcmp(&nothing, world_from_node, sizeof nothing) == 0;
+    placed->identity = !placed->moving && memcmp(&nothing, &placed->world_from_object, sizeof nothing) == 0;
     f->nodes[world->placed_count] = node;
     world->placed_count++;
     return true;
@@ -184,41 +193,66 @@ bool flatten_mesh_index(struct flattening *f, const struct shape *shape) {
     return true;
 }
 
-static bool place_node(struct flattening *f, struct node *node, const struct transform *world_from_node) {
+static bool place_node(struct flattening *f, struct node *node, const struct stand *stand) {
     if (node->kind == NODE_GEOMETRY) {
         uint32_t material, slot_count;
         if (node->shape.kind == SHAPE_MESH && mesh_triangle_count(node->shape.mesh) == 0)
             return true;
         return flatten_mesh_index(f, &node->shape) && flatten_material(f, node, NULL, &material, &slot_count) &&
-               place(f, node, world_from_node, &node->shape, material, slot_count);
+               place(f, node, stand, &node->shape, material, slot_count);
     }
     if (node->kind == NODE_CSG) {
         const struct csg *csg;
         if (!flatten_csg(f, node, &csg))
             return false;
         struct shape shape = {.kind = SHAPE_CSG, .csg = csg};
-        return !csg || place(f, node, world_from_node, &shape, 0, 1);
+        return !csg || place(f, node, stand, &shape, 0, 1);
     }
     return true;
 }
 
 struct place_frame {
-    struct transform world_from_node;
+    struct stand stand;
     struct node_child *next;
 };
 
-static bool enter_node(struct flattening *f, struct stack *stack, const struct transform *world_from_parent,
-                       struct node *node) {
+/* A node that moves: a link of its own, on which what is under it stands. */
+static bool stand_moving(struct flattening *f, const struct node *node, const struct stand *parent, struct stand *out) {
+    struct moving_link *link = arena_alloc(f->arena, sizeof *link);
+    if (!link)
+        return error_no_memory(f->error, "what moves in the scene");
     struct transform parent_from_node = node_parent_from_node(node);
-    struct transform world_from_node = transform_compose(world_from_parent, &parent_from_node);
-    if (!place_node(f, node, &world_from_node))
+    *link = (struct moving_link){.above = parent->above, .above_from_node = parent->from_node};
+    *out = (struct stand){link, parent_from_node};
+    if (!node->moves_to || node->moves_to == node) {
+        link->motion = motion_of_velocity(node->velocity);
+        return true;
+    }
+    struct transform end = node_parent_from_node(node->moves_to);
+    out->from_node = transform_identity();
+    if (!motion_between(&parent_from_node, &end, node->velocity, &link->motion))
+        return error_set(f->error, ERROR_SCENE, "node '%.100s' moves to its mirror image: there is no way between",
+                         node->name);
+    return true;
+}
+
+static bool enter_node(struct flattening *f, struct stack *stack, const struct stand *parent, struct node *node) {
+    struct stand stand = {.above = parent->above};
+    if (node_moves(node)) {
+        if (!stand_moving(f, node, parent, &stand))
+            return false;
+    } else {
+        struct transform parent_from_node = node_parent_from_node(node);
+        stand.from_node = transform_compose(&parent->from_node, &parent_from_node);
+    }
+    if (!place_node(f, node, &stand))
         return false;
     if (!node->first_child)
         return true;
     struct place_frame *frame = stack_push(stack);
     if (!frame)
         return error_no_memory(f->error, "flattening the scene");
-    *frame = (struct place_frame){world_from_node, node->first_child};
+    *frame = (struct place_frame){stand, node->first_child};
     return true;
 }
 
@@ -236,8 +270,8 @@ bool flatten_scene(struct flattening *f, struct node *root) {
     f->world->placed = f->placed;
     f->world->nodes = f->nodes;
     struct stack stack = {.size = sizeof(struct place_frame)};
-    struct transform identity = transform_identity();
-    bool ok = root->drawable == 0 || enter_node(f, &stack, &identity, root);
+    struct stand ground = {.from_node = transform_identity()};
+    bool ok = root->drawable == 0 || enter_node(f, &stack, &ground, root);
     uint32_t steps = 0;
     while (ok && stack.count > 0) {
         struct place_frame *frame = stack_top(&stack);
@@ -247,9 +281,9 @@ bool flatten_scene(struct flattening *f, struct node *root) {
             continue;
         }
         frame->next = link->next;
-        struct transform world_from_parent = frame->world_from_node;
+        struct stand parent = frame->stand; /* the stack may move */
         if (link->node->drawable > 0)
-            ok = enter_node(f, &stack, &world_from_parent, link->node);
+            ok = enter_node(f, &stack, &parent, link->node);
         if ((++steps & 4095) == 0 && pool_cancelled(f->pool))
             ok = error_set(f->error, ERROR_CANCELLED, "stopped while the scene was flattened");
     }

@@ -109,6 +109,10 @@ static bool add_operand(struct flattening *f, struct csg_draft *draft, struct no
         return error_set(f->error, ERROR_SCENE, "CSG solids are nested more than %d deep", CSG_NESTING);
     if (node->singular)
         return true;
+    if (node_moves(node))
+        return error_set(f->error, ERROR_SCENE,
+                         "node '%.100s' moves inside of a combined solid; only the solid as a whole can move",
+                         node->name);
     struct transform parent_from_node = node_parent_from_node(node);
     struct transform csg_from_node = transform_compose(csg_from_parent, &parent_from_node);
     if (node->kind == NODE_GEOMETRY) {

@@ -12,7 +12,6 @@
  * Where a primitive stands in several cells it is tried once per ray all the same (a small mailbox remembers). */
 #include "world/world.h"
 
-#include "base/mem.h"
 #include "math/frame.h"
 #include "world/flatten.h"
 #include "world/light_lists.h"
@@ -31,10 +30,36 @@ void world_scratch_destroy(struct world_scratch *scratch) {
     geom_scratch_destroy(&scratch->geom);
 }
 
+struct transform world_moved(const struct moving *moving, struct shutter shutter, double ray_time) {
+    double time = shutter_time(shutter, ray_time);
+    struct transform out = moving->link_from_object;
+    for (const struct moving_link *link = moving->link; link; link = link->above) {
+        struct transform moved = motion_at(&link->motion, time);
+        out = transform_compose(&moved, &out);
+        out = transform_compose(&link->above_from_node, &out);
+    }
+    return out;
+}
+
+/* Everything that a moving primitive covers while the shutter is open: link by link, so that what the moves of two
+ * links have to do with each other is forgotten and the box may be too large, never too small. */
+static struct box moving_bounds(const struct placed *placed, struct shutter shutter) {
+    const struct moving *moving = placed->moving;
+    struct box box = box_pad(shape_bounds_under(&placed->shape, &moving->link_from_object.forward));
+    for (const struct moving_link *link = moving->link; link; link = link->above) {
+        box = box_pad(motion_bounds(&link->motion, &box, shutter));
+        box = box_pad(box_transform(&link->above_from_node.forward, &box));
+    }
+    return box;
+}
+
 static void place_boxes(struct world *world) {
     for (uint32_t i = 0; i < world->placed_count; i++) {
         const struct placed *placed = &world->placed[i];
-        world->boxes[i] = box_pad(shape_bounds_under(&placed->shape, &placed->world_from_object.forward));
+        world->boxes[i] = placed->moving
+                              ? moving_bounds(placed, world->shutter)
+                              : box_pad(shape_bounds_under(&placed->shape, &placed->world_from_object.forward));
+        world->moves = world->moves || placed->moving;
         uint32_t need = shape_scratch_need(&placed->shape);
         world->scratch_need = need > world->scratch_need ? need : world->scratch_need;
         if (placed->shape.kind == SHAPE_MESH)
@@ -48,9 +73,10 @@ static void add_up_meshes(struct world *world, const struct assets *assets) {
 }
 
 bool world_build(struct world *world, struct arena *arena, struct scene *scene, struct node *root,
-                 const struct light *lights, uint32_t light_count, const struct sky *sky, enum accel_kind accel,
-                 struct pool *pool, world_warning *warn, void *warn_context, struct error *error) {
-    *world = (struct world){.accel = accel, .sky = *sky, .light_count = light_count};
+                 const struct light *lights, uint32_t light_count, const struct sky *sky, struct shutter shutter,
+                 enum accel_kind accel, struct pool *pool, world_warning *warn, void *warn_context,
+                 struct error *error) {
+    *world = (struct world){.accel = accel, .sky = *sky, .light_count = light_count, .shutter = shutter};
     struct light *copied = arena_alloc_array(arena, light_count, sizeof *copied);
     if (!copied)
         return error_no_memory(error, "the lights of the scene");
@@ -144,8 +170,10 @@ static void try_placed(struct search *s, uint32_t index) {
     const struct placed *placed = &s->world->placed[index];
     struct ray ray_object;
     struct crossing crossing;
-    if (!placed->identity)
-        ray_object = ray_transform(&placed->world_from_object.inverse, &s->limited);
+    if (!placed->identity) {
+        struct transform moved;
+        ray_object = ray_transform(&world_placement(s->world, placed, s->ray->time, &moved)->inverse, &s->limited);
+    }
     if (!ask_nearest(s, index, placed->identity ? &s->limited : &ray_object, &crossing))
         return;
     if (s->found && !(crossing.t < s->best.t || (crossing.t == s->best.t && index < s->placed)))
@@ -245,7 +273,9 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
 static bool any_placed(const struct world *world, uint32_t index, const struct ray *ray,
                        struct world_scratch *scratch) {
     const struct placed *placed = &world->placed[index];
-    struct ray ray_object = placed->identity ? *ray : ray_transform(&placed->world_from_object.inverse, ray);
+    struct transform moved;
+    struct ray ray_object =
+        placed->identity ? *ray : ray_transform(&world_placement(world, placed, ray->time, &moved)->inverse, ray);
     for (;;) {
         struct crossing ignored;
         bool found = placed->shape.kind == SHAPE_MESH && placed->cull != CULL_NONE
@@ -403,16 +433,17 @@ static double row_sum(const struct affine *a, struct vec3 p) {
 
 /* How far a secondary ray must start off the surface. The point is known up to the surface's own error and the rounding
  * of both transforms; everything scales with the numbers involved, so no length is wired in. */
-static double offset_of(const struct placed *placed, const struct surface *surface, struct vec3 point) {
-    double mapped = row_sum(&placed->world_from_object.forward, surface->point);
-    double back = row_sum(&placed->world_from_object.inverse, point) * placed->scale;
-    return 16 * surface->error * placed->scale + (mapped + back) * 0x1p-42;
+static double offset_of(const struct transform *map, double scale, const struct surface *surface, struct vec3 point) {
+    double mapped = row_sum(&map->forward, surface->point);
+    double back = row_sum(&map->inverse, point) * scale;
+    return 16 * surface->error * scale + (mapped + back) * 0x1p-42;
 }
 
 static void describe(const struct world *world, const struct ray *ray, uint32_t index, const struct crossing *crossing,
                      struct hit *hit) {
     const struct placed *placed = &world->placed[index];
-    const struct transform *map = &placed->world_from_object;
+    struct transform moved;
+    const struct transform *map = world_placement(world, placed, ray->time, &moved);
     struct ray ray_object = placed->identity ? *ray : ray_transform(&map->inverse, ray);
     struct surface surface;
     shape_describe(&placed->shape, &ray_object, crossing, &surface);
@@ -448,7 +479,7 @@ static void describe(const struct world *world, const struct ray *ray, uint32_t 
         hit->dpdv = affine_vector(&map->forward, surface.dpdv);
     }
     hit->front = vec3_dot(hit->view, hit->normal_geometric) >= 0;
-    hit->offset = offset_of(placed, &surface, hit->point);
+    hit->offset = offset_of(map, placed->moving ? transform_stretch(map) : placed->scale, &surface, hit->point);
     hit->footprint = ray->footprint.width + ray->footprint.spread * crossing->t * length;
     if (hit->footprint > 0 && world->material_has_image[material]) {
         struct vec3 a, b;
@@ -472,29 +503,42 @@ bool world_nearest(const struct world *world, const struct ray *ray, struct worl
     return true;
 }
 
-uint32_t world_containing(const struct world *world, struct vec3 point, struct world_scratch *scratch, uint32_t *placed,
-                          uint32_t limit) {
-    struct ray ray = {.origin = point, .direction = {0.5377, 0.6212, 0.5698}, .t_max = INFINITY};
+uint32_t world_closed_in(const struct world *world, const struct box *region, uint32_t *out, uint32_t limit) {
     uint32_t count = 0;
-    double *ends = mem_alloc_zero(limit, sizeof *ends);
-    if (!ends) {
-        scratch->failed = true;
-        return 0;
-    }
     for (uint32_t i = 0; i < world->placed_count; i++) {
-        const struct placed *candidate = &world->placed[i];
-        if (!box_contains(&world->boxes[i], point) || !shape_is_closed(&candidate->shape))
+        struct box common = box_meet(world->boxes[i], *region);
+        if (box_is_empty(&common) || !shape_is_closed(&world->placed[i].shape))
             continue;
-        struct vec3 p_object = affine_point(&candidate->world_from_object.inverse, point);
-        bool inside = shape_contains(&candidate->shape, p_object, &scratch->geom);
-        while (scratch->geom.overflow && geom_scratch_grow(&scratch->geom))
-            inside = shape_contains(&candidate->shape, p_object, &scratch->geom);
-        if (scratch->geom.overflow)
-            scratch->failed = true;
-        if (!inside)
+        if (out && count < limit)
+            out[count] = i;
+        count++;
+    }
+    return count;
+}
+
+static bool contains(const struct world *world, uint32_t index, struct vec3 p_object, struct world_scratch *scratch) {
+    const struct shape *shape = &world->placed[index].shape;
+    bool inside = shape_contains(shape, p_object, &scratch->geom);
+    while (scratch->geom.overflow && geom_scratch_grow(&scratch->geom))
+        inside = shape_contains(shape, p_object, &scratch->geom);
+    scratch->failed = scratch->failed || scratch->geom.overflow;
+    return inside && !scratch->geom.overflow;
+}
+
+uint32_t world_containing(const struct world *world, struct vec3 point, double ray_time, const uint32_t *candidates,
+                          uint32_t candidate_count, struct world_scratch *scratch, uint32_t *placed, uint32_t limit) {
+    struct ray ray = {.origin = point, .direction = {0.5377, 0.6212, 0.5698}, .t_max = INFINITY, .time = ray_time};
+    uint32_t count = 0;
+    double ends[WORLD_NESTING];
+    limit = limit < WORLD_NESTING ? limit : WORLD_NESTING;
+    for (uint32_t k = 0; k < candidate_count; k++) {
+        uint32_t i = candidates[k];
+        struct transform moved;
+        const struct transform *map = world_placement(world, &world->placed[i], ray_time, &moved);
+        if (!box_contains(&world->boxes[i], point) || !contains(world, i, affine_point(&map->inverse, point), scratch))
             continue;
         /* Innermost last: the solid the ray leaves first is the innermost. */
-        struct ray ray_object = ray_transform(&candidate->world_from_object.inverse, &ray);
+        struct ray ray_object = ray_transform(&map->inverse, &ray);
         struct search s = {.world = world, .ray = &ray, .scratch = scratch};
         struct crossing crossing = {.t = INFINITY};
         (void)ask_nearest(&s, i, &ray_object, &crossing);
@@ -515,6 +559,5 @@ uint32_t world_containing(const struct world *world, struct vec3 point, struct w
         placed[at] = i;
         ends[at] = crossing.t;
     }
-    mem_free(ends);
     return count;
 }

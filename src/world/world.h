@@ -11,10 +11,24 @@
 #include "geom/csg.h"
 #include "geom/hit.h"
 #include "geom/shape.h"
+#include "math/motion.h"
 #include "scene/node.h"
 
+/* The way from a moving node to the world: after its own motion a fixed transform, then the next moving node above. */
+struct moving_link {
+    const struct moving_link *above;  /* NULL: the world itself */
+    struct transform above_from_node; /* from the space its motion leads to, to the one that moves above it */
+    struct motion motion;
+};
+/* Of a primitive under moving nodes. */
+struct moving {
+    const struct moving_link *link;
+    struct transform link_from_object;
+};
+
 struct placed {
-    struct transform world_from_object;
+    struct transform world_from_object; /* of what moves: in the middle of the shutter's time */
+    const struct moving *moving;        /* NULL: it stands still */
     struct shape shape;
     uint32_t material;   /* unused for CSG: the leaves have their own */
     uint32_t slot_count; /* of a mesh: face slot k has material + k; below 2 all have `material` */
@@ -27,6 +41,8 @@ struct world {
     const struct placed *placed;
     struct box *boxes; /* world box of each placed primitive */
     uint32_t placed_count;
+    struct shutter shutter;
+    bool moves; /* something does */
     const struct material **materials;
     bool *material_has_image; /* such materials need to know the footprint on the surface */
     uint32_t material_count;
@@ -60,9 +76,21 @@ typedef void world_warning(void *context, const char *text);
  * the scene's arena (materials, names), so it must not outlive the script. Errors: cycles (naming the nodes), no
  * memory, cancelled. lights and sky are copied. */
 bool world_build(struct world *world, struct arena *arena, struct scene *scene, struct node *root,
-                 const struct light *lights, uint32_t light_count, const struct sky *sky, enum accel_kind accel,
-                 struct pool *pool, world_warning *warn, void *warn_context, struct error *error);
+                 const struct light *lights, uint32_t light_count, const struct sky *sky, struct shutter shutter,
+                 enum accel_kind accel, struct pool *pool, world_warning *warn, void *warn_context,
+                 struct error *error);
 void world_destroy(struct world *world); /* what is not in the arena: grid and tree */
+
+/* Where a moving primitive stands at a ray's time. */
+struct transform world_moved(const struct moving *moving, struct shutter shutter, double ray_time);
+/* Where a primitive stands at a ray's time; `moved` is the place for the transform of what moves. */
+static inline const struct transform *world_placement(const struct world *world, const struct placed *placed,
+                                                      double ray_time, struct transform *moved) {
+    if (!placed->moving)
+        return &placed->world_from_object;
+    *moved = world_moved(placed->moving, world->shutter, ray_time);
+    return moved;
+}
 
 /* Nearest hit in the ray's open interval, fully described. Equal t: the primitive that comes first in flattening order.
  */
@@ -80,8 +108,13 @@ uint32_t world_count_visible(const struct world *world, struct vec3 from, double
 uint32_t world_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner, struct vec3 edge1,
                        struct vec3 edge2, const struct vec3 *targets, uint32_t count, struct world_scratch *scratch,
                        bool *visible);
-/* The closed primitives whose inside holds `point`, innermost last; at most `limit`. Returns the count. */
-uint32_t world_containing(const struct world *world, struct vec3 point, struct world_scratch *scratch, uint32_t *placed,
-                          uint32_t limit);
+/* The closed primitives whose box meets `region`: all that can hold a point of it, in flattening order. `out` (or NULL)
+ * has room for `limit`. Returns how many there are. */
+uint32_t world_closed_in(const struct world *world, const struct box *region, uint32_t *out, uint32_t limit);
+/* Those of candidates[0 .. count-1] whose inside holds `point` at a ray's time, innermost last; at most `limit`, which
+ * is at most WORLD_NESTING. Returns the count. */
+enum { WORLD_NESTING = 64 };
+uint32_t world_containing(const struct world *world, struct vec3 point, double ray_time, const uint32_t *candidates,
+                          uint32_t count, struct world_scratch *scratch, uint32_t *placed, uint32_t limit);
 
 #endif

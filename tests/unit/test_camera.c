@@ -249,6 +249,29 @@ TEST(an_orthographic_ray_that_starts_inside_glass_knows_it) {
     stage_end(&s);
 }
 
+/* A lens half in glass: with the focus far away all its rays have one direction, so the picture is half that of a
+ * pinhole in the glass and half that of one in the air. */
+TEST(glass_that_the_lens_cuts_through_is_known_to_each_ray) {
+    double lens = 0, pinhole[2] = {0, 0};
+    for (int i = 0; i < 3; i++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        s.sky = (struct sky){.kind = SKY_GRADIENT};
+        struct node *block = stage_cube(&s, s.root, stage_glass(&s, 0, 1, 1.5));
+        stage_scale(&s, block, 100, 100, 20);
+        stage_move(&s, block, -100, -50, -1);
+        s.camera = (struct camera){{i == 0 ? 0 : i == 1 ? -0.25 : 0.25, 0, 0}, {0, 0.5, -1}, {0, 1, 0}, 1e-4};
+        s.settings.samples = 16;
+        s.settings.lens.aperture = i == 0 ? 0.5 : 0;
+        s.settings.lens.focus = 1e9;
+        CHECK(stage_render(&s, 1, 1));
+        *(i == 0 ? &lens : &pinhole[i - 1]) = stage_pixel(&s, 0, 0).z;
+        stage_end(&s);
+    }
+    CHECK(pinhole[0] > pinhole[1] + 0.05); /* glass bends the view upwards */
+    CHECK_NEAR(lens, (pinhole[0] + pinhole[1]) / 2, 0.02 * (pinhole[0] - pinhole[1]));
+}
+
 TEST(lenses_that_cannot_be_are_refused) {
     struct settings settings = settings_default();
     struct camera camera = {{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 60};

@@ -131,8 +131,8 @@ static bool build_world(void *context) {
     struct stage *s = work->stage;
     struct world world = {0};
     struct arena arena = {0};
-    bool done = world_build(&world, &arena, &s->scene, s->root, s->lights, s->light_count, &s->sky, work->accel,
-                            s->pool, NULL, NULL, &s->error);
+    bool done = world_build(&world, &arena, &s->scene, s->root, s->lights, s->light_count, &s->sky, s->settings.shutter,
+                            work->accel, s->pool, NULL, NULL, &s->error);
     if (done)
         world_destroy(&world);
     arena_destroy(&arena);

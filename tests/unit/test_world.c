@@ -291,12 +291,16 @@ TEST(world_finds_the_solids_round_a_point_innermost_last) {
     CHECK(stage_build(&s, root, ACCEL_GRID));
     struct world_scratch scratch;
     CHECK(world_scratch_init(&scratch, &s.world));
-    uint32_t inside[4];
-    CHECK_EQ_INT(world_containing(&s.world, vec3_make(0.1, 0.2, 0.3), &scratch, inside, 4), 3);
+    uint32_t inside[4], all[4];
+    struct box everywhere = {vec3_all(-INFINITY), vec3_all(INFINITY)};
+    CHECK_EQ_INT(world_closed_in(&s.world, &everywhere, all, 4), 3);
+    struct box far_away = {vec3_all(4), vec3_all(5)};
+    CHECK_EQ_INT(world_closed_in(&s.world, &far_away, NULL, 0), 0);
+    CHECK_EQ_INT(world_containing(&s.world, vec3_make(0.1, 0.2, 0.3), 0, all, 3, &scratch, inside, 4), 3);
     CHECK(inside[0] == 1 && inside[1] == 0 && inside[2] == 2);
-    CHECK_EQ_INT(world_containing(&s.world, vec3_make(0.1, 0.2, 0.3), &scratch, inside, 2), 2);
+    CHECK_EQ_INT(world_containing(&s.world, vec3_make(0.1, 0.2, 0.3), 0, all, 3, &scratch, inside, 2), 2);
     CHECK(inside[0] == 0 && inside[1] == 2);
-    CHECK_EQ_INT(world_containing(&s.world, vec3_make(2.5, 0, 0), &scratch, inside, 4), 1);
+    CHECK_EQ_INT(world_containing(&s.world, vec3_make(2.5, 0, 0), 0, all, 3, &scratch, inside, 4), 1);
     world_scratch_destroy(&scratch);
     stage_end(&s);
 }

@@ -1,0 +1,222 @@
+/* A linear part M is a turn R times a stretch S, which is symmetric: the polar decomposition, found by Newton's
+ * iteration R <- (g R + (g R)^-T) / 2 with the factor g of Higham, "Computing the Polar Decomposition - with
+ * Applications", SIAM J. Sci. Stat. Comput. 1986. Stretches with positive eigenvalues mix linearly without ever
+ * becoming singular, and turns about one axis at constant speed (Shoemake and Duff, "Matrix Animation and Polar
+ * Decomposition", Graphics Interface 1992), so nothing collapses on its way. A mirror image is a turn times a stretch
+ * whose eigenvalues are all negative.
+ *
+ * Bounds: a point of the box moves on a straight line under the stretch and the translation, so the ends hold the way
+ * between; under a turn it is off the chord between two moments by at most r (1 - cos(angle / 2)). */
+#include "math/motion.h"
+
+#include "math/elementary.h"
+
+enum { POLAR_STEPS = 40 };
+
+static const double degree = 3.14159265358979323846 / 180;
+static const double bounds_step = 5; /* degrees between the moments that bounds look at */
+
+/* --- the two parts of a linear map --- */
+
+static double norm_product(const struct affine *a) {
+    double rows = 0, columns = 0;
+    for (int i = 0; i < 3; i++) {
+        rows = fmax(rows, fabs(a->m[i][0]) + fabs(a->m[i][1]) + fabs(a->m[i][2]));
+        columns = fmax(columns, fabs(a->m[0][i]) + fabs(a->m[1][i]) + fabs(a->m[2][i]));
+    }
+    return rows * columns;
+}
+
+/* The turn of a linear map with positive determinant. */
+static struct affine polar_turn(const struct affine *linear) {
+    struct affine turn = *linear;
+    for (int step = 0; step < POLAR_STEPS; step++) {
+        struct transform both;
+        if (!transform_from_affine(&turn, &both))
+            break;
+        double g = sqrt(sqrt(norm_product(&both.inverse) / norm_product(&turn))), change = 0;
+        for (int i = 0; i < 3; i++) {
+            for (int j = 0; j < 3; j++) {
+                double next = 0.5 * (g * turn.m[i][j] + both.inverse.m[j][i] / g);
+                change = fmax(change, fabs(next - turn.m[i][j]));
+                turn.m[i][j] = next;
+            }
+        }
+        /* Entries of a turn are at most 1. The first step takes out the scale and tells nothing. */
+        if (step > 0 && change < 0x1p-50)
+            break;
+    }
+    return turn;
+}
+
+static struct affine transposed(const struct affine *a) {
+    struct affine out = affine_identity();
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            out.m[i][j] = a->m[j][i];
+    return out;
+}
+
+static struct affine linear_part(const struct affine *a) {
+    struct affine out = *a;
+    out.m[0][3] = out.m[1][3] = out.m[2][3] = 0;
+    return out;
+}
+
+static struct affine scaled(const struct affine *a, double factor) {
+    struct affine out = *a;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 4; j++)
+            out.m[i][j] *= factor;
+    return out;
+}
+
+/* Axis and angle of a turn, by way of the quaternion whose largest component is found first (Shepperd, "Quaternion from
+ * Rotation Matrix", 1978). */
+static double turn_about(const struct affine *turn, struct vec3 *axis) {
+    const double(*m)[4] = turn->m;
+    double trace = m[0][0] + m[1][1] + m[2][2], q[4], largest = trace;
+    int k = 3;
+    for (int i = 0; i < 3; i++) {
+        if (m[i][i] > largest) {
+            largest = m[i][i];
+            k = i;
+        }
+    }
+    if (k == 3) {
+        q[3] = 1 + trace;
+        q[0] = m[2][1] - m[1][2];
+        q[1] = m[0][2] - m[2][0];
+        q[2] = m[1][0] - m[0][1];
+    } else {
+        int a = (k + 1) % 3, b = (k + 2) % 3;
+        q[k] = 1 + m[k][k] - m[a][a] - m[b][b];
+        q[a] = m[a][k] + m[k][a];
+        q[b] = m[b][k] + m[k][b];
+        q[3] = m[b][a] - m[a][b];
+    }
+    double sign = q[3] < 0 ? -1 : 1;
+    struct vec3 v = {sign * q[0], sign * q[1], sign * q[2]};
+    double sine = vec3_length(v);
+    *axis = sine > 0 ? vec3_scale(v, 1 / sine) : vec3_make(0, 1, 0);
+    return 2 * el_atan2(sine, sign * q[3]) / degree;
+}
+
+/* --- motions --- */
+
+struct motion motion_of_velocity(struct vec3 velocity) {
+    return (struct motion){.velocity = velocity};
+}
+
+bool motion_between(const struct transform *from, const struct transform *to, struct vec3 velocity,
+                    struct motion *out) {
+    double det0 = affine_determinant(&from->forward), det1 = affine_determinant(&to->forward);
+    if (!(det0 * det1 > 0))
+        return false;
+    double sign = det0 < 0 ? -1 : 1;
+    struct affine linear0 = linear_part(&from->forward), linear1 = linear_part(&to->forward);
+    struct affine positive0 = scaled(&linear0, sign), positive1 = scaled(&linear1, sign);
+    struct affine turn0 = polar_turn(&positive0), turn1 = polar_turn(&positive1);
+    struct affine back0 = transposed(&turn0), back1 = transposed(&turn1);
+    struct affine stretch0 = affine_compose(&back0, &linear0), stretch1 = affine_compose(&back1, &linear1);
+    struct affine between = affine_compose(&turn1, &back0);
+    *out = (struct motion){.velocity = velocity, .between = true, .rest = *from, .first = linear0};
+    out->from = vec3_make(from->forward.m[0][3], from->forward.m[1][3], from->forward.m[2][3]);
+    out->to = vec3_make(to->forward.m[0][3], to->forward.m[1][3], to->forward.m[2][3]);
+    out->degrees = turn_about(&between, &out->axis);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            out->change.m[i][j] = stretch1.m[i][j] - stretch0.m[i][j];
+    }
+    out->change = affine_compose(&turn0, &out->change);
+    return true;
+}
+
+static double clamped(double time) {
+    return time > 0 ? (time < 1 ? time : 1) : 0;
+}
+
+/* The first turn and the stretch of a moment. */
+static struct affine stretch_at(const struct motion *motion, double share) {
+    struct affine out = motion->first;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            out.m[i][j] += share * motion->change.m[i][j];
+    return out;
+}
+
+static struct vec3 translation_at(const struct motion *motion, double time) {
+    struct vec3 by = vec3_scale(motion->velocity, time);
+    if (!motion->between)
+        return by;
+    struct vec3 way = vec3_scale(vec3_sub(motion->to, motion->from), clamped(time));
+    return vec3_add(by, vec3_add(motion->from, way));
+}
+
+struct transform motion_at(const struct motion *motion, double time) {
+    struct transform moved = transform_translate(translation_at(motion, time));
+    if (!motion->between)
+        return moved;
+    double share = clamped(time);
+    struct affine linear = stretch_at(motion, share);
+    struct transform stretch;
+    /* Stretches of one sign mix to one of that sign; only rounding at the edge of the representable can fail. */
+    if (!transform_from_affine(&linear, &stretch))
+        stretch = motion->rest;
+    if (motion->degrees > 0) {
+        struct transform turn = transform_rotate_about(motion->axis, share * motion->degrees);
+        stretch = transform_compose(&turn, &stretch);
+    }
+    return transform_compose(&moved, &stretch);
+}
+
+static bool is_finite(const struct box *box) {
+    return vec3_finite(box->min) && vec3_finite(box->max);
+}
+
+/* Everything that a box covers while it turns about an axis through the origin. */
+static struct box turned_bounds(const struct box *box, struct vec3 axis, double from, double to) {
+    double radius = 0;
+    for (int i = 0; i < 8; i++) {
+        struct vec3 corner = {i & 1 ? box->max.x : box->min.x, i & 2 ? box->max.y : box->min.y,
+                              i & 4 ? box->max.z : box->min.z};
+        radius = fmax(radius, vec3_length(vec3_cross(axis, corner)));
+    }
+    int steps = 1 + (int)(fabs(to - from) / bounds_step);
+    double step = (to - from) / steps, half_sine = el_sin(step * degree / 4);
+    double off = radius * 2 * half_sine * half_sine; /* 1 - cos(x) = 2 sin(x / 2)^2 */
+    struct box out = box_empty();
+    for (int i = 0; i <= steps; i++) {
+        struct transform turn = transform_rotate_about(axis, from + i * step);
+        out = box_join(out, box_transform(&turn.forward, box));
+    }
+    out.min = vec3_sub(out.min, vec3_all(off));
+    out.max = vec3_add(out.max, vec3_all(off));
+    return out;
+}
+
+struct box motion_bounds(const struct motion *motion, const struct box *box, struct shutter shutter) {
+    struct box out = *box;
+    if (box_is_empty(box))
+        return out;
+    if (motion->between && !is_finite(box)) {
+        out = (struct box){vec3_all(-INFINITY), vec3_all(INFINITY)};
+    } else if (motion->between) {
+        double open = clamped(shutter.open), close = clamped(shutter.close);
+        struct affine at_open = stretch_at(motion, open), at_close = stretch_at(motion, close);
+        out = box_join(box_transform(&at_open, box), box_transform(&at_close, box));
+        if (motion->degrees > 0)
+            out = turned_bounds(&out, motion->axis, open * motion->degrees, close * motion->degrees);
+    }
+    struct vec3 low = translation_at(motion, shutter.open), high = low;
+    /* A motion between poses begins and ends at 0 and 1: two more corners of the way, if the shutter is open then. */
+    const double moments[3] = {shutter.close, 0, 1};
+    for (int i = 0; i < 3; i++) {
+        if (moments[i] >= shutter.open && moments[i] <= shutter.close) {
+            struct vec3 by = translation_at(motion, moments[i]);
+            low = vec3_min(low, by);
+            high = vec3_max(high, by);
+        }
+    }
+    return (struct box){vec3_add(out.min, low), vec3_add(out.max, high)};
+}

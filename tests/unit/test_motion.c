@@ -1,0 +1,332 @@
+/* Motion blur: poses in between, boxes that hold the way, pictures against box filters and against means of sharp ones.
+ */
+#include "math/motion.h"
+#include "tests/harness.h"
+#include "tests/stage.h"
+#include "tests/unit/mesh_makers.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static struct vec3 random_vec(struct test_random *random, double size) {
+    double x = test_uniform(random, -size, size), y = test_uniform(random, -size, size);
+    return vec3_make(x, y, test_uniform(random, -size, size));
+}
+
+static struct transform random_pose(struct test_random *random) {
+    struct transform turn = transform_rotate_about(random_vec(random, 1), test_uniform(random, -180, 180));
+    struct vec3 factors = {test_uniform(random, 0.2, 3), test_uniform(random, 0.2, 3), test_uniform(random, 0.2, 3)};
+    struct transform stretch = transform_scale(factors), shear = transform_rotate(1, test_uniform(random, -90, 90));
+    struct transform moved = transform_translate(random_vec(random, 5));
+    stretch = transform_compose(&stretch, &shear);
+    turn = transform_compose(&turn, &stretch);
+    return transform_compose(&moved, &turn);
+}
+
+static double difference(const struct affine *a, const struct affine *b) {
+    double most = 0;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 4; j++)
+            most = fmax(most, fabs(a->m[i][j] - b->m[i][j]));
+    return most;
+}
+
+TEST(a_motion_begins_and_ends_at_its_poses_and_its_inverse_is_one) {
+    struct test_random random = {1};
+    for (int i = 0; i < 300; i++) {
+        struct transform from = random_pose(&random), to = random_pose(&random);
+        struct motion motion;
+        CHECK(motion_between(&from, &to, vec3_all(0), &motion));
+        struct transform start = motion_at(&motion, 0), end = motion_at(&motion, 1), early = motion_at(&motion, -2);
+        CHECK(difference(&start.forward, &from.forward) < 1e-12);
+        CHECK(difference(&end.forward, &to.forward) < 1e-12);
+        CHECK(difference(&early.forward, &from.forward) < 1e-12);
+        struct transform between = motion_at(&motion, test_uniform(&random, 0, 1)), identity = transform_identity();
+        struct affine back = affine_compose(&between.inverse, &between.forward);
+        CHECK(difference(&back, &identity.forward) < 1e-11);
+    }
+}
+
+TEST(half_of_a_quarter_turn_is_an_eighth_whatever_the_stretch) {
+    struct transform stretch = transform_scale(vec3_make(1, 2, 5)), turn = transform_rotate(2, 90);
+    struct transform end = transform_compose(&turn, &stretch), eighth = transform_rotate(2, 45);
+    struct transform expected = transform_compose(&eighth, &stretch);
+    struct motion motion;
+    CHECK(motion_between(&stretch, &end, vec3_make(3, 0, 0), &motion));
+    CHECK_NEAR(motion.degrees, 90, 1e-12);
+    struct transform half = motion_at(&motion, 0.5);
+    CHECK_NEAR(half.forward.m[0][3], 1.5, 1e-15);
+    half.forward.m[0][3] = 0;
+    CHECK(difference(&half.forward, &expected.forward) < 1e-12);
+    /* Half a turn has an axis, too. */
+    struct transform identity = transform_identity(), back = transform_rotate(0, 180);
+    CHECK(motion_between(&identity, &back, vec3_all(0), &motion));
+    CHECK_NEAR(motion.degrees, 180, 1e-9);
+    CHECK_NEAR(fabs(motion.axis.x), 1, 1e-12);
+}
+
+TEST(there_is_no_way_to_a_mirror_image) {
+    struct transform identity = transform_identity(), mirror = transform_scale(vec3_make(1, -1, 1));
+    struct motion motion;
+    CHECK(!motion_between(&identity, &mirror, vec3_all(0), &motion));
+    CHECK(motion_between(&mirror, &mirror, vec3_all(0), &motion));
+}
+
+TEST(bounds_of_a_motion_hold_every_point_at_every_time) {
+    struct test_random random = {2};
+    for (int i = 0; i < 300; i++) {
+        struct transform from = random_pose(&random), to = random_pose(&random);
+        struct motion motion = motion_of_velocity(random_vec(&random, 3));
+        if (i % 3)
+            CHECK(motion_between(&from, &to, i % 3 == 1 ? vec3_all(0) : random_vec(&random, 3), &motion));
+        struct vec3 a = random_vec(&random, 2), b = random_vec(&random, 2);
+        struct box box = {vec3_min(a, b), vec3_max(a, b)};
+        struct shutter shutter = {test_uniform(&random, -0.5, 0.8), 0};
+        shutter.close = shutter.open + test_uniform(&random, 0, 1.2);
+        struct box bounds = motion_bounds(&motion, &box, shutter);
+        for (int k = 0; k < 300; k++) {
+            struct vec3 p = {k & 1 ? box.min.x : box.max.x, k & 2 ? box.min.y : box.max.y,
+                             k & 4 ? box.min.z : box.max.z};
+            struct transform at = motion_at(&motion, shutter_time(shutter, test_uniform(&random, 0, 1)));
+            p = affine_point(&at.forward, p);
+            CHECK(box_contains(&bounds, p));
+        }
+    }
+}
+
+/* --- pictures --- */
+
+static struct material *bright(struct stage *s) {
+    struct material *material = stage_phong(s, vec3_all(1), vec3_all(0), 1);
+    material->phong.unlit = true;
+    return material;
+}
+
+/* Seen straight from the front, one pixel a unit, `size` pixels wide and high, the origin in the middle. */
+static void flat_view(struct stage *s, double size) {
+    s->camera = (struct camera){{0, 0, 50}, {0, 0, -1}, {0, 1, 0}, 40};
+    s->settings.lens.projection = PROJECTION_ORTHOGRAPHIC;
+    s->settings.lens.view_height = size;
+    s->settings.samples = 8;
+}
+
+/* The edge at x = -8 moves 12 to the right while the shutter is open: how long a place x was covered is a ramp, and a
+ * pixel is its mean. Of 64 moments, one from each 64th part, all but those six are certain in which the edge is inside
+ * of the pixel: half of them is the most that can be wrong. */
+TEST(a_moving_edge_is_its_box_filter) {
+    struct stage s;
+    stage_begin(&s, 2);
+    struct node *block = stage_cube(&s, s.root, bright(&s));
+    stage_scale(&s, block, 40, 40, 1);
+    stage_move(&s, block, -48, -20, 0);
+    block->velocity = vec3_make(24, 0, 0);
+    s.settings.shutter = (struct shutter){0, 0.5};
+    flat_view(&s, 8);
+    CHECK(stage_render(&s, 32, 8));
+    for (uint32_t x = 0; x < 32; x++) {
+        double left = (double)x - 16, expected = 0;
+        for (int i = 0; i < 1000; i++) {
+            double place = left + (i + 0.5) / 1000;
+            expected += fmin(fmax((4 - place) / 12, 0), 1) / 1000;
+        }
+        double mean = 0;
+        for (uint32_t y = 0; y < 8; y++) {
+            CHECK_NEAR(stage_pixel(&s, x, y).x, expected, 3.0 / 64);
+            mean += stage_pixel(&s, x, y).x / 8;
+        }
+        CHECK_NEAR(mean, expected, 0.015);
+    }
+    stage_end(&s);
+}
+
+/* Everything that can move, moving: a ball, a mesh, a solid with a hole, an instance, nested motions, a mirror and a
+ * shadow. */
+static void moving_stage(struct stage *s, int threads, double unit) {
+    stage_begin(s, threads);
+    struct material *white = stage_phong(s, vec3_make(0.7, 0.5, 0.3), vec3_all(0), 1);
+    struct material *mirror = stage_glass(s, 0.8, 0, 1);
+    struct node *ball = stage_sphere(s, s->root, white);
+    stage_scale(s, ball, unit, 1.2 * unit, unit);
+    stage_move(s, ball, -4 * unit, 0, 0);
+    ball->velocity = vec3_make(2 * unit, 0.5 * unit, 0);
+    struct node *wheel = stage_group(s, s->root);
+    struct node *end = scene_node(&s->scene, NODE_GROUP, "end", &s->error);
+    stage_move(s, wheel, 2 * unit, 1.5 * unit, 0);
+    stage_rotate(s, end, 2, 70);
+    stage_scale(s, end, 1.2, 0.9, 1);
+    stage_move(s, end, 3 * unit, 1.5 * unit, 0);
+    wheel->moves_to = end;
+    struct node *spoke = stage_cube(s, wheel, white);
+    stage_scale(s, spoke, 2.5 * unit, 0.4 * unit, unit);
+    struct maker maker = {0};
+    maker_sphere(&maker, 6);
+    maker_scale(&maker, unit, 0, 0, 0);
+    struct mesh_input input = maker_input(&maker);
+    struct node *solid = scene_node(&s->scene, NODE_GEOMETRY, "mesh", &s->error);
+    solid->shape = (struct shape){.kind = SHAPE_MESH, .mesh = assets_mesh(&s->assets, &input, &s->error)};
+    solid->material = white;
+    maker_free(&maker);
+    stage_move(s, solid, -2 * unit, -unit, 0.5 * unit);
+    solid->velocity = vec3_make(0, 0, unit); /* of a thing on a wheel */
+    CHECK(node_add_child(&s->scene, wheel, solid, &s->error));
+    struct node *cut = scene_node(&s->scene, NODE_CSG, "cut", &s->error);
+    cut->operation = NODE_DIFFERENCE;
+    struct node *nowhere = scene_node(&s->scene, NODE_GROUP, "nowhere", &s->error);
+    cut->operands[0] = stage_cube(s, nowhere, white);
+    cut->operands[1] = stage_sphere(s, nowhere, mirror);
+    for (int i = 0; i < 2; i++)
+        stage_scale(s, cut->operands[i], (2 - i) * unit, 2 * unit, 1.5 * unit);
+    stage_move(s, cut, -3 * unit, -4 * unit, 0);
+    cut->velocity = vec3_make(0, 0.8 * unit, 0.5 * unit);
+    CHECK(node_add_child(&s->scene, s->root, cut, &s->error));
+    struct node *again = stage_group(s, s->root); /* the moving ball once more, under something that stands */
+    stage_move(s, again, 6 * unit, -2.5 * unit, 0);
+    CHECK(node_add_child(&s->scene, again, ball, &s->error));
+    struct node *floor = stage_cube(s, s->root, mirror);
+    stage_scale(s, floor, 20 * unit, unit, 20 * unit);
+    stage_move(s, floor, -10 * unit, -5.5 * unit, -10 * unit);
+    stage_point_light(s, vec3_make(4 * unit, 12 * unit, 8 * unit), vec3_all(1));
+    s->ambient = vec3_all(0.1);
+    s->camera = (struct camera){{0, unit, 14 * unit}, {0, -0.1, -1}, {0, 1, 0}, 50};
+    s->settings.samples = 4;
+}
+
+/* A blurred picture is the mean of sharp ones. */
+static void compare_with_mean(struct stage *s, uint32_t width, uint32_t height, double most_rms) {
+    enum { FRAMES = 48 };
+    struct vec3 *mean = calloc((size_t)width * height, sizeof *mean);
+    struct shutter shutter = s->settings.shutter;
+    s->settings.samples = 6;
+    s->settings.full = true;
+    for (int i = 0; i < FRAMES; i++) {
+        double moment = shutter_time(shutter, (i + 0.5) / FRAMES);
+        s->settings.shutter = (struct shutter){moment, moment};
+        s->settings.samples = 3;
+        CHECK(stage_render(s, width, height));
+        for (uint32_t k = 0; k < width * height; k++)
+            mean[k] = vec3_add_scaled(mean[k], stage_pixel(s, k % width, k / width), 1.0 / FRAMES);
+    }
+    s->settings.shutter = shutter;
+    s->settings.samples = 12;
+    CHECK(stage_render(s, width, height));
+    double sum = 0, worst = 0;
+    for (uint32_t k = 0; k < width * height; k++) {
+        struct vec3 d = vec3_sub(stage_pixel(s, k % width, k / width), mean[k]);
+        sum += vec3_dot(d, d) / 3;
+        worst = fmax(worst, vec3_max_abs(d));
+    }
+    CHECK_NEAR(sqrt(sum / (width * height)), 0, most_rms);
+    CHECK_NEAR(worst, 0, 0.15);
+    free(mean);
+}
+
+TEST(a_blurred_picture_is_the_mean_of_sharp_ones) {
+    struct stage s;
+    moving_stage(&s, 2, 1);
+    s.settings.shutter = (struct shutter){0.1, 0.9};
+    compare_with_mean(&s, 40, 30, 0.012);
+    stage_end(&s);
+}
+
+TEST(a_moving_camera_is_the_mean_of_standing_ones) {
+    struct stage s;
+    moving_stage(&s, 2, 1);
+    s.settings.shutter = (struct shutter){0, 1};
+    s.settings.motion =
+        (struct camera_motion){true, vec3_make(0.6, 1.2, 13.5), vec3_make(0.05, -0.1, -1), vec3_make(0.05, 1, 0)};
+    s.settings.lens.aperture = 0.05;
+    s.settings.lens.focus = 14;
+    compare_with_mean(&s, 32, 24, 0.015);
+    stage_end(&s);
+}
+
+TEST(moving_the_camera_is_moving_everything_the_other_way) {
+    struct vec3 *first = calloc(32 * 8, sizeof *first);
+    for (int i = 0; i < 2; i++) {
+        struct stage s;
+        stage_begin(&s, 2);
+        struct node *ball = stage_sphere(&s, s.root, bright(&s));
+        stage_scale(&s, ball, 2, 2, 2);
+        flat_view(&s, 8);
+        if (i == 0)
+            ball->velocity = vec3_make(4, 1, 0);
+        else
+            s.settings.motion =
+                (struct camera_motion){true, vec3_sub(s.camera.eye, vec3_make(4, 1, 0)), s.camera.view, s.camera.up};
+        CHECK(stage_render(&s, 32, 8));
+        for (uint32_t k = 0; k < 32 * 8; k++) {
+            if (i == 0)
+                first[k] = stage_pixel(&s, k % 32, k / 32);
+            CHECK_NEAR(first[k].x, stage_pixel(&s, k % 32, k / 32).x, 1.01 / 64);
+        }
+        stage_end(&s);
+    }
+    free(first);
+}
+
+/* Stratifying pixel and moment together must beat as many independent moments. */
+TEST(samples_of_pixel_and_time_are_stratified_together) {
+    double error[2] = {0, 0};
+    for (int alone = 0; alone < 2; alone++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        struct node *block = stage_cube(&s, s.root, bright(&s));
+        stage_scale(&s, block, 40, 40, 1);
+        stage_move(&s, block, -41, -20, 0);
+        block->velocity = vec3_make(2, 0, 0);
+        flat_view(&s, 0.001);
+        for (uint64_t seed = 0; seed < 64; seed++) {
+            double mean = 0;
+            for (uint64_t i = 0; i < (alone ? 64 : 1); i++) {
+                s.settings.seed = alone ? 1000 + seed * 64 + i : seed;
+                s.settings.samples = alone ? 1 : 8;
+                CHECK(stage_render(&s, 1, 1));
+                mean += stage_pixel(&s, 0, 0).x / (alone ? 64 : 1);
+            }
+            error[alone] += (mean - 0.5) * (mean - 0.5);
+        }
+        stage_end(&s);
+    }
+    CHECK(error[0] < 0.1 * error[1]);
+}
+
+TEST(motion_gives_the_same_bits_for_any_threads_search_crop_and_power_of_two) {
+    struct film_pixel *reference = NULL;
+    for (int i = 0; i < 7; i++) {
+        struct stage s;
+        moving_stage(&s, i == 1 ? 7 : 2, i == 5 ? 0x1p12 : 1);
+        s.settings.motion = (struct camera_motion){true, vec3_scale(vec3_make(0.5, 1, 14), i == 5 ? 0x1p12 : 1),
+                                                   s.camera.view, s.camera.up};
+        if (i == 2) {
+            s.settings.cropped = true;
+            s.settings.crop_height = 40;
+            s.settings.crop_width = 70;
+        }
+        s.settings.accel = i == 3 ? ACCEL_NONE : i == 4 ? ACCEL_GRID : i == 6 ? ACCEL_KD : ACCEL_AUTO;
+        CHECK(stage_render(&s, 70, 50));
+        if (!reference)
+            reference = memcpy(malloc(70 * 50 * sizeof *reference), s.film.pixels, 70 * 50 * sizeof *reference);
+        int different = 0;
+        for (size_t k = 0; k < (size_t)70 * (i == 2 ? 40 : 50); k++)
+            different += memcmp(&reference[k], &s.film.pixels[k], sizeof *reference) != 0;
+        CHECK_EQ_INT(different, 0);
+        stage_end(&s);
+    }
+    free(reference);
+}
+
+/* The eye is outside at first and inside a moving ball of glass at the end: each ray must know. */
+TEST(a_camera_that_glass_moves_over_knows_it_at_every_moment) {
+    struct stage s;
+    stage_begin(&s, 2);
+    struct material *glass = stage_glass(&s, 0, 1, 1.5);
+    struct node *ball = stage_sphere(&s, s.root, glass);
+    stage_scale(&s, ball, 3, 3, 3);
+    stage_move(&s, ball, 0, 0, 4);
+    ball->velocity = vec3_make(0, 0, -4);
+    s.sky = (struct sky){.kind = SKY_GRADIENT};
+    s.camera = (struct camera){{0, 0, 0}, {0.2, 0.4, -1}, {0, 1, 0}, 30};
+    compare_with_mean(&s, 24, 16, 0.01);
+    stage_end(&s);
+}
