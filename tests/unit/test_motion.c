@@ -303,7 +303,7 @@ TEST(motion_gives_the_same_bits_for_any_threads_search_crop_and_power_of_two) {
             s.settings.crop_height = 40;
             s.settings.crop_width = 70;
         }
-        s.settings.accel = i == 3 ? ACCEL_NONE : i == 4 ? ACCEL_GRID : i == 6 ? ACCEL_KD : ACCEL_AUTO;
+        s.settings.accel = i == 3 ? ACCEL_NONE : i == 4 ? ACCEL_GRID : i == 6 ? ACCEL_KDTREE : ACCEL_AUTO;
         CHECK(stage_render(&s, 70, 50));
         if (!reference)
             reference = memcpy(malloc(70 * 50 * sizeof *reference), s.film.pixels, 70 * 50 * sizeof *reference);
