@@ -5,6 +5,7 @@
 #define GRAY_APP_CHANNEL_H
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "render/render.h"
 
 #include <stdbool.h>
@@ -40,6 +41,7 @@ struct picture_request {
     uint32_t curve, srgb;             /* the same; an enum tone_curve, and not 0 for sRGB */
     uint32_t deep;                    /* not 0: 16 bits a channel in a PNG file */
     uint32_t check;                   /* not 0 for --check: only the names are looked at, no film is wanted */
+    struct digest files;              /* of all that was read so far; zero when nobody wants to know */
     char file[4096];                  /* as the script gave it */
 };
 
@@ -54,6 +56,7 @@ struct picture_report {
 
 struct frame_answer {
     bool ok;
+    bool already; /* to FRAME_BEGIN: there is nothing to do, no film comes along */
     struct error error;
 };
 

@@ -5,6 +5,7 @@
 
 #include "app/progress.h"
 #include "base/arena.h"
+#include "base/file.h"
 #include "base/hash.h"
 #include "base/pool.h"
 #include "render/render.h"
@@ -24,8 +25,9 @@ struct child {
     struct pool *pool;  /* made for the first picture */
     struct arena job;   /* memory of the picture being made */
     struct assets assets;
-    int status;                /* --check: worst of the problems reported so far in this script */
-    uint64_t told[TOLD_LIMIT]; /* hashes of the warnings about scenes that this script was given */
+    struct file_witness witness; /* what the scripts read, when tiles are kept for later */
+    int status;                  /* --check: worst of the problems reported so far in this script */
+    uint64_t told[TOLD_LIMIT];   /* hashes of the warnings about scenes that this script was given */
     int told_count;
 };
 
@@ -81,9 +83,12 @@ static void warn_of_scene(void *context, const char *text) {
 static void tile_done(void *context, uint32_t tile, uint32_t done, uint32_t count) {
     struct control *control = context;
     (void)tile;
-    (void)done;
     atomic_store_explicit(&control->tiles, count, memory_order_relaxed);
-    (void)atomic_fetch_add_explicit(&control->tiles_done, 1, memory_order_relaxed);
+    /* Those of an earlier run count too; of two workers the later one may come first. */
+    uint32_t told = atomic_load_explicit(&control->tiles_done, memory_order_relaxed);
+    while (told < done && !atomic_compare_exchange_weak_explicit(&control->tiles_done, &told, done,
+                                                                 memory_order_relaxed, memory_order_relaxed))
+        ;
 }
 
 static void fill_report(const struct child *child, const struct world *world, struct picture_report *report) {
@@ -133,7 +138,7 @@ static bool make_picture(struct child *child, const struct render_request *reque
 }
 
 static bool begin_picture(struct child *child, const struct render_request *request, struct render_job *job,
-                          struct film *film, struct error *error) {
+                          struct film *film, bool *already, struct error *error) {
     struct picture_request asked = {.full_width = job->width,
                                     .full_height = job->height,
                                     .exposure = job->settings.tone.exposure,
@@ -150,7 +155,10 @@ static bool begin_picture(struct child *child, const struct render_request *requ
         return false;
     if (warning[0] != '\0')
         warn_of_scene(child, warning);
-    if (!child->services->begin(child->services->context, &asked, film, error))
+    asked.files = file_witness_sum(&child->witness);
+    if (child->witness.incomplete)
+        return error_no_memory(error, "the list of files that were read");
+    if (!child->services->begin(child->services->context, &asked, film, already, error))
         return false;
     film->x0 = asked.x0;
     film->y0 = asked.y0;
@@ -172,14 +180,19 @@ static bool render_job_run(struct child *child, const struct render_request *req
         .ambient = request->ambient,
         .fog = request->fog,
         .film = &film,
+        .shard = options->shard,
+        .shards = options->shards,
         .tile_done = tile_done,
         .context = services->control,
     };
     (void)fflush(stdout);
     if (is_cancelled(child))
         return error_set(error, ERROR_CANCELLED, "interrupted");
-    if (!need_pool(child, error) || !begin_picture(child, request, &job, &film, error))
+    bool already = false;
+    if (!need_pool(child, error) || !begin_picture(child, request, &job, &film, &already, error))
         return false;
+    if (already)
+        return true;
     bool ok = make_picture(child, request, &job, &report, error);
     arena_reset(&child->job);
     if (ok && !options->check)
@@ -255,6 +268,8 @@ static int run_script(struct child *child, const char *path) {
 
 void child_run(const struct options *options, const struct child_services *services, int first) {
     struct child child = {.options = options, .services = services};
+    if (options->checkpoint || options->shards)
+        file_set_witness(&child.witness);
     for (int i = first; i < options->script_count; i++) {
         int status = run_script(&child, options->scripts[i]);
         services->script_ended(services->context, i, status);
@@ -264,4 +279,5 @@ void child_run(const struct options *options, const struct child_services *servi
     pool_destroy(child.pool);
     arena_destroy(&child.job);
     assets_destroy(&child.assets);
+    file_witness_destroy(&child.witness);
 }

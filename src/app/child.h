@@ -14,8 +14,10 @@
 struct child_services {
     void *context;
     struct control *control;
-    /* A film for the picture; under request->check only the answer whether it could be written. */
-    bool (*begin)(void *context, const struct picture_request *request, struct film *film, struct error *error);
+    /* A film for the picture; under request->check only the answer whether it could be written. *already: the picture
+     * is there or somebody else's; neither done nor abandon follows. */
+    bool (*begin)(void *context, const struct picture_request *request, struct film *film, bool *already,
+                  struct error *error);
     void (*abandon)(void *context);
     /* The film is complete. True when the files are written. */
     bool (*done)(void *context, const struct picture_report *report, struct error *error);

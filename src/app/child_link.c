@@ -6,7 +6,8 @@ static bool nobody_there(struct error *error) {
     return error_set(error, ERROR_CANCELLED, "the supervising process is gone");
 }
 
-static bool link_begin(void *context, const struct picture_request *request, struct film *film, struct error *error) {
+static bool link_begin(void *context, const struct picture_request *request, struct film *film, bool *already,
+                       struct error *error) {
     struct child_link *link = context;
     struct frame frame;
     size_t bytes;
@@ -19,7 +20,8 @@ static bool link_begin(void *context, const struct picture_request *request, str
         *error = frame.body.answer.error;
         return false;
     }
-    if (request->check)
+    *already = frame.body.answer.already;
+    if (request->check || *already)
         return true;
     if (!share_attach(&link->memory, frame.descriptor, bytes, error))
         return false;

@@ -6,6 +6,7 @@
 #include "app/statistics.h"
 #include "app/text.h"
 #include "base/file.h"
+#include "base/version.h"
 #include "image/float_write.h"
 #include "image/png_write.h"
 
@@ -16,6 +17,7 @@ void desk_init(struct desk *desk, const struct options *options, struct control 
     memset(desk, 0, sizeof *desk);
     desk->options = options;
     desk->control = control;
+    keeper_init(&desk->keeper, options);
     progress_init(&desk->progress, options->progress, options->quiet);
     bool ok = reach_add(&desk->places, ".", REACH_WRITE, &desk->places_error);
     for (int i = 0; ok && i < options->script.allow_write_count; i++)
@@ -64,22 +66,85 @@ static bool prefixed_name(const char *name, const char *prefix, char out[NAME_LI
     return true;
 }
 
-bool desk_begin(struct desk *desk, const struct picture_request *request, struct error *error) {
-    struct picture *picture = &desk->current;
-    desk->pictures++;
+/* What is written: the picture, or with --shard the part of it. */
+static bool written_name(const struct desk *desk, const char *name, char out[NAME_LIMIT], struct error *error) {
+    const struct options *options = desk->options;
+    int length = options->shards ? snprintf(out, NAME_LIMIT, "%s.%u-of-%u.part", name, options->shard, options->shards)
+                                 : snprintf(out, NAME_LIMIT, "%s", name);
+    if (length >= NAME_LIMIT)
+        return error_set(error, ERROR_SCENE, "%.100s...: the name of its part is longer than %d bytes", name,
+                         NAME_LIMIT - 1);
+    return true;
+}
+
+static void describe_tiles(const struct desk *desk, struct picture *picture) {
+    const struct picture_request *request = &picture->request;
+    const struct options *options = desk->options;
+    struct tile_picture *tiles = &picture->tiles;
+    *tiles = (struct tile_picture){.number = desk->pictures,
+                                   .key = {GRAY_VERSION, options_digest(options), request->files},
+                                   .full_width = request->full_width,
+                                   .full_height = request->full_height,
+                                   .x0 = request->x0,
+                                   .y0 = request->y0,
+                                   .width = request->width,
+                                   .height = request->height,
+                                   .tone = {request->exposure, (enum tone_curve)request->curve, request->srgb != 0},
+                                   .deep = request->deep != 0,
+                                   .shard = options->shards ? options->shard : 1,
+                                   .shards = options->shards ? options->shards : 1};
+    memcpy(tiles->name, picture->name, sizeof tiles->name);
+}
+
+static bool make_film(struct desk *desk, struct picture *picture, struct error *error) {
+    const struct picture_request *request = &picture->request;
     size_t bytes;
-    if (!choose_name(desk, request->file, picture->name, error) ||
-        !film_size(request->width, request->height, &bytes, error))
+    char notice[256];
+    if (!film_size(request->width, request->height, &bytes, error))
+        return false;
+    if (!share_create(&picture->memory, bytes, error))
+        return error_prefix(error, "%s", picture->name);
+    film_place(&picture->film, picture->memory.block, request->width, request->height);
+    picture->film.x0 = request->x0;
+    picture->film.y0 = request->y0;
+    picture->film.full_width = request->full_width;
+    picture->film.full_height = request->full_height;
+    if (!keeper_restore(&desk->keeper, &picture->tiles, &picture->film, notice, error)) {
+        share_destroy(&picture->memory);
+        return false;
+    }
+    if (notice[0] != '\0')
+        desk_line(desk, LINE_NOTICE, notice);
+    return true;
+}
+
+bool desk_begin(struct desk *desk, const struct picture_request *request, bool *already, struct error *error) {
+    struct picture *picture = &desk->current;
+    const struct options *options = desk->options;
+    char notice[256], written[NAME_LIMIT];
+    desk->pictures++;
+    *already = options->shards_of_pictures &&
+               (desk->pictures - 1) % options->shards_of_pictures != options->shard_of_pictures - 1;
+    if (*already)
+        return true;
+    if (!choose_name(desk, request->file, picture->name, error) || !written_name(desk, picture->name, written, error))
         return false;
     picture->request = *request;
-    picture->open = true;
-    if (request->check)
+    if (request->check) {
+        picture->open = true;
         return true;
-    if (!share_create(&picture->memory, bytes, error)) {
-        picture->open = false;
-        return error_prefix(error, "%s", picture->name);
     }
-    film_place(&picture->film, picture->memory.block, request->width, request->height);
+    describe_tiles(desk, picture);
+    if (!keeper_open(&desk->keeper, picture->name, notice, error))
+        return false;
+    if (notice[0] != '\0')
+        desk_line(desk, LINE_NOTICE, notice);
+    if (!keeper_has_written(&desk->keeper, desk->pictures, &picture->tiles.key, written, already, error) ||
+        (!*already && !make_film(desk, picture, error)))
+        return false;
+    if (*already)
+        return true;
+    picture->open = true;
     atomic_store(&desk->control->tiles, 0);
     atomic_store(&desk->control->tiles_done, 0);
     progress_begin(&desk->progress, picture->name, request->width, request->height);
@@ -91,8 +156,55 @@ static void close_picture(struct picture *picture) {
     picture->open = false;
 }
 
+/* The picture whose tiles a checkpoint would hold, or NULL. */
+static const struct picture *kept_picture(const struct desk *desk) {
+    const struct picture *current = &desk->current;
+    if (current->open && !current->request.check)
+        return current;
+    return desk->held.open ? &desk->held : NULL;
+}
+
+/* True when the file was written just now. */
+static bool tick(struct desk *desk, bool now, uint32_t *tiles) {
+    const struct picture *picture = kept_picture(desk);
+    struct error error;
+    const uint32_t nothing = UINT32_MAX;
+    *tiles = nothing;
+    if (!keeper_tick(&desk->keeper, picture ? &picture->tiles : NULL, picture ? &picture->film : NULL, now, tiles,
+                     &error)) {
+        char line[sizeof error.text + 64];
+        (void)snprintf(line, sizeof line, "gray: warning: the checkpoint: %s", error.text);
+        desk_line(desk, LINE_WARNING, line);
+    }
+    return *tiles != nothing;
+}
+
+static void tell_checkpoint(struct desk *desk, uint32_t tiles) {
+    char line[2 * NAME_LIMIT];
+    const struct picture *picture = kept_picture(desk);
+    if (picture)
+        (void)snprintf(line, sizeof line, "gray: notice: %.3000s holds %u of %u tiles of %.3000s (--resume goes on)",
+                       desk->keeper.path, tiles, film_tile_count(&picture->film), picture->name);
+    else
+        (void)snprintf(line, sizeof line, "gray: notice: %.3000s holds %zu finished pictures", desk->keeper.path,
+                       desk->keeper.done_count);
+    desk_line(desk, LINE_NOTICE, line);
+}
+
+void desk_checkpoint(struct desk *desk) {
+    uint32_t tiles;
+    if (!desk->keeper.on)
+        desk_line(desk, LINE_NOTICE, "gray: notice: SIGUSR1 writes a checkpoint only with --checkpoint FILE");
+    else if (tick(desk, true, &tiles))
+        tell_checkpoint(desk, tiles);
+}
+
 void desk_abandon(struct desk *desk) {
+    uint32_t tiles;
     progress_end(&desk->progress, PROGRESS_GIVEN_UP);
+    if (desk->current.open && !desk->current.request.check && film_tiles_in(&desk->current.film, FILM_TILE_DONE) > 0 &&
+        tick(desk, true, &tiles))
+        tell_checkpoint(desk, tiles);
     close_picture(&desk->current);
 }
 
@@ -145,10 +257,21 @@ static bool write_prefixed(const struct picture *picture, const char *prefix, en
     return prefixed_name(picture->name, prefix, name, error) && write_view(picture, name, view, error);
 }
 
-static bool write_picture(const struct desk *desk, const struct picture *picture, struct error *error) {
+static bool write_files(const struct desk *desk, const struct picture *picture, const char *name, struct error *error) {
+    if (desk->options->shards) {
+        struct tile_picture whole = picture->tiles;
+        whole.whole = true;
+        return tile_file_write(name, NULL, 0, &whole, &picture->film, error);
+    }
     return write_prefixed(picture, desk->options->targets_prefix, FILM_TARGETS, error) &&
            write_prefixed(picture, desk->options->first_pass_prefix, FILM_FIRST, error) &&
-           write_view(picture, picture->name, FILM_FINAL, error);
+           write_view(picture, name, FILM_FINAL, error);
+}
+
+static bool write_picture(struct desk *desk, const struct picture *picture, struct error *error) {
+    char name[NAME_LIMIT];
+    return written_name(desk, picture->name, name, error) && write_files(desk, picture, name, error) &&
+           keeper_note_written(&desk->keeper, picture->tiles.number, &picture->tiles.key, name, error);
 }
 
 static void tell_statistics(struct desk *desk, const struct picture_report *report) {
@@ -183,6 +306,8 @@ bool desk_done(struct desk *desk, const struct picture_report *report, struct er
 }
 
 void desk_show_progress(struct desk *desk) {
+    uint32_t tiles;
+    (void)tick(desk, false, &tiles);
     progress_update(&desk->progress, atomic_load(&desk->control->tiles_done), atomic_load(&desk->control->tiles));
 }
 
@@ -206,11 +331,17 @@ void desk_line(struct desk *desk, enum line_kind kind, const char *text) {
     text_print_line(stderr, text);
 }
 
-bool desk_finish(struct desk *desk, struct error *error) {
+bool desk_finish(struct desk *desk, bool all_well, struct error *error) {
+    struct error kept;
     bool ok = true;
     if (desk->held.open && !desk->several_under_one_name)
         ok = write_picture(desk, &desk->held, error);
     close_picture(&desk->held);
+    if (!keeper_finish(&desk->keeper, ok && all_well, &kept)) {
+        char line[sizeof kept.text + 64];
+        (void)snprintf(line, sizeof line, "gray: warning: the checkpoint: %s", kept.text);
+        desk_line(desk, LINE_WARNING, line);
+    }
     reach_destroy(&desk->places);
     return ok;
 }

@@ -5,6 +5,7 @@
 
 #include "app/channel.h"
 #include "app/control.h"
+#include "app/keeper.h"
 #include "app/options.h"
 #include "app/progress.h"
 #include "base/reach.h"
@@ -20,6 +21,7 @@ struct picture {
     bool open;
     char name[NAME_LIMIT];
     struct picture_request request;
+    struct tile_picture tiles; /* how its tiles are kept */
     struct share memory;
     struct film film;
 };
@@ -28,6 +30,7 @@ struct desk {
     const struct options *options;
     struct control *control; /* not owned */
     struct progress progress;
+    struct keeper keeper;      /* the checkpoint */
     struct reach places;       /* where scripts may have pictures written: the working directory and --allow-write */
     struct error places_error; /* why there may be fewer */
     unsigned pictures;         /* begun so far, those under --check too */
@@ -37,16 +40,20 @@ struct desk {
 };
 
 void desk_init(struct desk *desk, const struct options *options, struct control *control);
-/* Names the picture and makes its film; false when it cannot be written for a reason that is known before rendering. */
-bool desk_begin(struct desk *desk, const struct picture_request *request, struct error *error);
+/* Names the picture and makes its film; false when it cannot be written for a reason that is known before rendering.
+ * *already: nothing is to be done, it was written before or is another shard's; then no picture is open. */
+bool desk_begin(struct desk *desk, const struct picture_request *request, bool *already, struct error *error);
 /* The film is complete: the files are written. The picture is closed in any case. */
 bool desk_done(struct desk *desk, const struct picture_report *report, struct error *error);
 void desk_abandon(struct desk *desk); /* fine when no picture is open */
-/* Draws how far the picture is. */
+/* Writes the checkpoint now and says so; or says that none was asked for. */
+void desk_checkpoint(struct desk *desk);
+/* Draws how far the picture is, and writes the checkpoint when it is time. */
 void desk_show_progress(struct desk *desk);
 /* One line (or several: an error with its traceback) on standard error, as -q and --verbose allow. */
 void desk_line(struct desk *desk, enum line_kind kind, const char *text);
-/* After all scripts: writes the picture that was held. False: error. */
-bool desk_finish(struct desk *desk, struct error *error);
+/* After all scripts: writes the picture that was held. all_well: everything else was written, so that the checkpoint
+ * may go. False: error. */
+bool desk_finish(struct desk *desk, bool all_well, struct error *error);
 
 #endif

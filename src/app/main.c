@@ -1,5 +1,6 @@
 /* gray: reads the command line and hands on. */
 #include "accel/isa.h"
+#include "app/merge.h"
 #include "app/options.h"
 #include "app/supervisor.h"
 #include "app/text.h"
@@ -70,6 +71,8 @@ static int act(struct options *options, struct arena *arena) {
     case ACTION_VERSION:
         print_version();
         return 0;
+    case ACTION_MERGE:
+        return merge_run(options);
     case ACTION_RENDER:
         break;
     }

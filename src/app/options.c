@@ -22,6 +22,7 @@ enum option_kind {
     OPTION_SEED,    /* --seed */
     OPTION_DEFINE,  /* -D */
     OPTION_FOLDER,  /* --allow-read, --allow-write: `low` says which */
+    OPTION_SHARD,   /* I/N: two uint32_t from the field on */
     OPTION_STATS,   /* --stats, --stats=text, --stats=json */
 };
 
@@ -32,6 +33,7 @@ enum option_group {
     GROUP_OLD,
     GROUP_TRUST,
     GROUP_RUN,
+    GROUP_PARTS,
     GROUP_TALK,
     GROUP_COUNT
 };
@@ -52,13 +54,9 @@ struct option {
 #define NO_RANGE 0, 0
 
 static const char *const group_titles[GROUP_COUNT] = {
-    [GROUP_PICTURE] = "Anti-aliasing and rays",
-    [GROUP_LOOK] = "Size, part and search",
-    [GROUP_FILES] = "Files",
-    [GROUP_OLD] = "Scenes written for other programs",
-    [GROUP_TRUST] = "What scenes may do",
-    [GROUP_RUN] = "The run",
-    [GROUP_TALK] = "What is told",
+    [GROUP_PICTURE] = "Anti-aliasing and rays",        [GROUP_LOOK] = "Size, part and search", [GROUP_FILES] = "Files",
+    [GROUP_OLD] = "Scenes written for other programs", [GROUP_TRUST] = "What scenes may do",   [GROUP_RUN] = "The run",
+    [GROUP_PARTS] = "Long runs and many machines",     [GROUP_TALK] = "What is told",
 };
 
 static const struct option table[] = {
@@ -146,6 +144,19 @@ static const struct option table[] = {
     {GROUP_RUN, "--no-fork", OPTION_FLAG, NULL, NO_RANGE, FIELD(no_fork), NULL,
      "render in this process (for debuggers)"},
 
+    {GROUP_PARTS, "--checkpoint", OPTION_TEXT, "FILE", NO_RANGE, FIELD(checkpoint), NULL,
+     "keep finished tiles in FILE while rendering, for --resume; auto: a file beside the first picture; SIGUSR1 writes "
+     "it "
+     "at once; it is removed when all pictures are written"},
+    {GROUP_PARTS, "--checkpoint-every", OPTION_NUMBER, "SECONDS", 0, HUGE_VAL, FIELD(checkpoint_every), "10",
+     "how often, at least; writing never takes more than a twentieth of the time"},
+    {GROUP_PARTS, "--resume", OPTION_FLAG, NULL, NO_RANGE, FIELD(resume), NULL,
+     "go on with what the checkpoint holds (--checkpoint auto, unless it is named); a changed scene is refused"},
+    {GROUP_PARTS, "--shard", OPTION_SHARD, "I/N", NO_RANGE, FIELD(shard), NULL,
+     "make part I of N of every picture, a file of tiles beside it; `gray merge PART ...` puts the parts together"},
+    {GROUP_PARTS, "--shard-pictures", OPTION_SHARD, "I/N", NO_RANGE, FIELD(shard_of_pictures), NULL,
+     "of many pictures make every Nth, from the Ith on"},
+
     {GROUP_TALK, "-q|quiet", OPTION_FLAG, NULL, NO_RANGE, FIELD(quiet), NULL, "say nothing but errors"},
     {GROUP_TALK, "--verbose", OPTION_FLAG, NULL, NO_RANGE, FIELD(verbose), NULL, "say what is done and why"},
     {GROUP_TALK, "--stats", OPTION_STATS, "=text|json", NO_RANGE, NO_FIELD, NULL,
@@ -161,6 +172,11 @@ static const struct option table[] = {
      "version of this program and of its libraries"},
 };
 enum { TABLE_SIZE = sizeof table / sizeof *table };
+
+_Static_assert(offsetof(struct options, shards) == offsetof(struct options, shard) + sizeof(uint32_t) &&
+                   offsetof(struct options, shards_of_pictures) ==
+                       offsetof(struct options, shard_of_pictures) + sizeof(uint32_t),
+               "a shard is two numbers in a row");
 
 /* Values are stored through their size: an enum is an int here. */
 _Static_assert(sizeof(enum specular_kind) == sizeof(int) && sizeof(enum accel_kind) == sizeof(int) &&
@@ -328,6 +344,17 @@ static bool read_crop(struct options *options, const char *text) {
     return true;
 }
 
+/* The part and the number of parts. */
+static bool read_shard(const char *text, uint32_t field[2]) {
+    static const long long low[] = {1, 1};
+    long long values[2];
+    if (!read_list(text, '/', 2, low, 1000000, values) || values[0] > values[1])
+        return false;
+    field[0] = (uint32_t)values[0];
+    field[1] = (uint32_t)values[1];
+    return true;
+}
+
 static bool read_seed(struct options *options, const char *text) {
     if (!isdigit((unsigned char)text[0]) || text[strspn(text, "0123456789")] != '\0')
         return false;
@@ -408,6 +435,9 @@ static bool value_error(const struct option *option, const char *text, struct er
         return error_set(error, ERROR_USAGE,
                          "%.*s needs X,Y,W,H, whole numbers with X and Y not negative and W and H at least 1, not '%s'",
                          shown, option->names, text);
+    case OPTION_SHARD:
+        return error_set(error, ERROR_USAGE, "%.*s needs I/N, whole numbers with I from 1 to N, not '%s'", shown,
+                         option->names, text);
     case OPTION_FOLDER:
         return error_set(error, ERROR_USAGE, "%.*s needs the name of a folder", shown, option->names);
     case OPTION_FLAG:
@@ -467,6 +497,9 @@ static bool apply_option(const struct option *option, const char *text, struct o
         lists->folders[(int)option->low][option->low == 0 ? options->script.allow_read_count++
                                                           : options->script.allow_write_count++] = text;
         break;
+    case OPTION_SHARD:
+        ok = read_shard(text, field);
+        break;
     case OPTION_STATS:
         ok = strcmp(text, "text") == 0 || strcmp(text, "json") == 0;
         options->statistics = strcmp(text, "json") == 0 ? STATISTICS_JSON : STATISTICS_TEXT;
@@ -495,10 +528,11 @@ static bool unknown_option(const char *word, struct piece name, struct error *er
 
 /* What can only be said of the options together. */
 static bool check_together(const struct options *options, struct error *error) {
-    if (options->action != ACTION_RENDER)
+    bool merge = options->action == ACTION_MERGE;
+    if (options->action != ACTION_RENDER && !merge)
         return true;
     if (options->script_count == 0)
-        return error_set(error, ERROR_USAGE, "no scene script was given");
+        return error_set(error, ERROR_USAGE, merge ? "no parts to merge were given" : "no scene script was given");
     for (int i = 0; i < options->script_count; i++) {
         if (options->scripts[i][0] == '\0')
             return error_set(error, ERROR_USAGE, "the name of a script is empty");
@@ -515,8 +549,66 @@ static bool check_together(const struct options *options, struct error *error) {
     return true;
 }
 
+/* What --checkpoint, --resume and --shard ask of one another and of -o. */
+static bool check_parts(struct options *options, struct error *error) {
+    bool pipe = options->output && strcmp(options->output, "-") == 0;
+    if (options->action == ACTION_MERGE &&
+        (options->checkpoint || options->resume || options->shards || options->shards_of_pictures || options->check))
+        return error_set(error, ERROR_USAGE, "merge takes no --checkpoint, --resume, --shard or --check");
+    if (options->resume && !options->checkpoint)
+        options->checkpoint = "auto";
+    if (options->no_fork && (options->checkpoint || options->shards))
+        return error_set(error, ERROR_USAGE,
+                         "--no-fork is for debuggers: it takes no --checkpoint, --resume or --shard");
+    if (pipe && options->checkpoint && strcmp(options->checkpoint, "auto") == 0)
+        return error_set(error, ERROR_USAGE, "-o - leaves no name for a checkpoint; --checkpoint FILE gives one");
+    if (pipe && options->shards)
+        return error_set(error, ERROR_USAGE, "-o - leaves no name for the parts of --shard");
+    if (options->shards && (options->targets_prefix || options->first_pass_prefix))
+        return error_set(error, ERROR_USAGE, "--shard writes no debug pictures; give -write-... to gray merge");
+    return true;
+}
+
+/* Two options may change the order in which they are written, not what they are: so the values are looked at. */
+static struct digest digest_option(const struct option *option, const struct options *options, struct digest digest) {
+    const char *field = (const char *)options + option->offset;
+    if (option->kind != OPTION_TEXT)
+        return digest_bytes(field, option->size, digest);
+    const char *text;
+    memcpy(&text, field, sizeof text);
+    return digest_bytes(text ? text : "", text ? strlen(text) + 1 : 0, digest);
+}
+
+struct digest options_digest(const struct options *options) {
+    struct digest digest = {0};
+    for (int i = 0; i < TABLE_SIZE; i++) {
+        const struct option *option = &table[i];
+        bool picture = option->group == GROUP_PICTURE || option->group == GROUP_LOOK || option->group == GROUP_OLD;
+        bool search = option->offset == offsetof(struct options, settings.accel) ||
+                      option->offset == offsetof(struct options, isa);
+        if (picture && option->size > 0 && !search)
+            digest = digest_option(option, options, digest);
+    }
+    const struct settings *settings = &options->settings;
+    const int64_t numbers[] = {options->width,          options->height,
+                               (int64_t)settings->seed, settings->cropped,
+                               settings->crop_x,        settings->crop_y,
+                               settings->crop_width,    settings->crop_height,
+                               options->script_count,   options->script.define_count};
+    digest = digest_bytes(numbers, sizeof numbers, digest);
+    for (int i = 0; i < options->script.define_count; i++) {
+        const struct script_define *define = &options->script.defines[i];
+        digest = digest_bytes(define->name, strlen(define->name) + 1, digest);
+        digest = digest_bytes(define->value, strlen(define->value) + 1, digest);
+    }
+    return digest;
+}
+
 bool options_parse(struct options *options, int argc, char *const *argv, struct arena *arena, struct error *error) {
-    *options = (struct options){.settings = settings_default()};
+    *options = (struct options){.settings = settings_default(), .checkpoint_every = 10};
+    bool merge = argc > 1 && strcmp(argv[1], "merge") == 0;
+    if (merge)
+        options->action = ACTION_MERGE;
     size_t room = argc > 0 ? (size_t)argc : 1;
     const char **scripts = arena_alloc_array(arena, room, sizeof *scripts);
     struct lists lists = {.defines = arena_alloc_array(arena, room, sizeof *lists.defines),
@@ -529,7 +621,7 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
     options->script.allow_read = lists.folders[0];
     options->script.allow_write = lists.folders[1];
     bool only_scripts = false;
-    for (int i = 1; i < argc; i++) {
+    for (int i = merge ? 2 : 1; i < argc; i++) {
         const char *word = argv[i];
         if (only_scripts || word[0] != '-' || word[1] == '\0') {
             scripts[options->script_count++] = word;
@@ -561,7 +653,7 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
             return false;
     }
     options->settings.keep_first = options->targets_prefix || options->first_pass_prefix;
-    return check_together(options, error);
+    return check_together(options, error) && check_parts(options, error);
 }
 
 /* Prints words from `column` on, broken so that no line is longer than 100 columns. */
@@ -606,6 +698,7 @@ void options_print_help(FILE *stream) {
     (void)fputs(
         "gray renders scenes that are written as Lua scripts.\n"
         "usage: gray [options] [--] scene.lua ...\n"
+        "       gray merge [-o FILE] [options] PART ...\n"
         "Long options take one dash or two, and '_' or '-' between words; the value follows after a blank or '='.\n",
         stream);
     for (int group = 0; group < GROUP_COUNT; group++) {

@@ -5,13 +5,21 @@
 
 #include "base/arena.h"
 #include "base/error.h"
+#include "base/hash.h"
 #include "render/settings.h"
 #include "script/script.h"
 
 #include <stdbool.h>
 #include <stdio.h>
 
-enum options_action { ACTION_RENDER, ACTION_HELP, ACTION_MANUAL, ACTION_VERSION, ACTION_ANNOTATIONS };
+enum options_action {
+    ACTION_RENDER,
+    ACTION_MERGE /* the scripts are parts of pictures */,
+    ACTION_HELP,
+    ACTION_MANUAL,
+    ACTION_VERSION,
+    ACTION_ANNOTATIONS
+};
 enum progress_mode { PROGRESS_AUTO, PROGRESS_BAR, PROGRESS_JSON, PROGRESS_NONE };
 enum statistics_mode { STATISTICS_NONE, STATISTICS_TEXT, STATISTICS_JSON };
 
@@ -28,6 +36,12 @@ struct options {
     const char *first_pass_prefix; /* -write-pre-aa, or NULL */
     int threads;                   /* 0: one per processor */
     bool check, quiet, verbose, no_fork;
+    const char *checkpoint;     /* --checkpoint: a file, or "auto", or NULL */
+    double checkpoint_every;    /* seconds */
+    bool resume;                /* go on with what the checkpoint holds */
+    uint32_t shard, shards;     /* --shard: this one of so many, from 1; 0 of 0: no shards */
+    uint32_t shard_of_pictures; /* --shard-pictures: the same over whole pictures */
+    uint32_t shards_of_pictures;
     int isa; /* --isa: an index into options_isa_name */
     enum progress_mode progress;
     enum statistics_mode statistics;
@@ -35,6 +49,9 @@ struct options {
 
 /* False: error is ERROR_USAGE (or no memory) and its text names the option. */
 bool options_parse(struct options *options, int argc, char *const *argv, struct arena *arena, struct error *error);
+/* Of all that can change a picture, or the number of pictures; names of files that are written, threads, ways of
+ * searching and what is told are left out. */
+struct digest options_digest(const struct options *options);
 /* What accel_select_isa understands. */
 const char *options_isa_name(const struct options *options);
 /* The options with their defaults, in groups, 100 columns wide. */

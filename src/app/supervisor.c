@@ -66,7 +66,7 @@ static void note_error(struct supervisor *supervisor, const struct error *error)
 /* SIGINT, SIGTERM and SIGHUP are read from a descriptor, except those that whoever started us wanted ignored. A write
  * to a closed pipe or past a size limit is an error like any other, not the end of the process. */
 static bool listen_to_signals(struct supervisor *supervisor, struct error *error) {
-    static const int wanted[] = {SIGINT, SIGTERM, SIGHUP};
+    static const int wanted[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
     sigset_t set;
     (void)sigemptyset(&set);
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
@@ -103,8 +103,12 @@ static void cancel(struct supervisor *supervisor) {
 
 static void read_signals(struct supervisor *supervisor) {
     struct signalfd_siginfo info;
-    while (read(supervisor->signals, &info, sizeof info) == (ssize_t)sizeof info)
-        cancel(supervisor);
+    while (read(supervisor->signals, &info, sizeof info) == (ssize_t)sizeof info) {
+        if (info.ssi_signo == SIGUSR1)
+            desk_checkpoint(&supervisor->desk);
+        else
+            cancel(supervisor);
+    }
 }
 
 /* The processor time of the child: all of it is the script's while no picture is being made, since then the threads of
@@ -151,6 +155,7 @@ static _Noreturn void be_child(struct supervisor *supervisor, struct channel cha
     (void)signal(SIGINT, SIG_IGN);
     (void)signal(SIGTERM, SIG_IGN);
     (void)signal(SIGHUP, SIG_IGN);
+    (void)signal(SIGUSR1, SIG_IGN);
     (void)sigprocmask(SIG_SETMASK, &supervisor->signals_before, NULL);
     /* Without its supervisor the child is of no use. */
     if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != parent)
@@ -198,9 +203,9 @@ static bool start_child(struct supervisor *supervisor, struct error *error) {
     return error_set(error, ERROR_MACHINE, "gray: the rendering process cannot be started: %s", strerror(saved));
 }
 
-static void send_answer(struct supervisor *supervisor, enum frame_kind kind, bool ok, const struct error *error,
-                        int descriptor) {
-    struct frame_answer answer = {.ok = ok};
+static void send_answer(struct supervisor *supervisor, enum frame_kind kind, bool ok, bool already,
+                        const struct error *error, int descriptor) {
+    struct frame_answer answer = {.ok = ok, .already = already};
     if (!ok)
         answer.error = *error;
     (void)channel_send(&supervisor->channel, kind, &answer, sizeof answer, descriptor);
@@ -209,15 +214,15 @@ static void send_answer(struct supervisor *supervisor, enum frame_kind kind, boo
 static void answer_begin(struct supervisor *supervisor, const struct frame *frame) {
     struct desk *desk = &supervisor->desk;
     struct error error = {0};
-    bool ok = desk_begin(desk, &frame->body.request, &error);
-    bool film = ok && !frame->body.request.check;
-    send_answer(supervisor, FRAME_FILM, ok, &error, film ? desk->current.memory.descriptor : -1);
+    bool already = false, ok = desk_begin(desk, &frame->body.request, &already, &error);
+    bool film = ok && !already && !frame->body.request.check;
+    send_answer(supervisor, FRAME_FILM, ok, already, &error, film ? desk->current.memory.descriptor : -1);
 }
 
 static void answer_done(struct supervisor *supervisor, const struct frame *frame) {
     struct error error = {0};
     bool ok = desk_done(&supervisor->desk, &frame->body.report, &error);
-    send_answer(supervisor, FRAME_ANSWER, ok, &error, -1);
+    send_answer(supervisor, FRAME_ANSWER, ok, false, &error, -1);
 }
 
 static void note_script(struct supervisor *supervisor, const struct frame_script *script) {
@@ -395,7 +400,7 @@ int supervisor_run(const struct options *options) {
         run_children(&supervisor);
     else
         note_error(&supervisor, &error);
-    if (!desk_finish(&supervisor.desk, &error))
+    if (!desk_finish(&supervisor.desk, supervisor.status == 0, &error))
         note_error(&supervisor, &error);
     if (supervisor.signals >= 0)
         (void)close(supervisor.signals);
@@ -410,9 +415,10 @@ struct alone {
     int status;
 };
 
-static bool alone_begin(void *context, const struct picture_request *request, struct film *film, struct error *error) {
+static bool alone_begin(void *context, const struct picture_request *request, struct film *film, bool *already,
+                        struct error *error) {
     struct alone *alone = context;
-    if (!desk_begin(&alone->desk, request, error))
+    if (!desk_begin(&alone->desk, request, already, error))
         return false;
     *film = alone->desk.current.film;
     return true;
@@ -463,7 +469,7 @@ int supervisor_run_without_fork(const struct options *options) {
     if (options->script.no_sandbox)
         desk_line(&alone.desk, LINE_WARNING, no_sandbox_warning);
     child_run(options, &services, 0);
-    if (!desk_finish(&alone.desk, &error)) {
+    if (!desk_finish(&alone.desk, alone.status == 0, &error)) {
         desk_line(&alone.desk, LINE_ERROR, error.text);
         alone_script_ended(&alone, 0, (int)error.kind);
     }

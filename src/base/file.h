@@ -4,6 +4,7 @@
 #define GRAY_BASE_FILE_H
 
 #include "base/error.h"
+#include "base/hash.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -22,6 +23,22 @@ bool file_map(const char *path, size_t limit, struct file_bytes *out, struct err
 bool file_map_descriptor(int descriptor, const char *path, size_t limit, struct file_bytes *out, struct error *error);
 void file_unmap(struct file_bytes *bytes);
 
+/* The contents of all files that this process has read, each once, whatever its name: whether a picture that was half
+ * made elsewhere or earlier was made of the same. Zero-initialise; file_witness_destroy gives the list back. */
+struct file_witness {
+    struct digest *contents;
+    size_t count, room;
+    bool incomplete; /* no memory for one of them, or one could not be read again */
+};
+/* From now on every file that is read is noted in `witness`, which must stay; NULL: none is. Set once, before the first
+ * scene, by the thread that reads files. */
+void file_set_witness(struct file_witness *witness);
+/* Notes the content of an open regular file without moving its position. For readers beside file_map. */
+void file_note_read(int descriptor);
+/* Does not depend on the order in which the files were read. */
+struct digest file_witness_sum(const struct file_witness *witness);
+void file_witness_destroy(struct file_witness *witness);
+
 bool file_is_regular(const char *path);
 bool file_is_folder(const char *path);
 /* A descriptor (O_PATH) that only stands for a place in the file system; -1 when there is none. */
@@ -30,6 +47,8 @@ int file_open_place(const char *path);
 bool file_null_input(void);
 /* The canonical absolute path (realpath) into out; false when it does not exist or does not fit. */
 bool file_canonical(const char *path, char *out, size_t size);
+/* Removes one file; fine when there is none. */
+bool file_remove(const char *path, struct error *error);
 /* mkdir -p of the folder part of `path`. */
 bool file_make_folders_for(const char *path, struct error *error);
 /* Calls fn for every entry name of a folder in byte order, at most `limit` entries; stops early when fn returns false.

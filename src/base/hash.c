@@ -20,3 +20,11 @@ uint64_t hash_bytes(const void *data, size_t size, uint64_t seed) {
         memcpy(&tail, bytes + at, size - at);
     return random_mix(h ^ tail);
 }
+
+struct digest digest_bytes(const void *data, size_t size, struct digest before) {
+    return (struct digest){hash_bytes(data, size, before.a), hash_bytes(data, size, before.b ^ ~UINT64_C(0))};
+}
+
+bool digest_equal(struct digest x, struct digest y) {
+    return x.a == y.a && x.b == y.b;
+}

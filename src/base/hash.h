@@ -3,9 +3,20 @@
 #ifndef GRAY_BASE_HASH_H
 #define GRAY_BASE_HASH_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 uint64_t hash_bytes(const void *data, size_t size, uint64_t seed);
+
+/* 128 bits, for telling whether something is still the same; the value is part of our tile files (render/tile_file.h),
+ * whose readers check the version of the program that wrote them. */
+struct digest {
+    uint64_t a, b;
+};
+
+/* `before`: the digest of what comes before these bytes; zero at the start. */
+struct digest digest_bytes(const void *data, size_t size, struct digest before);
+bool digest_equal(struct digest x, struct digest y);
 
 #endif

@@ -253,12 +253,18 @@ static int flags_of(const char *mode) {
 }
 
 FILE *reach_stream(const struct reach *reach, const char *path, const char *mode) {
-    if (!reach)
-        return fopen(path, mode);
+    if (!reach) {
+        FILE *open = fopen(path, mode);
+        if (open && mode[0] == 'r')
+            file_note_read(fileno(open));
+        return open;
+    }
     int flags = flags_of(mode);
     int descriptor = flags < 0 ? -1 : open_checked(reach, path, flags);
     if (descriptor < 0)
         return NULL;
+    if (mode[0] == 'r')
+        file_note_read(descriptor);
     FILE *stream = fdopen(descriptor, mode);
     if (!stream)
         (void)close(descriptor);

@@ -4,14 +4,21 @@
 #include "base/checked.h"
 #include "image/png_write.h"
 
+#include <stdatomic.h>
 #include <string.h>
+
+/* However the part lies on the grid of tiles. */
+static size_t tiles_at_most(uint32_t width, uint32_t height) {
+    return ((size_t)width / FILM_TILE + 2) * ((size_t)height / FILM_TILE + 2);
+}
 
 bool film_size(uint32_t width, uint32_t height, size_t *bytes, struct error *error) {
     size_t pixels, size;
     if (width == 0 || height == 0 || !checked_mul(width, height, &pixels) || pixels > (size_t)1 << 31)
         return error_set(error, ERROR_SCENE, "a picture of %u x %u pixels is more than gray can hold (2^31 pixels)",
                          width, height);
-    if (!checked_mul(pixels, sizeof(struct film_pixel) + 1, &size))
+    if (!checked_mul(pixels, sizeof(struct film_pixel) + 1, &size) ||
+        !checked_add(size, tiles_at_most(width, height), &size))
         return error_no_memory(error, "the picture");
     *bytes = size;
     return true;
@@ -22,6 +29,98 @@ void film_place(struct film *film, void *block, uint32_t width, uint32_t height)
     film->height = height;
     film->pixels = block;
     film->marked = (uint8_t *)(film->pixels + (size_t)width * height);
+    film->tiles = (_Atomic uint8_t *)(film->marked + (size_t)width * height);
+}
+
+uint32_t film_tiles_across(const struct film *film) {
+    return (film->x0 + film->width - 1) / FILM_TILE - film->x0 / FILM_TILE + 1;
+}
+
+uint32_t film_tile_count(const struct film *film) {
+    return film_tiles_across(film) * ((film->y0 + film->height - 1) / FILM_TILE - film->y0 / FILM_TILE + 1);
+}
+
+struct film_rectangle film_tile_rectangle(const struct film *film, uint32_t tile) {
+    uint32_t across = film_tiles_across(film);
+    uint32_t x = (film->x0 / FILM_TILE + tile % across) * FILM_TILE,
+             y = (film->y0 / FILM_TILE + tile / across) * FILM_TILE;
+    uint32_t right = film->x0 + film->width, bottom = film->y0 + film->height;
+    return (struct film_rectangle){x < film->x0 ? film->x0 : x, y < film->y0 ? film->y0 : y,
+                                   x + FILM_TILE > right ? right : x + FILM_TILE,
+                                   y + FILM_TILE > bottom ? bottom : y + FILM_TILE};
+}
+
+uint32_t film_tiles_in(const struct film *film, enum film_tile state) {
+    uint32_t count = 0;
+    for (uint32_t tile = 0; tile < film_tile_count(film); tile++)
+        count += atomic_load_explicit(&film->tiles[tile], memory_order_acquire) == (uint8_t)state;
+    return count;
+}
+
+static size_t pixel_at(const struct film *film, uint32_t x, uint32_t y) {
+    return (size_t)(y - film->y0) * film->width + (x - film->x0);
+}
+
+static uint8_t *put_floats(uint8_t *out, const float *values) {
+    memcpy(out, values, 3 * sizeof *values);
+    return out + 3 * sizeof *values;
+}
+
+static const uint8_t *get_floats(const uint8_t *bytes, float *values) {
+    memcpy(values, bytes, 3 * sizeof *values);
+    return bytes + 3 * sizeof *values;
+}
+
+static size_t mask_size(struct film_rectangle r) {
+    return ((size_t)(r.x1 - r.x0) * (r.y1 - r.y0) + 7) / 8;
+}
+
+size_t film_tile_pack(const struct film *film, uint32_t tile, uint8_t *out) {
+    struct film_rectangle r = film_tile_rectangle(film, tile);
+    uint8_t *mask = out, *end = out + mask_size(r);
+    uint32_t bit = 0;
+    memset(mask, 0, mask_size(r));
+    for (uint32_t y = r.y0; y < r.y1; y++) {
+        for (uint32_t x = r.x0; x < r.x1; x++, bit++) {
+            size_t at = pixel_at(film, x, y);
+            mask[bit / 8] |= (uint8_t)((film->marked[at] != 0) << (bit % 8));
+            end = put_floats(end, film->pixels[at].rgb);
+            if (film->marked[at])
+                end = put_floats(end, film->pixels[at].first);
+        }
+    }
+    return (size_t)(end - out);
+}
+
+bool film_tile_fits(const struct film *film, uint32_t tile, const uint8_t *bytes, size_t size) {
+    struct film_rectangle r = film_tile_rectangle(film, tile);
+    uint32_t pixels = (r.x1 - r.x0) * (r.y1 - r.y0);
+    size_t colours = pixels;
+    if (size < mask_size(r))
+        return false;
+    for (uint32_t i = 0; i < pixels; i++)
+        colours += bytes[i / 8] >> (i % 8) & 1;
+    return size == mask_size(r) + colours * 12;
+}
+
+bool film_tile_unpack(struct film *film, uint32_t tile, const uint8_t *bytes, size_t size) {
+    struct film_rectangle r = film_tile_rectangle(film, tile);
+    uint32_t bit = 0;
+    if (!film_tile_fits(film, tile, bytes, size))
+        return false;
+    const uint8_t *next = bytes + mask_size(r);
+    for (uint32_t y = r.y0; y < r.y1; y++) {
+        for (uint32_t x = r.x0; x < r.x1; x++, bit++) {
+            size_t at = pixel_at(film, x, y);
+            film->marked[at] = bytes[bit / 8] >> (bit % 8) & 1;
+            next = get_floats(next, film->pixels[at].rgb);
+            memcpy(film->pixels[at].first, film->pixels[at].rgb, sizeof film->pixels[at].first);
+            if (film->marked[at])
+                next = get_floats(next, film->pixels[at].first);
+        }
+    }
+    atomic_store_explicit(&film->tiles[tile], FILM_TILE_DONE, memory_order_release);
+    return true;
 }
 
 static const float *colour_at(const struct film *film, enum film_view view, size_t at) {

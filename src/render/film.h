@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "image/tone.h"
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -23,12 +24,37 @@ struct film {
     uint32_t x0, y0, full_width, full_height;
     struct film_pixel *pixels; /* width * height, row-major, top row first */
     uint8_t *marked;           /* 1 = resampled */
+    _Atomic uint8_t *tiles;    /* an enum film_tile each; set after the pixels of the tile */
+};
+
+/* What is known of a tile. Tiles stand on the grid of the whole picture, so that a part of it has the same ones. */
+enum film_tile { FILM_TILE_WANTED, FILM_TILE_DONE, FILM_TILE_ELSEWHERE /* another shard's */ };
+
+/* Rectangle of pixels of the whole picture: x0 <= x < x1. */
+struct film_rectangle {
+    uint32_t x0, y0, x1, y1;
 };
 
 /* Bytes for the arrays of a film; false when the numbers are too large (over 2^31 pixels). */
 bool film_size(uint32_t width, uint32_t height, size_t *bytes, struct error *error);
 /* Lays the arrays into a zeroed block of film_size bytes. */
 void film_place(struct film *film, void *block, uint32_t width, uint32_t height);
+
+/* How the rendered part is cut into tiles, numbered row by row; x0 and y0 must be set. */
+uint32_t film_tiles_across(const struct film *film);
+uint32_t film_tile_count(const struct film *film);
+struct film_rectangle film_tile_rectangle(const struct film *film, uint32_t tile);
+/* How many tiles are in that state. */
+uint32_t film_tiles_in(const struct film *film, enum film_tile state);
+
+/* A tile as bytes: which pixels were resampled (a bit each), the final colours, and the first pass of the resampled
+ * ones; elsewhere it is the final colour. At most FILM_PACKED_LIMIT bytes, little-endian. */
+enum { FILM_PACKED_LIMIT = FILM_TILE * FILM_TILE * (6 * 4) + FILM_TILE * FILM_TILE / 8 };
+size_t film_tile_pack(const struct film *film, uint32_t tile, uint8_t *out);
+/* Whether the bytes have the size that their own mask asks for; needs no more of the film than its rectangle. */
+bool film_tile_fits(const struct film *film, uint32_t tile, const uint8_t *bytes, size_t size);
+/* Puts it back and marks the tile as done; false: not the bytes of such a tile, nothing is changed. */
+bool film_tile_unpack(struct film *film, uint32_t tile, const uint8_t *bytes, size_t size);
 
 enum film_view { FILM_FINAL, FILM_FIRST, FILM_TARGETS }; /* TARGETS: first pass with marked pixels in pure red */
 /* 3 * width bytes of row y. */

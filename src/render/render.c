@@ -6,6 +6,7 @@
 #include "base/mem.h"
 #include "base/random.h"
 #include "render/camera.h"
+#include "render/shard.h"
 #include "render/whitted.h"
 
 #include <stdatomic.h>
@@ -33,7 +34,8 @@ struct run {
     uint32_t *closed;  /* the solids that the eye can stand in */
     uint32_t closed_count;
     struct worker *workers;
-    uint32_t tiles_x, tiles_y, tile_x0, tile_y0;
+    uint32_t tiles_wanted; /* of this process, those that were there before too */
+    uint64_t *cost;        /* of each tile while shards are chosen */
     _Atomic uint32_t done;
     _Atomic bool failed;
 };
@@ -241,25 +243,64 @@ static bool render_tile(struct run *run, struct worker *worker, struct rectangle
     return true;
 }
 
+/* What a tile costs, from few rays: surfaces met and rays sent on, which no way of searching and no instruction set
+ * changes. */
+enum { COST_SAMPLES = 4 };
+
+static void cost_item(void *context, uint32_t item, int index) {
+    struct run *run = context;
+    struct worker *worker = &run->workers[index];
+    struct film_rectangle r = film_tile_rectangle(run->job->film, item);
+    struct tracer *tracer = &worker->tracer;
+    uint64_t before = tracer->hits + tracer->reflected_rays + tracer->refracted_rays;
+    /* Many shards look at fewer rays: each of them looks at all tiles. */
+    uint32_t count = run->job->shards <= 16 ? COST_SAMPLES : 1;
+    for (uint32_t i = 0; i < count && !stopped(run, worker); i++) {
+        uint32_t x = r.x0 + (r.x1 - r.x0) * (2 * i + 1) / (2 * count);
+        uint32_t y = r.y0 + (r.y1 - r.y0) * ((2 * i + 1) * 3 % (2 * count)) / (2 * count);
+        (void)first_sample(run, worker, x, y);
+    }
+    run->cost[item] = 1 + tracer->hits + tracer->reflected_rays + tracer->refracted_rays - before;
+}
+
+/* Marks what other shards make. */
+static bool choose_tiles(struct run *run, struct error *error) {
+    struct film *film = run->job->film;
+    uint32_t count = film_tile_count(film);
+    if (run->job->shards <= 1)
+        return true;
+    run->cost = mem_alloc_zero(count, sizeof *run->cost);
+    if (!run->cost)
+        return error_no_memory(error, "the tiles of a shard");
+    bool looked = pool_run(run->pool, count, cost_item, run);
+    bool ok = looked && shard_choose(run->cost, film, run->job->shard, run->job->shards);
+    mem_free(run->cost);
+    run->cost = NULL;
+    if (!looked)
+        return error_set(error, ERROR_CANCELLED, "stopped while rendering");
+    return ok || error_no_memory(error, "the tiles of a shard");
+}
+
 static void tile_item(void *context, uint32_t item, int index) {
     struct run *run = context;
     struct worker *worker = &run->workers[index];
-    const struct film *film = run->job->film;
-    int64_t x0 = ((int64_t)run->tile_x0 + item % run->tiles_x) * FILM_TILE;
-    int64_t y0 = ((int64_t)run->tile_y0 + item / run->tiles_x) * FILM_TILE;
-    int64_t left = film->x0, top = film->y0, right = left + film->width, bottom = top + film->height;
-    struct rectangle tile = {x0 < left ? left : x0, y0 < top ? top : y0,
-                             x0 + FILM_TILE > right ? right : x0 + FILM_TILE,
-                             y0 + FILM_TILE > bottom ? bottom : y0 + FILM_TILE};
+    struct film *film = run->job->film;
+    if (atomic_load_explicit(&film->tiles[item], memory_order_relaxed) != FILM_TILE_WANTED)
+        return;
+    struct film_rectangle r = film_tile_rectangle(film, item);
+    struct rectangle tile = {r.x0, r.y0, r.x1, r.y1};
     /* A ray that was given up leaves a wrong colour: what ends after a wish to stop counts as not done. */
     bool whole = render_tile(run, worker, tile) && !stopped(run, worker);
     if (worker->scratch.failed) {
         atomic_store(&run->failed, true);
         pool_cancel(run->pool);
     }
-    if (whole && run->job->tile_done) {
+    if (!whole)
+        return;
+    atomic_store_explicit(&film->tiles[item], FILM_TILE_DONE, memory_order_release);
+    if (run->job->tile_done) {
         uint32_t done = atomic_fetch_add(&run->done, 1) + 1;
-        run->job->tile_done(run->job->context, item, done, run->tiles_x * run->tiles_y);
+        run->job->tile_done(run->job->context, item, done, run->tiles_wanted);
     }
 }
 
@@ -318,6 +359,13 @@ static bool start_workers(struct run *run, int workers) {
     return true;
 }
 
+static void count_tiles(struct run *run) {
+    const struct film *film = run->job->film;
+    uint32_t done = film_tiles_in(film, FILM_TILE_DONE);
+    run->tiles_wanted = done + film_tiles_in(film, FILM_TILE_WANTED);
+    atomic_store(&run->done, done);
+}
+
 static bool anything_is_transparent(const struct world *world) {
     double ior;
     for (uint32_t i = 0; i < world->material_count; i++) {
@@ -343,14 +391,9 @@ static bool find_eye_media(struct run *run, const struct box *origins, bool spre
 
 static bool prepare_run(struct run *run, const struct camera_frame *at_close) {
     const struct render_job *job = run->job;
-    const struct film *film = job->film;
     const struct shutter *shutter = &job->settings.shutter;
     run->timed = shutter->close > shutter->open && (job->world->moves || job->settings.motion.moves);
     run->full = job->settings.full || run->timed || run->camera.lens.aperture > 0;
-    run->tile_x0 = film->x0 / FILM_TILE;
-    run->tile_y0 = film->y0 / FILM_TILE;
-    run->tiles_x = (film->x0 + film->width - 1) / FILM_TILE - run->tile_x0 + 1;
-    run->tiles_y = (film->y0 + film->height - 1) / FILM_TILE - run->tile_y0 + 1;
     struct box origins = box_join(camera_origins(&run->camera), camera_origins(at_close));
     return find_eye_media(run, &origins, run->timed || camera_spreads(&run->camera));
 }
@@ -367,7 +410,9 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
     bool ok = start_workers(&run, workers) && prepare_run(&run, &at_close);
     if (!ok) {
         error_no_memory(error, "the workers of a render");
-    } else if (!pool_run(pool, run.tiles_x * run.tiles_y, tile_item, &run)) {
+    } else if (!choose_tiles(&run, error)) {
+        ok = false;
+    } else if (count_tiles(&run), !pool_run(pool, film_tile_count(job->film), tile_item, &run)) {
         ok = atomic_load(&run.failed) ? error_no_memory(error, "the crossings of a ray")
                                       : error_set(error, ERROR_CANCELLED, "stopped while rendering");
         if (atomic_load(&run.failed))

@@ -110,6 +110,7 @@ static struct vec3 follow_rough(struct tracer *tracer, const struct rough *rough
 static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const struct hit *hit, struct path path) {
     const struct settings *settings = &tracer->job->settings;
     struct surface_look look;
+    tracer->hits++;
     material_look(tracer->job->world->materials[hit->material], hit, &look);
     struct interface interface;
     interface_make(hit, ray->media, &look, &interface);

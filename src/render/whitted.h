@@ -14,7 +14,7 @@ struct tracer {
     struct world_scratch *scratch;
     const struct media *eye_media; /* what the camera stands in */
     struct strata strata;          /* of the pixel sample that is traced */
-    uint64_t reflected_rays, refracted_rays, shadow_rays;
+    uint64_t reflected_rays, refracted_rays, shadow_rays, hits;
 };
 
 /* The colour a camera ray brings; key: the random key of this pixel and sample. */

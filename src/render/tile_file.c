@@ -1,0 +1,447 @@
+/* The file is a magic word, a format number and a row of records: kind, size, payload, check. The check covers kind,
+ * size, place in the row and payload, so that records cannot be swapped or left out unnoticed; the last record counts
+ * them. All numbers are little-endian. Reading first walks over everything (every check, every size, every tile number)
+ * and only then gives anything away. */
+#include "render/tile_file.h"
+
+#include "base/mem.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char magic[8] = "GRAYTILE";
+
+enum {
+    FORMAT = 1,
+    RECORD_DONE = 1,
+    RECORD_PICTURE = 2,
+    RECORD_TILE = 3,
+    RECORD_END = 4,
+    RECORD_HEAD = 16, /* kind, reserved, size */
+    RECORD_CHECK = 8,
+    KEY_SIZE = TILE_FILE_VERSION_TEXT + 32,
+    DONE_FIXED = 4 + KEY_SIZE + 16,
+    PICTURE_FIXED = 4 + KEY_SIZE + 24 + 8 + 12 + 12,
+    PAYLOAD_LIMIT = 4 + FILM_PACKED_LIMIT + TILE_FILE_NAME + PICTURE_FIXED,
+};
+static const size_t file_limit = (size_t)1 << 40;
+
+/* Numbers as bytes. */
+
+struct pen {
+    uint8_t *at;
+};
+
+static void put(struct pen *pen, const void *bytes, size_t size) {
+    memcpy(pen->at, bytes, size);
+    pen->at += size;
+}
+
+static void put_u32(struct pen *pen, uint32_t value) {
+    for (int i = 0; i < 4; i++)
+        *pen->at++ = (uint8_t)(value >> (8 * i));
+}
+
+static void put_u64(struct pen *pen, uint64_t value) {
+    put_u32(pen, (uint32_t)value);
+    put_u32(pen, (uint32_t)(value >> 32));
+}
+
+static void put_digest(struct pen *pen, struct digest digest) {
+    put_u64(pen, digest.a);
+    put_u64(pen, digest.b);
+}
+
+static void put_key(struct pen *pen, const struct tile_key *key) {
+    put(pen, key->version, sizeof key->version);
+    put_digest(pen, key->options);
+    put_digest(pen, key->files);
+}
+
+struct eye {
+    const uint8_t *at;
+};
+
+static void get(struct eye *eye, void *out, size_t size) {
+    memcpy(out, eye->at, size);
+    eye->at += size;
+}
+
+static uint32_t get_u32(struct eye *eye) {
+    uint32_t value = 0;
+    for (int i = 0; i < 4; i++)
+        value |= (uint32_t)*eye->at++ << (8 * i);
+    return value;
+}
+
+static uint64_t get_u64(struct eye *eye) {
+    uint64_t low = get_u32(eye);
+    return low | (uint64_t)get_u32(eye) << 32;
+}
+
+static struct digest get_digest(struct eye *eye) {
+    uint64_t a = get_u64(eye);
+    return (struct digest){a, get_u64(eye)};
+}
+
+static struct tile_key get_key(struct eye *eye) {
+    struct tile_key key;
+    get(eye, key.version, sizeof key.version);
+    key.version[sizeof key.version - 1] = '\0';
+    key.options = get_digest(eye);
+    key.files = get_digest(eye);
+    return key;
+}
+
+static uint64_t check_of(uint64_t place, uint32_t kind, const uint8_t *payload, size_t size) {
+    return hash_bytes(payload, size, place * 64 + kind);
+}
+
+/* Writing. */
+
+struct writer {
+    struct file_output file;
+    uint64_t records;
+    uint8_t *buffer; /* RECORD_HEAD, payload, RECORD_CHECK */
+};
+
+static bool write_record(struct writer *writer, uint32_t kind, size_t size, struct error *error) {
+    struct pen pen = {writer->buffer};
+    put_u32(&pen, kind);
+    put_u32(&pen, 0);
+    put_u64(&pen, size);
+    pen.at += size;
+    put_u64(&pen, check_of(writer->records++, kind, writer->buffer + RECORD_HEAD, size));
+    return file_output_write(&writer->file, writer->buffer, RECORD_HEAD + size + RECORD_CHECK, error);
+}
+
+static bool write_done(struct writer *writer, const struct tile_done *done, struct error *error) {
+    struct pen pen = {writer->buffer + RECORD_HEAD};
+    put_u32(&pen, done->number);
+    put_key(&pen, &done->key);
+    put_digest(&pen, done->written);
+    put(&pen, done->name, strlen(done->name));
+    return write_record(writer, RECORD_DONE, (size_t)(pen.at - writer->buffer) - RECORD_HEAD, error);
+}
+
+static bool write_picture(struct writer *writer, const struct tile_picture *picture, struct error *error) {
+    struct pen pen = {writer->buffer + RECORD_HEAD};
+    uint64_t exposure;
+    memcpy(&exposure, &picture->tone.exposure, sizeof exposure);
+    put_u32(&pen, picture->number);
+    put_key(&pen, &picture->key);
+    put_u32(&pen, picture->full_width);
+    put_u32(&pen, picture->full_height);
+    put_u32(&pen, picture->x0);
+    put_u32(&pen, picture->y0);
+    put_u32(&pen, picture->width);
+    put_u32(&pen, picture->height);
+    put_u64(&pen, exposure);
+    put_u32(&pen, (uint32_t)picture->tone.curve);
+    put_u32(&pen, picture->tone.srgb);
+    put_u32(&pen, picture->deep);
+    put_u32(&pen, picture->shard);
+    put_u32(&pen, picture->shards);
+    put_u32(&pen, picture->whole);
+    put(&pen, picture->name, strlen(picture->name));
+    return write_record(writer, RECORD_PICTURE, (size_t)(pen.at - writer->buffer) - RECORD_HEAD, error);
+}
+
+static bool write_tiles(struct writer *writer, const struct film *film, struct error *error) {
+    for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
+        if (atomic_load_explicit(&film->tiles[tile], memory_order_acquire) != FILM_TILE_DONE)
+            continue;
+        struct pen pen = {writer->buffer + RECORD_HEAD};
+        put_u32(&pen, tile);
+        size_t size = film_tile_pack(film, tile, pen.at);
+        if (!write_record(writer, RECORD_TILE, 4 + size, error))
+            return false;
+    }
+    return true;
+}
+
+static bool write_all(struct writer *writer, const struct tile_done *done, size_t done_count,
+                      const struct tile_picture *picture, const struct film *film, struct error *error) {
+    struct pen pen = {writer->buffer};
+    put(&pen, magic, sizeof magic);
+    put_u32(&pen, FORMAT);
+    put_u32(&pen, FILM_TILE);
+    bool ok = file_output_write(&writer->file, writer->buffer, sizeof magic + 8, error);
+    for (size_t i = 0; ok && i < done_count; i++)
+        ok = write_done(writer, &done[i], error);
+    ok = ok && (!picture || (write_picture(writer, picture, error) && write_tiles(writer, film, error)));
+    pen.at = writer->buffer + RECORD_HEAD;
+    put_u64(&pen, writer->records);
+    return ok && write_record(writer, RECORD_END, 8, error);
+}
+
+bool tile_file_write(const char *path, const struct tile_done *done, size_t done_count,
+                     const struct tile_picture *picture, const struct film *film, struct error *error) {
+    struct writer writer = {.buffer = mem_alloc(RECORD_HEAD + PAYLOAD_LIMIT + RECORD_CHECK)};
+    if (!writer.buffer)
+        return error_no_memory(error, path);
+    bool ok = file_output_open(&writer.file, path, error);
+    if (ok) {
+        ok = write_all(&writer, done, done_count, picture, film, error);
+        if (ok)
+            ok = file_output_commit(&writer.file, error);
+        else
+            file_output_abandon(&writer.file);
+    }
+    mem_free(writer.buffer);
+    return ok;
+}
+
+/* Reading. */
+
+struct record {
+    uint32_t kind;
+    size_t size;
+    const uint8_t *payload;
+};
+
+struct reader {
+    const char *path;
+    const uint8_t *bytes;
+    size_t size, at;
+    uint64_t records;
+};
+
+static bool wrong(const struct reader *reader, struct error *error, const char *what) {
+    return error_set(error, ERROR_SCENE, "%s: is damaged: %s (record %llu, byte %zu)", reader->path, what,
+                     (unsigned long long)reader->records, reader->at);
+}
+
+static bool next_record(struct reader *reader, struct record *out, struct error *error) {
+    struct eye eye = {reader->bytes + reader->at};
+    size_t left = reader->size - reader->at;
+    if (left < RECORD_HEAD + RECORD_CHECK)
+        return wrong(reader, error, "it ends too early");
+    out->kind = get_u32(&eye);
+    uint32_t reserved = get_u32(&eye);
+    uint64_t size = get_u64(&eye);
+    if (size > PAYLOAD_LIMIT || reserved != 0)
+        return wrong(reader, error, "a record has a size that none can have");
+    if (size > left - RECORD_HEAD - RECORD_CHECK)
+        return wrong(reader, error, "it ends too early");
+    out->size = (size_t)size;
+    out->payload = eye.at;
+    eye.at += size;
+    if (get_u64(&eye) != check_of(reader->records, out->kind, out->payload, out->size))
+        return wrong(reader, error, "a record does not have its check");
+    reader->at += RECORD_HEAD + out->size + RECORD_CHECK;
+    reader->records++;
+    return true;
+}
+
+static bool get_name(struct eye *eye, const uint8_t *end, char name[TILE_FILE_NAME]) {
+    size_t length = (size_t)(end - eye->at);
+    if (length == 0 || length >= TILE_FILE_NAME || memchr(eye->at, '\0', length))
+        return false;
+    get(eye, name, length);
+    name[length] = '\0';
+    return true;
+}
+
+static bool read_done(const struct reader *reader, const struct record *record, struct tile_done *out,
+                      struct error *error) {
+    struct eye eye = {record->payload};
+    if (record->size < DONE_FIXED)
+        return wrong(reader, error, "a finished picture is too short");
+    out->number = get_u32(&eye);
+    out->key = get_key(&eye);
+    out->written = get_digest(&eye);
+    return get_name(&eye, record->payload + record->size, out->name) ||
+           wrong(reader, error, "a finished picture has no proper name");
+}
+
+static bool read_picture(const struct reader *reader, const struct record *record, struct tile_picture *out,
+                         struct error *error) {
+    struct eye eye = {record->payload};
+    if (record->size < PICTURE_FIXED)
+        return wrong(reader, error, "the description of the picture is too short");
+    out->number = get_u32(&eye);
+    out->key = get_key(&eye);
+    out->full_width = get_u32(&eye);
+    out->full_height = get_u32(&eye);
+    out->x0 = get_u32(&eye);
+    out->y0 = get_u32(&eye);
+    out->width = get_u32(&eye);
+    out->height = get_u32(&eye);
+    uint64_t exposure = get_u64(&eye);
+    memcpy(&out->tone.exposure, &exposure, sizeof exposure);
+    uint32_t curve = get_u32(&eye), srgb = get_u32(&eye), deep = get_u32(&eye);
+    out->tone.curve = (enum tone_curve)curve;
+    out->tone.srgb = srgb != 0;
+    out->deep = deep != 0;
+    out->shard = get_u32(&eye);
+    out->shards = get_u32(&eye);
+    out->whole = get_u32(&eye) != 0;
+    size_t bytes;
+    struct error size_error;
+    bool fits = out->full_width <= 1U << 20 && out->full_height <= 1U << 20 && out->x0 < out->full_width &&
+                out->y0 < out->full_height && out->width <= out->full_width - out->x0 &&
+                out->height <= out->full_height - out->y0 && film_size(out->width, out->height, &bytes, &size_error);
+    if (!fits || curve > TONE_FILMIC || !isfinite(out->tone.exposure) || out->number == 0 || out->shard == 0 ||
+        out->shard > out->shards)
+        return wrong(reader, error, "the description of the picture is none");
+    return get_name(&eye, record->payload + record->size, out->name) ||
+           wrong(reader, error, "the picture has no proper name");
+}
+
+/* A film of the picture's rectangle without any memory: enough to know its tiles. */
+static struct film outline(const struct tile_picture *picture) {
+    return (struct film){.width = picture->width,
+                         .height = picture->height,
+                         .x0 = picture->x0,
+                         .y0 = picture->y0,
+                         .full_width = picture->full_width,
+                         .full_height = picture->full_height};
+}
+
+static bool check_tile(const struct reader *reader, const struct tile_file *file, const struct record *record,
+                       int64_t *last, struct error *error) {
+    if (!file->has_picture)
+        return wrong(reader, error, "a tile comes before its picture");
+    struct eye eye = {record->payload};
+    struct film film = outline(&file->picture);
+    if (record->size < 4)
+        return wrong(reader, error, "a tile is too short");
+    uint32_t tile = get_u32(&eye);
+    if (tile >= film_tile_count(&film) || (int64_t)tile <= *last)
+        return wrong(reader, error, "a tile is not the next one");
+    if (!film_tile_fits(&film, tile, eye.at, record->size - 4))
+        return wrong(reader, error, "a tile has not the size of a tile");
+    *last = tile;
+    return true;
+}
+
+static bool add_done(struct tile_file *file, const struct reader *reader, const struct record *record,
+                     struct error *error) {
+    struct tile_done *more = mem_resize_array(file->done, file->done_count + 1, sizeof *more);
+    if (!more)
+        return error_no_memory(error, reader->path);
+    file->done = more;
+    if (!read_done(reader, record, &more[file->done_count], error))
+        return false;
+    file->done_count++;
+    return true;
+}
+
+static bool read_records(struct tile_file *file, struct reader *reader, struct error *error) {
+    int64_t last = -1;
+    for (;;) {
+        struct record record;
+        size_t start = reader->at;
+        if (!next_record(reader, &record, error))
+            return false;
+        bool ok = false;
+        switch (record.kind) {
+        case RECORD_DONE:
+            ok = !file->has_picture ? add_done(file, reader, &record, error)
+                                    : wrong(reader, error, "a finished picture comes too late");
+            break;
+        case RECORD_PICTURE:
+            ok = !file->has_picture ? read_picture(reader, &record, &file->picture, error)
+                                    : wrong(reader, error, "there are two pictures");
+            file->has_picture = true;
+            file->first_tile = reader->at;
+            break;
+        case RECORD_TILE:
+            ok = check_tile(reader, file, &record, &last, error);
+            file->tiles++;
+            break;
+        case RECORD_END: {
+            struct eye eye = {record.payload};
+            if (record.size != 8 || get_u64(&eye) != reader->records - 1)
+                return wrong(reader, error, "records are missing");
+            if (reader->at != reader->size)
+                return wrong(reader, error, "something follows its end");
+            return true;
+        }
+        default:
+            reader->at = start;
+            return wrong(reader, error, "there is no such kind of record");
+        }
+        if (!ok)
+            return false;
+    }
+}
+
+bool tile_file_parse(const char *path, struct file_bytes bytes, struct tile_file *out, struct error *error) {
+    *out = (struct tile_file){.bytes = bytes};
+    struct reader reader = {path, bytes.data, bytes.size, sizeof magic + 8, 0};
+    struct eye eye = {bytes.data + sizeof magic};
+    bool ok = false;
+    if (bytes.size < sizeof magic + 8 || memcmp(bytes.data, magic, sizeof magic) != 0)
+        error_set(error, ERROR_SCENE, "%s: is no file of tiles", path);
+    else if (get_u32(&eye) != FORMAT || get_u32(&eye) != FILM_TILE)
+        error_set(error, ERROR_SCENE, "%s: is a file of tiles in another format, of another version of gray", path);
+    else
+        ok = read_records(out, &reader, error);
+    if (ok)
+        return true;
+    mem_free(out->done);
+    *out = (struct tile_file){0};
+    return false;
+}
+
+bool tile_file_read(const char *path, struct tile_file *out, struct error *error) {
+    struct file_bytes bytes;
+    *out = (struct tile_file){0};
+    if (!file_map(path, file_limit, &bytes, error))
+        return false;
+    bool ok = tile_file_parse(path, bytes, out, error);
+    if (!ok)
+        file_unmap(&bytes);
+    return ok;
+}
+
+void tile_file_close(struct tile_file *file) {
+    file_unmap(&file->bytes);
+    mem_free(file->done);
+    *file = (struct tile_file){0};
+}
+
+void tile_file_restore(const struct tile_file *file, struct film *film, uint32_t *restored, uint32_t *twice) {
+    struct eye eye = {file->bytes.data + file->first_tile};
+    *restored = *twice = 0;
+    for (size_t i = 0; i < file->tiles; i++) {
+        (void)get_u64(&eye);
+        size_t size = (size_t)get_u64(&eye);
+        uint32_t tile = get_u32(&eye);
+        if (atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) == FILM_TILE_DONE)
+            ++*twice;
+        else
+            *restored += film_tile_unpack(film, tile, eye.at, size - 4);
+        eye.at += size - 4 + RECORD_CHECK;
+    }
+}
+
+const char *tile_key_difference(const struct tile_key *have, const struct tile_key *want) {
+    if (strcmp(have->version, want->version) != 0)
+        return "it was made by another version of gray";
+    if (!digest_equal(have->options, want->options))
+        return "it was made with other options";
+    if (!digest_equal(have->files, want->files))
+        return "the scene, or a file it reads, has changed";
+    return NULL;
+}
+
+const char *tile_picture_difference(const struct tile_picture *have, const struct tile_picture *want) {
+    const char *difference = tile_key_difference(&have->key, &want->key);
+    if (difference)
+        return difference;
+    if (have->number != want->number)
+        return "it is of another picture of the run";
+    if (have->full_width != want->full_width || have->full_height != want->full_height || have->x0 != want->x0 ||
+        have->y0 != want->y0 || have->width != want->width || have->height != want->height)
+        return "it is of a picture of another size";
+    if (have->shards != want->shards)
+        return "the picture was parted otherwise";
+    if (have->tone.exposure != want->tone.exposure || have->tone.curve != want->tone.curve ||
+        have->tone.srgb != want->tone.srgb || have->deep != want->deep)
+        return "its tones are others";
+    return NULL;
+}

@@ -1,0 +1,69 @@
+/* Tile files: finished tiles of a picture, kept for later (checkpoints) or for somebody else (the parts of a picture
+ * that several machines make). A file says what its tiles were made of, so that nothing foreign is put together, and
+ * carries a check for every record and an end, so that what is torn or changed is refused. The checks are no
+ * signatures: they find accidents, not forgers who know the format; whatever a file says, reading it is safe. */
+#ifndef GRAY_RENDER_TILE_FILE_H
+#define GRAY_RENDER_TILE_FILE_H
+
+#include "base/file.h"
+#include "base/hash.h"
+#include "render/film.h"
+
+enum { TILE_FILE_NAME = 4096, TILE_FILE_VERSION_TEXT = 32 };
+
+/* What a picture is made of: equal keys, equal bytes. */
+struct tile_key {
+    char version[TILE_FILE_VERSION_TEXT]; /* of the program, with its final NUL */
+    struct digest options;                /* those that can change a picture */
+    struct digest files;                  /* the script and everything it read before it asked for the picture */
+};
+
+/* A picture that has tiles in the file. */
+struct tile_picture {
+    uint32_t number; /* counted over the run, from 1 */
+    struct tile_key key;
+    uint32_t full_width, full_height, x0, y0, width, height;
+    struct tone tone;
+    bool deep;
+    uint32_t shard, shards; /* 1 of 1: all tiles; both from 1 */
+    bool whole;             /* all tiles of the shard are there */
+    char name[TILE_FILE_NAME];
+};
+
+/* A picture that is finished and written: what its file held. */
+struct tile_done {
+    uint32_t number;
+    struct tile_key key;
+    struct digest written;
+    char name[TILE_FILE_NAME];
+};
+
+/* Writes the done pictures, and of `picture` (or NULL) the finished tiles of `film`. The old file stays until the new
+ * one is whole. */
+bool tile_file_write(const char *path, const struct tile_done *done, size_t done_count,
+                     const struct tile_picture *picture, const struct film *film, struct error *error);
+
+/* A file that was read and checked as a whole. Owner: the caller, tile_file_close gives it back. */
+struct tile_file {
+    struct file_bytes bytes;
+    struct tile_done *done;
+    size_t done_count;
+    bool has_picture;
+    struct tile_picture picture;
+    size_t first_tile, tiles; /* where the records of tiles begin in the bytes, and how many there are */
+};
+/* False: `error` says which record is wrong and how; ERROR_SCENE unless memory ran out. */
+bool tile_file_read(const char *path, struct tile_file *out, struct error *error);
+/* The same of bytes in memory, which are taken over when that succeeds. */
+bool tile_file_parse(const char *path, struct file_bytes bytes, struct tile_file *out, struct error *error);
+void tile_file_close(struct tile_file *file);
+/* Puts the tiles into a film of the picture's rectangle; its size, x0 and y0 must be set. Tiles that are there already
+ * count in *twice and are not put again. */
+void tile_file_restore(const struct tile_file *file, struct film *film, uint32_t *restored, uint32_t *twice);
+
+/* Why pictures with these keys and shapes do not belong together, in a few words for people, or NULL when they do.
+ * Shards are not compared. */
+const char *tile_key_difference(const struct tile_key *have, const struct tile_key *want);
+const char *tile_picture_difference(const struct tile_picture *have, const struct tile_picture *want);
+
+#endif

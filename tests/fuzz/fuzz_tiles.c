@@ -1,0 +1,72 @@
+/* Any bytes as a file of tiles: a description and tiles that fit its film, or one line that names the file. When the
+ * last byte is odd the checks of all records are made right first, or nothing would get behind them. */
+#include "base/mem.h"
+#include "render/tile_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static uint64_t number_at(const uint8_t *bytes, int count) {
+    uint64_t value = 0;
+    for (int i = count - 1; i >= 0; i--)
+        value = value << 8 | bytes[i];
+    return value;
+}
+
+static void repair(uint8_t *bytes, size_t size) {
+    uint64_t place = 0;
+    for (size_t at = 16; size - at >= 24; place++) {
+        uint64_t kind = number_at(bytes + at, 4), length = number_at(bytes + at + 8, 8);
+        if (length > size - at - 24)
+            return;
+        uint64_t check = hash_bytes(bytes + at + 16, (size_t)length, place * 64 + kind);
+        for (size_t i = 0; i < 8; i++)
+            bytes[at + 16 + length + i] = (uint8_t)(check >> (8 * i));
+        at += 24 + (size_t)length;
+        if (at > size)
+            return;
+    }
+}
+
+static void restore(const struct tile_file *file) {
+    const struct tile_picture *picture = &file->picture;
+    struct error error;
+    size_t bytes;
+    if ((uint64_t)picture->width * picture->height > 1 << 16 ||
+        !film_size(picture->width, picture->height, &bytes, &error))
+        return;
+    void *block = mem_alloc_zero(1, bytes);
+    if (!block)
+        return;
+    struct film film = {.x0 = picture->x0, .y0 = picture->y0};
+    uint32_t restored, twice;
+    film_place(&film, block, picture->width, picture->height);
+    tile_file_restore(file, &film, &restored, &twice);
+    if (twice != 0 || restored != file->tiles)
+        abort();
+    mem_free(block);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    uint8_t *bytes = mem_alloc(size + 1);
+    if (!bytes)
+        return 0;
+    if (size)
+        memcpy(bytes, data, size);
+    if (size > 16 && data[size - 1] % 2)
+        repair(bytes, size);
+    struct tile_file file;
+    struct error error = {0};
+    if (tile_file_parse("fuzz.part", (struct file_bytes){bytes, size}, &file, &error)) {
+        if (file.has_picture)
+            restore(&file);
+        tile_file_close(&file);
+        return 0;
+    }
+    if (error.kind == ERROR_NONE || !strstr(error.text, "fuzz.part") || strchr(error.text, '\n'))
+        abort();
+    mem_free(bytes);
+    return 0;
+}

@@ -1,0 +1,368 @@
+/* Pictures made in several goes: checkpoints, --resume, --shard and gray merge. However the work was interrupted or
+ * parted, the bytes are those of one undisturbed run; what does not belong together is refused. */
+#define _GNU_SOURCE
+#include "render/tile_file.h"
+#include "tests/harness.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* Two balls, a mirror and soft light. */
+#define SCENE                                                                                                          \
+    "local r = gr.node('root')\n"                                                                                      \
+    "r:add_child(gr.geometry('ball', gr.sphere(gr.material({0.8, 0.3, 0.2}, {0.5, 0.5, 0.5}, 20))))\n"                 \
+    "local m = gr.geometry('box', gr.cube(gr.rr_material({0.1, 0.1, 0.1}, {1, 1, 1}, 50, 0.7, 0, 1)))\n"               \
+    "m:translate(0.4, -1.4, 0.3)\n"                                                                                    \
+    "r:add_child(m)\n"                                                                                                 \
+    "local l = gr.area_light({4, 5, 6}, {1, 0, 0}, {0, 1, 0}, {0.9, 0.9, 0.9}, {1, 0, 0})\n"                           \
+    "local function picture(name, w, h)\n"                                                                             \
+    "  gr.render(r, name, w, h, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2}, {l})\n"                         \
+    "end\n"
+#define ONE SCENE "picture('out.png', 330, 250)\n"
+#define THREE SCENE "picture('a.png', 130, 70)\npicture('b.png', 90, 110)\npicture('c.png', 100, 100)\n"
+
+/* A line of shell in the folder of the test; $gray is the program, err.txt takes standard error of the whole line. */
+static int shell(const char *line) {
+    char *command = NULL, binary[4096];
+    const char *named = getenv("GRAY_TEST_BINARY");
+    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
+    if (asprintf(&command, "cd '%s' && gray='%s' && { %s; } 2>err.txt", test_folder(), binary, line) < 0)
+        exit(1);
+    int how = system(command);
+    free(command);
+    return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
+}
+
+static char *path_in(const char *name) {
+    char *path = NULL;
+    if (asprintf(&path, "%s/%s", test_folder(), name) < 0)
+        exit(1);
+    return path;
+}
+
+static void put(const char *name, const char *text) {
+    char *path = path_in(name);
+    test_write_text(path, text);
+    free(path);
+}
+
+static bool exists(const char *name) {
+    char *path = path_in(name);
+    bool there = access(path, F_OK) == 0;
+    free(path);
+    return there;
+}
+
+static void gives(const char *line, int status, const char *says) {
+    int got = shell(line);
+    char *path = path_in("err.txt"), *said = test_read_file(path, NULL);
+    if (got != status || !said || (says && !strstr(said, says)) || (!says && said[0] != '\0'))
+        test_fail(__FILE__, __LINE__, "%s\nstatus %d, not %d, or not \"%s\"; standard error:\n%s", line, got, status,
+                  says ? says : "", said ? said : "");
+    free(said);
+    free(path);
+}
+
+TEST(any_number_of_shards_gives_the_bytes_of_one_run) {
+    put("scene.lua", ONE);
+    gives("$gray scene.lua", 0, NULL);
+    for (int shards = 1; shards <= 16; shards += shards < 4 ? 1 : 6) {
+        char line[1024];
+        (void)snprintf(line, sizeof line,
+                       "for i in $(seq %d); do $gray scene.lua -q -j $((i %% 3 + 1)) -o new.png --shard $i/%d || exit; "
+                       "done; $gray merge new.png.*-of-%d.part && cmp new.png out.png && rm new.png*",
+                       shards, shards, shards);
+        gives(line, 0, NULL);
+    }
+}
+
+TEST(shards_of_a_crop_with_every_sample_give_its_bytes) {
+    put("scene.lua", ONE);
+    gives("$gray scene.lua -full --crop 61,30,150,99 --tone filmic --deep", 0, NULL);
+    gives("for i in 1 2 3; do $gray scene.lua -q -full --crop 61,30,150,99 --tone filmic --deep -o n.png --shard $i/3; "
+          "done; $gray merge -o n2.png n.png.*.part && cmp n2.png out.png",
+          0, NULL);
+}
+
+TEST(shards_of_several_pictures_are_merged_picture_by_picture) {
+    put("scene.lua", THREE);
+    gives("$gray scene.lua && mkdir whole && mv a.png b.png c.png whole", 0, NULL);
+    gives("for i in 1 2; do $gray scene.lua --shard $i/2; done; $gray merge *.part && "
+          "for p in a b c; do cmp $p.png whole/$p.png || exit 1; done",
+          0, NULL);
+    gives("rm *.png; $gray scene.lua --shard-pictures 2/2 && cmp b.png whole/b.png && ! test -e a.png && "
+          "$gray scene.lua --shard-pictures 1/2 && cmp a.png whole/a.png && cmp c.png whole/c.png",
+          0, NULL);
+}
+
+TEST(shards_have_tiles_of_about_the_same_number) {
+    put("scene.lua", ONE);
+    gives("for i in 1 2 3 4 5; do $gray scene.lua --shard $i/5; done", 0, NULL);
+    size_t least = SIZE_MAX, most = 0;
+    for (int i = 1; i <= 5; i++) {
+        char name[64];
+        (void)snprintf(name, sizeof name, "out.png.%d-of-5.part", i);
+        char *path = path_in(name);
+        struct tile_file file;
+        struct error error;
+        CHECK(tile_file_read(path, &file, &error));
+        least = file.tiles < least ? file.tiles : least;
+        most = file.tiles > most ? file.tiles : most;
+        tile_file_close(&file);
+        free(path);
+    }
+    CHECK_EQ_INT(least, 17); /* 11 x 8 tiles */
+    CHECK_EQ_INT(most, 18);
+}
+
+TEST(merge_says_which_parts_are_missing_double_or_foreign) {
+    put("scene.lua", SCENE "picture('out.png', 100, 70)\n");
+    put("other.lua", SCENE "picture('out.png', 100, 70) --\n");
+    gives("for i in 1 2 3 4; do $gray scene.lua --shard $i/4; done", 0, NULL);
+    gives("$gray merge out.png.[14]-of-4.part", 1, "out.png: parts 2 and 3 of 4 are missing");
+    gives("$gray merge out.png.[134]-of-4.part", 1, "out.png: part 2 of 4 is missing");
+    gives("cp out.png.1-of-4.part again.part; $gray merge *.part", 1, "is part 1 of 4, and so is ");
+    gives("rm again.part; mkdir o; $gray other.lua --shard 2/4 -o o/out.png; $gray merge out.png.[134]*.part o/*.part",
+          1, "the scene, or a file it reads, has changed");
+    gives("$gray scene.lua -ss 2 --shard 2/4 -o o/out.png; $gray merge out.png.[134]*.part o/*.part", 1,
+          "it was made with other options");
+    gives("$gray scene.lua --shard 1/3; $gray merge out.png.[234]-of-4.part out.png.1-of-3.part", 1,
+          "the picture was parted otherwise");
+    gives("$gray merge nowhere.part", 1, "nowhere.part: cannot be read");
+    gives("$gray merge scene.lua", 1, "scene.lua: is no file of tiles");
+    gives("$gray merge", 2, "gray: no parts to merge were given");
+    CHECK(!exists("out.png"));
+    gives("$gray merge out.png.[1234]-of-4.part", 0, NULL);
+    CHECK(exists("out.png"));
+}
+
+TEST(merge_writes_only_where_a_script_might) {
+    put("scene.lua", SCENE "picture('out.png', 40, 40)\n");
+    gives("mkdir in; $gray scene.lua -o ../up.png --shard 1/1; cd in; $gray merge ../../up.png.1-of-1.part", 1,
+          "../up.png: scripts have pictures written below the working directory only");
+    gives("mv ../up.png.1-of-1.part .; $gray merge -o here.png up.png.1-of-1.part", 0, NULL);
+    CHECK(exists("here.png"));
+}
+
+/* Kills the run after a moment, again and again, until it gets through. */
+static void resume_until_done(int tries, double from, double step) {
+    char line[1024];
+    (void)snprintf(line, sizeof line,
+                   "at=%g; for i in $(seq %d); do "
+                   "$gray scene.lua -q -j 1 -full -ss 3 --resume --checkpoint c.tiles --checkpoint-every 0 & pid=$!; "
+                   "sleep $at; kill -9 $pid 2>kill.txt; wait $pid; "
+                   "at=$(awk \"BEGIN{print $at+%g}\"); test -e out.png && exit 0; done; "
+                   "$gray scene.lua -q -j 1 -full -ss 3 --resume --checkpoint c.tiles",
+                   from, tries, step);
+    int status = shell(line);
+    CHECK_EQ_INT(status, 0);
+}
+
+TEST(killed_runs_that_go_on_give_the_bytes_of_one_run) {
+    put("scene.lua", ONE);
+    gives("$gray scene.lua -full -ss 3 -o whole.png", 0, NULL);
+    resume_until_done(20, 0.02, 0.01);
+    CHECK(shell("cmp out.png whole.png") == 0);
+    CHECK(shell("ls -A | grep -q part-") != 0);
+}
+
+TEST_LONG(a_thousand_killed_runs_that_go_on_give_the_bytes_of_one_run) {
+    put("scene.lua", SCENE "picture('out.png', 200, 160)\n");
+    gives("$gray scene.lua -full -ss 3 -o whole.png", 0, NULL);
+    for (int i = 0; i < 1000; i++) {
+        resume_until_done(1, 0.01 + 0.0003 * i, 0);
+        if (shell("cmp out.png whole.png") != 0)
+            test_fail(__FILE__, __LINE__, "picture %d differs", i);
+        CHECK(shell("rm -f out.png c.tiles") == 0);
+    }
+}
+
+/* Leaves a checkpoint behind: the picture takes seconds, the signal comes as soon as there is one tile. */
+static void leave_checkpoint(const char *options) {
+    char line[1024];
+    (void)snprintf(line, sizeof line,
+                   "$gray scene.lua -q -full -ss 9 --checkpoint c.tiles --checkpoint-every 0 %s & pid=$!; "
+                   "for i in $(seq 400); do test -s c.tiles && break; sleep 0.02; done; kill -9 $pid; wait $pid; "
+                   "test -s c.tiles",
+                   options);
+    CHECK_EQ_INT(shell(line), 0);
+}
+
+TEST(a_checkpoint_of_something_else_is_refused_and_stays) {
+    put("scene.lua", "local h = io.open('data.txt') ; h:close()\n" SCENE "picture('out.png', 330, 250)\n");
+    put("data.txt", "one");
+    leave_checkpoint("");
+    gives("$gray scene.lua -full -ss 9 --checkpoint c.tiles", 2, "c.tiles: this checkpoint of an earlier run is there");
+    gives("cp c.tiles kept; $gray scene.lua -full -ss 8 --checkpoint c.tiles --resume", 1,
+          "c.tiles: cannot be gone on with: it was made with other options");
+    gives("$gray scene.lua -full -ss 9 -D x=1 --checkpoint c.tiles --resume", 1, "it was made with other options");
+    put("data.txt", "two");
+    gives("$gray scene.lua -full -ss 9 --checkpoint c.tiles --resume", 1, "the scene, or a file it reads, has changed");
+    put("data.txt", "one");
+    put("scene.lua", "local h = io.open('data.txt') ; h:close()\n" SCENE "picture('out.png', 331, 250)\n");
+    gives("$gray scene.lua -full -ss 9 --checkpoint c.tiles --resume", 1, "the scene, or a file it reads, has changed");
+    CHECK_EQ_INT(shell("cmp c.tiles kept"), 0);
+    CHECK(!exists("out.png"));
+    /* Catching the error does not get past it. */
+    put("scene.lua", SCENE "pcall(picture, 'a.png', 64, 64)\npicture('b.png', 64, 64)\n");
+    gives("$gray scene.lua -full -ss 9 --checkpoint c.tiles --resume", 1, "cannot be gone on with");
+    CHECK_EQ_INT(shell("cmp c.tiles kept"), 0);
+    CHECK(!exists("a.png") && !exists("b.png"));
+}
+
+TEST(finished_pictures_are_not_made_again) {
+    put("scene.lua", THREE "error('stop here')\n");
+    gives("$gray scene.lua --checkpoint c.tiles", 1, "stop here");
+    CHECK(exists("c.tiles"));
+    put("keep.sh", "stat -c '%i %Y %y' a.png b.png c.png\n");
+    gives("sh keep.sh >before; $gray scene.lua --checkpoint c.tiles --resume --stats", 1, "stop here");
+    CHECK_EQ_INT(shell("sh keep.sh >after; cmp before after"), 0);
+    /* One that is no longer what it was is made anew. */
+    gives("cp b.png whole.png; echo x >>b.png; $gray scene.lua --checkpoint c.tiles --resume", 1, "stop here");
+    CHECK_EQ_INT(shell("cmp b.png whole.png"), 0);
+}
+
+TEST(a_signal_writes_the_checkpoint_at_once) {
+    put("scene.lua", ONE);
+    gives("$gray scene.lua -full -ss 12 --checkpoint c.tiles --checkpoint-every 1000 & pid=$!; sleep 0.4; "
+          "kill -USR1 $pid; for i in $(seq 400); do test -s c.tiles && break; sleep 0.02; done; kill -TERM $pid; wait "
+          "$pid",
+          130, "c.tiles holds ");
+    CHECK(exists("c.tiles"));
+    gives("rm c.tiles; $gray scene.lua -full -ss 12 & pid=$!; sleep 0.4; kill -USR1 $pid; sleep 0.1; kill -TERM $pid; "
+          "wait $pid",
+          130, "SIGUSR1 writes a checkpoint only with --checkpoint");
+}
+
+TEST(an_interrupted_run_keeps_what_is_finished) {
+    put("scene.lua", ONE);
+    gives("$gray scene.lua -full -ss 3 -o whole.png; $gray scene.lua -full -ss 3 --checkpoint auto "
+          "--checkpoint-every 1000 & pid=$!; sleep 0.3; kill -TERM $pid; wait $pid; status=$?; test -s out.png && exit "
+          "130; "
+          "test -s out.png.checkpoint && exit $status",
+          130, "out.png.checkpoint holds ");
+    gives("$gray scene.lua -q -full -ss 3 --resume && cmp out.png whole.png && ! test -e out.png.checkpoint", 0, NULL);
+}
+
+TEST(a_checkpoint_that_cannot_be_written_is_a_warning) {
+    put("scene.lua", SCENE "picture('out.png', 100, 70)\n");
+    gives("mkdir d; $gray scene.lua --checkpoint d --checkpoint-every 0", 0, "");
+    CHECK(exists("out.png"));
+    gives("$gray scene.lua -full -ss 9 -o b.png --checkpoint /dev/full/x --checkpoint-every 0", 0,
+          "gray: warning: the checkpoint: /dev/full/x");
+    CHECK(exists("b.png"));
+}
+
+/* In memory. */
+
+static struct film some_film(uint32_t x0, uint32_t y0, uint32_t width, uint32_t height, struct test_random *random) {
+    struct film film = {.x0 = x0, .y0 = y0, .full_width = x0 + width + 5, .full_height = y0 + height + 3};
+    struct error error;
+    size_t bytes;
+    CHECK(film_size(width, height, &bytes, &error));
+    film_place(&film, calloc(1, bytes), width, height);
+    for (size_t i = 0; i < (size_t)width * height; i++) {
+        film.marked[i] = test_uniform(random, 0, 1) < 0.3;
+        for (int c = 0; c < 3; c++) {
+            film.pixels[i].rgb[c] = (float)test_uniform(random, -1, 2);
+            film.pixels[i].first[c] = film.marked[i] ? (float)test_uniform(random, -1, 2) : film.pixels[i].rgb[c];
+        }
+    }
+    return film;
+}
+
+static struct tile_picture picture_of(const struct film *film) {
+    return (struct tile_picture){.number = 3,
+                                 .key = {"1.2.3", {1, 2}, {3, 4}},
+                                 .full_width = film->full_width,
+                                 .full_height = film->full_height,
+                                 .x0 = film->x0,
+                                 .y0 = film->y0,
+                                 .width = film->width,
+                                 .height = film->height,
+                                 .tone = {-1.5, TONE_FILMIC, true},
+                                 .deep = true,
+                                 .shard = 2,
+                                 .shards = 5,
+                                 .name = "some/picture.png"};
+}
+
+TEST(a_file_of_tiles_gives_back_what_was_put_in) {
+    struct test_random random = {7};
+    char *path = path_in("x.tiles");
+    for (int round = 0; round < 20; round++) {
+        uint32_t x0 = (uint32_t)test_uniform(&random, 0, 70), y0 = (uint32_t)test_uniform(&random, 0, 70);
+        uint32_t width = (uint32_t)test_uniform(&random, 1, 140), height = (uint32_t)test_uniform(&random, 1, 90);
+        struct film film = some_film(x0, y0, width, height, &random), back = film;
+        struct tile_picture picture = picture_of(&film);
+        struct tile_done done = {1, picture.key, {5, 6}, "first.png"};
+        struct tile_file file;
+        struct error error;
+        uint32_t kept = 0, restored, twice;
+        for (uint32_t i = 0; i < film_tile_count(&film); i++) {
+            bool keep = test_uniform(&random, 0, 1) < 0.6;
+            atomic_store(&film.tiles[i], keep ? FILM_TILE_DONE : i % 2 ? FILM_TILE_WANTED : FILM_TILE_ELSEWHERE);
+            kept += keep;
+        }
+        CHECK(tile_file_write(path, &done, 1, &picture, &film, &error));
+        CHECK(tile_file_read(path, &file, &error));
+        CHECK_EQ_INT(file.done_count, 1);
+        CHECK_TEXT(file.done[0].name, "first.png");
+        CHECK(digest_equal(file.done[0].written, done.written));
+        CHECK(!tile_picture_difference(&file.picture, &picture) && file.picture.shard == 2);
+        CHECK_TEXT(file.picture.name, picture.name);
+        size_t bytes;
+        CHECK(film_size(width, height, &bytes, &error));
+        film_place(&back, calloc(1, bytes), width, height);
+        tile_file_restore(&file, &back, &restored, &twice);
+        CHECK_EQ_INT(restored, kept);
+        CHECK_EQ_INT(twice, 0);
+        for (uint32_t tile = 0; tile < film_tile_count(&film); tile++) {
+            struct film_rectangle r = film_tile_rectangle(&film, tile);
+            bool is = atomic_load(&film.tiles[tile]) == FILM_TILE_DONE;
+            CHECK((atomic_load(&back.tiles[tile]) == FILM_TILE_DONE) == is);
+            for (uint32_t y = r.y0; is && y < r.y1; y++) {
+                size_t at = (size_t)(y - y0) * width + (r.x0 - x0), count = r.x1 - r.x0;
+                CHECK(memcmp(film.pixels + at, back.pixels + at, count * sizeof *film.pixels) == 0);
+                CHECK(memcmp(film.marked + at, back.marked + at, count) == 0);
+            }
+        }
+        tile_file_restore(&file, &back, &restored, &twice);
+        CHECK_EQ_INT(twice, kept);
+        tile_file_close(&file);
+        free(film.pixels);
+        free(back.pixels);
+    }
+    free(path);
+}
+
+TEST(a_file_of_tiles_that_is_cut_or_changed_anywhere_is_refused) {
+    struct test_random random = {9};
+    struct film film = some_film(40, 0, 50, 40, &random);
+    struct tile_picture picture = picture_of(&film);
+    struct error error;
+    struct tile_file file;
+    size_t size;
+    for (uint32_t i = 0; i < film_tile_count(&film); i++)
+        atomic_store(&film.tiles[i], FILM_TILE_DONE);
+    char *path = path_in("x.tiles");
+    CHECK(tile_file_write(path, NULL, 0, &picture, &film, &error));
+    char *bytes = test_read_file(path, &size);
+    int accepted = 0;
+    for (size_t cut = 0; cut < size; cut += cut < 2000 ? 1 : 97)
+        accepted += tile_file_parse("x", (struct file_bytes){(uint8_t *)bytes, cut}, &file, &error);
+    for (size_t at = 0; at < size; at += at < 2000 || at + 200 > size ? 1 : 31) {
+        bytes[at] = (char)(bytes[at] ^ (1 << at % 8));
+        accepted += tile_file_parse("x", (struct file_bytes){(uint8_t *)bytes, size}, &file, &error);
+        CHECK(error.kind == ERROR_SCENE && strncmp(error.text, "x: is ", 6) == 0);
+        bytes[at] = (char)(bytes[at] ^ (1 << at % 8));
+    }
+    CHECK_EQ_INT(accepted, 0);
+    free(bytes);
+    free(film.pixels);
+    free(path);
+}
