@@ -2,9 +2,16 @@
 -- Idea: the tensor product is evaluated point by point with Bernstein polynomials; the normal is the cross product of
 -- the two derivatives. Where a corner or an edge of the patch has shrunk to a point a derivative vanishes; there the
 -- normal is taken a little way inside the patch, where it exists (Farin, "Curves and Surfaces", 4th ed., 16.7).
+-- Spline surfaces become Bezier patches exactly: a bicubic B-spline by the matrix of C. de Boor, "A Practical Guide to
+-- Splines", 1978, a surface through points by Catmull and Rom, "A Class of Local Interpolating Splines", 1974.
 -- Invariant: quads that shrink to triangles are written as triangles, those that vanish are not written at all.
+--
+--   local bezier = require 'bezier'
+--   local control, patches = bezier.through(rows_of_points)              -- or bezier.b_spline(rows, true, false)
+--   scene:add_child(gr.vn_mesh(silk, bezier.mesh(control, patches, 12)))
+--   scene:add_child(gr.patch {points = control, patches = patches, tolerance = 0.001, material = silk})
 
-local meshes = require 'meshes'
+local check = require 'check'
 
 local M = {}
 
@@ -89,7 +96,15 @@ end
 ---@return integer[][] faces
 ---@return integer[][] face_normals
 function M.mesh(control, patches, n, flip)
-    n = n or 8
+    check.points('bezier.mesh', 'control', control, 3, 4)
+    check.list('bezier.mesh', 'patches', patches, 1)
+    for i, patch in ipairs(patches) do
+        if type(patch) ~= 'table' or #patch ~= 16 then
+            check.fail('bezier.mesh', ('patches[%d] must be a tuple of 16 indices'):format(i))
+        end
+    end
+    check.faces('bezier.mesh', 'patches', patches, #control)
+    n = check.whole('bezier.mesh', 'n', n, 1, 1000, 8)
     local verts, normals, faces = {}, {}, {}
     local function same(a, b)
         local p, q = verts[a + 1], verts[b + 1]
@@ -121,5 +136,82 @@ function M.mesh(control, patches, n, flip)
     end
     return verts, normals, faces, faces
 end
+
+-- Four points of a uniform spline to the four Bezier points of its piece between the second and the third.
+local to_bezier = {
+    ['b-spline'] = { { 1 / 6, 4 / 6, 1 / 6, 0 }, { 0, 4 / 6, 2 / 6, 0 }, { 0, 2 / 6, 4 / 6, 0 }, { 0, 1 / 6, 4 / 6, 1 / 6 } },
+    ['catmull-rom'] = { { 0, 1, 0, 0 }, { -1 / 6, 1, 1 / 6, 0 }, { 0, 1 / 6, 1, -1 / 6 }, { 0, 0, 1, 0 } },
+}
+
+--- Patches of a spline surface over a net of points.
+local function spline_patches(where, kind, net, closed_u, closed_v)
+    check.list(where, 'net', net, 2)
+    local columns, rows = #check.points(where, 'net[1]', net[1], 3, 2), #net
+    for j, row in ipairs(net) do
+        check.points(where, ('net[%d]'):format(j), row, 3, 2)
+        if #row ~= columns then check.fail(where, ('net[%d] must have %d points as net[1] has'):format(j, columns)) end
+    end
+    check.flag(where, 'closed_u', closed_u)
+    check.flag(where, 'closed_v', closed_v)
+    local open = kind == 'b-spline' and 4 or 2
+    if columns < (closed_u and 3 or open) or rows < (closed_v and 3 or open) then
+        check.fail(where, ('net has %d x %d points, which are too few'):format(columns, rows))
+    end
+    local matrix, interpolates = to_bezier[kind], kind == 'catmull-rom'
+    -- a point of the net; beyond the ends of an open interpolating one the last piece goes straight on
+    local function along(i, count, closed, get)
+        if closed then return get((i - 1) % count + 1) end
+        if i >= 1 and i <= count then return get(i) end
+        local a, b = get(i < 1 and 1 or count), get(i < 1 and 2 or count - 1)
+        return { 2 * a[1] - b[1], 2 * a[2] - b[2], 2 * a[3] - b[3] }
+    end
+    local function at(i, j)
+        return along(j, rows, closed_v, function(row)
+            return along(i, columns, closed_u, function(column) return net[row][column] end)
+        end)
+    end
+    local first = interpolates and 1 or 2
+    local function pieces(count, closed) return closed and count or interpolates and count - 1 or count - 3 end
+    local control, patches = {}, {}
+    for j = 0, pieces(rows, closed_v) - 1 do
+        for i = 0, pieces(columns, closed_u) - 1 do
+            local patch = {}
+            for v = 1, 4 do
+                for u = 1, 4 do
+                    local p = { 0, 0, 0 }
+                    for m = 1, 4 do
+                        for k = 1, 4 do
+                            local w = matrix[u][k] * matrix[v][m]
+                            if w ~= 0 then
+                                local q = at(first + i + k - 2, first + j + m - 2)
+                                p[1], p[2], p[3] = p[1] + w * q[1], p[2] + w * q[2], p[3] + w * q[3]
+                            end
+                        end
+                    end
+                    control[#control + 1] = p
+                    patch[#patch + 1] = #control - 1
+                end
+            end
+            patches[#patches + 1] = patch
+        end
+    end
+    return control, patches
+end
+
+--- A bicubic B-spline surface, smooth to the second derivative, near its net of points.
+---@param net number[][][]  rows of equally many points; u runs along a row
+---@param closed_u boolean?  rows go round
+---@param closed_v boolean?  the last row is followed by the first
+---@return number[][] control  16 points a patch
+---@return integer[][] patches
+function M.b_spline(net, closed_u, closed_v) return spline_patches('bezier.b_spline', 'b-spline', net, closed_u, closed_v) end
+
+--- A surface through all points of a net, smooth to the first derivative.
+---@param net number[][][]
+---@param closed_u boolean?
+---@param closed_v boolean?
+---@return number[][] control
+---@return integer[][] patches
+function M.through(net, closed_u, closed_v) return spline_patches('bezier.through', 'catmull-rom', net, closed_u, closed_v) end
 
 return M

@@ -3,7 +3,12 @@
 -- axis. A point written twice in a row is an edge: both sides keep their own normal there.
 -- Invariant: whoever walks along the profile has the outside on the right, i.e. a solid's profile starts at the bottom of
 -- the axis, goes up the outside and ends at the axis. Points on the axis (radius 0) give triangles.
+--
+--   local lathe = require 'lathe'
+--   local vase = lathe.spline({{0, 0}, {0.6, 0}, {0.9, 0.8}, {0.4, 1.6}, {0.6, 1.9}, {0, 1.7}}, 8)
+--   scene:add_child(gr.vn_mesh(clay, lathe.turn(vase, 64)))
 
+local check = require 'check'
 local meshes = require 'meshes'
 
 local M = {}
@@ -15,8 +20,10 @@ local M = {}
 ---@param closed boolean?  the curve returns to its first point
 ---@return number[][] points
 function M.spline(points, n, closed)
-    n = n or 8
-    local count, size = #points, #points[1]
+    check.list('lathe.spline', 'points', points, 2)
+    local count, size = #points, type(points[1]) == 'table' and #points[1] or 0
+    check.points('lathe.spline', 'points', points, size, 2)
+    n = check.whole('lathe.spline', 'n', n, 1, 10000, 8)
     local function distance(p, q)
         local sum = 0
         for k = 1, size do sum = sum + (p[k] - q[k]) ^ 2 end
@@ -103,7 +110,8 @@ end
 ---@return integer[][] faces
 ---@return integer[][] face_normals
 function M.turn(profile, segments)
-    segments = segments or 48
+    check.points('lathe.turn', 'profile', profile, 2, 2)
+    segments = check.whole('lathe.turn', 'segments', segments, 3, 100000, 48)
     local before, after, slopes = profile_normals(profile)
     local verts, normals, faces, face_normals = {}, {}, {}, {}
     local circle = {}
@@ -156,6 +164,9 @@ end
 ---@param relief fun(angle: number, t: number, height: number): number  factor of the radius; angle 0..2 pi, t 0..1 along the profile
 ---@return table mesh  { verts, normals, faces, face_normals }
 function M.carved(profile, segments, relief)
+    check.points('lathe.carved', 'profile', profile, 2, 2)
+    check.whole('lathe.carved', 'segments', segments, 3, 100000)
+    check.callable('lathe.carved', 'relief', relief)
     local rows = #profile - 1
     return meshes.net(rows, segments, function(i, j)
         local p, angle = profile[i + 1], -2 * math.pi * j / segments

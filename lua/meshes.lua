@@ -3,6 +3,8 @@
 -- verts and normals are 3-tuples, faces and face_normals tuples of 0-based indices. A flat mesh has no normals.
 -- Invariant: nothing here changes its arguments; every function returns new tables (which may share inner tuples).
 
+local check = require 'check'
+
 local M = {}
 
 local sqrt, acos, cos, sin, rad = math.sqrt, math.acos, math.cos, math.sin, math.rad
@@ -308,6 +310,87 @@ function M.to_obj(mesh, title)
         out[#out + 1] = table.concat(words, ' ')
     end
     return table.concat(out, '\n') .. '\n'
+end
+
+--- Counts of vertices that faces use, of edges and of faces. V - E + F is Euler's characteristic: 2 for everything that
+--- can be blown up to a ball, 0 for a ring.
+---@param faces integer[][]
+---@return integer vertices
+---@return integer edges
+---@return integer faces
+function M.euler(faces)
+    check.list('meshes.euler', 'faces', faces, 0)
+    local seen, edges, vertex_count, edge_count = {}, {}, 0, 0
+    for _, face in ipairs(faces) do
+        for i, a in ipairs(face) do
+            local b = face[i % #face + 1]
+            if not seen[a] then seen[a], vertex_count = true, vertex_count + 1 end
+            local low, high = a < b and a or b, a < b and b or a
+            local key = low * 4294967296 + high
+            if not edges[key] then edges[key], edge_count = true, edge_count + 1 end
+        end
+    end
+    return vertex_count, edge_count, #faces
+end
+
+--- Whether every edge is used by exactly two faces, once in each direction: what gr.difference and its like ask of a
+--- mesh (which also count corners at one place as one).
+---@param faces integer[][]
+---@return boolean
+function M.is_closed(faces)
+    check.list('meshes.is_closed', 'faces', faces, 0)
+    local used, open = {}, 0
+    for _, face in ipairs(faces) do
+        for i, a in ipairs(face) do
+            local b = face[i % #face + 1]
+            local key, back = a * 4294967296 + b, b * 4294967296 + a
+            if used[key] then return false end
+            used[key] = true
+            open = open + (used[back] and -1 or 1)
+        end
+    end
+    return open == 0
+end
+
+--- Volume of a closed mesh (the divergence theorem); positive when its faces are seen counter-clockwise from outside.
+---@param verts number[][]
+---@param faces integer[][]
+---@return number
+function M.volume(verts, faces)
+    check.points('meshes.volume', 'verts', verts, 3)
+    check.faces('meshes.volume', 'faces', faces, #verts)
+    local six, o = 0, verts[1]
+    for _, face in ipairs(faces) do
+        local p = verts[face[1] + 1]
+        local px, py, pz = p[1] - o[1], p[2] - o[2], p[3] - o[3]
+        for i = 2, #face - 1 do
+            local q, r = verts[face[i] + 1], verts[face[i + 1] + 1]
+            local qx, qy, qz, rx, ry, rz = q[1] - o[1], q[2] - o[2], q[3] - o[3], r[1] - o[1], r[2] - o[2], r[3] - o[3]
+            six = six + px * (qy * rz - qz * ry) + py * (qz * rx - qx * rz) + pz * (qx * ry - qy * rx)
+        end
+    end
+    return six / 6
+end
+
+--- Area of all faces together; of a bent one, that of its fan of triangles.
+---@param verts number[][]
+---@param faces integer[][]
+---@return number
+function M.area(verts, faces)
+    check.points('meshes.area', 'verts', verts, 3)
+    check.faces('meshes.area', 'faces', faces, #verts)
+    local twice = 0
+    for _, face in ipairs(faces) do
+        local p = verts[face[1] + 1]
+        local nx, ny, nz = 0, 0, 0
+        for i = 2, #face - 1 do
+            local q, r = verts[face[i] + 1], verts[face[i + 1] + 1]
+            local ax, ay, az, bx, by, bz = q[1] - p[1], q[2] - p[2], q[3] - p[3], r[1] - p[1], r[2] - p[2], r[3] - p[3]
+            nx, ny, nz = nx + ay * bz - az * by, ny + az * bx - ax * bz, nz + ax * by - ay * bx
+        end
+        twice = twice + sqrt(nx * nx + ny * ny + nz * nz)
+    end
+    return twice / 2
 end
 
 return M

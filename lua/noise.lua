@@ -1,5 +1,10 @@
 -- noise: Perlin's improved noise of 2002 and sums of it, the same function the renderer's patterns use.
 -- (K. Perlin, "Improving Noise", SIGGRAPH 2002; the permutation is that of the reference program.)
+--
+--   local noise = require 'noise'
+--   local height = noise.sum(x, 0, z, 5)            -- five octaves
+
+local check = require 'check'
 
 local M = {}
 
@@ -55,8 +60,9 @@ end
 ---@param octaves integer?  default 4
 ---@return number
 function M.sum(x, y, z, octaves)
+    octaves = check.whole('noise.sum', 'octaves', octaves, 1, 64, 4)
     local total, scale = 0, 1
-    for _ = 1, octaves or 4 do
+    for _ = 1, octaves do
         total = total + M.noise(x * scale, y * scale, z * scale) / scale
         scale = scale * 2
     end

@@ -2,7 +2,12 @@
 -- Subdivision: C. Loop, "Smooth Subdivision Surfaces Based on Triangles" (Utah 1987); E. Catmull, J. Clark, "Recursively
 -- generated B-spline surfaces on arbitrary topological meshes", CAD 10(6), 1978. Borders follow the cubic B-spline rule.
 -- Invariant: faces are counted counter-clockwise seen from outside and index from 0; shared vertices stay shared.
+--
+--   local polyhedra = require 'polyhedra'
+--   scene:add_child(gr.mesh(jade, polyhedra.dodecahedron()))
+--   local verts, faces = polyhedra.subdivide(polyhedra.catmull_clark, 3, polyhedra.cube())
 
+local check = require 'check'
 local meshes = require 'meshes'
 
 local M = {}
@@ -87,6 +92,8 @@ end
 ---@return number[][] verts
 ---@return integer[][] faces
 function M.box(low, high)
+    check.tuple('polyhedra.box', 'low', low, 3)
+    check.tuple('polyhedra.box', 'high', high, 3)
     local a, b = low, high
     return { { a[1], a[2], a[3] }, { b[1], a[2], a[3] }, { b[1], b[2], a[3] }, { a[1], b[2], a[3] },
              { a[1], a[2], b[3] }, { b[1], a[2], b[3] }, { b[1], b[2], b[3] }, { a[1], b[2], b[3] } },
@@ -140,7 +147,8 @@ end
 ---@return number[][] verts
 ---@return integer[][] faces
 function M.loop(verts, faces)
-    faces = M.triangles(faces)
+    check.points('polyhedra.loop', 'verts', verts, 3)
+    faces = M.triangles(check.faces('polyhedra.loop', 'faces', faces, #verts))
     local edges, find = edges_of(verts, faces)
     local out, near, border = {}, {}, {}
     for _, edge in ipairs(edges) do
@@ -196,6 +204,8 @@ end
 ---@return number[][] verts
 ---@return integer[][] faces
 function M.catmull_clark(verts, faces)
+    check.points('polyhedra.catmull_clark', 'verts', verts, 3)
+    check.faces('polyhedra.catmull_clark', 'faces', faces, #verts)
     local edges, find = edges_of(verts, faces)
     local centres = {}
     for _, face in ipairs(faces) do
@@ -276,6 +286,8 @@ end
 ---@return number[][] verts
 ---@return integer[][] faces
 function M.subdivide(method, times, verts, faces)
+    check.callable('polyhedra.subdivide', 'method', method)
+    check.whole('polyhedra.subdivide', 'times', times, 0, 10)
     for _ = 1, times do verts, faces = method(verts, faces) end
     return verts, faces
 end
@@ -287,8 +299,9 @@ end
 ---@return integer[][] faces
 ---@return integer[][] face_normals
 function M.geodesic(times)
+    times = check.whole('polyhedra.geodesic', 'times', times, 0, 8, 3)
     local verts, faces = M.icosahedron()
-    for _ = 1, times or 3 do
+    for _ = 1, times do
         local _, find = edges_of(verts, faces)
         local out, new = table.move(verts, 1, #verts, 1, {}), {}
         local function middle(a, b)

@@ -3,7 +3,12 @@
 -- Minimizing Frames", ACM TOG 27(1), 2008: double reflection); on a closed curve what is left over after one round is
 -- dealt out evenly.
 -- Invariant: the three vectors of a frame are orthonormal and right-handed: side x up = forward.
+--
+--   local sweep = require 'sweep'
+--   local path = lathe.spline({{0, 0, 0}, {1, 1, 0}, {2, 0, 1}}, 16)
+--   scene:add_child(gr.vn_mesh(oak, sweep.profile(path, loft.polygon(5, 0.2, 0.1), {twist = function(t) return 360 * t end})))
 
+local check = require 'check'
 local meshes = require 'meshes'
 
 local M = {}
@@ -31,6 +36,7 @@ end
 ---@param closed boolean?
 ---@return table[] frames  each { forward, side, up }
 function M.frames(path, closed)
+    check.points('sweep.frames', 'path', path, 3, 2)
     local count, frames = #path, {}
     local function tangent(i)
         local a = path[i - 1] or (closed and path[count]) or path[i]
@@ -81,7 +87,11 @@ end
 ---@return integer[][] faces
 ---@return integer[][] face_normals
 function M.profile(path, profile, options)
-    options = options or {}
+    options = check.options('sweep.profile', options, 'closed scale twist open_ends crease')
+    check.points('sweep.profile', 'path', path, 3, options.closed and 3 or 2)
+    check.points('sweep.profile', 'profile', profile, 2, 3)
+    if options.scale ~= nil then check.callable('sweep.profile', 'scale', options.scale) end
+    if options.twist ~= nil then check.callable('sweep.profile', 'twist', options.twist) end
     local closed, count, around = options.closed, #path, #profile
     local frames = M.frames(path, closed)
     local verts, faces = {}, {}
@@ -130,7 +140,8 @@ end
 ---@return integer[][] faces
 ---@return integer[][] face_normals
 function M.tube(path, radius, around, options)
-    around = around or 16
+    check.above('sweep.tube', 'radius', radius, 0)
+    around = check.whole('sweep.tube', 'around', around, 3, 10000, 16)
     local profile = {}
     for j = 0, around - 1 do
         profile[j + 1] = { radius * cos(2 * pi * j / around), radius * sin(2 * pi * j / around) }

@@ -1,0 +1,52 @@
+/* The Lua library, by scripts that hold its claims: tests/library/claims_*.lua. Each runs in the program itself with
+ * --check, so that the meshes which it hands to CSG are taken, or refused, by the renderer. A claim that is not true
+ * ends the script with its sentence. */
+#include "tests/harness.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+static void claims_hold(const char *name) {
+    char root[2048], arguments[8192];
+    if (!getcwd(root, sizeof root))
+        test_fail(__FILE__, __LINE__, "no working directory");
+    (void)snprintf(arguments, sizeof arguments, "-q --check --allow-read %s %s/tests/library/%s.lua", root, root, name);
+    struct test_result result = test_gray(NULL, arguments);
+    if (result.status != 0)
+        test_fail(__FILE__, __LINE__, "%s: status %d: %s", name, result.status, result.err);
+    free(result.out);
+    free(result.err);
+}
+
+TEST(library_solids_have_the_numbers_of_the_textbook_and_are_closed) {
+    claims_hold("claims_solids");
+}
+
+TEST(library_fractals_have_the_counts_areas_and_volumes_of_their_formulas) {
+    claims_hold("claims_fractals");
+}
+
+TEST(library_terrain_follows_its_seed_and_erosion_makes_no_soil) {
+    claims_hold("claims_terrain");
+}
+
+TEST(library_words_grow_as_they_should_and_the_turtle_walks_the_curve_of_hilbert) {
+    claims_hold("claims_lsystem");
+}
+
+TEST(library_scattered_places_keep_their_distance_and_leave_no_holes) {
+    claims_hold("claims_scatter");
+}
+
+TEST(library_gears_touch_and_do_not_cut_into_each_other) {
+    claims_hold("claims_gear");
+}
+
+TEST(library_curves_patches_lofts_and_knots_are_closed_with_the_volumes_of_their_formulas) {
+    claims_hold("claims_curves");
+}
+
+TEST(library_colours_and_easings_begin_and_end_where_they_should) {
+    claims_hold("claims_colour");
+}
