@@ -779,8 +779,10 @@ function gr.difresneld_material(material) end
 ---@class gr.texture.fields
 ---@field file string|gr.texture file (the name of a picture file or a texture): A PNG or JPEG file.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): How the image is looked up.
----@field wrap? 'clamp'|'repeat'|'mirror' wrap ('clamp'|'repeat'|'mirror'; default 'repeat'): What is beyond its edges, on meshes.
+---@field wrap? 'clamp'|'repeat'|'mirror' wrap ('clamp'|'repeat'|'mirror'; default 'repeat'): What is beyond its edges.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether left and right are exchanged.
+---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): How many lie side by side: one number, or {across, up}.
+---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): How far it is moved, in pictures: {across, up}.
 
 ---An image for node:set_texture.
 ---@param file string|gr.texture file (the name of a picture file or a texture): A PNG or JPEG file.
@@ -788,10 +790,58 @@ function gr.difresneld_material(material) end
 ---@overload fun(fields: gr.texture.fields): gr.texture
 function gr.texture(file) end
 
----A bump map for node:set_bump. Comes with version 0.2.
----@param name? string name (a string; optional): Name of the node, for messages.
+---@class gr.bump.fields
+---@field file string|gr.texture file (the name of a picture file or a texture): A PNG or JPEG file.
+---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): How the image is looked up.
+---@field wrap? 'clamp'|'repeat'|'mirror' wrap ('clamp'|'repeat'|'mirror'; default 'repeat'): What is beyond its edges.
+---@field flip_u? boolean flip_u (true or false; default false): Whether left and right are exchanged.
+---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): How many lie side by side: one number, or {across, up}.
+---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): How far it is moved, in pictures: {across, up}.
+---@field height? number height (a number; default 1/50 of the picture's size; 1 for normals): White over black in units of the object; of normals, a factor of their slopes.
+---@field kind? 'bump'|'normal' kind ('bump'|'normal'; default 'bump'): Whether it holds heights, or normals as colours: x right, y up, z out.
+
+---A bump map or normal map for node:set_bump.
+---@param file string|gr.texture file (the name of a picture file or a texture): A PNG or JPEG file.
+---@param height? number height (a number; default 1/50 of the picture's size; 1 for normals): White over black in units of the object; of normals, a factor of their slopes.
 ---@return gr.texture
-function gr.bump(name) end
+---@overload fun(fields: gr.bump.fields): gr.texture
+function gr.bump(file, height) end
+
+---@class gr.image_material.fields
+---@field material gr.material material (a material): The material below.
+---@field image string|gr.texture image (the name of a picture file or a texture): A PNG or JPEG file, or a texture.
+---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): How the image is looked up.
+---@field wrap? 'clamp'|'repeat'|'mirror' wrap ('clamp'|'repeat'|'mirror'; default 'repeat'): What is beyond its edges.
+---@field flip_u? boolean flip_u (true or false; default false): Whether left and right are exchanged.
+---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): How many lie side by side: one number, or {across, up}.
+---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): How far it is moved, in pictures: {across, up}.
+---@field channel? 'kd'|'ks'|'emission'|'opacity' channel ('kd'|'ks'|'emission'|'opacity'; default 'kd'): What the image says; where opacity is below 1 the surface has holes.
+
+---An image by the shape's own coordinates, over another material.
+---@param material gr.material material (a material): The material below.
+---@param image string|gr.texture image (the name of a picture file or a texture): A PNG or JPEG file, or a texture.
+---@return gr.material
+---@overload fun(fields: gr.image_material.fields): gr.material
+function gr.image_material(material, image) end
+
+---@class gr.bump_material.fields
+---@field material gr.material material (a material): The material below.
+---@field image string|gr.texture image (the name of a picture file or a texture): A PNG or JPEG file, or what gr.bump made.
+---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): How the image is looked up.
+---@field wrap? 'clamp'|'repeat'|'mirror' wrap ('clamp'|'repeat'|'mirror'; default 'repeat'): What is beyond its edges.
+---@field flip_u? boolean flip_u (true or false; default false): Whether left and right are exchanged.
+---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): How many lie side by side: one number, or {across, up}.
+---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): How far it is moved, in pictures: {across, up}.
+---@field height? number height (a number; default 1/50 of the picture's size; 1 for normals): White over black in units of the object; of normals, a factor of their slopes.
+---@field kind? 'bump'|'normal' kind ('bump'|'normal'; default 'bump'): Whether it holds heights, or normals as colours: x right, y up, z out.
+
+---A bump map or normal map over another material.
+---@param material gr.material material (a material): The material below.
+---@param image string|gr.texture image (the name of a picture file or a texture): A PNG or JPEG file, or what gr.bump made.
+---@param height? number height (a number; default 1/50 of the picture's size; 1 for normals): White over black in units of the object; of normals, a factor of their slopes.
+---@return gr.material
+---@overload fun(fields: gr.bump_material.fields): gr.material
+function gr.bump_material(material, image, height) end
 
 ---@class gr.light.fields
 ---@field colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
@@ -1234,10 +1284,10 @@ function node:set_material(material) end
 ---@return gr.node
 function node:set_texture(texture) end
 
----Puts a bump map on a shape. Comes with version 0.2.
----@param name? string name (a string; optional): Name of the node, for messages.
+---Puts a bump map on a shape.
+---@param bump string|gr.texture bump (the name of a picture file or a texture): What gr.bump made, or the name of a PNG or JPEG file.
 ---@return gr.node
-function node:set_bump(name) end
+function node:set_bump(bump) end
 
 ---Scales this node.
 ---@param x number x (a number): Factor along x.

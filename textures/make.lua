@@ -491,6 +491,67 @@ function make.sky_dusk()
     sky_cross(256, 1, dusk):write(here .. 'sky_dusk.png', 3)
 end
 
+-- Rough brickwork as heights: black joints, bricks of uneven height with worn edges.
+function make.bricks_height()
+    local size, rows, columns = 256, 8, 4
+    local p = picture.new(size, size, { 0, 0, 0 })
+    p:paint(function(x, y)
+        local row = floor(y / size * rows)
+        local shift = row % 2 * 0.5
+        local bx, by = (x / size * columns + shift) % columns, y / size * rows
+        local column = floor(bx)
+        local fx, fy = bx - column, by - row
+        local edge = math.min(fx, 1 - fx, (1 - fy) / 2, fy / 2)
+        local rough = noise.sum(x * .06, y * .06, row * 3.1 + column * 7.7, 4)
+        local h = smoothstep(.02, .10 + .02 * rough, edge + .015 * rough)
+        h = h * (.72 + .10 * noise.noise(column * 5.3, row * 3.7, .5) + .10 * rough)
+        return { h, h, h }
+    end)
+    p:write(here .. 'bricks_height.png', 4)
+end
+
+-- A woven band as a normal map: threads over and under each other. x right, y up, z out.
+function make.weave_normal()
+    local size, threads = 128, 8
+    local function height(x, y)
+        local u, v = x / size * threads, y / size * threads
+        local a = sin(pi * (u % 1)) * (.75 + .25 * cos(pi * (v - .5 + floor(u))))
+        local b = sin(pi * (v % 1)) * (.75 - .25 * cos(pi * (u - .5 + floor(v))))
+        return 6 * math.max(a, b)
+    end
+    local p = picture.new(size, size, { 0, 0, 1 })
+    p:paint(function(x, y)
+        local hx = (height(x + .5, y) - height(x - .5, y)) * .8
+        local hy = (height(x, y + .5) - height(x, y - .5)) * .8
+        local l = sqrt(1 + hx * hx + hy * hy)
+        local function code(c) return (128 + 127 * c) / 255 end
+        return { code(-hx / l), code(hy / l), code(1 / l) }
+    end)
+    p:write(here .. 'weave_normal.png', 1)
+end
+
+-- Leaves for cut-outs: what is white is there.
+function make.leaves_mask()
+    local size = 256
+    local p = picture.new(size, size, { 0, 0, 0 })
+    p:paint(function(x, y)
+        local inside = false
+        for k = 0, 6 do
+            local angle = k * 2 * pi / 7 + .3
+            local cx, cy = size / 2 + 62 * cos(angle), size / 2 + 62 * sin(angle)
+            local dx, dy = x - cx, y - cy
+            local along, across = dx * cos(angle) + dy * sin(angle), dy * cos(angle) - dx * sin(angle)
+            local t = along / 58
+            inside = inside or (abs(t) < 1 and abs(across) < 22 * (1 - t * t) * (1 - .35 * t))
+        end
+        local d = sqrt((x - size / 2) ^ 2 + (y - size / 2) ^ 2)
+        inside = inside or d < 14
+        local c = inside and 1 or 0
+        return { c, c, c }
+    end)
+    p:write(here .. 'leaves_mask.png', 1)
+end
+
 local names = { ... }
 if #names == 0 then
     for name in pairs(make) do names[#names + 1] = name end

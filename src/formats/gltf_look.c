@@ -1,5 +1,5 @@
 /* Materials of glTF, turned into ours as they are read. Source: glTF 2.0, section 3.9 and appendix B; extensions
- * KHR_materials_ior, _transmission, _specular, KHR_texture_transform.
+ * KHR_materials_ior, _transmission, _unlit, KHR_texture_transform.
  *
  * A metallic-roughness surface is not a Phong surface; this is what we take for it. Base colour c, metallic m,
  * roughness r: kd = c (1 - m); ks = F0 (1 - m) + c m, F0 = ((ior - 1) / (ior + 1))^2; the width of the highlight is
@@ -149,7 +149,13 @@ static bool read_material(struct gltf *g, const json_t *source, struct model_mat
     ior = ior >= 1 ? ior : 1.5;
     double f0 = (ior - 1) / (ior + 1) * ((ior - 1) / (ior + 1));
     struct vec3 colour = {base[0], base[1], base[2]};
-    m->kd = vec3_scale(colour, 1 - metallic);
+    /* Where a picture has a say in it the split is made point by point. */
+    m->by_metal = json_object_get(rough, "metallicRoughnessTexture") ||
+                  (metallic > 0 && json_object_get(rough, "baseColorTexture"));
+    m->metallic = metallic;
+    m->roughness = r;
+    m->f0 = f0;
+    m->kd = m->by_metal ? colour : vec3_scale(colour, 1 - metallic);
     m->ks = vec3_add(vec3_scale(vec3_all(f0), 1 - metallic), vec3_scale(colour, metallic));
     double n = 2 / fmax(r * r * r * r, 1e-3) - 2;
     m->shininess = n < 1 ? 1 : n > 2000 ? 2000 : n;
@@ -158,9 +164,14 @@ static bool read_material(struct gltf *g, const json_t *source, struct model_mat
     m->ke = vec3_make(emitted[0], emitted[1], emitted[2]);
     m->two_sided = json_is_true(json_object_get(source, "doubleSided"));
     m->by_vertex = true;
-    if (json_object_get(extensions, "KHR_materials_unlit"))
+    if (json_object_get(extensions, "KHR_materials_unlit")) {
         m->ks = vec3_all(0);
-    if (alpha_mode && strcmp(alpha_mode, "BLEND") == 0)
+        m->kd = colour;
+        m->by_metal = false;
+        m->unlit = true;
+    }
+    bool blend = alpha_mode && strcmp(alpha_mode, "BLEND") == 0, mask = alpha_mode && strcmp(alpha_mode, "MASK") == 0;
+    if (blend)
         m->dissolve = unit(base[3]);
     if (passes > 0) {
         m->dissolve = 1 - passes;
@@ -169,9 +180,18 @@ static bool read_material(struct gltf *g, const json_t *source, struct model_mat
         m->has_ior = true;
         m->fresnel = passes == 1;
     }
+    m->map_kd.without_alpha = true;
+    if (blend || mask) { /* the alpha of the colour's picture; factors below 1 count before the cut */
+        double cutoff = number_or(source, "alphaCutoff", 0.5);
+        m->map_d.by_alpha = true;
+        m->map_d.cutoff = blend ? 0 : base[3] > 0 ? fmax(cutoff / base[3], 1e-9) : INFINITY;
+        if (!read_map(g, rough, "baseColorTexture", &m->map_d, where))
+            return false;
+    }
     return read_map(g, rough, "baseColorTexture", &m->map_kd, where) &&
+           (!m->by_metal || read_map(g, rough, "metallicRoughnessTexture", &m->map_metal, where)) &&
            read_map(g, source, "normalTexture", &m->map_normal, where) &&
-           read_map(g, source, "emissiveTexture", &m->map_ke, where);
+           (vec3_max_abs(m->ke) == 0 || read_map(g, source, "emissiveTexture", &m->map_ke, where));
 }
 
 bool gltf_read_materials(struct gltf *g) {

@@ -41,8 +41,10 @@ struct model_material *model_add_material(struct model *model, struct error *err
                                         .map_kd = none,
                                         .map_ks = none,
                                         .map_ke = none,
+                                        .map_d = none,
                                         .map_bump = none,
-                                        .map_normal = none};
+                                        .map_normal = none,
+                                        .map_metal = none};
     model->materials.count++;
     return material;
 }
@@ -301,7 +303,8 @@ void model_destroy(struct model *model) {
     }
     for (size_t i = 0; i < model->materials.count; i++) {
         struct model_material *m = &model_materials(model)[i];
-        struct model_texture *maps[] = {&m->map_kd, &m->map_ks, &m->map_ke, &m->map_bump, &m->map_normal};
+        struct model_texture *maps[] = {&m->map_kd,   &m->map_ks,     &m->map_ke,   &m->map_d,
+                                        &m->map_bump, &m->map_normal, &m->map_metal};
         for (size_t k = 0; k < sizeof maps / sizeof maps[0]; k++)
             if (maps[k]->image)
                 image_release(maps[k]->image);

@@ -22,6 +22,9 @@ struct model_texture {
     struct image *image;        /* embedded ones, owned by the model */
     double scale[2], offset[2]; /* place on the picture = scale * uv + offset, v counted from below */
     double strength;            /* of bumps and normals */
+    double cutoff;              /* of opacities: > 0: all or nothing */
+    bool by_alpha;              /* alpha says it, not the colour */
+    bool without_alpha;         /* what alpha says is nothing */
     enum image_wrap wrap_u, wrap_v;
     enum image_filter filter;
 };
@@ -31,10 +34,12 @@ struct model_material {
     const char *name;
     struct vec3 ka, kd, ks, ke, filter; /* filter: Tf, the colour of what passes through */
     double shininess, dissolve, ior, reflect;
-    bool has_shininess, has_ior, fresnel, two_sided;
+    bool by_metal; /* kd is the colour of metal and non-metal alike; map_metal and these split it */
+    double metallic, roughness, f0;
+    bool has_shininess, has_ior, fresnel, two_sided, unlit;
     bool by_vertex; /* kd is multiplied by the colours of the vertices */
     int illum;
-    struct model_texture map_kd, map_ks, map_ke, map_bump, map_normal;
+    struct model_texture map_kd, map_ks, map_ke, map_d, map_bump, map_normal, map_metal;
 };
 
 /* Tables while the file is read; a finished mesh afterwards. */

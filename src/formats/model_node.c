@@ -1,8 +1,9 @@
 /* A file's materials speak of more than ours can say. What becomes of them:
  *   Kd, Ks, Ns, map_Kd (multiplied by Kd, with its -s, -o, -clamp) as they are; illum 0 and 1 switch Ks off, 3 to 9 let
  * it mirror. d or Tr below 1: refract = 1 - d, filtered by Tf, with the index Ni where illum (6, 7, or none) asks for
- *   refraction; illum 7 is a dielectric by Fresnel's equations. Ka is Kd here. Ke and the maps of Ks, Ke, bumps and
- * normals are kept in the model for materials that will know them. */
+ * refraction; illum 7 is a dielectric by Fresnel's equations. Ka is Kd here. Ke is emission. map_Ks and map_Ke are
+ * multiplied by Ks and Ke (by 1 where those are black or missing), map_d cuts holes. map_bump has no unit in files: -bm
+ * times a fiftieth of the picture's size on the surface; norm and glTF's normalTexture are normal maps. */
 #include "formats/model_node.h"
 
 #include <stdio.h>
@@ -48,19 +49,18 @@ const struct model *model_asset(struct assets *assets, const char *path, const c
 
 /* --- materials --- */
 
-static const struct material *over_with_image(struct scene *scene, const struct model_texture *map,
-                                              const struct material *base, struct vec3 tint, struct error *error) {
+/* The picture of a map, over `base`; *out is `base` where there is none. */
+static bool over_with_map(struct scene *scene, enum material_kind kind, const struct model_texture *map,
+                          const struct material *base, struct material **out, struct error *error) {
     struct image *image = map->image;
-    if (!image && map->path) {
-        image = assets_image(scene->assets, map->path, error);
-        if (!image)
-            return NULL;
-    }
+    *out = NULL;
+    if (!image && !map->path)
+        return true;
     if (!image)
-        return base;
-    struct material *m = scene_material(scene, MATERIAL_IMAGE, base, error);
+        image = assets_image(scene->assets, map->path, error);
+    struct material *m = image ? scene_material(scene, kind, base, error) : NULL;
     if (!m)
-        return NULL;
+        return false;
     m->image.image = image;
     m->image.mapping = MAPPING_UV;
     m->image.filter = map->filter;
@@ -71,8 +71,67 @@ static const struct material *over_with_image(struct scene *scene, const struct 
         m->image.scale[k] = map->scale[k];
         m->image.offset[k] = map->offset[k];
     }
-    m->image.tint = tint;
-    return m;
+    m->image.tint = vec3_all(1);
+    m->image.without_alpha = map->without_alpha;
+    m->image.by_alpha = map->by_alpha;
+    m->image.cutoff = map->cutoff;
+    *out = m;
+    return true;
+}
+
+static struct vec3 or_white(struct vec3 colour) {
+    return vec3_max_abs(colour) == 0 ? vec3_all(1) : colour;
+}
+
+/* The maps of everything but kd, one above the other. */
+static const struct material *with_maps(struct scene *scene, const struct model_material *from,
+                                        const struct material *top, struct error *error) {
+    bool shiny = from->illum != 0 && from->illum != 1 && !from->by_metal;
+    struct material *m;
+    if (!over_with_map(scene, MATERIAL_METAL, &from->map_metal, top, &m, error))
+        return NULL;
+    if (from->by_metal && !m && !(m = scene_material(scene, MATERIAL_METAL, top, error)))
+        return NULL;
+    if (m) {
+        m->image.metallic = from->metallic;
+        m->image.roughness = from->roughness;
+        m->image.f0 = from->f0;
+        top = m;
+    }
+    if (shiny && !over_with_map(scene, MATERIAL_IMAGE, &from->map_ks, top, &m, error))
+        return NULL;
+    if (shiny && m) {
+        m->image.target = IMAGE_TO_KS;
+        m->image.tint = or_white(from->ks);
+        top = m;
+    }
+    if (!over_with_map(scene, MATERIAL_IMAGE, &from->map_ke, top, &m, error))
+        return NULL;
+    if (m) {
+        m->image.target = IMAGE_TO_EMISSION;
+        m->image.tint = or_white(from->ke);
+        top = m;
+    }
+    if (!over_with_map(scene, MATERIAL_IMAGE, &from->map_d, top, &m, error))
+        return NULL;
+    if (m) {
+        m->image.target = IMAGE_TO_OPACITY;
+        top = m;
+    }
+    if (!over_with_map(scene, MATERIAL_BUMP, &from->map_bump, top, &m, error))
+        return NULL;
+    if (m) {
+        m->image.height = RELIEF_HEIGHT * from->map_bump.strength;
+        m->image.relative = true;
+        top = m;
+    }
+    if (!over_with_map(scene, MATERIAL_NORMAL, &from->map_normal, top, &m, error))
+        return NULL;
+    if (m) {
+        m->image.height = from->map_normal.strength;
+        top = m;
+    }
+    return top;
 }
 
 static const struct material *make_material(struct scene *scene, const struct model_material *from,
@@ -90,6 +149,8 @@ static const struct material *make_material(struct scene *scene, const struct mo
     m->phong.ior = bends && from->ior >= 1 ? from->ior : 1;
     m->phong.two_sided = from->two_sided;
     m->phong.by_vertex = from->by_vertex;
+    m->phong.emission = from->map_ke.image || from->map_ke.path ? vec3_all(0) : from->ke;
+    m->phong.unlit = from->unlit;
     if (clear) {
         bool dark = vec3_max_abs(m->phong.ks) == 0;
         m->phong.shininess = dark ? CLEAR_SHININESS : m->phong.shininess;
@@ -102,7 +163,12 @@ static const struct material *make_material(struct scene *scene, const struct mo
     struct vec3 tint = m->phong.kd;
     if (vec3_max_abs(tint) == 0 && from->map_kd.name && from->illum >= 0)
         tint = vec3_all(from->dissolve); /* exporters that write a black Kd beside a picture mean the picture */
-    const struct material *top = over_with_image(scene, &from->map_kd, m, tint, error);
+    struct material *mapped;
+    if (!over_with_map(scene, MATERIAL_IMAGE, &from->map_kd, m, &mapped, error))
+        return NULL;
+    if (mapped)
+        mapped->image.tint = tint;
+    const struct material *top = with_maps(scene, from, mapped ? mapped : m, error);
     if (!top || !clear || (from->illum != 7 && !from->fresnel))
         return top;
     return scene_material(scene, MATERIAL_FRESNEL, top, error);

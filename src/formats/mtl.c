@@ -220,6 +220,7 @@ static bool read_statement(struct library *l) {
       maps[] = {{"map_Kd", offsetof(struct model_material, map_kd)},
                 {"map_Ks", offsetof(struct model_material, map_ks)},
                 {"map_Ke", offsetof(struct model_material, map_ke)},
+                {"map_d", offsetof(struct model_material, map_d)},
                 {"map_bump", offsetof(struct model_material, map_bump)},
                 {"bump", offsetof(struct model_material, map_bump)},
                 {"norm", offsetof(struct model_material, map_normal)},

@@ -35,6 +35,7 @@ struct hit {
     struct vec3 colour; /* of the vertices, interpolated */
     double u, v;
     struct vec3 dpdu, dpdv; /* world */
+    struct vec3 raise;      /* what one unit along the operand's outward normal is in the world; where relief asks */
     double offset;          /* a secondary ray starts this far (world units) from point along the normal */
     double footprint;       /* diameter of the ray's cone here, world units; 0 = unknown */
     double pattern_scale;   /* pattern-space units per world unit (largest stretch); for filtering */

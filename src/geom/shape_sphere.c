@@ -87,8 +87,12 @@ void sphere_uv(double radius, struct surface *surface) {
     surface->has_uv = true;
     surface->u = 0.5 + el_atan2(n.z, n.x) / TURN;
     surface->v = 0.5 - el_asin(y) / (TURN / 2);
+    sphere_tangents(radius, n, &surface->dpdu, &surface->dpdv);
+}
+
+void sphere_tangents(double radius, struct vec3 n, struct vec3 *dpdu, struct vec3 *dpdv) {
     double ring = sqrt(n.x * n.x + n.z * n.z);
     double cosine = ring > 0 ? n.x / ring : 1, sine = ring > 0 ? n.z / ring : 0;
-    surface->dpdu = vec3_scale(vec3_make(-n.z, 0, n.x), TURN * radius);
-    surface->dpdv = vec3_scale(vec3_make(n.y * cosine, -ring, n.y * sine), TURN / 2 * radius);
+    *dpdu = vec3_scale(vec3_make(-n.z, 0, n.x), TURN * radius);
+    *dpdv = vec3_scale(vec3_make(n.y * cosine, -ring, n.y * sine), TURN / 2 * radius);
 }

@@ -172,6 +172,10 @@ uint32_t image_height(const struct image *image) {
     return image->levels[0].height;
 }
 
+int image_bits(const struct image *image) {
+    return image->bits;
+}
+
 size_t image_memory(const struct image *image) {
     return sizeof *image + image->block_size + strlen(image->name) + 1;
 }

@@ -31,6 +31,7 @@ struct image *image_share(struct image *image);
 void image_release(struct image *image);
 uint32_t image_width(const struct image *image);
 uint32_t image_height(const struct image *image);
+int image_bits(const struct image *image); /* of a channel: 8 or 16 */
 size_t image_memory(const struct image *image);
 const char *image_name(const struct image *image);
 /* Level 0 texel, not premultiplied, 0..1; x, y in range. */

@@ -13,14 +13,30 @@
 
 enum { MATERIAL_DEPTH = 1000 };
 
-enum material_kind { MATERIAL_PHONG, MATERIAL_MARBLE, MATERIAL_WOOD, MATERIAL_IMAGE, MATERIAL_FRESNEL };
+enum material_kind {
+    MATERIAL_PHONG,
+    MATERIAL_MARBLE,
+    MATERIAL_WOOD,
+    MATERIAL_IMAGE,
+    MATERIAL_BUMP,   /* turns the normal as if the picture's heights stood on the surface */
+    MATERIAL_NORMAL, /* turns the normal to where the picture's colours point */
+    MATERIAL_METAL,  /* glTF: splits the colour below by a picture of metalness and roughness */
+    MATERIAL_FRESNEL
+};
 
 /* AS_SET: what the settings of the picture say. */
 enum material_highlight { HIGHLIGHT_AS_SET, HIGHLIGHT_PHONG, HIGHLIGHT_BLINN };
 
 /* How a hit becomes a place on an image. SPHERE, CUBE: the decorators td_sphere_material and td_cube_material;
- * SPHERE_CLASSIC: set_texture on a sphere (the formulas stand in material.c); UV: the shape's own parameters. */
-enum image_mapping { MAPPING_SPHERE, MAPPING_CUBE, MAPPING_SPHERE_CLASSIC, MAPPING_UV };
+ * SPHERE_CLASSIC: set_texture on a sphere (the formulas stand in image_place.c); UV: the shape's own parameters;
+ * BY_SHAPE: SPHERE on spheres, CUBE on boxes, else UV. */
+enum image_mapping { MAPPING_SPHERE, MAPPING_CUBE, MAPPING_SPHERE_CLASSIC, MAPPING_UV, MAPPING_BY_SHAPE };
+
+/* What a picture is the picture of. OPACITY: how much of the surface is there; the rest is a hole. */
+enum image_target { IMAGE_TO_KD, IMAGE_TO_KS, IMAGE_TO_EMISSION, IMAGE_TO_OPACITY };
+
+/* A height that is not told: white stands this much of the picture's own size on the surface above black. */
+#define RELIEF_HEIGHT 0.02
 
 struct material {
     enum material_kind kind;
@@ -55,12 +71,21 @@ struct material {
             enum image_wrap wrap;   /* of MAPPING_UV */
             enum image_wrap wrap_v; /* where `apart` says so, else wrap is for both */
             bool flip_u;
-            /* MAPPING_UV of a file's material: the place is scale * uv + offset (v from below), the colour is
-             * multiplied by tint. */
+            /* The place is scale * uv + offset (v from below), the colour is multiplied by tint. */
             bool apart;
             double scale[2], offset[2];
             struct vec3 tint;
-        } image;
+            enum image_target target;
+            bool without_alpha; /* the picture covers everything, whatever its alpha says */
+            bool by_alpha;      /* OPACITY: alpha says it, not the colour */
+            double cutoff;      /* OPACITY: > 0: all or nothing, from here on */
+            /* BUMP: white over black, in units of the object; `relative`: of the picture's size on the surface.
+             * NORMAL: factor of the slopes. */
+            double height;
+            bool relative;
+            /* METAL: factors of blue and green; the reflectance of what is no metal. */
+            double metallic, roughness, f0;
+        } image; /* of BUMP, NORMAL and METAL as well */
     };
 };
 
@@ -69,7 +94,9 @@ struct surface_look {
     struct vec3 kd, ks;
     double shininess, reflect, refract, ior;
     bool has_ior, two_sided;
-    bool unlit; /* kd is shown as it is, whatever light there is */
+    bool unlit;         /* kd is shown as it is, whatever light there is */
+    struct vec3 normal; /* unit, world, on the outward side: the hit's, or as relief has turned it */
+    double opacity;     /* of a surface with holes; what lies behind shows by 1 - opacity */
     enum material_highlight highlight;
     struct vec3 emission;   /* added to what is reflected */
     struct vec3 absorption; /* inside: the logarithm of light falls by this per unit */
@@ -79,6 +106,10 @@ struct surface_look {
 };
 
 void material_look(const struct material *material, const struct hit *hit, struct surface_look *out);
+/* What hits must know for it: the footprint in pattern space; where bumps rise (hit->raise). */
+bool material_has_image(const struct material *material);
+bool material_has_relief(const struct material *material);
+bool material_has_holes(const struct material *material); /* its opacity may be below 1 */
 /* The lobes of a look whose reflect and refract are final. ambient_plain: the ambient colour is not multiplied by kd.
  */
 void material_shading(const struct surface_look *look, enum specular_kind specular, bool ambient_plain,

@@ -25,7 +25,7 @@ void interface_make(const struct hit *hit, const struct media *media, struct sur
                     struct interface *out) {
     /* The ray's side of the surface; interpolated normals follow the geometric one. */
     out->geometric_side = hit->front ? hit->normal_geometric : vec3_negate(hit->normal_geometric);
-    out->side = hit->front ? hit->normal : vec3_negate(hit->normal);
+    out->side = hit->front ? look->normal : vec3_negate(look->normal);
     if (!(vec3_dot(out->side, hit->view) > 0))
         out->side = out->geometric_side;
     out->passes = false;

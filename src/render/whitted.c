@@ -13,6 +13,7 @@ struct path {
     int reflections, refractions; /* so far, from the camera */
     bool rough;                   /* after a rough surface: the next ones get one ray each */
     double weight;                /* how much of what this ray brings can arrive in the pixel */
+    int holes;                    /* went through so far */
 };
 
 static struct vec3 trace(struct tracer *tracer, const struct ray *ray, struct path path);
@@ -66,6 +67,21 @@ static struct vec3 follow_refraction(struct tracer *tracer, const struct hit *hi
     return vec3_mul(filter, trace(tracer, &refracted, path));
 }
 
+/* What is seen through the holes of a surface that is only partly there (a picture of leaves): the ray goes on as it
+ * was. Bounded, since every hole is a deeper call. */
+static struct vec3 follow_hole(struct tracer *tracer, const struct hit *hit, const struct ray *ray, double share,
+                               struct path path) {
+    enum { HOLE_LIMIT = 200 };
+    path.weight *= share;
+    if (path.holes >= HOLE_LIMIT || path.weight < tracer->job->settings.cutoff)
+        return vec3_all(0);
+    struct ray onward = interface_ray(hit, ray, vec3_negate(hit->view), ray->media);
+    tracer->refracted_rays++;
+    path.key = random_combine(path.key, (uint64_t)UINT32_MAX + 3);
+    path.holes++;
+    return vec3_scale(trace(tracer, &onward, path), share);
+}
+
 /* A rough surface: the mean over facets of what each reflects and refracts. */
 struct rough {
     const struct hit *hit;
@@ -107,15 +123,14 @@ static struct vec3 follow_rough(struct tracer *tracer, const struct rough *rough
 
 /* --- one hit --- */
 
-static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const struct hit *hit, struct path path) {
+static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const struct hit *hit,
+                         const struct surface_look *surface, struct path path) {
     const struct settings *settings = &tracer->job->settings;
-    struct surface_look look;
-    tracer->hits++;
-    material_look(tracer->job->world->materials[hit->material], hit, &look);
+    struct surface_look look = *surface;
     struct interface interface;
     interface_make(hit, ray->media, &look, &interface);
     bool dark_side = !hit->front && !look.two_sided;
-    struct vec3 normal = look.two_sided && !hit->front ? vec3_negate(hit->normal) : hit->normal;
+    struct vec3 normal = look.two_sided && !hit->front ? vec3_negate(look.normal) : look.normal;
     struct shading shading;
     material_shading(&look, settings->specular, settings->ambient_plain, &shading);
     struct vec3 colour = direct_light(tracer, hit, &shading, normal, dark_side, path.key);
@@ -149,6 +164,20 @@ static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const str
     return colour;
 }
 
+static struct vec3 shade_hit(struct tracer *tracer, const struct ray *ray, const struct hit *hit, struct path path) {
+    struct surface_look look;
+    tracer->hits++;
+    material_look(tracer->job->world->materials[hit->material], hit, &look);
+    double hole = 1 - look.opacity;
+    if (!(hole > 0))
+        return shade(tracer, ray, hit, &look, path);
+    struct vec3 behind = follow_hole(tracer, hit, ray, hole, path);
+    if (hole >= 1)
+        return behind;
+    path.weight *= look.opacity;
+    return vec3_add_scaled(behind, shade(tracer, ray, hit, &look, path), look.opacity);
+}
+
 static struct vec3 trace(struct tracer *tracer, const struct ray *ray, struct path path) {
     const struct world *world = tracer->job->world;
     const struct fog *fog = tracer->job->fog;
@@ -178,7 +207,7 @@ static struct vec3 trace(struct tracer *tracer, const struct ray *ray, struct pa
     else if (lamp)
         colour = lamp->colour;
     else if (met)
-        colour = shade(tracer, ray, &hit, path);
+        colour = shade_hit(tracer, ray, &hit, path);
     else
         colour = sky_colour(&world->sky, vec3_normalize(ray->direction), ray->footprint.spread);
     if (clear)

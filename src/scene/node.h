@@ -44,6 +44,7 @@ struct node {
     uint32_t slot_count;
     enum node_cull cull;
     const struct material *texture; /* set_texture: a MATERIAL_IMAGE template whose base is filled in when flattened */
+    const struct material *relief;  /* set_bump: a MATERIAL_BUMP or MATERIAL_NORMAL template, likewise */
     enum node_csg operation;        /* NODE_CSG */
     struct node *operands[2];
     struct {

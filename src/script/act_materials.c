@@ -101,24 +101,40 @@ void act_image_defaults(struct material *material, const struct value *value, st
     material->image.image = image;
 }
 
-static struct material *image_material(struct context *context, const struct value *value, const struct value *filter,
-                                       const struct value *flip_u, const struct material *base, struct error *error) {
-    struct image *image = act_find_image(context, value, error);
-    struct material *m = image ? scene_material(&context->scene, MATERIAL_IMAGE, base, error) : NULL;
+/* A picture over `base`; `lookup` are the fields counted from LOOKUP_FILTER. */
+static struct material *image_over(struct context *context, enum material_kind kind, const struct value *image_value,
+                                   const struct value *lookup, const struct material *base, struct error *error) {
+    struct image *image = act_find_image(context, image_value, error);
+    struct material *m = image ? scene_material(&context->scene, kind, base, error) : NULL;
     if (!m)
         return NULL;
-    act_image_defaults(m, value, image);
-    if (filter->given)
-        m->image.filter = (enum image_filter)filter->choice;
-    if (flip_u->given)
-        m->image.flip_u = flip_u->boolean;
+    act_image_defaults(m, image_value, image);
+    m->image.mapping = MAPPING_BY_SHAPE;
+    if (lookup[LOOKUP_FILTER].given)
+        m->image.filter = (enum image_filter)lookup[LOOKUP_FILTER].choice;
+    if (lookup[LOOKUP_WRAP].given)
+        m->image.wrap = m->image.wrap_v = (enum image_wrap)lookup[LOOKUP_WRAP].choice;
+    if (lookup[LOOKUP_FLIP_U].given)
+        m->image.flip_u = lookup[LOOKUP_FLIP_U].boolean;
+    const struct value *tiles = &lookup[LOOKUP_TILES], *offset = &lookup[LOOKUP_OFFSET];
+    if ((tiles->given || offset->given) && !m->image.apart) {
+        m->image.apart = true;
+        m->image.scale[0] = m->image.scale[1] = 1;
+        m->image.tint = vec3_all(1);
+        m->image.wrap_v = m->image.wrap;
+    }
+    if (tiles->given)
+        m->image.scale[0] = tiles->vector.x, m->image.scale[1] = tiles->vector.y;
+    if (offset->given)
+        m->image.offset[0] = offset->vector.x, m->image.offset[1] = offset->vector.y;
     return m;
 }
 
 static bool td_material(struct context *context, const struct value *args, enum image_mapping mapping,
                         struct result *result, struct error *error) {
-    struct material *m = image_material(context, &args[IMAGE_PNG], &args[IMAGE_FILTER], &args[IMAGE_FLIP_U],
-                                        args[IMAGE_MATERIAL].material, error);
+    struct value lookup[LOOKUP_COUNT] = {[LOOKUP_FILTER] = args[IMAGE_FILTER], [LOOKUP_FLIP_U] = args[IMAGE_FLIP_U]};
+    struct material *m =
+        image_over(context, MATERIAL_IMAGE, &args[IMAGE_PNG], lookup, args[IMAGE_MATERIAL].material, error);
     if (m)
         m->image.mapping = mapping;
     return give(result, m);
@@ -134,12 +150,51 @@ bool act_td_sphere(struct context *context, const struct value *args, struct res
 
 /* A texture is an image material without a base; node:set_texture copies it. */
 bool act_texture(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    return give(result, image_over(context, MATERIAL_IMAGE, &args[TEXTURE_FILE], &args[TEXTURE_LOOKUP], NULL, error));
+}
+
+bool act_image_material(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    static const enum image_target targets[] = {IMAGE_TO_KD, IMAGE_TO_KS, IMAGE_TO_EMISSION, IMAGE_TO_OPACITY};
     struct material *m =
-        image_material(context, &args[TEXTURE_FILE], &args[TEXTURE_FILTER], &args[TEXTURE_FLIP_U], NULL, error);
-    if (m) {
-        m->image.mapping = MAPPING_UV;
-        if (args[TEXTURE_WRAP].given)
-            m->image.wrap = (enum image_wrap)args[TEXTURE_WRAP].choice;
-    }
+        image_over(context, MATERIAL_IMAGE, &args[OVER_IMAGE], &args[OVER_LOOKUP], args[OVER_MATERIAL].material, error);
+    if (m)
+        m->image.target = targets[args[OVER_CHANNEL].choice];
     return give(result, m);
+}
+
+/* The amount and the kind are args[0] and args[1]. A bump map keeps what its template says. */
+static bool set_relief(struct material *m, const struct value *template, const struct value *args) {
+    const struct material *from = template->material;
+    bool known = from && (from->kind == MATERIAL_BUMP || from->kind == MATERIAL_NORMAL);
+    if (!m)
+        return false;
+    if (args[1].given)
+        m->kind = args[1].choice == 0 ? MATERIAL_BUMP : MATERIAL_NORMAL;
+    else if (known)
+        m->kind = from->kind;
+    if (args[0].given) {
+        m->image.height = args[0].number;
+        m->image.relative = false;
+    } else if (!known || from->kind != m->kind) {
+        m->image.relative = m->kind == MATERIAL_BUMP;
+        m->image.height = m->kind == MATERIAL_BUMP ? RELIEF_HEIGHT : 1;
+    }
+    return true;
+}
+
+bool act_bump(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct material *m = image_over(context, MATERIAL_BUMP, &args[RELIEF_FILE], &args[RELIEF_LOOKUP], NULL, error);
+    return set_relief(m, &args[RELIEF_FILE], &args[RELIEF_AMOUNT]) && give(result, m);
+}
+
+bool act_bump_material(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct material *m =
+        image_over(context, MATERIAL_BUMP, &args[OVER_IMAGE], &args[OVER_LOOKUP], args[OVER_MATERIAL].material, error);
+    return set_relief(m, &args[OVER_IMAGE], &args[RELIEF_OVER_AMOUNT]) && give(result, m);
+}
+
+struct material *act_relief(struct context *context, const struct value *value, struct error *error) {
+    static const struct value nothing[LOOKUP_COUNT];
+    struct material *m = image_over(context, MATERIAL_BUMP, value, nothing, NULL, error);
+    return set_relief(m, value, nothing) ? m : NULL;
 }

@@ -48,6 +48,18 @@ bool act_set_texture(struct context *context, const struct value *args, struct r
     return true;
 }
 
+/* Likewise. */
+bool act_set_bump(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    (void)result;
+    struct node *node = args[SELF].node;
+    if (!is_shape(context, node, "bump map", error))
+        return unless_warned(error);
+    if (node->kind == NODE_CSG)
+        return error_set(error, ERROR_SCENE, "a combined solid has no bump map; set those of its operands");
+    node->relief = act_relief(context, &args[SET_BUMP], error);
+    return node->relief != NULL;
+}
+
 static bool step(struct context *context, const struct value *args, enum node_step kind, const struct transform *by,
                  struct error *error) {
     return node_transform(&context->scene, args[SELF].node, kind, by) || error_no_memory(error, "a transform");

@@ -80,6 +80,7 @@ bool act_geometry(struct context *context, const struct value *args, struct resu
     node->slot_count = primitive->slot_count;
     node->cull = primitive->cull;
     node->texture = primitive->texture;
+    node->relief = primitive->relief;
     node->operation = primitive->operation;
     node->operands[0] = primitive->operands[0];
     node->operands[1] = primitive->operands[1];

@@ -73,10 +73,11 @@ enum { SELF };
 enum { CHILD_NODE = 1, CHILD_COUNT };
 enum { SET_MATERIAL = 1, SET_MATERIAL_COUNT };
 enum { SET_TEXTURE = 1, SET_TEXTURE_COUNT };
+enum { SET_BUMP = 1, SET_BUMP_COUNT };
 enum { STEP_X = 1, STEP_Y, STEP_Z, STEP_VECTOR, STEP_COUNT };
 enum { ROTATE_AXIS = 1, ROTATE_ANGLE, ROTATE_COUNT };
 enum { MOVES_TO_NODE = 1, MOVES_TO_COUNT };
-action act_add_child, act_set_material, act_set_texture, act_scale, act_rotate, act_translate;
+action act_add_child, act_set_material, act_set_texture, act_set_bump, act_scale, act_rotate, act_translate;
 action act_velocity, act_moves_to;
 
 /* act_mesh.c */
@@ -118,14 +119,22 @@ enum {
 enum { MARBLE_MATERIAL, MARBLE_F, MARBLE_MULTIPLIER, MARBLE_VEIN, MARBLE_INTERP, MARBLE_MIX, MARBLE_COUNT };
 enum { WOOD_MATERIAL, WOOD_F, WOOD_DENSITY, WOOD_INTERP, WOOD_MIX, WOOD_COUNT };
 enum { IMAGE_MATERIAL, IMAGE_PNG, IMAGE_FILTER, IMAGE_FLIP_U, IMAGE_COUNT };
-enum { TEXTURE_FILE, TEXTURE_FILTER, TEXTURE_WRAP, TEXTURE_FLIP_U, TEXTURE_COUNT };
+/* How a picture is looked up: these fields come together. */
+enum { LOOKUP_FILTER, LOOKUP_WRAP, LOOKUP_FLIP_U, LOOKUP_TILES, LOOKUP_OFFSET, LOOKUP_COUNT };
+enum { TEXTURE_FILE, TEXTURE_LOOKUP };
+enum { RELIEF_FILE, RELIEF_LOOKUP, RELIEF_AMOUNT = RELIEF_LOOKUP + LOOKUP_COUNT, RELIEF_KIND };
+enum { OVER_MATERIAL, OVER_IMAGE, OVER_LOOKUP, OVER_CHANNEL = OVER_LOOKUP + LOOKUP_COUNT };
+enum { RELIEF_OVER_AMOUNT = OVER_LOOKUP + LOOKUP_COUNT, RELIEF_OVER_KIND };
 enum { FRESNEL_MATERIAL, FRESNEL_COUNT };
 action act_material, act_rr_material, act_marble, act_wood, act_td_cube, act_td_sphere, act_fresnel, act_texture;
+action act_bump, act_image_material, act_bump_material;
 /* What a script gave as an image, from the store or from its file; NULL and error. */
 struct image *act_find_image(struct context *context, const struct value *value, struct error *error);
 
 /* How an image is looked up when nothing is said: as its texture says, else mip-mapped and repeated. */
 void act_image_defaults(struct material *material, const struct value *value, struct image *image);
+/* The template that node:set_bump keeps: what gr.bump made, or any other picture with the height that is not told. */
+struct material *act_relief(struct context *context, const struct value *value, struct error *error);
 
 /* act_sky.c; the fields of the sun come together, counted from SUN_DIRECTION */
 enum { SUN_DIRECTION, SUN_HOUR, SUN_DAY, SUN_LATITUDE, SUN_LONGITUDE, SUN_ZONE, SUN_FIELDS };

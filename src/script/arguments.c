@@ -391,6 +391,15 @@ static bool read_value(struct context *c, int index, const struct parameter *p, 
     case KIND_INTERVAL:
         value->vector = read_interval(c, index, &place);
         return true;
+    case KIND_PAIR:
+        if (lua_istable(L, index)) {
+            double pair[2];
+            read_tuple(c, index, place, 2, pair);
+            value->vector = vec3_make(pair[0], pair[1], 0);
+        } else {
+            value->vector.x = value->vector.y = read_number(c, index, &place);
+        }
+        return true;
     case KIND_NODE:
         value->node = read_handle(c, index, &place, HANDLE_NODE);
         return value->node != NULL;
@@ -498,6 +507,7 @@ static bool looks_like(lua_State *L, int index, enum kind kind) {
     case KIND_AXIS:
         return lua_isstring(L, index);
     case KIND_SIZE:
+    case KIND_PAIR:
     case KIND_NUMBERS:
         return lua_istable(L, index) || lua_isnumber(L, index);
     case KIND_NODE:

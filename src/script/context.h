@@ -78,7 +78,7 @@ struct context {
     struct error failure; /* what the message handler made of a script error */
 };
 
-enum { WARNED_EXTRA = 1, WARNED_SINCE = 2, WARNED_OTHER = 4 };
+enum { WARNED_EXTRA = 1, WARNED_OTHER = 2 };
 
 struct context *context_of(lua_State *L);
 

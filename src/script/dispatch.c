@@ -124,16 +124,6 @@ static int dispatch(lua_State *L) {
         c->subject = node->name;
         first = 2;
     }
-    if (function->since) {
-        char title[96];
-        if (!c->options->lenient) {
-            c->function = NULL;
-            context_raise(c, "%s comes with version %s (this is %s)", function_title(function, title), function->since,
-                          GRAY_VERSION);
-        }
-        context_warn_once(c, WARNED_SINCE, "comes with version %s and is ignored", function->since);
-        return answer_ghost(L, function);
-    }
     if (!arguments_read(c, function, first, args))
         return answer_ghost(L, function);
 

@@ -127,13 +127,11 @@ static void write_function(struct document *document, const struct function *fun
         }
         add(document, ")\n");
     }
-    if (has_table_form(function) && !function->since)
+    if (has_table_form(function))
         add(document, "%s{%s = ..., ...}\n", title, function->parameters[function->owner == OWNER_NODE].name);
     add(document, "    ");
     add_filled(document, 4, 4, function->help);
-    if (function->since)
-        add(document, "    Comes with version %s.\n", function->since);
-    for (int k = function->owner == OWNER_NODE; k < function->parameter_count && !function->since; k++) {
+    for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
         char line[LINE_SIZE];
         describe_parameter(&function->parameters[k], line);
         add(document, "      ");
@@ -174,6 +172,8 @@ static const char *annotation_type(const struct parameter *p, char out[200]) {
         return "number[]";
     case KIND_SIZE:
         return "number|gr.triple";
+    case KIND_PAIR:
+        return "number|number[]";
     case KIND_NODE:
         return "gr.node";
     case KIND_MATERIAL:
@@ -265,11 +265,10 @@ static void annotate_overload(struct document *document, const struct function *
 
 static void annotate_function(struct document *document, const struct function *function) {
     const char *form = function->forms[0], *result = annotation_result(function), *separator = "";
-    bool table_form = has_table_form(function) && !function->since, optional;
+    bool table_form = has_table_form(function), optional;
     int index;
     char names[LINE_SIZE] = "";
-    add(document, "---%s%s%s%s\n", function->help, function->since ? " Comes with version " : "",
-        function->since ? function->since : "", function->since ? "." : "");
+    add(document, "---%s\n", function->help);
     while (form_next(function, &form, &index, &optional)) {
         char type[200], line[LINE_SIZE];
         const struct parameter *p = &function->parameters[index];
@@ -302,7 +301,7 @@ const char *script_annotations(struct arena *arena) {
         "local node = {}\n\ngr = {}\n\n---The version of the renderer.\ngr.version = ''\n\n");
     for (int k = 0; k < function_count; k++) {
         const struct function *function = &function_table[k];
-        if (function->owner == OWNER_GR && has_table_form(function) && !function->since)
+        if (function->owner == OWNER_GR && has_table_form(function))
             annotate_fields(&document, function);
         annotate_function(&document, function);
     }

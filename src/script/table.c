@@ -1,6 +1,5 @@
 /* The table of gr functions. One row a function; everything people read about it and every check of its arguments comes
- * from here. Facts: SPEC parts 1 and 2. A function whose `since` is set exists only to say which version it comes with.
- */
+ * from here. Facts: SPEC parts 1 and 2. */
 #include "script/table.h"
 
 #include "script/actions.h"
@@ -315,6 +314,11 @@ static const struct parameter set_texture_parameters[] = {
     [SET_TEXTURE] = {"texture", KIND_IMAGE, 0, ANY, NULL, NULL, "A texture, or the name of a PNG or JPEG file."},
 };
 
+static const struct parameter set_bump_parameters[] = {
+    SELF_PARAMETER,
+    [SET_BUMP] = {"bump", KIND_IMAGE, 0, ANY, NULL, NULL, "What gr.bump made, or the name of a PNG or JPEG file."},
+};
+
 static const struct parameter translate_parameters[] = {
     SELF_PARAMETER,
     [STEP_X] = {"x", KIND_NUMBER, 0, ANY, NULL, NULL, "How far along x."},
@@ -454,10 +458,7 @@ static const struct parameter wood_parameters[] = {
             "How the image is looked up."                                                                              \
     }
 #define WRAP                                                                                                           \
-    {                                                                                                                  \
-        "wrap", KIND_CHOICE, OPTIONAL, 0, 0, "clamp repeat mirror", NULL, "'repeat'",                                  \
-            "What is beyond its edges, on meshes."                                                                     \
-    }
+    { "wrap", KIND_CHOICE, OPTIONAL, 0, 0, "clamp repeat mirror", NULL, "'repeat'", "What is beyond its edges." }
 #define FLIP_U                                                                                                         \
     { "flip_u", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether left and right are exchanged." }
 
@@ -468,11 +469,51 @@ static const struct parameter image_parameters[] = {
     [IMAGE_FLIP_U] = FLIP_U,
 };
 
+#define TILES                                                                                                          \
+    { "tiles", KIND_PAIR, OPTIONAL, ANY, NULL, "1", "How many lie side by side: one number, or {across, up}." }
+#define OFFSET                                                                                                         \
+    { "offset", KIND_PAIR, OPTIONAL, ANY, NULL, "0", "How far it is moved, in pictures: {across, up}." }
+#define LOOKUP_FIELDS(first)                                                                                           \
+    [first + LOOKUP_FILTER] = FILTER, [first + LOOKUP_WRAP] = WRAP, [first + LOOKUP_FLIP_U] = FLIP_U,                  \
+             [first + LOOKUP_TILES] = TILES, [first + LOOKUP_OFFSET] = OFFSET
+
 static const struct parameter texture_parameters[] = {
     [TEXTURE_FILE] = {"file", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file."},
-    [TEXTURE_FILTER] = FILTER,
-    [TEXTURE_WRAP] = WRAP,
-    [TEXTURE_FLIP_U] = FLIP_U,
+    LOOKUP_FIELDS(TEXTURE_LOOKUP),
+};
+
+#define RELIEF_AMOUNT_FIELD                                                                                            \
+    {                                                                                                                  \
+        "height", KIND_NUMBER, OPTIONAL, ANY, NULL, "1/50 of the picture's size; 1 for normals",                       \
+            "White over black in units of the object; of normals, a factor of their slopes."                           \
+    }
+#define RELIEF_KIND_FIELD                                                                                              \
+    {                                                                                                                  \
+        "kind", KIND_CHOICE, OPTIONAL, 0, 0, "bump normal", NULL, "'bump'",                                            \
+            "Whether it holds heights, or normals as colours: x right, y up, z out."                                   \
+    }
+
+static const struct parameter bump_parameters[] = {
+    [RELIEF_FILE] = {"file", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file."},
+    LOOKUP_FIELDS(RELIEF_LOOKUP),
+    [RELIEF_AMOUNT] = RELIEF_AMOUNT_FIELD,
+    [RELIEF_KIND] = RELIEF_KIND_FIELD,
+};
+
+static const struct parameter image_over_parameters[] = {
+    [OVER_MATERIAL] = BASE,
+    [OVER_IMAGE] = {"image", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file, or a texture."},
+    LOOKUP_FIELDS(OVER_LOOKUP),
+    [OVER_CHANNEL] = {"channel", KIND_CHOICE, OPTIONAL, 0, 0, "kd ks emission opacity", NULL, "'kd'",
+                      "What the image says; where opacity is below 1 the surface has holes."},
+};
+
+static const struct parameter bump_over_parameters[] = {
+    [OVER_MATERIAL] = BASE,
+    [OVER_IMAGE] = {"image", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file, or what gr.bump made."},
+    LOOKUP_FIELDS(OVER_LOOKUP),
+    [RELIEF_OVER_AMOUNT] = RELIEF_AMOUNT_FIELD,
+    [RELIEF_OVER_KIND] = RELIEF_KIND_FIELD,
 };
 
 static const struct parameter fresnel_parameters[] = {[FRESNEL_MATERIAL] = BASE};
@@ -771,18 +812,11 @@ static const struct parameter render_parameters[] = {
     [RENDER_UP_TO] = {"up_to", KIND_DIRECTION, OPTIONAL, ANY, NULL, "up", "The direction that is up then."},
 };
 
-static const struct parameter named_parameters[] = {
-    {"name", KIND_TEXT, OPTIONAL, ANY, NULL, NULL, NAME_HELP},
-};
-
 #define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
 #define GR(name, parameters, result, run, help, ...)                                                                   \
-    { name, OWNER_GR, parameters, COUNT(parameters), {__VA_ARGS__}, result, run, NULL, help }
+    { name, OWNER_GR, parameters, COUNT(parameters), {__VA_ARGS__}, result, run, help }
 #define NODE(name, parameters, result, run, help, ...)                                                                 \
-    { name, OWNER_NODE, parameters, COUNT(parameters), {__VA_ARGS__}, result, run, NULL, help }
-#define LATER(name, owner, result, since, help)                                                                        \
-    { name, owner, named_parameters, COUNT(named_parameters), {"name?"}, result, NULL, since, help }
-
+    { name, OWNER_NODE, parameters, COUNT(parameters), {__VA_ARGS__}, result, run, help }
 #define VN_FORM(first) first " verts normals faces face_normals"
 #define RENDER_TAIL " width height eye view up fov ambient lights"
 
@@ -876,7 +910,12 @@ const struct function function_table[] = {
     GR("difresneld_material", fresnel_parameters, RESULT_MATERIAL, act_fresnel, "The same as gr.difresnel_material.",
        "material"),
     GR("texture", texture_parameters, RESULT_TEXTURE, act_texture, "An image for node:set_texture.", "file"),
-    LATER("bump", OWNER_GR, RESULT_TEXTURE, "0.2", "A bump map for node:set_bump."),
+    GR("bump", bump_parameters, RESULT_TEXTURE, act_bump, "A bump map or normal map for node:set_bump.",
+       "file height?"),
+    GR("image_material", image_over_parameters, RESULT_MATERIAL, act_image_material,
+       "An image by the shape's own coordinates, over another material.", "material image"),
+    GR("bump_material", bump_over_parameters, RESULT_MATERIAL, act_bump_material,
+       "A bump map or normal map over another material.", "material image height?"),
 
     GR("light", light_parameters, RESULT_LIGHT, act_light, "A light at a point.", "position colour falloff?"),
     GR("area_light", area_parameters, RESULT_LIGHT, act_area_light, "A light that is a parallelogram; soft shadows.",
@@ -926,7 +965,7 @@ const struct function function_table[] = {
          "material"),
     NODE("set_texture", set_texture_parameters, RESULT_SELF, act_set_texture, "Puts an image in the place of kd.",
          "texture"),
-    LATER("set_bump", OWNER_NODE, RESULT_SELF, "0.2", "Puts a bump map on a shape."),
+    NODE("set_bump", set_bump_parameters, RESULT_SELF, act_set_bump, "Puts a bump map on a shape.", "bump"),
     NODE("scale", scale_parameters, RESULT_SELF, act_scale, "Scales this node.", "x y z", "vector"),
     NODE("rotate", rotate_parameters, RESULT_SELF, act_rotate, "Turns this node about an axis.", "axis angle"),
     NODE("velocity", velocity_parameters, RESULT_SELF, act_velocity,
@@ -997,6 +1036,8 @@ const char *kind_words(enum kind kind) {
         return "a table of two rising numbers";
     case KIND_SIZE:
         return "a number or a table of 3 numbers";
+    case KIND_PAIR:
+        return "a number or a table of 2 numbers";
     case KIND_NODE:
         return "a node";
     case KIND_MATERIAL:

@@ -34,6 +34,7 @@ enum kind {
     KIND_TRIPLE,     /* vector: three numbers that are no place */
     KIND_SIZE,       /* vector: one number counts for all three */
     KIND_INTERVAL,   /* vector: x and y, two numbers, the second not below the first */
+    KIND_PAIR,       /* vector, z = 0: two numbers, or one for both */
     KIND_NODE,       /* node */
     KIND_MATERIAL,   /* material */
     KIND_IMAGE,      /* image, or text: the name of its file */
@@ -125,7 +126,6 @@ struct function {
     const char *forms[FORM_LIMIT];
     enum result_kind result;
     bool (*run)(struct context *context, const struct value *args, struct result *result, struct error *error);
-    const char *since; /* the version it comes with when that is not this one, else NULL */
     const char *help;
 };
 

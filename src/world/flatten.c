@@ -142,6 +142,22 @@ static bool count_drawable(struct flattening *f, struct node *root) {
 
 /* --- placing --- */
 
+static bool any_holes(const struct flattening *f, const struct shape *shape, uint32_t material, uint32_t slot_count) {
+    const struct material **materials = f->world->materials;
+    if (shape->kind == SHAPE_CSG) {
+        for (uint32_t i = 0; i < shape->csg->leaf_count; i++) {
+            const struct csg_leaf *leaf = &shape->csg->leaves[i];
+            if (any_holes(f, &leaf->shape, leaf->material, leaf->slot_count))
+                return true;
+        }
+        return false;
+    }
+    for (uint32_t i = 0; i < (slot_count > 1 ? slot_count : 1); i++)
+        if (material_has_holes(materials[material + i]))
+            return true;
+    return false;
+}
+
 /* Where a node stands: fixed to the world, or to the moving node above it. */
 struct stand {
     const struct moving_link *above; /* NULL: nothing above moves */
@@ -158,7 +174,8 @@ static bool place(struct flattening *f, const struct node *node, const struct st
                               .shape = *shape,
                               .material = material,
                               .slot_count = slot_count,
-                              .cull = node->cull};
+                              .cull = node->cull,
+                              .holes = any_holes(f, shape, material, slot_count)};
     if (stand->above) {
         struct moving *moving = arena_alloc(f->arena, sizeof *moving);
         if (!moving)

@@ -1,6 +1,6 @@
-/* Effective materials: a node's texture (set_texture) goes over its material, a node without material is plain gray.
- * Each distinct pair gets one index, in order of first use; the table that finds pairs again is hashed by address,
- * which decides where an entry stands and never which index it gets. */
+/* Effective materials: a node's texture (set_texture) and relief (set_bump) go over its material, a node without
+ * material is plain gray. Each distinct set gets one index, in order of first use; the table that finds pairs again is
+ * hashed by address, which decides where an entry stands and never which index it gets. */
 #include "world/flatten.h"
 
 #include "base/random.h"
@@ -9,7 +9,7 @@
 
 struct material_entry {
     const void *material; /* a material, or the list of those of the slots */
-    const struct material *texture;
+    const struct material *texture, *relief;
     enum shape_kind shape; /* a texture is mapped by the kind of its shape */
     uint32_t index;
     bool used;
@@ -29,13 +29,18 @@ static const struct material plain_gray = {
     .phong = {.kd = {0.5, 0.5, 0.5}, .ks = {0, 0, 0}, .shininess = 1, .ior = 1},
 };
 
-static struct material_entry *find(struct material_table *table, const void *material, const struct material *texture,
-                                   enum shape_kind shape) {
-    uint64_t key = random_combine(random_combine((uint64_t)(uintptr_t)material, (uint64_t)(uintptr_t)texture), shape);
+static bool same(const struct material_entry *a, const struct material_entry *b) {
+    return a->material == b->material && a->texture == b->texture && a->relief == b->relief &&
+           ((!a->texture && !a->relief) || a->shape == b->shape);
+}
+
+/* Where the entry is, or would be. */
+static struct material_entry *find(struct material_table *table, const struct material_entry *wanted) {
+    uint64_t key = random_combine((uint64_t)(uintptr_t)wanted->material, (uint64_t)(uintptr_t)wanted->texture);
+    key = random_combine(key, (uint64_t)(uintptr_t)wanted->relief);
     for (uint32_t at = (uint32_t)key;; at++) {
         struct material_entry *entry = &table->entries[at & (table->capacity - 1)];
-        if (!entry->used ||
-            (entry->material == material && entry->texture == texture && (!texture || entry->shape == shape)))
+        if (!entry->used || same(entry, wanted))
             return entry;
     }
 }
@@ -58,7 +63,7 @@ static bool grow(struct flattening *f) {
     for (uint32_t i = 0; i < old.capacity; i++) {
         const struct material_entry *entry = &old.entries[i];
         if (entry->used)
-            *find(table, entry->material, entry->texture, entry->texture ? entry->shape : SHAPE_SPHERE) = *entry;
+            *find(table, entry) = *entry;
     }
     f->materials = table;
     return true;
@@ -73,14 +78,17 @@ static void warn_once(struct flattening *f, struct node *node, const char *what)
     f->warn(f->warn_context, text);
 }
 
-/* The image over the base, mapped as the shape wants it; NULL without memory. */
-static const struct material *textured(struct flattening *f, struct node *node, const struct material *base) {
+/* The image over the base, mapped as the shape wants it; the base itself without an image, NULL without memory. */
+static const struct material *covered(struct flattening *f, struct node *node, const struct material *image,
+                                      const struct material *base) {
+    if (!image || !base)
+        return base;
     struct material *material = arena_alloc(f->arena, sizeof *material);
     if (!material) {
         error_no_memory(f->error, "the materials of the scene");
         return NULL;
     }
-    *material = *node->texture;
+    *material = *image;
     material->base = base;
     material->depth = base->depth + 1;
     switch (node->shape.kind) {
@@ -134,37 +142,43 @@ bool flatten_material(struct flattening *f, struct node *node, const struct mate
     const struct material *only = node->material ? node->material : inherited;
     const struct material *const *bases = by_slot ? node->slots : &only;
     *count = by_slot ? node->slot_count : 1;
-    const struct material *texture = node->texture;
+    const struct material *texture = node->texture, *relief = node->relief;
     for (uint32_t i = 0; i < *count; i++) {
         if (!bases[i])
             warn_once(f, node,
                       by_slot ? "has faces without a material, which are shown in plain gray"
                               : "has no material and is shown in plain gray");
-        if (texture && bases[i] && bases[i]->depth >= MATERIAL_DEPTH)
+        if (bases[i] && bases[i]->depth + (texture != NULL) + (relief != NULL) > MATERIAL_DEPTH)
             return error_set(f->error, ERROR_SCENE, "node '%.100s': more than %d materials are stacked on each other",
                              node->name, MATERIAL_DEPTH);
     }
-    if (texture && node->shape.kind == SHAPE_MESH && !mesh_has_uv(node->shape.mesh)) {
-        warn_once(f, node, "has a texture, but its mesh has no texture coordinates (vt): the texture is not shown");
-        texture = NULL;
+    if ((texture || relief) && node->shape.kind == SHAPE_MESH && !mesh_has_uv(node->shape.mesh)) {
+        warn_once(f, node,
+                  texture ? "has a texture, but its mesh has no texture coordinates (vt): the texture is not shown"
+                          : "has a bump map, but its mesh has no texture coordinates (vt): it is not shown");
+        texture = relief = NULL;
     }
-    if (texture && node->shape.kind == SHAPE_BLOB) {
-        warn_once(f, node, "has a texture, but a blob has no texture coordinates: the texture is not shown");
-        texture = NULL;
+    if ((texture || relief) && node->shape.kind == SHAPE_BLOB) {
+        warn_once(f, node,
+                  texture ? "has a texture, but a blob has no texture coordinates: the texture is not shown"
+                          : "has a bump map, but a blob has no texture coordinates: it is not shown");
+        texture = relief = NULL;
     }
     if ((!f->materials || f->materials->count * 2 >= f->materials->capacity) && !grow(f))
         return false;
     const void *key = by_slot ? (const void *)node->slots : only ? (const void *)only : &plain_gray;
-    struct material_entry *entry = find(f->materials, key, texture, node->shape.kind);
+    struct material_entry wanted = {key, texture, relief, node->shape.kind, 0, true};
+    struct material_entry *entry = find(f->materials, &wanted);
     if (!entry->used) {
         if (!grow_list(f, *count))
             return false;
         struct material_table *table = f->materials;
-        *entry = (struct material_entry){key, texture, node->shape.kind, table->list_count, true};
+        *entry = wanted;
+        entry->index = table->list_count;
         table->count++;
         for (uint32_t i = 0; i < *count; i++) {
             const struct material *base = bases[i] ? bases[i] : &plain_gray;
-            const struct material *effective = texture ? textured(f, node, base) : base;
+            const struct material *effective = covered(f, node, relief, covered(f, node, texture, base));
             if (!effective)
                 return false;
             table->list[table->list_count++] = effective;

@@ -12,6 +12,7 @@
  * Where a primitive stands in several cells it is tried once per ray all the same (a small mailbox remembers). */
 #include "world/world.h"
 
+#include "geom/shape_sphere.h"
 #include "math/frame.h"
 #include "world/flatten.h"
 #include "world/light_lists.h"
@@ -96,11 +97,12 @@ bool world_build(struct world *world, struct arena *arena, struct scene *scene, 
     if (!world->boxes)
         return error_no_memory(error, "the boxes of the scene");
     world->material_has_image = arena_alloc_array(arena, world->material_count, sizeof *world->material_has_image);
-    if (!world->material_has_image)
+    world->material_has_relief = arena_alloc_array(arena, world->material_count, sizeof *world->material_has_relief);
+    if (!world->material_has_image || !world->material_has_relief)
         return error_no_memory(error, "the materials of the scene");
     for (uint32_t i = 0; i < world->material_count; i++) {
-        for (const struct material *link = world->materials[i]; link; link = link->base)
-            world->material_has_image[i] = world->material_has_image[i] || link->kind == MATERIAL_IMAGE;
+        world->material_has_image[i] = material_has_image(world->materials[i]);
+        world->material_has_relief[i] = material_has_relief(world->materials[i]);
     }
     place_boxes(world);
     add_up_meshes(world, scene->assets);
@@ -270,9 +272,36 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
 
 /* --- anything in the way --- */
 
+static void describe(const struct world *world, const struct ray *ray, uint32_t index, const struct crossing *crossing,
+                     struct hit *hit);
+
+/* A surface with holes stands in the way where at least half of it is there: shadows have two values. */
+static bool any_with_holes(const struct world *world, uint32_t index, const struct ray *ray,
+                           struct world_scratch *scratch) {
+    struct ray rest = *ray;
+    struct search s = {.world = world, .ray = ray, .scratch = scratch};
+    struct transform moved;
+    const struct transform *map = world_placement(world, &world->placed[index], ray->time, &moved);
+    for (;;) {
+        struct ray ray_object = ray_transform(&map->inverse, &rest);
+        struct crossing crossing;
+        struct hit hit;
+        struct surface_look look;
+        if (!ask_nearest(&s, index, &ray_object, &crossing))
+            return false;
+        describe(world, ray, index, &crossing, &hit);
+        material_look(world->materials[hit.material], &hit, &look);
+        if (look.opacity >= 0.5)
+            return true;
+        rest.t_min = crossing.t;
+    }
+}
+
 static bool any_placed(const struct world *world, uint32_t index, const struct ray *ray,
                        struct world_scratch *scratch) {
     const struct placed *placed = &world->placed[index];
+    if (placed->holes)
+        return any_with_holes(world, index, ray, scratch);
     struct transform moved;
     struct ray ray_object =
         placed->identity ? *ray : ray_transform(&world_placement(world, placed, ray->time, &moved)->inverse, ray);
@@ -439,6 +468,29 @@ static double offset_of(const struct transform *map, double scale, const struct 
     return 16 * surface->error * scale + (mapped + back) * 0x1p-42;
 }
 
+/* What bumps need: the world's vector of one unit along the operand's normal, and on spheres the tangents that other
+ * materials do not ask for. */
+static void describe_relief(const struct placed *placed, const struct affine *map, const struct csg_leaf *leaf,
+                            struct hit *hit) {
+    const struct shape *shape = leaf ? &leaf->shape : &placed->shape;
+    struct vec3 normal = vec3_normalize(hit->pattern_normal), raise = normal, u = {0}, v = {0};
+    if (hit->on_sphere)
+        sphere_tangents(shape->sphere.radius, normal, &u, &v);
+    if (leaf) {
+        const struct affine *csg_from_leaf = &leaf->csg_from_leaf.forward;
+        raise = affine_vector(csg_from_leaf, raise);
+        u = affine_vector(csg_from_leaf, u);
+        v = affine_vector(csg_from_leaf, v);
+    }
+    raise = affine_vector(map, raise);
+    /* The hollow that an operand leaves has its outside in the operand. */
+    hit->raise = vec3_dot(raise, hit->normal_geometric) < 0 ? vec3_negate(raise) : raise;
+    if (hit->on_sphere) {
+        hit->dpdu = affine_vector(map, u);
+        hit->dpdv = affine_vector(map, v);
+    }
+}
+
 static void describe(const struct world *world, const struct ray *ray, uint32_t index, const struct crossing *crossing,
                      struct hit *hit) {
     const struct placed *placed = &world->placed[index];
@@ -478,6 +530,8 @@ static void describe(const struct world *world, const struct ray *ray, uint32_t 
         hit->dpdu = affine_vector(&map->forward, surface.dpdu);
         hit->dpdv = affine_vector(&map->forward, surface.dpdv);
     }
+    if (world->material_has_relief[material])
+        describe_relief(placed, &map->forward, leaf, hit);
     hit->front = vec3_dot(hit->view, hit->normal_geometric) >= 0;
     hit->offset = offset_of(map, placed->moving ? transform_stretch(map) : placed->scale, &surface, hit->point);
     hit->footprint = ray->footprint.width + ray->footprint.spread * crossing->t * length;

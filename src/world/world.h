@@ -34,6 +34,7 @@ struct placed {
     uint32_t slot_count; /* of a mesh: face slot k has material + k; below 2 all have `material` */
     enum node_cull cull; /* of a mesh */
     bool identity;       /* world_from_object changes nothing: a placed sphere or box of an old scene, mostly */
+    bool holes;          /* some of its materials let rays through by a picture */
     double scale;        /* largest stretch of world_from_object: bounds errors */
 };
 
@@ -44,7 +45,8 @@ struct world {
     struct shutter shutter;
     bool moves; /* something does */
     const struct material **materials;
-    bool *material_has_image; /* such materials need to know the footprint on the surface */
+    bool *material_has_image;  /* such materials need to know the footprint on the surface */
+    bool *material_has_relief; /* and such ones where it rises */
     uint32_t material_count;
     const struct node **nodes; /* nodes[i]: the node that placed[i] came from */
     const struct light *lights;

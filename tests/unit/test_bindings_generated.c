@@ -74,6 +74,7 @@ static void right_text(const struct parameter *p, char *out, size_t size) {
         text = "{1, 2}";
         break;
     case KIND_SIZE:
+    case KIND_PAIR:
         text = "2";
         break;
     case KIND_NODE:
@@ -130,7 +131,7 @@ static void right_text(const struct parameter *p, char *out, size_t size) {
 static const char *wrong_text(const struct parameter *p, int which, char *out, size_t size) {
     const char *list[16] = {NULL};
     int count = 0;
-    bool number = p->kind == KIND_NUMBER || p->kind == KIND_WHOLE || p->kind == KIND_SIZE;
+    bool number = p->kind == KIND_NUMBER || p->kind == KIND_WHOLE || p->kind == KIND_SIZE || p->kind == KIND_PAIR;
     bool triple = p->kind == KIND_POINT || p->kind == KIND_DIRECTION || p->kind == KIND_COLOUR ||
                   p->kind == KIND_TRIPLE || p->kind == KIND_SIZE || p->kind == KIND_BACKGROUND;
     list[count++] = p->kind == KIND_BOOLEAN ? "'yes'" : "true";
@@ -189,6 +190,12 @@ static const char *wrong_text(const struct parameter *p, int which, char *out, s
         list[count++] = "{7}";
         list[count++] = p->kind == KIND_ROWS ? "{{0, 1}, {0 / 0, 1}}" : "{{{0, 0}, {1, 0 / 0}, {1, 1}}}";
         list[count++] = p->kind == KIND_ROWS ? "{{1, 2}, {1, 2, 3}}" : "{{{0, 0}, {1}, {1, 1}}}";
+    }
+    if (p->kind == KIND_PAIR) {
+        list[count++] = "{1}";
+        list[count++] = "{1, 2, 3}";
+        list[count++] = "{1, 0 / 0}";
+        list[count++] = "{{}, 1}";
     }
     if (p->kind == KIND_FACES) {
         list[count++] = "{{0, 1, 0 / 0}}";
@@ -298,15 +305,13 @@ static void expect_named(const struct function *function, const struct parameter
 }
 
 static bool has_table_form(const struct function *function) {
-    return !function->since && (function->owner == OWNER_GR || function->result == RESULT_NOTHING);
+    return function->owner == OWNER_GR || function->result == RESULT_NOTHING;
 }
 
 TEST(every_form_of_every_function_runs_with_right_arguments) {
     write_files();
     for (int f = 0; f < function_count; f++) {
         const struct function *function = &function_table[f];
-        if (function->since)
-            continue;
         for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
             char call[CALL_SIZE];
             struct error error;
@@ -335,7 +340,7 @@ TEST(every_missing_argument_is_named) {
     write_files();
     for (int f = 0; f < function_count; f++) {
         const struct function *function = &function_table[f];
-        for (int k = 0; k < FORM_LIMIT && function->forms[k] && !function->since; k++) {
+        for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
             const char *form = function->forms[k];
             int index;
             bool optional;
@@ -359,7 +364,7 @@ TEST(every_wrong_positional_argument_is_named) {
     write_files();
     for (int f = 0; f < function_count; f++) {
         const struct function *function = &function_table[f];
-        for (int k = 0; k < FORM_LIMIT && function->forms[k] && !function->since; k++) {
+        for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
             const char *form = function->forms[k], *with;
             int index;
             bool optional;
@@ -386,21 +391,6 @@ TEST(every_wrong_named_field_is_named) {
                 expect_named(function, &function->parameters[p], call);
             }
         }
-    }
-}
-
-TEST(functions_of_later_versions_say_which) {
-    for (int f = 0; f < function_count; f++) {
-        const struct function *function = &function_table[f];
-        char call[CALL_SIZE];
-        struct error error;
-        if (!function->since)
-            continue;
-        begin_call(function, call);
-        append(call, "('x')");
-        CHECK(!run_call(call, &error));
-        CHECK(strstr(error.text, "scene.lua:4: ") && strstr(error.text, "comes with version") &&
-              strstr(error.text, function->name));
     }
 }
 

@@ -1,0 +1,57 @@
+-- TITLE: Relief by pictures
+-- Bump maps and a normal map on shapes with uv; leaves cut out of cards by a picture of opacity.
+-- Author: gray project
+
+local stage = require 'stage'
+local meshes = require 'meshes'
+local folder = '../textures/'
+
+local function clay(kd) return gr.material(kd, { .18, .18, .18 }, 30) end
+local function bricks(tiles, height)
+    return gr.bump { file = folder .. 'bricks_height.png', tiles = tiles, height = height }
+end
+local function weave(tiles, strength)
+    return gr.bump { file = folder .. 'weave_normal.png', kind = 'normal', tiles = tiles, height = strength }
+end
+
+local scene = gr.node('relief')
+
+-- a wall and a floor
+scene:add_child(gr.rectangle { corner = { -7, 0, -3.4 }, along = { 14, 0, 0 }, up = { 0, 7, 0 }, material = clay { .62, .34, .25 } }
+    :set_bump(bricks({ 6, 3 }, .09)))
+scene:add_child(gr.rectangle { corner = { -7, 0, 6 }, along = { 14, 0, 0 }, up = { 0, 0, -9.4 }, material = clay { .55, .50, .40 } }
+    :set_bump(weave({ 9, 6 }, .8)))
+
+-- the same picture round everything that has coordinates
+local shapes = {
+    { gr.sphere {}, { 6, 3 }, { .75, .72, .66 } },
+    { gr.cylinder { from = { 0, -1, 0 }, to = { 0, 1, 0 }, radius = .8 }, { 4, 1 }, { .45, .58, .66 } },
+    { gr.torus { major = .8, minor = .35 }:rotate('x', 65), { 6, 2 }, { .70, .58, .30 } },
+    { gr.cube {}:translate(-.5, -.5, -.5):scale(1.5, 1.5, 1.5):rotate('y', 35), { 1, 1 }, { .50, .62, .42 } },
+    { gr.cone { from = { 0, 1, 0 }, to = { 0, -1, 0 }, radius = 1 }, { 4, 1 }, { .68, .45, .50 } },
+}
+for k, entry in ipairs(shapes) do
+    local place = gr.node('place')
+    local shape = entry[1]
+    shape:set_material(clay(entry[3]))
+    shape:set_bump(k % 2 == 1 and bricks(entry[2], .05) or weave(entry[2], 1))
+    place:add_child(shape)
+    place:translate(2.45 * (k - 3), k == 4 and .75 or 1, k % 2 == 1 and -.6 or .7)
+    scene:add_child(place)
+end
+
+-- cards with leaves cut out of them
+local green = gr.material { kd = { .25, .50, .14 }, ks = { .1, .1, .1 }, shininess = 20, two_sided = true }
+local leaf = gr.image_material { material = green, image = folder .. 'leaves_mask.png', channel = 'opacity' }
+for k = 0, 6 do
+    scene:add_child(gr.rectangle { corner = { -.6, 0, .6 }, along = { 1.2, 0, 0 }, up = { 0, .35, -1.2 }, material = leaf }
+        :rotate('y', 52 * k):translate(-5.1 + 1.7 * k, .18 + .1 * (k % 3), 2.9 + .5 * (k % 2)))
+end
+
+gr.render {
+    node = scene, file = 'relief.png', width = 900, height = 500, eye = { 0, 3.3, 11 }, target = { 0, 1.15, 0 }, fov = 33,
+    ambient = { .22, .23, .26 }, lights = {
+        gr.area_light({ -8, 8, 5 }, { 2, 0, 0 }, { 0, 1, 1.5 }, { .85, .82, .76 }, { 1, 0, 0 }),
+        gr.light({ 9, 6, 8 }, { .20, .22, .28 }, { 1, 0, 0 }),
+    },
+}

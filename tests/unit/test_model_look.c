@@ -1,0 +1,204 @@
+/* What the maps of MTL and glTF materials do to a surface: looks of a hit, by the formulas of the formats. */
+#include "model_makers.h"
+
+#include "formats/model_node.h"
+#include "image/png_write.h"
+#include "look/image_place.h"
+
+#define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+
+static const char *in_folder(const char *name) {
+    static char path[4][400];
+    static int turn;
+    char *out = path[turn++ % 4];
+    (void)snprintf(out, sizeof path[0], "%s/%s", test_folder(), name);
+    return out;
+}
+
+static void even_row(void *context, uint32_t y, uint8_t *line) {
+    const uint8_t *colour = context;
+    (void)y;
+    for (int x = 0; x < 16; x++)
+        memcpy(line + (ptrdiff_t)3 * x, colour, 3);
+}
+
+/* Grows by 10 of 255 a texel to the right. */
+static void ramp_row(void *context, uint32_t y, uint8_t *line) {
+    (void)context, (void)y;
+    for (int x = 0; x < 16; x++)
+        memset(line + (ptrdiff_t)3 * x, 10 * x, 3);
+}
+
+static void write_even(const char *name, uint8_t r, uint8_t g, uint8_t b) {
+    uint8_t colour[3] = {r, g, b};
+    struct error error = {0};
+    CHECK(png_write(in_folder(name), 16, 16, even_row, colour, &error));
+}
+
+/* In the middle of a square of the size of its picture, seen from the front. */
+static struct hit middle(void) {
+    return (struct hit){.has_uv = true,
+                        .u = 0.5,
+                        .v = 0.5,
+                        .normal = {0, 0, 1},
+                        .normal_geometric = {0, 0, 1},
+                        .raise = {0, 0, 1},
+                        .dpdu = {1, 0, 0},
+                        .dpdv = {0, 1, 0}};
+}
+
+static bool look_of_file(const char *name, const char *material, struct surface_look *look) {
+    struct assets assets = {0};
+    struct scene scene;
+    struct error error = {0};
+    struct model_options options = {0};
+    struct model_placing placing = {.name = "p"};
+    bool fresh, found = false;
+    scene_init(&scene, &assets);
+    const struct model *model = model_asset(&assets, in_folder(name), name, &options, &fresh, &error);
+    struct node *node = model ? model_place(&scene, model, &placing, &error) : NULL;
+    CHECK_TEXT(error.text, "");
+    for (uint32_t i = 0; node && i < node->slot_count; i++) {
+        if (!node->slots[i] || strcmp(node->slot_names[i], material) != 0)
+            continue;
+        struct hit hit = middle();
+        material_look(node->slots[i], &hit, look);
+        found = true;
+    }
+    scene_destroy(&scene);
+    assets_destroy(&assets);
+    CHECK(found);
+    return found;
+}
+
+TEST(mtl_maps_of_highlight_emission_opacity_bumps_and_normals_are_shown) {
+    struct error error = {0};
+    write_even("colour 1.png", 51, 102, 255);
+    write_even("flat.png", 128, 128, 255);
+    write_even("tilt.png", 204, 128, 230);
+    CHECK(png_write(in_folder("ramp.png"), 16, 16, ramp_row, NULL, &error));
+    test_write_text(in_folder("m.mtl"), "newmtl ks\nKd 1 1 1\nKs .5 .5 .5\nmap_Ks colour 1.png\n"
+                                        "newmtl ks alone\nKd 1 1 1\nmap_Ks colour 1.png\n"
+                                        "newmtl dull\nKd 1 1 1\nKs 1 1 1\nillum 1\nmap_Ks colour 1.png\n"
+                                        "newmtl ke\nKd 0 0 0\nKe 2 2 2\nmap_Ke colour 1.png\n"
+                                        "newmtl ke alone\nKd 0 0 0\nmap_Ke colour 1.png\n"
+                                        "newmtl glow\nKe 0 3 0\n"
+                                        "newmtl holes\nKd 1 1 1\nmap_d colour 1.png\n"
+                                        "newmtl bump\nKd 1 1 1\nmap_Bump -bm 2 ramp.png\n"
+                                        "newmtl other bump\nKd 1 1 1\nbump ramp.png\n"
+                                        "newmtl flat\nKd 1 1 1\nnorm flat.png\n"
+                                        "newmtl tilt\nKd 1 1 1\nmap_Kd colour 1.png\nnorm tilt.png\n");
+    test_write_text(in_folder("m.obj"),
+                    SQUARE "mtllib m.mtl\nusemtl ks\nf 1 2 3\nusemtl ks alone\nf 1 2 3\nusemtl dull\nf 1 2 3\n"
+                           "usemtl ke\nf 1 2 3\nusemtl ke alone\nf 1 2 3\nusemtl glow\nf 1 2 3\nusemtl holes\nf 1 2 3\n"
+                           "usemtl bump\nf 1 2 3\nusemtl other bump\nf 1 2 3\nusemtl flat\nf 1 2 3\n"
+                           "usemtl tilt\nf 1 2 3\n");
+    struct surface_look look = {0};
+    if (look_of_file("m.obj", "ks", &look)) {
+        CHECK_NEAR(look.ks.x, 0.1, 1e-12);
+        CHECK_NEAR(look.ks.y, 0.2, 1e-12);
+        CHECK_NEAR(look.ks.z, 0.5, 1e-12);
+    }
+    if (look_of_file("m.obj", "ks alone", &look))
+        CHECK_NEAR(look.ks.y, 0.4, 1e-12);
+    if (look_of_file("m.obj", "dull", &look))
+        CHECK_NEAR(look.ks.z, 0, 0);
+    if (look_of_file("m.obj", "ke", &look)) {
+        CHECK_NEAR(look.emission.x, 0.4, 1e-12);
+        CHECK_NEAR(look.emission.z, 2, 1e-12);
+    }
+    if (look_of_file("m.obj", "ke alone", &look))
+        CHECK_NEAR(look.emission.x, 0.2, 1e-12);
+    if (look_of_file("m.obj", "glow", &look))
+        CHECK_NEAR(look.emission.y, 3, 0);
+    if (look_of_file("m.obj", "holes", &look))
+        CHECK_NEAR(look.opacity, (0.2 + 0.4 + 1) / 3, 1e-12);
+    double slope = 10.0 / 255 * 16 * RELIEF_HEIGHT;
+    if (look_of_file("m.obj", "bump", &look))
+        CHECK_NEAR(look.normal.x / look.normal.z, -2 * slope, 1e-12);
+    if (look_of_file("m.obj", "other bump", &look))
+        CHECK_NEAR(look.normal.x / look.normal.z, -slope, 1e-12);
+    if (look_of_file("m.obj", "flat", &look))
+        CHECK_NEAR(look.normal.z, 1, 0);
+    if (look_of_file("m.obj", "tilt", &look)) {
+        CHECK_NEAR(look.normal.x / look.normal.z, (2 * 76.0 / 255) / (2 * 230.0 / 255 - 1), 1e-12);
+        CHECK_NEAR(look.kd.y, 0.4, 1e-12);
+    }
+}
+
+#ifdef HAVE_JANSSON
+
+#define TRIANGLE_URI "data:application/gltf-buffer;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAECAA=="
+
+/* One triangle for each of four materials; pictures stand beside the file. */
+static void write_two_materials(const char *materials) {
+    char text[5000];
+    (void)snprintf(text, sizeof text,
+                   "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":40,\"uri\":\"" TRIANGLE_URI
+                   "\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,"
+                   "\"byteLength\":3}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,"
+                   "\"type\":\"VEC3\"},{\"bufferView\":1,\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"}],"
+                   "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":0},"
+                   "{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":1}]}],"
+                   "\"images\":[{\"uri\":\"colour%%201.png\"},{\"uri\":\"tilt.png\"}],"
+                   "\"textures\":[{\"source\":0},{\"source\":1}],\"materials\":[%s]}",
+                   materials);
+    test_write_text(in_folder("m.gltf"), text);
+}
+
+TEST(gltf_maps_of_metal_roughness_emission_and_normals_are_shown) {
+    write_even("colour 1.png", 51, 102, 255);
+    write_even("tilt.png", 204, 128, 230);
+    write_two_materials(
+        "{\"name\":\"a\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,0.5,0.25,1],\"metallicFactor\":0.75,"
+        "\"roughnessFactor\":0.5,\"metallicRoughnessTexture\":{\"index\":0}},\"emissiveFactor\":[1,0.5,0.5],"
+        "\"emissiveTexture\":{\"index\":0},\"normalTexture\":{\"index\":1,\"scale\":0.5}},"
+        "{\"name\":\"b\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,0.5,0.25,0.8],"
+        "\"baseColorTexture\":{\"index\":0}},\"emissiveTexture\":{\"index\":0},\"alphaMode\":\"MASK\"}");
+    struct surface_look look = {0};
+    if (look_of_file("m.gltf", "a", &look)) {
+        double metal = 0.75, rough = 0.5 * 0.4, r4 = rough * rough * rough * rough;
+        CHECK_NEAR(look.kd.y, 0.5 * (1 - metal), 1e-12);
+        CHECK_NEAR(look.ks.z, 0.04 * (1 - metal) + 0.25 * metal, 1e-12);
+        CHECK_NEAR(look.shininess, fmin(2 / fmax(r4, 1e-3) - 2, 2000), 1e-9);
+        CHECK_NEAR(look.reflect, metal * (1 - rough) * (1 - rough), 1e-12);
+        CHECK_NEAR(look.emission.x, 0.2, 1e-12);
+        CHECK_NEAR(look.emission.z, 0.5, 1e-12);
+        CHECK_NEAR(look.normal.x / look.normal.z, 0.5 * (2 * 76.0 / 255) / (2 * 230.0 / 255 - 1), 1e-12);
+        CHECK_NEAR(look.opacity, 1, 0);
+    }
+    if (look_of_file("m.gltf", "b", &look)) {
+        CHECK_NEAR(look.emission.x, 0, 0); /* the factor is black */
+        CHECK_NEAR(look.opacity, 1, 0);    /* alpha 0.8 is not cut at 0.5 */
+        CHECK_NEAR(look.kd.x, 0, 0);       /* metal */
+        CHECK_NEAR(look.ks.y, 0.5 * 0.4, 1e-12);
+    }
+}
+
+#endif
+
+TEST(opacity_by_alpha_is_cut_where_a_mask_says) {
+    static const double cutoffs[] = {0, 0.3, 0.6}, wanted[] = {0.4, 1, 0};
+    uint8_t texels[4 * 4];
+    struct error error = {0};
+    for (int i = 0; i < 4; i++)
+        memcpy(texels + (ptrdiff_t)4 * i, (uint8_t[]){10, 20, 30, 102}, 4);
+    struct image *image = image_create("t", 2, 2, 8, texels, &error);
+    for (int i = 0; i < 3; i++) {
+        struct material base = {.kind = MATERIAL_PHONG}, over = {.kind = MATERIAL_IMAGE, .base = &base};
+        over.image.image = image;
+        over.image.mapping = MAPPING_UV;
+        over.image.target = IMAGE_TO_OPACITY;
+        over.image.by_alpha = true;
+        over.image.cutoff = cutoffs[i];
+        struct surface_look look;
+        struct hit hit = middle();
+        material_look(&over, &hit, &look);
+        CHECK_NEAR(look.opacity, wanted[i], 1e-12);
+        over.image.target = IMAGE_TO_KD;
+        over.image.without_alpha = true;
+        material_look(&over, &hit, &look);
+        CHECK_NEAR(look.kd.y, 20 / 255.0, 1e-12);
+    }
+    image_release(image);
+}

@@ -1,0 +1,444 @@
+/* Bump maps and normal maps: normals by closed forms, on the same ways that pictures take. */
+#include "look/image_place.h"
+#include "look/relief.h"
+#include "tests/harness.h"
+#include "tests/stage.h"
+#include "tests/unit/mesh_makers.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* What stands in a texel, 0 .. 1 a channel. */
+typedef struct vec3 painter(double x, double y);
+
+static struct image *paint(painter *colour, uint32_t width, uint32_t height, int bits) {
+    struct error error = {0};
+    uint16_t *words = malloc((size_t)width * height * 4 * sizeof *words);
+    uint8_t *bytes = (uint8_t *)words;
+    for (uint32_t i = 0; i < width * height; i++) {
+        struct vec3 c = colour(((i % width) + 0.5) / width, ((i / width) + 0.5) / height);
+        double rgba[4] = {c.x, c.y, c.z, 1};
+        for (uint32_t k = 0; k < 4; k++) {
+            if (bits == 16)
+                words[4 * (size_t)i + k] = (uint16_t)(rgba[k] * 65535 + 0.5);
+            else
+                bytes[4 * (size_t)i + k] = (uint8_t)(rgba[k] * 255 + 0.5);
+        }
+    }
+    struct image *image = image_create("test", width, height, bits, words, &error);
+    CHECK(image != NULL);
+    free(words);
+    return image;
+}
+
+static struct vec3 half(double x, double y) {
+    (void)x, (void)y;
+    return vec3_all(0.5);
+}
+
+/* Whole numbers of 16 bits at the middles of 255 texels. */
+#define RAMP (65280.0 / 65535)
+
+static struct vec3 ramp_right(double x, double y) {
+    (void)y;
+    return vec3_all(RAMP * x);
+}
+
+static struct vec3 ramp_down(double x, double y) {
+    (void)x;
+    return vec3_all(RAMP * y);
+}
+
+static struct vec3 waves(double x, double y) {
+    const double turn = 6.283185307179586;
+    return vec3_all(0.5 + 0.2 * sin(turn * 2 * x) + 0.2 * cos(turn * y));
+}
+
+static struct vec3 stripes(double x, double y) {
+    (void)y;
+    return vec3_all(fmod(x * 128, 1) < 0.5 ? 0 : 1);
+}
+
+static struct vec3 flat_blue(double x, double y) {
+    (void)x, (void)y;
+    return vec3_make(128.0 / 255, 128.0 / 255, 1);
+}
+
+/* About (0.6, 0, 0.8), in bytes. */
+static struct vec3 tilted_right(double x, double y) {
+    (void)x, (void)y;
+    return vec3_make(204.0 / 255, 128.0 / 255, 230.0 / 255);
+}
+
+static struct vec3 tilted_up(double x, double y) {
+    (void)x, (void)y;
+    return vec3_make(128.0 / 255, 204.0 / 255, 230.0 / 255);
+}
+
+static struct material *relief_over(struct stage *s, enum material_kind kind, struct image *image, double height) {
+    struct material *base = stage_phong(s, vec3_all(1), vec3_all(0), 1);
+    struct material *m = scene_material(&s->scene, kind, base, &s->error);
+    m->image.image = image;
+    m->image.mapping = MAPPING_BY_SHAPE;
+    m->image.filter = IMAGE_MIPMAP;
+    m->image.wrap = IMAGE_REPEAT;
+    m->image.height = height;
+    return m;
+}
+
+/* The normal of the look and the hit that a ray meets. */
+static bool look_at(struct stage *s, struct ray ray, struct hit *hit, struct vec3 *normal) {
+    struct world_scratch scratch;
+    struct surface_look look;
+    if (!world_scratch_init(&scratch, &s->world))
+        return false;
+    *normal = vec3_all(0);
+    bool met = world_nearest(&s->world, &ray, &scratch, hit);
+    if (met) {
+        material_look(s->world.materials[hit->material], hit, &look);
+        *normal = look.normal;
+    }
+    world_scratch_destroy(&scratch);
+    return met;
+}
+
+static struct ray down_z(double x, double y) {
+    return (struct ray){.origin = {x, y, 50}, .direction = {0, 0, -1}, .t_max = INFINITY};
+}
+
+static void check_vector(struct vec3 a, struct vec3 b, double tolerance) {
+    CHECK_NEAR(vec3_length(vec3_sub(a, b)), 0, tolerance);
+}
+
+static void random_place(struct stage *s, struct test_random *random, struct node *node) {
+    stage_scale(s, node, test_uniform(random, 0.4, 2), test_uniform(random, -2, -0.4), test_uniform(random, 0.4, 2));
+    for (int axis = 0; axis < 3; axis++)
+        stage_rotate(s, node, axis, test_uniform(random, 0, 360));
+    stage_scale(s, node, test_uniform(random, 0.5, 2), test_uniform(random, 0.5, 2), test_uniform(random, 0.5, 2));
+}
+
+static struct node *add_shape(struct stage *s, struct shape shape, const struct material *material) {
+    struct node *node = stage_sphere(s, s->root, material);
+    node->shape = shape;
+    return node;
+}
+
+/* A square in z = 0 with vt from its lower left corner. */
+static struct mesh *square_mesh(bool smooth) {
+    static const double vertices[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    static const double uvs[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    static const double normals[4][3] = {{-1, 0, 2}, {1, 0, 2}, {1, 0, 2}, {-1, 0, 2}};
+    static const uint32_t starts[2] = {0, 4}, corners[4] = {0, 1, 2, 3};
+    struct mesh_input input = {.name = "square",
+                               .vertex_count = 4,
+                               .face_count = 1,
+                               .vertices = vertices,
+                               .face_start = starts,
+                               .vertex_index = corners,
+                               .uv_count = 4,
+                               .uvs = uvs,
+                               .uv_index = corners};
+    if (smooth) {
+        input.normal_count = 4;
+        input.normals = normals;
+        input.normal_index = corners;
+    }
+    struct error error = {0};
+    return mesh_create(&input, &error);
+}
+
+static uint32_t fill_shapes(struct shape out[8], struct mesh *mesh) {
+    uint32_t count = 0;
+    out[count++] = (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0.3, 0, 0}, 1.5}};
+    out[count++] = (struct shape){.kind = SHAPE_BOX, .box = {{-1, -1, -1}, {1, 2, 1}}};
+    out[count++] = (struct shape){.kind = SHAPE_ELLIPSOID, .ellipsoid = {{0, 0, 0}, {1, 1.5, 0.7}}};
+    out[count++] = (struct shape){.kind = SHAPE_TORUS, .torus = {1, 0.4}};
+    out[count++] = (struct shape){.kind = SHAPE_MESH, .mesh = mesh};
+    return count;
+}
+
+TEST(relief_of_constant_pictures_leaves_every_bit_of_the_normal) {
+    struct mesh *mesh = square_mesh(true);
+    struct image *level = paint(half, 37, 20, 8), *blue = paint(flat_blue, 16, 16, 8);
+    struct test_random random = {5};
+    struct shape shapes[8];
+    uint32_t count = fill_shapes(shapes, mesh), met = 0;
+    for (uint32_t i = 0; i < 2 * count; i++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        struct material *m =
+            i % 2 ? relief_over(&s, MATERIAL_BUMP, level, 3) : relief_over(&s, MATERIAL_NORMAL, blue, 1);
+        random_place(&s, &random, add_shape(&s, shapes[i / 2], m));
+        CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+        for (int k = 0; k < 400; k++) {
+            struct hit hit;
+            struct vec3 normal = {0, 0, 0};
+            struct ray ray = down_z(test_uniform(&random, -2, 2), test_uniform(&random, -2, 2));
+            ray.footprint.spread = k % 3 ? 0 : test_uniform(&random, 0, 0.02);
+            if (!look_at(&s, ray, &hit, &normal))
+                continue;
+            met++;
+            CHECK(memcmp(&normal, &hit.normal, sizeof normal) == 0);
+        }
+        stage_end(&s);
+    }
+    CHECK(met > 1000);
+    image_release(level);
+    image_release(blue);
+    mesh_release(mesh);
+}
+
+/* Heights that rise evenly to the right by h over a face are a plane: z = h x before the map. */
+TEST(bump_ramp_tilts_the_normal_by_the_closed_form_under_affine_maps) {
+    struct image *right = paint(ramp_right, 255, 4, 16), *down = paint(ramp_down, 4, 255, 16);
+    struct test_random random = {11};
+    int met = 0;
+    for (int i = 0; i < 60; i++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        double height = test_uniform(&random, -0.8, 0.8);
+        struct material *m = relief_over(&s, MATERIAL_BUMP, i % 2 ? down : right, height);
+        struct node *node = stage_cube(&s, s.root, m);
+        random_place(&s, &random, node);
+        CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+        struct transform map = node_parent_from_node(node);
+        for (int k = 0; k < 20; k++) {
+            /* Towards a place on the face z = 1, from outside of it. */
+            struct vec3 p = {test_uniform(&random, 0.05, 0.95), test_uniform(&random, 0.05, 0.95), 1};
+            struct vec3 from = affine_point(&map.forward, vec3_add(p, vec3_make(0.1, 0.2, 1)));
+            struct vec3 to = affine_point(&map.forward, p);
+            struct ray ray = {.origin = from, .direction = vec3_sub(to, from), .t_max = INFINITY};
+            struct hit hit;
+            struct vec3 normal = {0, 0, 0};
+            if (!look_at(&s, ray, &hit, &normal) || fabs(hit.pattern_point.z - 1) > 1e-9)
+                continue;
+            met++;
+            struct vec3 tilted = i % 2 ? vec3_make(0, RAMP * height, 1) : vec3_make(-RAMP * height, 0, 1);
+            check_vector(normal, vec3_normalize(transform_normal(&map, tilted)), 1e-9);
+        }
+        stage_end(&s);
+    }
+    CHECK(met > 1000);
+    image_release(right);
+    image_release(down);
+}
+
+/* The real surface: a ball with radius 1 + h F; its normal by differences. What Blinn leaves out is of order h F. */
+TEST(bumps_on_a_ball_are_the_normals_of_the_ball_with_those_heights) {
+    const double height = 1e-3, pi = 3.14159265358979323846, e = 1e-5;
+    struct image *image = paint(waves, 1024, 512, 16);
+    struct stage s;
+    stage_begin(&s, 1);
+    (void)stage_sphere(&s, s.root, relief_over(&s, MATERIAL_BUMP, image, height));
+    CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+    double most = 0;
+    for (int i = 0; i < 300; i++) {
+        double a = 0.4 + 2.3 * i / 300, b = -0.9 + 1.8 * ((i * 37) % 300) / 300;
+        struct vec3 direction = {sin(b) * sin(a), cos(a), cos(b) * sin(a)};
+        struct ray ray = {.origin = vec3_scale(direction, 9), .direction = vec3_negate(direction), .t_max = INFINITY};
+        struct vec3 around[4], normal, p[4];
+        struct hit hit;
+        CHECK(look_at(&s, ray, &hit, &normal));
+        const double steps[4][2] = {{e, 0}, {-e, 0}, {0, e}, {0, -e}};
+        for (int k = 0; k < 4; k++) {
+            double a1 = a + steps[k][0], b1 = b + steps[k][1];
+            around[k] = vec3_make(sin(b1) * sin(a1), cos(a1), cos(b1) * sin(a1));
+            double u = (atan2(-around[k].z, -around[k].x) + pi) / (2 * pi), v = a1 / pi;
+            p[k] = vec3_scale(around[k], 1 + height * waves(u, v).x);
+        }
+        struct vec3 real = vec3_normalize(vec3_cross(vec3_sub(p[0], p[1]), vec3_sub(p[2], p[3])));
+        real = vec3_dot(real, direction) < 0 ? vec3_negate(real) : real;
+        most = fmax(most, vec3_length(vec3_sub(real, direction)));
+        check_vector(normal, real, 2e-5);
+    }
+    CHECK(most > 1e-3);
+    stage_end(&s);
+    image_release(image);
+}
+
+TEST(bump_heights_stand_out_of_the_hollow_that_an_operand_leaves) {
+    struct image *image = paint(ramp_right, 255, 4, 16);
+    struct stage s;
+    stage_begin(&s, 1);
+    struct material *m = relief_over(&s, MATERIAL_BUMP, image, 0.5);
+    struct node *outer = stage_cube(&s, s.root, m), *inner = scene_node(&s.scene, NODE_GEOMETRY, "inner", &s.error);
+    s.root->first_child = s.root->last_child = NULL;
+    inner->shape = (struct shape){.kind = SHAPE_BOX, .box = {{0.1, 0.1, 0.5}, {0.9, 0.9, 2}}};
+    inner->material = m;
+    struct node *csg = scene_node(&s.scene, NODE_CSG, "csg", &s.error);
+    csg->operation = NODE_DIFFERENCE;
+    csg->operands[0] = outer;
+    csg->operands[1] = inner;
+    CHECK(node_add_child(&s.scene, s.root, csg, &s.error));
+    CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+    struct hit hit;
+    struct vec3 normal = {0, 0, 0};
+    /* The floor of the hollow is the inner box's side -z, whose pictures run to the left. */
+    CHECK(look_at(&s, down_z(0.5, 0.5), &hit, &normal));
+    CHECK_NEAR(hit.normal_geometric.z, 1, 0);
+    check_vector(normal, vec3_normalize(vec3_make(RAMP * 0.5 / 0.8, 0, 1)), 1e-9);
+    stage_end(&s);
+    image_release(image);
+}
+
+TEST(normal_maps_turn_to_where_their_colours_point) {
+    struct image *right = paint(tilted_right, 8, 8, 8), *up = paint(tilted_up, 8, 8, 8);
+    double slope = 2 * 76.0 / 255, rise = 2 * 230.0 / 255 - 1;
+    struct mesh *mesh = square_mesh(false);
+    struct shape shapes[2] = {{.kind = SHAPE_MESH, .mesh = mesh}, {.kind = SHAPE_BOX, .box = {{0, 0, -1}, {1, 1, 0}}}};
+    for (int i = 0; i < 8; i++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        struct material *m = relief_over(&s, MATERIAL_NORMAL, i & 1 ? up : right, 1);
+        m->image.flip_u = (i & 4) != 0;
+        (void)add_shape(&s, shapes[i >> 1 & 1], m);
+        CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+        struct hit hit;
+        struct vec3 normal, wanted = i & 1 ? vec3_make(0, slope, rise) : vec3_make(i & 4 ? -slope : slope, 0, rise);
+        CHECK(look_at(&s, down_z(0.3, 0.6), &hit, &normal));
+        check_vector(normal, vec3_normalize(wanted), 1e-9);
+        stage_end(&s);
+    }
+    image_release(right);
+    image_release(up);
+    mesh_release(mesh);
+}
+
+TEST(relief_turns_the_interpolated_normal_of_smooth_meshes) {
+    struct image *image = paint(ramp_right, 255, 4, 16);
+    struct mesh *mesh = square_mesh(true);
+    struct stage s;
+    stage_begin(&s, 1);
+    (void)add_shape(&s, (struct shape){.kind = SHAPE_MESH, .mesh = mesh}, relief_over(&s, MATERIAL_BUMP, image, 0.25));
+    CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+    struct hit hit;
+    struct vec3 normal = {0, 0, 0};
+    CHECK(look_at(&s, down_z(0.75, 0.5), &hit, &normal));
+    CHECK(hit.normal.x > 0.2);
+    struct vec3 wanted = vec3_normalize(vec3_add(hit.normal, vec3_make(-RAMP * 0.25, 0, 0)));
+    check_vector(normal, wanted, 1e-9);
+    stage_end(&s);
+    image_release(image);
+    mesh_release(mesh);
+}
+
+TEST(bumps_finer_than_a_pixel_average_to_flat) {
+    struct image *image = paint(stripes, 256, 4, 8);
+    struct stage s;
+    stage_begin(&s, 1);
+    (void)stage_cube(&s, s.root, relief_over(&s, MATERIAL_BUMP, image, 0.05));
+    CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+    double near_tilt = 0, far_tilt = 0;
+    for (int i = 0; i < 200; i++) {
+        struct hit hit;
+        struct vec3 normal = {0, 0, 0};
+        struct ray ray = down_z(0.2 + 0.003 * i, 0.5);
+        CHECK(look_at(&s, ray, &hit, &normal));
+        near_tilt = fmax(near_tilt, fabs(normal.x));
+        ray.footprint.width = 0.1;
+        CHECK(look_at(&s, ray, &hit, &normal));
+        far_tilt = fmax(far_tilt, fabs(normal.x));
+    }
+    CHECK(near_tilt > 0.9);
+    CHECK(far_tilt < 0.01);
+    stage_end(&s);
+    image_release(image);
+}
+
+/* A height that is not told goes with the picture: twice the object, twice the bumps, the same normals. */
+TEST(relative_heights_do_not_depend_on_the_size_of_the_object) {
+    struct image *image = paint(waves, 64, 64, 16);
+    struct vec3 first = {0, 0, 0};
+    for (int i = -3; i <= 3; i++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        struct material *m = relief_over(&s, MATERIAL_BUMP, image, RELIEF_HEIGHT);
+        m->image.relative = true;
+        double size = ldexp(1, i);
+        stage_scale(&s, stage_cube(&s, s.root, m), size, size, size);
+        CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+        struct hit hit;
+        struct vec3 normal = {0, 0, 0};
+        CHECK(look_at(&s, down_z(0.3 * size, 0.6 * size), &hit, &normal));
+        if (i == -3)
+            first = normal;
+        CHECK(fabs(normal.x) > 1e-3 && fabs(normal.y) > 1e-3);
+        check_vector(normal, first, 1e-12);
+        stage_end(&s);
+    }
+    image_release(image);
+}
+
+static struct vec3 left_half(double x, double y) {
+    (void)y;
+    return vec3_all(x < 0.5 ? 1 : 0);
+}
+
+TEST(pictures_of_opacity_cut_holes_that_show_what_is_behind) {
+    struct image *image = paint(left_half, 64, 64, 8);
+    struct stage s;
+    stage_begin(&s, 1);
+    struct material *red = stage_phong(&s, vec3_make(1, 0, 0), vec3_all(0), 1);
+    red->phong.unlit = true;
+    struct material *cut = scene_material(&s.scene, MATERIAL_IMAGE, red, &s.error);
+    cut->image.image = image;
+    cut->image.mapping = MAPPING_BY_SHAPE;
+    cut->image.target = IMAGE_TO_OPACITY;
+    struct mesh *mesh = square_mesh(false);
+    struct node *card = add_shape(&s, (struct shape){.kind = SHAPE_MESH, .mesh = mesh}, cut);
+    stage_scale(&s, card, 2, 2, 1);
+    stage_move(&s, card, -1, -1, 0);
+    s.sky.colour = vec3_make(0, 0, 1);
+    s.camera.fov = 6;
+    CHECK(stage_render(&s, 20, 20));
+    for (uint32_t x = 0; x < 20; x++) {
+        if (x == 9 || x == 10)
+            continue; /* the edge of the picture's halves */
+        CHECK_NEAR(stage_pixel(&s, x, 7).x, x < 10, 1e-6);
+        CHECK_NEAR(stage_pixel(&s, x, 7).z, x >= 10, 1e-6);
+    }
+    stage_end(&s);
+    image_release(image);
+    mesh_release(mesh);
+}
+
+TEST(light_falls_through_the_holes_of_pictures_of_opacity) {
+    struct image *image = paint(left_half, 64, 64, 8);
+    struct mesh *mesh = square_mesh(false);
+    for (int i = 0; i < 3; i++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        struct material *cut =
+            scene_material(&s.scene, MATERIAL_IMAGE, stage_phong(&s, vec3_all(1), vec3_all(0), 1), &s.error);
+        cut->image.image = image;
+        cut->image.mapping = MAPPING_BY_SHAPE;
+        cut->image.target = IMAGE_TO_OPACITY;
+        struct node *card = add_shape(&s, (struct shape){.kind = SHAPE_MESH, .mesh = mesh}, cut);
+        stage_scale(&s, card, 4, 4, 1);
+        stage_move(&s, card, -2, -2, 4);
+        stage_rotate(&s, card, 1, 60); /* out of the camera's way */
+        struct node *wall = stage_cube(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+        stage_scale(&s, wall, 20, 20, 1);
+        stage_move(&s, wall, -10, -10, -1);
+        s.settings.accel = (enum accel_kind[]){ACCEL_AUTO, ACCEL_GRID, ACCEL_NONE}[i];
+        s.lights[s.light_count++] = (struct light){.kind = LIGHT_DIRECTIONAL,
+                                                   .direction = vec3_normalize(vec3_make(-sqrt(3) / 2, 0, -0.5)),
+                                                   .colour = {1, 1, 1},
+                                                   .falloff = {1, 0, 0}};
+        s.camera.fov = 40;
+        CHECK(stage_render(&s, 60, 20));
+        /* On the wall's line y = 0 the card's shadow is 4 / cos 60 wide; its left half alone is there. */
+        int dark = 0, all = 0;
+        for (uint32_t x = 0; x < 60; x++) {
+            double at = ((double)x + 0.5 - 30) / 10 * 10 * tan(20 * 3.14159265358979 / 180);
+            all++;
+            dark += stage_pixel(&s, x, 10).x == 0;
+            if (fabs(at) < 3.8 && (fabs(at) > 0.5))
+                CHECK_NEAR(stage_pixel(&s, x, 10).x, at < 0 ? 0 : 0.5, 1e-6);
+        }
+        CHECK(dark * 10 > all * 2);
+        stage_end(&s);
+    }
+    image_release(image);
+    mesh_release(mesh);
+}
