@@ -1,7 +1,8 @@
 /* The same rays through gray's mesh kernel and through Embree, interleaved in one process on one thread: camera rays
  * 1024 x 1024, shadow rays from their hits to a point light, cosine-distributed bounces from there (fixed seed).
  * Every number is thread CPU time, the median of the repetitions; ratios are gray's speed over Embree's, each from two
- * runs side by side. Embree is optional: build with -DHAVE_EMBREE and -lembree3.
+ * runs side by side. Camera rays go through gray's packets of 64 and Embree's of 16 (coherent flag), too. Embree is
+ * optional: build with -DHAVE_EMBREE and -lembree3.
  *
  *   rays [--models FOLDER] [--seed N] [--reps N] [--size N] [--json] [--isa NAME] [SCENE ...]
  *
@@ -51,7 +52,7 @@ struct result {
     char name[64];
     uint32_t triangles;
     double build[2], memory[2]; /* gray, Embree: seconds and bytes */
-    double speed[2][KINDS], packet_speed, ratio[KINDS];
+    double speed[2][KINDS], packet_speed[2], ratio[KINDS], packet_ratio;
     uint64_t rays[KINDS], disagreements[KINDS];
 };
 
@@ -120,6 +121,29 @@ static void gray_trace(const struct mesh *mesh, const struct bench_ray *rays, st
             any ? mesh_any(mesh, &ray, ACCEL_GRID, scratch) : mesh_nearest(mesh, &ray, ACCEL_GRID, scratch, &crossing);
         hits[i] = (struct bench_hit){(float)crossing.t, found ? crossing.part : UINT32_MAX, (float)crossing.u,
                                      (float)crossing.v};
+    }
+}
+
+/* Packets of one tile; the answers must be those of single rays to the bit. */
+static void gray_trace64(const struct mesh *mesh, const struct bench_ray *rays, struct bench_hit *hits, uint64_t count,
+                         struct geom_scratch *scratch) {
+    struct ray_packet packet = {.t_min = 0};
+    struct packet_hits met;
+    for (uint64_t i = 0; i < count; i += PACKET_RAYS) {
+        const struct bench_ray *r = &rays[i];
+        packet.count = count - i < PACKET_RAYS ? (uint32_t)(count - i) : PACKET_RAYS;
+        packet.origin = vec3_make((double)r->origin[0], (double)r->origin[1], (double)r->origin[2]);
+        for (uint32_t k = 0; k < packet.count; k++) {
+            for (int axis = 0; axis < 3; axis++)
+                packet.direction[axis][k] = (double)r[k].direction[axis];
+            packet.t_max[k] = (double)r[k].t_max;
+        }
+        ray_packet_pad(&packet);
+        uint64_t found = mesh_nearest_packet(mesh, &packet, ray_packet_all(&packet), ACCEL_GRID, scratch, &met);
+        for (uint32_t k = 0; k < packet.count; k++)
+            hits[i + k] = found >> k & 1
+                              ? (struct bench_hit){(float)met.t[k], met.triangle[k], (float)met.u[k], (float)met.v[k]}
+                              : (struct bench_hit){.triangle = UINT32_MAX};
     }
 }
 
@@ -316,7 +340,7 @@ static void measure(const struct bench_scene *scene, const struct options *optio
 #endif
     uint64_t pixels = (uint64_t)options->size * options->size;
     struct bench_ray *rays[KINDS];
-    struct bench_hit *hits[2];
+    struct bench_hit *hits[2], *packet_hits = calloc(pixels, sizeof *packet_hits);
     for (int i = 0; i < KINDS; i++)
         rays[i] = malloc(pixels * sizeof *rays[i]);
     for (int i = 0; i < 2; i++)
@@ -327,7 +351,7 @@ static void measure(const struct bench_scene *scene, const struct options *optio
     result->rays[0] = pixels;
     result->rays[2] = result->rays[1];
     for (int kind = 0; kind < KINDS; kind++) {
-        double seconds[2][MOST_REPS], ratio[MOST_REPS], packet[MOST_REPS];
+        double seconds[2][MOST_REPS], ratio[MOST_REPS], packet[2][MOST_REPS], packet_ratio[MOST_REPS];
         uint64_t count = result->rays[kind];
         if (count == 0)
             continue;
@@ -335,6 +359,17 @@ static void measure(const struct bench_scene *scene, const struct options *optio
             double start = cpu_seconds();
             gray_trace(mesh, rays[kind], hits[0], count, kind == 1, &scratch);
             seconds[0][rep] = cpu_seconds() - start;
+            start = cpu_seconds();
+            if (kind == 0)
+                gray_trace64(mesh, rays[kind], packet_hits, count, &scratch);
+            packet[0][rep] = cpu_seconds() - start;
+            for (uint64_t i = 0; rep == 0 && kind == 0 && i < count; i++)
+                if (packet_hits[i].triangle != hits[0][i].triangle ||
+                    (packet_hits[i].triangle != UINT32_MAX && memcmp(&packet_hits[i], &hits[0][i], sizeof *hits[0]))) {
+                    fprintf(stderr, "rays: %s: ray %llu of a packet has another answer than alone\n", scene->name,
+                            (unsigned long long)i);
+                    exit(3);
+                }
 #if defined(HAVE_EMBREE)
             unsigned mode = _mm_getcsr();
             _mm_setcsr(mode | 0x8040); /* Embree wants denormals flushed */
@@ -348,23 +383,28 @@ static void measure(const struct bench_scene *scene, const struct options *optio
             start = cpu_seconds();
             if (kind == 0)
                 embree_trace16(&embree, rays[kind], hits[1], count);
-            packet[rep] = cpu_seconds() - start;
+            packet[1][rep] = cpu_seconds() - start;
             _mm_setcsr(mode);
 #else
-            seconds[1][rep] = packet[rep] = INFINITY;
+            seconds[1][rep] = packet[1][rep] = INFINITY;
 #endif
             ratio[rep] = seconds[1][rep] / seconds[0][rep];
+            packet_ratio[rep] = packet[1][rep] / packet[0][rep];
         }
         result->ratio[kind] = median(ratio, options->reps);
         for (int k = 0; k < 2; k++)
             result->speed[k][kind] = 1e-6 * (double)count / median(seconds[k], options->reps);
-        if (kind == 0)
-            result->packet_speed = 1e-6 * (double)count / median(packet, options->reps);
+        if (kind == 0) {
+            result->packet_ratio = median(packet_ratio, options->reps);
+            for (int k = 0; k < 2; k++)
+                result->packet_speed[k] = 1e-6 * (double)count / median(packet[k], options->reps);
+        }
     }
     for (int i = 0; i < KINDS; i++)
         free(rays[i]);
     free(hits[0]);
     free(hits[1]);
+    free(packet_hits);
     mesh_release(mesh);
     geom_scratch_destroy(&scratch);
 #if defined(HAVE_EMBREE)
@@ -378,7 +418,8 @@ static void print_row(const struct result *r) {
            r->build[0] / r->build[1], r->memory[0] / r->triangles, r->memory[0] / r->memory[1]);
     for (int k = 0; k < KINDS; k++)
         printf(" %6.2f", r->speed[0][k]);
-    printf(" | %5.2f %5.2f %5.2f | %5.2f |", r->ratio[0], r->ratio[1], r->ratio[2], r->speed[0][0] / r->packet_speed);
+    printf(" | %5.2f %5.2f %5.2f | %6.2f %6.2f %5.2f |", r->ratio[0], r->ratio[1], r->ratio[2], r->packet_speed[0],
+           r->packet_speed[1], r->packet_ratio);
     for (int k = 0; k < KINDS; k++)
         printf(" %llu", (unsigned long long)r->disagreements[k]);
     printf("\n");
@@ -395,7 +436,8 @@ static void print_json(const struct result *results, int count) {
             printf(", \"%s\": {\"rays\": %llu, \"mrays\": [%.3f, %.3f], \"ratio\": %.4f, \"disagreements\": %llu}",
                    kind_names[k], (unsigned long long)r->rays[k], r->speed[0][k], r->speed[1][k], r->ratio[k],
                    (unsigned long long)r->disagreements[k]);
-        printf(", \"packet16_mrays\": %.3f}%s\n", r->packet_speed, i + 1 < count ? "," : "");
+        printf(", \"packets\": {\"mrays\": [%.3f, %.3f], \"ratio\": %.4f}}%s\n", r->packet_speed[0], r->packet_speed[1],
+               r->packet_ratio, i + 1 < count ? "," : "");
     }
     printf("]\n");
 }
@@ -409,7 +451,7 @@ static void print_summary(const struct result *results, int count) {
         double value[KINDS + 3] = {r->ratio[0],
                                    r->ratio[1],
                                    r->ratio[2],
-                                   r->speed[0][0] / r->packet_speed,
+                                   r->packet_ratio,
                                    r->build[0] / r->build[1],
                                    r->memory[0] / r->memory[1]};
         for (int k = 0; k < KINDS + 3; k++) {
@@ -501,8 +543,8 @@ static void run_all(struct bench *bench) {
     static const char *const models[] = {"teapot", "cow", "spot", "fandisk", "cessna", "stanford-bunny", "nefertiti"};
     struct bench_scene scene = {0};
     if (!bench->options.json)
-        printf("%-18s %8s | %7s %5s | %6s %5s | %-20s | %-17s | %5s | %s\n", "scene", "tris", "build", "ratio", "B/tri",
-               "ratio", "camera shadow bounce", "ratio to Embree", "pk16", "disagreements");
+        printf("%-18s %8s | %7s %5s | %6s %5s | %-20s | %-17s | %-19s | %s\n", "scene", "tris", "build", "ratio",
+               "B/tri", "ratio", "camera shadow bounce", "ratio to Embree", "packets, 16, ratio", "disagreements");
     for (size_t i = 0; i < sizeof models / sizeof *models; i++)
         if (wanted(bench, models[i]) && load_model(bench, models[i], &scene)) {
             run_scene(bench, &scene);

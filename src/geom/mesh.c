@@ -116,8 +116,8 @@ size_t mesh_memory(const struct mesh *mesh) {
     return bytes + (mesh->index ? triangle_index_memory(mesh->index) : 0);
 }
 
-static void add_cost(struct geom_scratch *scratch, const struct triangle_cost *cost) {
-    scratch->shape_tests++;
+static void add_cost(struct geom_scratch *scratch, const struct triangle_cost *cost, uint64_t rays) {
+    scratch->shape_tests += rays;
     scratch->triangle_tests += cost->triangle_tests;
     scratch->voxels += cost->voxels;
     scratch->hierarchy_steps += cost->hierarchy_steps;
@@ -156,7 +156,7 @@ bool mesh_nearest(const struct mesh *mesh, const struct ray *ray, enum accel_kin
     bool found = way.index     ? triangle_index_nearest(way.index, &mesh->set, ray, &hit, &cost)
                  : way.kd_tree ? kd_triangles_nearest(way.kd_tree, &mesh->set, ray, &hit, &cost)
                                : triangle_brute_nearest(&mesh->set, ray, &hit, &cost);
-    add_cost(scratch, &cost);
+    add_cost(scratch, &cost, 1);
     if (found)
         *out = crossing_from(&hit);
     return found;
@@ -168,7 +168,47 @@ bool mesh_any(const struct mesh *mesh, const struct ray *ray, enum accel_kind ac
     bool found = way.index     ? triangle_index_any(way.index, &mesh->set, ray, &cost)
                  : way.kd_tree ? kd_triangles_any(way.kd_tree, &mesh->set, ray, &cost)
                                : triangle_brute_any(&mesh->set, ray, &cost);
-    add_cost(scratch, &cost);
+    add_cost(scratch, &cost, 1);
+    return found;
+}
+
+uint64_t mesh_nearest_packet(const struct mesh *mesh, const struct ray_packet *rays, uint64_t active,
+                             enum accel_kind accel, struct geom_scratch *scratch, struct packet_hits *out) {
+    const struct triangle_index *index = way_for(mesh, accel).index;
+    uint64_t found = 0;
+    if (index) {
+        struct triangle_cost cost = {0};
+        found = triangle_packet_nearest(index, &mesh->set, rays, active, out, &cost);
+        add_cost(scratch, &cost, (uint64_t)__builtin_popcountll(active));
+        return found;
+    }
+    for (; active; active &= active - 1) {
+        unsigned i = (unsigned)__builtin_ctzll(active);
+        struct ray ray = ray_packet_get(rays, i);
+        struct crossing c;
+        if (!mesh_nearest(mesh, &ray, accel, scratch, &c))
+            continue;
+        packet_hits_set(out, i, &(struct triangle_hit){c.t, c.u, c.v, c.part, c.enter});
+        found |= UINT64_C(1) << i;
+    }
+    return found;
+}
+
+uint64_t mesh_any_packet(const struct mesh *mesh, const struct ray_packet *rays, uint64_t active, enum accel_kind accel,
+                         struct geom_scratch *scratch) {
+    const struct triangle_index *index = way_for(mesh, accel).index;
+    uint64_t found = 0;
+    if (index) {
+        struct triangle_cost cost = {0};
+        found = triangle_packet_any(index, &mesh->set, rays, active, &cost);
+        add_cost(scratch, &cost, (uint64_t)__builtin_popcountll(active));
+        return found;
+    }
+    for (; active; active &= active - 1) {
+        unsigned i = (unsigned)__builtin_ctzll(active);
+        struct ray ray = ray_packet_get(rays, i);
+        found |= (uint64_t)mesh_any(mesh, &ray, accel, scratch) << i;
+    }
     return found;
 }
 
@@ -243,7 +283,7 @@ bool mesh_crossings(const struct mesh *mesh, const struct ray *ray, enum accel_k
         kd_triangles_all(way.kd_tree, &mesh->set, ray, push, scratch, &cost);
     else
         triangle_brute_all(&mesh->set, ray, push, scratch, &cost);
-    add_cost(scratch, &cost);
+    add_cost(scratch, &cost, 1);
     if (scratch->overflow) {
         scratch->used = out->first;
         return false;
