@@ -969,6 +969,34 @@ function gr.directional_light(direction, colour) end
 ---@overload fun(fields: gr.spot_light.fields): gr.light
 function gr.spot_light(position, direction, colour, inner, outer, falloff) end
 
+---@class gr.mesh_light.fields
+---@field colour? gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Its colour and strength.
+---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
+---@field exclude? gr.node[] exclude (a table of nodes; default none): The nodes that it does not light.
+---@field emission? gr.triple emission (a colour {r, g, b}; default its materials'): Radiance of its surface, times colour.
+---@field samples? integer samples (a whole number, 1 to 64; default area_samples): N x N shadow rays for this light.
+---@field mesh gr.node mesh (a node): A mesh, or a node with meshes below; it shines wherever the scene shows it, and unseen where its own transforms put it when the scene does not.
+
+---Light from the triangles of a mesh, as bright as they look.
+---@param mesh gr.node mesh (a node): A mesh, or a node with meshes below; it shines wherever the scene shows it, and unseen where its own transforms put it when the scene does not.
+---@param emission? gr.triple emission (a colour {r, g, b}; default its materials'): Radiance of its surface, times colour.
+---@return gr.light
+---@overload fun(fields: gr.mesh_light.fields): gr.light
+function gr.mesh_light(mesh, emission) end
+
+---@class gr.sky_light.fields
+---@field colour? gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Its colour and strength.
+---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
+---@field exclude? gr.node[] exclude (a table of nodes; default none): The nodes that it does not light.
+---@field sky gr.triple|gr.sky|'gradient' sky (a colour {r, g, b}, a sky or 'gradient'): A sky, one colour all around, or 'gradient'.
+---@field samples? integer samples (a whole number, 1 to 64; default area_samples): N x N shadow rays for this light.
+
+---Light from all of a sky; more shadow rays go where it is bright.
+---@param sky gr.triple|gr.sky|'gradient' sky (a colour {r, g, b}, a sky or 'gradient'): A sky, one colour all around, or 'gradient'.
+---@return gr.light
+---@overload fun(fields: gr.sky_light.fields): gr.light
+function gr.sky_light(sky) end
+
 ---@class gr.sun_light.fields
 ---@field colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
 ---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
@@ -1007,6 +1035,18 @@ function gr.sun_light(sun, colour) end
 ---@return gr.sky
 ---@overload fun(fields: gr.sky_faces.fields): gr.sky
 function gr.sky_faces(front, right, back, left, top, bottom) end
+
+---@class gr.sky_cross.fields
+---@field intensity? number intensity (a number, >= 0; default 1): Factor of its brightness.
+---@field rotation? number rotation (a number, in degrees; default 0): How far it is turned about y, counterclockwise seen from above.
+---@field image string|gr.texture image (the name of a picture file or a texture): A 4 x 3 cross of images all around.
+---@field mirror? boolean mirror (true or false; default false): Whether the cross is mirrored.
+
+---A sky from a 4 x 3 cross of images.
+---@param image string|gr.texture image (the name of a picture file or a texture): A 4 x 3 cross of images all around.
+---@return gr.sky
+---@overload fun(fields: gr.sky_cross.fields): gr.sky
+function gr.sky_cross(image) end
 
 ---@class gr.sky_map.fields
 ---@field intensity? number intensity (a number, >= 0; default 1): Factor of its brightness.

@@ -64,6 +64,18 @@ bool mesh_open_edge(const struct mesh *mesh, struct vec3 *a, struct vec3 *b) {
     return true;
 }
 
+bool mesh_is_outward(const struct mesh *mesh) {
+    return mesh->closed && mesh->outward;
+}
+
+void mesh_triangle(const struct mesh *mesh, uint32_t triangle, struct vec3 corners[3], uint32_t *slot) {
+    for (int i = 0; i < 3; i++) {
+        const double *v = mesh->vertices[mesh->corners[triangle][i]];
+        corners[i] = vec3_make(v[0], v[1], v[2]);
+    }
+    *slot = mesh->materials ? mesh->materials[triangle] : 0;
+}
+
 uint32_t mesh_triangle_count(const struct mesh *mesh) {
     return mesh->triangle_count;
 }

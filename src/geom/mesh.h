@@ -60,7 +60,10 @@ struct box mesh_bounds(const struct mesh *mesh);
 bool mesh_is_closed(const struct mesh *mesh); /* every edge is used by exactly two triangles in opposite directions */
 /* For a mesh that is not closed: one open edge by its two positions; false when closed. */
 bool mesh_open_edge(const struct mesh *mesh, struct vec3 *a, struct vec3 *b);
+bool mesh_is_outward(const struct mesh *mesh); /* closed, and its triangles' normals point outwards */
 uint32_t mesh_triangle_count(const struct mesh *mesh);
+/* The corners of a triangle and its material slot (0 where there are none). */
+void mesh_triangle(const struct mesh *mesh, uint32_t triangle, struct vec3 corners[3], uint32_t *slot);
 uint32_t mesh_dropped_faces(const struct mesh *mesh);
 bool mesh_has_uv(const struct mesh *mesh);
 bool mesh_has_normals(const struct mesh *mesh);

@@ -1,9 +1,11 @@
 /* Places on lights. A disc is the square mapped concentrically (Shirley and Chiu, "A Low Distortion Map Between Disk
  * and Square", JGT 1997). A lamp that is a sphere is sampled by solid angle within its cone (Shirley, Wang, Zimmerman,
  * "Monte Carlo Techniques for Direct Lighting Calculations", TOG 1996), so every sample counts the same and the
- * emitter's cosine is in it already; other kinds are sampled by area with weight cos / (pi d^2) each. */
+ * emitter's cosine is in it already; so is a rectangle (light_rectangle.c). Discs, other parallelograms and meshes are
+ * sampled by area with weight cos / (pi d^2) each, triangles of a mesh in proportion to the light they send. */
 #include "look/light.h"
 
+#include "look/sky_light.h"
 #include "math/elementary.h"
 #include "math/frame.h"
 
@@ -65,8 +67,21 @@ static bool sphere_frame(const struct light *light, struct vec3 from, struct lig
     return true;
 }
 
+/* A square behind all of the mesh, across the cone that its ball fills; none for a point in the ball. */
+static void mesh_frame(const struct light_mesh *mesh, struct vec3 from, struct light_frame *out) {
+    struct vec3 to_centre = vec3_sub(mesh->centre, from);
+    double distance = vec3_length(to_centre), sine = mesh->radius / distance;
+    out->bounded = sine < 0.999;
+    if (!out->bounded)
+        return;
+    out->axis = vec3_scale(to_centre, 1 / distance);
+    frame_tangents(out->axis, &out->right, &out->up);
+    double behind = (distance + mesh->radius) * 1.001;
+    square_around(out, vec3_add_scaled(from, out->axis, behind), behind * sine / sqrt((1 - sine) * (1 + sine)));
+}
+
 bool light_frame_make(const struct light *light, struct vec3 from, struct light_frame *out) {
-    *out = (struct light_frame){.weight = 1};
+    *out = (struct light_frame){.weight = 1, .bounded = true};
     switch (light->kind) {
     case LIGHT_PARALLELOGRAM: {
         struct vec3 normal = vec3_cross(light->edge1, light->edge2);
@@ -75,6 +90,8 @@ bool light_frame_make(const struct light *light, struct vec3 from, struct light_
         out->edge2 = light->edge2;
         out->weight = vec3_length(normal) / pi;
         out->axis = vec3_normalize(normal);
+        out->by_angle =
+            light->emits && spherical_rectangle_make(light->corner, light->edge1, light->edge2, from, &out->seen);
         return !behind(light, normal, from);
     }
     case LIGHT_DISC:
@@ -85,6 +102,12 @@ bool light_frame_make(const struct light *light, struct vec3 from, struct light_
         return !behind(light, light->direction, from);
     case LIGHT_SPHERE:
         return sphere_frame(light, from, out);
+    case LIGHT_MESH:
+        mesh_frame(light->mesh, from, out);
+        return light->mesh->count > 0;
+    case LIGHT_SKY:
+        out->bounded = false;
+        return true;
     case LIGHT_POINT:
     case LIGHT_DIRECTIONAL:
     case LIGHT_SPOT:
@@ -95,6 +118,8 @@ bool light_frame_make(const struct light *light, struct vec3 from, struct light_
 
 struct vec3 light_target(const struct light *light, const struct light_frame *frame, struct vec3 from,
                          struct sample2 place) {
+    if (frame->by_angle)
+        return spherical_rectangle_point(&frame->seen, place);
     if (light->kind == LIGHT_PARALLELOGRAM)
         return vec3_add_scaled(vec3_add_scaled(light->corner, light->edge1, place.x), light->edge2, place.y);
     struct sample2 round = sample_disc(place);
@@ -115,17 +140,54 @@ struct vec3 light_target(const struct light *light, const struct light_frame *fr
     return vec3_add_scaled(from, direction, along - (half > 0 ? sqrt(half) : 0));
 }
 
-double light_target_weight(const struct light *light, const struct light_frame *frame, struct vec3 from,
-                           struct vec3 target) {
-    if (light->kind == LIGHT_SPHERE)
-        return frame->weight;
-    struct vec3 away = vec3_sub(from, target);
-    double squared = vec3_length_squared(away), cosine = fabs(vec3_dot(frame->axis, away));
-    return squared > 0 ? frame->weight * cosine / (squared * sqrt(squared)) : 0;
+/* Uniform on the triangle that the place's x falls on, whose share is spread over the unit interval again. */
+static struct light_sample mesh_sample(const struct light_mesh *mesh, struct vec3 from, struct sample2 place) {
+    uint32_t low = 0, high = mesh->count - 1;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        if (mesh->until[middle] > place.x)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    double begin = low > 0 ? mesh->until[low - 1] : 0, share = mesh->until[low] - begin;
+    double x = share > 0 ? (place.x - begin) / share : 0.5, root = sqrt(x < 1 ? x : 1);
+    const struct light_triangle *t = &mesh->triangles[low];
+    struct vec3 point = vec3_add_scaled(t->corner, t->edge1, root * (1 - place.y));
+    point = vec3_add_scaled(point, t->edge2, root * place.y);
+    struct vec3 away = vec3_sub(from, point);
+    double squared = vec3_length_squared(away), across = vec3_dot(t->normal, away);
+    double weight = squared > 0 && (across > 0 || !mesh->one_sided) ? fabs(across) / (squared * sqrt(squared)) : 0;
+    return (struct light_sample){vec3_add_scaled(point, t->normal, across > 0 ? t->offset : -t->offset),
+                                 vec3_scale(t->light, weight)};
+}
+
+struct light_sample light_sample_lamp(const struct light *light, const struct light_frame *frame, struct vec3 from,
+                                      struct sample2 place) {
+    if (light->kind == LIGHT_MESH)
+        return mesh_sample(light->mesh, from, place);
+    struct light_sample sample;
+    if (light->kind == LIGHT_SKY) {
+        sample.light = vec3_mul(sky_table_sample(light->sky, light->table, place, &sample.target), light->colour);
+        return sample;
+    }
+    sample.target = light_target(light, frame, from, place);
+    double weight = frame->weight;
+    if (frame->by_angle) {
+        weight = frame->seen.angle / pi;
+    } else if (light->kind != LIGHT_SPHERE) {
+        struct vec3 away = vec3_sub(from, sample.target);
+        double squared = vec3_length_squared(away), cosine = fabs(vec3_dot(frame->axis, away));
+        weight = squared > 0 ? weight * cosine / (squared * sqrt(squared)) : 0;
+    }
+    sample.light = vec3_scale(light->colour, weight);
+    return sample;
 }
 
 bool light_meets_ray(const struct light *light, const struct ray *ray, double *t) {
     struct vec3 d = ray->direction;
+    if (light->kind == LIGHT_MESH || light->kind == LIGHT_SKY)
+        return false; /* a mesh is seen where the scene shows it, a sky is the background */
     if (light->kind == LIGHT_SPHERE) {
         struct vec3 o = vec3_sub(ray->origin, light->position);
         double a = vec3_dot(d, d), b = vec3_dot(o, d);

@@ -14,11 +14,36 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum light_kind { LIGHT_POINT, LIGHT_PARALLELOGRAM, LIGHT_DIRECTIONAL, LIGHT_SPOT, LIGHT_DISC, LIGHT_SPHERE };
+enum light_kind {
+    LIGHT_POINT,
+    LIGHT_PARALLELOGRAM,
+    LIGHT_DIRECTIONAL,
+    LIGHT_SPOT,
+    LIGHT_DISC,
+    LIGHT_SPHERE,
+    LIGHT_MESH, /* this and the next are lamps always: `emits` is set */
+    LIGHT_SKY
+};
 /* COEFFICIENTS: 1 / (c0 + c1 d + c2 d^2); RANGE: 1 - d / range, 0 beyond; INVERSE_SQUARE: intensity / d^2. */
 enum light_fading { FADING_COEFFICIENTS, FADING_RANGE, FADING_INVERSE_SQUARE };
 
 struct node;
+struct sky;
+
+/* The triangles of a lamp that is a mesh, in world space; made by world_build. */
+struct light_triangle {
+    struct vec3 corner, edge1, edge2, normal; /* normal: unit */
+    struct vec3 light;                        /* radiance over the density of samples on the surface, over pi */
+    double offset;                            /* shadow rays end this far from it */
+};
+struct light_mesh {
+    const struct light_triangle *triangles;
+    const double *until; /* until[i]: share of the unit interval up to and with triangle i */
+    uint32_t count;
+    bool one_sided; /* normals point outwards, and light comes from that side only */
+    struct vec3 centre;
+    double radius; /* of a ball round all of it */
+};
 
 struct light {
     enum light_kind kind;
@@ -33,6 +58,12 @@ struct light {
     double radius;                  /* disc, sphere */
     bool emits, one_sided, visible; /* one_sided: a lamp shines to the side of edge1 x edge2 or of the disc's normal */
     int samples;                    /* N x N shadow rays; 0: as the settings say */
+    const struct node *node;        /* of a mesh: all meshes there and below; its colour multiplies their emission */
+    bool has_emission;              /* of a mesh: `emission` takes the place of the materials' */
+    struct vec3 emission;
+    const struct light_mesh *mesh;
+    const struct sky *sky; /* its colour multiplies it */
+    const struct sky_table *table;
     /* The nodes (with everything under them) that it lights, or does not; NULL: no such list. Arrays of the script. */
     const struct node *const *include, *const *exclude;
     uint32_t include_count, exclude_count;
@@ -49,23 +80,42 @@ static inline bool light_has_extent(const struct light *light) {
     return light->kind == LIGHT_PARALLELOGRAM || light->kind == LIGHT_DISC || light->kind == LIGHT_SPHERE;
 }
 
-/* A parallelogram that holds every target light_target gives for this point. */
+/* A rectangle as a point sees it (light_rectangle.c). */
+struct spherical_rectangle {
+    struct vec3 from, x, y, z;
+    double x0, x1, y0, y1, z0, b0, b1, k, angle; /* angle: the solid angle */
+};
+
+/* What samples of a light need to know about the point that they are for. */
 struct light_frame {
+    bool bounded; /* a parallelogram holds every target: */
     struct vec3 corner, edge1, edge2;
     double weight;               /* of one target for a lamp, its cosines and distance aside */
     struct vec3 axis, right, up; /* sphere: unit vectors, axis from the point to the centre */
     double cos_cone;             /* sphere: half angle under which it is seen */
     double distance;             /* sphere: of its centre */
+    bool by_angle;               /* of a lamp that is a rectangle */
+    struct spherical_rectangle seen;
 };
 /* False: nothing of the light can reach the point (inside of a sphere, a lamp's back). */
 bool light_frame_make(const struct light *light, struct vec3 from, struct light_frame *out);
 /* A point of the light for a place in the unit square; equal areas of the square are equal areas of a parallelogram or
- * disc, equal solid angles of a lamp that is a sphere. */
+ * disc, equal solid angles of a lamp that is a sphere or a rectangle. */
 struct vec3 light_target(const struct light *light, const struct light_frame *frame, struct vec3 from,
                          struct sample2 place);
-/* View factor weight of one target: the mean over all places of weight * (n.l) is the view factor. */
-double light_target_weight(const struct light *light, const struct light_frame *frame, struct vec3 from,
-                           struct vec3 target);
+
+struct light_sample {
+    struct vec3 target; /* where the shadow ray ends; of a sky its direction */
+    struct vec3 light;  /* the mean over all places of light * (n.l) is radiance times view factor */
+};
+/* One sample of a lamp (`emits`). */
+struct light_sample light_sample_lamp(const struct light *light, const struct light_frame *frame, struct vec3 from,
+                                      struct sample2 place);
+
+/* light_rectangle.c. False: its edges are not at right angles, or it is seen too small for it to matter. */
+bool spherical_rectangle_make(struct vec3 corner, struct vec3 edge1, struct vec3 edge2, struct vec3 from,
+                              struct spherical_rectangle *out);
+struct vec3 spherical_rectangle_point(const struct spherical_rectangle *seen, struct sample2 place);
 
 /* Where a ray meets a light that shows itself; t in the ray's interval. */
 bool light_meets_ray(const struct light *light, const struct ray *ray, double *t);

@@ -186,6 +186,13 @@ struct vec3 material_absorption(const struct material *material) {
     return link->kind == MATERIAL_PHONG ? link->phong.absorption : vec3_all(0);
 }
 
+struct vec3 material_emission(const struct material *material) {
+    const struct material *link = material;
+    while (link->base)
+        link = link->base;
+    return link->kind == MATERIAL_PHONG ? link->phong.emission : vec3_all(0);
+}
+
 bool material_has_ior(const struct material *material) {
     const struct material *link = material;
     while (link->base)

@@ -118,6 +118,8 @@ void material_shading(const struct surface_look *look, enum specular_kind specul
 bool material_is_transparent(const struct material *material, double *ior);
 /* Of the base: how the inside absorbs light, per unit of length. */
 struct vec3 material_absorption(const struct material *material);
+/* Of the base: its own light. */
+struct vec3 material_emission(const struct material *material);
 bool material_has_ior(const struct material *material);
 
 #endif

@@ -40,11 +40,10 @@ static struct fan fan_make(const struct tracer *tracer, const struct light *ligh
     return fan;
 }
 
-static struct vec3 fan_target(const struct fan *fan, uint32_t cell) {
+static struct sample2 fan_place(const struct fan *fan, uint32_t cell) {
     uint32_t i = cell % fan->side, j = cell / fan->side;
-    struct sample2 place = fan->turns > 1 ? sample_cell_part(fan->key, i, j, fan->side, fan->turn, fan->turns)
-                                          : sample_cell(fan->key, i, j, fan->side);
-    return light_target(fan->light, &fan->frame, fan->from, place);
+    return fan->turns > 1 ? sample_cell_part(fan->key, i, j, fan->side, fan->turn, fan->turns)
+                          : sample_cell(fan->key, i, j, fan->side);
 }
 
 /* The share of a light that reaches the hit: 0 or 1 for a point, of jittered shadow rays for an extent. */
@@ -65,7 +64,7 @@ static double visible_share(struct tracer *tracer, const struct light *light, ui
     uint32_t all = fan.side * fan.side, seen = 0, have = 0;
     struct vec3 targets[AREA_BATCH];
     for (uint32_t cell = 0; cell < all; cell++) {
-        targets[have++] = fan_target(&fan, cell);
+        targets[have++] = light_target(light, &fan.frame, fan.from, fan_place(&fan, cell));
         if (have < AREA_BATCH && cell + 1 < all)
             continue;
         seen += world_count_visible(world, fan.from, hit->time, fan.frame.corner, fan.frame.edge1, fan.frame.edge2,
@@ -76,6 +75,21 @@ static double visible_share(struct tracer *tracer, const struct light *light, ui
     }
     tracer->shadow_rays += all;
     return (double)seen / (double)all;
+}
+
+/* Which of the targets of a fan arrive. Skies and lamps all around have no shaft: each ray looks for itself. */
+static void ask_targets(struct tracer *tracer, const struct fan *fan, double time, const struct vec3 *targets,
+                        uint32_t count, bool *visible) {
+    if (fan->frame.bounded) {
+        (void)world_visible(tracer->job->world, fan->from, time, fan->frame.corner, fan->frame.edge1, fan->frame.edge2,
+                            targets, count, tracer->scratch, visible);
+        tracer->shadow_rays += count;
+        return;
+    }
+    bool sky = fan->light->kind == LIGHT_SKY;
+    for (uint32_t i = 0; i < count; i++)
+        visible[i] =
+            is_free(tracer, fan->from, sky ? targets[i] : vec3_sub(targets[i], fan->from), sky ? INFINITY : 1, time);
 }
 
 /* A lamp: every shadow ray shades by itself, with the cosine at the lamp. Rays that cannot bring light are not asked.
@@ -92,24 +106,25 @@ static struct vec3 lamp_light(struct tracer *tracer, const struct light *light, 
     struct vec3 targets[AREA_BATCH], carried[AREA_BATCH];
     bool visible[AREA_BATCH];
     for (uint32_t cell = 0; cell < all; cell++) {
-        struct vec3 target = fan_target(&fan, cell);
-        struct vec3 to_light = vec3_normalize(vec3_sub(target, hit->point));
-        struct vec3 reflected = shading_evaluate(shading, normal, hit->view, to_light);
-        double weight = light_target_weight(light, &fan.frame, hit->point, target);
-        if (weight > 0 && (reflected.x != 0 || reflected.y != 0 || reflected.z != 0)) {
-            targets[have] = target;
-            carried[have++] = vec3_scale(reflected, weight);
+        struct light_sample sample = light_sample_lamp(light, &fan.frame, fan.from, fan_place(&fan, cell));
+        struct vec3 to_light = sample.target;
+        if (light->kind != LIGHT_SKY)
+            to_light = vec3_normalize(vec3_sub(sample.target, hit->point));
+        struct vec3 arriving = vec3_mul(shading_evaluate(shading, normal, hit->view, to_light), sample.light);
+        if (arriving.x != 0 || arriving.y != 0 || arriving.z != 0) {
+            targets[have] = sample.target;
+            carried[have++] = arriving;
         }
         if (have == 0 || (have < AREA_BATCH && cell + 1 < all))
             continue;
-        (void)world_visible(tracer->job->world, fan.from, hit->time, fan.frame.corner, fan.frame.edge1, fan.frame.edge2,
-                            targets, have, tracer->scratch, visible);
-        tracer->shadow_rays += have;
+        ask_targets(tracer, &fan, hit->time, targets, have, visible);
         for (uint32_t i = 0; i < have; i++)
             sum = visible[i] ? vec3_add(sum, carried[i]) : sum;
         have = 0;
+        if (tracer->pool && pool_cancelled(tracer->pool))
+            return vec3_all(0);
     }
-    return vec3_scale(vec3_mul(light->colour, sum), 1 / (double)all);
+    return vec3_scale(sum, 1 / (double)all);
 }
 
 /* One light shaded as from one place. */
@@ -132,6 +147,19 @@ static struct vec3 light_from_place(struct tracer *tracer, const struct light *l
     return share == 0 ? vec3_all(0) : vec3_mul(vec3_scale(light->colour, share * strength), reflected);
 }
 
+/* What a surface shows of a sky: mirrored it sees the background itself, so a highlight would count that twice. */
+static struct shading without_highlight(const struct shading *shading) {
+    struct shading out = *shading;
+    bool mirrors = false;
+    out.count = 0;
+    for (int i = 0; i < shading->count; i++) {
+        mirrors = mirrors || shading->lobes[i].kind == LOBE_MIRROR || shading->lobes[i].kind == LOBE_REFRACT;
+        if (shading->lobes[i].kind == LOBE_DIFFUSE)
+            out.lobes[out.count++] = shading->lobes[i];
+    }
+    return mirrors ? out : *shading;
+}
+
 struct vec3 direct_light(struct tracer *tracer, const struct hit *hit, const struct shading *shading,
                          struct vec3 normal, bool dark_side, uint64_t key) {
     const struct world *world = tracer->job->world;
@@ -141,6 +169,11 @@ struct vec3 direct_light(struct tracer *tracer, const struct hit *hit, const str
         if (light->lit && !light->lit[hit->placed])
             continue;
         uint64_t light_key = random_combine(key, i);
+        if (light->kind == LIGHT_SKY) {
+            struct shading matt = without_highlight(shading);
+            sum = vec3_add(sum, lamp_light(tracer, light, i, hit, &matt, normal, light_key));
+            continue;
+        }
         sum = vec3_add(sum, light->emits ? lamp_light(tracer, light, i, hit, shading, normal, light_key)
                                          : light_from_place(tracer, light, i, hit, shading, normal, light_key));
     }

@@ -131,6 +131,40 @@ bool act_disc_light(struct context *context, const struct value *args, struct re
            give_lamp(context, &light, args, result, error);
 }
 
+bool act_mesh_light(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct light light = {.kind = LIGHT_MESH,
+                          .emits = true,
+                          .node = args[MESHLIGHT_MESH].node,
+                          .samples = (int)args[MESHLIGHT_SAMPLES].number,
+                          .has_emission = args[MESHLIGHT_EMISSION].given,
+                          .emission = args[MESHLIGHT_EMISSION].vector};
+    struct value lamp[MESHLIGHT_COUNT];
+    for (int i = 0; i < MESHLIGHT_COUNT; i++)
+        lamp[i] = args[i];
+    if (!args[LIGHT_COLOUR].given)
+        lamp[LIGHT_COLOUR].vector = vec3_all(1);
+    return give_light(context, &light, lamp, result, error);
+}
+
+bool act_sky_light(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct light light = {.kind = LIGHT_SKY, .emits = true, .samples = (int)args[SKYLIGHT_SAMPLES].number};
+    struct sky *sky = arena_alloc(&context->scene.arena, sizeof *sky);
+    struct value lamp[SKYLIGHT_COUNT];
+    if (!sky)
+        return error_no_memory(error, "a sky");
+    *sky = (struct sky){.kind = SKY_GRADIENT};
+    if (args[SKYLIGHT_SKY].sky)
+        *sky = *args[SKYLIGHT_SKY].sky;
+    else if (!args[SKYLIGHT_SKY].text)
+        *sky = (struct sky){.kind = SKY_CONSTANT, .colour = args[SKYLIGHT_SKY].vector};
+    light.sky = sky;
+    for (int i = 0; i < SKYLIGHT_COUNT; i++)
+        lamp[i] = args[i];
+    if (!args[LIGHT_COLOUR].given)
+        lamp[LIGHT_COLOUR].vector = vec3_all(1);
+    return give_light(context, &light, lamp, result, error);
+}
+
 static bool choose_sky(struct context *context, const struct value *args, struct sky *sky, struct error *error) {
     const struct value *background = &args[RENDER_BACKGROUND];
     *sky = (struct sky){.kind = SKY_GRADIENT};

@@ -28,6 +28,13 @@ bool act_sky_faces(struct context *context, const struct value *args, struct res
     return sky_from_faces(images, &sky, error) && give_sky(context, &sky, args, result, error);
 }
 
+bool act_sky_cross(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct image *image = act_find_image(context, &args[CROSS_IMAGE], error);
+    struct sky sky;
+    return image && sky_from_cross(image, args[CROSS_MIRROR].boolean, &sky, error) &&
+           give_sky(context, &sky, args, result, error);
+}
+
 bool act_sky_map(struct context *context, const struct value *args, struct result *result, struct error *error) {
     struct sky sky = {.kind = SKY_MAP, .image = act_find_image(context, &args[MAP_IMAGE], error)};
     return sky.image && give_sky(context, &sky, args, result, error);

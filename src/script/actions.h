@@ -140,10 +140,11 @@ struct material *act_relief(struct context *context, const struct value *value, 
 enum { SUN_DIRECTION, SUN_HOUR, SUN_DAY, SUN_LATITUDE, SUN_LONGITUDE, SUN_ZONE, SUN_FIELDS };
 enum { SKY_INTENSITY, SKY_ROTATION, SKY_OWN };
 enum { FACES_FRONT = SKY_OWN, FACES_RIGHT, FACES_BACK, FACES_LEFT, FACES_TOP, FACES_BOTTOM };
+enum { CROSS_IMAGE = SKY_OWN, CROSS_MIRROR };
 enum { MAP_IMAGE = SKY_OWN };
 enum { GRADIENT_STOPS = SKY_OWN };
 enum { CLEAR_SUN = SKY_OWN, CLEAR_TURBIDITY = CLEAR_SUN + SUN_FIELDS, CLEAR_GROUND };
-action act_sky_faces, act_sky_map, act_sky_gradient, act_clear_sky, act_sun_light;
+action act_sky_faces, act_sky_cross, act_sky_map, act_sky_gradient, act_clear_sky, act_sun_light;
 
 /* act_fog.c */
 enum { FOG_COLOUR, FOG_CLEAR_SKY, FOG_OWN };
@@ -227,6 +228,9 @@ enum {
     RENDER_UP_TO,
     RENDER_COUNT
 };
+enum { MESHLIGHT_EMISSION = LIGHT_EXCLUDE + 1, MESHLIGHT_SAMPLES, MESHLIGHT_MESH, MESHLIGHT_COUNT };
+enum { SKYLIGHT_SKY = LIGHT_EXCLUDE + 1, SKYLIGHT_SAMPLES, SKYLIGHT_COUNT };
+action act_mesh_light, act_sky_light;
 action act_light, act_directional_light, act_spot_light, act_area_light, act_spherical_light, act_disc_light,
     act_render;
 

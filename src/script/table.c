@@ -577,6 +577,25 @@ static const struct parameter light_parameters[] = {
     [POINT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Where it stands."},
 };
 
+#define SAMPLES_FIELD                                                                                                  \
+    { "samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "area_samples", "N x N shadow rays for this light." }
+
+static const struct parameter mesh_light_parameters[] = {
+    LIGHT_FIELDS(OPTIONAL),
+    [MESHLIGHT_EMISSION] = {"emission", KIND_COLOUR, OPTIONAL, ANY, NULL, "its materials'",
+                            "Radiance of its surface, times colour."},
+    [MESHLIGHT_SAMPLES] = SAMPLES_FIELD,
+    [MESHLIGHT_MESH] = {"mesh", KIND_NODE, 0, ANY, NULL, NULL,
+                        "A mesh, or a node with meshes below; it shines wherever the scene shows it, and unseen where "
+                        "its own transforms put it when the scene does not."},
+};
+
+static const struct parameter sky_light_parameters[] = {
+    LIGHT_FIELDS(OPTIONAL),
+    [SKYLIGHT_SKY] = {"sky", KIND_BACKGROUND, 0, ANY, NULL, NULL, "A sky, one colour all around, or 'gradient'."},
+    [SKYLIGHT_SAMPLES] = SAMPLES_FIELD,
+};
+
 static const struct parameter directional_parameters[] = {
     LIGHT_FIELDS(0),
     [DISTANT_DIRECTION] = {"direction", KIND_DIRECTION, 0, ANY, NULL, NULL, "The direction its light goes in."},
@@ -660,6 +679,12 @@ static const struct parameter sky_faces_parameters[] = {
     [FACES_LEFT] = SKY_FACE("left"),
     [FACES_TOP] = SKY_FACE("top"),
     [FACES_BOTTOM] = SKY_FACE("bottom"),
+};
+
+static const struct parameter sky_cross_parameters[] = {
+    SKY_FIELDS,
+    [CROSS_IMAGE] = {"image", KIND_IMAGE, 0, ANY, NULL, NULL, "A 4 x 3 cross of images all around."},
+    [CROSS_MIRROR] = {"mirror", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the cross is mirrored."},
 };
 
 static const struct parameter sky_map_parameters[] = {
@@ -929,10 +954,15 @@ const struct function function_table[] = {
     GR("spot_light", spot_parameters, RESULT_LIGHT, act_spot_light, "A light at a point that shines into a cone.",
        "position direction colour inner outer falloff?"),
 
+    GR("mesh_light", mesh_light_parameters, RESULT_LIGHT, act_mesh_light,
+       "Light from the triangles of a mesh, as bright as they look.", "mesh emission?"),
+    GR("sky_light", sky_light_parameters, RESULT_LIGHT, act_sky_light,
+       "Light from all of a sky; more shadow rays go where it is bright.", "sky"),
     GR("sun_light", sun_light_parameters, RESULT_LIGHT, act_sun_light, "Directional light from where the sun stands.",
        "sun colour"),
     GR("sky_faces", sky_faces_parameters, RESULT_SKY, act_sky_faces,
        "A sky of six pictures on a cube: front is +z, right -x, back -z, left +x.", "front right back left top bottom"),
+    GR("sky_cross", sky_cross_parameters, RESULT_SKY, act_sky_cross, "A sky from a 4 x 3 cross of images.", "image"),
     GR("sky_map", sky_map_parameters, RESULT_SKY, act_sky_map, "A sky from one picture of the whole sphere.", "image"),
     GR("sky_gradient", sky_gradient_parameters, RESULT_SKY, act_sky_gradient, "A sky of colours by height.", "stops"),
     GR("clear_sky", clear_sky_parameters, RESULT_SKY, act_clear_sky,

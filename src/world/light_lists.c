@@ -39,8 +39,8 @@ static bool enter(struct walk *walk, const struct node *node, bool listed) {
     return true;
 }
 
-static bool mark(const struct world *world, const struct node *const *list, uint32_t list_count, uint8_t *lit,
-                 uint8_t value, const struct node *root) {
+bool light_lists_mark(const struct world *world, const struct node *const *list, uint32_t list_count, uint8_t *lit,
+                      uint8_t value, const struct node *root) {
     struct walk walk = {.world = world, .list = list, .list_count = list_count, .lit = lit, .value = value};
     bool ok = root->drawable == 0 || enter(&walk, root, false);
     while (ok && walk.count > 0) {
@@ -69,8 +69,8 @@ bool light_lists_resolve(const struct world *world, struct light *lights, struct
         bool ok = lit != NULL;
         if (ok)
             memset(lit, light->include == NULL, world->placed_count);
-        ok = ok && (!light->include || mark(world, light->include, light->include_count, lit, 1, root)) &&
-             (!light->exclude || mark(world, light->exclude, light->exclude_count, lit, 0, root));
+        ok = ok && (!light->include || light_lists_mark(world, light->include, light->include_count, lit, 1, root)) &&
+             (!light->exclude || light_lists_mark(world, light->exclude, light->exclude_count, lit, 0, root));
         if (!ok)
             return error_no_memory(error, "the lights of the scene");
         light->lit = lit;

@@ -9,4 +9,9 @@
 bool light_lists_resolve(const struct world *world, struct light *lights, struct arena *arena, struct node *root,
                          struct error *error);
 
+/* Sets lit[i] to `value` for every placed primitive i that comes from a listed node or one below it. False: no memory.
+ */
+bool light_lists_mark(const struct world *world, const struct node *const *list, uint32_t count, uint8_t *lit,
+                      uint8_t value, const struct node *root);
+
 #endif

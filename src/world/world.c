@@ -15,6 +15,7 @@
 #include "geom/shape_sphere.h"
 #include "math/frame.h"
 #include "world/flatten.h"
+#include "world/light_lamps.h"
 #include "world/light_lists.h"
 
 #include <string.h>
@@ -91,7 +92,8 @@ bool world_build(struct world *world, struct arena *arena, struct scene *scene, 
                                     .warn = warn,
                                     .warn_context = warn_context,
                                     .error = error};
-    if (!flatten_scene(&flattening, root) || !light_lists_resolve(world, copied, arena, root, error))
+    if (!flatten_scene(&flattening, root) || !light_lists_resolve(world, copied, arena, root, error) ||
+        !light_lamps_resolve(world, copied, arena, root, pool, warn, warn_context, error))
         return false;
     world->boxes = arena_alloc_array(arena, world->placed_count, sizeof *world->boxes);
     if (!world->boxes)

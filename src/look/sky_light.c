@@ -1,0 +1,122 @@
+/* Importance sampling of skies: a table of cells, all of the same height in y and width in longitude and so of the same
+ * solid angle (Archimedes), each drawn in proportion to the sky's mean luminance in it; a row first, then a cell of the
+ * row (Pharr, Jakob, Humphreys, "Physically Based Rendering", the chapter on infinite area lights). Inside of a cell
+ * directions are uniform. Equal cells make the poles no special case: rows are thin in angle near the horizon and wide
+ * at the poles, where skies change little. A part of all samples goes everywhere alike, so that what the table has
+ * missed is found and no sample counts for very much. */
+#include "look/sky_light.h"
+
+#include "math/elementary.h"
+
+static const double pi = 3.14159265358979323846;
+
+enum { LEAST_COLUMNS = 128, MOST_COLUMNS = 512, PROBES = 2 };
+static const double everywhere = 1.0 / 16; /* the part that goes everywhere */
+
+static double luminance(struct vec3 c) {
+    return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
+}
+
+static uint32_t columns_for(const struct sky *sky) {
+    uint32_t columns = sky->kind == SKY_MAP     ? image_width(sky->image)
+                       : sky->kind == SKY_CROSS ? image_width(sky->image)
+                       : sky->kind == SKY_FACES ? 4 * image_width(sky->faces[0])
+                                                : LEAST_COLUMNS;
+    return columns < LEAST_COLUMNS ? LEAST_COLUMNS : columns > MOST_COLUMNS ? MOST_COLUMNS : columns;
+}
+
+/* Row 0 is at the top; a place's y and x run from 0 to 1 down and round. */
+static struct vec3 direction_at(double x, double y) {
+    double height = 1 - 2 * y, sine, cosine, level = sqrt(4 * y * (1 - y));
+    el_sincos(2 * pi * x, &sine, &cosine);
+    return vec3_make(level * cosine, height, level * sine);
+}
+
+static double cell_luminance(const struct sky *sky, uint32_t column, uint32_t row, uint32_t columns, uint32_t rows) {
+    double sum = 0;
+    for (int j = 0; j < PROBES; j++) {
+        for (int i = 0; i < PROBES; i++) {
+            double x = (column + (i + 0.5) / PROBES) / columns, y = (row + (j + 0.5) / PROBES) / rows;
+            double value = luminance(sky_colour(sky, direction_at(x, y), 0));
+            sum += value > 0 && isfinite(value) ? value : 0;
+        }
+    }
+    return sum / (PROBES * PROBES);
+}
+
+/* From weights to running shares; all equal when all are 0. Returns the sum. */
+static double running_shares(double *weights, uint32_t count) {
+    double sum = 0, so_far = 0;
+    for (uint32_t i = 0; i < count; i++)
+        sum += weights[i];
+    for (uint32_t i = 0; i < count; i++) {
+        so_far += sum > 0 ? weights[i] / sum : 1.0 / count;
+        weights[i] = i + 1 < count && so_far < 1 ? so_far : 1;
+    }
+    return sum;
+}
+
+struct filling {
+    const struct sky *sky;
+    double *cells;
+    uint32_t rows, columns;
+};
+
+static void fill_row(void *context, uint32_t row, int worker) {
+    const struct filling *f = context;
+    (void)worker;
+    for (uint32_t column = 0; column < f->columns; column++)
+        f->cells[(size_t)row * f->columns + column] = cell_luminance(f->sky, column, row, f->columns, f->rows);
+}
+
+const struct sky_table *sky_table_build(const struct sky *sky, struct arena *arena, struct pool *pool) {
+    uint32_t columns = columns_for(sky), rows = columns / 2;
+    struct sky_table *table = arena_alloc(arena, sizeof *table);
+    double *row_until = arena_alloc_array(arena, rows, sizeof *row_until);
+    double *until = arena_alloc_array(arena, (size_t)rows * columns, sizeof *until);
+    if (!table || !row_until || !until)
+        return NULL;
+    struct filling filling = {sky, until, rows, columns};
+    (void)pool_run(pool, rows, fill_row, &filling); /* cancelled: whoever renders next sees it */
+    double total = 0;
+    for (size_t i = 0; i < (size_t)rows * columns; i++)
+        total += until[i];
+    double least = total / ((double)rows * columns) * everywhere;
+    for (uint32_t row = 0; row < rows; row++) {
+        double *cells = &until[(size_t)row * columns];
+        for (uint32_t column = 0; column < columns; column++)
+            cells[column] = (1 - everywhere) * cells[column] + least;
+        row_until[row] = running_shares(cells, columns);
+    }
+    (void)running_shares(row_until, rows);
+    *table = (struct sky_table){rows, columns, row_until, until};
+    return table;
+}
+
+/* The entry that the share falls on; *within: how far into it. */
+static uint32_t find_share(const double *until, uint32_t count, double share, double *within, double *width) {
+    uint32_t low = 0, high = count - 1;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        if (until[middle] > share)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    double begin = low > 0 ? until[low - 1] : 0;
+    *width = until[low] - begin;
+    *within = *width > 0 ? (share - begin) / *width : 0.5;
+    *within = *within < 1 ? *within : 1;
+    return low;
+}
+
+struct vec3 sky_table_sample(const struct sky *sky, const struct sky_table *table, struct sample2 place,
+                             struct vec3 *direction) {
+    double x, y, row_share, cell_share;
+    uint32_t row = find_share(table->row_until, table->rows, place.y, &y, &row_share);
+    const double *cells = &table->until[(size_t)row * table->columns];
+    uint32_t column = find_share(cells, table->columns, place.x, &x, &cell_share);
+    *direction = direction_at((column + x) / table->columns, (row + y) / table->rows);
+    double density = row_share * cell_share * ((double)table->rows * table->columns / (4 * pi));
+    return density > 0 ? vec3_scale(sky_colour(sky, *direction, 0), 1 / (density * pi)) : vec3_all(0);
+}

@@ -1,0 +1,24 @@
+/* A sky as a light: directions in proportion to what comes from them. */
+#ifndef GRAY_LOOK_SKY_LIGHT_H
+#define GRAY_LOOK_SKY_LIGHT_H
+
+#include "base/arena.h"
+#include "base/pool.h"
+#include "look/sky.h"
+#include "math/sampling.h"
+
+/* Cells of height y and longitude; in the arena it was built in. */
+struct sky_table {
+    uint32_t rows, columns;
+    const double *row_until; /* share of the unit interval up to and with a row, from y = 1 down */
+    const double *until;     /* rows x columns: the same inside of a row */
+};
+
+/* NULL: no memory. A sky that is black everywhere gives a table of equal cells. */
+const struct sky_table *sky_table_build(const struct sky *sky, struct arena *arena, struct pool *pool);
+/* The unit direction for a place of the unit square. Returns the sky's colour there over the density of such directions
+ * by solid angle, over pi: its mean times (n.l) is what a white diffuse surface shows. */
+struct vec3 sky_table_sample(const struct sky *sky, const struct sky_table *table, struct sample2 place,
+                             struct vec3 *direction);
+
+#endif

@@ -1,0 +1,145 @@
+/* The triangles of a mesh lamp, gathered from every place where the scene shows one of its meshes. A triangle is drawn
+ * in proportion to its area times the luminance of its emission, so the light of a sample is radiance over that
+ * density. */
+#include "world/light_lamps.h"
+
+#include "base/mem.h"
+#include "look/sky_light.h"
+#include "world/light_lists.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+struct gathering {
+    const struct world *world;
+    const struct light *light;
+    struct light_triangle *triangles;
+    double *until;
+    uint32_t count;
+    bool one_sided;
+    struct box bounds;
+    double sum; /* of areas times luminances */
+};
+
+static double luminance(struct vec3 c) {
+    return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
+}
+
+/* Triangles without area or light are left out. */
+static void add_triangle(struct gathering *g, const struct mesh *mesh, uint32_t number, const struct transform *map,
+                         double sign, const struct placed *placed) {
+    struct vec3 corners[3], emission = g->light->emission;
+    uint32_t slot;
+    mesh_triangle(mesh, number, corners, &slot);
+    double size = 0;
+    for (int i = 0; i < 3; i++) {
+        size = fmax(size, vec3_max_abs(corners[i]) * transform_stretch(map));
+        corners[i] = affine_point(&map->forward, corners[i]);
+        size = fmax(size, vec3_max_abs(corners[i]));
+    }
+    if (!g->light->has_emission && placed)
+        emission = material_emission(g->world->materials[placed->material + (slot < placed->slot_count ? slot : 0)]);
+    struct light_triangle *t = &g->triangles[g->count];
+    t->corner = corners[0];
+    t->edge1 = vec3_sub(corners[1], corners[0]);
+    t->edge2 = vec3_sub(corners[2], corners[0]);
+    struct vec3 across = vec3_cross(t->edge1, t->edge2);
+    double area = vec3_length(across) / 2, weight = area * luminance(emission);
+    if (!(weight > 0))
+        return;
+    t->normal = vec3_scale(across, sign / (2 * area));
+    t->light = vec3_scale(emission, 1 / (luminance(emission) * pi)); /* times the sum, once it is known */
+    t->offset = size * 0x1p-40;
+    for (int i = 0; i < 3; i++)
+        g->bounds = box_add_point(g->bounds, corners[i]);
+    g->sum += weight;
+    g->until[g->count++] = g->sum;
+}
+
+static void add_mesh(struct gathering *g, const struct mesh *mesh, const struct transform *map,
+                     const struct placed *placed) {
+    bool mirrored = affine_determinant(&map->forward) < 0;
+    double sign = mesh_is_closed(mesh) && mesh_is_outward(mesh) == mirrored ? -1 : 1;
+    g->one_sided = g->one_sided && mesh_is_closed(mesh);
+    for (uint32_t i = 0; i < mesh_triangle_count(mesh); i++)
+        add_triangle(g, mesh, i, map, sign, placed);
+}
+
+static bool is_lamp(const struct world *world, const uint8_t *marked, uint32_t index) {
+    return marked[index] && world->placed[index].shape.kind == SHAPE_MESH;
+}
+
+static bool gather(struct gathering *g, struct arena *arena, const uint8_t *marked, struct error *error) {
+    const struct node *node = g->light->node;
+    uint64_t total = 0;
+    for (uint32_t i = 0; i < g->world->placed_count; i++)
+        total += is_lamp(g->world, marked, i) ? mesh_triangle_count(g->world->placed[i].shape.mesh) : 0;
+    bool alone = total == 0;
+    if (alone && node->kind == NODE_GEOMETRY && node->shape.kind == SHAPE_MESH)
+        total = mesh_triangle_count(node->shape.mesh);
+    if (total == 0)
+        return error_set(error, ERROR_SCENE,
+                         "node '%.100s' is a mesh light, but there is no mesh there or below it in the scene",
+                         node->name);
+    if (total > UINT32_MAX / 2)
+        return error_set(error, ERROR_SCENE, "the mesh light '%.100s' has too many triangles", node->name);
+    g->triangles = arena_alloc_array(arena, total, sizeof *g->triangles);
+    g->until = arena_alloc_array(arena, total, sizeof *g->until);
+    if (!g->triangles || !g->until)
+        return error_no_memory(error, "a mesh light");
+    for (uint32_t i = 0; i < g->world->placed_count && !alone; i++) {
+        const struct placed *placed = &g->world->placed[i];
+        if (is_lamp(g->world, marked, i))
+            add_mesh(g, placed->shape.mesh, &placed->world_from_object, placed);
+    }
+    if (alone) {
+        struct transform map = node_parent_from_node(node);
+        add_mesh(g, node->shape.mesh, &map, NULL);
+    }
+    return true;
+}
+
+static bool resolve_mesh(const struct world *world, struct light *light, struct arena *arena, struct node *root,
+                         world_warning *warn, void *warn_context, struct error *error) {
+    struct gathering g = {.world = world, .light = light, .one_sided = true, .bounds = box_empty()};
+    struct light_mesh *mesh = arena_alloc(arena, sizeof *mesh);
+    uint8_t *marked = arena_alloc_array(arena, (size_t)world->placed_count + 1, 1);
+    if (!mesh || !marked || !light_lists_mark(world, &light->node, 1, marked, 1, root))
+        return error_no_memory(error, "a mesh light");
+    if (!gather(&g, arena, marked, error))
+        return false;
+    for (uint32_t i = 0; i < g.count; i++) {
+        g.until[i] = i + 1 < g.count ? g.until[i] / g.sum : 1;
+        g.triangles[i].light = vec3_mul(vec3_scale(g.triangles[i].light, g.sum), light->colour);
+    }
+    if (g.count == 0 && warn) {
+        char text[256];
+        (void)snprintf(text, sizeof text, "node '%.100s' is a mesh light, but its materials have no emission",
+                       light->node->name);
+        warn(warn_context, text);
+    }
+    *mesh = (struct light_mesh){g.triangles, g.until, g.count, g.one_sided, vec3_all(0), 0};
+    if (g.count > 0) {
+        mesh->centre = vec3_scale(vec3_add(g.bounds.min, g.bounds.max), 0.5);
+        mesh->radius = vec3_length(vec3_sub(g.bounds.max, mesh->centre)) * (1 + 0x1p-40);
+    }
+    light->mesh = mesh;
+    return true;
+}
+
+bool light_lamps_resolve(const struct world *world, struct light *lights, struct arena *arena, struct node *root,
+                         struct pool *pool, world_warning *warn, void *warn_context, struct error *error) {
+    for (uint32_t i = 0; i < world->light_count; i++) {
+        struct light *light = &lights[i];
+        if (light->kind == LIGHT_MESH && !resolve_mesh(world, light, arena, root, warn, warn_context, error))
+            return false;
+        if (light->kind == LIGHT_SKY) {
+            light->table = sky_table_build(light->sky, arena, pool);
+            if (!light->table)
+                return error_no_memory(error, "the light of the sky");
+        }
+    }
+    return true;
+}

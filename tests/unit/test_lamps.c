@@ -1,0 +1,403 @@
+/* Lamps that are rectangles seen large, meshes, and skies: against view factors, solid angles and integrals. */
+#include "look/sky_light.h"
+#include "tests/harness.h"
+#include "tests/stage.h"
+#include "tests/unit/mesh_makers.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* A white floor at y = 0, seen at one point from nearby, below all lamps. */
+static void floor_stage(struct stage *s) {
+    stage_begin(s, 1);
+    struct node *node = stage_cube(s, s->root, stage_phong(s, vec3_all(1), vec3_all(0), 1));
+    stage_move(s, node, -0.5, -1, -0.5);
+    stage_scale(s, node, 40, 1, 40);
+    s->settings.full = true;
+    s->settings.samples = 1;
+    s->light_count = 1;
+}
+
+static double patch_at(struct stage *s, double x, double z) {
+    s->camera = (struct camera){{x + 0.02, 0.03, z}, {-0.02, -0.03, 0}, {0, 0, -1}, 1e-4};
+    CHECK(stage_render(s, 1, 1));
+    return stage_pixel(s, 0, 0).x;
+}
+
+static struct light rectangle(struct vec3 corner, struct vec3 edge1, struct vec3 edge2) {
+    return (struct light){.kind = LIGHT_PARALLELOGRAM,
+                          .position = vec3_add(corner, vec3_scale(vec3_add(edge1, edge2), 0.5)),
+                          .corner = corner,
+                          .edge1 = edge1,
+                          .edge2 = edge2,
+                          .colour = {1, 1, 1},
+                          .emits = true,
+                          .samples = 32};
+}
+
+/* B-3 of Howell's catalogue: a rectangle a x b at height h with a corner above the patch. */
+static double corner_factor(double a, double b, double h) {
+    a /= h, b /= h;
+    double p = sqrt(1 + a * a), q = sqrt(1 + b * b);
+    return (a / p * atan(b / p) + b / q * atan(a / q)) / (2 * pi);
+}
+
+/* The solid angle of a rectangle with a corner above the point. */
+static double corner_angle(double a, double b, double h) {
+    return atan(a * b / (h * sqrt(a * a + b * b + h * h)));
+}
+
+/* --- rectangles by solid angle --- */
+
+TEST(a_rectangle_is_sampled_by_the_solid_angle_of_its_parts) {
+    static const double heights[] = {0.01, 0.3, 2};
+    for (int i = 0; i < 3; i++) {
+        double h = heights[i];
+        struct spherical_rectangle seen;
+        struct vec3 from = {0.5, 0, 0.25}, corner = {0.5, h, 0.25};
+        CHECK(spherical_rectangle_make(corner, vec3_make(2, 0, 0), vec3_make(0, 0, 1), from, &seen));
+        CHECK_NEAR(seen.angle, corner_angle(2, 1, h), 1e-10);
+        enum { N = 200 };
+        int inside = 0;
+        for (int k = 0; k < N * N; k++) {
+            struct sample2 place = {(k % N + 0.5) / N, ((k - k % N) / N + 0.5) / N};
+            struct vec3 p = vec3_sub(spherical_rectangle_point(&seen, place), corner);
+            CHECK(p.x >= -1e-12 && p.x <= 2 + 1e-12 && p.z >= -1e-12 && p.z <= 1 + 1e-12);
+            CHECK_NEAR(p.y, 0, 1e-12);
+            inside += p.x < 0.2 && p.z < 0.3;
+        }
+        CHECK_NEAR((double)inside / (N * N), corner_angle(0.2, 0.3, h) / seen.angle, 0.005);
+    }
+    struct spherical_rectangle seen;
+    struct vec3 from = {0, 0, 0}, corner = {0, 1, 0};
+    CHECK(!spherical_rectangle_make(corner, vec3_make(1, 0, 0), vec3_make(1, 0, 1), from, &seen));
+    CHECK(!spherical_rectangle_make(corner, vec3_make(1e-3, 0, 0), vec3_make(0, 0, 1e-3), from, &seen));
+    CHECK(!spherical_rectangle_make(from, vec3_make(1, 0, 0), vec3_make(0, 0, 1), from, &seen));
+}
+
+/* Sixteen shadow rays, a lamp close above. One whose edges are a little off the right angle is sampled by area: the
+ * light of one of its rays varies by the factor 600. */
+TEST(a_rectangle_close_to_a_surface_is_not_grainy) {
+    double squares[2] = {0, 0};
+    for (int by_area = 0; by_area < 2; by_area++) {
+        struct stage s;
+        floor_stage(&s);
+        double off = by_area ? 1e-6 : 0, factor = 4 * corner_factor(0.5, 0.5, 0.1);
+        s.lights[0] = rectangle(vec3_make(-0.5, 0.1, -0.5), vec3_make(1, 0, off), vec3_make(off, 0, 1));
+        s.lights[0].samples = 4;
+        for (uint64_t seed = 0; seed < 100; seed++) {
+            s.settings.seed = seed;
+            double error = patch_at(&s, 0, 0) / factor - 1;
+            squares[by_area] += error * error / 100;
+        }
+        stage_end(&s);
+    }
+    CHECK_NEAR(sqrt(squares[0]), 0, 0.06);
+    CHECK(squares[0] < 0.05 * squares[1]);
+}
+
+/* --- meshes --- */
+
+static struct node *mesh_node(struct stage *s, const struct maker *maker, const struct material *material) {
+    struct mesh_input input = maker_input(maker);
+    struct node *node = scene_node(&s->scene, NODE_GEOMETRY, "mesh", &s->error);
+    node->shape = (struct shape){.kind = SHAPE_MESH, .mesh = assets_mesh(&s->assets, &input, &s->error)};
+    node->material = material;
+    return node;
+}
+
+static const struct material *glowing(struct stage *s, double radiance) {
+    struct material *material = stage_phong(s, vec3_all(0), vec3_all(0), 1);
+    material->phong.emission = vec3_all(radiance);
+    return material;
+}
+
+static struct light mesh_lamp(const struct node *node, int samples) {
+    return (struct light){.kind = LIGHT_MESH, .emits = true, .colour = {1, 1, 1}, .node = node, .samples = samples};
+}
+
+/* The unit square at y = 0 from two triangles. */
+static struct node *square_node(struct stage *s, const struct material *material) {
+    struct maker maker = {0};
+    for (int i = 0; i < 4; i++)
+        maker_vertex(&maker, i == 1 || i == 2, 0, i >= 2);
+    maker_triangle(&maker, 0, 1, 2);
+    maker_triangle(&maker, 0, 2, 3);
+    struct node *node = mesh_node(s, &maker, material);
+    maker_free(&maker);
+    return node;
+}
+
+TEST(a_rectangle_of_two_triangles_gives_its_view_factor) {
+    static const double sides[][3] = {{1, 1, 1}, {3, 0.5, 1}, {2, 5, 1.5}, {3, 3, 1}};
+    for (int i = 0; i < 8; i++) {
+        struct stage s;
+        floor_stage(&s);
+        bool shown = i < 4; /* or not in the scene, and the light says what it emits */
+        double a = sides[i % 4][0], b = sides[i % 4][1], h = sides[i % 4][2];
+        struct node *holder = stage_group(&s, s.root), *node = square_node(&s, glowing(&s, shown ? 2 : 0));
+        stage_scale(&s, node, a, 1, b);
+        stage_move(&s, node, 0, h, 0);
+        s.lights[0] = mesh_lamp(shown ? holder : node, 48);
+        if (shown)
+            CHECK(node_add_child(&s.scene, holder, node, &s.error));
+        s.lights[0].has_emission = !shown;
+        s.lights[0].emission = vec3_all(2);
+        s.lights[0].colour = vec3_make(0.5, 1, 1);
+        CHECK_NEAR(patch_at(&s, 0, 0), corner_factor(a, b, h), 2.5e-3);
+        stage_end(&s);
+    }
+}
+
+/* A closed mesh: only what faces the patch is asked, and its own other side is in nobody's way. */
+TEST(a_ball_of_triangles_gives_the_view_factor_of_a_ball) {
+    for (int i = 0; i < 3; i++) {
+        struct stage s;
+        floor_stage(&s);
+        struct maker maker = {0};
+        maker_sphere(&maker, 16);
+        struct node *node = mesh_node(&s, &maker, glowing(&s, 1));
+        maker_free(&maker);
+        double r = 0.3 + 0.4 * i, h = 2, x = 0.8 * i, distance = sqrt(h * h + x * x);
+        stage_scale(&s, node, i == 1 ? -r : r, r, r); /* one is mirrored */
+        stage_move(&s, node, x, h, 0);
+        CHECK(node_add_child(&s.scene, s.root, node, &s.error));
+        s.lights[0] = mesh_lamp(node, 48);
+        double factor = r * r / (distance * distance) * h / distance, mean = 0;
+        for (s.settings.seed = 0; s.settings.seed < 12; s.settings.seed++)
+            mean += patch_at(&s, 0, 0) / factor / 12;
+        CHECK_NEAR(mean, 1, 0.015); /* the ball of triangles is 0.3 % smaller */
+        CHECK(s.world.lights[0].mesh->one_sided);
+        stage_end(&s);
+    }
+}
+
+TEST(a_surface_below_its_own_lamp_is_not_shaded_by_it) {
+    struct stage s;
+    stage_begin(&s, 1);
+    struct material *white = stage_phong(&s, vec3_all(1), vec3_all(0), 1);
+    white->phong.emission = vec3_all(0.5);
+    white->phong.two_sided = true;
+    struct maker maker = {0}; /* a corner of two squares: each lights the other by the factor (1 - 1 / sqrt 2) / 2 */
+    for (int i = 0; i < 6; i++)
+        maker_vertex(&maker, i < 2 ? 40 : 0, i > 3 ? 40 : 0, i % 2 ? -40 : 40);
+    maker_triangle(&maker, 0, 1, 3), maker_triangle(&maker, 0, 3, 2);
+    maker_triangle(&maker, 2, 3, 5), maker_triangle(&maker, 2, 5, 4);
+    struct node *node = mesh_node(&s, &maker, white);
+    maker_free(&maker);
+    CHECK(node_add_child(&s.scene, s.root, node, &s.error));
+    s.lights[0] = mesh_lamp(node, 64);
+    s.light_count = 1;
+    s.settings.full = true;
+    s.settings.samples = 1;
+    /* A patch at distance d from the edge of a wall H high and 2 W wide: B-4 of the catalogue, twice. */
+    double d = 20, y = d / 40, z = 40.0 / 40, root = 1 / sqrt(z * z + y * y);
+    double factor = (atan(1 / y) - y * root * atan(root)) / pi;
+    CHECK_NEAR(patch_at(&s, d, 0), 0.5 + 0.5 * factor, 0.004);
+    stage_end(&s);
+}
+
+TEST(a_mesh_light_needs_a_mesh_and_warns_without_light) {
+    struct stage s;
+    floor_stage(&s);
+    s.lights[0] = mesh_lamp(stage_group(&s, s.root), 4);
+    CHECK(!stage_build(&s, s.root, ACCEL_AUTO));
+    CHECK(strstr(s.error.text, "no mesh") != NULL);
+    struct node *node = square_node(&s, NULL);
+    CHECK(node_add_child(&s.scene, s.root, node, &s.error));
+    s.lights[0] = mesh_lamp(node, 4);
+    s.warnings = 0;
+    CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+    CHECK(s.warnings >= 1);
+    stage_end(&s);
+}
+
+/* --- skies --- */
+
+static struct light sky_lamp(const struct sky *sky, int samples) {
+    return (struct light){.kind = LIGHT_SKY, .emits = true, .colour = {1, 1, 1}, .sky = sky, .samples = samples};
+}
+
+/* What is lit by a sky whose radiance is (1 + y) / 2 shows 1/2 + n.y / 3. */
+TEST(a_sky_that_grows_with_height_lights_as_its_integral_says) {
+    static const double stops[2][4] = {{-1, 0, 0, 0}, {1, 1, 1, 1}};
+    struct sky sky = {.kind = SKY_STOPS, .stops = stops, .stop_count = 2};
+    static const struct vec3 views[] = {{0, -1, 0}, {0, 1, 0}, {-1, 0, 0}, {-0.6, -0.8, 0}};
+    for (int i = 0; i < 4; i++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        stage_sphere(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+        s.lights[0] = sky_lamp(&sky, 64);
+        s.light_count = 1;
+        s.settings.full = true;
+        s.settings.samples = 1;
+        struct vec3 v = views[i], up = {0, 0, 1};
+        s.camera = (struct camera){vec3_scale(v, -100), v, up, 1e-5};
+        CHECK(stage_render(&s, 1, 1));
+        CHECK_NEAR(stage_pixel(&s, 0, 0).x, 0.5 - v.y / 3, 2e-3);
+        stage_end(&s);
+    }
+}
+
+/* The furnace: in uniform light what reflects everything cannot be seen. */
+TEST(white_rough_and_polished_things_vanish_in_uniform_light) {
+    struct stage s;
+    stage_begin(&s, 2);
+    struct sky sky = {.kind = SKY_CONSTANT, .colour = {0.7, 0.7, 0.7}};
+    stage_sphere(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+    struct node *mirror = stage_sphere(&s, s.root, stage_glass(&s, 1, 0, 1));
+    stage_move(&s, mirror, 6, 0, 0);
+    struct material *rough = stage_glass(&s, 1, 0, 1);
+    rough->phong.roughness = 0.5;
+    stage_move(&s, stage_sphere(&s, s.root, rough), -6, 0, 0);
+    struct material *glass = scene_material(&s.scene, MATERIAL_FRESNEL, stage_glass(&s, 0, 0, 1.5), &s.error);
+    stage_move(&s, stage_sphere(&s, s.root, glass), 0, 6, 0);
+    s.settings.reflect_limit = s.settings.refract_limit = 40;
+    s.settings.cutoff = 1e-5;
+    s.sky = sky;
+    s.lights[0] = sky_lamp(&sky, 16);
+    s.light_count = 1;
+    s.settings.samples = 1;
+    s.settings.full = true;
+    s.camera = (struct camera){{0, 2, 30}, {0, 0, -1}, {0, 1, 0}, 40};
+    CHECK(stage_render(&s, 48, 36));
+    double sum = 0, worst = 0;
+    for (uint32_t i = 0; i < 48 * 36; i++) {
+        double off = stage_pixel(&s, i % 48, i / 48).x - 0.7;
+        sum += off / (48 * 36);
+        worst = fmax(worst, fabs(off));
+    }
+    CHECK_NEAR(sum, 0, 1e-3);
+    CHECK_NEAR(worst, 0, 0.08); /* of 256 stratified directions over the whole sphere */
+    stage_end(&s);
+}
+
+/* The same integral by brute force, for every kind of sky. */
+static double irradiance(const struct sky *sky, struct vec3 normal, int steps) {
+    double sum = 0;
+    for (int j = 0; j < steps; j++) {
+        for (int i = 0; i < 2 * steps; i++) {
+            double y = 1 - 2 * (j + 0.5) / steps, turn = pi * (i + 0.5) / steps, level = sqrt(1 - y * y);
+            struct vec3 d = {level * cos(turn), y, level * sin(turn)};
+            double cosine = vec3_dot(d, normal);
+            sum += cosine > 0 ? cosine * sky_colour(sky, d, 0).y : 0;
+        }
+    }
+    return sum * 4 / (2.0 * steps * steps);
+}
+
+TEST(samples_of_every_sky_have_the_mean_of_its_integral) {
+    enum { W = 64, H = 32, N = 300 };
+    static uint8_t texels[W * H * 4];
+    struct error error = {0};
+    memset(texels, 40, sizeof texels);
+    for (int i = 0; i < 3; i++)
+        texels[(9 * W + 20) * 4 + i] = texels[(2 * W + 50) * 4 + i] = 255; /* two suns, one near the pole */
+    struct image *map = image_create("map", W, H, 8, texels, &error), *six[6];
+    for (int i = 0; i < 6; i++) {
+        memset(texels, 20 + 30 * i, 16 * 16 * 4);
+        six[i] = image_create("face", 16, 16, 8, texels, &error);
+    }
+    struct sky skies[4] = {{.kind = SKY_GRADIENT}, {.kind = SKY_MAP, .image = map}};
+    skies[1].adjusted = true;
+    skies[1].intensity = 3;
+    skies[1].turn_sine = 0.6, skies[1].turn_cosine = 0.8;
+    CHECK(sky_from_faces(six, &skies[2], &error));
+    sky_make_clear(vec3_normalize(vec3_make(1, 1, -1)), 3, vec3_all(0.15), &skies[3]);
+    char warning[256];
+    struct pool *pool = pool_create(2, warning);
+    for (int i = 0; i < 4; i++) {
+        struct arena arena = {0};
+        const struct sky_table *table = sky_table_build(&skies[i], &arena, pool);
+        struct vec3 normal = vec3_normalize(vec3_make(0.3, 1, -0.2));
+        double sum = 0, most = 0;
+        for (int k = 0; k < N * N; k++) {
+            struct sample2 place = {(k % N + 0.5) / N, ((k - k % N) / N + 0.5) / N};
+            struct vec3 d, light = sky_table_sample(&skies[i], table, place, &d);
+            CHECK_NEAR(vec3_length(d), 1, 1e-12);
+            double cosine = vec3_dot(d, normal);
+            sum += cosine > 0 ? cosine * light.y : 0;
+            most = fmax(most, light.z);
+        }
+        /* The gradient is blue alone. */
+        double expected = i == 0 ? 0 : irradiance(&skies[i], normal, 500);
+        CHECK_NEAR(sum / (N * N), expected, 0.01 * expected + 1e-12);
+        if (i == 0)
+            CHECK(most < 4);
+        arena_destroy(&arena);
+    }
+    pool_destroy(pool);
+    image_release(map);
+    for (int i = 0; i < 6; i++)
+        image_release(six[i]);
+}
+
+/* Most of the light comes from a thousandth of this sky; drawn alike everywhere, 64 rays would mostly miss it. */
+TEST(more_samples_go_where_a_sky_is_bright) {
+    enum { W = 128, H = 64 };
+    static uint16_t texels[W * H * 4];
+    struct error error = {0};
+    for (int i = 0; i < W * H * 4; i++)
+        texels[i] = i % 4 == 3 ? 65535 : 60;
+    for (int y = 15; y < 18; y++)
+        for (int x = 30; x < 33; x++)
+            for (int c = 0; c < 3; c++)
+                texels[(y * W + x) * 4 + c] = 65535;
+    struct image *map = image_create("map", W, H, 16, texels, &error);
+    struct sky sky = {.kind = SKY_MAP, .image = map};
+    double expected = irradiance(&sky, vec3_make(0, 1, 0), 700), squares = 0;
+    struct stage s;
+    floor_stage(&s);
+    s.lights[0] = sky_lamp(&sky, 8);
+    for (uint64_t seed = 0; seed < 20; seed++) {
+        s.settings.seed = seed;
+        double off = patch_at(&s, 0, 0) / expected - 1;
+        squares += off * off / 20;
+    }
+    CHECK_NEAR(sqrt(squares), 0, 0.1);
+    stage_end(&s);
+    image_release(map);
+}
+
+TEST(lamps_that_are_meshes_and_skies_give_the_same_bits_everywhere) {
+    static const struct {
+        int threads;
+        enum accel_kind accel;
+        double unit;
+    } runs[] = {{1, ACCEL_AUTO, 1},   {7, ACCEL_GRID, 1},       {2, ACCEL_NONE, 1},
+                {2, ACCEL_KDTREE, 1}, {2, ACCEL_AUTO, 0x1p-10}, {2, ACCEL_BVH, 0x1p20}};
+    struct film_pixel *reference = NULL;
+    static const double stops[2][4] = {{-1, 0.1, 0, 0}, {1, 0.3, 0.4, 0.5}};
+    struct sky sky = {.kind = SKY_STOPS, .stops = stops, .stop_count = 2};
+    for (int i = 0; i < 6; i++) {
+        struct stage s;
+        stage_begin(&s, runs[i].threads);
+        struct node *top = stage_group(&s, s.root), *lamp = square_node(&s, glowing(&s, 5));
+        struct material *white = stage_phong(&s, vec3_make(0.8, 0.7, 0.6), vec3_all(0.2), 20);
+        struct node *floor = stage_cube(&s, top, white);
+        stage_scale(&s, floor, 20, 1, 20);
+        stage_move(&s, floor, -10, -2, -10);
+        for (int k = 0; k < 3; k++)
+            stage_move(&s, stage_sphere(&s, top, white), 3 * k - 3, 0, k % 2);
+        stage_rotate(&s, lamp, 0, 30);
+        stage_move(&s, lamp, 0, 2.2, 0.5);
+        CHECK(node_add_child(&s.scene, top, lamp, &s.error));
+        stage_scale(&s, top, runs[i].unit, runs[i].unit, runs[i].unit);
+        s.lights[0] = mesh_lamp(lamp, 2);
+        s.lights[1] = sky_lamp(&sky, 2);
+        s.light_count = 2;
+        s.camera = (struct camera){vec3_scale(vec3_make(0, 4, 12), runs[i].unit), {0, -0.25, -1}, {0, 1, 0}, 50};
+        s.settings.samples = 2;
+        s.settings.accel = runs[i].accel;
+        CHECK(stage_render(&s, 60, 45));
+        size_t size = (size_t)60 * 45 * sizeof *reference;
+        if (!reference)
+            reference = memcpy(malloc(size), s.film.pixels, size);
+        CHECK(memcmp(reference, s.film.pixels, size) == 0);
+        stage_end(&s);
+    }
+    free(reference);
+}
