@@ -17,7 +17,6 @@ enum { BINS = 16 };
 
 struct build_item {
     struct box box;
-    struct vec3 centre;
     uint32_t item;
 };
 
@@ -44,65 +43,105 @@ static struct box run_box(const struct builder *b, uint32_t first, uint32_t coun
     return box;
 }
 
-/* Infinite boxes have no middle; they go by a finite stand-in. */
+/* Where an item counts as being. Infinite boxes have no middle; they go by a finite stand-in. */
 static double middle(double lo, double hi) {
     if (isfinite(lo) && isfinite(hi))
         return lo + (hi - lo) * 0.5;
     return isfinite(lo) ? lo : isfinite(hi) ? hi : 0;
 }
 
-static int bin_of(double centre, double lo, double scale) {
+static double centre_of(const struct build_item *item, int axis) {
+    return middle(vec3_get(item->box.min, axis), vec3_get(item->box.max, axis));
+}
+
+static int bin_of(double centre, double lo, double scale, int bins) {
     int bin = (int)((centre - lo) * scale);
-    return bin < 0 ? 0 : bin >= BINS ? BINS - 1 : bin;
+    return bin < 0 ? 0 : bin >= bins ? bins - 1 : bin;
+}
+
+/* Most runs are small: they get as many bins as they can use. */
+static int bins_for(uint32_t items) {
+    return items >= BINS ? BINS : items > 4 ? 8 : 4;
 }
 
 struct split {
-    int axis, bin; /* axis -1: none found */
+    int axis, bin, bins; /* axis -1: none found */
     double lo, scale, cost;
+    struct box sides[2];
 };
 
-static struct split best_split(const struct builder *b, const struct run *run) {
+/* What falls into the bins of one axis. */
+struct bins {
+    double lo, scale; /* scale 0: the axis cannot be split */
+    int number;
+    struct box boxes[BINS];
+    uint32_t counts[BINS];
+};
+
+static void clear_bins(struct bins *bins, double lo, double hi, int number) {
+    bins->lo = lo;
+    bins->number = number;
+    bins->scale = hi > lo ? number / (hi - lo) : 0;
+    if (!isfinite(bins->scale))
+        bins->scale = 0;
+    for (int i = 0; i < number; i++) {
+        bins->boxes[i] = box_empty();
+        bins->counts[i] = 0;
+    }
+}
+
+/* Every item is looked at twice, whatever the number of axes: for the box of the centres, and to fill the bins. */
+static void fill_bins(const struct builder *b, const struct run *run, struct bins bins[3]) {
+    const struct build_item *items = b->items + run->first;
     struct box centres = box_empty();
     for (uint32_t i = 0; i < run->count; i++)
-        centres = box_add_point(centres, b->items[run->first + i].centre);
-    struct split best = {.axis = -1, .cost = INFINITY};
-    for (int axis = 0; axis < 3; axis++) {
-        double lo = vec3_get(centres.min, axis), hi = vec3_get(centres.max, axis);
-        if (!(hi > lo))
-            continue;
-        double scale = BINS / (hi - lo);
-        if (!isfinite(scale))
-            continue;
-        struct box boxes[BINS];
-        uint32_t counts[BINS] = {0};
-        for (int i = 0; i < BINS; i++)
-            boxes[i] = box_empty();
-        for (uint32_t i = 0; i < run->count; i++) {
-            const struct build_item *item = &b->items[run->first + i];
-            int bin = bin_of(vec3_get(item->centre, axis), lo, scale);
-            boxes[bin] = box_join(boxes[bin], item->box);
-            counts[bin]++;
-        }
-        double right_cost[BINS];
-        struct box side = box_empty();
-        uint32_t count = 0;
-        for (int i = BINS - 1; i > 0; i--) {
-            side = box_join(side, boxes[i]);
-            count += counts[i];
-            right_cost[i] = count ? half_area(&side) * count : 0;
-        }
-        side = box_empty();
-        count = 0;
-        for (int i = 0; i < BINS - 1; i++) {
-            side = box_join(side, boxes[i]);
-            count += counts[i];
-            if (count == 0 || count == run->count)
+        centres = box_add_point(centres,
+                                vec3_make(centre_of(&items[i], 0), centre_of(&items[i], 1), centre_of(&items[i], 2)));
+    for (int axis = 0; axis < 3; axis++)
+        clear_bins(&bins[axis], vec3_get(centres.min, axis), vec3_get(centres.max, axis), bins_for(run->count));
+    for (uint32_t i = 0; i < run->count; i++) {
+        for (int axis = 0; axis < 3; axis++) {
+            if (bins[axis].scale == 0)
                 continue;
-            double cost = half_area(&side) * count + right_cost[i + 1];
-            /* An infinite area compares equal to itself: the first split is then as good as any. */
-            if (cost < best.cost || best.axis < 0)
-                best = (struct split){axis, i, lo, scale, cost};
+            int bin = bin_of(centre_of(&items[i], axis), bins[axis].lo, bins[axis].scale, bins[axis].number);
+            bins[axis].boxes[bin] = box_join(bins[axis].boxes[bin], items[i].box);
+            bins[axis].counts[bin]++;
         }
+    }
+}
+
+static void best_of_axis(const struct bins *bins, int axis, uint32_t all, struct split *best) {
+    struct box behind[BINS];
+    double right_cost[BINS];
+    struct box side = box_empty();
+    uint32_t count = 0;
+    for (int i = bins->number - 1; i > 0; i--) {
+        side = box_join(side, bins->boxes[i]);
+        count += bins->counts[i];
+        behind[i] = side;
+        right_cost[i] = count ? half_area(&side) * count : 0;
+    }
+    side = box_empty();
+    count = 0;
+    for (int i = 0; i < bins->number - 1; i++) {
+        side = box_join(side, bins->boxes[i]);
+        count += bins->counts[i];
+        if (count == 0 || count == all)
+            continue;
+        double cost = half_area(&side) * count + right_cost[i + 1];
+        /* An infinite area compares equal to itself: the first split is then as good as any. */
+        if (cost < best->cost || best->axis < 0)
+            *best = (struct split){axis, i, bins->number, bins->lo, bins->scale, cost, {side, behind[i + 1]}};
+    }
+}
+
+static struct split best_split(const struct builder *b, const struct run *run) {
+    struct bins bins[3];
+    struct split best = {.axis = -1, .cost = INFINITY};
+    fill_bins(b, run, bins);
+    for (int axis = 0; axis < 3; axis++) {
+        if (bins[axis].scale > 0)
+            best_of_axis(&bins[axis], axis, run->count, &best);
     }
     return best;
 }
@@ -113,7 +152,7 @@ static uint32_t partition(struct builder *b, const struct run *run, const struct
     uint32_t left = 0, right = 0;
     for (uint32_t i = 0; i < run->count; i++) {
         struct build_item item = b->items[run->first + i];
-        if (bin_of(vec3_get(item.centre, split->axis), split->lo, split->scale) <= split->bin)
+        if (bin_of(centre_of(&item, split->axis), split->lo, split->scale, split->bins) <= split->bin)
             b->items[run->first + left++] = item;
         else
             spare[right++] = item;
@@ -124,11 +163,15 @@ static uint32_t partition(struct builder *b, const struct run *run, const struct
 
 static void split_run(struct builder *b, const struct run *run, bool halve, struct run out[2]) {
     struct split split = {.axis = -1};
-    if (!halve)
+    if (run->count > 2 && !halve)
         split = best_split(b, run);
-    uint32_t left = split.axis < 0 ? 0 : partition(b, run, &split);
-    if (left == 0 || left == run->count)
-        left = run->count / 2; /* all centres in one place: halves by order */
+    if (split.axis >= 0) {
+        uint32_t left = partition(b, run, &split);
+        out[0] = (struct run){run->first, left, split.sides[0]};
+        out[1] = (struct run){run->first + left, run->count - left, split.sides[1]};
+        return;
+    }
+    uint32_t left = run->count / 2; /* all centres in one place: halves by order */
     out[0] = (struct run){run->first, left, run_box(b, run->first, left)};
     out[1] = (struct run){run->first + left, run->count - left, run_box(b, run->first + left, run->count - left)};
 }
@@ -300,7 +343,10 @@ static bool build_forest(struct builder *b, struct box_tree *tree, uint32_t coun
             whole = !parts[i].cancelled;
         if (!whole)
             ok = error_set(error, ERROR_CANCELLED, "stopped while the hierarchy of the scene was built");
-        else if (!join_parts(tree, &top, parts))
+        mem_free(b->items); /* nothing is kept that the joined tree does not need */
+        mem_free(b->spare);
+        b->items = b->spare = NULL;
+        if (whole && !join_parts(tree, &top, parts))
             ok = error_no_memory(error, "the hierarchy of the scene");
     }
     mem_free(top_nodes);
@@ -324,9 +370,7 @@ bool box_tree_build(struct box_tree *tree, const struct box *boxes, uint32_t cou
         const struct box *box = &boxes[i];
         if (box_is_empty(box))
             continue;
-        struct vec3 centre = {middle(box->min.x, box->max.x), middle(box->min.y, box->max.y),
-                              middle(box->min.z, box->max.z)};
-        builder.items[tree->item_count++] = (struct build_item){*box, centre, i};
+        builder.items[tree->item_count++] = (struct build_item){*box, i};
         tree->bounds = box_join(tree->bounds, *box);
     }
     if (ok && tree->item_count > 0)

@@ -15,8 +15,8 @@ void media_around(const struct world *world, struct vec3 point, double ray_time,
     uint32_t count = world_containing(world, point, ray_time, closed, closed_count, scratch, inside, MEDIA_LIMIT);
     out->count = 0;
     for (uint32_t i = 0; i < count; i++) {
-        const struct placed *placed = &world->placed[inside[i]];
-        uint32_t material = placed->shape.kind == SHAPE_CSG ? placed->shape.csg->leaves[0].material : placed->material;
+        const struct thing *thing = placed_thing(world, inside[i]);
+        uint32_t material = thing->shape.kind == SHAPE_CSG ? thing->shape.csg->leaves[0].material : thing->material;
         double ior;
         if (material_is_transparent(world->materials[material], &ior))
             media_enter_absorbing(out, inside[i], ior, material_absorption(world->materials[material]));

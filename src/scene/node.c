@@ -1,6 +1,9 @@
 /* Building the authoring tree. */
 #include "scene/node.h"
 
+#include "base/hash.h"
+
+#include <stddef.h>
 #include <string.h>
 
 void scene_init(struct scene *scene, struct assets *assets) {
@@ -11,10 +14,32 @@ void scene_destroy(struct scene *scene) {
     arena_destroy(&scene->arena);
 }
 
+static size_t node_size(enum node_kind kind) {
+    switch (kind) {
+    case NODE_GROUP:
+        return offsetof(struct node, joint_x);
+    case NODE_JOINT:
+        return offsetof(struct node, shape);
+    case NODE_GEOMETRY:
+    case NODE_CSG:
+        return sizeof(struct node);
+    }
+    return sizeof(struct node);
+}
+
+/* A copy of the name, shared with the node before that had the same. */
+static const char *keep_name(struct scene *scene, const char *name) {
+    size_t length = strlen(name);
+    const char **slot = &scene->names[hash_bytes(name, length, 0) % SCENE_NAMES];
+    if (!*slot || strcmp(*slot, name) != 0)
+        *slot = arena_copy_text(&scene->arena, name, length);
+    return *slot;
+}
+
 struct node *scene_node(struct scene *scene, enum node_kind kind, const char *name, struct error *error) {
-    struct node *node = arena_alloc(&scene->arena, sizeof *node);
+    struct node *node = arena_alloc(&scene->arena, node_size(kind));
     if (node)
-        node->name = arena_copy_text(&scene->arena, name, strlen(name));
+        node->name = keep_name(scene, name);
     if (!node || !node->name) {
         error_no_memory(error, "a node");
         return NULL;

@@ -11,6 +11,7 @@
 #include "look/material.h"
 #include "look/sky.h"
 #include "math/affine.h"
+#include "scene/placements.h"
 
 enum node_kind { NODE_GROUP, NODE_JOINT, NODE_GEOMETRY, NODE_CSG };
 /* Which faces of a mesh no ray sees, by the order of their corners. Operands of CSG are always whole. */
@@ -27,14 +28,27 @@ struct node_child {
 };
 
 struct node {
-    enum node_kind kind;
     const char *name; /* never NULL */
-    uint32_t serial;  /* order of creation, unique in a scene */
-    bool singular;    /* some scale factor was 0: nothing under it is drawn */
-    struct transform parent_from_node;
-    struct transform *separate; /* ORDER_SEPARATE only: translation, rotation, scaling; else NULL */
-    struct node_child *first_child, *last_child;
+    enum node_kind kind;
+    uint32_t serial; /* order of creation, unique in a scene */
+    bool singular;   /* some scale factor was 0: nothing under it is drawn */
+    bool warned;     /* this node's oddity has been told once */
+    int mark;        /* used by walks over the tree: 0 not seen, 1 on the path, 2 finished */
+    int thing;       /* used while the scene is flattened */
     uint32_t child_count;
+    uint64_t drawable; /* primitives under it, worked out by a walk over the tree; saturates */
+    struct node_child *first_child, *last_child;
+    const struct placements *placements; /* or NULL: the children are placed once for each of them */
+    struct transform *separate;          /* ORDER_SEPARATE only: translation, rotation, scaling; else NULL */
+    struct transform parent_from_node;
+    struct vec3 velocity; /* in the parent's space, of every unit of time */
+    /* Or NULL: at time 1 this node stands where that node's own transforms would put it. */
+    const struct node *moves_to;
+    /* A NODE_GROUP ends here: there may be millions, and scene_node takes no memory for the rest. */
+    struct {
+        double min, init, max;
+    } joint_x, joint_y; /* NODE_JOINT, degrees */
+    /* A NODE_JOINT ends here. */
     struct shape shape;              /* NODE_GEOMETRY; never SHAPE_CSG */
     const struct material *material; /* may be NULL: plain gray and one warning */
     /* A mesh whose faces have slots: their materials, NULL for plain gray. `material`, where it is set, covers them
@@ -47,15 +61,6 @@ struct node {
     const struct material *relief;  /* set_bump: a MATERIAL_BUMP or MATERIAL_NORMAL template, likewise */
     enum node_csg operation;        /* NODE_CSG */
     struct node *operands[2];
-    struct {
-        double min, init, max;
-    } joint_x, joint_y;   /* NODE_JOINT, degrees */
-    struct vec3 velocity; /* in the parent's space, of every unit of time */
-    /* Or NULL: at time 1 this node stands where that node's own transforms would put it. */
-    const struct node *moves_to;
-    bool warned;       /* this node's oddity has been told once */
-    int mark;          /* used by walks over the tree: 0 not seen, 1 on the path, 2 finished */
-    uint64_t drawable; /* primitives under it, worked out by such a walk; saturates */
 };
 
 /* The store of assets: outlives scripts and renders. */
@@ -94,9 +99,11 @@ bool assets_add_object(struct assets *assets, const char *key, void *object, voi
 /* A mesh that something in the store owns is counted with the others. The store becomes one more owner. */
 bool assets_keep_mesh(struct assets *assets, struct mesh *mesh, struct error *error);
 
+enum { SCENE_NAMES = 64 };
 struct scene {
     struct arena arena;
-    struct assets *assets; /* not owned */
+    const char *names[SCENE_NAMES]; /* names of nodes made lately, by hash: most are used again */
+    struct assets *assets;          /* not owned */
     uint32_t node_count;
     enum transform_order order;
 };

@@ -66,6 +66,17 @@ static bool measure_self(struct measuring *m, const struct node *node, const str
     return true;
 }
 
+static bool measure_children(struct measuring *m, const struct node *node, const struct transform *map, int depth,
+                             struct box *box) {
+    for (const struct node_child *child = node->first_child; child; child = child->next) {
+        struct box below;
+        if (!measure(m, child->node, map, depth + 1, &below))
+            return false;
+        *box = box_join(*box, below);
+    }
+    return true;
+}
+
 static bool measure(struct measuring *m, const struct node *node, const struct transform *map, int depth,
                     struct box *box) {
     *box = box_empty();
@@ -79,11 +90,15 @@ static bool measure(struct measuring *m, const struct node *node, const struct t
     struct transform own = transform_compose(map, &parent_from_node);
     if (!measure_self(m, node, &own, depth, box))
         return false;
-    for (const struct node_child *child = node->first_child; child; child = child->next) {
-        struct box below;
-        if (!measure(m, child->node, &own, depth + 1, &below))
+    uint32_t rounds = node->placements ? node->placements->count : 1;
+    for (uint32_t i = 0; i < rounds && node->first_child; i++) {
+        struct transform map_of_children = own;
+        if (node->placements) {
+            struct transform node_from_child = placement_transform(node->placements, i);
+            map_of_children = transform_compose(&own, &node_from_child);
+        }
+        if (!measure_children(m, node, &map_of_children, depth, box))
             return false;
-        *box = box_join(*box, below);
     }
     return true;
 }

@@ -77,6 +77,10 @@ static uint64_t add_saturating(uint64_t a, uint64_t b) {
     return a > UINT64_MAX - b ? UINT64_MAX : a + b;
 }
 
+static uint64_t multiply_saturating(uint64_t a, uint64_t b) {
+    return b > 0 && a > UINT64_MAX / b ? UINT64_MAX : a * b;
+}
+
 static void clear_marks(struct node *root, struct stack *stack) {
     /* Marks are cleared by the same walk backwards: 2 becomes 0 where it is met first. */
     stack->count = 0;
@@ -111,6 +115,7 @@ static bool count_drawable(struct flattening *f, struct node *root) {
         return error_no_memory(f->error, "flattening the scene");
     *frame = (struct count_frame){.node = root, .next = root->first_child};
     root->mark = 1;
+    root->thing = 0;
     while (ok && stack.count > 0) {
         frame = stack_top(&stack);
         struct node *below = next_below(frame);
@@ -118,6 +123,7 @@ static bool count_drawable(struct flattening *f, struct node *root) {
             ok = tell_cycle(f, &stack, below);
         } else if (below && below->mark == 0) {
             below->mark = 1;
+            below->thing = 0;
             frame = stack_push(&stack);
             if (!frame)
                 ok = error_no_memory(f->error, "flattening the scene");
@@ -125,10 +131,12 @@ static bool count_drawable(struct flattening *f, struct node *root) {
                 *frame = (struct count_frame){.node = below, .next = below->first_child};
         } else if (!below) {
             struct node *node = frame->node;
-            uint64_t count = node->kind == NODE_GEOMETRY || node->kind == NODE_CSG ? 1 : 0;
+            uint64_t own = node->kind == NODE_GEOMETRY || node->kind == NODE_CSG ? 1 : 0, below_it = 0;
             for (struct node_child *child = node->first_child; child; child = child->next)
-                count = add_saturating(count, child->node->drawable);
-            node->drawable = node->singular ? 0 : count;
+                below_it = add_saturating(below_it, child->node->drawable);
+            if (node->placements)
+                below_it = multiply_saturating(below_it, node->placements->count);
+            node->drawable = node->singular ? 0 : add_saturating(own, below_it);
             node->mark = 2;
             stack.count--;
         }
@@ -164,32 +172,36 @@ struct stand {
     struct transform from_node;      /* to the space of `above`, or to the world */
 };
 
-static bool place(struct flattening *f, const struct node *node, const struct stand *stand, const struct shape *shape,
-                  uint32_t material, uint32_t slot_count) {
+/* Room for one more in a list that doubles. */
+static void *room_for_one(void *list, uint32_t count, uint32_t *capacity, size_t size) {
+    if (count < *capacity)
+        return list;
+    uint32_t wanted = *capacity ? *capacity * 2 : 64;
+    void *moved = mem_resize_array(list, wanted, size);
+    if (moved)
+        *capacity = wanted;
+    return moved;
+}
+
+static bool place_moving(struct flattening *f, const struct stand *stand, struct placed *out) {
+    struct world *world = f->world;
+    struct moving *moving =
+        room_for_one(world->moving, world->moving_count, &f->moving_capacity, sizeof *world->moving);
+    if (!moving)
+        return error_no_memory(f->error, "what moves in the scene");
+    world->moving = moving;
+    out->linear = LINEAR_MOVING | world->moving_count;
+    moving[world->moving_count++] = (struct moving){stand->above, stand->from_node};
+    return true;
+}
+
+static bool place(struct flattening *f, const struct stand *stand, uint32_t thing) {
     struct world *world = f->world;
     if (world->placed_count == f->placed_capacity)
         return error_set(f->error, ERROR_MACHINE, "the scene changed while it was flattened");
-    struct placed *placed = &f->placed[world->placed_count];
-    *placed = (struct placed){.world_from_object = stand->from_node,
-                              .shape = *shape,
-                              .material = material,
-                              .slot_count = slot_count,
-                              .cull = node->cull,
-                              .holes = any_holes(f, shape, material, slot_count)};
-    if (stand->above) {
-        struct moving *moving = arena_alloc(f->arena, sizeof *moving);
-        if (!moving)
-            return error_no_memory(f->error, "what moves in the scene");
-        *moving = (struct moving){stand->above, stand->from_node};
-        placed->moving = moving;
-        placed->world_from_object = world_moved(moving, world->shutter, 0.5);
-    }
-    placed->scale = transform_stretch(&placed->world_from_object);
-    struct transform nothing = transform_identity();
-    placed->identity = !placed->moving && memcmp(&nothing, &placed->world_from_object, sizeof nothing) == 0;
-    f->nodes[world->placed_count] = node;
-    world->placed_count++;
-    return true;
+    struct placed *placed = &f->placed[world->placed_count++];
+    placed->thing = thing;
+    return stand->above ? place_moving(f, stand, placed) : flatten_map(f, &stand->from_node, placed);
 }
 
 bool flatten_mesh_index(struct flattening *f, const struct shape *shape) {
@@ -210,28 +222,64 @@ bool flatten_mesh_index(struct flattening *f, const struct shape *shape) {
     return true;
 }
 
-static bool place_node(struct flattening *f, struct node *node, const struct stand *stand) {
-    if (node->kind == NODE_GEOMETRY) {
-        uint32_t material, slot_count;
-        if (node->shape.kind == SHAPE_MESH && mesh_triangle_count(node->shape.mesh) == 0)
-            return true;
-        return flatten_mesh_index(f, &node->shape) && flatten_material(f, node, NULL, &material, &slot_count) &&
-               place(f, node, stand, &node->shape, material, slot_count);
-    }
-    if (node->kind == NODE_CSG) {
-        const struct csg *csg;
-        if (!flatten_csg(f, node, &csg))
-            return false;
-        struct shape shape = {.kind = SHAPE_CSG, .csg = csg};
-        return !csg || place(f, node, stand, &shape, 0, 1);
-    }
+/* node->thing: 0 where it is not known yet, else its number and 1, or nothing to draw. */
+enum { THING_NOTHING = -1 };
+
+static bool add_thing(struct flattening *f, struct node *node, struct thing *thing) {
+    struct world *world = f->world;
+    struct thing *things = room_for_one(world->things, world->thing_count, &f->thing_capacity, sizeof *world->things);
+    if (!things)
+        return error_no_memory(f->error, "the things of the scene");
+    world->things = things;
+    thing->holes = any_holes(f, &thing->shape, thing->material, thing->slot_count);
+    things[world->thing_count++] = *thing;
+    node->thing = (int)world->thing_count;
     return true;
 }
 
+/* The first time that a node is placed: its shape, ready for rays, and its materials. */
+static bool make_thing(struct flattening *f, struct node *node) {
+    struct thing thing = {.node = node};
+    node->thing = THING_NOTHING;
+    if (node->kind == NODE_GEOMETRY) {
+        if (node->shape.kind == SHAPE_MESH && mesh_triangle_count(node->shape.mesh) == 0)
+            return true;
+        thing.shape = node->shape;
+        thing.cull = node->cull;
+        return flatten_mesh_index(f, &node->shape) &&
+               flatten_material(f, node, NULL, &thing.material, &thing.slot_count) && add_thing(f, node, &thing);
+    }
+    thing.shape.kind = SHAPE_CSG;
+    thing.slot_count = 1;
+    return flatten_csg(f, node, &thing.shape.csg) && (!thing.shape.csg || add_thing(f, node, &thing));
+}
+
+static bool place_node(struct flattening *f, struct node *node, const struct stand *stand) {
+    if (node->kind != NODE_GEOMETRY && node->kind != NODE_CSG)
+        return true;
+    if (node->thing == 0 && !make_thing(f, node))
+        return false;
+    return node->thing == THING_NOTHING || place(f, stand, (uint32_t)node->thing - 1);
+}
+
 struct place_frame {
-    struct stand stand;
+    struct stand stand, of_children;
+    struct node *node;
     struct node_child *next;
+    uint32_t at; /* of the node's placements */
 };
+
+/* Children are placed once, or once for each placement of their node. */
+static void begin_children(struct place_frame *frame, uint32_t at) {
+    const struct placements *placements = frame->node->placements;
+    frame->at = at;
+    frame->next = frame->node->first_child;
+    frame->of_children = frame->stand;
+    if (placements) {
+        struct transform node_from_child = placement_transform(placements, at);
+        frame->of_children.from_node = transform_compose(&frame->stand.from_node, &node_from_child);
+    }
+}
 
 /* A node that moves: a link of its own, on which what is under it stands. */
 static bool stand_moving(struct flattening *f, const struct node *node, const struct stand *parent, struct stand *out) {
@@ -264,12 +312,37 @@ static bool enter_node(struct flattening *f, struct stack *stack, const struct s
     }
     if (!place_node(f, node, &stand))
         return false;
-    if (!node->first_child)
+    if (!node->first_child || (node->placements && node->placements->count == 0))
         return true;
     struct place_frame *frame = stack_push(stack);
     if (!frame)
         return error_no_memory(f->error, "flattening the scene");
-    *frame = (struct place_frame){stand, node->first_child};
+    frame->stand = stand;
+    frame->node = node;
+    begin_children(frame, 0);
+    return true;
+}
+
+static bool place_all(struct flattening *f, struct stack *stack) {
+    uint32_t steps = 0;
+    while (stack->count > 0) {
+        struct place_frame *frame = stack_top(stack);
+        struct node_child *link = frame->next;
+        if ((++steps & 4095) == 0 && pool_cancelled(f->pool))
+            return error_set(f->error, ERROR_CANCELLED, "stopped while the scene was flattened");
+        if (!link) {
+            const struct placements *placements = frame->node->placements;
+            if (placements && frame->at + 1 < placements->count)
+                begin_children(frame, frame->at + 1);
+            else
+                stack->count--;
+            continue;
+        }
+        frame->next = link->next;
+        struct stand parent = frame->of_children; /* the stack may move */
+        if (link->node->drawable > 0 && !enter_node(f, stack, &parent, link->node))
+            return false;
+    }
     return true;
 }
 
@@ -281,29 +354,13 @@ bool flatten_scene(struct flattening *f, struct node *root) {
                          PLACED_LIMIT);
     f->placed_capacity = (uint32_t)root->drawable;
     f->placed = arena_alloc_array(f->arena, f->placed_capacity, sizeof *f->placed);
-    f->nodes = arena_alloc_array(f->arena, f->placed_capacity, sizeof *f->nodes);
-    if (!f->placed || !f->nodes)
+    if (!f->placed)
         return error_set(f->error, ERROR_MACHINE, "out of memory for %u placed primitives", f->placed_capacity);
     f->world->placed = f->placed;
-    f->world->nodes = f->nodes;
     struct stack stack = {.size = sizeof(struct place_frame)};
     struct stand ground = {.from_node = transform_identity()};
-    bool ok = root->drawable == 0 || enter_node(f, &stack, &ground, root);
-    uint32_t steps = 0;
-    while (ok && stack.count > 0) {
-        struct place_frame *frame = stack_top(&stack);
-        struct node_child *link = frame->next;
-        if (!link) {
-            stack.count--;
-            continue;
-        }
-        frame->next = link->next;
-        struct stand parent = frame->stand; /* the stack may move */
-        if (link->node->drawable > 0)
-            ok = enter_node(f, &stack, &parent, link->node);
-        if ((++steps & 4095) == 0 && pool_cancelled(f->pool))
-            ok = error_set(f->error, ERROR_CANCELLED, "stopped while the scene was flattened");
-    }
+    bool ok = root->drawable == 0 || (enter_node(f, &stack, &ground, root) && place_all(f, &stack));
     mem_free(stack.items);
+    flatten_map_end(f);
     return ok;
 }

@@ -6,6 +6,7 @@
 #include "world/world.h"
 
 struct material_table; /* distinct (material, texture) pairs */
+struct linear_table;
 
 struct flattening {
     struct arena *arena; /* of the job: everything made here lives there */
@@ -16,12 +17,13 @@ struct flattening {
     void *warn_context;
     struct error *error;
     struct placed *placed;
-    const struct node **nodes;
-    uint32_t placed_capacity;
+    uint32_t placed_capacity, thing_capacity, linear_capacity, moving_capacity;
+    struct linear_table *linear_table; /* the maps by their bits */
     struct material_table *materials;
 };
 
-/* Fills world->placed, nodes, materials. Errors: cycles, too many primitives, open operands of CSG, no memory. */
+/* Fills world->placed, things, linear_maps, materials. Errors: cycles, too many primitives, open operands of CSG, no
+ * memory. */
 bool flatten_scene(struct flattening *f, struct node *root);
 
 /* The CSG primitive of a NODE_CSG in its own space; NULL shape pointer out when it is empty (nothing to draw). */
@@ -33,5 +35,8 @@ bool flatten_csg(struct flattening *f, struct node *node, const struct csg **out
 bool flatten_material(struct flattening *f, struct node *node, const struct material *inherited, uint32_t *out,
                       uint32_t *count);
 bool flatten_mesh_index(struct flattening *f, const struct shape *shape);
+/* Sets shifts and linear map of a placement. Maps that are equal to the bit are kept once. */
+bool flatten_map(struct flattening *f, const struct transform *world_from_object, struct placed *out);
+void flatten_map_end(struct flattening *f); /* gives back what only flattening needs */
 
 #endif

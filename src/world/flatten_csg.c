@@ -100,6 +100,20 @@ static bool add_operation(struct flattening *f, struct csg_draft *draft, struct 
     return true;
 }
 
+static bool add_children(struct flattening *f, struct csg_draft *draft, struct node *node,
+                         const struct transform *csg_from_node, const struct material *inherited, int nesting,
+                         bool *empty) {
+    for (struct node_child *child = node->first_child; child; child = child->next) {
+        bool child_empty;
+        if (!add_operand(f, draft, child->node, csg_from_node, inherited, nesting + 1, &child_empty))
+            return false;
+        if (!child_empty && !*empty && !add_token(f, draft, (struct csg_token){.operation = CSG_UNION}))
+            return false;
+        *empty = *empty && child_empty;
+    }
+    return true;
+}
+
 /* Everything under a node as one operand: its own surface and its children, united. */
 static bool add_operand(struct flattening *f, struct csg_draft *draft, struct node *node,
                         const struct transform *csg_from_parent, const struct material *inherited, int nesting,
@@ -124,13 +138,15 @@ static bool add_operand(struct flattening *f, struct csg_draft *draft, struct no
         if (!add_operation(f, draft, node, &csg_from_node, inherited, nesting, empty))
             return false;
     }
-    for (struct node_child *child = node->first_child; child; child = child->next) {
-        bool child_empty;
-        if (!add_operand(f, draft, child->node, &csg_from_node, inherited, nesting + 1, &child_empty))
+    uint32_t rounds = node->placements ? node->placements->count : 1;
+    for (uint32_t i = 0; i < rounds && node->first_child; i++) {
+        struct transform csg_from_child = csg_from_node;
+        if (node->placements) {
+            struct transform node_from_child = placement_transform(node->placements, i);
+            csg_from_child = transform_compose(&csg_from_node, &node_from_child);
+        }
+        if (!add_children(f, draft, node, &csg_from_child, inherited, nesting, empty))
             return false;
-        if (!child_empty && !*empty && !add_token(f, draft, (struct csg_token){.operation = CSG_UNION}))
-            return false;
-        *empty = *empty && child_empty;
     }
     return true;
 }

@@ -29,7 +29,7 @@ static double luminance(struct vec3 c) {
 
 /* Triangles without area or light are left out. */
 static void add_triangle(struct gathering *g, const struct mesh *mesh, uint32_t number, const struct transform *map,
-                         double sign, const struct placed *placed) {
+                         double sign, const struct thing *thing) {
     struct vec3 corners[3], emission = g->light->emission;
     uint32_t slot;
     mesh_triangle(mesh, number, corners, &slot);
@@ -39,8 +39,8 @@ static void add_triangle(struct gathering *g, const struct mesh *mesh, uint32_t 
         corners[i] = affine_point(&map->forward, corners[i]);
         size = fmax(size, vec3_max_abs(corners[i]));
     }
-    if (!g->light->has_emission && placed)
-        emission = material_emission(g->world->materials[placed->material + (slot < placed->slot_count ? slot : 0)]);
+    if (!g->light->has_emission && thing)
+        emission = material_emission(g->world->materials[thing->material + (slot < thing->slot_count ? slot : 0)]);
     struct light_triangle *t = &g->triangles[g->count];
     t->corner = corners[0];
     t->edge1 = vec3_sub(corners[1], corners[0]);
@@ -59,23 +59,23 @@ static void add_triangle(struct gathering *g, const struct mesh *mesh, uint32_t 
 }
 
 static void add_mesh(struct gathering *g, const struct mesh *mesh, const struct transform *map,
-                     const struct placed *placed) {
+                     const struct thing *thing) {
     bool mirrored = affine_determinant(&map->forward) < 0;
     double sign = mesh_is_closed(mesh) && mesh_is_outward(mesh) == mirrored ? -1 : 1;
     g->one_sided = g->one_sided && mesh_is_closed(mesh);
     for (uint32_t i = 0; i < mesh_triangle_count(mesh); i++)
-        add_triangle(g, mesh, i, map, sign, placed);
+        add_triangle(g, mesh, i, map, sign, thing);
 }
 
 static bool is_lamp(const struct world *world, const uint8_t *marked, uint32_t index) {
-    return marked[index] && world->placed[index].shape.kind == SHAPE_MESH;
+    return marked[index] && placed_shape(world, index)->kind == SHAPE_MESH;
 }
 
 static bool gather(struct gathering *g, struct arena *arena, const uint8_t *marked, struct error *error) {
     const struct node *node = g->light->node;
     uint64_t total = 0;
     for (uint32_t i = 0; i < g->world->placed_count; i++)
-        total += is_lamp(g->world, marked, i) ? mesh_triangle_count(g->world->placed[i].shape.mesh) : 0;
+        total += is_lamp(g->world, marked, i) ? mesh_triangle_count(placed_shape(g->world, i)->mesh) : 0;
     bool alone = total == 0;
     if (alone && node->kind == NODE_GEOMETRY && node->shape.kind == SHAPE_MESH)
         total = mesh_triangle_count(node->shape.mesh);
@@ -90,9 +90,11 @@ static bool gather(struct gathering *g, struct arena *arena, const uint8_t *mark
     if (!g->triangles || !g->until)
         return error_no_memory(error, "a mesh light");
     for (uint32_t i = 0; i < g->world->placed_count && !alone; i++) {
-        const struct placed *placed = &g->world->placed[i];
-        if (is_lamp(g->world, marked, i))
-            add_mesh(g, placed->shape.mesh, &placed->world_from_object, placed);
+        if (!is_lamp(g->world, marked, i))
+            continue;
+        struct transform map =
+            world_placement(g->world, i, 0.5); /* of what moves: in the middle of the shutter's time */
+        add_mesh(g, placed_shape(g->world, i)->mesh, &map, placed_thing(g->world, i));
     }
     if (alone) {
         struct transform map = node_parent_from_node(node);

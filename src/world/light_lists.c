@@ -1,5 +1,5 @@
 /* The same walk as flattening's, in the same order, with a running count of placed primitives in the place of the
- * transforms: a node places its primitive before its children, always or never, so the next entry of world->nodes is
+ * transforms: a node places its primitive before its children, always or never, so the next placed primitive is of
  * this node exactly when it was placed. One walk a list; scenes without lists pay nothing. */
 #include "world/light_lists.h"
 
@@ -13,7 +13,9 @@ struct walk {
     uint32_t list_count, placed;
     uint8_t *lit, value; /* what a listed primitive gets */
     struct walk_frame {
+        const struct node *node;
         const struct node_child *next;
+        uint32_t rounds; /* of the children that are still to come */
         bool listed;
     } * frames;
     size_t count, capacity;
@@ -22,7 +24,7 @@ struct walk {
 static bool enter(struct walk *walk, const struct node *node, bool listed) {
     for (uint32_t i = 0; i < walk->list_count && !listed; i++)
         listed = walk->list[i] == node;
-    if (walk->placed < walk->world->placed_count && walk->world->nodes[walk->placed] == node) {
+    if (walk->placed < walk->world->placed_count && placed_node(walk->world, walk->placed) == node) {
         if (listed)
             walk->lit[walk->placed] = walk->value;
         walk->placed++;
@@ -35,7 +37,8 @@ static bool enter(struct walk *walk, const struct node *node, bool listed) {
         walk->frames = frames;
         walk->capacity = capacity;
     }
-    walk->frames[walk->count++] = (struct walk_frame){node->first_child, listed};
+    uint32_t rounds = node->placements ? node->placements->count : 1;
+    walk->frames[walk->count++] = (struct walk_frame){node, NULL, rounds, listed};
     return true;
 }
 
@@ -46,6 +49,11 @@ bool light_lists_mark(const struct world *world, const struct node *const *list,
     while (ok && walk.count > 0) {
         struct walk_frame *frame = &walk.frames[walk.count - 1];
         const struct node_child *link = frame->next;
+        if (!link && frame->rounds > 0) {
+            frame->rounds--;
+            frame->next = frame->node->first_child;
+            continue;
+        }
         if (!link) {
             walk.count--;
             continue;

@@ -12,6 +12,7 @@
  * Where a primitive stands in several cells it is tried once per ray all the same (a small mailbox remembers). */
 #include "world/world.h"
 
+#include "base/mem.h"
 #include "geom/shape_sphere.h"
 #include "math/frame.h"
 #include "world/flatten.h"
@@ -32,22 +33,45 @@ void world_scratch_destroy(struct world_scratch *scratch) {
     geom_scratch_destroy(&scratch->geom);
 }
 
-struct transform world_moved(const struct moving *moving, struct shutter shutter, double ray_time) {
+static struct transform moved(const struct moving *moving, struct shutter shutter, double ray_time) {
     double time = shutter_time(shutter, ray_time);
     struct transform out = moving->link_from_object;
     for (const struct moving_link *link = moving->link; link; link = link->above) {
-        struct transform moved = motion_at(&link->motion, time);
-        out = transform_compose(&moved, &out);
+        struct transform by = motion_at(&link->motion, time);
+        out = transform_compose(&by, &out);
         out = transform_compose(&link->above_from_node, &out);
     }
     return out;
 }
 
+struct transform world_placement(const struct world *world, uint32_t placed, double ray_time) {
+    const struct placed *p = &world->placed[placed];
+    if (p->linear == LINEAR_NONE)
+        return transform_identity();
+    if (p->linear & LINEAR_MOVING)
+        return moved(&world->moving[p->linear & ~LINEAR_MOVING], world->shutter, ray_time);
+    const struct linear_map *map = &world->linear_maps[p->linear];
+    struct transform out;
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            out.forward.m[i][j] = map->forward[i][j];
+            out.inverse.m[i][j] = map->inverse[i][j];
+        }
+        out.forward.m[i][3] = vec3_get(p->shift, i);
+        out.inverse.m[i][3] = vec3_get(p->shift_back, i);
+    }
+    return out;
+}
+
+struct ray world_ray_of_moving(const struct world *world, uint32_t placed, const struct ray *ray) {
+    struct transform world_from_object = world_placement(world, placed, ray->time);
+    return ray_transform(&world_from_object.inverse, ray);
+}
+
 /* Everything that a moving primitive covers while the shutter is open: link by link, so that what the moves of two
  * links have to do with each other is forgotten and the box may be too large, never too small. */
-static struct box moving_bounds(const struct placed *placed, struct shutter shutter) {
-    const struct moving *moving = placed->moving;
-    struct box box = box_pad(shape_bounds_under(&placed->shape, &moving->link_from_object.forward));
+static struct box moving_bounds(const struct shape *shape, const struct moving *moving, struct shutter shutter) {
+    struct box box = box_pad(shape_bounds_under(shape, &moving->link_from_object.forward));
     for (const struct moving_link *link = moving->link; link; link = link->above) {
         box = box_pad(motion_bounds(&link->motion, &box, shutter));
         box = box_pad(box_transform(&link->above_from_node.forward, &box));
@@ -55,17 +79,26 @@ static struct box moving_bounds(const struct placed *placed, struct shutter shut
     return box;
 }
 
+static struct box placed_bounds(const struct world *world, uint32_t placed) {
+    const struct shape *shape = placed_shape(world, placed);
+    uint32_t linear = world->placed[placed].linear;
+    if (linear != LINEAR_NONE && (linear & LINEAR_MOVING))
+        return moving_bounds(shape, &world->moving[linear & ~LINEAR_MOVING], world->shutter);
+    struct transform world_from_object = world_placement(world, placed, 0);
+    return box_pad(shape_bounds_under(shape, &world_from_object.forward));
+}
+
 static void place_boxes(struct world *world) {
+    world->moves = world->moving_count > 0;
     for (uint32_t i = 0; i < world->placed_count; i++) {
-        const struct placed *placed = &world->placed[i];
-        world->boxes[i] = placed->moving
-                              ? moving_bounds(placed, world->shutter)
-                              : box_pad(shape_bounds_under(&placed->shape, &placed->world_from_object.forward));
-        world->moves = world->moves || placed->moving;
-        uint32_t need = shape_scratch_need(&placed->shape);
+        const struct shape *shape = placed_shape(world, i);
+        world->boxes[i] = placed_bounds(world, i);
+        if (shape->kind == SHAPE_MESH)
+            world->triangles += mesh_triangle_count(shape->mesh);
+    }
+    for (uint32_t i = 0; i < world->thing_count; i++) {
+        uint32_t need = shape_scratch_need(&world->things[i].shape);
         world->scratch_need = need > world->scratch_need ? need : world->scratch_need;
-        if (placed->shape.kind == SHAPE_MESH)
-            world->triangles += mesh_triangle_count(placed->shape.mesh);
     }
 }
 
@@ -74,11 +107,26 @@ static void add_up_meshes(struct world *world, const struct assets *assets) {
         world->mesh_memory += mesh_memory(entry->mesh);
 }
 
-bool world_build(struct world *world, struct arena *arena, struct scene *scene, struct node *root,
-                 const struct light *lights, uint32_t light_count, const struct sky *sky, struct shutter shutter,
-                 enum accel_kind accel, struct pool *pool, world_warning *warn, void *warn_context,
-                 struct error *error) {
-    *world = (struct world){.accel = accel, .sky = *sky, .light_count = light_count, .shutter = shutter};
+static bool build_accel(struct world *world, struct pool *pool, struct error *error) {
+    switch (world->accel) {
+    case ACCEL_GRID:
+        return grid_build(&world->grid, world->boxes, world->placed_count, pool, error);
+    case ACCEL_AUTO:
+    case ACCEL_BVH:
+        return box_tree_build(&world->tree, world->boxes, world->placed_count, pool, error);
+    case ACCEL_KDTREE:
+        return kd_tree_build(&world->kd_tree, world->boxes, world->placed_count, NULL, NULL, pool, error);
+    case ACCEL_NONE:
+        return true;
+    }
+    return true;
+}
+
+/* Leaves it to the caller to destroy what there is when it fails. */
+static bool build(struct world *world, struct arena *arena, struct scene *scene, struct node *root,
+                  const struct light *lights, struct pool *pool, world_warning *warn, void *warn_context,
+                  struct error *error) {
+    uint32_t light_count = world->light_count;
     struct light *copied = arena_alloc_array(arena, light_count, sizeof *copied);
     if (!copied)
         return error_no_memory(error, "the lights of the scene");
@@ -108,21 +156,27 @@ bool world_build(struct world *world, struct arena *arena, struct scene *scene, 
     }
     place_boxes(world);
     add_up_meshes(world, scene->assets);
-    switch (accel) {
-    case ACCEL_GRID:
-        return grid_build(&world->grid, world->boxes, world->placed_count, pool, error);
-    case ACCEL_AUTO:
-    case ACCEL_BVH:
-        return box_tree_build(&world->tree, world->boxes, world->placed_count, pool, error);
-    case ACCEL_KDTREE:
-        return kd_tree_build(&world->kd_tree, world->boxes, world->placed_count, NULL, NULL, pool, error);
-    case ACCEL_NONE:
-        return true;
-    }
-    return true;
+    return build_accel(world, pool, error);
+}
+
+bool world_build(struct world *world, struct arena *arena, struct scene *scene, struct node *root,
+                 const struct light *lights, uint32_t light_count, const struct sky *sky, struct shutter shutter,
+                 enum accel_kind accel, struct pool *pool, world_warning *warn, void *warn_context,
+                 struct error *error) {
+    *world = (struct world){.accel = accel, .sky = *sky, .light_count = light_count, .shutter = shutter};
+    bool ok = build(world, arena, scene, root, lights, pool, warn, warn_context, error);
+    if (!ok)
+        world_destroy(world);
+    return ok;
 }
 
 void world_destroy(struct world *world) {
+    mem_free(world->things);
+    mem_free(world->linear_maps);
+    mem_free(world->moving);
+    world->things = NULL;
+    world->linear_maps = NULL;
+    world->moving = NULL;
     grid_destroy(&world->grid);
     box_tree_destroy(&world->tree);
     kd_tree_destroy(&world->kd_tree);
@@ -144,19 +198,19 @@ struct search {
 /* Faces that are not seen are passed: the search goes on behind them. */
 static bool nearest_of_mesh(const struct world *world, uint32_t index, const struct ray *ray_object,
                             struct geom_scratch *geom, struct crossing *out) {
-    const struct placed *placed = &world->placed[index];
-    bool found = mesh_nearest(placed->shape.mesh, ray_object, world->accel, geom, out);
+    const struct thing *thing = placed_thing(world, index);
+    bool found = mesh_nearest(thing->shape.mesh, ray_object, world->accel, geom, out);
     struct ray rest = *ray_object;
-    while (found && placed->cull != CULL_NONE && out->enter == (placed->cull == CULL_FRONT)) {
+    while (found && thing->cull != CULL_NONE && out->enter == (thing->cull == CULL_FRONT)) {
         rest.t_min = out->t;
-        found = mesh_nearest(placed->shape.mesh, &rest, world->accel, geom, out);
+        found = mesh_nearest(thing->shape.mesh, &rest, world->accel, geom, out);
     }
     return found;
 }
 
 /* Runs one question about one placed primitive again with more scratch until it fits. */
 static bool ask_nearest(struct search *s, uint32_t index, const struct ray *ray_object, struct crossing *out) {
-    const struct shape *shape = &s->world->placed[index].shape;
+    const struct shape *shape = placed_shape(s->world, index);
     struct geom_scratch *geom = &s->scratch->geom;
     for (;;) {
         bool found = shape->kind == SHAPE_MESH ? nearest_of_mesh(s->world, index, ray_object, geom, out)
@@ -171,14 +225,12 @@ static bool ask_nearest(struct search *s, uint32_t index, const struct ray *ray_
 }
 
 static void try_placed(struct search *s, uint32_t index) {
-    const struct placed *placed = &s->world->placed[index];
+    bool as_it_is = s->world->placed[index].linear == LINEAR_NONE;
     struct ray ray_object;
     struct crossing crossing;
-    if (!placed->identity) {
-        struct transform moved;
-        ray_object = ray_transform(&world_placement(s->world, placed, s->ray->time, &moved)->inverse, &s->limited);
-    }
-    if (!ask_nearest(s, index, placed->identity ? &s->limited : &ray_object, &crossing))
+    if (!as_it_is)
+        ray_object = placed_ray(s->world, index, &s->limited);
+    if (!ask_nearest(s, index, as_it_is ? &s->limited : &ray_object, &crossing))
         return;
     if (s->found && !(crossing.t < s->best.t || (crossing.t == s->best.t && index < s->placed)))
         return;
@@ -282,10 +334,8 @@ static bool any_with_holes(const struct world *world, uint32_t index, const stru
                            struct world_scratch *scratch) {
     struct ray rest = *ray;
     struct search s = {.world = world, .ray = ray, .scratch = scratch};
-    struct transform moved;
-    const struct transform *map = world_placement(world, &world->placed[index], ray->time, &moved);
     for (;;) {
-        struct ray ray_object = ray_transform(&map->inverse, &rest);
+        struct ray ray_object = placed_ray(world, index, &rest);
         struct crossing crossing;
         struct hit hit;
         struct surface_look look;
@@ -301,19 +351,17 @@ static bool any_with_holes(const struct world *world, uint32_t index, const stru
 
 static bool any_placed(const struct world *world, uint32_t index, const struct ray *ray,
                        struct world_scratch *scratch) {
-    const struct placed *placed = &world->placed[index];
-    if (placed->holes)
+    const struct thing *thing = placed_thing(world, index);
+    if (thing->holes)
         return any_with_holes(world, index, ray, scratch);
-    struct transform moved;
-    struct ray ray_object =
-        placed->identity ? *ray : ray_transform(&world_placement(world, placed, ray->time, &moved)->inverse, ray);
+    struct ray ray_object = placed_ray(world, index, ray);
     for (;;) {
         struct crossing ignored;
-        bool found = placed->shape.kind == SHAPE_MESH && placed->cull != CULL_NONE
+        bool found = thing->shape.kind == SHAPE_MESH && thing->cull != CULL_NONE
                          ? nearest_of_mesh(world, index, &ray_object, &scratch->geom, &ignored)
-                     : placed->shape.kind == SHAPE_MESH
-                         ? mesh_any(placed->shape.mesh, &ray_object, world->accel, &scratch->geom)
-                         : shape_any(&placed->shape, &ray_object, &scratch->geom);
+                     : thing->shape.kind == SHAPE_MESH
+                         ? mesh_any(thing->shape.mesh, &ray_object, world->accel, &scratch->geom)
+                         : shape_any(&thing->shape, &ray_object, &scratch->geom);
         if (!scratch->geom.overflow)
             return found;
         if (!geom_scratch_grow(&scratch->geom)) {
@@ -472,9 +520,9 @@ static double offset_of(const struct transform *map, double scale, const struct 
 
 /* What bumps need: the world's vector of one unit along the operand's normal, and on spheres the tangents that other
  * materials do not ask for. */
-static void describe_relief(const struct placed *placed, const struct affine *map, const struct csg_leaf *leaf,
+static void describe_relief(const struct thing *thing, const struct affine *map, const struct csg_leaf *leaf,
                             struct hit *hit) {
-    const struct shape *shape = leaf ? &leaf->shape : &placed->shape;
+    const struct shape *shape = leaf ? &leaf->shape : &thing->shape;
     struct vec3 normal = vec3_normalize(hit->pattern_normal), raise = normal, u = {0}, v = {0};
     if (hit->on_sphere)
         sphere_tangents(shape->sphere.radius, normal, &u, &v);
@@ -493,22 +541,30 @@ static void describe_relief(const struct placed *placed, const struct affine *ma
     }
 }
 
+static double stretch_of(const struct world *world, uint32_t index, const struct transform *map) {
+    uint32_t linear = world->placed[index].linear;
+    if (linear == LINEAR_NONE)
+        return 1;
+    return linear & LINEAR_MOVING ? transform_stretch(map) : world->linear_maps[linear].stretch;
+}
+
 static void describe(const struct world *world, const struct ray *ray, uint32_t index, const struct crossing *crossing,
                      struct hit *hit) {
-    const struct placed *placed = &world->placed[index];
-    struct transform moved;
-    const struct transform *map = world_placement(world, placed, ray->time, &moved);
-    struct ray ray_object = placed->identity ? *ray : ray_transform(&map->inverse, ray);
+    const struct thing *thing = placed_thing(world, index);
+    struct transform world_from_object = world_placement(world, index, ray->time);
+    const struct transform *map = &world_from_object;
+    struct ray ray_object =
+        world->placed[index].linear == LINEAR_NONE ? *ray : ray_transform(&world_from_object.inverse, ray);
     struct surface surface;
-    shape_describe(&placed->shape, &ray_object, crossing, &surface);
+    shape_describe(&thing->shape, &ray_object, crossing, &surface);
     double length = vec3_length(ray->direction);
-    bool in_csg = placed->shape.kind == SHAPE_CSG;
-    const struct csg_leaf *leaf = in_csg ? &placed->shape.csg->leaves[surface.leaf] : NULL;
-    uint32_t material = in_csg ? leaf->material : placed->material;
-    uint32_t slot_count = in_csg ? leaf->slot_count : placed->slot_count;
+    bool in_csg = thing->shape.kind == SHAPE_CSG;
+    const struct csg_leaf *leaf = in_csg ? &thing->shape.csg->leaves[surface.leaf] : NULL;
+    uint32_t material = in_csg ? leaf->material : thing->material;
+    uint32_t slot_count = in_csg ? leaf->slot_count : thing->slot_count;
     if (surface.material_slot < slot_count)
         material += surface.material_slot;
-    enum shape_kind kind = in_csg ? leaf->shape.kind : placed->shape.kind;
+    enum shape_kind kind = in_csg ? leaf->shape.kind : thing->shape.kind;
     *hit = (struct hit){.t = crossing->t,
                         .point = affine_point(&map->forward, surface.point),
                         .view = vec3_scale(ray->direction, -1 / length),
@@ -533,9 +589,9 @@ static void describe(const struct world *world, const struct ray *ray, uint32_t 
         hit->dpdv = affine_vector(&map->forward, surface.dpdv);
     }
     if (world->material_has_relief[material])
-        describe_relief(placed, &map->forward, leaf, hit);
+        describe_relief(thing, &map->forward, leaf, hit);
     hit->front = vec3_dot(hit->view, hit->normal_geometric) >= 0;
-    hit->offset = offset_of(map, placed->moving ? transform_stretch(map) : placed->scale, &surface, hit->point);
+    hit->offset = offset_of(map, stretch_of(world, index, map), &surface, hit->point);
     hit->footprint = ray->footprint.width + ray->footprint.spread * crossing->t * length;
     if (hit->footprint > 0 && world->material_has_image[material]) {
         struct vec3 a, b;
@@ -563,7 +619,7 @@ uint32_t world_closed_in(const struct world *world, const struct box *region, ui
     uint32_t count = 0;
     for (uint32_t i = 0; i < world->placed_count; i++) {
         struct box common = box_meet(world->boxes[i], *region);
-        if (box_is_empty(&common) || !shape_is_closed(&world->placed[i].shape))
+        if (box_is_empty(&common) || !shape_is_closed(placed_shape(world, i)))
             continue;
         if (out && count < limit)
             out[count] = i;
@@ -573,7 +629,7 @@ uint32_t world_closed_in(const struct world *world, const struct box *region, ui
 }
 
 static bool contains(const struct world *world, uint32_t index, struct vec3 p_object, struct world_scratch *scratch) {
-    const struct shape *shape = &world->placed[index].shape;
+    const struct shape *shape = placed_shape(world, index);
     bool inside = shape_contains(shape, p_object, &scratch->geom);
     while (scratch->geom.overflow && geom_scratch_grow(&scratch->geom))
         inside = shape_contains(shape, p_object, &scratch->geom);
@@ -589,12 +645,12 @@ uint32_t world_containing(const struct world *world, struct vec3 point, double r
     limit = limit < WORLD_NESTING ? limit : WORLD_NESTING;
     for (uint32_t k = 0; k < candidate_count; k++) {
         uint32_t i = candidates[k];
-        struct transform moved;
-        const struct transform *map = world_placement(world, &world->placed[i], ray_time, &moved);
-        if (!box_contains(&world->boxes[i], point) || !contains(world, i, affine_point(&map->inverse, point), scratch))
+        if (!box_contains(&world->boxes[i], point))
+            continue;
+        struct ray ray_object = placed_ray(world, i, &ray);
+        if (!contains(world, i, ray_object.origin, scratch))
             continue;
         /* Innermost last: the solid the ray leaves first is the innermost. */
-        struct ray ray_object = ray_transform(&map->inverse, &ray);
         struct search s = {.world = world, .ray = &ray, .scratch = scratch};
         struct crossing crossing = {.t = INFINITY};
         (void)ask_nearest(&s, i, &ray_object, &crossing);

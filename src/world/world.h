@@ -26,29 +26,44 @@ struct moving {
     struct transform link_from_object;
 };
 
-struct placed {
-    struct transform world_from_object; /* of what moves: in the middle of the shutter's time */
-    const struct moving *moving;        /* NULL: it stands still */
+/* What all placements of one node share. */
+struct thing {
     struct shape shape;
+    const struct node *node;
     uint32_t material;   /* unused for CSG: the leaves have their own */
     uint32_t slot_count; /* of a mesh: face slot k has material + k; below 2 all have `material` */
     enum node_cull cull; /* of a mesh */
-    bool identity;       /* world_from_object changes nothing: a placed sphere or box of an old scene, mostly */
     bool holes;          /* some of its materials let rays through by a picture */
-    double scale;        /* largest stretch of world_from_object: bounds errors */
 };
+
+/* The linear part of a placement's map and of its inverse; most placements share theirs with others. */
+struct linear_map {
+    double forward[3][3], inverse[3][3];
+    double stretch; /* transform_stretch: bounds errors */
+};
+
+/* A placed primitive, kept small: a scene may have millions. Its map is worked out by world_placement. */
+struct placed {
+    struct vec3 shift, shift_back; /* the last columns of world_from_object and of its inverse */
+    uint32_t thing;
+    uint32_t linear; /* number of a linear map, or one of the following */
+};
+#define LINEAR_NONE UINT32_MAX            /* world_from_object changes nothing */
+#define LINEAR_MOVING (UINT32_C(1) << 31) /* with the number of an entry in world->moving */
 
 struct world {
     const struct placed *placed;
+    struct thing *things; /* owned, as are maps and moving */
+    struct linear_map *linear_maps;
+    struct moving *moving;
     struct box *boxes; /* world box of each placed primitive */
-    uint32_t placed_count;
+    uint32_t placed_count, thing_count, linear_count, moving_count;
     struct shutter shutter;
     bool moves; /* something does */
     const struct material **materials;
     bool *material_has_image;  /* such materials need to know the footprint on the surface */
     bool *material_has_relief; /* and such ones where it rises */
     uint32_t material_count;
-    const struct node **nodes; /* nodes[i]: the node that placed[i] came from */
     const struct light *lights;
     uint32_t light_count;
     struct sky sky;
@@ -76,22 +91,44 @@ typedef void world_warning(void *context, const char *text);
 
 /* Flattens the tree under root as it stands now; mesh indices are built where they are missing. The world points into
  * the scene's arena (materials, names), so it must not outlive the script. Errors: cycles (naming the nodes), no
- * memory, cancelled. lights and sky are copied. */
+ * memory, cancelled; nothing is left to destroy then. lights and sky are copied. */
 bool world_build(struct world *world, struct arena *arena, struct scene *scene, struct node *root,
                  const struct light *lights, uint32_t light_count, const struct sky *sky, struct shutter shutter,
                  enum accel_kind accel, struct pool *pool, world_warning *warn, void *warn_context,
                  struct error *error);
-void world_destroy(struct world *world); /* what is not in the arena: grid and tree */
+void world_destroy(struct world *world); /* what is not in the arena */
 
-/* Where a moving primitive stands at a ray's time. */
-struct transform world_moved(const struct moving *moving, struct shutter shutter, double ray_time);
-/* Where a primitive stands at a ray's time; `moved` is the place for the transform of what moves. */
-static inline const struct transform *world_placement(const struct world *world, const struct placed *placed,
-                                                      double ray_time, struct transform *moved) {
-    if (!placed->moving)
-        return &placed->world_from_object;
-    *moved = world_moved(placed->moving, world->shutter, ray_time);
-    return moved;
+static inline const struct thing *placed_thing(const struct world *world, uint32_t placed) {
+    return &world->things[world->placed[placed].thing];
+}
+static inline const struct shape *placed_shape(const struct world *world, uint32_t placed) {
+    return &placed_thing(world, placed)->shape;
+}
+/* The node that a placed primitive came from. */
+static inline const struct node *placed_node(const struct world *world, uint32_t placed) {
+    return placed_thing(world, placed)->node;
+}
+/* world_from_object at a ray's time; of what stands still the bits are those of the nodes' transforms, composed. */
+struct transform world_placement(const struct world *world, uint32_t placed, double ray_time);
+/* The ray in the space of a primitive that moves. */
+struct ray world_ray_of_moving(const struct world *world, uint32_t placed, const struct ray *ray);
+/* The ray in object space. */
+static inline struct ray placed_ray(const struct world *world, uint32_t placed, const struct ray *ray) {
+    const struct placed *p = &world->placed[placed];
+    if (p->linear == LINEAR_NONE)
+        return *ray;
+    if (p->linear & LINEAR_MOVING)
+        return world_ray_of_moving(world, placed, ray);
+    const struct linear_map *map = &world->linear_maps[p->linear];
+    const double *x = map->inverse[0], *y = map->inverse[1], *z = map->inverse[2];
+    struct vec3 o = ray->origin, d = ray->direction;
+    struct ray out = *ray;
+    out.origin = vec3_make(x[0] * o.x + x[1] * o.y + x[2] * o.z + p->shift_back.x,
+                           y[0] * o.x + y[1] * o.y + y[2] * o.z + p->shift_back.y,
+                           z[0] * o.x + z[1] * o.y + z[2] * o.z + p->shift_back.z);
+    out.direction = vec3_make(x[0] * d.x + x[1] * d.y + x[2] * d.z, y[0] * d.x + y[1] * d.y + y[2] * d.z,
+                              z[0] * d.x + z[1] * d.y + z[2] * d.z);
+    return out;
 }
 
 /* Nearest hit in the ray's open interval, fully described. Equal t: the primitive that comes first in flattening order.

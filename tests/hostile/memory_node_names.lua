@@ -1,4 +1,7 @@
--- expect: *used up its memory of 64 MiB
+-- expect: *used up its memory of 64 MiB*
 -- arguments: --script-time 5
-local name = ('n'):rep(100000)
-while true do gr.node(name) end
+local name, count = ('n'):rep(100000), 0
+while true do
+    count = count + 1
+    gr.node(name .. count)
+end
