@@ -34,6 +34,9 @@ PNG_LIBS := $(shell $(PKG_CONFIG) --libs libpng zlib 2>/dev/null)
 # Optional: without them gray is whole, but reads no JPEG (libjpeg) and no glTF (jansson).
 JPEG_LIBS := $(shell $(PKG_CONFIG) --libs libjpeg 2>/dev/null)
 JANSSON_LIBS := $(shell $(PKG_CONFIG) --libs jansson 2>/dev/null)
+MPI_NAME := $(firstword $(foreach name,ompi-c mpich,$(shell $(PKG_CONFIG) --exists $(name) 2>/dev/null && echo $(name))))
+MPI_CFLAGS := $(if $(MPI_NAME),$(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags $(MPI_NAME))))
+MPI_LIBS := $(if $(MPI_NAME),$(shell $(PKG_CONFIG) --libs $(MPI_NAME)))
 OPTIONAL_CFLAGS := $(if $(JPEG_LIBS),-DHAVE_JPEG $(shell $(PKG_CONFIG) --cflags libjpeg)) \
     $(if $(JANSSON_LIBS),-DHAVE_JANSSON $(shell $(PKG_CONFIG) --cflags jansson))
 
@@ -44,14 +47,16 @@ override LDFLAGS += -pthread
 
 SOURCES := $(sort $(foreach room,$(ROOMS),$(wildcard src/$(room)/*.c)))
 MAIN := src/app/main.c
-OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(MAIN),$(SOURCES)))
+MPI_MAIN := src/app/main_mpi.c
+OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(MAIN) $(MPI_MAIN),$(SOURCES)))
 MAIN_OBJECT := $(patsubst %.c,$(BUILD)/%.o,$(MAIN))
+MPI_OBJECT := $(if $(MPI_LIBS),$(patsubst %.c,$(BUILD)/%.o,$(MPI_MAIN)))
 TEST_SOURCES := $(sort $(wildcard tests/unit/*.c)) tests/harness.c tests/stage.c
 TEST_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(TEST_SOURCES))
-ALL_OBJECTS := $(OBJECTS) $(MAIN_OBJECT) $(TEST_OBJECTS)
+ALL_OBJECTS := $(OBJECTS) $(MAIN_OBJECT) $(MPI_OBJECT) $(TEST_OBJECTS)
 
 ifeq ($(config),release)
-all: check-libraries $(BUILD)/gray
+all: check-libraries $(BUILD)/gray $(if $(MPI_LIBS),$(BUILD)/gray-mpi)
 	@ln -sf $(BUILD)/gray gray && ln -sf gray rt
 else
 all: check-libraries $(BUILD)/gray
@@ -63,6 +68,11 @@ check-libraries:
 
 $(BUILD)/gray: $(OBJECTS) $(MAIN_OBJECT)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
+# The program for many machines, where there is MPI: one of its own, so that the other does not load the library.
+$(BUILD)/gray-mpi: $(OBJECTS) $(MPI_OBJECT)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(MPI_LIBS)
+$(BUILD)/$(MPI_MAIN:.c=.o): override CPPFLAGS += $(MPI_CFLAGS)
 
 $(BUILD)/tests/run: $(OBJECTS) $(TEST_OBJECTS)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
@@ -123,6 +133,7 @@ format:
 install: all
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/gray/lua $(DESTDIR)$(PREFIX)/share/doc/gray
 	install -m 755 $(BUILD)/gray $(DESTDIR)$(PREFIX)/bin/gray
+	$(if $(MPI_LIBS),install -m 755 $(BUILD)/gray-mpi $(DESTDIR)$(PREFIX)/bin/gray-mpi)
 	install -m 644 lua/*.lua $(DESTDIR)$(PREFIX)/share/gray/lua
 	install -m 644 README.md LICENSE CHANGELOG.md $(DESTDIR)$(PREFIX)/share/doc/gray
 

@@ -193,6 +193,7 @@ static bool render_job_run(struct child *child, const struct render_request *req
         return false;
     if (already)
         return true;
+    job.gate = atomic_load(&services->control->gate) != GATE_NONE ? &services->control->gate : NULL;
     bool ok = make_picture(child, request, &job, &report, error);
     arena_reset(&child->job);
     if (ok && !options->check)
@@ -268,7 +269,7 @@ static int run_script(struct child *child, const char *path) {
 
 void child_run(const struct options *options, const struct child_services *services, int first) {
     struct child child = {.options = options, .services = services};
-    if (options->checkpoint || options->shards)
+    if (options->checkpoint || options->shards || options->mpi)
         file_set_witness(&child.witness);
     for (int i = first; i < options->script_count; i++) {
         int status = run_script(&child, options->scripts[i]);

@@ -6,10 +6,14 @@
 #include <stdatomic.h>
 #include <stdint.h>
 
+/* In a farm tiles are handed out while the picture is made; the picture ends when the gate is closed. */
+enum gate { GATE_NONE, GATE_OPEN, GATE_CLOSED };
+
 struct control {
     _Atomic int cancel;          /* set by the supervisor: give up the picture, end the script */
     _Atomic uint32_t tiles_done; /* of the picture being made */
     _Atomic uint32_t tiles;      /* 0 until its scene is built */
+    _Atomic uint32_t gate;       /* an enum gate */
 };
 
 #endif

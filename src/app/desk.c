@@ -118,6 +118,31 @@ static bool make_film(struct desk *desk, struct picture *picture, struct error *
     return true;
 }
 
+/* With --resume: whether the part is there, finished, and of this very picture. */
+static bool part_is_there(const struct desk *desk, const char *name) {
+    struct tile_file file;
+    struct error ignored;
+    const struct tile_picture *want = &desk->current.tiles, *have = &file.picture;
+    if (!desk->options->shards || !desk->options->resume || !file_is_regular(name) ||
+        !tile_file_read(name, &file, &ignored))
+        return false;
+    bool there = file.has_picture && have->whole && have->shard == want->shard && !tile_picture_difference(have, want);
+    tile_file_close(&file);
+    return there;
+}
+
+/* In a farm: what the others say to it. */
+static bool join_farm(struct desk *desk, bool *already, struct error *error) {
+    struct picture *picture = &desk->current;
+    if (!desk->farm)
+        return true;
+    bool was_written = *already;
+    bool ok = farm_begin(desk->farm, &picture->tiles, was_written ? NULL : &picture->film, already, error);
+    if (!was_written && (!ok || *already))
+        share_destroy(&picture->memory);
+    return ok;
+}
+
 bool desk_begin(struct desk *desk, const struct picture_request *request, bool *already, struct error *error) {
     struct picture *picture = &desk->current;
     const struct options *options = desk->options;
@@ -135,12 +160,15 @@ bool desk_begin(struct desk *desk, const struct picture_request *request, bool *
         return true;
     }
     describe_tiles(desk, picture);
+    *already = part_is_there(desk, written);
+    if (*already)
+        return true;
     if (!keeper_open(&desk->keeper, picture->name, notice, error))
         return false;
     if (notice[0] != '\0')
         desk_line(desk, LINE_NOTICE, notice);
     if (!keeper_has_written(&desk->keeper, desk->pictures, &picture->tiles.key, written, already, error) ||
-        (!*already && !make_film(desk, picture, error)))
+        (!*already && !make_film(desk, picture, error)) || !join_farm(desk, already, error))
         return false;
     if (*already)
         return true;
@@ -202,6 +230,8 @@ void desk_checkpoint(struct desk *desk) {
 void desk_abandon(struct desk *desk) {
     uint32_t tiles;
     progress_end(&desk->progress, PROGRESS_GIVEN_UP);
+    if (desk->farm)
+        farm_end(desk->farm, true);
     if (desk->current.open && !desk->current.request.check && film_tiles_in(&desk->current.film, FILM_TILE_DONE) > 0 &&
         tick(desk, true, &tiles))
         tell_checkpoint(desk, tiles);
@@ -288,7 +318,25 @@ static void tell_statistics(struct desk *desk, const struct picture_report *repo
     }
 }
 
+/* True: this process only helps, and the picture is written by another one. */
+static bool leave_to_others(struct desk *desk) {
+    char shares[512], line[NAME_LIMIT + 600];
+    if (!desk->farm)
+        return false;
+    farm_end(desk->farm, false);
+    if (!farm_is_first(desk->farm)) {
+        close_picture(&desk->current);
+        return true;
+    }
+    farm_shares(desk->farm, shares, sizeof shares);
+    (void)snprintf(line, sizeof line, "%s: tiles made by each rank: %s", desk->current.name, shares);
+    desk_line(desk, LINE_DETAIL, line);
+    return false;
+}
+
 bool desk_done(struct desk *desk, const struct picture_report *report, struct error *error) {
+    if (leave_to_others(desk))
+        return true;
     if (one_name_for_all(desk)) {
         /* Names of progress point into the picture, so it is told before the picture moves. */
         progress_end(&desk->progress, PROGRESS_WRITTEN);
@@ -306,13 +354,22 @@ bool desk_done(struct desk *desk, const struct picture_report *report, struct er
 }
 
 void desk_show_progress(struct desk *desk) {
-    uint32_t tiles;
-    (void)tick(desk, false, &tiles);
-    progress_update(&desk->progress, atomic_load(&desk->control->tiles_done), atomic_load(&desk->control->tiles));
+    uint32_t ignored, done = atomic_load(&desk->control->tiles_done), count = atomic_load(&desk->control->tiles);
+    (void)tick(desk, false, &ignored);
+    if (desk->farm) {
+        farm_step(desk->farm);
+        if (desk->current.open && count > 0)
+            done = film_tiles_in(&desk->current.film, FILM_TILE_DONE);
+    }
+    progress_update(&desk->progress, done, count);
 }
 
 void desk_line(struct desk *desk, enum line_kind kind, const char *text) {
     bool shown = false;
+    if (desk->farm && kind == LINE_ERROR)
+        farm_tell(desk->farm, text);
+    if (desk->farm && !farm_is_first(desk->farm))
+        return; /* the first one says the same, or passes it on at the end */
     switch (kind) {
     case LINE_ERROR:
         shown = true;

@@ -5,6 +5,7 @@
 
 #include "app/channel.h"
 #include "app/control.h"
+#include "app/farm.h"
 #include "app/keeper.h"
 #include "app/options.h"
 #include "app/progress.h"
@@ -29,6 +30,7 @@ struct picture {
 struct desk {
     const struct options *options;
     struct control *control; /* not owned */
+    struct farm *farm;       /* or NULL; not owned */
     struct progress progress;
     struct keeper keeper;      /* the checkpoint */
     struct reach places;       /* where scripts may have pictures written: the working directory and --allow-write */
@@ -48,7 +50,7 @@ bool desk_done(struct desk *desk, const struct picture_report *report, struct er
 void desk_abandon(struct desk *desk); /* fine when no picture is open */
 /* Writes the checkpoint now and says so; or says that none was asked for. */
 void desk_checkpoint(struct desk *desk);
-/* Draws how far the picture is, and writes the checkpoint when it is time. */
+/* Draws how far the picture is, writes the checkpoint when it is time, and talks with the farm. */
 void desk_show_progress(struct desk *desk);
 /* One line (or several: an error with its traceback) on standard error, as -q and --verbose allow. */
 void desk_line(struct desk *desk, enum line_kind kind, const char *text);

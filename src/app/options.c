@@ -151,11 +151,14 @@ static const struct option table[] = {
     {GROUP_PARTS, "--checkpoint-every", OPTION_NUMBER, "SECONDS", 0, HUGE_VAL, FIELD(checkpoint_every), "10",
      "how often, at least; writing never takes more than a twentieth of the time"},
     {GROUP_PARTS, "--resume", OPTION_FLAG, NULL, NO_RANGE, FIELD(resume), NULL,
-     "go on with what the checkpoint holds (--checkpoint auto, unless it is named); a changed scene is refused"},
+     "go on with what the checkpoint holds (--checkpoint auto, unless it is named); a changed scene is refused; a "
+     "--shard whose part is there already is done"},
     {GROUP_PARTS, "--shard", OPTION_SHARD, "I/N", NO_RANGE, FIELD(shard), NULL,
      "make part I of N of every picture, a file of tiles beside it; `gray merge PART ...` puts the parts together"},
     {GROUP_PARTS, "--shard-pictures", OPTION_SHARD, "I/N", NO_RANGE, FIELD(shard_of_pictures), NULL,
      "of many pictures make every Nth, from the Ith on"},
+    {GROUP_PARTS, "--mpi", OPTION_FLAG, NULL, NO_RANGE, FIELD(mpi), NULL,
+     "under mpirun: all processes make each picture together, tiles are handed out on demand"},
 
     {GROUP_TALK, "-q|quiet", OPTION_FLAG, NULL, NO_RANGE, FIELD(quiet), NULL, "say nothing but errors"},
     {GROUP_TALK, "--verbose", OPTION_FLAG, NULL, NO_RANGE, FIELD(verbose), NULL, "say what is done and why"},
@@ -557,6 +560,8 @@ static bool check_parts(struct options *options, struct error *error) {
         return error_set(error, ERROR_USAGE, "merge takes no --checkpoint, --resume, --shard or --check");
     if (options->resume && !options->checkpoint)
         options->checkpoint = "auto";
+    if (options->mpi && (options->shards || options->shards_of_pictures || options->no_fork || options->check))
+        return error_set(error, ERROR_USAGE, "--mpi takes no --shard, --shard-pictures, --no-fork or --check");
     if (options->no_fork && (options->checkpoint || options->shards))
         return error_set(error, ERROR_USAGE,
                          "--no-fork is for debuggers: it takes no --checkpoint, --resume or --shard");

@@ -38,6 +38,7 @@ struct options {
     bool check, quiet, verbose, no_fork;
     const char *checkpoint;     /* --checkpoint: a file, or "auto", or NULL */
     double checkpoint_every;    /* seconds */
+    bool mpi;                   /* one of several processes that make a picture together */
     bool resume;                /* go on with what the checkpoint holds */
     uint32_t shard, shards;     /* --shard: this one of so many, from 1; 0 of 0: no shards */
     uint32_t shard_of_pictures; /* --shard-pictures: the same over whole pictures */

@@ -287,9 +287,10 @@ static void talk_to_child(struct supervisor *supervisor) {
                                     {.fd = supervisor->signals, .events = POLLIN}};
         bool timed = supervisor->desk.current.open || supervisor->deadline > 0;
         if (poll(watched, 2,
-                 supervisor->deadline > 0 ? 5
-                 : timed                  ? 50
-                                          : script_patience(supervisor)) < 0 &&
+                 supervisor->desk.farm      ? 2
+                 : supervisor->deadline > 0 ? 5
+                 : timed                    ? 50
+                                            : script_patience(supervisor)) < 0 &&
             errno != EINTR)
             break;
         if (script_patience(supervisor) == 0) {
@@ -387,19 +388,43 @@ static void run_children(struct supervisor *supervisor) {
     }
 }
 
-int supervisor_run(const struct options *options) {
+static void tell_foreign_line(void *context, const char *line) {
+    struct supervisor *supervisor = context;
+    desk_line(&supervisor->desk, LINE_WARNING, line);
+}
+
+static bool start_farm(struct supervisor *supervisor, const struct farm_transport *transport, struct error *error) {
+    long processors = sysconf(_SC_NPROCESSORS_ONLN);
+    uint32_t threads = (uint32_t)(supervisor->options->threads ? supervisor->options->threads : processors);
+    if (!transport)
+        return true;
+    supervisor->desk.farm = farm_create(transport, 2 * threads, supervisor->control);
+    return supervisor->desk.farm || error_no_memory(error, "the farm");
+}
+
+/* The first rank stays until the others have ended. */
+static void end_farm(struct supervisor *supervisor) {
+    if (supervisor->desk.farm)
+        farm_finish(supervisor->desk.farm, supervisor->status == 0, tell_foreign_line, supervisor);
+    farm_destroy(supervisor->desk.farm);
+    supervisor->desk.farm = NULL;
+}
+
+int supervisor_run(const struct options *options, const struct farm_transport *transport) {
     struct supervisor supervisor = {.options = options, .signals = -1, .channel = {.descriptor = -1}};
     struct error error;
     supervisor.control = mem_share(sizeof *supervisor.control);
     desk_init(&supervisor.desk, options, supervisor.control);
-    bool ready =
-        supervisor.control ? listen_to_signals(&supervisor, &error) : error_no_memory(&error, "the rendering process");
+    bool ready = supervisor.control
+                     ? listen_to_signals(&supervisor, &error) && start_farm(&supervisor, transport, &error)
+                     : error_no_memory(&error, "the rendering process");
     if (options->script.no_sandbox)
         desk_line(&supervisor.desk, LINE_WARNING, no_sandbox_warning);
     if (ready)
         run_children(&supervisor);
     else
         note_error(&supervisor, &error);
+    end_farm(&supervisor);
     if (!desk_finish(&supervisor.desk, supervisor.status == 0, &error))
         note_error(&supervisor, &error);
     if (supervisor.signals >= 0)

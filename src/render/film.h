@@ -28,7 +28,13 @@ struct film {
 };
 
 /* What is known of a tile. Tiles stand on the grid of the whole picture, so that a part of it has the same ones. */
-enum film_tile { FILM_TILE_WANTED, FILM_TILE_DONE, FILM_TILE_ELSEWHERE /* another shard's */ };
+enum film_tile {
+    FILM_TILE_WANTED,
+    FILM_TILE_DONE,
+    FILM_TILE_ELSEWHERE, /* another shard's, or handed on */
+    FILM_TILE_LATER,     /* in a farm: not handed out yet */
+    FILM_TILE_TAKEN,     /* in a farm: being made, here or elsewhere */
+};
 
 /* Rectangle of pixels of the whole picture: x0 <= x < x1. */
 struct film_rectangle {

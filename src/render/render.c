@@ -285,7 +285,8 @@ static void tile_item(void *context, uint32_t item, int index) {
     struct run *run = context;
     struct worker *worker = &run->workers[index];
     struct film *film = run->job->film;
-    if (atomic_load_explicit(&film->tiles[item], memory_order_relaxed) != FILM_TILE_WANTED)
+    uint8_t wanted = FILM_TILE_WANTED;
+    if (!atomic_compare_exchange_strong(&film->tiles[item], &wanted, FILM_TILE_TAKEN))
         return;
     struct film_rectangle r = film_tile_rectangle(film, item);
     struct rectangle tile = {r.x0, r.y0, r.x1, r.y1};
@@ -295,13 +296,39 @@ static void tile_item(void *context, uint32_t item, int index) {
         atomic_store(&run->failed, true);
         pool_cancel(run->pool);
     }
+    atomic_store_explicit(&film->tiles[item], whole ? FILM_TILE_DONE : FILM_TILE_WANTED, memory_order_release);
     if (!whole)
         return;
-    atomic_store_explicit(&film->tiles[item], FILM_TILE_DONE, memory_order_release);
     if (run->job->tile_done) {
         uint32_t done = atomic_fetch_add(&run->done, 1) + 1;
         run->job->tile_done(run->job->context, item, done, run->tiles_wanted);
     }
+}
+
+/* Makes whatever becomes wanted until no more can. */
+static void gated_item(void *context, uint32_t item, int index) {
+    struct run *run = context;
+    const struct film *film = run->job->film;
+    const struct timespec pause = {0, 500000};
+    uint32_t count = film_tile_count(film);
+    (void)item;
+    while (!stopped(run, &run->workers[index])) {
+        uint32_t tile = 0;
+        while (tile < count && atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) != FILM_TILE_WANTED)
+            tile++;
+        if (tile < count)
+            tile_item(run, tile, index);
+        else if (atomic_load(run->job->gate) != 1)
+            return;
+        else
+            (void)nanosleep(&pause, NULL);
+    }
+}
+
+static bool run_tiles(struct run *run) {
+    if (run->job->gate)
+        return pool_run(run->pool, (uint32_t)pool_workers(run->pool), gated_item, run);
+    return pool_run(run->pool, film_tile_count(run->job->film), tile_item, run);
 }
 
 bool render_prepare(struct render_job *job, uint32_t *x0, uint32_t *y0, uint32_t *width, uint32_t *height,
@@ -362,7 +389,7 @@ static bool start_workers(struct run *run, int workers) {
 static void count_tiles(struct run *run) {
     const struct film *film = run->job->film;
     uint32_t done = film_tiles_in(film, FILM_TILE_DONE);
-    run->tiles_wanted = done + film_tiles_in(film, FILM_TILE_WANTED);
+    run->tiles_wanted = film_tile_count(film) - film_tiles_in(film, FILM_TILE_ELSEWHERE);
     atomic_store(&run->done, done);
 }
 
@@ -412,7 +439,7 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
         error_no_memory(error, "the workers of a render");
     } else if (!choose_tiles(&run, error)) {
         ok = false;
-    } else if (count_tiles(&run), !pool_run(pool, film_tile_count(job->film), tile_item, &run)) {
+    } else if (count_tiles(&run), !run_tiles(&run)) {
         ok = atomic_load(&run.failed) ? error_no_memory(error, "the crossings of a ray")
                                       : error_set(error, ERROR_CANCELLED, "stopped while rendering");
         if (atomic_load(&run.failed))

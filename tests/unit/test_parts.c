@@ -257,6 +257,73 @@ TEST(a_checkpoint_that_cannot_be_written_is_a_warning) {
     CHECK(exists("b.png"));
 }
 
+TEST(a_part_that_is_there_is_not_made_again) {
+    put("scene.lua", SCENE "picture('out.png', 100, 70)\n");
+    gives("$gray scene.lua --shard 1/2 && stat -c '%i %y' out.png.1-of-2.part >before && "
+          "$gray scene.lua -q --resume --shard 1/2 && stat -c '%i %y' out.png.1-of-2.part >after && cmp before after",
+          0, NULL);
+    gives("$gray scene.lua -q -ss 2 --resume --shard 1/2; stat -c '%i %y' out.png.1-of-2.part >after; "
+          "! cmp -s before after",
+          0, NULL);
+}
+
+/* Several processes, when the program with MPI was built and mpirun is there. */
+
+static void need_mpi(void) {
+    if (shell("test -x $(dirname $gray)/gray-mpi && command -v mpirun >out.txt") != 0)
+        test_skip("there is no gray-mpi beside the program, or no mpirun");
+    put("farm.sh", "ranks=$1; shift\n"
+                   "exec env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 TMPDIR=/tmp "
+                   "mpirun --oversubscribe -n $ranks $gray --mpi -q -j 1 \"$@\"\n");
+}
+
+TEST(one_to_four_ranks_give_the_bytes_of_one_run) {
+    need_mpi();
+    put("scene.lua", SCENE "picture('a.png', 330, 250)\npicture('b.png', 70, 50)\n");
+    gives("$gray scene.lua -o whole%d.png", 0, NULL);
+    for (int ranks = 1; ranks <= 4; ranks += ranks < 2 ? 1 : 2) {
+        char line[256];
+        (void)snprintf(
+            line, sizeof line,
+            "export gray; sh farm.sh %d scene.lua && cmp a.png whole1.png && cmp b.png whole2.png && rm a.png "
+            "b.png",
+            ranks);
+        gives(line, 0, "");
+    }
+}
+
+TEST(a_rank_that_falls_out_is_done_without) {
+    need_mpi();
+    put("scene.lua", ONE);
+    gives("$gray scene.lua -full -ss 6 -o whole.png", 0, NULL);
+    /* The youngest rendering process is killed, not its supervisor: that one gives its tiles back. */
+    gives("export gray; sh farm.sh 3 scene.lua -full -ss 6 & pid=$!; sleep 1; "
+          "for p in $(pgrep -P $pid); do c=$(pgrep -P $p | head -n 1); done; kill -9 $c; wait $pid; status=$?; "
+          "cmp out.png whole.png && exit 0; exit $status",
+          0, "");
+}
+
+TEST(a_farm_that_was_killed_goes_on_from_its_checkpoint) {
+    need_mpi();
+    put("scene.lua", ONE);
+    gives("$gray scene.lua -full -ss 6 -o whole.png", 0, NULL);
+    gives("export gray; sh farm.sh 3 scene.lua -full -ss 6 --checkpoint c.tiles --checkpoint-every 0 & pid=$!; "
+          "for i in $(seq 400); do test -s c.tiles && break; sleep 0.02; done; kill -9 $(pgrep -P $pid | tail -n 1); "
+          "wait $pid; test -e out.png || test -s c.tiles",
+          0, "");
+    gives("export gray; test -e out.png || sh farm.sh 2 scene.lua -full -ss 6 --checkpoint c.tiles --resume; "
+          "cmp out.png whole.png",
+          0, "");
+}
+
+TEST(ranks_with_other_options_are_refused_and_the_picture_is_made_without_them) {
+    need_mpi();
+    put("scene.lua", SCENE "picture('out.png', 100, 70)\n");
+    gives("$gray scene.lua -o whole.png; export gray; sed -i 's/ -q / /' farm.sh; "
+          "sh farm.sh 1 scene.lua : -n 1 $gray --mpi -ss 2 scene.lua; cmp out.png whole.png",
+          0, "gray: rank 1: ");
+}
+
 /* In memory. */
 
 static struct film some_film(uint32_t x0, uint32_t y0, uint32_t width, uint32_t height, struct test_random *random) {

@@ -1,0 +1,44 @@
+/* The farm: several processes, on one machine or many, make one picture together. Each runs the whole scene by itself,
+ * so that nothing but tiles travels; the first (rank 0) hands tiles out on demand, takes them back finished and writes
+ * the picture. Whoever falls out is done without: its tiles are handed out again. This file knows what is said; how it
+ * travels is the transport's business (MPI in main_mpi.c). */
+#ifndef GRAY_APP_FARM_H
+#define GRAY_APP_FARM_H
+
+#include "app/control.h"
+#include "render/tile_file.h"
+
+enum { FARM_MESSAGE_LIMIT = 2 * sizeof(struct tile_picture) + FILM_PACKED_LIMIT };
+
+/* Messages between two ranks keep their order. */
+struct farm_transport {
+    void *context;
+    int rank, size;
+    void (*send)(void *context, int to, int kind, const void *data, size_t size);
+    /* The next message, if there is one: returns without waiting. `data` has FARM_MESSAGE_LIMIT bytes. */
+    bool (*receive)(void *context, int *from, int *kind, void *data, size_t *size);
+};
+
+struct farm;
+
+/* NULL: no memory. slots: tiles to have at hand, twice the number of threads. The transport must stay. */
+struct farm *farm_create(const struct farm_transport *transport, uint32_t slots, struct control *control);
+bool farm_is_first(const struct farm *farm);
+/* A picture begins. First rank: its finished tiles (of a checkpoint) stay, the others wait to be handed out. Others:
+ * waits until the first rank has begun the same picture. *already: it does not need us. False: the first rank makes
+ * another picture, or has given up. film may be NULL when the picture needs no work here (*already was true before). */
+bool farm_begin(struct farm *farm, const struct tile_picture *picture, struct film *film, bool *already,
+                struct error *error);
+/* Takes and sends what there is to take and send; to be called every few milliseconds while a picture is made. */
+void farm_step(struct farm *farm);
+/* The picture is finished or given up. */
+void farm_end(struct farm *farm, bool given_up);
+/* An error of this rank, for the people at the first one. */
+void farm_tell(struct farm *farm, const char *line);
+/* After all scripts: the first rank waits for the others. `tell` gets lines that are only of other ranks. */
+void farm_finish(struct farm *farm, bool well, void (*tell)(void *context, const char *line), void *context);
+/* How many tiles of the last picture each rank made, first rank's view: "12 9 14". */
+void farm_shares(const struct farm *farm, char *out, size_t size);
+void farm_destroy(struct farm *farm);
+
+#endif
