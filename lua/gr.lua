@@ -1039,11 +1039,11 @@ function gr.sky_faces(front, right, back, left, top, bottom) end
 ---@class gr.sky_cross.fields
 ---@field intensity? number intensity (a number, >= 0; default 1): Factor of its brightness.
 ---@field rotation? number rotation (a number, in degrees; default 0): How far it is turned about y, counterclockwise seen from above.
----@field image string|gr.texture image (the name of a picture file or a texture): A 4 x 3 cross of images all around.
+---@field image string|gr.texture image (the name of a picture file or a texture): A 4 x 3 cross of images all around, as a picture file.
 ---@field mirror? boolean mirror (true or false; default false): Whether the cross is mirrored.
 
 ---A sky from a 4 x 3 cross of images.
----@param image string|gr.texture image (the name of a picture file or a texture): A 4 x 3 cross of images all around.
+---@param image string|gr.texture image (the name of a picture file or a texture): A 4 x 3 cross of images all around, as a picture file.
 ---@return gr.sky
 ---@overload fun(fields: gr.sky_cross.fields): gr.sky
 function gr.sky_cross(image) end
@@ -1051,10 +1051,10 @@ function gr.sky_cross(image) end
 ---@class gr.sky_map.fields
 ---@field intensity? number intensity (a number, >= 0; default 1): Factor of its brightness.
 ---@field rotation? number rotation (a number, in degrees; default 0): How far it is turned about y, counterclockwise seen from above.
----@field image string|gr.texture image (the name of a picture file or a texture): The whole sphere, longitude by latitude; -z is in its middle, +x right of it.
+---@field image string|gr.texture image (the name of a picture file or a texture): The whole sphere, longitude by latitude; -z is in its middle, +x right of it. Radiance HDR and PFM files hold light of any brightness.
 
 ---A sky from one picture of the whole sphere.
----@param image string|gr.texture image (the name of a picture file or a texture): The whole sphere, longitude by latitude; -z is in its middle, +x right of it.
+---@param image string|gr.texture image (the name of a picture file or a texture): The whole sphere, longitude by latitude; -z is in its middle, +x right of it. Radiance HDR and PFM files hold light of any brightness.
 ---@return gr.sky
 ---@overload fun(fields: gr.sky_map.fields): gr.sky
 function gr.sky_map(image) end

@@ -36,13 +36,13 @@ struct image *image_allocate(const char *name, uint32_t width, uint32_t height, 
     atomic_init(&image->owners, 1);
     image->bits = bits;
 
-    /* Sizes first, then one block for all. Offsets are multiples of 8 bytes because a texel is 4 or 8 bytes long and
-     * level 0 is padded. */
+    /* Sizes first, then one block for all. Offsets are multiples of 8 bytes because a texel is 4, 8 or 16 bytes long
+     * and level 0 is padded. */
     size_t offsets[IMAGE_MAX_LEVELS], total = 0;
     uint32_t w = width, h = height;
     for (;;) {
         int level = image->level_count++;
-        size_t texel = level == 0 && bits == 8 ? 4 : 8;
+        size_t texel = bits == 32 ? 16 : level == 0 && bits == 8 ? 4 : 8;
         image->levels[level] = (struct image_level){.width = w, .height = h};
         offsets[level] = total;
         total += ((size_t)w * h * texel + 7) / 8 * 8;
@@ -126,9 +126,43 @@ static void build_level(struct image *image, int level, uint64_t *sums) {
     }
 }
 
+/* The overlap of texel j of `large` with texel i of `small`, in units of 1 / (large * small). */
+static double overlap(uint32_t i, uint32_t j, uint32_t small, uint32_t large) {
+    uint64_t start = (uint64_t)i * large, end = start + large, left = (uint64_t)j * small, right = left + small;
+    return (double)((right < end ? right : end) - (left > start ? left : start));
+}
+
+/* The same for floats, which need no care for digits: a double has twice theirs. */
+static void build_float_level(struct image *image, int level) {
+    const struct image_level *from = &image->levels[level - 1], *to = &image->levels[level];
+    for (uint32_t y = 0; y < to->height; y++) {
+        uint32_t y0 = (uint32_t)((uint64_t)y * from->height / to->height);
+        for (uint32_t x = 0; x < to->width; x++) {
+            double sum[4] = {0, 0, 0, 0};
+            uint32_t x0 = (uint32_t)((uint64_t)x * from->width / to->width);
+            for (uint32_t j = y0; j < from->height && (uint64_t)j * to->height < (y + 1ull) * from->height; j++) {
+                for (uint32_t i = x0; i < from->width && (uint64_t)i * to->width < (x + 1ull) * from->width; i++) {
+                    const float *t = (const float *)from->texels + ((size_t)j * from->width + i) * 4;
+                    double weight = overlap(y, j, to->height, from->height) * overlap(x, i, to->width, from->width);
+                    for (int k = 0; k < 4; k++)
+                        sum[k] += weight * (double)t[k];
+                }
+            }
+            for (int k = 0; k < 4; k++)
+                ((float *)to->texels)[((size_t)y * to->width + x) * 4 + (size_t)k] =
+                    (float)(sum[k] / ((double)from->width * from->height));
+        }
+    }
+}
+
 bool image_build_levels(struct image *image, struct error *error) {
     if (image->level_count == 1)
         return true;
+    if (image->bits == 32) {
+        for (int level = 1; level < image->level_count; level++)
+            build_float_level(image, level);
+        return true;
+    }
     uint64_t *sums = mem_alloc((size_t)image->levels[1].width * 4 * sizeof *sums);
     if (!sums)
         return error_no_memory(error, image->name);
@@ -143,7 +177,7 @@ struct image *image_create(const char *name, uint32_t width, uint32_t height, in
     struct image *image = image_allocate(name, width, height, bits, error);
     if (!image)
         return NULL;
-    memcpy(image->levels[0].texels, rgba, (size_t)width * height * (bits == 8 ? 4 : 8));
+    memcpy(image->levels[0].texels, rgba, (size_t)width * height * (bits == 32 ? 16 : bits == 8 ? 4 : 8));
     if (!image_build_levels(image, error)) {
         image_release(image);
         return NULL;
@@ -189,6 +223,10 @@ struct rgba image_texel(const struct image *image, uint32_t x, uint32_t y) {
     if (image->bits == 8) {
         const uint8_t *t = (const uint8_t *)image->levels[0].texels + at;
         return (struct rgba){t[0] / 255.0, t[1] / 255.0, t[2] / 255.0, t[3] / 255.0};
+    }
+    if (image->bits == 32) {
+        const float *t = (const float *)image->levels[0].texels + at;
+        return (struct rgba){(double)t[0], (double)t[1], (double)t[2], (double)t[3]};
     }
     const uint16_t *t = (const uint16_t *)image->levels[0].texels + at;
     return (struct rgba){t[0] / 65535.0, t[1] / 65535.0, t[2] / 65535.0, t[3] / 65535.0};

@@ -20,7 +20,8 @@ struct rgba {
 
 struct image;
 
-/* From RGBA samples, row-major, top row first; `bits` 8 (uint8_t) or 16 (uint16_t native). Copies, builds mips. */
+/* From RGBA samples, row-major, top row first; `bits` 8 (uint8_t), 16 (uint16_t native) or 32 (float). Copies, builds
+ * mips. */
 struct image *image_create(const char *name, uint32_t width, uint32_t height, int bits, const void *rgba,
                            struct error *error);
 /* A whole PNG file: every colour type, bit depth and interlace; gAMA, sRGB and iCCP are ignored; tRNS gives alpha.
@@ -34,7 +35,7 @@ uint32_t image_height(const struct image *image);
 int image_bits(const struct image *image); /* of a channel: 8 or 16 */
 size_t image_memory(const struct image *image);
 const char *image_name(const struct image *image);
-/* Level 0 texel, not premultiplied, 0..1; x, y in range. */
+/* Level 0 texel, not premultiplied, 0..1 (more where a picture has light); x, y in range. */
 struct rgba image_texel(const struct image *image, uint32_t x, uint32_t y);
 /* Filtered, premultiplied. width_u, width_v: size of the footprint in u and v (0 = unknown: level 0 is used). Finite u,
  * v of any size. */

@@ -2,6 +2,7 @@
 #include "image/image_file.h"
 
 #include "base/file.h"
+#include "image/float_read.h"
 #include "image/jpeg_read.h"
 #include "image/levels.h"
 
@@ -12,6 +13,10 @@
 struct image *image_parse(const char *path, const uint8_t *data, size_t size, struct error *error) {
     if (size >= 3 && memcmp(data, "\xff\xd8\xff", 3) == 0)
         return image_parse_jpeg(path, data, size, error);
+    if (hdr_is(data, size))
+        return image_parse_hdr(path, data, size, error);
+    if (pfm_is(data, size))
+        return image_parse_pfm(path, data, size, error);
     return image_parse_png(path, data, size, error);
 }
 

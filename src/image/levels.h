@@ -3,8 +3,9 @@
  *
  * Every level keeps straight (not premultiplied) RGBA, so that one colour over all of an image is exactly that colour
  * in every level. Level 0 has the file's 8 or 16 bits; the levels above always have 16, so that rounding does not add
- * up from level to level. Everything is told in "units": 0 .. 65535 for a channel, premultiplied colours and alpha in
- * units squared (alpha times 65535). A double holds all of these exactly. */
+ * up from level to level. Pictures of light have floats in every level, 1 for what is 65535 elsewhere. Everything is
+ * told in "units": 0 .. 65535 for a channel, premultiplied colours and alpha in units squared (alpha times 65535). A
+ * double holds all of these exactly. */
 #ifndef GRAY_IMAGE_LEVELS_H
 #define GRAY_IMAGE_LEVELS_H
 
@@ -18,13 +19,13 @@ enum { IMAGE_MAX_LEVELS = 17, IMAGE_MAX_SIDE = 1 << 15, IMAGE_MAX_TEXELS = 1 << 
 
 struct image_level {
     uint32_t width, height;
-    void *texels; /* uint8_t[4] or uint16_t[4] each, row-major; points into the image's one block */
+    void *texels; /* uint8_t[4], uint16_t[4] or float[4] each, row-major; points into the image's one block */
 };
 
 /* Immutable once built. Owns `block` (all levels) and `name`. */
 struct image {
     _Atomic uint32_t owners;
-    int bits; /* of level 0: 8 or 16 */
+    int bits; /* of level 0: 8, 16 or 32 (float) */
     int level_count;
     struct image_level levels[IMAGE_MAX_LEVELS];
     void *block;
@@ -47,7 +48,10 @@ static inline struct rgba image_level_texel(const struct image *image, int level
     const struct image_level *l = &image->levels[level];
     size_t at = ((size_t)y * l->width + x) * 4;
     double r, g, b, a;
-    if (level == 0 && image->bits == 8) {
+    if (image->bits == 32) {
+        const float *t = (const float *)l->texels + at;
+        r = 65535 * (double)t[0], g = 65535 * (double)t[1], b = 65535 * (double)t[2], a = 65535 * (double)t[3];
+    } else if (level == 0 && image->bits == 8) {
         const uint8_t *t = (const uint8_t *)l->texels + at;
         r = (double)(t[0] * 257), g = (double)(t[1] * 257), b = (double)(t[2] * 257), a = (double)(t[3] * 257);
     } else {

@@ -1,27 +1,28 @@
 /* An image of the whole sphere, longitude along its rows and latitude down its columns. A texel left of the first is
- * the last of its row; a texel above the first row is the one of the first row on the other side of the pole. So a way
- * over the pole or round the back meets no seam. The mip level follows the rows, whose width on the sphere is the same
- * everywhere. */
+ * the last of its row; a row above the first is the first again, turned half round: it lies on the other side of the
+ * pole. So a way over the pole or round the back meets no seam. The mip level follows the rows, whose width on the
+ * sphere is the same everywhere. */
 #include "image/levels.h"
 #include "look/sky_parts.h"
 #include "math/elementary.h"
 
-static struct rgba texel(const struct image *image, int level, int64_t x, int64_t y) {
+/* One row at x texels from the left, linear between its texels. */
+static struct rgba row_at(const struct image *image, int level, int64_t y, double x) {
     int64_t w = image->levels[level].width, h = image->levels[level].height;
     if (y < 0 || y >= h) {
         y = y < 0 ? -1 - y : 2 * h - 1 - y;
-        x += w / 2;
+        x += (double)w / 2;
     }
-    x %= w;
-    return image_level_texel(image, level, (uint32_t)(x < 0 ? x + w : x), (uint32_t)(y < 0 ? 0 : y >= h ? h - 1 : y));
+    int64_t row = y < 0 ? 0 : y >= h ? h - 1 : y, i = (int64_t)floor(x) % w;
+    i = i < 0 ? i + w : i;
+    struct rgba left = image_level_texel(image, level, (uint32_t)i, (uint32_t)row);
+    return image_mix(left, image_level_texel(image, level, (uint32_t)((i + 1) % w), (uint32_t)row), x - floor(x));
 }
 
 static struct rgba bilinear(const struct image *image, int level, double u, double v) {
     double x = u * image->levels[level].width - 0.5, y = v * image->levels[level].height - 0.5;
-    int64_t i = (int64_t)floor(x), j = (int64_t)floor(y);
-    struct rgba top = image_mix(texel(image, level, i, j), texel(image, level, i + 1, j), x - floor(x));
-    struct rgba bottom = image_mix(texel(image, level, i, j + 1), texel(image, level, i + 1, j + 1), x - floor(x));
-    return image_mix(top, bottom, y - floor(y));
+    int64_t j = (int64_t)floor(y);
+    return image_mix(row_at(image, level, j, x), row_at(image, level, j + 1, x), y - floor(y));
 }
 
 struct vec3 sky_map_colour(const struct image *image, struct vec3 d, double spread) {

@@ -683,14 +683,15 @@ static const struct parameter sky_faces_parameters[] = {
 
 static const struct parameter sky_cross_parameters[] = {
     SKY_FIELDS,
-    [CROSS_IMAGE] = {"image", KIND_IMAGE, 0, ANY, NULL, NULL, "A 4 x 3 cross of images all around."},
+    [CROSS_IMAGE] = {"image", KIND_IMAGE, 0, ANY, NULL, NULL, "A 4 x 3 cross of images all around, as a picture file."},
     [CROSS_MIRROR] = {"mirror", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the cross is mirrored."},
 };
 
 static const struct parameter sky_map_parameters[] = {
     SKY_FIELDS,
     [MAP_IMAGE] = {"image", KIND_IMAGE, 0, ANY, NULL, NULL,
-                   "The whole sphere, longitude by latitude; -z is in its middle, +x right of it."},
+                   "The whole sphere, longitude by latitude; -z is in its middle, +x right of it. Radiance HDR and PFM "
+                   "files hold light of any brightness."},
 };
 
 static const struct parameter sky_gradient_parameters[] = {

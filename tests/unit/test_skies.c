@@ -79,8 +79,8 @@ TEST(a_map_of_the_sphere_is_looked_up_by_longitude_and_latitude) {
     image_release(sky.image);
 }
 
-TEST(a_map_of_the_sphere_has_no_seam_at_the_back_nor_at_the_poles) {
-    struct sky sky = {.kind = SKY_MAP, .image = map_image()};
+static void check_seams(struct image *image) {
+    struct sky sky = {.kind = SKY_MAP, .image = image};
     struct test_random random = {11};
     const double step = 1e-7;
     for (int i = 0; i < 500; i++) {
@@ -94,6 +94,17 @@ TEST(a_map_of_the_sphere_has_no_seam_at_the_back_nor_at_the_poles) {
         CHECK(vec3_max_abs(vec3_sub(a, b)) < 1e-4);
     }
     image_release(sky.image);
+}
+
+TEST(a_map_of_the_sphere_has_no_seam_at_the_back_nor_at_the_poles) {
+    check_seams(map_image());
+    /* No width has to be even. */
+    float texels[21 * 9 * 4];
+    struct error error = {0};
+    struct test_random random = {12};
+    for (int i = 0; i < 21 * 9 * 4; i++)
+        texels[i] = i % 4 == 3 ? 1 : (float)test_uniform(&random, 0, 2);
+    check_seams(image_create("odd", 21, 9, 32, texels, &error));
 }
 
 TEST(a_sky_is_turned_counterclockwise_seen_from_above_and_made_brighter) {
