@@ -111,6 +111,8 @@ function gr.nh_box(name, corner, size) end
 ---@field weld? boolean weld (true or false; default false): Whether vertices in one place become one.
 ---@field flip? boolean flip (true or false; default false): Whether the faces are turned round.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces no ray meets: those seen from behind, or from the front.
+---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names that the file gives its parts, or with face_materials a list.
+---@field face_materials? number|number[] face_materials (a number or a table of numbers; default material for all): With faces: for each the number of its entry in materials, from 1.
 
 ---A mesh of polygons, flat or with vertex normals.
 ---@param material gr.material material (a material; default plain gray): What its surface looks like.
@@ -137,6 +139,8 @@ function gr.mesh(material, verts, faces) end
 ---@field weld? boolean weld (true or false; default false): Whether vertices in one place become one.
 ---@field flip? boolean flip (true or false; default false): Whether the faces are turned round.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces no ray meets: those seen from behind, or from the front.
+---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names that the file gives its parts, or with face_materials a list.
+---@field face_materials? number|number[] face_materials (a number or a table of numbers; default material for all): With faces: for each the number of its entry in materials, from 1.
 
 ---The same as gr.mesh: every mesh is fast.
 ---@param material gr.material material (a material; default plain gray): What its surface looks like.
@@ -161,6 +165,8 @@ function gr.fast_mesh(material, verts, faces) end
 ---@field weld? boolean weld (true or false; default false): Whether vertices in one place become one.
 ---@field flip? boolean flip (true or false; default false): Whether the faces are turned round.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces no ray meets: those seen from behind, or from the front.
+---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names that the file gives its parts, or with face_materials a list.
+---@field face_materials? number|number[] face_materials (a number or a table of numbers; default material for all): With faces: for each the number of its entry in materials, from 1.
 
 ---A mesh with vertex normals.
 ---@param material gr.material material (a material; default plain gray): What its surface looks like.
@@ -187,6 +193,8 @@ function gr.vn_mesh(material, verts, normals, faces, face_normals) end
 ---@field weld? boolean weld (true or false; default false): Whether vertices in one place become one.
 ---@field flip? boolean flip (true or false; default false): Whether the faces are turned round.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces no ray meets: those seen from behind, or from the front.
+---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names that the file gives its parts, or with face_materials a list.
+---@field face_materials? number|number[] face_materials (a number or a table of numbers; default material for all): With faces: for each the number of its entry in materials, from 1.
 
 ---The same as gr.vn_mesh.
 ---@param material gr.material material (a material; default plain gray): What its surface looks like.
@@ -1355,6 +1363,21 @@ function node:velocity(x, y, z) end
 ---@param node gr.node node (a node): A node whose own transforms say where this one is at time 1; it need not be in the scene.
 ---@return gr.node
 function node:moves_to(node) end
+
+---Turns this node about any direction.
+---@param axis gr.triple axis (a direction {x, y, z}): The axis: a direction of any length but 0.
+---@param angle number angle (a number, in degrees): How far, counterclockwise seen from the axis' tip.
+---@return gr.node
+function node:rotate_axis(axis, angle) end
+
+---Turns this node by a quaternion.
+---@param w number w (a number): The cosine of half the angle, times any length but 0.
+---@param x number x (a number): The axis times the sine of half the angle, times that length.
+---@param y number y (a number): The same along y.
+---@param z number z (a number): The same along z.
+---@return gr.node
+---@overload fun(self: gr.node, quaternion: number[]): gr.node
+function node:rotate_quat(w, x, y, z) end
 
 ---Moves this node.
 ---@param x number x (a number): How far along x.

@@ -7,6 +7,7 @@
 #include "formats/model_node.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /* A highlight for what is clear and has none of its own. */
 enum { CLEAR_SHININESS = 1000 };
@@ -174,6 +175,33 @@ static const struct material *make_material(struct scene *scene, const struct mo
     return scene_material(scene, MATERIAL_FRESNEL, top, error);
 }
 
+/* --- parts --- */
+
+const char *model_part(const struct model *model, size_t index) {
+    for (size_t i = 0; i < model->meshes.count; i++) {
+        const struct model_mesh *mesh = &model_meshes(model)[i];
+        if (index < mesh->slot_names.count)
+            return ((const char *const *)mesh->slot_names.items)[index];
+        index -= mesh->slot_names.count;
+    }
+    return NULL;
+}
+
+bool model_has_part(const struct model *model, const char *name) {
+    const char *part;
+    for (size_t i = 0; (part = model_part(model, i)); i++)
+        if (strcmp(part, name) == 0)
+            return true;
+    return false;
+}
+
+static const struct material *part_material(const struct model_placing *placing, const char *name) {
+    for (uint32_t i = 0; i < placing->part_count; i++)
+        if (strcmp(placing->part_names[i], name) == 0)
+            return placing->part_materials[i];
+    return NULL;
+}
+
 /* --- nodes --- */
 
 struct placer {
@@ -196,12 +224,14 @@ static bool set_shape(struct placer *p, struct node *node, uint32_t index) {
     node->shape.kind = SHAPE_MESH;
     node->shape.mesh = mesh->mesh;
     node->cull = p->placing->cull;
-    node->material = p->placing->material;
-    bool any = false;
+    node->material = p->placing->part_count ? NULL : p->placing->material;
+    bool any = p->placing->part_count > 0 && mesh->slot_names.count > 0;
     for (size_t i = 0; i < mesh->slots.count; i++)
         any |= slots[i] != MODEL_NONE;
-    if (mesh->slots.count == 0 || (!any && mesh->slots.count == 1))
+    if (mesh->slots.count == 0 || (!any && mesh->slots.count == 1)) {
+        node->material = p->placing->material;
         return true;
+    }
     const struct material **list = arena_alloc_array(&p->scene->arena, mesh->slots.count, sizeof *list);
     const char **names = arena_alloc_array(&p->scene->arena, mesh->slots.count, sizeof *names);
     if (!list || !names)
@@ -210,7 +240,10 @@ static bool set_shape(struct placer *p, struct node *node, uint32_t index) {
         bool named = mesh->slot_names.count > i;
         names[i] = named ? ((const char *const *)mesh->slot_names.items)[i] : "";
         /* Below a material of the script the file's are not even made: their pictures may be missing. */
-        if (slots[i] == MODEL_NONE || p->placing->material)
+        list[i] = part_material(p->placing, names[i]);
+        if (!list[i])
+            list[i] = p->placing->material;
+        if (slots[i] == MODEL_NONE || list[i])
             continue;
         list[i] = material_of(p, slots[i]);
         if (!list[i])

@@ -14,7 +14,15 @@ struct model_placing {
     const char *name;                /* of the node */
     const struct material *material; /* for everything; NULL: the file's own */
     enum node_cull cull;
+    /* Materials for the parts of these names, before `material` and the file's. */
+    const char *const *part_names;
+    const struct material *const *part_materials;
+    uint32_t part_count;
 };
+
+/* Whether the model has a part of that name; and their names, one after the other: the index-th, or NULL. */
+bool model_has_part(const struct model *model, const char *name);
+const char *model_part(const struct model *model, size_t index);
 
 /* A model with one mesh becomes one geometry node, others a group with the file's nodes below it; a mesh that the file
  * places several times is one mesh. Everything is made in the scene's arena, pictures come from its store. */

@@ -104,6 +104,26 @@ struct transform transform_rotate_about(struct vec3 axis, double degrees) {
     return out;
 }
 
+/* Euler and Rodrigues; W. R. Hamilton, "On Quaternions", 1844. Divided by the square of the length, so that the length
+ * of q has no say in it. */
+struct transform transform_rotate_quaternion(double w, struct vec3 v) {
+    double most = fmax(fabs(w), vec3_max_abs(v));
+    int exponent;
+    (void)frexp(most, &exponent);
+    w = ldexp(w, -exponent);
+    v = vec3_make(ldexp(v.x, -exponent), ldexp(v.y, -exponent), ldexp(v.z, -exponent));
+    double s = 2 / (w * w + vec3_dot(v, v));
+    struct transform out = transform_identity();
+    out.forward =
+        (struct affine){{{1 - s * (v.y * v.y + v.z * v.z), s * (v.x * v.y - w * v.z), s * (v.x * v.z + w * v.y), 0},
+                         {s * (v.x * v.y + w * v.z), 1 - s * (v.x * v.x + v.z * v.z), s * (v.y * v.z - w * v.x), 0},
+                         {s * (v.x * v.z - w * v.y), s * (v.y * v.z + w * v.x), 1 - s * (v.x * v.x + v.y * v.y), 0}}};
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            out.inverse.m[i][j] = out.forward.m[j][i];
+    return out;
+}
+
 double transform_stretch(const struct transform *t) {
     double stretch = 0;
     for (int i = 0; i < 3; i++) {

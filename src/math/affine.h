@@ -46,6 +46,8 @@ struct transform transform_scale(struct vec3 factors); /* factors finite and not
 struct transform transform_rotate(int axis, double degrees);
 /* Turn about any axis (not zero; Rodrigues' formula). */
 struct transform transform_rotate_about(struct vec3 axis, double degrees);
+/* The turn of the quaternion w + x i + y j + z k of any length but 0: about {x, y, z} by 2 atan2(|xyz|, w). */
+struct transform transform_rotate_quaternion(double w, struct vec3 xyz);
 /* The largest sum of sizes in a row of the linear part: no coordinate of a vector grows more. */
 double transform_stretch(const struct transform *t);
 /* From a matrix; false when it is singular or not finite. */

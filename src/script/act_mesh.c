@@ -7,6 +7,9 @@
 #include "formats/model_node.h"
 #include "geom/mesh_smooth.h"
 
+#include <math.h>
+#include <string.h>
+
 static void read_options(const struct value *args, struct model_options *options) {
     options->smooth = args[MESH_SMOOTH].given;
     options->smooth_angle = args[MESH_SMOOTH].number;
@@ -69,6 +72,33 @@ static bool corner_indices(const struct value *faces, const struct value *own, c
     return true;
 }
 
+/* The slots of the faces: numbers of `materials`, counted from 1 there and from 0 here. */
+static bool face_slots(struct context *context, const struct value *args, const uint32_t **out, struct error *error) {
+    const struct value *numbers = &args[MESH_FACE_MATERIALS], *materials = &args[MESH_MATERIALS];
+    *out = NULL;
+    if (!numbers->given && !materials->given)
+        return true;
+    if (!numbers->given)
+        return error_set(error, ERROR_SCENE, "face_materials is missing: which face has which of the materials?");
+    if (!materials->given || materials->names)
+        return error_set(error, ERROR_SCENE, "materials must be a list that face_materials counts in");
+    if (numbers->single || numbers->count != args[MESH_FACES].count)
+        return error_set(error, ERROR_SCENE, "face_materials has %u entries, but faces has %u", numbers->count,
+                         args[MESH_FACES].count);
+    uint32_t *slots = arena_alloc_array(&context->call, numbers->count, sizeof *slots);
+    if (!slots)
+        return error_no_memory(error, "the materials of the faces");
+    for (uint32_t f = 0; f < numbers->count; f++) {
+        double number = numbers->numbers[f];
+        if (!(number >= 1 && number <= materials->count) || number != floor(number))
+            return error_set(error, ERROR_SCENE, "face_materials[%u] is %.15g, but materials has %u entries", f + 1,
+                             number, materials->count);
+        slots[f] = (uint32_t)number - 1;
+    }
+    *out = slots;
+    return true;
+}
+
 static struct mesh *mesh_from_tables(struct context *context, const struct value *args, const char *name,
                                      struct error *error) {
     const struct value *verts = &args[MESH_VERTS], *faces = &args[MESH_FACES], *normals = &args[MESH_NORMALS];
@@ -94,6 +124,8 @@ static struct mesh *mesh_from_tables(struct context *context, const struct value
         if (!corner_indices(faces, &args[MESH_FACE_UVS], "face_uvs", uvs->count, "uvs", &input.uv_index, error))
             return NULL;
     }
+    if (!face_slots(context, args, &input.face_material, error))
+        return NULL;
     struct model_options options = {0};
     struct mesh_tables own = {0};
     read_options(args, &options);
@@ -104,6 +136,40 @@ static struct mesh *mesh_from_tables(struct context *context, const struct value
         mesh = assets_mesh(context->scene.assets, &input, error);
     mesh_tables_destroy(&own);
     return mesh;
+}
+
+/* Every name must be that of a part. */
+static bool check_parts(const struct model *model, const struct value *materials, struct error *error) {
+    if (materials->given && !materials->names && materials->count > 0)
+        return error_set(error, ERROR_SCENE, "materials of a file have names, as in {paint = m}");
+    for (uint32_t i = 0; i < materials->count; i++) {
+        struct suggestion suggestion;
+        const char *part;
+        if (model_has_part(model, materials->names[i]))
+            continue;
+        suggest_begin(&suggestion, materials->names[i]);
+        for (size_t k = 0; (part = model_part(model, k)); k++)
+            suggest_offer(&suggestion, part);
+        if (suggestion.best)
+            return error_set(error, ERROR_SCENE, "materials: %s has no part '%.100s'; did you mean '%.100s'?",
+                             model->path, materials->names[i], suggestion.best);
+        return error_set(error, ERROR_SCENE, "materials: %s has no part '%.100s'", model->path, materials->names[i]);
+    }
+    return true;
+}
+
+/* The list as the slots of a mesh from tables. */
+static bool keep_slots(struct context *context, const struct value *materials, struct node *node, struct error *error) {
+    const struct material **slots = arena_alloc_array(&context->scene.arena, materials->count, sizeof *slots);
+    if (!slots)
+        return error_no_memory(error, "the materials of a mesh");
+    memcpy(slots, materials->materials, materials->count * sizeof *slots);
+    node->slots = slots;
+    node->slot_count = materials->count;
+    for (uint32_t i = 0; i < materials->count; i++)
+        slots[i] = slots[i] ? slots[i] : node->material;
+    node->material = NULL;
+    return true;
 }
 
 bool act_mesh(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -119,8 +185,17 @@ bool act_mesh(struct context *context, const struct value *args, struct result *
     enum node_cull cull = (enum node_cull)args[MESH_CULL].choice;
     if (from_file) {
         const struct model *model = model_of_file(context, args, error);
-        struct model_placing placing = {.name = name, .material = args[MESH_MATERIAL].material, .cull = cull};
-        result->pointer = model ? model_place(&context->scene, model, &placing, error) : NULL;
+        const struct value *parts = &args[MESH_MATERIALS];
+        struct model_placing placing = {.name = name,
+                                        .material = args[MESH_MATERIAL].material,
+                                        .cull = cull,
+                                        .part_names = parts->names,
+                                        .part_materials = parts->materials,
+                                        .part_count = parts->count};
+        if (args[MESH_FACE_MATERIALS].given)
+            return error_set(error, ERROR_SCENE, "face_materials goes with faces, not with a file");
+        result->pointer =
+            model && check_parts(model, parts, error) ? model_place(&context->scene, model, &placing, error) : NULL;
         return result->pointer != NULL;
     }
     struct mesh *mesh = mesh_from_tables(context, args, name, error);
@@ -131,6 +206,8 @@ bool act_mesh(struct context *context, const struct value *args, struct result *
     node->cull = cull;
     node->shape.kind = SHAPE_MESH;
     node->shape.mesh = mesh;
+    if (args[MESH_MATERIALS].count > 0 && !keep_slots(context, &args[MESH_MATERIALS], node, error))
+        return false;
     result->pointer = node;
     return true;
 }

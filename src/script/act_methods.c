@@ -102,6 +102,27 @@ bool act_rotate(struct context *context, const struct value *args, struct result
     return step(context, args, NODE_ROTATE, &by, error);
 }
 
+bool act_rotate_axis(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    (void)result;
+    if (vec3_max_abs(args[ROTATE_AXIS].vector) == 0)
+        return error_set(error, ERROR_SCENE, "axis has length 0");
+    struct transform by = transform_rotate_about(args[ROTATE_AXIS].vector, args[ROTATE_ANGLE].number);
+    return step(context, args, NODE_ROTATE, &by, error);
+}
+
+bool act_rotate_quat(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    (void)result;
+    const struct value *table = &args[QUAT_TABLE];
+    double w = table->given ? table->number : args[QUAT_W].number;
+    struct vec3 xyz = {args[QUAT_X].number, args[QUAT_Y].number, args[QUAT_Z].number};
+    if (table->given)
+        xyz = table->vector;
+    if (w == 0 && vec3_max_abs(xyz) == 0)
+        return error_set(error, ERROR_SCENE, "the quaternion is 0: it says no turn");
+    struct transform by = transform_rotate_quaternion(w, xyz);
+    return step(context, args, NODE_ROTATE, &by, error);
+}
+
 bool act_translate(struct context *context, const struct value *args, struct result *result, struct error *error) {
     (void)result;
     struct transform by = transform_translate(step_of(args));

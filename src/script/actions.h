@@ -76,9 +76,10 @@ enum { SET_TEXTURE = 1, SET_TEXTURE_COUNT };
 enum { SET_BUMP = 1, SET_BUMP_COUNT };
 enum { STEP_X = 1, STEP_Y, STEP_Z, STEP_VECTOR, STEP_COUNT };
 enum { ROTATE_AXIS = 1, ROTATE_ANGLE, ROTATE_COUNT };
+enum { QUAT_W = 1, QUAT_X, QUAT_Y, QUAT_Z, QUAT_TABLE, QUAT_COUNT };
 enum { MOVES_TO_NODE = 1, MOVES_TO_COUNT };
 action act_add_child, act_set_material, act_set_texture, act_set_bump, act_scale, act_rotate, act_translate;
-action act_velocity, act_moves_to;
+action act_rotate_axis, act_rotate_quat, act_velocity, act_moves_to;
 
 /* act_mesh.c */
 enum {
@@ -95,6 +96,8 @@ enum {
     MESH_WELD,
     MESH_FLIP,
     MESH_CULL,
+    MESH_MATERIALS,
+    MESH_FACE_MATERIALS,
     MESH_COUNT
 };
 action act_mesh, act_bounds, act_faces; /* the last two: args[SELF] is the node */

@@ -265,6 +265,50 @@ static void read_curve(struct context *c, int index, struct place place, double 
     }
 }
 
+enum { MATERIAL_NAMES = 1000 };
+
+/* Materials by name, or a list of them. Names are read in byte order, so that the first wrong one is told. */
+static void read_materials(struct context *c, int index, struct place place, struct value *value) {
+    lua_State *L = c->lua;
+    uint32_t length = list_length(c, index, &place), count = 0;
+    if (length == 0)
+        for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1), count++)
+            if (lua_type(L, -2) != LUA_TSTRING)
+                context_raise(c, "%s must be a list or have names", place.parameter->name);
+    value->materials = call_array(c, length + (size_t)count, sizeof *value->materials);
+    for (uint32_t k = 0; k < length; k++) {
+        place.i = (lua_Integer)k + 1;
+        lua_rawgeti(L, index, place.i);
+        value->materials[value->count++] = read_handle(c, -1, &place, HANDLE_MATERIAL);
+        lua_pop(L, 1);
+    }
+    if (length > 0)
+        return;
+    if (count > MATERIAL_NAMES)
+        context_raise(c, "%s has more than %d entries", place.parameter->name, MATERIAL_NAMES);
+    const char **names = value->names = call_array(c, count, sizeof *names);
+    count = 0;
+    for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1), count++) {
+        const char *name = lua_tostring(L, -2);
+        uint32_t at = count;
+        for (; at > 0 && strcmp(names[at - 1], name) > 0; at--)
+            names[at] = names[at - 1];
+        names[at] = name;
+    }
+    for (uint32_t k = 0; k < count; k++) {
+        lua_pushstring(L, names[k]);
+        lua_rawget(L, index);
+        const struct handle *handle = handle_at(L, -1);
+        bool ghost = handle && handle->type == HANDLE_GHOST;
+        if (!ghost && (!handle || handle->type != HANDLE_MATERIAL))
+            context_raise(c, "%s['%.100s'] must be a material, not %s", place.parameter->name, names[k],
+                          value_words(L, -1));
+        value->materials[k] = ghost ? NULL : handle->pointer;
+        lua_pop(L, 1);
+    }
+    value->count = count;
+}
+
 /* Two passes: count the corners, then fill arrays of the right size. */
 static void read_faces(struct context *c, int index, struct place place, struct value *value) {
     lua_State *L = c->lua;
@@ -391,6 +435,15 @@ static bool read_value(struct context *c, int index, const struct parameter *p, 
     case KIND_INTERVAL:
         value->vector = read_interval(c, index, &place);
         return true;
+    case KIND_QUATERNION: {
+        double q[4];
+        if (!lua_istable(L, index))
+            wrong_type(c, &place, kind_words(p->kind), index);
+        read_tuple(c, index, place, 4, q);
+        value->number = q[0];
+        value->vector = vec3_make(q[1], q[2], q[3]);
+        return true;
+    }
     case KIND_PAIR:
         if (lua_istable(L, index)) {
             double pair[2];
@@ -406,6 +459,9 @@ static bool read_value(struct context *c, int index, const struct parameter *p, 
     case KIND_MATERIAL:
         value->material = read_handle(c, index, &place, HANDLE_MATERIAL);
         return value->material != NULL;
+    case KIND_MATERIALS:
+        read_materials(c, index, place, value);
+        return true;
     case KIND_IMAGE:
         if (lua_isstring(L, index)) {
             value->text = read_file_name(c, index, &place);
@@ -525,6 +581,8 @@ static bool looks_like(lua_State *L, int index, enum kind kind) {
     case KIND_COLOUR:
     case KIND_TRIPLE:
     case KIND_INTERVAL:
+    case KIND_QUATERNION:
+    case KIND_MATERIALS:
     case KIND_NODES:
     case KIND_LIGHTS:
     case KIND_POINTS:

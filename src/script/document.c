@@ -172,10 +172,14 @@ static const char *annotation_type(const struct parameter *p, char out[200]) {
         return "number[]";
     case KIND_SIZE:
         return "number|gr.triple";
+    case KIND_QUATERNION:
+        return "number[]";
     case KIND_PAIR:
         return "number|number[]";
     case KIND_NODE:
         return "gr.node";
+    case KIND_MATERIALS:
+        return "table<string|integer, gr.material>";
     case KIND_MATERIAL:
         return "gr.material";
     case KIND_IMAGE:

@@ -63,6 +63,10 @@ static const struct parameter mesh_parameters[] = {
     [MESH_FLIP] = {"flip", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the faces are turned round."},
     [MESH_CULL] = {"cull", KIND_CHOICE, OPTIONAL, 0, 0, "none back front", NULL, "'none'",
                    "Which faces no ray meets: those seen from behind, or from the front."},
+    [MESH_MATERIALS] = {"materials", KIND_MATERIALS, OPTIONAL, ANY, NULL, "the file's",
+                        "Materials by the names that the file gives its parts, or with face_materials a list."},
+    [MESH_FACE_MATERIALS] = {"face_materials", KIND_NUMBERS, OPTIONAL, ANY, NULL, "material for all",
+                             "With faces: for each the number of its entry in materials, from 1."},
 };
 
 static const struct parameter self_parameters[] = {{"self", KIND_NODE, 0, ANY, NULL, NULL, "The node."}};
@@ -354,6 +358,22 @@ static const struct parameter rotate_parameters[] = {
     [ROTATE_AXIS] = {"axis", KIND_AXIS, 0, 0, 0, "x y z", NULL, NULL, "The axis, in either case."},
     [ROTATE_ANGLE] = {"angle", KIND_NUMBER, 0, ANY, "degrees", NULL,
                       "How far, counterclockwise seen from the axis' tip."},
+};
+
+static const struct parameter rotate_axis_parameters[] = {
+    SELF_PARAMETER,
+    [ROTATE_AXIS] = {"axis", KIND_DIRECTION, 0, ANY, NULL, NULL, "The axis: a direction of any length but 0."},
+    [ROTATE_ANGLE] = {"angle", KIND_NUMBER, 0, ANY, "degrees", NULL,
+                      "How far, counterclockwise seen from the axis' tip."},
+};
+
+static const struct parameter rotate_quat_parameters[] = {
+    SELF_PARAMETER,
+    [QUAT_W] = {"w", KIND_NUMBER, 0, ANY, NULL, NULL, "The cosine of half the angle, times any length but 0."},
+    [QUAT_X] = {"x", KIND_NUMBER, 0, ANY, NULL, NULL, "The axis times the sine of half the angle, times that length."},
+    [QUAT_Y] = {"y", KIND_NUMBER, 0, ANY, NULL, NULL, "The same along y."},
+    [QUAT_Z] = {"z", KIND_NUMBER, 0, ANY, NULL, NULL, "The same along z."},
+    [QUAT_TABLE] = {"quaternion", KIND_QUATERNION, 0, ANY, NULL, NULL, "All four in one table."},
 };
 
 #define KD                                                                                                             \
@@ -1006,6 +1026,10 @@ const struct function function_table[] = {
          "Lets this node move from where its transforms put it at time 0 to where another's do at time 1, turning the "
          "short way.",
          "node"),
+    NODE("rotate_axis", rotate_axis_parameters, RESULT_SELF, act_rotate_axis, "Turns this node about any direction.",
+         "axis angle"),
+    NODE("rotate_quat", rotate_quat_parameters, RESULT_SELF, act_rotate_quat, "Turns this node by a quaternion.",
+         "w x y z", "quaternion"),
     NODE("translate", translate_parameters, RESULT_SELF, act_translate, "Moves this node.", "x y z", "vector"),
     NODE("render", render_parameters, RESULT_NOTHING, act_render, "The same as gr.render with this node.",
          "file" RENDER_TAIL),
@@ -1067,12 +1091,16 @@ const char *kind_words(enum kind kind) {
         return "a table of two rising numbers";
     case KIND_SIZE:
         return "a number or a table of 3 numbers";
+    case KIND_QUATERNION:
+        return "a table of 4 numbers {w, x, y, z}";
     case KIND_PAIR:
         return "a number or a table of 2 numbers";
     case KIND_NODE:
         return "a node";
     case KIND_MATERIAL:
         return "a material";
+    case KIND_MATERIALS:
+        return "a table of materials";
     case KIND_IMAGE:
         return "the name of a picture file or a texture";
     case KIND_BACKGROUND:

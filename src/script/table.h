@@ -34,9 +34,11 @@ enum kind {
     KIND_TRIPLE,     /* vector: three numbers that are no place */
     KIND_SIZE,       /* vector: one number counts for all three */
     KIND_INTERVAL,   /* vector: x and y, two numbers, the second not below the first */
+    KIND_QUATERNION, /* vector = x, y, z, number = w: four numbers, w first */
     KIND_PAIR,       /* vector, z = 0: two numbers, or one for both */
     KIND_NODE,       /* node */
     KIND_MATERIAL,   /* material */
+    KIND_MATERIALS,  /* materials, count; names as well, in byte order, or a list: names is NULL */
     KIND_IMAGE,      /* image, or text: the name of its file */
     KIND_BACKGROUND, /* vector, or text = "gradient", or sky */
     KIND_FOG,        /* fog */
@@ -62,6 +64,8 @@ struct value {
     const char *text;
     struct node *node;
     const struct material *material;
+    const struct material **materials;
+    const char **names;
     struct image *image;
     uint32_t count;
     struct node **nodes;

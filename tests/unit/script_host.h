@@ -16,13 +16,16 @@ struct listener {
     char files[4096];                        /* names of the pictures, one a line */
     struct render_request last;              /* pointers in it are stale after the call */
     struct affine first_child[64];           /* parent_from_node of the root's first child, by render */
-    struct error answer;                     /* what render fails with; ERROR_NONE: it succeeds */
+    void (*seen)(struct listener *listener, const struct render_request *request); /* NULL: nothing more */
+    struct error answer; /* what render fails with; ERROR_NONE: it succeeds */
 };
 
 static inline bool listener_render(void *context, const struct render_request *request, struct error *error) {
     struct listener *listener = context;
     if (listener->renders < 64 && request->root->first_child)
         listener->first_child[listener->renders] = node_parent_from_node(request->root->first_child->node).forward;
+    if (listener->seen)
+        listener->seen(listener, request);
     listener->renders++;
     listener->last = *request;
     size_t used = strlen(listener->files);

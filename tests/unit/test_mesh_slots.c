@@ -192,3 +192,104 @@ TEST(script_reads_models_of_every_format_with_its_options) {
     CHECK_TEXT(listener.said, "");
     CHECK_EQ_INT(listener.renders, 1);
 }
+
+/* The red of the slots of the root, then of the slot of each face. */
+static void tell_slots(struct listener *listener, const struct render_request *request) {
+    const struct node *node = request->root;
+    char *out = listener->said;
+    size_t size = sizeof listener->said;
+    for (uint32_t i = 0; i < node->slot_count; i++)
+        (void)snprintf(out + strlen(out), size - strlen(out), "%g ", node->slots[i] ? node->slots[i]->phong.kd.x : -1);
+    for (uint32_t f = 0; f < mesh_triangle_count(node->shape.mesh); f++) {
+        struct crossing crossing = {.part = f, .u = 0.25, .v = 0.25};
+        struct ray ray = test_ray(vec3_make(0, 0, 1), vec3_make(0, 0, -1));
+        struct surface surface;
+        mesh_describe(node->shape.mesh, &ray, &crossing, &surface);
+        (void)snprintf(out + strlen(out), size - strlen(out), "%u", surface.material_slot);
+    }
+    (void)snprintf(out + strlen(out), size - strlen(out), "%s\n", node->material ? " covered" : "");
+}
+
+TEST(script_gives_parts_of_files_and_faces_of_tables_their_materials) {
+    static const char text[] =
+        "local function m(r) return gr.material({r, 0, 0}, {0, 0, 0}, 1) end\n"
+        "local function show(node) gr.render{node = node, file='a.png', width=1, height=1, eye={0,0,5}} end\n"
+        "show(gr.mesh{file='parts.obj', materials={['blue paint'] = m(7)}})\n"
+        "show(gr.mesh{file='parts.obj', materials={red = m(8)}, material = m(9)})\n"
+        "show(gr.mesh{file='groups.obj', materials={one = m(4), two = m(5)}})\n"
+        "local verts, faces = {{0,0,0},{1,0,0},{1,1,0},{0,1,0}}, {{0,1,2},{0,2,3},{0,3,1}}\n"
+        "show(gr.mesh{verts=verts, faces=faces, materials={m(1), m(2)}, face_materials={2,1,2}})\n"
+        "local ok, what = pcall(gr.mesh, {file='parts.obj', materials={['blue pain'] = m(1)}})\n"
+        "assert(not ok and what:find(\"parts.obj has no part 'blue pain'; did you mean 'blue paint'?\", 1, true), "
+        "what)\n"
+        "ok, what = pcall(gr.mesh, {file='parts.obj', materials={m(1)}})\n"
+        "assert(not ok and what:find('materials of a file have names', 1, true), what)\n"
+        "ok, what = pcall(gr.mesh, {verts=verts, faces=faces, materials={m(1)}, face_materials={1, 1}})\n"
+        "assert(not ok and what:find('face_materials has 2 entries, but faces has 3', 1, true), what)\n"
+        "ok, what = pcall(gr.mesh, {verts=verts, faces=faces, materials={m(1)}, face_materials={1, 2, 1}})\n"
+        "assert(not ok and what:find('face_materials[2] is 2, but materials has 1 entries', 1, true), what)\n"
+        "ok, what = pcall(gr.mesh, {verts=verts, faces=faces, materials={m(1)}})\n"
+        "assert(not ok and what:find('face_materials is missing', 1, true), what)\n";
+    char path[400];
+    (void)snprintf(path, sizeof path, "%s/parts.mtl", test_folder());
+    test_write_text(path, "newmtl red\nKd 1 0 0\nnewmtl blue paint\nKd 0 0 1\n");
+    (void)snprintf(path, sizeof path, "%s/parts.obj", test_folder());
+    test_write_text(path, "mtllib parts.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n"
+                          "usemtl blue paint\nf 3 2 1\n");
+    (void)snprintf(path, sizeof path, "%s/groups.obj", test_folder());
+    test_write_text(path, "v 0 0 0\nv 1 0 0\nv 0 1 0\ng one\nf 1 2 3\ng two\nf 3 2 1\n");
+    struct listener listener = {.seen = tell_slots};
+    struct error error = {0};
+    CHECK(listen_to_text(&listener, text, NULL, &error));
+    CHECK_TEXT(error.text, "");
+    CHECK_TEXT(listener.said, "1 7 01\n8 9 01\n4 5 01\n1 2 101\n");
+}
+
+static bool picture_of(const char *cull, struct test_picture *out) {
+    char text[1500];
+    (void)snprintf(text, sizeof text,
+                   "local function lit(r, g, b) return gr.material{kd={r, g, b}, lit=false, two_sided=true} end\n"
+                   "local verts = {{0,0,0},{1,0,0},{0,1,0},{1,1,0},{0,0,1},{1,0,1},{0,1,1},{1,1,1}}\n"
+                   "local faces = {{0,2,3,1},{4,5,7,6},{0,1,5,4},{2,6,7,3},{0,4,6,2},{1,3,7,5}}\n"
+                   "local box = gr.mesh{verts=verts, faces=faces, cull='%s', face_materials={1,2,3,4,5,6},\n"
+                   "    materials={lit(1,0,0), lit(0,1,0), lit(0,0,1), lit(1,1,0), lit(0,1,1), lit(1,0,1)}}\n"
+                   "gr.render{node=box, file='cull.png', width=40, height=40, eye={0.5,0.5,4}, target={0.5,0.5,0},\n"
+                   "    fov=28, background={1, 1, 1}}\n",
+                   cull);
+    struct test_result result = test_gray_scene(text, "-q scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    CHECK_TEXT(result.err, "");
+    free(result.out);
+    free(result.err);
+    char path[400];
+    (void)snprintf(path, sizeof path, "%s/cull.png", test_folder());
+    *out = test_read_picture(path);
+    return out->width == 40;
+}
+
+static bool is_colour(const struct test_picture *picture, uint32_t x, uint32_t y, int r, int g, int b) {
+    const uint8_t *p = picture->rgb + 3 * ((size_t)y * picture->width + x);
+    return p[0] == 255 * r && p[1] == 255 * g && p[2] == 255 * b;
+}
+
+/* A cube looked into from the front: whole, its front; without fronts, the inside of the other five sides in the colour
+ * of each; its back sides alone are never seen from outside. */
+TEST(pictures_of_a_culled_cube_show_its_front_or_its_inside) {
+    struct test_picture whole, back, front;
+    if (!picture_of("none", &whole) || !picture_of("back", &back) || !picture_of("front", &front))
+        return;
+    for (uint32_t y = 0; y < 40; y++)
+        for (uint32_t x = 0; x < 40; x++)
+            CHECK(memcmp(whole.rgb + 3 * (y * 40 + x), back.rgb + 3 * (y * 40 + x), 3) == 0);
+    CHECK(is_colour(&whole, 20, 20, 0, 1, 0));
+    CHECK(is_colour(&whole, 0, 0, 1, 1, 1));
+    CHECK(is_colour(&front, 20, 20, 1, 0, 0));
+    uint32_t left = 0, right = 0, top = 0, bottom = 0;
+    for (uint32_t i = 0; i < 40; i++) {
+        left += is_colour(&front, i, 20, 0, 1, 1), right += is_colour(&front, i, 20, 1, 0, 1);
+        top += is_colour(&front, 20, i, 1, 1, 0), bottom += is_colour(&front, 20, i, 0, 0, 1);
+    }
+    CHECK(left >= 2 && left == right && top >= 2 && top == bottom);
+    CHECK(is_colour(&front, 0, 0, 1, 1, 1));
+    free(whole.rgb), free(back.rgb), free(front.rgb);
+}

@@ -144,6 +144,60 @@ TEST(each_order_composes_as_it_says) {
     expect_point(SCRIPT_ORDER_SEPARATE, twice, -3, 1, 1);
 }
 
+/* Where a node's calls take {0.3, -0.2, 0.9}. */
+static struct vec3 point_after(enum script_order order, const char *calls) {
+    char text[1000];
+    struct listener listener = {.renders = 0};
+    struct script_options options = {.transform_order = order};
+    struct error error;
+    (void)snprintf(text, sizeof text,
+                   "local n, root = gr.sphere('n'), gr.node('root')\nroot:add_child(n)\n%s\n"
+                   "gr.render(root, 'x.png', 1, 1, {0,0,5}, {0,0,-1}, {0,1,0}, 50, {0,0,0}, {})\n",
+                   calls);
+    CHECK(listen_to_text(&listener, text, &options, &error));
+    CHECK_TEXT(error.text, "");
+    return affine_point(&listener.first_child[0], vec3_make(0.3, -0.2, 0.9));
+}
+
+TEST(turns_by_axis_and_by_quaternion_are_turns_about_x_y_and_z_in_every_order) {
+    static const char *const same[][2] = {
+        {"n:rotate('x', 37)", "n:rotate_axis({2, 0, 0}, 37)"},
+        {"n:rotate('y', -112)", "n:rotate_axis({0, 0.1, 0}, -112)"},
+        {"n:rotate('z', 37)", "n:rotate_axis({0, 0, -1e-200}, -37)"},
+        {"n:rotate('x', 90)", "n:rotate_quat(1, 1, 0, 0)"},
+        {"n:rotate('y', 90)", "n:rotate_quat{5, 0, 5, 0}"},
+        {"n:rotate('z', -90)", "n:rotate_quat(-1e-170, 0, 0, 1e-170)"},
+        {"n:rotate('z', 180)", "n:rotate_quat({0, 0, 0, -3})"},
+        {"n:rotate('z', 50)", "n:rotate_quat(math.cos(math.rad(25)), 0, 0, math.sin(math.rad(25)))"},
+        {"", "n:rotate_quat(-2, 0, 0, 0)"},
+        {"n:rotate_axis({1, 1, 1}, 120)", "n:rotate_quat(1, 1, 1, 1)"},
+        {"n:rotate('x', 90) n:rotate('y', 90)", "n:rotate('x', 90) n:rotate_axis({0, 7, 0}, 90)"},
+        {"n:translate(1, 2, 3) n:rotate('x', 20) n:scale(2, 1, 1) n:rotate('y', 30)",
+         "n:translate(1, 2, 3) n:rotate_axis({3, 0, 0}, 20) n:scale(2, 1, 1) n:rotate_axis({0, 1, 0}, 30)"},
+        {"n:scale(2, 1, 1) n:rotate('z', 90) n:translate(1, 1, 1) n:rotate('x', 90)",
+         "n:scale(2, 1, 1) n:rotate_quat(1, 0, 0, 1) n:translate(1, 1, 1) n:rotate_quat({1, 1, 0, 0})"},
+    };
+    static const enum script_order orders[] = {SCRIPT_ORDER_NEW, SCRIPT_ORDER_OLD, SCRIPT_ORDER_SEPARATE};
+    for (size_t i = 0; i < sizeof same / sizeof same[0]; i++)
+        for (int k = 0; k < 3; k++) {
+            struct vec3 a = point_after(orders[k], same[i][0]), b = point_after(orders[k], same[i][1]);
+            CHECK_NEAR(vec3_length(vec3_sub(a, b)), 0, 1e-14);
+        }
+    /* (1, 1, 1) and 120 degrees: x to y to z to x. The product of quaternions is the turn by the right one first. */
+    struct vec3 p = point_after(SCRIPT_ORDER_NEW, "n:rotate_quat(1, 1, 1, 1)");
+    CHECK_NEAR(vec3_length(vec3_sub(p, vec3_make(0.9, 0.3, -0.2))), 0, 1e-15);
+    struct vec3 one_by_one = point_after(SCRIPT_ORDER_NEW, "n:rotate_quat(1, 2, 3, 4) n:rotate_quat(2, -1, 0.5, 3)");
+    struct vec3 product = point_after(SCRIPT_ORDER_NEW, "local function times(a, b)\n"
+                                                        "  return {a[1]*b[1] - a[2]*b[2] - a[3]*b[3] - a[4]*b[4],\n"
+                                                        "          a[1]*b[2] + a[2]*b[1] + a[3]*b[4] - a[4]*b[3],\n"
+                                                        "          a[1]*b[3] - a[2]*b[4] + a[3]*b[1] + a[4]*b[2],\n"
+                                                        "          a[1]*b[4] + a[2]*b[3] - a[3]*b[2] + a[4]*b[1]}\n"
+                                                        "end\n"
+                                                        "n:rotate_quat(times({2, -1, 0.5, 3}, {1, 2, 3, 4}))");
+    CHECK_NEAR(vec3_length(vec3_sub(one_by_one, product)), 0, 1e-14);
+    CHECK_NEAR(vec3_length(one_by_one), sqrt(0.09 + 0.04 + 0.81), 1e-14);
+}
+
 TEST(an_explicit_call_wins_over_the_text) {
     expect_point(SCRIPT_ORDER_AUTO, "gr.transform_order('old') n:scale(2, 2, 2) n:translate(1, 0, 0)", 4, 0, 0);
     expect_point(SCRIPT_ORDER_AUTO, "gr.transform_order('separate') n:translate(1, 0, 0) n:scale(2, 2, 2)", 3, 0, 0);
