@@ -1,6 +1,13 @@
 -- font: letters made of strokes. Each glyph is a width and a few lines through points; a stroke that begins with ~ is a
 -- smooth curve through its points. Heights: baseline 0, small letters 4, capitals 6, descenders -2.
+-- font.outline gives what a round pen covers that goes along them: the line at half the pen's thickness from the strokes, by
+-- marching squares (W. Lorensen, H. Cline, SIGGRAPH 1987, in the plane), as pieces of parabolas.
+--
+--   local font = require 'font'
+--   local strokes, width = font.strokes 'hello'          -- lists of points
+--   local contours = font.outline('a', 0.9)              -- see the module text, which makes solids of them
 
+local check = require 'check'
 local lathe = require 'lathe'
 
 local M = {}
@@ -53,7 +60,13 @@ local function glyph(letter)
     for stroke in rest:gmatch('[^;]+') do
         local points = {}
         for x, y in stroke:gmatch('([%-%d%.]+),([%-%d%.]+)') do points[#points + 1] = { tonumber(x), tonumber(y) } end
-        if stroke:sub(1, 1) == '~' then points = lathe.spline(points, 6) end
+        if stroke:sub(1, 1) == '~' then
+            local first, last = points[1], points[#points]
+            local ring = #points > 3 and first[1] == last[1] and first[2] == last[2]
+            if ring then points[#points] = nil end
+            points = lathe.spline(points, 6, ring)
+            if ring then points[#points + 1] = points[1] end
+        end
         made.strokes[#made.strokes + 1] = points
     end
     cache[letter] = made
@@ -80,6 +93,212 @@ function M.strokes(text)
         end
     end
     return out, math.max(0, x - 1.5)
+end
+
+--- Letters the font has, in the order of their codes.
+---@return string[]
+function M.letters()
+    local out = {}
+    for letter in pairs(glyphs) do out[#out + 1] = letter end
+    table.sort(out, function(a, b) return utf8.codepoint(a) < utf8.codepoint(b) end)
+    return out
+end
+
+local sqrt, max, min, abs = math.sqrt, math.max, math.min, math.abs
+
+--- Distance to the strokes as a function, less half the weight.
+local function field_of(strokes, weight)
+    local segments = {}
+    for _, points in ipairs(strokes) do
+        for i = 1, max(1, #points - 1) do
+            local a, b = points[i], points[i + 1] or points[i]
+            local dx, dy = b[1] - a[1], b[2] - a[2]
+            local squared = dx * dx + dy * dy
+            segments[#segments + 1] = { a[1], a[2], dx, dy, squared > 0 and 1 / squared or 0 }
+        end
+    end
+    return function(x, y)
+        local least = math.huge
+        for i = 1, #segments do
+            local s = segments[i]
+            local px, py = x - s[1], y - s[2]
+            local t = (px * s[3] + py * s[4]) * s[5]
+            t = t < 0 and 0 or t > 1 and 1 or t
+            px, py = px - t * s[3], py - t * s[4]
+            local d = px * px + py * py
+            if d < least then least = d end
+        end
+        return sqrt(least) - weight / 2
+    end
+end
+
+--- The lines where a field is zero, by marching squares, each point then moved onto the line along the gradient; inside is
+--- on the left.
+local function iso_lines(field, x0, y0, x1, y1, step)
+    local nx, ny = math.ceil((x1 - x0) / step), math.ceil((y1 - y0) / step)
+    local value = {}
+    for j = 0, ny do
+        local i, row = 0, j * (nx + 1)
+        while i <= nx do
+            local v = field(x0 + i * step, y0 + j * step)
+            -- a distance changes by no more than the way: so far ahead its sign is known
+            local known = max(0, math.ceil(abs(v) / step) - 2)
+            for k = i, min(nx, i + known) do value[row + k] = v end
+            i = i + known + 1
+        end
+    end
+    -- a crossing on the edge from one lattice point to the next in x (odd keys) or y (even keys) -> the next crossing
+    local follow, place = {}, {}
+    local function crossing(i, j, up)
+        local a = j * (nx + 1) + i
+        local b = up and a + nx + 1 or a + 1
+        local key = 2 * a + (up and 0 or 1)
+        if not place[key] then
+            local t = value[a] / (value[a] - value[b])
+            local x, y = x0 + (i + (up and 0 or t)) * step, y0 + (j + (up and t or 0)) * step
+            for _ = 1, 3 do
+                local d, h = field(x, y), step * 1e-3
+                local gx, gy = (field(x + h, y) - field(x - h, y)) / (2 * h), (field(x, y + h) - field(x, y - h)) / (2 * h)
+                local squared = gx * gx + gy * gy
+                if squared > 0.25 then x, y = x - d * gx / squared, y - d * gy / squared end
+            end
+            place[key] = { x, y }
+        end
+        return key
+    end
+    for j = 0, ny - 1 do
+        for i = 0, nx - 1 do
+            local a = j * (nx + 1) + i
+            local s, e, n, w = value[a] < 0, value[a + 1] < 0, value[a + nx + 2] < 0, value[a + nx + 1] < 0
+            -- corners counter-clockwise: s, e, n, w; the line leaves through an edge that goes from inside to outside
+            local ins, outs = {}, {}
+            local function edge(from, to, key)
+                if from and not to then outs[#outs + 1] = key() elseif to and not from then ins[#ins + 1] = key() end
+            end
+            edge(s, e, function() return crossing(i, j, false) end)
+            edge(e, n, function() return crossing(i + 1, j, true) end)
+            edge(n, w, function() return crossing(i, j + 1, false) end)
+            edge(w, s, function() return crossing(i, j, true) end)
+            if #ins == 1 then
+                follow[outs[1]] = ins[1]
+            elseif #ins == 2 then -- two corners of four, across: the middle decides which belong together
+                local middle = field(x0 + (i + 0.5) * step, y0 + (j + 0.5) * step) < 0
+                local same = s == middle
+                if same then follow[outs[1]], follow[outs[2]] = ins[1], ins[2] else follow[outs[1]], follow[outs[2]] = ins[2], ins[1] end
+            end
+        end
+    end
+    local lines, keys = {}, {}
+    for key in pairs(follow) do keys[#keys + 1] = key end
+    table.sort(keys)
+    for _, start in ipairs(keys) do
+        if follow[start] then
+            local line, key = {}, start
+            while key and follow[key] do
+                local p, last = place[key], line[#line]
+                if not last or abs(p[1] - last[1]) + abs(p[2] - last[2]) > 0.05 * step then line[#line + 1] = p end
+                follow[key], key = nil, follow[key]
+            end
+            if #line > 2 then lines[#lines + 1] = line end
+        end
+    end
+    return lines
+end
+
+--- A closed line as pieces of parabolas: { x, y, control x, control y } each, ending at the next one's beginning.
+local function parabolas(line, tolerance)
+    local n, pieces = #line, {}
+    local function at(k) return line[(k - 1) % n + 1] end
+    local function way(a, b)
+        local x, y = b[1] - a[1], b[2] - a[2]
+        local length = sqrt(x * x + y * y)
+        return x / length, y / length
+    end
+    local corners = {}
+    for k = 1, n do
+        local ux, uy = way(at(k - 1), at(k))
+        local vx, vy = way(at(k), at(k + 1))
+        local turn = ux * vx + uy * vy
+        if turn < 0.88 then corners[#corners + 1] = k end
+    end
+    local is_corner = {}
+    for _, k in ipairs(corners) do is_corner[k] = true end
+    if #corners == 0 then corners = { 1 } end
+    local function tangent(k, ahead) -- along the line; at a corner that of the side it is asked for
+        local wrapped = (k - 1) % n + 1
+        if is_corner[wrapped] then
+            if ahead then return way(at(k), at(k + 1)) end
+            return way(at(k - 1), at(k))
+        end
+        return way(at(k - 1), at(k + 1))
+    end
+    local function fit(i, j)
+        local a, b = at(i), at(j)
+        local ux, uy = tangent(i, true)
+        local vx, vy = tangent(j, false)
+        local dx, dy, det = b[1] - a[1], b[2] - a[2], ux * vy - uy * vx
+        local cx, cy = (a[1] + b[1]) / 2, (a[2] + b[2]) / 2
+        local along = det ~= 0 and (dx * vy - dy * vx) / det or -1
+        local back = det ~= 0 and (dx * uy - dy * ux) / det or 1
+        local length = sqrt(dx * dx + dy * dy)
+        if along > 0 and back < 0 and ux * vx + uy * vy > 0.3 and along < 2 * length then cx, cy = a[1] + along * ux, a[2] + along * uy end
+        local worst = ux * vx + uy * vy > 0.3 and 0 or j - i > 2 and math.huge or 0
+        for k = i + 1, j - 1 do
+            local p, least = at(k), math.huge
+            for s = 0, 12 do
+                local t = s / 12
+                local x = (1 - t) ^ 2 * a[1] + 2 * t * (1 - t) * cx + t * t * b[1]
+                local y = (1 - t) ^ 2 * a[2] + 2 * t * (1 - t) * cy + t * t * b[2]
+                least = min(least, (p[1] - x) ^ 2 + (p[2] - y) ^ 2)
+            end
+            -- between two of the thirteen the parabola may be nearer, by less than half their distance
+            worst = max(worst, sqrt(least) - length / 26)
+        end
+        if worst > tolerance and j - i > 1 then
+            local middle = (i + j) // 2
+            fit(i, middle)
+            fit(middle, j)
+        else
+            pieces[#pieces + 1] = { a[1], a[2], cx, cy }
+        end
+    end
+    for c, k in ipairs(corners) do
+        local last = corners[c + 1] or corners[1] + n
+        -- no piece longer than a quarter of the line, so that rings have four
+        local parts = max(1, math.ceil((last - k) / (n / 4) - 1e-9))
+        for part = 1, parts do fit(k + (last - k) * (part - 1) // parts, k + (last - k) * part // parts) end
+    end
+    return pieces
+end
+
+local outlines = {}
+
+--- The outline of a letter drawn with a round pen, in the units of the strokes (a capital is 6 high, without the pen).
+---@param letter string
+---@param weight number?  thickness of the pen, default 0.9
+---@return number[][][]|nil contours  pieces of parabolas { x, y, control x, control y }, inside on the left; nil when the
+---  font has no such letter
+---@return number width  of the strokes
+function M.outline(letter, weight)
+    check.text('font.outline', 'letter', letter)
+    weight = check.number('font.outline', 'weight', weight, 0.1, 2, 0.9)
+    local shape = glyph(letter)
+    if not shape then return nil, 0 end
+    local key = letter .. weight
+    if not outlines[key] then
+        local reach, x0, y0, x1, y1 = weight / 2 + 0.2, math.huge, math.huge, -math.huge, -math.huge
+        for _, points in ipairs(shape.strokes) do
+            for _, p in ipairs(points) do x0, y0, x1, y1 = min(x0, p[1]), min(y0, p[2]), max(x1, p[1]), max(y1, p[2]) end
+        end
+        local contours, step = {}, min(0.11, weight / 6)
+        -- a lattice that no letter lies on by accident
+        local field = field_of(shape.strokes, weight)
+        for k, line in ipairs(iso_lines(field, x0 - reach - 0.0137, y0 - reach - 0.0091, x1 + reach, y1 + reach, step)) do
+            contours[k] = parabolas(line, 0.012)
+        end
+        outlines[key] = contours
+    end
+    return outlines[key], shape.width
 end
 
 return M

@@ -851,6 +851,17 @@ function gr.image_material(material, image) end
 ---@overload fun(fields: gr.bump_material.fields): gr.material
 function gr.bump_material(material, image, height) end
 
+---@class gr.glyphs.fields
+---@field font string font (the name of a file): A font file: TrueType, OpenType or Type 1.
+---@field text string text (a string): One line of text, in UTF-8.
+
+---Outlines of a line of text in ems: letters with code, x, advance, missing, contours (cubic, as gr.prism takes them); width, ascender, descender, line.
+---@param font string font (the name of a file): A font file: TrueType, OpenType or Type 1.
+---@param text string text (a string): One line of text, in UTF-8.
+---@return table
+---@overload fun(fields: gr.glyphs.fields): table
+function gr.glyphs(font, text) end
+
 ---@class gr.light.fields
 ---@field colour gr.triple colour (a colour {r, g, b}): Its colour and strength.
 ---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.

@@ -46,7 +46,7 @@ build release
 build asan
 if [ $long = no ]; then
     run release
-    run asan smoke errors_ script allocation png obj ply stl gltf mtl jpeg gzip mesh_faces test_program test_channel test_options
+    run asan smoke errors_ script allocation png obj ply stl gltf mtl jpeg font_ gzip mesh_faces test_program test_channel test_options
 else
     build tsan
     run release --long "$@"

@@ -10,6 +10,7 @@
 #include "base/arena.h"
 #include "base/file.h"
 #include "base/version.h"
+#include "formats/font.h"
 #include "formats/model.h"
 #include "image/jpeg_read.h"
 #include "script/script.h"
@@ -45,8 +46,8 @@ static const char *find_library(struct arena *arena) {
 }
 
 static void print_version(void) {
-    (void)printf("gray %s\n%s\nlibpng %s\noptional: JPEG pictures by %s, glTF by %s\n", GRAY_VERSION, LUA_RELEASE,
-                 png_get_libpng_ver(NULL), jpeg_library(), gltf_library());
+    (void)printf("gray %s\n%s\nlibpng %s\noptional: JPEG pictures by %s, glTF by %s, fonts by %s\n", GRAY_VERSION,
+                 LUA_RELEASE, png_get_libpng_ver(NULL), jpeg_library(), gltf_library(), font_library());
 }
 
 /* Text that the script layer makes of its table. */

@@ -102,6 +102,10 @@ enum {
 };
 action act_mesh, act_bounds, act_faces; /* the last two: args[SELF] is the node */
 
+/* act_font.c */
+enum { GLYPHS_FONT, GLYPHS_TEXT, GLYPHS_COUNT };
+action act_glyphs;
+
 /* act_materials.c */
 enum {
     PHONG_KD,

@@ -3,6 +3,7 @@
 #include "script/context.h"
 
 #include "base/version.h"
+#include "formats/font.h"
 
 #include <lauxlib.h>
 #include <limits.h>
@@ -43,7 +44,49 @@ static int answer_faces(lua_State *L, const struct mesh *mesh) {
     }
     return 2;
 }
-_Static_assert(RESULT_SKY == 9, "a new result kind needs its line in answer()");
+
+/* Each letter a table of its own: its number, its place and its contours as gr.prism takes them. */
+static int answer_glyphs(lua_State *L, const struct font_text *text) {
+    lua_createtable(L, (int)text->count, 4);
+    for (uint32_t i = 0; i < text->count; i++) {
+        const struct font_glyph *glyph = &text->glyphs[i];
+        lua_createtable(L, 0, 5);
+        lua_pushinteger(L, glyph->code);
+        lua_setfield(L, -2, "code");
+        lua_pushnumber(L, glyph->x);
+        lua_setfield(L, -2, "x");
+        lua_pushnumber(L, glyph->advance);
+        lua_setfield(L, -2, "advance");
+        lua_pushboolean(L, glyph->missing);
+        lua_setfield(L, -2, "missing");
+        lua_createtable(L, (int)glyph->contour_count, 0);
+        for (uint32_t c = 0; c < glyph->contour_count; c++) {
+            uint32_t first = glyph->starts[c], count = glyph->starts[c + 1] - first;
+            lua_createtable(L, (int)count, 0);
+            for (uint32_t k = 0; k < count; k++) {
+                lua_createtable(L, 2, 0);
+                for (int d = 0; d < 2; d++) {
+                    lua_pushnumber(L, glyph->points[first + k][d]);
+                    lua_rawseti(L, -2, d + 1);
+                }
+                lua_rawseti(L, -2, (lua_Integer)k + 1);
+            }
+            lua_rawseti(L, -2, (lua_Integer)c + 1);
+        }
+        lua_setfield(L, -2, "contours");
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    lua_pushnumber(L, text->width);
+    lua_setfield(L, -2, "width");
+    lua_pushnumber(L, text->ascender);
+    lua_setfield(L, -2, "ascender");
+    lua_pushnumber(L, text->descender);
+    lua_setfield(L, -2, "descender");
+    lua_pushnumber(L, text->line);
+    lua_setfield(L, -2, "line");
+    return 1;
+}
+_Static_assert(RESULT_GLYPHS == 10, "a new result kind needs its line in answer()");
 
 static int answer(lua_State *L, const struct function *function, const struct result *result) {
     switch (function->result) {
@@ -74,6 +117,8 @@ static int answer(lua_State *L, const struct function *function, const struct re
     case RESULT_SKY:
         handle_push(L, HANDLE_SKY, result->pointer);
         return 1;
+    case RESULT_GLYPHS:
+        return answer_glyphs(L, result->pointer);
     }
     return 0;
 }

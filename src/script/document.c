@@ -233,6 +233,8 @@ static const char *annotation_result(const struct function *function) {
         return "gr.fog";
     case RESULT_SKY:
         return "gr.sky";
+    case RESULT_GLYPHS:
+        return "table";
     }
     return NULL;
 }

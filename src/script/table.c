@@ -858,6 +858,11 @@ static const struct parameter render_parameters[] = {
     [RENDER_UP_TO] = {"up_to", KIND_DIRECTION, OPTIONAL, ANY, NULL, "up", "The direction that is up then."},
 };
 
+static const struct parameter glyphs_parameters[] = {
+    [GLYPHS_FONT] = {"font", KIND_FILE, 0, ANY, NULL, NULL, "A font file: TrueType, OpenType or Type 1."},
+    [GLYPHS_TEXT] = {"text", KIND_TEXT, 0, ANY, NULL, NULL, "One line of text, in UTF-8."},
+};
+
 #define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
 #define GR(name, parameters, result, run, help, ...)                                                                   \
     { name, OWNER_GR, parameters, COUNT(parameters), {__VA_ARGS__}, result, run, help }
@@ -962,6 +967,10 @@ const struct function function_table[] = {
        "An image by the shape's own coordinates, over another material.", "material image"),
     GR("bump_material", bump_over_parameters, RESULT_MATERIAL, act_bump_material,
        "A bump map or normal map over another material.", "material image height?"),
+    GR("glyphs", glyphs_parameters, RESULT_GLYPHS, act_glyphs,
+       "Outlines of a line of text in ems: letters with code, x, advance, missing, contours (cubic, as gr.prism takes "
+       "them); width, ascender, descender, line.",
+       "font text"),
 
     GR("light", light_parameters, RESULT_LIGHT, act_light, "A light at a point.", "position colour falloff?"),
     GR("area_light", area_parameters, RESULT_LIGHT, act_area_light, "A light that is a parallelogram; soft shadows.",

@@ -110,7 +110,8 @@ enum result_kind {
     RESULT_BOUNDS,
     RESULT_FACES,
     RESULT_FOG,
-    RESULT_SKY
+    RESULT_SKY,
+    RESULT_GLYPHS
 };
 
 struct result {

@@ -80,7 +80,7 @@ claims.claim('outlines lie between root and tip and have a point for each tooth 
 end)
 
 claims.claim('wheels that mate touch and do not cut into each other at any angle', function()
-    for _, pair in ipairs { { 36, 18, 0, 0 }, { 20, 20, 0.3, 0.2 }, { 17, 40, 0, 0 }, { 12, 30, 0.4, 0 } } do
+    for _, pair in ipairs { { 36, 18, 0, 0 }, { 20, 20, 0.3, 0.2 }, { 12, 24, 0.4, 0 } } do
         local a = gear.new { teeth = pair[1], shift = pair[3] }
         local b = gear.new { teeth = pair[2], shift = pair[4] }
         local outline_a, outline_b = gear.outline(a, 12), gear.outline(b, 12)

@@ -50,3 +50,11 @@ TEST(library_curves_patches_lofts_and_knots_are_closed_with_the_volumes_of_their
 TEST(library_colours_and_easings_begin_and_end_where_they_should) {
     claims_hold("claims_colour");
 }
+
+TEST(library_polygons_are_cut_into_triangles_and_drawn_out_into_closed_solids) {
+    claims_hold("claims_polygon");
+}
+
+TEST(library_text_has_the_areas_of_its_pen_and_is_closed_letter_by_letter) {
+    claims_hold("claims_text");
+}

@@ -273,7 +273,7 @@ TEST(the_library_works_in_scripts_that_use_the_names_of_luas_own_libraries) {
         "_G[n] = nil end\n"
         "local names = {'readobj','bezier','carve','font','knot','lathe','meshes','noise','picture','png','polyhedra',"
         "'sweep','teapot','archimedean','check','colour','conway','easing','fractals','gear','loft','lsystem',"
-        "'random','scatter','terrain'}\n"
+        "'random','scatter','terrain','polygon','text'}\n"
         "for i = 1, #names do load(names[i]) end\n"
         "local vertices, faces = readobj('tetra.obj')\n"
         "local thing = gr.mesh('thing', vertices, faces) thing:set_material(gr.material({1,0,0},{0,0,0},1))\n"

@@ -1,0 +1,42 @@
+/* Letters out of font files (TrueType, OpenType, Type 1), as outlines. */
+#ifndef GRAY_FORMATS_FONT_H
+#define GRAY_FORMATS_FONT_H
+
+#include "base/arena.h"
+#include "base/error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* One letter in its place. All lengths are in ems: a font of size 1. Contour c has the points starts[c] up to, but not
+ * including, starts[c + 1]: closed cubic Bezier pieces, 3 n points, the next contour's or its own first point follows
+ * the last two. Straight and quadratic pieces are raised to cubic ones. */
+struct font_glyph {
+    uint32_t code; /* Unicode */
+    bool missing;  /* the font has no such letter and shows its box instead */
+    double x;      /* where it begins, with advances and kerning so far */
+    double advance;
+    uint32_t contour_count;
+    const uint32_t *starts;
+    const double (*points)[2];
+};
+
+struct font_text {
+    uint32_t count;
+    const struct font_glyph *glyphs;
+    double width;                     /* sum of the advances, kerned */
+    double ascender, descender, line; /* of the font: above and below the base line (negative), between lines */
+};
+
+enum { FONT_TEXT_LIMIT = 100000 }; /* letters */
+
+/* One line of UTF-8 text, set from x = 0. `path` names the font in errors; its bytes are read in place. Everything in
+ * `out` is in the arena. Wrong fonts and texts are scene errors. */
+bool font_layout(const char *path, const uint8_t *data, size_t size, const char *text, struct arena *arena,
+                 struct font_text *out, struct error *error);
+
+/* "FreeType 2.13.0", or "none". */
+const char *font_library(void);
+
+#endif

@@ -1,0 +1,25 @@
+/* gr.glyphs: a font file is mapped for the time of one call. */
+#include "script/actions.h"
+#include "script/context.h"
+
+#include "base/file.h"
+#include "formats/font.h"
+
+bool act_glyphs(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    char path[PATH_SIZE];
+    struct file_bytes bytes;
+    struct font_text *text = arena_alloc(&context->call, sizeof *text);
+    if (!text)
+        return error_no_memory(error, "letters");
+    if (!files_require(context, args[GLYPHS_FONT].text, path, error) ||
+        !reach_map(context->reach, path, FILE_LIMIT, &bytes, error))
+        return false;
+    bool done = font_layout(path, bytes.data, bytes.size, args[GLYPHS_TEXT].text, &context->call, text, error);
+    file_unmap(&bytes);
+    for (uint32_t k = 0; done && k < text->count; k++)
+        if (text->glyphs[k].missing)
+            context_warn_once(context, WARNED_OTHER, "%s has no letter U+%04X, and maybe others", path,
+                              text->glyphs[k].code);
+    result->pointer = text;
+    return done;
+}
