@@ -31,20 +31,23 @@ LUA_CFLAGS := $(if $(LUA_NAME),$(shell $(PKG_CONFIG) --cflags $(LUA_NAME)))
 LUA_LIBS := $(if $(LUA_NAME),$(shell $(PKG_CONFIG) --libs $(LUA_NAME)))
 PNG_CFLAGS := $(shell $(PKG_CONFIG) --cflags libpng 2>/dev/null)
 PNG_LIBS := $(shell $(PKG_CONFIG) --libs libpng zlib 2>/dev/null)
-# Optional: without them gray is whole, but reads no JPEG (libjpeg), no glTF (jansson) and no fonts (FreeType).
+# Optional: without them gray is whole, but reads no JPEG (libjpeg), no glTF (jansson), no fonts (FreeType) and no EXR
+# (OpenEXR, of which only the C library is used).
 JPEG_LIBS := $(shell $(PKG_CONFIG) --libs libjpeg 2>/dev/null)
 JANSSON_LIBS := $(shell $(PKG_CONFIG) --libs jansson 2>/dev/null)
+EXR_LIBS := $(filter -lOpenEXRCore% -L%,$(shell $(PKG_CONFIG) --libs OpenEXR 2>/dev/null))
 MPI_NAME := $(firstword $(foreach name,ompi-c mpich,$(shell $(PKG_CONFIG) --exists $(name) 2>/dev/null && echo $(name))))
 MPI_CFLAGS := $(if $(MPI_NAME),$(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags $(MPI_NAME))))
 MPI_LIBS := $(if $(MPI_NAME),$(shell $(PKG_CONFIG) --libs $(MPI_NAME)))
 FREETYPE_LIBS := $(shell $(PKG_CONFIG) --libs freetype2 2>/dev/null)
 OPTIONAL_CFLAGS := $(if $(JPEG_LIBS),-DHAVE_JPEG $(shell $(PKG_CONFIG) --cflags libjpeg)) \
     $(if $(JANSSON_LIBS),-DHAVE_JANSSON $(shell $(PKG_CONFIG) --cflags jansson)) \
-    $(if $(FREETYPE_LIBS),-DHAVE_FREETYPE $(shell $(PKG_CONFIG) --cflags freetype2))
+    $(if $(FREETYPE_LIBS),-DHAVE_FREETYPE $(shell $(PKG_CONFIG) --cflags freetype2)) \
+    $(if $(EXR_LIBS),-DHAVE_EXR $(patsubst -I%,-isystem %,$(filter -I%,$(shell $(PKG_CONFIG) --cflags OpenEXR))))
 
 override CFLAGS += -std=gnu11 $(WARNINGS) $(EXACT) $(CFLAGS.$(config)) -pthread
 override CPPFLAGS += -Isrc -I. $(LUA_CFLAGS) $(PNG_CFLAGS) $(OPTIONAL_CFLAGS) -DGRAY_CONFIG='"$(config)"' -DGRAY_PREFIX='"$(PREFIX)"'
-override LDLIBS += $(LUA_LIBS) $(PNG_LIBS) $(JPEG_LIBS) $(JANSSON_LIBS) $(FREETYPE_LIBS) -lm
+override LDLIBS += $(LUA_LIBS) $(PNG_LIBS) $(JPEG_LIBS) $(JANSSON_LIBS) $(FREETYPE_LIBS) $(EXR_LIBS) -lm
 override LDFLAGS += -pthread
 
 SOURCES := $(sort $(foreach room,$(ROOMS),$(wildcard src/$(room)/*.c)))

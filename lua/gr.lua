@@ -1070,10 +1070,10 @@ function gr.sky_cross(image) end
 ---@class gr.sky_map.fields
 ---@field intensity? number intensity (a number, >= 0; default 1): Factor of its brightness.
 ---@field rotation? number rotation (a number, in degrees; default 0): How far it is turned about y, counterclockwise seen from above.
----@field image string|gr.texture image (the name of a picture file or a texture): The whole sphere, longitude by latitude; -z is in its middle, +x right of it. Radiance HDR and PFM files hold light of any brightness.
+---@field image string|gr.texture image (the name of a picture file or a texture): The whole sphere, longitude by latitude; -z is in its middle, +x right of it. Radiance HDR, PFM and EXR files hold light of any brightness.
 
 ---A sky from one picture of the whole sphere.
----@param image string|gr.texture image (the name of a picture file or a texture): The whole sphere, longitude by latitude; -z is in its middle, +x right of it. Radiance HDR and PFM files hold light of any brightness.
+---@param image string|gr.texture image (the name of a picture file or a texture): The whole sphere, longitude by latitude; -z is in its middle, +x right of it. Radiance HDR, PFM and EXR files hold light of any brightness.
 ---@return gr.sky
 ---@overload fun(fields: gr.sky_map.fields): gr.sky
 function gr.sky_map(image) end
@@ -1183,7 +1183,7 @@ function gr.fog_grid(corner, size, cells, densities, colour) end
 
 ---@class gr.render.fields
 ---@field node gr.node node (a node): The root of what is drawn.
----@field file string file (the name of a file): The picture to write: .png, or .pfm or .hdr for linear light; missing folders are made.
+---@field file string file (the name of a file): The picture to write: .png, or .pfm, .hdr or .exr for linear light; missing folders are made.
 ---@field sky? string|gr.texture sky (the name of a picture file or a texture; optional): A 4 x 3 cross of images all around, as a PNG or JPEG file.
 ---@field width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@field height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
@@ -1234,7 +1234,7 @@ function gr.fog_grid(corner, size, cells, densities, colour) end
 
 ---Renders a picture into a PNG file.
 ---@param node gr.node node (a node): The root of what is drawn.
----@param file string file (the name of a file): The picture to write: .png, or .pfm or .hdr for linear light; missing folders are made.
+---@param file string file (the name of a file): The picture to write: .png, or .pfm, .hdr or .exr for linear light; missing folders are made.
 ---@param width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@param height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
 ---@param eye gr.triple eye (a point {x, y, z}): Where the camera stands.
@@ -1248,7 +1248,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 
 ---@class gr.render_skybox.fields
 ---@field node gr.node node (a node): The root of what is drawn.
----@field file string file (the name of a file): The picture to write: .png, or .pfm or .hdr for linear light; missing folders are made.
+---@field file string file (the name of a file): The picture to write: .png, or .pfm, .hdr or .exr for linear light; missing folders are made.
 ---@field sky? string|gr.texture sky (the name of a picture file or a texture; optional): A 4 x 3 cross of images all around, as a PNG or JPEG file.
 ---@field width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@field height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
@@ -1299,7 +1299,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 
 ---The same with a sky image all around.
 ---@param node gr.node node (a node): The root of what is drawn.
----@param file string file (the name of a file): The picture to write: .png, or .pfm or .hdr for linear light; missing folders are made.
+---@param file string file (the name of a file): The picture to write: .png, or .pfm, .hdr or .exr for linear light; missing folders are made.
 ---@param sky string|gr.texture sky (the name of a picture file or a texture; optional): A 4 x 3 cross of images all around, as a PNG or JPEG file.
 ---@param width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@param height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
@@ -1399,7 +1399,7 @@ function node:rotate_quat(w, x, y, z) end
 function node:translate(x, y, z) end
 
 ---The same as gr.render with this node.
----@param file string file (the name of a file): The picture to write: .png, or .pfm or .hdr for linear light; missing folders are made.
+---@param file string file (the name of a file): The picture to write: .png, or .pfm, .hdr or .exr for linear light; missing folders are made.
 ---@param width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@param height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
 ---@param eye gr.triple eye (a point {x, y, z}): Where the camera stands.

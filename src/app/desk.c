@@ -7,6 +7,7 @@
 #include "app/text.h"
 #include "base/file.h"
 #include "base/version.h"
+#include "image/exr.h"
 #include "image/float_write.h"
 #include "image/png_write.h"
 
@@ -143,6 +144,11 @@ static bool join_farm(struct desk *desk, bool *already, struct error *error) {
     return ok;
 }
 
+static bool ends_in(const char *name, const char *extension) {
+    size_t length = strlen(name), wanted = strlen(extension);
+    return length >= wanted && strcasecmp(name + length - wanted, extension) == 0;
+}
+
 bool desk_begin(struct desk *desk, const struct picture_request *request, bool *already, struct error *error) {
     struct picture *picture = &desk->current;
     const struct options *options = desk->options;
@@ -154,6 +160,9 @@ bool desk_begin(struct desk *desk, const struct picture_request *request, bool *
         return true;
     if (!choose_name(desk, request->file, picture->name, error) || !written_name(desk, picture->name, written, error))
         return false;
+    if (ends_in(written, ".exr") && !exr_can_write())
+        return error_set(error, ERROR_SCENE, "%s: EXR pictures need OpenEXR, without which this gray was made",
+                         written);
     picture->request = *request;
     if (request->check) {
         picture->open = true;
@@ -259,13 +268,8 @@ static void row_linear(void *context, uint32_t y, float *line) {
     film_row_linear(rows->film, rows->view, y, line);
 }
 
-static bool ends_in(const char *name, const char *extension) {
-    size_t length = strlen(name), wanted = strlen(extension);
-    return length >= wanted && strcasecmp(name + length - wanted, extension) == 0;
-}
-
-/* The extension says the format; whatever is not .pfm or .hdr is PNG. Tone is for PNG alone: the other two hold light.
- */
+/* The extension says the format; whatever is not .pfm, .hdr or .exr is PNG. Tone is for PNG alone: the others hold
+ * light. */
 static bool write_view(const struct picture *picture, const char *name, enum film_view view, struct error *error) {
     const struct picture_request *request = &picture->request;
     struct tone tone = {request->exposure, (enum tone_curve)request->curve, request->srgb != 0};
@@ -274,6 +278,8 @@ static bool write_view(const struct picture *picture, const char *name, enum fil
         return pfm_write(name, request->width, request->height, row_linear, &rows, error);
     if (ends_in(name, ".hdr"))
         return hdr_write(name, request->width, request->height, row_linear, &rows, error);
+    if (ends_in(name, ".exr"))
+        return exr_write(name, request->width, request->height, row_linear, &rows, error);
     if (request->deep)
         return png_write_16(name, request->width, request->height, row_16, &rows, error);
     return png_write(name, request->width, request->height, row, &rows, error);

@@ -98,7 +98,8 @@ static const struct option table[] = {
     {GROUP_LOOK, "--deep", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.deep), NULL, "16 bits a channel in PNG files"},
 
     {GROUP_FILES, "-o", OPTION_TEXT, "FILE", NO_RANGE, FIELD(output), "the script's",
-     "name of the picture (.png, or .pfm and .hdr for light as it is), '-' for standard output; with several pictures "
+     "name of the picture (.png, or .pfm, .hdr and .exr for light as it is), '-' for standard output; with several "
+     "pictures "
      "FILE needs %d (or %03d), which counts from "
      "1"},
     {GROUP_FILES, "-write-aa-targets", OPTION_TEXT, "X", NO_RANGE, FIELD(targets_prefix), NULL,

@@ -12,6 +12,7 @@
 #include "base/version.h"
 #include "formats/font.h"
 #include "formats/model.h"
+#include "image/exr.h"
 #include "image/jpeg_read.h"
 #include "script/script.h"
 
@@ -46,8 +47,9 @@ static const char *find_library(struct arena *arena) {
 }
 
 static void print_version(void) {
-    (void)printf("gray %s\n%s\nlibpng %s\noptional: JPEG pictures by %s, glTF by %s, fonts by %s\n", GRAY_VERSION,
-                 LUA_RELEASE, png_get_libpng_ver(NULL), jpeg_library(), gltf_library(), font_library());
+    (void)printf("gray %s\n%s\nlibpng %s\noptional: JPEG pictures by %s, glTF by %s, fonts by %s, EXR pictures by %s\n",
+                 GRAY_VERSION, LUA_RELEASE, png_get_libpng_ver(NULL), jpeg_library(), gltf_library(), font_library(),
+                 exr_library());
 }
 
 /* Text that the script layer makes of its table. */

@@ -2,6 +2,7 @@
 #include "image/image_file.h"
 
 #include "base/file.h"
+#include "image/exr.h"
 #include "image/float_read.h"
 #include "image/jpeg_read.h"
 #include "image/levels.h"
@@ -15,6 +16,8 @@ struct image *image_parse(const char *path, const uint8_t *data, size_t size, st
         return image_parse_jpeg(path, data, size, error);
     if (hdr_is(data, size))
         return image_parse_hdr(path, data, size, error);
+    if (exr_is(data, size))
+        return image_parse_exr(path, data, size, error);
     if (pfm_is(data, size))
         return image_parse_pfm(path, data, size, error);
     return image_parse_png(path, data, size, error);

@@ -710,8 +710,8 @@ static const struct parameter sky_cross_parameters[] = {
 static const struct parameter sky_map_parameters[] = {
     SKY_FIELDS,
     [MAP_IMAGE] = {"image", KIND_IMAGE, 0, ANY, NULL, NULL,
-                   "The whole sphere, longitude by latitude; -z is in its middle, +x right of it. Radiance HDR and PFM "
-                   "files hold light of any brightness."},
+                   "The whole sphere, longitude by latitude; -z is in its middle, +x right of it. Radiance HDR, PFM "
+                   "and EXR files hold light of any brightness."},
 };
 
 static const struct parameter sky_gradient_parameters[] = {
@@ -778,7 +778,7 @@ static const struct parameter fog_grid_parameters[] = {
 static const struct parameter render_parameters[] = {
     [RENDER_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL, "The root of what is drawn."},
     [RENDER_FILE] = {"file", KIND_OUTPUT, 0, ANY, NULL, NULL,
-                     "The picture to write: .png, or .pfm or .hdr for linear light; missing folders are made."},
+                     "The picture to write: .png, or .pfm, .hdr or .exr for linear light; missing folders are made."},
     [RENDER_SKY] = {"sky", KIND_IMAGE, OPTIONAL, ANY, NULL, NULL,
                     "A 4 x 3 cross of images all around, as a PNG or JPEG file."},
     [RENDER_WIDTH] = {"width", KIND_WHOLE, 0, 1, 1 << 20, NULL, "pixels", NULL, "Width of the picture."},

@@ -1,5 +1,6 @@
-/* Any bytes as a Radiance or PFM picture (by the first byte, where they do not begin like one): an image whose every
+/* Any bytes as a Radiance, PFM or EXR picture (Radiance where they begin like none): an image whose every
  * level can be looked up, or one line that names the file. */
+#include "image/exr.h"
 #include "image/float_read.h"
 #include "image/levels.h"
 
@@ -14,6 +15,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     struct image *image;
     if (pfm_is(data, size))
         image = image_parse_pfm("fuzz.pfm", data, size, &error);
+    else if (exr_is(data, size))
+        image = image_parse_exr("fuzz.exr", data, size, &error);
     else
         image = image_parse_hdr("fuzz.hdr", data, size, &error);
     if (image) {

@@ -1,6 +1,7 @@
 /* Pictures of light as images: Radiance HDR and PFM read back what was written, of every spelling; broken ones are one
  * line. */
 #include "base/mem.h"
+#include "image/exr.h"
 #include "image/float_write.h"
 #include "image/image_file.h"
 #include "image/levels.h"
@@ -201,4 +202,66 @@ TEST(reading_light_survives_every_failed_allocation) {
         CHECK_EQ_INT(error.kind, ERROR_MACHINE);
     }
     test_fail(__FILE__, __LINE__, "still fails after 20 allocations");
+}
+
+/* --- EXR, where its library is --- */
+
+TEST(exr_pictures_are_read_as_they_were_written) {
+    if (!exr_can_write())
+        test_skip("this build has no OpenEXR");
+    static const uint32_t widths[] = {300, 1, 33};
+    for (int i = 0; i < 3; i++) {
+        char path[512];
+        uint32_t width = widths[i], height = i == 2 ? 50 : H; /* several chunks */
+        struct error error = {0};
+        (void)snprintf(path, sizeof path, "%s/a.exr", test_folder());
+        CHECK(exr_write(path, width, height, light_row, &width, &error));
+        struct image *image = image_read(path, &error);
+        if (!image) {
+            test_fail(__FILE__, __LINE__, "%s", error.text);
+            return;
+        }
+        CHECK_EQ_INT(image_width(image), width);
+        CHECK_EQ_INT(image_height(image), height);
+        for (uint32_t p = 0; p < width * height; p++) {
+            struct rgba c = image_texel(image, p % width, p / width);
+            CHECK_NEAR(c.r, (double)light(p % width, p / width, 0), 0);
+            CHECK_NEAR(c.g, (double)light(p % width, p / width, 1), 0);
+            CHECK_NEAR(c.b, (double)light(p % width, p / width, 2), 0);
+        }
+        image_release(image);
+    }
+}
+
+TEST(exr_pictures_cut_or_changed_anywhere_are_one_line) {
+    if (!exr_can_write()) {
+        struct error error;
+        CHECK(parse("t.exr", "\x76\x2f\x31\x01", 4, &error) == NULL);
+        CHECK(strstr(error.text, "OpenEXR") != NULL);
+        return;
+    }
+    char path[512];
+    uint32_t width = 24;
+    struct error error = {0};
+    (void)snprintf(path, sizeof path, "%s/a.exr", test_folder());
+    CHECK(exr_write(path, width, H, light_row, &width, &error));
+    size_t size;
+    char *file = test_read_file(path, &size);
+    for (size_t cut = 0; cut < size; cut++) {
+        struct image *image = parse("t", file, cut, &error);
+        if (image || strncmp(error.text, "t: ", 3) != 0 || strchr(error.text, '\n'))
+            test_fail(__FILE__, __LINE__, "cut at %zu: %s", cut, image ? "is a picture" : error.text);
+        image_release(image);
+    }
+    struct test_random random = {7};
+    for (int k = 0; k < 1500; k++) {
+        size_t at = (size_t)test_uniform(&random, 0, (double)size);
+        char old = file[at];
+        file[at] = (char)test_uniform(&random, 0, 256);
+        struct image *image = parse("t", file, size, &error);
+        CHECK(image || (error.kind != ERROR_NONE && !strchr(error.text, '\n')));
+        image_release(image);
+        file[at] = old;
+    }
+    free(file);
 }

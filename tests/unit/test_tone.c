@@ -1,6 +1,8 @@
 /* From light to files: curves, 16-bit PNG, PFM, Radiance HDR. */
+#include "image/exr.h"
 #include "image/float_write.h"
 #include "image/image.h"
+#include "image/image_file.h"
 #include "image/png_write.h"
 #include "image/tone.h"
 #include "tests/harness.h"
@@ -187,6 +189,27 @@ static void expect_pixel(const char *name, uint8_t r, uint8_t g, uint8_t b) {
     if (!picture.rgb || picture.rgb[0] != r || picture.rgb[1] != g || picture.rgb[2] != b)
         test_fail(__FILE__, __LINE__, "%s is not %d %d %d", name, r, g, b);
     free(picture.rgb);
+}
+
+TEST(a_picture_may_be_exr_where_its_library_is) {
+    struct test_result result = test_gray_scene("gr.render{node = gr.node('n'), file = 'light.exr', width = 2, height "
+                                                "= 2, eye = {0, 0, 5}, background = {0.25, 2, "
+                                                "0.5}}\n",
+                                                "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, exr_can_write() ? 0 : 1);
+    char path[512];
+    struct error error = {0};
+    (void)snprintf(path, sizeof path, "%s/light.exr", test_folder());
+    struct image *image = exr_can_write() ? image_read(path, &error) : NULL;
+    if (image) {
+        struct rgba c = image_texel(image, 1, 1);
+        CHECK(c.r == 0.25 && c.g == 2 && c.b == 0.5);
+    }
+    CHECK((image != NULL) == exr_can_write());
+    CHECK(exr_can_write() || strstr(result.err, "OpenEXR"));
+    image_release(image);
+    free(result.out);
+    free(result.err);
 }
 
 TEST(the_extension_says_the_format_and_tone_is_for_png_alone) {

@@ -1,0 +1,22 @@
+/* OpenEXR pictures, where the C library of OpenEXR was found when gray was built (HAVE_EXR). */
+#ifndef GRAY_IMAGE_EXR_H
+#define GRAY_IMAGE_EXR_H
+
+#include "base/error.h"
+#include "image/float_write.h"
+#include "image/image.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* "OpenEXR 3.1.5" or "none". */
+const char *exr_library(void);
+bool exr_can_write(void);
+/* Scan lines of floats R, G, B, zip-compressed. Errors: no library, no memory, the file. */
+bool exr_write(const char *path, uint32_t width, uint32_t height, float_rows *rows, void *context, struct error *error);
+bool exr_is(const uint8_t *data, size_t size);
+/* R, G, B or Y of the first part, in scan lines; anything else in it is passed over. NaN and negative light become 0.
+ * Errors name the path. */
+struct image *image_parse_exr(const char *path, const uint8_t *data, size_t size, struct error *error);
+
+#endif
