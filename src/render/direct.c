@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 #include "math/sampling.h"
+#include "world/packet.h"
 
 enum { AREA_BATCH = 256 }; /* shadow rays of one hit that are asked together */
 

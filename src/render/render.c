@@ -13,12 +13,28 @@
 #include <string.h>
 #include <time.h>
 
+/* Samples that are traced together: places in the picture, in the order in which they are wanted. */
+struct place {
+    int64_t x, y;
+    double dx, dy; /* within the pixel */
+    uint64_t number;
+};
+
+struct batch {
+    struct place places[PACKET_RAYS];
+    struct vec3 colours[PACKET_RAYS];
+    uint32_t count;
+    struct ray_packet packet;
+    struct packet_answer answers[PACKET_RAYS];
+};
+
 struct worker {
     struct world_scratch scratch;
     struct tracer tracer;
     uint64_t camera_rays, marked, samples;
     struct media ray_media;
     struct camera_frame camera; /* of the sample's moment, when the camera moves */
+    struct batch batch;
     struct vec3 first[(FILM_TILE + 2) * (FILM_TILE + 2)];
 };
 
@@ -30,6 +46,7 @@ struct run {
     /* -full, or a lens or moving things: what is blurred differs from sample to sample, not from its neighbours */
     bool full;
     bool timed;        /* something moves while the shutter is open */
+    bool together;     /* camera rays start in one place and at one moment */
     bool media_by_ray; /* rays start in different places or moments, and solids are near */
     uint32_t *closed;  /* the solids that the eye can stand in */
     uint32_t closed_count;
@@ -101,16 +118,25 @@ static double sample_time(const struct strata *strata, uint64_t key) {
     return ((double)cell + random_unit(random_combine(key, UINT64_MAX - 1))) / (double)all;
 }
 
-/* share: of the pixel's width that this sample stands for; its footprint on textures. */
-static struct vec3 sample(struct run *run, struct worker *worker, int64_t x, int64_t y, double dx, double dy,
-                          double share, uint64_t number) {
+/* The random key of a sample. Number 0 is the first sample of a pixel, which stands alone; the others are number - 1 of
+ * N x N. */
+static uint64_t begin_sample(const struct run *run, struct worker *worker, int64_t x, int64_t y, uint64_t number) {
     uint64_t pixel = (uint64_t)y * run->job->width + (uint64_t)x;
     uint64_t key_of_pixel = random_combine(random_combine(run->job->settings.seed, 0), pixel);
-    uint64_t key = random_combine(key_of_pixel, number);
-    /* Number 0 is the first sample, which stands alone; the others are number - 1 of N x N. */
     uint32_t side = number > 0 ? (uint32_t)run->job->settings.samples : 1;
     worker->tracer.strata =
         (struct strata){number > 0 ? (uint32_t)number - 1 : 0, side, random_combine(key_of_pixel, 1)};
+    return random_combine(key_of_pixel, number);
+}
+
+/* Of the pixel's width, what a sample stands for: its footprint on textures. */
+static double sample_share(const struct run *run, uint64_t number) {
+    return number > 0 ? 1.0 / run->job->settings.samples : 1;
+}
+
+static struct vec3 sample(struct run *run, struct worker *worker, const struct place *place) {
+    uint64_t key = begin_sample(run, worker, place->x, place->y, place->number);
+    double x = (double)place->x + place->dx, y = (double)place->y + place->dy, share = sample_share(run, place->number);
     const struct camera_frame *camera = &run->camera;
     double time = run->timed ? sample_time(&worker->tracer.strata, key) : 0;
     if (run->timed && run->job->settings.motion.moves) {
@@ -121,35 +147,73 @@ static struct vec3 sample(struct run *run, struct worker *worker, int64_t x, int
             return vec3_all(0); /* the one moment in which a view turns through zero */
     }
     if (!camera_is_plain(camera))
-        return sample_through(run, worker, camera, (double)x + dx, (double)y + dy, time, share, key);
-    struct ray ray = camera_ray(camera, (double)x + dx, (double)y + dy);
+        return sample_through(run, worker, camera, x, y, time, share, key);
+    struct ray ray = camera_ray(camera, x, y);
     ray.time = time;
     return trace_from_eye(run, worker, &ray, share, key);
 }
 
+/* The samples of a batch, as sample() would bring them. What the camera rays meet is looked for together. */
+static void sample_batch(struct run *run, struct worker *worker) {
+    struct batch *batch = &worker->batch;
+    if (!run->together || batch->count == 1) {
+        for (uint32_t i = 0; i < batch->count; i++)
+            batch->colours[i] = sample(run, worker, &batch->places[i]);
+        return;
+    }
+    struct ray_packet *packet = &batch->packet;
+    packet->count = batch->count;
+    packet->origin = run->camera.eye;
+    packet->t_min = packet->time = 0;
+    for (uint32_t i = 0; i < batch->count; i++) {
+        const struct place *place = &batch->places[i];
+        struct ray ray = camera_ray(&run->camera, (double)place->x + place->dx, (double)place->y + place->dy);
+        packet->direction[0][i] = ray.direction.x;
+        packet->direction[1][i] = ray.direction.y;
+        packet->direction[2][i] = ray.direction.z;
+        packet->t_max[i] = ray.t_max;
+    }
+    ray_packet_pad(packet);
+    uint64_t met = world_nearest_packet(run->job->world, packet, &worker->scratch, batch->answers);
+    worker->camera_rays += batch->count;
+    for (uint32_t i = 0; i < batch->count; i++) {
+        const struct place *place = &batch->places[i];
+        struct ray ray = camera_ray(&run->camera, (double)place->x + place->dx, (double)place->y + place->dy);
+        double share = sample_share(run, place->number);
+        ray.footprint.spread *= share;
+        ray.footprint.width *= share;
+        uint64_t key = begin_sample(run, worker, place->x, place->y, place->number);
+        batch->colours[i] = whitted_trace_met(&worker->tracer, &ray, met >> i & 1 ? &batch->answers[i] : NULL, key);
+    }
+}
+
 /* The first sample has number 0, at the centre or the corner of the pixel. */
-static struct vec3 first_sample(struct run *run, struct worker *worker, int64_t x, int64_t y) {
+static struct place first_place(const struct run *run, int64_t x, int64_t y) {
     double at = run->job->settings.pixel_corner ? 0 : 0.5;
-    return sample(run, worker, x, y, at, at, 1, 0);
+    return (struct place){x, y, at, at, 0};
 }
 
 /* Mean of the N x N samples; where one of them is the first sample again it is not traced twice. */
 static struct vec3 all_samples(struct run *run, struct worker *worker, int64_t x, int64_t y, const struct vec3 *first) {
     int n = run->job->settings.samples;
     bool reuse = (n & 1) && !run->job->settings.pixel_corner && run->camera.lens.aperture == 0 && !run->timed;
+    struct batch *batch = &worker->batch;
     struct vec3 sum = {0, 0, 0};
-    for (int j = 0; j < n; j++) {
-        for (int i = 0; i < n; i++) {
-            bool centre = reuse && i == n / 2 && j == n / 2;
-            struct vec3 colour;
-            if (centre && first)
-                colour = *first;
-            else if (centre)
-                colour = sample(run, worker, x, y, 0.5, 0.5, 1, 0);
-            else
-                colour = sample(run, worker, x, y, (i + 0.5) / n, (j + 0.5) / n, 1.0 / n, (uint64_t)(j * n + i + 1));
-            sum = vec3_add(sum, colour);
+    int centre = reuse ? n / 2 * n + n / 2 : -1;
+    for (int begin = 0; begin < n * n; begin += PACKET_RAYS) {
+        int end = begin + PACKET_RAYS < n * n ? begin + PACKET_RAYS : n * n;
+        batch->count = 0;
+        for (int k = begin; k < end; k++) {
+            if (k == centre && !first)
+                batch->places[batch->count++] = first_place(run, x, y);
+            else if (k != centre)
+                batch->places[batch->count++] =
+                    (struct place){x, y, (k % n + 0.5) / n, (k / n + 0.5) / n, (uint64_t)(k + 1)};
         }
+        sample_batch(run, worker);
+        uint32_t next = 0;
+        for (int k = begin; k < end; k++)
+            sum = vec3_add(sum, k == centre && first ? *first : batch->colours[next++]);
     }
     return vec3_scale(sum, 1 / ((double)n * (double)n));
 }
@@ -216,6 +280,25 @@ static void finish_pixel(struct run *run, struct worker *worker, const struct re
     worker->marked += marked;
 }
 
+/* The first samples of a small square go together. */
+enum { PATCH = 8 };
+_Static_assert((int)(PATCH *PATCH) == (int)PACKET_RAYS, "a patch is a packet");
+
+static void sample_patch(struct run *run, struct worker *worker, const struct rectangle *area, int64_t x0, int64_t y0) {
+    struct batch *batch = &worker->batch;
+    batch->count = 0;
+    for (int64_t y = y0; y < y0 + PATCH && y < area->y1; y++) {
+        for (int64_t x = x0; x < x0 + PATCH && x < area->x1; x++)
+            batch->places[batch->count++] = first_place(run, x, y);
+    }
+    sample_batch(run, worker);
+    for (uint32_t i = 0; i < batch->count; i++) {
+        const struct place *place = &batch->places[i];
+        worker->first[(size_t)(place->y - area->y0) * (FILM_TILE + 2) + (size_t)(place->x - area->x0)] =
+            batch->colours[i];
+    }
+}
+
 static bool render_tile(struct run *run, struct worker *worker, struct rectangle tile) {
     const struct settings *settings = &run->job->settings;
     bool have_first = !run->full || settings->keep_first;
@@ -225,12 +308,11 @@ static bool render_tile(struct run *run, struct worker *worker, struct rectangle
     area.y0 = area.y0 < 0 ? 0 : area.y0;
     area.x1 = area.x1 > run->job->width ? run->job->width : area.x1;
     area.y1 = area.y1 > run->job->height ? run->job->height : area.y1;
-    for (int64_t y = area.y0; y < area.y1 && have_first; y++) {
-        for (int64_t x = area.x0; x < area.x1; x++) {
+    for (int64_t y = area.y0; y < area.y1 && have_first; y += PATCH) {
+        for (int64_t x = area.x0; x < area.x1; x += PATCH) {
             if (stopped(run, worker))
                 return false;
-            worker->first[(size_t)(y - area.y0) * (FILM_TILE + 2) + (size_t)(x - area.x0)] =
-                first_sample(run, worker, x, y);
+            sample_patch(run, worker, &area, x, y);
         }
     }
     for (int64_t y = tile.y0; y < tile.y1; y++) {
@@ -258,7 +340,8 @@ static void cost_item(void *context, uint32_t item, int index) {
     for (uint32_t i = 0; i < count && !stopped(run, worker); i++) {
         uint32_t x = r.x0 + (r.x1 - r.x0) * (2 * i + 1) / (2 * count);
         uint32_t y = r.y0 + (r.y1 - r.y0) * ((2 * i + 1) * 3 % (2 * count)) / (2 * count);
-        (void)first_sample(run, worker, x, y);
+        struct place place = first_place(run, x, y);
+        (void)sample(run, worker, &place);
     }
     run->cost[item] = 1 + tracer->hits + tracer->reflected_rays + tracer->refracted_rays - before;
 }
@@ -412,6 +495,7 @@ static bool find_eye_media(struct run *run, const struct box *origins, bool spre
     if (run->closed_count > 0)
         (void)world_closed_in(world, origins, run->closed, run->closed_count);
     run->media_by_ray = run->closed_count > 0 && spread;
+    run->together = camera_is_plain(&run->camera) && !run->timed && !run->media_by_ray;
     media_around(world, run->camera.eye, 0, run->closed, run->closed_count, &run->workers[0].scratch, &run->eye_media);
     return !run->workers[0].scratch.failed;
 }

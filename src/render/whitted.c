@@ -178,15 +178,13 @@ static struct vec3 shade_hit(struct tracer *tracer, const struct ray *ray, const
     return vec3_add_scaled(behind, shade(tracer, ray, hit, &look, path), look.opacity);
 }
 
-static struct vec3 trace(struct tracer *tracer, const struct ray *ray, struct path path) {
+/* What a ray brings that has met `hit`, or nothing: NULL. */
+static struct vec3 bring(struct tracer *tracer, const struct ray *ray, const struct hit *hit, struct path path) {
     const struct world *world = tracer->job->world;
     const struct fog *fog = tracer->job->fog;
-    struct hit hit;
-    if (tracer->pool && pool_cancelled(tracer->pool))
-        return vec3_all(0); /* deep paths through glass grow exponentially */
-    bool met = world_nearest(world, ray, tracer->scratch, &hit);
+    bool met = hit != NULL;
     double end;
-    const struct light *lamp = visible_light(world, ray, met ? hit.t : ray->t_max, &end);
+    const struct light *lamp = visible_light(world, ray, met ? hit->t : ray->t_max, &end);
 
     /* What is between here and there. */
     bool inside = ray->media && ray->media->count > 0, endless = !met && !lamp, clear = true;
@@ -207,7 +205,7 @@ static struct vec3 trace(struct tracer *tracer, const struct ray *ray, struct pa
     else if (lamp)
         colour = lamp->colour;
     else if (met)
-        colour = shade_hit(tracer, ray, &hit, path);
+        colour = shade_hit(tracer, ray, hit, path);
     else
         colour = sky_colour(&world->sky, vec3_normalize(ray->direction), ray->footprint.spread);
     if (clear)
@@ -216,8 +214,28 @@ static struct vec3 trace(struct tracer *tracer, const struct ray *ray, struct pa
     return inside ? colour : vec3_add_scaled(colour, fog->colour, 1 - left.x);
 }
 
+static struct vec3 trace(struct tracer *tracer, const struct ray *ray, struct path path) {
+    struct hit hit;
+    if (tracer->pool && pool_cancelled(tracer->pool))
+        return vec3_all(0); /* deep paths through glass grow exponentially */
+    bool met = world_nearest(tracer->job->world, ray, tracer->scratch, &hit);
+    return bring(tracer, ray, met ? &hit : NULL, path);
+}
+
 struct vec3 whitted_trace(struct tracer *tracer, const struct ray *ray, uint64_t key) {
     struct ray from_eye = *ray;
     from_eye.media = tracer->eye_media;
     return trace(tracer, &from_eye, (struct path){.key = key, .weight = 1});
+}
+
+struct vec3 whitted_trace_met(struct tracer *tracer, const struct ray *ray, const struct packet_answer *met,
+                              uint64_t key) {
+    struct ray from_eye = *ray;
+    struct hit hit;
+    from_eye.media = tracer->eye_media;
+    if (tracer->pool && pool_cancelled(tracer->pool))
+        return vec3_all(0);
+    if (met)
+        world_describe(tracer->job->world, &from_eye, met->placed, &met->crossing, &hit);
+    return bring(tracer, &from_eye, met ? &hit : NULL, (struct path){.key = key, .weight = 1});
 }

@@ -6,6 +6,7 @@
 #include "math/sampling.h"
 #include "render/media.h"
 #include "render/render.h"
+#include "world/packet.h"
 
 /* One worker's view of a job. */
 struct tracer {
@@ -19,5 +20,8 @@ struct tracer {
 
 /* The colour a camera ray brings; key: the random key of this pixel and sample. */
 struct vec3 whitted_trace(struct tracer *tracer, const struct ray *ray, uint64_t key);
+/* The same for a ray that went with a packet: what it has met, or NULL. */
+struct vec3 whitted_trace_met(struct tracer *tracer, const struct ray *ray, const struct packet_answer *met,
+                              uint64_t key);
 
 #endif

@@ -18,6 +18,7 @@
 #include "world/flatten.h"
 #include "world/light_lamps.h"
 #include "world/light_lists.h"
+#include "world/world_parts.h"
 
 #include <string.h>
 
@@ -209,16 +210,17 @@ static bool nearest_of_mesh(const struct world *world, uint32_t index, const str
 }
 
 /* Runs one question about one placed primitive again with more scratch until it fits. */
-static bool ask_nearest(struct search *s, uint32_t index, const struct ray *ray_object, struct crossing *out) {
-    const struct shape *shape = placed_shape(s->world, index);
-    struct geom_scratch *geom = &s->scratch->geom;
+bool world_ask_nearest(const struct world *world, uint32_t index, const struct ray *ray_object,
+                       struct world_scratch *scratch, struct crossing *out) {
+    const struct shape *shape = placed_shape(world, index);
+    struct geom_scratch *geom = &scratch->geom;
     for (;;) {
-        bool found = shape->kind == SHAPE_MESH ? nearest_of_mesh(s->world, index, ray_object, geom, out)
+        bool found = shape->kind == SHAPE_MESH ? nearest_of_mesh(world, index, ray_object, geom, out)
                                                : shape_nearest(shape, ray_object, geom, out);
         if (!geom->overflow)
             return found;
         if (!geom_scratch_grow(geom)) {
-            s->scratch->failed = true;
+            scratch->failed = true;
             return false;
         }
     }
@@ -230,7 +232,7 @@ static void try_placed(struct search *s, uint32_t index) {
     struct crossing crossing;
     if (!as_it_is)
         ray_object = placed_ray(s->world, index, &s->limited);
-    if (!ask_nearest(s, index, as_it_is ? &s->limited : &ray_object, &crossing))
+    if (!world_ask_nearest(s->world, index, as_it_is ? &s->limited : &ray_object, s->scratch, &crossing))
         return;
     if (s->found && !(crossing.t < s->best.t || (crossing.t == s->best.t && index < s->placed)))
         return;
@@ -326,22 +328,18 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
 
 /* --- anything in the way --- */
 
-static void describe(const struct world *world, const struct ray *ray, uint32_t index, const struct crossing *crossing,
-                     struct hit *hit);
-
 /* A surface with holes stands in the way where at least half of it is there: shadows have two values. */
 static bool any_with_holes(const struct world *world, uint32_t index, const struct ray *ray,
                            struct world_scratch *scratch) {
     struct ray rest = *ray;
-    struct search s = {.world = world, .ray = ray, .scratch = scratch};
     for (;;) {
         struct ray ray_object = placed_ray(world, index, &rest);
         struct crossing crossing;
         struct hit hit;
         struct surface_look look;
-        if (!ask_nearest(&s, index, &ray_object, &crossing))
+        if (!world_ask_nearest(world, index, &ray_object, scratch, &crossing))
             return false;
-        describe(world, ray, index, &crossing, &hit);
+        world_describe(world, ray, index, &crossing, &hit);
         material_look(world->materials[hit.material], &hit, &look);
         if (look.opacity >= 0.5)
             return true;
@@ -349,8 +347,7 @@ static bool any_with_holes(const struct world *world, uint32_t index, const stru
     }
 }
 
-static bool any_placed(const struct world *world, uint32_t index, const struct ray *ray,
-                       struct world_scratch *scratch) {
+bool world_ask_any(const struct world *world, uint32_t index, const struct ray *ray, struct world_scratch *scratch) {
     const struct thing *thing = placed_thing(world, index);
     if (thing->holes)
         return any_with_holes(world, index, ray, scratch);
@@ -374,7 +371,7 @@ static bool any_placed(const struct world *world, uint32_t index, const struct r
 static bool any_boxed(const struct world *world, uint32_t index, const struct ray *ray, const struct box_probe *probe,
                       struct world_scratch *scratch) {
     return box_probe_meets(probe, &world->boxes[index], ray->t_min, ray->t_max) &&
-           any_placed(world, index, ray, scratch);
+           world_ask_any(world, index, ray, scratch);
 }
 
 static bool any_in_grid(const struct world *world, const struct ray *ray, const struct box_probe *probe,
@@ -404,7 +401,7 @@ static bool any_in_tree(const struct world *world, const struct ray *ray, struct
     bool found = false;
     box_tree_walk_begin(&walk, &world->tree, ray);
     while (!found && box_tree_walk_any(&walk, ray->t_max, &index)) {
-        found = index != asked && any_placed(world, index, ray, scratch);
+        found = index != asked && world_ask_any(world, index, ray, scratch);
         if (found)
             scratch->last_blocker = index;
     }
@@ -449,54 +446,6 @@ bool world_any(const struct world *world, const struct ray *ray, struct world_sc
     if (world->accel == ACCEL_KDTREE)
         return any_in_kd_tree(world, ray, &probe, scratch);
     return world->accel == ACCEL_GRID ? any_in_grid(world, ray, &probe, scratch) : any_in_tree(world, ray, scratch);
-}
-
-uint32_t world_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner, struct vec3 edge1,
-                       struct vec3 edge2, const struct vec3 *targets, uint32_t count, struct world_scratch *scratch,
-                       bool *visible) {
-    enum { CANDIDATES = 24 };
-    uint32_t candidates[CANDIDATES], found = CANDIDATES + 1, seen = 0;
-    if (world->accel == ACCEL_AUTO || world->accel == ACCEL_BVH) {
-        struct shaft shaft = shaft_make(from, corner, edge1, edge2);
-        found = box_tree_in_shaft(&world->tree, &shaft, candidates, CANDIDATES);
-        if (found == 0) {
-            for (uint32_t i = 0; i < count && visible; i++)
-                visible[i] = true;
-            return count;
-        }
-    }
-    for (uint32_t i = 0; i < count; i++) {
-        struct ray ray = {.origin = from, .direction = vec3_sub(targets[i], from), .t_max = 1, .time = time};
-        if (found > CANDIDATES) {
-            bool free_way = !world_any(world, &ray, scratch);
-            seen += free_way;
-            if (visible)
-                visible[i] = free_way;
-            continue;
-        }
-        scratch->any_rays++;
-        struct box_probe probe = box_probe_make(&ray);
-        bool blocked = false;
-        for (uint32_t k = 0; k < found && !blocked; k++) {
-            blocked = any_boxed(world, candidates[k], &ray, &probe, scratch);
-            /* What blocked one ray is asked first by the next. */
-            if (blocked && k > 0) {
-                uint32_t swap = candidates[0];
-                candidates[0] = candidates[k];
-                candidates[k] = swap;
-            }
-        }
-        seen += !blocked;
-        if (visible)
-            visible[i] = !blocked;
-    }
-    return seen;
-}
-
-uint32_t world_count_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner,
-                             struct vec3 edge1, struct vec3 edge2, const struct vec3 *targets, uint32_t count,
-                             struct world_scratch *scratch) {
-    return world_visible(world, from, time, corner, edge1, edge2, targets, count, scratch, NULL);
 }
 
 /* --- describing --- */
@@ -548,8 +497,8 @@ static double stretch_of(const struct world *world, uint32_t index, const struct
     return linear & LINEAR_MOVING ? transform_stretch(map) : world->linear_maps[linear].stretch;
 }
 
-static void describe(const struct world *world, const struct ray *ray, uint32_t index, const struct crossing *crossing,
-                     struct hit *hit) {
+void world_describe(const struct world *world, const struct ray *ray, uint32_t index, const struct crossing *crossing,
+                    struct hit *hit) {
     const struct thing *thing = placed_thing(world, index);
     struct transform world_from_object = world_placement(world, index, ray->time);
     const struct transform *map = &world_from_object;
@@ -611,7 +560,7 @@ bool world_nearest(const struct world *world, const struct ray *ray, struct worl
     struct crossing crossing;
     if (!world_nearest_crossing(world, ray, scratch, &placed, &crossing))
         return false;
-    describe(world, ray, placed, &crossing, hit);
+    world_describe(world, ray, placed, &crossing, hit);
     return true;
 }
 
@@ -651,9 +600,8 @@ uint32_t world_containing(const struct world *world, struct vec3 point, double r
         if (!contains(world, i, ray_object.origin, scratch))
             continue;
         /* Innermost last: the solid the ray leaves first is the innermost. */
-        struct search s = {.world = world, .ray = &ray, .scratch = scratch};
         struct crossing crossing = {.t = INFINITY};
-        (void)ask_nearest(&s, i, &ray_object, &crossing);
+        (void)world_ask_nearest(world, i, &ray_object, scratch, &crossing);
         uint32_t at = count;
         while (at > 0 && ends[at - 1] < crossing.t)
             at--;

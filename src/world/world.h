@@ -138,15 +138,9 @@ bool world_nearest(const struct world *world, const struct ray *ray, struct worl
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
                             uint32_t *placed, struct crossing *crossing);
 bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch);
-/* How many of the points targets[0 .. count-1], all inside the parallelogram, are seen from `from`: as world_any would
- * say of every segment, t in (0, 1), with the search for what can stand between done once for all of them. */
-uint32_t world_count_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner,
-                             struct vec3 edge1, struct vec3 edge2, const struct vec3 *targets, uint32_t count,
-                             struct world_scratch *scratch);
-/* The same; visible (count entries, or NULL) says it of each. */
-uint32_t world_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner, struct vec3 edge1,
-                       struct vec3 edge2, const struct vec3 *targets, uint32_t count, struct world_scratch *scratch,
-                       bool *visible);
+/* Only what world_nearest_crossing has found, described. */
+void world_describe(const struct world *world, const struct ray *ray, uint32_t placed, const struct crossing *crossing,
+                    struct hit *hit);
 /* The closed primitives whose box meets `region`: all that can hold a point of it, in flattening order. `out` (or NULL)
  * has room for `limit`. Returns how many there are. */
 uint32_t world_closed_in(const struct world *world, const struct box *region, uint32_t *out, uint32_t limit);

@@ -2,6 +2,7 @@
 #include "tests/harness.h"
 
 #include "tests/stage.h"
+#include "world/packet.h"
 
 #include <string.h>
 
@@ -192,6 +193,68 @@ TEST(points_of_a_parallelogram_seen_through_a_shaft_are_those_that_single_rays_s
         stage_end(&s);
     }
     CHECK(partly > 1000);
+}
+
+/* Camera rays of a few pixels, rays along an axis, and rays that go all round, which must fall to single ones. */
+static struct ray_packet random_packet(struct test_random *random, double spread, int form) {
+    struct ray first = random_ray(random, spread);
+    struct ray_packet packet = {.origin = first.origin, .count = 1 + (uint32_t)test_uniform(random, 0, 64)};
+    double width = vec3_length(first.direction) * test_uniform(random, 0, 0.2);
+    for (uint32_t i = 0; i < packet.count; i++) {
+        double n[3];
+        for (int k = 0; k < 3; k++)
+            n[k] = test_uniform(random, -1, 1);
+        struct vec3 d = vec3_add_scaled(first.direction, vec3_make(n[0], n[1], n[2]), width);
+        if (form == 1)
+            d = vec3_make(i % 2 ? 0.0 : n[0] * 0.1, i % 3 ? -0.0 : n[1] * 0.1, first.direction.z < 0 ? -1 : 1);
+        if (form == 2)
+            d = vec3_make(n[0], n[1], n[2]);
+        packet.direction[0][i] = d.x;
+        packet.direction[1][i] = d.y;
+        packet.direction[2][i] = d.z;
+        packet.t_max[i] = i % 4 ? INFINITY : test_uniform(random, 0, 3);
+    }
+    ray_packet_pad(&packet);
+    return packet;
+}
+
+TEST(packets_of_rays_meet_in_a_world_what_single_rays_meet) {
+    struct test_random random = {8};
+    uint64_t hits = 0;
+    for (int w = 0; w < 28; w++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        static const int counts[] = {0, 1, 2, 5, 20, 80, 300};
+        double spread = w % 3 == 0 ? 2 : w % 3 == 1 ? 10 : 60;
+        struct node *root = random_world(&s, &random, counts[w % 7], spread, w % 11 == 10);
+        CHECK(stage_build(&s, root, w % 9 == 8 ? ACCEL_GRID : ACCEL_AUTO));
+        struct world_scratch scratch;
+        CHECK(world_scratch_init(&scratch, &s.world));
+        for (int i = 0; i < 120; i++) {
+            struct ray_packet packet = random_packet(&random, spread, i % 4);
+            struct packet_answer answers[PACKET_RAYS];
+            uint64_t met = world_nearest_packet(&s.world, &packet, &scratch, answers);
+            CHECK((met & ~ray_packet_all(&packet)) == 0);
+            hits += (uint64_t)__builtin_popcountll(met);
+            for (uint32_t k = 0; k < packet.count; k++) {
+                struct ray ray = ray_packet_get(&packet, k);
+                uint32_t placed;
+                struct crossing c;
+                bool alone = world_nearest_crossing(&s.world, &ray, &scratch, &placed, &c);
+                bool same = alone == (met >> k & 1);
+                if (same && alone)
+                    same = answers[k].placed == placed && answers[k].crossing.t == c.t &&
+                           answers[k].crossing.part == c.part && answers[k].crossing.leaf == c.leaf &&
+                           answers[k].crossing.u == c.u && answers[k].crossing.v == c.v;
+                if (!same)
+                    test_fail(__FILE__, __LINE__, "world %d, packet %d, ray %u differs from the same ray alone", w, i,
+                              k);
+            }
+        }
+        world_scratch_destroy(&scratch);
+        stage_end(&s);
+    }
+    CHECK(hits > 10000);
 }
 
 TEST(world_names_the_nodes_of_a_cycle) {

@@ -1,0 +1,100 @@
+/* See beam.h; as in Reshetov, Soupikov, Hurley, "Multi-Level Ray Tracing Algorithm", SIGGRAPH 2005. A box lies outside
+ * of the beam when its corner nearest to one of the planes is outside. Slopes are widened by 2^-40, which is far more
+ * than rounding moves anything that is not about the origin itself; slack is for that. */
+#include "accel/beam.h"
+
+bool beam_make(struct beam *out, const struct ray_packet *rays) {
+    const double first[3] = {fabs(rays->direction[0][0]), fabs(rays->direction[1][0]), fabs(rays->direction[2][0])};
+    int z = first[1] > first[0];
+    z = first[2] > first[z] ? 2 : z;
+    out->ahead = z;
+    out->side[0] = (z + 1) % 3;
+    out->side[1] = (z + 2) % 3;
+    out->backwards = rays->direction[z][0] < 0;
+    double least = INFINITY, most = 0, low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    double sign = out->backwards ? -1 : 1;
+    for (uint32_t i = 0; i < rays->count; i++) {
+        double way = rays->direction[z][i] * sign, over = 1 / way;
+        least = way < least ? way : least;
+        most = way > most ? way : most;
+        for (int k = 0; k < 2; k++) {
+            double slope = rays->direction[out->side[k]][i] * over;
+            low[k] = slope < low[k] ? slope : low[k];
+            high[k] = slope > high[k] ? slope : high[k];
+        }
+    }
+    double spread = fmax(fmax(-low[0], high[0]), fmax(-low[1], high[1]));
+    if (!(least > 0 && most < 0x1p900 && least > 0x1p-900 && spread < 0x1p5))
+        return false;
+    for (int k = 0; k < 2; k++) {
+        out->slope_min[k] = low[k] - (fabs(low[k]) + 1) * 0x1p-40;
+        out->slope_max[k] = high[k] + (fabs(high[k]) + 1) * 0x1p-40;
+    }
+    out->soonest = (1 - 0x1p-50) / most;
+    out->origin[0] = rays->origin.x;
+    out->origin[1] = rays->origin.y;
+    out->origin[2] = rays->origin.z;
+    out->slack = vec3_max_abs(rays->origin) * 0x1p-44;
+    return isfinite(out->slack);
+}
+
+void beam_walk_begin(struct beam_walk *walk, const struct box_tree *tree, const struct beam *beam) {
+    walk->tree = tree;
+    walk->beam = beam;
+    walk->steps = 0;
+    walk->top = 0;
+    if (tree->item_count > 0) {
+        walk->child[walk->top] = 0;
+        walk->enter[walk->top++] = 0;
+    }
+}
+
+/* Which children the beam meets, and how far ahead each begins. A NaN, of infinite sides, is never outside. */
+static unsigned meet_children(const struct beam *b, const struct box_tree_node *node, double ahead[BOX_TREE_WIDTH]) {
+    unsigned met = 0;
+    const double *near_planes = node->planes[b->ahead][b->backwards],
+                 *far_planes = node->planes[b->ahead][!b->backwards];
+    double sign = b->backwards ? -1 : 1, origin = b->origin[b->ahead];
+    for (int i = 0; i < BOX_TREE_WIDTH; i++) {
+        double near = (near_planes[i] - origin) * sign - b->slack, far = (far_planes[i] - origin) * sign + b->slack;
+        bool outside = far < 0;
+        for (int k = 0; k < 2; k++) {
+            const double(*planes)[BOX_TREE_WIDTH] = node->planes[b->side[k]];
+            double low = planes[0][i] - b->origin[b->side[k]] - b->slack;
+            double high = planes[1][i] - b->origin[b->side[k]] + b->slack;
+            outside |= low > b->slope_max[k] * (b->slope_max[k] > 0 ? far : near);
+            outside |= high < b->slope_min[k] * (b->slope_min[k] > 0 ? near : far);
+        }
+        ahead[i] = near;
+        met |= (unsigned)(!outside && node->child[i] != BOX_TREE_NONE) << i;
+    }
+    return met;
+}
+
+bool beam_walk_next(struct beam_walk *walk, double t_max, uint32_t *item) {
+    while (walk->top > 0) {
+        uint32_t child = walk->child[--walk->top];
+        if (walk->enter[walk->top] > t_max)
+            continue;
+        if (child & BOX_TREE_ITEM) {
+            *item = child & ~BOX_TREE_ITEM;
+            return true;
+        }
+        const struct box_tree_node *node = &walk->tree->nodes[child];
+        double ahead[BOX_TREE_WIDTH];
+        unsigned met = meet_children(walk->beam, node, ahead);
+        walk->steps++;
+        int base = walk->top;
+        for (; met; met &= met - 1) {
+            int i = __builtin_ctz(met), at = walk->top++;
+            double enter = ahead[i] > 0 ? ahead[i] * walk->beam->soonest : 0;
+            for (; at > base && walk->enter[at - 1] < enter; at--) {
+                walk->enter[at] = walk->enter[at - 1];
+                walk->child[at] = walk->child[at - 1];
+            }
+            walk->enter[at] = enter;
+            walk->child[at] = node->child[i];
+        }
+    }
+    return false;
+}

@@ -1,0 +1,34 @@
+/* The beam round rays of one origin, in double precision: four planes through the origin, from the smallest and the
+ * largest slope of the rays over the axis that is the longest for the first of them. Only ever conservative. */
+#ifndef GRAY_ACCEL_BEAM_H
+#define GRAY_ACCEL_BEAM_H
+
+#include "accel/box_tree.h"
+#include "accel/ray_packet.h"
+
+struct beam {
+    double origin[3], slack; /* slack: world units, for the rounding of differences from the origin */
+    int ahead, side[2];
+    bool backwards;
+    double slope_min[2], slope_max[2]; /* of coordinate / |ahead| */
+    double soonest;                    /* 1 / the largest |direction| ahead: t is at least way ahead times this */
+};
+
+/* False: the rays do not go the same way. */
+bool beam_make(struct beam *out, const struct ray_packet *rays);
+
+/* Items whose box the beam meets, nearest boxes first:
+ *   beam_walk_begin(&walk, tree, &beam); while (beam_walk_next(&walk, t_max, &item)) ...
+ * t_max: beyond it no ray wants anything; it may shrink between calls. */
+struct beam_walk {
+    const struct box_tree *tree;
+    const struct beam *beam;
+    uint32_t steps;
+    int top;
+    uint32_t child[BOX_TREE_STACK];
+    double enter[BOX_TREE_STACK];
+};
+void beam_walk_begin(struct beam_walk *walk, const struct box_tree *tree, const struct beam *beam);
+bool beam_walk_next(struct beam_walk *walk, double t_max, uint32_t *item);
+
+#endif

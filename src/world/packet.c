@@ -1,0 +1,298 @@
+/* Rays of one origin together: the camera rays of a few pixels go through the hierarchy over the placed primitives as
+ * one beam, and the shadow rays of one hit towards one light look only at what stands in the shaft between them. Meshes
+ * get all the rays that meet their box at once (accel/triangle_packet.h), other shapes one after the other. The answers
+ * are those of single rays. */
+#include "world/packet.h"
+
+#include "accel/beam.h"
+#include "world/world_parts.h"
+
+#include <string.h>
+
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
+struct packet_search {
+    const struct world *world;
+    const struct ray_packet *rays;
+    struct world_scratch *scratch;
+    _Alignas(64) double inverse[3][PACKET_RAYS];
+    double limit[PACKET_RAYS]; /* just behind the best answer, so that an equal t is still found */
+    struct packet_answer *best;
+    uint64_t found;
+};
+
+static uint32_t places(const struct ray_packet *rays) {
+    return (rays->count + PACKET_STEP - 1) / PACKET_STEP * PACKET_STEP;
+}
+
+/* Which rays may meet the box: box_probe_meets of every ray, two at a time. */
+static uint64_t meet_box(const struct packet_search *s, const struct box *box) {
+    const double low[3] = {box->min.x, box->min.y, box->min.z}, high[3] = {box->max.x, box->max.y, box->max.z};
+    const double origin[3] = {s->rays->origin.x, s->rays->origin.y, s->rays->origin.z};
+    uint64_t met = 0;
+    uint32_t count = places(s->rays);
+#ifdef __SSE2__
+    const __m128d size = _mm_castsi128_pd(_mm_set1_epi64x(INT64_MAX)), slack = _mm_set1_pd(0x1p-49);
+    for (uint32_t i = 0; i < count; i += 2) {
+        __m128d enter = _mm_set1_pd(s->rays->t_min), leave = _mm_load_pd(&s->limit[i]);
+        for (int axis = 0; axis < 3; axis++) {
+            __m128d inverse = _mm_load_pd(&s->inverse[axis][i]);
+            __m128d a = _mm_mul_pd(_mm_set1_pd(low[axis] - origin[axis]), inverse);
+            __m128d b = _mm_mul_pd(_mm_set1_pd(high[axis] - origin[axis]), inverse);
+            /* Of a NaN, which lies in a plane, nothing may come: its slab is all of the line. */
+            __m128d known = _mm_cmpord_pd(a, b), near = _mm_min_pd(a, b), far = _mm_max_pd(a, b);
+            near = _mm_sub_pd(near, _mm_mul_pd(_mm_and_pd(near, size), slack));
+            far = _mm_add_pd(far, _mm_mul_pd(_mm_and_pd(far, size), slack));
+            near = _mm_or_pd(_mm_and_pd(known, near), _mm_andnot_pd(known, _mm_set1_pd(-INFINITY)));
+            far = _mm_or_pd(_mm_and_pd(known, far), _mm_andnot_pd(known, _mm_set1_pd(INFINITY)));
+            /* max and min give their second operand when one is NaN. */
+            enter = _mm_max_pd(near, enter);
+            leave = _mm_min_pd(far, leave);
+        }
+        met |= (uint64_t)_mm_movemask_pd(_mm_cmple_pd(enter, leave)) << i;
+    }
+#else
+    for (uint32_t i = 0; i < count; i++) {
+        double enter = s->rays->t_min, leave = s->limit[i];
+        for (int axis = 0; axis < 3; axis++) {
+            double a = (low[axis] - origin[axis]) * s->inverse[axis][i];
+            double b = (high[axis] - origin[axis]) * s->inverse[axis][i];
+            if (isnan(a) || isnan(b))
+                continue;
+            double near = a < b ? a : b, far = a < b ? b : a;
+            near -= fabs(near) * 0x1p-49;
+            far += fabs(far) * 0x1p-49;
+            enter = near > enter ? near : enter;
+            leave = far < leave ? far : leave;
+        }
+        met |= (uint64_t)(enter <= leave) << i;
+    }
+#endif
+    return met & ray_packet_all(s->rays);
+}
+
+/* A mesh without faces to pass over, at rest: all rays may go together. */
+static bool is_plain_mesh(const struct world *world, uint32_t index) {
+    const struct thing *thing = placed_thing(world, index);
+    uint32_t linear = world->placed[index].linear;
+    return thing->shape.kind == SHAPE_MESH && thing->cull == CULL_NONE &&
+           (linear == LINEAR_NONE || !(linear & LINEAR_MOVING));
+}
+
+/* The rays in the space of a primitive, number by number what placed_ray says. */
+static const struct ray_packet *placed_rays(const struct packet_search *s, uint32_t index, struct ray_packet *out) {
+    const struct placed *placed = &s->world->placed[index];
+    const struct ray_packet *rays = s->rays;
+    uint32_t count = places(rays);
+    out->t_min = rays->t_min;
+    out->time = rays->time;
+    out->count = rays->count;
+    for (uint32_t i = 0; i < count; i++)
+        out->t_max[i] = s->limit[i];
+    if (placed->linear == LINEAR_NONE) {
+        out->origin = rays->origin;
+        memcpy(out->direction, rays->direction, sizeof out->direction);
+        return out;
+    }
+    const struct linear_map *map = &s->world->linear_maps[placed->linear];
+    const double *x = map->inverse[0], *y = map->inverse[1], *z = map->inverse[2];
+    struct vec3 o = rays->origin;
+    out->origin = vec3_make(x[0] * o.x + x[1] * o.y + x[2] * o.z + placed->shift_back.x,
+                            y[0] * o.x + y[1] * o.y + y[2] * o.z + placed->shift_back.y,
+                            z[0] * o.x + z[1] * o.y + z[2] * o.z + placed->shift_back.z);
+    for (int k = 0; k < 3; k++) {
+        const double *row = map->inverse[k];
+        for (uint32_t i = 0; i < count; i++)
+            out->direction[k][i] =
+                row[0] * rays->direction[0][i] + row[1] * rays->direction[1][i] + row[2] * rays->direction[2][i];
+    }
+    return out;
+}
+
+static void better(struct packet_search *s, unsigned i, uint32_t index, const struct crossing *crossing) {
+    uint64_t bit = UINT64_C(1) << i;
+    struct packet_answer *best = &s->best[i];
+    if ((s->found & bit) &&
+        !(crossing->t < best->crossing.t || (crossing->t == best->crossing.t && index < best->placed)))
+        return;
+    best->crossing = *crossing;
+    best->placed = index;
+    s->found |= bit;
+    double just_behind = crossing->t + fabs(crossing->t) * 0x1p-52;
+    s->limit[i] = just_behind < s->rays->t_max[i] ? just_behind : s->rays->t_max[i];
+}
+
+static void try_mesh(struct packet_search *s, uint32_t index, uint64_t active) {
+    struct ray_packet object;
+    struct packet_hits hits;
+    const struct mesh *mesh = placed_shape(s->world, index)->mesh;
+    uint64_t met =
+        mesh_nearest_packet(mesh, placed_rays(s, index, &object), active, s->world->accel, &s->scratch->geom, &hits);
+    for (; met; met &= met - 1) {
+        unsigned i = (unsigned)__builtin_ctzll(met);
+        struct crossing crossing = {
+            .t = hits.t[i], .u = hits.u[i], .v = hits.v[i], .part = hits.triangle[i], .enter = hits.enter[i]};
+        better(s, i, index, &crossing);
+    }
+}
+
+static void try_shape(struct packet_search *s, uint32_t index, uint64_t active) {
+    for (; active; active &= active - 1) {
+        unsigned i = (unsigned)__builtin_ctzll(active);
+        struct crossing crossing;
+        struct ray ray = ray_packet_get(s->rays, i);
+        ray.t_max = s->limit[i];
+        ray = placed_ray(s->world, index, &ray);
+        if (world_ask_nearest(s->world, index, &ray, s->scratch, &crossing))
+            better(s, i, index, &crossing);
+    }
+}
+
+/* Beyond this nobody looks for anything any more. */
+static double farthest(const struct packet_search *s) {
+    double limit = -INFINITY;
+    for (uint32_t i = 0; i < s->rays->count; i++)
+        limit = s->limit[i] > limit ? s->limit[i] : limit;
+    return limit;
+}
+
+uint64_t world_nearest_packet(const struct world *world, const struct ray_packet *rays, struct world_scratch *scratch,
+                              struct packet_answer *out) {
+    enum { FEWEST = 4 };
+    struct beam beam;
+    bool tree = world->accel == ACCEL_AUTO || world->accel == ACCEL_BVH;
+    if (!tree || rays->count < FEWEST || !beam_make(&beam, rays)) {
+        uint64_t found = 0;
+        for (uint32_t i = 0; i < rays->count; i++) {
+            struct ray ray = ray_packet_get(rays, i);
+            found |= (uint64_t)world_nearest_crossing(world, &ray, scratch, &out[i].placed, &out[i].crossing) << i;
+        }
+        return found;
+    }
+    struct packet_search s;
+    s.world = world;
+    s.rays = rays;
+    s.scratch = scratch;
+    s.best = out;
+    s.found = 0;
+    for (uint32_t i = 0; i < places(rays); i++) {
+        for (int k = 0; k < 3; k++)
+            s.inverse[k][i] = 1 / rays->direction[k][i];
+        s.limit[i] = rays->t_max[i];
+    }
+    scratch->rays += rays->count;
+    struct beam_walk walk;
+    uint32_t index;
+    double limit = farthest(&s);
+    beam_walk_begin(&walk, &world->tree, &beam);
+    while (beam_walk_next(&walk, limit, &index)) {
+        uint64_t active = meet_box(&s, &world->boxes[index]);
+        if (!active)
+            continue;
+        if (is_plain_mesh(world, index))
+            try_mesh(&s, index, active);
+        else
+            try_shape(&s, index, active);
+        limit = s.found == ray_packet_all(rays) ? farthest(&s) : limit;
+    }
+    scratch->geom.hierarchy_steps += walk.steps;
+    return s.found;
+}
+
+/* --- between a hit and a light --- */
+
+/* Which of the rays one primitive stops. */
+static uint64_t stopped_by(const struct packet_search *s, uint32_t index, uint64_t active) {
+    const struct thing *thing = placed_thing(s->world, index);
+    if (is_plain_mesh(s->world, index) && !thing->holes) {
+        struct ray_packet object;
+        return mesh_any_packet(thing->shape.mesh, placed_rays(s, index, &object), active, s->world->accel,
+                               &s->scratch->geom);
+    }
+    uint64_t stopped = 0;
+    for (; active; active &= active - 1) {
+        unsigned i = (unsigned)__builtin_ctzll(active);
+        struct ray ray = ray_packet_get(s->rays, i);
+        stopped |= (uint64_t)world_ask_any(s->world, index, &ray, s->scratch) << i;
+    }
+    return stopped;
+}
+
+/* The rays of `active` that none of the candidates stops; what stops some is asked first the next time. */
+static uint64_t pass(struct packet_search *s, uint32_t *candidates, uint32_t count) {
+    uint64_t alive = ray_packet_all(s->rays);
+    for (uint32_t i = 0; i < places(s->rays); i++) {
+        for (int k = 0; k < 3; k++)
+            s->inverse[k][i] = 1 / s->rays->direction[k][i];
+        s->limit[i] = s->rays->t_max[i];
+    }
+    for (uint32_t k = 0; k < count && alive; k++) {
+        uint64_t active = alive & meet_box(s, &s->world->boxes[candidates[k]]), stopped;
+        if (!active || !(stopped = stopped_by(s, candidates[k], active)))
+            continue;
+        alive &= ~stopped;
+        uint32_t swap = candidates[0];
+        candidates[0] = candidates[k];
+        candidates[k] = swap;
+    }
+    return alive;
+}
+
+uint32_t world_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner, struct vec3 edge1,
+                       struct vec3 edge2, const struct vec3 *targets, uint32_t count, struct world_scratch *scratch,
+                       bool *visible) {
+    enum { CANDIDATES = 24 };
+    uint32_t candidates[CANDIDATES], found = CANDIDATES + 1, seen = 0;
+    if (world->accel == ACCEL_AUTO || world->accel == ACCEL_BVH) {
+        struct shaft shaft = shaft_make(from, corner, edge1, edge2);
+        found = box_tree_in_shaft(&world->tree, &shaft, candidates, CANDIDATES);
+        if (found == 0) {
+            for (uint32_t i = 0; i < count && visible; i++)
+                visible[i] = true;
+            return count;
+        }
+    }
+    if (found > CANDIDATES) {
+        for (uint32_t i = 0; i < count; i++) {
+            struct ray ray = {.origin = from, .direction = vec3_sub(targets[i], from), .t_max = 1, .time = time};
+            bool free_way = !world_any(world, &ray, scratch);
+            seen += free_way;
+            if (visible)
+                visible[i] = free_way;
+        }
+        return seen;
+    }
+    scratch->any_rays += count;
+    struct ray_packet rays;
+    struct packet_search s;
+    s.world = world;
+    s.rays = &rays;
+    s.scratch = scratch;
+    rays.origin = from;
+    rays.t_min = 0;
+    rays.time = time;
+    for (uint32_t first = 0; first < count; first += PACKET_RAYS) {
+        rays.count = count - first < PACKET_RAYS ? count - first : PACKET_RAYS;
+        for (uint32_t i = 0; i < rays.count; i++) {
+            struct vec3 d = vec3_sub(targets[first + i], from);
+            rays.direction[0][i] = d.x;
+            rays.direction[1][i] = d.y;
+            rays.direction[2][i] = d.z;
+            rays.t_max[i] = 1;
+        }
+        ray_packet_pad(&rays);
+        uint64_t alive = pass(&s, candidates, found);
+        seen += (uint32_t)__builtin_popcountll(alive);
+        for (uint32_t i = 0; i < rays.count && visible; i++)
+            visible[first + i] = alive >> i & 1;
+    }
+    return seen;
+}
+
+uint32_t world_count_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner,
+                             struct vec3 edge1, struct vec3 edge2, const struct vec3 *targets, uint32_t count,
+                             struct world_scratch *scratch) {
+    return world_visible(world, from, time, corner, edge1, edge2, targets, count, scratch, NULL);
+}

@@ -1,0 +1,27 @@
+/* What the rays of one origin meet in the world, all of them at once. The answers are those of single rays. */
+#ifndef GRAY_WORLD_PACKET_H
+#define GRAY_WORLD_PACKET_H
+
+#include "accel/ray_packet.h"
+#include "world/world.h"
+
+struct packet_answer {
+    struct crossing crossing;
+    uint32_t placed;
+};
+
+/* For each ray what world_nearest_crossing says: its bit, and out[i]. The packet is padded (ray_packet_pad). */
+uint64_t world_nearest_packet(const struct world *world, const struct ray_packet *rays, struct world_scratch *scratch,
+                              struct packet_answer *out);
+
+/* How many of the points targets[0 .. count-1], all inside the parallelogram, are seen from `from`: as world_any would
+ * say of every segment, t in (0, 1), with the search for what can stand between done once for all of them. */
+uint32_t world_count_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner,
+                             struct vec3 edge1, struct vec3 edge2, const struct vec3 *targets, uint32_t count,
+                             struct world_scratch *scratch);
+/* The same; visible (count entries, or NULL) says it of each. */
+uint32_t world_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner, struct vec3 edge1,
+                       struct vec3 edge2, const struct vec3 *targets, uint32_t count, struct world_scratch *scratch,
+                       bool *visible);
+
+#endif
