@@ -110,6 +110,11 @@ static void fill_bins(const struct builder *b, const struct run *run, struct bin
     }
 }
 
+/* What so many items cost a ray that meets their box: nodes of four, of which the last may be half full. */
+static double cost_of(uint32_t items) {
+    return (items + 3) / 4;
+}
+
 static void best_of_axis(const struct bins *bins, int axis, uint32_t all, struct split *best) {
     struct box behind[BINS];
     double right_cost[BINS];
@@ -119,7 +124,7 @@ static void best_of_axis(const struct bins *bins, int axis, uint32_t all, struct
         side = box_join(side, bins->boxes[i]);
         count += bins->counts[i];
         behind[i] = side;
-        right_cost[i] = count ? half_area(&side) * count : 0;
+        right_cost[i] = count ? half_area(&side) * cost_of(count) : 0;
     }
     side = box_empty();
     count = 0;
@@ -128,7 +133,7 @@ static void best_of_axis(const struct bins *bins, int axis, uint32_t all, struct
         count += bins->counts[i];
         if (count == 0 || count == all)
             continue;
-        double cost = half_area(&side) * count + right_cost[i + 1];
+        double cost = half_area(&side) * cost_of(count) + right_cost[i + 1];
         /* An infinite area compares equal to itself: the first split is then as good as any. */
         if (cost < best->cost || best->axis < 0)
             *best = (struct split){axis, i, bins->number, bins->lo, bins->scale, cost, {side, behind[i + 1]}};
@@ -176,19 +181,31 @@ static void split_run(struct builder *b, const struct run *run, bool halve, stru
     out[1] = (struct run){run->first + left, run->count - left, run_box(b, run->first + left, run->count - left)};
 }
 
-/* Up to four children: the run with the largest area is split again until there are four or all are single. */
+/* The run to split next, or -1. A run of up to four items is a node of its own, full or nearly, and cheaper to visit
+ * than its halves would be: it is split only where all of its items find room here. */
+static int next_to_split(const struct run *runs, int count, bool halve) {
+    int best = -1;
+    bool best_large = false;
+    for (int i = 0; i < count; i++) {
+        bool large = runs[i].count > BOX_TREE_WIDTH;
+        if (runs[i].count <= 1 || (!large && (int)runs[i].count - 1 > BOX_TREE_WIDTH - count))
+            continue;
+        bool larger = halve ? best >= 0 && runs[i].count > runs[best].count
+                            : best >= 0 && half_area(&runs[i].box) > half_area(&runs[best].box);
+        if (best < 0 || (large && !best_large) || (large == best_large && larger)) {
+            best = i;
+            best_large = large;
+        }
+    }
+    return best;
+}
+
+/* Up to four children. */
 static int children_of(struct builder *b, const struct run *run, bool halve, struct run out[BOX_TREE_WIDTH]) {
     int count = 1;
     out[0] = *run;
     while (count < BOX_TREE_WIDTH) {
-        int widest = -1;
-        for (int i = 0; i < count; i++) {
-            if (out[i].count <= 1)
-                continue;
-            bool larger = widest < 0 || (halve ? out[i].count > out[widest].count
-                                               : half_area(&out[i].box) > half_area(&out[widest].box));
-            widest = larger ? i : widest;
-        }
+        int widest = next_to_split(out, count, halve);
         if (widest < 0)
             break;
         struct run halves[2];

@@ -27,6 +27,70 @@ bool act_node(struct context *context, const struct value *args, struct result *
     return node && add_children(context, node, &args[GROUP_CHILDREN], error) && give(result, node);
 }
 
+/* A list with one number for each place, or one for all; copied, since arguments end with the call. */
+static bool keep_numbers(struct context *context, const struct value *given, const char *name, uint32_t places,
+                         const double **out, bool *one, struct error *error) {
+    if (!given->given)
+        return true;
+    if (!given->single && given->count != places)
+        return error_set(error, ERROR_SCENE, "%s has %u numbers for %u places", name, given->count, places);
+    double *kept = arena_alloc_array(&context->scene.arena, given->count, sizeof *kept);
+    if (!kept)
+        return error_no_memory(error, "the places of instances");
+    memcpy(kept, given->numbers, given->count * sizeof *kept);
+    *out = kept;
+    *one = given->single;
+    return true;
+}
+
+enum { PLACE_NUMBERS = 3, MATRIX_NUMBERS = 12 };
+
+static bool check_rows(const struct value *at, uint32_t length, struct error *error) {
+    for (uint32_t i = 0; i < at->count; i++) {
+        uint32_t found = at->starts[i + 1] - at->starts[i];
+        if (found != length)
+            return error_set(error, ERROR_SCENE, "at[%u] has %u numbers, not %s", i + 1, found,
+                             i > 0 ? (length == PLACE_NUMBERS ? "3 as those before" : "12 as those before")
+                                   : "3 or 12");
+        struct affine matrix;
+        struct transform ignored;
+        if (length != MATRIX_NUMBERS)
+            continue;
+        memcpy(matrix.m, at->numbers + (size_t)i * MATRIX_NUMBERS, sizeof matrix.m);
+        if (!transform_from_affine(&matrix, &ignored))
+            return error_set(error, ERROR_SCENE, "at[%u] is a matrix that flattens everything: it has no inverse",
+                             i + 1);
+    }
+    return true;
+}
+
+bool act_instances(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    const struct value *at = &args[INSTANCES_AT];
+    bool matrices = at->count > 0 && at->starts[1] == MATRIX_NUMBERS;
+    if (!check_rows(at, matrices ? MATRIX_NUMBERS : PLACE_NUMBERS, error))
+        return false;
+    if (matrices && (args[INSTANCES_TURN].given || args[INSTANCES_SIZE].given))
+        return error_set(error, ERROR_SCENE, "matrices in at say everything: turn and size go with places {x, y, z}");
+    struct node *node = scene_node(&context->scene, NODE_GROUP, text_or(&args[INSTANCES_NAME], "instances"), error);
+    struct placements *placements = arena_alloc(&context->scene.arena, sizeof *placements);
+    size_t numbers = (size_t)at->count * (matrices ? MATRIX_NUMBERS : PLACE_NUMBERS);
+    double *kept = arena_alloc_array(&context->scene.arena, numbers, sizeof *kept);
+    if (!node || !placements || !kept)
+        return error_no_memory(error, "the places of instances");
+    if (numbers > 0)
+        memcpy(kept, at->numbers, numbers * sizeof *kept);
+    placements->count = at->count;
+    placements->at = matrices ? NULL : (const double(*)[3])kept;
+    placements->matrices = matrices ? (const struct affine *)kept : NULL;
+    placements->axis = args[INSTANCES_AXIS].given ? args[INSTANCES_AXIS].choice : 1;
+    node->placements = placements;
+    return keep_numbers(context, &args[INSTANCES_TURN], "turn", at->count, &placements->turn, &placements->one_turn,
+                        error) &&
+           keep_numbers(context, &args[INSTANCES_SIZE], "size", at->count, &placements->size, &placements->one_size,
+                        error) &&
+           node_add_child(&context->scene, node, args[INSTANCES_OF].node, error) && give(result, node);
+}
+
 bool act_joint(struct context *context, const struct value *args, struct result *result, struct error *error) {
     struct node *node = scene_node(&context->scene, NODE_JOINT, text_or(&args[JOINT_NAME], "joint"), error);
     if (!node)

@@ -8,12 +8,14 @@ typedef bool action(struct context *context, const struct value *args, struct re
 
 /* act_nodes.c */
 enum { GROUP_NAME, GROUP_CHILDREN, GROUP_COUNT };
+enum { INSTANCES_NAME, INSTANCES_OF, INSTANCES_AT, INSTANCES_TURN, INSTANCES_AXIS, INSTANCES_SIZE, INSTANCES_COUNT };
 enum { JOINT_NAME, JOINT_X, JOINT_Y, JOINT_CHILDREN, JOINT_COUNT };
 enum { SPHERE_NAME, SPHERE_MATERIAL, SPHERE_CENTRE, SPHERE_RADIUS, SPHERE_COUNT };
 enum { CUBE_NAME, CUBE_MATERIAL, CUBE_CORNER, CUBE_SIZE, CUBE_COUNT };
 enum { GEOMETRY_NAME, GEOMETRY_PRIMITIVE, GEOMETRY_MATERIAL, GEOMETRY_COUNT };
 enum { CSG_NAME, CSG_A, CSG_B, CSG_COUNT };
-action act_node, act_joint, act_sphere, act_cube, act_geometry, act_union, act_difference, act_intersection;
+action act_node, act_instances, act_joint, act_sphere, act_cube, act_geometry, act_union, act_difference,
+    act_intersection;
 action act_transform_order;
 
 /* act_shapes.c: each begins with name and material */

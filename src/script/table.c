@@ -20,6 +20,18 @@ static const struct parameter group_parameters[] = {
     [GROUP_CHILDREN] = CHILDREN,
 };
 
+static const struct parameter instances_parameters[] = {
+    [INSTANCES_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'instances'", NAME_HELP},
+    [INSTANCES_OF] = {"of", KIND_NODE, 0, ANY, NULL, NULL, "What stands in all the places."},
+    [INSTANCES_AT] = {"at", KIND_ROWS, 0, ANY, NULL, NULL,
+                      "The places, {x, y, z}, or the first three rows of matrices, 12 numbers each."},
+    [INSTANCES_TURN] = {"turn", KIND_NUMBERS, OPTIONAL, ANY, "degrees", "0",
+                        "Turn about axis before it is moved to its place, for each or one for all."},
+    [INSTANCES_AXIS] = {"axis", KIND_AXIS, OPTIONAL, 0, 0, "x y z", NULL, "'y'", "Axis of turn."},
+    [INSTANCES_SIZE] = {"size", KIND_NUMBERS, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "1",
+                        "Factor by which it is scaled first, for each or one for all."},
+};
+
 static const struct parameter joint_parameters[] = {
     [JOINT_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'joint'", NAME_HELP},
     [JOINT_X] = {"x", KIND_TRIPLE, 0, ANY, "degrees", NULL,
@@ -873,6 +885,8 @@ static const struct parameter glyphs_parameters[] = {
 
 const struct function function_table[] = {
     GR("node", group_parameters, RESULT_NODE, act_node, "A node that holds others and carries a transform.", "name?"),
+    GR("instances", instances_parameters, RESULT_NODE, act_instances,
+       "A node that stands in many places, which cost a tenth of a node for each.", "of at"),
     GR("joint", joint_parameters, RESULT_NODE, act_joint, "A node with angles about x and y between limits.",
        "name x y"),
     GR("sphere", sphere_parameters, RESULT_NODE, act_sphere,

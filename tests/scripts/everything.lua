@@ -12,6 +12,8 @@ local texture = gr.texture{file = 'cross.png', wrap = 'mirror'}
 local root = gr.node('root')
 root:add_child(gr.joint('joint', {0, 1, 2}, {0, 1, 2}))
 root:add_child(gr.geometry('g', gr.sphere(around)))
+root:add_child(gr.instances{of = gr.sphere(plain), at = {{1, 2, 3}, {3, 2, 1}}, turn = {10, 20}, axis = 'z', size = 2})
+root:add_child(gr.instances(gr.cube(plain), {{1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7}}))
 root:add_child(gr.geometry('h', gr.cube(sides)))
 local ball = gr.nh_sphere('ball', {0, 0, 0}, 1)
 ball:set_material(plain)

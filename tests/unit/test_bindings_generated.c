@@ -122,6 +122,7 @@ static void right_text(const struct parameter *p, char *out, size_t size) {
         break;
     case KIND_ROWS:
         text = strcmp(p->name, "heights") == 0   ? "{{2, 3}, {3, 2}}"
+               : strcmp(p->name, "at") == 0      ? "{{0, 0, 0}, {1, 2, 3}, {3, 0, 1}}"
                : strcmp(p->name, "spheres") == 0 ? "{{0, 0, 0, 1}, {1, 0, 0, 1, 2}}"
                                                  : "{{0, 0, 0, 1, 1, 1, 1}}";
         break;
@@ -202,8 +203,10 @@ static const char *wrong_text(const struct parameter *p, int which, char *out, s
         list[count++] = "{1, 0 / 0, 1}";
         list[count++] = "{1, {}, 1}";
         list[count++] = "{1, 2}";
-        list[count++] = "{1, -1, 1}";
-        list[count++] = "-1";
+        if (p->low != 0 || p->high != 0) {
+            list[count++] = "{1, -1, 1}";
+            list[count++] = "-1";
+        }
     }
     if (p->kind == KIND_ROWS || p->kind == KIND_CURVES) {
         list[count++] = "{7}";

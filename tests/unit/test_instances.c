@@ -1,0 +1,150 @@
+/* One node in many places: the same bits as a node for each place, and little memory. */
+#include "tests/harness.h"
+#include "tests/stage.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { PLACES = 60 };
+
+struct scatter {
+    double at[PLACES][3], turn[PLACES], size[PLACES];
+    struct affine matrices[PLACES];
+};
+
+static void scatter(struct scatter *out) {
+    struct test_random random = {5};
+    for (int i = 0; i < PLACES; i++) {
+        for (int k = 0; k < 3; k++)
+            out->at[i][k] = test_uniform(&random, -3, 3);
+        out->turn[i] = test_uniform(&random, -180, 180);
+        out->size[i] = test_uniform(&random, 0.1, 0.5);
+        for (int k = 0; k < 12; k++)
+            out->matrices[i].m[k / 4][k % 4] = test_uniform(&random, -0.5, 0.5) + (k % 5 == 0) * 0.3;
+    }
+}
+
+/* What is placed: a ball beside a cube, under a node that moves them. */
+static struct node *thing(struct stage *s) {
+    struct node *group = scene_node(&s->scene, NODE_GROUP, "thing", &s->error);
+    stage_sphere(s, group, stage_phong(s, vec3_make(0.9, 0.4, 0.2), vec3_all(0.3), 10));
+    struct node *cube = stage_cube(s, group, stage_phong(s, vec3_make(0.2, 0.4, 0.9), vec3_all(0.3), 10));
+    stage_move(s, cube, 0.6, 0.1, 0.2);
+    stage_scale(s, group, 1, 0.8, 1);
+    return group;
+}
+
+static void finish(struct stage *s) {
+    s->ambient = vec3_all(0.1);
+    stage_point_light(s, vec3_make(4, 6, 5), vec3_all(0.9));
+}
+
+/* kind 0: nodes, 1: places with turns and sizes, 2: matrices as nodes would have them */
+static void build(struct stage *s, const struct scatter *all, int kind, struct placements *placements) {
+    struct node *of = thing(s), *parent = stage_group(s, s->root);
+    stage_rotate(s, parent, 1, 20);
+    finish(s);
+    if (kind == 1) {
+        *placements =
+            (struct placements){.count = PLACES, .at = all->at, .turn = all->turn, .size = all->size, .axis = 2};
+        parent->placements = placements;
+        CHECK(node_add_child(&s->scene, parent, of, &s->error));
+        return;
+    }
+    for (int i = 0; i < PLACES; i++) {
+        struct node *node = stage_group(s, parent);
+        CHECK(node_add_child(&s->scene, node, of, &s->error));
+        stage_scale(s, node, all->size[i], all->size[i], all->size[i]);
+        stage_rotate(s, node, 2, all->turn[i]);
+        stage_move(s, node, all->at[i][0], all->at[i][1], all->at[i][2]);
+    }
+}
+
+TEST(instances_in_many_places_give_the_bits_of_a_node_for_each) {
+    struct scatter all;
+    struct placements placements;
+    unsigned char *reference = NULL;
+    scatter(&all);
+    for (int kind = 0; kind < 2; kind++) {
+        struct stage s;
+        stage_begin(&s, 2);
+        build(&s, &all, kind, &placements);
+        CHECK(stage_render(&s, 100, 80));
+        size_t size = (size_t)100 * 80 * sizeof(struct film_pixel);
+        CHECK_EQ_INT(s.world.placed_count, 2 * PLACES);
+        CHECK_EQ_INT(s.world.thing_count, 2);
+        if (reference)
+            CHECK(memcmp(reference, s.film.pixels, size) == 0);
+        else
+            reference = memcpy(malloc(size), s.film.pixels, size);
+        stage_end(&s);
+    }
+    free(reference);
+}
+
+TEST(placements_by_matrix_stand_where_the_matrix_says) {
+    struct scatter all;
+    scatter(&all);
+    struct placements placements = {.count = PLACES, .matrices = all.matrices};
+    for (uint32_t i = 0; i < PLACES; i++) {
+        struct transform t = placement_transform(&placements, i);
+        CHECK(memcmp(&t.forward, &all.matrices[i], sizeof t.forward) == 0);
+        struct vec3 p = {0.3, -0.2, 0.7}, q = affine_point(&t.inverse, affine_point(&t.forward, p));
+        CHECK(vec3_length(vec3_sub(p, q)) < 1e-12);
+    }
+}
+
+TEST(lists_of_lights_hold_for_what_stands_in_many_places) {
+    static const double at[3][3] = {{-3, 0, 0}, {0, 0, 0}, {3, 0, 0}};
+    struct placements placements = {.count = 3, .at = at};
+    struct stage s;
+    stage_begin(&s, 1);
+    struct node *many = stage_group(&s, s.root);
+    many->placements = &placements;
+    stage_sphere(&s, many, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+    struct node *other = stage_sphere(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+    stage_move(&s, other, 0, 3, 0);
+    stage_point_light(&s, vec3_make(0, 0, 50), vec3_all(1));
+    const struct node *const list[] = {many};
+    s.lights[0].include = list;
+    s.lights[0].include_count = 1;
+    CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+    CHECK_EQ_INT(s.world.placed_count, 4);
+    for (uint32_t i = 0; i < 4; i++)
+        CHECK_EQ_INT(s.world.lights[0].lit[i], i < 3);
+    stage_end(&s);
+}
+
+/* 56 bytes each, 48 for the box, 90 or so for the hierarchy; those that are only moved share one linear map. */
+TEST(a_placement_costs_less_than_two_hundred_bytes_of_the_world) {
+    enum { SIDE = 400 };
+    struct stage s;
+    stage_begin(&s, 2);
+    double(*at)[3] = malloc(SIDE * SIDE * sizeof *at);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        at[i][0] = 3 * (i % SIDE);
+        at[i][1] = 0;
+        at[i][2] = 3 * (i / SIDE);
+    }
+    struct placements placements = {.count = SIDE * SIDE, .at = (const double(*)[3])at};
+    struct node *many = stage_group(&s, s.root);
+    many->placements = &placements;
+    stage_sphere(&s, many, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+    CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+    CHECK_EQ_INT(s.world.placed_count, SIDE * SIDE);
+    CHECK(s.world.linear_count <= 1);
+    size_t bytes = s.arena.total + box_tree_memory(&s.world.tree);
+    CHECK(bytes < (size_t)200 * SIDE * SIDE);
+    stage_end(&s);
+    free(at);
+}
+
+TEST(a_group_takes_no_memory_for_what_only_shapes_have) {
+    struct stage s;
+    stage_begin(&s, 1);
+    size_t before = s.scene.arena.total;
+    for (int i = 0; i < 1000; i++)
+        CHECK(scene_node(&s.scene, NODE_GROUP, i % 2 ? "tree" : "bush", &s.error));
+    CHECK(s.scene.arena.total - before <= (size_t)320 * 1000);
+    stage_end(&s);
+}
