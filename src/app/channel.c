@@ -3,6 +3,7 @@
 #define _GNU_SOURCE
 #include "app/channel.h"
 
+#include "base/fault.h"
 #include <errno.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -11,7 +12,7 @@
 
 bool channel_pair(struct channel ends[2], struct error *error) {
     int descriptors[2];
-    if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, descriptors) != 0)
+    if (MAY_FAIL(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, descriptors)) != 0)
         return error_set(error, ERROR_MACHINE, "the rendering process cannot be reached: %s", strerror(errno));
     ends[0].descriptor = descriptors[0];
     ends[1].descriptor = descriptors[1];
@@ -47,7 +48,7 @@ bool channel_send(struct channel *channel, enum frame_kind kind, const void *bod
     }
     ssize_t sent;
     do {
-        sent = sendmsg(channel->descriptor, &message, MSG_NOSIGNAL);
+        sent = MAY_FAIL(sendmsg(channel->descriptor, &message, MSG_NOSIGNAL));
     } while (sent < 0 && errno == EINTR);
     return sent >= 0;
 }
@@ -107,7 +108,7 @@ enum channel_result channel_receive(struct channel *channel, struct frame *frame
         .msg_iov = parts, .msg_iovlen = 2, .msg_control = &control, .msg_controllen = sizeof control.bytes};
     ssize_t got;
     do {
-        got = recvmsg(channel->descriptor, &message, MSG_CMSG_CLOEXEC);
+        got = MAY_FAIL(recvmsg(channel->descriptor, &message, MSG_CMSG_CLOEXEC));
     } while (got < 0 && errno == EINTR);
     frame->descriptor = -1;
     if (got <= 0)

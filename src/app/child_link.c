@@ -1,9 +1,14 @@
-/* Each question is a frame and, where there is one, its answer. When the supervisor is gone every question fails as
- * "cancelled", which ends the scripts. */
+/* Each question is a frame and, where there is one, its answer. When the supervisor cannot be reached every question
+ * fails as "cancelled", which ends the scripts. */
 #include "app/child_link.h"
 
-static bool nobody_there(struct error *error) {
+static bool nobody_there(struct child_link *link, struct error *error) {
+    link->broken = true;
     return error_set(error, ERROR_CANCELLED, "the supervising process is gone");
+}
+
+static void note(struct child_link *link, bool sent) {
+    link->broken = link->broken || !sent;
 }
 
 static bool link_begin(void *context, const struct picture_request *request, struct film *film, bool *already,
@@ -15,7 +20,7 @@ static bool link_begin(void *context, const struct picture_request *request, str
         return false;
     if (!channel_send(&link->channel, FRAME_BEGIN, request, sizeof *request, -1) ||
         channel_receive(&link->channel, &frame) != CHANNEL_FRAME || frame.kind != FRAME_FILM)
-        return nobody_there(error);
+        return nobody_there(link, error);
     if (!frame.body.answer.ok) {
         *error = frame.body.answer.error;
         return false;
@@ -32,7 +37,7 @@ static bool link_begin(void *context, const struct picture_request *request, str
 static void link_abandon(void *context) {
     struct child_link *link = context;
     share_destroy(&link->memory);
-    (void)channel_send(&link->channel, FRAME_ABANDON, NULL, 0, -1);
+    note(link, channel_send(&link->channel, FRAME_ABANDON, NULL, 0, -1));
 }
 
 static bool link_done(void *context, const struct picture_report *report, struct error *error) {
@@ -41,7 +46,7 @@ static bool link_done(void *context, const struct picture_report *report, struct
     share_destroy(&link->memory);
     if (!channel_send(&link->channel, FRAME_DONE, report, sizeof *report, -1) ||
         channel_receive(&link->channel, &frame) != CHANNEL_FRAME || frame.kind != FRAME_ANSWER)
-        return nobody_there(error);
+        return nobody_there(link, error);
     if (!frame.body.answer.ok)
         *error = frame.body.answer.error;
     return frame.body.answer.ok;
@@ -49,13 +54,15 @@ static bool link_done(void *context, const struct picture_report *report, struct
 
 static void link_line(void *context, enum line_kind kind, const char *text) {
     struct child_link *link = context;
-    (void)channel_send_line(&link->channel, kind, text);
+    note(link, channel_send_line(&link->channel, kind, text));
 }
 
 static void link_script_ended(void *context, int index, int status) {
     struct child_link *link = context;
     struct frame_script script = {index, status};
-    (void)channel_send(&link->channel, FRAME_SCRIPT, &script, sizeof script, -1);
+    /* A script that ended because the channel did not work has not ended by itself. */
+    if (!link->broken)
+        note(link, channel_send(&link->channel, FRAME_SCRIPT, &script, sizeof script, -1));
 }
 
 struct child_services child_link_services(struct child_link *link, struct control *control) {

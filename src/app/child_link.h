@@ -10,6 +10,7 @@
 struct child_link {
     struct channel channel; /* to the supervisor */
     struct share memory;    /* the film of the picture being made */
+    bool broken;            /* a message was not delivered: this process is of no use any more */
 };
 
 /* The services point to `link`, which must stay where it is. */

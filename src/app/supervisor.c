@@ -10,6 +10,7 @@
 #include "app/child_link.h"
 #include "app/confine.h"
 #include "app/desk.h"
+#include "base/fault.h"
 #include "base/file.h"
 #include "base/mem.h"
 
@@ -77,7 +78,7 @@ static bool listen_to_signals(struct supervisor *supervisor, struct error *error
     (void)signal(SIGPIPE, SIG_IGN);
     (void)signal(SIGXFSZ, SIG_IGN);
     (void)sigprocmask(SIG_BLOCK, &set, &supervisor->signals_before);
-    supervisor->signals = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
+    supervisor->signals = MAY_FAIL(signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK));
     if (supervisor->signals < 0)
         return error_set(error, ERROR_MACHINE, "gray: signals cannot be received: %s", strerror(errno));
     return true;
@@ -179,7 +180,7 @@ static _Noreturn void be_child(struct supervisor *supervisor, struct channel cha
     }
     child_run(supervisor->options, &services, supervisor->next_script);
     child_link_close(&link);
-    exit(0);
+    exit(link.broken ? ERROR_MACHINE : 0);
 }
 
 static bool start_child(struct supervisor *supervisor, struct error *error) {
@@ -189,7 +190,7 @@ static bool start_child(struct supervisor *supervisor, struct error *error) {
     (void)fflush(NULL);
     pid_t parent = getpid();
     supervisor->channel = ends[0];
-    supervisor->child = fork();
+    supervisor->child = MAY_FAIL(fork());
     if (supervisor->child == 0)
         be_child(supervisor, ends[1], parent);
     int saved = errno;
@@ -208,7 +209,9 @@ static void send_answer(struct supervisor *supervisor, enum frame_kind kind, boo
     struct frame_answer answer = {.ok = ok, .already = already};
     if (!ok)
         answer.error = *error;
-    (void)channel_send(&supervisor->channel, kind, &answer, sizeof answer, descriptor);
+    /* Without its answer the child would wait for ever. */
+    if (!channel_send(&supervisor->channel, kind, &answer, sizeof answer, descriptor))
+        supervisor->broken = true;
 }
 
 static void answer_begin(struct supervisor *supervisor, const struct frame *frame) {

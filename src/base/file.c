@@ -4,6 +4,7 @@
 #define _GNU_SOURCE
 #include "base/file.h"
 
+#include "base/fault.h"
 #include "base/mem.h"
 
 #include <dirent.h>
@@ -48,10 +49,10 @@ void file_note_read(int descriptor) {
     char piece[1 << 16];
     struct digest content = {0};
     struct stat status;
-    if (!file_witness || fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode))
+    if (!file_witness || MAY_FAIL(fstat(descriptor, &status)) != 0 || !S_ISREG(status.st_mode))
         return;
     for (off_t at = 0;;) {
-        ssize_t got = pread(descriptor, piece, sizeof piece, at);
+        ssize_t got = MAY_FAIL(pread(descriptor, piece, sizeof piece, at));
         if (got < 0 && errno == EINTR)
             continue;
         if (got < 0)
@@ -85,7 +86,7 @@ bool file_map_descriptor(int descriptor, const char *path, size_t limit, struct 
     *out = (struct file_bytes){0};
     struct stat status;
     bool ok = false;
-    if (fstat(descriptor, &status) != 0) {
+    if (MAY_FAIL(fstat(descriptor, &status)) != 0) {
         error_set(error, ERROR_SCENE, "%s: cannot be read: %s", path, strerror(errno));
     } else if (!S_ISREG(status.st_mode)) {
         error_set(error, ERROR_SCENE, "%s: is %s, not a regular file", path,
@@ -105,7 +106,7 @@ bool file_map_descriptor(int descriptor, const char *path, size_t limit, struct 
             return error_no_memory(error, path);
         }
         while (have < size) {
-            ssize_t got = read(descriptor, data + have, size - have);
+            ssize_t got = MAY_FAIL(read(descriptor, data + have, size - have));
             if (got < 0 && errno == EINTR)
                 continue;
             if (got <= 0)
@@ -130,7 +131,7 @@ bool file_map_descriptor(int descriptor, const char *path, size_t limit, struct 
 bool file_map(const char *path, size_t limit, struct file_bytes *out, struct error *error) {
     *out = (struct file_bytes){0};
     /* O_NONBLOCK: opening a named pipe must not wait for a writer. */
-    int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    int descriptor = MAY_FAIL(open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (descriptor < 0)
         return error_set(error, ERROR_SCENE, "%s: cannot be read: %s", path, strerror(errno));
     return file_map_descriptor(descriptor, path, limit, out, error);
@@ -153,7 +154,7 @@ bool file_is_folder(const char *path) {
 }
 
 int file_open_place(const char *path) {
-    return open(path, O_PATH | O_CLOEXEC);
+    return MAY_FAIL(open(path, O_PATH | O_CLOEXEC));
 }
 
 bool file_null_input(void) {
@@ -205,7 +206,7 @@ bool file_make_folders_for(const char *path, struct error *error) {
     memcpy(folder, path, length + 1);
     for (char *at = folder + 1; (at = strchr(at, '/')) != NULL; at++) {
         *at = '\0';
-        if (mkdir(folder, 0777) != 0 && errno != EEXIST)
+        if (MAY_FAIL(mkdir(folder, 0777)) != 0 && errno != EEXIST)
             return error_set(error, kind_of_refusal(errno), "%s: the folder %s cannot be made: %s", path, folder,
                              strerror(errno));
         *at = '/';
@@ -270,14 +271,14 @@ static void name_temporary(struct file_output *file) {
 static int open_temporary(struct file_output *file) {
     char folder[sizeof file->target + 2];
     (void)snprintf(folder, sizeof folder, "%.*s.", folder_length(file->target), file->target);
-    int descriptor = open(folder, O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+    int descriptor = MAY_FAIL(open(folder, O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666));
     if (descriptor >= 0) {
         file->nameless = true;
         return descriptor;
     }
     for (int i = 0; i < 100; i++) {
         name_temporary(file);
-        descriptor = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
+        descriptor = MAY_FAIL(open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666));
         if (descriptor >= 0 || errno != EEXIST)
             break;
     }
@@ -290,7 +291,7 @@ static bool give_name(struct file_output *file) {
     (void)snprintf(link, sizeof link, "/proc/self/fd/%d", file->descriptor);
     for (int i = 0; i < 100; i++) {
         name_temporary(file);
-        if (linkat(AT_FDCWD, link, AT_FDCWD, file->temporary, AT_SYMLINK_FOLLOW) == 0) {
+        if (MAY_FAIL(linkat(AT_FDCWD, link, AT_FDCWD, file->temporary, AT_SYMLINK_FOLLOW)) == 0) {
             file->nameless = false;
             return true;
         }
@@ -313,7 +314,7 @@ bool file_output_open(struct file_output *file, const char *target, struct error
         return error_set(error, ERROR_SCENE, "%s: is a folder, a picture cannot be written there", target);
     file->direct = is_direct_target(target);
     if (file->direct) {
-        file->descriptor = strcmp(target, "-") == 0 ? dup(STDOUT_FILENO) : open(target, O_WRONLY | O_CLOEXEC);
+        file->descriptor = MAY_FAIL(strcmp(target, "-") == 0 ? dup(STDOUT_FILENO) : open(target, O_WRONLY | O_CLOEXEC));
     } else {
         if (!file_make_folders_for(target, error))
             return false;
@@ -328,7 +329,7 @@ bool file_output_open(struct file_output *file, const char *target, struct error
 bool file_output_write(struct file_output *file, const void *data, size_t size, struct error *error) {
     const char *at = data;
     while (size > 0) {
-        ssize_t done = write(file->descriptor, at, size);
+        ssize_t done = MAY_FAIL(write(file->descriptor, at, size));
         if (done < 0 && errno == EINTR)
             continue;
         if (done <= 0)
@@ -360,21 +361,27 @@ static void sync_folder_of(const char *target) {
     }
 }
 
+/* Closed in any case, also where the system reports a late failure of writing. */
+static int close_reliably(int descriptor) {
+    int result = close(descriptor);
+    return MAY_FAIL(result);
+}
+
 bool file_output_commit(struct file_output *file, struct error *error) {
     bool ok = true;
     struct stat status;
     if (!file->direct) {
         if (stat(file->target, &status) == 0)
             (void)fchmod(file->descriptor, status.st_mode & 07777);
-        ok = fsync(file->descriptor) == 0 && (!file->nameless || give_name(file));
+        ok = MAY_FAIL(fsync(file->descriptor)) == 0 && (!file->nameless || give_name(file));
     }
     int saved = errno;
-    if (close(file->descriptor) != 0 && ok) {
+    if (close_reliably(file->descriptor) != 0 && ok) {
         ok = false;
         saved = errno;
     }
     file->open = false;
-    if (!file->direct && ok && rename(file->temporary, file->target) != 0) {
+    if (!file->direct && ok && MAY_FAIL(rename(file->temporary, file->target)) != 0) {
         ok = false;
         saved = errno;
     }

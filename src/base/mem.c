@@ -1,50 +1,24 @@
-/* Allocation with failures on demand. The fault counter is the one piece of state: it exists only in builds with
- * GRAY_FAULTS, where tests run the program once for every allocation it makes. */
+/* Allocation with failures on demand (base/fault.h). */
 #include "base/mem.h"
 
 #include "base/checked.h"
+#include "base/fault.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 
-#ifdef GRAY_FAULTS
-#include <stdatomic.h>
-
-static _Atomic uint64_t allocation_count;
-static _Atomic uint64_t failing_allocation;
-
-__attribute__((constructor)) static void read_environment(void) {
-    const char *text = getenv("GRAY_FAIL_ALLOC");
-    if (text)
-        mem_fail_at(strtoull(text, NULL, 10));
-}
-
 static bool allocation_fails(void) {
-    uint64_t number = atomic_fetch_add(&allocation_count, 1) + 1;
-    return number == atomic_load(&failing_allocation);
+    return fault_now(FAULT_OF_ALLOCATION);
 }
 
 void mem_fail_at(uint64_t number) {
-    atomic_store(&failing_allocation, number == 0 ? 0 : atomic_load(&allocation_count) + number);
+    fault_at(FAULT_OF_ALLOCATION, number);
 }
 
 uint64_t mem_allocations(void) {
-    return atomic_load(&allocation_count);
+    return fault_count(FAULT_OF_ALLOCATION);
 }
-#else
-static bool allocation_fails(void) {
-    return false;
-}
-
-void mem_fail_at(uint64_t number) {
-    (void)number;
-}
-
-uint64_t mem_allocations(void) {
-    return 0;
-}
-#endif
 
 void *mem_alloc(size_t size) {
     return allocation_fails() ? NULL : malloc(size ? size : 1);

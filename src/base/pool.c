@@ -2,6 +2,7 @@
  * atomic counter until none is left. The run is over when the last worker that joined it has left. */
 #include "base/pool.h"
 
+#include "base/fault.h"
 #include "base/mem.h"
 
 #include <pthread.h>
@@ -103,7 +104,9 @@ struct pool *pool_create(int threads, char warning[256]) {
     pool->workers = 1;
     for (int i = 0; i < wanted - 1; i++) {
         pool->threads[i] = (struct pool_thread){.pool = pool, .worker = i + 1};
-        int failure = pthread_create(&pool->threads[i].thread, NULL, thread_main, &pool->threads[i]);
+        int failure = fault_now(FAULT_OF_CALL)
+                          ? EAGAIN
+                          : pthread_create(&pool->threads[i].thread, NULL, thread_main, &pool->threads[i]);
         if (failure != 0) {
             (void)snprintf(warning, 256, "only %d of %d threads could be started: %s", pool->workers, wanted,
                            strerror(failure));

@@ -5,6 +5,7 @@
 #define _GNU_SOURCE
 #include "base/reach.h"
 
+#include "base/fault.h"
 #include "base/mem.h"
 
 #include <errno.h>
@@ -37,7 +38,7 @@ static bool add_canonical(struct reach *reach, const char *canonical, enum reach
         return error_no_memory(error, "the folders a scene may read");
     memcpy(path, canonical, length);
     path[length] = '\0';
-    int descriptor = open(canonical, O_PATH | O_DIRECTORY | O_CLOEXEC);
+    int descriptor = MAY_FAIL(open(canonical, O_PATH | O_DIRECTORY | O_CLOEXEC));
     if (descriptor < 0) {
         int why = errno;
         mem_free(path);
@@ -150,11 +151,11 @@ static int open_below(const struct reach_folder *folder, const char *rest, const
     struct open_how how = {.flags = (unsigned)flags | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW,
                            .mode = flags & O_CREAT ? 0666u : 0u,
                            .resolve = RESOLVE_BENEATH | RESOLVE_NO_SYMLINKS};
-    long descriptor = syscall(SYS_openat2, folder->descriptor, rest, &how, sizeof how);
+    long descriptor = MAY_FAIL(syscall(SYS_openat2, folder->descriptor, rest, &how, sizeof how));
     if (descriptor >= 0 || (errno != ENOSYS && errno != EPERM))
         return (int)descriptor;
     /* Opened by name, then asked where it is. */
-    int opened = open(canonical, (int)how.flags & ~O_TRUNC, 0666);
+    int opened = MAY_FAIL(open(canonical, (int)how.flags & ~O_TRUNC, 0666));
     char link[64], told[PATH_MAX];
     if (opened < 0)
         return -1;
@@ -254,7 +255,7 @@ static int flags_of(const char *mode) {
 
 FILE *reach_stream(const struct reach *reach, const char *path, const char *mode) {
     if (!reach) {
-        FILE *open = fopen(path, mode);
+        FILE *open = MAY_GIVE_NULL(fopen(path, mode));
         if (open && mode[0] == 'r')
             file_note_read(fileno(open));
         return open;
@@ -265,7 +266,7 @@ FILE *reach_stream(const struct reach *reach, const char *path, const char *mode
         return NULL;
     if (mode[0] == 'r')
         file_note_read(descriptor);
-    FILE *stream = fdopen(descriptor, mode);
+    FILE *stream = MAY_GIVE_NULL(fdopen(descriptor, mode));
     if (!stream)
         (void)close(descriptor);
     return stream;

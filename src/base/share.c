@@ -3,6 +3,7 @@
 #define _GNU_SOURCE
 #include "base/share.h"
 
+#include "base/fault.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <stdint.h>
@@ -22,7 +23,9 @@ static bool fits_machine(size_t size) {
 }
 
 static bool map_block(struct share *share, struct error *error) {
-    void *block = mmap(NULL, share->size, PROT_READ | PROT_WRITE, MAP_SHARED, share->descriptor, 0);
+    void *block = fault_now(FAULT_OF_CALL)
+                      ? MAP_FAILED
+                      : mmap(NULL, share->size, PROT_READ | PROT_WRITE, MAP_SHARED, share->descriptor, 0);
     if (block == MAP_FAILED) {
         no_memory(error, share->size, strerror(errno));
         (void)close(share->descriptor);
@@ -39,12 +42,12 @@ bool share_create(struct share *share, size_t size, struct error *error) {
     *share = (struct share){.size = size ? size : 1};
     if (!fits_machine(share->size))
         return no_memory(error, size, "this machine has less in all");
-    share->descriptor = memfd_create("gray-film", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+    share->descriptor = MAY_FAIL(memfd_create("gray-film", MFD_CLOEXEC | MFD_ALLOW_SEALING));
     if (share->descriptor < 0)
         return no_memory(error, size, strerror(errno));
     int failed;
     do {
-        failed = fallocate(share->descriptor, 0, 0, (off_t)share->size);
+        failed = MAY_FAIL(fallocate(share->descriptor, 0, 0, (off_t)share->size));
     } while (failed != 0 && errno == EINTR);
     if (failed != 0 || fcntl(share->descriptor, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0) {
         no_memory(error, size, strerror(errno));

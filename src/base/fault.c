@@ -1,0 +1,56 @@
+/* The counters live in a page that the processes of one run share, from before the first allocation on. */
+#include "base/fault.h"
+
+#ifdef GRAY_FAULTS
+#include <fcntl.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+struct fault_counters {
+    _Atomic uint64_t count[2], failing[2];
+    pid_t first; /* the process that tells the counts */
+};
+
+static struct fault_counters own, *counters = &own;
+
+__attribute__((constructor)) static void read_environment(void) {
+    static const char *const names[] = {"GRAY_FAIL_ALLOC", "GRAY_FAIL_CALL"};
+    void *page = mmap(NULL, sizeof own, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (page != MAP_FAILED)
+        counters = page;
+    counters->first = getpid();
+    for (int kind = 0; kind < 2; kind++) {
+        const char *text = getenv(names[kind]);
+        if (text)
+            fault_at((enum fault_kind)kind, strtoull(text, NULL, 10));
+    }
+}
+
+__attribute__((destructor)) static void tell_counts(void) {
+    const char *path = getenv("GRAY_FAULT_COUNT");
+    if (!path || counters->first != getpid())
+        return;
+    FILE *stream = fopen(path, "w");
+    if (!stream)
+        return;
+    (void)fprintf(stream, "%llu %llu\n", (unsigned long long)counters->count[0],
+                  (unsigned long long)counters->count[1]);
+    (void)fclose(stream);
+}
+
+bool fault_now(enum fault_kind kind) {
+    uint64_t number = atomic_fetch_add(&counters->count[kind], 1) + 1;
+    return number == atomic_load(&counters->failing[kind]);
+}
+
+void fault_at(enum fault_kind kind, uint64_t number) {
+    atomic_store(&counters->failing[kind], number == 0 ? 0 : atomic_load(&counters->count[kind]) + number);
+}
+
+uint64_t fault_count(enum fault_kind kind) {
+    return atomic_load(&counters->count[kind]);
+}
+#endif

@@ -1,0 +1,129 @@
+/* Bad luck: every allocation, and every call to the system that can fail, fails once in a whole run of the program,
+ * over a scene that reads scripts, meshes and pictures and writes several files. Whatever fails, the program ends by
+ * itself with a line and a fitting status, leaves whole pictures or none, and loses no old one. */
+#define _GNU_SOURCE
+#include "base/fault.h"
+#include "tests/harness.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static const char scene[] =
+    "local shapes = require('shapes')\n"
+    "local h = assert(io.open('numbers.txt')); local n = h:read('n'); h:close()\n"
+    "local red = gr.material({0.8, 0.3, 0.2}, {0.5, 0.5, 0.5}, 20)\n"
+    "local r = gr.node('root')\n"
+    "r:add_child(gr.geometry('ball', gr.sphere(gr.td_sphere_material(red, 'image.png'))))\n"
+    "r:add_child(gr.mesh{name='file', file='mesh.obj', material=red})\n"
+    "r:add_child(gr.csg_difference('cut', gr.geometry('a', gr.cube(red)), gr.geometry('b', gr.sphere(red))))\n"
+    "for i = 1, n do r:add_child(shapes.some(red, i)) end\n"
+    "local lights = {gr.light({4, 5, 6}, {0.9, 0.9, 0.9}, {1, 0, 0}),\n"
+    "  gr.area_light({4, 5, 6}, {1, 0, 0}, {0, 1, 0}, {0.3, 0.3, 0.3}, {1, 0, 0})}\n"
+    "gr.render(r, 'sub/a.png', 40, 30, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2}, lights)\n"
+    "gr.render(r, 'b.pfm', 20, 30, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2}, lights)\n";
+static const char module[] = "local shapes = {}\n"
+                             "function shapes.some(m, i)\n"
+                             "  local n = gr.geometry('c' .. i, gr.cylinder{material=m, radius=0.2})\n"
+                             "  n:translate(i / 2 - 1.5, 1.4, 0)\n"
+                             "  return n\n"
+                             "end\n"
+                             "return shapes\n";
+static const char mesh[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+
+static int shell(const char *line) {
+    char *command = NULL, binary[4096];
+    const char *named = getenv("GRAY_TEST_BINARY");
+    CHECK(realpath(named ? named : "build/debug/gray", binary) != NULL);
+    if (asprintf(&command, "cd '%s' && gray='%s' && { %s; }", test_folder(), binary, line) < 0)
+        exit(1);
+    int how = system(command);
+    free(command);
+    return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
+}
+
+static char *content(const char *name, size_t *size) {
+    char path[4096];
+    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    return test_read_file(path, size);
+}
+
+static void put(const char *name, const char *text) {
+    char path[4096];
+    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    test_write_text(path, text);
+}
+
+static void prepare(uint64_t counts[2]) {
+    unsigned long long a = 0, b = 0;
+    if (fault_count(FAULT_OF_ALLOCATION) == 0 &&
+        (fault_now(FAULT_OF_ALLOCATION), fault_count(FAULT_OF_ALLOCATION) == 0))
+        test_skip("failures on demand are only in builds with GRAY_FAULTS");
+    put("scene.lua", scene);
+    put("shapes.lua", module);
+    put("mesh.obj", mesh);
+    put("numbers.txt", "3\n");
+    CHECK_EQ_INT(shell("cp \"$OLDPWD\"/textures/$(ls \"$OLDPWD\"/textures | grep png | head -n 1) image.png"), 0);
+    /* The old pictures are the ones that a run without failures makes: either they stay or the same come. */
+    CHECK_EQ_INT(shell("GRAY_FAULT_COUNT=$PWD/counts $gray -j 2 -write-pre-aa p- --checkpoint c.tiles "
+                       "--checkpoint-every 0 scene.lua"),
+                 0);
+    CHECK_EQ_INT(shell("mkdir whole && cp sub/a.png sub/p-a.png b.pfm whole"), 0);
+    char *text = content("counts", NULL);
+    CHECK(text && sscanf(text, "%llu %llu", &a, &b) == 2);
+    free(text);
+    counts[0] = a;
+    counts[1] = b;
+    CHECK(a > 300 && b > 30);
+}
+
+/* One run with one failure. */
+static void survive(const char *variable, uint64_t number) {
+    char line[1024];
+    (void)snprintf(line, sizeof line,
+                   "rm -rf sub b.pfm p-b.pfm c.tiles; mkdir sub; echo old >sub/a.png; "
+                   "%s=%llu timeout 60 $gray -j 2 -write-pre-aa p- --checkpoint c.tiles --checkpoint-every 0 scene.lua "
+                   ">out.txt 2>err.txt",
+                   variable, (unsigned long long)number);
+    int status = shell(line);
+    size_t size = 0;
+    char *said = content("err.txt", &size), *picture = content("sub/a.png", NULL);
+    bool known = status == 0 || status == 1 || status == 3;
+    bool told = status == 0 || (said && size > 10 && strncmp(said, "  ", 2) != 0);
+    bool clean = !said || (!strstr(said, "Sanitizer") && !strstr(said, "runtime error"));
+    bool old = picture && strcmp(picture, "old\n") == 0;
+    bool whole = shell("cmp -s sub/a.png whole/a.png") == 0;
+    bool second = shell("test ! -e b.pfm || cmp -s b.pfm whole/b.pfm") == 0;
+    bool all = status != 0 || (whole && shell("test -e b.pfm") == 0);
+    bool tidy = shell("ls -A . sub | grep -q 'part-'") != 0;
+    if (!known || !told || !clean || !(old || whole) || !second || !all || !tidy)
+        test_fail(__FILE__, __LINE__, "%s=%llu: status %d%s%s%s%s%s; standard error:\n%s", variable,
+                  (unsigned long long)number, status, told ? "" : ", no line", clean ? "" : ", a report",
+                  (old || whole) && second ? "" : ", a harmed picture", all ? "" : ", a missing picture",
+                  tidy ? "" : ", something left behind", said ? said : "");
+    free(said);
+    free(picture);
+}
+
+TEST(faults_any_call_to_the_system_may_fail_in_a_whole_run) {
+    uint64_t counts[2];
+    prepare(counts);
+    for (uint64_t number = 1; number <= counts[1]; number++)
+        survive("GRAY_FAIL_CALL", number);
+}
+
+TEST(faults_some_allocations_fail_in_a_whole_run) {
+    uint64_t counts[2];
+    prepare(counts);
+    for (uint64_t number = 1; number <= counts[0]; number += 97)
+        survive("GRAY_FAIL_ALLOC", number);
+}
+
+TEST_LONG(faults_any_allocation_may_fail_in_a_whole_run) {
+    uint64_t counts[2];
+    prepare(counts);
+    for (uint64_t number = 1; number <= counts[0]; number++)
+        survive("GRAY_FAIL_ALLOC", number);
+}
