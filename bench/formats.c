@@ -1,4 +1,5 @@
-/* How fast mesh files become meshes: reads every file named on the command line three times, tells the best. */
+/* How fast mesh files become meshes: reads every file named on the command line three times, tells the best by the
+ * clock and the best by the processor's time, which other programs on the machine change less. */
 #include "base/error.h"
 #include "formats/model.h"
 
@@ -7,9 +8,9 @@
 #include <sys/stat.h>
 #include <time.h>
 
-static double now(void) {
+static double now(clockid_t clock) {
     struct timespec t;
-    (void)clock_gettime(CLOCK_MONOTONIC, &t);
+    (void)clock_gettime(clock, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
@@ -51,28 +52,31 @@ int main(int count, char **paths) {
     if (count == 4 && strcmp(paths[1], "--stl") == 0)
         return write_stl(paths[2], paths[3]);
     for (int i = 1; i < count; i++) {
-        double best = 1e9;
+        double best = 1e9, best_work = 1e9;
         unsigned triangles = 0;
         struct stat status = {0};
         for (int round = 0; round < 3; round++) {
             struct model model;
             struct error error = {0};
             struct model_options options = {0};
-            double start = now();
+            double start = now(CLOCK_MONOTONIC), work = now(CLOCK_PROCESS_CPUTIME_ID);
             if (!model_read(&model, paths[i], &options, &error)) {
                 (void)fprintf(stderr, "%s\n", error.text);
                 return 1;
             }
-            double seconds = now() - start;
+            double seconds = now(CLOCK_MONOTONIC) - start;
+            work = now(CLOCK_PROCESS_CPUTIME_ID) - work;
             best = seconds < best ? seconds : best;
+            best_work = work < best_work ? work : best_work;
             triangles = 0;
             for (size_t k = 0; k < model.meshes.count; k++)
                 triangles += mesh_triangle_count(model_meshes(&model)[k].mesh);
             model_destroy(&model);
         }
         (void)stat(paths[i], &status);
-        (void)printf("%-28s gray            %8.1f MB/s  %6.3f s  %u triangles\n", paths[i],
-                     (double)status.st_size / best / 1e6, best, triangles);
+        (void)printf("%-32s gray           %7.1f MB/s %6.3f s   processor %7.1f MB/s %6.3f s   %u triangles\n",
+                     paths[i], (double)status.st_size / best / 1e6, best, (double)status.st_size / best_work / 1e6,
+                     best_work, triangles);
     }
     return 0;
 }

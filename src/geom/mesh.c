@@ -52,6 +52,16 @@ struct box mesh_bounds(const struct mesh *mesh) {
     return mesh->bounds;
 }
 
+struct box mesh_bounds_under(const struct mesh *mesh, const struct affine *map) {
+    struct box box = box_empty();
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+        for (int k = 0; k < 3; k++) {
+            const double *v = mesh->vertices[mesh->corners[t][k]];
+            box = box_add_point(box, affine_point(map, vec3_make(v[0], v[1], v[2])));
+        }
+    return box;
+}
+
 bool mesh_is_closed(const struct mesh *mesh) {
     return mesh->closed;
 }

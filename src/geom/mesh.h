@@ -10,6 +10,7 @@
 #include "base/pool.h"
 #include "geom/crossing.h"
 #include "geom/hit.h"
+#include "math/affine.h"
 #include "math/box.h"
 #include "math/ray.h"
 
@@ -57,6 +58,8 @@ bool mesh_build_grid(struct mesh *mesh, struct pool *pool, struct error *error);
 bool mesh_build_kd_tree(struct mesh *mesh, struct pool *pool, struct error *error); /* for ACCEL_KDTREE */
 
 struct box mesh_bounds(const struct mesh *mesh);
+/* The tightest box of the mesh as `map` places it; looks at every corner. */
+struct box mesh_bounds_under(const struct mesh *mesh, const struct affine *map);
 bool mesh_is_closed(const struct mesh *mesh); /* every edge is used by exactly two triangles in opposite directions */
 /* For a mesh that is not closed: one open edge by its two positions; false when closed. */
 bool mesh_open_edge(const struct mesh *mesh, struct vec3 *a, struct vec3 *b);

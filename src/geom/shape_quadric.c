@@ -457,9 +457,16 @@ void quadric_describe(const struct quadric *q, const struct ray *ray, const stru
     out->pattern_point = out->point;
 }
 
-/* Where the quadratic part is positive definite: the gradient vanishes at the centre, and the reach along an axis is
- * the square root of that entry of the inverse matrix times minus the value there. */
-struct box quadric_bounds(const struct quadric *q) {
+/* A quadratic part that is positive definite, and a solid that is not empty: the gradient vanishes at the centre, and
+ * the reach along g is the square root of g . M g, M the inverse matrix times minus the value there. M is scaled by the
+ * determinant, which the value is divided by. */
+struct ellipsoid_form {
+    struct vec3 centre;
+    double cx, cy, cz, kxy, kxz, kyz; /* the adjugate matrix */
+    double value;                     /* minus that at the centre over the determinant; <= 0: empty */
+};
+
+static bool ellipsoid_form(const struct quadric *q, struct ellipsoid_form *out) {
     const double *c = q->c;
     double xx = c[0], yy = c[1], zz = c[2], xy = c[3] / 2, xz = c[4] / 2, yz = c[5] / 2;
     double cx = yy * zz - yz * yz, cy = xx * zz - xz * xz, cz = xx * yy - xy * xy;
@@ -467,16 +474,42 @@ struct box quadric_bounds(const struct quadric *q) {
     double det = xx * cx + xy * kxy + xz * kxz;
     double size = fabs(xx) + fabs(yy) + fabs(zz) + fabs(xy) + fabs(xz) + fabs(yz);
     if (!(xx > 0 && cz > 0 && det > 0x1p-30 * size * size * size))
-        return q->limits;
+        return false;
     struct vec3 g = {-c[6] / (2 * det), -c[7] / (2 * det), -c[8] / (2 * det)};
     struct vec3 centre = {cx * g.x + kxy * g.y + kxz * g.z, kxy * g.x + cy * g.y + kyz * g.z,
                           kxz * g.x + kyz * g.y + cz * g.z};
-    double value = -quadric_value(q, centre) / det;
-    if (!(value > 0))
+    *out = (struct ellipsoid_form){centre, cx, cy, cz, kxy, kxz, kyz, -quadric_value(q, centre) / det};
+    return true;
+}
+
+/* The inverse loses as many digits as the determinant cancels. */
+#define FORM_ROUNDING (1 + 0x1p-18)
+
+struct box quadric_bounds(const struct quadric *q) {
+    struct ellipsoid_form e;
+    if (!ellipsoid_form(q, &e))
+        return q->limits;
+    if (!(e.value > 0))
         return box_empty();
-    struct vec3 reach = {sqrt(cx * value), sqrt(cy * value), sqrt(cz * value)};
-    /* The inverse loses as many digits as the determinant cancels. */
-    reach = vec3_scale(reach, 1 + 0x1p-18);
-    struct box whole = {vec3_sub(centre, reach), vec3_add(centre, reach)};
+    struct vec3 reach = {sqrt(e.cx * e.value), sqrt(e.cy * e.value), sqrt(e.cz * e.value)};
+    reach = vec3_scale(reach, FORM_ROUNDING);
+    struct box whole = {vec3_sub(e.centre, reach), vec3_add(e.centre, reach)};
     return box_meet(whole, q->limits);
+}
+
+bool quadric_extent(const struct quadric *q, struct vec3 g, double *lo, double *hi) {
+    struct ellipsoid_form e;
+    struct box own = quadric_bounds(q);
+    if (!ellipsoid_form(q, &e) || !(e.value > 0) || box_is_empty(&own))
+        return false;
+    double form = (e.cx * g.x + 2 * e.kxy * g.y + 2 * e.kxz * g.z) * g.x + (e.cy * g.y + 2 * e.kyz * g.z) * g.y +
+                  e.cz * g.z * g.z;
+    double middle = vec3_dot(g, e.centre), reach = form > 0 ? sqrt(form * e.value) * FORM_ROUNDING : 0;
+    /* The box that limits it may be nearer. */
+    struct vec3 half = vec3_scale(vec3_sub(own.max, own.min), 0.5), box_centre = vec3_add(own.min, half);
+    double box_middle = vec3_dot(g, box_centre);
+    double box_reach = fabs(g.x) * half.x + fabs(g.y) * half.y + fabs(g.z) * half.z;
+    *lo = fmax(middle - reach, box_middle - box_reach);
+    *hi = fmin(middle + reach, box_middle + box_reach);
+    return true;
 }

@@ -67,5 +67,7 @@ void quadric_describe(const struct quadric *q, const struct ray *ray, const stru
                       struct surface *out);
 /* The limits, and for ellipsoids not more than their box. */
 struct box quadric_bounds(const struct quadric *q);
+/* The least and the greatest dot(g, p) where the quadric is an ellipsoid; false where it is not. */
+bool quadric_extent(const struct quadric *q, struct vec3 g, double *lo, double *hi);
 
 #endif

@@ -14,21 +14,6 @@ struct measuring {
 static bool measure(struct measuring *m, const struct node *node, const struct transform *map, int depth,
                     struct box *box);
 
-/* A box of vertices in their place; only those that a face uses. */
-static struct box measure_mesh(const struct mesh *mesh, const struct affine *map) {
-    uint32_t count, corners;
-    const double(*vertices)[3] = mesh_vertices(mesh, &count);
-    struct box box = box_empty();
-    for (uint32_t f = 0; f < mesh_face_count(mesh); f++) {
-        const uint32_t *face = mesh_face(mesh, f, &corners);
-        for (uint32_t k = 0; k < corners; k++) {
-            const double *v = vertices[face[k]];
-            box = box_add_point(box, affine_point(map, vec3_make(v[0], v[1], v[2])));
-        }
-    }
-    return box;
-}
-
 static bool measure_csg(struct measuring *m, const struct node *node, const struct transform *map, int depth,
                         struct box *box) {
     struct box a, b = box_empty();
@@ -62,7 +47,7 @@ static bool measure_self(struct measuring *m, const struct node *node, const str
     uint32_t faces = node->shape.kind == SHAPE_MESH ? mesh_face_count(node->shape.mesh) : 0;
     bool exact = faces > 0 && faces < m->steps / 2;
     m->steps -= exact ? faces : 0;
-    *box = exact ? measure_mesh(node->shape.mesh, &map->forward) : shape_bounds_under(&node->shape, &map->forward);
+    *box = exact ? mesh_bounds_under(node->shape.mesh, &map->forward) : shape_bounds_under(&node->shape, &map->forward);
     return true;
 }
 

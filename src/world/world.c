@@ -80,20 +80,33 @@ static struct box moving_bounds(const struct shape *shape, const struct moving *
     return box;
 }
 
-static struct box placed_bounds(const struct world *world, uint32_t placed) {
+/* The tightest box of a mesh looks at all its corners: done for the first placements, until so many triangles have been
+ * looked at; the others take the box of the mapped box. Between two of them it is asked whether to stop. */
+enum { EXACT_AT_ONCE = 1 << 20, EXACT_IN_ALL = 1 << 22 };
+
+static struct box placed_bounds(const struct world *world, uint32_t placed, uint32_t *exact) {
     const struct shape *shape = placed_shape(world, placed);
     uint32_t linear = world->placed[placed].linear;
     if (linear != LINEAR_NONE && (linear & LINEAR_MOVING))
         return moving_bounds(shape, &world->moving[linear & ~LINEAR_MOVING], world->shutter);
     struct transform world_from_object = world_placement(world, placed, 0);
+    uint32_t triangles = shape->kind == SHAPE_MESH ? mesh_triangle_count(shape->mesh) : UINT32_MAX;
+    if (linear != LINEAR_NONE && triangles <= EXACT_AT_ONCE && triangles <= *exact) {
+        *exact -= triangles;
+        return box_pad(mesh_bounds_under(shape->mesh, &world_from_object.forward));
+    }
     return box_pad(shape_bounds_under(shape, &world_from_object.forward));
 }
 
-static void place_boxes(struct world *world) {
+static bool place_boxes(struct world *world, struct pool *pool, struct error *error) {
+    uint32_t exact = EXACT_IN_ALL;
     world->moves = world->moving_count > 0;
     for (uint32_t i = 0; i < world->placed_count; i++) {
         const struct shape *shape = placed_shape(world, i);
-        world->boxes[i] = placed_bounds(world, i);
+        uint32_t before = exact;
+        world->boxes[i] = placed_bounds(world, i, &exact);
+        if (before != exact && pool_cancelled(pool))
+            return error_set(error, ERROR_CANCELLED, "stopped while the scene was measured");
         if (shape->kind == SHAPE_MESH)
             world->triangles += mesh_triangle_count(shape->mesh);
     }
@@ -101,6 +114,7 @@ static void place_boxes(struct world *world) {
         uint32_t need = shape_scratch_need(&world->things[i].shape);
         world->scratch_need = need > world->scratch_need ? need : world->scratch_need;
     }
+    return true;
 }
 
 static void add_up_meshes(struct world *world, const struct assets *assets) {
@@ -155,7 +169,8 @@ static bool build(struct world *world, struct arena *arena, struct scene *scene,
         world->material_has_image[i] = material_has_image(world->materials[i]);
         world->material_has_relief[i] = material_has_relief(world->materials[i]);
     }
-    place_boxes(world);
+    if (!place_boxes(world, pool, error))
+        return false;
     add_up_meshes(world, scene->assets);
     return build_accel(world, pool, error);
 }

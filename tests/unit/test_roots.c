@@ -272,3 +272,35 @@ TEST(roots_survive_random_bits) {
             CHECK(isfinite(out[j]) && (j == 0 || out[j] >= out[j - 1]));
     }
 }
+
+/* What the solver can miss is a pair of roots that rounding of the coefficients may as well have taken away: counted by
+ * the gap between the two. One root of a pair alone is never missed. */
+TEST(roots_of_close_pairs_are_missed_together_and_only_below_the_rounding_of_the_coefficients) {
+    enum { GAPS = 10, POLYNOMIALS = 3000 };
+    struct test_random random = {7};
+    int missed[GAPS] = {0}, halves = 0, wrong = 0;
+    for (int k = 1; k < GAPS; k++)
+        for (int i = 0; i < POLYNOMIALS; i++) {
+            double gap = pow(10, -k), roots[6], c[7], out[6];
+            int degree = 3 + i % 4, count;
+            roots[0] = test_uniform(&random, -0.9, 0.9);
+            roots[1] = roots[0] + gap;
+            for (int j = 2; j < degree; j++) /* the others keep away */
+                roots[j] = roots[0] + (j % 2 ? 1 : -1) * test_uniform(&random, 0.5, 2);
+            expand(roots, degree, 1, c);
+            count = roots_polynomial(c, degree, -INFINITY, INFINITY, out);
+            halves += (degree - count) % 2;
+            missed[k] += count == degree - 2;
+            for (int j = 0; j < count; j++) {
+                double nearest = INFINITY;
+                for (int n = 0; n < degree; n++)
+                    nearest = fmin(nearest, fabs(out[j] - roots[n]));
+                wrong += nearest > fmax(1e-7, 1e-12 / gap);
+            }
+        }
+    CHECK_EQ_INT(halves, 0);
+    CHECK_EQ_INT(wrong, 0);
+    for (int k = 1; k <= 6; k++)
+        CHECK_EQ_INT(missed[k], 0);
+    CHECK(missed[GAPS - 1] > 0); /* there the pairs of the true polynomial are gone */
+}
