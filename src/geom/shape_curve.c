@@ -264,7 +264,7 @@ void curve_describe(const struct curve *curve, const struct ray *ray, const stru
                             .has_uv = true,
                             .error = width + 0x1p-46 * size};
     out->u = piece->from + (piece->to - piece->from) * x;
-    out->v = 0.5 + off;
+    out->v = 0.5 - off;
     out->dpdu = vec3_scale(tangent(piece, x), 1 / (piece->to - piece->from));
-    out->dpdv = vec3_scale(side, width);
+    out->dpdv = vec3_scale(side, -width);
 }

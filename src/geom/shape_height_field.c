@@ -417,9 +417,9 @@ static void describe_ground(const struct height_field *f, uint32_t triangle, str
     out->point = p;
     out->normal = out->shading_normal = vec3_make(-x_slope, 1, -z_slope);
     out->u = p.x;
-    out->v = p.z;
+    out->v = 1 - p.z;
     out->dpdu = vec3_make(1, x_slope, 0);
-    out->dpdv = vec3_make(0, z_slope, 1);
+    out->dpdv = vec3_make(0, -z_slope, -1);
     if (!f->smooth)
         return;
     /* Weights of the triangle's corners: (0, 0), (1, 1) and the one off the diagonal. */
@@ -441,22 +441,24 @@ void height_field_describe(const struct height_field *f, const struct ray *ray, 
         describe_ground(f, crossing->part - GROUND, p, out);
     } else {
         double tall = f->hi - f->floor;
-        out->u = crossing->part == WALL_Z0 || crossing->part == WALL_Z1 ? p.x : p.z;
-        out->v = (f->hi - p.y) / tall;
-        out->dpdu = crossing->part == WALL_Z0 || crossing->part == WALL_Z1 ? vec3_make(1, 0, 0) : vec3_make(0, 0, 1);
-        out->dpdv = vec3_make(0, -tall, 0);
+        out->v = (p.y - f->floor) / tall;
+        out->dpdv = vec3_make(0, tall, 0);
         switch (crossing->part) {
         case WALL_X0:
             p.x = 0, n.x = -1;
+            out->u = p.z, out->dpdu = vec3_make(0, 0, 1);
             break;
         case WALL_X1:
             p.x = 1, n.x = 1;
+            out->u = 1 - p.z, out->dpdu = vec3_make(0, 0, -1);
             break;
         case WALL_Z0:
             p.z = 0, n.z = -1;
+            out->u = 1 - p.x, out->dpdu = vec3_make(-1, 0, 0);
             break;
         case WALL_Z1:
             p.z = 1, n.z = 1;
+            out->u = p.x, out->dpdu = vec3_make(1, 0, 0);
             break;
         case FLOOR:
             p.y = f->floor, n.y = -1;

@@ -545,4 +545,9 @@ void lathe_describe(const struct lathe *lathe, const struct ray *ray, const stru
     double by_length = c->to > c->from ? 1 / (c->to - c->from) : 0;
     out->dpdu = vec3_make(-TURN * r * radial.z, 0, TURN * r * radial.x);
     out->dpdv = vec3_make(by_length * dr * radial.x, by_length * dy, by_length * dr * radial.z);
+    /* du x dv is -dy radial + dr up; where that is inwards u runs the other way. */
+    if (dr * n.y - dy * vec3_dot(radial, n) < 0) {
+        out->u = 1 - out->u;
+        out->dpdu = vec3_negate(out->dpdu);
+    }
 }

@@ -32,7 +32,8 @@ bool lathe_is_closed(const struct lathe *lathe);
 bool lathe_crossings(const struct lathe *lathe, const struct ray *ray, struct geom_scratch *scratch,
                      struct crossing_list *out);
 bool lathe_contains(const struct lathe *lathe, struct vec3 point);
-/* u goes round from -x over -z, x and z; v along the profile by its length. */
+/* v runs along the profile by its length, u round the axis from -x, to the right seen from outside with the profile's
+ * way upwards: pictures are turned with the profile and never mirrored. */
 void lathe_describe(const struct lathe *lathe, const struct ray *ray, const struct crossing *crossing,
                     struct surface *out);
 uint32_t lathe_scratch_need(const struct lathe *lathe);

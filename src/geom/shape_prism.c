@@ -237,9 +237,9 @@ void prism_describe(const struct prism *prism, const struct ray *ray, const stru
         n.y = top ? 1 : -1;
         p.y = top ? max.y : min.y;
         out->u = (p.x - min.x) / size.x;
-        out->v = (p.z - min.z) / size.z;
+        out->v = top ? (max.z - p.z) / size.z : (p.z - min.z) / size.z;
         out->dpdu = vec3_make(size.x, 0, 0);
-        out->dpdv = vec3_make(0, 0, size.z);
+        out->dpdv = vec3_make(0, 0, top ? -size.z : size.z);
     } else {
         const struct outline_piece *c = &prism->outline.pieces[crossing->part - SIDES];
         double dp, dq, by_length = c->to > c->from ? 1 / (c->to - c->from) : 0;
@@ -249,9 +249,13 @@ void prism_describe(const struct prism *prism, const struct ray *ray, const stru
         if ((vec3_dot(n, ray->direction) < 0) != crossing->enter)
             n = vec3_negate(n);
         out->u = c->from + (c->to - c->from) * crossing->u;
-        out->v = (max.y - p.y) / size.y;
+        out->v = (p.y - min.y) / size.y;
         out->dpdu = vec3_make(by_length * dp, 0, by_length * dq);
-        out->dpdv = vec3_make(0, -size.y, 0);
+        out->dpdv = vec3_make(0, size.y, 0);
+        if (dp * n.z - dq * n.x < 0) { /* the outline goes round the other way */
+            out->u = 1 - out->u;
+            out->dpdu = vec3_negate(out->dpdu);
+        }
     }
     out->point = out->pattern_point = p;
     out->normal = out->shading_normal = out->pattern_normal = n;

@@ -29,7 +29,8 @@ void prism_extent(const struct prism *prism, struct vec3 g, double *lo, double *
 bool prism_crossings(const struct prism *prism, const struct ray *ray, struct geom_scratch *scratch,
                      struct crossing_list *out);
 bool prism_contains(const struct prism *prism, struct vec3 point);
-/* Sides: u along the curve by its length, v from the top down. Bottom and top: u along x, v along z over the bounds. */
+/* Sides: u along the curve by its length, to the right seen from outside, v upwards. Bottom and top: u along x, v along
+ * z over the bounds, at the top against it: nothing is mirrored. */
 void prism_describe(const struct prism *prism, const struct ray *ray, const struct crossing *crossing,
                     struct surface *out);
 uint32_t prism_scratch_need(const struct prism *prism);

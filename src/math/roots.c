@@ -8,6 +8,12 @@
  * lower, down to the quadratic. In a bracket Newton's steps are taken while they stay inside and shrink, else the bit
  * patterns are halved, which needs at most 64 steps whatever the magnitudes.
  *
+ * Why this and no other: it cannot fail to converge, and its count always has the parity of the signs at the ends,
+ * which CSG lives on. The remainders of Sturm's chain cancel, so their signs are noise just where roots are close; the
+ * eigenvalues of a companion matrix come by iteration, in conjugate pairs that rounding splits, and not in the same
+ * bits for a scaled scene. What can be missed is a pair that rounding of the coefficients may have taken away; tests
+ * count them by their gap.
+ *
  * Invariant: x is measured in a power of two such that every root in range lies in [-1, 1], and the largest coefficient
  * is in [1/2, 1): nothing overflows, and a scene scaled by a power of two takes exactly the same steps. */
 #include "math/roots.h"

@@ -689,6 +689,34 @@ TEST(analytic_shapes_have_tight_world_boxes_under_any_affine_map) {
     arena_destroy(&arena);
 }
 
+/* u to the right and v upwards seen from outside (of flat shapes: from the front), or both turned round. */
+TEST(analytic_shapes_never_show_pictures_mirrored) {
+    struct test_random random = {77};
+    struct arena arena = {0};
+    struct geom_scratch scratch = {0};
+    for (int form = 0; form < FORMS; form++) {
+        long checked = 0, mirrored = 0;
+        struct shape s = random_shape((enum form)form, &random, &arena);
+        for (int i = 0; i < 2000; i++) {
+            struct ray ray = line_through(random_vec3(&random, 5), target_at(&s, 0.7, &random));
+            struct crossing c;
+            struct surface at;
+            ray.t_min = 0;
+            if (!shape_nearest(&s, &ray, &scratch, &c))
+                continue;
+            shape_describe(&s, &ray, &c, &at);
+            struct vec3 both = vec3_cross(at.dpdu, at.dpdv);
+            if (!at.has_uv || !(vec3_length(both) > 1e-9))
+                continue;
+            checked++;
+            mirrored += vec3_dot(both, at.normal) < 0;
+        }
+        if (mirrored || (checked < 100 && s.kind != SHAPE_QUADRIC && form != THIN_TORUS))
+            test_fail(__FILE__, __LINE__, "%s: %ld of %ld", form_names[form], mirrored, checked);
+    }
+    arena_destroy(&arena);
+}
+
 /* dpdu and dpdv agree with how the point moves when u and v do. */
 TEST(analytic_shapes_have_image_coordinates_that_move_as_their_derivatives_say) {
     struct test_random random = {7};

@@ -335,6 +335,52 @@ TEST(swept_shapes_have_derivatives_that_follow_their_image_coordinates) {
 }
 
 /* The box under a map holds the crossings, and another one, one percent smaller, does not. */
+/* u to the right and v upwards seen from outside, or both turned round, but not one of them. */
+TEST(swept_shapes_never_show_pictures_mirrored) {
+    struct geom_scratch scratch;
+    CHECK(geom_scratch_init(&scratch, 256));
+    for (int maker = 0; maker <= MAKERS; maker++) {
+        struct test_random random = {(uint64_t)(900 + maker)};
+        int mirrored = 0, checked = 0;
+        for (int turn = 0; turn < 30; turn++) {
+            struct arena arena = {0};
+            struct error error = {0};
+            double points[4][3], widths[4];
+            struct shape shape;
+            if (maker == MAKERS) {
+                for (int k = 0; k < 4; k++) {
+                    struct vec3 p = random_vec3(&random, 1);
+                    points[k][0] = p.x, points[k][1] = p.y, points[k][2] = p.z, widths[k] = 0.3;
+                }
+                struct curve_input in = {
+                    .kind = SPLINE_BEZIER, .points = (const double(*)[3])points, .widths = widths, .count = 4};
+                shape = (struct shape){.kind = SHAPE_CURVE, .curve = curve_build(&arena, &in, &error)};
+            } else {
+                shape = make((enum maker)maker, &arena, &random);
+            }
+            for (int i = 0; i < 200; i++) {
+                struct vec3 o = random_vec3(&random, 4);
+                struct ray ray = ray_from(o, vec3_sub(random_vec3(&random, 0.8), o));
+                struct crossing_list list = list_of(&shape, &ray, &scratch);
+                for (uint32_t k = 0; k < list.count; k++) {
+                    struct surface s;
+                    shape_describe(&shape, &ray, &scratch.items[k], &s);
+                    struct vec3 both = vec3_cross(s.dpdu, s.dpdv);
+                    if (!s.has_uv || !(vec3_length(both) > 1e-9))
+                        continue;
+                    checked++;
+                    mirrored += vec3_dot(both, s.normal) < 0;
+                }
+            }
+            arena_destroy(&arena);
+        }
+        if (mirrored || (checked < 1000 && maker != BLOB))
+            test_fail(__FILE__, __LINE__, "%s: %d of %d", maker < MAKERS ? maker_names[maker] : "hair", mirrored,
+                      checked);
+    }
+    geom_scratch_destroy(&scratch);
+}
+
 TEST(swept_shapes_have_tight_boxes_under_affine_maps) {
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 256));
