@@ -238,79 +238,181 @@ function gr.geometry(name, primitive) end
 ---@field name? string name (a string; default 'csg'): Name of the node, for messages.
 ---@field a gr.node a (a node): A closed solid; a group counts as the union of what is under it.
 ---@field b gr.node b (a node): The other one.
+---@field operands? gr.node[] operands (a table of nodes; optional): Any number of solids: as further arguments, as a list, or without names in the table, with or without a and b before them.
 
----The solid of what is in a or in b.
+---The solid of what is in any of the operands; it has no walls inside.
 ---@param name string name (a string; default 'csg'): Name of the node, for messages.
 ---@param a gr.node a (a node): A closed solid; a group counts as the union of what is under it.
 ---@param b gr.node b (a node): The other one.
+---@param ... gr.node
 ---@return gr.node
+---@overload fun(a: gr.node, b: gr.node, ...: gr.node): gr.node
 ---@overload fun(fields: gr.csg_union.fields): gr.node
-function gr.csg_union(name, a, b) end
+function gr.csg_union(name, a, b, ...) end
 
 ---@class gr.csg_difference.fields
 ---@field name? string name (a string; default 'csg'): Name of the node, for messages.
 ---@field a gr.node a (a node): A closed solid; a group counts as the union of what is under it.
 ---@field b gr.node b (a node): The other one.
+---@field operands? gr.node[] operands (a table of nodes; optional): Any number of solids: as further arguments, as a list, or without names in the table, with or without a and b before them.
 
----The solid of what is in a and not in b.
+---The solid of what is in the first operand and in none of the others.
 ---@param name string name (a string; default 'csg'): Name of the node, for messages.
 ---@param a gr.node a (a node): A closed solid; a group counts as the union of what is under it.
 ---@param b gr.node b (a node): The other one.
+---@param ... gr.node
 ---@return gr.node
+---@overload fun(a: gr.node, b: gr.node, ...: gr.node): gr.node
 ---@overload fun(fields: gr.csg_difference.fields): gr.node
-function gr.csg_difference(name, a, b) end
+function gr.csg_difference(name, a, b, ...) end
 
 ---@class gr.csg_intersection.fields
 ---@field name? string name (a string; default 'csg'): Name of the node, for messages.
 ---@field a gr.node a (a node): A closed solid; a group counts as the union of what is under it.
 ---@field b gr.node b (a node): The other one.
+---@field operands? gr.node[] operands (a table of nodes; optional): Any number of solids: as further arguments, as a list, or without names in the table, with or without a and b before them.
 
----The solid of what is in a and in b.
+---The solid of what is in all of the operands.
 ---@param name string name (a string; default 'csg'): Name of the node, for messages.
 ---@param a gr.node a (a node): A closed solid; a group counts as the union of what is under it.
 ---@param b gr.node b (a node): The other one.
+---@param ... gr.node
 ---@return gr.node
+---@overload fun(a: gr.node, b: gr.node, ...: gr.node): gr.node
 ---@overload fun(fields: gr.csg_intersection.fields): gr.node
-function gr.csg_intersection(name, a, b) end
+function gr.csg_intersection(name, a, b, ...) end
+
+---@class gr.csg_merge.fields
+---@field name? string name (a string; default 'csg'): Name of the node, for messages.
+---@field a gr.node a (a node): A closed solid; a group counts as the union of what is under it.
+---@field b gr.node b (a node): The other one.
+---@field operands? gr.node[] operands (a table of nodes; optional): Any number of solids: as further arguments, as a list, or without names in the table, with or without a and b before them.
+
+---The same as gr.csg_union, which has no walls inside either; a plain node keeps them.
+---@param name string name (a string; default 'csg'): Name of the node, for messages.
+---@param a gr.node a (a node): A closed solid; a group counts as the union of what is under it.
+---@param b gr.node b (a node): The other one.
+---@param ... gr.node
+---@return gr.node
+---@overload fun(a: gr.node, b: gr.node, ...: gr.node): gr.node
+---@overload fun(fields: gr.csg_merge.fields): gr.node
+function gr.csg_merge(name, a, b, ...) end
+
+---@class gr.csg_inverse.fields
+---@field name? string name (a string; default 'inverse'): Name of the node, for messages.
+---@field a gr.node a (a node): A closed solid; a group counts as the union of what is under it.
+
+---The solid of what is not in a: the same surface, turned inside out.
+---@param name string name (a string; default 'inverse'): Name of the node, for messages.
+---@param a gr.node a (a node): A closed solid; a group counts as the union of what is under it.
+---@return gr.node
+---@overload fun(a: gr.node): gr.node
+---@overload fun(fields: gr.csg_inverse.fields): gr.node
+function gr.csg_inverse(name, a) end
 
 ---@class gr.union.fields
 ---@field name? string name (a string; default 'csg'): Name of the node, for messages.
 ---@field a gr.node a (a node): A closed solid; a group counts as the union of what is under it.
 ---@field b gr.node b (a node): The other one.
+---@field operands? gr.node[] operands (a table of nodes; optional): Any number of solids: as further arguments, as a list, or without names in the table, with or without a and b before them.
 
 ---The same as gr.csg_union.
 ---@param name string name (a string; default 'csg'): Name of the node, for messages.
 ---@param a gr.node a (a node): A closed solid; a group counts as the union of what is under it.
 ---@param b gr.node b (a node): The other one.
+---@param ... gr.node
 ---@return gr.node
+---@overload fun(a: gr.node, b: gr.node, ...: gr.node): gr.node
 ---@overload fun(fields: gr.union.fields): gr.node
-function gr.union(name, a, b) end
+function gr.union(name, a, b, ...) end
 
 ---@class gr.difference.fields
 ---@field name? string name (a string; default 'csg'): Name of the node, for messages.
 ---@field a gr.node a (a node): A closed solid; a group counts as the union of what is under it.
 ---@field b gr.node b (a node): The other one.
+---@field operands? gr.node[] operands (a table of nodes; optional): Any number of solids: as further arguments, as a list, or without names in the table, with or without a and b before them.
 
 ---The same as gr.csg_difference.
 ---@param name string name (a string; default 'csg'): Name of the node, for messages.
 ---@param a gr.node a (a node): A closed solid; a group counts as the union of what is under it.
 ---@param b gr.node b (a node): The other one.
+---@param ... gr.node
 ---@return gr.node
+---@overload fun(a: gr.node, b: gr.node, ...: gr.node): gr.node
 ---@overload fun(fields: gr.difference.fields): gr.node
-function gr.difference(name, a, b) end
+function gr.difference(name, a, b, ...) end
 
 ---@class gr.intersection.fields
 ---@field name? string name (a string; default 'csg'): Name of the node, for messages.
 ---@field a gr.node a (a node): A closed solid; a group counts as the union of what is under it.
 ---@field b gr.node b (a node): The other one.
+---@field operands? gr.node[] operands (a table of nodes; optional): Any number of solids: as further arguments, as a list, or without names in the table, with or without a and b before them.
 
 ---The same as gr.csg_intersection.
 ---@param name string name (a string; default 'csg'): Name of the node, for messages.
 ---@param a gr.node a (a node): A closed solid; a group counts as the union of what is under it.
 ---@param b gr.node b (a node): The other one.
+---@param ... gr.node
 ---@return gr.node
+---@overload fun(a: gr.node, b: gr.node, ...: gr.node): gr.node
 ---@overload fun(fields: gr.intersection.fields): gr.node
-function gr.intersection(name, a, b) end
+function gr.intersection(name, a, b, ...) end
+
+---@class gr.merge.fields
+---@field name? string name (a string; default 'csg'): Name of the node, for messages.
+---@field a gr.node a (a node): A closed solid; a group counts as the union of what is under it.
+---@field b gr.node b (a node): The other one.
+---@field operands? gr.node[] operands (a table of nodes; optional): Any number of solids: as further arguments, as a list, or without names in the table, with or without a and b before them.
+
+---The same as gr.csg_merge.
+---@param name string name (a string; default 'csg'): Name of the node, for messages.
+---@param a gr.node a (a node): A closed solid; a group counts as the union of what is under it.
+---@param b gr.node b (a node): The other one.
+---@param ... gr.node
+---@return gr.node
+---@overload fun(a: gr.node, b: gr.node, ...: gr.node): gr.node
+---@overload fun(fields: gr.merge.fields): gr.node
+function gr.merge(name, a, b, ...) end
+
+---@class gr.inverse.fields
+---@field name? string name (a string; default 'inverse'): Name of the node, for messages.
+---@field a gr.node a (a node): A closed solid; a group counts as the union of what is under it.
+
+---The same as gr.csg_inverse.
+---@param name string name (a string; default 'inverse'): Name of the node, for messages.
+---@param a gr.node a (a node): A closed solid; a group counts as the union of what is under it.
+---@return gr.node
+---@overload fun(a: gr.node): gr.node
+---@overload fun(fields: gr.inverse.fields): gr.node
+function gr.inverse(name, a) end
+
+---@class gr.clipped_by.fields
+---@field name? string name (a string; default 'clipped'): Name of the node, for messages.
+---@field object gr.node object (a node): What is seen: a shape or a group of them.
+---@field by gr.node by (a node): A closed solid: what is inside of it stays.
+
+---The surfaces of an object where they are inside of a solid: cut open, without caps, so that one sees into it; no operand of CSG.
+---@param name string name (a string; default 'clipped'): Name of the node, for messages.
+---@param object gr.node object (a node): What is seen: a shape or a group of them.
+---@param by gr.node by (a node): A closed solid: what is inside of it stays.
+---@return gr.node
+---@overload fun(object: gr.node, by: gr.node): gr.node
+---@overload fun(fields: gr.clipped_by.fields): gr.node
+function gr.clipped_by(name, object, by) end
+
+---@class gr.bounded_by.fields
+---@field name? string name (a string; default 'bounded'): Name of the node, for messages.
+---@field object gr.node object (a node): What is seen: a shape or a group of them.
+---@field by gr.node by (a node): A closed solid that nothing of it sticks out of; what does may be seen or not.
+
+---The object, with the hint that it lies in a solid, which makes it faster where its own box is large.
+---@param name string name (a string; default 'bounded'): Name of the node, for messages.
+---@param object gr.node object (a node): What is seen: a shape or a group of them.
+---@param by gr.node by (a node): A closed solid that nothing of it sticks out of; what does may be seen or not.
+---@return gr.node
+---@overload fun(object: gr.node, by: gr.node): gr.node
+---@overload fun(fields: gr.bounded_by.fields): gr.node
+function gr.bounded_by(name, object, by) end
 
 ---@class gr.cylinder.fields
 ---@field name? string name (a string; default 'cylinder'): Name of the node, for messages.

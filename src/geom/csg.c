@@ -13,7 +13,8 @@
  * More true leaves (counted with their sign) can only make the expression true, so it changes at most once in a group,
  * and the crossing that changes it is the surface. Hence touching solids unite without an inner wall, a difference with
  * a common face leaves no skin, touching solids intersect in nothing, and of two faces that coincide the same operand
- * always shows. A solid thinner than the rounding error is not seen.
+ * always shows. A solid thinner than the rounding error is not seen. A clip is followed beside the solid by the same
+ * rule; a surface that coincides with the clip's is shown.
  *
  * The truth of nodes and leaves lives on the scratch, above what was there; nothing is allocated inside a ray. */
 #include "geom/csg.h"
@@ -86,10 +87,12 @@ struct sweep {
     const struct ray *ray;
     struct crossing *items; /* all crossings, by t */
     uint32_t count, next;
-    uint32_t *counts; /* true children of each node */
-    uint32_t *inside; /* one bit per leaf */
-    bool in;          /* the line is inside the solid */
-    double coarse;    /* the part of the coarse distance that does not grow with t */
+    uint32_t first_clip_leaf; /* leaves of the clip come after those of the solid */
+    uint32_t *counts;         /* true children of each node */
+    uint32_t *inside;         /* one bit per leaf */
+    bool in, shown;           /* the line is inside the solid, inside the clip */
+    double from, to; /* surfaces are looked for between; outside of it only leaves that matter there are asked */
+    double coarse;   /* the part of the coarse distance that does not grow with t */
 };
 
 static bool leaf_is_inside(const struct sweep *s, uint32_t leaf) {
@@ -101,7 +104,11 @@ static bool adds(const struct sweep *s, uint32_t leaf) {
     return leaf_is_inside(s, leaf) == s->plan->literals[leaf].negated;
 }
 
-/* The line crosses the surface of a leaf; true when the whole expression changes with it. */
+static bool is_of_clip(const struct sweep *s, uint32_t leaf) {
+    return leaf >= s->first_clip_leaf;
+}
+
+/* The line crosses the surface of a leaf; true when the solid, or the clip if it is a leaf of that, changes with it. */
 static bool toggle(struct sweep *s, uint32_t leaf) {
     bool add = adds(s, leaf);
     s->inside[leaf / 32] ^= UINT32_C(1) << leaf % 32;
@@ -111,7 +118,7 @@ static bool toggle(struct sweep *s, uint32_t leaf) {
         if (!changed)
             return false;
     }
-    s->in = add;
+    *(is_of_clip(s, leaf) ? &s->shown : &s->in) = add;
     return true;
 }
 
@@ -173,55 +180,86 @@ static uint32_t group_end(const struct sweep *s, uint32_t first) {
     return end;
 }
 
+/* A mere surface does not change anything by being crossed: what counts is that it is there. */
+static bool is_open_surface(const struct sweep *s, uint32_t leaf) {
+    return s->plan->literals[leaf].parent == CSG_NONE;
+}
+
 /* Several crossings at once, see the rule at the top. `surface` is the one that changed the truth. */
 static bool cross_group(struct sweep *s, struct crossing *group, uint32_t count, struct crossing *surface) {
     sort_crossings(group, count, true);
+    bool was_in = s->in, was_shown = s->shown, changed = false;
     uint32_t kept = 0;
     for (uint32_t i = 0; i < count;) {
         uint32_t end = i + 1;
         while (end < count && group[end].leaf == group[i].leaf)
             end++;
-        if ((end - i) % 2)
+        if (is_open_surface(s, group[i].leaf)) {
+            *surface = group[i];
+            changed = true;
+        } else if ((end - i) % 2) {
             group[kept++] = group[end - 1];
+        }
         i = end;
     }
     /* First those that cannot change the truth, in case the others do. */
-    bool was_in = s->in, changed = false;
     for (uint32_t i = 0; i < kept; i++) {
-        bool last = adds(s, group[i].leaf) != was_in;
+        bool last = adds(s, group[i].leaf) != (is_of_clip(s, group[i].leaf) ? was_shown : was_in);
         if (!last)
             (void)toggle(s, group[i].leaf);
         group[i].flip = last; /* marks what is left to do */
     }
     for (uint32_t i = 0; i < kept; i++) {
-        if (!group[i].flip || !toggle(s, group[i].leaf))
+        if (!group[i].flip || !toggle(s, group[i].leaf) || is_of_clip(s, group[i].leaf))
             continue;
         *surface = group[i];
         changed = true;
     }
-    return changed;
+    return changed && (was_shown || s->shown);
 }
 
-/* The next surface of the solid on the line. */
+/* A single crossing; true when it is a surface that shows. */
+static bool cross_one(struct sweep *s, uint32_t leaf) {
+    if (is_open_surface(s, leaf))
+        return s->shown;
+    return toggle(s, leaf) && !is_of_clip(s, leaf) && s->shown;
+}
+
+/* The next surface on the line. */
 static bool sweep_next(struct sweep *s, struct crossing *out) {
     while (s->next < s->count) {
         uint32_t first = s->next, end = group_end(s, first);
-        s->next = end;
         struct crossing surface = s->items[first];
+        if (surface.t == INFINITY || surface.t > s->to)
+            return false;
+        s->next = end;
         bool changed =
-            end == first + 1 ? toggle(s, surface.leaf) : cross_group(s, &s->items[first], end - first, &surface);
-        if (!changed)
+            end == first + 1 ? cross_one(s, surface.leaf) : cross_group(s, &s->items[first], end - first, &surface);
+        if (!changed || !(surface.t >= s->from) || surface.t == -INFINITY)
             continue;
         *out = surface;
-        out->flip = surface.enter != s->in;
-        out->enter = s->in;
+        if (!s->csg->open) {
+            out->flip = surface.enter != s->in;
+            out->enter = s->in;
+        }
         return true;
     }
     return false;
 }
 
+/* Whether the line is inside the solid before everything that sweep_next has still to find. */
+static bool sweep_begins_inside(struct sweep *s) {
+    while (s->next < s->count && s->items[s->next].t == -INFINITY) {
+        uint32_t first = s->next, end = group_end(s, first);
+        struct crossing ignored;
+        (void)cross_group(s, &s->items[first], end - first, &ignored);
+        s->next = end;
+    }
+    return s->in;
+}
+
 /* Collects and sorts the crossings of all leaves whose boxes meet the ray between t_from and t_to; everything on the
- * scratch above `used` is the sweep's until the caller pops it. False: no crossings, or scratch overflow. */
+ * scratch above `used` is the sweep's until the caller pops it. False: nothing can be there, or scratch overflow. */
 static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray *ray, double t_from, double t_to,
                         struct geom_scratch *scratch) {
     const struct csg_plan *plan = csg->plan;
@@ -262,7 +300,13 @@ static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray
         }
         b++;
     }
+    const struct csg_token *clip = csg->clipped ? &csg->program[csg->solid_length] : NULL;
     *s = (struct sweep){.csg = csg,
+                        .first_clip_leaf = clip ? clip->leaf : UINT32_MAX,
+                        .in = plan->starts_in,
+                        .shown = plan->starts_shown,
+                        .from = line.t_min,
+                        .to = line.t_max,
                         .plan = plan,
                         .ray = ray,
                         .items = &scratch->items[first],
@@ -270,8 +314,6 @@ static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray
                         .counts = words,
                         .inside = words + plan->node_count,
                         .coarse = coarse};
-    if (s->count == 0)
-        return false;
     for (uint32_t i = 0; i < plan->node_count; i++)
         s->counts[i] = plan->start_counts[i];
     for (uint32_t i = 0; i < (csg->leaf_count + 31) / 32; i++)
@@ -289,7 +331,7 @@ bool csg_nearest(const struct csg *csg, const struct ray *ray, struct geom_scrat
     uint32_t used = scratch->used;
     struct sweep s;
     bool found = false;
-    if (sweep_begin(&s, csg, ray, ray->t_min, ray->t_max, scratch)) {
+    if (sweep_begin(&s, csg, ray, enter, leave, scratch)) {
         struct crossing surface;
         while (!found && sweep_next(&s, &surface) && surface.t < ray->t_max)
             if (surface.t > ray->t_min) {
@@ -306,6 +348,19 @@ bool csg_any(const struct csg *csg, const struct ray *ray, struct geom_scratch *
     return csg_nearest(csg, ray, scratch, &ignored);
 }
 
+/* The whole line is inside of a solid without end that it does not meet. */
+static bool cross_nothing(const struct csg *csg, struct geom_scratch *scratch, struct crossing_list *out) {
+    if (!csg->inside_out || csg->clipped)
+        return true;
+    if (!geom_scratch_push(scratch, (struct crossing){.t = -INFINITY, .enter = true, .flip = true}) ||
+        !geom_scratch_push(scratch, (struct crossing){.t = INFINITY, .enter = false, .flip = true})) {
+        scratch->used = out->first;
+        return false;
+    }
+    out->count = 2;
+    return true;
+}
+
 bool csg_crossings(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch,
                    struct crossing_list *out) {
     *out = (struct crossing_list){scratch->used, 0};
@@ -314,27 +369,45 @@ bool csg_crossings(const struct csg *csg, const struct ray *ray, struct geom_scr
     line.t_max = INFINITY;
     double enter, leave;
     if (box_is_empty(&csg->bounds) || !box_clip(&csg->bounds, &line, &enter, &leave))
-        return true;
+        return cross_nothing(csg, scratch, out);
     struct sweep s;
-    if (!sweep_begin(&s, csg, &line, -INFINITY, INFINITY, scratch)) {
+    bool any = sweep_begin(&s, csg, &line, enter, leave, scratch);
+    scratch->overflow = scratch->overflow || scratch->capacity - scratch->used < 2;
+    if (!any || scratch->overflow) {
         scratch->used = out->first;
         return !scratch->overflow;
     }
-    /* The answer never overtakes the sweep, so it is written where the sweep has been, then moved down over its state.
-     */
-    struct crossing surface;
+    /* The answer never overtakes the sweep, so it is written where the sweep has been; then the ends without end join
+     * it, for which there is room, and all is moved down over the state. */
+    bool endless = sweep_begins_inside(&s) && !csg->clipped;
+    struct crossing surface, first = s.count ? s.items[0] : (struct crossing){0};
+    uint32_t count = 0;
     while (sweep_next(&s, &surface))
-        s.items[out->count++] = surface;
-    for (uint32_t i = 0; i < out->count; i++)
+        s.items[count++] = surface;
+    bool ends_inside = s.in && !csg->clipped;
+    for (uint32_t i = count; i-- > 0 && endless;)
+        s.items[i + 1] = s.items[i];
+    first.t = -INFINITY, first.enter = true;
+    if (endless) {
+        s.items[0] = first;
+        count++;
+    }
+    first.t = INFINITY, first.enter = false;
+    if (ends_inside)
+        s.items[count++] = first;
+    for (uint32_t i = 0; i < count; i++)
         scratch->items[out->first + i] = s.items[i];
+    out->count = count;
     scratch->used = out->first + out->count;
     return true;
 }
 
-/* The postfix program itself, on a stack of bits: independent of the plan. */
+/* The postfix program itself, on a stack of bits: independent of the plan but for the leaves' own boxes. */
 bool csg_contains(const struct csg *csg, struct vec3 point, struct geom_scratch *scratch) {
     const struct csg_plan *plan = csg->plan;
     uint32_t used = scratch->used;
+    if (csg->clipped)
+        return false;
     if (scratch->capacity - used < plan->state_items) {
         scratch->overflow = true;
         return false;
@@ -347,8 +420,11 @@ bool csg_contains(const struct csg *csg, struct vec3 point, struct geom_scratch 
         if (operation == CSG_LEAF) {
             uint32_t index = csg->program[i].leaf;
             const struct csg_leaf *leaf = &csg->leaves[index];
-            if (box_contains(&plan->boxes[index], point))
+            if (box_contains(&plan->own_boxes[index], point))
                 value = shape_contains(&leaf->shape, affine_point(&leaf->csg_from_leaf.inverse, point), scratch);
+        } else if (operation == CSG_INVERSE) {
+            depth--;
+            value = !(stack[depth / 32] >> depth % 32 & 1);
         } else {
             depth -= 2;
             bool left = stack[depth / 32] >> depth % 32 & 1, right = stack[(depth + 1) / 32] >> (depth + 1) % 32 & 1;

@@ -3,8 +3,14 @@
  * neighbouring nodes of one kind become one. A node only counts its true children, so a change of one leaf costs one
  * step per node whose truth changes with it: a union of 10,000 solids is one node.
  *
- * The leaves' boxes stand in a binary tree (halves at the median of the longest axis), so that a ray asks only the
- * leaves near it. Programs may be as deep as they are long: they are read with explicit stacks. */
+ * Every node has a box outside of which its truth is what it is with all leaves false. Of an AND that is the common
+ * part of the boxes of those children that start false, since any of them decides; if all start true, the box round
+ * all. An OR is the same with true and false exchanged. From an AND's box goes what a negated box or half-space along
+ * the axes takes off an end. A leaf matters only inside the boxes of all nodes above it: a ray that misses their common
+ * part does not ask it, and what is subtracted costs nothing beside the solid it is subtracted from.
+ *
+ * These boxes of the leaves stand in a binary tree (halves at the median of the longest axis), so that a ray asks only
+ * the leaves near it. Programs may be as deep as they are long: they are read with explicit stacks. */
 #include "geom/csg_plan.h"
 #include "base/mem.h"
 
@@ -12,52 +18,41 @@
 
 enum { LEAVES_PER_BOUND = 4 };
 
-/* The program must combine to exactly one value and use every leaf once. */
+/* Each of both programs must combine to exactly one value, and both together use every leaf once, the solid's before
+ * the clip's. */
 static bool program_is_well_formed(const struct csg *csg, bool *used, uint32_t *stack_depth) {
     uint32_t depth = 0, leaves = 0, deepest = 0;
+    uint32_t first_clip_leaf = csg->clipped ? csg->program[csg->solid_length].leaf : csg->leaf_count;
     for (uint32_t i = 0; i < csg->program_length; i++) {
-        if (csg->program[i].operation == CSG_LEAF) {
+        uint32_t base = i < csg->solid_length ? 0 : 1;
+        switch (csg->program[i].operation) {
+        case CSG_LEAF: {
             uint32_t leaf = csg->program[i].leaf;
-            if (leaf >= csg->leaf_count || used[leaf])
+            if (leaf >= csg->leaf_count || used[leaf] || (base == 0) != (leaf < first_clip_leaf))
                 return false;
             used[leaf] = true;
             leaves++;
             depth++;
-        } else {
-            if (depth < 2)
+            break;
+        }
+        case CSG_UNION:
+        case CSG_INTERSECTION:
+        case CSG_DIFFERENCE:
+            if (depth < base + 2)
                 return false;
             depth--;
+            break;
+        case CSG_INVERSE:
+            if (depth < base + 1)
+                return false;
+            break;
         }
         deepest = depth > deepest ? depth : deepest;
+        if (i + 1 == csg->solid_length && depth != 1)
+            return false;
     }
     *stack_depth = deepest;
-    return depth == 1 && leaves == csg->leaf_count;
-}
-
-/* What the program does to boxes. */
-static struct box program_bounds(const struct csg *csg, const struct box *leaf_boxes, struct box *stack) {
-    uint32_t depth = 0;
-    for (uint32_t i = 0; i < csg->program_length; i++) {
-        enum csg_operation operation = csg->program[i].operation;
-        if (operation != CSG_LEAF)
-            depth--;
-        switch (operation) {
-        case CSG_LEAF:
-            stack[depth++] = leaf_boxes[csg->program[i].leaf];
-            break;
-        case CSG_UNION:
-            stack[depth - 1] = box_join(stack[depth - 1], stack[depth]);
-            break;
-        case CSG_INTERSECTION:
-            stack[depth - 1] = box_meet(stack[depth - 1], stack[depth]);
-            break;
-        case CSG_DIFFERENCE:
-            break;
-        }
-        if (box_is_empty(&stack[depth - 1])) /* in the form that adds nothing to a join */
-            stack[depth - 1] = box_empty();
-    }
-    return stack[0];
+    return depth == (csg->clipped ? 2 : 1) && leaves == csg->leaf_count;
 }
 
 struct pending {
@@ -65,14 +60,19 @@ struct pending {
     bool negated;
 };
 
-/* Reads the program backwards, which meets the root first and a right operand before the left one. is_all[n] tells
- * whether node n is an AND. */
-static void build_nodes(const struct csg *csg, struct csg_plan *plan, struct pending *stack, bool *is_all) {
-    uint32_t depth = 0;
+/* Reads a program backwards, which meets the root first and a right operand before the left one. is_all[n] tells
+ * whether node n is an AND. Returns the root. */
+static uint32_t build_nodes(const struct csg *csg, struct csg_plan *plan, uint32_t first, uint32_t end,
+                            struct pending *stack, bool *is_all) {
+    uint32_t depth = 0, root = plan->node_count;
     stack[depth++] = (struct pending){CSG_NONE, false};
-    for (uint32_t i = csg->program_length; i-- > 0;) {
+    for (uint32_t i = end; i-- > first;) {
         struct pending p = stack[--depth];
         enum csg_operation operation = csg->program[i].operation;
+        if (operation == CSG_INVERSE) {
+            stack[depth++] = (struct pending){p.parent, !p.negated};
+            continue;
+        }
         bool leaf = operation == CSG_LEAF, all = !leaf && (operation == CSG_UNION) == p.negated;
         uint32_t node = p.parent;
         if (node == CSG_NONE || (!leaf && is_all[node] != all)) {
@@ -91,16 +91,140 @@ static void build_nodes(const struct csg *csg, struct csg_plan *plan, struct pen
         }
     }
     assert(depth == 0);
+    return root;
+}
+
+/* The truth of all nodes while the line is outside every leaf, from the bottom up. */
+static void start_truth(const struct csg *csg, struct csg_plan *plan, const bool *is_all) {
     for (uint32_t i = 0; i < plan->node_count; i++)
         if (!is_all[i])
             plan->nodes[i].threshold = 1;
-
-    /* True children while the line is outside every leaf, from the bottom up. */
     for (uint32_t i = 0; i < csg->leaf_count; i++)
-        plan->start_counts[plan->literals[i].parent] += plan->literals[i].negated;
-    for (uint32_t i = plan->node_count; i-- > 1;)
-        plan->start_counts[plan->nodes[i].parent] += plan->start_counts[i] >= plan->nodes[i].threshold;
-    assert(plan->start_counts[0] < plan->nodes[0].threshold);
+        if (plan->literals[i].parent != CSG_NONE)
+            plan->start_counts[plan->literals[i].parent] += plan->literals[i].negated;
+    for (uint32_t i = plan->node_count; i-- > 0;) {
+        bool truth = plan->start_counts[i] >= plan->nodes[i].threshold;
+        if (plan->nodes[i].parent != CSG_NONE)
+            plan->start_counts[plan->nodes[i].parent] += truth;
+        else if (i == plan->clip_root)
+            plan->starts_shown = truth;
+        else
+            plan->starts_in = truth;
+    }
+    if (plan->clip_root == CSG_NONE)
+        plan->starts_shown = true;
+}
+
+/* ---- boxes ---- */
+
+static struct box box_all(void) {
+    return (struct box){vec3_all(-INFINITY), vec3_all(INFINITY)};
+}
+
+/* Empty boxes in the form that adds nothing to a join. */
+static struct box box_tidy(struct box b) {
+    return box_is_empty(&b) ? box_empty() : b;
+}
+
+/* The box round a - b. */
+static struct box box_less(struct box a, struct box b) {
+    double lo[3] = {a.min.x, a.min.y, a.min.z}, hi[3] = {a.max.x, a.max.y, a.max.z};
+    const double cut_lo[3] = {b.min.x, b.min.y, b.min.z}, cut_hi[3] = {b.max.x, b.max.y, b.max.z};
+    int open = 0, axis = 0;
+    for (int i = 0; i < 3; i++)
+        if (cut_lo[i] > lo[i] || cut_hi[i] < hi[i]) {
+            axis = i;
+            open++;
+        }
+    if (open == 0)
+        return box_empty();
+    if (open > 1 || cut_hi[axis] <= lo[axis] || cut_lo[axis] >= hi[axis])
+        return a;
+    if (cut_lo[axis] <= lo[axis])
+        lo[axis] = cut_hi[axis];
+    else if (cut_hi[axis] >= hi[axis])
+        hi[axis] = cut_lo[axis];
+    return (struct box){{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
+}
+
+/* A box that is wholly inside the leaf, of solids that are boxes in CSG space as well: a box placed along the axes, a
+ * half-space with an end. */
+static bool inner_box(const struct csg_leaf *leaf, struct box *out) {
+    const struct affine *map = &leaf->csg_from_leaf.forward;
+    struct box b = shape_bounds_under(&leaf->shape, map);
+    if (leaf->shape.kind == SHAPE_BOX) {
+        for (int i = 0; i < 3; i++)
+            if ((map->m[i][0] != 0) + (map->m[i][1] != 0) + (map->m[i][2] != 0) != 1)
+                return false;
+    } else if (leaf->shape.kind != SHAPE_FLAT || leaf->shape.flat.kind != FLAT_PLANE ||
+               (b.min.x == -b.max.x && b.min.y == -b.max.y && b.min.z == -b.max.z)) {
+        return false;
+    }
+    const double all[6] = {b.min.x, b.min.y, b.min.z, b.max.x, b.max.y, b.max.z};
+    double largest = 0;
+    for (int i = 0; i < 6; i++)
+        largest = isfinite(all[i]) && fabs(all[i]) > largest ? fabs(all[i]) : largest;
+    struct vec3 margin = vec3_all(largest * 0x1p-40);
+    *out = (struct box){vec3_add(b.min, margin), vec3_sub(b.max, margin)};
+    return true;
+}
+
+/* The box of a node while it is worked out. */
+struct live {
+    struct box decided;  /* the common part of the children whose start truth decides the node's */
+    struct box joined;   /* round all children */
+    bool decides;        /* there are deciding children */
+    uint32_t first_trim; /* leaves that may take something off the end */
+};
+
+static void add_live(struct live *parent, bool decides, struct box box) {
+    parent->joined = box_join(parent->joined, box);
+    if (decides)
+        parent->decided = box_tidy(box_meet(parent->decided, box));
+    parent->decides = parent->decides || decides;
+}
+
+/* Where the truth of each node may differ from that at the start, bottom up; then what of it the nodes above leave, top
+ * down; then the same for the leaves, in plan->boxes, which come in as the leaves' own. */
+static void live_boxes(struct csg *csg, struct csg_plan *plan, const bool *is_all, struct live *live, uint32_t *trims) {
+    for (uint32_t i = 0; i < plan->node_count; i++)
+        live[i] = (struct live){.decided = box_all(), .joined = box_empty(), .first_trim = CSG_NONE};
+    for (uint32_t i = csg->leaf_count; i-- > 0;) {
+        const struct csg_literal *literal = &plan->literals[i];
+        if (literal->parent == CSG_NONE)
+            continue;
+        struct live *parent = &live[literal->parent];
+        bool decides = literal->negated != is_all[literal->parent];
+        add_live(parent, decides, plan->boxes[i]);
+        trims[i] = parent->first_trim;
+        if (!decides)
+            parent->first_trim = i;
+    }
+    for (uint32_t i = plan->node_count; i-- > 0;) {
+        struct live *own = &live[i];
+        struct box box = own->decides ? own->decided : own->joined, inner;
+        for (uint32_t leaf = own->first_trim; own->decides && leaf != CSG_NONE; leaf = trims[leaf])
+            if (inner_box(&csg->leaves[leaf], &inner) && !box_is_empty(&box))
+                box = box_less(box, inner);
+        own->decided = box = box_tidy(box);
+        uint32_t parent = plan->nodes[i].parent;
+        bool truth = plan->start_counts[i] >= plan->nodes[i].threshold;
+        if (parent != CSG_NONE)
+            add_live(&live[parent], truth != is_all[parent], box);
+    }
+    /* The surface is where both the solid may change and the clip may be true. */
+    struct box solid = csg->open ? plan->boxes[csg->program[0].leaf] : live[0].decided;
+    csg->bounds = solid;
+    if (csg->clipped && !plan->starts_shown)
+        csg->bounds = box_tidy(box_meet(solid, live[plan->clip_root].decided));
+    for (uint32_t i = 0; i < plan->node_count; i++) {
+        uint32_t parent = plan->nodes[i].parent;
+        live[i].decided = box_meet(live[i].decided, parent == CSG_NONE ? csg->bounds : live[parent].decided);
+    }
+    for (uint32_t i = 0; i < csg->leaf_count; i++) {
+        uint32_t parent = plan->literals[i].parent;
+        plan->boxes[i] = box_tidy(box_meet(plan->boxes[i], parent == CSG_NONE ? csg->bounds : live[parent].decided));
+    }
 }
 
 static double box_middle(const struct box *b, int axis) {
@@ -169,9 +293,10 @@ static void build_bounds(struct csg_plan *plan, uint32_t first, uint32_t count) 
 static bool fill_plan(struct csg *csg, struct csg_plan *plan, struct error *error) {
     uint32_t length = csg->program_length, leaf_count = csg->leaf_count;
     bool *flags = mem_alloc_zero(length, sizeof *flags);
-    struct box *boxes = mem_alloc_zero(length, sizeof *boxes);
+    struct live *live = mem_alloc_zero(leaf_count, sizeof *live);
+    uint32_t *trims = mem_alloc_zero(leaf_count, sizeof *trims);
     struct pending *pending = mem_alloc_zero(length + 1, sizeof *pending);
-    bool ok = flags && boxes && pending;
+    bool ok = flags && live && trims && pending;
     if (!ok)
         error_no_memory(error, "CSG");
     else if (!program_is_well_formed(csg, flags, &csg->stack_depth))
@@ -181,40 +306,59 @@ static bool fill_plan(struct csg *csg, struct csg_plan *plan, struct error *erro
         for (uint32_t i = 0; i < leaf_count; i++) {
             const struct csg_leaf *leaf = &csg->leaves[i];
             struct box b = box_pad(shape_bounds_under(&leaf->shape, &leaf->csg_from_leaf.forward));
-            plan->boxes[i] = b;
+            if (leaf->limit)
+                b = box_meet(b, box_pad(*leaf->limit));
+            plan->own_boxes[i] = plan->boxes[i] = b = box_tidy(b);
             plan->order[i] = i;
             crossings += shape_scratch_need(&leaf->shape);
             double reach = box_is_empty(&b) ? 0 : fmax(vec3_max_abs(b.min), vec3_max_abs(b.max));
             if (isfinite(reach)) /* solids without end have no size */
                 plan->size = fmax(plan->size, reach);
         }
-        csg->bounds = program_bounds(csg, plan->boxes, boxes);
         for (uint32_t i = 0; i < length; i++)
             flags[i] = false;
-        build_nodes(csg, plan, pending, flags);
+        const struct csg_leaf *only = csg->solid_length == 1 ? &csg->leaves[csg->program[0].leaf] : NULL;
+        csg->open = only && !shape_is_closed(&only->shape);
+        if (csg->open)
+            plan->literals[csg->program[0].leaf] = (struct csg_literal){CSG_NONE, false};
+        else
+            (void)build_nodes(csg, plan, 0, csg->solid_length, pending, flags);
+        plan->clip_root = csg->clipped ? build_nodes(csg, plan, csg->solid_length, length, pending, flags) : CSG_NONE;
+        start_truth(csg, plan, flags);
+        csg->inside_out = plan->starts_in;
+        live_boxes(csg, plan, flags, live, trims);
         build_bounds(plan, 0, leaf_count);
 
         /* The truth of nodes and leaves, or the stack of csg_contains in bits, and all crossings above it. */
         uint64_t words = plan->node_count + (leaf_count + 31) / 32;
         plan->state_items =
             (uint32_t)((words * sizeof(uint32_t) + sizeof(struct crossing) - 1) / sizeof(struct crossing));
-        crossings += plan->state_items;
+        crossings += plan->state_items + 2; /* and where a solid without end begins and ends */
         csg->max_crossings = crossings < UINT32_MAX / 4 ? (uint32_t)crossings : UINT32_MAX / 4;
     }
     mem_free(pending);
-    mem_free(boxes);
+    mem_free(trims);
+    mem_free(live);
     mem_free(flags);
     return ok;
 }
 
 const struct csg *csg_build(struct arena *arena, const struct csg_leaf *leaves, uint32_t leaf_count,
                             const struct csg_token *program, uint32_t program_length, struct error *error) {
+    return csg_build_clipped(arena, leaves, leaf_count, program, program_length, program_length, error);
+}
+
+const struct csg *csg_build_clipped(struct arena *arena, const struct csg_leaf *leaves, uint32_t leaf_count,
+                                    const struct csg_token *program, uint32_t solid_length, uint32_t program_length,
+                                    struct error *error) {
     if (leaf_count > 65535) {
         error_set(error, ERROR_SCENE, "CSG: %u operands, more than 65535", leaf_count);
         return NULL;
     }
-    /* n leaves and n - 1 operations; this also bounds what is allocated below */
-    if (leaf_count == 0 || program_length != 2 * leaf_count - 1) {
+    /* n leaves, n - 1 operations (or n - 2 and a clip), inverses of each of them; this also bounds what is allocated */
+    bool clipped = solid_length < program_length;
+    uint32_t least = 2 * leaf_count - (clipped ? 2 : 1);
+    if (leaf_count == 0 || solid_length == 0 || program_length < least || program_length > 2 * least) {
         error_set(error, ERROR_SCENE, "CSG: malformed program");
         return NULL;
     }
@@ -229,10 +373,12 @@ const struct csg *csg_build(struct arena *arena, const struct csg_leaf *leaves, 
         plan->start_counts = arena_alloc_array(arena, leaf_count, sizeof *plan->start_counts);
         plan->literals = arena_alloc_array(arena, leaf_count, sizeof *plan->literals);
         plan->boxes = arena_alloc_array(arena, leaf_count, sizeof *plan->boxes);
+        plan->own_boxes = arena_alloc_array(arena, leaf_count, sizeof *plan->own_boxes);
         plan->order = arena_alloc_array(arena, leaf_count, sizeof *plan->order);
         plan->bounds =
             arena_alloc_array(arena, leaf_count, sizeof *plan->bounds); /* at least two leaves each, or one */
-        ok = plan->nodes && plan->start_counts && plan->literals && plan->boxes && plan->order && plan->bounds;
+        ok = plan->nodes && plan->start_counts && plan->literals && plan->boxes && plan->own_boxes && plan->order &&
+             plan->bounds;
     }
     if (!ok) {
         error_no_memory(error, "CSG");
@@ -248,6 +394,8 @@ const struct csg *csg_build(struct arena *arena, const struct csg_leaf *leaves, 
     csg->leaf_count = leaf_count;
     csg->program = own_program;
     csg->program_length = program_length;
+    csg->solid_length = solid_length;
+    csg->clipped = clipped;
     csg->plan = plan;
     return fill_plan(csg, plan, error) ? csg : NULL;
 }

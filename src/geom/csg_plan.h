@@ -14,7 +14,7 @@ struct csg_node {
 
 /* A leaf in the tree. */
 struct csg_literal {
-    uint32_t parent;
+    uint32_t parent; /* CSG_NONE for a mere surface, which is true nowhere */
     bool negated;
 };
 
@@ -27,10 +27,13 @@ struct csg_bound {
 };
 
 struct csg_plan {
-    struct csg_node *nodes; /* the root is 0; a parent comes before its children */
-    uint32_t *start_counts; /* true children of each node while the line is outside every leaf */
+    struct csg_node *nodes;       /* the root of the solid is 0; a parent comes before its children */
+    uint32_t clip_root;           /* CSG_NONE without a clip */
+    bool starts_in, starts_shown; /* the truth of solid and clip while the line is outside every leaf */
+    uint32_t *start_counts;       /* true children of each node while the line is outside every leaf */
     struct csg_literal *literals;
-    struct box *boxes; /* of the leaves, in CSG space, padded */
+    struct box *own_boxes; /* of the leaves, in CSG space, padded */
+    struct box *boxes;     /* what of them the nodes above leave: where a leaf matters */
     struct csg_bound *bounds;
     uint32_t *order;
     uint32_t node_count, bound_count;

@@ -152,7 +152,7 @@ bool shape_is_closed(const struct shape *shape) {
     case SHAPE_MESH:
         return mesh_is_closed(shape->mesh);
     case SHAPE_CSG:
-        return true;
+        return !shape->csg->clipped;
     }
     return false;
 }
@@ -174,6 +174,8 @@ const char *shape_why_open(const struct shape *shape) {
         return "is a sheet without walls and floor (open = true), so it has no inside";
     case SHAPE_MESH:
         return "is a mesh with open edges, so it has no inside";
+    case SHAPE_CSG:
+        return "is clipped, cut open without caps, so it has no inside";
     case SHAPE_SPHERE:
     case SHAPE_BOX:
     case SHAPE_ELLIPSOID:
@@ -182,7 +184,6 @@ const char *shape_why_open(const struct shape *shape) {
     case SHAPE_PRISM:
     case SHAPE_SWEEP:
     case SHAPE_BLOB:
-    case SHAPE_CSG:
         break;
     }
     return "is a mere surface, so it has no inside";

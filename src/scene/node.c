@@ -50,6 +50,22 @@ struct node *scene_node(struct scene *scene, enum node_kind kind, const char *na
     return node;
 }
 
+struct node *scene_combine(struct scene *scene, const char *name, enum node_csg operation, struct node *const *operands,
+                           uint32_t count, struct error *error) {
+    struct node *node = scene_node(scene, NODE_CSG, name, error);
+    struct node **own = node ? arena_alloc_array(&scene->arena, count, sizeof *own) : NULL;
+    if (!own) {
+        error_no_memory(error, "a combined solid");
+        return NULL;
+    }
+    for (uint32_t i = 0; i < count; i++)
+        own[i] = operands[i];
+    node->operation = operation;
+    node->operands = own;
+    node->operand_count = count;
+    return node;
+}
+
 bool node_add_child(struct scene *scene, struct node *parent, struct node *child, struct error *error) {
     struct node_child *link = arena_alloc(&scene->arena, sizeof *link);
     if (!link)

@@ -16,7 +16,9 @@
 enum node_kind { NODE_GROUP, NODE_JOINT, NODE_GEOMETRY, NODE_CSG };
 /* Which faces of a mesh no ray sees, by the order of their corners. Operands of CSG are always whole. */
 enum node_cull { CULL_NONE, CULL_BACK, CULL_FRONT };
-enum node_csg { NODE_UNION, NODE_INTERSECTION, NODE_DIFFERENCE };
+/* A difference is the first operand less the others, an inverse has one; of NODE_CLIPPED and NODE_BOUNDED the first
+ * operand is what is seen, of any kind, and the second the solid that cuts it open, or that it is known to lie in. */
+enum node_csg { NODE_UNION, NODE_INTERSECTION, NODE_DIFFERENCE, NODE_INVERSE, NODE_CLIPPED, NODE_BOUNDED };
 
 /* SPEC 2.4: which way later calls compose. NEW: M = T * M; OLD: M = M * T; SEPARATE: T * R * S kept apart. */
 enum transform_order { ORDER_NEW, ORDER_OLD, ORDER_SEPARATE };
@@ -60,7 +62,8 @@ struct node {
     const struct material *texture; /* set_texture: a MATERIAL_IMAGE template whose base is filled in when flattened */
     const struct material *relief;  /* set_bump: a MATERIAL_BUMP or MATERIAL_NORMAL template, likewise */
     enum node_csg operation;        /* NODE_CSG */
-    struct node *operands[2];
+    struct node *const *operands;
+    uint32_t operand_count;
 };
 
 /* The store of assets: outlives scripts and renders. */
@@ -113,10 +116,19 @@ void scene_destroy(struct scene *scene);
 struct node *scene_node(struct scene *scene, enum node_kind kind, const char *name, struct error *error);
 bool node_add_child(struct scene *scene, struct node *parent, struct node *child, struct error *error);
 enum node_step { NODE_TRANSLATE, NODE_ROTATE, NODE_SCALE, NODE_STEPS };
+/* A NODE_CSG over these, which are copied. */
+struct node *scene_combine(struct scene *scene, const char *name, enum node_csg operation, struct node *const *operands,
+                           uint32_t count, struct error *error);
 /* Applies one transform in the scene's order. False: no memory (only ORDER_SEPARATE needs any). */
 bool node_transform(struct scene *scene, struct node *node, enum node_step step, const struct transform *by);
 /* Everything from the node to its parent, joint angles included (y after x). */
 struct transform node_parent_from_node(const struct node *node);
+/* What a clipped or bounded node places, as if it were a child: its first operand, if there is anything to draw under
+ * it. NULL of all other nodes. */
+static inline struct node *node_places_operand(const struct node *node) {
+    bool placing = node->kind == NODE_CSG && (node->operation == NODE_CLIPPED || node->operation == NODE_BOUNDED);
+    return placing && node->operands[0]->drawable > 0 ? node->operands[0] : NULL;
+}
 static inline bool node_moves(const struct node *node) {
     return (node->moves_to && node->moves_to != node) || vec3_max_abs(node->velocity) > 0;
 }

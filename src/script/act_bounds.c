@@ -14,22 +14,17 @@ struct measuring {
 static bool measure(struct measuring *m, const struct node *node, const struct transform *map, int depth,
                     struct box *box);
 
+/* What is round the operands of a combined solid, as far as it can be said without looking at their surfaces. */
 static bool measure_csg(struct measuring *m, const struct node *node, const struct transform *map, int depth,
                         struct box *box) {
-    struct box a, b = box_empty();
-    if (!measure(m, node->operands[0], map, depth + 1, &a) ||
-        (node->operation != NODE_DIFFERENCE && !measure(m, node->operands[1], map, depth + 1, &b)))
-        return false;
-    switch (node->operation) {
-    case NODE_UNION:
-        *box = box_join(a, b);
-        break;
-    case NODE_INTERSECTION:
-        *box = box_meet(a, b);
-        break;
-    case NODE_DIFFERENCE:
-        *box = a;
-        break;
+    for (uint32_t k = 0; k < node->operand_count; k++) {
+        struct box one;
+        bool first_alone = node->operation == NODE_DIFFERENCE || node->operation == NODE_INVERSE;
+        if (k > 0 && first_alone)
+            break;
+        if (!measure(m, node->operands[k], map, depth + 1, &one))
+            return false;
+        *box = k == 0 ? one : node->operation == NODE_UNION ? box_join(*box, one) : box_meet(*box, one);
     }
     if (box_is_empty(box))
         *box = box_empty();

@@ -146,8 +146,8 @@ bool act_geometry(struct context *context, const struct value *args, struct resu
     node->texture = primitive->texture;
     node->relief = primitive->relief;
     node->operation = primitive->operation;
-    node->operands[0] = primitive->operands[0];
-    node->operands[1] = primitive->operands[1];
+    node->operands = primitive->operands;
+    node->operand_count = primitive->operand_count;
     if (primitive->separate) {
         node->separate = arena_alloc_array(&context->scene.arena, 3, sizeof *node->separate);
         if (!node->separate)
@@ -163,6 +163,10 @@ bool act_geometry(struct context *context, const struct value *args, struct resu
 /* What is open has no inside. Deeper ones are found when the world is built, which knows their instances. */
 static bool check_operand(const struct node *operand, struct error *error) {
     struct vec3 a, b;
+    if (operand->kind == NODE_CSG && operand->operation == NODE_CLIPPED)
+        return error_set(error, ERROR_SCENE,
+                         "'%s' is clipped, cut open without caps, so it has no inside; intersect it instead",
+                         operand->name);
     if (operand->kind != NODE_GEOMETRY)
         return true;
     if (operand->shape.kind != SHAPE_MESH) {
@@ -177,32 +181,50 @@ static bool check_operand(const struct node *operand, struct error *error) {
                      operand->name, a.x, a.y, a.z, b.x, b.y, b.z);
 }
 
-/* With --lenient an operand may be something that does not exist yet: what can be shown is the other one, unless it was
- * to be subtracted. */
-static bool combine_rest(struct context *context, enum node_csg operation, const struct value *args,
-                         struct result *result, struct error *error) {
-    struct node *node = scene_node(&context->scene, NODE_GROUP, text_or(&args[CSG_NAME], "csg"), error);
-    struct node *rest = args[CSG_A].node;
-    if (!rest && operation != NODE_DIFFERENCE)
-        rest = args[CSG_B].node;
-    if (node && rest && !node_add_child(&context->scene, node, rest, error))
+/* With --lenient an operand may be something that does not exist yet, and what can be shown is the others, unless they
+ * were to be subtracted from it: a plain node over the one that is left, or nothing. */
+static bool show_rest(struct context *context, const char *name, struct node *rest, struct result *result,
+                      struct error *error) {
+    struct node *node = scene_node(&context->scene, NODE_GROUP, name, error);
+    if (!node || (rest && !node_add_child(&context->scene, node, rest, error)))
         return false;
     return give(result, node);
 }
 
+/* a and b where they are given (as ghosts, they are not), and those of the list, which has NULL for ghosts. */
+static struct node **list_operands(struct context *context, const struct value *args, uint32_t *count) {
+    const struct value *list = &args[CSG_OPERANDS];
+    bool named = !list->given || list->single || args[CSG_A].given || args[CSG_B].given;
+    struct node **operands = arena_alloc_array(&context->call, (size_t)list->count + 2, sizeof *operands);
+    *count = 0;
+    if (operands && named) {
+        operands[(*count)++] = args[CSG_A].node;
+        operands[(*count)++] = args[CSG_B].node;
+    }
+    for (uint32_t k = 0; operands && k < list->count; k++)
+        operands[(*count)++] = list->nodes[k];
+    return operands;
+}
+
 static bool combine(struct context *context, enum node_csg operation, const struct value *args, struct result *result,
                     struct error *error) {
-    if (!args[CSG_A].given || !args[CSG_B].given)
-        return combine_rest(context, operation, args, result, error);
-    if (!check_operand(args[CSG_A].node, error) || !check_operand(args[CSG_B].node, error))
-        return false;
-    struct node *node = scene_node(&context->scene, NODE_CSG, text_or(&args[CSG_NAME], "csg"), error);
-    if (!node)
-        return false;
-    node->operation = operation;
-    node->operands[0] = args[CSG_A].node;
-    node->operands[1] = args[CSG_B].node;
-    return give(result, node);
+    uint32_t count, known = 0;
+    const char *name = text_or(&args[CSG_NAME], "csg");
+    struct node **operands = list_operands(context, args, &count);
+    if (!operands)
+        return error_no_memory(error, "the operands");
+    if (count == 0)
+        return error_set(error, ERROR_SCENE, "operands are missing");
+    bool nothing = operation == NODE_DIFFERENCE && !operands[0];
+    for (uint32_t k = 0; k < count; k++)
+        if (operands[k])
+            operands[known++] = operands[k];
+    if (known == 0 || nothing || (known == 1 && count > 1))
+        return show_rest(context, name, nothing || known == 0 ? NULL : operands[0], result, error);
+    for (uint32_t k = 0; k < known; k++)
+        if (!check_operand(operands[k], error))
+            return false;
+    return give(result, scene_combine(&context->scene, name, operation, operands, known, error));
 }
 
 bool act_union(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -215,6 +237,32 @@ bool act_difference(struct context *context, const struct value *args, struct re
 
 bool act_intersection(struct context *context, const struct value *args, struct result *result, struct error *error) {
     return combine(context, NODE_INTERSECTION, args, result, error);
+}
+
+bool act_inverse(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct node *solid = args[INVERSE_A].node;
+    const char *name = text_or(&args[INVERSE_NAME], "inverse");
+    if (!solid)
+        return show_rest(context, name, NULL, result, error);
+    return check_operand(solid, error) &&
+           give(result, scene_combine(&context->scene, name, NODE_INVERSE, &solid, 1, error));
+}
+
+static bool enclose(struct context *context, enum node_csg operation, const char *name, const struct value *args,
+                    struct result *result, struct error *error) {
+    struct node *operands[2] = {args[CLIPPED_OBJECT].node, args[CLIPPED_BY].node};
+    if (!operands[0] || !operands[1])
+        return show_rest(context, name, operands[0], result, error);
+    return check_operand(operands[1], error) &&
+           give(result, scene_combine(&context->scene, name, operation, operands, 2, error));
+}
+
+bool act_clipped_by(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    return enclose(context, NODE_CLIPPED, text_or(&args[CLIPPED_NAME], "clipped"), args, result, error);
+}
+
+bool act_bounded_by(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    return enclose(context, NODE_BOUNDED, text_or(&args[CLIPPED_NAME], "bounded"), args, result, error);
 }
 
 bool act_transform_order(struct context *context, const struct value *args, struct result *result,

@@ -13,10 +13,12 @@ enum { JOINT_NAME, JOINT_X, JOINT_Y, JOINT_CHILDREN, JOINT_COUNT };
 enum { SPHERE_NAME, SPHERE_MATERIAL, SPHERE_CENTRE, SPHERE_RADIUS, SPHERE_COUNT };
 enum { CUBE_NAME, CUBE_MATERIAL, CUBE_CORNER, CUBE_SIZE, CUBE_COUNT };
 enum { GEOMETRY_NAME, GEOMETRY_PRIMITIVE, GEOMETRY_MATERIAL, GEOMETRY_COUNT };
-enum { CSG_NAME, CSG_A, CSG_B, CSG_COUNT };
+enum { CSG_NAME, CSG_A, CSG_B, CSG_OPERANDS, CSG_COUNT };
+enum { INVERSE_NAME, INVERSE_A, INVERSE_COUNT };
+enum { CLIPPED_NAME, CLIPPED_OBJECT, CLIPPED_BY, CLIPPED_COUNT };
 action act_node, act_instances, act_joint, act_sphere, act_cube, act_geometry, act_union, act_difference,
     act_intersection;
-action act_transform_order;
+action act_inverse, act_clipped_by, act_bounded_by, act_transform_order;
 
 /* act_shapes.c: each begins with name and material */
 enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_FIRST };

@@ -224,7 +224,7 @@ static void read_list_of_handles(struct context *c, int index, struct place plac
             context_raise(c, "%s[%u] is nil", place.parameter->name, (unsigned)k + 1);
         void *pointer = read_handle(c, -1, &place, is_lights ? HANDLE_LIGHT : HANDLE_NODE);
         lua_pop(L, 1);
-        if (!pointer)
+        if (!pointer && !(place.parameter->flags & REST)) /* a ghost; where places count it is NULL */
             continue;
         if (is_lights)
             lights[value->count++] = *(const struct light *)pointer;
@@ -645,6 +645,33 @@ _Noreturn static void no_form_fits(struct context *c, const struct function *fun
     context_raise(c, "%s must be %s, not %s", names, words, value_words(c->lua, first));
 }
 
+/* The parameter that takes whatever number of nodes, or NULL; its place among the parameters. */
+static const struct parameter *rest_of(const struct function *function, int *index) {
+    for (*index = 0; *index < function->parameter_count; (*index)++)
+        if (function->parameters[*index].flags & REST)
+            return &function->parameters[*index];
+    return NULL;
+}
+
+/* Nodes behind a positional form. Returns the place of the first argument that is none. */
+static int read_rest(struct context *c, const struct parameter *p, int place, struct value *value) {
+    lua_State *L = c->lua;
+    int end = place;
+    while (end <= lua_gettop(L) && (lua_isnil(L, end) || looks_like(L, end, KIND_NODE)))
+        end++;
+    if (end == place)
+        return end;
+    value->given = value->single = true;
+    value->nodes = call_array(c, (size_t)(end - place), sizeof(struct node *));
+    for (; place < end; place++) {
+        const struct handle *handle = handle_at(L, place);
+        if (!handle)
+            context_raise(c, "%s[%u] is nil", p->name, (unsigned)value->count + 1);
+        value->nodes[value->count++] = handle->type == HANDLE_GHOST ? NULL : handle->pointer;
+    }
+    return end;
+}
+
 static bool read_positional(struct context *c, const struct function *function, int first, struct value *args) {
     lua_State *L = c->lua;
     const char *best = function->forms[0];
@@ -673,6 +700,10 @@ static bool read_positional(struct context *c, const struct function *function, 
         if (!read_parameter(c, place, p, &args[index]))
             return false;
     }
+    int rest_index;
+    const struct parameter *rest = rest_of(function, &rest_index);
+    if (rest)
+        place = read_rest(c, rest, place, &args[rest_index]);
     if (lua_gettop(L) >= place)
         context_warn_once(c, WARNED_EXTRA, "arguments after %s are ignored", function->parameters[index].name);
     return true;
@@ -684,6 +715,9 @@ static void check_fields(struct context *c, const struct function *function, int
     const char *unknown = NULL;
     int skip = function->owner == OWNER_NODE; /* `self` is no field */
     for (lua_pushnil(L); lua_next(L, table); lua_pop(L, 1)) {
+        int rest;
+        if (lua_isinteger(L, -2) && rest_of(function, &rest))
+            continue;
         if (lua_type(L, -2) != LUA_TSTRING)
             context_raise(c, "fields need names, as in %s = ...", function->parameters[skip].name);
         const char *field = lua_tostring(L, -2);
@@ -704,6 +738,26 @@ static void check_fields(struct context *c, const struct function *function, int
     context_raise(c, "unknown field '%.100s'", unknown);
 }
 
+/* Entries without names, if there are any. */
+static bool read_unnamed(struct context *c, const struct function *function, int table, struct value *args) {
+    int index;
+    const struct parameter *rest = rest_of(function, &index);
+    struct place place = {.parameter = rest};
+    if (!rest)
+        return false;
+    lua_pushstring(c->lua, rest->name);
+    bool listed = lua_rawget(c->lua, table) != LUA_TNIL;
+    lua_pop(c->lua, 1);
+    check_holes(c, table, &place, (uint32_t)lua_rawlen(c->lua, table));
+    if (lua_rawlen(c->lua, table) == 0)
+        return listed;
+    if (listed)
+        context_raise(c, "%s are given twice, with and without a name", rest->name);
+    args[index].given = true;
+    read_list_of_handles(c, table, place, &args[index]);
+    return true;
+}
+
 static bool read_named(struct context *c, const struct function *function, int table, struct value *args) {
     lua_State *L = c->lua;
     int value = lua_gettop(L) + 1;
@@ -717,10 +771,12 @@ static bool read_named(struct context *c, const struct function *function, int t
         lua_pop(L, 1);
     }
     check_fields(c, function, table);
+    bool listed = read_unnamed(c, function, table, args);
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
         const struct parameter *p = &function->parameters[k];
         lua_pushstring(L, p->name);
-        if (lua_rawget(L, table) == LUA_TNIL && !(p->flags & OPTIONAL))
+        bool may_miss = (p->flags & OPTIONAL) || (listed && p->kind == KIND_NODE);
+        if (lua_rawget(L, table) == LUA_TNIL && !may_miss)
             context_raise(c, "%s is missing", p->name);
         if (!read_parameter(c, value, p, &args[k]))
             return false;
@@ -736,7 +792,8 @@ static bool is_table_form(lua_State *L, const struct function *function, int fir
         return false;
     if (function->owner == OWNER_NODE && function->result != RESULT_NOTHING)
         return false;
-    bool named = lua_rawgeti(L, first, 1) == LUA_TNIL;
+    int rest;
+    bool named = lua_rawgeti(L, first, 1) == LUA_TNIL || rest_of(function, &rest);
     lua_pop(L, 1);
     return named;
 }

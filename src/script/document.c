@@ -113,6 +113,14 @@ static bool has_table_form(const struct function *function) {
     return function->owner == OWNER_GR || function->result == RESULT_NOTHING;
 }
 
+/* A form may go on with any number of nodes. */
+static bool takes_more(const struct function *function) {
+    for (int k = 0; k < function->parameter_count; k++)
+        if (function->parameters[k].flags & REST)
+            return true;
+    return false;
+}
+
 static void write_function(struct document *document, const struct function *function) {
     char title[96];
     function_title(function, title);
@@ -125,7 +133,7 @@ static void write_function(struct document *document, const struct function *fun
             add(document, "%s%s%s", separator, function->parameters[index].name, optional ? "?" : "");
             separator = ", ";
         }
-        add(document, ")\n");
+        add(document, "%s)\n", takes_more(function) ? ", ..." : "");
     }
     if (has_table_form(function))
         add(document, "%s{%s = ..., ...}\n", title, function->parameters[function->owner == OWNER_NODE].name);
@@ -266,7 +274,7 @@ static void annotate_overload(struct document *document, const struct function *
         add(document, "%s%s%s: %s", separator, p->name, optional ? "?" : "", annotation_type(p, type));
         separator = ", ";
     }
-    add(document, ")%s%s\n", result ? ": " : "", result ? result : "");
+    add(document, "%s)%s%s\n", takes_more(function) ? ", ...: gr.node" : "", result ? ": " : "", result ? result : "");
 }
 
 static void annotate_function(struct document *document, const struct function *function) {
@@ -283,6 +291,11 @@ static void annotate_function(struct document *document, const struct function *
         size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, "%s%s", separator, p->name);
         separator = ", ";
+    }
+    if (takes_more(function)) {
+        size_t used = strlen(names);
+        add(document, "---@param ... gr.node\n");
+        snprintf(names + used, sizeof names - used, ", ...");
     }
     if (result)
         add(document, "---@return %s\n", result);

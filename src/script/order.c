@@ -167,8 +167,8 @@ static bool is_project_name(const struct token *token) {
     static const char *const names[] = {
         "fast_mesh",         "vn_mesh",          "fast_vn_mesh",       "rr_material",        "marble_pnd_material",
         "wood_pnd_material", "td_cube_material", "td_sphere_material", "difresnel_material", "difresneld_material",
-        "geometry",          "csg_union",        "csg_difference",     "csg_intersection",   "area_light",
-        "render_skybox"};
+        "geometry",          "csg_union",        "csg_difference",     "csg_intersection",   "csg_merge",
+        "csg_inverse",       "clipped_by",       "bounded_by",         "area_light",         "render_skybox"};
     for (size_t k = 0; k < sizeof names / sizeof names[0]; k++)
         if (is(token, TOKEN_NAME, names[k]))
             return true;

@@ -95,6 +95,30 @@ static const struct parameter csg_parameters[] = {
     [CSG_A] = {"a", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL,
                "A closed solid; a group counts as the union of what is under it."},
     [CSG_B] = {"b", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL, "The other one."},
+    [CSG_OPERANDS] = {"operands", KIND_NODES, OPTIONAL | REST, ANY, NULL, NULL,
+                      "Any number of solids: as further arguments, as a list, or without names in the table, with or "
+                      "without a and b before them."},
+};
+
+static const struct parameter inverse_parameters[] = {
+    [INVERSE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'inverse'", NAME_HELP},
+    [INVERSE_A] = {"a", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL,
+                   "A closed solid; a group counts as the union of what is under it."},
+};
+
+static const struct parameter clipped_parameters[] = {
+    [CLIPPED_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'clipped'", NAME_HELP},
+    [CLIPPED_OBJECT] = {"object", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL,
+                        "What is seen: a shape or a group of them."},
+    [CLIPPED_BY] = {"by", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL, "A closed solid: what is inside of it stays."},
+};
+
+static const struct parameter bounded_parameters[] = {
+    [CLIPPED_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'bounded'", NAME_HELP},
+    [CLIPPED_OBJECT] = {"object", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL,
+                        "What is seen: a shape or a group of them."},
+    [CLIPPED_BY] = {"by", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL,
+                    "A closed solid that nothing of it sticks out of; what does may be seen or not."},
 };
 
 #define SHAPE(otherwise)                                                                                               \
@@ -907,14 +931,30 @@ const struct function function_table[] = {
        VN_FORM("name")),
     GR("geometry", geometry_parameters, RESULT_NODE, act_geometry, "A node with the shape and look of a primitive.",
        "name primitive"),
-    GR("csg_union", csg_parameters, RESULT_NODE, act_union, "The solid of what is in a or in b.", "name a b"),
-    GR("csg_difference", csg_parameters, RESULT_NODE, act_difference, "The solid of what is in a and not in b.",
-       "name a b"),
-    GR("csg_intersection", csg_parameters, RESULT_NODE, act_intersection, "The solid of what is in a and in b.",
-       "name a b"),
-    GR("union", csg_parameters, RESULT_NODE, act_union, "The same as gr.csg_union.", "name a b"),
-    GR("difference", csg_parameters, RESULT_NODE, act_difference, "The same as gr.csg_difference.", "name a b"),
-    GR("intersection", csg_parameters, RESULT_NODE, act_intersection, "The same as gr.csg_intersection.", "name a b"),
+    GR("csg_union", csg_parameters, RESULT_NODE, act_union,
+       "The solid of what is in any of the operands; it has no walls inside.", "name a b", "a b"),
+    GR("csg_difference", csg_parameters, RESULT_NODE, act_difference,
+       "The solid of what is in the first operand and in none of the others.", "name a b", "a b"),
+    GR("csg_intersection", csg_parameters, RESULT_NODE, act_intersection,
+       "The solid of what is in all of the operands.", "name a b", "a b"),
+    GR("csg_merge", csg_parameters, RESULT_NODE, act_union,
+       "The same as gr.csg_union, which has no walls inside either; a plain node keeps them.", "name a b", "a b"),
+    GR("csg_inverse", inverse_parameters, RESULT_NODE, act_inverse,
+       "The solid of what is not in a: the same surface, turned inside out.", "name a", "a"),
+    GR("union", csg_parameters, RESULT_NODE, act_union, "The same as gr.csg_union.", "name a b", "a b"),
+    GR("difference", csg_parameters, RESULT_NODE, act_difference, "The same as gr.csg_difference.", "name a b", "a b"),
+    GR("intersection", csg_parameters, RESULT_NODE, act_intersection, "The same as gr.csg_intersection.", "name a b",
+       "a b"),
+    GR("merge", csg_parameters, RESULT_NODE, act_union, "The same as gr.csg_merge.", "name a b", "a b"),
+    GR("inverse", inverse_parameters, RESULT_NODE, act_inverse, "The same as gr.csg_inverse.", "name a", "a"),
+    GR("clipped_by", clipped_parameters, RESULT_NODE, act_clipped_by,
+       "The surfaces of an object where they are inside of a solid: cut open, without caps, so that one sees into it; "
+       "no "
+       "operand of CSG.",
+       "name object by", "object by"),
+    GR("bounded_by", bounded_parameters, RESULT_NODE, act_bounded_by,
+       "The object, with the hint that it lies in a solid, which makes it faster where its own box is large.",
+       "name object by", "object by"),
     GR("cylinder", cylinder_parameters, RESULT_NODE, act_cylinder,
        "A capped cylinder; about y, of radius 1, from y = -1 to 1 if nothing else is said.", "material", "name"),
     GR("cone", cone_parameters, RESULT_NODE, act_cone,

@@ -77,7 +77,7 @@ struct value {
     const struct sky *sky;
     const uint32_t *starts, *indices;
     const double *numbers;
-    bool single;
+    bool single; /* a number alone; of a REST parameter: arguments behind a form */
 };
 
 enum {
@@ -85,6 +85,7 @@ enum {
     LOW_OPEN = 2, /* value > low, not >= */
     HIGH_OPEN = 4,
     NOT_ZERO = 8,
+    REST = 32,         /* takes the arguments behind a positional form, and entries without names of the table form */
     GHOST_IS_NONE = 16 /* with --lenient: something that does not exist yet counts as left out, the call goes on */
 };
 

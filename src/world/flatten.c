@@ -16,7 +16,7 @@ enum { PLACED_LIMIT = 1 << 28 };
 struct count_frame {
     struct node *node;
     struct node_child *next;
-    int operand; /* 0, 1: operands of a CSG node to visit first; 2: children */
+    uint32_t operand; /* of a CSG node, to visit before the children */
 };
 
 struct stack {
@@ -60,12 +60,8 @@ static bool tell_cycle(struct flattening *f, const struct stack *stack, const st
 
 static struct node *next_below(struct count_frame *frame) {
     struct node *node = frame->node;
-    while (frame->operand < 2) {
-        struct node *operand = node->kind == NODE_CSG ? node->operands[frame->operand] : NULL;
-        frame->operand++;
-        if (operand)
-            return operand;
-    }
+    if (node->kind == NODE_CSG && frame->operand < node->operand_count)
+        return node->operands[frame->operand++];
     if (!frame->next)
         return NULL;
     struct node *child = frame->next->node;
@@ -94,17 +90,21 @@ static void clear_marks(struct node *root, struct stack *stack) {
         if (node->mark == 0)
             continue;
         node->mark = 0;
-        for (int i = 0; i < 2; i++) {
-            if (node->kind == NODE_CSG && node->operands[i] && node->operands[i]->mark) {
-                if ((slot = stack_push(stack)))
-                    *slot = node->operands[i];
-            }
-        }
+        for (uint32_t i = 0; node->kind == NODE_CSG && i < node->operand_count; i++)
+            if (node->operands[i]->mark && (slot = stack_push(stack)))
+                *slot = node->operands[i];
         for (struct node_child *child = node->first_child; child; child = child->next) {
             if (child->node->mark && (slot = stack_push(stack)))
                 *slot = child->node;
         }
     }
+}
+
+/* What a node places itself, without its children. */
+static uint64_t own_drawable(const struct node *node) {
+    if (node->kind == NODE_CSG && (node->operation == NODE_CLIPPED || node->operation == NODE_BOUNDED))
+        return node->operands[0]->drawable;
+    return node->kind == NODE_GEOMETRY || node->kind == NODE_CSG ? 1 : 0;
 }
 
 static bool count_drawable(struct flattening *f, struct node *root) {
@@ -131,7 +131,7 @@ static bool count_drawable(struct flattening *f, struct node *root) {
                 *frame = (struct count_frame){.node = below, .next = below->first_child};
         } else if (!below) {
             struct node *node = frame->node;
-            uint64_t own = node->kind == NODE_GEOMETRY || node->kind == NODE_CSG ? 1 : 0, below_it = 0;
+            uint64_t own = own_drawable(node), below_it = 0;
             for (struct node_child *child = node->first_child; child; child = child->next)
                 below_it = add_saturating(below_it, child->node->drawable);
             if (node->placements)
@@ -166,12 +166,6 @@ static bool any_holes(const struct flattening *f, const struct shape *shape, uin
     return false;
 }
 
-/* Where a node stands: fixed to the world, or to the moving node above it. */
-struct stand {
-    const struct moving_link *above; /* NULL: nothing above moves */
-    struct transform from_node;      /* to the space of `above`, or to the world */
-};
-
 /* Room for one more in a list that doubles. */
 static void *room_for_one(void *list, uint32_t count, uint32_t *capacity, size_t size) {
     if (count < *capacity)
@@ -195,10 +189,44 @@ static bool place_moving(struct flattening *f, const struct stand *stand, struct
     return true;
 }
 
-static bool place(struct flattening *f, const struct stand *stand, uint32_t thing) {
+/* Room for more than was counted: a union that is placed in parts. */
+static bool grow_placed(struct flattening *f) {
+    uint32_t count = f->world->placed_count, capacity = f->placed_capacity + f->placed_capacity / 2 + 16;
+    if (count >= PLACED_LIMIT)
+        return error_set(f->error, ERROR_SCENE, "the scene places more than %d primitives", PLACED_LIMIT);
+    struct placed *placed = arena_alloc_array(f->arena, capacity, sizeof *placed);
+    struct box *limits = f->limits ? arena_alloc_array(f->arena, capacity, sizeof *limits) : NULL;
+    if (!placed || (f->limits && !limits))
+        return error_set(f->error, ERROR_MACHINE, "out of memory for %u placed primitives", capacity);
+    memcpy(placed, f->placed, count * sizeof *placed);
+    if (limits)
+        memcpy(limits, f->limits, count * sizeof *limits);
+    f->world->placed = f->placed = placed;
+    f->limits = limits;
+    f->placed_capacity = capacity;
+    return true;
+}
+
+/* The box of what is placed next. The list of them is made when the first one comes. */
+static bool keep_limit(struct flattening *f, const struct box *limit) {
+    const struct box everywhere = {vec3_all(-INFINITY), vec3_all(INFINITY)};
+    if (!f->limits) {
+        f->limits = arena_alloc_array(f->arena, f->placed_capacity, sizeof *f->limits);
+        if (!f->limits)
+            return error_no_memory(f->error, "the boxes of the scene");
+        for (uint32_t i = 0; i < f->world->placed_count; i++)
+            f->limits[i] = everywhere;
+    }
+    f->limits[f->world->placed_count] = limit ? *limit : everywhere;
+    return true;
+}
+
+static bool place(struct flattening *f, const struct stand *stand, const struct surroundings *around, uint32_t thing) {
     struct world *world = f->world;
-    if (world->placed_count == f->placed_capacity)
-        return error_set(f->error, ERROR_MACHINE, "the scene changed while it was flattened");
+    if (world->placed_count == f->placed_capacity && !grow_placed(f))
+        return false;
+    if ((around || f->limits) && !keep_limit(f, around && !stand->above ? &around->limit : NULL))
+        return false;
     struct placed *placed = &f->placed[world->placed_count++];
     placed->thing = thing;
     return stand->above ? place_moving(f, stand, placed) : flatten_map(f, &stand->from_node, placed);
@@ -225,7 +253,7 @@ bool flatten_mesh_index(struct flattening *f, const struct shape *shape) {
 /* node->thing: 0 where it is not known yet, else its number and 1, or nothing to draw. */
 enum { THING_NOTHING = -1 };
 
-static bool add_thing(struct flattening *f, struct node *node, struct thing *thing) {
+static bool add_thing(struct flattening *f, struct thing *thing) {
     struct world *world = f->world;
     struct thing *things = room_for_one(world->things, world->thing_count, &f->thing_capacity, sizeof *world->things);
     if (!things)
@@ -233,38 +261,75 @@ static bool add_thing(struct flattening *f, struct node *node, struct thing *thi
     world->things = things;
     thing->holes = any_holes(f, &thing->shape, thing->material, thing->slot_count);
     things[world->thing_count++] = *thing;
-    node->thing = (int)world->thing_count;
     return true;
 }
 
-/* The first time that a node is placed: its shape, ready for rays, and its materials. */
-static bool make_thing(struct flattening *f, struct node *node) {
-    struct thing thing = {.node = node};
-    node->thing = THING_NOTHING;
-    if (node->kind == NODE_GEOMETRY) {
-        if (node->shape.kind == SHAPE_MESH && mesh_triangle_count(node->shape.mesh) == 0)
-            return true;
-        thing.shape = node->shape;
-        thing.cull = node->cull;
-        return flatten_mesh_index(f, &node->shape) &&
-               flatten_material(f, node, NULL, &thing.material, &thing.slot_count) && add_thing(f, node, &thing);
+static bool make_csg(struct flattening *f, struct node *node, const struct stand *stand,
+                     const struct surroundings *around) {
+    const struct csg **parts;
+    uint32_t count;
+    if (!flatten_csg(f, node, stand, around, &parts, &count))
+        return false;
+    for (uint32_t i = 0; i < count; i++) {
+        struct thing thing = {
+            .node = node, .shape = {.kind = SHAPE_CSG, .csg = parts[i]}, .slot_count = 1, .parts = count - i};
+        thing.is_later_part = i > 0;
+        if (!add_thing(f, &thing))
+            return false;
     }
-    thing.shape.kind = SHAPE_CSG;
-    thing.slot_count = 1;
-    return flatten_csg(f, node, &thing.shape.csg) && (!thing.shape.csg || add_thing(f, node, &thing));
+    return true;
 }
 
-static bool place_node(struct flattening *f, struct node *node, const struct stand *stand) {
+/* The first time that a node is placed, or always where nodes above it have something to say: its shape, ready for
+ * rays, and its materials. */
+static bool make_thing(struct flattening *f, struct node *node, const struct stand *stand,
+                       const struct surroundings *around) {
+    uint32_t first = f->world->thing_count;
+    node->thing = THING_NOTHING;
+    if (node->kind == NODE_GEOMETRY && node->shape.kind == SHAPE_MESH && mesh_triangle_count(node->shape.mesh) == 0)
+        return true;
+    if (node->kind == NODE_CSG || (around && around->clips)) {
+        if (!make_csg(f, node, stand, around))
+            return false;
+    } else {
+        struct thing thing = {.node = node, .shape = node->shape, .cull = node->cull, .parts = 1};
+        const struct material *inherited = around ? around->inherited : NULL;
+        if (!flatten_mesh_index(f, &node->shape) ||
+            !flatten_material(f, node, inherited, &thing.material, &thing.slot_count) || !add_thing(f, &thing))
+            return false;
+    }
+    if (f->world->thing_count > first)
+        node->thing = (int)first + 1;
+    return true;
+}
+
+static bool place_node(struct flattening *f, struct node *node, const struct stand *stand,
+                       const struct surroundings *around) {
     if (node->kind != NODE_GEOMETRY && node->kind != NODE_CSG)
         return true;
-    if (node->thing == 0 && !make_thing(f, node))
+    if (node->kind == NODE_CSG && (node->operation == NODE_CLIPPED || node->operation == NODE_BOUNDED))
+        return true;
+    bool special = around && (around->clips || around->inherited);
+    if ((node->thing == 0 || special) && !make_thing(f, node, stand, around))
         return false;
-    return node->thing == THING_NOTHING || place(f, stand, (uint32_t)node->thing - 1);
+    if (node->thing == THING_NOTHING) {
+        node->thing = special ? 0 : THING_NOTHING;
+        return true;
+    }
+    uint32_t first = (uint32_t)node->thing - 1, parts = f->world->things[first].parts;
+    if (special)
+        node->thing = 0;
+    for (uint32_t i = 0; i < parts; i++)
+        if (!place(f, stand, around, first + i))
+            return false;
+    return true;
 }
 
 struct place_frame {
     struct stand stand, of_children;
     struct node *node;
+    struct node *operand; /* to be placed before the children, in surroundings of its own */
+    const struct surroundings *around_operand, *around; /* NULL: nothing above says anything */
     struct node_child *next;
     uint32_t at; /* of the node's placements */
 };
@@ -301,7 +366,29 @@ static bool stand_moving(struct flattening *f, const struct node *node, const st
     return true;
 }
 
-static bool enter_node(struct flattening *f, struct stack *stack, const struct stand *parent, struct node *node) {
+/* What a clipped or bounded node says about its operand; NULL without memory or for an error. */
+static const struct surroundings *surround(struct flattening *f, const struct node *node, const struct stand *stand,
+                                           const struct surroundings *around) {
+    struct surroundings *own = arena_alloc(f->arena, sizeof *own);
+    struct clip *clip = arena_alloc(f->arena, sizeof *clip);
+    if (!own || !clip) {
+        error_no_memory(f->error, "flattening the scene");
+        return NULL;
+    }
+    *own = (struct surroundings){.limit = {vec3_all(-INFINITY), vec3_all(INFINITY)}};
+    if (around)
+        *own = *around;
+    if (node->material)
+        own->inherited = node->material;
+    if (node->operation == NODE_BOUNDED) /* under what moves the hint is not taken */
+        return stand->above || flatten_limit(f, node->operands[1], &stand->from_node, &own->limit) ? own : NULL;
+    *clip = (struct clip){node->operands[1], *stand, own->clips};
+    own->clips = clip;
+    return own;
+}
+
+static bool enter_node(struct flattening *f, struct stack *stack, const struct stand *parent,
+                       const struct surroundings *around, struct node *node) {
     struct stand stand = {.above = parent->above};
     if (node_moves(node)) {
         if (!stand_moving(f, node, parent, &stand))
@@ -310,16 +397,22 @@ static bool enter_node(struct flattening *f, struct stack *stack, const struct s
         struct transform parent_from_node = node_parent_from_node(node);
         stand.from_node = transform_compose(&parent->from_node, &parent_from_node);
     }
-    if (!place_node(f, node, &stand))
+    struct node *operand = node_places_operand(node);
+    const struct surroundings *around_operand = NULL;
+    if (!place_node(f, node, &stand, around))
         return false;
-    if (!node->first_child || (node->placements && node->placements->count == 0))
+    if (operand && !(around_operand = surround(f, node, &stand, around)))
+        return false;
+    bool childless = !node->first_child || (node->placements && node->placements->count == 0);
+    if (childless && !operand)
         return true;
     struct place_frame *frame = stack_push(stack);
     if (!frame)
         return error_no_memory(f->error, "flattening the scene");
-    frame->stand = stand;
-    frame->node = node;
-    begin_children(frame, 0);
+    *frame = (struct place_frame){
+        .stand = stand, .node = node, .operand = operand, .around_operand = around_operand, .around = around};
+    if (!childless)
+        begin_children(frame, 0);
     return true;
 }
 
@@ -327,6 +420,14 @@ static bool place_all(struct flattening *f, struct stack *stack) {
     uint32_t steps = 0;
     while (stack->count > 0) {
         struct place_frame *frame = stack_top(stack);
+        if (frame->operand) {
+            struct node *operand = frame->operand;
+            struct stand stand = frame->stand; /* the stack may move */
+            frame->operand = NULL;
+            if (!enter_node(f, stack, &stand, frame->around_operand, operand))
+                return false;
+            continue;
+        }
         struct node_child *link = frame->next;
         if ((++steps & 4095) == 0 && pool_cancelled(f->pool))
             return error_set(f->error, ERROR_CANCELLED, "stopped while the scene was flattened");
@@ -340,7 +441,7 @@ static bool place_all(struct flattening *f, struct stack *stack) {
         }
         frame->next = link->next;
         struct stand parent = frame->of_children; /* the stack may move */
-        if (link->node->drawable > 0 && !enter_node(f, stack, &parent, link->node))
+        if (link->node->drawable > 0 && !enter_node(f, stack, &parent, frame->around, link->node))
             return false;
     }
     return true;
@@ -359,7 +460,7 @@ bool flatten_scene(struct flattening *f, struct node *root) {
     f->world->placed = f->placed;
     struct stack stack = {.size = sizeof(struct place_frame)};
     struct stand ground = {.from_node = transform_identity()};
-    bool ok = root->drawable == 0 || (enter_node(f, &stack, &ground, root) && place_all(f, &stack));
+    bool ok = root->drawable == 0 || (enter_node(f, &stack, &ground, NULL, root) && place_all(f, &stack));
     mem_free(stack.items);
     flatten_map_end(f);
     return ok;

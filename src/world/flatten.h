@@ -8,6 +8,26 @@
 struct material_table; /* distinct (material, texture) pairs */
 struct linear_table;
 
+/* Where a node stands: fixed to the world, or to the moving node above it. */
+struct stand {
+    const struct moving_link *above; /* NULL: nothing above moves */
+    struct transform from_node;      /* to the space of `above`, or to the world */
+};
+
+/* A solid that cuts open what is placed; the stand of the node that it is an operand of. */
+struct clip {
+    struct node *solid;
+    struct stand stand;
+    const struct clip *next;
+};
+
+/* What nodes above say about everything that is placed under them. */
+struct surroundings {
+    const struct clip *clips;
+    const struct material *inherited; /* of what has no material of its own */
+    struct box limit;                 /* in the world: nothing under it is outside of it */
+};
+
 struct flattening {
     struct arena *arena; /* of the job: everything made here lives there */
     struct scene *scene;
@@ -17,6 +37,7 @@ struct flattening {
     void *warn_context;
     struct error *error;
     struct placed *placed;
+    struct box *limits; /* of each placed primitive, when there are any; else NULL */
     uint32_t placed_capacity, thing_capacity, linear_capacity, moving_capacity;
     struct linear_table *linear_table; /* the maps by their bits */
     struct material_table *materials;
@@ -26,8 +47,13 @@ struct flattening {
  * memory. */
 bool flatten_scene(struct flattening *f, struct node *root);
 
-/* The CSG primitive of a NODE_CSG in its own space; NULL shape pointer out when it is empty (nothing to draw). */
-bool flatten_csg(struct flattening *f, struct node *node, const struct csg **out);
+/* The CSG primitives of a NODE_CSG, or of geometry that is clipped, in its own space: none when it is empty, several
+ * when it is a union of solids that keep apart. around: may be NULL. */
+bool flatten_csg(struct flattening *f, struct node *node, const struct stand *stand, const struct surroundings *around,
+                 const struct csg ***parts, uint32_t *count);
+/* Shrinks a box to what a solid that bounds things leaves of it. */
+bool flatten_limit(struct flattening *f, struct node *solid, const struct transform *world_from_parent,
+                   struct box *limit);
 /* Index of a node's effective material: its texture over its material; without one that of the CSG solid it is a part
  * of
  * (`inherited`, may be NULL), else plain gray. A mesh with several material slots has *count of them in a row, from

@@ -1,16 +1,31 @@
 /* From a CSG node to one postfix program: operands are closed geometry, other CSG nodes or groups, which count as the
- * union of what is under them. An operand without any surface is the empty set and disappears by the algebra
- * (A u 0 = A, A n 0 = 0, A - 0 = A, 0 - A = 0). */
+ * union of what is under them. An operand without any surface is the empty set, or everything if it is the inverse of
+ * that, and disappears by the algebra (A u 0 = A, A n 0 = 0, A - 0 = A, 0 - A = 0, and so on).
+ *
+ * A clipped primitive becomes the surface of its own program with the clips behind it. A union of opaque solids, or of
+ * one material, becomes as many primitives as keep apart. */
 #include "world/flatten.h"
 
 #include "base/mem.h"
+#include "geom/csg_split.h"
 
 enum { CSG_NESTING = 10000, CSG_LEAVES = 65535 };
+
+enum content { NOTHING, EVERYTHING, SOMETHING };
 
 struct csg_draft {
     struct csg_leaf *leaves;
     struct csg_token *program;
     uint32_t leaf_count, leaf_capacity, length, capacity;
+    bool unseen; /* its surfaces are not shown: leaves need no material */
+};
+
+/* What the nodes above an operand say about it. */
+struct above {
+    struct transform csg_from_parent;
+    const struct material *inherited;
+    const struct box *limit; /* in CSG space, or NULL */
+    int nesting;
 };
 
 static bool add_token(struct flattening *f, struct csg_draft *draft, struct csg_token token) {
@@ -38,9 +53,7 @@ static bool tell_open(struct flattening *f, const struct node *node) {
 }
 
 static bool add_leaf(struct flattening *f, struct csg_draft *draft, struct node *node,
-                     const struct transform *csg_from_node, const struct material *inherited) {
-    if (!shape_is_closed(&node->shape))
-        return tell_open(f, node);
+                     const struct transform *csg_from_node, const struct above *above) {
     if (draft->leaf_count == CSG_LEAVES)
         return error_set(f->error, ERROR_SCENE, "a CSG solid has more than %d operands", CSG_LEAVES);
     if (draft->leaf_count == draft->leaf_capacity) {
@@ -51,75 +64,159 @@ static bool add_leaf(struct flattening *f, struct csg_draft *draft, struct node 
         draft->leaves = leaves;
         draft->leaf_capacity = capacity;
     }
-    struct csg_leaf leaf = {.shape = node->shape, .csg_from_leaf = *csg_from_node};
-    if (!flatten_mesh_index(f, &node->shape) || !flatten_material(f, node, inherited, &leaf.material, &leaf.slot_count))
+    struct csg_leaf leaf = {.shape = node->shape, .csg_from_leaf = *csg_from_node, .limit = above->limit};
+    if (!flatten_mesh_index(f, &node->shape))
+        return false;
+    if (!draft->unseen && !flatten_material(f, node, above->inherited, &leaf.material, &leaf.slot_count))
         return false;
     draft->leaves[draft->leaf_count] = leaf;
     return add_token(f, draft, (struct csg_token){.operation = CSG_LEAF, .leaf = (uint16_t)draft->leaf_count++});
 }
 
-static bool add_operand(struct flattening *f, struct csg_draft *draft, struct node *node,
-                        const struct transform *csg_from_parent, const struct material *inherited, int nesting,
-                        bool *empty);
+static bool add_operand(struct flattening *f, struct csg_draft *draft, struct node *node, const struct above *above,
+                        enum content *content);
 
-/* The node's operation over its two operands, in csg space. Its material goes to what has none under it. */
-static bool add_operation(struct flattening *f, struct csg_draft *draft, struct node *node,
-                          const struct transform *csg_from_node, const struct material *inherited, int nesting,
-                          bool *empty) {
-    inherited = node->material ? node->material : inherited;
-    bool first_empty = true, second_empty = true;
-    uint32_t start = draft->length, leaves = draft->leaf_count;
-    if (!add_operand(f, draft, node->operands[0], csg_from_node, inherited, nesting + 1, &first_empty))
-        return false;
-    uint32_t middle = draft->length, middle_leaves = draft->leaf_count;
-    if (!add_operand(f, draft, node->operands[1], csg_from_node, inherited, nesting + 1, &second_empty))
-        return false;
-    enum csg_operation operation = CSG_UNION;
-    switch (node->operation) {
-    case NODE_UNION:
-        break;
-    case NODE_INTERSECTION:
-        operation = CSG_INTERSECTION;
-        break;
-    case NODE_DIFFERENCE:
-        operation = CSG_DIFFERENCE;
-        break;
+static bool add_inverse(struct flattening *f, struct csg_draft *draft) {
+    if (draft->program[draft->length - 1].operation == CSG_INVERSE) { /* twice is not at all */
+        draft->length--;
+        return true;
     }
-    if (!first_empty && !second_empty) {
-        *empty = false;
+    return add_token(f, draft, (struct csg_token){.operation = CSG_INVERSE});
+}
+
+/* `so_far` stands in the draft, the operand behind it. */
+static bool join(struct flattening *f, struct csg_draft *draft, enum csg_operation operation, enum content operand,
+                 enum content *so_far) {
+    enum content neutral = operation == CSG_INTERSECTION ? EVERYTHING : NOTHING;
+    if (operand == neutral)
+        return true;
+    if (operand != SOMETHING) { /* decides: nothing in an intersection, everything in a union or taken away */
+        *so_far = operation == CSG_UNION ? EVERYTHING : NOTHING;
+        return true;
+    }
+    if (*so_far == SOMETHING)
         return add_token(f, draft, (struct csg_token){.operation = operation});
-    }
-    *empty = operation == CSG_UNION ? first_empty && second_empty : operation == CSG_DIFFERENCE ? first_empty : true;
-    if (*empty) {
-        draft->length = start;
-        draft->leaf_count = leaves;
-    } else if (second_empty) {
-        draft->length = middle;
-        draft->leaf_count = middle_leaves;
+    if (operation == CSG_DIFFERENCE ? *so_far == NOTHING : *so_far != neutral)
+        return true;
+    *so_far = SOMETHING;
+    return operation != CSG_DIFFERENCE || add_inverse(f, draft);
+}
+
+/* Union, intersection or difference of all operands of a node. */
+static bool add_combination(struct flattening *f, struct csg_draft *draft, struct node *node,
+                            enum csg_operation operation, const struct above *above, enum content *content) {
+    uint32_t start = draft->length, leaves = draft->leaf_count;
+    *content = operation == CSG_INTERSECTION ? EVERYTHING : NOTHING;
+    for (uint32_t i = 0; i < node->operand_count; i++) {
+        enum content operand;
+        if (!add_operand(f, draft, node->operands[i], above, &operand))
+            return false;
+        bool first_of_difference = operation == CSG_DIFFERENCE && i == 0;
+        if (first_of_difference)
+            *content = operand;
+        else if (!join(f, draft, operation, operand, content))
+            return false;
+        if (*content != SOMETHING) {
+            draft->length = start;
+            draft->leaf_count = leaves;
+        }
     }
     return true;
 }
 
-static bool add_children(struct flattening *f, struct csg_draft *draft, struct node *node,
-                         const struct transform *csg_from_node, const struct material *inherited, int nesting,
-                         bool *empty) {
+/* The box round a solid whose place is given by what is above it; without end where nothing is known. */
+static bool box_of_solid(struct flattening *f, struct node *solid, const struct above *above, struct box *out) {
+    struct csg_draft draft = {.unseen = true};
+    enum content content = NOTHING;
+    *out = (struct box){vec3_all(-INFINITY), vec3_all(INFINITY)};
+    bool ok = add_operand(f, &draft, solid, above, &content);
+    if (ok && content == SOMETHING) {
+        const struct csg *csg =
+            csg_build(f->arena, draft.leaves, draft.leaf_count, draft.program, draft.length, f->error);
+        ok = csg != NULL;
+        if (ok && !csg->inside_out)
+            *out = csg->bounds;
+    }
+    mem_free(draft.leaves);
+    mem_free(draft.program);
+    return ok;
+}
+
+bool flatten_limit(struct flattening *f, struct node *solid, const struct transform *world_from_parent,
+                   struct box *limit) {
+    struct above above = {.csg_from_parent = transform_identity()};
+    struct box own;
+    if (!box_of_solid(f, solid, &above, &own))
+        return false;
+    own = box_transform(&world_from_parent->forward, &own);
+    *limit = box_meet(*limit, own);
+    return true;
+}
+
+/* A solid that is known to lie in another one. */
+static bool add_bounded(struct flattening *f, struct csg_draft *draft, struct node *node, const struct above *above,
+                        enum content *content) {
+    struct box *limit = arena_alloc(f->arena, sizeof *limit);
+    if (!limit)
+        return error_no_memory(f->error, "the operands of a CSG solid");
+    if (!box_of_solid(f, node->operands[1], above, limit))
+        return false;
+    struct above below = *above;
+    if (above->limit)
+        *limit = box_meet(*limit, *above->limit);
+    below.limit = limit;
+    return add_operand(f, draft, node->operands[0], &below, content);
+}
+
+/* What a CSG node makes of its operands, in csg space. Its material goes to what has none under it. */
+static bool add_operation(struct flattening *f, struct csg_draft *draft, struct node *node,
+                          const struct transform *csg_from_node, const struct above *above, enum content *content) {
+    struct above below = *above;
+    below.csg_from_parent = *csg_from_node;
+    below.inherited = node->material ? node->material : above->inherited;
+    below.nesting++;
+    switch (node->operation) {
+    case NODE_UNION:
+        return add_combination(f, draft, node, CSG_UNION, &below, content);
+    case NODE_INTERSECTION:
+        return add_combination(f, draft, node, CSG_INTERSECTION, &below, content);
+    case NODE_DIFFERENCE:
+        return add_combination(f, draft, node, CSG_DIFFERENCE, &below, content);
+    case NODE_INVERSE:
+        if (!add_operand(f, draft, node->operands[0], &below, content))
+            return false;
+        if (*content == SOMETHING)
+            return add_inverse(f, draft);
+        *content = *content == NOTHING ? EVERYTHING : NOTHING;
+        return true;
+    case NODE_CLIPPED:
+        return error_set(
+            f->error, ERROR_SCENE,
+            "node '%.100s' is an operand of CSG but is clipped, cut open without caps, so it has no inside; "
+            "intersect it instead",
+            node->name);
+    case NODE_BOUNDED:
+        return add_bounded(f, draft, node, &below, content);
+    }
+    return true;
+}
+
+/* United with what is there already. */
+static bool add_children(struct flattening *f, struct csg_draft *draft, struct node *node, const struct above *above,
+                         enum content *content) {
     for (struct node_child *child = node->first_child; child; child = child->next) {
-        bool child_empty;
-        if (!add_operand(f, draft, child->node, csg_from_node, inherited, nesting + 1, &child_empty))
+        enum content one;
+        if (!add_operand(f, draft, child->node, above, &one) || !join(f, draft, CSG_UNION, one, content))
             return false;
-        if (!child_empty && !*empty && !add_token(f, draft, (struct csg_token){.operation = CSG_UNION}))
-            return false;
-        *empty = *empty && child_empty;
     }
     return true;
 }
 
 /* Everything under a node as one operand: its own surface and its children, united. */
-static bool add_operand(struct flattening *f, struct csg_draft *draft, struct node *node,
-                        const struct transform *csg_from_parent, const struct material *inherited, int nesting,
-                        bool *empty) {
-    *empty = true;
-    if (nesting > CSG_NESTING)
+static bool add_operand(struct flattening *f, struct csg_draft *draft, struct node *node, const struct above *above,
+                        enum content *content) {
+    *content = NOTHING;
+    if (above->nesting > CSG_NESTING)
         return error_set(f->error, ERROR_SCENE, "CSG solids are nested more than %d deep", CSG_NESTING);
     if (node->singular)
         return true;
@@ -127,40 +224,107 @@ static bool add_operand(struct flattening *f, struct csg_draft *draft, struct no
         return error_set(f->error, ERROR_SCENE,
                          "node '%.100s' moves inside of a combined solid; only the solid as a whole can move",
                          node->name);
+    uint32_t start = draft->length, leaves = draft->leaf_count;
     struct transform parent_from_node = node_parent_from_node(node);
-    struct transform csg_from_node = transform_compose(csg_from_parent, &parent_from_node);
+    struct above below = *above;
+    below.csg_from_parent = transform_compose(&above->csg_from_parent, &parent_from_node);
+    below.nesting++;
     if (node->kind == NODE_GEOMETRY) {
         bool nothing = node->shape.kind == SHAPE_MESH && mesh_triangle_count(node->shape.mesh) == 0;
-        if (!nothing && !add_leaf(f, draft, node, &csg_from_node, inherited))
+        if (!nothing && !shape_is_closed(&node->shape))
+            return tell_open(f, node);
+        if (!nothing && !add_leaf(f, draft, node, &below.csg_from_parent, above))
             return false;
-        *empty = nothing;
+        *content = nothing ? NOTHING : SOMETHING;
     } else if (node->kind == NODE_CSG) {
-        if (!add_operation(f, draft, node, &csg_from_node, inherited, nesting, empty))
+        if (!add_operation(f, draft, node, &below.csg_from_parent, above, content))
             return false;
     }
     uint32_t rounds = node->placements ? node->placements->count : 1;
     for (uint32_t i = 0; i < rounds && node->first_child; i++) {
-        struct transform csg_from_child = csg_from_node;
+        struct above of_children = below;
         if (node->placements) {
             struct transform node_from_child = placement_transform(node->placements, i);
-            csg_from_child = transform_compose(&csg_from_node, &node_from_child);
+            of_children.csg_from_parent = transform_compose(&below.csg_from_parent, &node_from_child);
         }
-        if (!add_children(f, draft, node, &csg_from_child, inherited, nesting, empty))
+        if (!add_children(f, draft, node, &of_children, content))
             return false;
+        if (*content != SOMETHING) {
+            draft->length = start;
+            draft->leaf_count = leaves;
+        }
     }
     return true;
 }
 
-bool flatten_csg(struct flattening *f, struct node *node, const struct csg **out) {
-    struct csg_draft draft = {0};
-    bool empty = true;
-    struct transform identity = transform_identity();
-    *out = NULL;
-    bool ok = add_operation(f, &draft, node, &identity, NULL, 0, &empty);
-    if (ok && !empty) {
-        *out = csg_build(f->arena, draft.leaves, draft.leaf_count, draft.program, draft.length, f->error);
-        ok = *out != NULL;
+/* The clips behind the solid, all of them at once. */
+static bool add_clips(struct flattening *f, struct csg_draft *draft, const struct node *node, const struct clip *clips,
+                      const struct stand *stand, enum content *content) {
+    struct transform csg_from_ground = transform_invert(&stand->from_node);
+    uint32_t start = draft->length, leaves = draft->leaf_count;
+    *content = EVERYTHING;
+    draft->unseen = true;
+    for (const struct clip *clip = clips; clip; clip = clip->next) {
+        struct above above = {.csg_from_parent = transform_compose(&csg_from_ground, &clip->stand.from_node)};
+        enum content one;
+        if (clip->stand.above != stand->above)
+            return error_set(
+                f->error, ERROR_SCENE,
+                "node '%.100s' moves, or a node above it, while what clips it does not; only both together "
+                "can move",
+                node->name);
+        if (!add_operand(f, draft, clip->solid, &above, &one) || !join(f, draft, CSG_INTERSECTION, one, content))
+            return false;
+        if (*content != SOMETHING) {
+            draft->length = start;
+            draft->leaf_count = leaves;
+        }
     }
+    return true;
+}
+
+/* Whether nobody can tell parts that keep apart from one solid, from inside of it either. */
+static bool may_be_split(const struct flattening *f, const struct csg_draft *draft) {
+    bool all_opaque = true, all_alike = true;
+    for (uint32_t i = 0; i < draft->leaf_count; i++) {
+        const struct csg_leaf *leaf = &draft->leaves[i];
+        double ior;
+        for (uint32_t slot = 0; slot == 0 || slot < leaf->slot_count; slot++)
+            all_opaque = all_opaque && !material_is_transparent(f->world->materials[leaf->material + slot], &ior);
+        all_alike = all_alike && leaf->material == draft->leaves[0].material && leaf->slot_count < 2;
+    }
+    return all_opaque || all_alike;
+}
+
+static bool build(struct flattening *f, const struct csg_draft *draft, uint32_t solid_length, const struct csg ***parts,
+                  uint32_t *count) {
+    if (solid_length == draft->length && may_be_split(f, draft))
+        return csg_build_parts(f->arena, draft->leaves, draft->leaf_count, draft->program, draft->length, parts, count,
+                               f->error);
+    *parts = arena_alloc(f->arena, sizeof **parts);
+    if (!*parts)
+        return error_no_memory(f->error, "CSG");
+    (*parts)[0] = csg_build_clipped(f->arena, draft->leaves, draft->leaf_count, draft->program, solid_length,
+                                    draft->length, f->error);
+    *count = 1;
+    return (*parts)[0] != NULL;
+}
+
+bool flatten_csg(struct flattening *f, struct node *node, const struct stand *stand, const struct surroundings *around,
+                 const struct csg ***parts, uint32_t *count) {
+    struct csg_draft draft = {0};
+    enum content content = SOMETHING, clip = EVERYTHING;
+    struct transform identity = transform_identity();
+    struct above above = {.csg_from_parent = identity, .inherited = around ? around->inherited : NULL};
+    *parts = NULL;
+    *count = 0;
+    bool ok = node->kind == NODE_CSG ? add_operation(f, &draft, node, &identity, &above, &content)
+                                     : add_leaf(f, &draft, node, &identity, &above);
+    uint32_t solid_length = draft.length;
+    if (ok && content == SOMETHING && around && around->clips)
+        ok = add_clips(f, &draft, node, around->clips, stand, &clip);
+    if (ok && content == SOMETHING && clip != NOTHING)
+        ok = build(f, &draft, solid_length, parts, count);
     mem_free(draft.leaves);
     mem_free(draft.program);
     return ok;

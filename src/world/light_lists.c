@@ -14,6 +14,7 @@ struct walk {
     uint8_t *lit, value; /* what a listed primitive gets */
     struct walk_frame {
         const struct node *node;
+        const struct node *operand; /* that is placed before the children */
         const struct node_child *next;
         uint32_t rounds; /* of the children that are still to come */
         bool listed;
@@ -24,7 +25,11 @@ struct walk {
 static bool enter(struct walk *walk, const struct node *node, bool listed) {
     for (uint32_t i = 0; i < walk->list_count && !listed; i++)
         listed = walk->list[i] == node;
-    if (walk->placed < walk->world->placed_count && placed_node(walk->world, walk->placed) == node) {
+    const struct world *world = walk->world;
+    uint32_t end = walk->placed;
+    if (end < world->placed_count && placed_node(world, end) == node)
+        end += world->things[world->placed[end].thing].parts;
+    while (walk->placed < end) {
         if (listed)
             walk->lit[walk->placed] = walk->value;
         walk->placed++;
@@ -38,7 +43,7 @@ static bool enter(struct walk *walk, const struct node *node, bool listed) {
         walk->capacity = capacity;
     }
     uint32_t rounds = node->placements ? node->placements->count : 1;
-    walk->frames[walk->count++] = (struct walk_frame){node, NULL, rounds, listed};
+    walk->frames[walk->count++] = (struct walk_frame){node, node_places_operand(node), NULL, rounds, listed};
     return true;
 }
 
@@ -48,6 +53,12 @@ bool light_lists_mark(const struct world *world, const struct node *const *list,
     bool ok = root->drawable == 0 || enter(&walk, root, false);
     while (ok && walk.count > 0) {
         struct walk_frame *frame = &walk.frames[walk.count - 1];
+        const struct node *operand = frame->operand;
+        if (operand) {
+            frame->operand = NULL;
+            ok = enter(&walk, operand, frame->listed);
+            continue;
+        }
         const struct node_child *link = frame->next;
         if (!link && frame->rounds > 0) {
             frame->rounds--;

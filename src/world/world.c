@@ -98,13 +98,17 @@ static struct box placed_bounds(const struct world *world, uint32_t placed, uint
     return box_pad(shape_bounds_under(shape, &world_from_object.forward));
 }
 
-static bool place_boxes(struct world *world, struct pool *pool, struct error *error) {
+static bool place_boxes(struct world *world, const struct box *limits, struct pool *pool, struct error *error) {
     uint32_t exact = EXACT_IN_ALL;
     world->moves = world->moving_count > 0;
     for (uint32_t i = 0; i < world->placed_count; i++) {
         const struct shape *shape = placed_shape(world, i);
         uint32_t before = exact;
         world->boxes[i] = placed_bounds(world, i, &exact);
+        if (limits)
+            world->boxes[i] = box_meet(world->boxes[i], box_pad(limits[i]));
+        if (box_is_empty(&world->boxes[i]))
+            world->boxes[i] = box_empty();
         if (before != exact && pool_cancelled(pool))
             return error_set(error, ERROR_CANCELLED, "stopped while the scene was measured");
         if (shape->kind == SHAPE_MESH)
@@ -169,7 +173,7 @@ static bool build(struct world *world, struct arena *arena, struct scene *scene,
         world->material_has_image[i] = material_has_image(world->materials[i]);
         world->material_has_relief[i] = material_has_relief(world->materials[i]);
     }
-    if (!place_boxes(world, pool, error))
+    if (!place_boxes(world, flattening.limits, pool, error))
         return false;
     add_up_meshes(world, scene->assets);
     return build_accel(world, pool, error);
@@ -579,11 +583,17 @@ bool world_nearest(const struct world *world, const struct ray *ray, struct worl
     return true;
 }
 
+/* Such a solid holds what is outside of its box. */
+static bool is_inside_out(const struct shape *shape) {
+    return shape->kind == SHAPE_CSG && shape->csg->inside_out;
+}
+
 uint32_t world_closed_in(const struct world *world, const struct box *region, uint32_t *out, uint32_t limit) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < world->placed_count; i++) {
         struct box common = box_meet(world->boxes[i], *region);
-        if (box_is_empty(&common) || !shape_is_closed(placed_shape(world, i)))
+        const struct shape *shape = placed_shape(world, i);
+        if ((box_is_empty(&common) && !is_inside_out(shape)) || !shape_is_closed(shape))
             continue;
         if (out && count < limit)
             out[count] = i;
@@ -609,7 +619,7 @@ uint32_t world_containing(const struct world *world, struct vec3 point, double r
     limit = limit < WORLD_NESTING ? limit : WORLD_NESTING;
     for (uint32_t k = 0; k < candidate_count; k++) {
         uint32_t i = candidates[k];
-        if (!box_contains(&world->boxes[i], point))
+        if (!box_contains(&world->boxes[i], point) && !is_inside_out(placed_shape(world, i)))
             continue;
         struct ray ray_object = placed_ray(world, i, &ray);
         if (!contains(world, i, ray_object.origin, scratch))

@@ -33,6 +33,8 @@ struct thing {
     uint32_t material;   /* unused for CSG: the leaves have their own */
     uint32_t slot_count; /* of a mesh: face slot k has material + k; below 2 all have `material` */
     enum node_cull cull; /* of a mesh */
+    uint32_t parts;      /* of a union placed in parts: how many things from this one on belong to its node; else 1 */
+    bool is_later_part;  /* not the first of them */
     bool holes;          /* some of its materials let rays through by a picture */
 };
 

@@ -86,12 +86,11 @@ TEST(mesh_faces_keep_their_materials_as_operands_of_csg) {
     stage_begin(&s, 1);
     const struct material *slots[6];
     make_slots(&s, slots);
-    struct node *csg = scene_node(&s.scene, NODE_CSG, "csg", &s.error);
     const struct material *red = stage_phong(&s, vec3_make(9, 0, 0), vec3_all(0), 1);
-    csg->operation = NODE_DIFFERENCE;
-    csg->operands[0] = cube_node(&s, slots);
-    csg->operands[1] = stage_sphere(&s, scene_node(&s.scene, NODE_GROUP, "aside", &s.error), red);
-    stage_scale(&s, csg->operands[1], 0.3, 0.3, 0.3);
+    struct node *ball = stage_sphere(&s, scene_node(&s.scene, NODE_GROUP, "aside", &s.error), red);
+    stage_scale(&s, ball, 0.3, 0.3, 0.3);
+    struct node *csg =
+        scene_combine(&s.scene, "csg", NODE_DIFFERENCE, (struct node *[]){cube_node(&s, slots), ball}, 2, &s.error);
     CHECK(node_add_child(&s.scene, s.root, csg, &s.error));
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
     for (int i = 0; i < 6; i++)

@@ -170,13 +170,12 @@ static void moving_stage(struct stage *s, int threads, double unit) {
     stage_move(s, solid, -2 * unit, -unit, 0.5 * unit);
     solid->velocity = vec3_make(0, 0, unit); /* of a thing on a wheel */
     CHECK(node_add_child(&s->scene, wheel, solid, &s->error));
-    struct node *cut = scene_node(&s->scene, NODE_CSG, "cut", &s->error);
-    cut->operation = NODE_DIFFERENCE;
-    struct node *nowhere = scene_node(&s->scene, NODE_GROUP, "nowhere", &s->error);
-    cut->operands[0] = stage_cube(s, nowhere, white);
-    cut->operands[1] = stage_sphere(s, nowhere, mirror);
+    struct node *nowhere = scene_node(&s->scene, NODE_GROUP, "nowhere", &s->error), *operands[2];
+    operands[0] = stage_cube(s, nowhere, white);
+    operands[1] = stage_sphere(s, nowhere, mirror);
     for (int i = 0; i < 2; i++)
-        stage_scale(s, cut->operands[i], (2 - i) * unit, 2 * unit, 1.5 * unit);
+        stage_scale(s, operands[i], (2 - i) * unit, 2 * unit, 1.5 * unit);
+    struct node *cut = scene_combine(&s->scene, "cut", NODE_DIFFERENCE, operands, 2, &s->error);
     stage_move(s, cut, -3 * unit, -4 * unit, 0);
     cut->velocity = vec3_make(0, 0.8 * unit, 0.5 * unit);
     CHECK(node_add_child(&s->scene, s->root, cut, &s->error));

@@ -265,10 +265,7 @@ TEST(bump_heights_stand_out_of_the_hollow_that_an_operand_leaves) {
     s.root->first_child = s.root->last_child = NULL;
     inner->shape = (struct shape){.kind = SHAPE_BOX, .box = {{0.1, 0.1, 0.5}, {0.9, 0.9, 2}}};
     inner->material = m;
-    struct node *csg = scene_node(&s.scene, NODE_CSG, "csg", &s.error);
-    csg->operation = NODE_DIFFERENCE;
-    csg->operands[0] = outer;
-    csg->operands[1] = inner;
+    struct node *csg = scene_combine(&s.scene, "csg", NODE_DIFFERENCE, (struct node *[]){outer, inner}, 2, &s.error);
     CHECK(node_add_child(&s.scene, s.root, csg, &s.error));
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
     struct hit hit;

@@ -37,10 +37,9 @@ static struct node *random_solid(struct stage *s, struct test_random *random, in
     double kind = test_uniform(random, 0, 1);
     struct node *node;
     if (kind < 0.25 && depth > 0) {
-        node = scene_node(&s->scene, NODE_CSG, "csg", &s->error);
-        node->operation = (enum node_csg)(int)test_uniform(random, 0, 3);
-        node->operands[0] = random_solid(s, random, depth - 1);
-        node->operands[1] = random_solid(s, random, depth - 1);
+        enum node_csg operation = (enum node_csg)(int)test_uniform(random, 0, 3);
+        struct node *first = random_solid(s, random, depth - 1), *second = random_solid(s, random, depth - 1);
+        node = scene_combine(&s->scene, "csg", operation, (struct node *[]){first, second}, 2, &s->error);
         random_place(s, random, node, 0.3);
         return node;
     }
@@ -315,10 +314,7 @@ TEST(csg_operand_that_is_open_is_an_error_that_names_node_and_edge) {
     open->shape = (struct shape){.kind = SHAPE_MESH, .mesh = small_mesh(&s, &random, false)};
     struct node *ball = scene_node(&s.scene, NODE_GEOMETRY, "ball", &s.error);
     ball->shape = (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}};
-    struct node *cut = scene_node(&s.scene, NODE_CSG, "cut", &s.error);
-    cut->operation = NODE_DIFFERENCE;
-    cut->operands[0] = ball;
-    cut->operands[1] = open;
+    struct node *cut = scene_combine(&s.scene, "cut", NODE_DIFFERENCE, (struct node *[]){ball, open}, 2, &s.error);
     CHECK(!stage_build(&s, cut, ACCEL_GRID));
     CHECK(strstr(s.error.text, "node 'bowl'") != NULL && strstr(s.error.text, "edge from") != NULL);
     stage_end(&s);
@@ -331,10 +327,9 @@ TEST(an_empty_operand_follows_the_algebra_of_sets) {
     for (int operation = 0; operation < 3; operation++) {
         struct node *ball = scene_node(&s.scene, NODE_GEOMETRY, "ball", &s.error);
         ball->shape = (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}};
-        struct node *cut = scene_node(&s.scene, NODE_CSG, "cut", &s.error);
-        cut->operation = (enum node_csg)operation;
-        cut->operands[0] = ball;
-        cut->operands[1] = scene_node(&s.scene, NODE_GROUP, "nothing", &s.error);
+        struct node *nothing = scene_node(&s.scene, NODE_GROUP, "nothing", &s.error);
+        struct node *cut =
+            scene_combine(&s.scene, "cut", (enum node_csg)operation, (struct node *[]){ball, nothing}, 2, &s.error);
         CHECK(stage_build(&s, cut, ACCEL_GRID));
         CHECK_EQ_INT(s.world.placed_count, expected[operation]);
     }

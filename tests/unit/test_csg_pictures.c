@@ -1,0 +1,244 @@
+/* What the forms of CSG look like: pictures that must be equal, byte for byte where nothing but the way of saying it
+ * differs. */
+#include "tests/harness.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* show(node, file, ...) renders it over a floor, before a gradient, with a point light and an area light. */
+#define STAGE                                                                                                          \
+    "red = gr.rr_material({.8,.2,.1},{.3,.3,.3},30,.2,0,1) blue = gr.material({.1,.2,.8},{.3,.3,.3},30)\n"             \
+    "white = gr.material({.8,.8,.7},{0,0,0},1) glass = gr.rr_material({0,0,0},{.9,.9,.9},60,.1,.9,1.5)\n"              \
+    "thin = gr.material{kd={.8,.7,.2}, ks={.2,.2,.2}, shininess=20, two_sided=true}\n"                                 \
+    "function show(n, f, eye) local r = gr.node('r') r:add_child(n)\n"                                                 \
+    "r:add_child(gr.box{min={-9,-2.2,-9}, max={9,-2,9}, material=white})\n"                                            \
+    "gr.render{node=r, file=f, width=48, height=36, eye=eye or {2.5,2.2,6}, target={0,0,0}, fov=40,\n"                 \
+    "ambient={.3,.3,.3}, lights={gr.light({5,8,6},{.6,.6,.6},{1,0,0}),\n"                                              \
+    "gr.area_light({-5,7,2},{2,0,0},{0,0,2},{.5,.5,.4},{1,0,0})}} end\n"                                               \
+    "function ball(m, x, y, z, r) return gr.sphere{material=m, centre={x,y,z}, radius=r} end\n"
+
+static void renders(const char *text) {
+    struct test_result result = test_gray_scene(text, "scene.lua", NULL);
+    if (result.status != 0)
+        test_fail(__FILE__, __LINE__, "%s\n%s", text, result.err);
+    free(result.out);
+    free(result.err);
+}
+
+static struct test_picture picture(const char *name) {
+    char path[600];
+    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    return test_read_picture(path);
+}
+
+/* Pixels in which two pictures differ by more than `levels`. */
+static uint32_t differing(const char *name_a, const char *name_b, int levels) {
+    struct test_picture a = picture(name_a), b = picture(name_b);
+    uint32_t count = 0, size = a.width * a.height;
+    CHECK(a.rgb && b.rgb && a.width == b.width && a.height == b.height);
+    for (uint32_t i = 0; a.rgb && b.rgb && i < size; i++) {
+        const uint8_t *in_a = &a.rgb[3 * i], *in_b = &b.rgb[3 * i];
+        int most = 0;
+        for (int k = 0; k < 3; k++)
+            most = abs(in_a[k] - in_b[k]) > most ? abs(in_a[k] - in_b[k]) : most;
+        count += most > levels;
+    }
+    free(a.rgb);
+    free(b.rgb);
+    return count;
+}
+
+/* How many pixels are not the colour of the first one. */
+static uint32_t varied(const char *name) {
+    struct test_picture p = picture(name);
+    uint32_t count = 0;
+    for (uint32_t i = 0; p.rgb && i < p.width * p.height; i++)
+        count += memcmp(p.rgb, p.rgb + 3 * i, 3) != 0;
+    free(p.rgb);
+    return count;
+}
+
+TEST(de_morgan_pictures_are_equal) {
+    renders(STAGE
+            "local function a() return ball(red,-.5,0,0,1.2):scale(1,.8,1):rotate('z',20) end\n"
+            "local function b() return gr.box{min={-.4,-1,-1}, max={1.6,.6,1}, material=blue}:rotate('y',30) end\n"
+            "show(gr.csg_intersection('i', a(), b()), 'a.png')\n"
+            "show(gr.inverse('n', gr.union('u', gr.inverse(a()), gr.inverse(b()))), 'b.png')\n"
+            "show(gr.union('u', a(), b()), 'c.png')\n"
+            "show(gr.csg_inverse{name='n', a=gr.csg_intersection{gr.inverse(a()), gr.inverse(b())}}, 'd.png')\n"
+            "show(gr.difference('d', a(), b()), 'e.png')\n"
+            "show(gr.intersection('d', a(), gr.inverse('n', b())), 'f.png')\n"
+            "show(gr.inverse(gr.inverse(gr.difference(a(), b()))), 'g.png')\n");
+    CHECK_EQ_INT(differing("a.png", "b.png", 0), 0);
+    CHECK_EQ_INT(differing("c.png", "d.png", 0), 0);
+    CHECK_EQ_INT(differing("e.png", "f.png", 0), 0);
+    CHECK_EQ_INT(differing("e.png", "g.png", 0), 0);
+    CHECK(differing("a.png", "c.png", 8) > 150 && differing("a.png", "e.png", 8) > 150);
+}
+
+TEST(a_merge_is_the_union_and_looks_like_a_group_from_outside) {
+    renders(STAGE "local function parts(m) local t = {}\n"
+                  "for k = 1, 7 do t[k] = ball(m, math.sin(k), math.cos(2 * k) / 2, math.cos(k), .5 + k / 15) end\n"
+                  "return t end\n"
+                  "show(gr.merge{name='m', table.unpack(parts(blue))}, 'merge.png')\n"
+                  "show(gr.csg_merge('m', table.unpack(parts(blue))), 'csg_merge.png')\n"
+                  "show(gr.union{operands=parts(blue)}, 'union.png')\n"
+                  "show(gr.node{children=parts(blue)}, 'group.png')\n"
+                  "show(gr.merge(table.unpack(parts(glass))), 'glass_merge.png')\n"
+                  "show(gr.node{children=parts(glass)}, 'glass_group.png')\n");
+    CHECK_EQ_INT(differing("merge.png", "csg_merge.png", 0), 0);
+    CHECK_EQ_INT(differing("merge.png", "union.png", 0), 0);
+    CHECK(differing("merge.png", "group.png", 1) <= 7); /* a thousandth: points of the shadows' edges */
+    CHECK(differing("glass_merge.png", "glass_group.png", 8) > 60);
+}
+
+TEST(merged_glass_has_no_walls_inside) {
+    renders(STAGE "local function slab(from, to) return gr.box{min={from,-1,-.5}, max={to,1,.5}, material=glass} end\n"
+                  "show(slab(-1.5, 1.5), 'whole.png')\n"
+                  "show(gr.merge('m', slab(-1.5, 0.2), slab(-.3, 1.5)), 'over.png')\n"
+                  "show(gr.merge('m', slab(-1.5, 0), slab(0, .7), slab(.7, 1.5)), 'touch.png')\n"
+                  "show(gr.node{children={slab(-1.5, 0.2), slab(-.3, 1.5)}}, 'group.png')\n");
+    CHECK_EQ_INT(differing("whole.png", "over.png", 0), 0);
+    CHECK_EQ_INT(differing("whole.png", "touch.png", 0), 0);
+    CHECK(differing("whole.png", "group.png", 8) > 10);
+}
+
+TEST(a_union_in_parts_gives_the_bytes_of_the_whole) {
+    /* Less something far away it is no union at its root and stays whole. */
+    renders(STAGE "local far = ball(white, 0, -100, 0, .1)\n"
+                  "local bark = gr.marble_pnd_material(blue, 2.2, 6, 7, 1, {.9,.8,.7})\n"
+                  "local function many(m) local t, k = {}, 0\n"
+                  "for i = -2, 2 do for j = -2, 2 do k = k + 1\n"
+                  "local b = ball(m[k % #m + 1], 0, 0, 0, .35)\n"
+                  "if k % 3 == 0 then b = gr.difference(b, gr.cube(m[1])) end\n"
+                  "t[k] = b:rotate('x', 20 * k):translate(.8 * i, .3 * j, .8 * j) end end return t end\n"
+                  "for k, m in ipairs{{red, blue, bark}, {glass}, {red, glass}} do\n"
+                  "local u = gr.union{operands=many(m)}\n"
+                  "show(u, 'parts' .. k .. '.png') show(gr.difference(u, far), 'whole' .. k .. '.png')\n"
+                  "show(u, 'in' .. k .. '.png', {-1.6,-.6,-1.6})\n"
+                  "show(gr.difference(u, far), 'within' .. k .. '.png', {-1.6,-.6,-1.6}) end\n");
+    const char *const pairs[][2] = {{"parts1.png", "whole1.png"}, {"parts2.png", "whole2.png"},
+                                    {"parts3.png", "whole3.png"}, {"in1.png", "within1.png"},
+                                    {"in2.png", "within2.png"},   {"in3.png", "within3.png"}};
+    for (int k = 0; k < 6; k++) {
+        CHECK_EQ_INT(differing(pairs[k][0], pairs[k][1], 0), 0);
+        CHECK(k > 2 || varied(pairs[k][0]) > 300);
+    }
+}
+
+TEST(a_bounding_solid_changes_nothing_where_it_is_true) {
+    renders(STAGE "local function crystal(m) local t = {}\n" /* of half-spaces alone */
+                  "for k = 0, 5 do local a = k * math.pi / 3\n"
+                  "t[#t + 1] = gr.plane{normal={math.cos(a),.5,math.sin(a)}, distance=1, material=m}\n"
+                  "t[#t + 1] = gr.plane{normal={math.cos(a),-.5,math.sin(a)}, distance=1, material=m} end\n"
+                  "return gr.intersection{operands=t} end\n"
+                  "local function box() return gr.box{min={-2.6,-2.6,-2.6}, max={2.6,2.6,2.6}} end\n"
+                  "local hole = ball(blue, .8, .5, .8, .7)\n"
+                  "show(crystal(red), 'a.png')\n"
+                  "show(gr.bounded_by('b', crystal(red), box()), 'b.png')\n"
+                  "show(gr.difference('d', crystal(glass), hole), 'c.png')\n"
+                  "show(gr.difference('d', gr.bounded_by{object=crystal(glass), by=box()}, hole), 'd.png')\n"
+                  "show(gr.bounded_by(gr.difference('d', crystal(glass), hole), gr.inverse(hole)), 'e.png')\n");
+    CHECK_EQ_INT(differing("a.png", "b.png", 0), 0);
+    CHECK_EQ_INT(differing("c.png", "d.png", 0), 0);
+    CHECK_EQ_INT(differing("c.png", "e.png", 0), 0);
+    CHECK(differing("a.png", "c.png", 8) > 150);
+}
+
+TEST(a_clipped_thing_is_cut_open) {
+    renders(STAGE "local function clip() return gr.plane{normal={0,0,1}, distance=.3} end\n"
+                  "show(gr.clipped_by('c', ball(thin,0,0,0,1.5), clip()), 'ball.png')\n"
+                  "show(gr.clipped_by(gr.node{children={ball(thin,0,0,0,1.5)}}, gr.inverse(gr.inverse(clip()))), "
+                  "'group.png')\n"
+                  "local bowl = gr.lathe{material=thin, open=true, points={{0,-1.5},{1.3,-.75},{1.3,.75},{0,1.5}}}\n"
+                  "show(gr.clipped_by(bowl, clip()), 'bowl.png')\n"
+                  "show(gr.intersection('i', ball(thin,0,0,0,1.5), clip()), 'capped.png')\n"
+                  "local twice = gr.clipped_by(gr.clipped_by(ball(thin,0,0,0,1.5), clip()), gr.plane{normal={1,0,0}})\n"
+                  "show(twice, 'twice.png')\n"
+                  "show(gr.clipped_by(ball(thin,0,0,0,1.5), gr.intersection(clip(), gr.plane{normal={1,0,0}})), "
+                  "'both.png')\n");
+    CHECK_EQ_INT(differing("ball.png", "group.png", 0), 0);
+    CHECK_EQ_INT(differing("twice.png", "both.png", 0), 0);
+    CHECK(differing("ball.png", "capped.png", 8) > 150 && differing("ball.png", "twice.png", 8) > 150);
+    CHECK(differing("ball.png", "bowl.png", 8) > 60);
+}
+
+TEST(the_material_and_the_place_of_a_clipped_node_go_to_what_is_under_it) {
+    renders(STAGE "local function half() return gr.plane{normal={0,0,1}, distance=.3} end\n"
+                  "local a = gr.clipped_by('c', gr.sphere('s'), half()):set_material(thin)\n"
+                  "local b = gr.clipped_by('c', gr.sphere('s'):set_material(thin):scale(1.5,1,1), "
+                  "half():scale(1.5,1,1))\n"
+                  "show(a:scale(1.5,1,1):rotate('y',40), 'a.png') show(b:rotate('y',40), 'b.png')\n"
+                  "local c = gr.bounded_by('c', gr.sphere('s'), gr.box{min={-1,-1,-1}, max={1,1,1}})\n"
+                  "c:set_material(thin) show(c, 'c.png') show(gr.sphere(thin), 'd.png')\n");
+    CHECK(differing("a.png", "b.png", 1) <= 7);
+    CHECK_EQ_INT(differing("c.png", "d.png", 0), 0);
+}
+
+TEST(a_camera_inside_of_a_solid_sees_it_from_inside) {
+    renders(STAGE
+            "local function inside(n, f) show(gr.node{children={n, ball(red,-.3,-.3,-.3,.2)}}, f, {.1,.2,.3}) end\n"
+            "inside(ball(glass,0,0,0,1.5), 'ball.png')\n"
+            "inside(gr.merge('m', ball(glass,0,0,0,1.5), ball(glass,.2,0,0,1)), 'merge.png')\n"
+            "inside(gr.difference('d', gr.box{min={-2,-2,-2}, max={2,2,2}, material=glass}, "
+            "gr.inverse(ball(glass,0,0,0,1.5))), 'less.png')\n"
+            "inside(gr.difference('d', gr.box{min={-2,-2,-2}, max={2,2,2}, material=thin}, "
+            "ball(thin,0,0,0,1.5)), 'hollow.png')\n"
+            "inside(gr.inverse(ball(thin,0,0,0,1.5)), 'inverse.png')\n");
+    CHECK_EQ_INT(differing("ball.png", "merge.png", 0), 0);
+    CHECK_EQ_INT(differing("ball.png", "less.png", 0), 0);
+    CHECK_EQ_INT(differing("hollow.png", "inverse.png", 0), 0);
+    CHECK(varied("ball.png") > 100 && varied("hollow.png") > 20);
+}
+
+/* A glass ball around the camera is as good as glass everywhere but in a cave: what is seen is refracted into the cave.
+ */
+TEST(what_is_far_away_is_inside_of_an_inverse) {
+    renders(STAGE "local cave = gr.inverse(ball(glass, 0, 0, 0, 1))\n"
+                  "local sea = gr.difference(ball(glass, 0, 0, 0, 1000), ball(glass, 0, 0, 0, 1))\n"
+                  "show(cave, 'a.png') show(sea, 'b.png')\n"
+                  "show(gr.union('u', cave, ball(red, 0, 0, 0, .5)), 'c.png')\n");
+    struct test_picture a = picture("a.png"), b = picture("b.png");
+    /* Rays that never leave the sea end in the background in both, those through the cave are the same. */
+    uint32_t same = 0, size = a.width * a.height;
+    for (uint32_t i = 0; a.rgb && b.rgb && i < size; i++)
+        same += memcmp(a.rgb + 3 * i, b.rgb + 3 * i, 3) == 0;
+    CHECK(same > size / 4);
+    CHECK(differing("a.png", "c.png", 8) > 10);
+    free(a.rgb);
+    free(b.rgb);
+}
+
+TEST(operands_keep_their_image_coordinates) {
+    renders(STAGE "local function globe() return gr.sphere('s'):set_material(white):set_texture('square.png') end\n"
+                  "show(gr.sphere(white), 'square.png', {0,0,1.5})\n"
+                  "show(globe():rotate('y', 30), 'a.png')\n"
+                  "show(gr.union('u', globe(), ball(red,0,0,0,.1)):rotate('y', 30), 'b.png')\n"
+                  "show(gr.clipped_by('c', globe(), gr.box{min={-2,-2,-2}, max={2,2,2}}):rotate('y', 30), 'c.png')\n"
+                  "show(gr.sphere(white):rotate('y', 30), 'd.png')\n");
+    CHECK(differing("a.png", "b.png", 1) <= 7);
+    CHECK(differing("a.png", "c.png", 1) <= 7);
+    CHECK(differing("a.png", "d.png", 8) > 40);
+}
+
+TEST(solids_of_any_number_of_operands_are_those_of_two_by_two) {
+    renders(STAGE "local a, b, c, d = ball(red,-.6,0,0,1), ball(blue,.6,0,0,1), ball(white,0,.7,.2,.9), "
+                  "gr.cube(glass)\n"
+                  "show(gr.union('u', a, b, c, d), '1.png')\n"
+                  "show(gr.union('u', gr.union('v', gr.union('w', a, b), c), d), '2.png')\n"
+                  "show(gr.difference('u', a, b, c, d), '3.png')\n"
+                  "show(gr.difference('u', gr.difference('v', gr.difference('w', a, b), c), d), '4.png')\n"
+                  "show(gr.difference{a=a, b=b, c, d}, '5.png')\n"
+                  "show(gr.csg_intersection(a, b, c), '6.png')\n"
+                  "show(gr.csg_intersection{name='i', a, b, c}, '7.png')\n"
+                  "show(gr.csg_intersection{name='i', operands={a, gr.csg_intersection{b, c}}}, '8.png')\n"
+                  "show(gr.csg_union{a}, '9.png') show(a, '10.png')\n");
+    const char *const pairs[][2] = {
+        {"1.png", "2.png"}, {"3.png", "4.png"}, {"3.png", "5.png"}, {"6.png", "7.png"}, {"6.png", "8.png"}};
+    for (int k = 0; k < 5; k++)
+        CHECK_EQ_INT(differing(pairs[k][0], pairs[k][1], 0), 0);
+    CHECK(differing("9.png", "10.png", 1) <= 7);
+    CHECK(differing("1.png", "3.png", 8) > 150 && differing("3.png", "6.png", 8) > 40);
+}
