@@ -329,7 +329,7 @@ static inline unsigned simd8_at_most(simd8 a, simd8 b) {
 #endif
 
 /* Four doubles, for taking a ray into local space. */
-#if defined(__AVX__) && !defined(GRAY_NO_SIMD)
+#if defined(__AVX2__) && !defined(GRAY_NO_SIMD)
 
 typedef __m256d wide4;
 
@@ -386,6 +386,30 @@ static inline int wide4_all_below(wide4 a, wide4 b) {
 static inline simd4 wide4_to_single(wide4 a) {
     return _mm256_cvtpd_ps(a);
 }
+static inline void wide4_store(double *p, wide4 a) {
+    _mm256_storeu_pd(p, a);
+}
+static inline wide4 wide4_with_first(wide4 a, double first) {
+    return _mm256_blend_pd(a, _mm256_set1_pd(first), 1);
+}
+static inline double wide4_lane(wide4 a, int i) {
+    __m128d b = i < 2 ? _mm256_castpd256_pd128(a) : _mm256_extractf128_pd(a, 1);
+    return _mm_cvtsd_f64(i & 1 ? _mm_unpackhi_pd(b, b) : b);
+}
+/* Lanes 0, 1, 2 turned round; lane 3 stays. */
+static inline wide4 wide4_cab(wide4 a) {
+    return _mm256_permute4x64_pd(a, _MM_SHUFFLE(3, 1, 0, 2));
+}
+static inline wide4 wide4_bca(wide4 a) {
+    return _mm256_permute4x64_pd(a, _MM_SHUFFLE(3, 0, 2, 1));
+}
+/* One bit per lane where a < b, or whose sign is set. */
+static inline unsigned wide4_below(wide4 a, wide4 b) {
+    return (unsigned)_mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_LT_OQ));
+}
+static inline unsigned wide4_negative(wide4 a) {
+    return (unsigned)_mm256_movemask_pd(a);
+}
 
 #else
 
@@ -441,7 +465,41 @@ static inline int wide4_all_below(wide4 a, wide4 b) {
 static inline simd4 wide4_to_single(wide4 a) {
     return simd4_make((float)a.lane[0], (float)a.lane[1], (float)a.lane[2], (float)a.lane[3]);
 }
+static inline void wide4_store(double *p, wide4 a) {
+    for (int i = 0; i < 4; i++)
+        p[i] = a.lane[i];
+}
+static inline double wide4_lane(wide4 a, int i) {
+    return a.lane[i];
+}
+static inline wide4 wide4_with_first(wide4 a, double first) {
+    a.lane[0] = first;
+    return a;
+}
+static inline wide4 wide4_cab(wide4 a) {
+    return wide4_make(a.lane[2], a.lane[0], a.lane[1], a.lane[3]);
+}
+static inline wide4 wide4_bca(wide4 a) {
+    return wide4_make(a.lane[1], a.lane[2], a.lane[0], a.lane[3]);
+}
+static inline unsigned wide4_below(wide4 a, wide4 b) {
+    unsigned bits = 0;
+    for (int i = 0; i < 4; i++)
+        bits |= (unsigned)(a.lane[i] < b.lane[i]) << i;
+    return bits;
+}
+static inline unsigned wide4_negative(wide4 a) {
+    unsigned bits = 0;
+    for (int i = 0; i < 4; i++)
+        bits |= (unsigned)(signbit(a.lane[i]) != 0) << i;
+    return bits;
+}
 #endif
+
+/* (a0 + a1) + a2 */
+static inline double wide4_sum_of_three(wide4 a) {
+    return wide4_lane(a, 0) + wide4_lane(a, 1) + wide4_lane(a, 2);
+}
 
 /* a * b - c and a * b + c */
 static inline simd8 simd8_multiply_sub(simd8 a, simd8 b, simd8 c) {

@@ -3,28 +3,19 @@
 
 __extension__ typedef unsigned __int128 wide;
 
-void triangle_ray_set(struct triangle_ray *out, const struct ray *ray) {
+bool triangle_ray_init(struct triangle_ray *out, const struct ray *ray) {
+    if (!vec3_finite(ray->direction) || !vec3_finite(ray->origin) || !(vec3_max_abs(ray->direction) > 0))
+        return false;
     const double d[3] = {ray->direction.x, ray->direction.y, ray->direction.z};
-    /* Without branches: which axis is the longest is anybody's guess. */
     int z = fabs(d[1]) > fabs(d[0]);
     z = fabs(d[2]) > fabs(d[z]) ? 2 : z;
-    static const int after[4] = {1, 2, 0, 1};
-    int backwards = d[z] < 0; /* then x and y change places, which keeps the winding as it is seen along the ray */
-    out->z = z;
-    out->x = after[z + backwards];
-    out->y = after[z + !backwards];
+    triangle_ray_axes(out, d, z);
     out->scale_z = 1 / d[z];
     out->shear_x = d[out->x] / d[z];
     out->shear_y = d[out->y] / d[z];
     out->origin[0] = ray->origin.x;
     out->origin[1] = ray->origin.y;
     out->origin[2] = ray->origin.z;
-}
-
-bool triangle_ray_init(struct triangle_ray *out, const struct ray *ray) {
-    if (!vec3_finite(ray->direction) || !vec3_finite(ray->origin) || !(vec3_max_abs(ray->direction) > 0))
-        return false;
-    triangle_ray_set(out, ray);
     return true;
 }
 

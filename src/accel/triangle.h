@@ -23,7 +23,7 @@
 /* The shear that makes the ray the z axis; axes are permuted so that its largest component is the last. */
 struct triangle_ray {
     double origin[3];
-    double shear_x, shear_y, scale_z;
+    double shear_x, shear_y, scale_z, unused; /* together, so that they are one vector */
     int x, y, z;
 };
 
@@ -35,8 +35,14 @@ struct triangle_hit {
 
 /* False for a direction that is zero or not finite: such a ray meets nothing. */
 bool triangle_ray_init(struct triangle_ray *out, const struct ray *ray);
-/* The same for a ray known to be good. */
-void triangle_ray_set(struct triangle_ray *out, const struct ray *ray);
+/* The axes for a direction that is longest along axis z: seen along the ray the winding stays what it is. */
+static inline void triangle_ray_axes(struct triangle_ray *out, const double d[3], int z) {
+    static const int after[4] = {1, 2, 0, 1};
+    int backwards = d[z] < 0;
+    out->z = z;
+    out->x = after[z + backwards];
+    out->y = after[z + !backwards];
+}
 
 /* ax * by - ay * bx, exact up to the last rounding. */
 double triangle_edge_exact(double ax, double ay, double bx, double by);

@@ -390,6 +390,8 @@ static void set_lane(const struct triangle_index *index, const struct triangle_s
         block->edge2[k][lane] = (float)(p[2][k] - p[0][k]);
     }
     block->ids[lane] = triangle;
+    for (int j = 0; j < 3; j++)
+        block->vertices[j][lane] = corner[j];
 }
 
 static void set_unused_lane(struct triangle_block *block, uint32_t lane) {
@@ -399,6 +401,8 @@ static void set_unused_lane(struct triangle_block *block, uint32_t lane) {
         block->edge2[k][lane] = k == 1 ? 0x1p-4f : 0;
     }
     block->ids[lane] = 0;
+    for (int j = 0; j < 3; j++)
+        block->vertices[j][lane] = 0;
 }
 
 /* Moves a job's nodes into the index and fills its blocks. */

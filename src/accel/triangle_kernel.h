@@ -55,23 +55,59 @@ struct search {
     struct triangle_ray sheared;
 };
 
-/* The answer for one proposed triangle. True when an "any" search is over. */
-static __attribute__((noinline)) bool decide(struct search *s, uint32_t triangle) {
-    if (!s->sheared_ready) {
-        triangle_ray_set(&s->sheared, s->ray); /* search_begin has seen that the ray is good */
-        s->sheared_ready = true;
-    }
-    const uint32_t *c = s->set->corners[triangle];
-    struct triangle_hit h = {.triangle = triangle};
-    if (!triangle_cross(&s->sheared, s->set->vertices[c[0]], s->set->vertices[c[1]], s->set->vertices[c[2]], &h))
+/* triangle_ray_set with one division for all three. */
+static inline void sheared_set(struct triangle_ray *out, const struct ray *ray) {
+    const double d[3] = {ray->direction.x, ray->direction.y, ray->direction.z};
+    int z = fabs(d[1]) > fabs(d[0]);
+    z = fabs(d[2]) > fabs(d[z]) ? 2 : z;
+    triangle_ray_axes(out, d, z);
+    wide4_store(&out->shear_x, wide4_div(wide4_make(d[out->x], d[out->y], 1, 0), wide4_all(d[z])));
+    out->origin[0] = ray->origin.x;
+    out->origin[1] = ray->origin.y;
+    out->origin[2] = ray->origin.z;
+}
+
+/* triangle_cross, its three edge functions at a time and with the same bits; what is near zero is left to it. */
+static inline bool cross(const struct triangle_ray *ray, const double a[3], const double b[3], const double c[3],
+                         struct triangle_hit *hit) {
+    int x = ray->x, y = ray->y, z = ray->z;
+    wide4 pz = wide4_sub(wide4_make(a[z], b[z], c[z], c[z]), wide4_all(ray->origin[z]));
+    wide4 px = wide4_sub(wide4_make(a[x], b[x], c[x], c[x]), wide4_all(ray->origin[x]));
+    wide4 py = wide4_sub(wide4_make(a[y], b[y], c[y], c[y]), wide4_all(ray->origin[y]));
+    px = wide4_sub(px, wide4_mul(wide4_all(ray->shear_x), pz));
+    py = wide4_sub(py, wide4_mul(wide4_all(ray->shear_y), pz));
+    wide4 p = wide4_mul(wide4_cab(px), wide4_bca(py)), q = wide4_mul(wide4_cab(py), wide4_bca(px));
+    wide4 e = wide4_sub(p, q);
+    wide4 doubt = wide4_mul(wide4_all(0x1p-49), wide4_add(wide4_size(p), wide4_size(q)));
+    if (__builtin_expect((wide4_below(doubt, wide4_size(e)) & 7) != 7, 0))
+        return triangle_cross(ray, a, b, c, hit);
+    unsigned negative = wide4_negative(e) & 7;
+    if (negative != 0 && negative != 7)
         return false;
+    double sum = wide4_sum_of_three(e);
+    wide4 found = wide4_div(wide4_with_first(e, wide4_sum_of_three(wide4_mul(e, pz))), wide4_all(sum));
+    hit->t = wide4_lane(found, 0) * ray->scale_z;
+    hit->u = wide4_lane(found, 1);
+    hit->v = wide4_lane(found, 2);
+    hit->enter = negative == 0;
+    return true;
+}
+
+/* The answer for one proposed triangle. True when an "any" search is over. */
+static inline bool decide(struct search *s, const struct triangle_block *block, unsigned lane) {
+    const double(*vertices)[3] = s->set->vertices;
+    struct triangle_hit h;
+    if (!cross(&s->sheared, vertices[block->vertices[0][lane]], vertices[block->vertices[1][lane]],
+               vertices[block->vertices[2][lane]], &h))
+        return false;
+    h.triangle = block->ids[lane];
     if (s->kind == TRIANGLE_ALL) {
         s->visit(s->context, &h);
         return false;
     }
     if (!(h.t > s->ray->t_min) || !(h.t <= s->best))
         return false;
-    if (h.t == s->best && !(s->found && triangle < s->hit->triangle))
+    if (h.t == s->best && !(s->found && h.triangle < s->hit->triangle))
         return false;
     s->found = true;
     if (s->kind == TRIANGLE_ANY)
@@ -85,9 +121,14 @@ static __attribute__((noinline)) bool decide(struct search *s, uint32_t triangle
 }
 
 /* Decides a block's proposals. True when an "any" search is over. */
-static __attribute__((noinline)) bool decide_lanes(struct search *s, const uint32_t *ids, unsigned lanes) {
+static __attribute__((noinline)) bool decide_lanes(struct search *s, const struct triangle_block *block,
+                                                   unsigned lanes) {
+    if (!s->sheared_ready) {
+        sheared_set(&s->sheared, s->ray); /* search_begin has seen that the ray is good */
+        s->sheared_ready = true;
+    }
     do {
-        if (decide(s, ids[__builtin_ctz(lanes)]))
+        if (decide(s, block, (unsigned)__builtin_ctz(lanes)))
             return true;
         lanes &= lanes - 1;
     } while (lanes);
@@ -138,7 +179,7 @@ static inline __attribute__((always_inline)) bool try_block(struct search *s, ui
         if (lanes & simd8_not_negative(simd8_min(simd8_min(a, c), simd8_min(f, g))))
             return true;
     }
-    return decide_lanes(s, b->ids, lanes);
+    return decide_lanes(s, b, lanes);
 }
 
 static inline uint64_t stack_entry(float t, uint32_t reference) {

@@ -37,11 +37,12 @@ struct wide_node {
     uint32_t unused[WIDTH];
 };
 
-/* Up to eight triangles: corner 0, the two edges from it, their numbers. An unused lane holds a small triangle outside
- * the frame, where no search looks. */
+/* Up to eight triangles: corner 0, the two edges from it, their numbers, and those of their vertices (which spares the
+ * test that decides a way through memory). An unused lane holds a small triangle outside the frame, where no search
+ * looks. */
 struct triangle_block {
     float corner[3][WIDTH], edge1[3][WIDTH], edge2[3][WIDTH];
-    uint32_t ids[WIDTH];
+    uint32_t ids[WIDTH], vertices[3][WIDTH];
 };
 
 struct triangle_index {
