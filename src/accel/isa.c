@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-static enum accel_isa chosen;
+enum accel_isa accel_isa_chosen;
 
 static bool has_avx2(void) {
 #if defined(__x86_64__)
@@ -24,28 +24,24 @@ static bool has_avx512(void) {
 }
 
 static __attribute__((constructor)) void choose_at_start(void) {
-    chosen = has_avx512() ? ACCEL_ISA_AVX512 : has_avx2() ? ACCEL_ISA_AVX2 : ACCEL_ISA_BASE;
+    accel_isa_chosen = has_avx512() ? ACCEL_ISA_AVX512 : has_avx2() ? ACCEL_ISA_AVX2 : ACCEL_ISA_BASE;
 }
 
 bool accel_select_isa(const char *name) {
     if (strcmp(name, "auto") == 0)
         choose_at_start();
     else if (strcmp(name, "base") == 0)
-        chosen = ACCEL_ISA_BASE;
+        accel_isa_chosen = ACCEL_ISA_BASE;
     else if (strcmp(name, "avx2") == 0 && has_avx2())
-        chosen = ACCEL_ISA_AVX2;
+        accel_isa_chosen = ACCEL_ISA_AVX2;
     else if (strcmp(name, "avx512") == 0 && has_avx512())
-        chosen = ACCEL_ISA_AVX512;
+        accel_isa_chosen = ACCEL_ISA_AVX512;
     else
         return false;
     return true;
 }
 
-enum accel_isa accel_isa(void) {
-    return chosen;
-}
-
 const char *accel_isa_name(void) {
     static const char *const names[] = {"base", "avx2", "avx512"};
-    return names[chosen];
+    return names[accel_isa_chosen];
 }

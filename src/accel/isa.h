@@ -10,6 +10,10 @@ enum accel_isa { ACCEL_ISA_BASE, ACCEL_ISA_AVX2, ACCEL_ISA_AVX512 };
  * Call before the first search and from one thread. */
 bool accel_select_isa(const char *name);
 const char *accel_isa_name(void);
-enum accel_isa accel_isa(void);
+/* Written by accel_select_isa alone. */
+extern enum accel_isa accel_isa_chosen;
+static inline enum accel_isa accel_isa(void) {
+    return accel_isa_chosen;
+}
 
 #endif

@@ -3,19 +3,21 @@
 
 __extension__ typedef unsigned __int128 wide;
 
-bool triangle_ray_init(struct triangle_ray *out, const struct ray *ray) {
-    if (!vec3_finite(ray->direction) || !vec3_finite(ray->origin) || !(vec3_max_abs(ray->direction) > 0))
-        return false;
+void triangle_ray_set(struct triangle_ray *out, const struct ray *ray) {
     const double d[3] = {ray->direction.x, ray->direction.y, ray->direction.z};
-    int z = fabs(d[1]) > fabs(d[0]);
-    z = fabs(d[2]) > fabs(d[z]) ? 2 : z;
-    triangle_ray_axes(out, d, z);
-    out->scale_z = 1 / d[z];
-    out->shear_x = d[out->x] / d[z];
-    out->shear_y = d[out->y] / d[z];
+    triangle_ray_axes(out, d);
+    out->shear[0] = d[out->x] / d[out->z];
+    out->shear[1] = d[out->y] / d[out->z];
+    out->shear[2] = 1 / d[out->z];
     out->origin[0] = ray->origin.x;
     out->origin[1] = ray->origin.y;
     out->origin[2] = ray->origin.z;
+}
+
+bool triangle_ray_init(struct triangle_ray *out, const struct ray *ray) {
+    if (!vec3_finite(ray->direction) || !vec3_finite(ray->origin) || !(vec3_max_abs(ray->direction) > 0))
+        return false;
+    triangle_ray_set(out, ray);
     return true;
 }
 

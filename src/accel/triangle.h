@@ -23,7 +23,7 @@
 /* The shear that makes the ray the z axis; axes are permuted so that its largest component is the last. */
 struct triangle_ray {
     double origin[3];
-    double shear_x, shear_y, scale_z, unused; /* together, so that they are one vector */
+    double shear[4]; /* of x, of y, the factor that makes t of z, not used */
     int x, y, z;
 };
 
@@ -35,10 +35,14 @@ struct triangle_hit {
 
 /* False for a direction that is zero or not finite: such a ray meets nothing. */
 bool triangle_ray_init(struct triangle_ray *out, const struct ray *ray);
-/* The axes for a direction that is longest along axis z: seen along the ray the winding stays what it is. */
-static inline void triangle_ray_axes(struct triangle_ray *out, const double d[3], int z) {
+/* The same for a ray known to be good. */
+void triangle_ray_set(struct triangle_ray *out, const struct ray *ray);
+/* The axes alone; without branches, since which one is the longest is anybody's guess. */
+static inline void triangle_ray_axes(struct triangle_ray *out, const double d[3]) {
+    int z = fabs(d[1]) > fabs(d[0]);
+    z = fabs(d[2]) > fabs(d[z]) ? 2 : z;
     static const int after[4] = {1, 2, 0, 1};
-    int backwards = d[z] < 0;
+    int backwards = d[z] < 0; /* then x and y change places, which keeps the winding as it is seen along the ray */
     out->z = z;
     out->x = after[z + backwards];
     out->y = after[z + !backwards];
@@ -59,9 +63,9 @@ static inline bool triangle_cross(const struct triangle_ray *ray, const double a
                                   const double c[3], struct triangle_hit *hit) {
     int x = ray->x, y = ray->y, z = ray->z;
     double az = a[z] - ray->origin[z], bz = b[z] - ray->origin[z], cz = c[z] - ray->origin[z];
-    double ax = (a[x] - ray->origin[x]) - ray->shear_x * az, ay = (a[y] - ray->origin[y]) - ray->shear_y * az;
-    double bx = (b[x] - ray->origin[x]) - ray->shear_x * bz, by = (b[y] - ray->origin[y]) - ray->shear_y * bz;
-    double cx = (c[x] - ray->origin[x]) - ray->shear_x * cz, cy = (c[y] - ray->origin[y]) - ray->shear_y * cz;
+    double ax = (a[x] - ray->origin[x]) - ray->shear[0] * az, ay = (a[y] - ray->origin[y]) - ray->shear[1] * az;
+    double bx = (b[x] - ray->origin[x]) - ray->shear[0] * bz, by = (b[y] - ray->origin[y]) - ray->shear[1] * bz;
+    double cx = (c[x] - ray->origin[x]) - ray->shear[0] * cz, cy = (c[y] - ray->origin[y]) - ray->shear[1] * cz;
     double u = triangle_edge(cx, cy, bx, by);
     double v = triangle_edge(ax, ay, cx, cy);
     double w = triangle_edge(bx, by, ax, ay);
@@ -78,7 +82,7 @@ static inline bool triangle_cross(const struct triangle_ray *ray, const double a
         return false;
     if (w == 0 && (triangle_edge_tie(bx, by, ax, ay) > 0) != positive)
         return false;
-    hit->t = (u * az + v * bz + w * cz) / sum * ray->scale_z;
+    hit->t = (u * az + v * bz + w * cz) / sum * ray->shear[2];
     hit->u = v / sum;
     hit->v = w / sum;
     hit->enter = positive;

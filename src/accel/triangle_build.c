@@ -248,6 +248,28 @@ static uint32_t split_wide(struct reference *references, const struct range *who
     return parts;
 }
 
+/* By the middles of the boxes along the diagonal of each octant, those that hold nothing first. */
+static void node_set_order(struct wide_node *node, uint32_t parts) {
+    for (uint32_t octant = 0; octant < 8; octant++) {
+        float along[WIDTH];
+        uint32_t lanes[WIDTH];
+        node->order[octant] = 0;
+        for (uint32_t j = 0; j < WIDTH; j++) {
+            along[j] = j < parts ? 0 : INFINITY;
+            for (int k = 0; k < 3; k++) {
+                float middle = node->bounds[2 * k][j] + node->bounds[2 * k + 1][j];
+                along[j] += octant >> k & 1 ? -middle : middle;
+            }
+            uint32_t place = j;
+            for (; place > 0 && along[lanes[place - 1]] < along[j]; place--)
+                lanes[place] = lanes[place - 1];
+            lanes[place] = j;
+        }
+        for (uint32_t j = 0; j < WIDTH; j++)
+            node->order[octant] |= lanes[j] << 3 * j;
+    }
+}
+
 static void node_set_bounds(struct wide_node *node, const struct range *part, uint32_t parts) {
     for (uint32_t j = 0; j < WIDTH; j++) {
         float lo[4] = {1e30f, 1e30f, 1e30f}, hi[4] = {-1e30f, -1e30f, -1e30f};
@@ -260,8 +282,8 @@ static void node_set_bounds(struct wide_node *node, const struct range *part, ui
             node->bounds[2 * k + 1][j] = hi[k];
         }
         node->child[j] = REF_EMPTY;
-        node->unused[j] = 0;
     }
+    node_set_order(node, parts);
 }
 
 enum { POLL_COUNT = 2000 }; /* references that are split without asking whether to stop */
@@ -335,7 +357,6 @@ static bool plan_range(struct builder *builder, const struct range *range, uint3
             return false;
         builder->top[number].child[j] = child;
     }
-    builder->top[number].unused[0] = parts;
     *result = TOP_NODE | number;
     return true;
 }
@@ -363,6 +384,10 @@ static bool run(struct builder *builder, uint32_t count, pool_function *function
     for (uint32_t i = 0; i < count; i++)
         function(builder, i, 0);
     return true;
+}
+
+static bool is_used(const struct wide_node *node, uint32_t lane) {
+    return node->bounds[0][lane] <= node->bounds[1][lane];
 }
 
 static uint32_t moved(const struct job *job, uint32_t reference) {
@@ -396,7 +421,7 @@ static void set_lane(const struct triangle_index *index, const struct triangle_s
 
 static void set_unused_lane(struct triangle_block *block, uint32_t lane) {
     for (int k = 0; k < 3; k++) {
-        block->corner[k][lane] = 8;
+        block->corner[k][lane] = 64;
         block->edge1[k][lane] = k == 0 ? 0x1p-4f : 0;
         block->edge2[k][lane] = k == 1 ? 0x1p-4f : 0;
     }
@@ -415,7 +440,7 @@ static void finish_job(void *context, uint32_t item, int worker) {
         struct wide_node *node = &index->nodes[job->node_base + i];
         *node = job->nodes[i];
         for (uint32_t j = 0; j < WIDTH; j++)
-            if (node->bounds[0][j] <= node->bounds[1][j])
+            if (is_used(node, j))
                 node->child[j] = moved(job, node->child[j]);
     }
     for (uint32_t i = 0; i < job->leaf_count; i++) {
@@ -454,11 +479,10 @@ static bool assemble(struct builder *builder) {
     index->block_count = blocks;
     memset(&index->nodes[0], 0, sizeof *index->nodes);
     for (uint32_t i = 0; i < builder->top_count; i++) {
-        uint32_t parts = builder->top[i].unused[0];
-        builder->top[i].unused[0] = 0;
-        for (uint32_t j = 0; j < parts; j++)
-            builder->top[i].child[j] = resolve(builder, builder->top[i].child[j]);
-        index->nodes[1 + i] = builder->top[i];
+        struct wide_node *node = &builder->top[i];
+        for (uint32_t j = 0; j < WIDTH && is_used(node, j); j++)
+            node->child[j] = resolve(builder, node->child[j]);
+        index->nodes[1 + i] = *node;
     }
     return true;
 }

@@ -230,45 +230,31 @@ size_t triangle_index_memory(const struct triangle_index *index) {
            index->block_count * sizeof *index->blocks;
 }
 
+#if defined(__x86_64__)
+#define OF_EVERY_ISA(name)                                                                                             \
+    { name##_base, name##_avx2, name##_avx512 }
+#else
+#define OF_EVERY_ISA(name)                                                                                             \
+    { name##_base, name##_base, name##_base }
+#endif
+
 bool triangle_index_nearest(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
                             struct triangle_hit *hit, struct triangle_cost *cost) {
-    if (set->count == 0)
-        return false;
-#if defined(__x86_64__)
-    if (accel_isa() == ACCEL_ISA_AVX512)
-        return triangle_nearest_avx512(index, set, ray, hit, cost);
-    if (accel_isa() == ACCEL_ISA_AVX2)
-        return triangle_nearest_avx2(index, set, ray, hit, cost);
-#endif
-    return triangle_nearest_base(index, set, ray, hit, cost);
+    static bool (*const search[])(const struct triangle_index *, const struct triangle_set *, const struct ray *,
+                                  struct triangle_hit *, struct triangle_cost *) = OF_EVERY_ISA(triangle_nearest);
+    return search[accel_isa()](index, set, ray, hit, cost);
 }
 
 bool triangle_index_any(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
                         struct triangle_cost *cost) {
-    if (set->count == 0)
-        return false;
-#if defined(__x86_64__)
-    if (accel_isa() == ACCEL_ISA_AVX512)
-        return triangle_any_avx512(index, set, ray, cost);
-    if (accel_isa() == ACCEL_ISA_AVX2)
-        return triangle_any_avx2(index, set, ray, cost);
-#endif
-    return triangle_any_base(index, set, ray, cost);
+    static bool (*const search[])(const struct triangle_index *, const struct triangle_set *, const struct ray *,
+                                  struct triangle_cost *) = OF_EVERY_ISA(triangle_any);
+    return search[accel_isa()](index, set, ray, cost);
 }
 
 void triangle_index_all(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
                         triangle_visit *visit, void *context, struct triangle_cost *cost) {
-    if (set->count == 0)
-        return;
-#if defined(__x86_64__)
-    if (accel_isa() == ACCEL_ISA_AVX512) {
-        triangle_all_avx512(index, set, ray, visit, context, cost);
-        return;
-    }
-    if (accel_isa() == ACCEL_ISA_AVX2) {
-        triangle_all_avx2(index, set, ray, visit, context, cost);
-        return;
-    }
-#endif
-    triangle_all_base(index, set, ray, visit, context, cost);
+    static void (*const search[])(const struct triangle_index *, const struct triangle_set *, const struct ray *,
+                                  triangle_visit *, void *, struct triangle_cost *) = OF_EVERY_ISA(triangle_all);
+    search[accel_isa()](index, set, ray, visit, context, cost);
 }

@@ -21,25 +21,31 @@ enum { WIDTH = 8 };
 #define VOXEL_MARGIN 0x1p-13f
 
 /* Boxes in nodes are larger by this on every side, local units. It covers what rounding to single precision does to the
- * ray (2^-24 of 1 for the origin, of 2 for the way along it), to the box (2^-25) and in plane * r - m (2^-22 at most).
- */
-#define BOX_GROWTH 0x1p-20f
+ * ray, whose origin is at most NEAR_BY = 8 in size (2^-22 for the origin, 2^-20 for the way along it to a side), to the
+ * box (2^-25) and in plane * r - m (2^-20 at most). */
+#define NEAR_BY 8
+#define BOX_GROWTH 0x1p-18f
 
 /* A reference: REF_EMPTY, REF_OUTSIDE, REF_LEAF | number of a block, or number of a node (from 1). */
 #define REF_EMPTY 0u
 #define REF_OUTSIDE UINT32_MAX
 #define REF_LEAF (UINT32_C(1) << 31)
 
-/* Boxes of up to eight children; an unused child has a box that nothing meets and comes last. */
+/* Voxels of a frame that has one, its border counted. */
+enum { ONE_VOXEL = 27 };
+
+/* Boxes of up to eight children; an unused child has a box that nothing meets and comes last. order: for each octant a
+ * direction can lie in (bit k of its number: negative along axis k) all eight lanes, the one met last first, three bits
+ * each from the lowest; a search takes up children in this order. */
 struct wide_node {
     float bounds[6][WIDTH]; /* min x, max x, min y, max y, min z, max z */
     uint32_t child[WIDTH];
-    uint32_t unused[WIDTH];
+    uint32_t order[8];
 };
 
 /* Up to eight triangles: corner 0, the two edges from it, their numbers, and those of their vertices (which spares the
- * test that decides a way through memory). An unused lane holds a small triangle outside the frame, where no search
- * looks. */
+ * test that decides a way through memory). An unused lane holds a small triangle so far outside (64, 64, 64) that no
+ * search reaches it. */
 struct triangle_block {
     float corner[3][WIDTH], edge1[3][WIDTH], edge2[3][WIDTH];
     uint32_t ids[WIDTH], vertices[3][WIDTH];

@@ -3,6 +3,8 @@
 #ifndef GRAY_GEOM_CROSSING_H
 #define GRAY_GEOM_CROSSING_H
 
+#include "accel/triangle_index.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -22,7 +24,8 @@ struct geom_scratch {
     uint32_t capacity, used;
     bool overflow;
     /* what the searches cost; sums, never read by them */
-    uint64_t shape_tests, triangle_tests, voxels, hierarchy_steps;
+    uint64_t shape_tests;
+    struct triangle_cost cost;
 };
 
 /* A list on top of the scratch: items[first .. first + count - 1]. */

@@ -138,11 +138,10 @@ size_t mesh_memory(const struct mesh *mesh) {
     return bytes + (mesh->index ? triangle_index_memory(mesh->index) : 0);
 }
 
-static void add_cost(struct geom_scratch *scratch, const struct triangle_cost *cost, uint64_t rays) {
+/* The counters of the search are the scratch's own. */
+static struct triangle_cost *count_search(struct geom_scratch *scratch, uint64_t rays) {
     scratch->shape_tests += rays;
-    scratch->triangle_tests += cost->triangle_tests;
-    scratch->voxels += cost->voxels;
-    scratch->hierarchy_steps += cost->hierarchy_steps;
+    return &scratch->cost;
 }
 
 static struct crossing crossing_from(const struct triangle_hit *hit) {
@@ -172,38 +171,39 @@ static struct way way_for(const struct mesh *mesh, enum accel_kind accel) {
 
 bool mesh_nearest(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch,
                   struct crossing *out) {
-    struct triangle_cost cost = {0};
+    struct triangle_cost *cost = count_search(scratch, 1);
     struct triangle_hit hit;
     struct way way = way_for(mesh, accel);
-    bool found = way.index     ? triangle_index_nearest(way.index, &mesh->set, ray, &hit, &cost)
-                 : way.kd_tree ? kd_triangles_nearest(way.kd_tree, &mesh->set, ray, &hit, &cost)
-                               : triangle_brute_nearest(&mesh->set, ray, &hit, &cost);
-    add_cost(scratch, &cost, 1);
-    if (found)
-        *out = crossing_from(&hit);
+    bool found = way.index     ? triangle_index_nearest(way.index, &mesh->set, ray, &hit, cost)
+                 : way.kd_tree ? kd_triangles_nearest(way.kd_tree, &mesh->set, ray, &hit, cost)
+                               : triangle_brute_nearest(&mesh->set, ray, &hit, cost);
+    if (found) { /* field by field: what was just stored in pieces is slow to load whole */
+        out->t = hit.t;
+        out->u = hit.u;
+        out->v = hit.v;
+        out->part = hit.triangle;
+        out->leaf = 0;
+        out->enter = hit.enter;
+        out->flip = false;
+    }
     return found;
 }
 
 bool mesh_any(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch) {
-    struct triangle_cost cost = {0};
+    struct triangle_cost *cost = count_search(scratch, 1);
     struct way way = way_for(mesh, accel);
-    bool found = way.index     ? triangle_index_any(way.index, &mesh->set, ray, &cost)
-                 : way.kd_tree ? kd_triangles_any(way.kd_tree, &mesh->set, ray, &cost)
-                               : triangle_brute_any(&mesh->set, ray, &cost);
-    add_cost(scratch, &cost, 1);
-    return found;
+    return way.index     ? triangle_index_any(way.index, &mesh->set, ray, cost)
+           : way.kd_tree ? kd_triangles_any(way.kd_tree, &mesh->set, ray, cost)
+                         : triangle_brute_any(&mesh->set, ray, cost);
 }
 
 uint64_t mesh_nearest_packet(const struct mesh *mesh, const struct ray_packet *rays, uint64_t active,
                              enum accel_kind accel, struct geom_scratch *scratch, struct packet_hits *out) {
     const struct triangle_index *index = way_for(mesh, accel).index;
     uint64_t found = 0;
-    if (index) {
-        struct triangle_cost cost = {0};
-        found = triangle_packet_nearest(index, &mesh->set, rays, active, out, &cost);
-        add_cost(scratch, &cost, (uint64_t)__builtin_popcountll(active));
-        return found;
-    }
+    if (index)
+        return triangle_packet_nearest(index, &mesh->set, rays, active, out,
+                                       count_search(scratch, (uint64_t)__builtin_popcountll(active)));
     for (; active; active &= active - 1) {
         unsigned i = (unsigned)__builtin_ctzll(active);
         struct ray ray = ray_packet_get(rays, i);
@@ -220,12 +220,9 @@ uint64_t mesh_any_packet(const struct mesh *mesh, const struct ray_packet *rays,
                          struct geom_scratch *scratch) {
     const struct triangle_index *index = way_for(mesh, accel).index;
     uint64_t found = 0;
-    if (index) {
-        struct triangle_cost cost = {0};
-        found = triangle_packet_any(index, &mesh->set, rays, active, &cost);
-        add_cost(scratch, &cost, (uint64_t)__builtin_popcountll(active));
-        return found;
-    }
+    if (index)
+        return triangle_packet_any(index, &mesh->set, rays, active,
+                                   count_search(scratch, (uint64_t)__builtin_popcountll(active)));
     for (; active; active &= active - 1) {
         unsigned i = (unsigned)__builtin_ctzll(active);
         struct ray ray = ray_packet_get(rays, i);
@@ -296,16 +293,15 @@ static void push(void *context, const struct triangle_hit *hit) {
 
 bool mesh_crossings(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch,
                     struct crossing_list *out) {
-    struct triangle_cost cost = {0};
+    struct triangle_cost *cost = count_search(scratch, 1);
     *out = (struct crossing_list){scratch->used, 0};
     struct way way = way_for(mesh, accel);
     if (way.index)
-        triangle_index_all(way.index, &mesh->set, ray, push, scratch, &cost);
+        triangle_index_all(way.index, &mesh->set, ray, push, scratch, cost);
     else if (way.kd_tree)
-        kd_triangles_all(way.kd_tree, &mesh->set, ray, push, scratch, &cost);
+        kd_triangles_all(way.kd_tree, &mesh->set, ray, push, scratch, cost);
     else
-        triangle_brute_all(&mesh->set, ray, push, scratch, &cost);
-    add_cost(scratch, &cost, 1);
+        triangle_brute_all(&mesh->set, ray, push, scratch, cost);
     if (scratch->overflow) {
         scratch->used = out->first;
         return false;

@@ -448,8 +448,8 @@ static void add_statistics(const struct run *run, int workers, struct render_sta
         out->refracted_rays += worker->tracer.refracted_rays;
         out->shadow_rays += worker->tracer.shadow_rays;
         out->shape_tests += worker->scratch.geom.shape_tests;
-        out->triangle_tests += worker->scratch.geom.triangle_tests;
-        out->voxels += worker->scratch.geom.voxels;
+        out->triangle_tests += worker->scratch.geom.cost.triangle_tests;
+        out->voxels += worker->scratch.geom.cost.voxels;
     }
     out->samples = out->camera_rays;
     out->pixels += (uint64_t)run->job->film->width * run->job->film->height;

@@ -197,7 +197,7 @@ uint64_t world_nearest_packet(const struct world *world, const struct ray_packet
             try_shape(&s, index, active);
         limit = s.found == ray_packet_all(rays) ? farthest(&s) : limit;
     }
-    scratch->geom.hierarchy_steps += walk.steps;
+    scratch->geom.cost.hierarchy_steps += walk.steps;
     return s.found;
 }
 

@@ -292,7 +292,7 @@ static void search_grid(struct search *s) {
         if (s->found && s->best.t < walk.t_exit)
             break;
     }
-    s->scratch->geom.voxels += walk.voxels;
+    s->scratch->geom.cost.voxels += walk.voxels;
 }
 
 static void search_tree(struct search *s) {
@@ -301,7 +301,7 @@ static void search_tree(struct search *s) {
     box_tree_walk_begin(&walk, &s->world->tree, s->ray);
     while (box_tree_walk_next(&walk, s->limited.t_max, &index))
         try_placed(s, index);
-    s->scratch->geom.hierarchy_steps += walk.steps;
+    s->scratch->geom.cost.hierarchy_steps += walk.steps;
 }
 
 /* Boxes are padded, so that the points of their primitives as they are computed lie inside: no slack is needed. */
@@ -316,8 +316,8 @@ static void search_kd_tree(struct search *s) {
                 try_boxed(s, walk.items[i]);
         }
     }
-    s->scratch->geom.hierarchy_steps += walk.steps;
-    s->scratch->geom.voxels += walk.leaves;
+    s->scratch->geom.cost.hierarchy_steps += walk.steps;
+    s->scratch->geom.cost.voxels += walk.leaves;
 }
 
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
@@ -410,7 +410,7 @@ static bool any_in_grid(const struct world *world, const struct ray *ray, const 
         if (found)
             break;
     }
-    scratch->geom.voxels += walk.voxels;
+    scratch->geom.cost.voxels += walk.voxels;
     return found;
 }
 
@@ -424,7 +424,7 @@ static bool any_in_tree(const struct world *world, const struct ray *ray, struct
         if (found)
             scratch->last_blocker = index;
     }
-    scratch->geom.hierarchy_steps += walk.steps;
+    scratch->geom.cost.hierarchy_steps += walk.steps;
     return found;
 }
 
@@ -444,8 +444,8 @@ static bool any_in_kd_tree(const struct world *world, const struct ray *ray, con
                 scratch->last_blocker = index;
         }
     }
-    scratch->geom.hierarchy_steps += walk.steps;
-    scratch->geom.voxels += walk.leaves;
+    scratch->geom.cost.hierarchy_steps += walk.steps;
+    scratch->geom.cost.voxels += walk.leaves;
     return found;
 }
 

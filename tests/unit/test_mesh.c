@@ -350,16 +350,18 @@ TEST(scaling_a_mesh_by_a_power_of_two_keeps_every_bit) {
                 big.origin = vec3_scale(ray.origin, factors[k]);
                 big.direction = vec3_scale(ray.direction, factors[k]);
                 struct crossing a = {0}, b = {0};
-                uint64_t tests = scratch.triangle_tests, steps = scratch.hierarchy_steps, voxels = scratch.voxels;
+                uint64_t tests = scratch.cost.triangle_tests, steps = scratch.cost.hierarchy_steps,
+                         voxels = scratch.cost.voxels;
                 bool found = mesh_nearest(mesh, &ray, ACCEL_GRID, &scratch, &a);
-                tests = scratch.triangle_tests - tests;
-                steps = scratch.hierarchy_steps - steps;
-                voxels = scratch.voxels - voxels;
-                uint64_t tests2 = scratch.triangle_tests, steps2 = scratch.hierarchy_steps, voxels2 = scratch.voxels;
+                tests = scratch.cost.triangle_tests - tests;
+                steps = scratch.cost.hierarchy_steps - steps;
+                voxels = scratch.cost.voxels - voxels;
+                uint64_t tests2 = scratch.cost.triangle_tests, steps2 = scratch.cost.hierarchy_steps,
+                         voxels2 = scratch.cost.voxels;
                 CHECK(found == mesh_nearest(other, &big, ACCEL_GRID, &scratch, &b));
                 CHECK(!found || same_crossing(&a, &b));
-                CHECK(scratch.triangle_tests - tests2 == tests && scratch.hierarchy_steps - steps2 == steps &&
-                      scratch.voxels - voxels2 == voxels);
+                CHECK(scratch.cost.triangle_tests - tests2 == tests && scratch.cost.hierarchy_steps - steps2 == steps &&
+                      scratch.cost.voxels - voxels2 == voxels);
             }
             mesh_release(other);
             maker_free(&scaled);
