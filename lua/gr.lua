@@ -1325,6 +1325,7 @@ function gr.fog_grid(corner, size, cells, densities, colour) end
 ---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Start of random numbers.
 ---@field accel? 'auto'|'grid'|'bvh'|'kdtree'|'none' accel ('auto'|'grid'|'bvh'|'kdtree'|'none'; default 'auto'): How hits are searched; the picture is the same.
 ---@field fog? gr.fog fog (a fog; default none): A fog.
+---@field caustics? integer|{photons?: integer, radius?: number} caustics (a number of photons or {photons = ..., radius = ...}; default --caustics): Light that glass and mirrors throw: how many photons are sent (200000), and the radius of what each lights (by their density).
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Rays that can change a pixel by less than this are not followed.
 ---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure on its way into a PNG file.
 ---@field tone? 'none'|'reinhard'|'filmic' tone ('none'|'reinhard'|'filmic'; default --tone): The curve that brings bright light into the range of a PNG file.
@@ -1390,6 +1391,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Start of random numbers.
 ---@field accel? 'auto'|'grid'|'bvh'|'kdtree'|'none' accel ('auto'|'grid'|'bvh'|'kdtree'|'none'; default 'auto'): How hits are searched; the picture is the same.
 ---@field fog? gr.fog fog (a fog; default none): A fog.
+---@field caustics? integer|{photons?: integer, radius?: number} caustics (a number of photons or {photons = ..., radius = ...}; default --caustics): Light that glass and mirrors throw: how many photons are sent (200000), and the radius of what each lights (by their density).
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Rays that can change a pixel by less than this are not followed.
 ---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure on its way into a PNG file.
 ---@field tone? 'none'|'reinhard'|'filmic' tone ('none'|'reinhard'|'filmic'; default --tone): The curve that brings bright light into the range of a PNG file.

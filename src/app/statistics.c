@@ -14,7 +14,7 @@ struct figure {
     uint64_t count;
 };
 
-enum { FIGURES = 20 };
+enum { FIGURES = 24 };
 
 static int list_figures(struct figure out[FIGURES], const struct picture_report *report) {
     const struct render_statistics *rays = &report->rays;
@@ -29,6 +29,10 @@ static int list_figures(struct figure out[FIGURES], const struct picture_report 
         {"reflected_rays", "reflected rays", FIGURE_COUNT, 0, rays->reflected_rays},
         {"refracted_rays", "refracted rays", FIGURE_COUNT, 0, rays->refracted_rays},
         {"shadow_rays", "shadow rays", FIGURE_COUNT, 0, rays->shadow_rays},
+        {"photons", "photons sent", FIGURE_COUNT, 0, rays->photons},
+        {"photons_landed", "photons kept", FIGURE_COUNT, 0, rays->photons_landed},
+        {"photon_rays", "rays of photons", FIGURE_COUNT, 0, rays->photon_rays},
+        {"photon_seconds", "photons", FIGURE_SECONDS, rays->photon_seconds, 0},
         {"shape_tests", "shape tests", FIGURE_COUNT, 0, rays->shape_tests},
         {"triangle_tests", "triangle tests", FIGURE_COUNT, 0, rays->triangle_tests},
         {"voxels", "voxels visited", FIGURE_COUNT, 0, rays->voxels},

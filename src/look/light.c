@@ -141,7 +141,7 @@ struct vec3 light_target(const struct light *light, const struct light_frame *fr
 }
 
 /* Uniform on the triangle that the place's x falls on, whose share is spread over the unit interval again. */
-static struct light_sample mesh_sample(const struct light_mesh *mesh, struct vec3 from, struct sample2 place) {
+struct light_point light_mesh_point(const struct light_mesh *mesh, struct sample2 place) {
     uint32_t low = 0, high = mesh->count - 1;
     while (low < high) {
         uint32_t middle = low + (high - low) / 2;
@@ -154,7 +154,13 @@ static struct light_sample mesh_sample(const struct light_mesh *mesh, struct vec
     double x = share > 0 ? (place.x - begin) / share : 0.5, root = sqrt(x < 1 ? x : 1);
     const struct light_triangle *t = &mesh->triangles[low];
     struct vec3 point = vec3_add_scaled(t->corner, t->edge1, root * (1 - place.y));
-    point = vec3_add_scaled(point, t->edge2, root * place.y);
+    return (struct light_point){t, vec3_add_scaled(point, t->edge2, root * place.y)};
+}
+
+static struct light_sample mesh_sample(const struct light_mesh *mesh, struct vec3 from, struct sample2 place) {
+    struct light_point at = light_mesh_point(mesh, place);
+    const struct light_triangle *t = at.triangle;
+    struct vec3 point = at.place;
     struct vec3 away = vec3_sub(from, point);
     double squared = vec3_length_squared(away), across = vec3_dot(t->normal, away);
     double weight = squared > 0 && (across > 0 || !mesh->one_sided) ? fabs(across) / (squared * sqrt(squared)) : 0;

@@ -70,6 +70,13 @@ struct light {
     const uint8_t *lit; /* by placed primitive, made by world_build from the lists; NULL: everything */
 };
 
+/* A place on a lamp that is a mesh, for one in the unit square. */
+struct light_point {
+    const struct light_triangle *triangle;
+    struct vec3 place;
+};
+struct light_point light_mesh_point(const struct light_mesh *mesh, struct sample2 place);
+
 /* Of the distance, as `fading` says. */
 double light_attenuation(const struct light *light, double distance);
 /* Share of a spot's light in the unit direction from the light: 1 inside the inner cone, 0 outside the outer, between

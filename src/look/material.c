@@ -199,3 +199,20 @@ bool material_has_ior(const struct material *material) {
         link = link->base;
     return link->kind == MATERIAL_PHONG && link->phong.has_ior;
 }
+
+double material_specular(const struct material *material) {
+    bool fresnel = false, filtered = false;
+    double metal = 0;
+    const struct material *link = material;
+    for (; link->base; link = link->base) {
+        fresnel = fresnel || link->kind == MATERIAL_FRESNEL;
+        filtered = filtered || (link->kind == MATERIAL_IMAGE && link->image.target == IMAGE_TO_KS);
+        if (link->kind == MATERIAL_METAL) /* what a picture makes of it is not known here */
+            metal = link->image.image ? 1 : link->image.metallic * (1 - link->image.roughness);
+    }
+    if (link->kind != MATERIAL_PHONG)
+        return 0;
+    double amount = fresnel ? 1 : link->phong.reflect + link->phong.refract;
+    double own = amount > 0 ? amount * (filtered ? 1 : vec3_max_abs(link->phong.ks)) : 0;
+    return own > metal ? own : metal;
+}

@@ -120,6 +120,8 @@ bool material_is_transparent(const struct material *material, double *ior);
 struct vec3 material_absorption(const struct material *material);
 /* Of the base: its own light. */
 struct vec3 material_emission(const struct material *material);
+/* The share of light that its mirror and its refraction give back together, at most; 0: neither. */
+double material_specular(const struct material *material);
 bool material_has_ior(const struct material *material);
 
 #endif

@@ -1,10 +1,12 @@
-/* Light that comes straight from the lights of the scene. A light at a place, or one that is shaded as from its centre,
- * is one evaluation times the share of its shadow rays that arrive; of a lamp every shadow ray is evaluated by itself.
- * The places of a light's samples are cells of the unit square, parted once more among the samples of a pixel. */
+/* Light that comes straight from the lights of the scene, and that of the photon map. A light at a place, or one that
+ * is shaded as from its centre, is one evaluation times the share of its shadow rays that arrive; of a lamp every
+ * shadow ray is evaluated by itself. The places of a light's samples are cells of the unit square, parted once more
+ * among the samples of a pixel. */
 #include "render/direct.h"
 
 #include "base/random.h"
 #include "math/sampling.h"
+#include "render/photon_map.h"
 #include "world/packet.h"
 
 enum { AREA_BATCH = 256 }; /* shadow rays of one hit that are asked together */
@@ -178,5 +180,7 @@ struct vec3 direct_light(struct tracer *tracer, const struct hit *hit, const str
         sum = vec3_add(sum, light->emits ? lamp_light(tracer, light, i, hit, shading, normal, light_key)
                                          : light_from_place(tracer, light, i, hit, shading, normal, light_key));
     }
+    if (tracer->caustics && !dark_side)
+        sum = vec3_add(sum, photon_map_light(tracer->caustics, world, hit, shading, normal));
     return sum;
 }

@@ -1,4 +1,4 @@
-/* Light that arrives at a hit straight from the lights of the scene. */
+/* Light that arrives at a hit straight from the lights of the scene, and as caustics. */
 #ifndef GRAY_RENDER_DIRECT_H
 #define GRAY_RENDER_DIRECT_H
 

@@ -6,6 +6,7 @@
 #include "base/mem.h"
 #include "base/random.h"
 #include "render/camera.h"
+#include "render/photon_trace.h"
 #include "render/shard.h"
 #include "render/whitted.h"
 
@@ -50,6 +51,7 @@ struct run {
     bool media_by_ray; /* rays start in different places or moments, and solids are near */
     uint32_t *closed;  /* the solids that the eye can stand in */
     uint32_t closed_count;
+    struct photon_map caustics;
     struct worker *workers;
     uint32_t tiles_wanted; /* of this process, those that were there before too */
     uint64_t *cost;        /* of each tile while shards are chosen */
@@ -509,6 +511,21 @@ static bool prepare_run(struct run *run, const struct camera_frame *at_close) {
     return find_eye_media(run, &origins, run->timed || camera_spreads(&run->camera));
 }
 
+/* Before the first tile; without photons there is no map. */
+static bool send_photons(struct run *run, int workers, struct render_statistics *out, struct error *error) {
+    struct photon_statistics photons = {0};
+    if (run->job->settings.caustics.photons == 0)
+        return true;
+    bool ok = photons_make(&run->caustics, run->job->world, &run->job->settings, run->pool, &photons, error);
+    out->photons += photons.sent;
+    out->photons_landed += photons.landed;
+    out->photon_rays += photons.rays;
+    out->photon_seconds += photons.seconds;
+    for (int i = 0; i < workers; i++)
+        run->workers[i].tracer.caustics = &run->caustics;
+    return ok;
+}
+
 bool render_run(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
                 struct error *error) {
     struct run run = {.job = job, .pool = pool};
@@ -521,7 +538,7 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
     bool ok = start_workers(&run, workers) && prepare_run(&run, &at_close);
     if (!ok) {
         error_no_memory(error, "the workers of a render");
-    } else if (!choose_tiles(&run, error)) {
+    } else if (!send_photons(&run, workers, statistics, error) || !choose_tiles(&run, error)) {
         ok = false;
     } else if (count_tiles(&run), !run_tiles(&run)) {
         ok = atomic_load(&run.failed) ? error_no_memory(error, "the crossings of a ray")
@@ -536,6 +553,7 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
         for (int i = 0; i < workers; i++)
             world_scratch_destroy(&run.workers[i].scratch);
     }
+    photon_map_destroy(&run.caustics);
     mem_free(run.workers);
     mem_free(run.closed);
     statistics->render_seconds += seconds_now() - begin;

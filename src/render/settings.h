@@ -38,7 +38,15 @@ struct camera_motion {
     struct vec3 eye, view, up;
 };
 
+/* A photon map of the light that specular things throw (docs/light.md). */
+struct caustics {
+    int photons;   /* sent; 0: no caustics; at most PHOTONS_MOST */
+    double radius; /* of what one photon lights, world units; 0: by their density */
+};
+enum { PHOTONS_MOST = 100000000, PHOTONS_USUAL = 200000 };
+
 struct settings {
+    struct caustics caustics;
     struct lens lens;
     struct shutter shutter;
     struct camera_motion motion;

@@ -13,8 +13,9 @@ struct tracer {
     const struct render_job *job;
     const struct pool *pool; /* asked whether to stop; NULL: never */
     struct world_scratch *scratch;
-    const struct media *eye_media; /* what the camera stands in */
-    struct strata strata;          /* of the pixel sample that is traced */
+    const struct media *eye_media;     /* what the camera stands in */
+    struct strata strata;              /* of the pixel sample that is traced */
+    const struct photon_map *caustics; /* or NULL */
     uint64_t reflected_rays, refracted_rays, shadow_rays, hits;
 };
 

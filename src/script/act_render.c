@@ -217,6 +217,8 @@ static void apply_settings(const struct value *args, struct settings *settings) 
         settings->tone.srgb = args[RENDER_SRGB].boolean;
     if (args[RENDER_DEEP].given)
         settings->deep = args[RENDER_DEEP].boolean;
+    if (args[RENDER_CAUSTICS].given)
+        settings->caustics = (struct caustics){(int)args[RENDER_CAUSTICS].number, args[RENDER_CAUSTICS].vector.x};
     if (args[RENDER_CUTOFF].given)
         settings->cutoff = args[RENDER_CUTOFF].number;
 }

@@ -1,6 +1,7 @@
 /* Reading arguments: the first paragraph of every binding function, driven by the table. It may raise, so it owns
  * nothing: arrays go to the arena of the call. Tables are read raw, so that no metamethod runs in between and a million
  * vertices take a fraction of a second. NaN and infinities stop here. */
+#include "render/settings.h"
 #include "script/context.h"
 
 #include <lauxlib.h>
@@ -390,6 +391,40 @@ static void read_rows(struct context *c, int index, struct place place, bool pai
     value->pairs = pairs ? (const double(*)[2])(void *)numbers : NULL;
 }
 
+/* How the photons of caustics are asked for: a number of them, or a table of its own. */
+static void read_caustics(struct context *c, int index, const struct place *place, struct value *value) {
+    static const struct parameter photons = {
+        .name = "caustics.photons", .kind = KIND_WHOLE, .low = 0, .high = PHOTONS_MOST};
+    static const struct parameter radius = {
+        .name = "caustics.radius", .kind = KIND_NUMBER, .flags = LOW_OPEN, .low = 0, .high = (double)INFINITY};
+    lua_State *L = c->lua;
+    value->number = PHOTONS_USUAL;
+    if (lua_isnumber(L, index)) {
+        value->number = read_whole(c, index, &(struct place){.parameter = &photons});
+        return;
+    }
+    if (!lua_istable(L, index))
+        wrong_type(c, place, kind_words(place->parameter->kind), index);
+    const char *unknown = NULL;
+    for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1)) {
+        if (lua_type(L, -2) != LUA_TSTRING)
+            context_raise(c, "fields of caustics need names, as in photons = ...");
+        const char *field = lua_tostring(L, -2);
+        bool known = strcmp(field, "photons") == 0 || strcmp(field, "radius") == 0;
+        if (!known && (!unknown || strcmp(field, unknown) < 0))
+            unknown = field;
+    }
+    if (unknown)
+        context_raise(c, "caustics has the fields photons and radius, not '%.100s'", unknown);
+    lua_pushstring(L, "photons");
+    if (lua_rawget(L, index) != LUA_TNIL)
+        value->number = read_whole(c, lua_gettop(L), &(struct place){.parameter = &photons});
+    lua_pushstring(L, "radius");
+    if (lua_rawget(L, index) != LUA_TNIL)
+        value->vector.x = read_number(c, lua_gettop(L), &(struct place){.parameter = &radius});
+    lua_pop(L, 2);
+}
+
 /* One argument at an absolute stack index. False: it is a ghost. */
 static bool read_value(struct context *c, int index, const struct parameter *p, struct value *value) {
     struct place place = {.parameter = p};
@@ -484,6 +519,9 @@ static bool read_value(struct context *c, int index, const struct parameter *p, 
     case KIND_FOG:
         value->fog = read_handle(c, index, &place, HANDLE_FOG);
         return value->fog != NULL;
+    case KIND_CAUSTICS:
+        read_caustics(c, index, &place, value);
+        return true;
     case KIND_NODES:
     case KIND_LIGHTS:
         read_list_of_handles(c, index, place, value);
@@ -565,6 +603,7 @@ static bool looks_like(lua_State *L, int index, enum kind kind) {
     case KIND_SIZE:
     case KIND_PAIR:
     case KIND_NUMBERS:
+    case KIND_CAUSTICS:
         return lua_istable(L, index) || lua_isnumber(L, index);
     case KIND_NODE:
         return handle && (ghost || handle->type == HANDLE_NODE);

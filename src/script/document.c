@@ -196,6 +196,8 @@ static const char *annotation_type(const struct parameter *p, char out[200]) {
         return "gr.triple|gr.sky|'gradient'";
     case KIND_FOG:
         return "gr.fog";
+    case KIND_CAUSTICS:
+        return "integer|{photons?: integer, radius?: number}";
     case KIND_STOPS:
         return "number[][]";
     case KIND_NODES:

@@ -851,6 +851,9 @@ static const struct parameter render_parameters[] = {
     [RENDER_ACCEL] = {"accel", KIND_CHOICE, OPTIONAL, 0, 0, "auto grid bvh kdtree none", NULL, "'auto'",
                       "How hits are searched; the picture is the same."},
     [RENDER_FOG] = {"fog", KIND_FOG, OPTIONAL, ANY, NULL, "none", "A fog."},
+    [RENDER_CAUSTICS] = {"caustics", KIND_CAUSTICS, OPTIONAL, ANY, NULL, "--caustics",
+                         "Light that glass and mirrors throw: how many photons are sent (200000), and the radius of "
+                         "what each lights (by their density)."},
     [RENDER_CUTOFF] = {"cutoff", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "--cutoff",
                        "Rays that can change a pixel by less than this are not followed."},
     [RENDER_EXPOSURE] = {"exposure", KIND_NUMBER, OPTIONAL, BETWEEN(-100, 100), "stops", "--exposure",
@@ -1170,6 +1173,8 @@ const char *kind_words(enum kind kind) {
         return "a colour {r, g, b}, a sky or 'gradient'";
     case KIND_FOG:
         return "a fog";
+    case KIND_CAUSTICS:
+        return "a number of photons or {photons = ..., radius = ...}";
     case KIND_STOPS:
         return "a table of stops {height, r, g, b}";
     case KIND_NODES:

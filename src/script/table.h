@@ -42,6 +42,7 @@ enum kind {
     KIND_IMAGE,      /* image, or text: the name of its file */
     KIND_BACKGROUND, /* vector, or text = "gradient", or sky */
     KIND_FOG,        /* fog */
+    KIND_CAUSTICS,   /* number: photons, vector.x: radius; a number alone is the photons */
     KIND_NODES,      /* nodes, count */
     KIND_LIGHTS,     /* lights, count */
     KIND_POINTS,     /* points, count */

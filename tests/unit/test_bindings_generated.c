@@ -135,6 +135,9 @@ static void right_text(const struct parameter *p, char *out, size_t size) {
     case KIND_FACES:
         text = strstr(p->help, "16") ? "{{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15}}" : "{{0, 1, 2}}";
         break;
+    case KIND_CAUSTICS:
+        text = "{photons = 64, radius = 0.5}";
+        break;
     case KIND_FOG:
         text = "mist";
         break;
@@ -191,6 +194,18 @@ static const char *wrong_text(const struct parameter *p, int which, char *out, s
         list[count++] = "{1}";
         list[count++] = "{2, 1}";
         list[count++] = "{1, 0 / 0}";
+    }
+    if (p->kind == KIND_CAUSTICS) {
+        list[count++] = "{photons = 1.5}";
+        list[count++] = "{photons = -1}";
+        list[count++] = "{photons = 1e9}";
+        list[count++] = "{photons = {}}";
+        list[count++] = "{radius = 0}";
+        list[count++] = "{radius = 1 / 0}";
+        list[count++] = "{photon = 7}";
+        list[count++] = "{7}";
+        list[count++] = "-1";
+        list[count++] = "0 / 0";
     }
     if (p->kind == KIND_FOG)
         list[count++] = "glass";

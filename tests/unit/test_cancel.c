@@ -202,3 +202,22 @@ TEST(long_pixels_of_glass_and_soft_light_stop_soon) {
     expect_quick("a render", s.pool, render, &s);
     stage_end(&s);
 }
+
+/* Millions of photons through glass, and the map of them. */
+TEST(sending_photons_and_making_their_map_stop_soon) {
+    struct stage s;
+    stage_begin(&s, 2);
+    struct material *glass = stage_glass(&s, 0.5, 0.5, 1.5);
+    for (int i = 0; i < 9; i++) {
+        struct node *ball = stage_sphere(&s, s.root, glass);
+        stage_move(&s, ball, i % 3 * 1.5 - 1.5, (double)(i / 3) * 1.5 - 1.5, 0);
+    }
+    struct node *floor = stage_cube(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+    stage_scale(&s, floor, 40, 1, 40);
+    stage_move(&s, floor, -20, -5, -20);
+    stage_point_light(&s, vec3_make(1, 8, 2), vec3_all(1));
+    s.settings.caustics.photons = 500000;
+    CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+    expect_quick("photons", s.pool, render, &s);
+    stage_end(&s);
+}

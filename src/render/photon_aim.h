@@ -1,0 +1,55 @@
+/* Where photons start: for each light the directions (of a distant light: the places across its rays) from which they
+ * can meet something specular, in cells; the projection maps of Jensen 1996. */
+#ifndef GRAY_RENDER_PHOTON_AIM_H
+#define GRAY_RENDER_PHOTON_AIM_H
+
+#include "base/arena.h"
+#include "base/pool.h"
+#include "render/media.h"
+
+struct photon_cell {
+    double until;          /* sum of the importance of all cells up to this one */
+    uint32_t face, i, j;   /* of a cube round the light; of a distant light face 0 */
+    float strength, shine; /* share that the strongest specular thing there gives back; the light's own in its middle */
+};
+
+/* One light, or one part of a light with an extent. */
+struct photon_aim {
+    const struct light *light;
+    uint32_t number;    /* of the light */
+    struct vec3 centre; /* the places where photons start lie in this ball */
+    double radius;
+    double low[2], side;            /* part of the unit square whose places are meant: low to low + side */
+    struct vec3 right, up;          /* of a distant light, a disc, a parallelogram's edges */
+    double corner[2], size, behind; /* distant: the square across, and where photons start along the direction */
+    uint32_t level, cell_count;     /* 2^level cells along the side of a face */
+    struct photon_cell *cells;
+    double total;          /* importance of all cells */
+    double flux;           /* what they send, as far as it can be told before */
+    uint32_t first, count; /* photons of the whole map that are its own */
+    struct media media;    /* round the centre */
+};
+
+struct photon_aims {
+    struct photon_aim *aims;
+    uint32_t count;
+};
+
+/* Finds the cells of every light of the world and shares `photons` among them by flux. Memory comes from the arena.
+ * Errors: no memory, cancelled. Without specular things there are no aims. */
+bool photon_aims_make(struct photon_aims *out, const struct world *world, uint32_t photons, struct arena *arena,
+                      struct world_scratch *scratch, struct pool *pool, struct error *error);
+
+struct photon_start {
+    struct vec3 origin, direction; /* direction: unit */
+    struct vec3 power;             /* before fading */
+    double strength;               /* of its cell: power is divided by it, and what is left after a thing as strong as
+                                      this is what all photons are to have */
+    uint64_t key;
+};
+/* Photon `index` (0 .. count-1) of the aim; a function of its arguments. */
+struct photon_start photon_aim_start(const struct photon_aim *aim, uint32_t index, uint64_t seed);
+/* Times this is its power after a way of `length`. */
+double photon_fading(const struct light *light, double length);
+
+#endif

@@ -1,0 +1,244 @@
+/* The way of one photon: at each surface one draw decides between the mirror, what is behind, the map and nothing, by
+ * how much light each would get (Russian roulette: Arvo and Kirk, "Particle Transport and Image Synthesis", SIGGRAPH
+ * 1990), and the photon carries on undivided. What Whitted's rays do at a surface happens here by the same code: the
+ * stack of media, Snell, Fresnel, facets, Beer. One difference: total reflection is total, whatever -use-tir says about
+ * camera rays.
+ *
+ * A photon is a function of its number, and its place in the array is that number: threads cannot change the map. It
+ * lands at most once, so memory is known before. */
+#include "render/photon_trace.h"
+
+#include "base/mem.h"
+#include "base/random.h"
+#include "look/microfacet.h"
+#include "render/interface.h"
+#include "render/photon_aim.h"
+
+#include <time.h>
+
+enum { BATCH = 1024 };
+
+struct sending {
+    const struct world *world;
+    const struct settings *settings;
+    const struct photon_aims *aims;
+    struct pool *pool;
+    struct photon *photons;
+    struct world_scratch *scratches; /* of each worker */
+    uint64_t seed;
+    uint32_t count;
+};
+
+/* A photon under way. */
+struct flight {
+    struct ray ray;
+    struct media media;
+    struct vec3 left; /* of its power, per draw; the mean over all draws is what the surfaces leave */
+    double length, strength;
+    uint64_t key;
+    uint32_t draws;
+    bool specular; /* it met something specular */
+};
+
+static double draw(struct flight *flight) {
+    return random_unit(random_combine(flight->key, flight->draws++));
+}
+
+static double mean(struct vec3 c) {
+    return (c.x + c.y + c.z) / 3;
+}
+
+/* What a surface does with a photon. */
+struct choice {
+    struct vec3 mirror, refraction;
+    double diffuse; /* the largest component of what answers light from one direction */
+};
+
+static struct choice choice_make(const struct shading *shading, const struct interface *interface) {
+    struct choice choice = {.diffuse = 0};
+    for (int i = 0; i < shading->count; i++) {
+        struct vec3 weight = shading->lobes[i].weight;
+        switch (shading->lobes[i].kind) {
+        case LOBE_DIFFUSE:
+            choice.diffuse = vec3_max_abs(weight);
+            break;
+        case LOBE_PHONG:
+        case LOBE_BLINN:
+            break;
+        case LOBE_MIRROR:
+            choice.mirror = vec3_add(choice.mirror, weight);
+            break;
+        case LOBE_REFRACT:
+            choice.refraction = vec3_add(choice.refraction, weight);
+            break;
+        }
+    }
+    if (!interface->passes) {
+        choice.mirror = vec3_add(choice.mirror, choice.refraction);
+        choice.refraction = vec3_all(0);
+    }
+    return choice;
+}
+
+/* On to where the mirror or the refraction sends it. False: absorbed. */
+static bool fly_on(struct flight *flight, const struct hit *hit, const struct interface *interface,
+                   const struct choice *choice, double alpha) {
+    struct vec3 mirrored = vec3_mul(flight->left, choice->mirror);
+    struct vec3 refracted = vec3_mul(flight->left, choice->refraction);
+    double to_mirror = fmax(mean(mirrored), 0), to_behind = fmax(mean(refracted), 0), both = to_mirror + to_behind;
+    /* All photons are to have the same power: what is left of one that met the strongest thing of its cell. */
+    double survival = both < flight->strength ? both / flight->strength : 1, x = draw(flight);
+    if (!(x < survival))
+        return false;
+    bool mirror = x / survival * both < to_mirror;
+    struct vec3 side = interface->side, direction;
+    if (alpha > 0) {
+        double u = draw(flight), v = draw(flight);
+        side = microfacet_normal(interface->side, hit->view, alpha, (struct sample2){u, v});
+    }
+    if (mirror) {
+        flight->left = vec3_scale(mirrored, both / (to_mirror * survival));
+        direction =
+            alpha > 0 ? interface_facet_mirror(interface, side, hit->view) : interface_mirror(interface, hit->view);
+    } else {
+        flight->left = vec3_scale(refracted, both / (to_behind * survival));
+        direction = alpha > 0 ? interface_facet_through(interface, side, hit->view) : interface->through;
+        media_copy(&flight->media, &interface->behind);
+    }
+    flight->ray = interface_ray(hit, &flight->ray, direction, &flight->media);
+    flight->specular = true;
+    return true;
+}
+
+static void land(const struct photon_start *start, const struct photon_aim *aim, const struct flight *flight,
+                 const struct hit *hit, struct photon *photon) {
+    struct vec3 power = vec3_mul(start->power, flight->left);
+    power = vec3_scale(power, photon_fading(aim->light, flight->length));
+    if (!vec3_finite(power) || !vec3_finite(hit->point) || !(vec3_max_abs(power) > 0))
+        return;
+    *photon = (struct photon){hit->point, power, photon_pack(hit->view), aim->number};
+}
+
+static void send(struct sending *s, const struct photon_aim *aim, uint32_t index, struct world_scratch *scratch,
+                 struct photon *photon) {
+    struct photon_start start = photon_aim_start(aim, index, s->seed);
+    struct flight flight = {.ray = {.origin = start.origin, .direction = start.direction, .t_max = INFINITY},
+                            .left = {1, 1, 1},
+                            .strength = start.strength,
+                            .key = start.key};
+    media_copy(&flight.media, &aim->media);
+    flight.ray.time = draw(&flight);
+    if (start.power.x == 0 && start.power.y == 0 && start.power.z == 0)
+        return;
+    const uint8_t *lit = aim->light->lit;
+    for (int bounce = 0; bounce < PHOTON_BOUNCES && !scratch->failed; bounce++) {
+        struct hit hit;
+        struct surface_look look;
+        struct interface interface;
+        struct shading shading;
+        if (!world_nearest(s->world, &flight.ray, scratch, &hit))
+            return;
+        flight.length += hit.t;
+        if (flight.media.count > 0)
+            flight.left = vec3_mul(flight.left, media_left(&flight.media, hit.t));
+        material_look(s->world->materials[hit.material], &hit, &look);
+        if (look.opacity < 1 && draw(&flight) >= look.opacity) {
+            /* Through a hole, as if nothing were there. */
+            flight.ray = interface_ray(&hit, &flight.ray, vec3_negate(hit.view), &flight.media);
+            continue;
+        }
+        interface_make(&hit, &flight.media, &look, &interface);
+        material_shading(&look, s->settings->specular, s->settings->ambient_plain, &shading);
+        struct choice choice = choice_make(&shading, &interface);
+        bool receives = flight.specular && choice.diffuse > 0 && (hit.front || look.two_sided);
+        if (receives && (!lit || lit[hit.placed])) {
+            double on = fmax(mean(choice.mirror) + mean(choice.refraction), 0);
+            double share = choice.diffuse / (choice.diffuse + on);
+            if (draw(&flight) < share) {
+                flight.left = vec3_scale(flight.left, 1 / share);
+                land(&start, aim, &flight, &hit, photon);
+                return;
+            }
+            flight.left = vec3_scale(flight.left, 1 / (1 - share));
+        }
+        if (!fly_on(&flight, &hit, &interface, &choice, shading.alpha))
+            return;
+    }
+}
+
+static void send_batch(void *context, uint32_t batch, int worker) {
+    struct sending *s = context;
+    uint64_t end = ((uint64_t)batch + 1) * BATCH;
+    const struct photon_aim *aim = s->aims->aims;
+    for (uint32_t i = batch * BATCH; i < end && i < s->count && !pool_cancelled(s->pool); i++) {
+        s->photons[i].light = PHOTON_NOWHERE;
+        while (i >= aim->first + aim->count)
+            aim++;
+        send(s, aim, i - aim->first, &s->scratches[worker], &s->photons[i]);
+    }
+}
+
+static bool send_all(struct sending *s, struct photon_statistics *statistics, struct error *error) {
+    int workers = pool_workers(s->pool);
+    bool failed = false;
+    for (int i = 0; i < workers && !failed; i++)
+        failed = !world_scratch_init(&s->scratches[i], s->world);
+    bool whole = !failed && pool_run(s->pool, (uint32_t)(((uint64_t)s->count + BATCH - 1) / BATCH), send_batch, s);
+    for (int i = 0; i < workers; i++) {
+        failed = failed || s->scratches[i].failed;
+        statistics->rays += s->scratches[i].rays;
+        world_scratch_destroy(&s->scratches[i]);
+    }
+    if (failed)
+        return error_no_memory(error, "the crossings of a photon");
+    return whole || error_set(error, ERROR_CANCELLED, "stopped while sending photons");
+}
+
+static double seconds_now(void) {
+    struct timespec now;
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static bool aim_all(struct sending *s, struct photon_aims *aims, struct arena *arena, struct error *error) {
+    struct world_scratch scratch;
+    bool ok = world_scratch_init(&scratch, s->world) || error_no_memory(error, "the crossings of a photon");
+    ok = ok &&
+         photon_aims_make(aims, s->world, (uint32_t)s->settings->caustics.photons, arena, &scratch, s->pool, error);
+    world_scratch_destroy(&scratch);
+    s->aims = aims;
+    s->count = aims->count > 0 ? (uint32_t)s->settings->caustics.photons : 0;
+    return ok;
+}
+
+bool photons_make(struct photon_map *map, const struct world *world, const struct settings *settings, struct pool *pool,
+                  struct photon_statistics *statistics, struct error *error) {
+    struct arena arena = {0};
+    struct photon_aims aims = {0};
+    double begin = seconds_now();
+    struct sending s = {.world = world,
+                        .settings = settings,
+                        .pool = pool,
+                        .seed = random_combine(settings->seed, UINT64_C(0x70686f746f6e73))};
+    *map = (struct photon_map){0};
+    bool ok = aim_all(&s, &aims, &arena, error);
+    if (ok && s.count > 0) {
+        s.photons = mem_alloc((size_t)s.count * sizeof *s.photons);
+        s.scratches = mem_alloc_zero((size_t)pool_workers(pool), sizeof *s.scratches);
+        ok = s.photons && s.scratches;
+        if (!ok)
+            ok = error_no_memory(error, "the photons of the caustics");
+        else
+            ok = send_all(&s, statistics, error) &&
+                 photon_map_build(map, world, s.photons, s.count, settings->caustics.radius, pool, error);
+    }
+    statistics->sent += s.count;
+    statistics->landed += map->count;
+    statistics->seconds += seconds_now() - begin;
+    mem_free(s.photons);
+    mem_free(s.scratches);
+    arena_destroy(&arena);
+    if (!ok)
+        photon_map_destroy(map);
+    return ok;
+}

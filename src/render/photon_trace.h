@@ -1,0 +1,22 @@
+/* Caustics: light that went through or off something specular before it met something diffuse. Photons are sent before
+ * the picture is made, and kept in a map. */
+#ifndef GRAY_RENDER_PHOTON_TRACE_H
+#define GRAY_RENDER_PHOTON_TRACE_H
+
+#include "render/photon_map.h"
+#include "render/settings.h"
+
+/* More bounces than this end a photon's way; in lossless glass next to nothing is left by then. */
+enum { PHOTON_BOUNCES = 100 };
+
+struct photon_statistics {
+    uint64_t sent, landed, rays;
+    double seconds;
+};
+
+/* Sends settings->photons photons through the world and builds the map of them; the same for any number of threads.
+ * Errors: no memory, cancelled. */
+bool photons_make(struct photon_map *map, const struct world *world, const struct settings *settings, struct pool *pool,
+                  struct photon_statistics *statistics, struct error *error);
+
+#endif

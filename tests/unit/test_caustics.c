@@ -1,0 +1,559 @@
+/* Caustics: what is sent arrives, where geometry says, in the unit of direct light. */
+#include "math/elementary.h"
+#include "render/photon_trace.h"
+#include "tests/harness.h"
+#include "tests/stage.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+static struct material *white(struct stage *s) {
+    struct material *material = stage_phong(s, vec3_all(1), vec3_all(0), 1);
+    material->phong.two_sided = true;
+    return material;
+}
+
+static struct material *mirror(struct stage *s) {
+    struct material *material = stage_phong(s, vec3_all(0), vec3_all(1), 1);
+    material->phong.reflect = 1;
+    return material;
+}
+
+static struct material *fresnel_glass(struct stage *s, double ior) {
+    struct material *material = scene_material(&s->scene, MATERIAL_FRESNEL, stage_glass(s, 0, 0, ior), &s->error);
+    return material;
+}
+
+static struct node *thing(struct stage *s, struct shape shape, const struct material *material) {
+    struct node *node = stage_sphere(s, s->root, material);
+    node->shape = shape;
+    return node;
+}
+
+static struct node *box(struct stage *s, struct vec3 min, struct vec3 max, const struct material *material) {
+    return thing(s, (struct shape){.kind = SHAPE_BOX, .box = {min, max}}, material);
+}
+
+static struct node *ball(struct stage *s, struct vec3 centre, double radius, const struct material *material) {
+    return thing(s, (struct shape){.kind = SHAPE_SPHERE, .sphere = {centre, radius}}, material);
+}
+
+static struct light *add_light(struct stage *s, struct light light) {
+    s->lights[s->light_count] = light;
+    return &s->lights[s->light_count++];
+}
+
+static struct light *inverse_square(struct stage *s, struct vec3 position, double intensity) {
+    return add_light(s, (struct light){.kind = LIGHT_POINT,
+                                       .position = position,
+                                       .colour = {1, 1, 1},
+                                       .fading = FADING_INVERSE_SQUARE,
+                                       .intensity = intensity});
+}
+
+/* The map of the stage's scene. */
+static struct photon_statistics send(struct stage *s, int photons, struct photon_map *map) {
+    struct photon_statistics statistics = {0};
+    s->settings.caustics.photons = photons;
+    CHECK(stage_build(s, s->root, ACCEL_AUTO));
+    if (!photons_make(map, &s->world, &s->settings, s->pool, &statistics, &s->error))
+        test_fail(__FILE__, __LINE__, "%s", s->error.text);
+    return statistics;
+}
+
+static struct vec3 photon_place(const struct photon_map *map, uint32_t i) {
+    const float *at = map->spots[i].at;
+    return vec3_add_scaled(map->origin, vec3_make((double)at[0], (double)at[1], (double)at[2]), map->unit);
+}
+
+static struct vec3 photon_power(const struct photon_map *map, uint32_t i) {
+    const float *power = map->lights[i].power;
+    return vec3_scale(vec3_make((double)power[0], (double)power[1], (double)power[2]), map->power_unit);
+}
+
+static struct vec3 all_power(const struct photon_map *map) {
+    struct vec3 sum = {0, 0, 0};
+    for (uint32_t i = 0; i < map->count; i++)
+        sum = vec3_add(sum, photon_power(map, i));
+    return sum;
+}
+
+/* --- the unit of light --- */
+
+/* The mean light on a piece of white floor. */
+static struct vec3 floor_light(struct stage *s, int photons) {
+    s->settings.caustics.photons = photons;
+    CHECK(stage_render(s, 16, 16));
+    struct vec3 sum = {0, 0, 0};
+    for (uint32_t i = 0; i < 256; i++)
+        sum = vec3_add(sum, stage_pixel(s, i % 16, i / 16));
+    return vec3_scale(sum, 1.0 / 256);
+}
+
+/* A pane of index 1 throws a full shadow; its caustic must be the light that was there. */
+static void pane_gives_back(const char *what, struct light light, double tolerance) {
+    struct stage s;
+    stage_begin(&s, 2);
+    s.camera = (struct camera){{0.3, 0.5, 0.2}, {0, -1, 0}, {0, 0, -1}, 50};
+    s.settings.lens.projection = PROJECTION_ORTHOGRAPHIC;
+    s.settings.lens.view_height = 1;
+    s.settings.area_samples = 16;
+    light.colour = vec3_make(0.5, 1, 2);
+    add_light(&s, light);
+    box(&s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), white(&s));
+    struct vec3 open = floor_light(&s, 0);
+    struct material *pane = stage_glass(&s, 0, 1, 1);
+    box(&s, vec3_make(-3, 1, -3), vec3_make(3, 1.2, 3), pane);
+    struct vec3 dark = floor_light(&s, 0), back = floor_light(&s, 20000);
+    CHECK(open.z > 0);
+    if (!(fabs(back.x / open.x - 1) < tolerance && fabs(back.z / open.z - 1) < tolerance && dark.y == 0))
+        test_fail(__FILE__, __LINE__, "%s: %g %g %g without the pane, %g %g %g with it, %g without photons", what,
+                  open.x, open.y, open.z, back.x, back.y, back.z, dark.y);
+    stage_end(&s);
+}
+
+TEST(a_pane_of_index_1_gives_back_the_light_of_every_kind) {
+    const struct vec3 above = {1, 4, 0.5};
+    const double falloffs[4][3] = {{1, 0, 0}, {0, 0, 0}, {0, 1, 0}, {0.2, 0.1, 0.3}};
+    for (int i = 0; i < 4; i++) {
+        struct light point = {.kind = LIGHT_POINT, .position = above};
+        memcpy(point.falloff, falloffs[i], sizeof point.falloff);
+        pane_gives_back("point", point, 0.01);
+    }
+    struct light physical = {.kind = LIGHT_POINT, .position = above, .fading = FADING_INVERSE_SQUARE, .intensity = 20};
+    pane_gives_back("inverse square", physical, 0.01);
+    struct light range = {.kind = LIGHT_POINT, .position = above, .fading = FADING_RANGE, .range = 6};
+    pane_gives_back("range", range, 0.01);
+    struct light distant = {.kind = LIGHT_DIRECTIONAL, .direction = vec3_normalize(vec3_make(0.3, -1, 0.2))};
+    pane_gives_back("directional", distant, 0.01);
+    struct light spot = {.kind = LIGHT_SPOT,
+                         .position = above,
+                         .direction = {0, -1, 0},
+                         .cos_inner = 0.999,
+                         .cos_outer = 0.9,
+                         .falloff = {1, 0, 0}};
+    pane_gives_back("spot", spot, 0.01);
+}
+
+/* Lights with an extent that fade as from their centre are as many points to photons: equal but for the square of
+ * extent over distance. */
+TEST(a_pane_of_index_1_gives_back_the_light_of_lights_with_an_extent) {
+    struct light panel = {.kind = LIGHT_PARALLELOGRAM,
+                          .position = {0, 5, 0},
+                          .corner = {-0.3, 5, -0.3},
+                          .edge1 = {0.6, 0, 0},
+                          .edge2 = {0, 0, 0.6},
+                          .falloff = {1, 0, 0}};
+    struct light disc = {.kind = LIGHT_DISC,
+                         .position = {0.4, 5, 0},
+                         .direction = {0, -1, 0},
+                         .radius = 0.4,
+                         .fading = FADING_INVERSE_SQUARE,
+                         .intensity = 20};
+    struct light globe = {.kind = LIGHT_SPHERE, .position = {0.4, 5, 0}, .radius = 0.4, .falloff = {1, 0, 0}};
+    pane_gives_back("area light", panel, 0.015);
+    pane_gives_back("disc", disc, 0.015);
+    pane_gives_back("sphere", globe, 0.015);
+    panel.emits = disc.emits = globe.emits = true;
+    pane_gives_back("lamp: parallelogram", panel, 0.015);
+    pane_gives_back("lamp: disc", disc, 0.015);
+    pane_gives_back("lamp: sphere", globe, 0.015);
+    /* Edge normals point down: one-sided lamps shine on the floor, or not at all. */
+    disc.one_sided = true;
+    pane_gives_back("lamp: one-sided disc", disc, 0.015);
+    /* Wide and near: photons start in parts of it. */
+    panel.position.y = panel.corner.y = 2;
+    panel.corner = vec3_make(-1, 2, -1);
+    panel.edge1.x = panel.edge2.z = 2;
+    pane_gives_back("lamp: wide parallelogram", panel, 0.02);
+}
+
+TEST(photons_shade_highlights_and_interpolated_sides_like_direct_light) {
+    struct stage s;
+    stage_begin(&s, 2);
+    s.camera = (struct camera){{0, 0.9, 1}, {0, -0.9, -1}, {0, 1, 0}, 20};
+    add_light(&s, (struct light){.kind = LIGHT_DIRECTIONAL,
+                                 .direction = vec3_normalize(vec3_make(0.1, -1, 0.8)),
+                                 .colour = {1, 1, 1}});
+    box(&s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), stage_phong(&s, vec3_all(0.2), vec3_all(0.7), 3));
+    struct vec3 open = floor_light(&s, 0);
+    box(&s, vec3_make(-3, 1, -3), vec3_make(3, 1.2, 3), stage_glass(&s, 0, 1, 1));
+    struct vec3 back = floor_light(&s, 40000);
+    CHECK(open.x > 0.2 * 0.8 + 0.05); /* there is a highlight */
+    CHECK_NEAR(back.x / open.x, 1, 0.02);
+    stage_end(&s);
+}
+
+/* --- energy --- */
+
+/* Sends photons of one light into a white hollow ball with something without losses in it. */
+static void arrives(const char *what, struct stage *s, double sent, double tolerance) {
+    struct photon_map map;
+    ball(s, vec3_make(0, 0, 0), 10, white(s));
+    (void)send(s, 60000, &map);
+    double arrived = all_power(&map).y;
+    if (!(fabs(arrived / sent - 1) < tolerance))
+        test_fail(__FILE__, __LINE__, "%s: %.6g sent, %.6g arrived", what, sent, arrived);
+    photon_map_destroy(&map);
+    stage_end(s);
+}
+
+TEST(without_absorption_all_flux_arrives) {
+    struct stage s;
+    /* A ball of radius 1 at distance 4 fills the solid angle 2 pi (1 - cos). */
+    double cap = 2 * pi * (1 - sqrt(15.0 / 16));
+    stage_begin(&s, 2);
+    inverse_square(&s, vec3_make(0, 4, 0), 3);
+    ball(&s, vec3_make(0, 0, 0), 1, fresnel_glass(&s, 1.5));
+    arrives("a glass ball", &s, 3 * cap, 0.01);
+
+    stage_begin(&s, 2);
+    inverse_square(&s, vec3_make(0, 4, 0), 3);
+    ball(&s, vec3_make(0, 0, 0), 1, mirror(&s));
+    arrives("a mirror", &s, 3 * cap, 0.01);
+
+    stage_begin(&s, 2);
+    inverse_square(&s, vec3_make(0, 4, 0), 3);
+    struct material *rough = stage_glass(&s, 0.3, 0.7, 1.5);
+    rough->phong.roughness = 0.5;
+    ball(&s, vec3_make(0, 0, 0), 1, rough);
+    arrives("rough glass", &s, 3 * cap, 0.01);
+
+    /* Flux over solid angle 4 pi of a lamp inside of the glass. */
+    stage_begin(&s, 2);
+    inverse_square(&s, vec3_make(0, 0.2, 0), 1);
+    ball(&s, vec3_make(0, 0, 0), 1, fresnel_glass(&s, 1.5));
+    arrives("a lamp in a glass ball", &s, 4 * pi, 0.01);
+}
+
+/* Light that enters the face of a cube of index 1.5 meets the other faces at more than the critical angle. */
+TEST(total_reflection_loses_nothing_whatever_use_tir_says) {
+    struct stage s;
+    stage_begin(&s, 2);
+    double distance = 1.5, half = 1;
+    inverse_square(&s, vec3_make(0, 0, half + distance), 1);
+    box(&s, vec3_all(-half), vec3_all(half), stage_glass(&s, 0, 1, 1.5));
+    double solid_angle = 4 * el_atan(half * half / (distance * sqrt(distance * distance + 2 * half * half)));
+    arrives("a glass cube", &s, solid_angle, 0.01);
+}
+
+/* A view factor in closed form: coaxial discs of radius 1 at distance 2. */
+TEST(a_lamp_sends_a_mirror_its_view_factor) {
+    struct stage s;
+    stage_begin(&s, 2);
+    add_light(&s, (struct light){.kind = LIGHT_DISC,
+                                 .position = {0, 2, 0},
+                                 .direction = {0, -1, 0},
+                                 .radius = 1,
+                                 .colour = {1, 1, 1},
+                                 .emits = true,
+                                 .one_sided = true});
+    thing(&s, (struct shape){.kind = SHAPE_FLAT, .flat = flat_disc(vec3_all(0), vec3_make(0, 1, 0), 1, 0)}, mirror(&s));
+    double r = 0.5, x = 1 + (1 + r * r) / (r * r), factor = 0.5 * (x - sqrt(x * x - 4));
+    arrives("a lamp", &s, pi * factor, 0.015);
+}
+
+TEST(coloured_glass_and_absorption_colour_the_light_exactly) {
+    for (int absorbs = 0; absorbs < 2; absorbs++) {
+        struct stage s;
+        struct photon_map map;
+        stage_begin(&s, 2);
+        add_light(&s, (struct light){.kind = LIGHT_DIRECTIONAL, .direction = {0, -1, 0}, .colour = {1, 1, 1}});
+        box(&s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), white(&s));
+        struct material *glass = stage_glass(&s, 0, 1, 1.5);
+        struct vec3 expect = {0.04, 1, 0.25};
+        if (absorbs) {
+            glass->phong.absorption = vec3_make(1, 0, 3);
+            expect = vec3_make(4 * el_exp(-0.5), 4, 4 * el_exp(-1.5));
+        } else {
+            glass->phong.ks = vec3_make(0.2, 1, 0.5);
+            expect = vec3_make(4 * 0.04, 4, 4 * 0.25);
+        }
+        box(&s, vec3_make(-1, 1, -1), vec3_make(1, 1.5, 1), glass);
+        (void)send(&s, 20000, &map);
+        struct vec3 sum = all_power(&map);
+        CHECK_NEAR(sum.x, expect.x, 0.01 * 4);
+        CHECK_NEAR(sum.y, expect.y, 0.01 * 4);
+        CHECK_NEAR(sum.z / sum.y, expect.z / expect.y, 0.01);
+        photon_map_destroy(&map);
+        stage_end(&s);
+    }
+}
+
+TEST(the_light_of_two_lights_is_the_sum) {
+    struct vec3 light[3];
+    for (int which = 0; which < 3; which++) {
+        struct stage s;
+        stage_begin(&s, 2);
+        s.camera = (struct camera){{0, 0.5, 0}, {0, -1, 0}, {0, 0, -1}, 50};
+        s.settings.lens.projection = PROJECTION_ORTHOGRAPHIC;
+        s.settings.lens.view_height = 3;
+        box(&s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), white(&s));
+        ball(&s, vec3_make(0, 2, 0), 1, fresnel_glass(&s, 1.5));
+        if (which != 1)
+            inverse_square(&s, vec3_make(2, 6, 0), 20)->colour = vec3_make(1, 0, 0.5);
+        if (which != 0)
+            add_light(&s, (struct light){.kind = LIGHT_DIRECTIONAL, .direction = {0, -1, 0}, .colour = {0, 1, 0.5}});
+        light[which] = vec3_sub(floor_light(&s, 60000), floor_light(&s, 0));
+        stage_end(&s);
+    }
+    CHECK_NEAR(light[2].x / light[0].x, 1, 0.03);
+    CHECK_NEAR(light[2].y / light[1].y, 1, 0.03);
+    CHECK_NEAR(light[2].z / (light[0].z + light[1].z), 1, 0.03);
+}
+
+/* --- where light gathers --- */
+
+static const struct vec3 down_a_little = {1, -0.5, 0};
+
+/* An upright ring of radius 1 and height 1, a mirror, on a white floor. */
+static void ring_on_floor(struct stage *s) {
+    stage_begin(s, 2);
+    box(s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), white(s));
+    struct conic ring = conic_cylinder(vec3_make(0, 0, 0), vec3_make(0, 1, 0), 1, true);
+    thing(s, (struct shape){.kind = SHAPE_CONIC, .conic = ring}, mirror(s));
+}
+
+/* Where light along a line of constant z inside the ring is brightest. */
+static double brightest(const struct photon_map *map, double z, double low, double high) {
+    enum { BINS = 60 };
+    double bins[BINS] = {0}, width = (high - low) / BINS;
+    for (uint32_t i = 0; i < map->count; i++) {
+        struct vec3 p = photon_place(map, i);
+        double bin = (p.x - low) / width;
+        if (fabs(p.z - z) < 0.005 && bin >= 0 && bin < BINS)
+            bins[(int)bin] += photon_power(map, i).x;
+    }
+    int best = 0;
+    for (int i = 1; i < BINS; i++)
+        best = bins[i] > bins[best] ? i : best;
+    return low + width * (best + 0.5);
+}
+
+/* Light along x that turns at the angle a touches ((3 cos a - cos 3a), (3 sin a - sin 3a)) / 4. */
+TEST(a_distant_light_draws_a_nephroid_in_a_ring) {
+    struct stage s;
+    struct photon_map map;
+    ring_on_floor(&s);
+    add_light(
+        &s, (struct light){.kind = LIGHT_DIRECTIONAL, .direction = vec3_normalize(down_a_little), .colour = {1, 1, 1}});
+    (void)send(&s, 300000, &map);
+    CHECK_NEAR(brightest(&map, 0, 0, 0.9), 0.5, 0.025);
+    double a = pi / 6;
+    double x = (3 * el_cos(a) - el_cos(3 * a)) / 4, z = (3 * el_sin(a) - el_sin(3 * a)) / 4;
+    CHECK_NEAR(brightest(&map, z, 0, 0.9), x, 0.03);
+    CHECK_NEAR(brightest(&map, -z, 0, 0.9), x, 0.03);
+    photon_map_destroy(&map);
+    stage_end(&s);
+}
+
+TEST(a_lamp_on_the_rim_draws_a_cardioid_in_a_ring) {
+    struct stage s;
+    struct photon_map map;
+    ring_on_floor(&s);
+    add_light(&s, (struct light){.kind = LIGHT_SPOT,
+                                 .position = {-0.999, 1, 0},
+                                 .direction = vec3_normalize(vec3_make(1, -0.3, 0)),
+                                 .cos_inner = 0.8,
+                                 .cos_outer = 0.7,
+                                 .falloff = {0, 0, 1},
+                                 .colour = {1, 1, 1}});
+    (void)send(&s, 300000, &map);
+    CHECK_NEAR(brightest(&map, 0, 0, 0.9), 1.0 / 3, 0.025);
+    photon_map_destroy(&map);
+    stage_end(&s);
+}
+
+/* The mean square distance from the axis of a narrow beam that went through a ball of radius 1. */
+static double beam_behind_ball(double ior, double screen) {
+    struct stage s;
+    struct photon_map map;
+    stage_begin(&s, 2);
+    add_light(&s, (struct light){.kind = LIGHT_DIRECTIONAL, .direction = {0, -1, 0}, .colour = {1, 1, 1}});
+    struct flat aperture = flat_disc(vec3_make(0, 2, 0), vec3_make(0, 1, 0), 3, 0.1);
+    thing(&s, (struct shape){.kind = SHAPE_FLAT, .flat = aperture}, white(&s));
+    ball(&s, vec3_make(0, 0, 0), 1, stage_glass(&s, 0, 1, ior));
+    box(&s, vec3_make(-5, -screen - 1, -5), vec3_make(5, -screen, 5), white(&s));
+    (void)send(&s, 80000, &map);
+    double sum = 0;
+    for (uint32_t i = 0; i < map.count; i++) {
+        struct vec3 p = photon_place(&map, i);
+        sum += p.x * p.x + p.z * p.z;
+    }
+    CHECK(map.count > 400);
+    double mean = sum / map.count;
+    photon_map_destroy(&map);
+    stage_end(&s);
+    return mean;
+}
+
+TEST(the_focus_of_a_ball_lens_lies_at_n_r_over_2_n_minus_2) {
+    for (int i = 0; i < 2; i++) {
+        double ior = i == 0 ? 1.5 : 1.7, focus = ior / (2 * (ior - 1)), best = beam_behind_ball(ior, focus);
+        CHECK(sqrt(best) < 0.002);
+        CHECK(beam_behind_ball(ior, focus * 0.96) > 2 * best);
+        CHECK(beam_behind_ball(ior, focus * 1.04) > 2 * best);
+    }
+}
+
+/* --- the map --- */
+
+/* Glass, mirrors and four kinds of light. */
+static void busy_scene(struct stage *s, int threads) {
+    stage_begin(s, threads);
+    s->camera = (struct camera){{0, 3, 6}, {0, -0.4, -1}, {0, 1, 0}, 50};
+    box(s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), stage_phong(s, vec3_all(0.8), vec3_all(0.2), 10));
+    ball(s, vec3_make(0, 1, 0), 1, fresnel_glass(s, 1.5));
+    ball(s, vec3_make(-2, 1, 1), 0.75, mirror(s));
+    struct material *rough = stage_glass(s, 0.25, 0.75, 1.25);
+    rough->phong.roughness = 0.25;
+    ball(s, vec3_make(2, 0.5, 1), 0.5, rough);
+    inverse_square(s, vec3_make(3, 5, 2), 20);
+    add_light(s, (struct light){.kind = LIGHT_DIRECTIONAL, .direction = {0, -1, 0}, .colour = {0.5, 0.5, 0.5}});
+    add_light(s, (struct light){.kind = LIGHT_PARALLELOGRAM,
+                                .position = {-2, 5, -1},
+                                .corner = {-3, 5, -2},
+                                .edge1 = {2, 0, 0},
+                                .edge2 = {0, 0, 2},
+                                .colour = {0.5, 0.5, 0.25},
+                                .falloff = {1, 0, 0}});
+    add_light(s, (struct light){
+                     .kind = LIGHT_SPHERE, .position = {0, 5, 3}, .radius = 0.5, .colour = {8, 8, 8}, .emits = true});
+}
+
+TEST(any_number_of_threads_makes_the_same_photon_map) {
+    struct stage s;
+    struct photon_map maps[3];
+    const int threads[3] = {1, 2, 5};
+    for (int i = 0; i < 3; i++) {
+        busy_scene(&s, threads[i]);
+        (void)send(&s, 30000, &maps[i]);
+        stage_end(&s);
+        CHECK(maps[i].count > 1000 && maps[i].count == maps[0].count);
+        CHECK(memcmp(maps[i].spots, maps[0].spots, maps[i].count * sizeof *maps[i].spots) == 0);
+        CHECK(memcmp(maps[i].lights, maps[0].lights, maps[i].count * sizeof *maps[i].lights) == 0);
+    }
+    for (int i = 0; i < 3; i++)
+        photon_map_destroy(&maps[i]);
+}
+
+/* Everything a length times 2^k, falloff coefficients along: the same bytes. */
+TEST(caustics_of_a_scene_of_another_scale_are_the_same_bytes) {
+    enum { SIZE = 24 };
+    float pixels[3][SIZE * SIZE * 3];
+    const int exponents[3] = {0, -10, 20};
+    for (int k = 0; k < 3; k++) {
+        struct stage s;
+        double factor = ldexp(1, exponents[k]);
+        busy_scene(&s, 2);
+        stage_scale(&s, s.root, factor, factor, factor);
+        s.camera.eye = vec3_scale(s.camera.eye, factor);
+        s.lights[0].intensity *= factor * factor;
+        for (uint32_t i = 0; i < s.light_count; i++) {
+            struct light *light = &s.lights[i];
+            light->position = vec3_scale(light->position, factor);
+            light->corner = vec3_scale(light->corner, factor);
+            light->edge1 = vec3_scale(light->edge1, factor);
+            light->edge2 = vec3_scale(light->edge2, factor);
+            light->radius *= factor;
+        }
+        s.settings.caustics.photons = 20000;
+        CHECK(stage_render(&s, SIZE, SIZE));
+        for (uint32_t i = 0; i < SIZE * SIZE; i++)
+            memcpy(&pixels[k][3 * i], s.film.pixels[i].rgb, sizeof s.film.pixels[i].rgb);
+        stage_end(&s);
+    }
+    CHECK(memcmp(pixels[0], pixels[1], sizeof pixels[0]) == 0);
+    CHECK(memcmp(pixels[0], pixels[2], sizeof pixels[0]) == 0);
+}
+
+TEST(the_map_gives_the_sum_over_all_discs) {
+    struct stage s;
+    struct photon_map map;
+    busy_scene(&s, 2);
+    (void)send(&s, 20000, &map);
+    struct shading shading = {.count = 1, .lobes = {{.kind = LOBE_DIFFUSE, .weight = {1, 1, 1}}}};
+    struct test_random random = {5};
+    int lit = 0;
+    for (int i = 0; i < 300; i++) {
+        struct hit hit = {.normal = {0, 1, 0}, .normal_geometric = {0, 1, 0}, .front = true, .view = {0, 1, 0}};
+        hit.point = vec3_make(test_uniform(&random, -3, 3), 0, test_uniform(&random, -3, 3));
+        struct vec3 light = photon_map_light(&map, &s.world, &hit, &shading, hit.normal);
+        double sum = 0;
+        for (uint32_t k = 0; k < map.count; k++) {
+            struct vec3 d = vec3_sub(photon_place(&map, k), hit.point);
+            double radius = (double)map.spots[k].radius * map.unit;
+            double squared = vec3_dot(d, d) + 15 * d.y * d.y, share = 1 - squared / (radius * radius);
+            if (share > 0 && photon_unpack(map.lights[k].from).y > 0)
+                sum += photon_power(&map, k).x * 2 * share / (pi * radius * radius);
+        }
+        lit += sum > 0;
+        CHECK_NEAR(light.x, sum, 1e-4 * sum + 1e-9);
+    }
+    CHECK(lit > 100);
+    photon_map_destroy(&map);
+    stage_end(&s);
+}
+
+TEST(a_radius_that_is_given_holds_for_every_photon) {
+    struct stage s;
+    struct photon_map map;
+    busy_scene(&s, 2);
+    s.settings.caustics.radius = 0.125;
+    (void)send(&s, 5000, &map);
+    for (uint32_t i = 0; i < map.count; i++)
+        CHECK_NEAR((double)map.spots[i].radius * map.unit, 0.125, 1e-6);
+    photon_map_destroy(&map);
+    stage_end(&s);
+}
+
+TEST(packed_directions_are_right_to_a_ten_thousandth) {
+    struct test_random random = {11};
+    for (int i = 0; i < 20000; i++) {
+        struct vec3 d = {test_uniform(&random, -1, 1), test_uniform(&random, -1, 1), test_uniform(&random, -1, 1)};
+        if (i < 27)
+            d = vec3_make(i % 3 - 1, (double)(i / 3 % 3) - 1, (double)(i / 9) - 1);
+        if (!(vec3_length(d) > 0))
+            continue;
+        d = vec3_normalize(d);
+        CHECK(vec3_length(vec3_sub(photon_unpack(photon_pack(d)), d)) < 1e-4);
+    }
+}
+
+/* Photons go only where something specular is: most of those sent meet it, however small it is. */
+TEST(photons_are_sent_to_where_specular_things_are) {
+    for (int kind = 0; kind < 2; kind++) {
+        struct stage s;
+        struct photon_map map;
+        stage_begin(&s, 2);
+        box(&s, vec3_make(-200, -1, -200), vec3_make(200, 0, 200), white(&s));
+        ball(&s, vec3_make(3, 0.5, 1), 0.05, stage_glass(&s, 0, 1, 1.5));
+        if (kind == 0)
+            inverse_square(&s, vec3_make(0, 50, 0), 1);
+        else
+            add_light(&s, (struct light){.kind = LIGHT_DIRECTIONAL,
+                                         .direction = vec3_normalize(vec3_make(1, -1, 0.5)),
+                                         .colour = {1, 1, 1}});
+        struct photon_statistics statistics = send(&s, 10000, &map);
+        CHECK_EQ_INT(statistics.sent, 10000);
+        CHECK(statistics.landed > 4000);
+        photon_map_destroy(&map);
+        stage_end(&s);
+    }
+}
+
+TEST(without_anything_specular_no_photon_is_sent) {
+    struct stage s;
+    struct photon_map map;
+    stage_begin(&s, 2);
+    box(&s, vec3_make(-2, -1, -2), vec3_make(2, 0, 2), white(&s));
+    inverse_square(&s, vec3_make(0, 5, 0), 1);
+    struct photon_statistics statistics = send(&s, 10000, &map);
+    CHECK_EQ_INT(statistics.sent, 0);
+    CHECK_EQ_INT(map.count, 0);
+    photon_map_destroy(&map);
+    stage_end(&s);
+}
