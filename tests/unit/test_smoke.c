@@ -88,6 +88,13 @@ TEST(smoke_every_demo_renders_in_small) {
     smoke("data", "demo.lua", false);
 }
 
+TEST(smoke_scenes_of_shapes_meshes_and_relief_render_in_small) {
+    smoke("data", "solids.lua", false);
+    smoke("data", "swept.lua", false);
+    smoke("data", "meshes.lua", false);
+    smoke("data", "relief.lua", false);
+}
+
 TEST(smoke_every_classic_scene_renders_in_small) {
     smoke("data/classic", ".lua", false);
 }
