@@ -20,7 +20,7 @@ static int names_in(const char *folder, const char *end, char *names[SCENES]) {
     int count = 0;
     for (struct dirent *entry; all && (entry = readdir(all)) && count < SCENES;) {
         size_t length = strlen(entry->d_name), tail = strlen(end);
-        if (length > tail && strcmp(entry->d_name + length - tail, end) == 0)
+        if (length >= tail && strcmp(entry->d_name + length - tail, end) == 0)
             names[count++] = strdup(entry->d_name);
     }
     if (all)
