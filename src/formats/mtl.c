@@ -157,9 +157,12 @@ static bool read_map(struct library *l, struct model_texture *map) {
     /* Names in a library are relative to the library, which mostly stands beside the model. */
     const char *slash = strrchr(l->path, '/');
     if (slash && !l->model->options.alone && name[0] != '/') {
-        char *beside = arena_format(&l->model->arena, "%.*s%s", (int)(slash + 1 - l->path), l->path, map->name);
+        int folder = (int)(slash + 1 - l->path);
+        char *beside = arena_format(&l->model->arena, "%.*s%s", folder, l->path, map->name);
         if (!beside)
             return error_no_memory(l->error, l->path);
+        for (char *c = beside + folder; *c; c++)
+            *c = *c == '\\' ? '/' : *c;
         if (reach_is_readable(l->model->options.reach, beside)) {
             map->path = beside;
             return true;

@@ -90,6 +90,35 @@ TEST(mtl_maps_have_their_options_and_are_found) {
     model_destroy(&model);
 }
 
+/* A library in a folder of its own, pictures in a folder beside it, blanks in all names, both kinds of slashes. */
+TEST(mtl_paths_are_relative_to_the_library_and_may_hold_blanks) {
+    char path[500];
+    struct error error = {0};
+    (void)snprintf(path, sizeof path, "%s/my parts/some tex/x", test_folder());
+    CHECK(file_make_folders_for(path, &error));
+    test_write_text(in_folder("my parts/some tex/a b.png"), "x");
+    test_write_text(in_folder("my parts/two.png"), "x");
+    test_write_text(in_folder("three.png"), "x");
+    test_write_text(in_folder("my parts/the lib.mtl"),
+                    "newmtl a\nmap_Kd some tex/a b.png\nmap_Ks -o 0.5 0.25 -s 2 some tex\\a b.png \nmap_Ke two.png\n"
+                    "map_d -clamp on ../three.png\n");
+    test_write_text(in_folder("rel.obj"), SQUARE "mtllib my parts/the lib.mtl\nusemtl a\nf 1/1 2/2 3/3\n");
+    struct model model;
+    if (!read_model(&model, "rel.obj"))
+        return;
+    CHECK_EQ_INT(model.warning_count, 0);
+    const struct model_material *m = material(&model, "a");
+    CHECK_TEXT(m->map_kd.path, in_folder("my parts/some tex/a b.png"));
+    CHECK(m->map_ks.path && strstr(m->map_ks.path, "a b.png"));
+    CHECK_NEAR(m->map_ks.offset[1], 0.25, 0);
+    CHECK_NEAR(m->map_ks.scale[0], 2, 0);
+    CHECK_NEAR(m->map_ks.scale[1], 1, 0);
+    CHECK_TEXT(m->map_ke.path, in_folder("my parts/two.png"));
+    CHECK_TEXT(m->map_d.path, in_folder("my parts/../three.png"));
+    CHECK_EQ_INT(m->map_d.wrap_v, IMAGE_CLAMP);
+    model_destroy(&model);
+}
+
 TEST(mtl_that_is_missing_is_a_warning_and_one_that_is_broken_an_error) {
     test_write_text(in_folder("b.obj"), SQUARE "\nmtllib no where.mtl\nusemtl x\nf 1 2 3\n");
     struct model model;

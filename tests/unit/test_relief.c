@@ -439,3 +439,40 @@ TEST(light_falls_through_the_holes_of_pictures_of_opacity) {
     image_release(image);
     mesh_release(mesh);
 }
+
+/* Tiled and moved: u becomes su u + ou, v counted from below likewise; footprints and tangents follow. */
+TEST(tiles_and_offsets_place_pictures_by_the_formula_on_every_mapping) {
+    struct test_random random = {41};
+    for (int i = 0; i < 600; i++) {
+        struct hit hit = {.has_uv = true,
+                          .u = test_uniform(&random, 0, 1),
+                          .v = test_uniform(&random, 0, 1),
+                          .dpdu = {test_uniform(&random, 0.5, 2), 0.1, 0},
+                          .dpdv = {0.2, test_uniform(&random, 0.5, 2), 0},
+                          .footprint = 0.01,
+                          .pattern_scale = 1,
+                          .on_sphere = i % 3 == 1,
+                          .on_box = i % 3 == 2};
+        hit.pattern_normal = vec3_normalize(
+            vec3_make(test_uniform(&random, -1, 1), test_uniform(&random, -0.9, 0.9), test_uniform(&random, -1, 1)));
+        hit.pattern_point = hit.pattern_normal;
+        struct material plain = {.kind = MATERIAL_IMAGE}, tiled = plain;
+        plain.image.mapping = tiled.image.mapping = i % 2 ? MAPPING_UV : MAPPING_BY_SHAPE;
+        plain.image.wrap = tiled.image.wrap = IMAGE_MIRROR;
+        tiled.image.apart = true;
+        double scale[2] = {test_uniform(&random, -3, 3), test_uniform(&random, -3, 3)};
+        double offset[2] = {test_uniform(&random, -3, 3), test_uniform(&random, -3, 3)};
+        for (int k = 0; k < 2; k++)
+            tiled.image.scale[k] = scale[k], tiled.image.offset[k] = offset[k];
+        tiled.image.wrap_v = IMAGE_CLAMP;
+        struct image_place a, b;
+        CHECK(image_place(&plain, &hit, &a) && image_place(&tiled, &hit, &b));
+        CHECK_NEAR(b.u, scale[0] * a.u + offset[0], 1e-12);
+        CHECK_NEAR(1 - b.v, scale[1] * (1 - a.v) + offset[1], 1e-12);
+        CHECK_NEAR(b.width_u, a.width_u * fabs(scale[0]), 1e-12);
+        CHECK_NEAR(b.width_v, a.width_v * fabs(scale[1]), 1e-12);
+        check_vector(vec3_scale(b.dpdu, scale[0]), a.dpdu, 1e-12);
+        check_vector(vec3_scale(b.dpdv, scale[1]), a.dpdv, 1e-12);
+        CHECK(b.wrap_u == IMAGE_MIRROR && b.wrap_v == IMAGE_CLAMP);
+    }
+}
