@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: gr.bump: cannot find 'no.png' (looked in ., Assets, ../Assets)
+gr.bump('no.png')
