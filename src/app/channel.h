@@ -40,6 +40,7 @@ struct picture_request {
     double exposure;                  /* of its file, as in struct tone */
     uint32_t curve, srgb;             /* the same; an enum tone_curve, and not 0 for sRGB */
     uint32_t deep;                    /* not 0: 16 bits a channel in a PNG file */
+    uint32_t layers;                  /* mask of the layers beside the picture */
     uint32_t check;                   /* not 0 for --check: only the names are looked at, no film is wanted */
     struct digest files;              /* of all that was read so far; zero when nobody wants to know */
     char file[4096];                  /* as the script gave it */
@@ -49,7 +50,8 @@ struct picture_request {
 struct picture_report {
     struct render_statistics rays;
     uint64_t primitives, triangles;
-    uint64_t mesh_bytes, grid_bytes, peak_bytes;
+    uint64_t node_bytes, mesh_bytes, image_bytes, placed_bytes, search_bytes, film_bytes; /* memory by part */
+    uint64_t peak_bytes;
     uint32_t grid_cells[3];
     int threads;
 };

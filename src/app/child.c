@@ -8,6 +8,8 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/pool.h"
+#include "image/image.h"
+#include "render/aov.h"
 #include "render/render.h"
 #include "script/script.h"
 #include "world/world.h"
@@ -91,13 +93,22 @@ static void tile_done(void *context, uint32_t tile, uint32_t done, uint32_t coun
         ;
 }
 
-static void fill_report(const struct child *child, const struct world *world, struct picture_report *report) {
+static void fill_report(const struct child *child, const struct world *world, const struct scene *scene,
+                        const struct film *film, struct picture_report *report) {
     struct rusage usage;
+    struct error ignored;
+    size_t film_bytes = 0;
     report->primitives = world->placed_count;
     report->triangles = world->triangles;
     report->mesh_bytes = world->mesh_memory;
-    report->grid_bytes = grid_memory(&world->grid);
+    report->placed_bytes = world_placed_memory(world);
+    report->search_bytes = world_search_memory(world);
+    for (const struct asset_image *entry = child->assets.images; entry; entry = entry->next)
+        report->image_bytes += image_memory(entry->image);
     memcpy(report->grid_cells, world->grid.cells, sizeof report->grid_cells);
+    report->node_bytes = scene->arena.total;
+    (void)film_size_layered(film->width, film->height, aov_layers(film->layer_mask), &film_bytes, &ignored);
+    report->film_bytes = film_bytes;
     report->threads = pool_workers(child->pool);
     if (getrusage(RUSAGE_SELF, &usage) == 0)
         report->peak_bytes = (uint64_t)usage.ru_maxrss * 1024;
@@ -130,7 +141,7 @@ static bool make_picture(struct child *child, const struct render_request *reque
     }
     report->rays.build_seconds = built - begun;
     report->rays.render_seconds = progress_clock() - built;
-    fill_report(child, &world, report);
+    fill_report(child, &world, request->scene, job->film, report);
     world_destroy(&world);
     if (ok)
         tell_world(child, request->file, report);
@@ -145,6 +156,7 @@ static bool begin_picture(struct child *child, const struct render_request *requ
                                     .curve = (uint32_t)job->settings.tone.curve,
                                     .srgb = job->settings.tone.srgb,
                                     .deep = job->settings.deep,
+                                    .layers = job->settings.aov,
                                     .check = child->options->check};
     char warning[256] = "";
     size_t length = strlen(request->file);

@@ -2,6 +2,8 @@
  * fails as "cancelled", which ends the scripts. */
 #include "app/child_link.h"
 
+#include "render/aov.h"
+
 static bool nobody_there(struct child_link *link, struct error *error) {
     link->broken = true;
     return error_set(error, ERROR_CANCELLED, "the supervising process is gone");
@@ -16,7 +18,7 @@ static bool link_begin(void *context, const struct picture_request *request, str
     struct child_link *link = context;
     struct frame frame;
     size_t bytes;
-    if (!film_size(request->width, request->height, &bytes, error))
+    if (!film_size_layered(request->width, request->height, aov_layers(request->layers), &bytes, error))
         return false;
     if (!channel_send(&link->channel, FRAME_BEGIN, request, sizeof *request, -1) ||
         channel_receive(&link->channel, &frame) != CHANNEL_FRAME || frame.kind != FRAME_FILM)
@@ -31,6 +33,7 @@ static bool link_begin(void *context, const struct picture_request *request, str
     if (!share_attach(&link->memory, frame.descriptor, bytes, error))
         return false;
     film_place(film, link->memory.block, request->width, request->height);
+    film_place_layers(film, link->memory.block, request->layers);
     return true;
 }
 

@@ -3,6 +3,7 @@
  * usage, and then no file may have been touched. */
 #include "app/desk.h"
 
+#include "app/layers.h"
 #include "app/statistics.h"
 #include "app/text.h"
 #include "base/file.h"
@@ -10,6 +11,7 @@
 #include "image/exr.h"
 #include "image/float_write.h"
 #include "image/png_write.h"
+#include "render/aov.h"
 
 #include <string.h>
 #include <strings.h>
@@ -101,11 +103,12 @@ static bool make_film(struct desk *desk, struct picture *picture, struct error *
     const struct picture_request *request = &picture->request;
     size_t bytes;
     char notice[256];
-    if (!film_size(request->width, request->height, &bytes, error))
+    if (!film_size_layered(request->width, request->height, aov_layers(request->layers), &bytes, error))
         return false;
     if (!share_create(&picture->memory, bytes, error))
         return error_prefix(error, "%s", picture->name);
     film_place(&picture->film, picture->memory.block, request->width, request->height);
+    film_place_layers(&picture->film, picture->memory.block, request->layers & AOV_ALL);
     picture->film.x0 = request->x0;
     picture->film.y0 = request->y0;
     picture->film.full_width = request->full_width;
@@ -301,6 +304,7 @@ static bool write_files(const struct desk *desk, const struct picture *picture, 
     }
     return write_prefixed(picture, desk->options->targets_prefix, FILM_TARGETS, error) &&
            write_prefixed(picture, desk->options->first_pass_prefix, FILM_FIRST, error) &&
+           layers_write(picture->name, &picture->film, picture->request.deep != 0, error) &&
            write_view(picture, name, FILM_FINAL, error);
 }
 

@@ -3,6 +3,8 @@
  * are no options are scripts; after "--" everything is. */
 #include "app/options.h"
 
+#include "render/aov.h"
+
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
@@ -23,6 +25,7 @@ enum option_kind {
     OPTION_DEFINE,  /* -D */
     OPTION_FOLDER,  /* --allow-read, --allow-write: `low` says which */
     OPTION_SHARD,   /* I/N: two uint32_t from the field on */
+    OPTION_LAYERS,  /* --aov */
     OPTION_STATS,   /* --stats, --stats=text, --stats=json */
 };
 
@@ -108,6 +111,10 @@ static const struct option table[] = {
      "for dir/foo.png also write dir/Xfoo.png: the first pass with the marked pixels in red"},
     {GROUP_FILES, "-write-pre-aa", OPTION_TEXT, "X", NO_RANGE, FIELD(first_pass_prefix), NULL,
      "for dir/foo.png also write dir/Xfoo.png: the first pass, one sample for each pixel"},
+
+    {GROUP_FILES, "--aov", OPTION_LAYERS, "LIST", NO_RANGE, NO_FIELD, NULL,
+     "for dir/foo.png also write dir/foo.NAME.png for each NAME of LIST, parted by commas: depth, normal, albedo, uv, "
+     "node, material, cost, samples, lights, or all"},
 
     {GROUP_OLD, "--transform-order", OPTION_CHOICE, "auto|new|old|separate", NO_RANGE, FIELD(script.transform_order),
      "auto",
@@ -432,6 +439,11 @@ static bool value_error(const struct option *option, const char *text, struct er
     case OPTION_STATS:
         return error_set(error, ERROR_USAGE, "%.*s needs one of %s, not '%s'", shown, option->names,
                          option->value + (option->value[0] == '='), text);
+    case OPTION_LAYERS:
+        return error_set(error, ERROR_USAGE,
+                         "%.*s needs names parted by commas (depth, normal, albedo, uv, node, material, cost, samples, "
+                         "lights) or all, not '%s'",
+                         shown, option->names, text);
     case OPTION_TEXT:
         return error_set(error, ERROR_USAGE, "%.*s needs a text that is not empty", shown, option->names);
     case OPTION_SIZE:
@@ -506,6 +518,9 @@ static bool apply_option(const struct option *option, const char *text, struct o
     case OPTION_SHARD:
         ok = read_shard(text, field);
         break;
+    case OPTION_LAYERS:
+        ok = aov_parse(text, &options->settings.aov);
+        break;
     case OPTION_STATS:
         ok = strcmp(text, "text") == 0 || strcmp(text, "json") == 0;
         options->statistics = strcmp(text, "json") == 0 ? STATISTICS_JSON : STATISTICS_TEXT;
@@ -550,6 +565,8 @@ static bool check_together(const struct options *options, struct error *error) {
         return error_set(error, ERROR_USAGE, "-write-aa-targets and -write-pre-aa would write the same file");
     if (options->output && strcmp(options->output, "-") == 0 && (options->targets_prefix || options->first_pass_prefix))
         return error_set(error, ERROR_USAGE, "-o - leaves no name for -write-aa-targets and -write-pre-aa");
+    if (options->output && strcmp(options->output, "-") == 0 && options->settings.aov)
+        return error_set(error, ERROR_USAGE, "-o - leaves no name for --aov");
     if (options->output && strcmp(options->output, "-") == 0 && options->statistics == STATISTICS_JSON)
         return error_set(error, ERROR_USAGE, "-o - and --stats=json both write to standard output");
     return true;
@@ -572,6 +589,9 @@ static bool check_parts(struct options *options, struct error *error) {
         return error_set(error, ERROR_USAGE, "-o - leaves no name for a checkpoint; --checkpoint FILE gives one");
     if (pipe && options->shards)
         return error_set(error, ERROR_USAGE, "-o - leaves no name for the parts of --shard");
+    if ((options->shards || options->mpi || options->action == ACTION_MERGE) && options->settings.aov)
+        return error_set(error, ERROR_USAGE,
+                         "--aov is for pictures that one process makes: no --shard, --mpi or merge");
     if (options->shards && (options->targets_prefix || options->first_pass_prefix))
         return error_set(error, ERROR_USAGE, "--shard writes no debug pictures; give -write-... to gray merge");
     return true;

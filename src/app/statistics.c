@@ -5,19 +5,28 @@
 
 #include <inttypes.h>
 
-enum figure_form { FIGURE_COUNT, FIGURE_SECONDS, FIGURE_BYTES };
+enum figure_form { FIGURE_COUNT, FIGURE_SECONDS, FIGURE_BYTES, FIGURE_RATE };
 
 struct figure {
     const char *key, *title;
     enum figure_form form;
-    double seconds;
+    double value; /* of seconds and rates */
     uint64_t count;
 };
 
-enum { FIGURES = 24 };
+enum { FIGURES = 40 };
+
+static uint64_t all_rays(const struct render_statistics *rays) {
+    return rays->camera_rays + rays->reflected_rays + rays->refracted_rays + rays->shadow_rays + rays->photon_rays;
+}
+
+static double ratio(uint64_t a, uint64_t b) {
+    return b > 0 ? (double)a / (double)b : 0;
+}
 
 static int list_figures(struct figure out[FIGURES], const struct picture_report *report) {
     const struct render_statistics *rays = &report->rays;
+    uint64_t sum = all_rays(rays);
     const struct figure all[] = {
         {"build_seconds", "build", FIGURE_SECONDS, rays->build_seconds, 0},
         {"render_seconds", "render", FIGURE_SECONDS, rays->render_seconds, 0},
@@ -33,13 +42,27 @@ static int list_figures(struct figure out[FIGURES], const struct picture_report 
         {"photons_landed", "photons kept", FIGURE_COUNT, 0, rays->photons_landed},
         {"photon_rays", "rays of photons", FIGURE_COUNT, 0, rays->photon_rays},
         {"photon_seconds", "photons", FIGURE_SECONDS, rays->photon_seconds, 0},
+        {"rays", "rays", FIGURE_COUNT, 0, sum},
+        {"voxels", "voxels visited", FIGURE_COUNT, 0, rays->voxels},
+        {"hierarchy_steps", "hierarchy steps", FIGURE_COUNT, 0, rays->hierarchy_steps},
+        {"box_tests", "box tests", FIGURE_COUNT, 0, rays->box_tests},
         {"shape_tests", "shape tests", FIGURE_COUNT, 0, rays->shape_tests},
         {"triangle_tests", "triangle tests", FIGURE_COUNT, 0, rays->triangle_tests},
-        {"voxels", "voxels visited", FIGURE_COUNT, 0, rays->voxels},
+        {"voxels_per_ray", "voxels a ray", FIGURE_RATE, ratio(rays->voxels, sum), 0},
+        {"hierarchy_steps_per_ray", "steps a ray", FIGURE_RATE, ratio(rays->hierarchy_steps, sum), 0},
+        {"triangle_tests_per_ray", "triangles a ray", FIGURE_RATE, ratio(rays->triangle_tests, sum), 0},
+        {"rays_per_pixel", "rays a pixel", FIGURE_RATE, ratio(sum, rays->pixels), 0},
+        {"voxels_per_pixel", "voxels a pixel", FIGURE_RATE, ratio(rays->voxels, rays->pixels), 0},
+        {"hierarchy_steps_per_pixel", "steps a pixel", FIGURE_RATE, ratio(rays->hierarchy_steps, rays->pixels), 0},
+        {"triangle_tests_per_pixel", "triangles a pixel", FIGURE_RATE, ratio(rays->triangle_tests, rays->pixels), 0},
         {"primitives", "primitives", FIGURE_COUNT, 0, report->primitives},
         {"triangles", "triangles", FIGURE_COUNT, 0, report->triangles},
+        {"node_bytes", "memory: nodes", FIGURE_BYTES, 0, report->node_bytes},
         {"mesh_bytes", "meshes", FIGURE_BYTES, 0, report->mesh_bytes},
-        {"grid_bytes", "grid of the scene", FIGURE_BYTES, 0, report->grid_bytes},
+        {"image_bytes", "images", FIGURE_BYTES, 0, report->image_bytes},
+        {"placed_bytes", "placed things", FIGURE_BYTES, 0, report->placed_bytes},
+        {"search_bytes", "search of them", FIGURE_BYTES, 0, report->search_bytes},
+        {"film_bytes", "film", FIGURE_BYTES, 0, report->film_bytes},
         {"peak_bytes", "peak memory", FIGURE_BYTES, 0, report->peak_bytes},
     };
     enum { COUNT = sizeof all / sizeof *all };
@@ -47,10 +70,6 @@ static int list_figures(struct figure out[FIGURES], const struct picture_report 
     for (int i = 0; i < COUNT; i++)
         out[i] = all[i];
     return COUNT;
-}
-
-static uint64_t all_rays(const struct render_statistics *rays) {
-    return rays->camera_rays + rays->reflected_rays + rays->refracted_rays + rays->shadow_rays;
 }
 
 void statistics_print_text(FILE *stream, const char *name, const struct picture_request *request,
@@ -66,7 +85,10 @@ void statistics_print_text(FILE *stream, const char *name, const struct picture_
             (void)fprintf(stream, "  %-20s %14" PRIu64 "\n", figure->title, figure->count);
             break;
         case FIGURE_SECONDS:
-            (void)fprintf(stream, "  %-20s %14.3f s\n", figure->title, figure->seconds);
+            (void)fprintf(stream, "  %-20s %14.3f s\n", figure->title, figure->value);
+            break;
+        case FIGURE_RATE:
+            (void)fprintf(stream, "  %-20s %14.2f\n", figure->title, figure->value);
             break;
         case FIGURE_BYTES:
             (void)fprintf(stream, "  %-20s %14.1f MB\n", figure->title, 1e-6 * (double)figure->count);
@@ -88,8 +110,8 @@ void statistics_print_json(FILE *stream, const char *name, const struct picture_
     text_print_json(stream, name);
     (void)fprintf(stream, ",\"width\":%" PRIu32 ",\"height\":%" PRIu32, request->width, request->height);
     for (int i = 0; i < count; i++) {
-        if (figures[i].form == FIGURE_SECONDS)
-            (void)fprintf(stream, ",\"%s\":%.6f", figures[i].key, figures[i].seconds);
+        if (figures[i].form == FIGURE_SECONDS || figures[i].form == FIGURE_RATE)
+            (void)fprintf(stream, ",\"%s\":%.6f", figures[i].key, figures[i].value);
         else
             (void)fprintf(stream, ",\"%s\":%" PRIu64, figures[i].key, figures[i].count);
     }

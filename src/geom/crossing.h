@@ -25,6 +25,7 @@ struct geom_scratch {
     bool overflow;
     /* what the searches cost; sums, never read by them */
     uint64_t shape_tests;
+    uint64_t box_tests; /* of single boxes; a node of a hierarchy is one of cost.hierarchy_steps */
     struct triangle_cost cost;
 };
 

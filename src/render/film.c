@@ -32,6 +32,25 @@ void film_place(struct film *film, void *block, uint32_t width, uint32_t height)
     film->tiles = (_Atomic uint8_t *)(film->marked + (size_t)width * height);
 }
 
+bool film_size_layered(uint32_t width, uint32_t height, uint32_t layers, size_t *bytes, struct error *error) {
+    size_t size = 0, more = 0;
+    if (!film_size(width, height, &size, error))
+        return false;
+    if (!checked_mul((size_t)width * height, layers * sizeof(float[3]), &more) ||
+        !checked_add(size, more + sizeof(float), bytes))
+        return error_no_memory(error, "the picture");
+    return true;
+}
+
+void film_place_layers(struct film *film, void *block, uint32_t mask) {
+    size_t size = 0;
+    struct error ignored;
+    (void)film_size(film->width, film->height, &size, &ignored);
+    size = (size + sizeof(float) - 1) / sizeof(float) * sizeof(float);
+    film->layer_mask = mask;
+    film->layers = mask ? (float(*)[3])(void *)((char *)block + size) : NULL;
+}
+
 uint32_t film_tiles_across(const struct film *film) {
     return (film->x0 + film->width - 1) / FILM_TILE - film->x0 / FILM_TILE + 1;
 }

@@ -25,6 +25,10 @@ struct film {
     struct film_pixel *pixels; /* width * height, row-major, top row first */
     uint8_t *marked;           /* 1 = resampled */
     _Atomic uint8_t *tiles;    /* an enum film_tile each; set after the pixels of the tile */
+    /* Pictures beside the picture (render/aov.h): the layers of the mask one after the other, width * height each; NULL
+     * without any. Filled after the tiles are done. */
+    uint32_t layer_mask;
+    float (*layers)[3];
 };
 
 /* What is known of a tile. Tiles stand on the grid of the whole picture, so that a part of it has the same ones. */
@@ -45,6 +49,10 @@ struct film_rectangle {
 bool film_size(uint32_t width, uint32_t height, size_t *bytes, struct error *error);
 /* Lays the arrays into a zeroed block of film_size bytes. */
 void film_place(struct film *film, void *block, uint32_t width, uint32_t height);
+
+/* The same with `layers` more of three floats a pixel, laid behind by film_place_layers after film_place. */
+bool film_size_layered(uint32_t width, uint32_t height, uint32_t layers, size_t *bytes, struct error *error);
+void film_place_layers(struct film *film, void *block, uint32_t mask);
 
 /* How the rendered part is cut into tiles, numbered row by row; x0 and y0 must be set. */
 uint32_t film_tiles_across(const struct film *film);

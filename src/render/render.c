@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "base/random.h"
+#include "render/aov.h"
 #include "render/camera.h"
 #include "render/photon_trace.h"
 #include "render/shard.h"
@@ -441,6 +442,71 @@ bool render_prepare(struct render_job *job, uint32_t *x0, uint32_t *y0, uint32_t
     return true;
 }
 
+/* --- layers beside the picture --- */
+
+/* Through the middle of the lens, when the shutter opens. */
+static bool middle_ray(const struct run *run, const struct place *place, struct ray *out) {
+    double x = (double)place->x + place->dx, y = (double)place->y + place->dy;
+    if (camera_is_plain(&run->camera)) {
+        *out = camera_ray(&run->camera, x, y);
+        return true;
+    }
+    return camera_ray_through(&run->camera, x, y, (struct sample2){0.5, 0.5}, 0, out);
+}
+
+static uint64_t work_of(const struct worker *worker) {
+    const struct geom_scratch *done = &worker->scratch.geom;
+    return done->cost.hierarchy_steps + done->cost.voxels + done->cost.triangle_tests + done->box_tests +
+           done->shape_tests;
+}
+
+/* Traces the samples of a pixel once more, one by one: what they cost, and how many there are. */
+static void measure_pixel(struct run *run, struct worker *worker, int64_t x, int64_t y, bool marked, float cost[3],
+                          float samples[3]) {
+    uint64_t work = work_of(worker), rays = worker->camera_rays;
+    int n = run->job->settings.samples;
+    bool have_first = !run->full || run->job->settings.keep_first;
+    bool reuse = (n & 1) && !run->job->settings.pixel_corner && run->camera.lens.aperture == 0 && !run->timed;
+    struct place place = first_place(run, x, y);
+    if (have_first || reuse)
+        (void)sample(run, worker, &place);
+    for (int k = 0; marked && k < n * n && !stopped(run, worker); k++) {
+        if (reuse && k == n / 2 * n + n / 2)
+            continue;
+        place = (struct place){x, y, (k % n + 0.5) / n, (k / n + 0.5) / n, (uint64_t)(k + 1)};
+        (void)sample(run, worker, &place);
+    }
+    for (int c = 0; c < 3; c++) {
+        cost[c] = (float)(work_of(worker) - work);
+        samples[c] = (float)(worker->camera_rays - rays);
+    }
+}
+
+static void layer_item(void *context, uint32_t item, int index) {
+    struct run *run = context;
+    struct worker *worker = &run->workers[index];
+    struct film *film = run->job->film;
+    struct film_rectangle r = film_tile_rectangle(film, item);
+    uint32_t mask = film->layer_mask;
+    for (int64_t y = r.y0; y < r.y1; y++) {
+        for (int64_t x = r.x0; x < r.x1 && !stopped(run, worker); x++) {
+            size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
+            float values[AOV_COUNT][3] = {{0}};
+            struct place place = first_place(run, x, y);
+            struct ray ray;
+            if (middle_ray(run, &place, &ray))
+                aov_surface(run->job->world, &ray, mask, &worker->scratch, values);
+            if (mask & (UINT32_C(1) << AOV_COST | UINT32_C(1) << AOV_SAMPLES))
+                measure_pixel(run, worker, x, y, film->marked[at], values[AOV_COST], values[AOV_SAMPLES]);
+            for (int i = 0; i < AOV_COUNT; i++) {
+                size_t plane = aov_layer(mask, (enum aov)i) * (size_t)film->width * film->height;
+                if (mask >> i & 1)
+                    memcpy(film->layers[plane + at], values[i], sizeof values[i]);
+            }
+        }
+    }
+}
+
 static void add_statistics(const struct run *run, int workers, struct render_statistics *out) {
     for (int i = 0; i < workers; i++) {
         const struct worker *worker = &run->workers[i];
@@ -452,6 +518,8 @@ static void add_statistics(const struct run *run, int workers, struct render_sta
         out->shape_tests += worker->scratch.geom.shape_tests;
         out->triangle_tests += worker->scratch.geom.cost.triangle_tests;
         out->voxels += worker->scratch.geom.cost.voxels;
+        out->hierarchy_steps += worker->scratch.geom.cost.hierarchy_steps;
+        out->box_tests += worker->scratch.geom.box_tests;
     }
     out->samples = out->camera_rays;
     out->pixels += (uint64_t)run->job->film->width * run->job->film->height;
@@ -548,8 +616,11 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
     } else if (atomic_load(&run.failed)) {
         ok = error_no_memory(error, "the crossings of a ray");
     }
-    if (run.workers) {
+    if (run.workers)
         add_statistics(&run, workers, statistics);
+    if (ok && job->film->layers && !pool_run(pool, film_tile_count(job->film), layer_item, &run))
+        ok = error_set(error, ERROR_CANCELLED, "stopped while rendering");
+    if (run.workers) {
         for (int i = 0; i < workers; i++)
             world_scratch_destroy(&run.workers[i].scratch);
     }

@@ -13,7 +13,7 @@
 struct render_statistics {
     uint64_t camera_rays, reflected_rays, refracted_rays, shadow_rays;
     uint64_t pixels, marked_pixels, samples;
-    uint64_t shape_tests, triangle_tests, voxels;
+    uint64_t shape_tests, triangle_tests, box_tests, voxels, hierarchy_steps;
     uint64_t photons, photons_landed, photon_rays;
     double build_seconds, render_seconds, photon_seconds; /* photons are part of the render */
 };

@@ -202,6 +202,27 @@ void world_destroy(struct world *world) {
     kd_tree_destroy(&world->kd_tree);
 }
 
+size_t world_placed_memory(const struct world *world) {
+    return world->placed_count * (sizeof *world->placed + sizeof *world->boxes) +
+           world->thing_count * sizeof *world->things + world->linear_count * sizeof *world->linear_maps +
+           world->moving_count * sizeof *world->moving;
+}
+
+size_t world_search_memory(const struct world *world) {
+    switch (world->accel) {
+    case ACCEL_GRID:
+        return grid_memory(&world->grid);
+    case ACCEL_AUTO:
+    case ACCEL_BVH:
+        return box_tree_memory(&world->tree);
+    case ACCEL_KDTREE:
+        return kd_tree_memory(&world->kd_tree);
+    case ACCEL_NONE:
+        return 0;
+    }
+    return 0;
+}
+
 /* --- searching --- */
 
 struct search {
@@ -263,6 +284,7 @@ static void try_placed(struct search *s, uint32_t index) {
 }
 
 static void try_boxed(struct search *s, uint32_t index) {
+    s->scratch->geom.box_tests++;
     if (box_probe_meets(&s->probe, &s->world->boxes[index], s->limited.t_min, s->limited.t_max))
         try_placed(s, index);
 }
@@ -389,6 +411,7 @@ bool world_ask_any(const struct world *world, uint32_t index, const struct ray *
 
 static bool any_boxed(const struct world *world, uint32_t index, const struct ray *ray, const struct box_probe *probe,
                       struct world_scratch *scratch) {
+    scratch->geom.box_tests++;
     return box_probe_meets(probe, &world->boxes[index], ray->t_min, ray->t_max) &&
            world_ask_any(world, index, ray, scratch);
 }

@@ -99,6 +99,9 @@ bool world_build(struct world *world, struct arena *arena, struct scene *scene, 
                  enum accel_kind accel, struct pool *pool, world_warning *warn, void *warn_context,
                  struct error *error);
 void world_destroy(struct world *world); /* what is not in the arena */
+/* Bytes of placements with what they share and their boxes; of what searches go through. */
+size_t world_placed_memory(const struct world *world);
+size_t world_search_memory(const struct world *world);
 
 static inline const struct thing *placed_thing(const struct world *world, uint32_t placed) {
     return &world->things[world->placed[placed].thing];

@@ -6,6 +6,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <sched.h>
 #include <signal.h>
 #include <stdio.h>
@@ -341,6 +342,53 @@ TEST(debug_pictures_stand_beside_the_picture) {
     free(final.rgb);
     free(targets.rgb);
     free(first.rgb);
+}
+
+TEST(layers_stand_beside_the_picture_in_its_format) {
+    ends(test_gray_scene(BALL "picture('layers/out.png', 31, 21)\npicture('layers/light.pfm', 31, 21)\n",
+                         "--aov depth,normal,cost scene.lua", NULL),
+         0);
+    struct test_picture normal = picture_of("layers/out.normal.png"), cost = picture_of("layers/out.cost.png");
+    CHECK_EQ_INT(normal.width, 31);
+    CHECK_EQ_INT(cost.height, 21);
+    bool dark = true;
+    for (uint32_t i = 0; i < 3 * 31 * 21; i++)
+        dark = dark && normal.rgb[i] == 0;
+    CHECK(!dark);
+    CHECK(exists("layers/out.depth.png") && exists("layers/light.depth.pfm") && exists("layers/light.cost.pfm"));
+    CHECK(!exists("layers/out.uv.png"));
+    free(normal.rgb);
+    free(cost.rgb);
+    ends_saying(test_gray_scene(NULL, "--aov cost -o - scene.lua", NULL), 2, "leaves no name for --aov");
+    ends_saying(test_gray_scene(NULL, "--aov cost --shard 1/2 scene.lua", NULL), 2, "one process");
+}
+
+static double figure_of(const char *json, const char *key) {
+    char quoted[64];
+    (void)snprintf(quoted, sizeof quoted, "\"%s\":", key);
+    const char *at = strstr(json, quoted);
+    CHECK(at != NULL);
+    return at ? strtod(at + strlen(quoted), NULL) : NAN;
+}
+
+TEST(figures_of_the_statistics_agree_with_one_another) {
+    static const char *const accels[] = {"auto", "grid", "bvh", "kdtree", "none"};
+    for (int i = 0; i < 5; i++) {
+        char arguments[128];
+        (void)snprintf(arguments, sizeof arguments, "--stats=json --accel %s scene.lua", accels[i]);
+        struct test_result result = test_gray_scene(BALL "picture('s.png', 40, 30)\n", arguments, NULL);
+        const char *json = result.out;
+        double rays = figure_of(json, "rays");
+        CHECK(rays == figure_of(json, "camera_rays") + figure_of(json, "reflected_rays") +
+                          figure_of(json, "refracted_rays") + figure_of(json, "shadow_rays") +
+                          figure_of(json, "photon_rays"));
+        CHECK(fabs(figure_of(json, "rays_per_pixel") * 1200 - rays) < 1);
+        CHECK(fabs(figure_of(json, "hierarchy_steps_per_ray") * rays - figure_of(json, "hierarchy_steps")) < 1);
+        CHECK(fabs(figure_of(json, "voxels_per_pixel") * 1200 - figure_of(json, "voxels")) < 1);
+        CHECK(figure_of(json, "film_bytes") >= 1200 * 25 && figure_of(json, "node_bytes") > 0);
+        CHECK(figure_of(json, "peak_bytes") > figure_of(json, "film_bytes") + figure_of(json, "placed_bytes"));
+        ends(result, 0);
+    }
 }
 
 TEST(names_with_blanks_dashes_and_signs_work) {

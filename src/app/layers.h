@@ -1,0 +1,11 @@
+/* Writes the pictures beside the picture (--aov). */
+#ifndef GRAY_APP_LAYERS_H
+#define GRAY_APP_LAYERS_H
+
+#include "render/film.h"
+
+/* The layers of the film in files of the picture's format: dir/foo.png with depth is dir/foo.depth.png. Depth is
+ * written with 16 bits always, the others with as many as the picture. */
+bool layers_write(const char *picture, const struct film *film, bool deep_picture, struct error *error);
+
+#endif

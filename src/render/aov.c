@@ -1,0 +1,171 @@
+/* Layers and their colours. Colours do not depend on the picture where that can be avoided, so that two pictures can be
+ * compared: cost goes by its logarithm from black (1) over blue, red and yellow to white (2^20); numbers of nodes and
+ * materials get colours by a hash. Depth is nearest / distance, as depth buffers have it. */
+#include "render/aov.h"
+
+#include "base/random.h"
+#include "look/light.h"
+#include "look/material.h"
+#include "math/elementary.h"
+
+#include <string.h>
+
+static const char *const names[AOV_COUNT] = {"depth",    "normal", "albedo",  "uv",    "node",
+                                             "material", "cost",   "samples", "lights"};
+
+const char *aov_name(enum aov aov) {
+    return names[aov];
+}
+
+bool aov_parse(const char *text, uint32_t *mask) {
+    *mask = 0;
+    for (const char *at = text;; at++) {
+        size_t size = strcspn(at, ",");
+        uint32_t found = size == 3 && memcmp(at, "all", 3) == 0 ? AOV_ALL : 0;
+        for (int i = 0; i < AOV_COUNT; i++)
+            if (strlen(names[i]) == size && memcmp(at, names[i], size) == 0)
+                found = UINT32_C(1) << i;
+        if (found == 0)
+            return false;
+        *mask |= found;
+        at += size;
+        if (*at == '\0')
+            return true;
+    }
+}
+
+uint32_t aov_layers(uint32_t mask) {
+    return (uint32_t)__builtin_popcount(mask & AOV_ALL);
+}
+
+uint32_t aov_layer(uint32_t mask, enum aov aov) {
+    return aov_layers(mask & ((UINT32_C(1) << aov) - 1));
+}
+
+static void set(float out[3], double x, double y, double z) {
+    out[0] = (float)x;
+    out[1] = (float)y;
+    out[2] = (float)z;
+}
+
+/* The middle of a light that has one, as a ray from the hit; false for meshes and skies. */
+static bool ray_to_light(const struct light *light, const struct hit *hit, struct ray *out) {
+    switch (light->kind) {
+    case LIGHT_DIRECTIONAL:
+        *out = (struct ray){.direction = vec3_negate(light->direction), .t_max = INFINITY};
+        break;
+    case LIGHT_POINT:
+    case LIGHT_PARALLELOGRAM:
+    case LIGHT_SPOT:
+    case LIGHT_DISC:
+    case LIGHT_SPHERE:
+        *out = (struct ray){.direction = vec3_sub(light->position, hit->point), .t_max = 1};
+        break;
+    case LIGHT_MESH:
+    case LIGHT_SKY:
+        return false;
+    }
+    double side = vec3_dot(out->direction, hit->normal_geometric) < 0 ? -hit->offset : hit->offset;
+    out->origin = vec3_add_scaled(hit->point, hit->normal_geometric, side);
+    if (light->kind != LIGHT_DIRECTIONAL)
+        out->direction = vec3_sub(light->position, out->origin);
+    out->time = hit->time;
+    return true;
+}
+
+static double lights_seen(const struct world *world, const struct hit *hit, struct world_scratch *scratch) {
+    uint32_t seen = 0, all = 0;
+    for (uint32_t i = 0; i < world->light_count; i++) {
+        struct ray ray;
+        if (!ray_to_light(&world->lights[i], hit, &ray))
+            continue;
+        all++;
+        /* What lies behind the surface is hidden by it, closed or not. */
+        bool above = (vec3_dot(ray.direction, hit->normal_geometric) > 0) == hit->front;
+        seen += above && !world_any(world, &ray, scratch);
+    }
+    return all > 0 ? (double)seen / (double)all : 0;
+}
+
+void aov_surface(const struct world *world, const struct ray *ray, uint32_t mask, struct world_scratch *scratch,
+                 float out[AOV_COUNT][3]) {
+    struct hit hit;
+    struct surface_look look;
+    memset(out, 0, AOV_COUNT * sizeof *out);
+    if (!world_nearest(world, ray, scratch, &hit))
+        return;
+    material_look(world->materials[hit.material], &hit, &look);
+    double depth = hit.t * vec3_length(ray->direction), node = placed_node(world, hit.placed)->serial + 1.0;
+    set(out[AOV_DEPTH], depth, depth, depth);
+    set(out[AOV_NORMAL], look.normal.x, look.normal.y, look.normal.z);
+    set(out[AOV_ALBEDO], look.kd.x, look.kd.y, look.kd.z);
+    if (hit.has_uv)
+        set(out[AOV_UV], hit.u, hit.v, 1);
+    set(out[AOV_NODE], node, node, node);
+    set(out[AOV_MATERIAL], hit.material + 1.0, hit.material + 1.0, hit.material + 1.0);
+    if (mask >> AOV_LIGHTS & 1) {
+        double seen = lights_seen(world, &hit, scratch);
+        set(out[AOV_LIGHTS], seen, seen, seen);
+    }
+}
+
+struct aov_scale aov_scale(enum aov aov, const float (*values)[3], size_t count) {
+    struct aov_scale scale = {INFINITY, 1};
+    for (size_t i = 0; i < count && (aov == AOV_DEPTH || aov == AOV_SAMPLES); i++) {
+        double value = (double)values[i][0];
+        scale.nearest = value > 0 && value < scale.nearest ? value : scale.nearest;
+        scale.most = value > scale.most ? value : scale.most;
+    }
+    return scale;
+}
+
+static double clamp01(double x) {
+    return x >= 1 ? 1 : x > 0 ? x : 0;
+}
+
+/* Black, blue, red, yellow, white at 0, 1/4 ... 1. */
+static void heat(double x, double rgb[3]) {
+    static const double stops[5][3] = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}};
+    double place = clamp01(x) * 4;
+    int below = place >= 3 ? 3 : (int)place;
+    for (int c = 0; c < 3; c++)
+        rgb[c] = stops[below][c] + (place - below) * (stops[below + 1][c] - stops[below][c]);
+}
+
+static double fraction(double x) {
+    return x - floor(x);
+}
+
+void aov_colour(enum aov aov, const struct aov_scale *scale, const float value[3], double rgb[3]) {
+    const double v[3] = {(double)value[0], (double)value[1], (double)value[2]};
+    for (int c = 0; c < 3; c++)
+        rgb[c] = clamp01(v[c]);
+    switch (aov) {
+    case AOV_DEPTH:
+        rgb[0] = rgb[1] = rgb[2] = v[0] > 0 ? clamp01(scale->nearest / v[0]) : 0;
+        break;
+    case AOV_NORMAL:
+        for (int c = 0; c < 3 && (v[0] != 0 || v[1] != 0 || v[2] != 0); c++)
+            rgb[c] = clamp01((v[c] + 1) / 2);
+        break;
+    case AOV_UV:
+        rgb[0] = fraction(v[0]);
+        rgb[1] = fraction(v[1]);
+        break;
+    case AOV_NODE:
+    case AOV_MATERIAL:
+        for (uint32_t c = 0; c < 3 && v[0] > 0; c++)
+            rgb[c] = 0.25 + 0.75 * random_unit(random_combine((uint64_t)v[0], c));
+        break;
+    case AOV_COST:
+        heat(v[0] > 0 ? el_log(v[0]) / (20 * 0.69314718055994530942) : 0, rgb);
+        break;
+    case AOV_SAMPLES:
+        rgb[0] = rgb[1] = rgb[2] = v[0] / scale->most;
+        break;
+    case AOV_ALBEDO:
+    case AOV_LIGHTS:
+    case AOV_COUNT:
+        break;
+    }
+}

@@ -1,0 +1,43 @@
+/* Pictures beside the picture: what the first sample of every pixel met, and what the pixel cost. Each layer has three
+ * numbers a pixel; aov_colour makes them colours, files of light (.pfm, .hdr, .exr) have them as they are. */
+#ifndef GRAY_RENDER_AOV_H
+#define GRAY_RENDER_AOV_H
+
+#include "world/world.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum aov {
+    AOV_DEPTH,    /* distance from the eye along the ray, world units; 0: nothing met */
+    AOV_NORMAL,   /* unit, world, on the outward side, as shading has it; {0, 0, 0}: nothing met */
+    AOV_ALBEDO,   /* kd of the surface */
+    AOV_UV,       /* u, v, 1; {0, 0, 0}: nothing met or no image coordinates */
+    AOV_NODE,     /* the node's number by order of creation, from 1; 0: nothing met */
+    AOV_MATERIAL, /* the material's number in the scene, from 1 */
+    AOV_COST,     /* nodes, voxels, boxes, shapes and triangles that all samples of the pixel looked at */
+    AOV_SAMPLES,  /* camera rays of the pixel */
+    AOV_LIGHTS,   /* share of the lights with a place or a direction whose middle the point sees */
+    AOV_COUNT
+};
+#define AOV_ALL ((UINT32_C(1) << AOV_COUNT) - 1)
+
+const char *aov_name(enum aov aov);
+/* Names parted by commas, or "all", as a mask. */
+bool aov_parse(const char *text, uint32_t *mask);
+/* How many layers a mask has, and which one a layer is. */
+uint32_t aov_layers(uint32_t mask);
+uint32_t aov_layer(uint32_t mask, enum aov aov);
+
+/* The layers of `mask` that tell what the ray met; out[AOV_COUNT]. All zero where nothing is met. */
+void aov_surface(const struct world *world, const struct ray *ray, uint32_t mask, struct world_scratch *scratch,
+                 float out[AOV_COUNT][3]);
+
+/* The colour of a value. nearest: the smallest depth of the picture; most: its largest number of samples. */
+struct aov_scale {
+    double nearest, most;
+};
+struct aov_scale aov_scale(enum aov aov, const float (*values)[3], size_t count);
+void aov_colour(enum aov aov, const struct aov_scale *scale, const float value[3], double rgb[3]);
+
+#endif

@@ -1,0 +1,182 @@
+/* Pictures beside the picture against closed forms, and statistics that must agree with one another. */
+#include "render/aov.h"
+#include "tests/harness.h"
+#include "tests/stage.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const float *layer(const struct stage *s, enum aov aov, uint32_t x, uint32_t y) {
+    size_t pixels = (size_t)s->film.width * s->film.height;
+    return s->film.layers[aov_layer(s->film.layer_mask, aov) * pixels + (size_t)y * s->film.width + x];
+}
+
+static double layer_sum(const struct stage *s, enum aov aov) {
+    double sum = 0;
+    for (uint32_t y = 0; y < s->film.height; y++)
+        for (uint32_t x = 0; x < s->film.width; x++)
+            sum += (double)layer(s, aov, x, y)[0];
+    return sum;
+}
+
+/* A ball at the origin seen from z = 10 through an odd number of pixels: one ray goes through its middle. */
+TEST(layers_of_a_ball_are_their_closed_forms) {
+    enum { SIZE = 41 };
+    struct stage s;
+    stage_begin(&s, 2);
+    stage_sphere(&s, s.root, stage_phong(&s, vec3_make(0.2, 0.4, 0.6), vec3_all(0), 1));
+    stage_point_light(&s, vec3_make(0, 0, 20), vec3_all(1));
+    stage_point_light(&s, vec3_make(0, 0, -20), vec3_all(1));
+    s.settings.aov = AOV_ALL;
+    CHECK(stage_render(&s, SIZE, SIZE));
+    double step = 2 * tan(25 * M_PI / 180) / SIZE, worst = 0;
+    int met = 0;
+    for (uint32_t y = 0; y < SIZE; y++)
+        for (uint32_t x = 0; x < SIZE; x++) {
+            struct vec3 d = vec3_normalize(vec3_make((x - 20.0) * step, (20.0 - y) * step, -1));
+            double b = -10 * d.z, discriminant = b * b - 99, depth = discriminant > 0 ? b - sqrt(discriminant) : 0;
+            struct vec3 n = depth > 0 ? vec3_add_scaled(vec3_make(0, 0, 10), d, depth) : vec3_all(0);
+            const float *normal = layer(&s, AOV_NORMAL, x, y), *albedo = layer(&s, AOV_ALBEDO, x, y);
+            worst = fmax(worst, fabs((double)layer(&s, AOV_DEPTH, x, y)[0] - depth));
+            for (int c = 0; c < 3; c++)
+                worst = fmax(worst, fabs((double)normal[c] - vec3_get(n, c)));
+            worst = fmax(worst, fabs((double)albedo[2] - (depth > 0 ? 0.6 : 0)));
+            CHECK(layer(&s, AOV_NODE, x, y)[0] == (depth > 0 ? 2.0f : 0.0f)); /* made after the root */
+            CHECK(layer(&s, AOV_MATERIAL, x, y)[1] == (depth > 0 ? 1.0f : 0.0f));
+            CHECK(layer(&s, AOV_LIGHTS, x, y)[0] == (depth > 0 ? 0.5f : 0.0f)); /* the other one is behind it */
+            met += depth > 0;
+        }
+    CHECK(met > 20);
+    CHECK(worst < 1e-5);
+    stage_end(&s);
+}
+
+TEST(layers_change_nothing_in_the_picture_and_its_statistics) {
+    unsigned char *reference = NULL;
+    uint64_t rays = 0;
+    size_t size = (size_t)60 * 50 * sizeof(struct film_pixel);
+    for (int i = 0; i < 2; i++) {
+        struct stage s;
+        stage_begin(&s, 2);
+        stage_sphere(&s, s.root, stage_glass(&s, 0.4, 0.6, 1.5));
+        stage_move(&s, stage_cube(&s, s.root, stage_phong(&s, vec3_all(0.7), vec3_all(0.2), 9)), -2, -1, -2);
+        stage_point_light(&s, vec3_make(4, 6, 8), vec3_all(1));
+        s.settings.aov = i ? AOV_ALL : 0;
+        CHECK(stage_render(&s, 60, 50));
+        if (i)
+            CHECK(memcmp(reference, s.film.pixels, size) == 0 && rays == s.statistics.camera_rays);
+        else
+            reference = memcpy(malloc(size), s.film.pixels, size);
+        rays = s.statistics.camera_rays;
+        stage_end(&s);
+    }
+    free(reference);
+}
+
+/* Nothing is met, and without any accelerator every ray tries every box: the cost is known. */
+TEST(the_cost_of_a_ray_that_tries_everything_is_the_number_of_things) {
+    enum { THINGS = 37 };
+    struct stage s;
+    stage_begin(&s, 1);
+    for (int i = 0; i < THINGS; i++)
+        stage_move(&s, stage_sphere(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1)), 3 * i, 0, 30);
+    s.settings.accel = ACCEL_NONE;
+    s.settings.aov = UINT32_C(1) << AOV_COST | UINT32_C(1) << AOV_SAMPLES;
+    CHECK(stage_render(&s, 20, 10));
+    for (uint32_t y = 0; y < 10; y++)
+        for (uint32_t x = 0; x < 20; x++) {
+            CHECK(layer(&s, AOV_COST, x, y)[0] == THINGS);
+            CHECK(layer(&s, AOV_SAMPLES, x, y)[0] == 1);
+        }
+    stage_end(&s);
+}
+
+static void crowd(struct stage *s) {
+    struct material *shiny = stage_glass(s, 0.3, 0.5, 1.3), *plain = stage_phong(s, vec3_all(0.8), vec3_all(0.1), 5);
+    for (int i = 0; i < 40; i++) {
+        struct node *ball = stage_sphere(s, s->root, i % 3 ? plain : shiny);
+        stage_scale(s, ball, 0.4, 0.4, 0.4);
+        stage_move(s, ball, i % 8 - 3.5, i / 8 - 2, -(i % 5));
+    }
+    stage_point_light(s, vec3_make(4, 6, 8), vec3_all(1));
+}
+
+/* Rays that do not go in packets are measured as they are traced, so the parts are the whole. */
+TEST(the_costs_of_all_pixels_are_those_of_the_statistics) {
+    struct stage s;
+    stage_begin(&s, 2);
+    crowd(&s);
+    s.settings.full = true;
+    s.settings.samples = 2;
+    s.settings.lens.projection = PROJECTION_ORTHOGRAPHIC;
+    s.settings.lens.view_height = 7;
+    s.settings.accel = ACCEL_GRID;
+    s.settings.aov = UINT32_C(1) << AOV_COST | UINT32_C(1) << AOV_SAMPLES;
+    CHECK(stage_render(&s, 40, 30));
+    CHECK(layer_sum(&s, AOV_SAMPLES) == (double)s.statistics.camera_rays);
+    const struct render_statistics *t = &s.statistics;
+    uint64_t work = t->box_tests + t->shape_tests + t->triangle_tests + t->voxels + t->hierarchy_steps;
+    /* A shadow ray begins with what stopped the one before it, which is another one when pixels are measured. */
+    CHECK(fabs(layer_sum(&s, AOV_COST) - (double)work) < 0.02 * (double)work);
+    stage_end(&s);
+}
+
+TEST(every_accelerator_sends_the_same_rays) {
+    struct render_statistics first = {0};
+    static const enum accel_kind kinds[] = {ACCEL_NONE, ACCEL_AUTO, ACCEL_GRID, ACCEL_BVH, ACCEL_KDTREE};
+    for (int i = 0; i < 5; i++) {
+        struct stage s;
+        stage_begin(&s, 2);
+        crowd(&s);
+        s.settings.accel = kinds[i];
+        CHECK(stage_render(&s, 60, 40));
+        const struct render_statistics *t = &s.statistics;
+        if (i == 0)
+            first = *t;
+        CHECK(t->camera_rays == first.camera_rays && t->reflected_rays == first.reflected_rays);
+        CHECK(t->refracted_rays == first.refracted_rays && t->shadow_rays == first.shadow_rays);
+        CHECK(t->samples == t->camera_rays && t->pixels == 60 * 40 && t->marked_pixels == first.marked_pixels);
+        /* Trying everything tries most; a tree without steps and a grid without voxels would be none. */
+        CHECK(i == 0 || t->shape_tests <= first.shape_tests);
+        CHECK((t->hierarchy_steps > 0) ==
+              (kinds[i] == ACCEL_AUTO || kinds[i] == ACCEL_BVH || kinds[i] == ACCEL_KDTREE));
+        CHECK((t->voxels > 0) == (kinds[i] == ACCEL_GRID || kinds[i] == ACCEL_KDTREE));
+        CHECK(t->triangle_tests == 0);
+        stage_end(&s);
+    }
+}
+
+TEST(colours_of_layers_are_their_encodings) {
+    static const struct {
+        enum aov aov;
+        float value[3];
+        double rgb[3];
+    } cases[] = {{AOV_DEPTH, {4, 4, 4}, {0.5, 0.5, 0.5}},
+                 {AOV_DEPTH, {0, 0, 0}, {0, 0, 0}},
+                 {AOV_NORMAL, {0, 1, -1}, {0.5, 1, 0}},
+                 {AOV_NORMAL, {0, 0, 0}, {0, 0, 0}},
+                 {AOV_UV, {1.25f, -0.25f, 1}, {0.25, 0.75, 1}},
+                 {AOV_ALBEDO, {0.5f, 2, 0}, {0.5, 1, 0}},
+                 {AOV_COST, {1, 1, 1}, {0, 0, 0}},
+                 {AOV_COST, {1024, 1024, 1024}, {1, 0, 0}},
+                 {AOV_COST, {32, 32, 32}, {0, 0, 1}},
+                 {AOV_COST, {1 << 20, 0, 0}, {1, 1, 1}},
+                 {AOV_SAMPLES, {4, 4, 4}, {0.4, 0.4, 0.4}},
+                 {AOV_LIGHTS, {0.5f, 0.5f, 0.5f}, {0.5, 0.5, 0.5}}};
+    const struct aov_scale scale = {2, 10};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        double rgb[3];
+        aov_colour(cases[i].aov, &scale, cases[i].value, rgb);
+        for (int c = 0; c < 3; c++)
+            CHECK(fabs(rgb[c] - cases[i].rgb[c]) < 1e-9);
+    }
+    double one[3], other[3];
+    aov_colour(AOV_NODE, &scale, (const float[3]){1, 1, 1}, one);
+    aov_colour(AOV_NODE, &scale, (const float[3]){2, 2, 2}, other);
+    CHECK(memcmp(one, other, sizeof one) != 0 && one[0] >= 0.25);
+    uint32_t mask = 0;
+    CHECK(aov_parse("depth,lights", &mask) && aov_layers(mask) == 2 && aov_layer(mask, AOV_LIGHTS) == 1);
+    CHECK(aov_parse("all", &mask) && mask == AOV_ALL);
+    CHECK(!aov_parse("depth,,uv", &mask) && !aov_parse("", &mask) && !aov_parse("depth,", &mask));
+}
