@@ -83,7 +83,7 @@ $(BUILD)/tests/run: $(OBJECTS) $(TEST_OBJECTS)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
 # Benchmarks that are programs of their own.
-$(BUILD)/bench/formats $(BUILD)/bench/shapes: $(BUILD)/bench/%: $(BUILD)/bench/%.o $(OBJECTS)
+$(BUILD)/bench/formats $(BUILD)/bench/shapes $(BUILD)/bench/lamps: $(BUILD)/bench/%: $(BUILD)/bench/%.o $(OBJECTS)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
 # Kernels for one instruction set each live in files of their own; nothing is fused but what they fuse themselves, and

@@ -20,6 +20,7 @@ void stage_begin(struct stage *s, int threads) {
     s->root = scene_node(&s->scene, NODE_GROUP, "root", &s->error);
     s->sky = (struct sky){.kind = SKY_CONSTANT};
     s->settings = settings_default();
+    s->settings.cutoff = 0;
     s->camera = (struct camera){{0, 0, 10}, {0, 0, -1}, {0, 1, 0}, 50};
 }
 

@@ -25,7 +25,8 @@ struct stage {
     struct film film; /* of the last stage_render */
 };
 
-/* An empty root, no lights, black sky, ambient 0, camera at (0,0,10) looking at -z, fov 50, default settings. */
+/* An empty root, no lights, black sky, ambient 0, camera at (0,0,10) looking at -z, fov 50, default settings,
+ * but that every ray counts. */
 void stage_begin(struct stage *s, int threads);
 void stage_end(struct stage *s);
 bool stage_build(struct stage *s, struct node *root, enum accel_kind accel);

@@ -81,8 +81,8 @@ static const struct option table[] = {
      "N x N shadow rays for each area light"},
     {GROUP_PICTURE, "--caustics", OPTION_INTEGER, "N", 0, PHOTONS_MOST, FIELD(settings.caustics.photons), "0",
      "N photons make the light that glass and mirrors throw"},
-    {GROUP_PICTURE, "--cutoff", OPTION_NUMBER, "X", 0, 1, FIELD(settings.cutoff), "0",
-     "rays that can change a pixel by less than X (of 1) are not followed"},
+    {GROUP_PICTURE, "--cutoff", OPTION_NUMBER, "X", 0, 1, FIELD(settings.cutoff), "0.0001",
+     "rays that can change a pixel by less than X (of 1) are not followed; 0: all are"},
     {GROUP_PICTURE, "--seed", OPTION_SEED, "N", NO_RANGE, NO_FIELD, "0",
      "start of all random numbers, the scripts' math.random included"},
 

@@ -218,6 +218,17 @@ const char *image_name(const struct image *image) {
     return image->name;
 }
 
+double image_brightest(const struct image *image) {
+    if (image->bits != 32)
+        return 1;
+    const float *texels = image->levels[0].texels;
+    size_t count = (size_t)image->levels[0].width * image->levels[0].height * 4;
+    float most = 0;
+    for (size_t i = 0; i < count; i++)
+        most = (i & 3) < 3 && texels[i] > most ? texels[i] : most;
+    return (double)most;
+}
+
 struct rgba image_texel(const struct image *image, uint32_t x, uint32_t y) {
     size_t at = ((size_t)y * image->levels[0].width + x) * 4;
     if (image->bits == 8) {

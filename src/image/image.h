@@ -37,6 +37,8 @@ size_t image_memory(const struct image *image);
 const char *image_name(const struct image *image);
 /* Level 0 texel, not premultiplied, 0..1 (more where a picture has light); x, y in range. */
 struct rgba image_texel(const struct image *image, uint32_t x, uint32_t y);
+/* The largest value of a colour channel; 1 for pictures that are not of light. */
+double image_brightest(const struct image *image);
 /* Filtered, premultiplied. width_u, width_v: size of the footprint in u and v (0 = unknown: level 0 is used). Finite u,
  * v of any size. */
 struct rgba image_lookup(const struct image *image, double u, double v, double width_u, double width_v,

@@ -1,8 +1,9 @@
 /* Places on lights. A disc is the square mapped concentrically (Shirley and Chiu, "A Low Distortion Map Between Disk
  * and Square", JGT 1997). A lamp that is a sphere is sampled by solid angle within its cone (Shirley, Wang, Zimmerman,
  * "Monte Carlo Techniques for Direct Lighting Calculations", TOG 1996), so every sample counts the same and the
- * emitter's cosine is in it already; so is a rectangle (light_rectangle.c). Discs, other parallelograms and meshes are
- * sampled by area with weight cos / (pi d^2) each, triangles of a mesh in proportion to the light they send. */
+ * emitter's cosine is in it already; so is a rectangle (light_rectangle.c), and a disc seen large by way of its square.
+ * Other discs and parallelograms and meshes are sampled by area with weight cos / (pi d^2) each, triangles of a mesh in
+ * proportion to the light they send. */
 #include "look/light.h"
 
 #include "look/sky_light.h"
@@ -10,6 +11,9 @@
 #include "math/frame.h"
 
 static const double pi = 3.14159265358979323846;
+/* A disc whose square fills more than this solid angle is sampled by that of the square, though a fifth of the square
+ * is not of the disc: bench/lamps.c. */
+static const double disc_by_angle = 1.5;
 
 double light_attenuation(const struct light *light, double distance) {
     const double *c = light->falloff;
@@ -99,6 +103,9 @@ bool light_frame_make(const struct light *light, struct vec3 from, struct light_
         frame_tangents(out->axis, &out->right, &out->up);
         square_around(out, light->position, light->radius);
         out->weight = light->radius * light->radius;
+        out->by_angle = light->emits &&
+                        spherical_rectangle_make(out->corner, out->edge1, out->edge2, from, &out->seen) &&
+                        out->seen.angle > disc_by_angle;
         return !behind(light, light->direction, from);
     case LIGHT_SPHERE:
         return sphere_frame(light, from, out);
@@ -180,7 +187,9 @@ struct light_sample light_sample_lamp(const struct light *light, const struct li
     sample.target = light_target(light, frame, from, place);
     double weight = frame->weight;
     if (frame->by_angle) {
-        weight = frame->seen.angle / pi;
+        struct vec3 off = vec3_sub(sample.target, light->position);
+        bool beside = light->kind == LIGHT_DISC && vec3_length_squared(off) > light->radius * light->radius;
+        weight = beside ? 0 : frame->seen.angle / pi;
     } else if (light->kind != LIGHT_SPHERE) {
         struct vec3 away = vec3_sub(from, sample.target);
         double squared = vec3_length_squared(away), cosine = fabs(vec3_dot(frame->axis, away));

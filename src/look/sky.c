@@ -210,6 +210,43 @@ static struct vec3 unturned_colour(const struct sky *sky, struct vec3 direction,
     return vec3_all(0);
 }
 
+static double largest(struct vec3 c) {
+    double most = c.x > c.y ? c.x : c.y;
+    return c.z > most ? c.z : most;
+}
+
+static double unturned_brightest(const struct sky *sky) {
+    double most = 0;
+    switch (sky->kind) {
+    case SKY_GRADIENT:
+        return 1;
+    case SKY_CONSTANT:
+        return largest(sky->colour);
+    case SKY_CROSS:
+    case SKY_MAP:
+        return image_brightest(sky->image);
+    case SKY_FACES:
+        for (int i = 0; i < 6; i++)
+            most = fmax(most, image_brightest(sky->faces[i]));
+        return most;
+    case SKY_STOPS:
+        for (uint32_t i = 0; i < sky->stop_count; i++)
+            most = fmax(most, largest(vec3_make(sky->stops[i][1], sky->stops[i][2], sky->stops[i][3])));
+        return most;
+    case SKY_CLEAR:
+        /* Brightest at the sun or at the horizon below it. */
+        most = largest(sky_clear_colour(&sky->clear, sky->clear.sun));
+        most = fmax(most, largest(sky_clear_colour(&sky->clear,
+                                                   vec3_normalize(vec3_make(sky->clear.sun.x, 0, sky->clear.sun.z)))));
+        return fmax(most, largest(sky->clear.ground));
+    }
+    return 1;
+}
+
+double sky_brightest(const struct sky *sky) {
+    return unturned_brightest(sky) * (sky->adjusted ? sky->intensity : 1);
+}
+
 struct vec3 sky_colour(const struct sky *sky, struct vec3 direction, double spread) {
     if (!sky->adjusted)
         return unturned_colour(sky, direction, spread);

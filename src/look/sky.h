@@ -36,6 +36,8 @@ void sky_make_clear(struct vec3 sun, double turbidity, struct vec3 ground, struc
 /* The unit direction to the sun: y up, -z north, +x east. day: 1..365; hour: of the clock; degrees, east and north
  * positive; zone: hours that the clock is ahead of Greenwich. */
 struct vec3 sky_sun(double day, double hour, double latitude, double longitude, double zone);
+/* At least the largest component of its colours. */
+double sky_brightest(const struct sky *sky);
 /* `spread`: angle of the ray's cone in radians, for filtering; 0 = unknown. */
 struct vec3 sky_colour(const struct sky *sky, struct vec3 direction, double spread);
 

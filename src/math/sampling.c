@@ -1,6 +1,8 @@
 /* The concentric map of Shirley and Chiu, "A Low Distortion Map Between Disk and Square", JGT 1997, and the keyed
  * permutation of Kensler, "Correlated Multi-Jittered Sampling", Pixar Technical Memo 13-01, 2013: bijective mixing
- * steps within the next power of two, repeated until the result is in range (cycle walking). */
+ * steps within the next power of two, repeated until the result is in range (cycle walking). Multi-jittered sets are
+ * those of Chiu, Shirley, Wang, "Multi-Jittered Sampling", Graphics Gems IV, 1994, every column and every row with a
+ * permutation of its own. */
 #include "math/sampling.h"
 
 #include "math/elementary.h"
@@ -36,6 +38,17 @@ uint32_t sample_permute(uint32_t index, uint32_t count, uint64_t key) {
         index ^= index >> 5;
     } while (index >= count);
     return (index + (p & 0x7fffffffu) % count) % count;
+}
+
+struct sample2 sample_multi(uint64_t set, uint64_t key, uint32_t i, uint32_t j, uint32_t n, uint32_t part,
+                            uint32_t side) {
+    uint32_t m = n * side, column = i * side + part % side, row = j * side + part / side;
+    uint32_t inner_x = sample_permute(row, m, random_combine(set, 2 * (uint64_t)column));
+    uint32_t inner_y = sample_permute(column, m, random_combine(set, 2 * (uint64_t)row + 1));
+    uint64_t bits = random_combine(key, (uint64_t)row * m + column);
+    double x = random_unit(bits), y = random_unit(random_mix(bits + UINT64_C(0x9e3779b97f4a7c15)));
+    return (struct sample2){((double)column + ((double)inner_x + x) / (double)m) / (double)m,
+                            ((double)row + ((double)inner_y + y) / (double)m) / (double)m};
 }
 
 struct sample2 sample_disc(struct sample2 square) {

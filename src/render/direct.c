@@ -29,24 +29,26 @@ struct fan {
     struct light_frame frame;
     struct vec3 from;
     uint32_t side; /* side x side rays */
-    uint64_t key;
+    uint64_t key, set;
     uint32_t turn, turns;
+    bool parted;
 };
 
 static struct fan fan_make(const struct tracer *tracer, const struct light *light, uint32_t number, uint64_t key) {
     struct fan fan = {.light = light, .key = key};
     fan.side = (uint32_t)(light->samples ? light->samples : tracer->job->settings.area_samples);
     /* Lights of SPEC 1.4 keep their jitter; the others share the cells among the samples of a pixel. */
-    bool parted = light->emits || light->kind != LIGHT_PARALLELOGRAM;
-    fan.turns = parted ? tracer->strata.side : 1;
-    fan.turn = parted ? sample_turn(&tracer->strata, number) : 0;
+    fan.parted = light->emits || light->kind != LIGHT_PARALLELOGRAM;
+    fan.turns = fan.parted && tracer->strata.side > 1 ? tracer->strata.side : 1;
+    fan.turn = fan.parted ? sample_turn(&tracer->strata, number) : 0;
+    fan.set = random_combine(tracer->strata.key, UINT64_MAX - 2 - number);
     return fan;
 }
 
 static struct sample2 fan_place(const struct fan *fan, uint32_t cell) {
     uint32_t i = cell % fan->side, j = cell / fan->side;
-    return fan->turns > 1 ? sample_cell_part(fan->key, i, j, fan->side, fan->turn, fan->turns)
-                          : sample_cell(fan->key, i, j, fan->side);
+    return fan->parted ? sample_multi(fan->set, fan->key, i, j, fan->side, fan->turn, fan->turns)
+                       : sample_cell(fan->key, i, j, fan->side);
 }
 
 /* The share of a light that reaches the hit: 0 or 1 for a point, of jittered shadow rays for an extent. */

@@ -7,6 +7,7 @@
 #include "base/random.h"
 #include "render/aov.h"
 #include "render/camera.h"
+#include "render/cutoff.h"
 #include "render/photon_trace.h"
 #include "render/shard.h"
 #include "render/whitted.h"
@@ -529,12 +530,16 @@ static bool start_workers(struct run *run, int workers) {
     run->workers = mem_alloc_zero((size_t)workers, sizeof *run->workers);
     if (!run->workers)
         return false;
+    double cutoff = cutoff_weight(run->job);
     for (int i = 0; i < workers; i++) {
         struct worker *worker = &run->workers[i];
         if (!world_scratch_init(&worker->scratch, run->job->world))
             return false;
-        worker->tracer = (struct tracer){
-            .job = run->job, .pool = run->pool, .scratch = &worker->scratch, .eye_media = &run->eye_media};
+        worker->tracer = (struct tracer){.job = run->job,
+                                         .pool = run->pool,
+                                         .scratch = &worker->scratch,
+                                         .eye_media = &run->eye_media,
+                                         .cutoff = cutoff};
     }
     return true;
 }

@@ -11,5 +11,6 @@ struct settings settings_default(void) {
                              .specular = SPECULAR_PHONG,
                              .accel = ACCEL_AUTO,
                              .shutter = {0, 1},
+                             .cutoff = 0.0001,
                              .lens = {.view_height = 2, .angle = 180, .screen = 1}};
 }

@@ -64,7 +64,7 @@ struct settings {
     enum specular_kind specular; /* --specular */
     bool ambient_plain;          /* --ambient plain: ambient is added itself, not times kd */
     enum accel_kind accel;
-    double cutoff;   /* rays that can change a pixel by less (of 1) are not followed; 0: none */
+    double cutoff;   /* rays that can change a pixel by less (of 1) are not followed; 0: all are */
     uint32_t aov;    /* layers beside the picture: a mask of render/aov.h */
     bool keep_first; /* the first pass is wanted even where -full makes it needless */
     bool cropped;

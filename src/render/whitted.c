@@ -44,7 +44,7 @@ static struct vec3 follow_mirror(struct tracer *tracer, const struct hit *hit, c
                                  struct vec3 direction, struct vec3 filter, struct path path) {
     const struct settings *settings = &tracer->job->settings;
     path.weight *= vec3_max_abs(filter);
-    if (path.reflections >= settings->reflect_limit || path.weight < settings->cutoff)
+    if (path.reflections >= settings->reflect_limit || path.weight < tracer->cutoff)
         return vec3_all(0);
     struct ray reflected = interface_ray(hit, ray, direction, ray->media);
     tracer->reflected_rays++;
@@ -58,7 +58,7 @@ static struct vec3 follow_refraction(struct tracer *tracer, const struct hit *hi
                                      struct path path) {
     const struct settings *settings = &tracer->job->settings;
     path.weight *= vec3_max_abs(filter);
-    if (path.refractions >= settings->refract_limit || path.weight < settings->cutoff)
+    if (path.refractions >= settings->refract_limit || path.weight < tracer->cutoff)
         return vec3_all(0);
     struct ray refracted = interface_ray(hit, ray, direction, behind);
     tracer->refracted_rays++;
@@ -73,7 +73,7 @@ static struct vec3 follow_hole(struct tracer *tracer, const struct hit *hit, con
                                struct path path) {
     enum { HOLE_LIMIT = 200 };
     path.weight *= share;
-    if (path.holes >= HOLE_LIMIT || path.weight < tracer->job->settings.cutoff)
+    if (path.holes >= HOLE_LIMIT || path.weight < tracer->cutoff)
         return vec3_all(0);
     struct ray onward = interface_ray(hit, ray, vec3_negate(hit->view), ray->media);
     tracer->refracted_rays++;
@@ -200,7 +200,7 @@ static struct vec3 bring(struct tracer *tracer, const struct ray *ray, const str
     path.weight *= vec3_max_abs(left);
 
     struct vec3 colour = {0, 0, 0};
-    if (path.weight < tracer->job->settings.cutoff)
+    if (path.weight < tracer->cutoff)
         left = vec3_all(0);
     else if (lamp)
         colour = lamp->colour;

@@ -16,6 +16,7 @@ struct tracer {
     const struct media *eye_media;     /* what the camera stands in */
     struct strata strata;              /* of the pixel sample that is traced */
     const struct photon_map *caustics; /* or NULL */
+    double cutoff;                     /* cutoff_weight of the job */
     uint64_t reflected_rays, refracted_rays, shadow_rays, hits;
 };
 

@@ -112,6 +112,10 @@ bool act_area_light(struct context *context, const struct value *args, struct re
                           .edge2 = args[AREA_V2].vector,
                           .one_sided = args[AREA_ONE_SIDED].boolean};
     light.position = vec3_add_scaled(vec3_add_scaled(light.corner, light.edge1, 0.5), light.edge2, 0.5);
+    double area = vec3_length(vec3_cross(light.edge1, light.edge2));
+    if (!(area > 0x1p-40 * vec3_length(light.edge1) * vec3_length(light.edge2)))
+        context_warn_once(context, WARNED_OTHER, "v1 and v2 are parallel or zero: the light has no area%s",
+                          args[LIGHT_EMISSION].given ? " and gives no light" : "");
     return give_lamp(context, &light, args, result, error);
 }
 

@@ -147,3 +147,32 @@ TEST(a_hall_of_mirrors_ends_by_the_cut_off) {
     CHECK_EQ_INT(s.statistics.reflected_rays, 8);
     stage_end(&s);
 }
+
+/* The same hall: what is four times as bright, or shown so, counts two reflections longer. */
+TEST(the_cut_off_knows_how_bright_things_can_be_and_are_shown) {
+    static const uint64_t expected[] = {8, 10, 10, 9, 11};
+    for (int i = 0; i < 5; i++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        for (int k = 0; k < 2; k++) {
+            struct node *wall = stage_cube(&s, s.root, stage_glass(&s, 0.5, 0, 1));
+            stage_scale(&s, wall, 50, 50, 1);
+            stage_move(&s, wall, -25, -25, k ? -6 : 20);
+        }
+        s.settings.samples = 1;
+        s.settings.reflect_limit = 1000;
+        s.settings.cutoff = 0x1p-8;
+        if (i == 1)
+            s.sky.colour = vec3_make(0, 4, 1);
+        if (i == 2)
+            stage_point_light(&s, vec3_make(0, 0, 5), vec3_all(4));
+        if (i == 3)
+            s.settings.tone.exposure = 1;
+        if (i == 4)
+            s.settings.tone.srgb = true;
+        uint64_t before = s.statistics.reflected_rays;
+        CHECK(stage_render(&s, 1, 1));
+        CHECK_EQ_INT(s.statistics.reflected_rays - before, expected[i]);
+        stage_end(&s);
+    }
+}

@@ -321,6 +321,22 @@ TEST(permutations_are_bijections_and_differ_by_key) {
     }
 }
 
+/* Four parts of 3 x 3 cells: 36 points, one in each of 6 x 6 parts, of 36 columns and of 36 rows. */
+TEST(a_set_of_samples_is_stratified_in_cells_rows_and_columns) {
+    for (uint64_t set = 0; set < 50; set++) {
+        uint8_t parts[36] = {0}, columns[36] = {0}, rows[36] = {0};
+        for (uint32_t k = 0; k < 36; k++) {
+            struct sample2 p = sample_multi(set, random_mix(set * 100 + k), k % 3, k / 3 % 3, 3, k / 9, 2);
+            CHECK((uint32_t)(p.x * 3) == k % 3 && (uint32_t)(p.y * 3) == k / 3 % 3);
+            parts[(uint32_t)(p.y * 6) * 6 + (uint32_t)(p.x * 6)]++;
+            columns[(uint32_t)(p.x * 36)]++;
+            rows[(uint32_t)(p.y * 36)]++;
+        }
+        for (uint32_t k = 0; k < 36; k++)
+            CHECK(parts[k] == 1 && columns[k] == 1 && rows[k] == 1);
+    }
+}
+
 TEST(disc_map_keeps_areas_and_stays_inside) {
     int inside = 0;
     for (int i = 0; i < 200; i++) {

@@ -62,6 +62,7 @@ TEST(options_have_the_defaults_of_the_manual) {
     CHECK_NEAR(o->settings.side_tolerance, 0.005, 0);
     CHECK_NEAR(o->settings.corner_tolerance, 0.01, 0);
     CHECK(!o->settings.use_tir);
+    CHECK_NEAR(o->settings.cutoff, 0.0001, 0);
     CHECK_EQ_INT(o->settings.area_samples, 4);
     CHECK_EQ_INT(o->settings.seed, 0);
     CHECK_EQ_INT(o->settings.accel, ACCEL_AUTO);

@@ -112,6 +112,16 @@ TEST(a_factor_of_zero_is_a_warning) {
     CHECK(strstr(listener.said, "scene.lua:1: warning: node:scale: a factor is 0"));
 }
 
+TEST(an_area_light_without_area_is_a_warning) {
+    struct listener listener = {.renders = 0};
+    expect_text_done(&listener, "gr.area_light({0, 5, 0}, {1, 0, 0}, {-2, 0, 0}, {1, 1, 1}, {1, 0, 0})", NULL);
+    CHECK_EQ_INT(listener.messages, 1);
+    CHECK(strstr(listener.said, "scene.lua:1: warning: gr.area_light: v1 and v2 are parallel or zero"));
+    listener = (struct listener){.renders = 0};
+    expect_text_done(&listener, "gr.area_light({0, 5, 0}, {1, 0, 0}, {-2, 0, 1e-6}, {1, 1, 1}, {1, 0, 0})", NULL);
+    CHECK_EQ_INT(listener.messages, 0);
+}
+
 TEST(numbers_in_file_names_are_repaired_only_where_they_end) {
     struct listener listener = {.renders = 0};
     expect_text_done(&listener,
