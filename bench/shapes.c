@@ -1,8 +1,10 @@
-/* What one ray costs against one shape: shape_nearest from random places around to random points of the shape's box, in
- * nanoseconds of CPU time, the least of several rounds; and the share of rays that hit.
+/* What one ray costs against one shape, and against solids that are combined of many: shape_nearest from random places
+ * around to random points of the shape's box, in nanoseconds of CPU time, the least of several rounds; and the share of
+ * rays that hit.
  *
  *   shapes [NAME ...]        NAME is a part of a shape's name; without one all are measured */
 #include "base/arena.h"
+#include "geom/csg.h"
 #include "geom/shape.h"
 #include "geom/shape_blob.h"
 #include "geom/shape_curve.h"
@@ -58,6 +60,103 @@ static void measure(const char *name, const struct shape *shape, struct geom_scr
     }
     printf("%-32s %8.0f ns  %5.2f million rays/s  %3.0f %% hit\n", name, best / RAYS * 1e9, RAYS / best * 1e-6,
            100.0 * (double)hits / RAYS);
+}
+
+/* ---- combined solids ---- */
+
+/* What is set against the cost of a solid: all its leaves, each asked for its crossings in its own space as if it were
+ * placed alone. `boxes`: only those whose box the ray meets, which is asked first. */
+static double leaves_cost(const struct csg *csg, const struct ray *rays, const struct box *boxes,
+                          struct geom_scratch *scratch) {
+    double best = INFINITY;
+    for (int round = 0; round < ROUNDS; round++) {
+        double start = seconds();
+        for (int i = 0; i < RAYS; i++) {
+            struct box_probe probe = box_probe_make(&rays[i]);
+            for (uint32_t k = 0; k < csg->leaf_count; k++) {
+                if (boxes && !box_probe_meets(&probe, &boxes[k], 0, INFINITY))
+                    continue;
+                struct ray ray = ray_transform(&csg->leaves[k].csg_from_leaf.inverse, &rays[i]);
+                struct crossing_list list;
+                scratch->used = 0;
+                (void)shape_crossings(&csg->leaves[k].shape, &ray, scratch, &list);
+            }
+        }
+        best = fmin(best, seconds() - start);
+    }
+    scratch->used = 0;
+    return best;
+}
+
+static void measure_solid(const char *name, struct arena *arena, const struct csg_leaf *leaves, uint32_t count,
+                          const struct csg_token *program, struct geom_scratch *scratch) {
+    static struct ray rays[RAYS];
+    struct error error = {0};
+    const struct csg *csg = csg_build(arena, leaves, count, program, 2 * count - 1, &error);
+    struct box *boxes = arena_alloc_array(arena, count, sizeof *boxes);
+    if (!csg || !boxes)
+        return;
+    uint64_t state = 1;
+    struct vec3 middle = vec3_scale(vec3_add(csg->bounds.min, csg->bounds.max), 0.5),
+                half = vec3_scale(vec3_sub(csg->bounds.max, csg->bounds.min), 0.5);
+    for (uint32_t k = 0; k < count; k++)
+        boxes[k] = box_pad(shape_bounds_under(&leaves[k].shape, &leaves[k].csg_from_leaf.forward));
+    for (int i = 0; i < RAYS; i++) {
+        struct vec3 origin = vec3_scale(somewhere(&state), 4), at = vec3_add(middle, vec3_mul(somewhere(&state), half));
+        rays[i] = (struct ray){.origin = origin, .direction = vec3_sub(at, origin), .t_max = INFINITY};
+    }
+    double best = INFINITY;
+    for (int round = 0; round < ROUNDS; round++) {
+        double start = seconds();
+        struct crossing crossing;
+        for (int i = 0; i < RAYS; i++)
+            (void)csg_nearest(csg, &rays[i], scratch, &crossing);
+        best = fmin(best, seconds() - start);
+    }
+    double all = leaves_cost(csg, rays, NULL, scratch), boxed = leaves_cost(csg, rays, boxes, scratch);
+    printf(
+        "%-32s %8.0f ns  %5.2f million rays/s  %5.2f of all its leaves (%.0f ns), %5.2f of those it meets (%.0f ns)\n",
+        name, best / RAYS * 1e9, RAYS / best * 1e-6, best / all, all / RAYS * 1e9, best / boxed, boxed / RAYS * 1e9);
+}
+
+/* Trees eight operations deep: a chain of nine leaves, and the full tree of 256; and unions. */
+static void measure_solids(int argc, char **argv, bool (*wanted)(int, char **, const char *), struct arena *arena,
+                           struct geom_scratch *scratch) {
+    enum { DEPTH = 8, FULL = 1 << DEPTH };
+    static struct csg_leaf leaves[FULL];
+    static struct csg_token program[2 * FULL];
+    static const char *const names[] = {"csg chain of depth 8", "csg tree of depth 8", "csg union of 100",
+                                        "csg union of 100 touching", "csg ball less 100"};
+    for (int kind = 0; kind < 5; kind++) {
+        uint64_t state = 3;
+        uint32_t count = kind == 0 ? DEPTH + 1 : kind == 1 ? FULL : 100, length = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            double size = kind == 0 ? 0.7 : kind == 1 ? 0.4 : kind == 3 ? 0.3 : 0.1;
+            struct transform scale = transform_scale(vec3_all(kind == 4 && i == 0 ? 1 : size));
+            struct transform turn = transform_rotate((int)i % 3, 360 * uniform(&state));
+            struct transform move = transform_translate(vec3_scale(somewhere(&state), kind == 0 ? 0.4 : 0.8));
+            leaves[i] = (struct csg_leaf){.shape = {.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}}};
+            if (i % 2)
+                leaves[i].shape = (struct shape){.kind = SHAPE_BOX, .box = {{-1, -1, -1}, {1, 1, 1}}};
+            leaves[i].csg_from_leaf = transform_compose(&turn, &scale);
+            if (kind != 4 || i > 0)
+                leaves[i].csg_from_leaf = transform_compose(&move, &leaves[i].csg_from_leaf);
+            program[length++] = (struct csg_token){CSG_LEAF, (uint16_t)i};
+            enum csg_operation operation = kind == 4                ? CSG_DIFFERENCE
+                                           : kind > 1 || i % 4 != 3 ? CSG_UNION
+                                                                    : CSG_DIFFERENCE;
+            /* A full tree: after leaf i as many operations as i + 1 has factors of 2. */
+            for (uint32_t done = 2; kind == 1 && (i + 1) % done == 0; done *= 2)
+                program[length++] = (struct csg_token){done == 2   ? CSG_DIFFERENCE
+                                                       : done == 8 ? CSG_INTERSECTION
+                                                                   : CSG_UNION,
+                                                       0};
+            if (kind != 1 && i > 0)
+                program[length++] = (struct csg_token){operation, 0};
+        }
+        if (wanted(argc, argv, names[kind]))
+            measure_solid(names[kind], arena, leaves, count, program, scratch);
+    }
 }
 
 static bool is_wanted(int argc, char **argv, const char *name) {
@@ -167,6 +266,7 @@ int main(int argc, char **argv) {
         if (is_wanted(argc, argv, table[i].name))
             measure(table[i].name, &table[i].shape, &scratch);
     measure_swept(argc, argv, &arena, &scratch);
+    measure_solids(argc, argv, is_wanted, &arena, &scratch);
     geom_scratch_destroy(&scratch);
     arena_destroy(&arena);
     return 0;
