@@ -63,8 +63,14 @@ static void sort_crossings(struct crossing *items, uint32_t count, bool by_leaf)
         for (uint32_t i = 1; i < count; i++) {
             struct crossing moved = items[i];
             uint32_t j = i;
-            for (; j > 0 && comes_before(&moved, &items[j - 1], by_leaf); j--)
-                items[j] = items[j - 1];
+            if (by_leaf)
+                for (; j > 0 && comes_before(&moved, &items[j - 1], true); j--)
+                    items[j] = items[j - 1];
+            else /* t decides nearly always */
+                for (; j > 0 && (moved.t < items[j - 1].t ||
+                                 (moved.t == items[j - 1].t && comes_before(&moved, &items[j - 1], false)));
+                     j--)
+                    items[j] = items[j - 1];
             items[j] = moved;
         }
         return;
@@ -161,14 +167,9 @@ static double crossing_error(const struct sweep *s, const struct crossing *cross
 static uint32_t group_end(const struct sweep *s, uint32_t first) {
     uint32_t end = first + 1;
     double reach = 0;
-    if (isinf(s->items[first].t)) { /* beginnings or ends of lines inside solids without end: all at once */
-        while (end < s->count && s->items[end].t == s->items[first].t)
-            end++;
-        return end;
-    }
     for (; end < s->count; end++) {
         double before = s->items[end - 1].t, t = s->items[end].t, limit = s->coarse + COARSE * fabs(t);
-        if (!(t - before <= limit) || isinf(t))
+        if (!(t - before <= limit))
             break;
         if (end == first + 1)
             reach = before + crossing_error(s, &s->items[first], limit);
@@ -230,12 +231,10 @@ static bool sweep_next(struct sweep *s, struct crossing *out) {
     while (s->next < s->count) {
         uint32_t first = s->next, end = group_end(s, first);
         struct crossing surface = s->items[first];
-        if (surface.t == INFINITY || surface.t > s->to)
-            return false;
         s->next = end;
         bool changed =
             end == first + 1 ? cross_one(s, surface.leaf) : cross_group(s, &s->items[first], end - first, &surface);
-        if (!changed || !(surface.t >= s->from) || surface.t == -INFINITY)
+        if (!changed)
             continue;
         *out = surface;
         if (!s->csg->open) {
@@ -247,24 +246,50 @@ static bool sweep_next(struct sweep *s, struct crossing *out) {
     return false;
 }
 
-/* Whether the line is inside the solid before everything that sweep_next has still to find. */
-static bool sweep_begins_inside(struct sweep *s) {
-    while (s->next < s->count && s->items[s->next].t == -INFINITY) {
-        uint32_t first = s->next, end = group_end(s, first);
-        struct crossing ignored;
-        (void)cross_group(s, &s->items[first], end - first, &ignored);
-        s->next = end;
+/* Of a leaf's crossings, which end the scratch, those stay that lie where surfaces are looked for. What is behind does
+ * not matter; what is before only moves the beginning, in whatever order. */
+static void keep_crossings(struct sweep *s, uint32_t leaf, uint32_t first, struct geom_scratch *scratch) {
+    uint32_t kept = first;
+    for (uint32_t k = first; k < scratch->used; k++) {
+        struct crossing *c = &scratch->items[k];
+        if (c->t > s->to || c->t == INFINITY)
+            break;
+        if (c->t < s->from || c->t == -INFINITY) {
+            if (!is_open_surface(s, leaf))
+                (void)toggle(s, leaf);
+            continue;
+        }
+        c->leaf = (uint16_t)leaf;
+        if (kept != k)
+            scratch->items[kept] = *c;
+        kept++;
     }
-    return s->in;
+    scratch->used = kept;
 }
 
-/* Collects and sorts the crossings of all leaves whose boxes meet the ray between t_from and t_to; everything on the
+/* The part of the ray inside the box, as box_probe_meets sees it; false when there is none. */
+static bool clip(const struct box_probe *probe, const struct box *b, double *from, double *to) {
+    const double planes[3][2] = {{b->min.x, b->max.x}, {b->min.y, b->max.y}, {b->min.z, b->max.z}};
+    for (int i = 0; i < 3; i++) {
+        double near = (planes[i][probe->negative[i]] - probe->origin[i]) * probe->inverse[i];
+        double far = (planes[i][!probe->negative[i]] - probe->origin[i]) * probe->inverse[i];
+        const double near_less = near * (1 - 0x1p-49), near_more = near * (1 + 0x1p-49); /* infinities stay */
+        const double far_less = far * (1 - 0x1p-49), far_more = far * (1 + 0x1p-49);
+        near = near_less < near_more ? near_less : near_more;
+        far = far_less > far_more ? far_less : far_more;
+        *from = near > *from ? near : *from;
+        *to = far < *to ? far : *to;
+    }
+    return *from <= *to;
+}
+
+/* Collects and sorts the crossings of all leaves that matter where the ray is inside of the bounds; everything on the
  * scratch above `used` is the sweep's until the caller pops it. False: nothing can be there, or scratch overflow. */
-static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray *ray, double t_from, double t_to,
-                        struct geom_scratch *scratch) {
+static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch) {
     const struct csg_plan *plan = csg->plan;
-    double speed = vec3_max_abs(ray->direction);
-    if (!(speed > 0))
+    double speed = vec3_max_abs(ray->direction), t_from = ray->t_min, t_to = ray->t_max;
+    struct box_probe probe = box_probe_make(ray);
+    if (!(speed > 0) || !clip(&probe, &csg->bounds, &t_from, &t_to))
         return false;
     if (scratch->capacity - scratch->used < plan->state_items) {
         scratch->overflow = true;
@@ -279,7 +304,23 @@ static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray
     struct ray line = *ray;
     line.t_min = t_from - coarse - COARSE * fabs(t_from);
     line.t_max = t_to + coarse + COARSE * fabs(t_to);
-    struct box_probe probe = box_probe_make(&line);
+    const struct csg_token *first_of_clip = csg->clipped ? &csg->program[csg->solid_length] : NULL;
+    *s = (struct sweep){.csg = csg,
+                        .plan = plan,
+                        .ray = ray,
+                        .items = &scratch->items[first],
+                        .first_clip_leaf = first_of_clip ? first_of_clip->leaf : UINT32_MAX,
+                        .counts = words,
+                        .inside = words + plan->node_count,
+                        .in = plan->starts_in,
+                        .shown = plan->starts_shown,
+                        .from = line.t_min,
+                        .to = line.t_max,
+                        .coarse = coarse};
+    for (uint32_t i = 0; i < plan->node_count; i++)
+        s->counts[i] = plan->start_counts[i];
+    for (uint32_t i = 0; i < (csg->leaf_count + 31) / 32; i++)
+        s->inside[i] = 0;
     for (uint32_t b = 0; b < plan->bound_count;) {
         const struct csg_bound *bound = &plan->bounds[b];
         if (!box_probe_meets(&probe, &bound->box, line.t_min, line.t_max)) {
@@ -295,29 +336,11 @@ static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray
             (void)shape_crossings(&csg->leaves[leaf].shape, &leaf_ray, scratch, &list);
             if (scratch->overflow)
                 return false;
-            for (uint32_t k = list.first; k < scratch->used; k++)
-                scratch->items[k].leaf = (uint16_t)leaf;
+            keep_crossings(s, leaf, list.first, scratch);
         }
         b++;
     }
-    const struct csg_token *clip = csg->clipped ? &csg->program[csg->solid_length] : NULL;
-    *s = (struct sweep){.csg = csg,
-                        .first_clip_leaf = clip ? clip->leaf : UINT32_MAX,
-                        .in = plan->starts_in,
-                        .shown = plan->starts_shown,
-                        .from = line.t_min,
-                        .to = line.t_max,
-                        .plan = plan,
-                        .ray = ray,
-                        .items = &scratch->items[first],
-                        .count = scratch->used - first,
-                        .counts = words,
-                        .inside = words + plan->node_count,
-                        .coarse = coarse};
-    for (uint32_t i = 0; i < plan->node_count; i++)
-        s->counts[i] = plan->start_counts[i];
-    for (uint32_t i = 0; i < (csg->leaf_count + 31) / 32; i++)
-        s->inside[i] = 0;
+    s->count = scratch->used - first;
     sort_crossings(s->items, s->count, false);
     return true;
 }
@@ -325,13 +348,10 @@ static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray
 /* ---- the questions ---- */
 
 bool csg_nearest(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch, struct crossing *out) {
-    double enter, leave;
-    if (box_is_empty(&csg->bounds) || !box_clip(&csg->bounds, ray, &enter, &leave))
-        return false;
     uint32_t used = scratch->used;
     struct sweep s;
     bool found = false;
-    if (sweep_begin(&s, csg, ray, enter, leave, scratch)) {
+    if (sweep_begin(&s, csg, ray, scratch)) {
         struct crossing surface;
         while (!found && sweep_next(&s, &surface) && surface.t < ray->t_max)
             if (surface.t > ray->t_min) {
@@ -367,19 +387,16 @@ bool csg_crossings(const struct csg *csg, const struct ray *ray, struct geom_scr
     struct ray line = *ray;
     line.t_min = -INFINITY;
     line.t_max = INFINITY;
-    double enter, leave;
-    if (box_is_empty(&csg->bounds) || !box_clip(&csg->bounds, &line, &enter, &leave))
-        return cross_nothing(csg, scratch, out);
     struct sweep s;
-    bool any = sweep_begin(&s, csg, &line, enter, leave, scratch);
-    scratch->overflow = scratch->overflow || scratch->capacity - scratch->used < 2;
+    bool any = sweep_begin(&s, csg, &line, scratch);
+    scratch->overflow = scratch->overflow || (any && scratch->capacity - scratch->used < 2);
     if (!any || scratch->overflow) {
         scratch->used = out->first;
-        return !scratch->overflow;
+        return !scratch->overflow && cross_nothing(csg, scratch, out);
     }
     /* The answer never overtakes the sweep, so it is written where the sweep has been; then the ends without end join
      * it, for which there is room, and all is moved down over the state. */
-    bool endless = sweep_begins_inside(&s) && !csg->clipped;
+    bool endless = s.in && !csg->clipped;
     struct crossing surface, first = s.count ? s.items[0] : (struct crossing){0};
     uint32_t count = 0;
     while (sweep_next(&s, &surface))

@@ -62,8 +62,10 @@ static inline bool box_probe_meets(const struct box_probe *probe, const struct b
     for (int i = 0; i < 3; i++) {
         double near = (planes[i][probe->negative[i]] - probe->origin[i]) * probe->inverse[i];
         double far = (planes[i][!probe->negative[i]] - probe->origin[i]) * probe->inverse[i];
-        near -= fabs(near) * 0x1p-49;
-        far += fabs(far) * 0x1p-49;
+        const double near_less = near * (1 - 0x1p-49), near_more = near * (1 + 0x1p-49); /* infinities stay */
+        const double far_less = far * (1 - 0x1p-49), far_more = far * (1 + 0x1p-49);
+        near = near_less < near_more ? near_less : near_more;
+        far = far_less > far_more ? far_less : far_more;
         enter = near > enter ? near : enter;
         leave = far < leave ? far : leave;
     }
