@@ -130,6 +130,9 @@ $(BUILD)/bench/rays: $(BUILD)/bench/rays.o $(BUILD)/bench/rays_scenes.o $(OBJECT
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(if $(HAVE_EMBREE),-lembree3) $(LDLIBS)
 $(BUILD)/bench/rays.o: override CPPFLAGS += $(if $(HAVE_EMBREE),-DHAVE_EMBREE)
 
+$(BUILD)/bench/growth: $(BUILD)/bench/growth.o $(BUILD)/bench/rays_scenes.o $(OBJECTS)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
 bench: all
 	@bench/run.sh
 format:

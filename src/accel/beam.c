@@ -50,7 +50,8 @@ void beam_walk_begin(struct beam_walk *walk, const struct box_tree *tree, const 
 }
 
 /* Which children the beam meets, and how far ahead each begins. A NaN, of infinite sides, is never outside. */
-static unsigned meet_children(const struct beam *b, const struct box_tree_node *node, double ahead[BOX_TREE_WIDTH]) {
+static unsigned meet_children(const struct beam *b, const struct box_tree_node *node, double ahead[BOX_TREE_WIDTH],
+                              double behind[BOX_TREE_WIDTH]) {
     unsigned met = 0;
     const double *near_planes = node->planes[b->ahead][b->backwards],
                  *far_planes = node->planes[b->ahead][!b->backwards];
@@ -66,6 +67,7 @@ static unsigned meet_children(const struct beam *b, const struct box_tree_node *
             outside |= high < b->slope_min[k] * (b->slope_min[k] > 0 ? near : far);
         }
         ahead[i] = near;
+        behind[i] = far;
         met |= (unsigned)(!outside && node->child[i] != BOX_TREE_NONE) << i;
     }
     return met;
@@ -81,17 +83,20 @@ bool beam_walk_next(struct beam_walk *walk, double t_max, uint32_t *item) {
             return true;
         }
         const struct box_tree_node *node = &walk->tree->nodes[child];
-        double ahead[BOX_TREE_WIDTH];
-        unsigned met = meet_children(walk->beam, node, ahead);
+        double ahead[BOX_TREE_WIDTH], behind[BOX_TREE_WIDTH], order[BOX_TREE_WIDTH];
+        unsigned met = meet_children(walk->beam, node, ahead, behind);
         walk->steps++;
         int base = walk->top;
         for (; met; met &= met - 1) {
             int i = __builtin_ctz(met), at = walk->top++;
             double enter = ahead[i] > 0 ? ahead[i] * walk->beam->soonest : 0;
-            for (; at > base && walk->enter[at - 1] < enter; at--) {
+            /* What ends first comes first, as in box_tree_walk_next. */
+            for (; at > base && order[at - 1 - base] < behind[i]; at--) {
+                order[at - base] = order[at - 1 - base];
                 walk->enter[at] = walk->enter[at - 1];
                 walk->child[at] = walk->child[at - 1];
             }
+            order[at - base] = behind[i];
             walk->enter[at] = enter;
             walk->child[at] = node->child[i];
         }

@@ -432,7 +432,7 @@ void box_tree_walk_begin(struct box_tree_walk *walk, const struct box_tree *tree
 /* Where the ray enters each child, and which children it meets before t_max (bit i for child i). */
 #ifdef __SSE2__
 static unsigned meet_children(const struct box_tree_walk *walk, const struct box_tree_node *node, double t_max,
-                              double enter_out[BOX_TREE_WIDTH]) {
+                              double enter_out[BOX_TREE_WIDTH], double leave_out[BOX_TREE_WIDTH]) {
     unsigned met = 0;
     for (int half = 0; half < BOX_TREE_WIDTH; half += 2) {
         __m128d enter = _mm_set1_pd(walk->t_min), leave = _mm_set1_pd(t_max);
@@ -445,6 +445,7 @@ static unsigned meet_children(const struct box_tree_walk *walk, const struct box
             leave = _mm_min_pd(_mm_mul_pd(_mm_sub_pd(_mm_loadu_pd(far_planes), origin), inverse), leave);
         }
         _mm_storeu_pd(enter_out + half, enter);
+        _mm_storeu_pd(leave_out + half, leave);
         /* Whichever of the two factors moves outwards. */
         __m128d less = _mm_set1_pd(1 - 0x1p-50), more = _mm_set1_pd(1 + 0x1p-50);
         __m128d early = _mm_min_pd(_mm_mul_pd(enter, less), _mm_mul_pd(enter, more));
@@ -455,7 +456,7 @@ static unsigned meet_children(const struct box_tree_walk *walk, const struct box
 }
 #else
 static unsigned meet_children(const struct box_tree_walk *walk, const struct box_tree_node *node, double t_max,
-                              double enter_out[BOX_TREE_WIDTH]) {
+                              double enter_out[BOX_TREE_WIDTH], double leave_out[BOX_TREE_WIDTH]) {
     unsigned met = 0;
     for (int i = 0; i < BOX_TREE_WIDTH; i++) {
         double enter = walk->t_min, leave = t_max;
@@ -466,6 +467,7 @@ static unsigned meet_children(const struct box_tree_walk *walk, const struct box
             leave = far < leave ? far : leave;
         }
         enter_out[i] = enter;
+        leave_out[i] = leave;
         double early = enter * (enter > 0 ? 1 - 0x1p-50 : 1 + 0x1p-50);
         double late = leave * (leave > 0 ? 1 + 0x1p-50 : 1 - 0x1p-50);
         met |= (unsigned)(early <= late) << i;
@@ -485,17 +487,21 @@ bool box_tree_walk_next(struct box_tree_walk *walk, double t_max, uint32_t *item
             return true;
         }
         const struct box_tree_node *node = &walk->tree->nodes[child];
-        double enter[BOX_TREE_WIDTH];
-        unsigned met = meet_children(walk, node, t_max, enter);
+        double enter[BOX_TREE_WIDTH], leave[BOX_TREE_WIDTH], order[BOX_TREE_WIDTH];
+        unsigned met = meet_children(walk, node, t_max, enter, leave);
         walk->steps++;
-        /* The nearest must be on top: insertion into the few that were met, farthest first. */
+        /* The first one left must be on top: insertion into the few that were met, the last at the bottom. Where boxes
+         * are apart that is the order in which they are entered; of two one in the other the inner one comes first, and
+         * what it finds shortens the ray through the outer one (a teapot in a stadium). */
         int base = walk->top;
         for (; met; met &= met - 1) {
             int i = __builtin_ctz(met), at = walk->top++;
-            for (; at > base && walk->enter[at - 1] < enter[i]; at--) {
+            for (; at > base && order[at - 1 - base] < leave[i]; at--) {
+                order[at - base] = order[at - 1 - base];
                 walk->enter[at] = walk->enter[at - 1];
                 walk->child[at] = walk->child[at - 1];
             }
+            order[at - base] = leave[i];
             walk->enter[at] = enter[i];
             walk->child[at] = node->child[i];
         }
@@ -511,8 +517,8 @@ bool box_tree_walk_any(struct box_tree_walk *walk, double t_max, uint32_t *item)
             return true;
         }
         const struct box_tree_node *node = &walk->tree->nodes[child];
-        double enter[BOX_TREE_WIDTH];
-        unsigned met = meet_children(walk, node, t_max, enter);
+        double enter[BOX_TREE_WIDTH], leave[BOX_TREE_WIDTH];
+        unsigned met = meet_children(walk, node, t_max, enter, leave);
         walk->steps++;
         for (; met; met &= met - 1)
             walk->child[walk->top++] = node->child[__builtin_ctz(met)];
