@@ -152,6 +152,7 @@ static bool finish_mesh(struct model *model, struct model_mesh *m, struct error 
         return error_no_memory(error, model->path);
     *start = (uint32_t)m->vertex_index.count;
     struct mesh_input input = tables_input(m);
+    input.file = model->path;
     struct mesh_tables own = {0};
     bool ok = true;
     if (model->options.weld)

@@ -18,6 +18,7 @@ void mesh_release(struct mesh *mesh) {
     triangle_index_destroy(mesh->index);
     triangle_index_destroy(mesh->grid);
     kd_triangles_destroy(mesh->kd_tree);
+    mem_free(mesh->file);
     mem_free(mesh->vertices);
     mem_free(mesh->corners);
     mem_free(mesh->normals);
@@ -84,6 +85,10 @@ void mesh_triangle(const struct mesh *mesh, uint32_t triangle, struct vec3 corne
         corners[i] = vec3_make(v[0], v[1], v[2]);
     }
     *slot = mesh->materials ? mesh->materials[triangle] : 0;
+}
+
+const char *mesh_file(const struct mesh *mesh) {
+    return mesh->file;
 }
 
 uint32_t mesh_triangle_count(const struct mesh *mesh) {

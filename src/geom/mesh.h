@@ -25,6 +25,7 @@ struct mesh;
  * be in range by the caller, coordinates finite. */
 struct mesh_input {
     const char *name; /* for messages: file name or node name */
+    const char *file; /* where it was read, or NULL; the mesh keeps a copy */
     uint32_t vertex_count, face_count;
     const double (*vertices)[3];
     const uint32_t *face_start; /* face_count + 1 entries */
@@ -63,7 +64,8 @@ struct box mesh_bounds_under(const struct mesh *mesh, const struct affine *map);
 bool mesh_is_closed(const struct mesh *mesh); /* every edge is used by exactly two triangles in opposite directions */
 /* For a mesh that is not closed: one open edge by its two positions; false when closed. */
 bool mesh_open_edge(const struct mesh *mesh, struct vec3 *a, struct vec3 *b);
-bool mesh_is_outward(const struct mesh *mesh); /* closed, and its triangles' normals point outwards */
+bool mesh_is_outward(const struct mesh *mesh);  /* closed, and its triangles' normals point outwards */
+const char *mesh_file(const struct mesh *mesh); /* NULL: it is made of tables */
 uint32_t mesh_triangle_count(const struct mesh *mesh);
 /* The corners of a triangle and its material slot (0 where there are none). */
 void mesh_triangle(const struct mesh *mesh, uint32_t triangle, struct vec3 corners[3], uint32_t *slot);

@@ -270,6 +270,16 @@ static bool fill(struct mesh *mesh, const struct mesh_input *input, size_t trian
     return true;
 }
 
+static bool keep_file(struct mesh *mesh, const struct mesh_input *input) {
+    if (!input->file)
+        return true;
+    size_t size = strlen(input->file) + 1;
+    mesh->file = mem_alloc(size);
+    if (mesh->file)
+        memcpy(mesh->file, input->file, size);
+    return mesh->file != NULL;
+}
+
 struct mesh *mesh_create(const struct mesh_input *input, struct error *error) {
     const char *name = input->name ? input->name : "a mesh";
     size_t triangles = 0;
@@ -286,7 +296,7 @@ struct mesh *mesh_create(const struct mesh_input *input, struct error *error) {
         mesh->vertex_count = input->vertex_count;
         mesh->face_count = input->face_count;
     }
-    if (!mesh || !face_of || !fill(mesh, input, triangles, face_of)) {
+    if (!mesh || !face_of || !keep_file(mesh, input) || !fill(mesh, input, triangles, face_of)) {
         error_no_memory(error, name);
         mesh_release(mesh);
         mesh = NULL;

@@ -20,6 +20,7 @@ struct mesh {
     uint32_t *materials; /* per triangle, or NULL */
     /* The polygons as they came, kept only where the triangles do not tell them. */
     uint32_t *face_start, *face_vertex;
+    char *file; /* NULL: of tables */
     uint64_t input_hash;
     struct box bounds;
     bool closed, outward; /* outward: of a closed mesh, the volume it encloses is positive */

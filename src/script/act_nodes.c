@@ -175,10 +175,11 @@ static bool check_operand(const struct node *operand, struct error *error) {
     }
     if (!mesh_open_edge(operand->shape.mesh, &a, &b))
         return true;
+    const char *file = mesh_file(operand->shape.mesh);
     return error_set(error, ERROR_SCENE,
-                     "mesh '%s' is not closed, so it has no inside: the edge from {%.6g, %.6g, %.6g} to "
+                     "mesh '%s'%s%.200s is not closed, so it has no inside: the edge from {%.6g, %.6g, %.6g} to "
                      "{%.6g, %.6g, %.6g} is open",
-                     operand->name, a.x, a.y, a.z, b.x, b.y, b.z);
+                     operand->name, file ? " of " : "", file ? file : "", a.x, a.y, a.z, b.x, b.y, b.z);
 }
 
 /* With --lenient an operand may be something that does not exist yet, and what can be shown is the others, unless they
