@@ -2,8 +2,6 @@
 -- Bump maps and a normal map on shapes with uv; leaves cut out of cards by a picture of opacity.
 -- Author: gray project
 
-local stage = require 'stage'
-local meshes = require 'meshes'
 local folder = '../textures/'
 
 local function clay(kd) return gr.material(kd, { .18, .18, .18 }, 30) end

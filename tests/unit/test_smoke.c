@@ -88,10 +88,30 @@ TEST(smoke_every_demo_renders_in_small) {
     smoke("data", "demo.lua", false);
 }
 
+/* The folder of a script is searched before the library: a scene called like a module would take its place in all
+ * scenes beside it. */
+TEST(smoke_no_scene_has_the_name_of_a_library_module) {
+    static const char *const folders[] = {"data", "data/classic"};
+    char *modules[SCENES], *scenes[SCENES];
+    int module_count = names_in("lua", ".lua", modules);
+    for (int f = 0; f < 2; f++) {
+        int count = names_in(folders[f], ".lua", scenes);
+        for (int i = 0; i < count; i++) {
+            for (int k = 0; k < module_count; k++)
+                if (strcmp(scenes[i], modules[k]) == 0)
+                    test_fail(__FILE__, __LINE__, "%s/%s hides the module", folders[f], scenes[i]);
+            free(scenes[i]);
+        }
+    }
+    for (int k = 0; k < module_count; k++)
+        free(modules[k]);
+    CHECK(module_count > 5);
+}
+
 TEST(smoke_scenes_of_shapes_meshes_and_relief_render_in_small) {
     smoke("data", "solids.lua", false);
     smoke("data", "swept.lua", false);
-    smoke("data", "meshes.lua", false);
+    smoke("data", "models.lua", false);
     smoke("data", "relief.lua", false);
 }
 
