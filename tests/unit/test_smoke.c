@@ -115,6 +115,10 @@ TEST(smoke_scenes_of_shapes_meshes_and_relief_render_in_small) {
     smoke("data", "relief.lua", false);
 }
 
+TEST(smoke_scenes_of_combined_solids_render_in_small) {
+    smoke("data/csg", ".lua", false);
+}
+
 TEST(smoke_every_classic_scene_renders_in_small) {
     smoke("data/classic", ".lua", false);
 }
