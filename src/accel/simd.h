@@ -219,6 +219,9 @@ static inline simd8 simd8_sub(simd8 a, simd8 b) {
 static inline simd8 simd8_mul(simd8 a, simd8 b) {
     return _mm256_mul_ps(a, b);
 }
+static inline simd8 simd8_div(simd8 a, simd8 b) {
+    return _mm256_div_ps(a, b);
+}
 static inline simd8 simd8_min(simd8 a, simd8 b) {
     return _mm256_min_ps(a, b);
 }
@@ -291,6 +294,9 @@ static inline simd8 simd8_sub(simd8 a, simd8 b) {
 static inline simd8 simd8_mul(simd8 a, simd8 b) {
     return (simd8){_mm_mul_ps(a.low, b.low), _mm_mul_ps(a.high, b.high)};
 }
+static inline simd8 simd8_div(simd8 a, simd8 b) {
+    return (simd8){_mm_div_ps(a.low, b.low), _mm_div_ps(a.high, b.high)};
+}
 static inline simd8 simd8_min(simd8 a, simd8 b) {
     return (simd8){_mm_min_ps(a.low, b.low), _mm_min_ps(a.high, b.high)};
 }
@@ -352,6 +358,7 @@ static inline simd8 simd8_all(float x) {
 SIMD8_EACH(simd8_add, x + y)
 SIMD8_EACH(simd8_sub, x - y)
 SIMD8_EACH(simd8_mul, x *y)
+SIMD8_EACH(simd8_div, x / y)
 SIMD8_EACH(simd8_min, x < y ? x : y)
 SIMD8_EACH(simd8_max, x > y ? x : y)
 SIMD8_EACH(simd8_flip, signbit(y) ? -x : x)

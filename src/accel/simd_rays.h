@@ -5,18 +5,6 @@
 
 #include "accel/simd.h"
 
-static inline simd8 simd8_div(simd8 a, simd8 b) {
-#if defined(__AVX__) && !defined(GRAY_NO_SIMD)
-    return _mm256_div_ps(a, b);
-#elif defined(__SSE2__) && !defined(GRAY_NO_SIMD)
-    return (simd8){_mm_div_ps(a.low, b.low), _mm_div_ps(a.high, b.high)};
-#else
-    for (int i = 0; i < 8; i++)
-        a.lane[i] /= b.lane[i];
-    return a;
-#endif
-}
-
 #if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(GRAY_KERNEL_FMA) && !defined(GRAY_NO_SIMD)
 
 enum { LANES = 16 };

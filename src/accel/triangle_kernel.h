@@ -52,6 +52,10 @@ struct search {
     void *context;
     uint32_t blocks, nodes, voxels;
     struct triangle_ray sheared;
+    /* A hit that is certain and the nearest so far, with bounds of its local t; NULL: none waits. */
+    const struct triangle_block *waiting;
+    unsigned waiting_lane;
+    float waiting_from;
 };
 
 /* triangle_ray_set with one division for all three. */
@@ -117,13 +121,17 @@ static inline bool decide(struct search *s, const struct triangle_block *block, 
     return false;
 }
 
+static inline void make_ready(struct search *s) {
+    if (s->sheared_ready)
+        return;
+    sheared_set(&s->sheared, s->ray); /* search_begin has seen that the ray is good */
+    s->sheared_ready = true;
+}
+
 /* Decides a block's proposals. True when an "any" search is over. */
 static __attribute__((noinline)) bool decide_lanes(struct search *s, const struct triangle_block *block,
                                                    unsigned lanes) {
-    if (!s->sheared_ready) {
-        sheared_set(&s->sheared, s->ray); /* search_begin has seen that the ray is good */
-        s->sheared_ready = true;
-    }
+    make_ready(s);
     do {
         if (decide(s, block, (unsigned)__builtin_ctz(lanes)))
             return true;
@@ -132,7 +140,44 @@ static __attribute__((noinline)) bool decide_lanes(struct search *s, const struc
     return false;
 }
 
-static inline __attribute__((always_inline)) bool try_block(struct search *s, uint32_t number, const bool any) {
+static inline void decide_waiting(struct search *s) {
+    if (!s->waiting)
+        return;
+    make_ready(s);
+    (void)decide(s, s->waiting, s->waiting_lane);
+    s->waiting = NULL;
+}
+
+/* Proposals of a "nearest" search that are certain hits, with bounds of their t. The nearest one waits: where the
+ * search may end is known well enough to go on, and its vertices are on their way when it is over. */
+static __attribute__((noinline)) void keep_lanes(struct search *s, const struct triangle_block *block, unsigned lanes,
+                                                 simd8 from, simd8 to) {
+    _Alignas(32) float froms[WIDTH], tos[WIDTH];
+    simd8_store(froms, from);
+    simd8_store(tos, to);
+    do {
+        unsigned lane = (unsigned)__builtin_ctz(lanes);
+        lanes &= lanes - 1;
+        if (froms[lane] > s->limit)
+            continue;
+        if (s->waiting && !(tos[lane] < s->waiting_from)) { /* too close to say which is nearer */
+            decide_waiting(s);
+            (void)decide_lanes(s, block, 1u << lane);
+            continue;
+        }
+        s->waiting = block;
+        s->waiting_lane = lane;
+        s->waiting_from = froms[lane];
+        for (int j = 0; j < 3; j++)
+            __builtin_prefetch(s->set->vertices[block->vertices[j][lane]]);
+        float limit = tos[lane] * (1 + 0x1p-20f) + 0x1p-20f;
+        if (limit < s->limit)
+            s->limit = limit;
+    } while (lanes);
+}
+
+static inline __attribute__((always_inline)) bool try_block(struct search *s, uint32_t number,
+                                                            const enum triangle_search kind) {
     const struct triangle_block *b = s->index->blocks + number;
     simd8 dx = simd8_all(s->direction[0]), dy = simd8_all(s->direction[1]), dz = simd8_all(s->direction[2]);
     simd8 e1x = simd8_load(b->edge1[0]), e1y = simd8_load(b->edge1[1]), e1z = simd8_load(b->edge1[2]);
@@ -169,13 +214,22 @@ static inline __attribute__((always_inline)) bool try_block(struct search *s, ui
     unsigned lanes = simd8_not_negative(simd8_min(simd8_min(a, c), simd8_min(f, g)));
     if (__builtin_expect(!lanes, 1))
         return false;
-    if (any) {
+    if (kind != TRIANGLE_ALL) {
         a = simd8_sub(simd8_min(u, v), e);
         c = simd8_sub(simd8_sub(det, e3), simd8_add(u, v));
         f = simd8_sub(t, slack);
         g = simd8_sub(simd8_multiply_sub(det, simd8_all(s->certain), slack), t);
-        if (lanes & simd8_not_negative(simd8_min(simd8_min(a, c), simd8_min(f, g))))
+        unsigned certain = lanes & simd8_not_negative(simd8_min(simd8_min(a, c), simd8_min(f, g)));
+        if (certain && kind == TRIANGLE_ANY)
             return true;
+        if (certain) { /* |T - t det| <= slack */
+            simd8 r = simd8_div(simd8_all(1), det);
+            keep_lanes(s, b, certain, simd8_mul(simd8_mul(f, r), simd8_all(1 - 0x1p-20f)),
+                       simd8_mul(simd8_mul(simd8_add(t, slack), r), simd8_all(1 + 0x1p-20f)));
+            lanes ^= certain;
+            if (!lanes)
+                return false;
+        }
     }
     return decide_lanes(s, b, lanes);
 }
@@ -223,7 +277,7 @@ static inline __attribute__((always_inline)) bool descend(struct search *s, uint
                 continue;
         } else {
             tried++;
-            if (try_block(s, reference & ~REF_LEAF, kind == TRIANGLE_ANY)) {
+            if (try_block(s, reference & ~REF_LEAF, kind)) {
                 found = true;
                 break;
             }
@@ -302,6 +356,7 @@ static inline void search_start(struct search *s, simd4 origin, simd4 direction,
     double certain = (s->ray->t_max * to_local - enter) * (1 - 0x1p-20) - 0x1p-20;
     s->certain = certain < 16 ? (float)certain : 16;
     s->found = s->sheared_ready = false;
+    s->waiting = NULL;
     s->best = s->ray->t_max;
     s->blocks = s->nodes = s->voxels = 0;
 }
@@ -405,6 +460,7 @@ bool KERNEL(nearest)(const struct triangle_index *index, const struct triangle_s
         walk(&s, TRIANGLE_NEAREST, true);
     else
         walk(&s, TRIANGLE_NEAREST, false);
+    decide_waiting(&s);
     add_cost(&s, cost);
     return s.found;
 }
