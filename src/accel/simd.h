@@ -263,6 +263,14 @@ static inline simd8 simd8_size(simd8 a) {
 static inline simd8 simd8_flip(simd8 a, simd8 sign) {
     return _mm256_xor_ps(a, sign);
 }
+/* The larger of two sizes. */
+static inline simd8 simd8_max_size(simd8 a, simd8 b) {
+#if defined(__AVX512VL__) && defined(__AVX512DQ__)
+    return _mm256_range_ps(a, b, 11);
+#else
+    return simd8_max(simd8_size(a), simd8_size(b));
+#endif
+}
 
 #elif defined(__SSE2__) && !defined(GRAY_NO_SIMD)
 
@@ -383,6 +391,12 @@ static inline unsigned simd8_at_most(simd8 a, simd8 b) {
     for (int i = 0; i < 8; i++)
         bits |= (unsigned)(a.lane[i] <= b.lane[i]) << i;
     return bits;
+}
+#endif
+
+#if !defined(__AVX__) || defined(GRAY_NO_SIMD)
+static inline simd8 simd8_max_size(simd8 a, simd8 b) {
+    return simd8_max(simd8_size(a), simd8_size(b));
 }
 #endif
 

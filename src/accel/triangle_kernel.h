@@ -200,10 +200,9 @@ static inline __attribute__((always_inline)) bool try_block(struct search *s, ui
     u = simd8_flip(u, sign);
     v = simd8_flip(v, sign);
     t = simd8_flip(t, sign);
-    simd8 reach = simd8_max(simd8_max(simd8_size(e1x), simd8_size(e1y)), simd8_max(simd8_size(e1z), simd8_size(e2x)));
-    reach = simd8_max(reach, simd8_max(simd8_size(e2y), simd8_size(e2z)));
+    simd8 reach = simd8_max(simd8_max_size(e1x, e1y), simd8_max(simd8_max_size(e1z, e2x), simd8_max_size(e2y, e2z)));
     reach = simd8_max(reach, simd8_all(0x1p-40f)); /* no slack at all would make points certain hits */
-    simd8 distance = simd8_max(simd8_size(sx), simd8_max(simd8_size(sy), simd8_size(sz)));
+    simd8 distance = simd8_max_size(simd8_max_size(sx, sy), sz);
     simd8 w = simd8_multiply_add(reach, simd8_all(180 * 0x1p-24f), simd8_all(s->error));
     simd8 e = simd8_mul(simd8_multiply_add(distance, simd8_all(146 * 0x1p-24f), w), reach);
     simd8 e3 = simd8_mul(e, simd8_all(3)), slack = simd8_mul(e, reach);
