@@ -113,6 +113,37 @@ TEST(rays_from_a_million_sizes_away_are_answered_as_by_trying_every_triangle) {
     maker_free(&m);
 }
 
+/* Unused lanes of blocks and the way rays are taken into local space both depend on how near the origin is. */
+TEST(rays_from_a_few_sizes_away_meet_what_trying_every_triangle_meets_and_nothing_else) {
+    struct test_random random = {14};
+    struct maker m = {0};
+    maker_sphere(&m, 5); /* blocks that are not full */
+    struct triangle_set set = set_of(&m);
+    struct triangle_index *index = build(&set, 0, NULL);
+    struct triangle_cost cost = {0};
+    int hits = 0;
+    for (int i = 0; i < 20000; i++) {
+        struct vec3 way = i & 1 ? test_point(&random, 1) : vec3_add(vec3_all(1), test_point(&random, 0.2));
+        struct vec3 origin = vec3_scale(vec3_normalize(way), test_uniform(&random, 1, 100));
+        struct ray ray = test_ray(origin, i & 2 ? way : vec3_sub(test_point(&random, 1), origin));
+        ray.direction = vec3_scale(ray.direction, pow(2, test_uniform(&random, -40, 40)));
+        double across = vec3_length(origin) / vec3_length(ray.direction);
+        if (i % 3 == 0)
+            ray.t_max = across * test_uniform(&random, 0, 2);
+        if (i % 7 == 0)
+            ray.t_min = across * test_uniform(&random, -1, 1);
+        struct triangle_hit expected = {0}, hit = {0};
+        bool found = triangle_brute_nearest(&set, &ray, &expected, &cost);
+        CHECK(triangle_index_nearest(index, &set, &ray, &hit, &cost) == found);
+        CHECK(triangle_index_any(index, &set, &ray, &cost) == found);
+        CHECK(!found || (hit.triangle == expected.triangle && hit.t == expected.t));
+        hits += found;
+    }
+    CHECK(hits > 3000);
+    triangle_index_destroy(index);
+    maker_free(&m);
+}
+
 TEST(rays_that_are_not_finite_or_have_no_direction_meet_nothing) {
     struct maker m = {0};
     maker_sphere(&m, 4);
