@@ -119,6 +119,11 @@ TEST(smoke_scenes_of_combined_solids_render_in_small) {
     smoke("data/csg", ".lua", false);
 }
 
+TEST(smoke_scenes_of_light_and_air_render_in_small) {
+    smoke("data", "light.lua", false);
+    smoke("data", "pyramid-fog.lua", false);
+}
+
 TEST(smoke_every_classic_scene_renders_in_small) {
     smoke("data/classic", ".lua", false);
 }
