@@ -148,3 +148,49 @@ TEST(a_group_takes_no_memory_for_what_only_shapes_have) {
     CHECK(s.scene.arena.total - before <= (size_t)320 * 1000);
     stage_end(&s);
 }
+
+/* Rays that meet a dense heap, alone and on a floor ten thousand times its size, in a hall that holds both: what
+ * searching looks at must stay about the same. */
+TEST(a_dense_heap_in_a_huge_scene_costs_about_what_it_costs_alone) {
+    uint64_t work[2] = {0, 0}, balls[2] = {0, 0};
+    for (int kind = 0; kind < 2; kind++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        struct material *plain = stage_phong(&s, vec3_all(0.7), vec3_all(0), 1);
+        struct test_random random = {3};
+        for (int i = 0; i < 20000; i++) {
+            struct node *ball = stage_sphere(&s, s.root, plain);
+            double p[3];
+            for (int k = 0; k < 3; k++)
+                p[k] = test_uniform(&random, -1, 1);
+            stage_scale(&s, ball, 0.02, 0.02, 0.02);
+            stage_move(&s, ball, p[0], p[1], p[2]);
+        }
+        struct node *around[2];
+        for (int i = 0; i < 2 && kind == 1; i++) { /* a floor and a hall */
+            around[i] = stage_cube(&s, s.root, plain);
+            stage_move(&s, around[i], -0.5, i ? -0.5 : -1, -0.5);
+            stage_scale(&s, around[i], 20000, i ? 20000 : 1, 20000);
+            stage_move(&s, around[i], 0, i ? 0 : -1, 0);
+        }
+        CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+        struct world_scratch scratch;
+        CHECK(world_scratch_init(&scratch, &s.world));
+        random = (struct test_random){4};
+        for (int i = 0; i < 4000; i++) {
+            struct ray ray = {.origin = {0, 0.5, 6}, .t_max = INFINITY};
+            double x = test_uniform(&random, -0.9, 0.9), y = test_uniform(&random, -0.9, 0.9);
+            ray.direction = vec3_sub(vec3_make(x, y, 0), ray.origin);
+            uint32_t placed;
+            struct crossing crossing;
+            uint64_t before = scratch.geom.cost.hierarchy_steps + scratch.geom.shape_tests;
+            bool met = world_nearest_crossing(&s.world, &ray, &scratch, &placed, &crossing) && placed < 20000;
+            balls[kind] += met;
+            work[kind] += met ? scratch.geom.cost.hierarchy_steps + scratch.geom.shape_tests - before : 0;
+        }
+        world_scratch_destroy(&scratch);
+        stage_end(&s);
+    }
+    CHECK(balls[0] > 2000 && balls[0] == balls[1]);
+    CHECK((double)work[1] < 1.25 * (double)work[0]);
+}
