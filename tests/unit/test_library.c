@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 static void claims_hold(const char *name) {
@@ -57,4 +58,31 @@ TEST(library_polygons_are_cut_into_triangles_and_drawn_out_into_closed_solids) {
 
 TEST(library_text_has_the_areas_of_its_pen_and_is_closed_letter_by_letter) {
     claims_hold("claims_text");
+}
+
+/* Every block of Lua in the page, as a scene of its own; an example may name the font that stands beside it. */
+TEST(library_examples_of_the_documentation_run) {
+    char *page = test_read_file("docs/library.md", NULL), path[1024];
+    size_t size;
+    char *font = test_read_file("data/fonts/gray-round.ttf", &size);
+    CHECK(page && font);
+    (void)snprintf(path, sizeof path, "%s/gray-round.ttf", test_folder());
+    FILE *copy = fopen(path, "wb");
+    CHECK(copy && fwrite(font, 1, size, copy) == size && fclose(copy) == 0);
+    int count = 0;
+    for (char *block = page; (block = strstr(block, "```lua\n"));) {
+        char *begin = block + 7, *end = strstr(begin, "```");
+        CHECK(end != NULL);
+        *end = '\0';
+        struct test_result result = test_gray_scene(begin, "-q --check scene.lua", NULL);
+        if (result.status != 0)
+            test_fail(__FILE__, __LINE__, "%s\n%s", begin, result.err);
+        free(result.out);
+        free(result.err);
+        block = end + 3;
+        count++;
+    }
+    CHECK(count >= 11);
+    free(page);
+    free(font);
 }

@@ -34,6 +34,11 @@ static bool is_maker(const char *name) {
     return strncmp(name, "make_", 5) == 0;
 }
 
+/* Read by the scenes beside it. */
+static bool is_module(const char *name) {
+    return strcmp(name, "studio.lua") == 0;
+}
+
 static bool is_heavy(const char *name) {
     return strcmp(name, "10demo.lua") == 0 || strcmp(name, "14demo.lua") == 0;
 }
@@ -69,9 +74,9 @@ static void smoke(const char *folder, const char *end, bool heavy) {
     for (int k = 0; k < count; k++) {
         char arguments[8192];
         (void)snprintf(arguments, sizeof arguments,
-                       "-q --allow-read %s --size 64x48 -ss 1 -al-samples 1 -o %d-%%02d.png %s/%s/%s", root, k, root,
-                       folder, names[k]);
-        if (heavy == is_heavy(names[k]) && !is_maker(names[k])) {
+                       "-q -D quick=true --allow-read %s --size 64x48 -ss 1 -al-samples 1 -o %d-%%02d.png %s/%s/%s",
+                       root, k, root, folder, names[k]);
+        if (heavy == is_heavy(names[k]) && !is_maker(names[k]) && !is_module(names[k])) {
             struct test_result result = test_gray(NULL, arguments);
             if (result.status != 0)
                 test_fail(__FILE__, __LINE__, "%s/%s: status %d: %s", folder, names[k], result.status, result.err);
@@ -122,6 +127,11 @@ TEST(smoke_scenes_of_combined_solids_render_in_small) {
 TEST(smoke_scenes_of_light_and_air_render_in_small) {
     smoke("data", "light.lua", false);
     smoke("data", "pyramid-fog.lua", false);
+}
+
+/* As drafts, where they know one. */
+TEST(smoke_every_demo_of_the_library_renders_in_small) {
+    smoke("data/library", ".lua", false);
 }
 
 TEST(smoke_every_classic_scene_renders_in_small) {

@@ -1,0 +1,16 @@
+#!/bin/sh
+# Draws the pictures of docs/library.md: the demos of data/library in small, with few colours so that they stay small (by
+# ImageMagick, if it is there). Words on the command line choose some: docs/library/make_pictures.sh gears knots
+cd "$(dirname "$0")/../.." || exit 1
+[ $# -gt 0 ] || set -- $(basename -s .lua data/library/show_*.lua | sed 's/^show_//') models shapes
+for name in "$@"; do
+    case $name in
+    models) scene=data/meshes.lua ;;
+    shapes) scene=data/solids.lua ;;
+    *) scene=data/library/show_$name.lua ;;
+    esac
+    size=480x270
+    [ "$name" = shapes ] && size=720x480
+    ./gray -q --size $size -ss 3 -o "docs/library/$name.png" "$scene" || exit 1
+    command -v convert >/dev/null && convert "docs/library/$name.png" -dither FloydSteinberg -colors 128 -strip "PNG8:docs/library/$name.png"
+done
