@@ -2,10 +2,9 @@
 # Draws the pictures of docs/library.md: the demos of data/library in small, with few colours so that they stay small (by
 # ImageMagick, if it is there). Words on the command line choose some: docs/library/make_pictures.sh gears knots
 cd "$(dirname "$0")/../.." || exit 1
-[ $# -gt 0 ] || set -- $(basename -s .lua data/library/show_*.lua | sed 's/^show_//') models shapes
+[ $# -gt 0 ] || set -- $(basename -s .lua data/library/show_*.lua | sed 's/^show_//') shapes
 for name in "$@"; do
     case $name in
-    models) scene=data/meshes.lua ;;
     shapes) scene=data/solids.lua ;;
     *) scene=data/library/show_$name.lua ;;
     esac

@@ -283,6 +283,21 @@ TEST(the_library_works_in_scripts_that_use_the_names_of_luas_own_libraries) {
         "-q --transform-order new scene.lua");
 }
 
+TEST(the_library_finds_its_own_modules_where_the_script_has_files_of_their_names) {
+    char path[600];
+    (void)snprintf(path, sizeof path, "%s/meshes.lua", test_folder());
+    test_write_text(path, "return {mine = true}\n");
+    (void)snprintf(path, sizeof path, "%s/check.lua", test_folder());
+    test_write_text(path, "error('the wrong file')\n");
+    renders("local lathe, again = require 'lathe', require 'knot'\n"
+            "if require 'meshes'.mine ~= true then gr.node(1) end\n"
+            "local verts, normals, faces, face_normals = lathe.turn{{0, 0}, {1, 0}, {0, 1}}\n"
+            "local red = gr.material({1, 0, 0}, {0, 0, 0}, 1)\n"
+            "gr.render(gr.vn_mesh(red, verts, normals, faces, face_normals), 't.png', 8, 8, {0, 0, 5}, {0, 0, -1}, {0, "
+            "1, 0}, 50, {1, 1, 1}, {})\n",
+            "-q scene.lua");
+}
+
 TEST(missing_folders_are_made_and_whole_numbers_in_names_lose_their_fraction) {
     struct test_result result = test_gray_scene(
         "for i = 1, 3 do gr.render{node=gr.node('r'), file='a/b' .. i/1 .. '/x' .. i/1 .. '.png', width=2, "
