@@ -40,9 +40,12 @@ MPI_NAME := $(firstword $(foreach name,ompi-c mpich,$(shell $(PKG_CONFIG) --exis
 MPI_CFLAGS := $(if $(MPI_NAME),$(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags $(MPI_NAME))))
 MPI_LIBS := $(if $(MPI_NAME),$(shell $(PKG_CONFIG) --libs $(MPI_NAME)))
 FREETYPE_LIBS := $(shell $(PKG_CONFIG) --libs freetype2 2>/dev/null)
+SDL_CFLAGS := $(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags sdl2 2>/dev/null))
+SDL_LIBS := $(shell $(PKG_CONFIG) --libs sdl2 2>/dev/null)
 OPTIONAL_CFLAGS := $(if $(JPEG_LIBS),-DHAVE_JPEG $(shell $(PKG_CONFIG) --cflags libjpeg)) \
     $(if $(JANSSON_LIBS),-DHAVE_JANSSON $(shell $(PKG_CONFIG) --cflags jansson)) \
     $(if $(FREETYPE_LIBS),-DHAVE_FREETYPE $(shell $(PKG_CONFIG) --cflags freetype2)) \
+    $(if $(SDL_LIBS),-DHAVE_SDL) $(if $(MPI_LIBS),-DHAVE_MPI) \
     $(if $(EXR_LIBS),-DHAVE_EXR $(patsubst -I%,-isystem %,$(filter -I%,$(shell $(PKG_CONFIG) --cflags OpenEXR))))
 
 override CFLAGS += -std=gnu11 $(WARNINGS) $(EXACT) $(CFLAGS.$(config)) -pthread
@@ -53,15 +56,17 @@ override LDFLAGS += -pthread
 SOURCES := $(sort $(foreach room,$(ROOMS),$(wildcard src/$(room)/*.c)))
 MAIN := src/app/main.c
 MPI_MAIN := src/app/main_mpi.c
-OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(MAIN) $(MPI_MAIN),$(SOURCES)))
+GUI_MAIN := src/app/main_gui.c
+OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(MAIN) $(MPI_MAIN) $(GUI_MAIN),$(SOURCES)))
 MAIN_OBJECT := $(patsubst %.c,$(BUILD)/%.o,$(MAIN))
+GUI_OBJECT := $(if $(SDL_LIBS),$(patsubst %.c,$(BUILD)/%.o,$(GUI_MAIN)))
 MPI_OBJECT := $(if $(MPI_LIBS),$(patsubst %.c,$(BUILD)/%.o,$(MPI_MAIN)))
 TEST_SOURCES := $(sort $(wildcard tests/unit/*.c)) tests/harness.c tests/stage.c
 TEST_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(TEST_SOURCES))
-ALL_OBJECTS := $(OBJECTS) $(MAIN_OBJECT) $(MPI_OBJECT) $(TEST_OBJECTS)
+ALL_OBJECTS := $(OBJECTS) $(MAIN_OBJECT) $(MPI_OBJECT) $(GUI_OBJECT) $(TEST_OBJECTS)
 
 ifeq ($(config),release)
-all: check-libraries $(BUILD)/gray $(if $(MPI_LIBS),$(BUILD)/gray-mpi)
+all: check-libraries $(BUILD)/gray $(if $(MPI_LIBS),$(BUILD)/gray-mpi) $(if $(SDL_LIBS),$(BUILD)/gray-gui)
 	@ln -sf $(BUILD)/gray gray && ln -sf gray rt
 else
 all: check-libraries $(BUILD)/gray
@@ -77,6 +82,9 @@ $(BUILD)/gray: $(OBJECTS) $(MAIN_OBJECT)
 # The program for many machines, where there is MPI: one of its own, so that the other does not load the library.
 $(BUILD)/gray-mpi: $(OBJECTS) $(MPI_OBJECT)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(MPI_LIBS)
+$(BUILD)/gray-gui: $(OBJECTS) $(GUI_OBJECT)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(SDL_LIBS)
+$(BUILD)/$(GUI_MAIN:.c=.o): override CPPFLAGS += $(SDL_CFLAGS)
 $(BUILD)/$(MPI_MAIN:.c=.o): override CPPFLAGS += $(MPI_CFLAGS)
 
 $(BUILD)/tests/run: $(OBJECTS) $(TEST_OBJECTS)
@@ -141,6 +149,7 @@ format:
 install: all
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/gray/lua $(DESTDIR)$(PREFIX)/share/doc/gray
 	install -m 755 $(BUILD)/gray $(DESTDIR)$(PREFIX)/bin/gray
+	$(if $(SDL_LIBS),install -m 755 $(BUILD)/gray-gui $(DESTDIR)$(PREFIX)/bin/gray-gui)
 	$(if $(MPI_LIBS),install -m 755 $(BUILD)/gray-mpi $(DESTDIR)$(PREFIX)/bin/gray-mpi)
 	install -m 644 lua/*.lua $(DESTDIR)$(PREFIX)/share/gray/lua
 	install -m 644 README.md LICENSE CHANGELOG.md $(DESTDIR)$(PREFIX)/share/doc/gray

@@ -87,6 +87,7 @@ static bool frame_is_sound(const struct frame *frame) {
                request->y0 <= request->full_height - request->height && request->exposure >= -100 &&
                request->exposure <= 100 && request->curve <= TONE_FILMIC;
     case FRAME_DONE:
+    case FRAME_PASS:
         return frame->size == sizeof frame->body.report;
     case FRAME_ABANDON:
         return frame->size == 0;

@@ -17,6 +17,7 @@ enum frame_kind {
     FRAME_LINE = 1, /* struct frame_line: something to tell */
     FRAME_BEGIN,    /* struct picture_request; answered by FRAME_FILM */
     FRAME_DONE,     /* struct picture_report; answered by FRAME_ANSWER */
+    FRAME_PASS,     /* struct picture_report: a pass in a window has ended; answered by FRAME_ANSWER */
     FRAME_ABANDON,  /* no body: the picture that was begun will not be finished; no answer */
     FRAME_SCRIPT,   /* struct frame_script: a script has ended; no answer */
     FRAME_FILM,     /* struct frame_answer, and on success the descriptor of the film's memory */
@@ -41,6 +42,8 @@ struct picture_request {
     uint32_t curve, srgb;             /* the same; an enum tone_curve, and not 0 for sRGB */
     uint32_t deep;                    /* not 0: 16 bits a channel in a PNG file */
     uint32_t layers;                  /* mask of the layers beside the picture */
+    uint32_t live;                    /* not 0: in a window */
+    struct camera camera;             /* its view a direction */
     uint32_t check;                   /* not 0 for --check: only the names are looked at, no film is wanted */
     struct digest files;              /* of all that was read so far; zero when nobody wants to know */
     char file[4096];                  /* as the script gave it */
@@ -54,10 +57,22 @@ struct picture_report {
     uint64_t peak_bytes;
     uint32_t grid_cells[3];
     int threads;
+    struct box bounds; /* of the scene */
+    uint32_t stopped;  /* not 0: a pass that was stopped */
+};
+
+/* A pass of a picture in a window. */
+struct live_view {
+    struct camera camera; /* its view a direction */
+    uint32_t divide;      /* one pixel for so many across and down; from 1 */
+    bool plain;           /* one sample a pixel, coarse soft light */
+    bool own;             /* the camera, lens and motion of the script */
 };
 
 struct frame_answer {
     bool ok;
+    bool again; /* to FRAME_PASS: make another pass, with this view */
+    struct live_view view;
     bool already; /* to FRAME_BEGIN: there is nothing to do, no film comes along */
     struct error error;
 };

@@ -3,6 +3,7 @@
  * in the arena of the job, which is emptied for the next one. */
 #include "app/child.h"
 
+#include "app/live.h"
 #include "app/progress.h"
 #include "base/arena.h"
 #include "base/file.h"
@@ -14,6 +15,7 @@
 #include "script/script.h"
 #include "world/world.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -35,7 +37,7 @@ struct child {
 
 static bool is_cancelled(void *context) {
     const struct child *child = context;
-    return atomic_load(&child->services->control->cancel) != 0;
+    return atomic_load(&child->services->control->cancel) == CANCEL_ALL;
 }
 
 static void tell(const struct child *child, enum line_kind kind, const char *text) {
@@ -103,6 +105,7 @@ static void fill_report(const struct child *child, const struct world *world, co
     report->mesh_bytes = world->mesh_memory;
     report->placed_bytes = world_placed_memory(world);
     report->search_bytes = world_search_memory(world);
+    report->image_bytes = 0;
     for (const struct asset_image *entry = child->assets.images; entry; entry = entry->next)
         report->image_bytes += image_memory(entry->image);
     memcpy(report->grid_cells, world->grid.cells, sizeof report->grid_cells);
@@ -124,9 +127,77 @@ static void tell_world(const struct child *child, const char *file, const struct
     tell(child, LINE_DETAIL, line);
 }
 
+/* Settings of a pass: coarse ones have one sample a pixel, and a soft light few rays. */
+static void set_pass(struct render_job *job, const struct render_job *own, const struct live_view *view,
+                     const struct picture_request *asked, struct film *film, void *block) {
+    *job = *own;
+    *film = live_film(asked, block, view->divide);
+    job->film = film;
+    job->width = film->full_width;
+    job->height = film->full_height;
+    job->settings.show_marks = true;
+    if (view->divide > 1) { /* the film says which part it is */
+        job->settings.cropped = false;
+        job->settings.keep_first = false;
+    }
+    if (!view->own) {
+        job->camera = view->camera;
+        job->settings.view_is_target = false;
+        job->settings.motion = (struct camera_motion){0};
+    }
+    if (view->plain) {
+        job->settings.full = false;
+        job->settings.side_tolerance = job->settings.corner_tolerance = HUGE_VAL;
+        job->settings.area_samples = job->settings.area_samples < 2 ? job->settings.area_samples : 2;
+        job->settings.samples = 1;
+        job->settings.lens.aperture = 0;
+        job->settings.caustics.photons = 0;
+    }
+}
+
+/* Of everything that has an end. */
+static struct box finite_bounds(const struct world *world) {
+    struct box bounds = box_empty();
+    for (uint32_t i = 0; i < world->placed_count; i++) {
+        if (vec3_finite(world->boxes[i].min) && vec3_finite(world->boxes[i].max))
+            bounds = box_join(bounds, world->boxes[i]);
+    }
+    return bounds;
+}
+
+/* One pass after the other, as people at the window ask for them, until they are done with the picture. */
+static bool make_passes(struct child *child, const struct scene *scene, struct render_job *own,
+                        const struct picture_request *asked, struct picture_report *report, double build_seconds,
+                        struct error *error) {
+    const struct child_services *services = child->services;
+    struct live_view view = live_first_view(&own->camera);
+    report->bounds = finite_bounds(own->world);
+    for (bool again = true; again;) {
+        struct render_job job;
+        struct film film;
+        int stop = CANCEL_PASS;
+        double begun = progress_clock();
+        set_pass(&job, own, &view, asked, &film, own->film->pixels);
+        (void)atomic_compare_exchange_strong(&services->control->cancel, &stop, CANCEL_NOTHING);
+        report->rays = (struct render_statistics){.build_seconds = build_seconds};
+        bool ok = render_run(&job, child->pool, &report->rays, error);
+        report->stopped = !ok && error->kind == ERROR_CANCELLED && !is_cancelled(child);
+        if (!ok && !report->stopped)
+            return false;
+        stop = CANCEL_PASS;
+        (void)atomic_compare_exchange_strong(&services->control->cancel, &stop, CANCEL_NOTHING);
+        pool_reset_cancel(child->pool);
+        report->rays.render_seconds = progress_clock() - begun;
+        fill_report(child, own->world, scene, &film, report);
+        if (!services->pass(services->context, report, &again, &view, error))
+            return false;
+    }
+    return true;
+}
+
 /* From the flattened scene to the finished film. */
 static bool make_picture(struct child *child, const struct render_request *request, struct render_job *job,
-                         struct picture_report *report, struct error *error) {
+                         const struct picture_request *asked, struct picture_report *report, struct error *error) {
     struct world world = {0};
     double begun = progress_clock();
     bool ok = world_build(&world, &child->job, request->scene, request->root, request->lights, request->light_count,
@@ -137,7 +208,8 @@ static bool make_picture(struct child *child, const struct render_request *reque
     double built = progress_clock();
     if (!child->options->check) {
         job->world = &world;
-        ok = render_run(job, child->pool, &report->rays, error);
+        ok = asked->live ? make_passes(child, request->scene, job, asked, report, built - begun, error)
+                         : render_run(job, child->pool, &report->rays, error);
     }
     report->rays.build_seconds = built - begun;
     report->rays.render_seconds = progress_clock() - built;
@@ -149,7 +221,7 @@ static bool make_picture(struct child *child, const struct render_request *reque
 }
 
 static bool begin_picture(struct child *child, const struct render_request *request, struct render_job *job,
-                          struct film *film, bool *already, struct error *error) {
+                          struct film *film, struct picture_request *out, bool *already, struct error *error) {
     struct picture_request asked = {.full_width = job->width,
                                     .full_height = job->height,
                                     .exposure = job->settings.tone.exposure,
@@ -157,6 +229,8 @@ static bool begin_picture(struct child *child, const struct render_request *requ
                                     .srgb = job->settings.tone.srgb,
                                     .deep = job->settings.deep,
                                     .layers = job->settings.aov,
+                                    .live = child->options->window,
+                                    .camera = job->camera,
                                     .check = child->options->check};
     char warning[256] = "";
     size_t length = strlen(request->file);
@@ -167,6 +241,8 @@ static bool begin_picture(struct child *child, const struct render_request *requ
         return false;
     if (warning[0] != '\0')
         warn_of_scene(child, warning);
+    if (job->settings.view_is_target)
+        asked.camera.view = vec3_sub(job->camera.view, job->camera.eye);
     asked.files = file_witness_sum(&child->witness);
     if (child->witness.incomplete)
         return error_no_memory(error, "the list of files that were read");
@@ -176,6 +252,7 @@ static bool begin_picture(struct child *child, const struct render_request *requ
     film->y0 = asked.y0;
     film->full_width = asked.full_width;
     film->full_height = asked.full_height;
+    *out = asked;
     return true;
 }
 
@@ -200,13 +277,14 @@ static bool render_job_run(struct child *child, const struct render_request *req
     (void)fflush(stdout);
     if (is_cancelled(child))
         return error_set(error, ERROR_CANCELLED, "interrupted");
+    struct picture_request asked;
     bool already = false;
-    if (!need_pool(child, error) || !begin_picture(child, request, &job, &film, &already, error))
+    if (!need_pool(child, error) || !begin_picture(child, request, &job, &film, &asked, &already, error))
         return false;
     if (already)
         return true;
     job.gate = atomic_load(&services->control->gate) != GATE_NONE ? &services->control->gate : NULL;
-    bool ok = make_picture(child, request, &job, &report, error);
+    bool ok = make_picture(child, request, &job, &asked, &report, error);
     arena_reset(&child->job);
     if (ok && !options->check)
         return services->done(services->context, &report, error);

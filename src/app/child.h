@@ -18,6 +18,9 @@ struct child_services {
      * is there or somebody else's; neither done nor abandon follows. */
     bool (*begin)(void *context, const struct picture_request *request, struct film *film, bool *already,
                   struct error *error);
+    /* A pass in a window has ended: waits for what comes next. False: the window is closed, the script ends. */
+    bool (*pass)(void *context, const struct picture_report *report, bool *again, struct live_view *view,
+                 struct error *error);
     void (*abandon)(void *context);
     /* The film is complete. True when the files are written. */
     bool (*done)(void *context, const struct picture_report *report, struct error *error);

@@ -37,6 +37,20 @@ static bool link_begin(void *context, const struct picture_request *request, str
     return true;
 }
 
+static bool link_pass(void *context, const struct picture_report *report, bool *again, struct live_view *view,
+                      struct error *error) {
+    struct child_link *link = context;
+    struct frame frame;
+    if (!channel_send(&link->channel, FRAME_PASS, report, sizeof *report, -1) ||
+        channel_receive(&link->channel, &frame) != CHANNEL_FRAME || frame.kind != FRAME_ANSWER)
+        return nobody_there(link, error);
+    *again = frame.body.answer.again;
+    *view = frame.body.answer.view;
+    if (!frame.body.answer.ok)
+        *error = frame.body.answer.error;
+    return frame.body.answer.ok;
+}
+
 static void link_abandon(void *context) {
     struct child_link *link = context;
     share_destroy(&link->memory);
@@ -72,6 +86,7 @@ struct child_services child_link_services(struct child_link *link, struct contro
     return (struct child_services){.context = link,
                                    .control = control,
                                    .begin = link_begin,
+                                   .pass = link_pass,
                                    .abandon = link_abandon,
                                    .done = link_done,
                                    .line = link_line,

@@ -9,8 +9,10 @@
 /* In a farm tiles are handed out while the picture is made; the picture ends when the gate is closed. */
 enum gate { GATE_NONE, GATE_OPEN, GATE_CLOSED };
 
+enum cancel { CANCEL_NOTHING, CANCEL_ALL /* give up the picture, end the script */, CANCEL_PASS /* of a window */ };
+
 struct control {
-    _Atomic int cancel;          /* set by the supervisor: give up the picture, end the script */
+    _Atomic int cancel;          /* an enum cancel, set by the supervisor */
     _Atomic uint32_t tiles_done; /* of the picture being made */
     _Atomic uint32_t tiles;      /* 0 until its scene is built */
     _Atomic uint32_t gate;       /* an enum gate */

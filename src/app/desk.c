@@ -167,6 +167,7 @@ bool desk_begin(struct desk *desk, const struct picture_request *request, bool *
         return error_set(error, ERROR_SCENE, "%s: EXR pictures need OpenEXR, without which this gray was made",
                          written);
     picture->request = *request;
+    picture->written = false;
     if (request->check) {
         picture->open = true;
         return true;
@@ -344,9 +345,20 @@ static bool leave_to_others(struct desk *desk) {
     return false;
 }
 
+bool desk_write(struct desk *desk, struct error *error) {
+    desk->current.written = write_picture(desk, &desk->current, error);
+    return desk->current.written;
+}
+
 bool desk_done(struct desk *desk, const struct picture_report *report, struct error *error) {
     if (leave_to_others(desk))
         return true;
+    if (desk->current.written) {
+        progress_end(&desk->progress, PROGRESS_WRITTEN);
+        tell_statistics(desk, report);
+        close_picture(&desk->current);
+        return true;
+    }
     if (one_name_for_all(desk)) {
         /* Names of progress point into the picture, so it is told before the picture moves. */
         progress_end(&desk->progress, PROGRESS_WRITTEN);

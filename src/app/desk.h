@@ -22,6 +22,7 @@ struct picture {
     bool open;
     char name[NAME_LIMIT];
     struct picture_request request;
+    bool written;              /* by desk_write */
     struct tile_picture tiles; /* how its tiles are kept */
     struct share memory;
     struct film film;
@@ -45,6 +46,8 @@ void desk_init(struct desk *desk, const struct options *options, struct control 
 /* Names the picture and makes its film; false when it cannot be written for a reason that is known before rendering.
  * *already: nothing is to be done, it was written before or is another shard's; then no picture is open. */
 bool desk_begin(struct desk *desk, const struct picture_request *request, bool *already, struct error *error);
+/* Writes the files of the picture that is open; it stays open. */
+bool desk_write(struct desk *desk, struct error *error);
 /* The film is complete: the files are written. The picture is closed in any case. */
 bool desk_done(struct desk *desk, const struct picture_report *report, struct error *error);
 void desk_abandon(struct desk *desk); /* fine when no picture is open */

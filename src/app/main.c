@@ -17,5 +17,5 @@ static void occupy_standard_descriptors(void) {
 
 int main(int argc, char **argv) {
     occupy_standard_descriptors();
-    return program_run(argc, argv, NULL);
+    return program_run(argc, argv, &(struct program_parts){0});
 }

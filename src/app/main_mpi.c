@@ -36,7 +36,7 @@ int main(int argc, char **argv) {
         return ERROR_MACHINE;
     (void)MPI_Comm_rank(MPI_COMM_WORLD, &transport.rank);
     (void)MPI_Comm_size(MPI_COMM_WORLD, &transport.size);
-    int status = program_run(argc, argv, &transport);
+    int status = program_run(argc, argv, &(struct program_parts){.transport = &transport});
     /* Nobody waits for ranks that were interrupted. */
     if (status == ERROR_CANCELLED)
         (void)MPI_Abort(MPI_COMM_WORLD, status);

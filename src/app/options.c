@@ -170,6 +170,9 @@ static const struct option table[] = {
     {GROUP_PARTS, "--mpi", OPTION_FLAG, NULL, NO_RANGE, FIELD(mpi), NULL,
      "under mpirun: all processes make each picture together, tiles are handed out on demand"},
 
+    {GROUP_TALK, "-gui", OPTION_FLAG, NULL, NO_RANGE, FIELD(window), NULL,
+     "show the picture in a window while it is made, and walk through the scene: R renders, S saves what is shown, V "
+     "the camera, Space walks (W A S D Q E and the mouse, Esc leaves), N goes on, Q quits"},
     {GROUP_TALK, "-q|quiet", OPTION_FLAG, NULL, NO_RANGE, FIELD(quiet), NULL, "say nothing but errors"},
     {GROUP_TALK, "--verbose", OPTION_FLAG, NULL, NO_RANGE, FIELD(verbose), NULL, "say what is done and why"},
     {GROUP_TALK, "--stats", OPTION_STATS, "=text|json", NO_RANGE, NO_FIELD, NULL,
@@ -582,6 +585,10 @@ static bool check_parts(struct options *options, struct error *error) {
         options->checkpoint = "auto";
     if (options->mpi && (options->shards || options->shards_of_pictures || options->no_fork || options->check))
         return error_set(error, ERROR_USAGE, "--mpi takes no --shard, --shard-pictures, --no-fork or --check");
+    if (options->window && (options->checkpoint || options->resume || options->shards || options->shards_of_pictures ||
+                            options->mpi || options->no_fork || options->check || options->settings.aov))
+        return error_set(error, ERROR_USAGE,
+                         "-gui takes no --checkpoint, --resume, --shard, --mpi, --no-fork, --check or --aov");
     if (options->no_fork && (options->checkpoint || options->shards))
         return error_set(error, ERROR_USAGE,
                          "--no-fork is for debuggers: it takes no --checkpoint, --resume or --shard");

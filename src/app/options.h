@@ -35,6 +35,7 @@ struct options {
     const char *targets_prefix;    /* -write-aa-targets, or NULL */
     const char *first_pass_prefix; /* -write-pre-aa, or NULL */
     int threads;                   /* 0: one per processor */
+    bool window;                   /* -gui */
     bool check, quiet, verbose, no_fork;
     const char *checkpoint;     /* --checkpoint: a file, or "auto", or NULL */
     double checkpoint_every;    /* seconds */

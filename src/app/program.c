@@ -47,9 +47,21 @@ static const char *find_library(struct arena *arena) {
 }
 
 static void print_version(void) {
-    (void)printf("gray %s\n%s\nlibpng %s\noptional: JPEG pictures by %s, glTF by %s, fonts by %s, EXR pictures by %s\n",
-                 GRAY_VERSION, LUA_RELEASE, png_get_libpng_ver(NULL), jpeg_library(), gltf_library(), font_library(),
-                 exr_library());
+#ifdef HAVE_SDL
+    static const char window[] = "SDL 2 (gray-gui)";
+#else
+    static const char window[] = "none";
+#endif
+#ifdef HAVE_MPI
+    static const char farm[] = "MPI (gray-mpi)";
+#else
+    static const char farm[] = "none";
+#endif
+    (void)printf(
+        "gray %s\n%s\nlibpng %s\noptional: JPEG pictures by %s, glTF by %s, fonts by %s, EXR pictures by %s, windows "
+        "by %s, farms by %s\n",
+        GRAY_VERSION, LUA_RELEASE, png_get_libpng_ver(NULL), jpeg_library(), gltf_library(), font_library(),
+        exr_library(), window, farm);
 }
 
 /* Text that the script layer makes of its table. */
@@ -70,15 +82,17 @@ static void help_only(struct options *options) {
     options->progress = PROGRESS_NONE;
 }
 
-static int render(struct options *options, const struct farm_transport *transport) {
+static int render(struct options *options, const struct program_parts *parts) {
     if (options->no_fork)
         return supervisor_run_without_fork(options);
-    if (transport && transport->rank > 0)
+    struct program_parts wanted = {.transport = options->mpi ? parts->transport : NULL,
+                                   .window = options->window ? parts->window : NULL};
+    if (wanted.transport && wanted.transport->rank > 0)
         help_only(options);
-    return supervisor_run(options, transport);
+    return supervisor_run(options, &wanted);
 }
 
-static int act(struct options *options, const struct farm_transport *transport, struct arena *arena) {
+static int act(struct options *options, const struct program_parts *parts, struct arena *arena) {
     switch (options->action) {
     case ACTION_HELP:
         options_print_help(stdout);
@@ -102,26 +116,25 @@ static int act(struct options *options, const struct farm_transport *transport, 
         return ERROR_USAGE;
     }
     options->script.library_folder = find_library(arena);
-    return render(options, transport);
+    return render(options, parts);
 }
 
-/* The program with MPI is one of its own beside this one, so that those who do not use it do not load it. */
-static int become_mpi_program(char **argv) {
+/* The programs with MPI and with a window are of their own beside this one, so that others do not load their libraries.
+ */
+static int become(const char *which, const char *missing, char **argv) {
     char program[4096];
     size_t length = 0;
     if (file_canonical("/proc/self/exe", program, sizeof program - 8))
         length = strlen(program);
-    memcpy(program + length, "-mpi", 5);
+    (void)snprintf(program + length, sizeof program - length, "-%s", which);
     (void)fflush(NULL);
     (void)execv(program, argv);
-    (void)fprintf(stderr,
-                  "gray: --mpi: %s is not there; it is built where pkg-config finds ompi-c (Debian: "
-                  "libopenmpi-dev)\n",
-                  length ? program : "the program with MPI");
+    (void)fprintf(stderr, "gray: %s: %s is not there; it is built where pkg-config finds %s\n",
+                  strcmp(which, "mpi") == 0 ? "--mpi" : "-gui", length ? program : "its program", missing);
     return ERROR_USAGE;
 }
 
-int program_run(int argc, char **argv, const struct farm_transport *transport) {
+int program_run(int argc, char **argv, const struct program_parts *parts) {
     struct arena arena = {0};
     struct options options;
     struct error error;
@@ -133,10 +146,12 @@ int program_run(int argc, char **argv, const struct farm_transport *transport) {
         if (error.kind == ERROR_USAGE)
             (void)fputs("usage: gray [options] [--] scene.lua ...; gray --help tells all options\n", stderr);
         status = (int)error.kind;
-    } else if (options.mpi && options.action == ACTION_RENDER && !transport) {
-        status = become_mpi_program(argv);
+    } else if (options.mpi && options.action == ACTION_RENDER && !parts->transport) {
+        status = become("mpi", "ompi-c (Debian: libopenmpi-dev)", argv);
+    } else if (options.window && options.action == ACTION_RENDER && !parts->window) {
+        status = become("gui", "sdl2 (Debian: libsdl2-dev)", argv);
     } else {
-        status = act(&options, options.mpi ? transport : NULL, &arena);
+        status = act(&options, parts, &arena);
     }
     /* A full disk shows here when text was asked for. */
     if (fflush(stdout) != 0 && status == 0) {

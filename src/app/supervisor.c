@@ -10,6 +10,8 @@
 #include "app/child_link.h"
 #include "app/confine.h"
 #include "app/desk.h"
+#include "app/live.h"
+#include "app/souvenir.h"
 #include "base/fault.h"
 #include "base/file.h"
 #include "base/mem.h"
@@ -37,8 +39,10 @@ static const char no_sandbox_warning[] =
 struct supervisor {
     const struct options *options;
     struct desk desk;
-    struct control *control; /* shared with the child */
-    struct channel channel;  /* to the child */
+    const struct window_driver *window; /* or NULL */
+    struct live live;                   /* the picture in the window */
+    struct control *control;            /* shared with the child */
+    struct channel channel;             /* to the child */
     pid_t child;
     int signals; /* descriptor, or -1 */
     sigset_t signals_before;
@@ -219,7 +223,78 @@ static void answer_begin(struct supervisor *supervisor, const struct frame *fram
     struct error error = {0};
     bool already = false, ok = desk_begin(desk, &frame->body.request, &already, &error);
     bool film = ok && !already && !frame->body.request.check;
+    if (film && supervisor->window &&
+        !live_begin(&supervisor->live, supervisor->window, &desk->current.request, desk->current.memory.block,
+                    desk->current.name, progress_clock(), &error)) {
+        desk_abandon(desk);
+        film = ok = false;
+    }
     send_answer(supervisor, FRAME_FILM, ok, already, &error, film ? desk->current.memory.descriptor : -1);
+}
+
+static void answer_pass(struct supervisor *supervisor, bool ok, bool again) {
+    struct frame_answer answer = {.ok = ok, .again = again, .view = supervisor->live.view};
+    if (!ok)
+        error_set(&answer.error, ERROR_CANCELLED, "the window was closed");
+    supervisor->live.waiting = false;
+    if (!channel_send(&supervisor->channel, FRAME_ANSWER, &answer, sizeof answer, -1))
+        supervisor->broken = true;
+}
+
+/* No picture is lost by closing the window: it is there already, or people did not wait for it. */
+static void quit_window(struct supervisor *supervisor) {
+    if (supervisor->deadline > 0)
+        return;
+    supervisor->stop = true;
+    supervisor->deadline = progress_clock() + patience;
+    atomic_store(&supervisor->control->cancel, CANCEL_ALL);
+    if (!supervisor->live.written)
+        note_status(supervisor, ERROR_CANCELLED);
+    if (supervisor->live.waiting)
+        answer_pass(supervisor, false, false);
+}
+
+static void take_home(struct supervisor *supervisor, bool (*take)(const struct live *live, const char *picture_name,
+                                                                  char *name, struct error *error)) {
+    struct error error;
+    char name[NAME_LIMIT], line[NAME_LIMIT + 64];
+    bool ok = take(&supervisor->live, supervisor->desk.current.name, name, &error);
+    (void)snprintf(line, sizeof line, ok ? "gray: notice: %s is written" : "%s", ok ? name : error.text);
+    desk_line(&supervisor->desk, ok ? LINE_NOTICE : LINE_ERROR, line);
+}
+
+static void step_window(struct supervisor *supervisor) {
+    struct live *live = &supervisor->live;
+    struct error error;
+    int nothing = CANCEL_NOTHING;
+    while (live->open && supervisor->desk.current.open && supervisor->deadline <= 0) {
+        switch (live_step(live, progress_clock())) {
+        case LIVE_NOTHING:
+            return;
+        case LIVE_STOP:
+            (void)atomic_compare_exchange_strong(&supervisor->control->cancel, &nothing, CANCEL_PASS);
+            return;
+        case LIVE_VIEW:
+            answer_pass(supervisor, true, true);
+            break;
+        case LIVE_WRITE:
+            if (!desk_write(&supervisor->desk, &error))
+                note_error(supervisor, &error);
+            break;
+        case LIVE_SAVE:
+            take_home(supervisor, souvenir_picture);
+            break;
+        case LIVE_RECORD:
+            take_home(supervisor, souvenir_camera);
+            break;
+        case LIVE_NEXT:
+            answer_pass(supervisor, true, false);
+            return;
+        case LIVE_QUIT:
+            quit_window(supervisor);
+            return;
+        }
+    }
 }
 
 static void answer_done(struct supervisor *supervisor, const struct frame *frame) {
@@ -242,7 +317,9 @@ static void note_script(struct supervisor *supervisor, const struct frame_script
     supervisor->script_used = 0;
     script_goes_on(supervisor);
     supervisor->stop = supervisor->stop || script->status == ERROR_USAGE || script->status == ERROR_CANCELLED;
-    note_status(supervisor, script->status);
+    /* What a wish to stop means was noted when it came. */
+    if (supervisor->deadline <= 0)
+        note_status(supervisor, script->status);
 }
 
 /* A frame out of turn (a second picture before the first is finished ...) is not answered: it breaks the rules. */
@@ -265,6 +342,13 @@ static void take_frame(struct supervisor *supervisor, const struct frame *frame)
             break;
         script_goes_on(supervisor);
         answer_done(supervisor, frame);
+        return;
+    case FRAME_PASS:
+        if (!current->open || !supervisor->window || !supervisor->live.running)
+            break;
+        live_pass_ended(&supervisor->live, &frame->body.report, progress_clock());
+        if (supervisor->deadline > 0)
+            answer_pass(supervisor, false, false);
         return;
     case FRAME_ABANDON:
         if (!current->open)
@@ -291,6 +375,7 @@ static void talk_to_child(struct supervisor *supervisor) {
         bool timed = supervisor->desk.current.open || supervisor->deadline > 0;
         if (poll(watched, 2,
                  supervisor->desk.farm      ? 2
+                 : supervisor->window       ? 4
                  : supervisor->deadline > 0 ? 5
                  : timed                    ? 50
                                             : script_patience(supervisor)) < 0 &&
@@ -305,6 +390,7 @@ static void talk_to_child(struct supervisor *supervisor) {
         if (supervisor->deadline > 0 && progress_clock() > supervisor->deadline)
             break;
         desk_show_progress(&supervisor->desk);
+        step_window(supervisor);
         if (!watched[0].revents)
             continue;
         enum channel_result result = channel_receive(&supervisor->channel, &frame);
@@ -413,8 +499,10 @@ static void end_farm(struct supervisor *supervisor) {
     supervisor->desk.farm = NULL;
 }
 
-int supervisor_run(const struct options *options, const struct farm_transport *transport) {
-    struct supervisor supervisor = {.options = options, .signals = -1, .channel = {.descriptor = -1}};
+int supervisor_run(const struct options *options, const struct program_parts *parts) {
+    const struct farm_transport *transport = parts->transport;
+    struct supervisor supervisor = {
+        .options = options, .window = parts->window, .signals = -1, .channel = {.descriptor = -1}};
     struct error error;
     supervisor.control = mem_share(sizeof *supervisor.control);
     desk_init(&supervisor.desk, options, supervisor.control);
@@ -428,6 +516,7 @@ int supervisor_run(const struct options *options, const struct farm_transport *t
     else
         note_error(&supervisor, &error);
     end_farm(&supervisor);
+    live_end(&supervisor.live);
     if (!desk_finish(&supervisor.desk, supervisor.status == 0, &error))
         note_error(&supervisor, &error);
     if (supervisor.signals >= 0)

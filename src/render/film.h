@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { FILM_TILE = 32 };
+enum { FILM_TILE = 32, FILM_MARK_WAITS = 2 };
 
 /* Header at the start of the shared block; arrays follow. Width and height are those of the part that is rendered (the
  * crop), x0, y0 its place in the whole picture. */
@@ -23,7 +23,7 @@ struct film {
     uint32_t width, height;
     uint32_t x0, y0, full_width, full_height;
     struct film_pixel *pixels; /* width * height, row-major, top row first */
-    uint8_t *marked;           /* 1 = resampled */
+    uint8_t *marked;           /* 1 = resampled; FILM_MARK_WAITS while it is to be */
     _Atomic uint8_t *tiles;    /* an enum film_tile each; set after the pixels of the tile */
     /* Pictures beside the picture (render/aov.h): the layers of the mask one after the other, width * height each; NULL
      * without any. Filled after the tiles are done. */

@@ -303,6 +303,19 @@ static void sample_patch(struct run *run, struct worker *worker, const struct re
     }
 }
 
+/* For somebody who watches: the first pass as far as it is, and what will be sampled again. */
+static void show_marks(struct run *run, const struct worker *worker, const struct rectangle *area,
+                       const struct rectangle *tile) {
+    struct film *film = run->job->film;
+    for (int64_t y = tile->y0; y < tile->y1; y++) {
+        for (int64_t x = tile->x0; x < tile->x1; x++) {
+            size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
+            store(film->pixels[at].rgb, *first_at(worker, area, x, y));
+            film->marked[at] = run->full || is_marked(run, worker, area, x, y) ? FILM_MARK_WAITS : 0;
+        }
+    }
+}
+
 static bool render_tile(struct run *run, struct worker *worker, struct rectangle tile) {
     const struct settings *settings = &run->job->settings;
     bool have_first = !run->full || settings->keep_first;
@@ -319,6 +332,8 @@ static bool render_tile(struct run *run, struct worker *worker, struct rectangle
             sample_patch(run, worker, &area, x, y);
         }
     }
+    if (settings->show_marks && have_first)
+        show_marks(run, worker, &area, &tile);
     for (int64_t y = tile.y0; y < tile.y1; y++) {
         for (int64_t x = tile.x0; x < tile.x1; x++) {
             if (stopped(run, worker))

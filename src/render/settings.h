@@ -67,6 +67,7 @@ struct settings {
     double cutoff;   /* rays that can change a pixel by less (of 1) are not followed; 0: all are */
     uint32_t aov;    /* layers beside the picture: a mask of render/aov.h */
     bool keep_first; /* the first pass is wanted even where -full makes it needless */
+    bool show_marks; /* pixels that are to be resampled are marked in the film before (FILM_MARK_WAITS) */
     bool cropped;
     int64_t crop_x, crop_y, crop_width, crop_height;
 };

@@ -170,7 +170,7 @@ TEST(a_misspelt_option_is_answered_with_the_nearest_name) {
     refused("--reflectlimit=3 s.lua", "there is no option '--reflectlimit=3'; did you mean -reflect-limit?");
     refused("--transform_ordre old s.lua", "there is no option '--transform_ordre'; did you mean --transform-order?");
     refused("--siez 3x3 s.lua", "there is no option '--siez'; did you mean --size?");
-    refused("--gui s.lua", "there is no option '--gui'");
+    refused("--gui --check s.lua", "-gui takes no --checkpoint, --resume, --shard, --mpi, --no-fork, --check or --aov");
     refused("--zebra s.lua", "there is no option '--zebra'");
     refused("-old s.lua", "there is no option '-old'");
 }

@@ -1,0 +1,59 @@
+/* A picture in a window: shows it while it is made, lets people walk, and decides what is rendered next. The child
+ * renders one pass after the other (coarse ones first, and while somebody walks) and asks after each what comes next;
+ * the answer is an order. Neither waits for the other: the window is drawn from the film as it is. */
+#ifndef GRAY_APP_LIVE_H
+#define GRAY_APP_LIVE_H
+
+#include "app/channel.h"
+#include "app/walk.h"
+#include "app/window.h"
+#include "render/film.h"
+
+enum live_order {
+    LIVE_NOTHING,
+    LIVE_STOP,   /* the pass that runs is of no use any more */
+    LIVE_VIEW,   /* the child waits: render live->view next */
+    LIVE_WRITE,  /* the script's own picture is complete for the first time: write it */
+    LIVE_SAVE,   /* somebody wants what is shown in a file: live->canvas */
+    LIVE_RECORD, /* somebody wants the camera in a file: walk_camera(&live->walk) */
+    LIVE_NEXT,   /* the child waits, and this picture is done with: the script goes on */
+    LIVE_QUIT,   /* the window was closed, or Q */
+};
+
+struct live {
+    const struct window_driver *driver;
+    struct walk walk;
+    struct picture_request request;
+    void *block;                  /* of the film; not owned */
+    struct live_view view;        /* of the pass that runs or ran last */
+    struct film film;             /* as that pass lays it out */
+    struct picture_report report; /* of the last pass that was finished */
+    uint8_t *canvas;              /* what is shown: 3 bytes a pixel of the whole part */
+    uint8_t *drawn;               /* by tile: already on the canvas */
+    size_t tiles;                 /* room in drawn */
+    bool open, running, stopping, waiting;
+    bool moved;             /* the camera is not the one of the view that was sent last */
+    bool flown;             /* it is not the script's any more */
+    bool again;             /* R */
+    bool complete, written; /* the last pass was the finest; the script's picture was written */
+    bool grabbed, next, quit;
+    int turning;     /* buttons that are held and go round */
+    uint32_t divide; /* of passes while somebody walks */
+    double pass_began, stepped, shown, titled;
+    bool dirty; /* the canvas was changed since it was shown */
+};
+
+/* Opens the window. Owner: the caller; live_end gives everything back. */
+bool live_begin(struct live *live, const struct window_driver *driver, const struct picture_request *request,
+                void *block, const char *name, double now, struct error *error);
+void live_end(struct live *live);
+/* The first pass of a picture; the child starts with it by itself. */
+struct live_view live_first_view(const struct camera *camera);
+/* The film that a pass fills: the picture's rectangle divided, in the same block. */
+struct film live_film(const struct picture_request *request, void *block, uint32_t divide);
+/* A pass has ended; the child waits for the next order. */
+void live_pass_ended(struct live *live, const struct picture_report *report, double now);
+/* Takes events, draws, decides. To be called until it says LIVE_NOTHING, every few milliseconds. */
+enum live_order live_step(struct live *live, double now);
+
+#endif

@@ -1,0 +1,12 @@
+/* What people take home from the window: the picture as it is shown, and the camera as a Lua file. */
+#ifndef GRAY_APP_SOUVENIR_H
+#define GRAY_APP_SOUVENIR_H
+
+#include "app/live.h"
+
+/* Both choose a name that is still free: dir/foo.png gives dir/foo-view1.png, dir/foo-view1.lua and so on; it is put
+ * into `name` (4096 bytes). The Lua file gives back a table of eye, view, up and fov with every digit. */
+bool souvenir_picture(const struct live *live, const char *picture_name, char *name, struct error *error);
+bool souvenir_camera(const struct live *live, const char *picture_name, char *name, struct error *error);
+
+#endif
