@@ -3,6 +3,7 @@
 #include "render/photon_trace.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
+#include "tests/unit/mesh_makers.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -93,6 +94,21 @@ static struct vec3 floor_light(struct stage *s, int photons) {
     return vec3_scale(sum, 1.0 / 256);
 }
 
+/* A square mesh of side 0.6 above the floor, not part of the scene. */
+static const struct node *mesh_above(struct stage *s) {
+    struct maker maker = {0};
+    for (int i = 0; i < 4; i++)
+        maker_vertex(&maker, i == 1 || i == 2 ? 0.3 : -0.3, 5, i >= 2 ? 0.3 : -0.3);
+    maker_triangle(&maker, 0, 1, 2);
+    maker_triangle(&maker, 0, 2, 3);
+    struct mesh_input input = maker_input(&maker);
+    struct node *node = scene_node(&s->scene, NODE_GEOMETRY, "mesh", &s->error);
+    node->shape = (struct shape){.kind = SHAPE_MESH, .mesh = assets_mesh(&s->assets, &input, &s->error)};
+    node->material = stage_phong(s, vec3_all(0), vec3_all(0), 1);
+    maker_free(&maker);
+    return node;
+}
+
 /* A pane of index 1 throws a full shadow; its caustic must be the light that was there. */
 static void pane_gives_back(const char *what, struct light light, double tolerance) {
     struct stage s;
@@ -102,6 +118,7 @@ static void pane_gives_back(const char *what, struct light light, double toleran
     s.settings.lens.view_height = 1;
     s.settings.area_samples = 16;
     light.colour = vec3_make(0.5, 1, 2);
+    light.node = light.kind == LIGHT_MESH ? mesh_above(&s) : NULL;
     add_light(&s, light);
     box(&s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), white(&s));
     struct vec3 open = floor_light(&s, 0);
@@ -161,7 +178,8 @@ TEST(a_pane_of_index_1_gives_back_the_light_of_lights_with_an_extent) {
     pane_gives_back("lamp: parallelogram", panel, 0.015);
     pane_gives_back("lamp: disc", disc, 0.015);
     pane_gives_back("lamp: sphere", globe, 0.015);
-    /* Edge normals point down: one-sided lamps shine on the floor, or not at all. */
+    struct light mesh = {.kind = LIGHT_MESH, .emits = true, .has_emission = true, .emission = {2, 2, 2}};
+    pane_gives_back("lamp: mesh", mesh, 0.015);
     disc.one_sided = true;
     pane_gives_back("lamp: one-sided disc", disc, 0.015);
     /* Wide and near: photons start in parts of it. */
