@@ -6,6 +6,7 @@
 #ifndef GRAY_ACCEL_BOX_TREE_H
 #define GRAY_ACCEL_BOX_TREE_H
 
+#include "accel/isa.h"
 #include "base/error.h"
 #include "base/pool.h"
 #include "math/box.h"
@@ -48,6 +49,7 @@ struct box_tree_walk {
     int near_side[3];
     double t_min;
     uint32_t steps; /* inner nodes looked at */
+    enum accel_isa isa;
     int top;
     uint32_t child[BOX_TREE_STACK];
     double enter[BOX_TREE_STACK];
@@ -56,6 +58,12 @@ void box_tree_walk_begin(struct box_tree_walk *walk, const struct box_tree *tree
 bool box_tree_walk_next(struct box_tree_walk *walk, double t_max, uint32_t *item);
 /* The same without order, for questions that any item may answer. */
 bool box_tree_walk_any(struct box_tree_walk *walk, double t_max, uint32_t *item);
+
+/* Both in each instruction set. */
+bool box_tree_walk_next_base(struct box_tree_walk *walk, double t_max, uint32_t *item);
+bool box_tree_walk_any_base(struct box_tree_walk *walk, double t_max, uint32_t *item);
+bool box_tree_walk_next_avx2(struct box_tree_walk *walk, double t_max, uint32_t *item);
+bool box_tree_walk_any_avx2(struct box_tree_walk *walk, double t_max, uint32_t *item);
 
 /* The shaft from one point to a parallelogram (Haines and Wallace, "Shaft Culling for Efficient Ray-Traced Radiosity",
  * 1991): every segment from the point to the parallelogram lies inside. */
