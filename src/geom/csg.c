@@ -331,9 +331,11 @@ static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray
             uint32_t leaf = plan->order[bound->first + i];
             if (bound->count > 1 && !box_probe_meets(&probe, &plan->boxes[leaf], line.t_min, line.t_max))
                 continue;
-            struct ray leaf_ray = ray_transform(&csg->leaves[leaf].csg_from_leaf.inverse, ray);
+            struct ray leaf_ray;
+            if (!plan->as_it_is[leaf])
+                leaf_ray = ray_transform(&csg->leaves[leaf].csg_from_leaf.inverse, ray);
             struct crossing_list list = {scratch->used, 0};
-            (void)shape_crossings(&csg->leaves[leaf].shape, &leaf_ray, scratch, &list);
+            (void)shape_crossings(&csg->leaves[leaf].shape, plan->as_it_is[leaf] ? ray : &leaf_ray, scratch, &list);
             if (scratch->overflow)
                 return false;
             keep_crossings(s, leaf, list.first, scratch);

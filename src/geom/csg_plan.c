@@ -55,6 +55,16 @@ static bool program_is_well_formed(const struct csg *csg, bool *used, uint32_t *
     return depth == (csg->clipped ? 2 : 1) && leaves == csg->leaf_count;
 }
 
+static bool is_identity(const struct transform *t) {
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 4; j++) {
+            if (t->forward.m[i][j] != (i == j) || t->inverse.m[i][j] != (i == j))
+                return false;
+        }
+    }
+    return true;
+}
+
 struct pending {
     uint32_t parent;
     bool negated;
@@ -308,6 +318,7 @@ static bool fill_plan(struct csg *csg, struct csg_plan *plan, struct error *erro
             struct box b = box_pad(shape_bounds_under(&leaf->shape, &leaf->csg_from_leaf.forward));
             if (leaf->limit)
                 b = box_meet(b, box_pad(*leaf->limit));
+            plan->as_it_is[i] = is_identity(&leaf->csg_from_leaf);
             plan->own_boxes[i] = plan->boxes[i] = b = box_tidy(b);
             plan->order[i] = i;
             crossings += shape_scratch_need(&leaf->shape);
@@ -377,8 +388,9 @@ const struct csg *csg_build_clipped(struct arena *arena, const struct csg_leaf *
         plan->order = arena_alloc_array(arena, leaf_count, sizeof *plan->order);
         plan->bounds =
             arena_alloc_array(arena, leaf_count, sizeof *plan->bounds); /* at least two leaves each, or one */
+        plan->as_it_is = arena_alloc_array(arena, leaf_count, sizeof *plan->as_it_is);
         ok = plan->nodes && plan->start_counts && plan->literals && plan->boxes && plan->own_boxes && plan->order &&
-             plan->bounds;
+             plan->bounds && plan->as_it_is;
     }
     if (!ok) {
         error_no_memory(error, "CSG");

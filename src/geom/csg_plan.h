@@ -34,6 +34,7 @@ struct csg_plan {
     struct csg_literal *literals;
     struct box *own_boxes; /* of the leaves, in CSG space, padded */
     struct box *boxes;     /* what of them the nodes above leave: where a leaf matters */
+    bool *as_it_is;        /* csg_from_leaf of a leaf changes nothing */
     struct csg_bound *bounds;
     uint32_t *order;
     uint32_t node_count, bound_count;

@@ -67,18 +67,20 @@ static double visible_share(struct tracer *tracer, const struct light *light, ui
     if (!light_frame_make(light, fan.from, &fan.frame))
         return is_free(tracer, fan.from, vec3_sub(light->position, fan.from), 1, hit->time);
     uint32_t all = fan.side * fan.side, seen = 0, have = 0;
+    struct between between = world_between(world, fan.from, fan.frame.corner, fan.frame.edge1, fan.frame.edge2);
+    tracer->shadow_rays += all;
+    if (between.known && between.count == 0)
+        return 1;
     struct vec3 targets[AREA_BATCH];
     for (uint32_t cell = 0; cell < all; cell++) {
         targets[have++] = light_target(light, &fan.frame, fan.from, fan_place(&fan, cell));
         if (have < AREA_BATCH && cell + 1 < all)
             continue;
-        seen += world_count_visible(world, fan.from, hit->time, fan.frame.corner, fan.frame.edge1, fan.frame.edge2,
-                                    targets, have, tracer->scratch);
+        seen += world_visible(world, &between, fan.from, hit->time, targets, have, tracer->scratch, NULL);
         have = 0;
         if (tracer->pool && pool_cancelled(tracer->pool))
             return 0;
     }
-    tracer->shadow_rays += all;
     return (double)seen / (double)all;
 }
 
@@ -86,8 +88,9 @@ static double visible_share(struct tracer *tracer, const struct light *light, ui
 static void ask_targets(struct tracer *tracer, const struct fan *fan, double time, const struct vec3 *targets,
                         uint32_t count, bool *visible) {
     if (fan->frame.bounded) {
-        (void)world_visible(tracer->job->world, fan->from, time, fan->frame.corner, fan->frame.edge1, fan->frame.edge2,
-                            targets, count, tracer->scratch, visible);
+        const struct world *world = tracer->job->world;
+        struct between between = world_between(world, fan->from, fan->frame.corner, fan->frame.edge1, fan->frame.edge2);
+        (void)world_visible(world, &between, fan->from, time, targets, count, tracer->scratch, visible);
         tracer->shadow_rays += count;
         return;
     }

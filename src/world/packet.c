@@ -221,40 +221,47 @@ static uint64_t stopped_by(const struct packet_search *s, uint32_t index, uint64
 }
 
 /* The rays of `active` that none of the candidates stops; what stops some is asked first the next time. */
-static uint64_t pass(struct packet_search *s, uint32_t *candidates, uint32_t count) {
+static uint64_t pass(struct packet_search *s, struct between *between) {
     uint64_t alive = ray_packet_all(s->rays);
     for (uint32_t i = 0; i < places(s->rays); i++) {
         for (int k = 0; k < 3; k++)
             s->inverse[k][i] = 1 / s->rays->direction[k][i];
         s->limit[i] = s->rays->t_max[i];
     }
-    for (uint32_t k = 0; k < count && alive; k++) {
-        uint64_t active = alive & meet_box(s, &s->world->boxes[candidates[k]]), stopped;
-        if (!active || !(stopped = stopped_by(s, candidates[k], active)))
+    for (uint32_t k = 0; k < between->count && alive; k++) {
+        uint32_t item = between->items[k];
+        uint64_t active = alive & meet_box(s, &s->world->boxes[item]), stopped;
+        if (!active || !(stopped = stopped_by(s, item, active)))
             continue;
         alive &= ~stopped;
-        uint32_t swap = candidates[0];
-        candidates[0] = candidates[k];
-        candidates[k] = swap;
+        between->items[k] = between->items[0];
+        between->items[0] = item;
     }
     return alive;
 }
 
-uint32_t world_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner, struct vec3 edge1,
-                       struct vec3 edge2, const struct vec3 *targets, uint32_t count, struct world_scratch *scratch,
-                       bool *visible) {
-    enum { CANDIDATES = 24 };
-    uint32_t candidates[CANDIDATES], found = CANDIDATES + 1, seen = 0;
-    if (world->accel == ACCEL_AUTO || world->accel == ACCEL_BVH) {
-        struct shaft shaft = shaft_make(from, corner, edge1, edge2);
-        found = box_tree_in_shaft(&world->tree, &shaft, candidates, CANDIDATES);
-        if (found == 0) {
-            for (uint32_t i = 0; i < count && visible; i++)
-                visible[i] = true;
-            return count;
-        }
+struct between world_between(const struct world *world, struct vec3 from, struct vec3 corner, struct vec3 edge1,
+                             struct vec3 edge2) {
+    struct between between;
+    between.count = 0;
+    between.known = world->accel == ACCEL_AUTO || world->accel == ACCEL_BVH;
+    if (!between.known)
+        return between;
+    struct shaft shaft = shaft_make(from, corner, edge1, edge2);
+    between.count = box_tree_in_shaft(&world->tree, &shaft, between.items, BETWEEN_LIMIT);
+    between.known = between.count <= BETWEEN_LIMIT;
+    return between;
+}
+
+uint32_t world_visible(const struct world *world, struct between *between, struct vec3 from, double time,
+                       const struct vec3 *targets, uint32_t count, struct world_scratch *scratch, bool *visible) {
+    uint32_t seen = 0;
+    if (between->known && between->count == 0) {
+        for (uint32_t i = 0; i < count && visible; i++)
+            visible[i] = true;
+        return count;
     }
-    if (found > CANDIDATES) {
+    if (!between->known) {
         for (uint32_t i = 0; i < count; i++) {
             struct ray ray = {.origin = from, .direction = vec3_sub(targets[i], from), .t_max = 1, .time = time};
             bool free_way = !world_any(world, &ray, scratch);
@@ -283,16 +290,10 @@ uint32_t world_visible(const struct world *world, struct vec3 from, double time,
             rays.t_max[i] = 1;
         }
         ray_packet_pad(&rays);
-        uint64_t alive = pass(&s, candidates, found);
+        uint64_t alive = pass(&s, between);
         seen += (uint32_t)__builtin_popcountll(alive);
         for (uint32_t i = 0; i < rays.count && visible; i++)
             visible[first + i] = alive >> i & 1;
     }
     return seen;
-}
-
-uint32_t world_count_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner,
-                             struct vec3 edge1, struct vec3 edge2, const struct vec3 *targets, uint32_t count,
-                             struct world_scratch *scratch) {
-    return world_visible(world, from, time, corner, edge1, edge2, targets, count, scratch, NULL);
 }

@@ -14,14 +14,18 @@ struct packet_answer {
 uint64_t world_nearest_packet(const struct world *world, const struct ray_packet *rays, struct world_scratch *scratch,
                               struct packet_answer *out);
 
+/* What can stand between a point and a parallelogram, in any order; not known when there is much. */
+enum { BETWEEN_LIMIT = 24 };
+struct between {
+    uint32_t items[BETWEEN_LIMIT], count;
+    bool known;
+};
+struct between world_between(const struct world *world, struct vec3 from, struct vec3 corner, struct vec3 edge1,
+                             struct vec3 edge2);
 /* How many of the points targets[0 .. count-1], all inside the parallelogram, are seen from `from`: as world_any would
- * say of every segment, t in (0, 1), with the search for what can stand between done once for all of them. */
-uint32_t world_count_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner,
-                             struct vec3 edge1, struct vec3 edge2, const struct vec3 *targets, uint32_t count,
-                             struct world_scratch *scratch);
-/* The same; visible (count entries, or NULL) says it of each. */
-uint32_t world_visible(const struct world *world, struct vec3 from, double time, struct vec3 corner, struct vec3 edge1,
-                       struct vec3 edge2, const struct vec3 *targets, uint32_t count, struct world_scratch *scratch,
-                       bool *visible);
+ * say of every segment, t in (0, 1). visible (count entries, or NULL) says it of each. What stops some rays comes first
+ * in `between` afterwards. */
+uint32_t world_visible(const struct world *world, struct between *between, struct vec3 from, double time,
+                       const struct vec3 *targets, uint32_t count, struct world_scratch *scratch, bool *visible);
 
 #endif

@@ -344,7 +344,16 @@ static void search_kd_tree(struct search *s) {
 
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
                             uint32_t *placed, struct crossing *crossing) {
-    struct search s = {.world = world, .ray = ray, .scratch = scratch, .limited = *ray, .probe = box_probe_make(ray)};
+    struct search s;
+    s.world = world;
+    s.ray = ray;
+    s.scratch = scratch;
+    s.limited = *ray;
+    s.found = false;
+    s.placed = 0;
+    s.best = (struct crossing){0};
+    if (world->accel != ACCEL_AUTO && world->accel != ACCEL_BVH)
+        s.probe = box_probe_make(ray); /* the hierarchy has one of its own */
     scratch->rays++;
     switch (world->accel) {
     case ACCEL_AUTO:

@@ -186,7 +186,8 @@ TEST(points_of_a_parallelogram_seen_through_a_shaft_are_those_that_single_rays_s
                 seen += !world_any(&s.world, &ray, &scratch);
             }
             partly += seen > 0 && seen < 16;
-            CHECK_EQ_INT(world_count_visible(&s.world, from, 0, corner, edge1, edge2, targets, 16, &scratch), seen);
+            struct between between = world_between(&s.world, from, corner, edge1, edge2);
+            CHECK_EQ_INT(world_visible(&s.world, &between, from, 0, targets, 16, &scratch, NULL), seen);
         }
         world_scratch_destroy(&scratch);
         stage_end(&s);
