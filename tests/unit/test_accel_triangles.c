@@ -124,8 +124,14 @@ TEST(rays_from_a_few_sizes_away_meet_what_trying_every_triangle_meets_and_nothin
     int hits = 0;
     for (int i = 0; i < 20000; i++) {
         struct vec3 way = i & 1 ? test_point(&random, 1) : vec3_add(vec3_all(1), test_point(&random, 0.2));
-        struct vec3 origin = vec3_scale(vec3_normalize(way), test_uniform(&random, 1, 100));
-        struct ray ray = test_ray(origin, i & 2 ? way : vec3_sub(test_point(&random, 1), origin));
+        struct vec3 origin = vec3_scale(vec3_normalize(way), test_uniform(&random, 1, 30));
+        /* At the mesh, or past places where an index may have put what is not of the mesh. */
+        struct vec3 target = test_point(&random, 1);
+        double far = pow(2, floor(test_uniform(&random, 1, 9)));
+        if (i & 2)
+            target =
+                vec3_add(vec3_all(far), vec3_make(test_uniform(&random, 0, 0.1), test_uniform(&random, 0, 0.1), 0));
+        struct ray ray = test_ray(origin, vec3_sub(target, origin));
         ray.direction = vec3_scale(ray.direction, pow(2, test_uniform(&random, -40, 40)));
         double across = vec3_length(origin) / vec3_length(ray.direction);
         if (i % 3 == 0)
