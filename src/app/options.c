@@ -596,9 +596,11 @@ static bool check_parts(struct options *options, struct error *error) {
         return error_set(error, ERROR_USAGE, "-o - leaves no name for a checkpoint; --checkpoint FILE gives one");
     if (pipe && options->shards)
         return error_set(error, ERROR_USAGE, "-o - leaves no name for the parts of --shard");
-    if ((options->shards || options->mpi || options->action == ACTION_MERGE) && options->settings.aov)
+    if ((options->shards || options->mpi || options->checkpoint || options->action == ACTION_MERGE) &&
+        options->settings.aov)
         return error_set(error, ERROR_USAGE,
-                         "--aov is for pictures that one process makes: no --shard, --mpi or merge");
+                         "--aov is for pictures that one process makes in one go: no --shard, --mpi, --checkpoint, "
+                         "--resume or merge");
     if (options->shards && (options->targets_prefix || options->first_pass_prefix))
         return error_set(error, ERROR_USAGE, "--shard writes no debug pictures; give -write-... to gray merge");
     return true;
