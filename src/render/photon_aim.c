@@ -9,12 +9,15 @@
  * Sequences", 2018), moved by an offset of the cell. The weight of a photon is exactly the light's intensity over the
  * density of photons: no cell that light can pass may be missing, which is the invariant.
  *
+ * A sky sends from all sides: its directions come from its own table, and each has its rectangle across.
+ *
  * Units (docs/light.md): a light without body sends its colour per steradian, times d^2 fading(d) after the way d, so
  * that free light arrives as colour * fading(d) * cosine; a lamp sends radiance / pi per area and projected solid
  * angle, since a view factor is a cosine over pi. */
 #include "render/photon_aim.h"
 
 #include "base/random.h"
+#include "look/sky_light.h"
 #include "math/elementary.h"
 #include "math/frame.h"
 
@@ -45,7 +48,8 @@ struct caster {
 struct casters {
     struct caster *list; /* the strongest first */
     uint32_t count;
-    struct vec3 middle; /* of all of them */
+    struct box all;     /* of them */
+    struct vec3 middle; /* of that box */
     struct box scene;   /* of everything that is finite */
 };
 
@@ -97,17 +101,18 @@ static bool find_casters(struct casters *out, const struct world *world, struct 
     if (!out->list)
         return false;
     struct vec3 size = vec3_sub(out->scene.max, out->scene.min);
-    struct box limit = {vec3_sub(out->scene.min, size), vec3_add(out->scene.max, size)}, all = box_empty();
+    struct box limit = {vec3_sub(out->scene.min, size), vec3_add(out->scene.max, size)};
+    out->all = box_empty();
     for (uint32_t i = 0; i < world->placed_count; i++) {
         double strength = placed_strength(world, i);
         struct box box = box_meet(world->boxes[i], limit);
         if (!(strength > 0) || box_is_empty(&box))
             continue;
-        all = box_join(all, box);
+        out->all = box_join(out->all, box);
         out->list[out->count++] = caster_make(world, i, &box, strength);
     }
     if (out->count > 0)
-        out->middle = vec3_scale(vec3_add(all.min, all.max), 0.5);
+        out->middle = vec3_scale(vec3_add(out->all.min, out->all.max), 0.5);
     return true;
 }
 
@@ -141,7 +146,7 @@ static void sort_casters(struct casters *casters) {
 /* --- cells --- */
 
 static bool is_distant(const struct photon_aim *aim) {
-    return aim->light->kind == LIGHT_DIRECTIONAL;
+    return aim->light->kind == LIGHT_DIRECTIONAL || aim->light->kind == LIGHT_SKY;
 }
 
 /* The coordinate on a face of the cube from one that runs evenly over the angle. */
@@ -419,7 +424,7 @@ static double unit_flux(const struct photon_aim *aim) {
 }
 
 double photon_fading(const struct light *light, double length) {
-    if (light->emits || light->kind == LIGHT_DIRECTIONAL)
+    if (light->emits || light->kind == LIGHT_DIRECTIONAL || light->kind == LIGHT_SKY)
         return 1;
     return length * length * light_attenuation(light, length);
 }
@@ -466,9 +471,51 @@ static uint32_t light_parts(const struct light *light, const struct casters *cas
     return extent > 0.1 * nearest ? PARTS : 1;
 }
 
-/* Skies have no place and no direction of their own: they send none (docs/limits.md). */
+/* Light of a sky: a direction by its own table, then a place of the rectangle across it that holds the shadow of the
+ * box of all casters, before the whole scene. Returns the power of a photon that stands for all. */
+static struct vec3 start_in_sky(const struct photon_aim *aim, struct sample2 turn, struct sample2 place,
+                                struct vec3 *origin, struct vec3 *direction) {
+    const struct light *light = aim->light;
+    struct vec3 target, axes[2];
+    struct vec3 power = vec3_mul(sky_table_sample(light->sky, light->table, turn, &target), light->colour);
+    *direction = vec3_negate(target);
+    frame_tangents(*direction, &axes[0], &axes[1]);
+    const double at[2] = {place.x, place.y};
+    double area = 1, before = fmin(box_least(&aim->across, *direction), box_least(&aim->scene, *direction));
+    *origin = vec3_scale(*direction, before - aim->size * 0x1p-6);
+    for (int k = 0; k < 2; k++) {
+        double low = box_least(&aim->across, axes[k]), width = -box_least(&aim->across, vec3_negate(axes[k])) - low;
+        area *= width;
+        *origin = vec3_add_scaled(*origin, axes[k], low + width * at[k]);
+    }
+    return vec3_scale(power, area);
+}
+
+/* One cell that is everything; its flux from a few hundred starts. */
+static bool aim_sky(struct photon_aim *aim, const struct casters *casters, struct arena *arena) {
+    enum { PROBES = 16 };
+    aim->across = casters->all;
+    aim->scene = casters->scene;
+    aim->size = vec3_length(vec3_sub(casters->scene.max, casters->scene.min));
+    aim->cells = arena_alloc_array(arena, 1, sizeof *aim->cells);
+    if (!aim->cells)
+        return false;
+    float strength = (float)casters->list[0].strength;
+    aim->total = (double)strength;
+    aim->cells[0] = (struct photon_cell){.until = aim->total, .strength = strength, .shine = 1};
+    aim->cell_count = 1;
+    for (int i = 0; i < PROBES * PROBES; i++) {
+        struct sample2 turn = {(i % PROBES + 0.5) / PROBES, (i / PROBES + 0.5) / PROBES};
+        struct vec3 origin, direction, power = start_in_sky(aim, turn, (struct sample2){0, 0}, &origin, &direction);
+        aim->flux += (fabs(power.x) + fabs(power.y) + fabs(power.z)) / (3 * PROBES * PROBES) * aim->total;
+    }
+    if (!isfinite(aim->flux))
+        aim->flux = 0;
+    return true;
+}
+
 static bool sends_photons(const struct light *light) {
-    return light->kind != LIGHT_SKY && (light->kind != LIGHT_MESH || light->mesh->count > 0);
+    return light->kind != LIGHT_MESH || light->mesh->count > 0;
 }
 
 static bool aim_light(struct photon_aims *out, struct search *search, const struct light *light, uint32_t number,
@@ -488,7 +535,9 @@ static bool aim_light(struct photon_aims *out, struct search *search, const stru
             place_mesh(aim);
         else if (light->kind != LIGHT_SPHERE)
             aim->radius = 0;
-        if (!make_aim(aim, search, budget / (parts * parts), arena))
+        bool made = light->kind == LIGHT_SKY ? aim_sky(aim, search->casters, arena)
+                                             : make_aim(aim, search, budget / (parts * parts), arena);
+        if (!made)
             return false;
         out->count += aim->cell_count > 0 && aim->flux > 0;
     }
@@ -625,6 +674,12 @@ struct photon_start photon_aim_start(const struct photon_aim *aim, uint32_t inde
         place[k] = fraction(random_unit(random_combine(key_of_cell, k)) + turn * steps[k]);
 
     struct photon_start start = {.strength = (double)cell->strength, .key = key};
+    if (aim->light->kind == LIGHT_SKY) {
+        struct vec3 power = start_in_sky(aim, (struct sample2){place[0], place[1]},
+                                         (struct sample2){place[2], place[3]}, &start.origin, &start.direction);
+        start.power = vec3_scale(power, spacing / (double)cell->strength);
+        return start;
+    }
     double width = ldexp(2, -(int)aim->level), weight = spacing / ((double)cell->strength * (double)cell->shine);
     if (is_distant(aim)) {
         double size = ldexp(aim->size, -(int)aim->level);

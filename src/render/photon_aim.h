@@ -21,7 +21,9 @@ struct photon_aim {
     double radius;
     double low[2], side;            /* part of the unit square whose places are meant: low to low + side */
     struct vec3 right, up;          /* of a distant light, a disc, a parallelogram's edges */
-    double corner[2], size, behind; /* distant: the square across, and where photons start along the direction */
+    double corner[2], size, behind; /* distant: the square across, and where photons start along the direction; of a sky
+                                       size is that of the scene */
+    struct box across, scene;       /* a sky: what photons are to meet, and before what they start */
     uint32_t level, cell_count;     /* 2^level cells along the side of a face */
     struct photon_cell *cells;
     double total;          /* importance of all cells */

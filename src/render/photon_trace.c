@@ -130,6 +130,14 @@ static void send(struct sending *s, const struct photon_aim *aim, uint32_t index
     flight.ray.time = draw(&flight);
     if (start.power.x == 0 && start.power.y == 0 && start.power.z == 0)
         return;
+    if (aim->light->kind == LIGHT_SKY) {
+        /* It comes from beyond what is finite: a ground without end may be in its way. */
+        struct ray back = flight.ray;
+        struct hit ground;
+        back.direction = vec3_negate(start.direction);
+        if (world_nearest(s->world, &back, scratch, &ground))
+            return;
+    }
     const uint8_t *lit = aim->light->lit;
     for (int bounce = 0; bounce < PHOTON_BOUNCES && !scratch->failed; bounce++) {
         struct hit hit;

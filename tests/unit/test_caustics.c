@@ -1,4 +1,5 @@
 /* Caustics: what is sent arrives, where geometry says, in the unit of direct light. */
+#include "look/sky.h"
 #include "math/elementary.h"
 #include "render/photon_trace.h"
 #include "tests/harness.h"
@@ -123,7 +124,10 @@ static void pane_gives_back(const char *what, struct light light, double toleran
     box(&s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), white(&s));
     struct vec3 open = floor_light(&s, 0);
     struct material *pane = stage_glass(&s, 0, 1, 1);
-    box(&s, vec3_make(-3, 1, -3), vec3_make(3, 1.2, 3), pane);
+    if (light.kind == LIGHT_SKY) /* no way round it */
+        ball(&s, vec3_make(0, 0, 0), 1.5, pane);
+    else
+        box(&s, vec3_make(-3, 1, -3), vec3_make(3, 1.2, 3), pane);
     struct vec3 dark = floor_light(&s, 0), back = floor_light(&s, 20000);
     CHECK(open.z > 0);
     if (!(fabs(back.x / open.x - 1) < tolerance && fabs(back.z / open.z - 1) < tolerance && dark.y == 0))
@@ -187,6 +191,33 @@ TEST(a_pane_of_index_1_gives_back_the_light_of_lights_with_an_extent) {
     panel.corner = vec3_make(-1, 2, -1);
     panel.edge1.x = panel.edge2.z = 2;
     pane_gives_back("lamp: wide parallelogram", panel, 0.02);
+}
+
+TEST(a_ball_of_index_1_gives_back_the_light_of_skies) {
+    static const double stops[3][4] = {{-1, 9, 9, 9}, {0, 0.2, 0.5, 1}, {1, 2, 1.5, 0.5}};
+    struct sky skies[3] = {{.kind = SKY_CONSTANT, .colour = {0.5, 0.75, 1}},
+                           {.kind = SKY_STOPS, .stops = stops, .stop_count = 3}};
+    sky_make_clear(vec3_normalize(vec3_make(1, 0.7, 0.4)), 3, vec3_all(0.3), &skies[2]);
+    const char *const names[3] = {"constant sky", "graded sky", "clear sky"};
+    for (int i = 0; i < 3; i++)
+        pane_gives_back(names[i], (struct light){.kind = LIGHT_SKY, .emits = true, .sky = &skies[i], .samples = 16},
+                        0.02);
+}
+
+/* The floor has no end, and half of a sky is below it. */
+TEST(a_sky_sends_no_photons_through_the_ground) {
+    static const double stops[4][4] = {{-1, 1, 1, 1}, {-1e-9, 1, 1, 1}, {0, 0, 0, 0}, {1, 0, 0, 0}};
+    struct sky below = {.kind = SKY_STOPS, .stops = stops, .stop_count = 4};
+    struct stage s;
+    struct photon_map map;
+    stage_begin(&s, 2);
+    thing(&s, (struct shape){.kind = SHAPE_FLAT, .flat = flat_plane(vec3_make(0, 1, 0), 0)}, white(&s));
+    ball(&s, vec3_make(0, 2, 0), 1, fresnel_glass(&s, 1.5));
+    add_light(&s, (struct light){.kind = LIGHT_SKY, .emits = true, .colour = {1, 1, 1}, .sky = &below, .samples = 1});
+    CHECK(send(&s, 20000, &map).sent == 20000);
+    CHECK(map.count == 0);
+    photon_map_destroy(&map);
+    stage_end(&s);
 }
 
 TEST(photons_shade_highlights_and_interpolated_sides_like_direct_light) {
