@@ -341,7 +341,9 @@ static float pilot_squared(const struct photon_map *map, const float at[3], floa
     return n.bound;
 }
 
-/* Neighbours in the tree are neighbours in space: the last answer, moved, bounds the next one. */
+/* Neighbours in the tree are neighbours in space: the last answer, moved, bounds the next one. A photon much nearer to
+ * the last one that was asked than that one's radius takes it over: its own is between half of it and one and a half.
+ */
 static void find_radii(void *context, uint32_t chunk, int worker) {
     (void)worker;
     struct builder *b = context;
@@ -354,7 +356,12 @@ static void find_radii(void *context, uint32_t chunk, int worker) {
         float bound = INFINITY;
         if (last_at) {
             float dx = at[0] - last_at[0], dy = at[1] - last_at[1], dz = at[2] - last_at[2];
-            bound = (last + sqrtf(dx * dx + dy * dy + dz * dz)) * 1.00001F;
+            float way = sqrtf(dx * dx + dy * dy + dz * dz);
+            if (way <= last / 2) {
+                map->spots[i].radius = stretch * last;
+                continue;
+            }
+            bound = (last + way) * 1.00001F;
             bound *= bound;
         }
         last = sqrtf(pilot_squared(map, at, bound));
