@@ -183,6 +183,15 @@ static double phi(const struct walk *w, double s, uint32_t column, uint32_t row,
     return (w->y + s * w->dy) - (h0 + a * (w->x + s * w->dx - column) + b * (w->z + s * w->dz - row));
 }
 
+/* Of numbers; fmin and fmax are calls, which NaN needs. */
+static inline double lesser(double a, double b) {
+    return a < b ? a : b;
+}
+
+static inline double greater(double a, double b) {
+    return a > b ? a : b;
+}
+
 /* The line over one triangle, from s = from to s = to. */
 static bool walk_triangle(struct walk *w, uint32_t column, uint32_t row, bool upper, double from, double to) {
     double start = phi(w, from, column, row, upper), end = phi(w, to, column, row, upper);
@@ -196,7 +205,7 @@ static bool walk_triangle(struct walk *w, uint32_t column, uint32_t row, bool up
         return true;
     double s = (start < 0) != (end < 0) ? from + (to - from) * (start / (start - end)) : from;
     uint32_t part = GROUND + 2 * (row * w->field->columns + column) + upper;
-    return cross(w, fmin(fmax(s, from), to), part);
+    return cross(w, lesser(greater(s, from), to), part);
 }
 
 static bool walk_cell(struct walk *w, uint32_t column, uint32_t row, double from, double to) {
@@ -229,14 +238,14 @@ struct block {
 
 /* Divides a block: pushes the parts of the line over its children, the last one first. */
 static int divide(const struct walk *w, const struct block *block, struct block *stack, int depth) {
-    double edge = ldexp(1, block->level - 1);
+    double edge = (double)((uint32_t)1 << (block->level - 1));
     double x_middle = (2.0 * block->column + 1) * edge, z_middle = (2.0 * block->row + 1) * edge;
     double sx = w->dx != 0 ? (x_middle - w->x) / w->dx : INFINITY,
            sz = w->dz != 0 ? (z_middle - w->z) / w->dz : INFINITY;
     /* Which half comes first. */
     uint32_t x_side = w->dx != 0 ? w->dx < 0 : w->x >= x_middle, z_side = w->dz != 0 ? w->dz < 0 : w->z >= z_middle;
-    double cuts[4] = {block->from, fmin(fmax(fmin(sx, sz), block->from), block->to),
-                      fmin(fmax(fmax(sx, sz), block->from), block->to), block->to};
+    double cuts[4] = {block->from, lesser(greater(lesser(sx, sz), block->from), block->to),
+                      lesser(greater(greater(sx, sz), block->from), block->to), block->to};
     const struct level *level = &w->field->levels[block->level - 1];
     for (int k = 2; k >= 0; k--) {
         double from = cuts[k], to = cuts[k + 1];
@@ -311,9 +320,9 @@ static bool collect(const struct height_field *f, const struct ray *ray, bool ne
         struct range heights = level->ranges[(size_t)block.row * level->columns + block.column];
         double y0 = w.y + block.from * w.dy, y1 = w.y + block.to * w.dy;
         uint32_t column = block.column << block.level, row = block.row << block.level;
-        if (fmin(y0, y1) > heights.hi)
+        if (lesser(y0, y1) > heights.hi)
             room = pass(&w, false, block.from, column, row);
-        else if (fmax(y0, y1) < heights.lo)
+        else if (greater(y0, y1) < heights.lo)
             room = pass(&w, true, block.from, column, row);
         else if (block.level == 0)
             room = walk_cell(&w, column, row, block.from, block.to);
