@@ -42,6 +42,7 @@ static int list_figures(struct figure out[FIGURES], const struct picture_report 
         {"photons_landed", "photons kept", FIGURE_COUNT, 0, rays->photons_landed},
         {"photon_rays", "rays of photons", FIGURE_COUNT, 0, rays->photon_rays},
         {"photon_seconds", "photons", FIGURE_SECONDS, rays->photon_seconds, 0},
+        {"photon_map_seconds", "their map", FIGURE_SECONDS, rays->photon_map_seconds, 0},
         {"rays", "rays", FIGURE_COUNT, 0, sum},
         {"voxels", "voxels visited", FIGURE_COUNT, 0, rays->voxels},
         {"hierarchy_steps", "hierarchy steps", FIGURE_COUNT, 0, rays->hierarchy_steps},

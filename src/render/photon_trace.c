@@ -237,8 +237,10 @@ bool photons_make(struct photon_map *map, const struct world *world, const struc
         if (!ok)
             ok = error_no_memory(error, "the photons of the caustics");
         else
-            ok = send_all(&s, statistics, error) &&
-                 photon_map_build(map, world, s.photons, s.count, settings->caustics.radius, pool, error);
+            ok = send_all(&s, statistics, error);
+        double sent = seconds_now();
+        ok = ok && photon_map_build(map, world, s.photons, s.count, settings->caustics.radius, pool, error);
+        statistics->map_seconds += seconds_now() - sent;
     }
     statistics->sent += s.count;
     statistics->landed += map->count;

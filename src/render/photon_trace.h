@@ -11,7 +11,7 @@ enum { PHOTON_BOUNCES = 100 };
 
 struct photon_statistics {
     uint64_t sent, landed, rays;
-    double seconds;
+    double seconds, map_seconds; /* in all; of these: making the map */
 };
 
 /* Sends settings->photons photons through the world and builds the map of them; the same for any number of threads.

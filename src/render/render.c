@@ -609,6 +609,7 @@ static bool send_photons(struct run *run, int workers, struct render_statistics 
     out->photons_landed += photons.landed;
     out->photon_rays += photons.rays;
     out->photon_seconds += photons.seconds;
+    out->photon_map_seconds += photons.map_seconds;
     for (int i = 0; i < workers; i++)
         run->workers[i].tracer.caustics = &run->caustics;
     return ok;

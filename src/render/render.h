@@ -15,7 +15,8 @@ struct render_statistics {
     uint64_t pixels, marked_pixels, samples;
     uint64_t shape_tests, triangle_tests, box_tests, voxels, hierarchy_steps;
     uint64_t photons, photons_landed, photon_rays;
-    double build_seconds, render_seconds, photon_seconds; /* photons are part of the render */
+    /* Photons are part of the render, their map is part of them. */
+    double build_seconds, render_seconds, photon_seconds, photon_map_seconds;
 };
 
 struct render_job {

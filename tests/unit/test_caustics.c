@@ -361,6 +361,7 @@ static const struct vec3 down_a_little = {1, -0.5, 0};
 /* An upright ring of radius 1 and height 1, a mirror, on a white floor. */
 static void ring_on_floor(struct stage *s) {
     stage_begin(s, 2);
+    s->settings.caustics.radius = 0.01; /* no search for radii: only places are looked at */
     box(s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), white(s));
     struct conic ring = conic_cylinder(vec3_make(0, 0, 0), vec3_make(0, 1, 0), 1, true);
     thing(s, (struct shape){.kind = SHAPE_CONIC, .conic = ring}, mirror(s));
