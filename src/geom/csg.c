@@ -269,18 +269,27 @@ static void keep_crossings(struct sweep *s, uint32_t leaf, uint32_t first, struc
 
 /* The part of the ray inside the box, as box_probe_meets sees it; false when there is none. */
 static bool clip(const struct box_probe *probe, const struct box *b, double *from, double *to) {
-    const double planes[3][2] = {{b->min.x, b->max.x}, {b->min.y, b->max.y}, {b->min.z, b->max.z}};
-    for (int i = 0; i < 3; i++) {
-        double near = (planes[i][probe->negative[i]] - probe->origin[i]) * probe->inverse[i];
-        double far = (planes[i][!probe->negative[i]] - probe->origin[i]) * probe->inverse[i];
-        const double near_less = near * (1 - 0x1p-49), near_more = near * (1 + 0x1p-49); /* infinities stay */
-        const double far_less = far * (1 - 0x1p-49), far_more = far * (1 + 0x1p-49);
-        near = near_less < near_more ? near_less : near_more;
-        far = far_less > far_more ? far_less : far_more;
-        *from = near > *from ? near : *from;
-        *to = far < *to ? far : *to;
-    }
+    struct box_span span = box_probe_span(probe, b);
+    *from = span.enter > *from ? span.enter : *from;
+    *to = span.leave < *to ? span.leave : *to;
     return *from <= *to;
+}
+
+/* The crossings of a leaf where surfaces are looked for, on top of the scratch. leaf_ray: a copy of the ray, for the
+ * leaf's space. False: scratch overflow. */
+static bool ask_leaf(struct sweep *s, uint32_t leaf, struct ray *leaf_ray, struct geom_scratch *scratch) {
+    const struct csg_leaf *operand = &s->csg->leaves[leaf];
+    struct crossing_list list = {scratch->used, 0};
+    if (s->plan->as_it_is[leaf]) {
+        (void)shape_crossings(&operand->shape, s->ray, scratch, &list);
+    } else {
+        leaf_ray->origin = affine_point(&operand->csg_from_leaf.inverse, s->ray->origin);
+        leaf_ray->direction = affine_vector(&operand->csg_from_leaf.inverse, s->ray->direction);
+        (void)shape_crossings(&operand->shape, leaf_ray, scratch, &list);
+    }
+    if (scratch->used > list.first)
+        keep_crossings(s, leaf, list.first, scratch);
+    return !scratch->overflow;
 }
 
 /* Collects and sorts the crossings of all leaves that matter where the ray is inside of the bounds; everything on the
@@ -321,24 +330,18 @@ static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray
         s->counts[i] = plan->start_counts[i];
     for (uint32_t i = 0; i < (csg->leaf_count + 31) / 32; i++)
         s->inside[i] = 0;
+    struct ray leaf_ray = *ray;
     for (uint32_t b = 0; b < plan->bound_count;) {
         const struct csg_bound *bound = &plan->bounds[b];
-        if (!box_probe_meets(&probe, &bound->box, line.t_min, line.t_max)) {
+        if (!bound->unprobed && !box_probe_meets(&probe, &bound->box, line.t_min, line.t_max)) {
             b = bound->skip;
             continue;
         }
         for (uint32_t i = 0; i < bound->count; i++) {
             uint32_t leaf = plan->order[bound->first + i];
-            if (bound->count > 1 && !box_probe_meets(&probe, &plan->boxes[leaf], line.t_min, line.t_max))
-                continue;
-            struct ray leaf_ray;
-            if (!plan->as_it_is[leaf])
-                leaf_ray = ray_transform(&csg->leaves[leaf].csg_from_leaf.inverse, ray);
-            struct crossing_list list = {scratch->used, 0};
-            (void)shape_crossings(&csg->leaves[leaf].shape, plan->as_it_is[leaf] ? ray : &leaf_ray, scratch, &list);
-            if (scratch->overflow)
+            bool asked = bound->count == 1 || box_probe_meets(&probe, &plan->boxes[leaf], line.t_min, line.t_max);
+            if (asked && !ask_leaf(s, leaf, &leaf_ray, scratch))
                 return false;
-            keep_crossings(s, leaf, list.first, scratch);
         }
         b++;
     }

@@ -299,6 +299,23 @@ static void build_bounds(struct csg_plan *plan, uint32_t first, uint32_t count) 
     bound->skip = plan->bound_count;
 }
 
+/* Half the surface of a box: the share of lines through a box that meet another one inside it goes with it. */
+static double half_surface(const struct box *b) {
+    struct vec3 d = vec3_sub(b->max, b->min);
+    return box_is_empty(b) ? 0 : d.x * d.y + d.y * d.z + d.z * d.x;
+}
+
+/* Bounds of several leaves that are nearly as large as what is round them are not tried. */
+static void choose_probes(struct csg_plan *plan) {
+    plan->bounds[0].unprobed = plan->bounds[0].count != 1;
+    for (uint32_t b = 0; b < plan->bound_count; b++) {
+        const struct csg_bound *bound = &plan->bounds[b];
+        for (uint32_t child = b + 1; child < bound->skip; child = plan->bounds[child].skip)
+            plan->bounds[child].unprobed = plan->bounds[child].count != 1 &&
+                                           half_surface(&plan->bounds[child].box) >= 0.9 * half_surface(&bound->box);
+    }
+}
+
 /* Everything that needs memory only while building. */
 static bool fill_plan(struct csg *csg, struct csg_plan *plan, struct error *error) {
     uint32_t length = csg->program_length, leaf_count = csg->leaf_count;
@@ -339,6 +356,7 @@ static bool fill_plan(struct csg *csg, struct csg_plan *plan, struct error *erro
         csg->inside_out = plan->starts_in;
         live_boxes(csg, plan, flags, live, trims);
         build_bounds(plan, 0, leaf_count);
+        choose_probes(plan);
 
         /* The truth of nodes and leaves, or the stack of csg_contains in bits, and all crossings above it. */
         uint64_t words = plan->node_count + (leaf_count + 31) / 32;

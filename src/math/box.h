@@ -53,22 +53,33 @@ static inline struct box_probe box_probe_make(const struct ray *ray) {
     return probe;
 }
 
+/* Where the line is between the planes of all three axes, widened by the rounding errors of the quotients: an order
+ * that no rounding breaks is taken first, so that one widening serves all. Planes that the line lies in or is parallel
+ * to inside do not count (their quotients are infinite or NaN). enter > leave: nowhere. */
+struct box_span {
+    double enter, leave;
+};
+
+static inline struct box_span box_probe_span(const struct box_probe *probe, const struct box *b) {
+    const double planes[3][2] = {{b->min.x, b->max.x}, {b->min.y, b->max.y}, {b->min.z, b->max.z}};
+    double near_most = -INFINITY, far_least = INFINITY;
+    for (int i = 0; i < 3; i++) {
+        double near = (planes[i][probe->negative[i]] - probe->origin[i]) * probe->inverse[i];
+        double far = (planes[i][!probe->negative[i]] - probe->origin[i]) * probe->inverse[i];
+        near_most = near > near_most ? near : near_most;
+        far_least = far < far_least ? far : far_least;
+    }
+    const double near_less = near_most * (1 - 0x1p-49), near_more = near_most * (1 + 0x1p-49); /* infinities stay */
+    const double far_less = far_least * (1 - 0x1p-49), far_more = far_least * (1 + 0x1p-49);
+    return (struct box_span){near_less < near_more ? near_less : near_more, far_less > far_more ? far_less : far_more};
+}
+
 /* Whether some t of [t_min, t_max] may lie inside the box; never wrong by rounding in the negative. A direction
  * component of 0 makes the slab's t infinite on the right side, or NaN on its very plane, which every comparison
  * ignores. */
 static inline bool box_probe_meets(const struct box_probe *probe, const struct box *b, double t_min, double t_max) {
-    const double planes[3][2] = {{b->min.x, b->max.x}, {b->min.y, b->max.y}, {b->min.z, b->max.z}};
-    double enter = t_min, leave = t_max;
-    for (int i = 0; i < 3; i++) {
-        double near = (planes[i][probe->negative[i]] - probe->origin[i]) * probe->inverse[i];
-        double far = (planes[i][!probe->negative[i]] - probe->origin[i]) * probe->inverse[i];
-        const double near_less = near * (1 - 0x1p-49), near_more = near * (1 + 0x1p-49); /* infinities stay */
-        const double far_less = far * (1 - 0x1p-49), far_more = far * (1 + 0x1p-49);
-        near = near_less < near_more ? near_less : near_more;
-        far = far_less > far_more ? far_less : far_more;
-        enter = near > enter ? near : enter;
-        leave = far < leave ? far : leave;
-    }
+    struct box_span span = box_probe_span(probe, b);
+    double enter = span.enter > t_min ? span.enter : t_min, leave = span.leave < t_max ? span.leave : t_max;
     return enter <= leave;
 }
 
