@@ -4,7 +4,7 @@
 
 local stage = require 'stage'
 local knot = require 'knot'
-local meshes = require 'meshes'
+local meshes = require 'mesh_tools'
 local teapot = require 'teapot'
 
 local lights = {

@@ -4,7 +4,7 @@
 
 local stage = require 'stage'
 local polyhedra = require 'polyhedra'
-local meshes = require 'meshes'
+local meshes = require 'mesh_tools'
 
 local root = gr.node('root')
 local chalk = gr.material({ .80, .78, .74 }, { 0, 0, 0 }, 1)

@@ -5,7 +5,7 @@
 -- end the whole room is turned half round, so that the window looks at the evening sun of the sky picture (its +z face).
 -- Nothing touches exactly: what stands on something sinks into it by a fraction of a millimetre.
 
-local meshes = require 'meshes'
+local meshes = require 'mesh_tools'
 local lathe = require 'lathe'
 local sweep = require 'sweep'
 local carve = require 'carve'

@@ -1,4 +1,4 @@
--- TITLE: The model files of models.lua
+-- TITLE: The model files of meshes.lua
 -- Writes rocket.obj with rocket.mtl, knot.ply, gear.stl and crate.gltf beside itself, one of each format.
 -- Author: gray project
 --

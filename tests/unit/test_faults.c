@@ -92,7 +92,9 @@ static void survive(const char *variable, uint64_t number) {
     char *said = content("err.txt", &size), *picture = content("sub/a.png", NULL);
     bool known = status == 0 || status == 1 || status == 3;
     bool told = status == 0 || (said && size > 10 && strncmp(said, "  ", 2) != 0);
-    bool clean = !said || (!strstr(said, "Sanitizer") && !strstr(said, "runtime error"));
+    /* The leak checker itself cannot look round in a process that was confined without its folder. */
+    bool blind = said && strstr(said, "LeakSanitizer has encountered a fatal error");
+    bool clean = !said || blind || (!strstr(said, "Sanitizer") && !strstr(said, "runtime error"));
     bool old = picture && strcmp(picture, "old\n") == 0;
     bool whole = shell("cmp -s sub/a.png whole/a.png") == 0;
     bool second = shell("test ! -e b.pfm || cmp -s b.pfm whole/b.pfm") == 0;

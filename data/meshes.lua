@@ -35,7 +35,7 @@ exhibit(gr.mesh { file = 'models/knot.ply', smooth = 180 }:rotate('x', 70), 2, -
 exhibit(gr.mesh { file = 'models/crate.gltf' }, 1.9, 1.9, 1.7, 24)
 
 gr.render {
-    node = scene, file = 'models.png', width = 900, height = 560, eye = { 0, 4.6, 12.5 }, target = { -.2, 1.15, -.2 }, fov = 32,
+    node = scene, file = 'meshes.png', width = 900, height = 560, eye = { 0, 4.6, 12.5 }, target = { -.2, 1.15, -.2 }, fov = 32,
     ambient = { .24, .25, .28 }, background = { .62, .70, .80 }, lights = {
         gr.area_light({ -9, 10, 6 }, { 2.5, 0, 0 }, { 0, 1, 2 }, { .82, .78, .72 }, { 1, 0, 0 }),
         gr.light({ 10, 7, 9 }, { .22, .24, .30 }, { 1, 0, 0 }),
