@@ -274,8 +274,10 @@ static void begin(struct running *slot, struct test *test) {
 int main(int argc, char **argv) {
     int jobs = 2;
     bool run_long = false, list = false;
-    const char *patterns[64];
+    const char **patterns = calloc((size_t)argc, sizeof *patterns);
     int pattern_count = 0;
+    if (!patterns)
+        return 1;
     for (int i = 1; i < argc; i++) {
         if (strcmp(argv[i], "-j") == 0 && i + 1 < argc)
             jobs = atoi(argv[++i]);
@@ -283,7 +285,7 @@ int main(int argc, char **argv) {
             run_long = true;
         else if (strcmp(argv[i], "--list") == 0)
             list = true;
-        else if (pattern_count < 64)
+        else
             patterns[pattern_count++] = argv[i];
     }
     jobs = jobs < 1 ? 1 : jobs > 64 ? 64 : jobs;
@@ -297,6 +299,7 @@ int main(int argc, char **argv) {
         if (wanted && test->is_long == run_long)
             chosen[count++] = test;
     }
+    free(patterns);
     qsort(chosen, (size_t)count, sizeof *chosen, by_name);
     if (list) {
         for (int i = 0; i < count; i++)

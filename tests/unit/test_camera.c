@@ -51,19 +51,21 @@ TEST(a_point_out_of_focus_is_a_disc_of_the_circle_of_confusion) {
             struct stage s;
             double z = depths[i], ball = 0.02 * z, focus = 10, aperture = 0.8;
             dot_stage(&s, vec3_make(0, 0, -z), ball);
+            /* The 40 pixels in the middle of 96. */
+            s.camera.fov = 2 * atan(tan(20 * pi / 180) * 40 / 96) * 180 / pi;
             s.settings.samples = 16;
             s.settings.lens.aperture = aperture;
             s.settings.lens.focus = focus;
             s.settings.lens.blades = blades;
-            CHECK(stage_render(&s, 96, 96));
+            CHECK(stage_render(&s, 40, 40));
             double pixel = 2 * tan(20 * pi / 180) / 96, radius = aperture * fabs(1 / focus - 1 / z) / pixel;
             /* Variance along an axis: R^2 / 4 for a disc; (R^2 / 12)(2 + cos(2 pi / n)) for a regular polygon. */
             double variance = blades ? radius * radius / 12 * (2 + cos(2 * pi / blades)) : radius * radius / 4;
             double own = ball / z / pixel;
             variance += own * own / 4 + 1.0 / 12;
-            struct moments m = moments_of(&s, 0, 96, 0);
-            CHECK_NEAR(m.x, 48, 0.15);
-            CHECK_NEAR(m.y, 48, 0.15);
+            struct moments m = moments_of(&s, 0, 40, 0);
+            CHECK_NEAR(m.x, 20, 0.15);
+            CHECK_NEAR(m.y, 20, 0.15);
             CHECK_NEAR(m.xx / variance, 1, 0.04);
             CHECK_NEAR(m.yy / variance, 1, 0.04);
             CHECK_NEAR(m.sum / (pi * own * own), 1, 0.02); /* blur keeps the light */
