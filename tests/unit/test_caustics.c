@@ -451,7 +451,7 @@ TEST(the_focus_of_a_ball_lens_lies_at_n_r_over_2_n_minus_2) {
 
 /* --- the map --- */
 
-/* Glass, mirrors and four kinds of light. */
+/* Glass, mirrors and five kinds of light. */
 static void busy_scene(struct stage *s, int threads) {
     stage_begin(s, threads);
     s->camera = (struct camera){{0, 3, 6}, {0, -0.4, -1}, {0, 1, 0}, 50};
@@ -462,6 +462,8 @@ static void busy_scene(struct stage *s, int threads) {
     rough->phong.roughness = 0.25;
     ball(s, vec3_make(2, 0.5, 1), 0.5, rough);
     inverse_square(s, vec3_make(3, 5, 2), 20);
+    static const struct sky grey = {.kind = SKY_CONSTANT, .colour = {0.25, 0.25, 0.25}};
+    add_light(s, (struct light){.kind = LIGHT_SKY, .emits = true, .colour = {1, 1, 1}, .sky = &grey, .samples = 1});
     add_light(s, (struct light){.kind = LIGHT_DIRECTIONAL, .direction = {0, -1, 0}, .colour = {0.5, 0.5, 0.5}});
     add_light(s, (struct light){.kind = LIGHT_PARALLELOGRAM,
                                 .position = {-2, 5, -1},
