@@ -87,7 +87,7 @@ bool farm_is_first(const struct farm *farm) {
 }
 
 static void send(const struct farm *farm, int to, enum message_kind kind, const void *data, size_t size) {
-    farm->transport->send(farm->transport->context, to, kind, data, size);
+    farm->transport->send(farm->transport->context, to, (int)kind, data, size);
 }
 
 static void send_pair(const struct farm *farm, int to, enum message_kind kind, uint32_t value) {
