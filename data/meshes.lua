@@ -32,7 +32,13 @@ exhibit(gr.mesh { file = 'models/gear.stl', material = ivory, smooth = 180 }:rot
 
 -- colours at vertices; nodes, pictures and a normal map
 exhibit(gr.mesh { file = 'models/knot.ply', smooth = 180 }:rotate('x', 70), 2, -2.4, 1.7, 0)
-exhibit(gr.mesh { file = 'models/crate.gltf' }, 1.9, 1.9, 1.7, 24)
+local has_gltf, crates = pcall(gr.mesh, { file = 'models/crate.gltf' })
+if has_gltf then
+    exhibit(crates, 1.9, 1.9, 1.7, 24)
+else
+    print(crates)
+    exhibit(gr.mesh { file = 'models/gear.stl', material = gold, smooth = 25 }, 1.9, 1.9, 1.7, 24)
+end
 
 gr.render {
     node = scene, file = 'meshes.png', width = 900, height = 560, eye = { 0, 4.6, 12.5 }, target = { -.2, 1.15, -.2 }, fov = 32,
