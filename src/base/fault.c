@@ -16,12 +16,16 @@ struct fault_counters {
 
 static struct fault_counters own, *counters = &own;
 
-__attribute__((constructor)) static void read_environment(void) {
-    static const char *const names[] = {"GRAY_FAIL_ALLOC", "GRAY_FAIL_CALL"};
+void fault_apart(void) {
     void *page = mmap(NULL, sizeof own, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (page != MAP_FAILED)
         counters = page;
     counters->first = getpid();
+}
+
+__attribute__((constructor)) static void read_environment(void) {
+    static const char *const names[] = {"GRAY_FAIL_ALLOC", "GRAY_FAIL_CALL"};
+    fault_apart();
     for (int kind = 0; kind < 2; kind++) {
         const char *text = getenv(names[kind]);
         if (text)

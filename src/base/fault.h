@@ -17,6 +17,8 @@ bool fault_now(enum fault_kind kind);
 /* From now on number `number` (1 is the next) fails once; 0 turns it off. */
 void fault_at(enum fault_kind kind, uint64_t number);
 uint64_t fault_count(enum fault_kind kind);
+/* This process, and those it starts from now on, count apart from the others, from 0, and nothing fails. */
+void fault_apart(void);
 #else
 static inline bool fault_now(enum fault_kind kind) {
     (void)kind;
@@ -29,6 +31,8 @@ static inline void fault_at(enum fault_kind kind, uint64_t number) {
 static inline uint64_t fault_count(enum fault_kind kind) {
     (void)kind;
     return 0;
+}
+static inline void fault_apart(void) {
 }
 #endif
 

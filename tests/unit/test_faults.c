@@ -33,6 +33,32 @@ static const char module[] = "local shapes = {}\n"
                              "return shapes\n";
 static const char mesh[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
 
+/* The tests run beside each other: the failures that one asks for are its own. */
+TEST(processes_that_count_apart_do_not_fail_for_each_other) {
+#ifndef GRAY_FAULTS
+    test_skip("failures on demand are only in builds with GRAY_FAULTS");
+#endif
+    int ready[2], done[2], how = 0;
+    char byte = 0;
+    CHECK(pipe(ready) == 0 && pipe(done) == 0);
+    fault_at(FAULT_OF_ALLOCATION, 2);
+    pid_t child = fork();
+    if (child == 0) {
+        fault_apart();
+        bool own = fault_count(FAULT_OF_ALLOCATION) == 0 && !fault_now(FAULT_OF_ALLOCATION);
+        own = own && !fault_now(FAULT_OF_ALLOCATION); /* the parent's number */
+        fault_at(FAULT_OF_ALLOCATION, 1);
+        _exit(write(ready[1], "x", 1) == 1 && read(done[0], &byte, 1) == 1 && own && fault_now(FAULT_OF_ALLOCATION)
+                  ? 0
+                  : 1);
+    }
+    CHECK(read(ready[0], &byte, 1) == 1);
+    CHECK(!fault_now(FAULT_OF_ALLOCATION)); /* not the child's */
+    CHECK(fault_now(FAULT_OF_ALLOCATION));
+    CHECK(write(done[1], "x", 1) == 1);
+    CHECK(waitpid(child, &how, 0) == child && WIFEXITED(how) && WEXITSTATUS(how) == 0);
+}
+
 static int shell(const char *line) {
     char *command = NULL, binary[4096];
     const char *named = getenv("GRAY_TEST_BINARY");

@@ -512,7 +512,8 @@ static void interrupted_script(const char *script) {
     (void)snprintf(text, sizeof text, "io.stderr:write('begun\\n')\n%s", script);
     write_in_folder("scene.lua", text);
     pid_t program = start(words, NULL);
-    struct timespec pause = {0, 500000000};
+    CHECK(wait_for("begun"));
+    struct timespec pause = {0, 200000000};
     (void)nanosleep(&pause, NULL);
     CHECK(kill(program, SIGINT) == 0);
     CHECK_EQ_INT(finish(program), 130);
