@@ -33,6 +33,31 @@ void stage_end(struct stage *s) {
     pool_destroy(s->pool);
 }
 
+void stage_floor(struct stage *s) {
+    stage_begin(s, 1);
+    struct node *node = stage_cube(s, s->root, stage_phong(s, vec3_all(1), vec3_all(0), 1));
+    stage_move(s, node, -0.5, -1, -0.5);
+    stage_scale(s, node, 40, 1, 40);
+    s->settings.full = true;
+    s->settings.samples = 1;
+    s->light_count = 1;
+}
+
+double stage_variance_about_half(struct stage *s, bool alone) {
+    double error = 0;
+    for (uint64_t seed = 0; seed < 64; seed++) {
+        double mean = 0;
+        for (uint64_t i = 0; i < (alone ? 64 : 1); i++) {
+            s->settings.seed = alone ? 1000 + seed * 64 + i : seed;
+            s->settings.samples = alone ? 1 : 8;
+            CHECK(stage_render(s, 1, 1));
+            mean += stage_pixel(s, 0, 0).x / (alone ? 64 : 1);
+        }
+        error += (mean - 0.5) * (mean - 0.5);
+    }
+    return error / 64;
+}
+
 bool stage_build(struct stage *s, struct node *root, enum accel_kind accel) {
     world_destroy(&s->world);
     arena_reset(&s->arena);

@@ -29,6 +29,11 @@ struct stage {
  * but that every ray counts. */
 void stage_begin(struct stage *s, int threads);
 void stage_end(struct stage *s);
+/* Begins with a white floor at y = 0 (normal +y), one light to be filled in, one sample of every pixel. */
+void stage_floor(struct stage *s);
+/* The mean square error of a pixel whose value should be 1/2, over 64 seeds: of 8 x 8 samples, or of 64 pictures of
+ * one. */
+double stage_variance_about_half(struct stage *s, bool alone);
 bool stage_build(struct stage *s, struct node *root, enum accel_kind accel);
 /* Builds the world of s->root and renders; the film lives until the next render or the end. Failures fail the test. */
 bool stage_render(struct stage *s, uint32_t width, uint32_t height);

@@ -7,14 +7,7 @@ local studio = require 'studio'
 local bezier, colour, lathe, loft, sweep = require 'bezier', require 'colour', require 'lathe', require 'loft', require 'sweep'
 
 local scene = gr.node 'curves'
-local function at(x, y, z, turn, node)
-    local turned, placed = gr.node 'turned', gr.node 'placed'
-    turned:rotate('y', turn)
-    turned:add_child(node)
-    placed:translate(x, y, z)
-    placed:add_child(turned)
-    scene:add_child(placed)
-end
+local function at(x, y, z, turn, node) studio.place(scene, node, x, y, z, turn) end
 
 local vase = lathe.spline({ { 0, 0 }, { 0.52, 0 }, { 0.52, 0 }, { 0.62, 0.12 }, { 1.02, 0.95 }, { 0.85, 1.75 }, { 0.40, 2.35 }, { 0.36, 2.7 },
     { 0.58, 3.05 }, { 0.55, 3.07 }, { 0.30, 2.7 }, { 0.34, 2.35 }, { 0, 2.2 } }, 12)

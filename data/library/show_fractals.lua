@@ -7,16 +7,7 @@ local studio = require 'studio'
 local fractals = require 'fractals'
 
 local scene = gr.node 'fractals'
-local function put(node, x, y, z, size, turn)
-    local sized, turned, placed = gr.node 'sized', gr.node 'turned', gr.node 'placed'
-    sized:scale(size, size, size)
-    sized:add_child(node)
-    turned:rotate('y', turn)
-    turned:add_child(sized)
-    placed:translate(x, y, z)
-    placed:add_child(turned)
-    scene:add_child(placed)
-end
+local function put(node, x, y, z, size, turn) studio.place(scene, node, x, y, z, turn, size) end
 
 -- The plane x + y + z = 0 cuts the sponge in stars.
 local clay, cut = studio.matt { 0.75, 0.40, 0.24 }, studio.matt { 0.93, 0.86, 0.72 }

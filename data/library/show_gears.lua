@@ -39,14 +39,7 @@ left:add_child(wheel(train.ring, steel, 0, 0, 0, train.ring_angle, { width = 0.4
 left:add_child(wheel(train.sun, brass, 0, 0, 0, train.sun_angle, { width = 0.36, bore = 0.3 }))
 for _, p in ipairs(train.planets) do left:add_child(wheel(train.planet, blue, p[1], p[2], 0, p[3], { width = 0.36, bore = 0.18 })) end
 local foot = train.ring.root + 0.28
-local function stand(node, x, y, z, turn)
-    local turned, placed = gr.node 'turned', gr.node 'placed'
-    turned:rotate('y', turn)
-    turned:add_child(node)
-    placed:translate(x, y, z)
-    placed:add_child(turned)
-    scene:add_child(placed)
-end
+local function stand(node, x, y, z, turn) studio.place(scene, node, x, y, z, turn) end
 stand(left, -3.3, foot, -0.4, 18)
 
 -- Herringbone wheels in the middle.

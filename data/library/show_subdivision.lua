@@ -54,16 +54,7 @@ local function cage(verts, faces, material, thickness)
     return node
 end
 
-local function place(node, x, y, z, size, turn)
-    local sized, turned, placed = gr.node 'sized', gr.node 'turned', gr.node 'placed'
-    sized:scale(size, size, size)
-    sized:add_child(node)
-    turned:rotate('y', turn)
-    turned:add_child(sized)
-    placed:translate(x, y, z)
-    placed:add_child(turned)
-    scene:add_child(placed)
-end
+local function place(node, x, y, z, size, turn) studio.place(scene, node, x, y, z, turn, size) end
 
 local ink = studio.matt { 0.12, 0.13, 0.16 }
 local function show(method, verts, faces, z, hue, size, steps)

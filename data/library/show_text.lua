@@ -10,14 +10,7 @@ local scene = gr.node 'letters'
 local font = text.has_fonts() and '../fonts/gray-round.ttf' or nil
 if not font then print 'this build has no FreeType: the letters are those of the library' end
 
-local function at(x, y, z, turn, node)
-    local turned, placed = gr.node 'turned', gr.node 'placed'
-    turned:rotate('y', turn)
-    turned:add_child(node)
-    placed:translate(x, y, z)
-    placed:add_child(turned)
-    scene:add_child(placed)
-end
+local function at(x, y, z, turn, node) studio.place(scene, node, x, y, z, turn) end
 
 -- Large letters with round edges, each in its colour.
 local pen = 0.9 * 0.7 / 12 * 2.9

@@ -17,6 +17,18 @@ M.gold = gr.rr_material({ 0.42, 0.28, 0.07 }, { 0.95, 0.74, 0.36 }, 90, 0.55, 0,
 M.silver = gr.rr_material({ 0.30, 0.31, 0.33 }, { 0.85, 0.87, 0.90 }, 90, 0.55, 0, 1)
 M.copper = gr.rr_material({ 0.40, 0.17, 0.09 }, { 0.90, 0.56, 0.42 }, 70, 0.45, 0, 1)
 
+--- Puts a node into a scene: scaled by `size` (1), turned about y by `turn` degrees, then moved.
+function M.place(scene, node, x, y, z, turn, size)
+    local sized, turned, placed = gr.node 'sized', gr.node 'turned', gr.node 'placed'
+    sized:scale(size or 1, size or 1, size or 1)
+    sized:add_child(node)
+    turned:rotate('y', turn)
+    turned:add_child(sized)
+    placed:translate(x, y, z)
+    placed:add_child(turned)
+    scene:add_child(placed)
+end
+
 --- A floor that bends up into a wall behind.
 function M.backdrop(c, back)
     back = back or -9

@@ -314,14 +314,6 @@ static void copy_field(lua_State *L, const char *library, const char *from, cons
     lua_pop(L, 1);
 }
 
-static void wrap(lua_State *L, const char *library, const char *name, lua_CFunction function) {
-    lua_getglobal(L, library);
-    lua_getfield(L, -1, name);
-    lua_pushcclosure(L, function, 1);
-    lua_setfield(L, -2, name);
-    lua_pop(L, 1);
-}
-
 static void set_functions(lua_State *L, const char *library, const luaL_Reg *functions) {
     lua_getglobal(L, library);
     luaL_setfuncs(L, functions, 0);
@@ -356,8 +348,8 @@ void compat_open(lua_State *L) {
     lua_pushcclosure(L, load_string, 1);
     lua_setglobal(L, "loadstring");
 
-    wrap(L, "math", "random", math_random);
-    wrap(L, "string", "format", string_format);
+    wrap_function(L, "math", "random", math_random);
+    wrap_function(L, "string", "format", string_format);
 
     lua_getglobal(L, "math");
     lua_getfield(L, -1, "randomseed");

@@ -151,9 +151,11 @@ int files_load(lua_State *L, const char *path);
 const char *files_unshorten(struct context *context, const char *message); /* NULL without memory */
 
 /* Others that add to a fresh state. All run protected and may raise. */
-void sandbox_open(lua_State *L);  /* sandbox.c: the libraries, less what a stranger's script must not have */
-void streams_open(lua_State *L);  /* streams.c: files and printing within what the scene was given */
-void protect_open(lua_State *L);  /* protect.c */
+void sandbox_open(lua_State *L); /* sandbox.c: the libraries, less what a stranger's script must not have */
+void streams_open(lua_State *L); /* streams.c: files and printing within what the scene was given */
+void protect_open(lua_State *L); /* protect.c */
+/* Puts `function` in the place of library.name; its upvalue is what was there. */
+void wrap_function(lua_State *L, const char *library, const char *name, lua_CFunction function);
 void compat_open(lua_State *L);   /* compat.c: old Lua */
 void traverse_open(lua_State *L); /* traverse.c: pairs in a fixed order */
 void library_open(lua_State *L);  /* library.c: remembers the globals for our own modules; after all of these */

@@ -114,7 +114,7 @@ static int load_text(lua_State *L) {
     return call_and_pass_on(L);
 }
 
-static void wrap(lua_State *L, const char *library, const char *name, lua_CFunction function) {
+void wrap_function(lua_State *L, const char *library, const char *name, lua_CFunction function) {
     lua_getglobal(L, library);
     lua_getfield(L, -1, name);
     lua_pushcclosure(L, function, 1);
@@ -127,14 +127,14 @@ void protect_open(lua_State *L) {
     lua_setglobal(L, "pcall");
     lua_pushcfunction(L, protected_call_with_handler);
     lua_setglobal(L, "xpcall");
-    wrap(L, "coroutine", "resume", call_and_pass_on);
-    wrap(L, "coroutine", "close", call_and_pass_on);
-    wrap(L, "coroutine", "wrap", wrap_coroutine);
+    wrap_function(L, "coroutine", "resume", call_and_pass_on);
+    wrap_function(L, "coroutine", "close", call_and_pass_on);
+    wrap_function(L, "coroutine", "wrap", wrap_coroutine);
     if (context_of(L)->options->no_sandbox) {
-        wrap(L, LUA_GNAME, "load", call_and_pass_on);
+        wrap_function(L, LUA_GNAME, "load", call_and_pass_on);
         return;
     }
-    wrap(L, LUA_GNAME, "load", load_text);
+    wrap_function(L, LUA_GNAME, "load", load_text);
     lua_pushcfunction(L, set_metatable);
     lua_setglobal(L, "setmetatable");
 }

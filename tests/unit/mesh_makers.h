@@ -2,6 +2,7 @@
 #ifndef GRAY_TESTS_MESH_MAKERS_H
 #define GRAY_TESTS_MESH_MAKERS_H
 
+#include "accel/triangle.h"
 #include "geom/mesh.h"
 #include "tests/harness.h"
 
@@ -62,6 +63,15 @@ static inline struct mesh_input maker_input(const struct maker *m) {
                                .vertices = (const double(*)[3])m->vertices,
                                .face_start = m->starts ? m->starts : none,
                                .vertex_index = m->corners};
+}
+
+/* Its triangles, which must be all its faces; valid as long as the maker is. */
+static inline struct triangle_set set_of(const struct maker *m) {
+    struct box box = box_empty();
+    for (uint32_t i = 0; i < m->vertex_count; i++)
+        box = box_add_point(box, vec3_make(m->vertices[i][0], m->vertices[i][1], m->vertices[i][2]));
+    return (struct triangle_set){(const double(*)[3])m->vertices, (const uint32_t(*)[3])(const void *)m->corners,
+                                 m->face_count, box};
 }
 
 static inline struct mesh *maker_mesh(const struct maker *m) {

@@ -58,6 +58,18 @@ static inline void bytes_free(struct bytes *b) {
     *b = (struct bytes){0};
 }
 
+/* An OBJ square with texture coordinates, without its face. */
+#define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+
+/* The path of a file in the test's folder; four of them live at a time. */
+static inline const char *in_folder(const char *name) {
+    static char path[4][400];
+    static int turn;
+    char *out = path[turn++ % 4];
+    (void)snprintf(out, sizeof path[0], "%s/%s", test_folder(), name);
+    return out;
+}
+
 /* Parses a copy of exactly this size, so that the sanitizer sees every byte read beside it. True with a model. */
 static inline bool parse_model(struct model *model, const char *path, const void *data, size_t size,
                                const struct model_options *options, struct error *error) {

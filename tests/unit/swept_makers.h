@@ -16,16 +16,11 @@
 #include "geom/shape_prism.h"
 #include "geom/shape_sweep.h"
 #include "tests/harness.h"
+#include "tests/unit/random_makers.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-static inline struct vec3 random_vec3(struct test_random *random, double size) {
-    double x = test_uniform(random, -size, size), y = test_uniform(random, -size, size);
-    double z = test_uniform(random, -size, size);
-    return vec3_make(x, y, z);
-}
 
 static inline struct transform random_transform(struct test_random *random) {
     struct transform t = transform_identity();
@@ -41,10 +36,6 @@ static inline struct transform random_transform(struct test_random *random) {
         t = transform_compose(&move, &t);
     }
     return t;
-}
-
-static inline struct ray ray_from(struct vec3 origin, struct vec3 direction) {
-    return (struct ray){.origin = origin, .direction = direction, .t_min = -INFINITY, .t_max = INFINITY};
 }
 
 /* ---- makers ---- */

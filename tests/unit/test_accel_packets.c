@@ -3,14 +3,6 @@
 #include "accel/triangle_packet.h"
 #include "mesh_makers.h"
 
-static struct triangle_set set_of(const struct maker *m) {
-    struct box box = box_empty();
-    for (uint32_t i = 0; i < m->vertex_count; i++)
-        box = box_add_point(box, vec3_make(m->vertices[i][0], m->vertices[i][1], m->vertices[i][2]));
-    return (struct triangle_set){(const double(*)[3])m->vertices, (const uint32_t(*)[3])(const void *)m->corners,
-                                 m->face_count, box};
-}
-
 static struct triangle_index *build(const struct triangle_set *set) {
     struct triangle_index *index = NULL;
     struct error error = {0};

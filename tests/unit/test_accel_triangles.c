@@ -3,15 +3,6 @@
 #include "accel/triangle_layout.h"
 #include "mesh_makers.h"
 
-/* Triangles of a maker as a set; corners are taken over. */
-static struct triangle_set set_of(const struct maker *m) {
-    struct box box = box_empty();
-    for (uint32_t i = 0; i < m->vertex_count; i++)
-        box = box_add_point(box, vec3_make(m->vertices[i][0], m->vertices[i][1], m->vertices[i][2]));
-    return (struct triangle_set){(const double(*)[3])m->vertices, (const uint32_t(*)[3])(const void *)m->corners,
-                                 m->face_count, box};
-}
-
 static struct triangle_index *build(const struct triangle_set *set, uint32_t voxels, struct pool *pool) {
     struct triangle_index *index = NULL;
     struct error error = {0};
@@ -20,6 +11,17 @@ static struct triangle_index *build(const struct triangle_set *set, uint32_t vox
         exit(1);
     }
     return index;
+}
+
+/* The nearest and any hit are those that trying every triangle gives; true when there is one. */
+static bool meets_the_same(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
+                           struct triangle_cost *cost) {
+    struct triangle_hit expected = {0}, hit = {0};
+    bool found = triangle_brute_nearest(set, ray, &expected, cost);
+    CHECK(triangle_index_nearest(index, set, ray, &hit, cost) == found);
+    CHECK(triangle_index_any(index, set, ray, cost) == found);
+    CHECK(!found || (hit.triangle == expected.triangle && hit.t == expected.t));
+    return found;
 }
 
 struct tally {
@@ -101,12 +103,7 @@ TEST(rays_from_a_million_sizes_away_are_answered_as_by_trying_every_triangle) {
         double distance = pow(10, test_uniform(&random, 3, 12));
         struct vec3 origin = vec3_scale(vec3_normalize(test_point(&random, 1)), distance);
         struct ray ray = test_ray(origin, vec3_sub(test_point(&random, 1), origin));
-        struct triangle_hit expected = {0}, hit = {0};
-        bool found = triangle_brute_nearest(&set, &ray, &expected, &cost);
-        CHECK(triangle_index_nearest(index, &set, &ray, &hit, &cost) == found);
-        CHECK(triangle_index_any(index, &set, &ray, &cost) == found);
-        CHECK(!found || (hit.triangle == expected.triangle && hit.t == expected.t));
-        hits += found;
+        hits += meets_the_same(index, &set, &ray, &cost);
     }
     CHECK(hits > 5000);
     triangle_index_destroy(index);
@@ -138,12 +135,7 @@ TEST(rays_from_a_few_sizes_away_meet_what_trying_every_triangle_meets_and_nothin
             ray.t_max = across * test_uniform(&random, 0, 2);
         if (i % 7 == 0)
             ray.t_min = across * test_uniform(&random, -1, 1);
-        struct triangle_hit expected = {0}, hit = {0};
-        bool found = triangle_brute_nearest(&set, &ray, &expected, &cost);
-        CHECK(triangle_index_nearest(index, &set, &ray, &hit, &cost) == found);
-        CHECK(triangle_index_any(index, &set, &ray, &cost) == found);
-        CHECK(!found || (hit.triangle == expected.triangle && hit.t == expected.t));
-        hits += found;
+        hits += meets_the_same(index, &set, &ray, &cost);
     }
     CHECK(hits > 3000);
     triangle_index_destroy(index);

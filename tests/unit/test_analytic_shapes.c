@@ -4,6 +4,7 @@
 #include "geom/csg.h"
 #include "geom/shape.h"
 #include "tests/harness.h"
+#include "tests/unit/random_makers.h"
 
 #include <math.h>
 #include <string.h>
@@ -70,12 +71,6 @@ static const char *const form_names[FORMS] = {"cylinder",
                                               "annulus",
                                               "triangle",
                                               "polygon"};
-
-static struct vec3 random_vec3(struct test_random *random, double size) {
-    double x = test_uniform(random, -size, size), y = test_uniform(random, -size, size);
-    double z = test_uniform(random, -size, size);
-    return vec3_make(x, y, z);
-}
 
 static struct transform then(struct transform first, struct transform second) {
     return transform_compose(&second, &first);
@@ -870,24 +865,6 @@ TEST(polygons_that_are_none_are_refused_with_the_reason) {
 
 /* ---- CSG ---- */
 
-static uint32_t random_program(struct test_random *random, uint32_t count, struct csg_token *program) {
-    uint32_t length = 0, depth = 0, next = 0;
-    while (next < count || depth > 1) {
-        if (depth < 2 || (next < count && test_uniform(random, 0, 1) < 0.5)) {
-            program[length++] = (struct csg_token){CSG_LEAF, (uint16_t)next++};
-            depth++;
-        } else {
-            double pick = test_uniform(random, 0, 3);
-            program[length++] = (struct csg_token){pick < 1   ? CSG_UNION
-                                                   : pick < 2 ? CSG_INTERSECTION
-                                                              : CSG_DIFFERENCE,
-                                                   0};
-            depth--;
-        }
-    }
-    return length;
-}
-
 TEST(csg_of_all_analytic_solids_equals_point_by_point_evaluation) {
     enum { MOST = 8 };
     struct test_random random = {10};
@@ -907,7 +884,7 @@ TEST(csg_of_all_analytic_solids_equals_point_by_point_evaluation) {
                 continue;
             leaves[i++] = (struct csg_leaf){.shape = s, .csg_from_leaf = random_transform(&random, 1)};
         }
-        uint32_t length = random_program(&random, count, program);
+        uint32_t length = random_program(&random, 0, count, 0, program);
         const struct csg *csg = csg_build(&arena, leaves, count, program, length, &error);
         CHECK(csg != NULL);
         for (int i = 0; csg && i < 300; i++) {

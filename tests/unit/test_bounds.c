@@ -5,15 +5,10 @@
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "tests/unit/mesh_makers.h"
+#include "tests/unit/random_makers.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-static struct vec3 random_vec3(struct test_random *random, double size) {
-    double x = test_uniform(random, -size, size), y = test_uniform(random, -size, size);
-    double z = test_uniform(random, -size, size);
-    return vec3_make(x, y, z);
-}
 
 static struct transform random_transform(struct test_random *random) {
     struct transform t = transform_identity();

@@ -100,16 +100,7 @@ TEST(samples_of_pixel_and_lens_are_stratified_together) {
         s.camera.fov = 1e-4;
         s.settings.lens.aperture = 1;
         s.settings.lens.focus = 5;
-        for (uint64_t seed = 0; seed < 64; seed++) {
-            double mean = 0;
-            for (uint64_t i = 0; i < (alone ? 64 : 1); i++) {
-                s.settings.seed = alone ? 1000 + seed * 64 + i : seed;
-                s.settings.samples = alone ? 1 : 8;
-                CHECK(stage_render(&s, 1, 1));
-                mean += stage_pixel(&s, 0, 0).x / (alone ? 64 : 1);
-            }
-            error[alone] += (mean - 0.5) * (mean - 0.5);
-        }
+        error[alone] = stage_variance_about_half(&s, alone);
         stage_end(&s);
     }
     CHECK(error[0] < 0.3 * error[1]);

@@ -3,15 +3,10 @@
 #include "geom/csg.h"
 #include "geom/mesh.h"
 #include "tests/harness.h"
+#include "tests/unit/random_makers.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-static struct vec3 random_vec3(struct test_random *random, double size) {
-    double x = test_uniform(random, -size, size), y = test_uniform(random, -size, size);
-    double z = test_uniform(random, -size, size);
-    return vec3_make(x, y, z);
-}
 
 static struct csg_leaf leaf_of(enum shape_kind kind, struct transform csg_from_leaf) {
     struct csg_leaf leaf = {.shape = {.kind = kind}, .csg_from_leaf = csg_from_leaf};
@@ -36,23 +31,6 @@ static struct transform random_transform(struct test_random *random, double reac
 }
 
 /* A random tree of `count` leaves as a postfix program: leaves are pushed and combined in random order. */
-static uint32_t random_program(struct test_random *random, uint32_t count, struct csg_token *program) {
-    uint32_t length = 0, depth = 0, next = 0;
-    while (next < count || depth > 1) {
-        bool push = depth < 2 || (next < count && test_uniform(random, 0, 1) < 0.5);
-        if (push) {
-            program[length++] = (struct csg_token){CSG_LEAF, (uint16_t)next++};
-            depth++;
-        } else {
-            double pick = test_uniform(random, 0, 3);
-            enum csg_operation operation = pick < 1 ? CSG_UNION : pick < 2 ? CSG_INTERSECTION : CSG_DIFFERENCE;
-            program[length++] = (struct csg_token){operation, 0};
-            depth--;
-        }
-    }
-    return length;
-}
-
 static const struct csg *build(struct arena *arena, const struct csg_leaf *leaves, uint32_t count,
                                const struct csg_token *program, uint32_t length) {
     struct error error = {0};
@@ -136,7 +114,7 @@ TEST(csg_segments_equal_point_by_point_evaluation_on_a_million_rays) {
         for (uint32_t i = 0; i < count; i++)
             leaves[i] =
                 leaf_of(test_uniform(&random, 0, 1) < 0.5 ? SHAPE_SPHERE : SHAPE_BOX, random_transform(&random, 1));
-        const struct csg *csg = build(&arena, leaves, count, program, random_program(&random, count, program));
+        const struct csg *csg = build(&arena, leaves, count, program, random_program(&random, 0, count, 0, program));
         for (int i = 0; csg && i < 1000; i++) {
             struct vec3 origin = random_vec3(&random, i % 4 ? 4 : 1);
             struct ray ray = line_through(origin, random_vec3(&random, 1));
@@ -343,11 +321,7 @@ static struct mesh *mesh_cube(bool outward) {
                                .vertices = vertices,
                                .face_start = start,
                                .vertex_index = wound};
-    struct error error = {0};
-    struct mesh *mesh = mesh_create(&input, &error);
-    if (!mesh || !mesh_build_index(mesh, NULL, &error))
-        test_fail(__FILE__, __LINE__, "%s", error.text);
-    return mesh;
+    return indexed_mesh(&input);
 }
 
 TEST(csg_takes_closed_meshes_like_boxes_whichever_way_they_are_wound) {
@@ -360,7 +334,7 @@ TEST(csg_takes_closed_meshes_like_boxes_whichever_way_they_are_wound) {
         struct arena arena = {0};
         struct csg_leaf leaves[6], with_meshes[6];
         struct csg_token program[12];
-        uint32_t count = 1 + (uint32_t)tree % 6, length = random_program(&random, count, program);
+        uint32_t count = 1 + (uint32_t)tree % 6, length = random_program(&random, 0, count, 0, program);
         for (uint32_t i = 0; i < count; i++) {
             with_meshes[i] = leaves[i] = leaf_of(SHAPE_BOX, random_transform(&random, 0.7));
             if (i % 3 < 2)
@@ -445,7 +419,7 @@ TEST(csg_scaled_by_powers_of_two_gives_the_same_crossings) {
         struct arena arena = {0};
         struct csg_leaf leaves[8], scaled[8];
         struct csg_token program[16];
-        uint32_t count = 2 + (uint32_t)tree % 7, length = random_program(&random, count, program);
+        uint32_t count = 2 + (uint32_t)tree % 7, length = random_program(&random, 0, count, 0, program);
         for (uint32_t i = 0; i < count; i++)
             leaves[i] = leaf_of(i % 2 ? SHAPE_SPHERE : SHAPE_BOX, random_transform(&random, 1));
         leaves[count - 1] = leaves[0]; /* coincident faces as well */

@@ -17,11 +17,7 @@ static struct mesh *octahedron(void) {
                                .vertices = vertices,
                                .face_start = start,
                                .vertex_index = corners};
-    struct error error = {0};
-    struct mesh *mesh = mesh_create(&input, &error);
-    if (!mesh || !mesh_build_index(mesh, NULL, &error))
-        test_fail(__FILE__, __LINE__, "%s", error.text);
-    return mesh;
+    return indexed_mesh(&input);
 }
 
 static struct shape analytic(int form, struct test_random *random) {
@@ -81,27 +77,6 @@ static struct csg_leaf random_leaf(struct test_random *random, struct arena *are
     else
         leaf.shape = (struct shape){.kind = SHAPE_MESH, .mesh = mesh};
     return leaf;
-}
-
-/* A random tree of the leaves from `first` on; inverses here and there. */
-static uint32_t random_tree(struct test_random *random, uint32_t first, uint32_t count, struct csg_token *program) {
-    uint32_t length = 0, depth = 0, next = 0;
-    while (next < count || depth > 1) {
-        if (depth < 2 || (next < count && test_uniform(random, 0, 1) < 0.5)) {
-            program[length++] = (struct csg_token){CSG_LEAF, (uint16_t)(first + next++)};
-            depth++;
-        } else {
-            double pick = test_uniform(random, 0, 3);
-            program[length++] = (struct csg_token){pick < 1   ? CSG_UNION
-                                                   : pick < 2 ? CSG_INTERSECTION
-                                                              : CSG_DIFFERENCE,
-                                                   0};
-            depth--;
-        }
-        if (test_uniform(random, 0, 1) < 0.12)
-            program[length++] = (struct csg_token){CSG_INVERSE, 0};
-    }
-    return length;
 }
 
 static const struct csg *build(struct arena *arena, const struct csg_leaf *leaves, uint32_t count,
@@ -193,7 +168,7 @@ static struct counts check_trees(uint64_t seed, int trees, int rays) {
         uint32_t count = 1 + (uint32_t)test_uniform(&random, 0, MOST - 0.001);
         for (uint32_t i = 0; i < count; i++)
             leaves[i] = random_leaf(&random, &arena, mesh);
-        const struct csg *csg = build(&arena, leaves, count, program, random_tree(&random, 0, count, program));
+        const struct csg *csg = build(&arena, leaves, count, program, random_program(&random, 0, count, 0.12, program));
         for (int i = 0; csg && i < rays; i++) {
             struct ray ray = random_line(&random);
             uint64_t before = tally.wrong + tally.disorder + tally.inward;
@@ -376,8 +351,8 @@ TEST(csg_clipped_solids_are_their_surface_inside_of_the_clip) {
         uint32_t behind = 1 + (uint32_t)test_uniform(&random, 0, 2.999);
         for (uint32_t i = 0; i < count + behind; i++)
             leaves[i] = random_leaf(&random, &arena, mesh);
-        uint32_t length = random_tree(&random, 0, count, program);
-        uint32_t more = random_tree(&random, count, behind, &program[length]);
+        uint32_t length = random_program(&random, 0, count, 0.12, program);
+        uint32_t more = random_program(&random, count, behind, 0.12, &program[length]);
         for (uint32_t i = 0; i < more; i++) {
             own[i] = program[length + i];
             own[i].leaf = (uint16_t)(own[i].operation == CSG_LEAF ? own[i].leaf - count : 0);

@@ -139,6 +139,16 @@ TEST(broken_pictures_of_light_are_one_line) {
     }
 }
 
+static void no_cut_is_a_picture(const char *file, size_t size) {
+    for (size_t cut = 0; cut < size; cut++) {
+        struct error error = {0};
+        struct image *image = parse("t", file, cut, &error);
+        if (image || strncmp(error.text, "t: ", 3) != 0 || strchr(error.text, '\n'))
+            test_fail(__FILE__, __LINE__, "cut at %zu: %s", cut, image ? "is a picture" : error.text);
+        image_release(image);
+    }
+}
+
 TEST(pictures_of_light_cut_anywhere_are_one_line) {
     for (int i = 0; i < 2; i++) {
         char path[512];
@@ -148,12 +158,7 @@ TEST(pictures_of_light_cut_anywhere_are_one_line) {
         CHECK((i ? pfm_write : hdr_write)(path, width, H, light_row, &width, &error));
         size_t size;
         char *file = test_read_file(path, &size);
-        for (size_t cut = 0; cut < size; cut++) {
-            struct image *image = parse("t", file, cut, &error);
-            if (image || strncmp(error.text, "t: ", 3) != 0 || strchr(error.text, '\n'))
-                test_fail(__FILE__, __LINE__, "cut at %zu: %s", cut, image ? "is a picture" : error.text);
-            image_release(image);
-        }
+        no_cut_is_a_picture(file, size);
         /* One byte changed: a picture or one line, and no more memory than the bytes deserve. */
         struct test_random random = {5};
         for (int k = 0; k < 2000; k++) {
@@ -247,12 +252,7 @@ TEST(exr_pictures_cut_or_changed_anywhere_are_one_line) {
     CHECK(exr_write(path, width, H, light_row, &width, &error));
     size_t size;
     char *file = test_read_file(path, &size);
-    for (size_t cut = 0; cut < size; cut++) {
-        struct image *image = parse("t", file, cut, &error);
-        if (image || strncmp(error.text, "t: ", 3) != 0 || strchr(error.text, '\n'))
-            test_fail(__FILE__, __LINE__, "cut at %zu: %s", cut, image ? "is a picture" : error.text);
-        image_release(image);
-    }
+    no_cut_is_a_picture(file, size);
     struct test_random random = {7};
     for (int k = 0; k < 1500; k++) {
         size_t at = (size_t)test_uniform(&random, 0, (double)size);

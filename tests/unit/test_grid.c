@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "geom/shape_box.h"
 #include "tests/harness.h"
+#include "tests/unit/random_makers.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -52,12 +53,6 @@ static struct answer through_grid(const struct grid *grid, const struct box *box
     }
     *voxels = w.voxels;
     return best;
-}
-
-static struct vec3 random_vec3(struct test_random *random, double size) {
-    double x = test_uniform(random, -size, size), y = test_uniform(random, -size, size);
-    double z = test_uniform(random, -size, size);
-    return vec3_make(x, y, z);
 }
 
 /* Worlds of many kinds: spread or crowded, flat, on lattice planes, far from the origin, of very different sizes. */

@@ -10,17 +10,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* A white floor at y = 0, seen at one point from nearby, below all lamps. */
-static void floor_stage(struct stage *s) {
-    stage_begin(s, 1);
-    struct node *node = stage_cube(s, s->root, stage_phong(s, vec3_all(1), vec3_all(0), 1));
-    stage_move(s, node, -0.5, -1, -0.5);
-    stage_scale(s, node, 40, 1, 40);
-    s->settings.full = true;
-    s->settings.samples = 1;
-    s->light_count = 1;
-}
-
+/* Seen at one point from nearby, below all lamps. */
 static double patch_at(struct stage *s, double x, double z) {
     s->camera = (struct camera){{x + 0.02, 0.03, z}, {-0.02, -0.03, 0}, {0, 0, -1}, 1e-4};
     CHECK(stage_render(s, 1, 1));
@@ -84,7 +74,7 @@ TEST(a_rectangle_close_to_a_surface_is_not_grainy) {
     double squares[2] = {0, 0};
     for (int by_area = 0; by_area < 2; by_area++) {
         struct stage s;
-        floor_stage(&s);
+        stage_floor(&s);
         double off = by_area ? 1e-6 : 0, factor = 4 * corner_factor(0.5, 0.5, 0.1);
         s.lights[0] = rectangle(vec3_make(-0.5, 0.1, -0.5), vec3_make(1, 0, off), vec3_make(off, 0, 1));
         s.lights[0].samples = 4;
@@ -135,7 +125,7 @@ TEST(a_rectangle_of_two_triangles_gives_its_view_factor) {
     static const double sides[][3] = {{1, 1, 1}, {3, 0.5, 1}, {2, 5, 1.5}, {3, 3, 1}};
     for (int i = 0; i < 8; i++) {
         struct stage s;
-        floor_stage(&s);
+        stage_floor(&s);
         bool shown = i < 4; /* or not in the scene, and the light says what it emits */
         double a = sides[i % 4][0], b = sides[i % 4][1], h = sides[i % 4][2];
         struct node *holder = stage_group(&s, s.root), *node = square_node(&s, glowing(&s, shown ? 2 : 0));
@@ -156,7 +146,7 @@ TEST(a_rectangle_of_two_triangles_gives_its_view_factor) {
 TEST(a_ball_of_triangles_gives_the_view_factor_of_a_ball) {
     for (int i = 0; i < 3; i++) {
         struct stage s;
-        floor_stage(&s);
+        stage_floor(&s);
         struct maker maker = {0};
         maker_sphere(&maker, 16);
         struct node *node = mesh_node(&s, &maker, glowing(&s, 1));
@@ -202,7 +192,7 @@ TEST(a_surface_below_its_own_lamp_is_not_shaded_by_it) {
 
 TEST(a_mesh_light_needs_a_mesh_and_warns_without_light) {
     struct stage s;
-    floor_stage(&s);
+    stage_floor(&s);
     s.lights[0] = mesh_lamp(stage_group(&s, s.root), 4);
     CHECK(!stage_build(&s, s.root, ACCEL_AUTO));
     CHECK(strstr(s.error.text, "no mesh") != NULL);
@@ -350,7 +340,7 @@ TEST(more_samples_go_where_a_sky_is_bright) {
     struct sky sky = {.kind = SKY_MAP, .image = map};
     double expected = irradiance(&sky, vec3_make(0, 1, 0), 700), squares = 0;
     struct stage s;
-    floor_stage(&s);
+    stage_floor(&s);
     s.lights[0] = sky_lamp(&sky, 8);
     for (uint64_t seed = 0; seed < 20; seed++) {
         s.settings.seed = seed;

@@ -12,17 +12,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* A white floor at y = 0 (normal +y), seen at one point from far up by a camera of almost no angle. */
-static void floor_stage(struct stage *s) {
-    stage_begin(s, 1);
-    struct node *node = stage_cube(s, s->root, stage_phong(s, vec3_all(1), vec3_all(0), 1));
-    stage_move(s, node, -0.5, -1, -0.5);
-    stage_scale(s, node, 40, 1, 40);
-    s->settings.full = true;
-    s->settings.samples = 1;
-    s->light_count = 1;
-}
-
+/* Seen at one point from far up by a camera of almost no angle. */
 static double patch_at(struct stage *s, double x, double z) {
     s->camera = (struct camera){{x + 3, 1000, z}, {-3, -1000, 0}, {0, 0, -1}, 1e-4};
     CHECK(stage_render(s, 1, 1));
@@ -51,7 +41,7 @@ static struct light rectangle(struct vec3 corner, struct vec3 edge1, struct vec3
 
 TEST(disc_lamp_gives_its_view_factor) {
     struct stage s;
-    floor_stage(&s);
+    stage_floor(&s);
     static const double radius[] = {0.25, 1, 4};
     for (int i = 0; i < 3; i++) {
         double r = radius[i], h = 2;
@@ -66,7 +56,7 @@ TEST(disc_lamp_gives_its_view_factor) {
 
 TEST(rectangle_lamp_gives_its_view_factor) {
     struct stage s;
-    floor_stage(&s);
+    stage_floor(&s);
     static const double sides[][3] = {{1, 1, 1}, {3, 0.5, 1}, {2, 5, 1.5}, {3, 3, 1}};
     for (int i = 0; i < 4; i++) {
         double h = sides[i][2], a = sides[i][0] / h, b = sides[i][1] / h, p = sqrt(1 + a * a), q = sqrt(1 + b * b);
@@ -79,7 +69,7 @@ TEST(rectangle_lamp_gives_its_view_factor) {
 
 TEST(sphere_lamp_gives_its_view_factor) {
     struct stage s;
-    floor_stage(&s);
+    stage_floor(&s);
     for (int i = 0; i < 3; i++) {
         double r = 0.3 + 0.6 * i, h = 2, x = 0.8 * i, distance = sqrt(h * h + x * x);
         s.lights[0] = lamp(LIGHT_SPHERE, vec3_make(x, h, 0), r);
@@ -94,7 +84,7 @@ TEST(sphere_lamp_gives_its_view_factor) {
 
 TEST(a_one_sided_lamp_lights_its_side_only) {
     struct stage s;
-    floor_stage(&s);
+    stage_floor(&s);
     for (int flip = 0; flip < 2; flip++) {
         s.lights[0] = lamp(LIGHT_DISC, vec3_make(0, 2, 0), 1);
         s.lights[0].one_sided = true;
@@ -106,7 +96,7 @@ TEST(a_one_sided_lamp_lights_its_side_only) {
 
 TEST(directional_light_is_the_cosine_without_fading) {
     struct stage s;
-    floor_stage(&s);
+    stage_floor(&s);
     s.lights[0] = (struct light){.kind = LIGHT_DIRECTIONAL, .direction = {0.6, -0.8, 0}, .colour = {1, 1, 1}};
     CHECK_NEAR(patch_at(&s, 0, 0), 0.8, 1e-7);
     CHECK_NEAR(patch_at(&s, 15, -9), 0.8, 1e-7);
@@ -121,7 +111,7 @@ TEST(directional_light_is_the_cosine_without_fading) {
 
 TEST(fading_by_range_and_by_inverse_square) {
     struct stage s;
-    floor_stage(&s);
+    stage_floor(&s);
     s.lights[0] = (struct light){.kind = LIGHT_POINT, .position = {0, 3, 0}, .colour = {1, 1, 1}};
     s.lights[0].fading = FADING_RANGE;
     s.lights[0].range = 4;
@@ -137,7 +127,7 @@ TEST(fading_by_range_and_by_inverse_square) {
 
 TEST(spot_is_full_inside_smooth_between_and_dark_outside) {
     struct stage s;
-    floor_stage(&s);
+    stage_floor(&s);
     s.lights[0] = (struct light){.kind = LIGHT_SPOT,
                                  .position = {0, 1, 0},
                                  .direction = {0, -1, 0},
@@ -188,7 +178,7 @@ TEST(lists_of_nodes_decide_what_a_light_reaches) {
 
 TEST(an_empty_list_of_included_nodes_lights_nothing) {
     struct stage s;
-    floor_stage(&s);
+    stage_floor(&s);
     const struct node *none[1] = {NULL};
     s.lights[0] = (struct light){.kind = LIGHT_POINT, .position = {0, 3, 0}, .colour = {1, 1, 1}, .include = none};
     CHECK_NEAR(patch_at(&s, 0, 0), 0, 0);
@@ -222,7 +212,7 @@ TEST(a_visible_lamp_shows_its_radiance_and_its_outline) {
 
 TEST(a_light_may_say_how_many_shadow_rays_it_wants) {
     struct stage s;
-    floor_stage(&s);
+    stage_floor(&s);
     for (int n = 1; n <= 20; n += 19) {
         s.lights[0] = lamp(LIGHT_SPHERE, vec3_make(0, 2, 0), 1);
         s.lights[0].samples = n;
@@ -235,7 +225,7 @@ TEST(a_light_may_say_how_many_shadow_rays_it_wants) {
 
 TEST(half_of_a_lamp_behind_a_wall_gives_half_of_the_light) {
     struct stage s;
-    floor_stage(&s);
+    stage_floor(&s);
     struct node *wall = stage_cube(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
     stage_move(&s, wall, 0, 0, -0.5);
     stage_scale(&s, wall, 10, 1e-3, 10);
@@ -353,7 +343,7 @@ TEST(disc_map_keeps_areas_and_stays_inside) {
 /* With one shadow ray a sample, the samples of a pixel together must do better than as many independent ones. */
 TEST(samples_of_pixel_and_lamp_are_stratified_together) {
     struct stage s;
-    floor_stage(&s);
+    stage_floor(&s);
     double h = 1, r = 2, exact = r * r / (r * r + h * h), together = 0, alone = 0;
     s.lights[0] = lamp(LIGHT_DISC, vec3_make(0, h, 0), r);
     s.lights[0].samples = 1;

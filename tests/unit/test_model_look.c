@@ -5,16 +5,6 @@
 #include "image/png_write.h"
 #include "look/image_place.h"
 
-#define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
-
-static const char *in_folder(const char *name) {
-    static char path[4][400];
-    static int turn;
-    char *out = path[turn++ % 4];
-    (void)snprintf(out, sizeof path[0], "%s/%s", test_folder(), name);
-    return out;
-}
-
 static void even_row(void *context, uint32_t y, uint8_t *line) {
     const uint8_t *colour = context;
     (void)y;

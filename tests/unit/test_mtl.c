@@ -4,16 +4,6 @@
 #include "formats/model_node.h"
 #include "geom/mesh_smooth.h"
 
-#define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
-
-static const char *in_folder(const char *name) {
-    static char path[4][400];
-    static int turn;
-    char *out = path[turn++ % 4];
-    (void)snprintf(out, sizeof path[0], "%s/%s", test_folder(), name);
-    return out;
-}
-
 /* Reads a model from the test's folder. */
 static bool read_model(struct model *model, const char *name) {
     struct model_options options = {0};

@@ -3,6 +3,7 @@
 #include "geom/shape_box.h"
 #include "geom/shape_sphere.h"
 #include "tests/harness.h"
+#include "tests/unit/random_makers.h"
 
 #include <math.h>
 #include <string.h>
@@ -18,16 +19,6 @@ static struct shape box_between(struct vec3 min, struct vec3 max) {
     struct shape s = {.kind = SHAPE_BOX};
     s.box = (struct box){min, max};
     return s;
-}
-
-static struct ray ray_from(struct vec3 origin, struct vec3 direction) {
-    return (struct ray){.origin = origin, .direction = direction, .t_min = -INFINITY, .t_max = INFINITY};
-}
-
-static struct vec3 random_vec3(struct test_random *random, double size) {
-    double x = test_uniform(random, -size, size), y = test_uniform(random, -size, size);
-    double z = test_uniform(random, -size, size);
-    return vec3_make(x, y, z);
 }
 
 static struct transform random_transform(struct test_random *random) {
