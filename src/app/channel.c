@@ -90,7 +90,11 @@ static bool frame_is_sound(const struct frame *frame) {
     case FRAME_PASS:
         return frame->size == sizeof frame->body.report;
     case FRAME_ABANDON:
+    case FRAME_AGAIN:
         return frame->size == 0;
+    case FRAME_READ:
+        return frame->size == sizeof frame->body.read &&
+               ends_with_zero(frame->body.read.path, sizeof frame->body.read.path);
     case FRAME_SCRIPT:
         return frame->size == sizeof frame->body.script;
     case FRAME_FILM:

@@ -5,6 +5,7 @@
 #define GRAY_APP_CHANNEL_H
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/hash.h"
 #include "render/render.h"
 
@@ -20,8 +21,11 @@ enum frame_kind {
     FRAME_PASS,     /* struct picture_report: a pass in a window has ended; answered by FRAME_ANSWER */
     FRAME_ABANDON,  /* no body: the picture that was begun will not be finished; no answer */
     FRAME_SCRIPT,   /* struct frame_script: a script has ended; no answer */
-    FRAME_FILM,     /* struct frame_answer, and on success the descriptor of the film's memory */
-    FRAME_ANSWER,   /* struct frame_answer */
+    FRAME_READ,     /* struct frame_read: a file was read, for somebody who watches; no answer */
+    FRAME_AGAIN,  /* no body: all scripts have ended; answered, perhaps much later, by FRAME_ANSWER: ok: run them again
+                   */
+    FRAME_FILM,   /* struct frame_answer, and on success the descriptor of the film's memory */
+    FRAME_ANSWER, /* struct frame_answer */
 };
 
 /* What kind of line: decides whether -q or --verbose let it pass. */
@@ -82,6 +86,11 @@ struct frame_script {
     int status; /* exit status this script alone would give */
 };
 
+struct frame_read {
+    struct file_version version;
+    char path[4096]; /* as it was asked for: relative to the working directory, which both processes share */
+};
+
 struct channel {
     int descriptor;
 };
@@ -105,6 +114,7 @@ struct frame {
         struct picture_report report;
         struct frame_answer answer;
         struct frame_script script;
+        struct frame_read read;
         char bytes[FRAME_SIZE_LIMIT];
     } body;
 };

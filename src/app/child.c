@@ -357,16 +357,30 @@ static int run_script(struct child *child, const char *path) {
     return status;
 }
 
-void child_run(const struct options *options, const struct child_services *services, int first) {
-    struct child child = {.options = options, .services = services};
-    if (options->checkpoint || options->shards || options->mpi)
-        file_set_witness(&child.witness);
-    for (int i = first; i < options->script_count; i++) {
-        int status = run_script(&child, options->scripts[i]);
-        services->script_ended(services->context, i, status);
+static void run_scripts(struct child *child, int first) {
+    for (int i = first; i < child->options->script_count; i++) {
+        int status = run_script(child, child->options->scripts[i]);
+        child->services->script_ended(child->services->context, i, status);
         if (status == ERROR_USAGE || status == ERROR_CANCELLED)
             break;
     }
+}
+
+void child_run(const struct options *options, const struct child_services *services, int first) {
+    struct child child = {.options = options, .services = services};
+    const struct file_listener listener = {services->read, services->context};
+    bool watched = options->watch && services->again;
+    if (options->checkpoint || options->shards || options->mpi)
+        file_set_witness(&child.witness);
+    if (watched)
+        file_set_listener(&listener);
+    run_scripts(&child, first);
+    while (watched && services->again(services->context)) {
+        if (child.pool)
+            pool_reset_cancel(child.pool);
+        run_scripts(&child, 0);
+    }
+    file_set_listener(NULL);
     pool_destroy(child.pool);
     arena_destroy(&child.job);
     assets_destroy(&child.assets);

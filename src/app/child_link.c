@@ -4,6 +4,8 @@
 
 #include "render/aov.h"
 
+#include <string.h>
+
 static bool nobody_there(struct child_link *link, struct error *error) {
     link->broken = true;
     return error_set(error, ERROR_CANCELLED, "the supervising process is gone");
@@ -82,6 +84,24 @@ static void link_script_ended(void *context, int index, int status) {
         note(link, channel_send(&link->channel, FRAME_SCRIPT, &script, sizeof script, -1));
 }
 
+static void link_read(void *context, const char *path, const struct file_version *version) {
+    struct child_link *link = context;
+    struct frame_read read = {.version = *version};
+    size_t length = strlen(path);
+    if (length >= sizeof read.path)
+        return;
+    memcpy(read.path, path, length);
+    note(link, channel_send(&link->channel, FRAME_READ, &read, sizeof read, -1));
+}
+
+static bool link_again(void *context) {
+    struct child_link *link = context;
+    struct frame frame;
+    return channel_send(&link->channel, FRAME_AGAIN, NULL, 0, -1) &&
+           channel_receive(&link->channel, &frame) == CHANNEL_FRAME && frame.kind == FRAME_ANSWER &&
+           frame.body.answer.ok;
+}
+
 struct child_services child_link_services(struct child_link *link, struct control *control) {
     return (struct child_services){.context = link,
                                    .control = control,
@@ -90,7 +110,9 @@ struct child_services child_link_services(struct child_link *link, struct contro
                                    .abandon = link_abandon,
                                    .done = link_done,
                                    .line = link_line,
-                                   .script_ended = link_script_ended};
+                                   .script_ended = link_script_ended,
+                                   .read = link_read,
+                                   .again = link_again};
 }
 
 void child_link_close(struct child_link *link) {

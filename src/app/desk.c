@@ -157,8 +157,8 @@ bool desk_begin(struct desk *desk, const struct picture_request *request, bool *
     const struct options *options = desk->options;
     char notice[256], written[NAME_LIMIT];
     desk->pictures++;
-    *already = options->shards_of_pictures &&
-               (desk->pictures - 1) % options->shards_of_pictures != options->shard_of_pictures - 1;
+    *already = *already || (options->shards_of_pictures &&
+                            (desk->pictures - 1) % options->shards_of_pictures != options->shard_of_pictures - 1);
     if (*already)
         return true;
     if (!choose_name(desk, request->file, picture->name, error) || !written_name(desk, picture->name, written, error))
@@ -410,12 +410,23 @@ void desk_line(struct desk *desk, enum line_kind kind, const char *text) {
     text_print_line(stderr, text);
 }
 
-bool desk_finish(struct desk *desk, bool all_well, struct error *error) {
-    struct error kept;
+bool desk_settle(struct desk *desk, struct error *error) {
     bool ok = true;
     if (desk->held.open && !desk->several_under_one_name)
         ok = write_picture(desk, &desk->held, error);
     close_picture(&desk->held);
+    return ok;
+}
+
+void desk_restart(struct desk *desk) {
+    close_picture(&desk->held);
+    desk->pictures = 0;
+    desk->several_under_one_name = false;
+}
+
+bool desk_finish(struct desk *desk, bool all_well, struct error *error) {
+    struct error kept;
+    bool ok = desk_settle(desk, error);
     if (!keeper_finish(&desk->keeper, ok && all_well, &kept)) {
         char line[sizeof kept.text + 64];
         (void)snprintf(line, sizeof line, "gray: warning: the checkpoint: %s", kept.text);

@@ -44,7 +44,8 @@ struct desk {
 
 void desk_init(struct desk *desk, const struct options *options, struct control *control);
 /* Names the picture and makes its film; false when it cannot be written for a reason that is known before rendering.
- * *already: nothing is to be done, it was written before or is another shard's; then no picture is open. */
+ * *already, when it comes in: it is not wanted again. When it goes out: nothing is to be done, it was written before or
+ * is another shard's; then no picture is open. */
 bool desk_begin(struct desk *desk, const struct picture_request *request, bool *already, struct error *error);
 /* Writes the files of the picture that is open; it stays open. */
 bool desk_write(struct desk *desk, struct error *error);
@@ -57,6 +58,9 @@ void desk_checkpoint(struct desk *desk);
 void desk_show_progress(struct desk *desk);
 /* One line (or several: an error with its traceback) on standard error, as -q and --verbose allow. */
 void desk_line(struct desk *desk, enum line_kind kind, const char *text);
+/* --watch: the end of one run, and the beginning of the next, whose pictures count from 1 again. */
+bool desk_settle(struct desk *desk, struct error *error);
+void desk_restart(struct desk *desk);
 /* After all scripts: writes the picture that was held. all_well: everything else was written, so that the checkpoint
  * may go. False: error. */
 bool desk_finish(struct desk *desk, bool all_well, struct error *error);

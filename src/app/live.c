@@ -30,10 +30,20 @@ struct film live_film(const struct picture_request *request, void *block, uint32
     return film;
 }
 
+/* Somebody has flown somewhere: the first pass, which begins by itself, is the script's; the next one is there. */
+static void keep_walk(struct live *live, const struct walk *walk) {
+    struct pose home = live->walk.home;
+    live->walk = *walk;
+    live->walk.home = home;
+    live->moved = live->flown = true;
+}
+
 bool live_begin(struct live *live, const struct window_driver *driver, const struct picture_request *request,
                 void *block, const char *name, double now, struct error *error) {
     struct film whole = live_film(request, block, 1);
-    bool was_open = live->open;
+    bool was_open = live->open, kept = live->keep && live->flown && was_open;
+    struct walk walk = live->walk;
+    unsigned number = live->number;
     if (was_open && (live->request.width != request->width || live->request.height != request->height)) {
         live_end(live);
         was_open = false;
@@ -46,6 +56,7 @@ bool live_begin(struct live *live, const struct window_driver *driver, const str
                           .canvas = canvas,
                           .drawn = drawn,
                           .tiles = film_tile_count(&whole),
+                          .number = number,
                           .open = was_open,
                           .running = true,
                           .divide = FIRST_DIVIDE / 2,
@@ -56,6 +67,9 @@ bool live_begin(struct live *live, const struct window_driver *driver, const str
     live->film = live_film(request, block, live->view.divide);
     const struct box unknown = box_empty();
     walk_begin(&live->walk, &request->camera, &unknown);
+    if (kept)
+        keep_walk(live, &walk);
+    (void)snprintf(live->name, sizeof live->name, "%s", name);
     if (!was_open) {
         live->canvas = mem_alloc_zero((size_t)request->width * request->height, 3);
         live->drawn = mem_alloc_zero(live->tiles, 1);
@@ -75,6 +89,27 @@ void live_end(struct live *live) {
     mem_free(live->canvas);
     mem_free(live->drawn);
     *live = (struct live){0};
+}
+
+void live_detach(struct live *live) {
+    live->block = NULL;
+    live->film = (struct film){0};
+    live->running = live->waiting = live->stopping = false;
+    live->titled = 0;
+}
+
+void live_keep(struct live *live) {
+    live->keep = live->open;
+}
+
+bool live_skips(const struct live *live, unsigned number) {
+    return live->keep && number < live->number;
+}
+
+void live_tell(struct live *live, const char *text) {
+    size_t length = strcspn(text, "\n");
+    (void)snprintf(live->message, sizeof live->message, "%.*s", (int)(length < 500 ? length : 500), text);
+    live->titled = 0;
 }
 
 /* Drawing. */
@@ -129,6 +164,11 @@ static void show(struct live *live, double now) {
     double seconds = report->rays.render_seconds;
     uint64_t rays =
         report->rays.camera_rays + report->rays.reflected_rays + report->rays.refracted_rays + report->rays.shadow_rays;
+    if (live->message[0] != '\0') {
+        driver->title(driver->context, live->message);
+        live->titled = now;
+        return;
+    }
     if (report->threads == 0)
         (void)snprintf(how, sizeof how, "building");
     else if (live->complete)
@@ -247,6 +287,11 @@ static enum live_order take_key(struct live *live, const struct window_event *ev
 }
 
 static enum live_order take_event(struct live *live, const struct window_event *event) {
+    /* Without a scene there is nowhere to walk to. */
+    bool idle_key =
+        event->kind == WINDOW_KEY && event->down && (event->key == 'q' || event->key == 's' || event->key == 'f');
+    if (!live->block && event->kind != WINDOW_CLOSE && !idle_key)
+        return LIVE_NOTHING;
     switch (event->kind) {
     case WINDOW_CLOSE:
         live->quit = true;
@@ -290,13 +335,8 @@ void live_pass_ended(struct live *live, const struct picture_report *report, dou
     bool known = live->report.threads > 0;
     live->running = false;
     live->waiting = true;
-    if (!known) {
-        struct pose home = live->walk.home, pose = live->walk.pose;
-        walk_begin(&live->walk, &live->request.camera, &report->bounds);
-        if (live->flown)
-            live->walk.pose = pose;
-        live->walk.home = home;
-    }
+    if (!known)
+        walk_measure(&live->walk, &report->bounds);
     if (!report->stopped) {
         draw_tiles(live);
         /* Passes that take no time say nothing about how coarse they must be. */
@@ -344,7 +384,7 @@ enum live_order live_step(struct live *live, double now) {
     struct window_event event;
     double seconds = now - live->stepped;
     live->stepped = now;
-    if (walk_step(&live->walk, seconds < 0.1 ? seconds : 0.1))
+    if (live->block && walk_step(&live->walk, seconds < 0.1 ? seconds : 0.1))
         change_view(live);
     while (live->driver->poll(live->driver->context, &event)) {
         enum live_order order = take_event(live, &event);
@@ -356,7 +396,7 @@ enum live_order live_step(struct live *live, double now) {
     show(live, now);
     if (live->quit)
         return LIVE_QUIT;
-    if (live->complete && !live->flown && !live->written) {
+    if (live->complete && live->view.own && !live->written) {
         live->written = true;
         return LIVE_WRITE;
     }

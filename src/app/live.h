@@ -24,7 +24,10 @@ struct live {
     const struct window_driver *driver;
     struct walk walk;
     struct picture_request request;
-    void *block;                  /* of the film; not owned */
+    void *block;                  /* of the film; not owned; NULL: no picture is being made */
+    char name[4096];              /* of the picture */
+    unsigned number;              /* of the picture among those of a run, from 1; kept by the caller */
+    char message[512];            /* what went wrong, or empty */
     struct live_view view;        /* of the pass that runs or ran last */
     struct film film;             /* as that pass lays it out */
     struct picture_report report; /* of the last pass that was finished */
@@ -37,7 +40,8 @@ struct live {
     bool again;             /* R */
     bool complete, written; /* the last pass was the finest; the script's picture was written */
     bool grabbed, next, quit;
-    int turning;     /* buttons that are held and go round */
+    bool keep;   /* the scripts run again: the camera stays where somebody has flown, pictures before are left out */
+    int turning; /* buttons that are held and go round */
     uint32_t divide; /* of passes while somebody walks */
     double pass_began, stepped, shown, titled;
     bool dirty; /* the canvas was changed since it was shown */
@@ -47,6 +51,14 @@ struct live {
 bool live_begin(struct live *live, const struct window_driver *driver, const struct picture_request *request,
                 void *block, const char *name, double now, struct error *error);
 void live_end(struct live *live);
+/* The film goes away: what was shown last stays. */
+void live_detach(struct live *live);
+/* The scripts will run again for what is in the window. */
+void live_keep(struct live *live);
+/* Whether a picture of this number is left out, since people look at a later one. */
+bool live_skips(const struct live *live, unsigned number);
+/* Shows what went wrong until a picture begins; the first line is shown. */
+void live_tell(struct live *live, const char *text);
 /* The first pass of a picture; the child starts with it by itself. */
 struct live_view live_first_view(const struct camera *camera);
 /* The film that a pass fills: the picture's rectangle divided, in the same block. */

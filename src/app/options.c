@@ -173,6 +173,8 @@ static const struct option table[] = {
     {GROUP_TALK, "-gui", OPTION_FLAG, NULL, NO_RANGE, FIELD(window), NULL,
      "show the picture in a window while it is made, and walk through the scene: R renders, S saves what is shown, V "
      "the camera, Space walks (W A S D Q E and the mouse, Esc leaves), N goes on, Q quits"},
+    {GROUP_TALK, "--watch", OPTION_FLAG, NULL, NO_RANGE, FIELD(watch), NULL,
+     "run the scripts again whenever one of them, or a file that they read, has changed; Ctrl-C ends it"},
     {GROUP_TALK, "-q|quiet", OPTION_FLAG, NULL, NO_RANGE, FIELD(quiet), NULL, "say nothing but errors"},
     {GROUP_TALK, "--verbose", OPTION_FLAG, NULL, NO_RANGE, FIELD(verbose), NULL, "say what is done and why"},
     {GROUP_TALK, "--stats", OPTION_STATS, "=text|json", NO_RANGE, NO_FIELD, NULL,
@@ -589,6 +591,10 @@ static bool check_parts(struct options *options, struct error *error) {
                             options->mpi || options->no_fork || options->check || options->settings.aov))
         return error_set(error, ERROR_USAGE,
                          "-gui takes no --checkpoint, --resume, --shard, --mpi, --no-fork, --check or --aov");
+    if (options->watch && (options->checkpoint || options->resume || options->shards || options->shards_of_pictures ||
+                           options->mpi || options->no_fork || pipe))
+        return error_set(error, ERROR_USAGE,
+                         "--watch takes no --checkpoint, --resume, --shard, --mpi, --no-fork or -o -");
     if (options->no_fork && (options->checkpoint || options->shards))
         return error_set(error, ERROR_USAGE,
                          "--no-fork is for debuggers: it takes no --checkpoint, --resume or --shard");

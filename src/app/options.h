@@ -36,6 +36,7 @@ struct options {
     const char *first_pass_prefix; /* -write-pre-aa, or NULL */
     int threads;                   /* 0: one per processor */
     bool window;                   /* -gui */
+    bool watch;                    /* --watch */
     bool check, quiet, verbose, no_fork;
     const char *checkpoint;     /* --checkpoint: a file, or "auto", or NULL */
     double checkpoint_every;    /* seconds */

@@ -12,6 +12,7 @@
 #include "app/desk.h"
 #include "app/live.h"
 #include "app/souvenir.h"
+#include "app/watch.h"
 #include "base/fault.h"
 #include "base/file.h"
 #include "base/mem.h"
@@ -30,6 +31,8 @@
 /* Seconds a cancelled child has to give up politely before it is killed. It writes no files: nothing is lost with it,
  * and giving back the memory of a large scene takes longer than a kill. */
 static const double patience = 0.03;
+/* Seconds for the scripts to end before they run again; afterwards the process is started anew. */
+static const double patience_again = 0.3;
 /* Seconds from the end of the channel to the end of the process. */
 static const double farewell = 10;
 
@@ -41,6 +44,7 @@ struct supervisor {
     struct desk desk;
     const struct window_driver *window; /* or NULL */
     struct live live;                   /* the picture in the window */
+    struct watch watch;                 /* --watch */
     struct control *control;            /* shared with the child */
     struct channel channel;             /* to the child */
     pid_t child;
@@ -51,6 +55,9 @@ struct supervisor {
     bool stop;       /* no further script */
     bool broken;     /* the child did not keep to the rules of the channel */
     double deadline; /* when the cancelled child is killed; 0: not cancelled */
+    bool waits;      /* the child has run all scripts and waits for a change */
+    bool restarts;   /* the scripts are cancelled because they will run again */
+    bool ended;      /* somebody has said so: Ctrl-C, or the window was closed */
     /* The script's own processor time: the child's clock while no picture is being made. */
     double script_used;  /* seconds of earlier stretches of the script that runs */
     double script_since; /* the child's clock when this stretch began */
@@ -63,8 +70,15 @@ static void note_status(struct supervisor *supervisor, int status) {
         supervisor->status = status;
 }
 
+/* In the terminal, and what is wrong in the window, too. */
+static void tell(struct supervisor *supervisor, enum line_kind kind, const char *text) {
+    desk_line(&supervisor->desk, kind, text);
+    if (kind == LINE_ERROR)
+        live_tell(&supervisor->live, text);
+}
+
 static void note_error(struct supervisor *supervisor, const struct error *error) {
-    desk_line(&supervisor->desk, LINE_ERROR, error->text);
+    tell(supervisor, LINE_ERROR, error->text);
     note_status(supervisor, (int)error->kind);
 }
 
@@ -89,11 +103,14 @@ static bool listen_to_signals(struct supervisor *supervisor, struct error *error
 }
 
 static void cancel(struct supervisor *supervisor) {
-    if (supervisor->deadline > 0) {
+    if (supervisor->deadline > 0 && !supervisor->restarts) {
         (void)kill(supervisor->child, SIGKILL);
         return;
     }
-    supervisor->stop = true;
+    supervisor->stop = supervisor->ended = true;
+    supervisor->restarts = false;
+    if (supervisor->waits) /* nothing is interrupted: it is how watching ends */
+        return;
     supervisor->deadline = progress_clock() + patience;
     note_status(supervisor, ERROR_CANCELLED);
     atomic_store(&supervisor->control->cancel, 1);
@@ -155,6 +172,7 @@ static int script_patience(const struct supervisor *supervisor) {
  * and the files that scenes may read: confine_process takes the rest away. */
 static _Noreturn void be_child(struct supervisor *supervisor, struct channel channel, pid_t parent) {
     (void)close(supervisor->signals);
+    watch_close(&supervisor->watch);
     channel_close(&supervisor->channel);
     /* Ctrl-C reaches the whole group; the supervisor passes on what it means. */
     (void)signal(SIGINT, SIG_IGN);
@@ -221,8 +239,10 @@ static void send_answer(struct supervisor *supervisor, enum frame_kind kind, boo
 static void answer_begin(struct supervisor *supervisor, const struct frame *frame) {
     struct desk *desk = &supervisor->desk;
     struct error error = {0};
-    bool already = false, ok = desk_begin(desk, &frame->body.request, &already, &error);
+    bool already = live_skips(&supervisor->live, desk->pictures + 1);
+    bool ok = desk_begin(desk, &frame->body.request, &already, &error);
     bool film = ok && !already && !frame->body.request.check;
+    supervisor->live.number = film ? desk->pictures : supervisor->live.number;
     if (film && supervisor->window &&
         !live_begin(&supervisor->live, supervisor->window, &desk->current.request, desk->current.memory.block,
                     desk->current.name, progress_clock(), &error)) {
@@ -243,7 +263,8 @@ static void answer_pass(struct supervisor *supervisor, bool ok, bool again) {
 
 /* No picture is lost by closing the window: it is there already, or people did not wait for it. */
 static void quit_window(struct supervisor *supervisor) {
-    if (supervisor->deadline > 0)
+    supervisor->ended = true;
+    if (supervisor->deadline > 0 || supervisor->waits)
         return;
     supervisor->stop = true;
     supervisor->deadline = progress_clock() + patience;
@@ -254,11 +275,23 @@ static void quit_window(struct supervisor *supervisor) {
         answer_pass(supervisor, false, false);
 }
 
+/* The scripts are ended, to run again: what they read has changed. */
+static void restart(struct supervisor *supervisor) {
+    if (supervisor->deadline > 0)
+        return;
+    supervisor->stop = supervisor->restarts = true;
+    supervisor->deadline = progress_clock() + patience_again;
+    atomic_store(&supervisor->control->cancel, CANCEL_ALL);
+    live_keep(&supervisor->live);
+    if (supervisor->live.waiting)
+        answer_pass(supervisor, false, false);
+}
+
 static void take_home(struct supervisor *supervisor, bool (*take)(const struct live *live, const char *picture_name,
                                                                   char *name, struct error *error)) {
     struct error error;
     char name[NAME_LIMIT], line[NAME_LIMIT + 64];
-    bool ok = take(&supervisor->live, supervisor->desk.current.name, name, &error);
+    bool ok = take(&supervisor->live, supervisor->live.name, name, &error);
     (void)snprintf(line, sizeof line, ok ? "gray: notice: %s is written" : "%s", ok ? name : error.text);
     desk_line(&supervisor->desk, ok ? LINE_NOTICE : LINE_ERROR, line);
 }
@@ -267,7 +300,7 @@ static void step_window(struct supervisor *supervisor) {
     struct live *live = &supervisor->live;
     struct error error;
     int nothing = CANCEL_NOTHING;
-    while (live->open && supervisor->desk.current.open && supervisor->deadline <= 0) {
+    while (live->open && supervisor->deadline <= 0) {
         switch (live_step(live, progress_clock())) {
         case LIVE_NOTHING:
             return;
@@ -299,6 +332,7 @@ static void step_window(struct supervisor *supervisor) {
 
 static void answer_done(struct supervisor *supervisor, const struct frame *frame) {
     struct error error = {0};
+    live_detach(&supervisor->live);
     bool ok = desk_done(&supervisor->desk, &frame->body.report, &error);
     send_answer(supervisor, FRAME_ANSWER, ok, false, &error, -1);
 }
@@ -322,12 +356,20 @@ static void note_script(struct supervisor *supervisor, const struct frame_script
         note_status(supervisor, script->status);
 }
 
+static void note_read(struct supervisor *supervisor, const struct frame_read *read) {
+    struct error error;
+    if (supervisor->watch.open && !watch_add(&supervisor->watch, read->path, &read->version, progress_clock())) {
+        (void)error_no_memory(&error, "the list of files that are watched");
+        note_error(supervisor, &error);
+    }
+}
+
 /* A frame out of turn (a second picture before the first is finished ...) is not answered: it breaks the rules. */
 static void take_frame(struct supervisor *supervisor, const struct frame *frame) {
     const struct picture *current = &supervisor->desk.current;
     switch (frame->kind) {
     case FRAME_LINE:
-        desk_line(&supervisor->desk, frame->body.line.kind, frame->body.line.text);
+        tell(supervisor, frame->body.line.kind, frame->body.line.text);
         return;
     case FRAME_BEGIN:
         if (current->open)
@@ -353,11 +395,21 @@ static void take_frame(struct supervisor *supervisor, const struct frame *frame)
     case FRAME_ABANDON:
         if (!current->open)
             break;
+        live_detach(&supervisor->live);
         desk_abandon(&supervisor->desk);
         script_goes_on(supervisor);
         return;
     case FRAME_SCRIPT:
         note_script(supervisor, &frame->body.script);
+        return;
+    case FRAME_READ:
+        note_read(supervisor, &frame->body.read);
+        return;
+    case FRAME_AGAIN:
+        if (!supervisor->watch.open || current->open)
+            break;
+        script_stops(supervisor);
+        supervisor->waits = true;
         return;
     case FRAME_FILM:
     case FRAME_ANSWER:
@@ -366,20 +418,31 @@ static void take_frame(struct supervisor *supervisor, const struct frame *frame)
     supervisor->broken = true;
 }
 
-/* Until the child closes its end. */
+/* Milliseconds to wait for the next frame at most; -1: until it comes. */
+static int poll_time(const struct supervisor *supervisor) {
+    if (supervisor->desk.farm)
+        return 2;
+    if (supervisor->window)
+        return 4;
+    if (supervisor->deadline > 0)
+        return 5;
+    return supervisor->desk.current.open || supervisor->watch.open ? 50 : script_patience(supervisor);
+}
+
+static bool files_changed(struct supervisor *supervisor) {
+    if (!supervisor->watch.open)
+        return false;
+    watch_read(&supervisor->watch, progress_clock());
+    return watch_changed(&supervisor->watch, progress_clock());
+}
+
+/* Until the child closes its end, or has nothing more to do until something changes. */
 static void talk_to_child(struct supervisor *supervisor) {
     struct frame frame;
     while (!supervisor->broken) {
         struct pollfd watched[2] = {{.fd = supervisor->channel.descriptor, .events = POLLIN},
                                     {.fd = supervisor->signals, .events = POLLIN}};
-        bool timed = supervisor->desk.current.open || supervisor->deadline > 0;
-        if (poll(watched, 2,
-                 supervisor->desk.farm      ? 2
-                 : supervisor->window       ? 4
-                 : supervisor->deadline > 0 ? 5
-                 : timed                    ? 50
-                                            : script_patience(supervisor)) < 0 &&
-            errno != EINTR)
+        if (poll(watched, 2, poll_time(supervisor)) < 0 && errno != EINTR)
             break;
         if (script_patience(supervisor) == 0) {
             supervisor->out_of_time = supervisor->deadline == 0;
@@ -391,6 +454,8 @@ static void talk_to_child(struct supervisor *supervisor) {
             break;
         desk_show_progress(&supervisor->desk);
         step_window(supervisor);
+        if (files_changed(supervisor))
+            restart(supervisor);
         if (!watched[0].revents)
             continue;
         enum channel_result result = channel_receive(&supervisor->channel, &frame);
@@ -400,6 +465,8 @@ static void talk_to_child(struct supervisor *supervisor) {
             take_frame(supervisor, &frame);
         else
             supervisor->broken = true;
+        if (supervisor->waits)
+            return;
     }
     (void)kill(supervisor->child, SIGKILL);
 }
@@ -459,22 +526,99 @@ static void judge_end(struct supervisor *supervisor, int how) {
                   WIFSIGNALED(how) ? "signal" : "status", WIFSIGNALED(how) ? WTERMSIG(how) : WEXITSTATUS(how));
         note_error(supervisor, &error);
     }
+    live_detach(&supervisor->live);
     desk_abandon(&supervisor->desk);
 }
 
+/* A child that is there goes on; another one is started where there is none. */
 static void run_children(struct supervisor *supervisor) {
     struct error error;
+    bool there = supervisor->child > 0;
     while (supervisor->next_script < supervisor->options->script_count && !supervisor->stop) {
         supervisor->broken = false;
-        if (!start_child(supervisor, &error)) {
+        if (!there && !start_child(supervisor, &error)) {
             note_error(supervisor, &error);
             return;
         }
         talk_to_child(supervisor);
+        if (supervisor->waits)
+            return;
         int how = reap_child(supervisor);
+        there = false;
+        supervisor->child = 0;
         channel_close(&supervisor->channel);
         judge_end(supervisor, how);
     }
+}
+
+/* Between two runs: nothing is rendered, the window shows the last good picture. True when something has changed. */
+static bool wait_for_change(struct supervisor *supervisor) {
+    supervisor->waits = true;
+    watch_settle(&supervisor->watch, supervisor->status != 0, progress_clock());
+    if (!supervisor->window && !supervisor->restarts)
+        desk_line(&supervisor->desk, LINE_NOTICE, "gray: notice: waiting for changes (Ctrl-C ends)");
+    supervisor->stop = false;
+    supervisor->deadline = 0;
+    while (!supervisor->ended && !supervisor->restarts) {
+        struct pollfd watched[2] = {{.fd = supervisor->watch.descriptor, .events = POLLIN},
+                                    {.fd = supervisor->signals, .events = POLLIN}};
+        /* Not at once: a file that was read while it was written is looked at a second time. */
+        (void)poll(watched, 2, supervisor->window ? 4 : supervisor->watch.last > 0 ? 20 : 500);
+        if (watched[1].revents)
+            read_signals(supervisor);
+        step_window(supervisor);
+        if (files_changed(supervisor))
+            break;
+    }
+    return !supervisor->ended;
+}
+
+/* The child ends, or runs the scripts again: only where no mesh or picture it may have kept has changed. */
+static void answer_again(struct supervisor *supervisor, bool again) {
+    const struct error none = {0};
+    if (supervisor->child <= 0)
+        return;
+    send_answer(supervisor, FRAME_ANSWER, again, false, &none, -1);
+    if (again) {
+        script_goes_on(supervisor);
+        return;
+    }
+    (void)reap_child(supervisor);
+    supervisor->child = 0;
+    channel_close(&supervisor->channel);
+}
+
+static bool watch_scripts(struct supervisor *supervisor, struct error *error) {
+    if (!watch_open(&supervisor->watch, error))
+        return false;
+    for (int i = 0; i < supervisor->options->script_count; i++) {
+        if (!watch_add(&supervisor->watch, supervisor->options->scripts[i], NULL, progress_clock()))
+            return error_no_memory(error, "the list of files that are watched");
+    }
+    return true;
+}
+
+/* Every run is judged by itself; the last one's status is the program's. */
+static void run_and_watch(struct supervisor *supervisor) {
+    struct error error;
+    run_children(supervisor);
+    while (supervisor->watch.open && !supervisor->ended) {
+        if (!supervisor->restarts && !desk_settle(&supervisor->desk, &error))
+            note_error(supervisor, &error);
+        if (!wait_for_change(supervisor))
+            break;
+        live_keep(&supervisor->live);
+        desk_restart(&supervisor->desk);
+        supervisor->restarts = supervisor->waits = supervisor->stop = false;
+        supervisor->deadline = 0;
+        supervisor->status = supervisor->next_script = 0;
+        supervisor->script_used = 0;
+        atomic_store(&supervisor->control->cancel, CANCEL_NOTHING);
+        answer_again(supervisor, !supervisor->watch.assets_differ);
+        run_children(supervisor);
+    }
+    supervisor->waits = false;
+    answer_again(supervisor, false);
 }
 
 static void tell_foreign_line(void *context, const char *line) {
@@ -507,16 +651,18 @@ int supervisor_run(const struct options *options, const struct program_parts *pa
     supervisor.control = mem_share(sizeof *supervisor.control);
     desk_init(&supervisor.desk, options, supervisor.control);
     bool ready = supervisor.control
-                     ? listen_to_signals(&supervisor, &error) && start_farm(&supervisor, transport, &error)
+                     ? listen_to_signals(&supervisor, &error) && start_farm(&supervisor, transport, &error) &&
+                           (!options->watch || watch_scripts(&supervisor, &error))
                      : error_no_memory(&error, "the rendering process");
     if (options->script.no_sandbox)
         desk_line(&supervisor.desk, LINE_WARNING, no_sandbox_warning);
     if (ready)
-        run_children(&supervisor);
+        run_and_watch(&supervisor);
     else
         note_error(&supervisor, &error);
     end_farm(&supervisor);
     live_end(&supervisor.live);
+    watch_close(&supervisor.watch);
     if (!desk_finish(&supervisor.desk, supervisor.status == 0, &error))
         note_error(&supervisor, &error);
     if (supervisor.signals >= 0)

@@ -66,11 +66,15 @@ void walk_begin(struct walk *walk, const struct camera *camera, const struct box
     memset(walk, 0, sizeof *walk);
     walk->pose = (struct pose){camera->eye, looking(camera->view, camera->up), camera->fov};
     walk->home = walk->pose;
+    walk_measure(walk, bounds);
+}
+
+void walk_measure(struct walk *walk, const struct box *bounds) {
     bool known = !box_is_empty(bounds) && vec3_finite(bounds->min) && vec3_finite(bounds->max);
     double size = known ? vec3_length(vec3_sub(bounds->max, bounds->min)) : 10;
     /* A wide floor under a small scene: from where it is seen counts too. */
     walk->centre = known ? vec3_scale(vec3_add(bounds->min, bounds->max), 0.5) : vec3_make(0, 0, 0);
-    double away = vec3_length(vec3_sub(walk->centre, camera->eye));
+    double away = vec3_length(vec3_sub(walk->centre, walk->home.place));
     walk->speed = (size < 2 * away || away == 0 ? size : 2 * away) / 4;
 }
 

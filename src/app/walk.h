@@ -31,6 +31,8 @@ struct walk {
 
 /* camera: with a direction as its view. bounds: of the scene; a way through it takes four seconds. */
 void walk_begin(struct walk *walk, const struct camera *camera, const struct box *bounds);
+/* Speed and centre for other bounds; the camera and kept views stay. */
+void walk_measure(struct walk *walk, const struct box *bounds);
 /* The camera of where it stands now. */
 struct camera walk_camera(const struct walk *walk);
 /* What the held keys do in `seconds`. True: something moved. */

@@ -19,11 +19,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Where file_set_witness says: the one thing here that outlives a call. */
+/* Where file_set_witness and file_set_listener say: the two things here that outlive a call. */
 static struct file_witness *file_witness;
+static const struct file_listener *file_listener;
 
 void file_set_witness(struct file_witness *witness) {
     file_witness = witness;
+}
+
+void file_set_listener(const struct file_listener *listener) {
+    file_listener = listener;
 }
 
 static void note_content(struct digest content) {
@@ -45,24 +50,56 @@ static void note_content(struct digest content) {
     witness->contents[witness->count++] = content;
 }
 
-void file_note_read(int descriptor) {
+/* False: it could not be read to its end. */
+static bool digest_of(int descriptor, struct digest *content) {
     char piece[1 << 16];
-    struct digest content = {0};
-    struct stat status;
-    if (!file_witness || MAY_FAIL(fstat(descriptor, &status)) != 0 || !S_ISREG(status.st_mode))
-        return;
+    *content = (struct digest){0};
     for (off_t at = 0;;) {
         ssize_t got = MAY_FAIL(pread(descriptor, piece, sizeof piece, at));
         if (got < 0 && errno == EINTR)
             continue;
-        if (got < 0)
-            file_witness->incomplete = true;
         if (got <= 0)
-            break;
-        content = digest_bytes(piece, (size_t)got, content);
+            return got == 0;
+        *content = digest_bytes(piece, (size_t)got, *content);
         at += got;
     }
-    note_content(content);
+}
+
+static struct file_version version_of(const struct stat *status) {
+    return (struct file_version){.size = (uint64_t)status->st_size,
+                                 .seconds = (int64_t)status->st_mtim.tv_sec,
+                                 .nanoseconds = (int64_t)status->st_mtim.tv_nsec};
+}
+
+void file_note_read(int descriptor, const char *path) {
+    struct stat status;
+    if ((!file_witness && !file_listener) || MAY_FAIL(fstat(descriptor, &status)) != 0 || !S_ISREG(status.st_mode))
+        return;
+    struct file_version version = version_of(&status);
+    bool whole = digest_of(descriptor, &version.content);
+    if (file_witness && !whole)
+        file_witness->incomplete = true;
+    if (file_witness)
+        note_content(version.content);
+    if (file_listener)
+        file_listener->heard(file_listener->context, path, &version);
+}
+
+bool file_version_of(const char *path, const struct file_version *known, struct file_version *out) {
+    struct stat status;
+    int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (descriptor < 0)
+        return false;
+    bool ok = fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
+    if (ok) {
+        *out = version_of(&status);
+        bool same = known && known->size == out->size && known->seconds == out->seconds &&
+                    known->nanoseconds == out->nanoseconds;
+        out->content = same ? known->content : (struct digest){0};
+        ok = same || digest_of(descriptor, &out->content);
+    }
+    (void)close(descriptor);
+    return ok;
 }
 
 struct digest file_witness_sum(const struct file_witness *witness) {
@@ -115,7 +152,7 @@ bool file_map_descriptor(int descriptor, const char *path, size_t limit, struct 
         }
         ok = have == size;
         if (ok)
-            file_note_read(descriptor);
+            file_note_read(descriptor, path);
         if (!ok) {
             error_set(error, ERROR_SCENE, "%s: ended after %zu of %zu bytes while it was read", path, have, size);
             mem_free(data);

@@ -33,8 +33,24 @@ struct file_witness {
 /* From now on every file that is read is noted in `witness`, which must stay; NULL: none is. Set once, before the first
  * scene, by the thread that reads files. */
 void file_set_witness(struct file_witness *witness);
+/* What a file held, and when: two versions that are told apart by size and time need not be read again. */
+struct file_version {
+    struct digest content;
+    uint64_t size;
+    int64_t seconds, nanoseconds; /* of its last change */
+};
+/* Is told every file that is read, under the name it was asked for by. */
+struct file_listener {
+    void (*heard)(void *context, const char *path, const struct file_version *version);
+    void *context;
+};
+/* As file_set_witness. */
+void file_set_listener(const struct file_listener *listener);
+/* The version that stands under this name now; false: none that can be read. `known`, or NULL: when size and time are
+ * its own the content is taken to be, too. */
+bool file_version_of(const char *path, const struct file_version *known, struct file_version *out);
 /* Notes the content of an open regular file without moving its position. For readers beside file_map. */
-void file_note_read(int descriptor);
+void file_note_read(int descriptor, const char *path);
 /* Does not depend on the order in which the files were read. */
 struct digest file_witness_sum(const struct file_witness *witness);
 void file_witness_destroy(struct file_witness *witness);

@@ -257,7 +257,7 @@ FILE *reach_stream(const struct reach *reach, const char *path, const char *mode
     if (!reach) {
         FILE *open = MAY_GIVE_NULL(fopen(path, mode));
         if (open && mode[0] == 'r')
-            file_note_read(fileno(open));
+            file_note_read(fileno(open), path);
         return open;
     }
     int flags = flags_of(mode);
@@ -265,7 +265,7 @@ FILE *reach_stream(const struct reach *reach, const char *path, const char *mode
     if (descriptor < 0)
         return NULL;
     if (mode[0] == 'r')
-        file_note_read(descriptor);
+        file_note_read(descriptor, path);
     FILE *stream = MAY_GIVE_NULL(fdopen(descriptor, mode));
     if (!stream)
         (void)close(descriptor);

@@ -363,3 +363,20 @@ TEST(window_that_is_closed_early_leaves_no_picture) {
         "status=$?; test -e out.png && exit 1; exit $status",
         130);
 }
+
+TEST(window_that_watches_shows_errors_keeps_the_camera_and_recovers) {
+    need_display();
+    gives("cp scene.lua keep.lua; xvfb-run -a sh -c '$gray -gui --watch scene.lua 2>said.txt & pid=$!; "
+          "sh wait.sh \"test -s out.png\" || exit 9; cp out.png first.png; "
+          "xdotool keydown Right sleep 0.2 keyup Right; sleep 0.2; xdotool key v; "
+          "sh wait.sh \"test -s out-view1.lua\" || exit 8; "
+          "echo \"gr.no_such_thing()\" >new.lua; mv new.lua scene.lua; "
+          "sh wait.sh \"grep -q no_such_thing said.txt\" || exit 7; "
+          "sh wait.sh \"xdotool search --name no_such_thing\" || exit 6; cmp out.png first.png || exit 5; "
+          "sed s/0.8,/0.1,/ keep.lua >new.lua; mv new.lua scene.lua; "
+          "sh wait.sh \"xdotool search --name out.png.*ready\" || exit 4; xdotool key v; "
+          "sh wait.sh \"test -s out-view2.lua\" || exit 3; cmp out-view1.lua out-view2.lua || exit 2; "
+          "xdotool key Home; sh wait.sh \"! cmp -s out.png first.png\" || exit 1; xdotool key q; wait $pid'",
+          0);
+    gives("$gray scene.lua -o whole.png && cmp out.png whole.png", 0);
+}
