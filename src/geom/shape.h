@@ -5,9 +5,11 @@
 #ifndef GRAY_GEOM_SHAPE_H
 #define GRAY_GEOM_SHAPE_H
 
+#include "geom/conic.h"
 #include "geom/crossing.h"
+#include "geom/flat.h"
 #include "geom/hit.h"
-#include "geom/shape_flat.h"
+#include "geom/shape_ellipsoid.h"
 #include "geom/shape_quadric.h"
 #include "geom/shape_superellipsoid.h"
 #include "geom/shape_torus.h"

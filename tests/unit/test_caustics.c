@@ -1,4 +1,7 @@
 /* Caustics: what is sent arrives, where geometry says, in the unit of direct light. */
+#include "geom/shape_cylinder.h"
+#include "geom/shape_disc.h"
+#include "geom/shape_plane.h"
 #include "look/sky.h"
 #include "math/elementary.h"
 #include "render/photon_trace.h"

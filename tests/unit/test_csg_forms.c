@@ -1,6 +1,13 @@
 /* Solids of every closed shape against point-by-point evaluation; inverses, clips, hints and unions in parts against
  * what they are by definition. */
 #include "geom/csg_split.h"
+#include "geom/shape_cone.h"
+#include "geom/shape_cylinder.h"
+#include "geom/shape_disc.h"
+#include "geom/shape_hyperboloid.h"
+#include "geom/shape_paraboloid.h"
+#include "geom/shape_plane.h"
+#include "geom/shape_triangle.h"
 #include "tests/unit/swept_makers.h"
 
 enum { MOST = 10, ANALYTIC = 13 };

@@ -1,0 +1,152 @@
+/* Conics turned about an axis: what the cylinder, the cone, the paraboloid and the hyperboloids have in common. Their
+ * crossings are ends of intervals of the line (span.h). A described point is put back on the surface by two Newton
+ * steps along the gradient. For the family see any book on analytic geometry. */
+#include "geom/conic.h"
+
+#include "geom/span.h"
+#include "geom/wrap.h"
+#include "math/elementary.h"
+#include "math/roots.h"
+
+#define TURN 6.28318530717958647692
+
+int conic_crossings(const struct conic *c, const struct ray *ray, struct crossing out[4]) {
+    double unit = direction_unit(ray->direction);
+    struct vec3 d = vec3_scale(ray->direction, unit), f = vec3_sub(ray->origin, c->base);
+    if (!(vec3_max_abs(d) > 0))
+        return 0;
+    double height = vec3_dot(f, c->axis), climb = vec3_dot(d, c->axis);
+    struct span limits = {{-INFINITY, 0}, {INFINITY, 0}}, spans[2];
+    if (!cut_by_slab(height, climb, c->lo, c->hi, CONIC_LOW_END, CONIC_HIGH_END, &limits))
+        return 0;
+
+    /* From the point of the line nearest to the middle. */
+    double shift = -vec3_dot(vec3_add_scaled(f, c->axis, -middle_of(c->lo, c->hi)), d) / vec3_dot(d, d);
+    f = vec3_add_scaled(f, d, shift);
+    double s = vec3_dot(f, c->axis);
+    struct vec3 w = vec3_add_scaled(f, c->axis, -s), e = vec3_add_scaled(d, c->axis, -climb);
+    double a = vec3_dot(e, e) - c->a * climb * climb;
+    double b = 2 * (vec3_dot(w, e) - c->a * s * climb) - c->b * climb;
+    int count = negative_spans(a, b, vec3_dot(w, w) - ((c->a * s + c->b) * s + c->c), shift, spans);
+    count = c->open ? open_crossings(spans, count, &limits, out) : closed_crossings(spans, count, &limits, out);
+    return unit == 1 ? count : scale_back(out, count, unit);
+}
+
+bool conic_is_closed(const struct conic *c) {
+    return !c->open || (!isfinite(c->lo) && !isfinite(c->hi));
+}
+
+bool conic_contains(const struct conic *c, struct vec3 point) {
+    struct vec3 f = vec3_sub(point, c->base);
+    double s = vec3_dot(f, c->axis);
+    struct vec3 w = vec3_add_scaled(f, c->axis, -s);
+    return s > c->lo && s < c->hi && vec3_dot(w, w) < (c->a * s + c->b) * s + c->c;
+}
+
+static void describe_end(const struct conic *c, struct vec3 f, bool high, struct surface *out) {
+    double s = high ? c->hi : c->lo, radius = sqrt(fmax((c->a * s + c->b) * s + c->c, 0));
+    struct vec3 w = vec3_add_scaled(f, c->axis, -vec3_dot(f, c->axis)), x, z;
+    double size = vec3_max_abs(c->base) + fabs(s) + radius;
+    out->point = vec3_add(vec3_add_scaled(c->base, c->axis, s), w);
+    out->normal = high ? c->axis : vec3_negate(c->axis);
+    out->error = 0x1p-48 * size;
+
+    /* Like the top and the bottom of the cube, the square round the end being the image; v counts from below. */
+    wrap_axes(c->axis, &x, &z);
+    if (high)
+        z = vec3_negate(z);
+    radius = radius > 0 ? radius : 1;
+    out->u = 0.5 + vec3_dot(w, x) / (2 * radius);
+    out->v = 0.5 + vec3_dot(w, z) / (2 * radius);
+    out->dpdu = vec3_scale(x, 2 * radius);
+    out->dpdv = vec3_scale(z, 2 * radius);
+}
+
+static void describe_side(const struct conic *c, const struct ray *ray, struct vec3 f, struct surface *out) {
+    double s = 0, magnitude = 0, gg = 0;
+    struct vec3 w = {0}, gradient = {0};
+    for (int step = 0; step < 3; step++) {
+        s = vec3_dot(f, c->axis);
+        w = vec3_add_scaled(f, c->axis, -s);
+        double square = vec3_dot(w, w), value = square - ((c->a * s + c->b) * s + c->c);
+        magnitude = square + fabs(c->a) * s * s + fabs(c->b * s) + fabs(c->c);
+        gradient = vec3_add_scaled(w, c->axis, -(c->a * s + c->b / 2)); /* half of it */
+        gg = vec3_dot(gradient, gradient);
+        if (step == 2 || !(fabs(value) < gg)) /* at a tip the step would go astray */
+            break;
+        f = vec3_add_scaled(f, gradient, -value / (2 * gg));
+    }
+    double size = vec3_max_abs(c->base) + vec3_max_abs(f);
+    double slack = gg > 0 ? magnitude / sqrt(gg) : INFINITY, near_tip = sqrt(magnitude) * 0x1p23;
+    out->error = 0x1p-49 * (fmin(slack, near_tip) + size);
+    out->point = vec3_add(c->base, f);
+    out->normal = gg > 0 ? gradient : vec3_negate(ray->direction);
+
+    struct vec3 x, z;
+    wrap_axes(c->axis, &x, &z);
+    double p = vec3_dot(w, x), q = vec3_dot(w, z), radius = sqrt(p * p + q * q);
+    double cosine = radius > 0 ? p / radius : 1, sine = radius > 0 ? q / radius : 0;
+    bool limited = isfinite(c->lo) && isfinite(c->hi);
+    double length = limited ? c->hi - c->lo : 1;
+    out->u = 0.5 - el_atan2(q, p) / TURN; /* to the right, seen from outside */
+    out->v = limited ? fmin(fmax((s - c->lo) / length, 0), 1) : s;
+    out->dpdu = vec3_scale(vec3_sub(vec3_scale(x, sine), vec3_scale(z, cosine)), TURN * radius);
+    double widening = radius > 0 ? (c->a * s + c->b / 2) / radius : 0;
+    struct vec3 outward = vec3_add(vec3_scale(x, cosine), vec3_scale(z, sine));
+    out->dpdv = vec3_scale(vec3_add_scaled(c->axis, outward, widening), length);
+}
+
+void conic_describe(const struct conic *c, const struct ray *ray, const struct crossing *crossing,
+                    struct surface *out) {
+    struct vec3 f = vec3_sub(ray_at(ray, crossing->t), c->base);
+    *out = (struct surface){.has_uv = true};
+    if (crossing->part == CONIC_SIDE)
+        describe_side(c, ray, f, out);
+    else
+        describe_end(c, f, crossing->part == CONIC_HIGH_END, out);
+    out->shading_normal = out->pattern_normal = out->normal;
+    out->pattern_point = out->point;
+}
+
+/* The circle at the height s: its reach in the direction whose parts along and across the axis are given. */
+static void extend_by_circle(const struct conic *c, double s, double along, double across, double *lo, double *hi) {
+    double square = (c->a * s + c->b) * s + c->c;
+    double rounding = 0x1p-48 * (fabs(c->a) * s * s + fabs(c->b * s) + fabs(c->c));
+    if (!(s >= c->lo && s <= c->hi && square >= -rounding))
+        return;
+    double reach = across * sqrt(fmax(square, 0));
+    *lo = fmin(*lo, along * s - reach);
+    *hi = fmax(*hi, along * s + reach);
+}
+
+void conic_extent(const struct conic *c, struct vec3 g, double *lo, double *hi) {
+    double along = vec3_dot(g, c->axis), across = vec3_length(vec3_add_scaled(g, c->axis, -along));
+    double offset = vec3_dot(g, c->base), roots[2];
+    *lo = INFINITY;
+    *hi = -INFINITY;
+    bool limited = isfinite(c->lo) && isfinite(c->hi);
+    if (!limited) {
+        /* A closed form exists where the conic is an ellipse; else the shape is taken as endless both ways. */
+        bool only_along = across == 0;
+        if (!(c->a < 0)) {
+            *lo = only_along && along != 0 ? (along > 0 ? along * c->lo : along * c->hi) + offset : -INFINITY;
+            *hi = only_along && along != 0 ? (along > 0 ? along * c->hi : along * c->lo) + offset : INFINITY;
+            if (only_along && along == 0)
+                *lo = *hi = offset;
+            return;
+        }
+    }
+    /* The extremes are at the ends, at the tips, or where the circle's reach is stationary:
+     * along + across (a s + b / 2) / radius = 0, squared. */
+    extend_by_circle(c, c->lo, along, across, lo, hi);
+    extend_by_circle(c, c->hi, along, across, lo, hi);
+    int count = roots_quadratic(c->a, c->b, c->c, roots);
+    for (int i = 0; i < count; i++)
+        extend_by_circle(c, roots[i], along, across, lo, hi);
+    double p = along * along, q = across * across;
+    count = roots_quadratic(c->a * (p - c->a * q), c->b * (p - c->a * q), p * c->c - q * c->b * c->b / 4, roots);
+    for (int i = 0; i < count; i++)
+        extend_by_circle(c, roots[i], along, across, lo, hi);
+    *lo += offset;
+    *hi += offset;
+}
