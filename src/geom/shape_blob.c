@@ -11,6 +11,7 @@
 #include "geom/bernstein.h"
 #include "geom/line.h"
 #include "geom/part_tree.h"
+#include "geom/wrap.h"
 
 enum { CELL_DEPTH = 7, REGIONS = 4, BODY = 0, BALL_A = 1, BALL_B = 2 };
 #define CELL_WORK (UINT32_C(1) << 23) /* fields looked at while the bounds are found; beyond it cells count as full */
@@ -19,6 +20,7 @@ struct blob {
     struct blob_element *elements;
     uint32_t count;
     double threshold, size;
+    struct vec3 middle; /* of the elements that add, for pictures */
     struct part_tree tree;
     struct box bounds;
 };
@@ -105,7 +107,7 @@ const struct blob *blob_build(struct arena *arena, const struct blob_input *in, 
     if (!check(in, error))
         return NULL;
     struct blob *blob = arena_alloc(arena, sizeof *blob);
-    struct box *boxes = arena_alloc_array(arena, in->count, sizeof *boxes), all = box_empty();
+    struct box *boxes = arena_alloc_array(arena, in->count, sizeof *boxes), all = box_empty(), adding = box_empty();
     struct blob_element *elements = arena_alloc_array(arena, in->count, sizeof *elements);
     if (!blob || !boxes || !elements) {
         error_no_memory(error, "a blob");
@@ -117,6 +119,8 @@ const struct blob *blob_build(struct arena *arena, const struct blob_input *in, 
         boxes[i].min = vec3_sub(vec3_min(e->a, e->b), vec3_all(e->radius));
         boxes[i].max = vec3_add(vec3_max(e->a, e->b), vec3_all(e->radius));
         all = box_join(all, boxes[i]);
+        if (e->strength > 0)
+            adding = box_join(adding, boxes[i]);
     }
     *blob = (struct blob){.elements = elements, .count = in->count, .threshold = in->threshold, .bounds = all};
     if (!part_tree_build(arena, boxes, in->count, 2, &blob->tree)) {
@@ -128,6 +132,8 @@ const struct blob *blob_build(struct arena *arena, const struct blob_input *in, 
     if (box_is_empty(&cells.found)) /* the threshold is nowhere attained: a point */
         cells.found = (struct box){elements[0].a, elements[0].a};
     blob->bounds = box_pad(cells.found);
+    blob->middle =
+        box_is_empty(&adding) ? elements[0].a : vec3_add(vec3_scale(adding.min, 0.5), vec3_scale(adding.max, 0.5));
     blob->size = fmax(vec3_max_abs(all.min), vec3_max_abs(all.max));
     return blob;
 }
@@ -362,4 +368,5 @@ void blob_describe(const struct blob *blob, const struct ray *ray, const struct 
         n = vec3_normalize(vec3_scale(ray->direction, crossing->enter ? -1 : 1));
     *out = (struct surface){
         .point = point, .normal = n, .shading_normal = n, .pattern_point = point, .pattern_normal = n, .error = error};
+    wrap_as_sphere(blob->middle, out);
 }

@@ -31,6 +31,7 @@ struct box blob_bounds(const struct blob *blob);
 bool blob_crossings(const struct blob *blob, const struct ray *ray, struct geom_scratch *scratch,
                     struct crossing_list *out);
 bool blob_contains(const struct blob *blob, struct vec3 point);
+/* The picture lies like a map of the earth, seen from the middle of the box round the elements that add; y is up. */
 void blob_describe(const struct blob *blob, const struct ray *ray, const struct crossing *crossing,
                    struct surface *out);
 uint32_t blob_scratch_need(const struct blob *blob);

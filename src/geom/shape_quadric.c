@@ -5,6 +5,7 @@
  * its box follows from the inverse. */
 #include "geom/shape_quadric.h"
 
+#include "geom/flat.h"
 #include "geom/shape_box.h"
 #include "geom/span.h"
 #include "geom/wrap.h"
@@ -63,6 +64,159 @@ bool quadric_contains(const struct quadric *q, struct vec3 point) {
     return box_shape_contains(&q->limits, point) && quadric_value(q, point) < 0;
 }
 
+/* The quadratic part as a matrix, its adjugate and determinant, and where the gradient vanishes. */
+struct centred {
+    double cx, cy, cz, kxy, kxz, kyz; /* the adjugate */
+    double det;
+    struct vec3 centre;
+    bool has_centre, definite; /* one centre; the matrix is positive definite */
+};
+
+static struct centred centred(const struct quadric *q) {
+    const double *c = q->c;
+    double xx = c[0], yy = c[1], zz = c[2], xy = c[3] / 2, xz = c[4] / 2, yz = c[5] / 2;
+    double cx = yy * zz - yz * yz, cy = xx * zz - xz * xz, cz = xx * yy - xy * xy;
+    double kxy = xz * yz - xy * zz, kxz = xy * yz - xz * yy, kyz = xy * xz - yz * xx;
+    double det = xx * cx + xy * kxy + xz * kxz;
+    double size = fabs(xx) + fabs(yy) + fabs(zz) + fabs(xy) + fabs(xz) + fabs(yz), least = 0x1p-30 * size * size * size;
+    struct vec3 g = {-c[6] / (2 * det), -c[7] / (2 * det), -c[8] / (2 * det)};
+    return (struct centred){.cx = cx,
+                            .cy = cy,
+                            .cz = cz,
+                            .kxy = kxy,
+                            .kxz = kxz,
+                            .kyz = kyz,
+                            .det = det,
+                            .centre = {cx * g.x + kxy * g.y + kxz * g.z, kxy * g.x + cy * g.y + kyz * g.z,
+                                       kxz * g.x + kyz * g.y + cz * g.z},
+                            .has_centre = fabs(det) > least,
+                            .definite = xx > 0 && cz > 0 && det > least};
+}
+
+/* Of a positive definite one whose solid is not empty the reach along g is the square root of g . M g, M the inverse
+ * matrix times minus the value at the centre. M is scaled by the determinant, which the value is divided by. */
+struct ellipsoid_form {
+    struct centred part;
+    double value; /* minus that at the centre over the determinant; <= 0: empty */
+};
+
+static bool ellipsoid_form(const struct quadric *q, struct ellipsoid_form *out) {
+    out->part = centred(q);
+    if (!out->part.definite)
+        return false;
+    out->value = -quadric_value(q, out->part.centre) / out->part.det;
+    return true;
+}
+
+/* The inverse loses as many digits as the determinant cancels. */
+#define FORM_ROUNDING (1 + 0x1p-18)
+
+struct box quadric_bounds(const struct quadric *q) {
+    struct ellipsoid_form e;
+    if (!ellipsoid_form(q, &e))
+        return q->limits;
+    if (!(e.value > 0))
+        return box_empty();
+    struct vec3 reach = {sqrt(e.part.cx * e.value), sqrt(e.part.cy * e.value), sqrt(e.part.cz * e.value)};
+    reach = vec3_scale(reach, FORM_ROUNDING);
+    struct box whole = {vec3_sub(e.part.centre, reach), vec3_add(e.part.centre, reach)};
+    return box_meet(whole, q->limits);
+}
+
+bool quadric_extent(const struct quadric *q, struct vec3 g, double *lo, double *hi) {
+    struct ellipsoid_form e;
+    struct box own = quadric_bounds(q);
+    if (!ellipsoid_form(q, &e) || !(e.value > 0) || box_is_empty(&own))
+        return false;
+    double form = (e.part.cx * g.x + 2 * e.part.kxy * g.y + 2 * e.part.kxz * g.z) * g.x +
+                  (e.part.cy * g.y + 2 * e.part.kyz * g.z) * g.y + e.part.cz * g.z * g.z;
+    double middle = vec3_dot(g, e.part.centre), reach = form > 0 ? sqrt(form * e.value) * FORM_ROUNDING : 0;
+    /* The box that limits it may be nearer. */
+    struct vec3 half = vec3_scale(vec3_sub(own.max, own.min), 0.5), box_centre = vec3_add(own.min, half);
+    double box_middle = vec3_dot(g, box_centre);
+    double box_reach = fabs(g.x) * half.x + fabs(g.y) * half.y + fabs(g.z) * half.z;
+    *lo = fmax(middle - reach, box_middle - box_reach);
+    *hi = fmin(middle + reach, box_middle + box_reach);
+    return true;
+}
+
+/* ---- image coordinates ---- */
+
+static int sign_of(double a, double least) {
+    return a > least ? 1 : a < -least ? -1 : 0;
+}
+
+/* The axis whose square differs in sign from the other two: that of a cylinder, cone, paraboloid or hyperboloid. When
+ * all differ the one without a square; else y. */
+static int axis_of(const struct quadric *q) {
+    const double *c = q->c, least = 0x1p-30 * (fabs(c[0]) + fabs(c[1]) + fabs(c[2]));
+    int x = sign_of(c[0], least), y = sign_of(c[1], least), z = sign_of(c[2], least);
+    if (x == z)
+        return 1;
+    if (y == z)
+        return 0;
+    if (x == y)
+        return 2;
+    return x == 0 ? 0 : y == 0 ? 1 : 2;
+}
+
+/* The centre; of quadrics without one the middle along each axis by itself: of its parabola, else of the limits. */
+static struct vec3 middle_point(const struct quadric *q, const struct centred *part) {
+    if (part->has_centre)
+        return part->centre;
+    double middle[3];
+    for (int i = 0; i < 3; i++) {
+        double lo = vec3_get(q->limits.min, i), hi = vec3_get(q->limits.max, i);
+        middle[i] = q->c[i] != 0 ? -q->c[6 + i] / (2 * q->c[i]) : middle_of(lo, hi);
+    }
+    return vec3_make(middle[0], middle[1], middle[2]);
+}
+
+static bool has_both_ends(const struct box *limits, int axis) {
+    return isfinite(vec3_get(limits->min, axis)) && isfinite(vec3_get(limits->max, axis));
+}
+
+static void describe_image(const struct quadric *q, struct surface *out) {
+    struct centred part = centred(q);
+    struct vec3 base = middle_point(q, &part), up = {0, 0, 0};
+    if (part.definite) {
+        wrap_as_sphere(base, out);
+        return;
+    }
+    int axis = axis_of(q);
+    double lo = vec3_get(q->limits.min, axis), hi = vec3_get(q->limits.max, axis), length = 1;
+    double *at = axis == 0 ? &base.x : axis == 1 ? &base.y : &base.z;
+    *(axis == 0 ? &up.x : axis == 1 ? &up.y : &up.z) = 1;
+    if (has_both_ends(&q->limits, axis)) {
+        *at = lo;
+        length = hi - lo;
+    }
+    wrap_as_label(base, up, length, out);
+}
+
+/* A face of the limits shows the picture upright, once; in units of the object where there is no end. */
+static void describe_face_image(const struct box *limits, struct surface *out) {
+    struct vec3 level, up;
+    flat_across(out->normal, &level, &up);
+    for (int axis = 0; axis < 3; axis++) {
+        bool ends = has_both_ends(limits, axis);
+        double lo = ends ? vec3_get(limits->min, axis) : 0, size = ends ? vec3_get(limits->max, axis) - lo : 1;
+        double place = (vec3_get(out->point, axis) - lo) / size;
+        double along_u = vec3_get(level, axis), along_v = vec3_get(up, axis);
+        if (along_u != 0) {
+            out->u = along_u > 0 ? place : 1 - place;
+            out->dpdu = vec3_scale(level, size);
+        }
+        if (along_v != 0) {
+            out->v = along_v > 0 ? place : 1 - place;
+            out->dpdv = vec3_scale(up, size);
+        }
+    }
+    out->has_uv = true;
+}
+
+/* ---- describing ---- */
+
 static void describe_face(const struct quadric *q, uint32_t part, struct surface *out) {
     enum box_face face = (enum box_face)(part - QUADRIC_FIRST_FACE);
     const struct box *b = &q->limits;
@@ -90,6 +244,7 @@ static void describe_face(const struct quadric *q, uint32_t part, struct surface
     out->point = p;
     out->normal = n;
     out->error = 0x1p-49 * vec3_max_abs(p);
+    describe_face_image(b, out);
 }
 
 void quadric_describe(const struct quadric *q, const struct ray *ray, const struct crossing *crossing,
@@ -114,64 +269,8 @@ void quadric_describe(const struct quadric *q, const struct ray *ray, const stru
         out->point = p;
         out->normal = gg > 0 ? gradient : vec3_negate(ray->direction);
         out->error = 0x1p-49 * (fmin(slack, 0x1p23 * far) + far);
+        describe_image(q, out);
     }
     out->shading_normal = out->pattern_normal = out->normal;
     out->pattern_point = out->point;
-}
-
-/* A quadratic part that is positive definite, and a solid that is not empty: the gradient vanishes at the centre, and
- * the reach along g is the square root of g . M g, M the inverse matrix times minus the value there. M is scaled by the
- * determinant, which the value is divided by. */
-struct ellipsoid_form {
-    struct vec3 centre;
-    double cx, cy, cz, kxy, kxz, kyz; /* the adjugate matrix */
-    double value;                     /* minus that at the centre over the determinant; <= 0: empty */
-};
-
-static bool ellipsoid_form(const struct quadric *q, struct ellipsoid_form *out) {
-    const double *c = q->c;
-    double xx = c[0], yy = c[1], zz = c[2], xy = c[3] / 2, xz = c[4] / 2, yz = c[5] / 2;
-    double cx = yy * zz - yz * yz, cy = xx * zz - xz * xz, cz = xx * yy - xy * xy;
-    double kxy = xz * yz - xy * zz, kxz = xy * yz - xz * yy, kyz = xy * xz - yz * xx;
-    double det = xx * cx + xy * kxy + xz * kxz;
-    double size = fabs(xx) + fabs(yy) + fabs(zz) + fabs(xy) + fabs(xz) + fabs(yz);
-    if (!(xx > 0 && cz > 0 && det > 0x1p-30 * size * size * size))
-        return false;
-    struct vec3 g = {-c[6] / (2 * det), -c[7] / (2 * det), -c[8] / (2 * det)};
-    struct vec3 centre = {cx * g.x + kxy * g.y + kxz * g.z, kxy * g.x + cy * g.y + kyz * g.z,
-                          kxz * g.x + kyz * g.y + cz * g.z};
-    *out = (struct ellipsoid_form){centre, cx, cy, cz, kxy, kxz, kyz, -quadric_value(q, centre) / det};
-    return true;
-}
-
-/* The inverse loses as many digits as the determinant cancels. */
-#define FORM_ROUNDING (1 + 0x1p-18)
-
-struct box quadric_bounds(const struct quadric *q) {
-    struct ellipsoid_form e;
-    if (!ellipsoid_form(q, &e))
-        return q->limits;
-    if (!(e.value > 0))
-        return box_empty();
-    struct vec3 reach = {sqrt(e.cx * e.value), sqrt(e.cy * e.value), sqrt(e.cz * e.value)};
-    reach = vec3_scale(reach, FORM_ROUNDING);
-    struct box whole = {vec3_sub(e.centre, reach), vec3_add(e.centre, reach)};
-    return box_meet(whole, q->limits);
-}
-
-bool quadric_extent(const struct quadric *q, struct vec3 g, double *lo, double *hi) {
-    struct ellipsoid_form e;
-    struct box own = quadric_bounds(q);
-    if (!ellipsoid_form(q, &e) || !(e.value > 0) || box_is_empty(&own))
-        return false;
-    double form = (e.cx * g.x + 2 * e.kxy * g.y + 2 * e.kxz * g.z) * g.x + (e.cy * g.y + 2 * e.kyz * g.z) * g.y +
-                  e.cz * g.z * g.z;
-    double middle = vec3_dot(g, e.centre), reach = form > 0 ? sqrt(form * e.value) * FORM_ROUNDING : 0;
-    /* The box that limits it may be nearer. */
-    struct vec3 half = vec3_scale(vec3_sub(own.max, own.min), 0.5), box_centre = vec3_add(own.min, half);
-    double box_middle = vec3_dot(g, box_centre);
-    double box_reach = fabs(g.x) * half.x + fabs(g.y) * half.y + fabs(g.z) * half.z;
-    *lo = fmax(middle - reach, box_middle - box_reach);
-    *hi = fmin(middle + reach, box_middle + box_reach);
-    return true;
 }

@@ -1,10 +1,20 @@
-/* Angles round an axis, for image coordinates. */
+/* Image coordinates round an axis, also for surfaces that have none of their own: wrapped like a label, or like a map
+ * of the earth. */
 #ifndef GRAY_GEOM_WRAP_H
 #define GRAY_GEOM_WRAP_H
 
-#include "math/vec3.h"
+#include "geom/hit.h"
 
 /* Unit vectors at right angles to the unit vector `axis` from which angles are counted; x and z for the axis y. */
 void wrap_axes(struct vec3 axis, struct vec3 *x, struct vec3 *z);
+
+/* Both fill u, v, dpdu and dpdv of a surface whose point and normal are known; normals may have any length > 0. u is
+ * the turn round the axis, from 0 to 1 to the right seen from outside, beginning behind (at -x for the axis y). Where
+ * the surface looks towards the axis u runs the other way, so that nothing is mirrored. */
+
+/* Seen from `centre`: v is the angle above the lower pole, 0 to 1. The axis is y. */
+void wrap_as_sphere(struct vec3 centre, struct surface *out);
+/* Seen from the axis through `base`: v is the height above the base in units of `length`. The axis has unit length. */
+void wrap_as_label(struct vec3 base, struct vec3 axis, double length, struct surface *out);
 
 #endif
