@@ -2,6 +2,7 @@
 #   all (default)  ./gray and the link ./rt       test        the tests, at most 8 minutes
 #   test-long      the rest, restartable by name   layers      includes against the order of rooms
 #   bench          benchmarks                      install     PREFIX, DESTDIR
+#   coverage       lines and branches that the tests reach, in build/coverage (clang; COVERAGE="word ..." runs some tests)
 #   fuzz           every tests/fuzz/fuzz_*.c for FUZZ_SECONDS each (clang; FUZZ=name for some)
 config ?= release
 PREFIX ?= /usr/local
@@ -20,10 +21,15 @@ CFLAGS.debug = -O0 -g -DGRAY_FAULTS
 CFLAGS.asan = -O1 -g -DGRAY_FAULTS -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 CFLAGS.tsan = -O1 -g -DGRAY_FAULTS -fsanitize=thread
 CFLAGS.fuzz = -O1 -g -DGRAY_FAULTS -fsanitize=fuzzer-no-link,address,undefined -fno-omit-frame-pointer
+# Counters live in a file that every process of the tests maps before anything else (%c), so that nothing that ends a
+# process loses them, and nothing needs to be written by a confined one; atomic, so that none is lost to a race.
+COUNTERS = -fprofile-instr-generate=$(CURDIR)/$(BUILD)/raw/%m%c.profraw -fcoverage-mapping -fprofile-update=atomic \
+    -mllvm -runtime-counter-relocation -Wno-unused-command-line-argument
+CFLAGS.coverage = -O1 -g -DGRAY_FAULTS $(COUNTERS)
 ifeq ($(CFLAGS.$(config)),)
-$(error config=$(config) is none of release, debug, asan, tsan, fuzz)
+$(error config=$(config) is none of release, debug, asan, tsan, fuzz, coverage)
 endif
-ifeq ($(config),fuzz)
+ifneq ($(filter $(config),fuzz coverage),)
 CC = clang
 endif
 
@@ -71,6 +77,9 @@ all: check-libraries $(BUILD)/gray $(if $(MPI_LIBS),$(BUILD)/gray-mpi) $(if $(SD
 	@ln -sf $(BUILD)/gray gray && ln -sf gray rt
 else
 all: check-libraries $(BUILD)/gray
+ifeq ($(config),coverage)
+all: $(if $(MPI_LIBS),$(BUILD)/gray-mpi) $(if $(SDL_LIBS),$(BUILD)/gray-gui)
+endif
 endif
 
 check-libraries:
@@ -117,6 +126,8 @@ test:
 	@tools/test.sh
 test-long:
 	@tools/test.sh --long $(ONLY)
+coverage:
+	@tools/coverage.sh $(COVERAGE)
 layers:
 	@tools/layers.sh
 FUZZ_SECONDS ?= 60
@@ -159,5 +170,5 @@ clean:
 	rm -rf build gray rt
 
 force:
-.PHONY: all check-libraries build-tests test test-long layers bench format install clean force build-fuzz fuzz
+.PHONY: all check-libraries build-tests test test-long coverage layers bench format install clean force build-fuzz fuzz
 -include $(ALL_OBJECTS:.o=.d)
