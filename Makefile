@@ -1,9 +1,10 @@
-# gray: make [config=release|debug|asan|tsan|fuzz] [CC=gcc|clang]
+# gray: make [config=release|debug|asan|tsan|fuzz|afl|coverage] [CC=gcc|clang]
 #   all (default)  ./gray and the link ./rt       test        the tests, at most 8 minutes
 #   test-long      the rest, restartable by name   layers      includes against the order of rooms
 #   bench          benchmarks                      install     PREFIX, DESTDIR
 #   coverage       lines and branches that the tests reach, in build/coverage (clang; COVERAGE="word ..." runs some tests)
-#   fuzz           every tests/fuzz/fuzz_*.c for FUZZ_SECONDS each (clang; FUZZ=name for some)
+#   fuzz           every tests/fuzz/fuzz_*.c for FUZZ_SECONDS each (clang's libFuzzer; FUZZ="name ..." for some)
+#   fuzz-afl       the same with AFL++
 config ?= release
 PREFIX ?= /usr/local
 DESTDIR ?=
@@ -20,17 +21,21 @@ CFLAGS.release = -O3 -g -DNDEBUG
 CFLAGS.debug = -O0 -g -DGRAY_FAULTS
 CFLAGS.asan = -O1 -g -DGRAY_FAULTS -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 CFLAGS.tsan = -O1 -g -DGRAY_FAULTS -fsanitize=thread
-CFLAGS.fuzz = -O1 -g -DGRAY_FAULTS -fsanitize=fuzzer-no-link,address,undefined -fno-omit-frame-pointer
+CFLAGS.fuzz = -O1 -g -DGRAY_FAULTS -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+CFLAGS.afl = -O1 -g -DGRAY_FAULTS -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 # Counters live in a file that every process of the tests maps before anything else (%c), so that nothing that ends a
 # process loses them, and nothing needs to be written by a confined one; atomic, so that none is lost to a race.
 COUNTERS = -fprofile-instr-generate=$(CURDIR)/$(BUILD)/raw/%m%c.profraw -fcoverage-mapping -fprofile-update=atomic \
     -mllvm -runtime-counter-relocation -Wno-unused-command-line-argument
 CFLAGS.coverage = -O1 -g -DGRAY_FAULTS $(COUNTERS)
 ifeq ($(CFLAGS.$(config)),)
-$(error config=$(config) is none of release, debug, asan, tsan, fuzz, coverage)
+$(error config=$(config) is none of release, debug, asan, tsan, fuzz, afl, coverage)
 endif
 ifneq ($(filter $(config),fuzz coverage),)
 CC = clang
+endif
+ifeq ($(config),afl)
+CC = afl-clang-fast
 endif
 
 LUA_NAME := $(firstword $(foreach name,lua5.4 lua-5.4 lua54,$(shell $(PKG_CONFIG) --exists $(name) 2>/dev/null && echo $(name))))
@@ -70,7 +75,15 @@ GUI_OBJECT := $(if $(SDL_LIBS),$(patsubst %.c,$(BUILD)/%.o,$(GUI_MAIN)))
 MPI_OBJECT := $(if $(MPI_LIBS),$(patsubst %.c,$(BUILD)/%.o,$(MPI_MAIN)))
 TEST_SOURCES := $(sort $(wildcard tests/unit/*.c)) tests/harness.c tests/stage.c
 TEST_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(TEST_SOURCES))
-ALL_OBJECTS := $(OBJECTS) $(MAIN_OBJECT) $(MPI_OBJECT) $(GUI_OBJECT) $(TEST_OBJECTS)
+# What fuzzers feed; the tests feed it what was found before, under a name for each target.
+FUZZ_SOURCES := $(sort $(wildcard tests/fuzz/fuzz_*.c))
+FUZZ_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(FUZZ_SOURCES))
+FUZZ_HELP := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(FUZZ_SOURCES),$(wildcard tests/fuzz/*.c)))
+ifeq ($(filter $(config),fuzz afl),)
+$(FUZZ_OBJECTS): override CPPFLAGS += -DLLVMFuzzerTestOneInput=$(notdir $*)_input
+TEST_OBJECTS += $(FUZZ_OBJECTS) $(FUZZ_HELP)
+endif
+ALL_OBJECTS := $(FUZZ_OBJECTS) $(FUZZ_HELP) $(OBJECTS) $(MAIN_OBJECT) $(MPI_OBJECT) $(GUI_OBJECT) $(TEST_OBJECTS)
 
 ifeq ($(config),release)
 all: check-libraries $(BUILD)/gray $(if $(MPI_LIBS),$(BUILD)/gray-mpi) $(if $(SDL_LIBS),$(BUILD)/gray-gui)
@@ -131,19 +144,19 @@ coverage:
 layers:
 	@tools/layers.sh
 FUZZ_SECONDS ?= 60
-FUZZ ?= $(patsubst tests/fuzz/fuzz_%.c,%,$(wildcard tests/fuzz/fuzz_*.c))
-ifeq ($(config),fuzz)
+FUZZ ?= $(patsubst tests/fuzz/fuzz_%.c,%,$(FUZZ_SOURCES))
+ifneq ($(filter $(config),fuzz afl),)
 FUZZERS := $(patsubst %,$(BUILD)/fuzz_%,$(FUZZ))
-$(FUZZERS): $(BUILD)/fuzz_%: $(BUILD)/tests/fuzz/fuzz_%.o $(OBJECTS)
+$(FUZZERS): $(BUILD)/fuzz_%: $(BUILD)/tests/fuzz/fuzz_%.o $(FUZZ_HELP) $(OBJECTS)
 	$(CC) $(CFLAGS) -fsanitize=fuzzer $(LDFLAGS) -o $@ $^ $(LDLIBS)
 build-fuzz: $(FUZZERS)
 endif
-# What is found is kept in build/fuzz/corpus and helps the next run; an input that fails is left beside it.
 fuzz:
 	@$(MAKE) -s config=fuzz FUZZ='$(FUZZ)' build-fuzz
-	@for name in $(FUZZ); do mkdir -p build/fuzz/corpus/$$name; echo "== $$name, $(FUZZ_SECONDS) s"; \
-	    build/fuzz/fuzz_$$name -max_total_time=$(FUZZ_SECONDS) -timeout=5 -rss_limit_mb=3000 -max_len=65536 \
-	        -artifact_prefix=build/fuzz/$$name- -print_final_stats=1 -verbosity=0 build/fuzz/corpus/$$name || exit 1; done
+	@tools/fuzz.sh libfuzzer $(FUZZ_SECONDS) $(FUZZ)
+fuzz-afl:
+	@$(MAKE) -s config=afl FUZZ='$(FUZZ)' build-fuzz
+	@tools/fuzz.sh afl $(FUZZ_SECONDS) $(FUZZ)
 # Embree, where it is installed, is the peer of the ray benchmark; the program itself never uses it.
 HAVE_EMBREE := $(shell echo '\#include <embree3/rtcore.h>' | $(CC) -E -x c - >/dev/null 2>&1 && echo yes)
 $(BUILD)/bench/rays: $(BUILD)/bench/rays.o $(BUILD)/bench/rays_scenes.o $(OBJECTS)
@@ -156,7 +169,7 @@ $(BUILD)/bench/growth: $(BUILD)/bench/growth.o $(BUILD)/bench/rays_scenes.o $(OB
 bench: all
 	@bench/run.sh
 format:
-	clang-format -i $(SOURCES) $(wildcard src/*/*.h tests/*.c tests/*.h tests/unit/*.c)
+	clang-format -i $(SOURCES) $(wildcard src/*/*.h tests/*.[ch] tests/unit/*.[ch] tests/fuzz/*.[ch])
 
 install: all
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/gray/lua $(DESTDIR)$(PREFIX)/share/doc/gray
@@ -170,5 +183,5 @@ clean:
 	rm -rf build gray rt
 
 force:
-.PHONY: all check-libraries build-tests test test-long coverage layers bench format install clean force build-fuzz fuzz
+.PHONY: all check-libraries build-tests test test-long coverage layers bench format install clean force build-fuzz fuzz fuzz-afl
 -include $(ALL_OBJECTS:.o=.d)

@@ -407,7 +407,10 @@ void desk_line(struct desk *desk, enum line_kind kind, const char *text) {
     if (!shown)
         return;
     progress_hide(&desk->progress);
-    text_print_line(stderr, text);
+    if (kind == LINE_ERROR)
+        text_print_lines(stderr, text);
+    else
+        text_print_line(stderr, text);
 }
 
 bool desk_settle(struct desk *desk, struct error *error) {

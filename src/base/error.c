@@ -1,4 +1,5 @@
-/* Filling of struct error. Text that does not fit ends in "...", never in half a UTF-8 character. */
+/* Filling of struct error. Text that does not fit ends in "...", never in half a UTF-8 character. It is one line,
+ * whatever names of files and nodes in it hold. */
 #include "base/error.h"
 
 #include <stdarg.h>
@@ -19,6 +20,8 @@ bool error_set(struct error *error, enum error_kind kind, const char *format, ..
     va_end(arguments);
     if (length >= (int)sizeof error->text)
         cut_text(error->text, sizeof error->text);
+    for (char *end = error->text; (end = strpbrk(end, "\n\r"));)
+        *end = '?';
     error->kind = kind;
     return false;
 }

@@ -29,7 +29,7 @@ const char *function_title(const struct function *function, char out[96]) {
     return out;
 }
 
-/* "gr.sphere: TEXT (node 'eye')" */
+/* "gr.sphere: TEXT (node 'eye')", one line whatever names say. */
 static void compose(const struct context *context, const char *text, char *out, size_t size) {
     char title[96] = "";
     if (context->function)
@@ -37,6 +37,8 @@ static void compose(const struct context *context, const char *text, char *out, 
     size_t used = (size_t)snprintf(out, size, "%s%s%s", title, context->function ? ": " : "", text);
     if (context->subject && used < size)
         snprintf(out + used, size - used, " (node '%.200s')", context->subject);
+    for (char *end = out; (end = strpbrk(end, "\n\r"));)
+        *end = '?';
 }
 
 static void warn(struct context *context, const char *format, va_list arguments) {

@@ -1,5 +1,5 @@
-/* The text up to a zero byte is the JSON, the rest the binary chunk of a GLB; bytes that begin as a GLB are taken as they
- * are. */
+/* The text up to a zero byte is the JSON, the rest the binary chunk of a GLB; bytes that begin as a GLB are taken as
+ * they are. */
 #include "fuzz_model.h"
 
 static void number(uint8_t *out, size_t value) {

@@ -27,7 +27,8 @@ static inline void fuzz_model(const char *path, const uint8_t *data, size_t size
     }
     for (size_t i = 0; i < model.nodes.count; i++) {
         const struct model_node *node = &model_nodes(&model)[i];
-        if ((node->mesh != MODEL_NONE && node->mesh >= model.meshes.count) || (node->parent != MODEL_NONE && node->parent >= i))
+        if ((node->mesh != MODEL_NONE && node->mesh >= model.meshes.count) ||
+            (node->parent != MODEL_NONE && node->parent >= i))
             abort();
     }
     for (size_t i = 0; i < model.meshes.count; i++) {
@@ -50,7 +51,8 @@ static inline void fuzz_model(const char *path, const uint8_t *data, size_t size
                 abort();
         }
         for (size_t k = 0; k < m->slots.count; k++)
-            if (((uint32_t *)m->slots.items)[k] != MODEL_NONE && ((uint32_t *)m->slots.items)[k] >= model.materials.count)
+            if (((uint32_t *)m->slots.items)[k] != MODEL_NONE &&
+                ((uint32_t *)m->slots.items)[k] >= model.materials.count)
                 abort();
     }
     model_destroy(&model);

@@ -2,33 +2,12 @@
  * last byte is odd the checks of all records are made right first, or nothing would get behind them. */
 #include "base/mem.h"
 #include "render/tile_file.h"
+#include "tests/fuzz/tile_bytes.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static uint64_t number_at(const uint8_t *bytes, int count) {
-    uint64_t value = 0;
-    for (int i = count - 1; i >= 0; i--)
-        value = value << 8 | bytes[i];
-    return value;
-}
-
-static void repair(uint8_t *bytes, size_t size) {
-    uint64_t place = 0;
-    for (size_t at = 16; size - at >= 24; place++) {
-        uint64_t kind = number_at(bytes + at, 4), length = number_at(bytes + at + 8, 8);
-        if (length > size - at - 24)
-            return;
-        uint64_t check = hash_bytes(bytes + at + 16, (size_t)length, place * 64 + kind);
-        for (size_t i = 0; i < 8; i++)
-            bytes[at + 16 + length + i] = (uint8_t)(check >> (8 * i));
-        at += 24 + (size_t)length;
-        if (at > size)
-            return;
-    }
-}
 
 static void restore(const struct tile_file *file) {
     const struct tile_picture *picture = &file->picture;
@@ -56,7 +35,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (size)
         memcpy(bytes, data, size);
     if (size > 16 && data[size - 1] % 2)
-        repair(bytes, size);
+        tile_bytes_repair(bytes, size);
     struct tile_file file;
     struct error error = {0};
     if (tile_file_parse("fuzz.part", (struct file_bytes){bytes, size}, &file, &error)) {

@@ -832,3 +832,31 @@ TEST(the_scene_of_the_readme_is_the_file_beside_its_picture_and_renders) {
     free(readme);
     free(scene);
 }
+
+TEST(names_with_line_ends_and_control_characters_cannot_speak_for_the_program) {
+    /* In a warning about the scene, in an error of an argument, in a name of a file, in Lua's own error. */
+    struct test_result result =
+        test_gray_scene("local r = gr.node('r') r:add_child(gr.sphere('a\\ngray: notice: b\\27[2J\\u{9b}2J\\x9b'))\n"
+                        "gr.render(r, 'out.png', 8, 8, {0, 0, 10}, {0, 0, -1}, {0, 1, 0}, 50, {0.3, 0.3, 0.3}, {})\n",
+                        "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    CHECK_TEXT(result.err,
+               "scene.lua: warning: node 'a?gray: notice: b?[2J?2J?' has no material and is shown in plain gray\n");
+    free(result.out);
+    free(result.err);
+    result = test_gray_scene("gr.superellipsoid{name = 'a\\n  b\\ngray: c', e = 0}\n", "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 1);
+    CHECK(strstr(result.err, "(node 'a?  b?gray: c')\n  stack traceback:\n") && !strstr(result.err, "\ngray"));
+    free(result.out);
+    free(result.err);
+    result = test_gray_scene("gr.mesh{file = 'a\\ngray: c'}\n", "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 1);
+    CHECK(strstr(result.err, "a?gray: c") && !strstr(result.err, "\ngray"));
+    free(result.out);
+    free(result.err);
+    result = test_gray_scene("error('a\\ngray: c')\n", "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 1);
+    CHECK(strstr(result.err, "scene.lua:1: a\n  gray: c\n  stack traceback:\n") == result.err);
+    free(result.out);
+    free(result.err);
+}

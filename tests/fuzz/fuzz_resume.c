@@ -1,0 +1,77 @@
+/* Any bytes as the checkpoint that --resume goes on with: tiles in the film of the picture, or one line that names the
+ * file; and whatever it held, the checkpoint that is written next can be read again. When the last byte is odd the
+ * checks of all records are made right first. */
+#include "app/keeper.h"
+#include "base/mem.h"
+#include "tests/fuzz/folder.h"
+#include "tests/fuzz/tile_bytes.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void demand(bool condition) {
+    if (!condition)
+        abort();
+}
+
+static void check_error(const struct error *error) {
+    demand(error->kind == ERROR_SCENE && strstr(error->text, "c.tiles") && !strchr(error->text, '\n'));
+}
+
+/* The picture that the run makes: the one of the file, as a changed scene cannot go on, or another one. */
+static void go_on(struct keeper *keeper, const struct tile_picture *picture) {
+    struct error error = {0};
+    char notice[256];
+    bool written;
+    uint32_t tiles = 0;
+    size_t bytes;
+    struct film film = {
+        .x0 = picture->x0, .y0 = picture->y0, .full_width = picture->full_width, .full_height = picture->full_height};
+    demand(film_size(picture->width, picture->height, &bytes, &error));
+    void *block = mem_alloc_zero(1, bytes);
+    if (!block)
+        return;
+    film_place(&film, block, picture->width, picture->height);
+    if (!keeper_has_written(keeper, picture->number, &picture->key, picture->name, &written, &error) ||
+        !keeper_restore(keeper, picture, &film, notice, &error)) {
+        check_error(&error);
+    } else if (!written && keeper_tick(keeper, picture, &film, true, &tiles, &error)) {
+        struct tile_file file;
+        if (picture->number >= keeper->old_number) {
+            demand(tile_file_read("c.tiles", &file, &error) && file.tiles == tiles);
+            tile_file_close(&file);
+        }
+    }
+    mem_free(block);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    struct options options = {.checkpoint = "c.tiles", .resume = true};
+    struct keeper keeper;
+    struct error error = {0};
+    char notice[256];
+    uint8_t *bytes = malloc(size + 1);
+    if (!bytes)
+        return 0;
+    if (size)
+        memcpy(bytes, data, size);
+    if (size > 16 && data[size - 1] % 2)
+        tile_bytes_repair(bytes, size);
+    fuzz_write("c.tiles", bytes, size);
+    free(bytes);
+    keeper_init(&keeper, &options);
+    if (keeper_open(&keeper, "out.png", notice, &error)) {
+        struct tile_picture picture = keeper.old.picture;
+        if (!keeper.old.has_picture)
+            picture = (struct tile_picture){
+                .number = 1, .full_width = 9, .full_height = 9, .width = 9, .height = 9, .shard = 1, .shards = 1};
+        if ((uint64_t)picture.width * picture.height <= 1 << 16)
+            go_on(&keeper, &picture);
+    } else {
+        check_error(&error);
+    }
+    (void)keeper_finish(&keeper, false, &error);
+    return 0;
+}
