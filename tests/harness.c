@@ -164,10 +164,11 @@ static struct test_result run_program(const char *folder, const char *arguments,
     fflush(stdout);
     pid_t child = fork();
     if (child == 0) {
-        char *words[256], *copy = strdup(arguments);
+        static char *words[4096];
+        char *copy = strdup(arguments);
         int count = 0;
         words[count++] = binary;
-        for (char *word = strtok(copy, " "); word && count < 255; word = strtok(NULL, " "))
+        for (char *word = strtok(copy, " "); word && count < 4095; word = strtok(NULL, " "))
             words[count++] = word;
         words[count] = NULL;
         if (environment)

@@ -77,7 +77,7 @@ static bool frame_is_sound(const struct frame *frame) {
     switch (frame->kind) {
     case FRAME_LINE:
         return frame->size > before_text && frame->size <= sizeof frame->body.line &&
-               (unsigned)frame->body.line.kind <= LINE_DETAIL &&
+               (unsigned)frame->body.line.kind <= LINE_OUTPUT &&
                ends_with_zero(frame->body.line.text, frame->size - before_text);
     case FRAME_BEGIN:
         return frame->size == sizeof *request && ends_with_zero(request->file, sizeof request->file) &&

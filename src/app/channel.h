@@ -28,8 +28,14 @@ enum frame_kind {
     FRAME_ANSWER, /* struct frame_answer */
 };
 
-/* What kind of line: decides whether -q or --verbose let it pass. */
-enum line_kind { LINE_ERROR, LINE_WARNING, LINE_NOTICE, LINE_DETAIL };
+/* What kind of line: decides whether -q or --verbose let it pass, and where it goes. */
+enum line_kind {
+    LINE_ERROR,
+    LINE_WARNING,
+    LINE_NOTICE,
+    LINE_DETAIL,
+    LINE_OUTPUT /* a piece of what was asked for: goes to standard output as it is, no newline added */
+};
 
 enum { FRAME_TEXT_LIMIT = 16384, FRAME_SIZE_LIMIT = FRAME_TEXT_LIMIT + 64 };
 

@@ -3,6 +3,7 @@
  * in the arena of the job, which is emptied for the next one. */
 #include "app/child.h"
 
+#include "app/inspect.h"
 #include "app/live.h"
 #include "app/progress.h"
 #include "base/arena.h"
@@ -195,6 +196,25 @@ static bool make_passes(struct child *child, const struct scene *scene, struct r
     return true;
 }
 
+/* --pixel and --dump-scene: the scene is built, no picture is made. */
+static bool is_asked(const struct options *options) {
+    return options->pixel_count > 0 || options->dump_scene;
+}
+
+static void print_piece(void *context, const char *text) {
+    tell(context, LINE_OUTPUT, text);
+}
+
+static bool answer_questions(struct child *child, const struct render_request *request, const struct render_job *job,
+                             struct error *error) {
+    const struct options *options = child->options;
+    struct inspected picture = {request->file, job, request->root};
+    struct sheet sheet = {.put = print_piece, .context = child};
+    return (!options->dump_scene || inspect_world(&picture, options->json, &sheet, error)) &&
+           (options->pixel_count == 0 ||
+            inspect_pixels(&picture, options->pixels, options->pixel_count, options->json, child->pool, &sheet, error));
+}
+
 /* From the flattened scene to the finished film. */
 static bool make_picture(struct child *child, const struct render_request *request, struct render_job *job,
                          const struct picture_request *asked, struct picture_report *report, struct error *error) {
@@ -206,7 +226,10 @@ static bool make_picture(struct child *child, const struct render_request *reque
     if (!ok)
         return false;
     double built = progress_clock();
-    if (!child->options->check) {
+    if (is_asked(child->options)) {
+        job->world = &world;
+        ok = answer_questions(child, request, job, error);
+    } else if (!child->options->check) {
         job->world = &world;
         ok = asked->live ? make_passes(child, request->scene, job, asked, report, built - begun, error)
                          : render_run(job, child->pool, &report->rays, error);
@@ -231,7 +254,7 @@ static bool begin_picture(struct child *child, const struct render_request *requ
                                     .layers = job->settings.aov,
                                     .live = child->options->window,
                                     .camera = job->camera,
-                                    .check = child->options->check};
+                                    .check = child->options->check || is_asked(child->options)};
     char warning[256] = "";
     size_t length = strlen(request->file);
     if (length >= sizeof asked.file)
@@ -286,7 +309,7 @@ static bool render_job_run(struct child *child, const struct render_request *req
     job.gate = atomic_load(&services->control->gate) != GATE_NONE ? &services->control->gate : NULL;
     bool ok = make_picture(child, request, &job, &asked, &report, error);
     arena_reset(&child->job);
-    if (ok && !options->check)
+    if (ok && !asked.check)
         return services->done(services->context, &report, error);
     services->abandon(services->context);
     return ok;

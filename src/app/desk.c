@@ -403,6 +403,10 @@ void desk_line(struct desk *desk, enum line_kind kind, const char *text) {
     case LINE_DETAIL:
         shown = desk->options->verbose;
         break;
+    case LINE_OUTPUT:
+        text_print(stdout, text);
+        (void)fflush(stdout);
+        return;
     }
     if (!shown)
         return;

@@ -56,7 +56,8 @@ void desk_abandon(struct desk *desk); /* fine when no picture is open */
 void desk_checkpoint(struct desk *desk);
 /* Draws how far the picture is, writes the checkpoint when it is time, and talks with the farm. */
 void desk_show_progress(struct desk *desk);
-/* One line (or several: an error with its traceback) on standard error, as -q and --verbose allow. */
+/* One line (or several: an error with its traceback) on standard error, as -q and --verbose allow; LINE_OUTPUT on
+ * standard output. */
 void desk_line(struct desk *desk, enum line_kind kind, const char *text);
 /* --watch: the end of one run, and the beginning of the next, whose pictures count from 1 again. */
 bool desk_settle(struct desk *desk, struct error *error);

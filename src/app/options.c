@@ -21,6 +21,7 @@ enum option_kind {
     OPTION_ACTION,  /* options.action; `low` says which */
     OPTION_SIZE,    /* --size */
     OPTION_CROP,    /* --crop */
+    OPTION_PIXEL,   /* --pixel */
     OPTION_SEED,    /* --seed */
     OPTION_DEFINE,  /* -D */
     OPTION_FOLDER,  /* --allow-read, --allow-write: `low` says which */
@@ -181,6 +182,14 @@ static const struct option table[] = {
      "what each picture cost: a table on standard error, or one JSON line a picture on standard output"},
     {GROUP_TALK, "--progress", OPTION_CHOICE, "auto|bar|json|none", NO_RANGE, FIELD(progress), "auto",
      "how far the picture is, on standard error; auto: a bar on a terminal, else none"},
+    {GROUP_TALK, "--pixel", OPTION_PIXEL, "X,Y", NO_RANGE, NO_FIELD, NULL,
+     "render nothing, but tell on standard output how this pixel of every picture comes about: its rays, what they "
+     "meet, "
+     "lights and weights, down to the byte; may be repeated"},
+    {GROUP_TALK, "--dump-scene", OPTION_FLAG, NULL, NO_RANGE, FIELD(dump_scene), NULL,
+     "render nothing, but tell what every picture's world is made of"},
+    {GROUP_TALK, "--json", OPTION_FLAG, NULL, NO_RANGE, FIELD(json), NULL,
+     "--pixel and --dump-scene as JSON, one line a picture"},
     {GROUP_TALK, "--help|h", OPTION_ACTION, NULL, ACTION_HELP, 0, NO_FIELD, NULL, "this text"},
     {GROUP_TALK, "--man", OPTION_ACTION, NULL, ACTION_MANUAL, 0, NO_FIELD, NULL,
      "this text and all functions of the scene language"},
@@ -349,6 +358,16 @@ static bool read_size(struct options *options, const char *text) {
     return true;
 }
 
+static bool read_pixel(struct options *options, uint32_t (*pixels)[2], const char *text) {
+    static const long long low[] = {0, 0};
+    long long values[2];
+    if (!read_list(text, ',', 2, low, (1 << 20) - 1, values))
+        return false;
+    pixels[options->pixel_count][0] = (uint32_t)values[0];
+    pixels[options->pixel_count++][1] = (uint32_t)values[1];
+    return true;
+}
+
 static bool read_crop(struct options *options, const char *text) {
     static const long long low[] = {0, 0, 1, 1};
     long long values[4];
@@ -458,6 +477,9 @@ static bool value_error(const struct option *option, const char *text, struct er
         return error_set(error, ERROR_USAGE,
                          "%.*s needs X,Y,W,H, whole numbers with X and Y not negative and W and H at least 1, not '%s'",
                          shown, option->names, text);
+    case OPTION_PIXEL:
+        return error_set(error, ERROR_USAGE, "%.*s needs X,Y, two whole numbers from 0, not '%s'", shown, option->names,
+                         text);
     case OPTION_SHARD:
         return error_set(error, ERROR_USAGE, "%.*s needs I/N, whole numbers with I from 1 to N, not '%s'", shown,
                          option->names, text);
@@ -474,6 +496,7 @@ static bool value_error(const struct option *option, const char *text, struct er
 /* Room for lists that grow with the words of the command line. */
 struct lists {
     struct script_define *defines;
+    uint32_t (*pixels)[2];
     const char **folders[2]; /* --allow-read, --allow-write */
 };
 
@@ -509,6 +532,9 @@ static bool apply_option(const struct option *option, const char *text, struct o
         break;
     case OPTION_CROP:
         ok = read_crop(options, text);
+        break;
+    case OPTION_PIXEL:
+        ok = read_pixel(options, lists->pixels, text);
         break;
     case OPTION_SEED:
         ok = read_seed(options, text);
@@ -574,6 +600,20 @@ static bool check_together(const struct options *options, struct error *error) {
         return error_set(error, ERROR_USAGE, "-o - leaves no name for --aov");
     if (options->output && strcmp(options->output, "-") == 0 && options->statistics == STATISTICS_JSON)
         return error_set(error, ERROR_USAGE, "-o - and --stats=json both write to standard output");
+    return true;
+}
+
+/* --pixel and --dump-scene. */
+static bool check_questions(const struct options *options, struct error *error) {
+    const char *asked = options->pixel_count > 0 ? "--pixel" : "--dump-scene";
+    if (options->pixel_count == 0 && !options->dump_scene)
+        return !options->json || error_set(error, ERROR_USAGE, "--json is for --pixel and --dump-scene");
+    if (options->window || options->check || options->shards || options->shards_of_pictures || options->mpi ||
+        options->checkpoint || options->resume || options->action == ACTION_MERGE)
+        return error_set(error, ERROR_USAGE,
+                         "%s renders nothing: it goes with no -gui, --check, --shard, --mpi, --checkpoint, --resume "
+                         "or merge",
+                         asked);
     return true;
 }
 
@@ -655,12 +695,14 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
     size_t room = argc > 0 ? (size_t)argc : 1;
     const char **scripts = arena_alloc_array(arena, room, sizeof *scripts);
     struct lists lists = {.defines = arena_alloc_array(arena, room, sizeof *lists.defines),
+                          .pixels = arena_alloc_array(arena, room, sizeof *lists.pixels),
                           .folders = {arena_alloc_array(arena, room, sizeof *lists.folders[0]),
                                       arena_alloc_array(arena, room, sizeof *lists.folders[1])}};
-    if (!scripts || !lists.defines || !lists.folders[0] || !lists.folders[1])
+    if (!scripts || !lists.defines || !lists.pixels || !lists.folders[0] || !lists.folders[1])
         return error_no_memory(error, "the command line");
     options->scripts = scripts;
     options->script.defines = lists.defines;
+    options->pixels = (const uint32_t(*)[2])lists.pixels;
     options->script.allow_read = lists.folders[0];
     options->script.allow_write = lists.folders[1];
     bool only_scripts = false;
@@ -696,7 +738,7 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
             return false;
     }
     options->settings.keep_first = options->targets_prefix || options->first_pass_prefix;
-    return check_together(options, error) && check_parts(options, error);
+    return check_together(options, error) && check_questions(options, error) && check_parts(options, error);
 }
 
 /* Prints words from `column` on, broken so that no line is longer than 100 columns. */

@@ -38,6 +38,10 @@ struct options {
     bool window;                   /* -gui */
     bool watch;                    /* --watch */
     bool check, quiet, verbose, no_fork;
+    const uint32_t (*pixels)[2]; /* --pixel: {x, y}, tell how these come about instead of rendering */
+    uint32_t pixel_count;
+    bool dump_scene;            /* --dump-scene: tell what the world is made of instead */
+    bool json;                  /* both: as JSON */
     const char *checkpoint;     /* --checkpoint: a file, or "auto", or NULL */
     double checkpoint_every;    /* seconds */
     bool mpi;                   /* one of several processes that make a picture together */

@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 /* Length of the well-formed UTF-8 sequence at `at`, or 0 (RFC 3629: no overlong forms, no surrogates, up to U+10FFFF).
  */
@@ -39,6 +40,26 @@ static void print_cleaned(FILE *stream, const char *text, bool continued) {
     (void)fputc('\n', stream);
 }
 
+size_t text_clean_piece(const char *text, char piece[8], size_t *taken) {
+    const unsigned char *at = (const unsigned char *)text;
+    size_t length = utf8_length(at);
+    *taken = length ? length : 1;
+    if (is_control(at, length)) {
+        piece[0] = '?';
+        return 1;
+    }
+    memcpy(piece, text, *taken);
+    return *taken;
+}
+
+void text_print(FILE *stream, const char *text) {
+    char piece[8];
+    for (size_t taken; *text; text += taken) {
+        size_t size = text_clean_piece(text, piece, &taken);
+        (void)fwrite(*text == '\n' ? text : piece, 1, size, stream);
+    }
+}
+
 void text_print_line(FILE *stream, const char *text) {
     print_cleaned(stream, text, false);
 }
@@ -47,20 +68,26 @@ void text_print_lines(FILE *stream, const char *text) {
     print_cleaned(stream, text, true);
 }
 
-void text_print_json(FILE *stream, const char *text) {
+size_t text_json_piece(const char *text, char piece[8], size_t *taken) {
     const unsigned char *at = (const unsigned char *)text;
+    size_t length = utf8_length(at);
+    *taken = length ? length : 1;
+    if (length == 0)
+        return (size_t)snprintf(piece, 8, "\\ufffd");
+    if (*at == '"' || *at == '\\')
+        return (size_t)snprintf(piece, 8, "\\%c", *at);
+    if (*at < 32 || *at == 127)
+        return (size_t)snprintf(piece, 8, "\\u%04x", *at);
+    memcpy(piece, at, length);
+    return length;
+}
+
+void text_print_json(FILE *stream, const char *text) {
+    char piece[8];
     (void)fputc('"', stream);
-    while (*at) {
-        size_t length = utf8_length(at);
-        if (length == 0)
-            (void)fputs("\\ufffd", stream);
-        else if (*at == '"' || *at == '\\')
-            (void)fprintf(stream, "\\%c", *at);
-        else if (*at < 32 || *at == 127)
-            (void)fprintf(stream, "\\u%04x", *at);
-        else
-            (void)fwrite(at, 1, length, stream);
-        at += length ? length : 1;
+    for (size_t taken; *text; text += taken) {
+        size_t size = text_json_piece(text, piece, &taken);
+        (void)fwrite(piece, 1, size, stream);
     }
     (void)fputc('"', stream);
 }

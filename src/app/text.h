@@ -2,6 +2,7 @@
 #ifndef GRAY_APP_TEXT_H
 #define GRAY_APP_TEXT_H
 
+#include <stddef.h>
 #include <stdio.h>
 
 /* The text as one line and a newline; control characters other than tab become '?', line ends and those of the upper
@@ -11,5 +12,13 @@ void text_print_line(FILE *stream, const char *text);
 void text_print_lines(FILE *stream, const char *text);
 /* The text as a JSON string with its quotes; bytes that are no UTF-8 become U+FFFD. */
 void text_print_json(FILE *stream, const char *text);
+
+/* The beginning of such a string: the bytes for the next *taken bytes of a text that has not ended; returns how many.
+ */
+size_t text_json_piece(const char *text, char piece[8], size_t *taken);
+/* The same for a terminal: '?' for control characters. */
+size_t text_clean_piece(const char *text, char piece[8], size_t *taken);
+/* A text of several lines of our own, cleaned like that but for its line ends. */
+void text_print(FILE *stream, const char *text);
 
 #endif

@@ -116,12 +116,20 @@ static void material_link(const struct material *material, const struct hit *hit
 }
 
 void material_look(const struct material *material, const struct hit *hit, struct surface_look *out) {
+    material_look_told(material, hit, out, NULL, NULL);
+}
+
+void material_look_told(const struct material *material, const struct hit *hit, struct surface_look *out,
+                        material_told *told, void *context) {
     const struct material *chain[MATERIAL_DEPTH];
     int depth = 0;
     for (const struct material *link = material; link && depth < MATERIAL_DEPTH; link = link->base)
         chain[depth++] = link;
-    while (depth > 0)
+    while (depth > 0) {
         material_link(chain[--depth], hit, out);
+        if (told)
+            told(context, chain[depth], out);
+    }
 }
 
 bool material_has_relief(const struct material *material) {

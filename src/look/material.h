@@ -106,6 +106,10 @@ struct surface_look {
 };
 
 void material_look(const struct material *material, const struct hit *hit, struct surface_look *out);
+/* The same; `told` (or NULL) hears of every link, from the base on, when `look` is what it made of it. */
+typedef void material_told(void *context, const struct material *link, const struct surface_look *look);
+void material_look_told(const struct material *material, const struct hit *hit, struct surface_look *out,
+                        material_told *told, void *context);
 /* What hits must know for it: the footprint in pattern space; where bumps rise (hit->raise). */
 bool material_has_image(const struct material *material);
 bool material_has_relief(const struct material *material);

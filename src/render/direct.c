@@ -7,6 +7,7 @@
 #include "base/random.h"
 #include "math/sampling.h"
 #include "render/photon_map.h"
+#include "render/story.h"
 #include "world/packet.h"
 
 enum { AREA_BATCH = 256 }; /* shadow rays of one hit that are asked together */
@@ -17,10 +18,26 @@ static struct vec3 off_surface(const struct hit *hit, struct vec3 towards) {
     return vec3_add_scaled(hit->point, hit->normal_geometric, side);
 }
 
+static void tell_shadow(const struct tracer *tracer, uint32_t asked, uint32_t arrived) {
+    struct story_light *light = story_light_of(tracer->story);
+    if (!light)
+        return;
+    light->asked += asked;
+    light->arrived += arrived;
+    light->has_blocker = false;
+}
+
 static bool is_free(struct tracer *tracer, struct vec3 from, struct vec3 direction, double t_max, double time) {
     struct ray shadow = {.origin = from, .direction = direction, .t_max = t_max, .time = time};
     tracer->shadow_rays++;
-    return !world_any(tracer->job->world, &shadow, tracer->scratch);
+    bool free = !world_any(tracer->job->world, &shadow, tracer->scratch);
+    struct story_light *light = story_light_of(tracer->story);
+    if (light) {
+        tell_shadow(tracer, 1, free);
+        light->has_blocker = light->asked == 1 && !free && tracer->job->world->accel != ACCEL_NONE;
+        light->blocker = tracer->scratch->last_blocker;
+    }
+    return free;
 }
 
 /* The shadow rays of one hit to a light with an extent, asked batch by batch. */
@@ -69,8 +86,11 @@ static double visible_share(struct tracer *tracer, const struct light *light, ui
     uint32_t all = fan.side * fan.side, seen = 0, have = 0;
     struct between between = world_between(world, fan.from, fan.frame.corner, fan.frame.edge1, fan.frame.edge2);
     tracer->shadow_rays += all;
-    if (between.known && between.count == 0)
+    if (between.known && between.count == 0) {
+        if (tracer->story)
+            tell_shadow(tracer, all, all);
         return 1;
+    }
     struct vec3 targets[AREA_BATCH];
     for (uint32_t cell = 0; cell < all; cell++) {
         targets[have++] = light_target(light, &fan.frame, fan.from, fan_place(&fan, cell));
@@ -81,6 +101,8 @@ static double visible_share(struct tracer *tracer, const struct light *light, ui
         if (tracer->pool && pool_cancelled(tracer->pool))
             return 0;
     }
+    if (tracer->story)
+        tell_shadow(tracer, all, seen);
     return (double)seen / (double)all;
 }
 
@@ -90,8 +112,10 @@ static void ask_targets(struct tracer *tracer, const struct fan *fan, double tim
     if (fan->frame.bounded) {
         const struct world *world = tracer->job->world;
         struct between between = world_between(world, fan->from, fan->frame.corner, fan->frame.edge1, fan->frame.edge2);
-        (void)world_visible(world, &between, fan->from, time, targets, count, tracer->scratch, visible);
+        uint32_t seen = world_visible(world, &between, fan->from, time, targets, count, tracer->scratch, visible);
         tracer->shadow_rays += count;
+        if (tracer->story)
+            tell_shadow(tracer, count, seen);
         return;
     }
     bool sky = fan->light->kind == LIGHT_SKY;
@@ -149,6 +173,13 @@ static struct vec3 light_from_place(struct tracer *tracer, const struct light *l
         strength = light_attenuation(light, distance) * light_cone(light, vec3_negate(to_light));
     }
     struct vec3 reflected = shading_evaluate(shading, normal, hit->view, to_light);
+    struct story_light *told = story_light_of(tracer->story);
+    if (told) {
+        told->distance = distance;
+        told->strength = strength;
+        told->to_light = to_light;
+        told->reflected = reflected;
+    }
     if (strength == 0 || (reflected.x == 0 && reflected.y == 0 && reflected.z == 0))
         return vec3_all(0);
     double share = visible_share(tracer, light, number, hit, key);
@@ -168,24 +199,39 @@ static struct shading without_highlight(const struct shading *shading) {
     return mirrors ? out : *shading;
 }
 
+static struct vec3 one_light(struct tracer *tracer, const struct light *light, uint32_t number, const struct hit *hit,
+                             const struct shading *shading, struct vec3 normal, uint64_t key) {
+    if (light->kind == LIGHT_SKY) {
+        struct shading matt = without_highlight(shading);
+        return lamp_light(tracer, light, number, hit, &matt, normal, key);
+    }
+    return light->emits ? lamp_light(tracer, light, number, hit, shading, normal, key)
+                        : light_from_place(tracer, light, number, hit, shading, normal, key);
+}
+
 struct vec3 direct_light(struct tracer *tracer, const struct hit *hit, const struct shading *shading,
                          struct vec3 normal, bool dark_side, uint64_t key) {
     const struct world *world = tracer->job->world;
     struct vec3 sum = vec3_mul(tracer->job->ambient, shading->ambient);
     for (uint32_t i = 0; i < world->light_count && !dark_side; i++) {
         const struct light *light = &world->lights[i];
-        if (light->lit && !light->lit[hit->placed])
-            continue;
-        uint64_t light_key = random_combine(key, i);
-        if (light->kind == LIGHT_SKY) {
-            struct shading matt = without_highlight(shading);
-            sum = vec3_add(sum, lamp_light(tracer, light, i, hit, &matt, normal, light_key));
-            continue;
-        }
-        sum = vec3_add(sum, light->emits ? lamp_light(tracer, light, i, hit, shading, normal, light_key)
-                                         : light_from_place(tracer, light, i, hit, shading, normal, light_key));
+        bool ours = !light->lit || light->lit[hit->placed];
+        if (tracer->story)
+            story_light_begin(tracer->story, i, light);
+        struct vec3 own =
+            ours ? one_light(tracer, light, i, hit, shading, normal, random_combine(key, i)) : vec3_all(0);
+        sum = ours ? vec3_add(sum, own) : sum;
+        if (tracer->story)
+            story_light_end(tracer->story, ours, own);
     }
-    if (tracer->caustics && !dark_side)
-        sum = vec3_add(sum, photon_map_light(tracer->caustics, world, hit, shading, normal));
+    struct vec3 photons = {0, 0, 0};
+    bool asked = tracer->caustics && !dark_side;
+    if (asked) {
+        photons = photon_map_light(tracer->caustics, world, hit, shading, normal);
+        sum = vec3_add(sum, photons);
+    }
+    if (tracer->story)
+        story_direct(tracer->story, tracer->job->ambient, vec3_mul(tracer->job->ambient, shading->ambient), asked,
+                     photons, sum);
     return sum;
 }

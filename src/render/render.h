@@ -10,6 +10,8 @@
 #include "render/settings.h"
 #include "world/world.h"
 
+struct story;
+
 struct render_statistics {
     uint64_t camera_rays, reflected_rays, refracted_rays, shadow_rays;
     uint64_t pixels, marked_pixels, samples;
@@ -37,6 +39,12 @@ struct render_job {
 /* False: cancelled or out of memory (error says which). The film then holds what was finished. */
 bool render_run(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
                 struct error *error);
+/* Makes single pixels {x, y} of the whole picture as render_run would, and has each one's story written down
+ * (render/story.h) and told; it ends when `listen` returns. The film of the job is not looked at. False: as render_run,
+ * or `listen` said so. */
+typedef bool story_listener(void *context, struct story *story, struct error *error);
+bool render_pixels(const struct render_job *job, struct pool *pool, const uint32_t (*pixels)[2], uint32_t count,
+                   story_listener *listen, void *context, struct error *error);
 /* Checks picture size, crop, camera; fills the film rectangle. First call of a job. Warnings: up parallel to view. */
 bool render_prepare(struct render_job *job, uint32_t *x0, uint32_t *y0, uint32_t *width, uint32_t *height,
                     char warning[256], struct error *error);

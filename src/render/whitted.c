@@ -7,6 +7,7 @@
 #include "math/sampling.h"
 #include "render/direct.h"
 #include "render/interface.h"
+#include "render/story.h"
 
 struct path {
     uint64_t key;
@@ -39,12 +40,25 @@ static bool is_black(struct vec3 c) {
     return c.x == 0 && c.y == 0 && c.z == 0;
 }
 
+/* Whether what a ray brings cannot count any more; the story hears of it. */
+static bool is_given_up(struct tracer *tracer, enum story_kind kind, bool limit, struct vec3 filter,
+                        const struct path *path) {
+    if (!limit && !(path->weight < tracer->cutoff)) {
+        if (tracer->story)
+            story_next_ray(tracer->story, kind, filter);
+        return false;
+    }
+    if (tracer->story)
+        story_not_followed(tracer->story, kind, filter, limit ? STORY_LIMIT : STORY_TOO_LITTLE);
+    return true;
+}
+
 /* Times the filter. What cannot change the pixel by the cut-off is not followed. */
 static struct vec3 follow_mirror(struct tracer *tracer, const struct hit *hit, const struct ray *ray,
                                  struct vec3 direction, struct vec3 filter, struct path path) {
     const struct settings *settings = &tracer->job->settings;
     path.weight *= vec3_max_abs(filter);
-    if (path.reflections >= settings->reflect_limit || path.weight < tracer->cutoff)
+    if (is_given_up(tracer, STORY_REFLECTED, path.reflections >= settings->reflect_limit, filter, &path))
         return vec3_all(0);
     struct ray reflected = interface_ray(hit, ray, direction, ray->media);
     tracer->reflected_rays++;
@@ -58,7 +72,7 @@ static struct vec3 follow_refraction(struct tracer *tracer, const struct hit *hi
                                      struct path path) {
     const struct settings *settings = &tracer->job->settings;
     path.weight *= vec3_max_abs(filter);
-    if (path.refractions >= settings->refract_limit || path.weight < tracer->cutoff)
+    if (is_given_up(tracer, STORY_REFRACTED, path.refractions >= settings->refract_limit, filter, &path))
         return vec3_all(0);
     struct ray refracted = interface_ray(hit, ray, direction, behind);
     tracer->refracted_rays++;
@@ -73,7 +87,7 @@ static struct vec3 follow_hole(struct tracer *tracer, const struct hit *hit, con
                                struct path path) {
     enum { HOLE_LIMIT = 200 };
     path.weight *= share;
-    if (path.holes >= HOLE_LIMIT || path.weight < tracer->cutoff)
+    if (is_given_up(tracer, STORY_HOLE, path.holes >= HOLE_LIMIT, vec3_all(share), &path))
         return vec3_all(0);
     struct ray onward = interface_ray(hit, ray, vec3_negate(hit->view), ray->media);
     tracer->refracted_rays++;
@@ -107,12 +121,16 @@ static struct vec3 follow_rough(struct tracer *tracer, const struct rough *rough
         struct path branch = path;
         branch.key = random_combine(key, cell);
         branch.rough = true;
+        if (tracer->story)
+            tracer->story->part = 1 / ((double)n * (double)n);
         if (!is_black(mirror)) {
             struct vec3 direction = interface_facet_mirror(rough->interface, facet, hit->view);
             sum = vec3_add(sum, follow_mirror(tracer, hit, rough->ray, direction, mirror, branch));
         }
         if (!is_black(refraction)) {
             struct vec3 direction = interface_facet_through(rough->interface, facet, hit->view);
+            if (tracer->story)
+                tracer->story->part = 1 / ((double)n * (double)n);
             struct vec3 light =
                 follow_refraction(tracer, hit, rough->ray, direction, &rough->interface->behind, refraction, branch);
             sum = vec3_add(sum, light);
@@ -133,6 +151,8 @@ static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const str
     struct vec3 normal = look.two_sided && !hit->front ? vec3_negate(look.normal) : look.normal;
     struct shading shading;
     material_shading(&look, settings->specular, settings->ambient_plain, &shading);
+    if (tracer->story)
+        story_surface(tracer->story, &look, &interface, &shading, normal, dark_side);
     struct vec3 colour = direct_light(tracer, hit, &shading, normal, dark_side, path.key);
     colour = vec3_add(colour, shading.emission);
 
@@ -167,7 +187,8 @@ static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const str
 static struct vec3 shade_hit(struct tracer *tracer, const struct ray *ray, const struct hit *hit, struct path path) {
     struct surface_look look;
     tracer->hits++;
-    material_look(tracer->job->world->materials[hit->material], hit, &look);
+    material_look_told(tracer->job->world->materials[hit->material], hit, &look, tracer->story ? story_tell_link : NULL,
+                       tracer->story);
     double hole = 1 - look.opacity;
     if (!(hole > 0))
         return shade(tracer, ray, hit, &look, path);
@@ -197,10 +218,13 @@ static struct vec3 bring(struct tracer *tracer, const struct ray *ray, const str
         left = vec3_all(fog_transmittance(fog, ray->origin, vec3_scale(ray->direction, 1 / length), distance));
         clear = false;
     }
+    if (tracer->story)
+        story_ray_begin(tracer->story, ray, hit, lamp, distance, path.weight);
     path.weight *= vec3_max_abs(left);
 
-    struct vec3 colour = {0, 0, 0};
-    if (path.weight < tracer->cutoff)
+    struct vec3 colour = {0, 0, 0}, seen, veil = {0, 0, 0};
+    bool looked = !(path.weight < tracer->cutoff);
+    if (!looked)
         left = vec3_all(0);
     else if (lamp)
         colour = lamp->colour;
@@ -208,10 +232,16 @@ static struct vec3 bring(struct tracer *tracer, const struct ray *ray, const str
         colour = shade_hit(tracer, ray, hit, path);
     else
         colour = sky_colour(&world->sky, vec3_normalize(ray->direction), ray->footprint.spread);
-    if (clear)
-        return colour;
-    colour = vec3_mul(colour, left);
-    return inside ? colour : vec3_add_scaled(colour, fog->colour, 1 - left.x);
+    seen = colour;
+    if (!clear)
+        colour = vec3_mul(colour, left);
+    if (!clear && !inside) {
+        veil = vec3_scale(fog->colour, 1 - left.x);
+        colour = vec3_add(colour, veil);
+    }
+    if (tracer->story)
+        story_ray_end(tracer->story, looked, seen, left, veil, colour);
+    return colour;
 }
 
 static struct vec3 trace(struct tracer *tracer, const struct ray *ray, struct path path) {

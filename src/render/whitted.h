@@ -17,6 +17,7 @@ struct tracer {
     struct strata strata;              /* of the pixel sample that is traced */
     const struct photon_map *caustics; /* or NULL */
     double cutoff;                     /* cutoff_weight of the job */
+    struct story *story;               /* who writes down what happens, or NULL */
     uint64_t reflected_rays, refracted_rays, shadow_rays, hits;
 };
 

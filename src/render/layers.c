@@ -1,0 +1,69 @@
+/* Pictures beside the picture, tile by tile after the picture is done. */
+#include "render/run.h"
+
+#include "render/aov.h"
+
+#include <string.h>
+
+/* Through the middle of the lens, when the shutter opens. */
+static bool middle_ray(const struct run *run, const struct place *place, struct ray *out) {
+    double x = (double)place->x + place->dx, y = (double)place->y + place->dy;
+    if (camera_is_plain(&run->camera)) {
+        *out = camera_ray(&run->camera, x, y);
+        return true;
+    }
+    return camera_ray_through(&run->camera, x, y, (struct sample2){0.5, 0.5}, 0, out);
+}
+
+static uint64_t work_of(const struct worker *worker) {
+    const struct geom_scratch *done = &worker->scratch.geom;
+    return done->cost.hierarchy_steps + done->cost.voxels + done->cost.triangle_tests + done->box_tests +
+           done->shape_tests;
+}
+
+/* Traces the samples of a pixel once more, one by one: what they cost, and how many there are. */
+static void measure_pixel(struct run *run, struct worker *worker, int64_t x, int64_t y, bool marked, float cost[3],
+                          float samples[3]) {
+    uint64_t work = work_of(worker), rays = worker->camera_rays;
+    int n = run->job->settings.samples;
+    bool have_first = !run->full || run->job->settings.keep_first;
+    bool reuse = run_first_counts(run);
+    struct place place = run_first_place(run, x, y);
+    if (have_first || reuse)
+        (void)run_sample(run, worker, &place);
+    for (int k = 0; marked && k < n * n && !run_stopped(run, worker); k++) {
+        if (reuse && k == n / 2 * n + n / 2)
+            continue;
+        place = (struct place){x, y, (k % n + 0.5) / n, (k / n + 0.5) / n, (uint64_t)(k + 1)};
+        (void)run_sample(run, worker, &place);
+    }
+    for (int c = 0; c < 3; c++) {
+        cost[c] = (float)(work_of(worker) - work);
+        samples[c] = (float)(worker->camera_rays - rays);
+    }
+}
+
+void run_layer_item(void *context, uint32_t item, int index) {
+    struct run *run = context;
+    struct worker *worker = &run->workers[index];
+    struct film *film = run->job->film;
+    struct film_rectangle r = film_tile_rectangle(film, item);
+    uint32_t mask = film->layer_mask;
+    for (int64_t y = r.y0; y < r.y1; y++) {
+        for (int64_t x = r.x0; x < r.x1 && !run_stopped(run, worker); x++) {
+            size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
+            float values[AOV_COUNT][3] = {{0}};
+            struct place place = run_first_place(run, x, y);
+            struct ray ray;
+            if (middle_ray(run, &place, &ray))
+                aov_surface(run->job->world, &ray, mask, &worker->scratch, values);
+            if (mask & (UINT32_C(1) << AOV_COST | UINT32_C(1) << AOV_SAMPLES))
+                measure_pixel(run, worker, x, y, film->marked[at], values[AOV_COST], values[AOV_SAMPLES]);
+            for (int i = 0; i < AOV_COUNT; i++) {
+                size_t plane = aov_layer(mask, (enum aov)i) * (size_t)film->width * film->height;
+                if (mask >> i & 1)
+                    memcpy(film->layers[plane + at], values[i], sizeof values[i]);
+            }
+        }
+    }
+}

@@ -1,0 +1,85 @@
+/* What the files of a render share: tiles (render.c), samples (sample.c), pictures beside the picture (layers.c).
+ * Nobody else includes it. */
+#ifndef GRAY_RENDER_RUN_H
+#define GRAY_RENDER_RUN_H
+
+#include "render/camera.h"
+#include "render/photon_map.h"
+#include "render/render.h"
+#include "render/whitted.h"
+#include "world/packet.h"
+
+#include <stdatomic.h>
+
+/* Samples that are traced together: places in the picture, in the order in which they are wanted. */
+struct place {
+    int64_t x, y;
+    double dx, dy; /* within the pixel */
+    uint64_t number;
+};
+
+struct batch {
+    struct place places[PACKET_RAYS];
+    struct vec3 colours[PACKET_RAYS];
+    uint32_t count;
+    struct ray_packet packet;
+    struct packet_answer answers[PACKET_RAYS];
+};
+
+struct worker {
+    struct world_scratch scratch;
+    struct tracer tracer;
+    uint64_t camera_rays, marked, samples;
+    struct media ray_media;
+    struct camera_frame camera; /* of the sample's moment, when the camera moves */
+    struct batch batch;
+    struct vec3 first[(FILM_TILE + 2) * (FILM_TILE + 2)];
+};
+
+struct run {
+    const struct render_job *job;
+    struct pool *pool;
+    struct camera_frame camera;
+    struct media eye_media;
+    /* -full, or a lens or moving things: what is blurred differs from sample to sample, not from its neighbours */
+    bool full;
+    bool timed;        /* something moves while the shutter is open */
+    bool together;     /* camera rays start in one place and at one moment */
+    bool media_by_ray; /* rays start in different places or moments, and solids are near */
+    uint32_t *closed;  /* the solids that the eye can stand in */
+    uint32_t closed_count;
+    struct photon_map caustics;
+    struct worker *workers;
+    struct story *story;   /* of one pixel, or NULL */
+    uint32_t tiles_wanted; /* of this process, those that were there before too */
+    uint64_t *cost;        /* of each tile while shards are chosen */
+    _Atomic uint32_t done;
+    _Atomic bool failed;
+};
+
+/* A rectangle of pixels of the whole picture: x0 <= x < x1. */
+struct rectangle {
+    int64_t x0, y0, x1, y1;
+};
+
+/* The camera at a ray's time. */
+bool run_prepare_at(const struct render_job *job, double ray_time, struct camera_frame *out, char warning[256],
+                    struct error *error);
+/* The first sample has number 0, at the centre or the corner of the pixel. */
+struct place run_first_place(const struct run *run, int64_t x, int64_t y);
+/* Whether the first sample is the one in the middle of N x N. */
+bool run_first_counts(const struct run *run);
+struct vec3 run_sample(struct run *run, struct worker *worker, const struct place *place);
+/* The samples of a batch, as run_sample would bring them. What the camera rays meet is looked for together. */
+void run_sample_batch(struct run *run, struct worker *worker);
+/* Mean of the N x N samples; where one of them is the first sample again it is not traced twice. */
+struct vec3 run_all_samples(struct run *run, struct worker *worker, int64_t x, int64_t y, const struct vec3 *first);
+
+static inline bool run_stopped(const struct run *run, const struct worker *worker) {
+    return pool_cancelled(run->pool) || worker->scratch.failed;
+}
+
+/* A pool_function: the layers of a tile that is done. */
+void run_layer_item(void *context, uint32_t tile, int worker);
+
+#endif

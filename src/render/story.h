@@ -1,0 +1,161 @@
+/* The story of a pixel: what happened on the way to its colour, written down by the integrator itself while it works
+ * (whitted.c, direct.c, render.c). Nothing is worked out a second time: a number in a story is the number that went
+ * into the picture. Without a story the integrator has one pointer to look at.
+ *
+ * Everything lives in the arena of the story. It holds pointers into the world and dies before it. */
+#ifndef GRAY_RENDER_STORY_H
+#define GRAY_RENDER_STORY_H
+
+#include "base/arena.h"
+#include "look/light.h"
+#include "look/material.h"
+#include "render/interface.h"
+#include "world/world.h"
+
+#include <stdint.h>
+
+enum story_kind { STORY_CAMERA, STORY_REFLECTED, STORY_REFRACTED, STORY_HOLE };
+/* Why a ray was not followed, or why what it met was not looked at. */
+enum story_cut { STORY_FOLLOWED, STORY_LIMIT, STORY_TOO_LITTLE };
+enum { STORY_RAYS = 100000 }; /* further ones are counted and not told */
+
+/* One link of a material: the look as it is with it and what is below it. */
+struct story_link {
+    const struct material *material;
+    struct surface_look look;
+    struct story_link *next;
+};
+
+enum story_lit {
+    STORY_LIGHT_REACHES,
+    STORY_LIGHT_BLOCKED,   /* no shadow ray arrives */
+    STORY_LIGHT_NOT_OURS,  /* include or exclude leave the surface out */
+    STORY_LIGHT_NO_EFFECT, /* nothing of it would be reflected this way, or it has faded away: shadows are not asked */
+};
+
+/* What a light brings to a hit. Of lamps `reflected`, `strength` and `distance` are not set: every shadow ray has its
+ * own. */
+struct story_light {
+    uint32_t number; /* in the world, from 0 */
+    const struct light *light;
+    enum story_lit lit;
+    bool lamp;
+    double distance, strength; /* fading times the cone of a spot */
+    struct vec3 to_light;      /* unit */
+    struct vec3 reflected;     /* by the lobes, of unit light */
+    uint32_t asked, arrived;   /* shadow rays */
+    bool has_blocker;          /* a single shadow ray was stopped */
+    uint32_t blocker;          /* by this placed primitive */
+    struct vec3 colour;        /* of all this in what the surface shows */
+    struct story_light *next;
+};
+
+struct story_ray {
+    enum story_kind kind;
+    enum story_cut cut;
+    bool begun;      /* it was sent; else only kind and weight are set */
+    uint32_t number; /* in the order in which they were begun, from 1 */
+    struct vec3 origin, direction;
+    double time;
+    double share;       /* how much of what it brings can arrive in the pixel, at most */
+    struct vec3 weight; /* of what it brings, in the surface it started from */
+    uint32_t media_count;
+    double media_ior; /* of where it starts */
+    /* What it met: a hit, else a light that shows itself, else the sky. */
+    bool met;
+    struct hit hit;
+    const struct light *lamp;
+    double distance; /* of either, world units; infinite */
+    /* The surface. */
+    struct story_link *links;
+    double opacity;
+    bool shaded, dark_side, passes;
+    struct vec3 normal; /* of the side that is lit */
+    double eta;         /* where it may pass */
+    double fresnel;     /* or negative */
+    struct shading shading;
+    struct vec3 ambient_light, ambient, photons, direct; /* direct: ambient, photons and lights together */
+    bool has_photons;
+    struct story_light *lights, *last_light;
+    struct story_ray *first, *last; /* those that it sent on */
+    /* What it brings: left * seen + veil. */
+    struct vec3 seen, left, veil, brings;
+    struct story_ray *parent, *next;
+};
+
+struct story_sample {
+    double x, y;     /* in the picture, pixels */
+    uint64_t number; /* 0: the first one */
+    bool counts;     /* it is part of the mean */
+    struct vec3 colour;
+    struct story_ray *first, *last;
+    struct story_sample *next;
+};
+
+struct story {
+    struct arena arena;
+    uint32_t x, y; /* the pixel of the whole picture */
+    /* What render_pixel found out. first[1 + dy][1 + dx]: first samples of the pixel and its neighbours, where known.
+     */
+    struct vec3 first[3][3];
+    bool known[3][3];
+    bool full;   /* every pixel is sampled again */
+    bool marked; /* this one was */
+    /* By the neighbour at mark_x, mark_y from it (-1..1; both 0: by none): a squared distance above the tolerance. */
+    int mark_x, mark_y;
+    double mark_distance, mark_tolerance;
+    int samples; /* N of N x N */
+    struct story_sample *sample, *last_sample;
+    float rgb[3]; /* in the film */
+    uint32_t rays, untold;
+    bool failed; /* no memory */
+    /* While it is written. */
+    bool on; /* a sample of the pixel itself is under way */
+    struct story_ray *ray;
+    struct story_light *light;
+    uint32_t mute;        /* how many rays that are not told are under way */
+    enum story_kind kind; /* of the next ray */
+    struct vec3 weight;   /* of the next ray */
+    double part;          /* of that, where several rays share one weight */
+};
+
+/* A sample: dx, dy within the pixel. */
+struct story_place {
+    int64_t x, y;
+    double dx, dy;
+    uint64_t number;
+};
+
+void story_init(struct story *story, uint32_t x, uint32_t y);
+void story_destroy(struct story *story);
+
+/* A sample of any pixel; of others than the story's only the first colour is kept. */
+void story_sample_begin(struct story *story, const struct story_place *place);
+void story_sample_end(struct story *story, const struct story_place *place, struct vec3 colour);
+
+/* What the next ray will be; part: see struct story. */
+void story_next_ray(struct story *story, enum story_kind kind, struct vec3 weight);
+void story_not_followed(struct story *story, enum story_kind kind, struct vec3 weight, enum story_cut cut);
+void story_ray_begin(struct story *story, const struct ray *ray, const struct hit *hit, const struct light *lamp,
+                     double distance, double share);
+void story_ray_end(struct story *story, bool looked, struct vec3 seen, struct vec3 left, struct vec3 veil,
+                   struct vec3 brings);
+
+/* The ray that is under way, or NULL where nothing is told. */
+static inline struct story_ray *story_ray_of(const struct story *story) {
+    return story && story->on && story->mute == 0 ? story->ray : NULL;
+}
+/* The same for the light under way. */
+static inline struct story_light *story_light_of(const struct story *story) {
+    return story_ray_of(story) ? story->light : NULL;
+}
+
+void story_tell_link(void *story, const struct material *link, const struct surface_look *look); /* material_told */
+void story_surface(struct story *story, const struct surface_look *look, const struct interface *interface,
+                   const struct shading *shading, struct vec3 normal, bool dark_side);
+void story_light_begin(struct story *story, uint32_t number, const struct light *light);
+void story_light_end(struct story *story, bool ours, struct vec3 colour);
+void story_direct(struct story *story, struct vec3 ambient_light, struct vec3 ambient, bool has_photons,
+                  struct vec3 photons, struct vec3 direct);
+
+#endif

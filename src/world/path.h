@@ -1,0 +1,31 @@
+/* The way from the root to what is placed. A placed primitive knows its node, but a node may hang under several others
+ * and in many places: the way is found by walking the tree again as flattening did. */
+#ifndef GRAY_WORLD_PATH_H
+#define GRAY_WORLD_PATH_H
+
+#include "world/world.h"
+
+struct path_step {
+    const struct node *node;
+    uint32_t place; /* the one of its placements that leads on; counts from 1, 0: it has none */
+};
+
+/* Told in flattening order: primitives first .. first + count - 1 are those of the last node of the way. False: the
+ * walk may end. */
+typedef bool world_path_visit(void *context, uint32_t first, uint32_t count, const struct path_step *steps,
+                              uint32_t depth);
+
+/* The tree must be the one the world was built of, unchanged. A node that is cut away entirely by one clip and not by
+ * the next is told with the earlier way. False: no memory. */
+bool world_walk_paths(const struct world *world, const struct node *root, world_path_visit *visit, void *context,
+                      struct error *error);
+
+/* "root#0 / tree#7 [3] / leaf#9": names with their order of creation, and which placement. Control characters become
+ * '?'. Cut at `size`; returns the length it would have. */
+size_t world_path_text(const struct path_step *steps, uint32_t depth, char *out, size_t size);
+
+/* As texts in the arena: out[i] is the way to wanted[i]; wanted[0 .. count-1] ascend. NULL where there is none. */
+bool world_find_paths(const struct world *world, const struct node *root, const uint32_t *wanted, uint32_t count,
+                      struct arena *arena, const char **out, struct error *error);
+
+#endif
