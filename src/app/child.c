@@ -32,6 +32,8 @@ struct child {
     struct assets assets;
     struct file_witness witness; /* what the scripts read, when tiles are kept for later */
     int status;                  /* --check: worst of the problems reported so far in this script */
+    bool building;               /* the world */
+    uint64_t runs_before;        /* of the pool, before that */
     uint64_t told[TOLD_LIMIT];   /* hashes of the warnings about scenes that this script was given */
     int told_count;
 };
@@ -46,8 +48,22 @@ static void tell(const struct child *child, enum line_kind kind, const char *tex
     child->services->line(child->services->context, kind, text);
 }
 
+/* How many steps building takes depends on the scene; how far each one is can be told. */
+static void tell_building(const struct child *child) {
+    struct pool_progress progress = pool_progress(child->pool);
+    struct control *control = child->services->control;
+    if (!child->building)
+        return;
+    atomic_store_explicit(&control->build_step, (uint32_t)(progress.runs - child->runs_before) + 1,
+                          memory_order_relaxed);
+    atomic_store_explicit(&control->build_done,
+                          progress.count ? (uint32_t)(1000ull * progress.begun / progress.count) : 0,
+                          memory_order_relaxed);
+}
+
 static void poll_pool(void *context) {
     const struct child *child = context;
+    tell_building(child);
     if (child->services->poll)
         child->services->poll(child->services->context);
 }
@@ -215,16 +231,29 @@ static bool answer_questions(struct child *child, const struct render_request *r
             inspect_pixels(&picture, options->pixels, options->pixel_count, options->json, child->pool, &sheet, error));
 }
 
+static bool build_world(struct child *child, const struct render_request *request, const struct render_job *job,
+                        struct world *world, struct error *error) {
+    struct control *control = child->services->control;
+    child->building = true;
+    child->runs_before = pool_progress(child->pool).runs;
+    atomic_store(&control->build_done, 0);
+    atomic_store(&control->build_step, 1);
+    bool ok = world_build(world, &child->job, request->scene, request->root, request->lights, request->light_count,
+                          &request->sky, job->settings.shutter, job->settings.accel, child->pool, warn_of_scene, child,
+                          error);
+    child->building = false;
+    atomic_store(&control->build_step, 0);
+    return ok;
+}
+
 /* From the flattened scene to the finished film. */
 static bool make_picture(struct child *child, const struct render_request *request, struct render_job *job,
                          const struct picture_request *asked, struct picture_report *report, struct error *error) {
     struct world world = {0};
     double begun = progress_clock();
-    bool ok = world_build(&world, &child->job, request->scene, request->root, request->lights, request->light_count,
-                          &request->sky, job->settings.shutter, job->settings.accel, child->pool, warn_of_scene, child,
-                          error);
-    if (!ok)
+    if (!build_world(child, request, job, &world, error))
         return false;
+    bool ok = true;
     double built = progress_clock();
     if (is_asked(child->options)) {
         job->world = &world;

@@ -16,6 +16,8 @@ struct control {
     _Atomic uint32_t tiles_done; /* of the picture being made */
     _Atomic uint32_t tiles;      /* 0 until its scene is built */
     _Atomic uint32_t gate;       /* an enum gate */
+    _Atomic uint32_t build_step; /* of building the world, from 1; 0: it is built */
+    _Atomic uint32_t build_done; /* thousandths of that step */
 };
 
 #endif

@@ -1,10 +1,13 @@
 /* A picture in a window: shows it while it is made, lets people walk, and decides what is rendered next. The child
  * renders one pass after the other (coarse ones first, and while somebody walks) and asks after each what comes next;
- * the answer is an order. Neither waits for the other: the window is drawn from the film as it is. */
+ * the answer is an order. Neither waits for the other: the window is drawn from the film as it is. live.c decides,
+ * live_input.c reads what people do, live_draw.c draws. */
 #ifndef GRAY_APP_LIVE_H
 #define GRAY_APP_LIVE_H
 
 #include "app/channel.h"
+#include "app/control.h"
+#include "app/panel.h"
 #include "app/walk.h"
 #include "app/window.h"
 #include "render/film.h"
@@ -20,8 +23,16 @@ enum live_order {
     LIVE_QUIT,   /* the window was closed, or Q */
 };
 
+/* The window, and where the picture is in it: pixels of the screen. */
+struct live_place {
+    int width, height;
+    double density;
+    double left, top, shown_width, shown_height;
+};
+
 struct live {
     const struct window_driver *driver;
+    const struct control *control; /* or NULL; set by the caller, not owned */
     struct walk walk;
     struct picture_request request;
     void *block;                  /* of the film; not owned; NULL: no picture is being made */
@@ -34,6 +45,10 @@ struct live {
     uint8_t *canvas;              /* what is shown: 3 bytes a pixel of the whole part */
     uint8_t *drawn;               /* by tile: already on the canvas */
     size_t tiles;                 /* room in drawn */
+    struct live_place place;
+    struct panel panel; /* its paper is owned */
+    bool bare;          /* nothing is drawn over the picture */
+    enum live_order wish;
     bool open, running, stopping, waiting;
     bool moved;             /* the camera is not the one of the view that was sent last */
     bool flown;             /* it is not the script's any more */
@@ -43,8 +58,9 @@ struct live {
     bool keep;   /* the scripts run again: the camera stays where somebody has flown, pictures before are left out */
     int turning; /* buttons that are held and go round */
     uint32_t divide; /* of passes while somebody walks */
-    double pass_began, stepped, shown, titled;
-    bool dirty; /* the canvas was changed since it was shown */
+    double pass_began, stepped, shown, told;
+    bool dirty;      /* the canvas was changed since it was shown */
+    bool over_dirty; /* what is drawn over it is not right any more */
 };
 
 /* Opens the window. Owner: the caller; live_end gives everything back. */

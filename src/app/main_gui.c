@@ -1,5 +1,6 @@
-/* gray-gui: the same program with a window, by SDL 2. `gray -gui` becomes it. The picture is a texture that is scaled
- * to the window with its shape kept; everything that people do is told in shares of the picture. */
+/* gray-gui: the same program with a window, by SDL 2. `gray -gui` becomes it. Two textures, the picture and what is
+ * drawn over it, are laid on each other; where the picture goes is told with every frame. The mouse is told in units of
+ * the desktop, of which a screen of high density has several pixels each: everything leaves here in pixels. */
 #define _GNU_SOURCE
 #include "app/program.h"
 
@@ -8,15 +9,19 @@
 struct sdl {
     SDL_Window *window;
     SDL_Renderer *renderer;
-    SDL_Texture *texture;
-    uint32_t width, height; /* of the picture */
-    bool full;
+    SDL_Texture *picture, *overlay;
+    int overlay_width, overlay_height;
+    int width, height; /* of the window in pixels */
+    double density;    /* pixels for a unit of the desktop */
+    bool full, size_told;
 };
 
 static void close_window(void *context) {
     struct sdl *sdl = context;
-    if (sdl->texture)
-        SDL_DestroyTexture(sdl->texture);
+    if (sdl->overlay)
+        SDL_DestroyTexture(sdl->overlay);
+    if (sdl->picture)
+        SDL_DestroyTexture(sdl->picture);
     if (sdl->renderer)
         SDL_DestroyRenderer(sdl->renderer);
     if (sdl->window)
@@ -25,11 +30,24 @@ static void close_window(void *context) {
     *sdl = (struct sdl){0};
 }
 
+/* True: it is another size than before. */
+static bool measure(struct sdl *sdl) {
+    int width = 0, height = 0, units = 0, ignored = 0;
+    if (SDL_GetRendererOutputSize(sdl->renderer, &width, &height) != 0)
+        return false;
+    SDL_GetWindowSize(sdl->window, &units, &ignored);
+    bool other = width != sdl->width || height != sdl->height || !sdl->size_told;
+    sdl->width = width;
+    sdl->height = height;
+    sdl->density = units > 0 && width > 0 ? (double)width / units : 1;
+    return other;
+}
+
 static bool open_window(void *context, uint32_t width, uint32_t height, const char *title, struct error *error) {
     struct sdl *sdl = context;
     SDL_DisplayMode screen;
     int w = (int)width, h = (int)height;
-    *sdl = (struct sdl){.width = width, .height = height};
+    *sdl = (struct sdl){0};
     (void)SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
     (void)SDL_SetHint(SDL_HINT_RENDER_SCALE_QUALITY, "nearest");
     if (SDL_Init(SDL_INIT_VIDEO) == 0) {
@@ -46,29 +64,43 @@ static bool open_window(void *context, uint32_t width, uint32_t height, const ch
     }
     if (sdl->window)
         sdl->renderer = SDL_CreateRenderer(sdl->window, -1, 0);
-    if (sdl->renderer) {
-        (void)SDL_RenderSetLogicalSize(sdl->renderer, (int)width, (int)height);
-        sdl->texture = SDL_CreateTexture(sdl->renderer, SDL_PIXELFORMAT_RGB24, SDL_TEXTUREACCESS_STREAMING, (int)width,
+    if (sdl->renderer)
+        sdl->picture = SDL_CreateTexture(sdl->renderer, SDL_PIXELFORMAT_RGB24, SDL_TEXTUREACCESS_STREAMING, (int)width,
                                          (int)height);
-    }
-    if (sdl->texture)
+    if (sdl->picture && measure(sdl))
         return true;
     error_set(error, ERROR_MACHINE, "-gui: no window can be opened: %s", SDL_GetError());
     close_window(sdl);
     return false;
 }
 
-static void present(struct sdl *sdl) {
-    (void)SDL_RenderClear(sdl->renderer);
-    (void)SDL_RenderCopy(sdl->renderer, sdl->texture, NULL, NULL);
-    SDL_RenderPresent(sdl->renderer);
+/* The texture has the window's size. False: there is none. */
+static bool fit_overlay(struct sdl *sdl, int width, int height) {
+    if (sdl->overlay && sdl->overlay_width == width && sdl->overlay_height == height)
+        return true;
+    if (sdl->overlay)
+        SDL_DestroyTexture(sdl->overlay);
+    sdl->overlay = SDL_CreateTexture(sdl->renderer, SDL_PIXELFORMAT_RGBA32, SDL_TEXTUREACCESS_STREAMING, width, height);
+    sdl->overlay_width = width;
+    sdl->overlay_height = height;
+    return sdl->overlay && SDL_SetTextureBlendMode(sdl->overlay, SDL_BLENDMODE_BLEND) == 0;
 }
 
-static void show_picture(void *context, const uint8_t *rgb, uint32_t width, uint32_t height) {
+static void show_frame(void *context, const struct window_frame *frame) {
     struct sdl *sdl = context;
-    (void)height;
-    (void)SDL_UpdateTexture(sdl->texture, NULL, rgb, 3 * (int)width);
-    present(sdl);
+    SDL_Rect place = {frame->left, frame->top, frame->shown_width, frame->shown_height};
+    int width = (int)frame->window_width, height = (int)frame->window_height;
+    if (frame->picture_changed)
+        (void)SDL_UpdateTexture(sdl->picture, NULL, frame->picture, 3 * (int)frame->width);
+    bool other = sdl->overlay_width != width || sdl->overlay_height != height;
+    bool over = frame->overlay && fit_overlay(sdl, width, height);
+    if (over && (frame->overlay_changed || other))
+        (void)SDL_UpdateTexture(sdl->overlay, NULL, frame->overlay, 4 * width);
+    (void)SDL_RenderClear(sdl->renderer);
+    (void)SDL_RenderCopy(sdl->renderer, sdl->picture, NULL, &place);
+    if (over)
+        (void)SDL_RenderCopy(sdl->renderer, sdl->overlay, NULL, NULL);
+    SDL_RenderPresent(sdl->renderer);
 }
 
 static void set_title(void *context, const char *text) {
@@ -109,6 +141,14 @@ static int key_of(SDL_Keycode code) {
         return WINDOW_ARROW_RIGHT;
     case SDLK_HOME:
         return WINDOW_HOME;
+    case SDLK_DELETE:
+        return WINDOW_DELETE;
+    case SDLK_PAGEUP:
+        return WINDOW_PAGE_UP;
+    case SDLK_PAGEDOWN:
+        return WINDOW_PAGE_DOWN;
+    case SDLK_TAB:
+        return WINDOW_TAB;
     case SDLK_F11:
         return 'f';
     default:
@@ -120,8 +160,14 @@ static int button_of(int button) {
     return button == SDL_BUTTON_LEFT ? WINDOW_LEFT : button == SDL_BUTTON_RIGHT ? WINDOW_RIGHT : WINDOW_MIDDLE;
 }
 
+static void tell_size(struct sdl *sdl, struct window_event *out) {
+    sdl->size_told = true;
+    *out = (struct window_event){.kind = WINDOW_SIZE, .x = sdl->width, .y = sdl->height, .density = sdl->density};
+}
+
 /* True: it is one that the program knows. */
 static bool translate(struct sdl *sdl, const SDL_Event *in, struct window_event *out) {
+    double density = sdl->density;
     *out = (struct window_event){0};
     switch (in->type) {
     case SDL_QUIT:
@@ -133,11 +179,14 @@ static bool translate(struct sdl *sdl, const SDL_Event *in, struct window_event 
         out->key = key_of(in->key.keysym.sym);
         out->down = in->type == SDL_KEYDOWN;
         out->control = (in->key.keysym.mod & KMOD_CTRL) != 0;
+        out->shift = (in->key.keysym.mod & KMOD_SHIFT) != 0;
         return out->key != 0 && in->key.repeat == 0;
     case SDL_MOUSEMOTION:
-        out->kind = WINDOW_MOVE;
-        out->x = (double)in->motion.xrel / sdl->height;
-        out->y = (double)in->motion.yrel / sdl->height;
+        *out = (struct window_event){.kind = WINDOW_MOVE,
+                                     .x = density * in->motion.x,
+                                     .y = density * in->motion.y,
+                                     .dx = density * in->motion.xrel,
+                                     .dy = density * in->motion.yrel};
         return true;
     case SDL_MOUSEWHEEL:
         out->kind = WINDOW_WHEEL;
@@ -147,12 +196,18 @@ static bool translate(struct sdl *sdl, const SDL_Event *in, struct window_event 
     case SDL_MOUSEBUTTONUP:
         out->kind = in->type == SDL_MOUSEBUTTONDOWN ? WINDOW_PRESS : WINDOW_RELEASE;
         out->button = button_of(in->button.button);
-        out->x = (double)in->button.x / sdl->width;
-        out->y = (double)in->button.y / sdl->height;
+        out->x = density * in->button.x;
+        out->y = density * in->button.y;
+        out->control = (SDL_GetModState() & KMOD_CTRL) != 0;
+        out->shift = (SDL_GetModState() & KMOD_SHIFT) != 0;
         return true;
     case SDL_WINDOWEVENT:
-        if (in->window.event == SDL_WINDOWEVENT_EXPOSED || in->window.event == SDL_WINDOWEVENT_SIZE_CHANGED)
-            present(sdl);
+        /* What was covered is drawn again by whoever is told the size. */
+        if (in->window.event == SDL_WINDOWEVENT_EXPOSED || in->window.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
+            (void)measure(sdl);
+            tell_size(sdl, out);
+            return true;
+        }
         out->kind = WINDOW_LEAVE;
         return in->window.event == SDL_WINDOWEVENT_FOCUS_LOST;
     default:
@@ -163,6 +218,10 @@ static bool translate(struct sdl *sdl, const SDL_Event *in, struct window_event 
 static bool poll_event(void *context, struct window_event *event) {
     struct sdl *sdl = context;
     SDL_Event in;
+    if (!sdl->size_told) {
+        tell_size(sdl, event);
+        return true;
+    }
     while (SDL_PollEvent(&in)) {
         if (translate(sdl, &in, event))
             return true;
@@ -174,7 +233,7 @@ int main(int argc, char **argv) {
     struct sdl sdl = {0};
     const struct window_driver driver = {.context = &sdl,
                                          .open = open_window,
-                                         .show = show_picture,
+                                         .show = show_frame,
                                          .poll = poll_event,
                                          .title = set_title,
                                          .grab = set_grab,

@@ -607,6 +607,7 @@ static void run_and_watch(struct supervisor *supervisor) {
             note_error(supervisor, &error);
         if (!wait_for_change(supervisor))
             break;
+        supervisor->watch.any = false;
         live_keep(&supervisor->live);
         desk_restart(&supervisor->desk);
         supervisor->restarts = supervisor->waits = supervisor->stop = false;
@@ -649,6 +650,7 @@ int supervisor_run(const struct options *options, const struct program_parts *pa
         .options = options, .window = parts->window, .signals = -1, .channel = {.descriptor = -1}};
     struct error error;
     supervisor.control = mem_share(sizeof *supervisor.control);
+    supervisor.live.control = supervisor.control;
     desk_init(&supervisor.desk, options, supervisor.control);
     bool ready = supervisor.control
                      ? listen_to_signals(&supervisor, &error) && start_farm(&supervisor, transport, &error) &&

@@ -23,7 +23,8 @@ struct pool_thread {
 struct pool {
     pthread_mutex_t mutex;
     pthread_cond_t start, finish;
-    uint64_t generation; /* counts runs; a thread joins each once */
+    uint64_t generation; /* counts runs that wake threads; a thread joins each once */
+    uint64_t runs;       /* counts all of them */
     int active;          /* threads still inside the current run */
     bool stop;
     pool_function *fn;
@@ -140,6 +141,7 @@ int pool_workers(const struct pool *pool) {
 bool pool_run(struct pool *pool, uint32_t count, pool_function *fn, void *context) {
     /* One item is not worth waking anybody. */
     bool alone = pool->workers == 1 || count <= 1;
+    pool->runs++;
     (void)pthread_mutex_lock(&pool->mutex);
     pool->fn = fn;
     pool->context = context;
@@ -198,4 +200,9 @@ bool pool_cancelled(const struct pool *pool) {
 void pool_set_poll(struct pool *pool, void (*poll)(void *context), void *context) {
     pool->poll = poll;
     pool->poll_context = context;
+}
+
+struct pool_progress pool_progress(const struct pool *pool) {
+    uint64_t begun = atomic_load_explicit(&pool->next, memory_order_relaxed);
+    return (struct pool_progress){pool->runs, begun < pool->count ? (uint32_t)begun : pool->count, pool->count};
 }

@@ -32,4 +32,11 @@ bool pool_cancelled(const struct pool *pool);
 /* Called (from worker 0's thread, every 10 ms or so while it works) during pool_run; may call pool_cancel. */
 void pool_set_poll(struct pool *pool, void (*poll)(void *context), void *context);
 
+/* Of the run under way, or the last one; for the thread that calls pool_run, and its poll. */
+struct pool_progress {
+    uint64_t runs;         /* since the pool was made */
+    uint32_t begun, count; /* items */
+};
+struct pool_progress pool_progress(const struct pool *pool);
+
 #endif

@@ -108,6 +108,7 @@ struct fake {
     struct window_event queue[16];
     int count, shown;
     bool open, grabbed;
+    char title[1024];
 };
 
 static bool fake_open(void *context, uint32_t width, uint32_t height, const char *title, struct error *error) {
@@ -116,9 +117,9 @@ static bool fake_open(void *context, uint32_t width, uint32_t height, const char
     CHECK(width == 100 && height == 70 && title);
     return fake->open = true;
 }
-static void fake_show(void *context, const uint8_t *rgb, uint32_t width, uint32_t height) {
+static void fake_show(void *context, const struct window_frame *frame) {
     struct fake *fake = context;
-    CHECK(rgb && width == 100 && height == 70);
+    CHECK(frame->picture && frame->width == 100 && frame->height == 70);
     fake->shown++;
 }
 static bool fake_poll(void *context, struct window_event *event) {
@@ -130,8 +131,9 @@ static bool fake_poll(void *context, struct window_event *event) {
     return true;
 }
 static void fake_title(void *context, const char *text) {
-    (void)context;
+    struct fake *fake = context;
     CHECK(text[0] != '\0');
+    (void)snprintf(fake->title, sizeof fake->title, "%s", text);
 }
 static void fake_grab(void *context, bool on) {
     struct fake *fake = context;
@@ -169,6 +171,7 @@ static void begin(struct table *t) {
     CHECK(film_size(100, 70, &bytes, &error));
     t->block = mem_alloc_zero(1, bytes);
     CHECK(live_begin(&t->live, &t->driver, &t->request, t->block, "x.png", t->now, &error));
+    t->fake.queue[t->fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 400, .y = 280, .density = 1};
 }
 
 static void end(struct table *t) {
@@ -379,4 +382,135 @@ TEST(window_that_watches_shows_errors_keeps_the_camera_and_recovers) {
           "xdotool key Home; sh wait.sh \"! cmp -s out.png first.png\" || exit 1; xdotool key q; wait $pid'",
           0);
     gives("$gray scene.lua -o whole.png && cmp out.png whole.png", 0);
+}
+
+/* What lies over the picture. */
+
+static struct window_event mouse(enum window_event_kind kind, double x, double y) {
+    return (struct window_event){.kind = kind, .button = WINDOW_LEFT, .x = x, .y = y};
+}
+
+static void click(struct table *t, double x, double y) {
+    t->fake.queue[t->fake.count++] = mouse(WINDOW_MOVE, x, y);
+    t->fake.queue[t->fake.count++] = mouse(WINDOW_PRESS, x, y);
+    t->fake.queue[t->fake.count++] = mouse(WINDOW_RELEASE, x, y);
+}
+
+TEST(window_menu_renders_again_and_quits_by_clicks_that_do_not_turn_the_camera) {
+    struct table t;
+    begin(&t);
+    go_to_the_end(&t);
+    click(&t, 10, 6); /* Render */
+    CHECK_EQ_INT(step(&t), LIVE_VIEW);
+    CHECK(t.live.view.divide == 16 && t.live.view.own && t.live.turning == 0);
+    /* Pressed on a button and let go elsewhere: not used. */
+    t.fake.queue[t.fake.count++] = mouse(WINDOW_PRESS, 60, 6);
+    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    t.fake.queue[t.fake.count++] = mouse(WINDOW_MOVE, 200, 200);
+    t.fake.queue[t.fake.count++] = mouse(WINDOW_RELEASE, 200, 200);
+    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    CHECK(!t.live.flown);
+    click(&t, 60, 6); /* Quit */
+    CHECK_EQ_INT(step(&t), LIVE_QUIT);
+    end(&t);
+}
+
+TEST(window_places_the_picture_in_its_middle_for_any_size_and_density) {
+    struct table t;
+    begin(&t);
+    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    const struct live_place *place = &t.live.place;
+    CHECK(place->left == 0 && place->top == 0 && place->shown_width == 400 && place->shown_height == 280);
+    t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 1600, .y = 700, .density = 2};
+    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    CHECK(place->left == 300 && place->top == 0 && place->shown_width == 1000 && place->shown_height == 700);
+    CHECK_EQ_INT(t.live.panel.paper.scale, 2); /* letters as large as before to the eye */
+    CHECK(t.live.panel.paper.width == 1600 && t.live.panel.paper.height == 700);
+    t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 50, .y = 90, .density = 1};
+    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    CHECK(place->left == 0 && place->top == 27 && place->shown_width == 50 && place->shown_height == 35);
+    t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 0, .y = 0, .density = 1};
+    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    end(&t);
+}
+
+TEST(window_tells_how_far_building_is_and_what_went_wrong) {
+    struct table t;
+    struct control control = {.build_step = 3, .build_done = 250};
+    begin(&t);
+    t.live.control = &control;
+    t.now += 1;
+    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    CHECK(strstr(t.fake.title, "building, step 3: 25 %") != NULL);
+    control.build_step = 0;
+    finish_pass(&t, 1, false);
+    CHECK_EQ_INT(step(&t), LIVE_VIEW);
+    CHECK(strstr(t.fake.title, "triangles") && strstr(t.fake.title, "rays/s") && strstr(t.fake.title, "frames/s"));
+    live_tell(&t.live, "scene.lua:3: no such thing\nstack traceback");
+    (void)step(&t);
+    CHECK_TEXT(t.fake.title, "scene.lua:3: no such thing");
+    live_detach(&t.live);
+    (void)step(&t);
+    key(&t.fake, 'r', true); /* there is nothing to render */
+    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    key(&t.fake, 's', true); /* but what is shown can be kept */
+    CHECK_EQ_INT(step(&t), LIVE_SAVE);
+    end(&t);
+}
+
+TEST(paper_letters_keep_inside_their_cell_and_inside_the_paper) {
+    enum { W = 40, H = 30 };
+    static uint8_t rgba[4 * W * H];
+    const struct paper paper = {rgba, W, H, 1};
+    const struct ink ink = {1, 2, 3, 255};
+    for (int c = 33; c < 127; c++) {
+        const char text[2] = {(char)c, '\0'};
+        int dots = 0;
+        paper_clear(&paper);
+        paper_text(&paper, 10, 10, text, ink);
+        for (int i = 0; i < W * H; i++) {
+            bool set = rgba[4 * i + 3] != 0;
+            dots += set;
+            CHECK(!set || (i % W >= 10 && i % W < 15 && i / W >= 10 && i / W < 17));
+        }
+        CHECK(dots >= 2 && dots < 30);
+    }
+    CHECK_EQ_INT(paper_text_width(&paper, "a\xc3\xa4?"), 18); /* one cell for each character */
+    paper_text(&paper, -3, -3, "ends", ink);
+    paper_text(&paper, W - 2, H - 2, "ends", ink);
+    paper_line(&paper, -1e9, 5, 1e9, 5, ink);
+    paper_line(&paper, -50, -50, 90, 90, ink);
+    CHECK_EQ_INT(rgba[4 * (20 * W + 20) + 3], 255);
+}
+
+TEST(panel_sliders_follow_the_mouse_that_holds_them_and_stop_at_their_ends) {
+    static uint8_t rgba[4 * 100 * 20];
+    struct panel panel = {.paper = {rgba, 100, 20, 1}};
+    const struct ink ink = {9, 9, 9, 255};
+    double value = 0.5;
+    panel.mouse_x = 30;
+    panel.mouse_y = 5;
+    panel_begin(&panel);
+    CHECK(!panel_slider(&panel, 10, 2, 80, 0, 1, ink, &value)); /* the mouse is on it, no button is down */
+    panel_end(&panel);
+    panel.down = panel.pressed = true;
+    panel_begin(&panel);
+    CHECK(panel_slider(&panel, 10, 2, 80, 0, 1, ink, &value));
+    panel_end(&panel);
+    CHECK_NEAR(value, 0.25, 1e-12);
+    panel.mouse_x = 500;
+    panel.mouse_y = 19;
+    panel_begin(&panel);
+    CHECK(panel_slider(&panel, 10, 2, 80, 0, 1, ink, &value));
+    panel_end(&panel);
+    CHECK_NEAR(value, 1, 0);
+    panel.down = false;
+    panel.released = true;
+    panel_begin(&panel);
+    CHECK(!panel_slider(&panel, 10, 2, 80, 0, 1, ink, &value));
+    panel_end(&panel);
+    panel.mouse_x = 30;
+    panel_begin(&panel);
+    CHECK(!panel_slider(&panel, 10, 2, 80, 0, 1, ink, &value));
+    panel_end(&panel);
 }

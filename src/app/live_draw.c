@@ -1,0 +1,234 @@
+/* The canvas follows the film tile by tile; over it lie the menu and the figures. The window is drawn at most every 16
+ * milliseconds, and what lies over the picture only when something in it can have changed. */
+#include "app/live_parts.h"
+#include "base/mem.h"
+#include "image/png_write.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double frame_pause = 0.016, figures_pause = 0.25;
+
+bool live_resize(struct live *live, int width, int height, double density) {
+    struct live_place *place = &live->place;
+    struct paper *paper = &live->panel.paper;
+    double w = live->request.width, h = live->request.height;
+    if (width < 1 || height < 1)
+        return true;
+    if (width != place->width || height != place->height) {
+        uint8_t *rgba = mem_alloc_zero((size_t)width * (size_t)height, 4);
+        if (!rgba)
+            return false;
+        mem_free(paper->rgba);
+        *paper = (struct paper){rgba, width, height, 1};
+    }
+    /* Letters of a size that can be read, and that leaves something of the picture. */
+    double scale = floor(fmin(width / (440 * density), height / (330 * density)));
+    paper->scale = (int)fmax(1, floor(density * fmax(1, fmin(scale, 2)) + 0.5));
+    double fit = fmin(width / w, height / h);
+    *place = (struct live_place){.width = width,
+                                 .height = height,
+                                 .density = density,
+                                 .shown_width = fmax(1, floor(w * fit + 0.5)),
+                                 .shown_height = fmax(1, floor(h * fit + 0.5))};
+    place->left = floor((width - place->shown_width) / 2);
+    place->top = floor((height - place->shown_height) / 2);
+    live->over_dirty = true;
+    return true;
+}
+
+/* The canvas. */
+
+static void draw_pixel(struct live *live, uint32_t x, uint32_t y, bool red) {
+    const struct picture_request *request = &live->request;
+    const struct tone tone = {request->exposure, (enum tone_curve)request->curve, request->srgb != 0};
+    uint32_t divide = live->view.divide;
+    const float *colour = live->film.pixels[(size_t)y * live->film.width + x].rgb;
+    uint8_t rgb[3];
+    for (int c = 0; c < 3; c++)
+        rgb[c] = red ? (c == 0 ? 255 : 0) : png_write_byte(tone_apply(&tone, (double)colour[c]));
+    for (uint32_t v = y * divide; v < (y + 1) * divide && v < request->height; v++) {
+        for (uint32_t u = x * divide; u < (x + 1) * divide && u < request->width; u++)
+            memcpy(live->canvas + 3 * ((size_t)v * request->width + u), rgb, 3);
+    }
+}
+
+/* Tiles that are finished, and in those under way the pixels that are being sampled again, in red. */
+void live_draw_tiles(struct live *live) {
+    const struct film *film = &live->film;
+    for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
+        uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_acquire);
+        bool done = state == FILM_TILE_DONE, under_way = state == FILM_TILE_TAKEN && !live->view.plain;
+        if (live->drawn[tile] || (!done && !under_way))
+            continue;
+        struct film_rectangle r = film_tile_rectangle(film, tile);
+        for (uint32_t y = r.y0 - film->y0; y < r.y1 - film->y0; y++) {
+            for (uint32_t x = r.x0 - film->x0; x < r.x1 - film->x0; x++) {
+                bool red = film->marked[(size_t)y * film->width + x] == FILM_MARK_WAITS;
+                if (done || red)
+                    draw_pixel(live, x, y, red && !done);
+            }
+        }
+        live->drawn[tile] = done;
+        live->dirty = true;
+    }
+}
+
+/* Figures. */
+
+struct figures {
+    char state[64], size[48], rays[48], triangles[48], voxels[64], frames[48];
+    double share; /* of the work */
+};
+
+static void count_words(char *out, size_t size, double count, const char *what) {
+    const char *unit = count >= 1e9 ? " G" : count >= 1e6 ? " M" : count >= 1e4 ? " k" : " ";
+    double value = count >= 1e9 ? count * 1e-9 : count >= 1e6 ? count * 1e-6 : count >= 1e4 ? count * 1e-3 : count;
+    (void)snprintf(out, size, "%.*f%s%s", count >= 1e4 && value < 100 ? 2 : 0, value, unit, what);
+}
+
+static uint32_t building_step(const struct live *live) {
+    return live->control ? atomic_load_explicit(&live->control->build_step, memory_order_relaxed) : 0;
+}
+
+static void tell_state(const struct live *live, struct figures *figures) {
+    uint32_t step = building_step(live);
+    uint32_t done = live->block ? film_tiles_in(&live->film, FILM_TILE_DONE) : 0;
+    uint32_t count = live->block ? film_tile_count(&live->film) : 0;
+    figures->share = count > 0 ? (double)done / count : live->complete ? 1 : 0;
+    if (step > 0) {
+        figures->share = 0.001 * atomic_load_explicit(&live->control->build_done, memory_order_relaxed);
+        (void)snprintf(figures->state, sizeof figures->state, "building, step %u: %.0f %%", step, 100 * figures->share);
+    } else if (!live->block) {
+        (void)snprintf(figures->state, sizeof figures->state, "waiting for a change");
+    } else if (live->report.threads == 0 && done == 0) {
+        (void)snprintf(figures->state, sizeof figures->state, "building");
+    } else if (live->complete) {
+        (void)snprintf(figures->state, sizeof figures->state, "ready");
+    } else {
+        (void)snprintf(figures->state, sizeof figures->state, "%.0f %%%s", 100 * figures->share,
+                       live->view.plain ? " (coarse)" : "");
+    }
+}
+
+static void work_out(const struct live *live, struct figures *figures) {
+    const struct picture_report *report = &live->report;
+    const struct render_statistics *rays = &report->rays;
+    double seconds = rays->render_seconds;
+    double traced = (double)rays->camera_rays + (double)rays->reflected_rays + (double)rays->refracted_rays +
+                    (double)rays->shadow_rays;
+    /* A hierarchy stands in one voxel that holds everything. */
+    double voxels = 1;
+    for (int i = 0; i < 3; i++)
+        voxels *= report->grid_cells[i] > 1 ? report->grid_cells[i] : 1;
+    *figures = (struct figures){0};
+    tell_state(live, figures);
+    (void)snprintf(figures->size, sizeof figures->size, "%ux%u", live->request.width, live->request.height);
+    count_words(figures->rays, sizeof figures->rays, seconds > 0 ? traced / seconds : 0, "rays/s");
+    count_words(figures->triangles, sizeof figures->triangles, (double)report->triangles, "triangles");
+    count_words(figures->voxels, sizeof figures->voxels, voxels, voxels > 1 ? "voxels" : "voxel");
+    (void)snprintf(figures->frames, sizeof figures->frames, seconds > 0 ? "%.*f frames/s" : "- frames/s",
+                   seconds > 0.1 ? 2 : 0, seconds > 0 ? 1 / seconds : 0);
+}
+
+static void set_title(struct live *live, const struct figures *figures) {
+    char title[1024];
+    (void)snprintf(title, sizeof title, "%.200s  %s  %s  %s  %s  %s  %s%s", live->request.file, figures->size,
+                   figures->state, figures->rays, figures->triangles, figures->voxels, figures->frames,
+                   live->grabbed ? "  (Esc leaves)" : "");
+    live->driver->title(live->driver->context, live->message[0] != '\0' ? live->message : title);
+}
+
+/* Over the picture. */
+
+static void tell_menu(struct live *live) {
+    struct panel *panel = &live->panel;
+    int scale = panel->paper.scale, x = 2 * scale, y = 2 * scale;
+    panel_ground(panel, 0, 0, panel->paper.width, 15 * scale);
+    static const char *const words[] = {"Render", "Quit", "Save picture", "Save view", "Hide"};
+    bool used[5] = {false};
+    for (int i = 0; i < 5; i++) {
+        int width = panel_button_width(panel, words[i]);
+        if (x + width > panel->paper.width)
+            break;
+        used[i] = panel_button(panel, x, y, words[i], false);
+        x += width + 2 * scale;
+    }
+    if (used[0])
+        live->again = live->moved = true;
+    live->quit = live->quit || used[1];
+    if (used[2] || used[3])
+        live->wish = used[2] ? LIVE_SAVE : LIVE_RECORD;
+    live->bare = live->bare || used[4];
+}
+
+static void tell_figures(struct live *live, const struct figures *figures) {
+    struct panel *panel = &live->panel;
+    int scale = panel->paper.scale, line = panel_line_height(panel), y = 17 * scale, x = 2 * scale;
+    const char *const rows[] = {figures->rays, figures->triangles, figures->voxels, figures->frames};
+    int count = panel->paper.height >= 24 * line ? 4 : 0, width = 30 * PAPER_CELL * scale;
+    panel_ground(panel, 0, 15 * scale, width, (count + 1) * line + 3 * scale);
+    panel_bar(panel, x, y, 8 * PAPER_CELL * scale, figures->share);
+    panel_text(panel, x + 9 * PAPER_CELL * scale, y, figures->state);
+    for (int i = 0; i < count; i++)
+        panel_text(panel, x, y + (i + 1) * line, rows[i]);
+}
+
+/* What went wrong, broken into lines at the bottom. */
+static void tell_message(struct live *live) {
+    struct panel *panel = &live->panel;
+    int scale = panel->paper.scale, line = panel_line_height(panel);
+    int columns = (panel->paper.width - 4 * scale) / (PAPER_CELL * scale), length = (int)strlen(live->message);
+    if (length == 0 || columns < 8)
+        return;
+    int rows = (length + columns - 1) / columns, top = panel->paper.height - rows * line - 3 * scale;
+    panel_ground(panel, 0, top, panel->paper.width, rows * line + 3 * scale);
+    for (int i = 0; i < rows; i++) {
+        char text[512];
+        (void)snprintf(text, sizeof text, "%.*s", columns, live->message + i * columns);
+        panel_warning(panel, 2 * scale, top + 2 * scale + i * line, text);
+    }
+}
+
+static void tell_over(struct live *live, const struct figures *figures) {
+    panel_begin(&live->panel);
+    if (!live->bare) {
+        tell_menu(live);
+        tell_figures(live, figures);
+    }
+    tell_message(live);
+    panel_end(&live->panel);
+}
+
+void live_show(struct live *live, double now) {
+    const struct window_driver *driver = live->driver;
+    bool due = now - live->told >= figures_pause;
+    if (!live->panel.paper.rgba || (!due && !((live->dirty || live->over_dirty) && now - live->shown >= frame_pause)))
+        return;
+    bool over = due || live->over_dirty;
+    if (over) {
+        struct figures figures;
+        work_out(live, &figures);
+        tell_over(live, &figures);
+        if (due)
+            set_title(live, &figures);
+        live->told = due ? now : live->told;
+    }
+    const struct live_place *place = &live->place;
+    struct window_frame frame = {.picture = live->canvas,
+                                 .width = live->request.width,
+                                 .height = live->request.height,
+                                 .picture_changed = live->dirty,
+                                 .left = (int)place->left,
+                                 .top = (int)place->top,
+                                 .shown_width = (int)place->shown_width,
+                                 .shown_height = (int)place->shown_height,
+                                 .overlay = live->panel.paper.rgba,
+                                 .window_width = (uint32_t)place->width,
+                                 .window_height = (uint32_t)place->height,
+                                 .overlay_changed = over};
+    driver->show(driver->context, &frame);
+    live->shown = now;
+    live->dirty = live->over_dirty = false;
+}

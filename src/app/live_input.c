@@ -1,0 +1,185 @@
+/* What people do with keys and the mouse. */
+#include "app/live_parts.h"
+
+#include <string.h>
+
+void live_change_view(struct live *live) {
+    live->moved = live->flown = true;
+}
+
+static void grab(struct live *live, bool on) {
+    live->grabbed = on;
+    memset(live->walk.down, 0, sizeof live->walk.down);
+    live->driver->grab(live->driver->context, on);
+}
+
+/* Keys that are held. True: it was one. */
+static bool take_held_key(struct live *live, int key, bool down) {
+    static const struct {
+        int key;
+        enum walk_key walk;
+        bool only_grabbed; /* the letter is a command otherwise */
+    } keys[] = {{WINDOW_ARROW_UP, WALK_FORWARD, false},
+                {WINDOW_ARROW_DOWN, WALK_BACK, false},
+                {WINDOW_ARROW_LEFT, WALK_LEFT, false},
+                {WINDOW_ARROW_RIGHT, WALK_RIGHT, false},
+                {WINDOW_SHIFT, WALK_FAST, false},
+                {WINDOW_CONTROL, WALK_SLOW, false},
+                {'w', WALK_FORWARD, true},
+                {'s', WALK_BACK, true},
+                {'a', WALK_LEFT, true},
+                {'d', WALK_RIGHT, true},
+                {'e', WALK_UP, true},
+                {'q', WALK_DOWN, true}};
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
+        if (keys[i].key == key && (live->grabbed || !keys[i].only_grabbed)) {
+            live->walk.down[keys[i].walk] = down;
+            return true;
+        }
+    }
+    return false;
+}
+
+static void take_view_key(struct live *live, int key, bool control) {
+    struct walk *walk = &live->walk;
+    if (key >= '0' && key <= '9' && control) {
+        walk_save(walk, key - '0');
+        return;
+    }
+    switch (key) {
+    case 'l':
+        walk_level(walk);
+        break;
+    case '[':
+        walk_roll(walk, -5);
+        break;
+    case ']':
+        walk_roll(walk, 5);
+        break;
+    case WINDOW_HOME:
+        walk_home(walk);
+        live->moved = true;
+        live->flown = false;
+        return;
+    default:
+        if (key < '0' || key > '9' || !walk_recall(walk, key - '0'))
+            return;
+    }
+    live_change_view(live);
+}
+
+/* True: it was one of those that need no scene. */
+static bool take_plain_key(struct live *live, int key) {
+    switch (key) {
+    case 'q':
+        live->quit = true;
+        return true;
+    case 's':
+        live->wish = LIVE_SAVE;
+        return true;
+    case 'f':
+        live->driver->full_screen(live->driver->context);
+        return true;
+    case WINDOW_TAB:
+        live->bare = !live->bare;
+        live->over_dirty = true;
+        return true;
+    default:
+        return false;
+    }
+}
+
+static void take_key(struct live *live, const struct window_event *event) {
+    /* Without a scene there is nowhere to walk to. */
+    if (live->block && take_held_key(live, event->key, event->down))
+        return;
+    if (!event->down || take_plain_key(live, event->key) || !live->block)
+        return;
+    switch (event->key) {
+    case 'r':
+        live->again = live->moved = true;
+        return;
+    case 'n':
+        live->next = true;
+        return;
+    case 'v':
+        live->wish = LIVE_RECORD;
+        return;
+    case WINDOW_SPACE:
+        grab(live, !live->grabbed);
+        return;
+    case WINDOW_ESCAPE:
+        grab(live, false);
+        return;
+    default:
+        take_view_key(live, event->key, event->control);
+        return;
+    }
+}
+
+static void take_motion(struct live *live, const struct window_event *event) {
+    double x = event->dx / live->place.shown_height, y = event->dy / live->place.shown_height;
+    live->panel.mouse_x = event->x;
+    live->panel.mouse_y = event->y;
+    live->over_dirty = live->over_dirty || !live->grabbed;
+    if (!live->block || (!live->grabbed && !live->turning))
+        return;
+    if (live->grabbed)
+        walk_look(&live->walk, x, y);
+    else
+        walk_orbit(&live->walk, x, y);
+    live_change_view(live);
+}
+
+static void take_button(struct live *live, const struct window_event *event, bool down) {
+    struct panel *panel = &live->panel;
+    panel->mouse_x = event->x;
+    panel->mouse_y = event->y;
+    live->over_dirty = true;
+    if (event->button == WINDOW_LEFT && !live->grabbed) {
+        panel->down = down;
+        panel->pressed = panel->pressed || down;
+        panel->released = panel->released || !down;
+    }
+    if (!down && event->button == live->turning)
+        live->turning = 0;
+    if (!down || panel_covers(panel, event->x, event->y) || !live->block)
+        return;
+    if (event->button == WINDOW_RIGHT)
+        grab(live, !live->grabbed);
+    else if (event->button == WINDOW_LEFT && !live->grabbed)
+        live->turning = WINDOW_LEFT;
+}
+
+void live_take_event(struct live *live, const struct window_event *event) {
+    switch (event->kind) {
+    case WINDOW_CLOSE:
+        live->quit = true;
+        return;
+    case WINDOW_KEY:
+        take_key(live, event);
+        return;
+    case WINDOW_MOVE:
+        take_motion(live, event);
+        return;
+    case WINDOW_WHEEL:
+        if (!live->block)
+            return;
+        walk_zoom(&live->walk, event->y);
+        live_change_view(live);
+        return;
+    case WINDOW_PRESS:
+    case WINDOW_RELEASE:
+        take_button(live, event, event->kind == WINDOW_PRESS);
+        return;
+    case WINDOW_LEAVE:
+        memset(live->walk.down, 0, sizeof live->walk.down);
+        live->turning = 0;
+        live->panel.held = 0;
+        return;
+    case WINDOW_SIZE:
+        if (!live_resize(live, (int)event->x, (int)event->y, event->density))
+            live_tell(live, "gray: out of memory for a window of this size");
+        return;
+    }
+}
