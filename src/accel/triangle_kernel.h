@@ -69,8 +69,9 @@ static inline void sheared_set(struct triangle_ray *out, const struct ray *ray) 
 }
 
 /* triangle_cross, its three edge functions at a time and with the same bits; what is near zero is left to it. */
-static inline bool cross(const struct triangle_ray *ray, const double a[3], const double b[3], const double c[3],
-                         struct triangle_hit *hit) {
+static inline __attribute__((always_inline)) bool cross(const struct triangle_ray *ray, const double a[3],
+                                                        const double b[3], const double c[3],
+                                                        struct triangle_hit *hit) {
     int x = ray->x, y = ray->y, z = ray->z;
     wide4 pz = wide4_sub(wide4_make(a[z], b[z], c[z], c[z]), wide4_all(ray->origin[z]));
     wide4 px = wide4_sub(wide4_make(a[x], b[x], c[x], c[x]), wide4_all(ray->origin[x]));
@@ -80,8 +81,16 @@ static inline bool cross(const struct triangle_ray *ray, const double a[3], cons
     wide4 p = wide4_mul(wide4_cab(px), wide4_bca(py)), q = wide4_mul(wide4_cab(py), wide4_bca(px));
     wide4 e = wide4_sub(p, q);
     wide4 doubt = wide4_mul(wide4_all(0x1p-49), wide4_add(wide4_size(p), wide4_size(q)));
-    if (__builtin_expect((wide4_below(doubt, wide4_size(e)) & 7) != 7, 0))
-        return triangle_cross(ray, a, b, c, hit);
+    if (__builtin_expect((wide4_below(doubt, wide4_size(e)) & 7) != 7, 0)) {
+        struct triangle_hit exact; /* so that *hit can stay in registers */
+        if (!triangle_cross(ray, a, b, c, &exact))
+            return false;
+        hit->t = exact.t;
+        hit->u = exact.u;
+        hit->v = exact.v;
+        hit->enter = exact.enter;
+        return true;
+    }
     unsigned negative = wide4_negative(e) & 7;
     if (negative != 0 && negative != 7)
         return false;
@@ -94,31 +103,64 @@ static inline bool cross(const struct triangle_ray *ray, const double a[3], cons
     return true;
 }
 
+static inline __attribute__((always_inline)) bool is_crossed(const struct search *s, const struct triangle_ray *sheared,
+                                                             const struct triangle_block *block, unsigned lane,
+                                                             struct triangle_hit *hit) {
+    const double(*vertices)[3] = s->set->vertices;
+    hit->triangle = block->ids[lane];
+    return cross(sheared, vertices[block->vertices[0][lane]], vertices[block->vertices[1][lane]],
+                 vertices[block->vertices[2][lane]], hit);
+}
+
+static inline bool is_nearer(const struct search *s, const struct triangle_hit *h) {
+    if (!(h->t > s->ray->t_min) || !(h->t <= s->best))
+        return false;
+    return h->t != s->best || (s->found && h->triangle < s->hit->triangle);
+}
+
+/* Field by field: what was stored in pieces is slow to load whole. */
+static inline void hit_copy(struct triangle_hit *to, const struct triangle_hit *from) {
+    to->t = from->t;
+    to->u = from->u;
+    to->v = from->v;
+    to->triangle = from->triangle;
+    to->enter = from->enter;
+}
+
 /* The answer for one proposed triangle. True when an "any" search is over. */
 static inline bool decide(struct search *s, const struct triangle_block *block, unsigned lane) {
-    const double(*vertices)[3] = s->set->vertices;
     struct triangle_hit h;
-    if (!cross(&s->sheared, vertices[block->vertices[0][lane]], vertices[block->vertices[1][lane]],
-               vertices[block->vertices[2][lane]], &h))
+    if (!is_crossed(s, &s->sheared, block, lane, &h))
         return false;
-    h.triangle = block->ids[lane];
     if (s->kind == TRIANGLE_ALL) {
-        s->visit(s->context, &h);
+        struct triangle_hit visited = h;
+        s->visit(s->context, &visited);
         return false;
     }
-    if (!(h.t > s->ray->t_min) || !(h.t <= s->best))
-        return false;
-    if (h.t == s->best && !(s->found && h.triangle < s->hit->triangle))
+    if (!is_nearer(s, &h))
         return false;
     s->found = true;
     if (s->kind == TRIANGLE_ANY)
         return true;
     s->best = h.t;
-    *s->hit = h;
+    hit_copy(s->hit, &h);
     float local = (float)(h.t * s->t_to_local - s->t_offset) * (1 + 0x1p-20f) + 0x1p-20f;
     if (local < s->limit)
         s->limit = local;
     return false;
+}
+
+/* The end of a "nearest" search: nothing is asked of the ray and its limits any more. */
+static inline bool decide_last(struct search *s) {
+    struct triangle_hit h;
+    struct triangle_ray sheared;
+    if (!s->waiting)
+        return s->found;
+    sheared_set(&sheared, s->ray);
+    if (!is_crossed(s, &sheared, s->waiting, s->waiting_lane, &h) || !is_nearer(s, &h))
+        return s->found;
+    hit_copy(s->hit, &h);
+    return true;
 }
 
 static inline void make_ready(struct search *s) {
@@ -459,9 +501,8 @@ bool KERNEL(nearest)(const struct triangle_index *index, const struct triangle_s
         walk(&s, TRIANGLE_NEAREST, true);
     else
         walk(&s, TRIANGLE_NEAREST, false);
-    decide_waiting(&s);
     add_cost(&s, cost);
-    return s.found;
+    return decide_last(&s);
 }
 
 bool KERNEL(any)(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
