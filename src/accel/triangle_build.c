@@ -421,7 +421,7 @@ static void set_lane(const struct triangle_index *index, const struct triangle_s
 
 static void set_unused_lane(struct triangle_block *block, uint32_t lane) {
     for (int k = 0; k < 3; k++) {
-        block->corner[k][lane] = 64;
+        block->corner[k][lane] = UNUSED_AT;
         block->edge1[k][lane] = k == 0 ? 0x1p-4f : 0;
         block->edge2[k][lane] = k == 1 ? 0x1p-4f : 0;
     }

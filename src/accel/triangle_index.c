@@ -193,6 +193,10 @@ static bool fill_voxels(struct triangle_index *index, const struct triangle_set 
                     index->voxels[v] = lists[v].result;
                 }
         index->big = big->result;
+        if (index->voxel_count == ONE_VOXEL) {
+            index->only = lists[voxel_at(index, 0, 0, 0)].result;
+            index->near_by = NEAR_BY;
+        }
     }
     mem_free(lists);
     mem_free(references);

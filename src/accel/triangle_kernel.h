@@ -40,10 +40,12 @@ struct search {
     float reciprocal[4]; /* 1 / direction */
     float middle[4];     /* origin / direction: a plane is met at plane * reciprocal - middle */
     float widen[4];      /* for rays from far away: how much the boxes' growth falls short, in local t */
+    float longest;       /* the largest size of the direction's components, M */
     uint32_t octant;     /* bit k: the direction is negative along axis k */
     float error;         /* 15 e + 8 D */
     float limit;         /* local t beyond which nothing matters */
     float certain;       /* local t below which the ray's own interval surely has not ended */
+    float blur;          /* what a local t of a hit may be off, beyond its last places */
     bool found, sheared_ready, far_away;
     double t_to_local, t_offset; /* local t = t * t_to_local - t_offset */
     double best;                 /* as decided */
@@ -144,7 +146,7 @@ static inline bool decide(struct search *s, const struct triangle_block *block, 
         return true;
     s->best = h.t;
     hit_copy(s->hit, &h);
-    float local = (float)(h.t * s->t_to_local - s->t_offset) * (1 + 0x1p-20f) + 0x1p-20f;
+    float local = (float)(h.t * s->t_to_local - s->t_offset) * (1 + 0x1p-20f) + s->blur;
     if (local < s->limit)
         s->limit = local;
     return false;
@@ -212,7 +214,7 @@ static __attribute__((noinline)) void keep_lanes(struct search *s, const struct 
         s->waiting_from = froms[lane];
         for (int j = 0; j < 3; j++)
             __builtin_prefetch(s->set->vertices[block->vertices[j][lane]]);
-        float limit = tos[lane] * (1 + 0x1p-20f) + 0x1p-20f;
+        float limit = tos[lane] * (1 + 0x1p-20f) + s->blur;
         if (limit < s->limit)
             s->limit = limit;
     } while (lanes);
@@ -247,7 +249,9 @@ static inline __attribute__((always_inline)) bool try_block(struct search *s, ui
     simd8 distance = simd8_max_size(simd8_max_size(sx, sy), sz);
     simd8 w = simd8_multiply_add(reach, simd8_all(180 * 0x1p-24f), simd8_all(s->error));
     simd8 e = simd8_mul(simd8_multiply_add(distance, simd8_all(146 * 0x1p-24f), w), reach);
-    simd8 e3 = simd8_mul(e, simd8_all(3)), slack = simd8_mul(e, reach);
+    simd8 slack = simd8_mul(e, reach);
+    e = simd8_mul(e, simd8_all(s->longest));
+    simd8 e3 = simd8_mul(e, simd8_all(3));
     simd8 a = simd8_add(simd8_min(u, v), e);
     simd8 c = simd8_sub(simd8_add(det, e3), simd8_add(u, v));
     simd8 f = simd8_add(t, slack);
@@ -342,8 +346,7 @@ static inline __attribute__((always_inline)) bool walk(struct search *s, const e
     if (index->big && descend(s, index->big, kind, far_away))
         return true;
     if (index->voxel_count == ONE_VOXEL) { /* one voxel: nothing to walk */
-        uint32_t only = index->voxels[13];
-        return only != REF_EMPTY && descend(s, only, kind, far_away);
+        return index->only != REF_EMPTY && descend(s, index->only, kind, far_away);
     }
     simd4 origin = simd4_load(s->origin), reciprocal = simd4_load(s->reciprocal), cell = simd4_load(index->cell),
           place = simd4_mul(simd4_add(origin, simd4_load(index->half_single)), simd4_load(index->inverse_cell));
@@ -383,19 +386,15 @@ static inline double power_of_two(uint64_t exponent_bits) {
     return x;
 }
 
-/* The ray is at `origin`, inside the frame, at t = enter / to_local. */
-static inline void search_start(struct search *s, simd4 origin, simd4 direction, simd4 reciprocal, double to_local,
-                                double enter, double leave) {
+/* The ray is at `origin`; its local t ends at about `last`. */
+static inline void search_start(struct search *s, simd4 origin, simd4 direction, simd4 reciprocal, float last) {
     simd4_store(s->origin, origin);
     simd4_store(s->direction, direction);
     simd4_store(s->reciprocal, reciprocal);
     simd4_store(s->middle, simd4_mul(origin, reciprocal));
     s->octant = simd4_negative(reciprocal) & 7;
-    s->t_to_local = to_local;
-    s->t_offset = enter;
-    s->limit = (float)(leave - enter) * (1 + 0x1p-20f) + 0x1p-20f;
-    double certain = (s->ray->t_max * to_local - enter) * (1 - 0x1p-20) - 0x1p-20;
-    s->certain = certain < 16 ? (float)certain : 16;
+    s->limit = last * (1 + 0x1p-20f) + s->blur;
+    s->certain = last * (1 - 0x1p-20f) - s->blur;
     s->found = s->sheared_ready = false;
     s->waiting = NULL;
     s->best = s->ray->t_max;
@@ -428,8 +427,14 @@ static __attribute__((noinline)) enum beginning search_begin_far(struct search *
     r = wide4_mul(r, wide4_all(to_local));
     r = wide4_signed(wide4_min(wide4_size(r), wide4_all(0x1p60)), r);
     simd4 r4 = wide4_to_single(r);
+    s->t_to_local = to_local;
+    s->t_offset = enter * to_local;
+    s->blur = 0x1p-20f;
     search_start(s, wide4_to_single(wide4_add(o, wide4_mul(d, wide4_all(enter)))),
-                 wide4_to_single(wide4_mul(d, wide4_all(shrink))), r4, to_local, enter * to_local, leave * to_local);
+                 wide4_to_single(wide4_mul(d, wide4_all(shrink))), r4, (float)((leave - enter) * to_local));
+    double certain = (s->ray->t_max - enter) * to_local * (1 - 0x1p-20) - 0x1p-20;
+    s->certain = certain < 16 ? (float)certain : 16;
+    s->longest = 1;
     s->error = 16 * 0x1p-24f + (float)(far * 8 * 0x1p-46);
     s->far_away = far > FAR_AWAY;
     simd4_store(s->widen, simd4_mul(simd4_size(r4), simd4_all((float)(far * 0x1p-45))));
@@ -444,39 +449,28 @@ static inline wide4 load_vec3(const struct vec3 *v) {
     return wide4_make(x, y, z, 0);
 }
 
-/* Most rays start near the mesh and at t = 0. They are taken as they are, in single precision from here on, and nothing
- * they meet first has to wait for where they enter the frame. */
+/* Most rays start near the mesh and at t = 0. They are taken as they are, in single precision from here on: nothing they
+ * meet first has to wait for where they enter the frame, and their t is the local one. */
 static inline __attribute__((always_inline)) enum beginning search_begin(struct search *s) {
     const struct triangle_index *index = s->index;
     const struct ray *ray = s->ray;
     wide4 scale = wide4_all(index->scale);
     wide4 o = wide4_mul(wide4_sub(load_vec3(&ray->origin), wide4_load(index->centre)), scale);
     wide4 d = wide4_mul(load_vec3(&ray->direction), scale);
-    simd4 o4 = wide4_to_single(o), d4 = wide4_to_single(d), o_size = simd4_size(o4), d_size = simd4_size(d4);
-    float largest = simd4_largest_of_three(d_size);
-    bool usual = simd4_all_below(o_size, simd4_all(NEAR_BY)) && simd4_all_below(d_size, simd4_all(0x1p30f)) &&
-                 largest > 0x1p-30f && ray->t_min == 0 && index->voxel_count == ONE_VOXEL;
+    simd4 o4 = wide4_to_single(o), d4 = wide4_to_single(d), d_size = simd4_size(d4);
+    s->longest = simd4_largest_of_three(d_size);
+    bool usual = simd4_all_below(simd4_max(simd4_size(o4), simd4_mul(d_size, simd4_all(NEAR_BY * 0x1p-30f))),
+                                 simd4_all(index->near_by)) &&
+                 s->longest > 0x1p-30f && ray->t_min == 0 && ray->t_max > 0;
     if (__builtin_expect(!usual, 0))
         return search_begin_far(s, o, d);
     simd4 r4 = simd4_div(simd4_all(1), simd4_signed(simd4_max(d_size, simd4_all(0x1p-80f)), d4));
-    simd4 half = simd4_load(index->half_single);
-    simd4 a = simd4_mul(simd4_sub(simd4_sub(simd4_all(0), half), o4), r4), b = simd4_mul(simd4_sub(half, o4), r4);
-    float enter = simd4_largest_of_three(simd4_min(a, b)), leave = simd4_smallest_of_three(simd4_max(a, b));
-    if (!(enter <= leave && leave >= 0 && (double)enter <= ray->t_max))
-        return RAY_MISSES;
-    /* As above, by a power of two. */
-    uint32_t exponent;
-    memcpy(&exponent, &largest, sizeof exponent);
-    exponent = (exponent & 0x7f800000) + 0x800000;
-    uint32_t shrink_bits = 0x7f000000 - exponent;
-    float to_local, shrink;
-    memcpy(&to_local, &exponent, sizeof to_local);
-    memcpy(&shrink, &shrink_bits, sizeof shrink);
-    double last = ray->t_max * (double)to_local;
-    search_start(s, o4, simd4_mul(d4, simd4_all(shrink)), simd4_mul(r4, simd4_all(to_local)), (double)to_local, 0,
-                 last < 32 ? last : 32);
+    s->t_to_local = 1;
+    s->t_offset = 0;
+    s->blur = 0;
     s->error = 16 * 0x1p-24f;
     s->far_away = false;
+    search_start(s, o4, d4, r4, (float)(ray->t_max < 0x1p60 ? ray->t_max : 0x1p60));
     return RAY_INSIDE;
 }
 

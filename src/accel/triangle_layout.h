@@ -44,8 +44,10 @@ struct wide_node {
 };
 
 /* Up to eight triangles: corner 0, the two edges from it, their numbers, and those of their vertices (which spares the
- * test that decides a way through memory). An unused lane holds a small triangle so far outside (64, 64, 64) that no
- * search reaches it. */
+ * test that decides a way through memory). An unused lane holds a triangle with edges of 1/16, so far outside (each
+ * coordinate of its corner) that the slack of every test is larger than its determinant: it is never a certain hit, the
+ * few rays that pass near it ask the test that decides, and that knows it as a point. */
+#define UNUSED_AT 0x1p20f
 struct triangle_block {
     float corner[3][WIDTH], edge1[3][WIDTH], edge2[3][WIDTH];
     uint32_t ids[WIDTH], vertices[3][WIDTH];
@@ -63,6 +65,8 @@ struct triangle_index {
     uint32_t stride[2]; /* of y and z in voxels[] */
     uint32_t *voxels;   /* (cells + 2) of each axis */
     uint32_t big;       /* reference to the triangles that touch very many voxels */
+    uint32_t only;      /* the only voxel's, if there is one */
+    float near_by;      /* rays that start nearer (NEAR_BY) need not be brought to the frame; 0: all do */
     struct wide_node *nodes; /* nodes[0] is not used */
     struct triangle_block *blocks;
     uint32_t node_count, block_count;
