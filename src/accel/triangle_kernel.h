@@ -1,22 +1,24 @@
 /* The search, compiled once per instruction set: a file defines KERNEL(name) and includes this one.
  *
- * Single precision proposes, doubles decide. A ray is taken into local space in double precision; one that starts
- * farther than NEAR_BY from the middle is moved to where it enters the frame (so its origin is at most 1 + VOXEL_MARGIN
- * in size); then it is rounded. Its direction's largest component is 1/2 to 1. Hits are looked for with every
- * comparison slack by more than all rounding can do, and what is found is tried again with the test of triangle.h on
- * the original ray and vertices. So the answer is the same bits as trying every triangle, whatever the instruction set.
+ * Single precision proposes, doubles decide. A ray is taken into local space in double precision and rounded. One that
+ * starts farther than NEAR_BY from the middle is moved to where it enters the frame first (so its origin is at most
+ * 1 + VOXEL_MARGIN in size), and its direction made about one long. Hits are looked for with every comparison slack by
+ * more than all rounding can do, and what is found is tried again with the test of triangle.h on the original ray and
+ * vertices. So the answer is the same bits as trying every triangle, whatever the instruction set.
  *
- * How far rounding reaches, in units of e = 2^-24 (unit roundoff), with |d| <= 1, s = o - corner, S = |s| and L the
- * largest component of the two edges; D bounds what the double arithmetic of either side may move the line, about 2^-46
- * times the distance of the origin. |o| is at most S + 1:
- *   s           (2.5 + S) e + D, and S e from the subtraction
- *   p = d x e2  7 e L                          (|p| <= 2 L)
- *   u = s p     (15 + 51 S) e L + 6 L D; v = d q the same
- *   det = e1 p  45 e L^2
- *   T = e2 q    (15 + 54 S) e L^2 + 6 L^2 D, and 45 e L^2 t from comparing it with t det, where t <= 2 (S + 2 L)
- * A sign of det that is wrong means |det| <= 45 e L^2. So with W = (15 + 146 S + 180 L) e + 8 D and E = W L a true hit
- * always has u, v >= -E, u + v <= |det| + 3 E and T within E L, and what passes with these turned round is certainly a
- * hit. S counts, not its bound: a ray that starts on a surface would else find its own triangle doubtful too often.
+ * How far rounding reaches, in units of e = 2^-24 (unit roundoff), with s = o - corner, S = |s|, L the largest
+ * component of the two edges, M the largest of the direction's; D bounds what the double arithmetic of either side may
+ * move the line, about 2^-46 times the distance of the origin. |o| is at most S + 1: s           (2.5 + S) e + D, and S
+ * e from the subtraction p = d x e2  7 e L M                          (|p| <= 2 L M) u = s p     ((15 + 51 S) e L + 6 L
+ * D) M; v = d q the same det = e1 p  45 e L^2 M A sign of det that is wrong means |det| <= 45 e L^2 M. So with W = (15
+ * + 146 S + 180 L) e + 8 D and E = W L M a true hit always has u, v >= -E and u + v <= |det| + 3 E. S counts, not its
+ * bound: a ray that starts on a surface would else find its own triangle doubtful too often. For T = e2 q that is not
+ * enough: where triangles are large, as floors are, so is S. But floors lie along the axes. With s_k, l_k and d_k for
+ * the components and p_k the product of the other two l, every product in T, and so what it is off by, is at most one
+ * of |s_k| p_k: q = s x e1  ((2.5 + 5 |s_k|) e + D) l_j from each of its two products T = e2 q    the sum over k of ((5
+ * + 18 |s_k|) e + 2 D) p_k t det       the sum of 16 e |d_k| p_k t, and |d_k| t <= |s_k| + l_k So T is within F = sum
+ * of ((6 + 36 |s_k| + 18 l_k) e + 2 D) p_k of t det. What passes these comparisons with E and F turned round is
+ * certainly a hit.
  *
  * A certain hit ends an "any" search at once. A "nearest" search decides what is proposed at once, too: since near
  * boxes come first, there is hardly more than one proposal for every ray that hits. */
@@ -244,24 +246,28 @@ static inline __attribute__((always_inline)) bool try_block(struct search *s, ui
     u = simd8_flip(u, sign);
     v = simd8_flip(v, sign);
     t = simd8_flip(t, sign);
-    simd8 reach = simd8_max(simd8_max_size(e1x, e1y), simd8_max(simd8_max_size(e1z, e2x), simd8_max_size(e2y, e2z)));
+    simd8 lx = simd8_max_size(e1x, e2x), ly = simd8_max_size(e1y, e2y), lz = simd8_max_size(e1z, e2z);
+    simd8 reach = simd8_max(simd8_max(lx, ly), lz);
     reach = simd8_max(reach, simd8_all(0x1p-40f)); /* no slack at all would make points certain hits */
-    simd8 distance = simd8_max_size(simd8_max_size(sx, sy), sz);
+    simd8 ax = simd8_size(sx), ay = simd8_size(sy), az = simd8_size(sz);
     simd8 w = simd8_multiply_add(reach, simd8_all(180 * 0x1p-24f), simd8_all(s->error));
-    simd8 e = simd8_mul(simd8_multiply_add(distance, simd8_all(146 * 0x1p-24f), w), reach);
-    simd8 slack = simd8_mul(e, reach);
-    e = simd8_mul(e, simd8_all(s->longest));
-    simd8 e3 = simd8_mul(e, simd8_all(3));
-    simd8 a = simd8_add(simd8_min(u, v), e);
-    simd8 c = simd8_sub(simd8_add(det, e3), simd8_add(u, v));
+    simd8 e = simd8_multiply_add(simd8_max(simd8_max(ax, ay), az), simd8_all(146 * 0x1p-24f), w);
+    e = simd8_mul(simd8_mul(e, reach), simd8_all(s->longest));
+    simd8 yz = simd8_mul(ly, lz), zx = simd8_mul(lz, lx), xy = simd8_mul(lx, ly);
+    simd8 least = simd8_all(s->error / 2), each = simd8_all(36 * 0x1p-24f);
+    simd8 slack = simd8_mul(simd8_multiply_add(lx, simd8_all(54 * 0x1p-24f), simd8_multiply_add(ax, each, least)), yz);
+    slack = simd8_multiply_add(simd8_multiply_add(ay, each, least), zx, slack);
+    slack = simd8_multiply_add(simd8_multiply_add(az, each, least), xy, slack);
+    simd8 smaller = simd8_min(u, v), rest = simd8_sub(det, simd8_add(u, v));
+    simd8 a = simd8_add(smaller, e), c = simd8_multiply_add(e, simd8_all(3), rest);
     simd8 f = simd8_add(t, slack);
     simd8 g = simd8_sub(simd8_multiply_add(det, simd8_all(s->limit), slack), t);
     unsigned lanes = simd8_not_negative(simd8_min(simd8_min(a, c), simd8_min(f, g)));
     if (__builtin_expect(!lanes, 1))
         return false;
     if (kind != TRIANGLE_ALL) {
-        a = simd8_sub(simd8_min(u, v), e);
-        c = simd8_sub(simd8_sub(det, e3), simd8_add(u, v));
+        a = simd8_sub(smaller, e);
+        c = simd8_sub(rest, simd8_mul(e, simd8_all(3)));
         f = simd8_sub(t, slack);
         g = simd8_sub(simd8_multiply_sub(det, simd8_all(s->certain), slack), t);
         unsigned certain = lanes & simd8_not_negative(simd8_min(simd8_min(a, c), simd8_min(f, g)));
@@ -449,8 +455,8 @@ static inline wide4 load_vec3(const struct vec3 *v) {
     return wide4_make(x, y, z, 0);
 }
 
-/* Most rays start near the mesh and at t = 0. They are taken as they are, in single precision from here on: nothing they
- * meet first has to wait for where they enter the frame, and their t is the local one. */
+/* Most rays start near the mesh and at t = 0. They are taken as they are, in single precision from here on: nothing
+ * they meet first has to wait for where they enter the frame, and their t is the local one. */
 static inline __attribute__((always_inline)) enum beginning search_begin(struct search *s) {
     const struct triangle_index *index = s->index;
     const struct ray *ray = s->ray;
