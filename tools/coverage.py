@@ -4,7 +4,8 @@
 coverage.py FOLDER reads FOLDER/export.json and FOLDER/export.lcov (both of llvm-cov) and writes, into the same folder,
 summary.md (rooms, marks, files below their mark) and missing.txt (every line and outcome that was not reached).
 
-Counted is what the source says: `a && b` has two conditions and so four outcomes, a case of a switch is one condition.
+Counted is what the source says: `a && b` has two conditions and so four outcomes, a case of a switch is one condition (that none of the cases of a closed
+kind fits is none).
 Not counted are conditions that clang knows the answer of (while (true), sizeof), the conditions of assert() and what
 stands in a line that is UNREACHABLE, and the switch of MAY_FAIL, which other builds do not have.
 """
@@ -62,6 +63,11 @@ class Source:
             self.silent.append((match.start(), end))
             if match.group(1) == "UNREACHABLE":
                 self.silent_lines.update(range(self.line(match.start()), self.line(end) + 1))
+                # The cases that lead there and nowhere else.
+                cases = re.search(r"(case \w+:\s*)+\Z", self.text[:match.start()])
+                if cases:
+                    self.silent.append(cases.span())
+                    self.silent_lines.update(range(self.line(cases.start()), self.line(match.start())))
 
     def offset(self, line, column):
         return self.starts[line - 1] + column - 1
@@ -76,6 +82,19 @@ class Source:
     def is_silent(self, line, column):
         at = self.offset(line, column)
         return any(lo <= at < hi for lo, hi in self.silent)
+
+    def is_closed(self, line, column):
+        """Is this what a switch over a closed kind is about? That no case fits is then excluded by the compiler."""
+        at = self.offset(line, column)
+        if not re.search(r"\bswitch \((\(enum \w+\))?\Z", self.text[:at]):
+            return False
+        body = self.text.index("{", at)
+        depth, end = 0, body
+        while depth or end == body:
+            depth += {"{": 1, "}": -1}.get(self.text[end], 0)
+            end += 1
+        body = self.text[body:end]
+        return "default:" not in body and all(re.fullmatch(r"[A-Z0-9_]+", c) for c in re.findall(r"\bcase ([^:]+):", body))
 
 
 class File:
@@ -121,7 +140,7 @@ def read(folder, root):
                 inner = inner or (names[number], *place)
                 place, number = site[number][:4], site[number][5]
             file = entry(names[number])
-            if file is None or file.source.is_silent(place[0], place[1]):
+            if file is None or file.source.is_silent(place[0], place[1]) or file.source.is_closed(place[0], place[1]):
                 continue
             pair = file.branches.setdefault((*place, inner), [0, 0])
             for side in (0, 1):

@@ -3,6 +3,7 @@
 #include "base/arena.h"
 
 #include "base/checked.h"
+#include "base/fault.h"
 #include "base/mem.h"
 
 #include <stdarg.h>
@@ -39,6 +40,9 @@ static bool arena_grow(struct arena *arena, size_t size) {
 
 void *arena_alloc(struct arena *arena, size_t size) {
     size_t rounded;
+    /* Where failures are asked for, every piece is one that can fail, not only the few that need a new block. */
+    if (fault_now(FAULT_OF_ALLOCATION))
+        return NULL;
     if (!checked_add(size ? size : 1, ARENA_ALIGNMENT - 1, &rounded))
         return NULL;
     rounded &= ~(size_t)(ARENA_ALIGNMENT - 1);

@@ -184,13 +184,13 @@ static bool set_relief(struct material *m, const struct value *template, const s
 
 bool act_bump(struct context *context, const struct value *args, struct result *result, struct error *error) {
     struct material *m = image_over(context, MATERIAL_BUMP, &args[RELIEF_FILE], &args[RELIEF_LOOKUP], NULL, error);
-    return set_relief(m, &args[RELIEF_FILE], &args[RELIEF_AMOUNT]) && give(result, m);
+    return give(result, m) && set_relief(m, &args[RELIEF_FILE], &args[RELIEF_AMOUNT]);
 }
 
 bool act_bump_material(struct context *context, const struct value *args, struct result *result, struct error *error) {
     struct material *m =
         image_over(context, MATERIAL_BUMP, &args[OVER_IMAGE], &args[OVER_LOOKUP], args[OVER_MATERIAL].material, error);
-    return set_relief(m, &args[OVER_IMAGE], &args[RELIEF_OVER_AMOUNT]) && give(result, m);
+    return give(result, m) && set_relief(m, &args[OVER_IMAGE], &args[RELIEF_OVER_AMOUNT]);
 }
 
 struct material *act_relief(struct context *context, const struct value *value, struct error *error) {

@@ -24,7 +24,7 @@ static bool add_children(struct context *context, struct node *node, const struc
 
 bool act_node(struct context *context, const struct value *args, struct result *result, struct error *error) {
     struct node *node = scene_node(&context->scene, NODE_GROUP, text_or(&args[GROUP_NAME], "node"), error);
-    return node && add_children(context, node, &args[GROUP_CHILDREN], error) && give(result, node);
+    return give(result, node) && add_children(context, node, &args[GROUP_CHILDREN], error);
 }
 
 /* A list with one number for each place, or one for all; copied, since arguments end with the call. */
@@ -84,11 +84,12 @@ bool act_instances(struct context *context, const struct value *args, struct res
     placements->matrices = matrices ? (const struct affine *)kept : NULL;
     placements->axis = args[INSTANCES_AXIS].given ? args[INSTANCES_AXIS].choice : 1;
     node->placements = placements;
+    result->pointer = node;
     return keep_numbers(context, &args[INSTANCES_TURN], "turn", at->count, &placements->turn, &placements->one_turn,
                         error) &&
            keep_numbers(context, &args[INSTANCES_SIZE], "size", at->count, &placements->size, &placements->one_size,
                         error) &&
-           node_add_child(&context->scene, node, args[INSTANCES_OF].node, error) && give(result, node);
+           node_add_child(&context->scene, node, args[INSTANCES_OF].node, error);
 }
 
 bool act_joint(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -98,7 +99,8 @@ bool act_joint(struct context *context, const struct value *args, struct result 
     struct vec3 x = args[JOINT_X].vector, y = args[JOINT_Y].vector;
     node->joint_x.min = x.x, node->joint_x.init = x.y, node->joint_x.max = x.z;
     node->joint_y.min = y.x, node->joint_y.init = y.y, node->joint_y.max = y.z;
-    return add_children(context, node, &args[JOINT_CHILDREN], error) && give(result, node);
+    result->pointer = node;
+    return add_children(context, node, &args[JOINT_CHILDREN], error);
 }
 
 bool act_sphere(struct context *context, const struct value *args, struct result *result, struct error *error) {

@@ -26,6 +26,8 @@ static struct node *shape_node(struct context *context, const struct value *args
 }
 
 static bool give_shape(struct node *node, const struct shape *shape, struct result *result) {
+    if (!node)
+        return false;
     node->shape = *shape;
     result->pointer = node;
     return true;
@@ -68,7 +70,7 @@ bool act_cylinder(struct context *context, const struct value *args, struct resu
         return false;
     struct node *node = shape_node(context, args, "cylinder", error);
     struct shape shape = {.kind = SHAPE_CONIC, .conic = conic_cylinder(from, to, radius, args[CYLINDER_OPEN].boolean)};
-    return node && give_shape(node, &shape, result);
+    return give_shape(node, &shape, result);
 }
 
 bool act_cone(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -79,7 +81,7 @@ bool act_cone(struct context *context, const struct value *args, struct result *
     struct node *node = shape_node(context, args, "cone", error);
     struct shape shape = {.kind = SHAPE_CONIC,
                           .conic = conic_frustum(from, first, to, second, args[CONE_OPEN].boolean)};
-    return node && give_shape(node, &shape, result);
+    return give_shape(node, &shape, result);
 }
 
 bool act_paraboloid(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -89,7 +91,7 @@ bool act_paraboloid(struct context *context, const struct value *args, struct re
     struct node *node = shape_node(context, args, "paraboloid", error);
     struct shape shape = {.kind = SHAPE_CONIC,
                           .conic = conic_paraboloid(radius, height, args[PARABOLOID_OPEN].boolean)};
-    return node && give_shape(node, &shape, result);
+    return give_shape(node, &shape, result);
 }
 
 bool act_hyperboloid(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -116,7 +118,7 @@ bool act_hyperboloid(struct context *context, const struct value *args, struct r
     struct shape shape = {.kind = SHAPE_CONIC,
                           .conic = two ? conic_two_sheets(gap, height, radius, open)
                                        : conic_one_sheet(waist, radius, -height, height, open)};
-    return node && give_shape(node, &shape, result);
+    return give_shape(node, &shape, result);
 }
 
 bool act_ellipsoid(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -128,7 +130,7 @@ bool act_ellipsoid(struct context *context, const struct value *args, struct res
         return false;
     struct node *node = shape_node(context, args, "ellipsoid", error);
     struct shape shape = {.kind = SHAPE_ELLIPSOID, .ellipsoid = {centre, radii}};
-    return node && give_shape(node, &shape, result);
+    return give_shape(node, &shape, result);
 }
 
 bool act_quadric(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -160,7 +162,7 @@ bool act_quadric(struct context *context, const struct value *args, struct resul
     quadric->open = args[QUADRIC_OPEN].boolean;
     struct node *node = shape_node(context, args, "quadric", error);
     struct shape shape = {.kind = SHAPE_QUADRIC, .quadric = quadric};
-    return node && give_shape(node, &shape, result);
+    return give_shape(node, &shape, result);
 }
 
 bool act_torus(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -171,14 +173,14 @@ bool act_torus(struct context *context, const struct value *args, struct result 
         return error_set(error, ERROR_SCENE, "minor must be at least a millionth of major: %g, %g", minor, major);
     struct node *node = shape_node(context, args, "torus", error);
     struct shape shape = {.kind = SHAPE_TORUS, .torus = {major, minor}};
-    return node && give_shape(node, &shape, result);
+    return give_shape(node, &shape, result);
 }
 
 bool act_superellipsoid(struct context *context, const struct value *args, struct result *result, struct error *error) {
     struct node *node = shape_node(context, args, "superellipsoid", error);
     struct shape shape = {.kind = SHAPE_SUPERELLIPSOID,
                           .superellipsoid = {number_or(&args[SUPER_E], 1), number_or(&args[SUPER_N], 1)}};
-    return node && give_shape(node, &shape, result);
+    return give_shape(node, &shape, result);
 }
 
 bool act_box(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -190,14 +192,14 @@ bool act_box(struct context *context, const struct value *args, struct result *r
         return false;
     struct node *node = shape_node(context, args, "box", error);
     struct shape shape = {.kind = SHAPE_BOX, .box = box};
-    return node && give_shape(node, &shape, result);
+    return give_shape(node, &shape, result);
 }
 
 static bool give_flat(struct context *context, const struct value *args, const char *otherwise, const struct flat *flat,
                       struct result *result, struct error *error) {
     struct node *node = shape_node(context, args, otherwise, error);
     struct shape shape = {.kind = SHAPE_FLAT, .flat = *flat};
-    return node && give_shape(node, &shape, result);
+    return give_shape(node, &shape, result);
 }
 
 /* The classic square, or with a normal or a distance the plane without end. */

@@ -2,6 +2,7 @@
 #ifndef GRAY_TESTS_SCRIPT_HOST_H
 #define GRAY_TESTS_SCRIPT_HOST_H
 
+#include "base/fault.h"
 #include "render/settings.h"
 #include "script/script.h"
 #include "tests/harness.h"
@@ -17,7 +18,8 @@ struct listener {
     struct render_request last;              /* pointers in it are stale after the call */
     struct affine first_child[64];           /* parent_from_node of the root's first child, by render */
     void (*seen)(struct listener *listener, const struct render_request *request); /* NULL: nothing more */
-    struct error answer; /* what render fails with; ERROR_NONE: it succeeds */
+    uint64_t fail_at, failing; /* the first picture makes this allocation after it fail; which one that is */
+    struct error answer;       /* what render fails with; ERROR_NONE: it succeeds */
 };
 
 static inline bool listener_render(void *context, const struct render_request *request, struct error *error) {
@@ -27,6 +29,10 @@ static inline bool listener_render(void *context, const struct render_request *r
     if (listener->seen)
         listener->seen(listener, request);
     listener->renders++;
+    if (listener->fail_at && !listener->failing) {
+        listener->failing = fault_count(FAULT_OF_ALLOCATION) + listener->fail_at;
+        fault_at(FAULT_OF_ALLOCATION, listener->fail_at);
+    }
     listener->last = *request;
     size_t used = strlen(listener->files);
     (void)snprintf(listener->files + used, sizeof listener->files - used, "%s\n", request->file);

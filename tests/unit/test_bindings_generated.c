@@ -1,6 +1,7 @@
 /* Generated from the table of functions: every argument of every form of every gr function and node method, left out,
  * of a wrong type, out of its range, NaN, infinite, with a wrong number of entries: the message names line, function
  * and argument. And with everything right, every form runs. */
+#include "base/fault.h"
 #include "formats/font.h"
 #include "image/png_write.h"
 #include "script/table.h"
@@ -324,16 +325,16 @@ static void table_call(const struct function *function, int wrong, const char *w
     append(call, separator[0] == '{' ? "{}" : "}");
 }
 
+#define PREPARATION                                                                                                    \
+    "glass = gr.rr_material({1, 1, 1}, {1, 1, 1}, 10, 0.5, 0.5, 1.5) "                                                 \
+    "sheet = gr.mesh(glass, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}})\n"                                         \
+    "ball = gr.sphere('ball')\n"                                                                                       \
+    "lamp = gr.light({0, 0, 0}, {1, 1, 1}, {1, 0, 0}); mist = gr.uniform_fog{density = 1}\n"
+
 /* The call stands in line 4. */
 static bool run_call(const char *call, struct error *error) {
     char text[CALL_SIZE + 512];
-    (void)snprintf(text, sizeof text,
-                   "glass = gr.rr_material({1, 1, 1}, {1, 1, 1}, 10, 0.5, 0.5, 1.5) "
-                   "sheet = gr.mesh(glass, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}})\n"
-                   "ball = gr.sphere('ball')\n"
-                   "lamp = gr.light({0, 0, 0}, {1, 1, 1}, {1, 0, 0}); mist = gr.uniform_fog{density = 1}\n"
-                   "%s\n",
-                   call);
+    (void)snprintf(text, sizeof text, PREPARATION "%s\n", call);
     struct listener listener = {.renders = 0};
     return listen_to_text(&listener, text, NULL, error);
 }
@@ -356,6 +357,16 @@ static bool has_table_form(const struct function *function) {
     return function->owner == OWNER_GR || function->result == RESULT_NOTHING;
 }
 
+/* Some fields exclude or need others. */
+static bool goes_with_the_others(const struct function *function, int p) {
+    const char *name = function->parameters[p].name;
+    bool excludes = strcmp(name, "file") == 0 && !(function->parameters[p].kind == KIND_OUTPUT);
+    excludes = excludes || strcmp(name, "image") == 0;
+    return !(excludes && (strstr(function->name, "mesh") || strstr(function->name, "height"))) &&
+           !strstr(name, "materials") && strcmp(name, "ior") != 0 && strcmp(name, "refract") != 0 &&
+           strcmp(name, "target_to") != 0;
+}
+
 TEST(every_form_of_every_function_runs_with_right_arguments) {
     write_files();
     for (int f = 0; f < function_count; f++) {
@@ -370,19 +381,58 @@ TEST(every_form_of_every_function_runs_with_right_arguments) {
                 test_fail(__FILE__, __LINE__, "%s: %s", call, error.text);
         }
         for (int p = function->owner == OWNER_NODE; p < function->parameter_count && has_table_form(function); p++) {
-            const char *name = function->parameters[p].name;
             char call[CALL_SIZE], text[256];
             struct error error;
-            bool excludes = strcmp(name, "file") == 0 && !(function->parameters[p].kind == KIND_OUTPUT);
-            excludes = excludes || strcmp(name, "image") == 0;
-            if ((excludes && (strstr(function->name, "mesh") || strstr(function->name, "height"))) ||
-                strstr(name, "materials") || /* one needs the other */
-                strcmp(name, "ior") == 0 || strcmp(name, "refract") == 0 || strcmp(name, "target_to") == 0)
+            if (!goes_with_the_others(function, p))
                 continue;
             right_text(&function->parameters[p], text, sizeof text);
             table_call(function, p, text, call);
             if (!run_call(call, &error))
                 test_fail(__FILE__, __LINE__, "%s: %s", call, error.text);
+        }
+    }
+}
+
+/* Whichever allocation fails once the call has begun. Most failures inside Lua are survived by its collector. */
+static void fail_in_call(const char *call) {
+    for (uint64_t k = 1;; k++) {
+        char text[CALL_SIZE + 512];
+        struct error error = {0};
+        struct listener listener = {.fail_at = k};
+        (void)snprintf(
+            text, sizeof text,
+            PREPARATION "gr.render{node = ball, file = 'x.png', width = 4, height = 4, eye = {0, 0, 9}}\n%s\n", call);
+        bool done = listen_to_text(&listener, text, NULL, &error);
+        bool over = fault_count(FAULT_OF_ALLOCATION) < listener.failing;
+        fault_at(FAULT_OF_ALLOCATION, 0);
+        if (!done && error.kind != ERROR_MACHINE)
+            test_fail(__FILE__, __LINE__, "allocation %llu of %s: kind %d: %s", (unsigned long long)k, call,
+                      (int)error.kind, error.text);
+        if (over || listener.failing == 0)
+            break;
+    }
+}
+
+TEST(memory_may_end_in_every_form_of_every_function) {
+#ifndef GRAY_FAULTS
+    test_skip("allocations fail on demand only in builds with GRAY_FAULTS");
+#endif
+    write_files();
+    for (int f = 0; f < function_count; f++) {
+        const struct function *function = &function_table[f];
+        char call[CALL_SIZE], text[256];
+        if (!can_run(function))
+            continue;
+        for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
+            positional_call(function, function->forms[k], -1, "", call);
+            fail_in_call(call);
+        }
+        for (int p = function->owner == OWNER_NODE; p < function->parameter_count && has_table_form(function); p++) {
+            if (!(function->parameters[p].flags & OPTIONAL) || !goes_with_the_others(function, p))
+                continue;
+            right_text(&function->parameters[p], text, sizeof text);
+            table_call(function, p, text, call);
+            fail_in_call(call);
         }
     }
 }

@@ -1,0 +1,163 @@
+/* Bad luck while a picture is made: over scenes with every kind of thing in them, whichever allocation fails while the
+ * world is built and the picture rendered, with every way to find hits, the job ends with one error of the machine or
+ * with the picture, and the next one is as it should be. */
+#include "base/fault.h"
+#include "render/render.h"
+#include "tests/unit/script_host.h"
+#include "world/world.h"
+
+#include "image/png_write.h"
+
+enum { SIDE = 6 };
+
+static const char things[] =
+    "local red = gr.material({0.8, 0.3, 0.2}, {0.5, 0.5, 0.5}, 20)\n"
+    "local glass = gr.difresnel_material(gr.rr_material({0, 0, 0}, {1, 1, 1}, 100, 0.1, 0.9, 1.5))\n"
+    "local image = gr.image_material{material = red, image = 'pic.png', channel = 'opacity'}\n"
+    "local marble = gr.marble_pnd_material(red, 1, 2, 3, 1, {1, 1, 1})\n"
+    "local root, ball = gr.node('root'), gr.sphere(glass)\n"
+    "root:add_child(ball)\n"
+    "root:add_child(gr.instances{of = gr.sphere(red), at = {{1, 2, 3}, {3, 2, 1}, {0, 3, 0}}, turn = {10, 20, 5}})\n"
+    "local verts = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}\n"
+    "local faces = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}\n"
+    "local mesh = gr.mesh{material = marble, verts = verts, faces = faces}\n"
+    "local parts = gr.mesh{materials = {red, glass}, face_materials = {1, 2, 1, 2}, verts = verts, faces = faces}\n"
+    "parts:translate(-2, 0, 0) mesh:translate(2, 0, 0) root:add_child(mesh) root:add_child(parts)\n"
+    "local cut = gr.difference('cut', gr.union('two', gr.sphere(red), gr.cube(red)), gr.cylinder{material = glass, "
+    "radius = 0.4},\n"
+    "  gr.mesh{material = red, verts = verts, faces = faces}, gr.torus{material = marble})\n"
+    "cut:translate(0, -2, 0) root:add_child(cut)\n"
+    "local moving = gr.cube(image) moving:velocity{1, 0, 0} root:add_child(moving)\n"
+    "local turning = gr.node('turning') turning:add_child(gr.sphere(red)) turning:rotate('y', 20)\n"
+    "root:add_child(turning)\n"
+    "root:add_child(gr.height_field(red, {{0, 1, 0}, {1, 0, 1}}))\n"
+    "root:add_child(gr.blob(red, {{0, 0, 0, 1}}, {{0, 0, 0, 1, 0, 0, 0.5, 2}}, 0.4))\n"
+    "root:add_child(gr.curve(red, {{0, 0, 0}, {1, 1, 0}, {2, 0, 1}}, 0.1, 'b-spline'))\n"
+    "root:add_child(gr.sweep(red, {{0, 0, 0}, {1, 1, 0}, {2, 0, 1}}, {0.1, 0.2, 0.1}))\n"
+    "root:add_child(gr.lathe(red, {{0, 0}, {1, 0}, {1, 1}, {0, 2}}, 'catmull-rom'))\n"
+    "root:add_child(gr.prism{material = red, outline = {{0, 0}, {3, 0}, {0, 3}}, to = 2})\n"
+    "root:add_child(gr.superellipsoid{material = red, e = 0.5, n = 0.5})\n"
+    "root:add_child(gr.plane{material = image, normal = {0, 1, 0}, distance = -4})\n"
+    "local bounded = gr.bounded_by{object = gr.sphere(red), by = gr.cube(red)} root:add_child(bounded)\n"
+    "root:add_child(gr.clipped_by{object = gr.mesh{material = red, verts = verts, faces = faces}, by = "
+    "gr.sphere(red)})\n";
+static const char view[] = "file = 'a.png', width = 6, height = 6, eye = {0, 1, 9}, view = {0, 0, -1}, fov = 60, ";
+
+/* Keeps what the plain run gave, to see that the runs after a failure give the same. */
+static int failed_runs, pictures;
+
+static void no_warning(void *context, const char *text) {
+    (void)context, (void)text;
+}
+
+static bool make(const struct render_request *request, enum accel_kind accel, struct pool *pool,
+                 struct film_pixel *pixels, struct error *error) {
+    struct world world = {0};
+    struct arena arena = {0};
+    struct film film = {0};
+    struct render_statistics statistics = {0};
+    struct render_job job = {.world = &world,
+                             .camera = request->camera,
+                             .settings = request->settings,
+                             .width = SIDE,
+                             .height = SIDE,
+                             .ambient = request->ambient,
+                             .fog = request->fog,
+                             .film = &film};
+    char warning[256];
+    uint32_t x0, y0, width, height;
+    *error = (struct error){0};
+    job.settings.accel = accel;
+    size_t bytes;
+    bool ok = render_prepare(&job, &x0, &y0, &width, &height, warning, error) && film_size(SIDE, SIDE, &bytes, error);
+    if (ok) {
+        void *block = calloc(1, bytes);
+        film_place(&film, block, SIDE, SIDE);
+        film.full_width = film.full_height = SIDE;
+        ok = world_build(&world, &arena, request->scene, request->root, request->lights, request->light_count,
+                         &request->sky, request->settings.shutter, accel, pool, no_warning, NULL, error) &&
+             render_run(&job, pool, &statistics, error);
+        if (ok && pixels)
+            memcpy(pixels, film.pixels, sizeof *pixels * SIDE * SIDE);
+        free(block);
+    }
+    world_destroy(&world);
+    arena_destroy(&arena);
+    return ok;
+}
+
+static void fail_each(struct listener *listener, const struct render_request *request) {
+    static const enum accel_kind kinds[] = {ACCEL_AUTO, ACCEL_GRID, ACCEL_KDTREE, ACCEL_NONE};
+    char warning[256];
+    struct error error;
+    struct pool *pool = pool_create(2, warning);
+    (void)listener;
+    pictures++;
+    for (size_t a = 0; a < sizeof kinds / sizeof kinds[0]; a++) {
+        static struct film_pixel wanted[SIDE * SIDE], after[SIDE * SIDE];
+        if (!make(request, kinds[a], pool, wanted, &error)) {
+            test_fail(__FILE__, __LINE__, "picture %d: %s", pictures, error.text);
+            break;
+        }
+        for (uint64_t k = 1;; k++) {
+            uint64_t before = fault_count(FAULT_OF_ALLOCATION);
+            fault_at(FAULT_OF_ALLOCATION, k);
+            bool ok = make(request, kinds[a], pool, NULL, &error);
+            fault_at(FAULT_OF_ALLOCATION, 0);
+            failed_runs += !ok;
+            if (!ok && error.kind != ERROR_MACHINE)
+                test_fail(__FILE__, __LINE__, "picture %d, allocation %llu: kind %d: %s", pictures,
+                          (unsigned long long)k, (int)error.kind, error.text);
+            if (fault_count(FAULT_OF_ALLOCATION) - before < k)
+                break;
+            pool_reset_cancel(pool);
+        }
+        CHECK(make(request, kinds[a], pool, after, &error));
+        CHECK(memcmp(wanted, after, sizeof wanted) == 0);
+    }
+    pool_destroy(pool);
+}
+
+static void white_row(void *context, uint32_t y, uint8_t *line) {
+    (void)context;
+    memset(line, 100 + 20 * (int)y, 3 * 8);
+}
+
+static void run(const char *renders) {
+    struct listener listener = {.seen = fail_each};
+    struct error error = {0};
+    char path[512], text[8192];
+#ifndef GRAY_FAULTS
+    test_skip("failures on demand are only in builds with GRAY_FAULTS");
+#endif
+    (void)snprintf(path, sizeof path, "%s/pic.png", test_folder());
+    CHECK(png_write(path, 8, 6, white_row, NULL, &error));
+    (void)snprintf(text, sizeof text, "%s%s", things, renders);
+    failed_runs = pictures = 0;
+    if (!listen_to_text(&listener, text, NULL, &error))
+        test_fail(__FILE__, __LINE__, "%s", error.text);
+    CHECK(pictures > 0);
+    CHECK(failed_runs > 50);
+}
+
+TEST(any_allocation_of_a_job_may_fail_and_the_next_job_is_whole) {
+    char text[4096];
+    (void)snprintf(text, sizeof text,
+                   "gr.render{node = root, %s lights = {gr.light({4, 5, 6}, {0.9, 0.9, 0.9}, {1, 0, 0}),\n"
+                   "gr.area_light({4, 5, 6}, {1, 0, 0}, {0, 1, 0}, {0.3, 0.3, 0.3}, {1, 0, 0})},\n"
+                   "background = gr.sky_map{image = 'pic.png'}, shutter = {0, 1}, samples = 2}\n",
+                   view);
+    run(text);
+}
+
+TEST(any_allocation_of_caustics_fog_and_lights_may_fail) {
+    char text[4096];
+    (void)snprintf(text, sizeof text,
+                   "local sky = gr.sky_map('pic.png')\n"
+                   "local lamp = gr.mesh_light{mesh = gr.mesh{verts = verts, faces = faces}, emission = {1, 1, 1}}\n"
+                   "gr.render{node = root, %s lights = {gr.light({4, 5, 6}, {0.9, 0.9, 0.9}, {1, 0, 0}), lamp},\n"
+                   "caustics = {photons = 200, radius = 0.5}, fog = gr.uniform_fog{density = 0.1}}\n"
+                   "gr.render{node = root, %s lights = {gr.sky_light{sky = sky}}, background = sky}\n",
+                   view, view);
+    run(text);
+}
