@@ -16,6 +16,9 @@
  * always shows. A solid thinner than the rounding error is not seen. A clip is followed beside the solid by the same
  * rule; a surface that coincides with the clip's is shown.
  *
+ * A leaf is asked when the sweep comes to the box in which it matters, not before: the argument of csg_plan.c that a
+ * leaf outside of its box may be taken as false holds at every single point.
+ *
  * The truth of nodes and leaves lives on the scratch, above what was there; nothing is allocated inside a ray. */
 #include "geom/csg.h"
 
@@ -57,16 +60,19 @@ static void sift_down(struct crossing *items, uint32_t root, uint32_t count, boo
     items[root] = moved;
 }
 
-/* The order is total, so it does not matter that neither way of sorting is stable. */
-static void sort_crossings(struct crossing *items, uint32_t count, bool by_leaf) {
+/* The first `sorted` are in order already. The order is total, so it does not matter that neither way of sorting is
+ * stable. */
+static void sort_crossings(struct crossing *items, uint32_t sorted, uint32_t count, bool by_leaf) {
     if (count <= 48) { /* insertion: a few lists, each in order already */
-        for (uint32_t i = 1; i < count; i++) {
+        for (uint32_t i = sorted > 1 ? sorted : 1; i < count; i++) {
+            if (!by_leaf && items[i - 1].t < items[i].t) /* t decides nearly always */
+                continue;
             struct crossing moved = items[i];
             uint32_t j = i;
             if (by_leaf)
                 for (; j > 0 && comes_before(&moved, &items[j - 1], true); j--)
                     items[j] = items[j - 1];
-            else /* t decides nearly always */
+            else
                 for (; j > 0 && (moved.t < items[j - 1].t ||
                                  (moved.t == items[j - 1].t && comes_before(&moved, &items[j - 1], false)));
                      j--)
@@ -87,18 +93,31 @@ static void sort_crossings(struct crossing *items, uint32_t count, bool by_leaf)
 
 /* ---- the sweep ---- */
 
+/* Leaves whose boxes the line meets, and where it enters them. Before that a leaf cannot change anything, so it is
+ * asked only when the sweep comes there; the nearest surface is mostly found before all are. Of more than these all are
+ * asked at once. */
+enum { WAITING_MOST = 16 };
+struct waiting {
+    double enter[WAITING_MOST];
+    uint32_t leaf[WAITING_MOST];
+    uint32_t count;
+};
+
 struct sweep {
     const struct csg *csg;
     const struct csg_plan *plan;
     const struct ray *ray;
-    struct crossing *items; /* all crossings, by t */
+    struct crossing *items; /* the crossings of the leaves asked so far, by t; on top of the scratch */
     uint32_t count, next;
+    struct geom_scratch *scratch;
+    struct waiting *waiting;  /* NULL: all leaves have been asked */
+    struct ray *leaf_ray;     /* a copy of the ray, for the leaves' spaces */
     uint32_t first_clip_leaf; /* leaves of the clip come after those of the solid */
     uint32_t *counts;         /* true children of each node */
     uint32_t *inside;         /* one bit per leaf */
     bool in, shown;           /* the line is inside the solid, inside the clip */
-    double from, to; /* surfaces are looked for between; outside of it only leaves that matter there are asked */
-    double coarse;   /* the part of the coarse distance that does not grow with t */
+    double from, to;          /* surfaces are looked for between; what is before from has happened */
+    double coarse;            /* the part of the coarse distance that does not grow with t */
 };
 
 static bool leaf_is_inside(const struct sweep *s, uint32_t leaf) {
@@ -163,22 +182,10 @@ static double crossing_error(const struct sweep *s, const struct crossing *cross
     return error < limit * cosine ? error / cosine : limit;
 }
 
-/* The end of the group that begins at `first`: error intervals are joined as long as they overlap. */
-static uint32_t group_end(const struct sweep *s, uint32_t first) {
-    uint32_t end = first + 1;
-    double reach = 0;
-    for (; end < s->count; end++) {
-        double before = s->items[end - 1].t, t = s->items[end].t, limit = s->coarse + COARSE * fabs(t);
-        if (!(t - before <= limit))
-            break;
-        if (end == first + 1)
-            reach = before + crossing_error(s, &s->items[first], limit);
-        double error = crossing_error(s, &s->items[end], limit);
-        if (!(t - error <= reach))
-            break;
-        reach = fmax(reach, t + error);
-    }
-    return end;
+/* A face of a clipped surface that is not shown; a crossing enters where it meets the face from the front. */
+static bool is_culled(const struct sweep *s, const struct crossing *crossing) {
+    enum csg_cull cull = s->csg->leaves[crossing->leaf].cull;
+    return cull != CSG_CULL_NONE && crossing->enter == (cull == CSG_CULL_FRONT);
 }
 
 /* A mere surface does not change anything by being crossed: what counts is that it is there. */
@@ -188,7 +195,7 @@ static bool is_open_surface(const struct sweep *s, uint32_t leaf) {
 
 /* Several crossings at once, see the rule at the top. `surface` is the one that changed the truth. */
 static bool cross_group(struct sweep *s, struct crossing *group, uint32_t count, struct crossing *surface) {
-    sort_crossings(group, count, true);
+    sort_crossings(group, 0, count, true);
     bool was_in = s->in, was_shown = s->shown, changed = false;
     uint32_t kept = 0;
     for (uint32_t i = 0; i < count;) {
@@ -196,7 +203,10 @@ static bool cross_group(struct sweep *s, struct crossing *group, uint32_t count,
         while (end < count && group[end].leaf == group[i].leaf)
             end++;
         if (is_open_surface(s, group[i].leaf)) {
-            *surface = group[i];
+            uint32_t shown = i;
+            while (shown + 1 < end && is_culled(s, &group[shown]))
+                shown++;
+            *surface = group[shown];
             changed = true;
         } else if ((end - i) % 2) {
             group[kept++] = group[end - 1];
@@ -226,29 +236,10 @@ static bool cross_one(struct sweep *s, uint32_t leaf) {
     return toggle(s, leaf) && !is_of_clip(s, leaf) && s->shown;
 }
 
-/* The next surface on the line. */
-static bool sweep_next(struct sweep *s, struct crossing *out) {
-    while (s->next < s->count) {
-        uint32_t first = s->next, end = group_end(s, first);
-        struct crossing surface = s->items[first];
-        s->next = end;
-        bool changed =
-            end == first + 1 ? cross_one(s, surface.leaf) : cross_group(s, &s->items[first], end - first, &surface);
-        if (!changed)
-            continue;
-        *out = surface;
-        if (!s->csg->open) {
-            out->flip = surface.enter != s->in;
-            out->enter = s->in;
-        }
-        return true;
-    }
-    return false;
-}
-
 /* Of a leaf's crossings, which end the scratch, those stay that lie where surfaces are looked for. What is behind does
  * not matter; what is before only moves the beginning, in whatever order. */
-static void keep_crossings(struct sweep *s, uint32_t leaf, uint32_t first, struct geom_scratch *scratch) {
+static void keep_crossings(struct sweep *s, uint32_t leaf, uint32_t first) {
+    struct geom_scratch *scratch = s->scratch;
     uint32_t kept = first;
     for (uint32_t k = first; k < scratch->used; k++) {
         struct crossing *c = &scratch->items[k];
@@ -267,6 +258,116 @@ static void keep_crossings(struct sweep *s, uint32_t leaf, uint32_t first, struc
     scratch->used = kept;
 }
 
+/* The crossings of a leaf where surfaces are looked for, on top of the scratch. False: scratch overflow. */
+static bool ask_leaf(struct sweep *s, uint32_t leaf) {
+    struct geom_scratch *scratch = s->scratch;
+    const struct csg_leaf *operand = &s->csg->leaves[leaf];
+    struct crossing_list list = {scratch->used, 0};
+    if (s->plan->as_it_is[leaf]) {
+        (void)shape_crossings(&operand->shape, s->ray, scratch, &list);
+    } else {
+        s->leaf_ray->origin = affine_point(&operand->csg_from_leaf.inverse, s->ray->origin);
+        s->leaf_ray->direction = affine_vector(&operand->csg_from_leaf.inverse, s->ray->direction);
+        (void)shape_crossings(&operand->shape, s->leaf_ray, scratch, &list);
+    }
+    if (scratch->used > list.first)
+        keep_crossings(s, leaf, list.first);
+    return !scratch->overflow;
+}
+
+/* Sorts in what was asked since there were `count` crossings. */
+static void take_in(struct sweep *s) {
+    uint32_t count = (uint32_t)(&s->scratch->items[s->scratch->used] - s->items);
+    if (count > s->count) {
+        sort_crossings(&s->items[s->next], s->count - s->next, count - s->next, false);
+        s->count = count;
+    }
+}
+
+/* Asks the leaves that are entered before `until`; false: scratch overflow. */
+static bool ask_waiting(struct sweep *s, double until) {
+    struct waiting *w = s->waiting;
+    for (uint32_t i = 0; i < w->count;) {
+        if (!(w->enter[i] <= until)) {
+            i++;
+            continue;
+        }
+        if (!ask_leaf(s, w->leaf[i]))
+            return false;
+        w->count--;
+        w->enter[i] = w->enter[w->count];
+        w->leaf[i] = w->leaf[w->count];
+    }
+    take_in(s);
+    return true;
+}
+
+/* Makes sure that the next crossing is the next one of all leaves; false: scratch overflow. */
+static bool ask_ahead(struct sweep *s) {
+    while (s->waiting && s->waiting->count > 0) {
+        double first = INFINITY;
+        for (uint32_t i = 0; i < s->waiting->count; i++)
+            first = s->waiting->enter[i] < first ? s->waiting->enter[i] : first;
+        if (s->next < s->count) { /* twice as far as crossings are compared with it */
+            double t = s->items[s->next].t, until = t + 2 * (s->coarse + COARSE * fabs(t));
+            if (first > until)
+                return true;
+            first = until;
+        }
+        if (!ask_waiting(s, first))
+            return false;
+    }
+    return true;
+}
+
+/* The end of the group that begins at `first`: error intervals are joined as long as they overlap. 0: scratch overflow.
+ */
+static uint32_t group_end(struct sweep *s, uint32_t first) {
+    uint32_t end = first + 1;
+    double reach = 0;
+    for (; end < s->count; end++) {
+        double before = s->items[end - 1].t, t = s->items[end].t, limit = s->coarse + COARSE * fabs(t);
+        if (!(t - before <= limit))
+            break;
+        if (s->waiting && s->waiting->count > 0) { /* seldom: a group may reach farther than was asked for */
+            if (!ask_waiting(s, INFINITY))
+                return 0;
+            end = first;
+            continue;
+        }
+        if (end == first + 1)
+            reach = before + crossing_error(s, &s->items[first], limit);
+        double error = crossing_error(s, &s->items[end], limit);
+        if (!(t - error <= reach))
+            break;
+        reach = fmax(reach, t + error);
+    }
+    return end;
+}
+
+/* The next surface on the line. False: there is none, or scratch overflow. */
+static bool sweep_next(struct sweep *s, struct crossing *out) {
+    while (ask_ahead(s) && s->next < s->count) {
+        uint32_t first = s->next, end = group_end(s, first);
+        if (end == 0)
+            return false;
+        struct crossing surface = s->items[first];
+        s->next = end;
+        s->from = s->items[end - 1].t;
+        bool changed =
+            end == first + 1 ? cross_one(s, surface.leaf) : cross_group(s, &s->items[first], end - first, &surface);
+        if (!changed || is_culled(s, &surface))
+            continue;
+        *out = surface;
+        if (!s->csg->open) {
+            out->flip = surface.enter != s->in;
+            out->enter = s->in;
+        }
+        return true;
+    }
+    return false;
+}
+
 /* The part of the ray inside the box, as box_probe_meets sees it; false when there is none. */
 static bool clip(const struct box_probe *probe, const struct box *b, double *from, double *to) {
     struct box_span span = box_probe_span(probe, b);
@@ -275,26 +376,28 @@ static bool clip(const struct box_probe *probe, const struct box *b, double *fro
     return *from <= *to;
 }
 
-/* The crossings of a leaf where surfaces are looked for, on top of the scratch. leaf_ray: a copy of the ray, for the
- * leaf's space. False: scratch overflow. */
-static bool ask_leaf(struct sweep *s, uint32_t leaf, struct ray *leaf_ray, struct geom_scratch *scratch) {
-    const struct csg_leaf *operand = &s->csg->leaves[leaf];
-    struct crossing_list list = {scratch->used, 0};
-    if (s->plan->as_it_is[leaf]) {
-        (void)shape_crossings(&operand->shape, s->ray, scratch, &list);
-    } else {
-        leaf_ray->origin = affine_point(&operand->csg_from_leaf.inverse, s->ray->origin);
-        leaf_ray->direction = affine_vector(&operand->csg_from_leaf.inverse, s->ray->direction);
-        (void)shape_crossings(&operand->shape, leaf_ray, scratch, &list);
+/* A leaf whose box the line meets. False: scratch overflow. */
+static bool add_leaf(struct sweep *s, uint32_t leaf, double enter) {
+    struct waiting *w = s->waiting;
+    if (!w)
+        return ask_leaf(s, leaf);
+    if (w->count < WAITING_MOST) {
+        w->enter[w->count] = enter;
+        w->leaf[w->count++] = leaf;
+        return true;
     }
-    if (scratch->used > list.first)
-        keep_crossings(s, leaf, list.first, scratch);
-    return !scratch->overflow;
+    for (uint32_t i = 0; i < w->count; i++)
+        if (!ask_leaf(s, w->leaf[i]))
+            return false;
+    s->waiting = NULL;
+    return ask_leaf(s, leaf);
 }
 
-/* Collects and sorts the crossings of all leaves that matter where the ray is inside of the bounds; everything on the
- * scratch above `used` is the sweep's until the caller pops it. False: nothing can be there, or scratch overflow. */
-static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch) {
+/* Finds the leaves that matter where the ray is inside of the bounds; everything on the scratch above `used` is the
+ * sweep's until the caller pops it. The caller lends leaf_ray, a copy of the ray, and `waiting`; without that all
+ * crossings are collected at once. False: nothing can be there, or scratch overflow. */
+static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray *ray, struct ray *leaf_ray,
+                        struct waiting *waiting, struct geom_scratch *scratch) {
     const struct csg_plan *plan = csg->plan;
     double speed = vec3_max_abs(ray->direction), t_from = ray->t_min, t_to = ray->t_max;
     struct box_probe probe = box_probe_make(ray);
@@ -310,43 +413,45 @@ static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray
     uint32_t first = scratch->used;
     double coarse = COARSE * ((vec3_max_abs(ray->origin) + plan->size) / speed);
 
-    struct ray line = *ray;
-    line.t_min = t_from - coarse - COARSE * fabs(t_from);
-    line.t_max = t_to + coarse + COARSE * fabs(t_to);
+    t_from = t_from - coarse - COARSE * fabs(t_from);
+    t_to = t_to + coarse + COARSE * fabs(t_to);
     const struct csg_token *first_of_clip = csg->clipped ? &csg->program[csg->solid_length] : NULL;
     *s = (struct sweep){.csg = csg,
                         .plan = plan,
                         .ray = ray,
                         .items = &scratch->items[first],
+                        .scratch = scratch,
+                        .waiting = waiting,
+                        .leaf_ray = leaf_ray,
                         .first_clip_leaf = first_of_clip ? first_of_clip->leaf : UINT32_MAX,
                         .counts = words,
                         .inside = words + plan->node_count,
                         .in = plan->starts_in,
                         .shown = plan->starts_shown,
-                        .from = line.t_min,
-                        .to = line.t_max,
+                        .from = t_from,
+                        .to = t_to,
                         .coarse = coarse};
     for (uint32_t i = 0; i < plan->node_count; i++)
         s->counts[i] = plan->start_counts[i];
     for (uint32_t i = 0; i < (csg->leaf_count + 31) / 32; i++)
         s->inside[i] = 0;
-    struct ray leaf_ray = *ray;
+    if (waiting)
+        waiting->count = 0;
     for (uint32_t b = 0; b < plan->bound_count;) {
         const struct csg_bound *bound = &plan->bounds[b];
-        if (!bound->unprobed && !box_probe_meets(&probe, &bound->box, line.t_min, line.t_max)) {
+        if (!bound->unprobed && !box_probe_meets(&probe, &bound->box, t_from, t_to)) {
             b = bound->skip;
             continue;
         }
         for (uint32_t i = 0; i < bound->count; i++) {
             uint32_t leaf = plan->order[bound->first + i];
-            bool asked = bound->count == 1 || box_probe_meets(&probe, &plan->boxes[leaf], line.t_min, line.t_max);
-            if (asked && !ask_leaf(s, leaf, &leaf_ray, scratch))
+            struct box_span span = box_probe_span(&probe, &plan->boxes[leaf]);
+            if (box_span_meets(span, t_from, t_to) && !add_leaf(s, leaf, span.enter))
                 return false;
         }
         b++;
     }
-    s->count = scratch->used - first;
-    sort_crossings(s->items, s->count, false);
+    take_in(s);
     return true;
 }
 
@@ -355,8 +460,10 @@ static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray
 bool csg_nearest(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch, struct crossing *out) {
     uint32_t used = scratch->used;
     struct sweep s;
+    struct waiting waiting;
+    struct ray leaf_ray = *ray;
     bool found = false;
-    if (sweep_begin(&s, csg, ray, scratch)) {
+    if (sweep_begin(&s, csg, ray, &leaf_ray, &waiting, scratch)) {
         struct crossing surface;
         while (!found && sweep_next(&s, &surface) && surface.t < ray->t_max)
             if (surface.t > ray->t_min) {
@@ -393,7 +500,8 @@ bool csg_crossings(const struct csg *csg, const struct ray *ray, struct geom_scr
     line.t_min = -INFINITY;
     line.t_max = INFINITY;
     struct sweep s;
-    bool any = sweep_begin(&s, csg, &line, scratch);
+    struct ray leaf_ray = line;
+    bool any = sweep_begin(&s, csg, &line, &leaf_ray, NULL, scratch);
     scratch->overflow = scratch->overflow || (any && scratch->capacity - scratch->used < 2);
     if (!any || scratch->overflow) {
         scratch->used = out->first;

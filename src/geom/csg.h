@@ -14,12 +14,16 @@
 /* Binary ones take the two above them, the inverse takes one. */
 enum csg_operation { CSG_LEAF, CSG_UNION, CSG_INTERSECTION, CSG_DIFFERENCE, CSG_INVERSE };
 
+/* What is not shown of a clipped surface: what is seen from behind, or from the front. */
+enum csg_cull { CSG_CULL_NONE, CSG_CULL_BACK, CSG_CULL_FRONT };
+
 struct csg_leaf {
     struct shape shape; /* closed; not SHAPE_CSG (nested programs are flattened into one) */
     struct transform csg_from_leaf;
     const struct box *limit; /* in CSG space: nothing of the leaf that matters is outside of it; NULL: not known */
     uint32_t material;
     uint32_t slot_count; /* of a mesh: face slot k has material + k; below 2 all have `material` */
+    enum csg_cull cull;  /* of a surface that is clipped; CSG_CULL_NONE in solids */
 };
 
 struct csg_token {

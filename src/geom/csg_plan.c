@@ -16,7 +16,8 @@
 
 #include <assert.h>
 
-enum { LEAVES_PER_BOUND = 4 };
+/* Few leaves are asked one by one: what holds several of them is mostly met as well. */
+enum { LEAVES_PER_BOUND = 4, FEW_LEAVES = 12 };
 
 /* Each of both programs must combine to exactly one value, and both together use every leaf once, the solid's before
  * the clip's. */
@@ -277,7 +278,7 @@ static void select_middle(const struct csg_plan *plan, uint32_t *order, uint32_t
 }
 
 /* Halving 65535 leaves goes 14 calls deep. */
-static void build_bounds(struct csg_plan *plan, uint32_t first, uint32_t count) {
+static void build_bounds(struct csg_plan *plan, uint32_t first, uint32_t count, uint32_t most) {
     struct csg_bound *bound = &plan->bounds[plan->bound_count++];
     *bound = (struct csg_bound){.box = box_empty(), .first = first};
     struct box middles = box_empty();
@@ -286,15 +287,15 @@ static void build_bounds(struct csg_plan *plan, uint32_t first, uint32_t count) 
         bound->box = box_join(bound->box, *b);
         middles = box_add_point(middles, vec3_make(box_middle(b, 0), box_middle(b, 1), box_middle(b, 2)));
     }
-    if (count <= LEAVES_PER_BOUND) {
+    if (count <= most) {
         bound->count = count;
     } else {
         struct vec3 size = vec3_sub(middles.max, middles.min);
         int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
         uint32_t half = count / 2;
         select_middle(plan, plan->order + first, count, half, axis);
-        build_bounds(plan, first, half);
-        build_bounds(plan, first + half, count - half);
+        build_bounds(plan, first, half, most);
+        build_bounds(plan, first + half, count - half, most);
     }
     bound->skip = plan->bound_count;
 }
@@ -305,13 +306,14 @@ static double half_surface(const struct box *b) {
     return box_is_empty(b) ? 0 : d.x * d.y + d.y * d.z + d.z * d.x;
 }
 
-/* Bounds of several leaves that are nearly as large as what is round them are not tried. */
+/* The root, a single leaf, whose own box is tried, and bounds that are nearly as large as what is round them are not
+ * tried. */
 static void choose_probes(struct csg_plan *plan) {
-    plan->bounds[0].unprobed = plan->bounds[0].count != 1;
+    plan->bounds[0].unprobed = true;
     for (uint32_t b = 0; b < plan->bound_count; b++) {
         const struct csg_bound *bound = &plan->bounds[b];
         for (uint32_t child = b + 1; child < bound->skip; child = plan->bounds[child].skip)
-            plan->bounds[child].unprobed = plan->bounds[child].count != 1 &&
+            plan->bounds[child].unprobed = plan->bounds[child].count == 1 ||
                                            half_surface(&plan->bounds[child].box) >= 0.9 * half_surface(&bound->box);
     }
 }
@@ -355,7 +357,7 @@ static bool fill_plan(struct csg *csg, struct csg_plan *plan, struct error *erro
         start_truth(csg, plan, flags);
         csg->inside_out = plan->starts_in;
         live_boxes(csg, plan, flags, live, trims);
-        build_bounds(plan, 0, leaf_count);
+        build_bounds(plan, 0, leaf_count, leaf_count <= FEW_LEAVES ? FEW_LEAVES : LEAVES_PER_BOUND);
         choose_probes(plan);
 
         /* The truth of nodes and leaves, or the stack of csg_contains in bits, and all crossings above it. */

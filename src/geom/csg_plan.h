@@ -24,7 +24,7 @@ struct csg_bound {
     struct box box;
     uint32_t skip;
     uint32_t first, count; /* into `order`; count 0: has children instead */
-    bool unprobed;         /* nearly as large as its parent, or the root: it is not tried */
+    bool unprobed;         /* nearly as large as its parent, one leaf, or the root: it is not tried */
 };
 
 struct csg_plan {

@@ -356,6 +356,12 @@ bool shape_crossings(const struct shape *shape, const struct ray *ray, struct ge
     case SHAPE_FLAT: {
         struct crossing all[ANALYTIC_MOST];
         scratch->shape_tests++;
+        if (scratch->capacity - scratch->used >= ANALYTIC_MOST) { /* nearly always */
+            uint32_t found = (uint32_t)analytic_crossings(shape, ray, &scratch->items[scratch->used]);
+            *out = (struct crossing_list){scratch->used, found};
+            scratch->used += found;
+            return true;
+        }
         int count = analytic_crossings(shape, ray, all);
         *out = (struct crossing_list){scratch->used, (uint32_t)count};
         for (int i = 0; i < count; i++)

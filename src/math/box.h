@@ -7,6 +7,7 @@
 #include "math/vec3.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 
 struct box {
     struct vec3 min, max;
@@ -42,14 +43,17 @@ bool box_clip(const struct box *b, const struct ray *ray, double *t_enter, doubl
 /* The same question asked of many boxes by one ray: reciprocals are taken once. */
 struct box_probe {
     double origin[3], inverse[3]; /* of the direction; infinite where it is 0 */
-    bool negative[3];             /* sign of the inverse: which plane of a slab comes first */
+    ptrdiff_t near[3], far[3]; /* which of a box's six numbers is the plane of each slab that comes first, and last */
 };
 
 static inline struct box_probe box_probe_make(const struct ray *ray) {
     struct box_probe probe = {.origin = {ray->origin.x, ray->origin.y, ray->origin.z},
                               .inverse = {1 / ray->direction.x, 1 / ray->direction.y, 1 / ray->direction.z}};
-    for (int i = 0; i < 3; i++)
-        probe.negative[i] = probe.inverse[i] < 0;
+    for (int i = 0; i < 3; i++) {
+        bool negative = probe.inverse[i] < 0;
+        probe.near[i] = negative ? i + 3 : i;
+        probe.far[i] = negative ? i : i + 3;
+    }
     return probe;
 }
 
@@ -61,11 +65,12 @@ struct box_span {
 };
 
 static inline struct box_span box_probe_span(const struct box_probe *probe, const struct box *b) {
-    const double planes[3][2] = {{b->min.x, b->max.x}, {b->min.y, b->max.y}, {b->min.z, b->max.z}};
+    _Static_assert(sizeof(struct box) == 6 * sizeof(double), "a box is its six numbers");
+    const double *planes = (const double *)(const void *)b;
     double near_most = -INFINITY, far_least = INFINITY;
     for (int i = 0; i < 3; i++) {
-        double near = (planes[i][probe->negative[i]] - probe->origin[i]) * probe->inverse[i];
-        double far = (planes[i][!probe->negative[i]] - probe->origin[i]) * probe->inverse[i];
+        double near = (planes[probe->near[i]] - probe->origin[i]) * probe->inverse[i];
+        double far = (planes[probe->far[i]] - probe->origin[i]) * probe->inverse[i];
         near_most = near > near_most ? near : near_most;
         far_least = far < far_least ? far : far_least;
     }
@@ -77,10 +82,12 @@ static inline struct box_span box_probe_span(const struct box_probe *probe, cons
 /* Whether some t of [t_min, t_max] may lie inside the box; never wrong by rounding in the negative. A direction
  * component of 0 makes the slab's t infinite on the right side, or NaN on its very plane, which every comparison
  * ignores. */
-static inline bool box_probe_meets(const struct box_probe *probe, const struct box *b, double t_min, double t_max) {
-    struct box_span span = box_probe_span(probe, b);
+static inline bool box_span_meets(struct box_span span, double t_min, double t_max) {
     double enter = span.enter > t_min ? span.enter : t_min, leave = span.leave < t_max ? span.leave : t_max;
     return enter <= leave;
+}
+static inline bool box_probe_meets(const struct box_probe *probe, const struct box *b, double t_min, double t_max) {
+    return box_span_meets(box_probe_span(probe, b), t_min, t_max);
 }
 
 #endif

@@ -311,6 +311,18 @@ static bool build(struct flattening *f, const struct csg_draft *draft, uint32_t 
     return (*parts)[0] != NULL;
 }
 
+static enum csg_cull cull_of(const struct node *node) {
+    switch (node->cull) {
+    case CULL_NONE:
+        break;
+    case CULL_BACK:
+        return CSG_CULL_BACK;
+    case CULL_FRONT:
+        return CSG_CULL_FRONT;
+    }
+    return CSG_CULL_NONE;
+}
+
 bool flatten_csg(struct flattening *f, struct node *node, const struct stand *stand, const struct surroundings *around,
                  const struct csg ***parts, uint32_t *count) {
     struct csg_draft draft = {0};
@@ -321,6 +333,8 @@ bool flatten_csg(struct flattening *f, struct node *node, const struct stand *st
     *count = 0;
     bool ok = node->kind == NODE_CSG ? add_operation(f, &draft, node, &identity, &above, &content)
                                      : add_leaf(f, &draft, node, &identity, &above);
+    if (ok && node->kind != NODE_CSG) /* a surface of its own that is clipped */
+        draft.leaves[0].cull = cull_of(node);
     uint32_t solid_length = draft.length;
     if (ok && content == SOMETHING && around && around->clips)
         ok = add_clips(f, &draft, node, around->clips, stand, &clip);

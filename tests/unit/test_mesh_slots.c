@@ -244,17 +244,18 @@ TEST(script_gives_parts_of_files_and_faces_of_tables_their_materials) {
     CHECK_TEXT(listener.said, "1 7 01\n8 9 01\n4 5 01\n1 2 101\n");
 }
 
-static bool picture_of(const char *cull, struct test_picture *out) {
-    char text[1500];
+/* clip: what is drawn, made of `box`. */
+static bool picture_of(const char *cull, const char *drawn, struct test_picture *out) {
+    char text[1600];
     (void)snprintf(text, sizeof text,
                    "local function lit(r, g, b) return gr.material{kd={r, g, b}, lit=false, two_sided=true} end\n"
                    "local verts = {{0,0,0},{1,0,0},{0,1,0},{1,1,0},{0,0,1},{1,0,1},{0,1,1},{1,1,1}}\n"
                    "local faces = {{0,2,3,1},{4,5,7,6},{0,1,5,4},{2,6,7,3},{0,4,6,2},{1,3,7,5}}\n"
                    "local box = gr.mesh{verts=verts, faces=faces, cull='%s', face_materials={1,2,3,4,5,6},\n"
                    "    materials={lit(1,0,0), lit(0,1,0), lit(0,0,1), lit(1,1,0), lit(0,1,1), lit(1,0,1)}}\n"
-                   "gr.render{node=box, file='cull.png', width=40, height=40, eye={0.5,0.5,4}, target={0.5,0.5,0},\n"
+                   "gr.render{node=%s, file='cull.png', width=40, height=40, eye={0.5,0.5,4}, target={0.5,0.5,0},\n"
                    "    fov=28, background={1, 1, 1}}\n",
-                   cull);
+                   cull, drawn);
     struct test_result result = test_gray_scene(text, "-q scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     CHECK_TEXT(result.err, "");
@@ -275,7 +276,7 @@ static bool is_colour(const struct test_picture *picture, uint32_t x, uint32_t y
  * of each; its back sides alone are never seen from outside. */
 TEST(pictures_of_a_culled_cube_show_its_front_or_its_inside) {
     struct test_picture whole, back, front;
-    if (!picture_of("none", &whole) || !picture_of("back", &back) || !picture_of("front", &front))
+    if (!picture_of("none", "box", &whole) || !picture_of("back", "box", &back) || !picture_of("front", "box", &front))
         return;
     for (uint32_t y = 0; y < 40; y++)
         for (uint32_t x = 0; x < 40; x++)
@@ -291,4 +292,24 @@ TEST(pictures_of_a_culled_cube_show_its_front_or_its_inside) {
     CHECK(left >= 2 && left == right && top >= 2 && top == bottom);
     CHECK(is_colour(&front, 0, 0, 1, 1, 1));
     free(whole.rgb), free(back.rgb), free(front.rgb);
+}
+
+/* A clip that takes nothing away shows what there was; one that takes off the near half shows the inside of the far
+ * one: its back sides where they are not culled, and through them nothing. */
+TEST(clips_heed_what_a_mesh_does_not_show) {
+    static const char *const culls[] = {"none", "back", "front"};
+    static const char around[] = "gr.clipped_by(box, gr.sphere{centre={0.5,0.5,0.5}, radius=2})";
+    static const char far_half[] = "gr.clipped_by(box, gr.box{min={-1,-1,-1}, max={2,2,0.5}})";
+    for (int i = 0; i < 3; i++) {
+        struct test_picture plain, clipped, cut;
+        if (!picture_of(culls[i], "box", &plain) || !picture_of(culls[i], around, &clipped) ||
+            !picture_of(culls[i], far_half, &cut))
+            return;
+        CHECK(memcmp(plain.rgb, clipped.rgb, 3 * 40 * 40) == 0);
+        if (i == 1)
+            CHECK(is_colour(&cut, 20, 20, 1, 1, 1)); /* all that is left is seen from behind */
+        else
+            CHECK(is_colour(&cut, 20, 20, 1, 0, 0));
+        free(plain.rgb), free(clipped.rgb), free(cut.rgb);
+    }
 }
