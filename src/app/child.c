@@ -308,6 +308,12 @@ static bool begin_picture(struct child *child, const struct render_request *requ
     return true;
 }
 
+/* The script's width or height; a preview has a quarter of it. */
+static uint32_t in_preview(const struct options *options, double side) {
+    uint32_t whole = (uint32_t)side;
+    return options->preview ? (whole + 3) / 4 : whole;
+}
+
 static bool render_job_run(struct child *child, const struct render_request *request, struct error *error) {
     const struct options *options = child->options;
     const struct child_services *services = child->services;
@@ -316,8 +322,8 @@ static bool render_job_run(struct child *child, const struct render_request *req
     struct render_job job = {
         .camera = request->camera,
         .settings = request->settings,
-        .width = options->width ? (uint32_t)options->width : (uint32_t)request->width,
-        .height = options->height ? (uint32_t)options->height : (uint32_t)request->height,
+        .width = options->width ? (uint32_t)options->width : in_preview(options, request->width),
+        .height = options->height ? (uint32_t)options->height : in_preview(options, request->height),
         .ambient = request->ambient,
         .fog = request->fog,
         .film = &film,
@@ -326,6 +332,7 @@ static bool render_job_run(struct child *child, const struct render_request *req
         .tile_done = tile_done,
         .context = services->control,
     };
+    settings_hasten(&job.settings, options->preview ? HASTE_PREVIEW : options->quick ? HASTE_QUICK : HASTE_NONE);
     (void)fflush(stdout);
     if (is_cancelled(child))
         return error_set(error, ERROR_CANCELLED, "interrupted");

@@ -87,6 +87,13 @@ static const struct option table[] = {
     {GROUP_PICTURE, "--seed", OPTION_SEED, "N", NO_RANGE, NO_FIELD, "0",
      "start of all random numbers, the scripts' math.random included"},
 
+    {GROUP_PICTURE, "--quick", OPTION_FLAG, NULL, NO_RANGE, FIELD(quick), NULL,
+     "a draft: one sample a pixel, few shadow rays, no caustics, no blur by lens or motion, whatever else is asked "
+     "for"},
+    {GROUP_PICTURE, "--preview", OPTION_FLAG, NULL, NO_RANGE, FIELD(preview), NULL,
+     "a smaller draft: a quarter of the width and height (unless --size is given), and neither reflections nor "
+     "refractions"},
+
     {GROUP_LOOK, "--size", OPTION_SIZE, "WxH", NO_RANGE, NO_FIELD, "the script's", "size of the pictures in pixels"},
     {GROUP_LOOK, "--crop", OPTION_CROP, "X,Y,W,H", NO_RANGE, NO_FIELD, "all",
      "write a W x H picture, exactly that part of the whole; X,Y is its upper left pixel"},

@@ -36,6 +36,7 @@ struct options {
     const char *first_pass_prefix; /* -write-pre-aa, or NULL */
     int threads;                   /* 0: one per processor */
     bool window;                   /* -gui */
+    bool quick, preview;           /* enum haste; preview is a quarter of the size, too */
     bool watch;                    /* --watch */
     bool check, quiet, verbose, no_fork;
     const uint32_t (*pixels)[2]; /* --pixel: {x, y}, tell how these come about instead of rendering */

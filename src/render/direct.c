@@ -53,7 +53,10 @@ struct fan {
 
 static struct fan fan_make(const struct tracer *tracer, const struct light *light, uint32_t number, uint64_t key) {
     struct fan fan = {.light = light, .key = key};
-    fan.side = (uint32_t)(light->samples ? light->samples : tracer->job->settings.area_samples);
+    const struct settings *settings = &tracer->job->settings;
+    fan.side = (uint32_t)(light->samples ? light->samples : settings->area_samples);
+    if (settings->coarse && fan.side > (uint32_t)settings->area_samples)
+        fan.side = (uint32_t)settings->area_samples;
     /* Lights of SPEC 1.4 keep their jitter; the others share the cells among the samples of a pixel. */
     fan.parted = light->emits || light->kind != LIGHT_PARALLELOGRAM;
     fan.turns = fan.parted && tracer->strata.side > 1 ? tracer->strata.side : 1;

@@ -1,6 +1,8 @@
 /* The defaults of SPEC part 3. */
 #include "render/settings.h"
 
+#include <math.h>
+
 struct settings settings_default(void) {
     return (struct settings){.samples = 3,
                              .reflect_limit = 2,
@@ -13,4 +15,21 @@ struct settings settings_default(void) {
                              .shutter = {0, 1},
                              .cutoff = 0.0001,
                              .lens = {.view_height = 2, .angle = 180, .screen = 1}};
+}
+
+void settings_hasten(struct settings *settings, enum haste haste) {
+    if (haste == HASTE_NONE)
+        return;
+    settings->full = false;
+    settings->samples = 1;
+    settings->side_tolerance = settings->corner_tolerance = HUGE_VAL; /* nothing is sampled again */
+    settings->coarse = true;
+    settings->area_samples = settings->area_samples < COARSE_SIDE ? settings->area_samples : COARSE_SIDE;
+    settings->caustics.photons = 0;
+    settings->lens.aperture = 0;
+    settings->shutter.close = settings->shutter.open;
+    if (haste == HASTE_PREVIEW) {
+        settings->reflect_limit = settings->refract_limit = 0;
+        settings->area_samples = 1;
+    }
 }

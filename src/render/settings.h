@@ -12,6 +12,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+enum { COARSE_SIDE = 2 };
+
 enum projection { PROJECTION_PERSPECTIVE, PROJECTION_ORTHOGRAPHIC, PROJECTION_FISHEYE, PROJECTION_PANORAMA };
 enum stereo { STEREO_NONE, STEREO_SIDE, STEREO_ANAGLYPH };
 
@@ -67,12 +69,17 @@ struct settings {
     double cutoff;   /* rays that can change a pixel by less (of 1) are not followed; 0: all are */
     uint32_t aov;    /* layers beside the picture: a mask of render/aov.h */
     bool keep_first; /* the first pass is wanted even where -full makes it needless */
+    bool coarse;     /* rough surfaces send one ray, lights as many as area_samples says, whatever they ask for */
     bool show_marks; /* pixels that are to be resampled are marked in the film before (FILM_MARK_WAITS) */
     bool cropped;
     int64_t crop_x, crop_y, crop_width, crop_height;
 };
 
 struct settings settings_default(void);
+/* How much to leave out so that something is seen soon. QUICK: one sample a pixel, coarse, no caustics, no blur by lens
+ * or motion; PREVIEW: neither mirrored nor refracted rays either, one shadow ray for a light. */
+enum haste { HASTE_NONE, HASTE_QUICK, HASTE_PREVIEW };
+void settings_hasten(struct settings *settings, enum haste haste);
 
 struct camera {
     struct vec3 eye, view,

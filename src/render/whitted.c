@@ -110,7 +110,8 @@ enum { GLOSSY_SAMPLES = 4 };
 static struct vec3 follow_rough(struct tracer *tracer, const struct rough *rough, struct vec3 mirror,
                                 struct vec3 refraction, struct path path) {
     const struct hit *hit = rough->hit;
-    uint32_t n = path.rough ? 1 : rough->samples ? (uint32_t)rough->samples : GLOSSY_SAMPLES;
+    bool coarse = path.rough || tracer->job->settings.coarse;
+    uint32_t n = coarse ? 1 : rough->samples ? (uint32_t)rough->samples : GLOSSY_SAMPLES;
     uint32_t turns = tracer->strata.side, turn = turns > 1 ? sample_turn(&tracer->strata, path.key) : 0;
     uint64_t key = random_combine(path.key, (uint64_t)UINT32_MAX + 2);
     struct vec3 sum = {0, 0, 0};
