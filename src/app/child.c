@@ -153,6 +153,7 @@ static void set_pass(struct render_job *job, const struct render_job *own, const
     job->width = film->full_width;
     job->height = film->full_height;
     job->settings.show_marks = true;
+    job->settings.order = ORDER_CENTRE;
     if (view->divide > 1) { /* the film says which part it is */
         job->settings.cropped = false;
         job->settings.keep_first = false;
@@ -260,6 +261,8 @@ static bool make_picture(struct child *child, const struct render_request *reque
         ok = answer_questions(child, request, job, error);
     } else if (!child->options->check) {
         job->world = &world;
+        if (!asked->live)
+            atomic_store(&child->services->control->tiles, film_tile_count(job->film));
         ok = asked->live ? make_passes(child, request->scene, job, asked, report, built - begun, error)
                          : render_run(job, child->pool, &report->rays, error);
     }
@@ -331,6 +334,7 @@ static bool render_job_run(struct child *child, const struct render_request *req
         .shards = options->shards,
         .tile_done = tile_done,
         .context = services->control,
+        .enough = &services->control->enough,
     };
     settings_hasten(&job.settings, options->preview ? HASTE_PREVIEW : options->quick ? HASTE_QUICK : HASTE_NONE);
     (void)fflush(stdout);
@@ -342,6 +346,8 @@ static bool render_job_run(struct child *child, const struct render_request *req
         return false;
     if (already)
         return true;
+    if (atomic_load(&services->control->outlook.begun) == OUTLOOK_WANTED)
+        job.outlook = &services->control->outlook;
     job.gate = atomic_load(&services->control->gate) != GATE_NONE ? &services->control->gate : NULL;
     bool ok = make_picture(child, request, &job, &asked, &report, error);
     arena_reset(&child->job);

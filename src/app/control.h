@@ -3,6 +3,8 @@
 #ifndef GRAY_APP_CONTROL_H
 #define GRAY_APP_CONTROL_H
 
+#include "render/outlook.h"
+
 #include <stdatomic.h>
 #include <stdint.h>
 
@@ -16,6 +18,8 @@ struct control {
     _Atomic uint32_t tiles_done; /* of the picture being made */
     _Atomic uint32_t tiles;      /* 0 until its scene is built */
     _Atomic uint32_t gate;       /* an enum gate */
+    _Atomic int enough;          /* not 0: finish the tiles under way, begin no others */
+    struct outlook outlook;      /* how far the picture is, when somebody asks */
     _Atomic uint32_t build_step; /* of building the world, from 1; 0: it is built */
     _Atomic uint32_t build_done; /* thousandths of that step */
 };

@@ -188,6 +188,9 @@ bool desk_begin(struct desk *desk, const struct picture_request *request, bool *
     picture->open = true;
     atomic_store(&desk->control->tiles, 0);
     atomic_store(&desk->control->tiles_done, 0);
+    atomic_store(&desk->control->outlook.all, 0);
+    atomic_store(&desk->control->outlook.begun,
+                 progress_wants_outlook(&desk->progress) && !request->live ? OUTLOOK_WANTED : 0);
     progress_begin(&desk->progress, picture->name, request->width, request->height);
     return true;
 }
@@ -238,17 +241,6 @@ void desk_checkpoint(struct desk *desk) {
         desk_line(desk, LINE_NOTICE, "gray: notice: SIGUSR1 writes a checkpoint only with --checkpoint FILE");
     else if (tick(desk, true, &tiles))
         tell_checkpoint(desk, tiles);
-}
-
-void desk_abandon(struct desk *desk) {
-    uint32_t tiles;
-    progress_end(&desk->progress, PROGRESS_GIVEN_UP);
-    if (desk->farm)
-        farm_end(desk->farm, true);
-    if (desk->current.open && !desk->current.request.check && film_tiles_in(&desk->current.film, FILM_TILE_DONE) > 0 &&
-        tick(desk, true, &tiles))
-        tell_checkpoint(desk, tiles);
-    close_picture(&desk->current);
 }
 
 struct rows {
@@ -313,6 +305,37 @@ static bool write_picture(struct desk *desk, const struct picture *picture, stru
     char name[NAME_LIMIT];
     return written_name(desk, picture->name, name, error) && write_files(desk, picture, name, error) &&
            keeper_note_written(&desk->keeper, picture->tiles.number, &picture->tiles.key, name, error);
+}
+
+/* --partial: what is there of a picture that ends early, under a name of its own. */
+static void write_partial(struct desk *desk) {
+    struct picture *picture = &desk->current;
+    uint32_t done = film_tiles_in(&picture->film, FILM_TILE_DONE);
+    struct error error;
+    char name[NAME_LIMIT], line[NAME_LIMIT + 80];
+    if (done == 0)
+        return;
+    film_clear_unfinished(&picture->film);
+    if (!layers_name(picture->name, "partial", name, &error) || !write_view(picture, name, FILM_FINAL, &error)) {
+        desk_line(desk, LINE_ERROR, error.text);
+        return;
+    }
+    (void)snprintf(line, sizeof line, "gray: notice: %s holds %u of %u tiles", name, done,
+                   film_tile_count(&picture->film));
+    desk_line(desk, LINE_NOTICE, line);
+}
+
+void desk_abandon(struct desk *desk) {
+    uint32_t tiles;
+    progress_end(&desk->progress, PROGRESS_GIVEN_UP);
+    if (desk->farm)
+        farm_end(desk->farm, true);
+    if (desk->current.open && !desk->current.request.check && film_tiles_in(&desk->current.film, FILM_TILE_DONE) > 0 &&
+        tick(desk, true, &tiles))
+        tell_checkpoint(desk, tiles);
+    if (desk->options->partial && desk->current.open && !desk->current.request.check)
+        write_partial(desk);
+    close_picture(&desk->current);
 }
 
 static void tell_statistics(struct desk *desk, const struct picture_report *report) {
@@ -383,7 +406,7 @@ void desk_show_progress(struct desk *desk) {
         if (desk->current.open && count > 0)
             done = film_tiles_in(&desk->current.film, FILM_TILE_DONE);
     }
-    progress_update(&desk->progress, done, count);
+    progress_update(&desk->progress, done, count, &desk->control->outlook);
 }
 
 void desk_line(struct desk *desk, enum line_kind kind, const char *text) {

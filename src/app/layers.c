@@ -10,15 +10,12 @@
 #include <string.h>
 #include <strings.h>
 
-enum { LAYER_NAME_LIMIT = 4096 };
-
 static bool ends_in(const char *name, const char *extension) {
     size_t length = strlen(name), wanted = strlen(extension);
     return length >= wanted && strcasecmp(name + length - wanted, extension) == 0;
 }
 
-/* dir/foo.png with the layer depth is dir/foo.depth.png. */
-static bool layer_name(const char *name, const char *layer, char out[LAYER_NAME_LIMIT], struct error *error) {
+bool layers_name(const char *name, const char *layer, char out[LAYER_NAME_LIMIT], struct error *error) {
     const char *slash = strrchr(name, '/'), *base = slash ? slash + 1 : name, *dot = strrchr(base, '.');
     int stem = (int)(dot && dot > base ? dot - name : (ptrdiff_t)strlen(name));
     if (snprintf(out, LAYER_NAME_LIMIT, "%.*s.%s%s", stem, name, layer, name + stem) >= LAYER_NAME_LIMIT)
@@ -68,7 +65,7 @@ bool layers_write(const char *picture, const struct film *film, bool deep_pictur
         struct layer_rows rows = {.aov = (enum aov)i, .width = film->width};
         rows.values = (const float(*)[3])(film->layers + aov_layer(film->layer_mask, rows.aov) * pixels);
         rows.scale = aov_scale(rows.aov, rows.values, pixels);
-        if (!layer_name(picture, aov_name(rows.aov), name, error))
+        if (!layers_name(picture, aov_name(rows.aov), name, error))
             return false;
         bool deep = deep_picture || rows.aov == AOV_DEPTH;
         bool ok = ends_in(name, ".pfm")   ? pfm_write(name, film->width, film->height, layer_row_linear, &rows, error)

@@ -8,4 +8,8 @@
  * written with 16 bits always, the others with as many as the picture. */
 bool layers_write(const char *picture, const struct film *film, bool deep_picture, struct error *error);
 
+enum { LAYER_NAME_LIMIT = 4096 };
+/* dir/foo.png with the layer depth is dir/foo.depth.png. */
+bool layers_name(const char *name, const char *layer, char out[LAYER_NAME_LIMIT], struct error *error);
+
 #endif

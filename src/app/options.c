@@ -141,6 +141,8 @@ static const struct option table[] = {
 
     {GROUP_RUN, "-j", OPTION_INTEGER, "N", 1, 1024, FIELD(threads), "one for each processor",
      "number of threads; the picture is the same for any number"},
+    {GROUP_RUN, "--tile-order", OPTION_CHOICE, "spread|centre|rows", NO_RANGE, FIELD(settings.order), "spread",
+     "in which order tiles are made (in a window always from the centre); the picture is the same"},
     {GROUP_RUN, "-D", OPTION_DEFINE, "name=value", NO_RANGE, NO_FIELD, NULL,
      "set the Lua global `name` before the script runs: a Lua literal, else a string; may be repeated"},
     {GROUP_TRUST, "--allow-read", OPTION_FOLDER, "DIR", 0, 0, NO_FIELD, NULL,
@@ -171,6 +173,8 @@ static const struct option table[] = {
     {GROUP_PARTS, "--resume", OPTION_FLAG, NULL, NO_RANGE, FIELD(resume), NULL,
      "go on with what the checkpoint holds (--checkpoint auto, unless it is named); a changed scene is refused; a "
      "--shard whose part is there already is done"},
+    {GROUP_PARTS, "--partial", OPTION_FLAG, NULL, NO_RANGE, FIELD(partial), NULL,
+     "of a picture that is interrupted write dir/foo.partial.png: the tiles that are done, the others black"},
     {GROUP_PARTS, "--shard", OPTION_SHARD, "I/N", NO_RANGE, FIELD(shard), NULL,
      "make part I of N of every picture, a file of tiles beside it; `gray merge PART ...` puts the parts together"},
     {GROUP_PARTS, "--shard-pictures", OPTION_SHARD, "I/N", NO_RANGE, FIELD(shard_of_pictures), NULL,
@@ -187,8 +191,9 @@ static const struct option table[] = {
     {GROUP_TALK, "--verbose", OPTION_FLAG, NULL, NO_RANGE, FIELD(verbose), NULL, "say what is done and why"},
     {GROUP_TALK, "--stats", OPTION_STATS, "=text|json", NO_RANGE, NO_FIELD, NULL,
      "what each picture cost: a table on standard error, or one JSON line a picture on standard output"},
-    {GROUP_TALK, "--progress", OPTION_CHOICE, "auto|bar|json|none", NO_RANGE, FIELD(progress), "auto",
-     "how far the picture is, on standard error; auto: a bar on a terminal, else none"},
+    {GROUP_TALK, "--progress", OPTION_CHOICE, "auto|bar|lines|json|none", NO_RANGE, FIELD(progress), "auto",
+     "how far the picture is and how long it will take, on standard error; auto: a bar on a terminal, else a line now "
+     "and then when it takes long"},
     {GROUP_TALK, "--pixel", OPTION_PIXEL, "X,Y", NO_RANGE, NO_FIELD, NULL,
      "render nothing, but tell on standard output how this pixel of every picture comes about: its rays, what they "
      "meet, "
@@ -215,7 +220,7 @@ _Static_assert(offsetof(struct options, shards) == offsetof(struct options, shar
 /* Values are stored through their size: an enum is an int here. */
 _Static_assert(sizeof(enum specular_kind) == sizeof(int) && sizeof(enum accel_kind) == sizeof(int) &&
                    sizeof(enum script_order) == sizeof(int) && sizeof(enum tone_curve) == sizeof(int) &&
-                   sizeof(enum progress_mode) == sizeof(int),
+                   sizeof(enum progress_mode) == sizeof(int) && sizeof(enum order) == sizeof(int),
                "choices are stored as int");
 
 /* The next piece of a text parted by '|'; *rest moves behind it. Empty at the end. */
@@ -630,6 +635,9 @@ static bool check_parts(struct options *options, struct error *error) {
     if (options->action == ACTION_MERGE &&
         (options->checkpoint || options->resume || options->shards || options->shards_of_pictures || options->check))
         return error_set(error, ERROR_USAGE, "merge takes no --checkpoint, --resume, --shard or --check");
+    if (options->partial && (options->window || options->shards || options->mpi || options->no_fork || pipe ||
+                             options->action == ACTION_MERGE))
+        return error_set(error, ERROR_USAGE, "--partial takes no -gui, --shard, --mpi, --no-fork, merge or -o -");
     if (options->resume && !options->checkpoint)
         options->checkpoint = "auto";
     if (options->mpi && (options->shards || options->shards_of_pictures || options->no_fork || options->check))

@@ -20,7 +20,7 @@ enum options_action {
     ACTION_VERSION,
     ACTION_ANNOTATIONS
 };
-enum progress_mode { PROGRESS_AUTO, PROGRESS_BAR, PROGRESS_JSON, PROGRESS_NONE };
+enum progress_mode { PROGRESS_AUTO, PROGRESS_BAR, PROGRESS_LINES, PROGRESS_JSON, PROGRESS_NONE };
 enum statistics_mode { STATISTICS_NONE, STATISTICS_TEXT, STATISTICS_JSON };
 
 /* Texts point into argv or into the arena given to options_parse. */
@@ -46,6 +46,7 @@ struct options {
     const char *checkpoint;     /* --checkpoint: a file, or "auto", or NULL */
     double checkpoint_every;    /* seconds */
     bool mpi;                   /* one of several processes that make a picture together */
+    bool partial;               /* --partial: what an interruption leaves is written beside the picture */
     bool resume;                /* go on with what the checkpoint holds */
     uint32_t shard, shards;     /* --shard: this one of so many, from 1; 0 of 0: no shards */
     uint32_t shard_of_pictures; /* --shard-pictures: the same over whole pictures */

@@ -1,10 +1,11 @@
-/* The estimate of the time left is the time so far, stretched over the tiles that are missing. The bar is erased with
- * blanks, not with escape sequences, so that any terminal shows it. */
+/* The estimate of the time left is the time so far, stretched over the work that is missing (render/outlook.h). The bar
+ * is erased with blanks, not with escape sequences, so that any terminal shows it. */
 #define _GNU_SOURCE
 #include "app/progress.h"
 
 #include "app/text.h"
 
+#include <math.h>
 #include <string.h>
 #include <sys/ioctl.h>
 #include <time.h>
@@ -21,7 +22,7 @@ double progress_clock(void) {
 void progress_init(struct progress *progress, enum progress_mode mode, bool quiet) {
     *progress = (struct progress){.mode = mode};
     if (mode == PROGRESS_AUTO)
-        progress->mode = !quiet && isatty(STDERR_FILENO) ? PROGRESS_BAR : PROGRESS_NONE;
+        progress->mode = quiet ? PROGRESS_NONE : isatty(STDERR_FILENO) ? PROGRESS_BAR : PROGRESS_LINES;
 }
 
 void progress_hide(struct progress *progress) {
@@ -38,22 +39,55 @@ static int terminal_columns(void) {
     return columns < COLUMNS_LIMIT ? columns : COLUMNS_LIMIT - 1;
 }
 
-static void draw_bar(struct progress *progress, double elapsed, uint32_t done, uint32_t count) {
-    char cells[BAR_CELLS + 1], line[COLUMNS_LIMIT], left[48] = "";
-    double share = count > 0 ? (double)done / count : 0;
-    int filled = (int)(share * BAR_CELLS);
+/* What is left as people say it: 40 s, 3 min 20 s, 2 h 5 min. */
+static void say_time(double seconds, char *out, size_t size) {
+    unsigned long whole = seconds < 1e9 ? (unsigned long)(seconds + 0.5) : 1000000000;
+    if (whole < 60)
+        (void)snprintf(out, size, "%lu s", whole);
+    else if (whole < 3600)
+        (void)snprintf(out, size, "%lu min %lu s", whole / 60, whole % 60);
+    else
+        (void)snprintf(out, size, "%lu h %lu min", whole / 3600, whole / 60 % 60);
+}
+
+/* How far the picture is. Without an estimate tiles are counted: in a farm, and where nobody asked. */
+struct state {
+    double elapsed, share, left; /* share and left: negative while they are not known */
+    uint32_t done, count;
+};
+
+static struct state state_of(const struct progress *progress, double now, uint32_t done, uint32_t count,
+                             const struct outlook *outlook) {
+    struct state state = {now - progress->begun, -1, -1, done, count};
+    bool asked = atomic_load(&outlook->begun) != 0 && atomic_load(&outlook->begun) != OUTLOOK_WANTED;
+    if (count == 0)
+        return state;
+    state.share = asked ? outlook_share(outlook) : (double)done / (double)count;
+    state.left = asked             ? outlook_left(outlook, now)
+                 : state.share > 0 ? state.elapsed / state.share - state.elapsed
+                                   : -1;
+    return state;
+}
+
+static void draw_bar(struct progress *progress, const struct state *state) {
+    char cells[BAR_CELLS + 1], line[COLUMNS_LIMIT], left[80] = "", elapsed[48];
+    double share = state->share > 0 ? state->share : 0;
     memset(cells, '.', BAR_CELLS);
-    memset(cells, '#', (size_t)filled);
+    memset(cells, '#', (size_t)(share * BAR_CELLS));
     cells[BAR_CELLS] = '\0';
-    if (done > 0 && elapsed > 1)
-        (void)snprintf(left, sizeof left, ", about %.0f s left", elapsed / share - elapsed);
+    say_time(state->elapsed, elapsed, sizeof elapsed);
+    if (state->left >= 0 && state->elapsed > 1) {
+        char time[48];
+        say_time(state->left, time, sizeof time);
+        (void)snprintf(left, sizeof left, ", about %s left", time);
+    }
     /* A long path shows its end. */
     size_t length = strlen(progress->name);
     const char *name = length > 30 ? progress->name + length - 30 : progress->name;
-    if (count > 0)
-        (void)snprintf(line, sizeof line, "%s [%s] %3.0f %%  %.0f s%s", name, cells, 100 * share, elapsed, left);
+    if (state->count > 0)
+        (void)snprintf(line, sizeof line, "%s [%s] %3.0f %%  %s%s", name, cells, 100 * share, elapsed, left);
     else
-        (void)snprintf(line, sizeof line, "%s: building the scene  %.0f s", name, elapsed);
+        (void)snprintf(line, sizeof line, "%s: building the scene  %s", name, elapsed);
     int columns = (int)strlen(line), limit = terminal_columns();
     if (columns > limit)
         columns = limit;
@@ -65,36 +99,78 @@ static void draw_bar(struct progress *progress, double elapsed, uint32_t done, u
     progress->columns = columns;
 }
 
-static void print_json(const struct progress *progress, const char *event, double elapsed, uint32_t done,
-                       uint32_t count) {
+static void print_line(struct progress *progress, const struct state *state) {
+    char line[4096 + 160], elapsed[48], left[48] = "";
+    say_time(state->elapsed, elapsed, sizeof elapsed);
+    if (state->left >= 0)
+        say_time(state->left, left, sizeof left);
+    if (state->count > 0)
+        (void)snprintf(line, sizeof line, "%s: %.0f %% after %s%s%s%s", progress->name,
+                       100 * (state->share > 0 ? state->share : 0), elapsed, left[0] ? ", about " : "", left,
+                       left[0] ? " left" : "");
+    else
+        (void)snprintf(line, sizeof line, "%s: building the scene, %s", progress->name, elapsed);
+    text_print_line(stderr, line);
+    progress->said = true;
+}
+
+static void print_json(const struct progress *progress, const char *event, const struct state *state) {
     (void)fputs("{\"picture\":", stderr);
     text_print_json(stderr, progress->name);
     (void)fprintf(stderr,
-                  ",\"event\":\"%s\",\"width\":%u,\"height\":%u,\"tiles_done\":%u,\"tiles\":%u,\"seconds\":%.3f}\n",
-                  event, progress->width, progress->height, done, count, elapsed);
+                  ",\"event\":\"%s\",\"width\":%u,\"height\":%u,\"tiles_done\":%u,\"tiles\":%u,\"seconds\":%.3f", event,
+                  progress->width, progress->height, state->done, state->count, state->elapsed);
+    if (state->share >= 0)
+        (void)fprintf(stderr, ",\"share\":%.4f", state->share);
+    if (state->left >= 0)
+        (void)fprintf(stderr, ",\"left\":%.3f", state->left);
+    (void)fputs("}\n", stderr);
     (void)fflush(stderr);
 }
 
 void progress_begin(struct progress *progress, const char *name, uint32_t width, uint32_t height) {
     progress->name = name;
+    progress->said = false;
     progress->width = width;
     progress->height = height;
     progress->begun = progress->shown = progress_clock();
     if (progress->mode == PROGRESS_JSON)
-        print_json(progress, "begin", 0, 0, 0);
+        print_json(progress, "begin", &(struct state){0, -1, -1, 0, 0});
 }
 
-void progress_update(struct progress *progress, uint32_t done, uint32_t count) {
-    if (!progress->name || progress->mode == PROGRESS_NONE)
+bool progress_wants_outlook(const struct progress *progress) {
+    return progress->mode != PROGRESS_NONE;
+}
+
+/* Ten times a second is smooth; lines are for logs: the first after ten seconds, then one for a tenth of the time so
+ * far. */
+static double pause_of(const struct progress *progress, double now) {
+    switch (progress->mode) {
+    case PROGRESS_BAR:
+        return 0.1;
+    case PROGRESS_JSON:
+        return 0.2;
+    case PROGRESS_LINES:
+        return fmax(10, 0.1 * (now - progress->begun));
+    case PROGRESS_AUTO:
+    case PROGRESS_NONE:
+        break;
+    }
+    return HUGE_VAL;
+}
+
+void progress_update(struct progress *progress, uint32_t done, uint32_t count, const struct outlook *outlook) {
+    double now = progress_clock();
+    if (!progress->name || now - progress->shown < pause_of(progress, now))
         return;
-    double now = progress_clock(), pause = progress->mode == PROGRESS_BAR ? 0.1 : 0.5;
-    if (now - progress->shown < pause)
-        return;
+    struct state state = state_of(progress, now, done, count, outlook);
     progress->shown = now;
     if (progress->mode == PROGRESS_BAR)
-        draw_bar(progress, now - progress->begun, done, count);
+        draw_bar(progress, &state);
+    else if (progress->mode == PROGRESS_LINES)
+        print_line(progress, &state);
     else
-        print_json(progress, count > 0 ? "render" : "build", now - progress->begun, done, count);
+        print_json(progress, count > 0 ? "render" : "build", &state);
 }
 
 void progress_end(struct progress *progress, enum progress_end how) {
@@ -103,8 +179,9 @@ void progress_end(struct progress *progress, enum progress_end how) {
     double elapsed = progress_clock() - progress->begun;
     progress_hide(progress);
     if (progress->mode == PROGRESS_JSON)
-        print_json(progress, how == PROGRESS_WRITTEN ? "written" : "given up", elapsed, 0, 0);
-    if (progress->mode == PROGRESS_BAR && how == PROGRESS_WRITTEN) {
+        print_json(progress, how == PROGRESS_WRITTEN ? "written" : "given up", &(struct state){elapsed, -1, -1, 0, 0});
+    bool told = progress->mode == PROGRESS_BAR || (progress->mode == PROGRESS_LINES && progress->said);
+    if (told && how == PROGRESS_WRITTEN) {
         char line[4096 + 64];
         (void)snprintf(line, sizeof line, "%s  %u x %u  %.1f s", progress->name, progress->width, progress->height,
                        elapsed);

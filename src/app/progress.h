@@ -1,8 +1,10 @@
-/* How far the picture is, told on standard error: as a bar that is drawn over itself, as JSON lines, or not at all. */
+/* How far the picture is, told on standard error: as a bar that is drawn over itself, as lines, as JSON lines, or not
+ * at all. */
 #ifndef GRAY_APP_PROGRESS_H
 #define GRAY_APP_PROGRESS_H
 
 #include "app/options.h"
+#include "render/outlook.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -12,18 +14,21 @@ struct progress {
     const char *name;        /* of the picture; NULL while there is none */
     uint32_t width, height;
     double begun, shown; /* seconds; when the picture began, when it was last told */
+    bool said;           /* a line was printed */
     int columns;         /* that the bar on the screen covers; 0: none is there */
 };
 
 enum progress_end { PROGRESS_WRITTEN, PROGRESS_GIVEN_UP };
 
 double progress_clock(void); /* seconds of a clock that never jumps */
-/* AUTO becomes a bar on a terminal, unless quiet. */
+/* AUTO becomes a bar on a terminal, else lines; nothing when quiet. */
 void progress_init(struct progress *progress, enum progress_mode mode, bool quiet);
 /* `name` must stay until progress_end. */
 void progress_begin(struct progress *progress, const char *name, uint32_t width, uint32_t height);
 /* count 0: the scene is still being built. Tells at most ten times a second. */
-void progress_update(struct progress *progress, uint32_t done, uint32_t count);
+void progress_update(struct progress *progress, uint32_t done, uint32_t count, const struct outlook *outlook);
+/* Whether anybody will see an estimate. */
+bool progress_wants_outlook(const struct progress *progress);
 /* Takes the bar off the screen, so that a line can be printed; the next update draws it again. */
 void progress_hide(struct progress *progress);
 void progress_end(struct progress *progress, enum progress_end how);

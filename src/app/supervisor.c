@@ -54,6 +54,7 @@ struct supervisor {
     int next_script; /* the one that runs, or comes next */
     bool stop;       /* no further script */
     bool broken;     /* the child did not keep to the rules of the channel */
+    bool finishing;  /* tiles under way are awaited, no others are begun */
     double deadline; /* when the cancelled child is killed; 0: not cancelled */
     bool waits;      /* the child has run all scripts and waits for a change */
     bool restarts;   /* the scripts are cancelled because they will run again */
@@ -102,6 +103,26 @@ static bool listen_to_signals(struct supervisor *supervisor, struct error *error
     return true;
 }
 
+/* The first Ctrl-C, where somebody wants the tiles: those under way are finished. Else nothing would become of them. */
+static bool finish_tiles(struct supervisor *supervisor) {
+    const struct options *options = supervisor->options;
+    const struct picture *picture = &supervisor->desk.current;
+    bool wanted = (options->checkpoint || options->partial) && picture->open && !picture->request.check &&
+                  !supervisor->desk.farm && !supervisor->window && !options->watch &&
+                  atomic_load(&supervisor->control->tiles) > 0;
+    char line[NAME_LIMIT + 160];
+    if (!wanted || supervisor->finishing || supervisor->deadline > 0)
+        return false;
+    supervisor->stop = supervisor->finishing = true;
+    note_status(supervisor, ERROR_CANCELLED);
+    atomic_store(&supervisor->control->enough, 1);
+    (void)snprintf(line, sizeof line,
+                   "gray: interrupted, %s is not written; tiles under way are finished (once more: at once)",
+                   picture->name);
+    desk_line(&supervisor->desk, LINE_ERROR, line);
+    return true;
+}
+
 static void cancel(struct supervisor *supervisor) {
     if (supervisor->deadline > 0 && !supervisor->restarts) {
         (void)kill(supervisor->child, SIGKILL);
@@ -128,7 +149,7 @@ static void read_signals(struct supervisor *supervisor) {
     while (read(supervisor->signals, &info, sizeof info) == (ssize_t)sizeof info) {
         if (info.ssi_signo == SIGUSR1)
             desk_checkpoint(&supervisor->desk);
-        else
+        else if (info.ssi_signo != SIGINT || !finish_tiles(supervisor))
             cancel(supervisor);
     }
 }
@@ -334,6 +355,10 @@ static void answer_done(struct supervisor *supervisor, const struct frame *frame
     struct error error = {0};
     live_detach(&supervisor->live);
     bool ok = desk_done(&supervisor->desk, &frame->body.report, &error);
+    if (supervisor->finishing) { /* the tiles under way were the last ones: the picture is whole, and the end is here */
+        supervisor->deadline = progress_clock() + patience;
+        atomic_store(&supervisor->control->cancel, CANCEL_ALL);
+    }
     send_answer(supervisor, FRAME_ANSWER, ok, false, &error, -1);
 }
 

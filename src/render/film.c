@@ -80,6 +80,16 @@ static size_t pixel_at(const struct film *film, uint32_t x, uint32_t y) {
     return (size_t)(y - film->y0) * film->width + (x - film->x0);
 }
 
+void film_clear_unfinished(struct film *film) {
+    for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
+        if (atomic_load_explicit(&film->tiles[tile], memory_order_acquire) == FILM_TILE_DONE)
+            continue;
+        struct film_rectangle r = film_tile_rectangle(film, tile);
+        for (uint32_t y = r.y0; y < r.y1; y++)
+            memset(&film->pixels[pixel_at(film, r.x0, y)], 0, (size_t)(r.x1 - r.x0) * sizeof *film->pixels);
+    }
+}
+
 static uint8_t *put_floats(uint8_t *out, const float *values) {
     memcpy(out, values, 3 * sizeof *values);
     return out + 3 * sizeof *values;

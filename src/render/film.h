@@ -60,6 +60,8 @@ uint32_t film_tile_count(const struct film *film);
 struct film_rectangle film_tile_rectangle(const struct film *film, uint32_t tile);
 /* How many tiles are in that state. */
 uint32_t film_tiles_in(const struct film *film, enum film_tile state);
+/* Black where tiles are not done. */
+void film_clear_unfinished(struct film *film);
 
 /* A tile as bytes: which pixels were resampled (a bit each), the final colours, and the first pass of the resampled
  * ones; elsewhere it is the final colour. At most FILM_PACKED_LIMIT bytes, little-endian. */

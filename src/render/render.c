@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "render/cutoff.h"
+#include "render/order.h"
 #include "render/photon_trace.h"
 #include "render/shard.h"
 #include "render/story.h"
@@ -187,15 +188,28 @@ static bool choose_tiles(struct run *run, struct error *error) {
     return ok || error_no_memory(error, "the tiles of a shard");
 }
 
-static void tile_item(void *context, uint32_t item, int index) {
+static void tell_outlook(const struct run *run, uint32_t tile, uint64_t part) {
+    if (run->toll)
+        atomic_fetch_add_explicit(&run->job->outlook->done,
+                                  part == 1 ? run->toll[tile] / 2 : run->toll[tile] - run->toll[tile] / 2,
+                                  memory_order_relaxed);
+}
+
+static bool is_enough(const struct run *run) {
+    return run->job->enough && atomic_load_explicit(run->job->enough, memory_order_relaxed) != 0;
+}
+
+static void tile_item(void *context, uint32_t place, int index) {
     struct run *run = context;
+    uint32_t item = run->order ? run->order[place] : place;
     struct worker *worker = &run->workers[index];
     struct film *film = run->job->film;
     uint8_t wanted = FILM_TILE_WANTED;
-    if (!atomic_compare_exchange_strong(&film->tiles[item], &wanted, FILM_TILE_TAKEN))
+    if (is_enough(run) || !atomic_compare_exchange_strong(&film->tiles[item], &wanted, FILM_TILE_TAKEN))
         return;
     struct film_rectangle r = film_tile_rectangle(film, item);
     struct rectangle tile = {r.x0, r.y0, r.x1, r.y1};
+    tell_outlook(run, item, 1);
     /* A ray that was given up leaves a wrong colour: what ends after a wish to stop counts as not done. */
     bool whole = render_tile(run, worker, tile) && !run_stopped(run, worker);
     if (worker->scratch.failed) {
@@ -205,6 +219,7 @@ static void tile_item(void *context, uint32_t item, int index) {
     atomic_store_explicit(&film->tiles[item], whole ? FILM_TILE_DONE : FILM_TILE_WANTED, memory_order_release);
     if (!whole)
         return;
+    tell_outlook(run, item, 2);
     if (run->job->tile_done) {
         uint32_t done = atomic_fetch_add(&run->done, 1) + 1;
         run->job->tile_done(run->job->context, item, done, run->tiles_wanted);
@@ -218,7 +233,7 @@ static void gated_item(void *context, uint32_t item, int index) {
     const struct timespec pause = {0, 500000};
     uint32_t count = film_tile_count(film);
     (void)item;
-    while (!run_stopped(run, &run->workers[index])) {
+    while (!run_stopped(run, &run->workers[index]) && !is_enough(run)) {
         uint32_t tile = 0;
         while (tile < count && atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) != FILM_TILE_WANTED)
             tile++;
@@ -372,6 +387,8 @@ static void end_run(struct run *run, int workers) {
     photon_map_destroy(&run->caustics);
     mem_free(run->workers);
     mem_free(run->closed);
+    mem_free(run->order);
+    mem_free(run->toll);
 }
 
 /* The tile is one pixel: its first sample, those of its neighbours, and the others if it is marked. */
@@ -420,9 +437,84 @@ bool render_pixels(const struct render_job *job, struct pool *pool, const uint32
     return ok;
 }
 
+/* In a farm tiles are made as they are handed out. */
+static bool order_tiles(struct run *run) {
+    uint32_t count = film_tile_count(run->job->film);
+    if (run->job->gate)
+        return true;
+    run->order = mem_alloc_zero(count, sizeof *run->order);
+    if (run->job->outlook)
+        run->toll = mem_alloc_zero(count, sizeof *run->toll);
+    return run->order && (run->toll || !run->job->outlook) &&
+           tile_order(run->job->film, run->job->settings.order, run->order);
+}
+
+static bool is_unfinished(const struct run *run) {
+    const struct film *film = run->job->film;
+    return film_tiles_in(film, FILM_TILE_WANTED) > 0;
+}
+
+/* --- how long it will take --- */
+
+static uint64_t nanoseconds_of(clockid_t clock) {
+    struct timespec now;
+    (void)clock_gettime(clock, &now);
+    return (uint64_t)now.tv_sec * UINT64_C(1000000000) + (uint64_t)now.tv_nsec;
+}
+
+/* First samples on a lattice in the tile. Processor time, so that what else the machine does counts for nothing. */
+static void toll_item(void *context, uint32_t tile, int index) {
+    enum { SIDE = 4 };
+    struct run *run = context;
+    struct worker *worker = &run->workers[index];
+    const struct film *film = run->job->film;
+    struct film_rectangle r = film_tile_rectangle(film, tile);
+    if (atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) != FILM_TILE_WANTED)
+        return;
+    uint64_t begun = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID);
+    for (uint32_t i = 0; i < SIDE * SIDE && !run_stopped(run, worker) && !is_enough(run); i++) {
+        struct place place = run_first_place(run, r.x0 + (r.x1 - r.x0) * (2 * (i % SIDE) + 1) / (2 * SIDE),
+                                             r.y0 + (r.y1 - r.y0) * (2 * (i / SIDE) + 1) / (2 * SIDE));
+        (void)run_sample(run, worker, &place);
+    }
+    run->toll[tile] = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID) - begun + 1;
+}
+
+/* What was looked at for the estimate is no part of the picture's statistics. */
+static void forget_counts(struct run *run) {
+    for (int i = 0; i < pool_workers(run->pool); i++) {
+        struct worker *worker = &run->workers[i];
+        struct geom_scratch *geom = &worker->scratch.geom;
+        worker->camera_rays = 0;
+        worker->tracer.hits = worker->tracer.shadow_rays = 0;
+        worker->tracer.reflected_rays = worker->tracer.refracted_rays = 0;
+        geom->shape_tests = geom->box_tests = 0;
+        memset(&geom->cost, 0, sizeof geom->cost);
+    }
+}
+
+static bool estimate_tiles(struct run *run) {
+    uint32_t count = film_tile_count(run->job->film);
+    struct outlook *outlook = run->job->outlook;
+    uint64_t all = 0;
+    if (!run->toll)
+        return true;
+    if (!pool_run(run->pool, count, toll_item, run))
+        return false;
+    forget_counts(run);
+    for (uint32_t i = 0; i < count; i++)
+        all += run->toll[i];
+    atomic_store(&outlook->done, 0);
+    atomic_store(&outlook->begun, nanoseconds_of(CLOCK_MONOTONIC));
+    atomic_store_explicit(&outlook->all, all, memory_order_release);
+    return true;
+}
+
 static bool make_tiles(struct run *run, struct error *error) {
+    if (!order_tiles(run))
+        return error_no_memory(error, "the order of the tiles");
     count_tiles(run);
-    bool whole = run_tiles(run);
+    bool whole = estimate_tiles(run) && run_tiles(run) && !(is_enough(run) && is_unfinished(run));
     if (!atomic_load(&run->failed))
         return whole || error_set(error, ERROR_CANCELLED, "stopped while rendering");
     if (!whole)

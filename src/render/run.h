@@ -53,6 +53,8 @@ struct run {
     struct story *story;   /* of one pixel, or NULL */
     uint32_t tiles_wanted; /* of this process, those that were there before too */
     uint64_t *cost;        /* of each tile while shards are chosen */
+    uint32_t *order;       /* of the tiles; NULL: as they are numbered */
+    uint64_t *toll;        /* what rays through each tile took, nanoseconds; NULL: nobody asks */
     _Atomic uint32_t done;
     _Atomic bool failed;
 };

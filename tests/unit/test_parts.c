@@ -255,6 +255,31 @@ TEST(an_interrupted_run_keeps_what_is_finished) {
     gives("$gray scene.lua -q -full -ss 3 --resume && cmp out.png whole.png && ! test -e out.png.checkpoint", 0, NULL);
 }
 
+/* Ctrl-C finishes the tiles under way, and what they are is what is asked for: a checkpoint, a picture beside. (A shell
+ * has its children ignore SIGINT: env sets it right.) */
+TEST(control_c_finishes_tiles_and_writes_what_is_asked) {
+    put("scene.lua", ONE);
+    gives("$gray scene.lua -full -ss 3 -o whole.png; echo old >out.png; for moment in " MOMENTS "; do "
+          "env --default-signal=INT $gray scene.lua -full -ss 3 --checkpoint auto --checkpoint-every 1000 --partial "
+          "2>said.txt & pid=$!; sleep $moment; kill -INT $pid 2>kill.txt; wait $pid; status=$?; "
+          "test -s out.partial.png && break; rm -f out.png.checkpoint; echo old >out.png; done; cat said.txt >&2; "
+          "test -s out.png.checkpoint && test $(cat out.png) = old && exit $status",
+          130, "tiles under way are finished");
+    gives("cat said.txt >&2; rm out.png", 0, "gray: notice: out.partial.png holds ");
+    gives("$gray scene.lua -q -full -ss 3 --resume && cmp out.png whole.png", 0, NULL);
+}
+
+/* Tiles that take minutes: the second Ctrl-C does not wait for them. */
+TEST(a_second_control_c_stops_at_once) {
+    put("scene.lua", ONE);
+    gives("for moment in " MOMENTS
+          "; do env --default-signal=INT $gray scene.lua -j 1 -full -ss 64 --partial 2>said.txt & "
+          "pid=$!; sleep $moment; kill -INT $pid; sleep $moment; kill -INT $pid; wait $pid; status=$?; "
+          "grep -q 'tiles under way' said.txt && break; done; cat said.txt >&2; exit $status",
+          130, "gray: interrupted, out.png is not written");
+    CHECK(!exists("out.png"));
+}
+
 TEST(a_checkpoint_that_cannot_be_written_is_a_warning) {
     put("scene.lua", SCENE "picture('out.png', 100, 70)\n");
     gives("mkdir d; $gray scene.lua --checkpoint d --checkpoint-every 0", 0, "");
