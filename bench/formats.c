@@ -19,38 +19,62 @@ static void put32(FILE *file, uint32_t bits) {
         (void)fputc((int)(bits >> 8 * i & 255), file);
 }
 
-/* The first mesh of a file as binary STL: shells cannot write that. */
-static int write_stl(const char *from, const char *to) {
-    struct model model;
-    struct error error = {0};
-    struct model_options options = {0};
-    FILE *file = model_read(&model, from, &options, &error) ? fopen(to, "wb") : NULL;
-    if (!file)
-        return 1;
+static void put_float(FILE *file, double x) {
+    float single = (float)x;
+    uint32_t bits;
+    memcpy(&bits, &single, 4);
+    put32(file, bits);
+}
+
+static void write_stl(const struct mesh *mesh, FILE *file) {
     uint32_t ignored;
-    const struct mesh *mesh = model_meshes(&model)[0].mesh;
     const double(*vertices)[3] = mesh_vertices(mesh, &ignored);
     for (int i = 0; i < 80; i++)
         (void)fputc(0, file);
     put32(file, mesh_face_count(mesh));
     for (uint32_t f = 0; f < mesh_face_count(mesh); f++) {
         const uint32_t *face = mesh_face(mesh, f, &ignored);
-        for (int i = -3; i < 9; i++) {
-            float x = i < 0 ? 0 : (float)vertices[face[i / 3]][i % 3];
-            uint32_t bits;
-            memcpy(&bits, &x, 4);
-            put32(file, bits);
-        }
+        for (int i = -3; i < 9; i++)
+            put_float(file, i < 0 ? 0 : vertices[face[i / 3]][i % 3]);
         (void)fputc(0, file);
         (void)fputc(0, file);
     }
+}
+
+static void write_ply(const struct mesh *mesh, FILE *file) {
+    uint32_t count, ignored;
+    const double(*vertices)[3] = mesh_vertices(mesh, &count);
+    fprintf(file, "ply\nformat binary_little_endian 1.0\nelement vertex %u\n", count);
+    fprintf(file, "property float x\nproperty float y\nproperty float z\n");
+    fprintf(file, "element face %u\nproperty list uchar int vertex_indices\nend_header\n", mesh_face_count(mesh));
+    for (uint32_t i = 0; i < 3 * count; i++)
+        put_float(file, vertices[i / 3][i % 3]);
+    for (uint32_t f = 0; f < mesh_face_count(mesh); f++) {
+        const uint32_t *face = mesh_face(mesh, f, &ignored);
+        (void)fputc(3, file);
+        for (int i = 0; i < 3; i++)
+            put32(file, face[i]);
+    }
+}
+
+/* The first mesh of a file, of triangles, in binary: shells cannot write that. */
+static int convert(const char *from, const char *to, void (*write)(const struct mesh *, FILE *)) {
+    struct model model;
+    struct error error = {0};
+    struct model_options options = {0};
+    FILE *file = model_read(&model, from, &options, &error) ? fopen(to, "wb") : NULL;
+    if (!file)
+        return 1;
+    write(model_meshes(&model)[0].mesh, file);
     model_destroy(&model);
     return fclose(file);
 }
 
 int main(int count, char **paths) {
     if (count == 4 && strcmp(paths[1], "--stl") == 0)
-        return write_stl(paths[2], paths[3]);
+        return convert(paths[2], paths[3], write_stl);
+    if (count == 4 && strcmp(paths[1], "--ply") == 0)
+        return convert(paths[2], paths[3], write_ply);
     for (int i = 1; i < count; i++) {
         double best = 1e9, best_work = 1e9;
         unsigned triangles = 0;

@@ -22,8 +22,11 @@ struct property {
     enum meaning meaning;
 };
 
+enum element_kind { OTHER, VERTICES, FACES };
+
 struct element {
     char name[32];
+    enum element_kind kind;
     uint64_t count;
     int first, property_count; /* in ply.properties */
     uint64_t least;            /* bytes of the smallest row */
@@ -200,6 +203,7 @@ static bool read_element(struct ply *ply, const struct words *words) {
     struct element *element = &ply->elements[ply->element_count++];
     *element = (struct element){.first = ply->property_count};
     memcpy(element->name, words->text[1], words->length[1]);
+    element->kind = word_is(words, 1, "vertex") ? VERTICES : word_is(words, 1, "face") ? FACES : OTHER;
     for (int k = 0; k < ply->element_count - 1; k++)
         if (strcmp(ply->elements[k].name, element->name) == 0)
             return header_fail(ply, words, 1, "is the name of an earlier element");
@@ -297,11 +301,36 @@ static bool read_number(struct ply *ply, enum number_type type, double *out) {
     return true;
 }
 
+/* Counts and vertices of text are nearly always a few digits and a blank. False: it is something else, nothing was
+ * read. */
+static bool read_quick_whole(struct ply *ply, uint32_t *out) {
+    const uint8_t *p = ply->at, *end = ply->end;
+    while (p < end && is_blank(*p))
+        p++;
+    const uint8_t *first = p;
+    uint32_t value = 0;
+    for (; p < end && (unsigned)*p - '0' <= 9; p++) {
+        if (p - first == 9)
+            return false;
+        value = value * 10 + (*p - '0');
+    }
+    if (p == first || p == end || *p > ' ')
+        return false;
+    ply->at = p;
+    *out = value;
+    return true;
+}
+
 /* The number of entries of a list, which the file can surely hold. */
 static bool read_count(struct ply *ply, const struct property *p, uint32_t *out) {
     double count;
+    uint32_t whole;
     const uint8_t *before = ply->at;
-    if (!read_number(ply, p->count_type, &count))
+    if (ply->format == ASCII && read_quick_whole(ply, &whole))
+        count = whole;
+    else if (ply->format != ASCII && p->count_type == NUMBER_U8 && ply->at < ply->end)
+        count = *ply->at++;
+    else if (!read_number(ply, p->count_type, &count))
         return false;
     uint64_t each = ply->format == ASCII ? 2 : number_size(p->type), left = (uint64_t)(ply->end - ply->at);
     if (!(count >= 0 && count == floor(count) && count <= UINT32_MAX / 2) || count > (double)(left / each + 1)) {
@@ -417,6 +446,7 @@ static bool read_indices(struct ply *ply, const struct property *p, bool restart
     /* The usual case, 4-byte numbers in the order of this machine, without a call for each. */
     unsigned size = number_size(p->type);
     bool quick = ply->format != ASCII && size == 4;
+    uint32_t whole;
     if (quick && (uint64_t)(ply->end - ply->at) < (uint64_t)count * size)
         return fail(ply, "the file ends too early");
     for (uint32_t i = 0; i < count; i++) {
@@ -426,6 +456,8 @@ static bool read_indices(struct ply *ply, const struct property *p, bool restart
             uint32_t bits = scan_u32(ply->at, ply->format == BIG);
             value = p->type == NUMBER_I32 ? (double)(int32_t)bits : (double)bits;
             ply->at += 4;
+        } else if (ply->format == ASCII && read_quick_whole(ply, &whole)) {
+            value = whole;
         } else if (!read_number(ply, p->type, &value)) {
             return false;
         }
@@ -537,11 +569,11 @@ static bool add_strips(struct ply *ply) {
 }
 
 static bool read_row(struct ply *ply, const struct element *element, bool corner_uvs) {
-    if (strcmp(element->name, "vertex") == 0) {
+    if (element->kind == VERTICES) {
         double value[SCALARS] = {0};
         return read_vertex(ply, element, value) && add_vertex(ply, value);
     }
-    if (strcmp(element->name, "face") == 0)
+    if (element->kind == FACES)
         return read_face(ply, element, corner_uvs);
     double ignored;
     for (int k = 0; k < element->property_count; k++) {
@@ -560,8 +592,19 @@ static bool skip_at_once(struct ply *ply, const struct element *element) {
     for (int k = 0; k < element->property_count; k++)
         if (ply->properties[element->first + k].is_list)
             return false;
-    bool used = strcmp(element->name, "vertex") == 0 || strcmp(element->name, "face") == 0;
-    return ply->format != ASCII && !used;
+    return ply->format != ASCII && element->kind == OTHER;
+}
+
+/* Room for what the header promises and the bytes that are left can hold, so that lists need not grow. */
+static bool reserve(struct ply *ply, const struct element *element) {
+    struct model_mesh *mesh = ply->mesh;
+    if (element->kind == VERTICES)
+        return list_room(&mesh->vertices, element->count, 3 * sizeof(double)) != NULL;
+    if (element->kind == OTHER || element->least == 0)
+        return true;
+    uint64_t left = (uint64_t)(ply->end - ply->at), corners = 3 * element->count;
+    return list_room(&mesh->starts, element->count + 2, sizeof(uint32_t)) &&
+           list_room(&mesh->vertex_index, corners < left / 2 ? corners : left / 2, sizeof(uint32_t));
 }
 
 static bool read_rows(struct ply *ply, const struct element *element) {
@@ -582,6 +625,8 @@ static bool read_rows(struct ply *ply, const struct element *element) {
         ply->at += element->count * element->least;
         return true;
     }
+    if (!reserve(ply, element))
+        return no_memory(ply);
     bool corner_uvs = false;
     for (int k = 0; k < element->property_count; k++)
         corner_uvs |= ply->properties[element->first + k].meaning == CORNER_UVS && !ply->mesh->uvs_by_vertex;
@@ -604,7 +649,7 @@ static bool load(struct ply *ply) {
     ply->line++;
     struct model_mesh *mesh = ply->mesh;
     for (int i = 0; i < ply->element_count; i++)
-        if (strcmp(ply->elements[i].name, "vertex") == 0)
+        if (ply->elements[i].kind == VERTICES)
             ply->vertex_total = ply->elements[i].count;
     if (ply->vertex_total >= UINT32_MAX - 1)
         return error_set(ply->error, ERROR_SCENE, "%s: %llu vertices are too many", ply->path,
