@@ -64,7 +64,7 @@ class Source:
             if match.group(1) == "UNREACHABLE":
                 self.silent_lines.update(range(self.line(match.start()), self.line(end) + 1))
                 # The cases that lead there and nowhere else.
-                cases = re.search(r"(case \w+:\s*)+\Z", self.text[:match.start()])
+                cases = re.search(r"(case \w+:\s*)+(break;\s*\}\s*)?\Z", self.text[:match.start()])
                 if cases:
                     self.silent.append(cases.span())
                     self.silent_lines.update(range(self.line(cases.start()), self.line(match.start())))
@@ -140,7 +140,7 @@ def read(folder, root):
                 inner = inner or (names[number], *place)
                 place, number = site[number][:4], site[number][5]
             file = entry(names[number])
-            if file is None or file.source.is_silent(place[0], place[1]) or file.source.is_closed(place[0], place[1]):
+            if file is None or place[0] > len(file.source.starts) or file.source.is_silent(place[0], place[1]) or file.source.is_closed(place[0], place[1]):
                 continue
             pair = file.branches.setdefault((*place, inner), [0, 0])
             for side in (0, 1):

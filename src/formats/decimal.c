@@ -8,6 +8,7 @@
  *   3. everything else through the C library's strtod on a copy of the token. */
 #include "formats/decimal.h"
 
+#include <assert.h>
 #include <locale.h>
 #include <math.h>
 #include <stdbool.h>
@@ -50,7 +51,8 @@ static bool read_slowly(const char *at, size_t length, double *out) {
         *point = localeconv()->decimal_point[0];
     char *rest;
     *out = strtod(token, &rest);
-    return *rest == '\0' && isfinite(*out);
+    assert(*rest == '\0'); /* what was found to be a number is one to the C library */
+    return isfinite(*out);
 }
 
 const char *decimal_read(const char *at, const char *end, double *out) {

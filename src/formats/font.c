@@ -22,6 +22,7 @@ const char *font_library(void) {
 
 #include "base/mem.h"
 
+#include <assert.h>
 #include <stdalign.h>
 #include <string.h>
 
@@ -45,7 +46,8 @@ struct memory {
 
 static void *take(FT_Memory hooks, long size) {
     struct memory *memory = hooks->user;
-    size_t wanted = size > 0 ? (size_t)size : 1;
+    assert(size > 0); /* FreeType asks for nothing without us */
+    size_t wanted = (size_t)size;
     if (wanted > MEMORY_LIMIT - memory->used) {
         memory->beyond = true;
         return NULL;
@@ -63,8 +65,7 @@ static void *take(FT_Memory hooks, long size) {
 static void give(FT_Memory hooks, void *block) {
     struct memory *memory = hooks->user;
     size_t size;
-    if (!block)
-        return;
+    assert(block);
     memcpy(&size, (uint8_t *)block - HEADER, sizeof size);
     memory->used -= size;
     mem_free((uint8_t *)block - HEADER);
@@ -74,8 +75,8 @@ static void *change(FT_Memory hooks, long old_size, long size, void *block) {
     void *other = take(hooks, size);
     if (!other)
         return NULL;
-    if (block && old_size > 0)
-        memcpy(other, block, (size_t)(old_size < size ? old_size : size));
+    assert(block && old_size > 0); /* FreeType takes a new block otherwise */
+    memcpy(other, block, (size_t)(old_size < size ? old_size : size));
     give(hooks, block);
     return other;
 }
@@ -101,9 +102,9 @@ static bool fail(struct setting *s, FT_Error code) {
         return error_set(s->error, ERROR_SCENE, "%s: broken font: it asks for too much memory", s->path);
     if (s->memory.refused)
         return error_no_memory(s->error, s->path);
-    const char *reason = FT_Error_String(code);
-    return error_set(s->error, ERROR_SCENE, "%s: not a font that can be read: %s (error %d of FreeType)", s->path,
-                     reason ? reason : "it is broken or of an unknown kind", code);
+    return error_set(s->error, ERROR_SCENE,
+                     "%s: not a font that can be read: it is broken or of an unknown kind (error %d of FreeType)",
+                     s->path, code);
 }
 
 static void add(struct setting *s, double x, double y) {

@@ -4,6 +4,7 @@
 
 #include "base/mem.h"
 
+#include <assert.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -17,8 +18,9 @@ struct list {
 static inline void *list_room(struct list *list, size_t more, size_t size) {
     if (!list->items || list->capacity - list->count < more) {
         size_t least, capacity = list->capacity + list->capacity / 2 + 64;
-        if (__builtin_add_overflow(list->count, more, &least))
-            return NULL;
+        bool beyond = __builtin_add_overflow(list->count, more, &least);
+        assert(!beyond); /* both are bounded by the bytes of a file */
+        (void)beyond;
         if (capacity < least)
             capacity = least;
         void *items = mem_resize_array(list->items, capacity, size);

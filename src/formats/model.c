@@ -4,6 +4,7 @@
 #include "formats/model.h"
 
 #include "base/file.h"
+#include "base/unreachable.h"
 #include "geom/mesh_smooth.h"
 
 #include <stdarg.h>
@@ -257,7 +258,7 @@ static bool load(struct model *model, const uint8_t *data, size_t size, struct e
     case KIND_GLTF:
         return gltf_load(model, data, size, error);
     }
-    return false;
+    UNREACHABLE("a file of no kind");
 }
 
 /* Takes the bytes of the file over when they are from file_map: they go before the meshes are made. */

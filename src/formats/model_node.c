@@ -23,7 +23,7 @@ const struct model *model_asset(struct assets *assets, const char *path, const c
     int length = snprintf(key, sizeof key, "%s|%d %.17g %d %d", canonical, options->smooth, options->smooth_angle,
                           options->weld, options->flip);
     *fresh = false;
-    if (length < 0 || (size_t)length >= sizeof key) {
+    if ((size_t)length >= sizeof key) {
         error_set(error, ERROR_SCENE, "%s: its path is too long", path);
         return NULL;
     }

@@ -2,6 +2,8 @@
 #ifndef GRAY_FORMATS_SCAN_H
 #define GRAY_FORMATS_SCAN_H
 
+#include "base/unreachable.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
@@ -73,7 +75,7 @@ static inline double scan_number(const uint8_t *p, enum number_type type, bool b
     case NUMBER_TYPES:
         break;
     }
-    return 0;
+    UNREACHABLE("a number of no type");
 }
 
 #endif

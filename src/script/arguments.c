@@ -1,9 +1,11 @@
 /* Reading arguments: the first paragraph of every binding function, driven by the table. It may raise, so it owns
  * nothing: arrays go to the arena of the call. Tables are read raw, so that no metamethod runs in between and a million
  * vertices take a fraction of a second. NaN and infinities stop here. */
+#include "base/unreachable.h"
 #include "render/settings.h"
 #include "script/context.h"
 
+#include <assert.h>
 #include <lauxlib.h>
 #include <math.h>
 #include <stdio.h>
@@ -34,16 +36,14 @@ _Noreturn static void wrong_type(struct context *c, const struct place *place, c
 
 /* "a > 0 and b < 180" in words. */
 static void range_words(const struct parameter *p, char out[128]) {
-    bool low = p->low > -(double)INFINITY, high = p->high < (double)INFINITY, open = p->flags & (LOW_OPEN | HIGH_OPEN);
-    if (low && high && !open)
-        snprintf(out, 128, "between %.15g and %.15g", p->low, p->high);
-    else if (low && high)
-        snprintf(out, 128, "%s %.15g and %s %.15g", p->flags & LOW_OPEN ? ">" : ">=", p->low,
-                 p->flags & HIGH_OPEN ? "<" : "<=", p->high);
-    else if (low)
-        snprintf(out, 128, "%s %.15g", p->flags & LOW_OPEN ? ">" : ">=", p->low);
+    const char *above = p->flags & LOW_OPEN ? ">" : ">=", *below = p->flags & HIGH_OPEN ? "<" : "<=";
+    assert(isfinite(p->low)); /* every range has a beginning; a test looks at all of them */
+    if (!isfinite(p->high))
+        snprintf(out, 128, "%s %.15g", above, p->low);
+    else if (p->flags & (LOW_OPEN | HIGH_OPEN))
+        snprintf(out, 128, "%s %.15g and %s %.15g", above, p->low, below, p->high);
     else
-        snprintf(out, 128, "%s %.15g", p->flags & HIGH_OPEN ? "<" : "<=", p->high);
+        snprintf(out, 128, "between %.15g and %.15g", p->low, p->high);
 }
 
 _Noreturn static void out_of_range(struct context *c, const struct place *place) {
@@ -573,7 +573,7 @@ static bool read_value(struct context *c, int index, const struct parameter *p, 
     case KIND_COUNT:
         break;
     }
-    return true;
+    UNREACHABLE("a parameter of no kind");
 }
 
 /* Reads one parameter unless it is nil. False: the whole call is to be left undone. */
@@ -634,7 +634,7 @@ static bool looks_like(lua_State *L, int index, enum kind kind) {
     case KIND_COUNT:
         break;
     }
-    return false;
+    UNREACHABLE("a parameter of no kind");
 }
 
 /* How well the arguments fit a form: how many of the first ones do, then how near their number is to the form's. */

@@ -293,8 +293,7 @@ static int module_begin(lua_State *L) {
         int k = environment_upvalue(L, lua_gettop(L));
         if (k > 0) { /* the chunk and all its functions share this variable */
             lua_pushvalue(L, module);
-            if (!lua_setupvalue(L, -2, k))
-                lua_pop(L, 1);
+            (void)lua_setupvalue(L, -2, k);
         }
     }
     for (int k = 2; k <= options; k++) {

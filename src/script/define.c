@@ -2,6 +2,7 @@
  * false, nil, a table of literals), anything else is a string. Tables are evaluated without any globals. */
 #include "script/context.h"
 
+#include <assert.h>
 #include <lauxlib.h>
 #include <string.h>
 
@@ -12,8 +13,9 @@ static bool evaluate(lua_State *L, const char *value) {
     const char *text = lua_tostring(L, -1);
     if (luaL_loadbufferx(L, text, strlen(text), "=-D", "t") == LUA_OK) {
         lua_newtable(L);
-        if (!lua_setupvalue(L, -2, 1))
-            lua_pop(L, 1);
+        const char *environment = lua_setupvalue(L, -2, 1);
+        assert(environment); /* every chunk has one */
+        (void)environment;
         if (lua_pcall(L, 0, 1, 0) == LUA_OK) {
             lua_replace(L, top + 1);
             lua_settop(L, top + 1);

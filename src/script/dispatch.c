@@ -5,6 +5,7 @@
 #include "base/version.h"
 #include "formats/font.h"
 
+#include <assert.h>
 #include <lauxlib.h>
 #include <limits.h>
 #include <string.h>
@@ -26,16 +27,16 @@ static int answer_bounds(lua_State *L, const struct box *box) {
 static int answer_faces(lua_State *L, const struct mesh *mesh) {
     uint32_t count, corners;
     const double(*vertices)[3] = mesh_vertices(mesh, &count);
-    lua_createtable(L, (int)(count < INT_MAX ? count : 0), 0);
+    lua_createtable(L, (int)(count & INT_MAX), 0);
     for (uint32_t i = 0; i < count; i++) {
         push_numbers(L, vertices[i]);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
     count = mesh_face_count(mesh);
-    lua_createtable(L, (int)(count < INT_MAX ? count : 0), 0);
+    lua_createtable(L, (int)(count & INT_MAX), 0);
     for (uint32_t f = 0; f < count; f++) {
         const uint32_t *face = mesh_face(mesh, f, &corners);
-        lua_createtable(L, (int)(corners < INT_MAX ? corners : 0), 0);
+        lua_createtable(L, (int)(corners & INT_MAX), 0);
         for (uint32_t k = 0; k < corners; k++) {
             lua_pushinteger(L, (lua_Integer)face[k]);
             lua_rawseti(L, -2, (lua_Integer)k + 1);
@@ -235,7 +236,8 @@ static int node_index(lua_State *L) {
     struct context *c = context_of(L);
     c->lua = L;
     const struct handle *handle = handle_at(L, 1);
-    c->subject = handle && handle->type == HANDLE_NODE ? ((const struct node *)handle->pointer)->name : NULL;
+    assert(handle && handle->type == HANDLE_NODE); /* no script gets at the metatable */
+    c->subject = ((const struct node *)handle->pointer)->name;
     if (lua_type(L, 2) != LUA_TSTRING)
         return 1;
     no_such_name(c, OWNER_NODE, lua_tostring(L, 2));

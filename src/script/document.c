@@ -1,5 +1,6 @@
 /* The table as documents: the manual page's list of functions (plain text, 100 columns) and the annotation file for
  * editors (LuaLS, `---@meta`). Text grows in the caller's arena; NULL without memory. */
+#include "base/unreachable.h"
 #include "script/context.h"
 
 #include <math.h>
@@ -219,7 +220,7 @@ static const char *annotation_type(const struct parameter *p, char out[200]) {
     case KIND_COUNT:
         break;
     }
-    return "any";
+    UNREACHABLE("a parameter of no kind");
 }
 
 static const char *annotation_result(const struct function *function) {
@@ -246,7 +247,7 @@ static const char *annotation_result(const struct function *function) {
     case RESULT_GLYPHS:
         return "table";
     }
-    return NULL;
+    UNREACHABLE("a result of no kind");
 }
 
 static void annotate_fields(struct document *document, const struct function *function) {

@@ -12,7 +12,7 @@
 static bool try_file(const struct context *context, char out[PATH_SIZE], const char *folder, const char *between,
                      const char *name) {
     int length = snprintf(out, PATH_SIZE, "%s%s%s", folder, between, name);
-    return length > 0 && length < PATH_SIZE && reach_is_readable(context->reach, out);
+    return (size_t)length < PATH_SIZE && reach_is_readable(context->reach, out);
 }
 
 bool files_find(struct context *context, const char *name, char out[PATH_SIZE]) {

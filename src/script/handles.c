@@ -3,6 +3,7 @@
  * know; it exists with --lenient only, is accepted everywhere and does nothing. */
 #include "script/context.h"
 
+#include <assert.h>
 #include <lauxlib.h>
 
 static const char *const type_names[HANDLE_TYPES] = {"node", "material", "light", "texture", "fog", "sky", "ghost"};
@@ -27,8 +28,12 @@ void handle_push(lua_State *L, enum handle_type type, void *pointer) {
 
 const struct handle *handle_at(lua_State *L, int index) {
     const struct handle *handle = lua_touserdata(L, index);
-    if (!handle || lua_islightuserdata(L, index) || !lua_getmetatable(L, index))
+    if (!handle)
         return NULL;
+    /* Scripts get no light userdata, and everybody's others have metatables. */
+    bool has_metatable = lua_getmetatable(L, index);
+    assert(has_metatable);
+    (void)has_metatable;
     const void *metatable = lua_topointer(L, -1);
     lua_pop(L, 1);
     const struct context *context = context_of(L);
@@ -67,10 +72,11 @@ const char *value_words(lua_State *L, int index) {
 /* tostring(handle): no addresses, so that what a script prints is the same every time. */
 static int handle_text(lua_State *L) {
     const struct handle *handle = handle_at(L, 1);
-    if (handle && handle->type == HANDLE_NODE)
+    assert(handle); /* no script gets at the metatable */
+    if (handle->type == HANDLE_NODE)
         lua_pushfstring(L, "node '%s'", ((const struct node *)handle->pointer)->name);
     else
-        lua_pushstring(L, handle ? type_names[handle->type] : "userdata");
+        lua_pushstring(L, type_names[handle->type]);
     return 1;
 }
 

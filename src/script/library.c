@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 
+#include <assert.h>
 #include <lauxlib.h>
 #include <lualib.h>
 #include <stdio.h>
@@ -22,7 +23,7 @@ static bool is_hidden(lua_State *L, const char *name, char file[PATH_SIZE]) {
     if (!folder || !folder[0] || strpbrk(name, "./\\"))
         return false;
     int length = snprintf(file, PATH_SIZE, "%s/%s.lua", folder, name);
-    if (length < 0 || length >= PATH_SIZE || !file_is_regular(file))
+    if ((size_t)length >= PATH_SIZE || !file_is_regular(file))
         return false;
     lua_getfield(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
     bool has_path = lua_getfield(L, -1, LUA_LOADLIBNAME) == LUA_TTABLE && lua_getfield(L, -1, "path") == LUA_TSTRING;
@@ -89,6 +90,7 @@ void library_adopt(lua_State *L, const char *path) {
     if (strncmp(file, library, length) != 0 || file[length] != '/')
         return;
     lua_rawgetp(L, LUA_REGISTRYINDEX, &key);
-    if (!lua_setupvalue(L, -2, 1))
-        lua_pop(L, 1);
+    const char *environment = lua_setupvalue(L, -2, 1);
+    assert(environment); /* every chunk has one */
+    (void)environment;
 }

@@ -290,7 +290,7 @@ static void scan_file(struct search *search, const char *path, int depth);
 
 static bool try_path(char out[PATHS], const char *folder, const char *between, const char *name, const char *end) {
     int length = snprintf(out, PATHS, "%s%s%s%s", folder, between, name, end);
-    return length > 0 && length < PATHS && file_is_regular(out);
+    return (size_t)length < PATHS && file_is_regular(out);
 }
 
 static void follow(struct search *search, const struct token *token, bool is_module, int depth) {

@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "script/order.h"
 
+#include <assert.h>
 #include <lauxlib.h>
 #include <lualib.h>
 #include <stdio.h>
@@ -49,8 +50,10 @@ static const char *indent(struct arena *arena, const char *text) {
 /* The message handler: makes the complete first line and the traceback while the stack is still there. */
 static int describe_error(lua_State *L) {
     struct context *context = context_of(L);
-    if (lua_islightuserdata(L, 1) && lua_touserdata(L, 1) == context)
+    if (lua_islightuserdata(L, 1)) { /* only ours: the error is told already */
+        assert(lua_touserdata(L, 1) == context);
         return 1;
+    }
     context->lua = L;
     char where[PATH_SIZE + 32];
     context_where(context, where, sizeof where);

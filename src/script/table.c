@@ -1,6 +1,7 @@
 /* The table of gr functions. One row a function; everything people read about it and every check of its arguments comes
  * from here. Facts: SPEC parts 1 and 2. */
 #include "script/table.h"
+#include "base/unreachable.h"
 
 #include "script/actions.h"
 
@@ -1124,7 +1125,7 @@ bool form_next(const struct function *function, const char **form, int *index, b
         if (strncmp(name, word, length) == 0 && name[length] == '\0')
             return true;
     }
-    return false;
+    UNREACHABLE("the form of a function names no parameter"); /* a test looks at all of them */
 }
 
 const char *kind_words(enum kind kind) {
@@ -1196,5 +1197,5 @@ const char *kind_words(enum kind kind) {
     case KIND_COUNT:
         break;
     }
-    return "something else";
+    UNREACHABLE("a parameter of no kind");
 }

@@ -5,6 +5,7 @@
  * own. */
 #include "script/context.h"
 
+#include <assert.h>
 #include <lauxlib.h>
 #include <string.h>
 
@@ -183,7 +184,10 @@ static int fixed_pairs(lua_State *L) {
         lua_createtable(L, (int)count, 0);
         struct key *keys = lua_newuserdatauv(L, (size_t)count * sizeof *keys, 0);
         uint32_t slot = 0;
-        for (lua_pushnil(L); slot < count && lua_next(L, 1); lua_pop(L, 1)) {
+        for (lua_pushnil(L); slot < count; lua_pop(L, 1)) {
+            int more = lua_next(L, 1);
+            assert(more); /* they were counted just now */
+            (void)more;
             keys[slot] = make_key(L, -2, length, slot);
             lua_pushvalue(L, -2);
             lua_rawseti(L, 2, (lua_Integer)++slot);
