@@ -81,6 +81,9 @@ static inline simd4 simd4_signed(simd4 a, simd4 b) {
 static inline int simd4_all_below(simd4 a, simd4 b) {
     return _mm_movemask_ps(_mm_cmplt_ps(a, b)) == 15;
 }
+static inline int simd4_any_of_three_below(simd4 a, simd4 b) {
+    return _mm_movemask_ps(_mm_cmplt_ps(a, b)) & 7;
+}
 /* Of lanes 0, 1, 2. */
 static inline float simd4_largest_of_three(simd4 a) {
     __m128 b = _mm_max_ss(a, _mm_shuffle_ps(a, a, 1));
@@ -393,6 +396,13 @@ static inline unsigned simd8_at_most(simd8 a, simd8 b) {
     return bits;
 }
 #endif
+
+/* One lane, whose number is not known before. */
+static inline float simd8_pick(simd8 a, unsigned lane) {
+    _Alignas(32) float all[8];
+    simd8_store(all, a);
+    return all[lane];
+}
 
 #if !defined(__AVX__) || defined(GRAY_NO_SIMD)
 static inline simd8 simd8_max_size(simd8 a, simd8 b) {

@@ -62,6 +62,9 @@ struct search {
     float waiting_from;
 };
 
+/* Meshes of so many have their vertices at hand. */
+enum { FEW_TRIANGLES = 50000 };
+
 /* triangle_ray_set with one division for all three. */
 static inline void sheared_set(struct triangle_ray *out, const struct ray *ray) {
     const double d[3] = {ray->direction.x, ray->direction.y, ray->direction.z};
@@ -194,8 +197,22 @@ static inline void decide_waiting(struct search *s) {
     s->waiting = NULL;
 }
 
-/* Proposals of a "nearest" search that are certain hits, with bounds of their t. The nearest one waits: where the
- * search may end is known well enough to go on, and its vertices are on their way when it is over. */
+/* The nearest hit so far, certain and with bounds of its t, waits: where the search may end is known well enough to go
+ * on, and its vertices are on their way when it is over. */
+static inline __attribute__((always_inline)) void keep(struct search *s, const struct triangle_block *block,
+                                                       unsigned lane, float from, float to) {
+    s->waiting = block;
+    s->waiting_lane = lane;
+    s->waiting_from = from;
+    if (s->set->count > FEW_TRIANGLES)
+        for (int j = 0; j < 3; j++)
+            __builtin_prefetch(s->set->vertices[block->vertices[j][lane]]);
+    float limit = to * (1 + 0x1p-20f) + s->blur;
+    if (limit < s->limit)
+        s->limit = limit;
+}
+
+/* Several of them, or one more. */
 static __attribute__((noinline)) void keep_lanes(struct search *s, const struct triangle_block *block, unsigned lanes,
                                                  simd8 from, simd8 to) {
     _Alignas(32) float froms[WIDTH], tos[WIDTH];
@@ -211,14 +228,7 @@ static __attribute__((noinline)) void keep_lanes(struct search *s, const struct 
             (void)decide_lanes(s, block, 1u << lane);
             continue;
         }
-        s->waiting = block;
-        s->waiting_lane = lane;
-        s->waiting_from = froms[lane];
-        for (int j = 0; j < 3; j++)
-            __builtin_prefetch(s->set->vertices[block->vertices[j][lane]]);
-        float limit = tos[lane] * (1 + 0x1p-20f) + s->blur;
-        if (limit < s->limit)
-            s->limit = limit;
+        keep(s, block, lane, froms[lane], tos[lane]);
     } while (lanes);
 }
 
@@ -275,8 +285,14 @@ static inline __attribute__((always_inline)) bool try_block(struct search *s, ui
             return true;
         if (certain) { /* |T - t det| <= slack */
             simd8 r = simd8_div(simd8_all(1), det);
-            keep_lanes(s, b, certain, simd8_mul(simd8_mul(f, r), simd8_all(1 - 0x1p-20f)),
-                       simd8_mul(simd8_mul(simd8_add(t, slack), r), simd8_all(1 + 0x1p-20f)));
+            simd8 from = simd8_mul(simd8_mul(f, r), simd8_all(1 - 0x1p-20f));
+            simd8 to = simd8_mul(simd8_mul(simd8_add(t, slack), r), simd8_all(1 + 0x1p-20f));
+            if (__builtin_expect(!(certain & (certain - 1)) && !s->waiting, 1)) {
+                unsigned lane = (unsigned)__builtin_ctz(certain);
+                keep(s, b, lane, simd8_pick(from, lane), simd8_pick(to, lane));
+            } else {
+                keep_lanes(s, b, certain, from, to);
+            }
             lanes ^= certain;
             if (!lanes)
                 return false;
@@ -467,10 +483,10 @@ static inline __attribute__((always_inline)) enum beginning search_begin(struct 
     s->longest = simd4_largest_of_three(d_size);
     bool usual = simd4_all_below(simd4_max(simd4_size(o4), simd4_mul(d_size, simd4_all(NEAR_BY * 0x1p-30f))),
                                  simd4_all(index->near_by)) &&
-                 s->longest > 0x1p-30f && ray->t_min == 0 && ray->t_max > 0;
+                 s->longest > 0x1p-30f && !simd4_any_of_three_below(d_size, simd4_all(0x1p-80f)) && ray->t_min == 0 && ray->t_max > 0;
     if (__builtin_expect(!usual, 0))
         return search_begin_far(s, o, d);
-    simd4 r4 = simd4_div(simd4_all(1), simd4_signed(simd4_max(d_size, simd4_all(0x1p-80f)), d4));
+    simd4 r4 = simd4_div(simd4_all(1), d4);
     s->t_to_local = 1;
     s->t_offset = 0;
     s->blur = 0;
