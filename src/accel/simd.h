@@ -465,6 +465,11 @@ static inline wide4 wide4_signed(wide4 a, wide4 b) {
 static inline wide4 wide4_with_last(wide4 a, double last) {
     return _mm256_blend_pd(a, _mm256_set1_pd(last), 8);
 }
+/* Bit 0: lane 1 is larger than lane 0; bit 1: lane 2 is larger than both. */
+static inline unsigned wide4_larger(wide4 a) {
+    __m256d next = _mm256_permute4x64_pd(a, _MM_SHUFFLE(3, 3, 2, 1)), before = _mm256_unpacklo_pd(a, _mm256_max_pd(a, next));
+    return (unsigned)_mm256_movemask_pd(_mm256_cmp_pd(before, next, _CMP_LT_OQ)) & 3;
+}
 static inline double wide4_largest(wide4 a) {
     __m128d b = _mm_max_pd(_mm256_castpd256_pd128(a), _mm256_extractf128_pd(a, 1));
     return _mm_cvtsd_f64(_mm_max_sd(b, _mm_unpackhi_pd(b, b)));
@@ -575,6 +580,10 @@ static inline wide4 wide4_cab(wide4 a) {
 }
 static inline wide4 wide4_bca(wide4 a) {
     return wide4_make(a.lane[1], a.lane[2], a.lane[0], a.lane[3]);
+}
+static inline unsigned wide4_larger(wide4 a) {
+    double largest = a.lane[1] > a.lane[0] ? a.lane[1] : a.lane[0];
+    return (unsigned)(a.lane[1] > a.lane[0]) | (unsigned)(a.lane[2] > largest) << 1;
 }
 static inline unsigned wide4_below(wide4 a, wide4 b) {
     unsigned bits = 0;

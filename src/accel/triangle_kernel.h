@@ -65,11 +65,27 @@ struct search {
 /* Meshes of so many have their vertices at hand. */
 enum { FEW_TRIANGLES = 50000 };
 
+/* triangle_ray_axes by a table: which of the direction's components are larger than those before (wide4_larger), and
+ * above that their signs. */
+struct axes {
+    uint8_t x, y, z;
+};
+#define AXES(z, negative) {((z) + 1 + (negative)) % 3, ((z) + 2 - (negative)) % 3, z}
+#define AXES_4(s) AXES(0, (s)&1), AXES(1, (s) >> 1 & 1), AXES(2, (s) >> 2 & 1), AXES(2, (s) >> 2 & 1)
+static const struct axes axes_of[32] = {AXES_4(0), AXES_4(1), AXES_4(2), AXES_4(3),
+                                        AXES_4(4), AXES_4(5), AXES_4(6), AXES_4(7)};
+#undef AXES_4
+#undef AXES
+
 /* triangle_ray_set with one division for all three. */
 static inline void sheared_set(struct triangle_ray *out, const struct ray *ray) {
-    const double d[3] = {ray->direction.x, ray->direction.y, ray->direction.z};
-    triangle_ray_axes(out, d);
-    wide4_store(out->shear, wide4_div(wide4_make(d[out->x], d[out->y], 1, 0), wide4_all(d[out->z])));
+    const double *d = (const double *)(const void *)&ray->direction;
+    wide4 direction = wide4_make(ray->direction.x, ray->direction.y, ray->direction.z, 0);
+    struct axes axes = axes_of[wide4_larger(wide4_size(direction)) | (wide4_negative(direction) & 7) << 2];
+    out->x = axes.x;
+    out->y = axes.y;
+    out->z = axes.z;
+    wide4_store(out->shear, wide4_div(wide4_make(d[axes.x], d[axes.y], 1, 0), wide4_all(d[axes.z])));
     out->origin[0] = ray->origin.x;
     out->origin[1] = ray->origin.y;
     out->origin[2] = ray->origin.z;
