@@ -467,7 +467,8 @@ static inline wide4 wide4_with_last(wide4 a, double last) {
 }
 /* Bit 0: lane 1 is larger than lane 0; bit 1: lane 2 is larger than both. */
 static inline unsigned wide4_larger(wide4 a) {
-    __m256d next = _mm256_permute4x64_pd(a, _MM_SHUFFLE(3, 3, 2, 1)), before = _mm256_unpacklo_pd(a, _mm256_max_pd(a, next));
+    __m256d next = _mm256_permute4x64_pd(a, _MM_SHUFFLE(3, 3, 2, 1)),
+            before = _mm256_unpacklo_pd(a, _mm256_max_pd(a, next));
     return (unsigned)_mm256_movemask_pd(_mm256_cmp_pd(before, next, _CMP_LT_OQ)) & 3;
 }
 static inline double wide4_largest(wide4 a) {

@@ -20,8 +20,8 @@
  * of ((6 + 36 |s_k| + 18 l_k) e + 2 D) p_k of t det. What passes these comparisons with E and F turned round is
  * certainly a hit.
  *
- * A certain hit ends an "any" search at once. A "nearest" search decides what is proposed at once, too: since near
- * boxes come first, there is hardly more than one proposal for every ray that hits. */
+ * A certain hit ends an "any" search at once. In a "nearest" search the nearest certain hit waits, with bounds of its
+ * t, until the search is over; what is not certain, or too close to say which is nearer, is decided at once. */
 
 #include "accel/simd.h"
 #include "accel/triangle_kernels.h"
@@ -31,6 +31,11 @@
 
 /* How far from the middle of the mesh, in local units, BOX_GROWTH covers what the distance adds to the rounding. */
 #define FAR_AWAY 0x1p20
+
+/* Of L in the slack, local units. What is smaller is never a certain hit, and edge functions of what is one are so
+ * large that the products they are differences of do not cancel: their sizes are below 4 (S + L)^2, of the difference
+ * at least 95 (S + L) L e is left, and doubts begin at 2^-49. */
+#define LEAST_REACH 0x1p-24f
 
 struct search {
     const struct triangle_index *index;
@@ -70,7 +75,8 @@ enum { FEW_TRIANGLES = 50000 };
 struct axes {
     uint8_t x, y, z;
 };
-#define AXES(z, negative) {((z) + 1 + (negative)) % 3, ((z) + 2 - (negative)) % 3, z}
+#define AXES(z, negative)                                                                                              \
+    { ((z) + 1 + (negative)) % 3, ((z) + 2 - (negative)) % 3, z }
 #define AXES_4(s) AXES(0, (s)&1), AXES(1, (s) >> 1 & 1), AXES(2, (s) >> 2 & 1), AXES(2, (s) >> 2 & 1)
 static const struct axes axes_of[32] = {AXES_4(0), AXES_4(1), AXES_4(2), AXES_4(3),
                                         AXES_4(4), AXES_4(5), AXES_4(6), AXES_4(7)};
@@ -91,20 +97,44 @@ static inline void sheared_set(struct triangle_ray *out, const struct ray *ray) 
     out->origin[2] = ray->origin.z;
 }
 
-/* triangle_cross, its three edge functions at a time and with the same bits; what is near zero is left to it. */
-static inline __attribute__((always_inline)) bool cross(const struct triangle_ray *ray, const double a[3],
-                                                        const double b[3], const double c[3],
-                                                        struct triangle_hit *hit) {
+/* The edge functions of triangle_cross, rounded, and the way to the corners along the ray's axis; lane 3 is not used.
+ */
+struct edges {
+    wide4 e, p, q, along;
+};
+
+static inline __attribute__((always_inline)) struct edges edges_of(const struct triangle_ray *ray, const double a[3],
+                                                                   const double b[3], const double c[3]) {
     int x = ray->x, y = ray->y, z = ray->z;
     wide4 pz = wide4_sub(wide4_make(a[z], b[z], c[z], c[z]), wide4_all(ray->origin[z]));
     wide4 px = wide4_sub(wide4_make(a[x], b[x], c[x], c[x]), wide4_all(ray->origin[x]));
     wide4 py = wide4_sub(wide4_make(a[y], b[y], c[y], c[y]), wide4_all(ray->origin[y]));
     px = wide4_sub(px, wide4_mul(wide4_all(ray->shear[0]), pz));
     py = wide4_sub(py, wide4_mul(wide4_all(ray->shear[1]), pz));
-    wide4 p = wide4_mul(wide4_cab(px), wide4_bca(py)), q = wide4_mul(wide4_cab(py), wide4_bca(px));
-    wide4 e = wide4_sub(p, q);
-    wide4 doubt = wide4_mul(wide4_all(0x1p-49), wide4_add(wide4_size(p), wide4_size(q)));
-    if (__builtin_expect((wide4_below(doubt, wide4_size(e)) & 7) != 7, 0)) {
+    struct edges edges = {
+        .p = wide4_mul(wide4_cab(px), wide4_bca(py)), .q = wide4_mul(wide4_cab(py), wide4_bca(px)), .along = pz};
+    edges.e = wide4_sub(edges.p, edges.q);
+    return edges;
+}
+
+static inline __attribute__((always_inline)) void hit_set(struct triangle_hit *hit, const struct triangle_ray *ray,
+                                                          const struct edges *edges) {
+    wide4 e = edges->e;
+    double sum = wide4_sum_of_three(e);
+    wide4 found = wide4_div(wide4_with_first(e, wide4_sum_of_three(wide4_mul(e, edges->along))), wide4_all(sum));
+    hit->t = wide4_lane(found, 0) * ray->shear[2];
+    hit->u = wide4_lane(found, 1);
+    hit->v = wide4_lane(found, 2);
+    hit->enter = !(wide4_negative(e) & 1);
+}
+
+/* triangle_cross, its three edge functions at a time and with the same bits; what is near zero is left to it. */
+static inline __attribute__((always_inline)) bool cross(const struct triangle_ray *ray, const double a[3],
+                                                        const double b[3], const double c[3],
+                                                        struct triangle_hit *hit) {
+    struct edges edges = edges_of(ray, a, b, c);
+    wide4 doubt = wide4_mul(wide4_all(0x1p-49), wide4_add(wide4_size(edges.p), wide4_size(edges.q)));
+    if (__builtin_expect((wide4_below(doubt, wide4_size(edges.e)) & 7) != 7, 0)) {
         struct triangle_hit exact; /* so that *hit can stay in registers */
         if (!triangle_cross(ray, a, b, c, &exact))
             return false;
@@ -114,15 +144,10 @@ static inline __attribute__((always_inline)) bool cross(const struct triangle_ra
         hit->enter = exact.enter;
         return true;
     }
-    unsigned negative = wide4_negative(e) & 7;
+    unsigned negative = wide4_negative(edges.e) & 7;
     if (negative != 0 && negative != 7)
         return false;
-    double sum = wide4_sum_of_three(e);
-    wide4 found = wide4_div(wide4_with_first(e, wide4_sum_of_three(wide4_mul(e, pz))), wide4_all(sum));
-    hit->t = wide4_lane(found, 0) * ray->shear[2];
-    hit->u = wide4_lane(found, 1);
-    hit->v = wide4_lane(found, 2);
-    hit->enter = negative == 0;
+    hit_set(hit, ray, &edges);
     return true;
 }
 
@@ -173,15 +198,26 @@ static inline bool decide(struct search *s, const struct triangle_block *block, 
     return false;
 }
 
-/* The end of a "nearest" search: nothing is asked of the ray and its limits any more. */
+/* The end of a "nearest" search. A hit that is certain, when nothing else has been found, is what it is: only its
+ * numbers are left to be worked out, and none of its edge functions is anywhere near zero (LEAST_REACH). */
 static inline bool decide_last(struct search *s) {
+    const struct triangle_block *block = s->waiting;
     struct triangle_hit h;
     struct triangle_ray sheared;
-    if (!s->waiting)
+    if (!block)
         return s->found;
+    unsigned lane = s->waiting_lane;
+    const double(*vertices)[3] = s->set->vertices;
     sheared_set(&sheared, s->ray);
-    if (!is_crossed(s, &sheared, s->waiting, s->waiting_lane, &h) || !is_nearer(s, &h))
-        return s->found;
+    if (__builtin_expect(s->found, 0)) {
+        if (!is_crossed(s, &sheared, block, lane, &h) || !is_nearer(s, &h))
+            return true;
+    } else {
+        struct edges edges = edges_of(&sheared, vertices[block->vertices[0][lane]], vertices[block->vertices[1][lane]],
+                                      vertices[block->vertices[2][lane]]);
+        hit_set(&h, &sheared, &edges);
+        h.triangle = block->ids[lane];
+    }
     hit_copy(s->hit, &h);
     return true;
 }
@@ -274,7 +310,7 @@ static inline __attribute__((always_inline)) bool try_block(struct search *s, ui
     t = simd8_flip(t, sign);
     simd8 lx = simd8_max_size(e1x, e2x), ly = simd8_max_size(e1y, e2y), lz = simd8_max_size(e1z, e2z);
     simd8 reach = simd8_max(simd8_max(lx, ly), lz);
-    reach = simd8_max(reach, simd8_all(0x1p-40f)); /* no slack at all would make points certain hits */
+    reach = simd8_max(reach, simd8_all(LEAST_REACH)); /* no slack at all would make points certain hits */
     simd8 ax = simd8_size(sx), ay = simd8_size(sy), az = simd8_size(sz);
     simd8 w = simd8_multiply_add(reach, simd8_all(180 * 0x1p-24f), simd8_all(s->error));
     simd8 e = simd8_multiply_add(simd8_max(simd8_max(ax, ay), az), simd8_all(146 * 0x1p-24f), w);
@@ -499,7 +535,8 @@ static inline __attribute__((always_inline)) enum beginning search_begin(struct 
     s->longest = simd4_largest_of_three(d_size);
     bool usual = simd4_all_below(simd4_max(simd4_size(o4), simd4_mul(d_size, simd4_all(NEAR_BY * 0x1p-30f))),
                                  simd4_all(index->near_by)) &&
-                 s->longest > 0x1p-30f && !simd4_any_of_three_below(d_size, simd4_all(0x1p-80f)) && ray->t_min == 0 && ray->t_max > 0;
+                 s->longest > 0x1p-30f && !simd4_any_of_three_below(d_size, simd4_all(0x1p-80f)) && ray->t_min == 0 &&
+                 ray->t_max > 0;
     if (__builtin_expect(!usual, 0))
         return search_begin_far(s, o, d);
     simd4 r4 = simd4_div(simd4_all(1), d4);
