@@ -139,6 +139,7 @@ int program_run(int argc, char **argv, const struct program_parts *parts) {
     struct options options;
     struct error error;
     int status;
+    file_fill_standard();
     if (!options_parse(&options, argc, argv, &arena, &error)) {
         char line[sizeof error.text + 16];
         (void)snprintf(line, sizeof line, "gray: %s", error.text);

@@ -16,6 +16,7 @@
 #include "base/fault.h"
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/pool.h"
 
 #include <errno.h>
 #include <poll.h>
@@ -205,6 +206,7 @@ static _Noreturn void be_child(struct supervisor *supervisor, struct channel cha
     if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != parent)
         _exit(ERROR_MACHINE);
     (void)setvbuf(stdout, NULL, _IOLBF, BUFSIZ);
+    pool_raise_stack();
     struct child_link link = {.channel = channel};
     struct child_services services = child_link_services(&link, supervisor->control);
     const char *output = supervisor->options->output;
@@ -753,6 +755,7 @@ int supervisor_run_without_fork(const struct options *options) {
                                       .line = alone_line,
                                       .script_ended = alone_script_ended,
                                       .poll = alone_poll};
+    pool_raise_stack();
     (void)signal(SIGPIPE, SIG_IGN);
     (void)signal(SIGXFSZ, SIG_IGN);
     desk_init(&alone.desk, options, &control);

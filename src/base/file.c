@@ -194,6 +194,14 @@ int file_open_place(const char *path) {
     return MAY_FAIL(open(path, O_PATH | O_CLOEXEC));
 }
 
+void file_fill_standard(void) {
+    for (int descriptor = 0; descriptor <= 2; descriptor++) {
+        /* The lowest free one is taken; opened for reading only, so that writing is the error it should be. */
+        if (fcntl(descriptor, F_GETFD) < 0 && open("/dev/null", O_RDONLY) < 0)
+            return;
+    }
+}
+
 bool file_null_input(void) {
     int descriptor = open("/dev/null", O_RDONLY | O_CLOEXEC);
     bool done = descriptor >= 0 && dup2(descriptor, STDIN_FILENO) == STDIN_FILENO;

@@ -61,6 +61,9 @@ bool file_is_folder(const char *path);
 int file_open_place(const char *path);
 /* Standard input gives nothing from now on: a scene that waits for it would wait for ever. */
 bool file_null_input(void);
+/* Descriptors 0, 1 and 2 that whoever started us has closed are taken by something that gives nothing and takes
+ * nothing: a file that is opened later must not get their place, and with it what is meant for the terminal. */
+void file_fill_standard(void);
 /* The canonical absolute path (realpath) into out; false when it does not exist or does not fit. */
 bool file_canonical(const char *path, char *out, size_t size);
 /* Removes one file; fine when there is none. */

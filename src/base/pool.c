@@ -9,6 +9,7 @@
 #include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -85,6 +86,31 @@ static void *thread_main(void *argument) {
     return NULL;
 }
 
+/* Not left to the system: its default follows `ulimit -s`, and is 2 MiB where that is unlimited. Only what is used is
+ * taken. */
+static const size_t stack_size = (size_t)32 << 20;
+
+void pool_raise_stack(void) {
+    struct rlimit limit;
+    if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= stack_size)
+        return;
+    limit.rlim_cur = limit.rlim_max < stack_size ? limit.rlim_max : stack_size;
+    (void)setrlimit(RLIMIT_STACK, &limit);
+}
+
+static int start_thread(struct pool_thread *thread) {
+    pthread_attr_t attributes;
+    if (fault_now(FAULT_OF_CALL))
+        return EAGAIN;
+    int failure = pthread_attr_init(&attributes);
+    if (failure != 0)
+        return failure;
+    (void)pthread_attr_setstacksize(&attributes, stack_size);
+    failure = pthread_create(&thread->thread, &attributes, thread_main, thread);
+    (void)pthread_attr_destroy(&attributes);
+    return failure;
+}
+
 struct pool *pool_create(int threads, char warning[256]) {
     warning[0] = '\0';
     long online = sysconf(_SC_NPROCESSORS_ONLN);
@@ -105,9 +131,7 @@ struct pool *pool_create(int threads, char warning[256]) {
     pool->workers = 1;
     for (int i = 0; i < wanted - 1; i++) {
         pool->threads[i] = (struct pool_thread){.pool = pool, .worker = i + 1};
-        int failure = fault_now(FAULT_OF_CALL)
-                          ? EAGAIN
-                          : pthread_create(&pool->threads[i].thread, NULL, thread_main, &pool->threads[i]);
+        int failure = start_thread(&pool->threads[i]);
         if (failure != 0) {
             (void)snprintf(warning, 256, "only %d of %d threads could be started: %s", pool->workers, wanted,
                            strerror(failure));

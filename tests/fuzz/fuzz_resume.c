@@ -65,8 +65,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (keeper_open(&keeper, "out.png", notice, &error)) {
         struct tile_picture picture = keeper.old.picture;
         if (!keeper.old.has_picture)
-            picture = (struct tile_picture){
-                .number = 1, .full_width = 9, .full_height = 9, .width = 9, .height = 9, .shard = 1, .shards = 1};
+            picture = (struct tile_picture){.number = 1,
+                                            .full_width = 9,
+                                            .full_height = 9,
+                                            .width = 9,
+                                            .height = 9,
+                                            .shard = 1,
+                                            .shards = 1,
+                                            .name = "out.png"};
         if ((uint64_t)picture.width * picture.height <= 1 << 16)
             go_on(&keeper, &picture);
     } else {

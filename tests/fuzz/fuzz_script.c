@@ -187,7 +187,7 @@ static void run(struct stage *stage) {
     struct error error = {0};
     (void)snprintf(path, sizeof path, "%s/scene.lua", fuzz_folder());
     wish_to_stop = 0;
-    set_clock(1000);
+    set_clock(150);
     bool ok = script_run(path, &options, &host, &stage->assets, &arena, &traceback, &error);
     set_clock(0);
     if (!ok && (error.kind == ERROR_NONE || error.text[0] == '\0' || strchr(error.text, '\n')))

@@ -5,10 +5,12 @@
 #include "tests/harness.h"
 
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 /* Two balls, a mirror and soft light. */
@@ -170,15 +172,115 @@ TEST(killed_runs_that_go_on_give_the_bytes_of_one_run) {
     CHECK(shell("ls -A | grep -q part-") != 0);
 }
 
-TEST_LONG(a_thousand_killed_runs_that_go_on_give_the_bytes_of_one_run) {
-    put("scene.lua", SCENE "picture('out.png', 200, 160)\n");
-    gives("$gray scene.lua -full -ss 3 -o whole.png", 0, NULL);
-    for (int i = 0; i < 1000; i++) {
-        resume_until_done(1, 0.01 + 0.0003 * i, 0);
-        if (shell("cmp out.png whole.png") != 0)
-            test_fail(__FILE__, __LINE__, "picture %d differs", i);
-        CHECK(shell("rm -f out.png c.tiles") == 0);
+/* Starts the program in the folder of the test; its words as in test_gray. */
+static pid_t start_gray(const char *arguments) {
+    char binary[4096], *words[64], *copy = strdup(arguments);
+    const char *named = getenv("GRAY_TEST_BINARY");
+    int count = 0;
+    CHECK(copy && realpath(named ? named : "build/release/gray", binary) != NULL);
+    words[count++] = binary;
+    for (char *word = strtok(copy, " "); word && count < 63; word = strtok(NULL, " "))
+        words[count++] = word;
+    words[count] = NULL;
+    fflush(stdout);
+    pid_t child = fork();
+    if (child == 0) {
+        if (chdir(test_folder()) == 0)
+            (void)execv(binary, words);
+        _exit(127);
     }
+    free(copy);
+    return child;
+}
+
+static double clock_now(void) {
+    struct timespec time;
+    (void)clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+static bool same_files(const char *a, const char *b) {
+    char *path_a = path_in(a), *path_b = path_in(b);
+    size_t size_a = 0, size_b = 1;
+    char *bytes_a = test_read_file(path_a, &size_a), *bytes_b = test_read_file(path_b, &size_b);
+    bool same = bytes_a && bytes_b && size_a == size_b && memcmp(bytes_a, bytes_b, size_a) == 0;
+    free(bytes_a);
+    free(bytes_b);
+    free(path_a);
+    free(path_b);
+    return same;
+}
+
+/* Where a kill came: before anything was kept, among the tiles, or after the picture was there. */
+struct kills {
+    int before, among, after;
+};
+
+#define KILLED_RUN "scene.lua -q -j 1 -full -ss 5 --resume --checkpoint c.tiles --checkpoint-every 0"
+
+/* One picture: killed at a moment of its run, from 0 to 1, and gone on with. *length: how long a whole run takes on
+ * this machine at this time, kept up to date. */
+static void kill_once(double moment, double *length, struct kills *kills) {
+    int how;
+    double at = moment * *length, begun = clock_now();
+    const struct timespec pause = {(time_t)at, (long)((at - floor(at)) * 1e9)};
+    pid_t run = start_gray(KILLED_RUN);
+    (void)nanosleep(&pause, NULL);
+    (void)kill(run, SIGKILL);
+    (void)waitpid(run, &how, 0);
+    bool done = exists("out.png"), kept = exists("c.tiles");
+    kills->before += !done && !kept;
+    kills->among += !done && kept;
+    kills->after += done;
+    double resumed = clock_now(), rest = done ? 0 : kept ? 1 - moment : 1;
+    run = start_gray(KILLED_RUN);
+    (void)waitpid(run, &how, 0);
+    CHECK(WIFEXITED(how) && WEXITSTATUS(how) == 0);
+    /* A run that begins again takes a whole length; one that ended before the kill took less than the moment. */
+    if (rest == 1)
+        *length += 0.2 * (clock_now() - resumed - *length);
+    else if (done)
+        *length += 0.05 * ((resumed - begun) * 0.8 - *length);
+    else
+        *length += 0.05 * ((resumed - begun + clock_now() - resumed) * 0.95 - *length);
+}
+
+TEST_LONG(a_thousand_killed_runs_that_go_on_give_the_bytes_of_one_run) {
+    struct test_random random = {2024};
+    struct kills kills = {0};
+    put("scene.lua", SCENE "picture('out.png', 200, 160)\n");
+    gives("$gray scene.lua -full -ss 5 -j 1 -o whole.png", 0, NULL);
+    double length = clock_now();
+    gives("$gray " KILLED_RUN " && rm out.png", 0, NULL);
+    length = clock_now() - length;
+    for (int i = 0; i < 1000; i++) {
+        kill_once(test_uniform(&random, 0, 1), &length, &kills);
+        if (!same_files("out.png", "whole.png"))
+            test_fail(__FILE__, __LINE__, "picture %d differs", i);
+        CHECK(!exists("c.tiles"));
+        char *path = path_in("out.png");
+        (void)unlink(path);
+        free(path);
+    }
+    CHECK(shell("ls -A | grep -q part-") != 0);
+    fprintf(stderr, "    %d kills came before a checkpoint was there, %d among the tiles, %d after the picture\n",
+            kills.before, kills.among, kills.after);
+    CHECK(kills.among > 500);
+}
+
+/* The table of docs/reliability.md. */
+TEST_LONG(one_picture_made_in_every_way_has_one_hash) {
+    char *folder = getcwd(NULL, 0), *line = NULL;
+    CHECK(folder && asprintf(&line, "bash %s/tools/one_hash.sh $gray %s/tests/scripts/one_hash.lua >table.txt", folder,
+                             folder) > 0);
+    gives(line, 0, NULL);
+    char *path = path_in("table.txt"), *table = test_read_file(path, NULL);
+    fprintf(stderr, "%s", table ? table : "");
+    CHECK(table && strstr(table, "\none hash: "));
+    free(table);
+    free(path);
+    free(line);
+    free(folder);
 }
 
 /* Leaves a checkpoint behind: the picture takes seconds, the signal comes as soon as there is one tile. */

@@ -860,3 +860,49 @@ TEST(names_with_line_ends_and_control_characters_cannot_speak_for_the_program) {
     free(result.out);
     free(result.err);
 }
+
+/* A line of shell in the folder of the test; $gray is the program. */
+static int run_shell(const char *line) {
+    char *command = NULL, binary[4096];
+    const char *named = getenv("GRAY_TEST_BINARY");
+    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
+    CHECK(asprintf(&command, "cd '%s' && gray='%s' && { %s; }", test_folder(), binary, line) > 0);
+    int how = system(command);
+    free(command);
+    return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
+}
+
+TEST(descriptors_that_are_closed_at_the_start_do_not_become_those_of_other_files) {
+    struct test_result whole = test_gray_scene(
+        "print('x') local r = gr.node('r') r:add_child(gr.sphere('plain'))\n"
+        "gr.render(r, 'whole.png', 20, 16, {0, 0, 10}, {0, 0, -1}, {0, 1, 0}, 50, {0.3, 0.3, 0.3}, {})\n",
+        "scene.lua", NULL);
+    CHECK_EQ_INT(whole.status, 0);
+    CHECK(strstr(whole.err, "has no material"));
+    CHECK_EQ_INT(
+        run_shell("for k in '<&-' '>&-' '2>&-' '<&- >&- 2>&-' '>&- 2>&-'; do "
+                  "eval $gray scene.lua -o out.png $k >said.txt; test $? = 0 && cmp out.png whole.png || exit 1; "
+                  "rm out.png; done"),
+        0);
+    CHECK_EQ_INT(run_shell("$gray scene.lua -o - >&- 2>said.txt"), 3);
+    CHECK_EQ_INT(run_shell("grep -q 'standard output: cannot be written: ' said.txt"), 0);
+    free(whole.out);
+    free(whole.err);
+}
+
+TEST(a_thousand_reflections_fit_whatever_the_limit_of_the_stack) {
+    struct test_result plain = test_gray_scene(
+        "local m = gr.rr_material({0.01, 0.01, 0.01}, {1, 1, 1}, 10, 1, 0, 1)\n"
+        "local r = gr.node('r') r:add_child(gr.cube{material = m, corner = {-10, -10, -10}, size = 20})\n"
+        "gr.render{node = r, file = 'whole.png', width = 8, height = 6, eye = {0, 0, 9}, view = {0, 0, -1}, fov = 50,\n"
+        "  lights = {gr.light({0, 5, 0}, {1, 1, 1}, {1, 0, 0})}, fog = gr.uniform_fog{density = 0}, cutoff = 0}\n",
+        "scene.lua -j 2 -ss 1 -reflect-limit 1000", NULL);
+    CHECK_EQ_INT(plain.status, 0);
+    CHECK_EQ_INT(
+        run_shell("for limit in 256 1024 unlimited; do for threads in 1 2; do "
+                  "(ulimit -S -s $limit && $gray scene.lua -q -o out.png -j $threads -ss 1 -reflect-limit 1000) "
+                  "&& cmp out.png whole.png || exit 1; rm out.png; done; done"),
+        0);
+    free(plain.out);
+    free(plain.err);
+}
