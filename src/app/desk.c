@@ -16,12 +16,23 @@
 #include <string.h>
 #include <strings.h>
 
+/* A viewer that is gone is told of; the picture does not depend on it. */
+static void show_elsewhere(struct desk *desk, bool ok, const struct error *error) {
+    char line[sizeof error->text + 32];
+    if (ok)
+        return;
+    (void)snprintf(line, sizeof line, "gray: warning: %s", error->text);
+    desk_line(desk, LINE_WARNING, line);
+}
+
 void desk_init(struct desk *desk, const struct options *options, struct control *control) {
+    struct error error;
     memset(desk, 0, sizeof *desk);
     desk->options = options;
     desk->control = control;
     keeper_init(&desk->keeper, options);
     progress_init(&desk->progress, options->progress, options->quiet);
+    show_elsewhere(desk, display_open(&desk->display, options->display, &error), &error);
     bool ok = reach_add(&desk->places, ".", REACH_WRITE, &desk->places_error);
     for (int i = 0; ok && i < options->script.allow_write_count; i++)
         ok = reach_add(&desk->places, options->script.allow_write[i], REACH_WRITE, &desk->places_error);
@@ -192,6 +203,9 @@ bool desk_begin(struct desk *desk, const struct picture_request *request, bool *
     atomic_store(&desk->control->outlook.begun,
                  progress_wants_outlook(&desk->progress) && !request->live ? OUTLOOK_WANTED : 0);
     progress_begin(&desk->progress, picture->name, request->width, request->height);
+    struct tone tone = {request->exposure, (enum tone_curve)request->curve, request->srgb != 0};
+    if (!request->live)
+        display_begin(&desk->display, picture->name, &picture->film, &tone);
     return true;
 }
 
@@ -327,6 +341,7 @@ static void write_partial(struct desk *desk) {
 
 void desk_abandon(struct desk *desk) {
     uint32_t tiles;
+    display_forget(&desk->display);
     progress_end(&desk->progress, PROGRESS_GIVEN_UP);
     if (desk->farm)
         farm_end(desk->farm, true);
@@ -374,8 +389,11 @@ bool desk_write(struct desk *desk, struct error *error) {
 }
 
 bool desk_done(struct desk *desk, const struct picture_report *report, struct error *error) {
+    struct error gone;
     if (leave_to_others(desk))
         return true;
+    progress_hide(&desk->progress);
+    show_elsewhere(desk, display_end(&desk->display, &gone), &gone);
     if (desk->current.written) {
         progress_end(&desk->progress, PROGRESS_WRITTEN);
         tell_statistics(desk, report);
@@ -400,12 +418,16 @@ bool desk_done(struct desk *desk, const struct picture_report *report, struct er
 
 void desk_show_progress(struct desk *desk) {
     uint32_t ignored, done = atomic_load(&desk->control->tiles_done), count = atomic_load(&desk->control->tiles);
+    struct error error;
     (void)tick(desk, false, &ignored);
     if (desk->farm) {
         farm_step(desk->farm);
         if (desk->current.open && count > 0)
             done = film_tiles_in(&desk->current.film, FILM_TILE_DONE);
     }
+    if (display_draws(&desk->display, progress_clock()))
+        progress_hide(&desk->progress);
+    show_elsewhere(desk, display_step(&desk->display, progress_clock(), &error), &error);
     progress_update(&desk->progress, done, count, &desk->control->outlook);
 }
 
@@ -463,5 +485,6 @@ bool desk_finish(struct desk *desk, bool all_well, struct error *error) {
         desk_line(desk, LINE_WARNING, line);
     }
     reach_destroy(&desk->places);
+    display_close(&desk->display);
     return ok;
 }

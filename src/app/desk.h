@@ -5,6 +5,7 @@
 
 #include "app/channel.h"
 #include "app/control.h"
+#include "app/display.h"
 #include "app/farm.h"
 #include "app/keeper.h"
 #include "app/options.h"
@@ -33,6 +34,7 @@ struct desk {
     struct control *control; /* not owned */
     struct farm *farm;       /* or NULL; not owned */
     struct progress progress;
+    struct display display;    /* --display */
     struct keeper keeper;      /* the checkpoint */
     struct reach places;       /* where scripts may have pictures written: the working directory and --allow-write */
     struct error places_error; /* why there may be fewer */

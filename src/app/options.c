@@ -3,6 +3,8 @@
  * are no options are scripts; after "--" everything is. */
 #include "app/options.h"
 
+#include "app/display.h"
+
 #include "render/aov.h"
 
 #include <ctype.h>
@@ -194,6 +196,9 @@ static const struct option table[] = {
     {GROUP_TALK, "--progress", OPTION_CHOICE, "auto|bar|lines|json|none", NO_RANGE, FIELD(progress), "auto",
      "how far the picture is and how long it will take, on standard error; auto: a bar on a terminal, else a line now "
      "and then when it takes long"},
+    {GROUP_TALK, "--display", OPTION_TEXT, "WHERE", NO_RANGE, FIELD(display), NULL,
+     "show the picture while it is made: tev[:HOST[:PORT]] in the image viewer tev (port 14158), term in the terminal "
+     "(term:kitty, term:sixel or term:blocks if it does not find out itself)"},
     {GROUP_TALK, "--pixel", OPTION_PIXEL, "X,Y", NO_RANGE, NO_FIELD, NULL,
      "render nothing, but tell on standard output how this pixel of every picture comes about: its rays, what they "
      "meet, "
@@ -635,6 +640,15 @@ static bool check_parts(struct options *options, struct error *error) {
     if (options->action == ACTION_MERGE &&
         (options->checkpoint || options->resume || options->shards || options->shards_of_pictures || options->check))
         return error_set(error, ERROR_USAGE, "merge takes no --checkpoint, --resume, --shard or --check");
+    struct display_choice display;
+    if (options->display && !display_parse(options->display, &display))
+        return error_set(error, ERROR_USAGE,
+                         "--display needs tev, tev:HOST, tev:HOST:PORT, term, term:kitty, term:sixel or term:blocks, "
+                         "not '%s'",
+                         options->display);
+    if (options->display && (options->window || options->check || options->shards || options->action == ACTION_MERGE ||
+                             (pipe && display.kind == DISPLAY_TERMINAL)))
+        return error_set(error, ERROR_USAGE, "--display takes no -gui, --check, --shard or merge, nor term with -o -");
     if (options->partial && (options->window || options->shards || options->mpi || options->no_fork || pipe ||
                              options->action == ACTION_MERGE))
         return error_set(error, ERROR_USAGE, "--partial takes no -gui, --shard, --mpi, --no-fork, merge or -o -");

@@ -46,6 +46,7 @@ struct options {
     const char *checkpoint;     /* --checkpoint: a file, or "auto", or NULL */
     double checkpoint_every;    /* seconds */
     bool mpi;                   /* one of several processes that make a picture together */
+    const char *display;        /* --display, or NULL */
     bool partial;               /* --partial: what an interruption leaves is written beside the picture */
     bool resume;                /* go on with what the checkpoint holds */
     uint32_t shard, shards;     /* --shard: this one of so many, from 1; 0 of 0: no shards */

@@ -80,6 +80,7 @@ static void help_only(struct options *options) {
     options->resume = false;
     options->statistics = STATISTICS_NONE;
     options->progress = PROGRESS_NONE;
+    options->display = NULL;
 }
 
 static int render(struct options *options, const struct program_parts *parts) {

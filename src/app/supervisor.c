@@ -196,6 +196,7 @@ static _Noreturn void be_child(struct supervisor *supervisor, struct channel cha
     (void)close(supervisor->signals);
     watch_close(&supervisor->watch);
     channel_close(&supervisor->channel);
+    display_close(&supervisor->desk.display);
     /* Ctrl-C reaches the whole group; the supervisor passes on what it means. */
     (void)signal(SIGINT, SIG_IGN);
     (void)signal(SIGTERM, SIG_IGN);
