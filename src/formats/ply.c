@@ -336,8 +336,8 @@ static bool read_count(struct ply *ply, const struct property *p, uint32_t *out)
     if (!(count >= 0 && count == floor(count) && count <= UINT32_MAX / 2) || count > (double)(left / each + 1)) {
         ply->at = before;
         return error_set(ply->error, ERROR_SCENE,
-                         ply->format == ASCII ? "%s:%zu: a list of %.0f entries does not fit into the file"
-                                              : "%s: byte %zu: a list of %.0f entries does not fit into the file",
+                         ply->format == ASCII ? "%s:%zu: a list of %.15g entries does not fit into the file"
+                                              : "%s: byte %zu: a list of %.15g entries does not fit into the file",
                          ply->path, ply->format == ASCII ? ply->line : (size_t)(before - ply->data), count);
     }
     *out = (uint32_t)count;

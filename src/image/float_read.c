@@ -74,7 +74,10 @@ struct hdr_header {
 static bool hdr_size(struct reading *r, const char *line, struct hdr_header *header) {
     char sign_y, sign_x, letter_y, letter_x, rest;
     unsigned long long y, x;
-    if (strspn(line, "+-XY0123456789 ") != strlen(line) ||
+    bool negative = false; /* which sscanf would take for a large number */
+    for (const char *p = line; *p; p++)
+        negative = negative || ((*p == '-' || *p == '+') && p[1] >= '0' && p[1] <= '9');
+    if (negative || strspn(line, "+-XY0123456789 ") != strlen(line) ||
         sscanf(line, "%c%c %9llu %c%c %9llu %c", &sign_y, &letter_y, &y, &sign_x, &letter_x, &x, &rest) != 6)
         return tell(r, "the line with the size of a Radiance picture cannot be read");
     if (letter_y != 'Y' || letter_x != 'X')

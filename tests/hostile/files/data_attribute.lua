@@ -1,0 +1,1 @@
+local x <magic> = 1

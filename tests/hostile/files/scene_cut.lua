@@ -1,0 +1,1 @@
+gr.render{node = gr.sphere("s"), eye = {0, 0, 4}, file = "x.p

@@ -1,0 +1,1 @@
+local x <global> = 1
