@@ -1,0 +1,540 @@
+/* Files of tiles with right checks and wrong contents: each of them is refused with its reason. What tells two pictures
+ * apart; the keeper of a checkpoint, and what it does when memory, the disc or somebody else is in the way. */
+#include "app/keeper.h"
+#include "app/options.h"
+#include "base/fault.h"
+#include "base/hash.h"
+#include "render/tile_file.h"
+#include "tests/harness.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { KEY = 32 + 32, SIDE = 40, TILES = 4, RECORDS = 8 }; /* 40 x 40 pixels: 2 x 2 tiles of 32 */
+
+/* A file under construction. */
+struct maker {
+    uint8_t *bytes;
+    size_t size;
+    uint64_t records;
+};
+
+static void add(struct maker *m, const void *bytes, size_t size) {
+    m->bytes = realloc(m->bytes, m->size + size + 1);
+    memcpy(m->bytes + m->size, bytes, size);
+    m->size += size;
+}
+
+static void add_number(struct maker *m, uint64_t value, int size) {
+    for (int i = 0; i < size; i++) {
+        uint8_t byte = (uint8_t)(value >> 8 * i);
+        add(m, &byte, 1);
+    }
+}
+
+static void begin(struct maker *m) {
+    *m = (struct maker){0};
+    add(m, "GRAYTILE", 8);
+    add_number(m, 1, 4);
+    add_number(m, FILM_TILE, 4);
+}
+
+static void add_record(struct maker *m, uint32_t kind, const struct maker *payload) {
+    add_number(m, kind, 4);
+    add_number(m, 0, 4);
+    add_number(m, payload->size, 8);
+    add(m, payload->bytes, payload->size);
+    add_number(m, hash_bytes(payload->bytes, payload->size, m->records++ * 64 + kind), 8);
+}
+
+static void add_end(struct maker *m) {
+    struct maker payload = {0};
+    add_number(&payload, m->records, 8);
+    add_record(m, 4, &payload);
+    free(payload.bytes);
+}
+
+static void refused(struct maker *m, const char *words) {
+    struct tile_file file;
+    struct error error = {0};
+    uint8_t *copy = malloc(m->size ? m->size : 1); /* exactly its size, for the sanitizer */
+    memcpy(copy, m->bytes, m->size);
+    if (tile_file_parse("x", (struct file_bytes){copy, m->size}, &file, &error))
+        test_fail(__FILE__, __LINE__, "taken, not refused with '%s'", words);
+    else if (error.kind != ERROR_SCENE || strncmp(error.text, "x: is ", 6) != 0 || !strstr(error.text, words))
+        test_fail(__FILE__, __LINE__, "%s, not '%s'", error.text, words);
+    free(copy);
+    free(m->bytes);
+}
+
+/* A done picture: number, key, digest, name. */
+static void done_payload(struct maker *p, const char *name, size_t length) {
+    static const uint8_t zeros[KEY + 16];
+    *p = (struct maker){0};
+    add_number(p, 1, 4);
+    add(p, zeros, sizeof zeros);
+    add(p, name, length);
+}
+
+/* The numbers of a picture, as they stand in its record. */
+struct numbers {
+    uint32_t number, full_width, full_height, x0, y0, width, height;
+    double exposure;
+    uint32_t curve, shard, shards;
+};
+static const struct numbers right = {1, SIDE, SIDE, 0, 0, SIDE, SIDE, 0, 0, 1, 1};
+
+static void picture_payload(struct maker *p, const struct numbers *n, const char *name) {
+    static const uint8_t zeros[KEY];
+    const uint32_t sizes[] = {n->full_width, n->full_height, n->x0, n->y0, n->width, n->height};
+    uint64_t exposure;
+    *p = (struct maker){0};
+    add_number(p, n->number, 4);
+    add(p, zeros, sizeof zeros);
+    for (int i = 0; i < 6; i++)
+        add_number(p, sizes[i], 4);
+    memcpy(&exposure, &n->exposure, 8);
+    add_number(p, exposure, 8);
+    add_number(p, n->curve, 4);
+    add_number(p, 1, 4);
+    add_number(p, 0, 4);
+    add_number(p, n->shard, 4);
+    add_number(p, n->shards, 4);
+    add_number(p, 1, 4);
+    add(p, name, strlen(name));
+}
+
+static void add_picture(struct maker *m, const struct numbers *n, const char *name) {
+    struct maker p;
+    picture_payload(&p, n, name);
+    add_record(m, 2, &p);
+    free(p.bytes);
+}
+
+static void add_tile(struct maker *m, uint32_t tile, size_t size) {
+    struct maker p = {0};
+    add_number(&p, tile, 4);
+    for (size_t i = 0; i < size; i++)
+        add_number(&p, 0, 1);
+    add_record(m, 3, &p);
+    free(p.bytes);
+}
+
+TEST(a_file_of_tiles_with_right_checks_and_wrong_pictures_is_refused) {
+    const struct numbers wrongs[] = {
+        {0, SIDE, SIDE, 0, 0, SIDE, SIDE, 0, 0, 1, 1},
+        {1, (1 << 20) + 1, SIDE, 0, 0, SIDE, SIDE, 0, 0, 1, 1},
+        {1, SIDE, (1 << 20) + 1, 0, 0, SIDE, SIDE, 0, 0, 1, 1},
+        {1, SIDE, SIDE, SIDE, 0, 1, 1, 0, 0, 1, 1},
+        {1, SIDE, SIDE, 0, SIDE, 1, 1, 0, 0, 1, 1},
+        {1, SIDE, SIDE, 1, 0, SIDE, SIDE, 0, 0, 1, 1},
+        {1, SIDE, SIDE, 0, 1, SIDE, SIDE, 0, 0, 1, 1},
+        {1, 1 << 20, 1 << 20, 0, 0, 1 << 20, 1 << 20, 0, 0, 1, 1},
+        {1, SIDE, SIDE, 0, 0, SIDE, SIDE, 0, 99, 1, 1},
+        {1, SIDE, SIDE, 0, 0, SIDE, SIDE, (double)NAN, 0, 1, 1},
+        {1, SIDE, SIDE, 0, 0, SIDE, SIDE, 0, 0, 0, 1},
+        {1, SIDE, SIDE, 0, 0, SIDE, SIDE, 0, 0, 2, 1},
+    };
+    struct maker m, p;
+    for (size_t i = 0; i < sizeof wrongs / sizeof wrongs[0]; i++) {
+        begin(&m);
+        add_picture(&m, &wrongs[i], "a.png");
+        add_end(&m);
+        refused(&m, "the description of the picture is none");
+    }
+    begin(&m);
+    add_picture(&m, &right, "");
+    add_end(&m);
+    refused(&m, "the picture has no proper name");
+    begin(&m);
+    picture_payload(&p, &right, "");
+    p.size--;
+    add_record(&m, 2, &p);
+    free(p.bytes);
+    refused(&m, "the description of the picture is too short");
+    begin(&m);
+    add_picture(&m, &right, "a.png");
+    add_picture(&m, &right, "a.png");
+    refused(&m, "there are two pictures");
+    begin(&m);
+    add_picture(&m, &right, "a.png");
+    done_payload(&p, "a.png", 5);
+    add_record(&m, 1, &p);
+    free(p.bytes);
+    refused(&m, "a finished picture comes too late");
+}
+
+TEST(a_file_of_tiles_with_right_checks_and_wrong_names_is_refused) {
+    static const char nul[] = "a\0b";
+    char *much = malloc(5000);
+    struct maker m, p;
+    memset(much, 'x', 5000);
+    for (int i = 0; i < 4; i++) {
+        begin(&m);
+        done_payload(&p, i == 1 ? nul : much, i == 0 ? 0 : i == 1 ? 3 : i == 2 ? 4096 : 0);
+        p.size -= i == 3;
+        add_record(&m, 1, &p);
+        free(p.bytes);
+        add_end(&m);
+        refused(&m, i == 3 ? "a finished picture is too short" : "a finished picture has no proper name");
+    }
+    free(much);
+}
+
+TEST(a_file_of_tiles_with_right_checks_and_wrong_tiles_is_refused) {
+    struct maker m, p = {0};
+    begin(&m);
+    add_tile(&m, 0, 0);
+    refused(&m, "a tile comes before its picture");
+    begin(&m);
+    add_picture(&m, &right, "a.png");
+    add_number(&p, 0, 3);
+    add_record(&m, 3, &p);
+    refused(&m, "a tile is too short");
+    for (uint32_t tile = TILES; tile < TILES + 2; tile++) {
+        begin(&m);
+        add_picture(&m, &right, "a.png");
+        add_tile(&m, tile, 0);
+        refused(&m, "a tile is not the next one");
+    }
+    begin(&m);
+    add_picture(&m, &right, "a.png");
+    add_tile(&m, 1, 1);
+    refused(&m, "a tile has not the size of a tile");
+    begin(&m);
+    add_record(&m, 77, &p);
+    refused(&m, "there is no such kind of record");
+    free(p.bytes);
+}
+
+TEST(a_file_of_tiles_with_a_wrong_end_is_refused) {
+    struct maker m, p = {0};
+    begin(&m);
+    refused(&m, "it ends too early");
+    begin(&m);
+    add_number(&p, 0, 7);
+    add_record(&m, 4, &p);
+    refused(&m, "records are missing");
+    begin(&m);
+    add_number(&p, 5, 1);
+    add_record(&m, 4, &p);
+    refused(&m, "records are missing");
+    begin(&m);
+    add_end(&m);
+    add(&m, "x", 1);
+    refused(&m, "something follows its end");
+    begin(&m);
+    add_end(&m);
+    m.bytes[20] = 1; /* the reserved number */
+    refused(&m, "a record has a size that none can have");
+    begin(&m);
+    add_end(&m);
+    m.bytes[31] = 1; /* the size */
+    refused(&m, "a record has a size that none can have");
+    begin(&m);
+    add_end(&m);
+    m.bytes[24] = 9;
+    refused(&m, "it ends too early");
+    begin(&m);
+    m.bytes[8] = 2;
+    refused(&m, "is a file of tiles in another format");
+    begin(&m);
+    m.bytes[12] = 1;
+    refused(&m, "is a file of tiles in another format");
+    begin(&m);
+    m.bytes[0] = 'g';
+    refused(&m, "is no file of tiles");
+    free(p.bytes);
+}
+
+static struct tile_picture some_picture(void) {
+    return (struct tile_picture){.number = 1,
+                                 .key = {"1.2.3", {1, 2}, {3, 4}},
+                                 .full_width = SIDE,
+                                 .full_height = SIDE,
+                                 .width = SIDE,
+                                 .height = SIDE,
+                                 .shard = 1,
+                                 .shards = 1,
+                                 .name = "a.png"};
+}
+
+TEST(pictures_that_do_not_belong_together_are_told_apart_by_everything) {
+    const struct tile_picture one = some_picture();
+    CHECK(!tile_picture_difference(&one, &one));
+#define DIFFERS(change, words)                                                                                         \
+    do {                                                                                                               \
+        struct tile_picture other = one;                                                                               \
+        other.change;                                                                                                  \
+        CHECK_TEXT(tile_picture_difference(&other, &one), words);                                                      \
+    } while (0)
+    DIFFERS(key.version[0] = '2', "it was made by another version of gray");
+    DIFFERS(key.options.b = 9, "it was made with other options");
+    DIFFERS(key.files.a = 9, "the scene, or a file it reads, has changed");
+    DIFFERS(number = 2, "it is of another picture of the run");
+    DIFFERS(full_width = 9, "it is of a picture of another size");
+    DIFFERS(full_height = 9, "it is of a picture of another size");
+    DIFFERS(x0 = 9, "it is of a picture of another size");
+    DIFFERS(y0 = 9, "it is of a picture of another size");
+    DIFFERS(width = 9, "it is of a picture of another size");
+    DIFFERS(height = 9, "it is of a picture of another size");
+    DIFFERS(shards = 9, "the picture was parted otherwise");
+    DIFFERS(tone.exposure = 9, "its tones are others");
+    DIFFERS(tone.curve = TONE_FILMIC, "its tones are others");
+    DIFFERS(tone.srgb = true, "its tones are others");
+    DIFFERS(deep = true, "its tones are others");
+}
+
+/* A film with half of its tiles done, as a checkpoint would keep them. */
+static struct film half_film(void) {
+    struct film film = {.full_width = SIDE, .full_height = SIDE};
+    struct error error;
+    size_t bytes;
+    CHECK(film_size(SIDE, SIDE, &bytes, &error));
+    film_place(&film, calloc(1, bytes), SIDE, SIDE);
+    atomic_store(&film.tiles[1], FILM_TILE_DONE);
+    atomic_store(&film.tiles[2], FILM_TILE_DONE);
+    return film;
+}
+
+static const char *in_folder(const char *name) {
+    static char paths[4][600];
+    static int next;
+    char *path = paths[next++ % 4];
+    (void)snprintf(path, sizeof paths[0], "%s/%s", test_folder(), name);
+    return path;
+}
+
+/* Once one of them has failed, the next try is as it should be. */
+TEST(any_allocation_or_call_may_fail_while_tiles_are_written_and_read) {
+#ifndef GRAY_FAULTS
+    test_skip("failures on demand are only in builds with GRAY_FAULTS");
+#endif
+    struct film film = half_film();
+    const struct tile_picture picture = some_picture();
+    const struct tile_done done = {.number = 1, .key = picture.key, .name = "first.png"};
+    const char *path = in_folder("x.tiles");
+    struct error error;
+    for (int kind = 0; kind < 2; kind++)
+        for (uint64_t k = 1, over = 0; !over; k++) {
+            struct tile_file file = {0};
+            uint64_t before = fault_count((enum fault_kind)kind);
+            fault_at((enum fault_kind)kind, k);
+            bool ok = tile_file_write(path, &done, 1, &picture, &film, &error);
+            ok = ok && tile_file_read(path, &file, &error);
+            fault_at((enum fault_kind)kind, 0);
+            over = fault_count((enum fault_kind)kind) - before < k;
+            CHECK(ok || error.text[0]);
+            CHECK(!ok || (file.done_count == 1 && file.tiles == 2));
+            if (ok)
+                tile_file_close(&file);
+        }
+    free(film.pixels);
+}
+
+static struct options options_for(const char *path, bool resume) {
+    return (struct options){.checkpoint = path, .resume = resume, .checkpoint_every = 0};
+}
+
+TEST(a_keeper_without_a_checkpoint_or_with_check_does_nothing) {
+    struct options options = options_for("auto", false);
+    struct keeper keeper;
+    struct error error;
+    char notice[256];
+    uint32_t tiles;
+    bool written;
+    const struct tile_picture picture = some_picture();
+    for (int i = 0; i < 2; i++) {
+        options.checkpoint = i ? "auto" : NULL;
+        options.check = i;
+        keeper_init(&keeper, &options);
+        CHECK(keeper_open(&keeper, "a.png", notice, &error) && !keeper.opened && notice[0] == '\0');
+        CHECK(keeper_has_written(&keeper, 1, &picture.key, "a.png", &written, &error) && !written);
+        CHECK(keeper_tick(&keeper, &picture, NULL, true, &tiles, &error));
+        CHECK(keeper_note_written(&keeper, 1, &picture.key, "a.png", &error));
+        CHECK(keeper_finish(&keeper, true, &error));
+    }
+}
+
+TEST(a_keeper_tells_names_that_are_too_long_and_files_that_are_damaged) {
+    struct options options = options_for("auto", true);
+    struct keeper keeper;
+    struct error error;
+    char notice[256], *name = malloc(4096);
+    memset(name, 'x', 4095);
+    name[4095] = '\0';
+    keeper_init(&keeper, &options);
+    CHECK(!keeper_open(&keeper, name, notice, &error));
+    CHECK(strstr(error.text, "the name of its checkpoint is longer than 4095 bytes") != NULL);
+    free(name);
+    const char *path = in_folder("broken.tiles");
+    test_write_text(path, "GRAYTILE and no more");
+    options = options_for(path, true);
+    keeper_init(&keeper, &options);
+    for (int i = 0; i < 2; i++) { /* said again for every picture */
+        error = (struct error){0};
+        CHECK(!keeper_open(&keeper, "a.png", notice, &error));
+        CHECK(strstr(error.text, "broken.tiles: is ") != NULL);
+    }
+    CHECK(keeper_finish(&keeper, false, &error));
+    CHECK(access(path, F_OK) == 0); /* not ours */
+}
+
+/* A run that was stopped in its second picture, and what goes on from there. */
+static void leave_checkpoint(const char *path, const char *first, struct film *film) {
+    const struct tile_picture picture = some_picture();
+    struct tile_picture second = picture;
+    struct options options = options_for(path, false);
+    struct keeper keeper;
+    struct error error;
+    char notice[256];
+    uint32_t tiles = 0;
+    bool written;
+    (void)remove(path);
+    keeper_init(&keeper, &options);
+    second.number = 2;
+    CHECK(keeper_open(&keeper, first, notice, &error));
+    CHECK(keeper_has_written(&keeper, 1, &picture.key, first, &written, &error) && !written);
+    test_write_text(first, "a picture");
+    CHECK(keeper_note_written(&keeper, 1, &picture.key, first, &error));
+    CHECK(keeper_note_written(&keeper, 1, &picture.key, "/nothing/there.png", &error)); /* as a pipe is: not kept */
+    CHECK(keeper_has_written(&keeper, 2, &picture.key, "b.png", &written, &error) && !written);
+    CHECK(keeper_tick(&keeper, &second, film, true, &tiles, &error));
+    CHECK_EQ_INT(tiles, 2);
+    CHECK(keeper_finish(&keeper, false, &error));
+    CHECK(access(path, F_OK) == 0);
+}
+
+TEST(a_keeper_goes_on_only_with_what_is_the_same) {
+    const char *path = in_folder("c.tiles"), *first = in_folder("first.png");
+    struct film film = half_film(), back = half_film();
+    const struct tile_picture picture = some_picture();
+    struct tile_picture second = picture;
+    struct options options = options_for(path, true);
+    struct error error;
+    struct keeper keeper;
+    char notice[256];
+    bool written;
+    uint32_t tiles;
+    leave_checkpoint(path, first, &film);
+    for (int what = 0; what < 8; what++) {
+        struct tile_key key = picture.key;
+        second = picture;
+        second.number = 2;
+        second.key.options.a = what == 6 ? 99 : second.key.options.a;
+        second.shard = second.shards = 1;
+        key.files.a = what == 1 ? 99 : key.files.a;
+        test_write_text(first, what == 2 ? "another picture" : "a picture");
+        if (what == 3)
+            CHECK(remove(first) == 0);
+        keeper_init(&keeper, &options);
+        CHECK(keeper_open(&keeper, first, notice, &error) && keeper.has_old && keeper.old_number == 2);
+        CHECK(keeper_open(&keeper, first, notice, &error)); /* it is open */
+        bool ok = keeper_has_written(&keeper, 1, &key, what == 4 ? "other.png" : first, &written, &error);
+        CHECK(ok == (what != 1));
+        CHECK(!ok || written == (what == 0 || what >= 5));
+        if (!ok) {
+            CHECK(strstr(error.text, "cannot be gone on with: the scene, or a file it reads, has changed") != NULL);
+            CHECK(!keeper_open(&keeper, first, notice, &error));
+        }
+        /* The first picture is not the one that has tiles; then the second, another shard of it, another picture. */
+        if (ok)
+            CHECK(keeper_restore(&keeper, &picture, &back, notice, &error) && notice[0] == '\0');
+        second.shard = what == 5 ? 2 : 1;
+        if (what == 5)
+            second.shards = 1;
+        if (ok) {
+            bool restored = keeper_restore(&keeper, &second, &back, notice, &error);
+            CHECK(restored == (what != 5 && what != 6));
+            CHECK(!restored || strstr(notice, "of 4 tiles of ") != NULL);
+            if (!restored)
+                CHECK(strstr(error.text,
+                             what == 5 ? "it is another part of the picture" : "it was made with other options"));
+        }
+        /* Until the run has come as far as the one before, the file is not written again. */
+        CHECK(keeper_tick(&keeper, &second, &film, true, &tiles, &error));
+        CHECK(keeper_finish(&keeper, what == 7, &error));
+        CHECK((access(path, F_OK) == 0) == (what != 7)); /* all is written: the file goes */
+    }
+    free(film.pixels);
+    free(back.pixels);
+}
+
+TEST(a_keeper_refuses_the_checkpoint_of_somebody_else) {
+    const char *path = in_folder("d.tiles"), *first = in_folder("first.png");
+    struct film film = half_film();
+    struct options options = options_for(path, false);
+    struct keeper keeper;
+    struct error error;
+    char notice[256];
+    leave_checkpoint(path, first, &film);
+    keeper_init(&keeper, &options);
+    CHECK(!keeper_open(&keeper, first, notice, &error));
+    CHECK(error.kind == ERROR_USAGE && strstr(error.text, "--resume goes on with it, or remove it"));
+    options = options_for(in_folder("none.tiles"), true);
+    keeper_init(&keeper, &options);
+    CHECK(keeper_open(&keeper, first, notice, &error) && strstr(notice, "the run starts from its beginning"));
+    free(film.pixels);
+}
+
+TEST(a_checkpoint_that_cannot_be_written_is_told_once_and_again_when_asked_for) {
+    struct options options = options_for(in_folder("no/such\x01/folder/c.tiles"), false);
+    const char *file = in_folder("no");
+    struct film film = half_film();
+    const struct tile_picture picture = some_picture();
+    struct keeper keeper;
+    struct error error;
+    char notice[256];
+    uint32_t tiles = 77;
+    bool written;
+    test_write_text(file, "a file where a folder must be");
+    keeper_init(&keeper, &options);
+    CHECK(keeper_open(&keeper, "a.png", notice, &error));
+    CHECK(keeper_has_written(&keeper, 1, &picture.key, "a.png", &written, &error));
+    CHECK(!keeper_tick(&keeper, &picture, &film, false, &tiles, &error));
+    keeper.took = keeper.written_at = 0; /* as if long ago */
+    CHECK(keeper_tick(&keeper, &picture, &film, false, &tiles, &error));
+    CHECK(!keeper_tick(&keeper, &picture, &film, true, &tiles, &error));
+    CHECK_EQ_INT(tiles, 77);
+    free(film.pixels);
+}
+
+TEST(any_allocation_or_call_may_fail_in_a_keeper) {
+#ifndef GRAY_FAULTS
+    test_skip("failures on demand are only in builds with GRAY_FAULTS");
+#endif
+    const char *path = in_folder("e.tiles"), *first = in_folder("first.png");
+    struct film film = half_film(), back = half_film();
+    const struct tile_picture picture = some_picture();
+    struct tile_picture second = picture;
+    struct options options = options_for(path, true);
+    struct error error;
+    char notice[256];
+    uint32_t tiles;
+    second.number = 2;
+    for (int kind = 0; kind < 2; kind++)
+        for (uint64_t k = 1, over = 0; !over; k++) {
+            struct keeper keeper;
+            bool written;
+            leave_checkpoint(path, first, &film);
+            uint64_t before = fault_count((enum fault_kind)kind);
+            fault_at((enum fault_kind)kind, k);
+            keeper_init(&keeper, &options);
+            bool ok = keeper_open(&keeper, first, notice, &error) &&
+                      keeper_has_written(&keeper, 1, &picture.key, first, &written, &error) &&
+                      keeper_has_written(&keeper, 2, &picture.key, "b.png", &written, &error) &&
+                      keeper_restore(&keeper, &second, &back, notice, &error) &&
+                      keeper_tick(&keeper, &second, &film, true, &tiles, &error) &&
+                      keeper_note_written(&keeper, 2, &picture.key, first, &error);
+            ok = keeper_finish(&keeper, false, &error) && ok;
+            fault_at((enum fault_kind)kind, 0);
+            over = fault_count((enum fault_kind)kind) - before < k;
+            CHECK(ok || error.text[0]);
+        }
+    free(film.pixels);
+    free(back.pixels);
+}
