@@ -8,11 +8,13 @@
 #define _GNU_SOURCE
 #include "app/confine.h"
 
+#include "base/fault.h"
 #include "base/file.h"
 #include "base/reach.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <linux/audit.h>
 #include <linux/filter.h>
 #include <linux/landlock.h>
@@ -73,7 +75,7 @@ static uint64_t known_rights(long version) {
 
 static bool add_rule(int ruleset, int folder, uint64_t rights) {
     struct landlock_path_beneath_attr rule = {.allowed_access = rights, .parent_fd = folder};
-    return syscall(SYS_landlock_add_rule, ruleset, LANDLOCK_RULE_PATH_BENEATH, &rule, 0) == 0;
+    return MAY_FAIL(syscall(SYS_landlock_add_rule, ruleset, LANDLOCK_RULE_PATH_BENEATH, &rule, 0)) == 0;
 }
 
 /* A file or folder that the process itself reads; one that is not there is no loss. */
@@ -109,16 +111,17 @@ static bool add_rules(int ruleset, const struct options *options, const struct r
 }
 
 /* Version of the interface that is active; 0 when the kernel has none. -1: error. */
-static long confine_files(const struct options *options, const struct reach *reach, struct error *error) {
-    long version = syscall(SYS_landlock_create_ruleset, NULL, 0, LANDLOCK_CREATE_RULESET_VERSION);
+static long confine_files(const struct options *options, const struct reach *reach, long at_most, struct error *error) {
+    long version = MAY_FAIL(syscall(SYS_landlock_create_ruleset, NULL, 0, LANDLOCK_CREATE_RULESET_VERSION));
+    version = version < at_most ? version : at_most;
     if (version <= 0)
         return 0;
     uint64_t known = known_rights(version);
     struct ruleset wanted = {known, NET_BIND | NET_CONNECT, SCOPE_ABSTRACT_SOCKET | SCOPE_SIGNAL};
     size_t size = version >= 6 ? sizeof wanted : version >= 4 ? 2 * sizeof(uint64_t) : sizeof(uint64_t);
-    int ruleset = (int)syscall(SYS_landlock_create_ruleset, &wanted, size, 0);
+    int ruleset = (int)MAY_FAIL(syscall(SYS_landlock_create_ruleset, &wanted, size, 0));
     bool ok = ruleset >= 0 && add_rules(ruleset, options, reach, known) &&
-              syscall(SYS_landlock_restrict_self, ruleset, 0) == 0;
+              MAY_FAIL(syscall(SYS_landlock_restrict_self, ruleset, 0)) == 0;
     int why = errno;
     if (ruleset >= 0)
         (void)close(ruleset);
@@ -327,7 +330,7 @@ static bool confine_calls(bool writing, bool landlock) {
     put_rule(&program, (struct rule){SYS_tgkill, RULE_EQUAL, 0, (uint32_t)getpid()}, writing, landlock);
     put_answer(&program, SECCOMP_RET_ERRNO | ENOSYS);
     struct sock_fprog filter = {.len = program.count, .filter = program.steps};
-    return prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter, 0, 0) == 0;
+    return MAY_FAIL(prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter, 0, 0)) == 0;
 }
 #else
 static bool confine_calls(bool writing, bool landlock) {
@@ -349,7 +352,8 @@ static void close_others(int keep) {
 #endif
 }
 
-bool confine_process(const struct options *options, int keep, char *report, size_t size, struct error *error) {
+bool confine_process_as(const struct options *options, int keep, long landlock_at_most, char *report, size_t size,
+                        struct error *error) {
     struct reach reach = {0};
     bool ok = true;
     close_others(keep);
@@ -357,9 +361,9 @@ bool confine_process(const struct options *options, int keep, char *report, size
     tzset();
     for (int i = 0; ok && i < options->script_count; i++)
         ok = script_reach(options->scripts[i], &options->script, &reach, error);
-    ok = ok && (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 ||
+    ok = ok && (MAY_FAIL(prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)) == 0 ||
                 error_set(error, ERROR_MACHINE, "gray: privileges cannot be given up: %s", strerror(errno)));
-    long landlock = ok ? confine_files(options, &reach, error) : -1;
+    long landlock = ok ? confine_files(options, &reach, landlock_at_most, error) : -1;
     char files[64] = "no Landlock in this kernel (file names are still checked)", calls[96] = "seccomp";
     if (landlock > 0)
         (void)snprintf(files, sizeof files, "Landlock (version %ld)", landlock);
@@ -368,11 +372,15 @@ bool confine_process(const struct options *options, int keep, char *report, size
     else if (landlock >= 0 && !confine_calls(options->script.allow_write_count > 0, landlock > 0))
         (void)snprintf(calls, sizeof calls, "no seccomp filter (%s)", strerror(errno));
     int used = snprintf(report, size, "gray: confined by %s, %s; scenes may read below", files, calls);
-    for (size_t i = 0; used > 0 && (size_t)used < size && i < reach.count; i++) {
+    for (size_t i = 0; (size_t)used < size && i < reach.count; i++) {
         const struct reach_folder *folder = &reach.folders[i];
         used += snprintf(report + used, size - (size_t)used, "%s %s%s", i > 0 ? "," : "",
                          folder->length > 0 ? folder->path : "/", folder->kind == REACH_WRITE ? " (and write)" : "");
     }
     reach_destroy(&reach);
     return landlock >= 0;
+}
+
+bool confine_process(const struct options *options, int keep, char *report, size_t size, struct error *error) {
+    return confine_process_as(options, keep, LONG_MAX, report, size, error);
 }

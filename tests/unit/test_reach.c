@@ -1,0 +1,234 @@
+/* The folders of a scene: what lies below them and what does not, by every spelling; with kernels of every age, and
+ * with every call to the system failing in its turn. */
+#define _GNU_SOURCE
+#include "base/reach.h"
+
+#include "app/confine.h"
+#include "base/fault.h"
+#include "tests/harness.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static const char *in_folder(const char *name) {
+    static char paths[8][600];
+    static int next;
+    char *path = paths[next++ % 8];
+    (void)snprintf(path, sizeof paths[0], "%s/%s", test_folder(), name);
+    return path;
+}
+
+/* below/inner.txt, below/.hidden, below/link -> outside.txt, below/to -> inner.txt, below/gone -> nothing; outside.txt
+ */
+static void prepare(void) {
+    CHECK(mkdir(in_folder("below"), 0777) == 0 && mkdir(in_folder("below/sub"), 0777) == 0);
+    test_write_text(in_folder("below/inner.txt"), "inner");
+    test_write_text(in_folder("below/.hidden"), "hidden");
+    test_write_text(in_folder("outside.txt"), "outside");
+    test_write_text(in_folder("below2.txt"), "beside");
+    CHECK(symlink(in_folder("outside.txt"), in_folder("below/link")) == 0);
+    CHECK(symlink("inner.txt", in_folder("below/to")) == 0);
+    CHECK(symlink("nothing", in_folder("below/gone")) == 0);
+    CHECK(mkfifo(in_folder("below/pipe"), 0666) == 0);
+}
+
+static bool can_open(const struct reach *reach, const char *name, const char *mode) {
+    FILE *stream = reach_stream(reach, in_folder(name), mode);
+    if (stream)
+        (void)fclose(stream);
+    return stream != NULL;
+}
+
+TEST(a_scene_reaches_what_lies_below_its_folders_by_any_spelling) {
+    struct reach reach = {0};
+    struct error error;
+    prepare();
+    CHECK(reach_add(&reach, in_folder("below"), REACH_IMPLIED, &error));
+    CHECK(reach_is_readable(&reach, in_folder("below/inner.txt")));
+    CHECK(reach_is_readable(&reach, in_folder("below/./sub/..//inner.txt")));
+    CHECK(reach_is_readable(&reach, in_folder("below/to")));
+    CHECK(!reach_is_readable(&reach, in_folder("below/.hidden")) &&
+          !reach_is_readable(&reach, in_folder("below/link")));
+    CHECK(!reach_is_readable(&reach, in_folder("outside.txt")) && !reach_is_readable(&reach, in_folder("below2.txt")));
+    CHECK(!reach_is_readable(&reach, in_folder("below")) && !reach_is_readable(&reach, in_folder("below/sub")));
+    CHECK(reach_is_outside(&reach, in_folder("outside.txt")) && reach_is_outside(&reach, "x") &&
+          reach_is_outside(&reach, "../../../../../../../../../../..") && !reach_is_outside(NULL, "/etc/passwd"));
+    CHECK(!reach_is_outside(&reach, in_folder("below/./x/")) &&
+          !reach_is_outside(&reach, in_folder("below/.x/../y")) == 1);
+    CHECK(can_open(&reach, "below/inner.txt", "r") && can_open(&reach, "below/inner.txt", "rb"));
+    CHECK(!can_open(&reach, "below/inner.txt", "w") && !can_open(&reach, "below/inner.txt", "r+"));
+    CHECK(!can_open(&reach, "below/inner.txt", "x") && errno == EINVAL);
+    CHECK(!can_open(&reach, "below/pipe", "r") && !can_open(&reach, "below/missing", "r"));
+    CHECK(!can_open(&reach, "below/sub", "r") && !can_open(&reach, "below/link", "r"));
+    char *much = malloc(6000);
+    memset(much, 'x', 5999);
+    much[5999] = '\0';
+    CHECK(reach_is_outside(&reach, much) && !reach_is_readable(&reach, much));
+    free(much);
+    reach_destroy(&reach);
+}
+
+TEST(a_folder_that_may_be_written_takes_files_and_gives_none_away) {
+    struct reach reach = {0};
+    struct error error;
+    prepare();
+    CHECK(reach_add(&reach, in_folder("below"), REACH_WRITE, &error));
+    CHECK(reach_add(&reach, in_folder("below/sub/.."), REACH_IMPLIED, &error) && reach.count == 1);
+    CHECK(can_open(&reach, "below/new.txt", "w") && can_open(&reach, "below/new.txt", "a+"));
+    CHECK(can_open(&reach, "below/sub/x.txt", "w+") && can_open(&reach, "below/to", "r+"));
+    CHECK(!can_open(&reach, "below/link", "w") && !can_open(&reach, "below/gone", "w"));
+    CHECK(!can_open(&reach, "below/", "w") && !can_open(&reach, "below/.", "w") && !can_open(&reach, "below/..", "w"));
+    CHECK(!can_open(&reach, "below/no/x", "w") && !can_open(&reach, "outside.txt", "w"));
+    char *much = malloc(6000);
+    (void)snprintf(much, 6000, "%s/below/%0200d", test_folder(), 7);
+    while (strlen(much) + 3 < PATH_MAX)
+        (void)strcat(much, "x/");
+    CHECK(!reach_stream(&reach, much, "w"));
+    (void)snprintf(much, 6000, "%s/below/%04000d", test_folder(), 7);
+    CHECK(!reach_stream(&reach, much, "w"));
+    (void)snprintf(much, 6000, "%s", "./");
+    memset(much + 2, 'y', 4090);
+    much[4092] = '\0';
+    CHECK(!reach_remove(&reach, much) && !reach_may_create(&reach, strcat(much, "yyyyyyyyyyyyyyyy")));
+    free(much);
+    CHECK(reach_rename(&reach, in_folder("below/new.txt"), in_folder("below/other.txt")));
+    CHECK(!reach_rename(&reach, in_folder("below/other.txt"), in_folder("outside.txt")));
+    CHECK(!reach_rename(&reach, in_folder("outside.txt"), in_folder("below/x")));
+    CHECK(!reach_rename(&reach, in_folder("below/missing"), in_folder("below/x")));
+    CHECK(reach_remove(&reach, in_folder("below/other.txt")) && !reach_remove(&reach, in_folder("below/other.txt")));
+    CHECK(!reach_remove(&reach, in_folder("outside.txt")) && !reach_remove(&reach, in_folder("no/such")));
+    CHECK(reach_may_create(&reach, in_folder("below/a/b/c.png")) && reach_may_create(&reach, in_folder("below/x.png")));
+    CHECK(!reach_may_create(&reach, in_folder("below/.x.png")) && !reach_may_create(&reach, in_folder("below/a/../x")));
+    CHECK(!reach_may_create(&reach, in_folder("below/a/.x")) && !reach_may_create(&reach, in_folder("x.png")));
+    CHECK(!reach_may_create(&reach, in_folder("below/no/../../x")) && !reach_may_create(&reach, "../x"));
+    CHECK(!reach_may_create(&reach, in_folder("below/inner.txt/x")) && !reach_may_create(&reach, "/x"));
+    CHECK(!reach_may_create(&reach, in_folder("below/a/..")) && !reach_may_create(&reach, "x"));
+    reach_destroy(&reach);
+}
+
+TEST(folders_that_are_none_are_told_or_left_out) {
+    struct reach reach = {0};
+    struct error error = {0};
+    char *much = malloc(6000);
+    prepare();
+    CHECK(reach_add(&reach, in_folder("nothing"), REACH_IMPLIED, &error) && reach.count == 0);
+    CHECK(reach_add(&reach, "/", REACH_IMPLIED, &error) && reach.count == 0);
+    CHECK(!reach_add(&reach, in_folder("nothing"), REACH_READ, &error) && error.kind == ERROR_USAGE);
+    CHECK(!reach_add(&reach, in_folder("outside.txt"), REACH_READ, &error) && error.kind == ERROR_USAGE);
+    CHECK(reach_add(&reach, "/", REACH_READ, &error) && reach.count == 1 && reach.folders[0].length == 0);
+    CHECK(reach_is_readable(&reach, in_folder("outside.txt")) && reach_is_readable(&reach, in_folder("below/.hidden")));
+    memset(much, 'x', 5000);
+    strcpy(much + 5000, "/scene.lua");
+    CHECK(!reach_add_scene(&reach, much, NULL, &error) && strstr(error.text, "the path is too long"));
+    CHECK(!reach_add_scene(&reach, "scene.lua", in_folder("nothing"), &error));
+    CHECK(reach_add_scene(&reach, in_folder("below/scene.lua"), NULL, &error));
+    CHECK(reach_is_readable(NULL, in_folder("outside.txt")));
+    free(much);
+    reach_destroy(&reach);
+}
+
+TEST(any_allocation_or_call_may_fail_while_files_are_reached) {
+#ifndef GRAY_FAULTS
+    test_skip("failures on demand are only in builds with GRAY_FAULTS");
+#endif
+    prepare();
+    for (int kind = 0; kind < 2; kind++)
+        for (uint64_t k = 1, over = 0; !over; k++) {
+            struct reach reach = {0};
+            struct error error = {0};
+            struct file_bytes bytes;
+            uint64_t before = fault_count((enum fault_kind)kind);
+            fault_at((enum fault_kind)kind, k);
+            bool ok = reach_add_scene(&reach, in_folder("below/scene.lua"), "lua", &error) &&
+                      reach_add(&reach, in_folder("below"), REACH_WRITE, &error);
+            CHECK(ok || error.text[0]);
+            if (ok && reach_map(&reach, in_folder("below/inner.txt"), 100, &bytes, &error))
+                file_unmap(&bytes);
+            (void)can_open(&reach, "below/new.txt", "w");
+            (void)can_open(NULL, "below/new.txt", "r");
+            fault_at((enum fault_kind)kind, 0);
+            over = fault_count((enum fault_kind)kind) - before < k;
+            reach_destroy(&reach);
+        }
+}
+
+/* As on kernels without Landlock and with every version of it: the report says so, and what is refused by name is
+ * refused there too. The exit status is a bit for each thing that is not as it should be; 128 without seccomp. */
+static int status_of_confined(long version, const char *allowed, size_t report_size) {
+    static char report[4096];
+    const char *folders[] = {allowed};
+    static const char *const scripts[] = {"tests/hostile/time_loop.lua", "no/such.lua"};
+    struct options options = {.scripts = scripts, .script_count = 2};
+    struct reach reach = {0};
+    struct error error = {0};
+    fflush(stdout);
+    pid_t child = fork();
+    if (child == 0) {
+        int bad = 0;
+        options.script.allow_write = folders;
+        options.script.allow_write_count = 1;
+        (void)reach_add(&reach, allowed, REACH_WRITE, &error);
+        if (!confine_process_as(&options, 2, version, report, report_size, &error))
+            _exit(64);
+        bool calls = strstr(report, ", seccomp; ") != NULL;
+        if (report_size == sizeof report)
+            bad |= !strstr(report, version <= 0 ? "no Landlock in this kernel" : "Landlock (version ") ? 1 : 0;
+        for (size_t i = 0; i < reach.count; i++)
+            reach.folders[i].descriptor = open(allowed, O_PATH | O_DIRECTORY); /* the others were closed */
+        bad |= reach.count != 1 || !can_open(&reach, "below/inner.txt", "r") ? 2 : 0;
+        bad |= !can_open(&reach, "below/new.txt", "w") || !can_open(&reach, "below/new.txt", "r+") ? 4 : 0;
+        bad |= can_open(&reach, "below/link", "r") || can_open(&reach, "outside.txt", "r") ? 8 : 0;
+        _exit(bad | (calls || report_size < 200 ? 0 : 128));
+    }
+    int how = 0;
+    CHECK(waitpid(child, &how, 0) == child && WIFEXITED(how));
+    return WEXITSTATUS(how);
+}
+
+TEST(a_process_is_confined_as_on_kernels_of_every_age) {
+    prepare();
+    const char *below = in_folder("below");
+    for (long version = -1; version <= 7; version++) {
+        int status = status_of_confined(version, below, 4096);
+        if (status == 128)
+            test_skip("no seccomp filter in this build or kernel");
+        if (status != 0)
+            test_fail(__FILE__, __LINE__, "Landlock version %ld: %d", version, status);
+    }
+    CHECK_EQ_INT(status_of_confined(LONG_MAX, below, 60), 0); /* a report that is cut */
+    CHECK_EQ_INT(status_of_confined(LONG_MAX, "/", 100) & 64, 0);
+}
+
+TEST(a_process_that_cannot_be_confined_says_why) {
+#ifndef GRAY_FAULTS
+    test_skip("failures on demand are only in builds with GRAY_FAULTS");
+#endif
+    static const char *const scripts[] = {"tests/hostile/time_loop.lua"};
+    struct options options = {.scripts = scripts, .script_count = 1};
+    int refused = 0;
+    for (int kind = 0; kind < 2; kind++)
+        for (uint64_t k = 1, over = 0; !over; k++) {
+            fflush(stdout);
+            pid_t child = fork();
+            if (child == 0) {
+                char report[4096] = "";
+                struct error error = {0};
+                fault_apart();
+                fault_at((enum fault_kind)kind, k);
+                bool ok = confine_process(&options, 1, report, sizeof report, &error);
+                bool told = ok ? report[0] != '\0' : error.text[0] != '\0' && error.kind != ERROR_NONE;
+                _exit(!told ? 3 : fault_count((enum fault_kind)kind) < k ? 2 : ok ? 1 : 0);
+            }
+            int how = 0;
+            CHECK(waitpid(child, &how, 0) == child && WIFEXITED(how) && WEXITSTATUS(how) != 3);
+            over = !WIFEXITED(how) || WEXITSTATUS(how) >= 2;
+            refused += WIFEXITED(how) && WEXITSTATUS(how) == 0;
+        }
+    CHECK(refused >= 4);
+}
