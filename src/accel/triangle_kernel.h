@@ -67,8 +67,23 @@ struct search {
     float waiting_from;
 };
 
-/* Meshes of so many have their vertices at hand. */
-enum { FEW_TRIANGLES = 50000 };
+/* The vertices of so few are at hand, and the index of so many is not. */
+enum { FEW_TRIANGLES = 50000, MANY_TRIANGLES = 400000 };
+
+/* The parts of a block that only a hit needs, while its triangles are tried. (A function that does nothing else gcc
+ * takes for one that does nothing, unless it is a part of its caller.) */
+static inline __attribute__((always_inline)) void fetch_vertex_numbers(const struct triangle_block *block) {
+    __builtin_prefetch(block->vertices[0]);
+    __builtin_prefetch(&block->vertices[2][WIDTH - 1]);
+}
+
+/* What is next on the stack, while something else is tried. */
+static inline __attribute__((always_inline)) void fetch_ahead(const struct triangle_index *index, uint32_t reference) {
+    const char *place = reference & REF_LEAF ? (const char *)(index->blocks + (reference & ~REF_LEAF))
+                                             : (const char *)(index->nodes + reference);
+    for (int i = 0; i < 5; i++)
+        __builtin_prefetch(place + 64 * i);
+}
 
 /* triangle_ray_axes by a table: which of the direction's components are larger than those before (wide4_larger), and
  * above that their signs. */
@@ -287,6 +302,8 @@ static __attribute__((noinline)) void keep_lanes(struct search *s, const struct 
 static inline __attribute__((always_inline)) bool try_block(struct search *s, uint32_t number,
                                                             const enum triangle_search kind) {
     const struct triangle_block *b = s->index->blocks + number;
+    if (kind == TRIANGLE_NEAREST)
+        fetch_vertex_numbers(b);
     simd8 dx = simd8_all(s->direction[0]), dy = simd8_all(s->direction[1]), dz = simd8_all(s->direction[2]);
     simd8 e1x = simd8_load(b->edge1[0]), e1y = simd8_load(b->edge1[1]), e1z = simd8_load(b->edge1[2]);
     simd8 e2x = simd8_load(b->edge2[0]), e2y = simd8_load(b->edge2[1]), e2z = simd8_load(b->edge2[2]);
@@ -363,6 +380,7 @@ static inline __attribute__((always_inline)) bool descend(struct search *s, uint
     const simd8 rx = simd8_all(s->reciprocal[0]), ry = simd8_all(s->reciprocal[1]), rz = simd8_all(s->reciprocal[2]);
     const simd8 mx = simd8_all(s->middle[0]), my = simd8_all(s->middle[1]), mz = simd8_all(s->middle[2]);
     uint32_t visited = 0, tried = 0;
+    const bool many = kind == TRIANGLE_NEAREST && s->set->count > MANY_TRIANGLES;
     const uint32_t octant = s->octant;
     /* Rows of a node in which the ray meets the near sides, in floats. The far ones are beside them. */
     const size_t near_x = (octant & 1) * WIDTH, near_y = (2 + (octant >> 1 & 1)) * WIDTH,
@@ -392,8 +410,11 @@ static inline __attribute__((always_inline)) bool descend(struct search *s, uint
             simd8 enter = simd8_max_bits(simd8_max_bits(ax, ay), simd8_max_bits(az, simd8_all(0)));
             simd8 leave = simd8_min_bits(simd8_min_bits(bx, by), simd8_min_bits(bz, simd8_all(s->limit)));
             if (kind == TRIANGLE_NEAREST ? node_take_nearest(n, octant, enter, leave, &stack, &top, &reference)
-                                         : node_take_any(n, enter, leave, &stack, &top, &reference))
+                                         : node_take_any(n, enter, leave, &stack, &top, &reference)) {
+                if (many && top)
+                    fetch_ahead(s->index, stack.reference[top - 1]);
                 continue;
+            }
         } else {
             tried++;
             if (try_block(s, reference & ~REF_LEAF, kind)) {
