@@ -1105,6 +1105,110 @@ function gr.directional_light(direction, colour) end
 ---@overload fun(fields: gr.spot_light.fields): gr.light
 function gr.spot_light(position, direction, colour, inner, outer, falloff) end
 
+---@class gr.change_node.fields
+---@field name string name (a string): Name of the node; a node of another name is not meant.
+---@field serial integer serial (a whole number, 0 to 4294967295): Which one, by order of creation: the first is 0, what was added in a window counts down from 4294967295.
+---@field matrix number|number[] matrix (a number or a table of numbers): Three rows of a matrix, 12 numbers: where it goes from where its own transforms put it, in the space of its parent.
+
+---Moves, turns or scales a node in every picture from here on, as somebody did in a window; the window writes such calls into a file for require.
+---@param name string name (a string): Name of the node; a node of another name is not meant.
+---@param serial integer serial (a whole number, 0 to 4294967295): Which one, by order of creation: the first is 0, what was added in a window counts down from 4294967295.
+---@param matrix number|number[] matrix (a number or a table of numbers): Three rows of a matrix, 12 numbers: where it goes from where its own transforms put it, in the space of its parent.
+---@overload fun(fields: gr.change_node.fields)
+function gr.change_node(name, serial, matrix) end
+
+---@class gr.change_delete.fields
+---@field name string name (a string): Name of the node; a node of another name is not meant.
+---@field serial integer serial (a whole number, 0 to 4294967295): Which one, by order of creation: the first is 0, what was added in a window counts down from 4294967295.
+
+---Leaves a node and what is under it out of every picture from here on.
+---@param name string name (a string): Name of the node; a node of another name is not meant.
+---@param serial integer serial (a whole number, 0 to 4294967295): Which one, by order of creation: the first is 0, what was added in a window counts down from 4294967295.
+---@overload fun(fields: gr.change_delete.fields)
+function gr.change_delete(name, serial) end
+
+---@class gr.change_add.fields
+---@field name string name (a string): Name of the node that it goes under.
+---@field serial integer serial (a whole number, 0 to 4294967295): Which one, by order of creation: the first is 0, what was added in a window counts down from 4294967295.
+---@field shape 'sphere'|'cube'|'cylinder'|'cone'|'torus'|'copy' shape ('sphere'|'cube'|'cylinder'|'cone'|'torus'|'copy'): What is added, of about the size of a ball of radius 1, or a copy of a node.
+---@field colour? gr.triple colour (a colour {r, g, b}; default {0.7, 0.7, 0.7}): Its colour.
+---@field source? integer source (a whole number, 0 to 4294967295; default 0): For a copy: the node that is shown once more.
+
+---Adds a node to every picture from here on; gr.change_node puts it into its place.
+---@param name string name (a string): Name of the node that it goes under.
+---@param serial integer serial (a whole number, 0 to 4294967295): Which one, by order of creation: the first is 0, what was added in a window counts down from 4294967295.
+---@param shape 'sphere'|'cube'|'cylinder'|'cone'|'torus'|'copy' shape ('sphere'|'cube'|'cylinder'|'cone'|'torus'|'copy'): What is added, of about the size of a ball of radius 1, or a copy of a node.
+---@param colour? gr.triple colour (a colour {r, g, b}; default {0.7, 0.7, 0.7}): Its colour.
+---@param source? integer source (a whole number, 0 to 4294967295; default 0): For a copy: the node that is shown once more.
+---@overload fun(fields: gr.change_add.fields)
+function gr.change_add(name, serial, shape, colour, source) end
+
+---@class gr.change_material.fields
+---@field serial integer serial (a whole number, 0 to 4294967295): Which one, by order of creation: the first is 1.
+---@field colour gr.triple colour (a colour {r, g, b}): The new diffuse colour of its base.
+
+---Gives a material another colour in every picture from here on.
+---@param serial integer serial (a whole number, 0 to 4294967295): Which one, by order of creation: the first is 1.
+---@param colour gr.triple colour (a colour {r, g, b}): The new diffuse colour of its base.
+---@overload fun(fields: gr.change_material.fields)
+function gr.change_material(serial, colour) end
+
+---@class gr.change_light.fields
+---@field number integer number (a whole number, 1 to 4294967295): Its place in the list of gr.render, from 1.
+---@field move gr.triple move (a table of 3 numbers): The way it is moved.
+---@field factor? gr.triple factor (a table of 3 numbers; default {1, 1, 1}): What its colour is multiplied by.
+
+---Moves a light of every picture from here on, and makes it brighter or darker.
+---@param number integer number (a whole number, 1 to 4294967295): Its place in the list of gr.render, from 1.
+---@param move gr.triple move (a table of 3 numbers): The way it is moved.
+---@param factor? gr.triple factor (a table of 3 numbers; default {1, 1, 1}): What its colour is multiplied by.
+---@overload fun(fields: gr.change_light.fields)
+function gr.change_light(number, move, factor) end
+
+---@class gr.change_delete_light.fields
+---@field number integer number (a whole number, 1 to 4294967295): Its place in the list of gr.render, from 1.
+
+---Takes a light away from every picture from here on.
+---@param number integer number (a whole number, 1 to 4294967295): Its place in the list of gr.render, from 1.
+---@overload fun(fields: gr.change_delete_light.fields)
+function gr.change_delete_light(number) end
+
+---@class gr.change_add_light.fields
+---@field position gr.triple position (a point {x, y, z}): Where it is.
+---@field colour gr.triple colour (a colour {r, g, b}): Its colour.
+
+---Adds a point light to every picture from here on.
+---@param position gr.triple position (a point {x, y, z}): Where it is.
+---@param colour gr.triple colour (a colour {r, g, b}): Its colour.
+---@overload fun(fields: gr.change_add_light.fields)
+function gr.change_add_light(position, colour) end
+
+---@class gr.change_view.fields
+---@field picture string picture (a string): The picture that it is for, by the name that gr.render gives it.
+---@field eye gr.triple eye (a point {x, y, z}): Where the camera is.
+---@field view gr.triple view (a direction {x, y, z}): The direction it looks in.
+---@field up gr.triple up (a direction {x, y, z}): What is up in the picture.
+---@field fov number fov (a number, > 0 and < 180, in degrees): Its full vertical angle.
+
+---Gives a picture another camera.
+---@param picture string picture (a string): The picture that it is for, by the name that gr.render gives it.
+---@param eye gr.triple eye (a point {x, y, z}): Where the camera is.
+---@param view gr.triple view (a direction {x, y, z}): The direction it looks in.
+---@param up gr.triple up (a direction {x, y, z}): What is up in the picture.
+---@param fov number fov (a number, > 0 and < 180, in degrees): Its full vertical angle.
+---@overload fun(fields: gr.change_view.fields)
+function gr.change_view(picture, eye, view, up, fov) end
+
+---@class gr.change_exposure.fields
+---@field picture string picture (a string): The picture that it is for, by the name that gr.render gives it.
+---@field stops number stops (a number, >= -100 and <= 100, in stops): Its exposure in the place of what the script says.
+
+---Gives a picture another exposure.
+---@param picture string picture (a string): The picture that it is for, by the name that gr.render gives it.
+---@param stops number stops (a number, >= -100 and <= 100, in stops): Its exposure in the place of what the script says.
+---@overload fun(fields: gr.change_exposure.fields)
+function gr.change_exposure(picture, stops) end
+
 ---@class gr.mesh_light.fields
 ---@field colour? gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Its colour and strength.
 ---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.

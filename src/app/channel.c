@@ -70,6 +70,16 @@ static bool ends_with_zero(const char *text, size_t size) {
     return memchr(text, '\0', size) != NULL;
 }
 
+static bool news_is_sound(const struct studio_news *news) {
+    const struct picked *picked = &news->picked;
+    const char *const words[] = {picked->name, picked->shape, picked->material, picked->parent_name, news->root_name};
+    bool sound = (unsigned)news->kind <= NEWS_STORY && ends_with_zero(news->text, sizeof news->text) &&
+                 ends_with_zero(picked->path, sizeof picked->path);
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+        sound = sound && ends_with_zero(words[i], PICK_WORDS);
+    return sound;
+}
+
 /* Sizes, texts and numbers that later code relies on. */
 static bool frame_is_sound(const struct frame *frame) {
     size_t before_text = offsetof(struct frame_line, text);
@@ -87,8 +97,11 @@ static bool frame_is_sound(const struct frame *frame) {
                request->y0 <= request->full_height - request->height && request->exposure >= -100 &&
                request->exposure <= 100 && request->curve <= TONE_FILMIC;
     case FRAME_DONE:
-    case FRAME_PASS:
         return frame->size == sizeof frame->body.report;
+    case FRAME_NEWS:
+        return frame->size == sizeof frame->body.news && news_is_sound(&frame->body.news);
+    case FRAME_ORDER:
+        return frame->size == sizeof frame->body.order;
     case FRAME_ABANDON:
     case FRAME_AGAIN:
         return frame->size == 0;

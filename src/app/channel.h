@@ -4,10 +4,12 @@
 #ifndef GRAY_APP_CHANNEL_H
 #define GRAY_APP_CHANNEL_H
 
+#include "app/pick.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "render/render.h"
+#include "scene/change.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -18,7 +20,7 @@ enum frame_kind {
     FRAME_LINE = 1, /* struct frame_line: something to tell */
     FRAME_BEGIN,    /* struct picture_request; answered by FRAME_FILM */
     FRAME_DONE,     /* struct picture_report; answered by FRAME_ANSWER */
-    FRAME_PASS,     /* struct picture_report: a pass in a window has ended; answered by FRAME_ANSWER */
+    FRAME_NEWS,     /* struct studio_news: something for a window is done; answered by FRAME_ORDER */
     FRAME_ABANDON,  /* no body: the picture that was begun will not be finished; no answer */
     FRAME_SCRIPT,   /* struct frame_script: a script has ended; no answer */
     FRAME_READ,     /* struct frame_read: a file was read, for somebody who watches; no answer */
@@ -26,6 +28,7 @@ enum frame_kind {
                    */
     FRAME_FILM,   /* struct frame_answer, and on success the descriptor of the film's memory */
     FRAME_ANSWER, /* struct frame_answer */
+    FRAME_ORDER,  /* struct studio_order */
 };
 
 /* What kind of line: decides whether -q or --verbose let it pass, and where it goes. */
@@ -54,9 +57,10 @@ struct picture_request {
     uint32_t layers;                  /* mask of the layers beside the picture */
     uint32_t live;                    /* not 0: in a window */
     struct camera camera;             /* its view a direction */
-    uint32_t check;                   /* not 0 for --check: only the names are looked at, no film is wanted */
-    struct digest files;              /* of all that was read so far; zero when nobody wants to know */
-    char file[4096];                  /* as the script gave it */
+    struct lens lens;
+    uint32_t check;      /* not 0 for --check: only the names are looked at, no film is wanted */
+    struct digest files; /* of all that was read so far; zero when nobody wants to know */
+    char file[4096];     /* as the script gave it */
 };
 
 /* What a finished picture cost. */
@@ -74,15 +78,54 @@ struct picture_report {
 /* A pass of a picture in a window. */
 struct live_view {
     struct camera camera; /* its view a direction */
+    double exposure;      /* stops: it decides which pixels are sampled again */
     uint32_t divide;      /* one pixel for so many across and down; from 1 */
     bool plain;           /* one sample a pixel, coarse soft light */
     bool own;             /* the camera, lens and motion of the script */
 };
 
+enum { TOLD_LIGHTS = 32 };
+struct told_light {
+    uint32_t kind; /* an enum light_kind */
+    bool placed;   /* it has a position */
+    struct vec3 position, colour;
+};
+
+enum studio_news_kind {
+    NEWS_BUILT /* the world, for the first time */,
+    NEWS_PASS,
+    NEWS_PICKED,
+    NEWS_CHANGED,
+    NEWS_STORY
+};
+/* What the child has done for a window; it waits for an order. */
+struct studio_news {
+    enum studio_news_kind kind;
+    struct picture_report report; /* of BUILT (its bounds) and PASS */
+    struct picked picked;
+    uint32_t added; /* of BUILT: nodes that the script has added by gr.change_add */
+    uint32_t root;  /* of BUILT: the serial of the root, and the space of its children */
+    char root_name[PICK_WORDS];
+    struct affine world_from_root;
+    uint32_t light_count; /* of BUILT and CHANGED: the lights, those in `lights` and others */
+    struct told_light lights[TOLD_LIGHTS];
+    char text[512]; /* of CHANGED: what could not be done, or empty */
+};
+
+enum studio_order_kind { ORDER_END, ORDER_PASS, ORDER_PICK, ORDER_CHANGE, ORDER_STORY };
+struct studio_order {
+    enum studio_order_kind kind;
+    bool quit;             /* of END: the window was closed */
+    struct live_view view; /* of PASS, and from where PICK and STORY look */
+    double x, y;           /* of PICK and STORY: pixels of the whole picture */
+    uint32_t up;           /* of PICK: nodes above the one that is hit */
+    struct change change;
+    bool present; /* of CHANGE: it is made; else it is undone */
+    bool more;    /* of CHANGE: another one follows at once */
+};
+
 struct frame_answer {
     bool ok;
-    bool again; /* to FRAME_PASS: make another pass, with this view */
-    struct live_view view;
     bool already; /* to FRAME_BEGIN: there is nothing to do, no film comes along */
     struct error error;
 };
@@ -118,6 +161,8 @@ struct frame {
         struct frame_line line;
         struct picture_request request;
         struct picture_report report;
+        struct studio_news news;
+        struct studio_order order;
         struct frame_answer answer;
         struct frame_script script;
         struct frame_read read;

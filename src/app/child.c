@@ -4,8 +4,8 @@
 #include "app/child.h"
 
 #include "app/inspect.h"
-#include "app/live.h"
 #include "app/progress.h"
+#include "app/studio.h"
 #include "base/arena.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -16,7 +16,6 @@
 #include "script/script.h"
 #include "world/world.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -144,75 +143,6 @@ static void tell_world(const struct child *child, const char *file, const struct
     tell(child, LINE_DETAIL, line);
 }
 
-/* Settings of a pass: coarse ones have one sample a pixel, and a soft light few rays. */
-static void set_pass(struct render_job *job, const struct render_job *own, const struct live_view *view,
-                     const struct picture_request *asked, struct film *film, void *block) {
-    *job = *own;
-    *film = live_film(asked, block, view->divide);
-    job->film = film;
-    job->width = film->full_width;
-    job->height = film->full_height;
-    job->settings.show_marks = true;
-    job->settings.order = ORDER_CENTRE;
-    if (view->divide > 1) { /* the film says which part it is */
-        job->settings.cropped = false;
-        job->settings.keep_first = false;
-    }
-    if (!view->own) {
-        job->camera = view->camera;
-        job->settings.view_is_target = false;
-        job->settings.motion = (struct camera_motion){0};
-    }
-    if (view->plain) {
-        job->settings.full = false;
-        job->settings.side_tolerance = job->settings.corner_tolerance = HUGE_VAL;
-        job->settings.area_samples = job->settings.area_samples < 2 ? job->settings.area_samples : 2;
-        job->settings.samples = 1;
-        job->settings.lens.aperture = 0;
-        job->settings.caustics.photons = 0;
-    }
-}
-
-/* Of everything that has an end. */
-static struct box finite_bounds(const struct world *world) {
-    struct box bounds = box_empty();
-    for (uint32_t i = 0; i < world->placed_count; i++) {
-        if (vec3_finite(world->boxes[i].min) && vec3_finite(world->boxes[i].max))
-            bounds = box_join(bounds, world->boxes[i]);
-    }
-    return bounds;
-}
-
-/* One pass after the other, as people at the window ask for them, until they are done with the picture. */
-static bool make_passes(struct child *child, const struct scene *scene, struct render_job *own,
-                        const struct picture_request *asked, struct picture_report *report, double build_seconds,
-                        struct error *error) {
-    const struct child_services *services = child->services;
-    struct live_view view = live_first_view(&own->camera);
-    report->bounds = finite_bounds(own->world);
-    for (bool again = true; again;) {
-        struct render_job job;
-        struct film film;
-        int stop = CANCEL_PASS;
-        double begun = progress_clock();
-        set_pass(&job, own, &view, asked, &film, own->film->pixels);
-        (void)atomic_compare_exchange_strong(&services->control->cancel, &stop, CANCEL_NOTHING);
-        report->rays = (struct render_statistics){.build_seconds = build_seconds};
-        bool ok = render_run(&job, child->pool, &report->rays, error);
-        report->stopped = !ok && error->kind == ERROR_CANCELLED && !is_cancelled(child);
-        if (!ok && !report->stopped)
-            return false;
-        stop = CANCEL_PASS;
-        (void)atomic_compare_exchange_strong(&services->control->cancel, &stop, CANCEL_NOTHING);
-        pool_reset_cancel(child->pool);
-        report->rays.render_seconds = progress_clock() - begun;
-        fill_report(child, own->world, scene, &film, report);
-        if (!services->pass(services->context, report, &again, &view, error))
-            return false;
-    }
-    return true;
-}
-
 /* --pixel and --dump-scene: the scene is built, no picture is made. */
 static bool is_asked(const struct options *options) {
     return options->pixel_count > 0 || options->dump_scene;
@@ -233,18 +163,59 @@ static bool answer_questions(struct child *child, const struct render_request *r
 }
 
 static bool build_world(struct child *child, const struct render_request *request, const struct render_job *job,
-                        struct world *world, struct error *error) {
+                        const struct light *lights, uint32_t light_count, struct world *world, struct error *error) {
     struct control *control = child->services->control;
     child->building = true;
     child->runs_before = pool_progress(child->pool).runs;
     atomic_store(&control->build_done, 0);
     atomic_store(&control->build_step, 1);
-    bool ok = world_build(world, &child->job, request->scene, request->root, request->lights, request->light_count,
-                          &request->sky, job->settings.shutter, job->settings.accel, child->pool, warn_of_scene, child,
-                          error);
+    bool ok = world_build(world, &child->job, request->scene, request->root, lights, light_count, &request->sky,
+                          job->settings.shutter, job->settings.accel, child->pool, warn_of_scene, child, error);
     child->building = false;
     atomic_store(&control->build_step, 0);
     return ok;
+}
+
+/* A picture in a window. */
+struct sitting {
+    struct child *child;
+    const struct render_request *request;
+    struct render_job *job;
+    struct world *world;
+};
+
+static bool sitting_build(void *context, const struct light *lights, uint32_t light_count, struct error *error) {
+    struct sitting *sitting = context;
+    world_destroy(sitting->world);
+    arena_reset(&sitting->child->job);
+    return build_world(sitting->child, sitting->request, sitting->job, lights, light_count, sitting->world, error);
+}
+
+static void sitting_fill(void *context, const struct film *film, struct picture_report *report) {
+    const struct sitting *sitting = context;
+    fill_report(sitting->child, sitting->world, sitting->request->scene, film, report);
+}
+
+static void sitting_warn(void *context, const char *text) {
+    const struct sitting *sitting = context;
+    warn_of_scene(sitting->child, text);
+}
+
+static bool make_in_window(struct child *child, const struct render_request *request, struct render_job *job,
+                           struct world *world, const struct picture_request *asked, struct picture_report *report,
+                           double build_seconds, struct error *error) {
+    struct sitting sitting = {child, request, job, world};
+    struct studio studio = {.services = child->services,
+                            .pool = child->pool,
+                            .request = request,
+                            .asked = asked,
+                            .job = job,
+                            .world = world,
+                            .context = &sitting,
+                            .build = sitting_build,
+                            .fill = sitting_fill,
+                            .warn = sitting_warn};
+    return studio_run(&studio, report, build_seconds, error);
 }
 
 /* From the flattened scene to the finished film. */
@@ -252,7 +223,7 @@ static bool make_picture(struct child *child, const struct render_request *reque
                          const struct picture_request *asked, struct picture_report *report, struct error *error) {
     struct world world = {0};
     double begun = progress_clock();
-    if (!build_world(child, request, job, &world, error))
+    if (!build_world(child, request, job, request->lights, request->light_count, &world, error))
         return false;
     bool ok = true;
     double built = progress_clock();
@@ -263,7 +234,7 @@ static bool make_picture(struct child *child, const struct render_request *reque
         job->world = &world;
         if (!asked->live)
             atomic_store(&child->services->control->tiles, film_tile_count(job->film));
-        ok = asked->live ? make_passes(child, request->scene, job, asked, report, built - begun, error)
+        ok = asked->live ? make_in_window(child, request, job, &world, asked, report, built - begun, error)
                          : render_run(job, child->pool, &report->rays, error);
     }
     report->rays.build_seconds = built - begun;
@@ -286,6 +257,7 @@ static bool begin_picture(struct child *child, const struct render_request *requ
                                     .layers = job->settings.aov,
                                     .live = child->options->window,
                                     .camera = job->camera,
+                                    .lens = job->settings.lens,
                                     .check = child->options->check || is_asked(child->options)};
     char warning[256] = "";
     size_t length = strlen(request->file);

@@ -18,9 +18,8 @@ struct child_services {
      * is there or somebody else's; neither done nor abandon follows. */
     bool (*begin)(void *context, const struct picture_request *request, struct film *film, bool *already,
                   struct error *error);
-    /* A pass in a window has ended: waits for what comes next. False: the window is closed, the script ends. */
-    bool (*pass)(void *context, const struct picture_report *report, bool *again, struct live_view *view,
-                 struct error *error);
+    /* Something for a window is done: waits for what comes next. False: there is nobody. */
+    bool (*news)(void *context, const struct studio_news *news, struct studio_order *order, struct error *error);
     void (*abandon)(void *context);
     /* The film is complete. True when the files are written. */
     bool (*done)(void *context, const struct picture_report *report, struct error *error);

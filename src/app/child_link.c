@@ -39,18 +39,14 @@ static bool link_begin(void *context, const struct picture_request *request, str
     return true;
 }
 
-static bool link_pass(void *context, const struct picture_report *report, bool *again, struct live_view *view,
-                      struct error *error) {
+static bool link_news(void *context, const struct studio_news *news, struct studio_order *order, struct error *error) {
     struct child_link *link = context;
     struct frame frame;
-    if (!channel_send(&link->channel, FRAME_PASS, report, sizeof *report, -1) ||
-        channel_receive(&link->channel, &frame) != CHANNEL_FRAME || frame.kind != FRAME_ANSWER)
+    if (!channel_send(&link->channel, FRAME_NEWS, news, sizeof *news, -1) ||
+        channel_receive(&link->channel, &frame) != CHANNEL_FRAME || frame.kind != FRAME_ORDER)
         return nobody_there(link, error);
-    *again = frame.body.answer.again;
-    *view = frame.body.answer.view;
-    if (!frame.body.answer.ok)
-        *error = frame.body.answer.error;
-    return frame.body.answer.ok;
+    *order = frame.body.order;
+    return true;
 }
 
 static void link_abandon(void *context) {
@@ -106,7 +102,7 @@ struct child_services child_link_services(struct child_link *link, struct contro
     return (struct child_services){.context = link,
                                    .control = control,
                                    .begin = link_begin,
-                                   .pass = link_pass,
+                                   .news = link_news,
                                    .abandon = link_abandon,
                                    .done = link_done,
                                    .line = link_line,

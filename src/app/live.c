@@ -11,10 +11,6 @@
 enum { FIRST_DIVIDE = 16, MIDDLE_DIVIDE = 4, DIVIDE_LIMIT = 32 };
 static const double pass_goal = 0.033;
 
-struct live_view live_first_view(const struct camera *camera) {
-    return (struct live_view){.camera = *camera, .divide = FIRST_DIVIDE, .plain = true, .own = true};
-}
-
 struct film live_film(const struct picture_request *request, void *block, uint32_t divide) {
     struct film film = {.x0 = request->x0 / divide,
                         .y0 = request->y0 / divide,
@@ -28,75 +24,121 @@ struct film live_film(const struct picture_request *request, void *block, uint32
     return film;
 }
 
-/* Somebody has flown somewhere: the first pass, which begins by itself, is the script's; the next one is there. */
-static void keep_walk(struct live *live, const struct walk *walk) {
+static bool differ(double a, double b) {
+    return a < b || a > b;
+}
+
+static struct live_view view_now(const struct live *live, uint32_t divide, bool plain) {
+    return (struct live_view){.camera = live->flown ? walk_camera(&live->walk) : live->request.camera,
+                              .exposure = live->request.exposure,
+                              .divide = divide,
+                              .plain = plain,
+                              .own = !live->flown};
+}
+
+/* The scripts ran again: where somebody has flown to and what was changed stays. */
+static void keep_work(struct live *live, const struct live *before) {
     struct pose home = live->walk.home;
-    live->walk = *walk;
-    live->walk.home = home;
-    live->moved = live->flown = true;
+    if (before->flown) {
+        live->walk = before->walk;
+        live->walk.home = home;
+        live->flown = true;
+    }
+    if (differ(before->request.exposure, before->script_exposure))
+        live->request.exposure = before->request.exposure;
+    live->edits = before->edits;
+    live->pending = before->pending;
+    live->tool = before->tool;
+    live_resend(live);
+}
+
+static void forget_work(struct live *live) {
+    edits_destroy(&live->edits);
+    change_list_destroy(&live->pending);
+}
+
+static void close_window(struct live *live) {
+    if (live->open)
+        live->driver->close(live->driver->context);
+    mem_free(live->canvas);
+    mem_free(live->light);
+    mem_free(live->drawn);
+    mem_free(live->panel.paper.rgba);
+    live->canvas = live->drawn = live->panel.paper.rgba = NULL;
+    live->light = NULL;
+    live->place = (struct live_place){0};
+    live->open = false;
+}
+
+/* The window with all that belongs to it. */
+static void keep_window(struct live *live, const struct live *before) {
+    live->control = before->control;
+    live->number = before->number;
+    live->canvas = before->canvas;
+    live->light = before->light;
+    live->drawn = before->drawn;
+    live->place = before->place;
+    live->panel = before->panel;
+    live->bare = before->bare;
+    live->open = before->open;
+}
+
+static bool open_window(struct live *live, struct error *error) {
+    const struct picture_request *request = &live->request;
+    size_t pixels = (size_t)request->width * request->height;
+    live->canvas = mem_alloc_zero(pixels, 3);
+    live->light = mem_alloc_zero(pixels, 3 * sizeof(float));
+    live->drawn = mem_alloc_zero(live->tiles, 1);
+    if (!live->canvas || !live->light || !live->drawn)
+        return error_no_memory(error, "the window");
+    live->open = live->driver->open(live->driver->context, request->width, request->height, live->name, error);
+    return live->open;
 }
 
 bool live_begin(struct live *live, const struct window_driver *driver, const struct picture_request *request,
                 void *block, const char *name, double now, struct error *error) {
     struct film whole = live_film(request, block, 1);
+    const struct box unknown = box_empty();
+    bool kept = live->keep && live->open;
+    if (live->open && (live->request.width != request->width || live->request.height != request->height))
+        close_window(live);
     struct live before = *live;
-    bool was_open = live->open, kept = live->keep && live->flown && was_open;
-    if (was_open && (live->request.width != request->width || live->request.height != request->height)) {
-        live_end(live);
-        was_open = false;
-        before.canvas = before.drawn = before.panel.paper.rgba = NULL;
-        before.place = (struct live_place){0};
-    }
     *live = (struct live){.driver = driver,
-                          .control = before.control,
                           .request = *request,
                           .block = block,
-                          .view = live_first_view(&request->camera),
-                          .canvas = before.canvas,
-                          .drawn = before.drawn,
-                          .place = before.place,
-                          .panel = before.panel,
-                          .bare = before.bare,
+                          .script_exposure = request->exposure,
                           .tiles = film_tile_count(&whole),
-                          .number = before.number,
-                          .open = was_open,
-                          .running = true,
+                          .moved = true,
+                          .again = true,
                           .divide = FIRST_DIVIDE / 2,
                           .pass_began = now,
                           .stepped = now,
                           .shown = now};
-    live->film = live_film(request, block, live->view.divide);
-    const struct box unknown = box_empty();
-    walk_begin(&live->walk, &request->camera, &unknown);
-    if (kept)
-        keep_walk(live, &before.walk);
+    keep_window(live, &before);
     (void)snprintf(live->name, sizeof live->name, "%s", name);
-    if (!was_open) {
-        live->canvas = mem_alloc_zero((size_t)request->width * request->height, 3);
-        live->drawn = mem_alloc_zero(live->tiles, 1);
-        if (!live->canvas || !live->drawn)
-            return error_no_memory(error, "the window");
-        if (!driver->open(driver->context, request->width, request->height, name, error))
-            return false;
-        live->open = true;
-    }
+    walk_begin(&live->walk, &request->camera, &unknown);
+    live->view = view_now(live, FIRST_DIVIDE, true);
+    if (kept)
+        keep_work(live, &before);
+    else
+        forget_work(&before);
+    if (!live->open && !open_window(live, error))
+        return false;
     memset(live->drawn, 0, live->tiles);
     return true;
 }
 
 void live_end(struct live *live) {
-    if (live->open)
-        live->driver->close(live->driver->context);
-    mem_free(live->canvas);
-    mem_free(live->drawn);
-    mem_free(live->panel.paper.rgba);
+    close_window(live);
+    forget_work(live);
     *live = (struct live){.control = live->control};
 }
 
 void live_detach(struct live *live) {
     live->block = NULL;
     live->film = (struct film){0};
-    live->running = live->waiting = live->stopping = false;
+    live->running = live->waiting = live->stopping = live->partial = live->asks = false;
+    live->selection.kind = SELECTED_NOTHING;
     live->told = 0;
 }
 
@@ -114,62 +156,118 @@ void live_tell(struct live *live, const char *text) {
     live->told = 0;
 }
 
-/* Passes. */
+/* Orders. */
 
-void live_pass_ended(struct live *live, const struct picture_report *report, double now) {
+static void end_pass(struct live *live, const struct picture_report *report, double now) {
     bool known = live->report.threads > 0;
-    live->running = false;
-    live->waiting = true;
-    if (!known)
-        walk_measure(&live->walk, &report->bounds);
-    if (!report->stopped) {
-        live_draw_tiles(live);
-        /* Passes that take no time say nothing about how coarse they must be. */
-        double took = now - live->pass_began, divide = live->view.divide * sqrt(took / pass_goal);
-        if (live->view.plain && live->view.divide == live->divide && known)
-            live->divide = divide < 1 ? 1 : divide > DIVIDE_LIMIT ? DIVIDE_LIMIT : (uint32_t)ceil(divide);
-        live->complete = !live->view.plain;
-        live->report = *report;
-    }
+    live->partial = report->stopped != 0;
     live->stopping = false;
+    if (report->stopped)
+        return;
+    live_draw_tiles(live);
+    /* Passes that take no time say nothing about how coarse they must be. */
+    double took = now - live->pass_began, divide = live->view.divide * sqrt(took / pass_goal);
+    if (live->view.plain && live->view.divide == live->divide && known)
+        live->divide = divide < 1 ? 1 : divide > DIVIDE_LIMIT ? DIVIDE_LIMIT : (uint32_t)ceil(divide);
+    live->complete = !live->view.plain;
+    live->report = *report;
 }
 
-static void begin_pass(struct live *live, uint32_t divide, bool plain, double now) {
-    live->view = (struct live_view){.camera = live->flown ? walk_camera(&live->walk) : live->request.camera,
-                                    .divide = divide,
-                                    .plain = plain,
-                                    .own = !live->flown};
-    live->film = live_film(&live->request, live->block, divide);
-    for (uint32_t tile = 0; tile < film_tile_count(&live->film); tile++)
-        atomic_store(&live->film.tiles[tile], FILM_TILE_WANTED);
-    memset(live->film.marked, 0, (size_t)live->film.width * live->film.height);
-    memset(live->drawn, 0, live->tiles);
-    live->moved = live->waiting = live->complete = false;
+void live_take_news(struct live *live, const struct studio_news *news, double now) {
+    live->running = false;
+    live->waiting = true;
+    live->over_dirty = true;
+    switch (news->kind) {
+    case NEWS_BUILT:
+        walk_measure(&live->walk, &news->report.bounds);
+        live->scene = *news;
+        return;
+    case NEWS_PASS:
+        end_pass(live, &news->report, now);
+        return;
+    case NEWS_PICKED:
+        live_take_picked(live, &news->picked);
+        return;
+    case NEWS_CHANGED:
+        live->scene.light_count = news->light_count;
+        memcpy(live->scene.lights, news->lights, sizeof live->scene.lights);
+        if (news->text[0] != '\0')
+            live_tell(live, news->text);
+        live->moved = true;
+        return;
+    case NEWS_STORY:
+        return;
+    }
+}
+
+/* resume: the tiles that are done stay. */
+static void begin_pass(struct live *live, uint32_t divide, bool plain, bool resume, double now) {
+    if (!resume) {
+        live->view = view_now(live, divide, plain);
+        live->film = live_film(&live->request, live->block, divide);
+        live->edited = live->edits.now.count > 0 || differ(live->request.exposure, live->script_exposure);
+        memset(live->drawn, 0, live->tiles);
+        memset(live->film.marked, 0, (size_t)live->film.width * live->film.height);
+    }
+    for (uint32_t tile = 0; tile < film_tile_count(&live->film); tile++) {
+        if (!resume || atomic_load(&live->film.tiles[tile]) != FILM_TILE_DONE)
+            atomic_store(&live->film.tiles[tile], FILM_TILE_WANTED);
+    }
+    live->order = (struct studio_order){.kind = ORDER_PASS, .view = live->view};
+    live->moved = live->complete = live->partial = false;
     live->running = true;
     live->pass_began = now;
 }
 
-static enum live_order next_pass(struct live *live, double now) {
-    const struct live_view *view = &live->view;
-    if (live->moved) {
-        uint32_t divide = live->again ? FIRST_DIVIDE : live->divide;
+/* The first of what the child has not been told yet. */
+static void order_change(struct live *live) {
+    struct change target = live->pending.items[0];
+    const struct change *now = change_list_find(&live->edits.now, &target);
+    (void)change_list_set(&live->pending, &target, false);
+    live->order = (struct studio_order){
+        .kind = ORDER_CHANGE, .change = now ? *now : target, .present = now != NULL, .more = live->pending.count > 0};
+}
+
+static void order_pick(struct live *live) {
+    live->asks = false;
+    live->order = (struct studio_order){.kind = ORDER_PICK,
+                                        .view = view_now(live, 1, true),
+                                        .x = live->asked.x,
+                                        .y = live->asked.y,
+                                        .up = live->asked.up};
+}
+
+static enum live_order next_order(struct live *live, double now) {
+    uint32_t divide = live->again ? FIRST_DIVIDE : live->divide;
+    if (live->pending.count > 0) {
+        order_change(live);
+    } else if (live->asks) {
+        order_pick(live);
+    } else if (live->moved) {
         live->again = false;
-        begin_pass(live, divide, true, now);
+        begin_pass(live, divide, true, false, now);
+    } else if (!live->view.plain && differ(live->view.exposure, live->request.exposure)) {
+        begin_pass(live, 1, false, false, now);
+    } else if (live->partial) {
+        begin_pass(live, 0, false, true, now);
     } else if (live->complete) {
         return LIVE_NOTHING;
-    } else if (view->divide > MIDDLE_DIVIDE) {
-        begin_pass(live, MIDDLE_DIVIDE, true, now);
+    } else if (live->view.divide > MIDDLE_DIVIDE) {
+        begin_pass(live, MIDDLE_DIVIDE, true, false, now);
     } else {
-        begin_pass(live, 1, false, now);
+        begin_pass(live, 1, false, false, now);
     }
-    return LIVE_VIEW;
+    live->waiting = false;
+    return LIVE_ORDER;
 }
 
 /* What can be done while the child works. */
 static enum live_order step_running(struct live *live) {
     /* A coarse pass is over soon and is worth showing; a fine one is not. */
     bool coarse = live->view.plain && live->view.divide >= live->divide;
-    if (!live->running || !live->moved || live->stopping || coarse)
+    bool wanted =
+        live->moved || live->asks || live->pending.count > 0 || differ(live->view.exposure, live->request.exposure);
+    if (!live->running || !wanted || live->stopping || coarse)
         return LIVE_NOTHING;
     live->stopping = true;
     return LIVE_STOP;
@@ -192,11 +290,11 @@ enum live_order live_step(struct live *live, double now) {
         return wish;
     if (live->quit)
         return LIVE_QUIT;
-    if (live->complete && live->view.own && !live->written) {
+    if (live->complete && live->view.own && !live->edited && !live->written) {
         live->written = true;
         return LIVE_WRITE;
     }
     if (live->waiting && live->next && live->written)
         return LIVE_NEXT;
-    return live->waiting ? next_pass(live, now) : step_running(live);
+    return live->waiting ? next_order(live, now) : step_running(live);
 }

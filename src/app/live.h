@@ -1,12 +1,14 @@
-/* A picture in a window: shows it while it is made, lets people walk, and decides what is rendered next. The child
- * renders one pass after the other (coarse ones first, and while somebody walks) and asks after each what comes next;
- * the answer is an order. Neither waits for the other: the window is drawn from the film as it is. live.c decides,
- * live_input.c reads what people do, live_draw.c draws. */
+/* A picture in a window: shows it while it is made, lets people walk and change things, and decides what the child does
+ * next. The child renders one pass after the other (coarse ones first, and while somebody walks) and asks after each
+ * what comes next; the answer is an order. Neither waits for the other: the window is drawn from the film as it is.
+ * live.c decides, live_input.c reads what people do, live_edit.c changes the scene, live_draw.c and live_over.c draw.
+ */
 #ifndef GRAY_APP_LIVE_H
 #define GRAY_APP_LIVE_H
 
 #include "app/channel.h"
 #include "app/control.h"
+#include "app/edits.h"
 #include "app/panel.h"
 #include "app/walk.h"
 #include "app/window.h"
@@ -14,13 +16,14 @@
 
 enum live_order {
     LIVE_NOTHING,
-    LIVE_STOP,   /* the pass that runs is of no use any more */
-    LIVE_VIEW,   /* the child waits: render live->view next */
-    LIVE_WRITE,  /* the script's own picture is complete for the first time: write it */
-    LIVE_SAVE,   /* somebody wants what is shown in a file: live->canvas */
-    LIVE_RECORD, /* somebody wants the camera in a file: walk_camera(&live->walk) */
-    LIVE_NEXT,   /* the child waits, and this picture is done with: the script goes on */
-    LIVE_QUIT,   /* the window was closed, or Q */
+    LIVE_STOP,    /* the pass that runs is of no use any more */
+    LIVE_ORDER,   /* the child waits: send live->order */
+    LIVE_WRITE,   /* the script's own picture is complete for the first time: write it */
+    LIVE_SAVE,    /* somebody wants what is shown in a file: live->canvas */
+    LIVE_RECORD,  /* somebody wants the camera in a file: walk_camera(&live->walk) */
+    LIVE_CHANGES, /* somebody wants what was changed in a file */
+    LIVE_NEXT,    /* the child waits, and this picture is done with: the script goes on */
+    LIVE_QUIT,    /* the window was closed, or Q */
 };
 
 /* The window, and where the picture is in it: pixels of the screen. */
@@ -29,6 +32,19 @@ struct live_place {
     double density;
     double left, top, shown_width, shown_height;
 };
+
+/* What was clicked on. */
+enum selected { SELECTED_NOTHING, SELECTED_NODE, SELECTED_LIGHT };
+struct selection {
+    enum selected kind;
+    struct picked picked;    /* of a node, as it was when it was picked */
+    struct transform placed; /* the change of its place at that time */
+    uint32_t light;          /* number, from 1 */
+    double x, y;             /* where it was clicked: pixels of the whole picture */
+    uint32_t up;             /* nodes above what was hit */
+};
+/* What the mouse does with what is selected. */
+enum live_tool { TOOL_NONE, TOOL_MOVE, TOOL_TURN, TOOL_SIZE };
 
 struct live {
     const struct window_driver *driver;
@@ -41,23 +57,38 @@ struct live {
     char message[512];            /* what went wrong, or empty */
     struct live_view view;        /* of the pass that runs or ran last */
     struct film film;             /* as that pass lays it out */
+    struct studio_order order;    /* for LIVE_ORDER */
     struct picture_report report; /* of the last pass that was finished */
     uint8_t *canvas;              /* what is shown: 3 bytes a pixel of the whole part */
+    float *light;                 /* the same before exposure and tone */
     uint8_t *drawn;               /* by tile: already on the canvas */
     size_t tiles;                 /* room in drawn */
     struct live_place place;
     struct panel panel; /* its paper is owned */
     bool bare;          /* nothing is drawn over the picture */
     enum live_order wish;
+
+    struct edits edits;
+    struct change_list pending;        /* what the child has not been told yet: what holds now for these targets */
+    struct studio_news scene;          /* lights and root, as the child told last */
+    struct selection selection, asked; /* asked: a click that the child is to answer */
+    bool asks;
+    enum live_tool tool;
+    bool joins;             /* the next change by the mouse is part of the last one */
+    double script_exposure; /* stops */
+
     bool open, running, stopping, waiting;
-    bool moved;             /* the camera is not the one of the view that was sent last */
+    bool moved;             /* the camera is not the one of the view that was sent last, or the scene was changed */
     bool flown;             /* it is not the script's any more */
     bool again;             /* R */
+    bool partial;           /* the last pass was stopped for a moment, and can go on */
+    bool edited;            /* the last pass shows a changed scene */
     bool complete, written; /* the last pass was the finest; the script's picture was written */
     bool grabbed, next, quit;
-    bool keep;   /* the scripts run again: the camera stays where somebody has flown, pictures before are left out */
-    int turning; /* buttons that are held and go round */
-    uint32_t divide; /* of passes while somebody walks */
+    bool keep; /* the scripts run again: the camera stays where somebody has flown, pictures before are left out */
+    bool pressed, dragged;   /* the left button is down on the picture, and has moved since */
+    double press_x, press_y; /* where */
+    uint32_t divide;         /* of passes while somebody walks */
     double pass_began, stepped, shown, told;
     bool dirty;      /* the canvas was changed since it was shown */
     bool over_dirty; /* what is drawn over it is not right any more */
@@ -75,12 +106,10 @@ void live_keep(struct live *live);
 bool live_skips(const struct live *live, unsigned number);
 /* Shows what went wrong until a picture begins; the first line is shown. */
 void live_tell(struct live *live, const char *text);
-/* The first pass of a picture; the child starts with it by itself. */
-struct live_view live_first_view(const struct camera *camera);
 /* The film that a pass fills: the picture's rectangle divided, in the same block. */
 struct film live_film(const struct picture_request *request, void *block, uint32_t divide);
-/* A pass has ended; the child waits for the next order. */
-void live_pass_ended(struct live *live, const struct picture_report *report, double now);
+/* Something is done; the child waits for the next order. */
+void live_take_news(struct live *live, const struct studio_news *news, double now);
 /* Takes events, draws, decides. To be called until it says LIVE_NOTHING, every few milliseconds. */
 enum live_order live_step(struct live *live, double now);
 

@@ -40,23 +40,53 @@ bool live_resize(struct live *live, int width, int height, double density) {
 
 /* The canvas. */
 
-static void draw_pixel(struct live *live, uint32_t x, uint32_t y, bool red) {
+static void tone_pixel(const struct live *live, const struct tone *tone, size_t pixel) {
+    for (int c = 0; c < 3; c++)
+        live->canvas[3 * pixel + (size_t)c] =
+            png_write_byte(tone_apply(tone, (double)live->light[3 * pixel + (size_t)c]));
+}
+
+static struct tone tone_of(const struct live *live) {
     const struct picture_request *request = &live->request;
-    const struct tone tone = {request->exposure, (enum tone_curve)request->curve, request->srgb != 0};
+    return (struct tone){request->exposure, (enum tone_curve)request->curve, request->srgb != 0};
+}
+
+void live_redraw(struct live *live) {
+    struct tone tone = tone_of(live);
+    for (size_t i = 0; i < (size_t)live->request.width * live->request.height; i++)
+        tone_pixel(live, &tone, i);
+    live->dirty = true;
+}
+
+/* One pixel of the film is a square of the canvas. */
+static void draw_pixel(struct live *live, const struct tone *tone, uint32_t x, uint32_t y, bool red) {
+    static const uint8_t mark[3] = {255, 0, 0};
+    const struct picture_request *request = &live->request;
     uint32_t divide = live->view.divide;
     const float *colour = live->film.pixels[(size_t)y * live->film.width + x].rgb;
-    uint8_t rgb[3];
-    for (int c = 0; c < 3; c++)
-        rgb[c] = red ? (c == 0 ? 255 : 0) : png_write_byte(tone_apply(&tone, (double)colour[c]));
+    size_t first = 0;
+    bool begun = false;
     for (uint32_t v = y * divide; v < (y + 1) * divide && v < request->height; v++) {
-        for (uint32_t u = x * divide; u < (x + 1) * divide && u < request->width; u++)
-            memcpy(live->canvas + 3 * ((size_t)v * request->width + u), rgb, 3);
+        for (uint32_t u = x * divide; u < (x + 1) * divide && u < request->width; u++) {
+            size_t pixel = (size_t)v * request->width + u;
+            if (red) {
+                memcpy(live->canvas + 3 * pixel, mark, 3);
+                continue;
+            }
+            memcpy(live->light + 3 * pixel, colour, 3 * sizeof *colour);
+            if (!begun)
+                tone_pixel(live, tone, first = pixel);
+            else
+                memcpy(live->canvas + 3 * pixel, live->canvas + 3 * first, 3);
+            begun = true;
+        }
     }
 }
 
 /* Tiles that are finished, and in those under way the pixels that are being sampled again, in red. */
 void live_draw_tiles(struct live *live) {
     const struct film *film = &live->film;
+    struct tone tone = tone_of(live);
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
         uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_acquire);
         bool done = state == FILM_TILE_DONE, under_way = state == FILM_TILE_TAKEN && !live->view.plain;
@@ -67,7 +97,7 @@ void live_draw_tiles(struct live *live) {
             for (uint32_t x = r.x0 - film->x0; x < r.x1 - film->x0; x++) {
                 bool red = film->marked[(size_t)y * film->width + x] == FILM_MARK_WAITS;
                 if (done || red)
-                    draw_pixel(live, x, y, red && !done);
+                    draw_pixel(live, &tone, x, y, red && !done);
             }
         }
         live->drawn[tile] = done;
@@ -76,11 +106,6 @@ void live_draw_tiles(struct live *live) {
 }
 
 /* Figures. */
-
-struct figures {
-    char state[64], size[48], rays[48], triangles[48], voxels[64], frames[48];
-    double share; /* of the work */
-};
 
 static void count_words(char *out, size_t size, double count, const char *what) {
     const char *unit = count >= 1e9 ? " G" : count >= 1e6 ? " M" : count >= 1e4 ? " k" : " ";
@@ -140,67 +165,6 @@ static void set_title(struct live *live, const struct figures *figures) {
     live->driver->title(live->driver->context, live->message[0] != '\0' ? live->message : title);
 }
 
-/* Over the picture. */
-
-static void tell_menu(struct live *live) {
-    struct panel *panel = &live->panel;
-    int scale = panel->paper.scale, x = 2 * scale, y = 2 * scale;
-    panel_ground(panel, 0, 0, panel->paper.width, 15 * scale);
-    static const char *const words[] = {"Render", "Quit", "Save picture", "Save view", "Hide"};
-    bool used[5] = {false};
-    for (int i = 0; i < 5; i++) {
-        int width = panel_button_width(panel, words[i]);
-        if (x + width > panel->paper.width)
-            break;
-        used[i] = panel_button(panel, x, y, words[i], false);
-        x += width + 2 * scale;
-    }
-    if (used[0])
-        live->again = live->moved = true;
-    live->quit = live->quit || used[1];
-    if (used[2] || used[3])
-        live->wish = used[2] ? LIVE_SAVE : LIVE_RECORD;
-    live->bare = live->bare || used[4];
-}
-
-static void tell_figures(struct live *live, const struct figures *figures) {
-    struct panel *panel = &live->panel;
-    int scale = panel->paper.scale, line = panel_line_height(panel), y = 17 * scale, x = 2 * scale;
-    const char *const rows[] = {figures->rays, figures->triangles, figures->voxels, figures->frames};
-    int count = panel->paper.height >= 24 * line ? 4 : 0, width = 30 * PAPER_CELL * scale;
-    panel_ground(panel, 0, 15 * scale, width, (count + 1) * line + 3 * scale);
-    panel_bar(panel, x, y, 8 * PAPER_CELL * scale, figures->share);
-    panel_text(panel, x + 9 * PAPER_CELL * scale, y, figures->state);
-    for (int i = 0; i < count; i++)
-        panel_text(panel, x, y + (i + 1) * line, rows[i]);
-}
-
-/* What went wrong, broken into lines at the bottom. */
-static void tell_message(struct live *live) {
-    struct panel *panel = &live->panel;
-    int scale = panel->paper.scale, line = panel_line_height(panel);
-    int columns = (panel->paper.width - 4 * scale) / (PAPER_CELL * scale), length = (int)strlen(live->message);
-    if (length == 0 || columns < 8)
-        return;
-    int rows = (length + columns - 1) / columns, top = panel->paper.height - rows * line - 3 * scale;
-    panel_ground(panel, 0, top, panel->paper.width, rows * line + 3 * scale);
-    for (int i = 0; i < rows; i++) {
-        char text[512];
-        (void)snprintf(text, sizeof text, "%.*s", columns, live->message + i * columns);
-        panel_warning(panel, 2 * scale, top + 2 * scale + i * line, text);
-    }
-}
-
-static void tell_over(struct live *live, const struct figures *figures) {
-    panel_begin(&live->panel);
-    if (!live->bare) {
-        tell_menu(live);
-        tell_figures(live, figures);
-    }
-    tell_message(live);
-    panel_end(&live->panel);
-}
-
 void live_show(struct live *live, double now) {
     const struct window_driver *driver = live->driver;
     bool due = now - live->told >= figures_pause;
@@ -210,7 +174,7 @@ void live_show(struct live *live, double now) {
     if (over) {
         struct figures figures;
         work_out(live, &figures);
-        tell_over(live, &figures);
+        live_tell_over(live, &figures);
         if (due)
             set_title(live, &figures);
         live->told = due ? now : live->told;

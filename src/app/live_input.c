@@ -77,6 +77,14 @@ static bool take_plain_key(struct live *live, int key) {
     case 's':
         live->wish = LIVE_SAVE;
         return true;
+    case 'c':
+        live->wish = LIVE_CHANGES;
+        return true;
+    case '+':
+    case '=':
+    case '-':
+        live_expose(live, live->request.exposure + (key == '-' ? -0.25 : 0.25));
+        return true;
     case 'f':
         live->driver->full_screen(live->driver->context);
         return true;
@@ -89,11 +97,54 @@ static bool take_plain_key(struct live *live, int key) {
     }
 }
 
+static void choose_tool(struct live *live, enum live_tool tool) {
+    live->tool = live->tool == tool ? TOOL_NONE : tool;
+    live->joins = false;
+    live->over_dirty = true;
+}
+
+/* True: it was one of those that change the scene. */
+static bool take_edit_key(struct live *live, const struct window_event *event) {
+    switch (event->key) {
+    case 'z':
+        if (event->control)
+            live_undo(live, event->shift);
+        else
+            choose_tool(live, TOOL_SIZE);
+        return true;
+    case 'y':
+        if (event->control)
+            live_undo(live, true);
+        return event->control;
+    case 'm':
+        choose_tool(live, TOOL_MOVE);
+        return true;
+    case 't':
+        choose_tool(live, TOOL_TURN);
+        return true;
+    case WINDOW_DELETE:
+        live_delete(live);
+        return true;
+    case WINDOW_PAGE_UP:
+        live_select_parent(live);
+        return true;
+    case WINDOW_ESCAPE:
+        if (live->grabbed)
+            return false;
+        live->selection.kind = SELECTED_NOTHING;
+        live->tool = TOOL_NONE;
+        live->over_dirty = true;
+        return true;
+    default:
+        return false;
+    }
+}
+
 static void take_key(struct live *live, const struct window_event *event) {
     /* Without a scene there is nowhere to walk to. */
     if (live->block && take_held_key(live, event->key, event->down))
         return;
-    if (!event->down || take_plain_key(live, event->key) || !live->block)
+    if (!event->down || take_plain_key(live, event->key) || !live->block || take_edit_key(live, event))
         return;
     switch (event->key) {
     case 'r':
@@ -117,13 +168,25 @@ static void take_key(struct live *live, const struct window_event *event) {
     }
 }
 
+/* A little way is still a click. */
+static bool is_drag(struct live *live) {
+    double x = live->panel.mouse_x - live->press_x, y = live->panel.mouse_y - live->press_y;
+    double limit = 3 * live->place.density;
+    live->dragged = live->dragged || x * x + y * y > limit * limit;
+    return live->dragged;
+}
+
 static void take_motion(struct live *live, const struct window_event *event) {
     double x = event->dx / live->place.shown_height, y = event->dy / live->place.shown_height;
     live->panel.mouse_x = event->x;
     live->panel.mouse_y = event->y;
     live->over_dirty = live->over_dirty || !live->grabbed;
-    if (!live->block || (!live->grabbed && !live->turning))
+    if (!live->block || (!live->grabbed && !(live->pressed && is_drag(live))))
         return;
+    if (!live->grabbed && live->tool != TOOL_NONE && live->selection.kind != SELECTED_NOTHING) {
+        live_drag(live, event->dx, event->dy);
+        return;
+    }
     if (live->grabbed)
         walk_look(&live->walk, x, y);
     else
@@ -131,24 +194,48 @@ static void take_motion(struct live *live, const struct window_event *event) {
     live_change_view(live);
 }
 
+static void press_picture(struct live *live, const struct window_event *event) {
+    if (event->button == WINDOW_RIGHT)
+        grab(live, !live->grabbed);
+    if (event->button != WINDOW_LEFT || live->grabbed)
+        return;
+    live->pressed = true;
+    live->dragged = live->joins = false;
+    live->press_x = event->x;
+    live->press_y = event->y;
+}
+
 static void take_button(struct live *live, const struct window_event *event, bool down) {
     struct panel *panel = &live->panel;
-    panel->mouse_x = event->x;
-    panel->mouse_y = event->y;
+    bool covered = panel_covers(panel, event->x, event->y);
+    if (!live->grabbed) {
+        panel->mouse_x = event->x;
+        panel->mouse_y = event->y;
+    }
     live->over_dirty = true;
     if (event->button == WINDOW_LEFT && !live->grabbed) {
         panel->down = down;
-        panel->pressed = panel->pressed || down;
+        panel->pressed = panel->pressed || (down && covered);
         panel->released = panel->released || !down;
     }
-    if (!down && event->button == live->turning)
-        live->turning = 0;
-    if (!down || panel_covers(panel, event->x, event->y) || !live->block)
+    if (!down && event->button == WINDOW_LEFT && live->pressed) {
+        live->pressed = false;
+        if (live->block && !is_drag(live))
+            live_click(live, event->x, event->y);
+    }
+    if (down && !covered && live->block)
+        press_picture(live, event);
+}
+
+static void take_wheel(struct live *live, double steps) {
+    if (!live->block)
         return;
-    if (event->button == WINDOW_RIGHT)
-        grab(live, !live->grabbed);
-    else if (event->button == WINDOW_LEFT && !live->grabbed)
-        live->turning = WINDOW_LEFT;
+    if (live->tool == TOOL_MOVE && live->selection.kind != SELECTED_NOTHING && !live->grabbed) {
+        live_push(live, steps);
+        return;
+    }
+    walk_zoom(&live->walk, steps);
+    live_change_view(live);
 }
 
 void live_take_event(struct live *live, const struct window_event *event) {
@@ -163,10 +250,7 @@ void live_take_event(struct live *live, const struct window_event *event) {
         take_motion(live, event);
         return;
     case WINDOW_WHEEL:
-        if (!live->block)
-            return;
-        walk_zoom(&live->walk, event->y);
-        live_change_view(live);
+        take_wheel(live, event->y);
         return;
     case WINDOW_PRESS:
     case WINDOW_RELEASE:
@@ -174,7 +258,7 @@ void live_take_event(struct live *live, const struct window_event *event) {
         return;
     case WINDOW_LEAVE:
         memset(live->walk.down, 0, sizeof live->walk.down);
-        live->turning = 0;
+        live->pressed = false;
         live->panel.held = 0;
         return;
     case WINDOW_SIZE:

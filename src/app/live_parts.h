@@ -3,15 +3,51 @@
 #define GRAY_APP_LIVE_PARTS_H
 
 #include "app/live.h"
+#include "render/camera.h"
 
 /* live_input.c */
 void live_take_event(struct live *live, const struct window_event *event);
 void live_change_view(struct live *live); /* the camera was moved */
 
+/* live_edit.c */
+/* A click on the picture, at pixels of the window: a light that shows there is selected, else the child is asked. */
+void live_click(struct live *live, double x, double y);
+void live_take_picked(struct live *live, const struct picked *picked);
+void live_select_parent(struct live *live);
+void live_drag(struct live *live, double dx, double dy); /* with the tool, by pixels of the window */
+void live_push(struct live *live, double steps);         /* what is selected goes away from the camera, or nearer */
+void live_make(struct live *live, const struct change *change, bool present, bool join);
+void live_undo(struct live *live, bool again);
+void live_delete(struct live *live);
+void live_add(struct live *live, enum added_kind kind);
+void live_add_light(struct live *live);
+void live_colour(struct live *live, struct vec3 colour); /* of the material that was hit */
+void live_brighten(struct live *live, double stops);     /* the light, to so many above the script's */
+void live_expose(struct live *live, double stops);
+/* The child is told everything anew. */
+void live_resend(struct live *live);
+/* What holds now. */
+struct vec3 live_colour_now(const struct live *live);
+double live_stops_now(const struct live *live);
+/* A place on what is selected, as it was when it was picked: where it is now. */
+struct vec3 live_moved_point(const struct live *live, struct vec3 point);
+/* The camera of the last pass; false: it cannot be. */
+bool live_frame(const struct live *live, struct camera_frame *frame);
+/* From a place in the world to pixels of the window; false: it is not to be seen. */
+bool live_project(const struct live *live, const struct camera_frame *frame, struct vec3 point, double *x, double *y);
+
 /* live_draw.c */
+struct figures {
+    char state[64], size[48], rays[48], triangles[48], voxels[64], frames[48];
+    double share; /* of the work */
+};
 void live_draw_tiles(struct live *live); /* film to canvas */
+void live_redraw(struct live *live);     /* the canvas, in another exposure */
 void live_show(struct live *live, double now);
 /* Where the picture goes when the window has so many pixels. False: no memory for what is drawn over it. */
 bool live_resize(struct live *live, int width, int height, double density);
+
+/* live_over.c: what lies over the picture, and what people do there. */
+void live_tell_over(struct live *live, const struct figures *figures);
 
 #endif

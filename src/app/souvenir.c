@@ -9,11 +9,11 @@
 
 enum { NAME = 4096, NUMBERS = 10000 };
 
-static bool free_name(const char *picture, const char *extension, char *name, struct error *error) {
+static bool free_name(const char *picture, const char *what, const char *extension, char *name, struct error *error) {
     const char *slash = strrchr(picture, '/'), *dot = strrchr(picture, '.');
     size_t stem = dot && (!slash || dot > slash + 1) && dot != picture ? (size_t)(dot - picture) : strlen(picture);
     for (int i = 1; i < NUMBERS; i++) {
-        int length = snprintf(name, NAME, "%.*s-view%d.%s", (int)stem, picture, i, extension);
+        int length = snprintf(name, NAME, "%.*s%s%d.%s", (int)stem, picture, what, i, extension);
         if (length < NAME && !file_is_regular(name) && !file_is_folder(name))
             return true;
     }
@@ -27,24 +27,51 @@ static void row(void *context, uint32_t y, uint8_t *line) {
 }
 
 bool souvenir_picture(const struct live *live, const char *picture_name, char *name, struct error *error) {
-    return free_name(picture_name, "png", name, error) &&
+    return free_name(picture_name, "-view", "png", name, error) &&
            png_write(name, live->request.width, live->request.height, row, (void *)(uintptr_t)live, error);
+}
+
+struct written {
+    struct file_output file;
+    struct error *error;
+};
+
+static bool put_line(void *context, const char *line) {
+    struct written *written = context;
+    return file_output_write(&written->file, line, strlen(line), written->error);
+}
+
+static bool end_file(struct written *written, bool ok) {
+    if (ok)
+        return file_output_commit(&written->file, written->error);
+    file_output_abandon(&written->file);
+    return false;
 }
 
 bool souvenir_camera(const struct live *live, const char *picture_name, char *name, struct error *error) {
     struct camera c = live->flown ? walk_camera(&live->walk) : live->request.camera;
-    struct file_output file;
+    struct written written = {.error = error};
     char text[1024];
-    int length =
-        snprintf(text, sizeof text,
-                 "-- A camera found by walking: local camera = dofile('...'), then eye = camera.eye and so on.\n"
-                 "return {\n  eye = {%.17g, %.17g, %.17g},\n  view = {%.17g, %.17g, %.17g},\n"
-                 "  up = {%.17g, %.17g, %.17g},\n  fov = %.17g,\n}\n",
-                 c.eye.x, c.eye.y, c.eye.z, c.view.x, c.view.y, c.view.z, c.up.x, c.up.y, c.up.z, c.fov);
-    if (!free_name(picture_name, "lua", name, error) || !file_output_open(&file, name, error))
+    (void)snprintf(text, sizeof text,
+                   "-- A camera found by walking: local camera = dofile('...'), then eye = camera.eye and so on.\n"
+                   "return {\n  eye = {%.17g, %.17g, %.17g},\n  view = {%.17g, %.17g, %.17g},\n"
+                   "  up = {%.17g, %.17g, %.17g},\n  fov = %.17g,\n}\n",
+                   c.eye.x, c.eye.y, c.eye.z, c.view.x, c.view.y, c.view.z, c.up.x, c.up.y, c.up.z, c.fov);
+    return free_name(picture_name, "-view", "lua", name, error) && file_output_open(&written.file, name, error) &&
+           end_file(&written, put_line(&written, text));
+}
+
+bool souvenir_changes(const struct live *live, const char *picture_name, char *name, struct error *error) {
+    static const char head[] =
+        "-- What was changed in the window. The scene shows the same when it says, before gr.render, require and the\n"
+        "-- name of this file without .lua.\n";
+    struct camera camera = walk_camera(&live->walk);
+    double exposure = live->request.exposure;
+    bool exposed = exposure < live->script_exposure || exposure > live->script_exposure;
+    struct written written = {.error = error};
+    if (!free_name(picture_name, "-changes", "lua", name, error) || !file_output_open(&written.file, name, error))
         return false;
-    if (file_output_write(&file, text, (size_t)length, error))
-        return file_output_commit(&file, error);
-    file_output_abandon(&file);
-    return false;
+    return end_file(&written, put_line(&written, head) &&
+                                  edits_tell(&live->edits.now, live->request.file, live->flown ? &camera : NULL,
+                                             exposed ? &exposure : NULL, put_line, &written));
 }

@@ -8,5 +8,8 @@
  * into `name` (4096 bytes). The Lua file gives back a table of eye, view, up and fov with every digit. */
 bool souvenir_picture(const struct live *live, const char *picture_name, char *name, struct error *error);
 bool souvenir_camera(const struct live *live, const char *picture_name, char *name, struct error *error);
+/* dir/foo-changes1.lua: required by the scene, it gives the picture the camera, the exposure and all that was changed.
+ */
+bool souvenir_changes(const struct live *live, const char *picture_name, char *name, struct error *error);
 
 #endif

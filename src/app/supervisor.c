@@ -276,13 +276,15 @@ static void answer_begin(struct supervisor *supervisor, const struct frame *fram
     send_answer(supervisor, FRAME_FILM, ok, already, &error, film ? desk->current.memory.descriptor : -1);
 }
 
-static void answer_pass(struct supervisor *supervisor, bool ok, bool again) {
-    struct frame_answer answer = {.ok = ok, .again = again, .view = supervisor->live.view};
-    if (!ok)
-        error_set(&answer.error, ERROR_CANCELLED, "the window was closed");
+static void send_order(struct supervisor *supervisor, const struct studio_order *order) {
     supervisor->live.waiting = false;
-    if (!channel_send(&supervisor->channel, FRAME_ANSWER, &answer, sizeof answer, -1))
+    if (!channel_send(&supervisor->channel, FRAME_ORDER, order, sizeof *order, -1))
         supervisor->broken = true;
+}
+
+static void end_picture(struct supervisor *supervisor, bool quit) {
+    const struct studio_order order = {.kind = ORDER_END, .quit = quit};
+    send_order(supervisor, &order);
 }
 
 /* No picture is lost by closing the window: it is there already, or people did not wait for it. */
@@ -296,7 +298,7 @@ static void quit_window(struct supervisor *supervisor) {
     if (!supervisor->live.written)
         note_status(supervisor, ERROR_CANCELLED);
     if (supervisor->live.waiting)
-        answer_pass(supervisor, false, false);
+        end_picture(supervisor, true);
 }
 
 /* The scripts are ended, to run again: what they read has changed. */
@@ -308,7 +310,7 @@ static void restart(struct supervisor *supervisor) {
     atomic_store(&supervisor->control->cancel, CANCEL_ALL);
     live_keep(&supervisor->live);
     if (supervisor->live.waiting)
-        answer_pass(supervisor, false, false);
+        end_picture(supervisor, true);
 }
 
 static void take_home(struct supervisor *supervisor, bool (*take)(const struct live *live, const char *picture_name,
@@ -331,8 +333,8 @@ static void step_window(struct supervisor *supervisor) {
         case LIVE_STOP:
             (void)atomic_compare_exchange_strong(&supervisor->control->cancel, &nothing, CANCEL_PASS);
             return;
-        case LIVE_VIEW:
-            answer_pass(supervisor, true, true);
+        case LIVE_ORDER:
+            send_order(supervisor, &live->order);
             break;
         case LIVE_WRITE:
             if (!desk_write(&supervisor->desk, &error))
@@ -344,8 +346,11 @@ static void step_window(struct supervisor *supervisor) {
         case LIVE_RECORD:
             take_home(supervisor, souvenir_camera);
             break;
+        case LIVE_CHANGES:
+            take_home(supervisor, souvenir_changes);
+            break;
         case LIVE_NEXT:
-            answer_pass(supervisor, true, false);
+            end_picture(supervisor, false);
             return;
         case LIVE_QUIT:
             quit_window(supervisor);
@@ -413,12 +418,12 @@ static void take_frame(struct supervisor *supervisor, const struct frame *frame)
         script_goes_on(supervisor);
         answer_done(supervisor, frame);
         return;
-    case FRAME_PASS:
-        if (!current->open || !supervisor->window || !supervisor->live.running)
+    case FRAME_NEWS:
+        if (!current->open || !supervisor->window || supervisor->live.waiting)
             break;
-        live_pass_ended(&supervisor->live, &frame->body.report, progress_clock());
+        live_take_news(&supervisor->live, &frame->body.news, progress_clock());
         if (supervisor->deadline > 0)
-            answer_pass(supervisor, false, false);
+            end_picture(supervisor, true);
         return;
     case FRAME_ABANDON:
         if (!current->open)
@@ -441,6 +446,7 @@ static void take_frame(struct supervisor *supervisor, const struct frame *frame)
         return;
     case FRAME_FILM:
     case FRAME_ANSWER:
+    case FRAME_ORDER:
         break;
     }
     supervisor->broken = true;

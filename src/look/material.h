@@ -42,6 +42,8 @@ struct material {
     enum material_kind kind;
     const struct material *base; /* NULL for MATERIAL_PHONG */
     int depth;                   /* 1 for a base */
+    uint32_t serial;             /* order of creation in a scene, from 1; 0: of no scene */
+    struct material *older;      /* the one created before it, or NULL */
     const char *name;            /* for messages; may be NULL */
     union {
         struct {

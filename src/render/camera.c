@@ -189,3 +189,41 @@ bool camera_ray_through(const struct camera_frame *frame, double x, double y, st
     }
     return true;
 }
+
+bool camera_project(const struct camera_frame *frame, struct vec3 point, double *x, double *y) {
+    const struct lens *lens = &frame->lens;
+    const double pi = 3.14159265358979323846;
+    struct vec3 to = vec3_sub(point, frame->eye);
+    double ahead = vec3_dot(to, frame->forward), right = vec3_dot(to, frame->unit_right),
+           down = vec3_dot(to, frame->unit_down), pixel = vec3_length(frame->right);
+    double across = sqrt(right * right + down * down), distance = sqrt(across * across + ahead * ahead);
+    switch (lens->projection) {
+    case PROJECTION_PERSPECTIVE:
+        if (!(ahead > 0))
+            return false;
+        *x = frame->width / 2 + right / (ahead * pixel);
+        *y = frame->height / 2 + down / (ahead * pixel);
+        break;
+    case PROJECTION_ORTHOGRAPHIC:
+        *x = frame->width / 2 + right / pixel;
+        *y = frame->height / 2 + down / pixel;
+        break;
+    case PROJECTION_FISHEYE: {
+        double angle = el_atan2(across, ahead), r = angle / frame->radian * (frame->height / 2);
+        *x = frame->width / 2 + (across > 0 ? r * right / across : 0);
+        *y = frame->height / 2 + (across > 0 ? r * down / across : 0);
+        if (angle > frame->radian)
+            return false;
+        break;
+    }
+    case PROJECTION_PANORAMA:
+        if (!(distance > 0))
+            return false;
+        *x = (el_atan2(right, ahead) / (2 * pi) + 0.5) * frame->width;
+        *y = (el_atan2(down, sqrt(right * right + ahead * ahead)) / pi + 0.5) * frame->height;
+        break;
+    }
+    *x -= lens->shift_x * frame->width;
+    *y += lens->shift_y * frame->height;
+    return true;
+}

@@ -47,5 +47,8 @@ static inline bool camera_spreads(const struct camera_frame *frame) {
  * has it (by halves side by side, else the middle). False: nothing is shown there. */
 bool camera_ray_through(const struct camera_frame *frame, double x, double y, struct sample2 place, int eye,
                         struct ray *out);
+/* Where a point of the world is in the picture, as a pinhole sees it: the way back from camera_ray_through. Of a stereo
+ * pair the middle between the eyes is told. False: nowhere. */
+bool camera_project(const struct camera_frame *frame, struct vec3 point, double *x, double *y);
 
 #endif

@@ -135,5 +135,8 @@ struct material *scene_material(struct scene *scene, enum material_kind kind, co
     material->kind = kind;
     material->base = base;
     material->depth = depth;
+    material->serial = ++scene->material_count;
+    material->older = scene->last_material;
+    scene->last_material = material;
     return material;
 }

@@ -102,12 +102,23 @@ bool assets_add_object(struct assets *assets, const char *key, void *object, voi
 /* A mesh that something in the store owns is counted with the others. The store becomes one more owner. */
 bool assets_keep_mesh(struct assets *assets, struct mesh *mesh, struct error *error);
 
+/* A node that a change adds (scene/change.h), kept for the next time. */
+struct added_node {
+    uint32_t number;
+    int kind;
+    const struct node *source; /* of a copy */
+    struct node *node;
+    struct added_node *next;
+};
+
 enum { SCENE_NAMES = 64 };
 struct scene {
     struct arena arena;
     const char *names[SCENE_NAMES]; /* names of nodes made lately, by hash: most are used again */
     struct assets *assets;          /* not owned */
-    uint32_t node_count;
+    uint32_t node_count, material_count;
+    struct added_node *added;
+    struct material *last_material; /* they are linked from the newest to the oldest */
     enum transform_order order;
 };
 void scene_init(struct scene *scene, struct assets *assets);

@@ -301,8 +301,12 @@ bool act_render(struct context *context, const struct value *args, struct result
         !apply_motion(args, &request.settings, &request.camera, error) ||
         !choose_sky(context, args, &request.sky, error))
         return false;
+    struct changed_scene changed;
+    if (!changes_begin(context, &request, &changed, error))
+        return false;
     limits_pause(context);
     bool done = context->host->render(context->host->context, &request, error);
     limits_resume(context);
+    changes_take_off(&changed);
     return done;
 }

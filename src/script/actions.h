@@ -20,6 +20,19 @@ action act_node, act_instances, act_joint, act_sphere, act_cube, act_geometry, a
     act_intersection;
 action act_inverse, act_clipped_by, act_bounded_by, act_transform_order;
 
+/* act_changes.c */
+enum { CHANGENODE_NAME, CHANGENODE_SERIAL, CHANGENODE_MATRIX, CHANGENODE_COUNT };
+enum { CHANGEGONE_NAME, CHANGEGONE_SERIAL, CHANGEGONE_COUNT };
+enum { CHANGEADD_NAME, CHANGEADD_SERIAL, CHANGEADD_SHAPE, CHANGEADD_COLOUR, CHANGEADD_SOURCE, CHANGEADD_COUNT };
+enum { CHANGEMATERIAL_SERIAL, CHANGEMATERIAL_COLOUR, CHANGEMATERIAL_COUNT };
+enum { CHANGELIGHT_NUMBER, CHANGELIGHT_MOVE, CHANGELIGHT_FACTOR, CHANGELIGHT_COUNT };
+enum { CHANGEDARK_NUMBER, CHANGEDARK_COUNT };
+enum { CHANGENEWLIGHT_POSITION, CHANGENEWLIGHT_COLOUR, CHANGENEWLIGHT_COUNT };
+enum { CHANGEVIEW_PICTURE, CHANGEVIEW_EYE, CHANGEVIEW_VIEW, CHANGEVIEW_UP, CHANGEVIEW_FOV, CHANGEVIEW_COUNT };
+enum { CHANGEEXPOSURE_PICTURE, CHANGEEXPOSURE_STOPS, CHANGEEXPOSURE_COUNT };
+action act_change_node, act_change_delete, act_change_add, act_change_material, act_change_light,
+    act_change_delete_light, act_change_add_light, act_change_view, act_change_exposure;
+
 /* act_shapes.c: each begins with name and material */
 enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_FIRST };
 enum { CYLINDER_FROM = SHAPE_FIRST, CYLINDER_TO, CYLINDER_RADIUS, CYLINDER_OPEN, CYLINDER_COUNT };

@@ -9,6 +9,7 @@
 #define GRAY_SCRIPT_CONTEXT_H
 
 #include "base/reach.h"
+#include "scene/change.h"
 #include "script/script.h"
 #include "script/table.h"
 
@@ -53,6 +54,15 @@ struct limits {
     uint64_t output, output_limit; /* bytes printed and written */
 };
 
+/* gr.change_view and gr.change_exposure: of the picture of that file name. */
+struct changed_view {
+    const char *picture;
+    bool has_camera, has_exposure;
+    struct camera camera;
+    double exposure;
+    struct changed_view *next;
+};
+
 struct context {
     lua_State *lua; /* the thread that called last */
     struct limits limits;
@@ -71,7 +81,11 @@ struct context {
     const struct function *function; /* the one that runs */
     const char *subject;             /* the node it is about, or NULL */
     uint8_t *warned;                 /* WARNED_ bits by row of the table */
-    bool number_repaired;            /* the notice about ".0" was given */
+    struct change *changes;          /* gr.change_node and its like, in order; in `keep` */
+    uint32_t change_count, change_room, added;
+    struct changed_view *views; /* the newest first */
+    bool changes_told;          /* what was left out */
+    bool number_repaired;       /* the notice about ".0" was given */
     struct error fatal;
     bool ended; /* os.exit was called and all is well */
     const char *traceback;
@@ -97,6 +111,10 @@ _Noreturn void context_raise(struct context *context, const char *format, ...) _
 _Noreturn void context_raise_error(struct context *context, const struct error *error);
 _Noreturn void context_raise_fatal(lua_State *L);
 _Noreturn void context_raise_no_memory(struct context *context);
+
+/* act_changes.c: what gr.change_... has said is laid over a picture about to be made, and taken off again. */
+bool changes_begin(struct context *context, struct render_request *request, struct changed_scene *changed,
+                   struct error *error);
 
 /* limits.c */
 void limits_begin(struct context *context);

@@ -46,6 +46,7 @@ struct render_request {
     uint32_t light_count;
     struct sky sky;
     struct settings settings; /* the host's settings with the call's named fields applied */
+    uint32_t added;           /* nodes that gr.change_add has added: those of others are numbered from here on */
     const char *where;        /* "scene.lua:12: gr.render", for messages that do not stop the script */
 };
 

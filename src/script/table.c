@@ -82,6 +82,74 @@ static const struct parameter mesh_parameters[] = {
                              "With faces: for each the number of its entry in materials, from 1."},
 };
 
+#define SERIAL_HELP                                                                                                    \
+    "Which one, by order of creation: the first is 0, what was added in a window counts down from 4294967295."
+#define CHANGED_NAME "Name of the node; a node of another name is not meant."
+#define SERIALS BETWEEN(0, 4294967295.0)
+#define PICTURE_HELP "The picture that it is for, by the name that gr.render gives it."
+
+static const struct parameter change_node_parameters[] = {
+    [CHANGENODE_NAME] = {"name", KIND_TEXT, 0, ANY, NULL, NULL, CHANGED_NAME},
+    [CHANGENODE_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL, SERIAL_HELP},
+    [CHANGENODE_MATRIX] = {"matrix", KIND_NUMBERS, 0, ANY, NULL, NULL,
+                           "Three rows of a matrix, 12 numbers: where it goes from where its own transforms put it, in "
+                           "the space of its parent."},
+};
+
+static const struct parameter change_delete_parameters[] = {
+    [CHANGEGONE_NAME] = {"name", KIND_TEXT, 0, ANY, NULL, NULL, CHANGED_NAME},
+    [CHANGEGONE_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL, SERIAL_HELP},
+};
+
+static const struct parameter change_add_parameters[] = {
+    [CHANGEADD_NAME] = {"name", KIND_TEXT, 0, ANY, NULL, NULL, "Name of the node that it goes under."},
+    [CHANGEADD_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL, SERIAL_HELP},
+    [CHANGEADD_SHAPE] = {"shape", KIND_CHOICE, 0, 0, 0, "sphere cube cylinder cone torus copy", NULL, NULL,
+                         "What is added, of about the size of a ball of radius 1, or a copy of a node."},
+    [CHANGEADD_COLOUR] = {"colour", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0.7, 0.7, 0.7}", "Its colour."},
+    [CHANGEADD_SOURCE] = {"source", KIND_WHOLE, OPTIONAL, SERIALS, NULL, "0",
+                          "For a copy: the node that is shown once more."},
+};
+
+static const struct parameter change_material_parameters[] = {
+    [CHANGEMATERIAL_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL,
+                               "Which one, by order of creation: the first is 1."},
+    [CHANGEMATERIAL_COLOUR] = {"colour", KIND_COLOUR, 0, ANY, NULL, NULL, "The new diffuse colour of its base."},
+};
+
+static const struct parameter change_light_parameters[] = {
+    [CHANGELIGHT_NUMBER] = {"number", KIND_WHOLE, 0, 1, 4294967295.0, NULL, NULL, NULL,
+                            "Its place in the list of gr.render, from 1."},
+    [CHANGELIGHT_MOVE] = {"move", KIND_TRIPLE, 0, ANY, NULL, NULL, "The way it is moved."},
+    [CHANGELIGHT_FACTOR] = {"factor", KIND_TRIPLE, OPTIONAL, ANY, NULL, "{1, 1, 1}",
+                            "What its colour is multiplied by."},
+};
+
+static const struct parameter change_delete_light_parameters[] = {
+    [CHANGEDARK_NUMBER] = {"number", KIND_WHOLE, 0, 1, 4294967295.0, NULL, NULL, NULL,
+                           "Its place in the list of gr.render, from 1."},
+};
+
+static const struct parameter change_add_light_parameters[] = {
+    [CHANGENEWLIGHT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Where it is."},
+    [CHANGENEWLIGHT_COLOUR] = {"colour", KIND_COLOUR, 0, ANY, NULL, NULL, "Its colour."},
+};
+
+static const struct parameter change_view_parameters[] = {
+    [CHANGEVIEW_PICTURE] = {"picture", KIND_TEXT, 0, ANY, NULL, NULL, PICTURE_HELP},
+    [CHANGEVIEW_EYE] = {"eye", KIND_POINT, 0, ANY, NULL, NULL, "Where the camera is."},
+    [CHANGEVIEW_VIEW] = {"view", KIND_DIRECTION, 0, ANY, NULL, NULL, "The direction it looks in."},
+    [CHANGEVIEW_UP] = {"up", KIND_DIRECTION, 0, ANY, NULL, NULL, "What is up in the picture."},
+    [CHANGEVIEW_FOV] = {"fov", KIND_NUMBER, LOW_OPEN | HIGH_OPEN, BETWEEN(0, 180), "degrees", NULL,
+                        "Its full vertical angle."},
+};
+
+static const struct parameter change_exposure_parameters[] = {
+    [CHANGEEXPOSURE_PICTURE] = {"picture", KIND_TEXT, 0, ANY, NULL, NULL, PICTURE_HELP},
+    [CHANGEEXPOSURE_STOPS] = {"stops", KIND_NUMBER, 0, BETWEEN(-100, 100), "stops", NULL,
+                              "Its exposure in the place of what the script says."},
+};
+
 static const struct parameter self_parameters[] = {{"self", KIND_NODE, 0, ANY, NULL, NULL, "The node."}};
 
 static const struct parameter geometry_parameters[] = {
@@ -1041,6 +1109,29 @@ const struct function function_table[] = {
        "Light of one direction from infinitely far away.", "direction colour"),
     GR("spot_light", spot_parameters, RESULT_LIGHT, act_spot_light, "A light at a point that shines into a cone.",
        "position direction colour inner outer falloff?"),
+
+    GR("change_node", change_node_parameters, RESULT_NOTHING, act_change_node,
+       "Moves, turns or scales a node in every picture from here on, as somebody did in a window; the window writes "
+       "such "
+       "calls into a file for require.",
+       "name serial matrix"),
+    GR("change_delete", change_delete_parameters, RESULT_NOTHING, act_change_delete,
+       "Leaves a node and what is under it out of every picture from here on.", "name serial"),
+    GR("change_add", change_add_parameters, RESULT_NOTHING, act_change_add,
+       "Adds a node to every picture from here on; gr.change_node puts it into its place.",
+       "name serial shape colour? source?"),
+    GR("change_material", change_material_parameters, RESULT_NOTHING, act_change_material,
+       "Gives a material another colour in every picture from here on.", "serial colour"),
+    GR("change_light", change_light_parameters, RESULT_NOTHING, act_change_light,
+       "Moves a light of every picture from here on, and makes it brighter or darker.", "number move factor?"),
+    GR("change_delete_light", change_delete_light_parameters, RESULT_NOTHING, act_change_delete_light,
+       "Takes a light away from every picture from here on.", "number"),
+    GR("change_add_light", change_add_light_parameters, RESULT_NOTHING, act_change_add_light,
+       "Adds a point light to every picture from here on.", "position colour"),
+    GR("change_view", change_view_parameters, RESULT_NOTHING, act_change_view, "Gives a picture another camera.",
+       "picture eye view up fov"),
+    GR("change_exposure", change_exposure_parameters, RESULT_NOTHING, act_change_exposure,
+       "Gives a picture another exposure.", "picture stops"),
 
     GR("mesh_light", mesh_light_parameters, RESULT_LIGHT, act_mesh_light,
        "Light from the triangles of a mesh, as bright as they look.", "mesh emission?"),

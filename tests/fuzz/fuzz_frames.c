@@ -14,7 +14,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 static size_t whole_size(uint32_t kind, size_t size) {
     if (kind == FRAME_BEGIN)
         return sizeof(struct picture_request);
-    if (kind == FRAME_DONE || kind == FRAME_PASS)
+    if (kind == FRAME_NEWS)
+        return sizeof(struct studio_news);
+    if (kind == FRAME_DONE)
         return sizeof(struct picture_report);
     if (kind == FRAME_SCRIPT)
         return sizeof(struct frame_script);

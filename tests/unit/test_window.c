@@ -157,6 +157,27 @@ struct table {
     double now;
 };
 
+static enum live_order step(struct table *t) {
+    t->now += 0.02;
+    return live_step(&t->live, t->now);
+}
+
+static void tell_news(struct table *t, const struct studio_news *news) {
+    live_take_news(&t->live, news, t->now);
+}
+
+/* The child has built the world: the first order is the coarsest pass. */
+static void build(struct table *t) {
+    struct studio_news news = {.kind = NEWS_BUILT, .light_count = 1, .world_from_root = affine_identity()};
+    news.report.bounds = (struct box){{-1, -1, -1}, {1, 1, 1}};
+    news.lights[0] = (struct told_light){LIGHT_POINT, true, {0, 1, 0}, {1, 1, 1}};
+    memcpy(news.root_name, "root", 5);
+    tell_news(t, &news);
+    CHECK_EQ_INT(step(t), LIVE_ORDER);
+    CHECK_EQ_INT(t->live.order.kind, ORDER_PASS);
+    CHECK(t->live.view.divide == 16 && t->live.view.plain && t->live.view.own);
+}
+
 static void begin(struct table *t) {
     struct error error;
     size_t bytes;
@@ -172,6 +193,7 @@ static void begin(struct table *t) {
     t->block = mem_alloc_zero(1, bytes);
     CHECK(live_begin(&t->live, &t->driver, &t->request, t->block, "x.png", t->now, &error));
     t->fake.queue[t->fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 400, .y = 280, .density = 1};
+    build(t);
 }
 
 static void end(struct table *t) {
@@ -186,22 +208,17 @@ static void finish_pass(struct table *t, double seconds, bool stopped) {
     t->now += seconds;
     for (uint32_t tile = 0; !stopped && tile < film_tile_count(&t->live.film); tile++)
         atomic_store(&t->live.film.tiles[tile], FILM_TILE_DONE);
-    live_pass_ended(&t->live, &report, t->now);
-}
-
-static enum live_order step(struct table *t) {
-    t->now += 0.02;
-    return live_step(&t->live, t->now);
+    tell_news(t, &(struct studio_news){.kind = NEWS_PASS, .report = report});
 }
 
 /* To the script's picture, whole. */
 static void go_to_the_end(struct table *t) {
     finish_pass(t, 0.02, false);
-    CHECK_EQ_INT(step(t), LIVE_VIEW);
+    CHECK_EQ_INT(step(t), LIVE_ORDER);
     CHECK(t->live.view.plain && t->live.view.divide == 4 && t->live.view.own);
     CHECK_EQ_INT(step(t), LIVE_NOTHING);
     finish_pass(t, 0.1, false);
-    CHECK_EQ_INT(step(t), LIVE_VIEW);
+    CHECK_EQ_INT(step(t), LIVE_ORDER);
     CHECK(!t->live.view.plain && t->live.view.divide == 1 && t->live.view.own);
     finish_pass(t, 1, false);
     CHECK_EQ_INT(step(t), LIVE_WRITE);
@@ -217,12 +234,12 @@ TEST(window_shows_coarse_passes_first_and_writes_the_picture_of_the_script_once)
     go_to_the_end(&t);
     CHECK(t.fake.shown >= 3);
     key(&t.fake, 'r', true);
-    CHECK_EQ_INT(step(&t), LIVE_VIEW);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
     CHECK(t.live.view.divide == 16 && t.live.view.own);
     finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), LIVE_VIEW);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
     finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), LIVE_VIEW);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
     finish_pass(&t, 0.02, false);
     CHECK_EQ_INT(step(&t), LIVE_NOTHING);
     end(&t);
@@ -235,7 +252,7 @@ TEST(window_walks_in_coarse_passes_and_refines_when_still) {
     key(&t.fake, WINDOW_ARROW_UP, true);
     CHECK_EQ_INT(step(&t), LIVE_NOTHING); /* no time has gone by yet */
     for (int i = 0; i < 5; i++) {
-        CHECK_EQ_INT(step(&t), LIVE_VIEW);
+        CHECK_EQ_INT(step(&t), LIVE_ORDER);
         CHECK(t.live.view.plain && t.live.view.divide > 1 && !t.live.view.own);
         CHECK(t.live.view.camera.eye.z < 5);
         CHECK_EQ_INT(step(&t), LIVE_NOTHING); /* a coarse pass is worth its end */
@@ -243,7 +260,7 @@ TEST(window_walks_in_coarse_passes_and_refines_when_still) {
     }
     key(&t.fake, WINDOW_ARROW_UP, false);
     while (t.live.view.plain) {
-        CHECK_EQ_INT(step(&t), LIVE_VIEW);
+        CHECK_EQ_INT(step(&t), LIVE_ORDER);
         finish_pass(&t, 0.03, false);
     }
     CHECK_EQ_INT(step(&t), LIVE_NOTHING); /* where somebody has walked to is not the script's picture */
@@ -254,15 +271,15 @@ TEST(window_stops_a_fine_pass_for_somebody_who_walks_on) {
     struct table t;
     begin(&t);
     finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), LIVE_VIEW);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
     finish_pass(&t, 0.1, false);
-    CHECK_EQ_INT(step(&t), LIVE_VIEW);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
     CHECK(!t.live.view.plain);
     t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_WHEEL, .y = 2};
     CHECK_EQ_INT(step(&t), LIVE_STOP);
     CHECK_EQ_INT(step(&t), LIVE_NOTHING);
     finish_pass(&t, 0.001, true);
-    CHECK_EQ_INT(step(&t), LIVE_VIEW);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
     CHECK(t.live.view.plain && t.live.view.camera.fov < 40);
     end(&t);
 }
@@ -275,7 +292,7 @@ TEST(window_makes_passes_as_coarse_as_thirty_a_second_need) {
     (void)step(&t);
     uint32_t divide = 0;
     for (int i = 0; i < 12; i++) {
-        CHECK_EQ_INT(step(&t), LIVE_VIEW);
+        CHECK_EQ_INT(step(&t), LIVE_ORDER);
         divide = t.live.view.divide;
         finish_pass(&t, 0.8 / (divide * divide), false); /* a scene that takes 0.8 s at one sample a pixel */
     }
@@ -295,7 +312,7 @@ TEST(window_keys_mean_walking_only_while_the_mouse_looks) {
     key(&t.fake, 's', true);
     (void)step(&t);
     CHECK(t.fake.grabbed);
-    CHECK_EQ_INT(step(&t), LIVE_VIEW);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
     CHECK(t.live.view.camera.eye.z > 5);
     key(&t.fake, WINDOW_ESCAPE, true);
     CHECK_EQ_INT(step(&t), LIVE_NOTHING);
@@ -401,8 +418,8 @@ TEST(window_menu_renders_again_and_quits_by_clicks_that_do_not_turn_the_camera) 
     begin(&t);
     go_to_the_end(&t);
     click(&t, 10, 6); /* Render */
-    CHECK_EQ_INT(step(&t), LIVE_VIEW);
-    CHECK(t.live.view.divide == 16 && t.live.view.own && t.live.turning == 0);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    CHECK(t.live.view.divide == 16 && t.live.view.own && !t.live.pressed);
     /* Pressed on a button and let go elsewhere: not used. */
     t.fake.queue[t.fake.count++] = mouse(WINDOW_PRESS, 60, 6);
     CHECK_EQ_INT(step(&t), LIVE_NOTHING);
@@ -444,7 +461,7 @@ TEST(window_tells_how_far_building_is_and_what_went_wrong) {
     CHECK(strstr(t.fake.title, "building, step 3: 25 %") != NULL);
     control.build_step = 0;
     finish_pass(&t, 1, false);
-    CHECK_EQ_INT(step(&t), LIVE_VIEW);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
     CHECK(strstr(t.fake.title, "triangles") && strstr(t.fake.title, "rays/s") && strstr(t.fake.title, "frames/s"));
     live_tell(&t.live, "scene.lua:3: no such thing\nstack traceback");
     (void)step(&t);
@@ -513,4 +530,264 @@ TEST(panel_sliders_follow_the_mouse_that_holds_them_and_stop_at_their_ends) {
     panel_begin(&panel);
     CHECK(!panel_slider(&panel, 10, 2, 80, 0, 1, ink, &value));
     panel_end(&panel);
+}
+
+/* Editing. */
+
+static const struct picked a_ball = {
+    .hit = true,
+    .path = "root#0 / ball#2",
+    .name = "ball",
+    .shape = "sphere",
+    .material = "phong",
+    .serial = 2,
+    .levels = 1,
+    .material_serial = 1,
+    .kd = {0.5, 0.5, 0.5},
+    .distance = 4,
+    .position = {0, 0, 1},
+    .has_box = true,
+    .corners = {{-1, -1, -1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {-1, 1, 1}, {1, 1, 1}},
+    .world_from_parent = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}};
+
+/* So large that what is told about a selection leaves the middle free. */
+static void enlarge(struct table *t) {
+    t->fake.queue[t->fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 800, .y = 560, .density = 1};
+}
+
+/* Clicks into the middle of the picture, and lets the child answer. */
+static void pick_ball(struct table *t) {
+    click(t, 400, 280);
+    CHECK_EQ_INT(step(t), LIVE_ORDER);
+    CHECK_EQ_INT(t->live.order.kind, ORDER_PICK);
+    CHECK(t->live.order.x == 50.5 && t->live.order.y == 35.5 && t->live.order.up == 0);
+    tell_news(t, &(struct studio_news){.kind = NEWS_PICKED, .picked = a_ball});
+    CHECK_EQ_INT(step(t), LIVE_NOTHING); /* the finished picture stays */
+    CHECK(t->live.selection.kind == SELECTED_NODE && t->live.complete);
+}
+
+static void drag(struct table *t, double dx, double dy) {
+    t->fake.queue[t->fake.count++] = mouse(WINDOW_PRESS, 400, 280);
+    for (int i = 1; i <= 2; i++) {
+        struct window_event event = mouse(WINDOW_MOVE, 400 + dx * i / 2, 280 + dy * i / 2);
+        event.dx = dx / 2;
+        event.dy = dy / 2;
+        t->fake.queue[t->fake.count++] = event;
+    }
+    t->fake.queue[t->fake.count++] = mouse(WINDOW_RELEASE, 400 + dx, 280 + dy);
+}
+
+static void take_change(struct table *t) {
+    CHECK_EQ_INT(step(t), LIVE_ORDER);
+    CHECK_EQ_INT(t->live.order.kind, ORDER_CHANGE);
+    struct studio_news news = {.kind = NEWS_CHANGED, .light_count = 1};
+    news.lights[0] = (struct told_light){LIGHT_POINT, true, {0, 1, 0}, {1, 1, 1}};
+    tell_news(t, &news);
+}
+
+/* The passes after a change, to the finest. */
+static void refine(struct table *t) {
+    do {
+        CHECK_EQ_INT(step(t), LIVE_ORDER);
+        CHECK_EQ_INT(t->live.order.kind, ORDER_PASS);
+        finish_pass(t, 0.02, false);
+    } while (t->live.view.plain);
+    CHECK_EQ_INT(step(t), LIVE_NOTHING);
+}
+
+TEST(window_clicks_ask_what_stands_there_and_orbits_go_round_it) {
+    struct table t;
+    begin(&t);
+    enlarge(&t);
+    go_to_the_end(&t);
+    pick_ball(&t);
+    CHECK(apart(t.live.walk.centre, vec3_make(0, 0, 1)) == 0);
+    struct vec3 before = t.live.walk.pose.place;
+    drag(&t, 40, 10);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    CHECK(t.live.flown && apart(t.live.walk.pose.place, before) > 0.1);
+    CHECK_NEAR(apart(t.live.walk.pose.place, vec3_make(0, 0, 1)), apart(before, vec3_make(0, 0, 1)), 1e-9);
+    end(&t);
+}
+
+TEST(window_that_is_asked_during_a_fine_pass_goes_on_with_it) {
+    struct table t;
+    begin(&t);
+    enlarge(&t);
+    finish_pass(&t, 0.02, false);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    finish_pass(&t, 0.02, false);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    CHECK(!t.live.view.plain);
+    atomic_store(&t.live.film.tiles[1], FILM_TILE_DONE);
+    atomic_store(&t.live.film.tiles[2], FILM_TILE_TAKEN);
+    click(&t, 400, 280);
+    CHECK_EQ_INT(step(&t), LIVE_STOP);
+    finish_pass(&t, 0.001, true);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    CHECK_EQ_INT(t.live.order.kind, ORDER_PICK);
+    tell_news(&t, &(struct studio_news){.kind = NEWS_PICKED, .picked = a_ball});
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    CHECK(t.live.order.kind == ORDER_PASS && !t.live.order.view.plain);
+    CHECK_EQ_INT(atomic_load(&t.live.film.tiles[1]), FILM_TILE_DONE);
+    CHECK_EQ_INT(atomic_load(&t.live.film.tiles[2]), FILM_TILE_WANTED);
+    end(&t);
+}
+
+TEST(window_moves_what_is_picked_by_the_way_of_the_mouse_and_undoes_it) {
+    struct table t;
+    begin(&t);
+    enlarge(&t);
+    go_to_the_end(&t);
+    pick_ball(&t);
+    key(&t.fake, 'm', true);
+    drag(&t, 40, -20);
+    take_change(&t);
+    const struct change *change = &t.live.order.change;
+    CHECK(change->kind == CHANGE_PLACE && change->serial == 2 && t.live.order.present);
+    CHECK_TEXT(change->name, "ball");
+    /* The middle of the box is 5 from the eye; 560 pixels show 2 x 5 x tan 20 degrees there. */
+    double pixel = 2 * 5 * tan(20 * M_PI / 180) / 560;
+    CHECK_NEAR(change->numbers[3], 40 * pixel, 1e-9);
+    CHECK_NEAR(change->numbers[7], 20 * pixel, 1e-9);
+    CHECK_NEAR(change->numbers[11], 0, 1e-9);
+    CHECK(change->numbers[0] == 1 && t.live.edits.count == 1);
+    refine(&t);
+    CHECK(t.live.edited && !t.live.flown);
+    t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_KEY, .key = 'z', .down = true, .control = true};
+    take_change(&t);
+    CHECK(!t.live.order.present && t.live.edits.now.count == 0);
+    refine(&t);
+    t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_KEY, .key = 'y', .down = true, .control = true};
+    take_change(&t);
+    CHECK(t.live.order.present && t.live.order.change.numbers[3] > 0);
+    end(&t);
+}
+
+TEST(window_turns_and_sizes_about_the_middle_of_what_is_picked) {
+    struct table t;
+    begin(&t);
+    enlarge(&t);
+    go_to_the_end(&t);
+    pick_ball(&t);
+    key(&t.fake, 't', true);
+    drag(&t, 560, 0); /* the height of the picture: half a turn */
+    take_change(&t);
+    const double *m = t.live.order.change.numbers;
+    const double half_turn[12] = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0};
+    for (int i = 0; i < 12; i++)
+        CHECK_NEAR(m[i], half_turn[i], 1e-9);
+    refine(&t);
+    key(&t.fake, 'z', true);
+    drag(&t, 0, -280);
+    take_change(&t);
+    CHECK_NEAR(t.live.order.change.numbers[0], -exp(1), 1e-9);
+    CHECK_NEAR(t.live.order.change.numbers[5], exp(1), 1e-9);
+    CHECK_EQ_INT(t.live.edits.count, 2);
+    end(&t);
+}
+
+TEST(window_deletes_and_adds_nodes_and_lights) {
+    struct table t;
+    begin(&t);
+    enlarge(&t);
+    go_to_the_end(&t);
+    pick_ball(&t);
+    key(&t.fake, WINDOW_DELETE, true);
+    take_change(&t);
+    CHECK(t.live.order.change.kind == CHANGE_GONE && t.live.selection.kind == SELECTED_NOTHING);
+    refine(&t);
+    click(&t, 101, 20); /* Sphere */
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    CHECK(t.live.order.kind == ORDER_CHANGE && t.live.order.change.kind == CHANGE_ADD && t.live.order.more);
+    CHECK(t.live.order.change.added == ADDED_SPHERE && t.live.order.change.serial == 0);
+    tell_news(&t, &(struct studio_news){.kind = NEWS_CHANGED});
+    take_change(&t); /* and its place */
+    CHECK(t.live.order.change.kind == CHANGE_PLACE && t.live.order.change.serial == UINT32_MAX && !t.live.order.more);
+    CHECK(t.live.tool == TOOL_MOVE && t.live.selection.picked.serial == UINT32_MAX);
+    refine(&t);
+    click(&t, 400, 280 - 560 * 1 / (2 * 5 * tan(20 * M_PI / 180))); /* the light at {0, 1, 0} */
+    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    CHECK(t.live.selection.kind == SELECTED_LIGHT && t.live.selection.light == 1);
+    drag(&t, 28, 0);
+    take_change(&t);
+    CHECK(t.live.order.change.kind == CHANGE_LIGHT && t.live.order.change.serial == 1);
+    CHECK_NEAR(t.live.order.change.numbers[0], 28 * 2 * 5 * tan(20 * M_PI / 180) / 560, 1e-9);
+    CHECK(t.live.order.change.numbers[3] == 1);
+    refine(&t);
+    key(&t.fake, WINDOW_DELETE, true);
+    take_change(&t);
+    CHECK(t.live.order.change.kind == CHANGE_DARK);
+    end(&t);
+}
+
+TEST(window_makes_the_picture_anew_in_another_exposure_and_does_not_write_it_as_the_scripts) {
+    struct table t;
+    begin(&t);
+    enlarge(&t);
+    finish_pass(&t, 0.02, false);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    finish_pass(&t, 0.02, false);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    key(&t.fake, '=', true);
+    CHECK_EQ_INT(step(&t), LIVE_STOP);
+    finish_pass(&t, 0.001, true);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    CHECK(t.live.order.view.exposure == 0.25 && !t.live.order.view.plain); /* nothing coarse in between */
+    finish_pass(&t, 1, false);
+    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    key(&t.fake, '-', true);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    finish_pass(&t, 1, false);
+    CHECK_EQ_INT(step(&t), LIVE_WRITE);
+    end(&t);
+}
+
+TEST(window_tells_the_child_all_changes_again_when_the_scripts_run_again) {
+    struct table t;
+    struct error error;
+    begin(&t);
+    enlarge(&t);
+    go_to_the_end(&t);
+    pick_ball(&t);
+    key(&t.fake, 'm', true);
+    drag(&t, 40, 0);
+    take_change(&t);
+    live_keep(&t.live);
+    live_detach(&t.live);
+    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    CHECK(live_begin(&t.live, &t.driver, &t.request, t.block, "x.png", t.now, &error));
+    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    struct studio_news news = {.kind = NEWS_BUILT};
+    tell_news(&t, &news);
+    take_change(&t);
+    CHECK(t.live.order.change.kind == CHANGE_PLACE && t.live.order.present);
+    refine(&t);
+    CHECK(t.live.edited);
+    end(&t);
+}
+
+static const char editing[] =
+    "xvfb-run -a -s '-screen 0 900x700x24' sh -c '$gray -gui --size 320x240 scene.lua & pid=$!; "
+    "sh wait.sh \"test -s out.png\" || exit 20; cp out.png first.png; sh wait.sh \"xdotool search --name ready\" || "
+    "exit 19; xdotool mousemove 450 350 click 1 sleep 0.3 key m mousemove 450 350 mousedown 1 mousemove 460 340 sleep "
+    "0.1 mousemove 480 330 sleep 0.1 mouseup 1 sleep 0.2 key s; sh wait.sh \"test -s out-view1.png\" || exit 18; "
+    "cmp -s out-view1.png first.png && exit 17; "
+    "xdotool key ctrl+z sleep 0.3; sh wait.sh \"xdotool search --name ready\" || exit 16; "
+    "xdotool key s; sh wait.sh \"test -s out-view2.png\" || exit 15; cmp out-view2.png first.png || exit 14; "
+    "xdotool key ctrl+y sleep 0.3 key equal sleep 0.1 key Escape keydown Up sleep 0.2 keyup Up sleep 0.3; "
+    "sh wait.sh \"xdotool search --name ready\" || exit 13; "
+    "xdotool key s key c; sh wait.sh \"test -s out-changes1.lua\" || exit 12; "
+    "sh wait.sh \"test -s out-view3.png\" || exit 11; xdotool key q; wait $pid'";
+
+TEST(window_that_moves_a_node_saves_changes_that_give_the_same_bytes) {
+    need_display();
+    gives(editing, 0);
+    gives("{ echo \"require \\\"out-changes1\\\"\"; cat scene.lua; } >again.lua; $gray --size 320x240 again.lua -o "
+          "again.png && cmp again.png out-view3.png && ! cmp -s again.png first.png",
+          0);
+    gives("cat out-changes1.lua >&2; grep change_node out-changes1.lua && grep change_view out-changes1.lua && grep "
+          "change_exposure "
+          "out-changes1.lua",
+          0);
 }

@@ -1,0 +1,35 @@
+/* What stands at a place of the picture: the first thing on the way through it, and which node that belongs to. */
+#ifndef GRAY_APP_PICK_H
+#define GRAY_APP_PICK_H
+
+#include "base/error.h"
+#include "math/affine.h"
+#include "render/render.h"
+
+enum { PICK_PATH = 512, PICK_WORDS = 64 };
+
+struct picked {
+    bool hit;
+    char path[PICK_PATH]; /* names with their order of creation, from the root to the node */
+    char name[PICK_WORDS], shape[PICK_WORDS], material[PICK_WORDS];
+    uint32_t serial, parent_serial; /* of the node, and of the one above it */
+    char parent_name[PICK_WORDS];
+    uint32_t levels;          /* nodes above it */
+    uint32_t material_serial; /* of the base that can be coloured; 0: there is none */
+    struct vec3 kd;           /* of that base */
+    double distance;          /* from the eye */
+    struct vec3 position, normal;
+    bool has_box;
+    struct vec3 corners[8];          /* of a box round the node: bit 0 of the number is its first axis, and so on */
+    struct affine world_from_parent; /* the space that the node stands in */
+};
+
+/* A name cut to this size; control characters become '?'. */
+void pick_words(char out[PICK_WORDS], const char *text);
+
+/* The ray through (x, y) of the whole picture, in pixels, with the camera of the job as it is at time 0. up: so many
+ * nodes above the one that was hit. False: no memory, or no such camera. */
+bool pick_at(const struct render_job *job, const struct node *root, double x, double y, uint32_t up, struct picked *out,
+             struct error *error);
+
+#endif

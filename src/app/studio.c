@@ -1,0 +1,197 @@
+/* The child never has an opinion: it does what it is told, says what became of it, and asks again. Changes are taken
+ * off and laid over anew as a whole, so that their order is that of the list, as it is when a script makes them. */
+#include "app/studio.h"
+
+#include "app/live.h"
+#include "app/progress.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+struct at_work {
+    struct studio *studio;
+    struct change_list changes;
+    struct changed_scene changed;
+    bool stale; /* the world is not that of the changes */
+    struct live_view view;
+    double build_seconds;
+};
+
+/* Settings of a pass: coarse ones have one sample a pixel, and a soft light few rays. */
+static void set_pass(struct render_job *job, const struct render_job *own, const struct live_view *view,
+                     const struct picture_request *asked, struct film *film, void *block) {
+    *job = *own;
+    *film = live_film(asked, block, view->divide);
+    job->film = film;
+    job->width = film->full_width;
+    job->height = film->full_height;
+    job->settings.show_marks = true;
+    job->settings.order = ORDER_CENTRE;
+    job->settings.tone.exposure = view->exposure;
+    if (view->divide > 1) { /* the film says which part it is */
+        job->settings.cropped = false;
+        job->settings.keep_first = false;
+    }
+    if (!view->own) {
+        job->camera = view->camera;
+        job->settings.view_is_target = false;
+        job->settings.motion = (struct camera_motion){0};
+    }
+    if (view->plain) {
+        job->settings.full = false;
+        job->settings.side_tolerance = job->settings.corner_tolerance = HUGE_VAL;
+        job->settings.area_samples = job->settings.area_samples < 2 ? job->settings.area_samples : 2;
+        job->settings.samples = 1;
+        job->settings.lens.aperture = 0;
+        job->settings.caustics.photons = 0;
+    }
+}
+
+/* Of everything that has an end. */
+static struct box finite_bounds(const struct world *world) {
+    struct box bounds = box_empty();
+    for (uint32_t i = 0; i < world->placed_count; i++) {
+        if (vec3_finite(world->boxes[i].min) && vec3_finite(world->boxes[i].max))
+            bounds = box_join(bounds, world->boxes[i]);
+    }
+    return bounds;
+}
+
+static bool everything_cancelled(const struct studio *studio) {
+    return atomic_load(&studio->services->control->cancel) == CANCEL_ALL;
+}
+
+/* The wish to stop a pass is used up; that to stop everything stays. */
+static void forget_stop(const struct studio *studio) {
+    int stop = CANCEL_PASS;
+    (void)atomic_compare_exchange_strong(&studio->services->control->cancel, &stop, CANCEL_NOTHING);
+}
+
+static bool make_pass(struct at_work *work, struct picture_report *report, struct error *error) {
+    struct studio *studio = work->studio;
+    struct render_job job;
+    struct film film;
+    double begun = progress_clock();
+    set_pass(&job, studio->job, &work->view, studio->asked, &film, studio->job->film->pixels);
+    forget_stop(studio);
+    report->rays = (struct render_statistics){.build_seconds = work->build_seconds};
+    bool ok = render_run(&job, studio->pool, &report->rays, error);
+    report->stopped = !ok && error->kind == ERROR_CANCELLED && !everything_cancelled(studio);
+    if (!ok && !report->stopped)
+        return false;
+    forget_stop(studio);
+    pool_reset_cancel(studio->pool);
+    report->rays.render_seconds = progress_clock() - begun;
+    studio->fill(studio->context, &film, report);
+    return true;
+}
+
+static void tell_lights(const struct at_work *work, struct studio_news *news) {
+    const struct world *world = work->studio->world;
+    news->light_count = world->light_count;
+    for (uint32_t i = 0; i < world->light_count && i < TOLD_LIGHTS; i++) {
+        const struct light *light = &world->lights[i];
+        bool placed = light->kind == LIGHT_POINT || light->kind == LIGHT_SPOT || light_has_extent(light);
+        news->lights[i] = (struct told_light){(uint32_t)light->kind, placed, light->position, light->colour};
+    }
+}
+
+static bool build_again(struct at_work *work, struct error *error) {
+    struct studio *studio = work->studio;
+    const struct render_request *request = studio->request;
+    bool over = work->changes.count > 0;
+    double begun = progress_clock();
+    work->stale = false;
+    bool ok = studio->build(studio->context, over ? work->changed.lights : request->lights,
+                            over ? work->changed.light_count : request->light_count, error);
+    work->build_seconds = progress_clock() - begun;
+    return ok;
+}
+
+static bool change_scene(struct at_work *work, const struct studio_order *order, struct studio_news *news,
+                         struct error *error) {
+    struct studio *studio = work->studio;
+    const struct render_request *request = studio->request;
+    news->kind = NEWS_CHANGED;
+    if ((unsigned)order->change.kind >= CHANGE_KINDS || (unsigned)order->change.added >= ADDED_KINDS ||
+        !change_list_set(&work->changes, &order->change, order->present)) {
+        (void)snprintf(news->text, sizeof news->text, "there are too many changes");
+        return true;
+    }
+    changes_take_off(&work->changed);
+    if (!changes_lay_over(work->changes.items, work->changes.count, request->scene, request->root, request->lights,
+                          request->light_count, studio->warn, studio->context, &work->changed, error))
+        return false;
+    work->stale = work->stale || !change_keeps_world(&order->change);
+    if (work->stale && !order->more && !build_again(work, error))
+        return false;
+    tell_lights(work, news);
+    return true;
+}
+
+/* The job with the camera that people look through. */
+static struct render_job looking_job(const struct at_work *work, const struct live_view *view) {
+    struct render_job job = *work->studio->job;
+    if (!view->own) {
+        job.camera = view->camera;
+        job.settings.view_is_target = false;
+        job.settings.motion = (struct camera_motion){0};
+    }
+    return job;
+}
+
+static bool obey(struct at_work *work, const struct studio_order *order, struct studio_news *news,
+                 struct error *error) {
+    struct render_job job;
+    switch (order->kind) {
+    case ORDER_PASS:
+        news->kind = NEWS_PASS;
+        work->view = order->view;
+        return make_pass(work, &news->report, error);
+    case ORDER_PICK:
+        news->kind = NEWS_PICKED;
+        job = looking_job(work, &order->view);
+        return pick_at(&job, work->studio->request->root, order->x, order->y, order->up, &news->picked, error);
+    case ORDER_CHANGE:
+        return change_scene(work, order, news, error);
+    case ORDER_STORY:
+        news->kind = NEWS_STORY;
+        return true;
+    case ORDER_END:
+        break;
+    }
+    return true;
+}
+
+static bool work_on(struct at_work *work, struct picture_report *report, struct error *error) {
+    struct studio *studio = work->studio;
+    struct studio_news news = {.kind = NEWS_BUILT, .added = studio->request->added};
+    struct studio_order order;
+    report->bounds = finite_bounds(studio->world);
+    news.report = *report;
+    const struct node *root = studio->request->root;
+    news.root = root->serial;
+    news.world_from_root = node_parent_from_node(root).forward;
+    pick_words(news.root_name, root->name);
+    tell_lights(work, &news);
+    for (;;) {
+        if (!studio->services->news(studio->services->context, &news, &order, error))
+            return false;
+        if (order.kind == ORDER_END)
+            return !order.quit || error_set(error, ERROR_CANCELLED, "the window was closed");
+        news = (struct studio_news){.report = *report};
+        if (!obey(work, &order, &news, error))
+            return false;
+        if (news.kind == NEWS_PASS)
+            *report = news.report;
+    }
+}
+
+bool studio_run(struct studio *studio, struct picture_report *report, double build_seconds, struct error *error) {
+    struct at_work work = {.studio = studio, .build_seconds = build_seconds};
+    bool ok = work_on(&work, report, error);
+    changes_take_off(&work.changed);
+    change_list_destroy(&work.changes);
+    return ok;
+}

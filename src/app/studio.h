@@ -1,0 +1,29 @@
+/* What the child does for a picture in a window: pass after pass, and between them what people ask of the scene and
+ * change in it. The world stays as long as nothing but the camera or a colour changes. */
+#ifndef GRAY_APP_STUDIO_H
+#define GRAY_APP_STUDIO_H
+
+#include "app/child.h"
+#include "base/pool.h"
+#include "render/render.h"
+#include "scene/change.h"
+#include "script/script.h"
+
+struct studio {
+    const struct child_services *services;
+    struct pool *pool;
+    const struct render_request *request;
+    const struct picture_request *asked;
+    struct render_job *job; /* as the script wants it; its world is the one to use */
+    struct world *world;
+    void *context; /* of the functions below */
+    /* Builds job->world again with these lights. False: there is none. */
+    bool (*build)(void *context, const struct light *lights, uint32_t light_count, struct error *error);
+    void (*fill)(void *context, const struct film *film, struct picture_report *report);
+    void (*warn)(void *context, const char *text);
+};
+
+/* Until people are done with the picture. False: the window was closed, or an error. */
+bool studio_run(struct studio *studio, struct picture_report *report, double build_seconds, struct error *error);
+
+#endif

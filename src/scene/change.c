@@ -1,0 +1,385 @@
+/* Every change notes what it found before it; taking off goes backwards. Nodes are found by one walk over the distinct
+ * nodes under the root, which marks where it has been and wipes its marks in a second one. */
+#include "scene/change.h"
+
+#include "base/mem.h"
+#include "geom/shape_cone.h"
+#include "geom/shape_cylinder.h"
+
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+const char *added_kind_name(enum added_kind kind) {
+    static const char *const names[ADDED_KINDS] = {"sphere", "cube", "cylinder", "cone", "torus", "copy"};
+    return names[kind];
+}
+
+/* What tells changes of a kind apart. */
+static uint32_t target_of(const struct change *change) {
+    return change->kind == CHANGE_ADD || change->kind == CHANGE_ADD_LIGHT ? change->number : change->serial;
+}
+
+bool change_same_target(const struct change *a, const struct change *b) {
+    return a->kind == b->kind && target_of(a) == target_of(b);
+}
+
+bool change_keeps_world(const struct change *change) {
+    return change->kind == CHANGE_MATERIAL;
+}
+
+/* Of the first one that does not come before it. */
+static uint32_t place_in(const struct change_list *list, const struct change *like) {
+    uint32_t i = 0;
+    while (i < list->count && (list->items[i].kind < like->kind ||
+                               (list->items[i].kind == like->kind && target_of(&list->items[i]) < target_of(like))))
+        i++;
+    return i;
+}
+
+bool change_list_set(struct change_list *list, const struct change *change, bool present) {
+    uint32_t at = place_in(list, change);
+    bool there = at < list->count && change_same_target(&list->items[at], change);
+    if (!present) {
+        if (there) {
+            memmove(list->items + at, list->items + at + 1, (list->count - at - 1) * sizeof *list->items);
+            list->count--;
+        }
+        return true;
+    }
+    if (there) {
+        list->items[at] = *change;
+        return true;
+    }
+    if (list->count == list->room) {
+        uint32_t room = list->room ? 2 * list->room : 16;
+        struct change *more = room <= CHANGE_LIMIT ? mem_resize_array(list->items, room, sizeof *more) : NULL;
+        if (!more)
+            return false;
+        list->items = more;
+        list->room = room;
+    }
+    memmove(list->items + at + 1, list->items + at, (list->count - at) * sizeof *list->items);
+    list->items[at] = *change;
+    list->count++;
+    return true;
+}
+
+const struct change *change_list_find(const struct change_list *list, const struct change *like) {
+    uint32_t at = place_in(list, like);
+    return at < list->count && change_same_target(&list->items[at], like) ? &list->items[at] : NULL;
+}
+
+void change_list_destroy(struct change_list *list) {
+    mem_free(list->items);
+    *list = (struct change_list){0};
+}
+
+/* Finding nodes. */
+
+struct finding {
+    struct node **stack;
+    size_t count, room;
+    bool no_memory;
+};
+
+static void push(struct finding *finding, struct node *node, int from, int to) {
+    if (node->mark != from || finding->no_memory)
+        return;
+    if (finding->count == finding->room) {
+        size_t room = finding->room ? 2 * finding->room : 256;
+        struct node **more = mem_resize_array(finding->stack, room, sizeof(struct node *));
+        if (!more) {
+            finding->no_memory = true;
+            return;
+        }
+        finding->stack = more;
+        finding->room = room;
+    }
+    node->mark = to;
+    finding->stack[finding->count++] = node;
+}
+
+static void push_below(struct finding *finding, const struct node *node, int from, int to) {
+    for (uint32_t i = 0; node->kind == NODE_CSG && i < node->operand_count; i++)
+        push(finding, node->operands[i], from, to);
+    for (const struct node_child *child = node->first_child; child; child = child->next)
+        push(finding, child->node, from, to);
+}
+
+static bool named(const struct node *node, const char *name) {
+    return name[0] == '\0' || strncmp(node->name, name, CHANGE_NAME - 1) == 0;
+}
+
+/* The node of that number and name; where there is none, the only one of the name; else NULL. */
+static struct node *find_node(struct finding *finding, struct node *root, uint32_t serial, const char *name) {
+    enum { SEEN = 1 };
+    struct node *exact = NULL, *only = NULL;
+    uint32_t namesakes = 0;
+    finding->count = 0;
+    push(finding, root, 0, SEEN);
+    while (finding->count > 0 && !finding->no_memory) {
+        struct node *node = finding->stack[--finding->count];
+        if (node->serial == serial && named(node, name))
+            exact = node;
+        if (name[0] != '\0' && named(node, name)) {
+            only = node;
+            namesakes++;
+        }
+        push_below(finding, node, 0, SEEN);
+    }
+    finding->count = 0;
+    push(finding, root, SEEN, 0);
+    while (finding->count > 0)
+        push_below(finding, finding->stack[--finding->count], SEEN, 0);
+    return exact ? exact : namesakes == 1 ? only : NULL;
+}
+
+/* Laying over. */
+
+struct laying {
+    const struct change *change;
+    struct scene *scene;
+    struct node *root;
+    struct changed_scene *out;
+    struct finding finding;
+    change_warning *warn;
+    void *context;
+    struct error *error;
+};
+
+static void tell_missing(const struct laying *l, const char *what) {
+    char text[256];
+    (void)snprintf(text, sizeof text, "a change of %s '%s' (%u) is left out: there is no such one any more", what,
+                   l->change->name, l->change->serial);
+    l->warn(l->context, text);
+}
+
+static struct node *added_node(const struct laying *l, uint32_t serial) {
+    for (uint32_t i = 0; i < l->out->added_count; i++) {
+        if (l->out->added[i]->serial == serial)
+            return l->out->added[i];
+    }
+    return NULL;
+}
+
+static struct node *node_of(struct laying *l, uint32_t serial, const char *name) {
+    struct node *node = added_node(l, serial);
+    return node ? node : find_node(&l->finding, l->root, serial, name);
+}
+
+enum { COMMON_PART = offsetof(struct node, joint_x) };
+
+/* Notes the node as it is. */
+static struct node *begin_node(struct laying *l) {
+    struct node *node = node_of(l, l->change->serial, l->change->name);
+    if (!node) {
+        tell_missing(l, "the node");
+        return NULL;
+    }
+    struct changed_node *note = &l->out->nodes[l->out->node_count++];
+    note->node = node;
+    note->end = node->last_child;
+    memcpy(&note->before, node, COMMON_PART);
+    return node;
+}
+
+static void place_node(struct laying *l) {
+    struct affine matrix;
+    struct transform map;
+    memcpy(matrix.m, l->change->numbers, sizeof matrix.m);
+    struct node *node = begin_node(l);
+    if (node && transform_from_affine(&matrix, &map))
+        node->parent_from_node = transform_compose(&map, &node->parent_from_node);
+}
+
+static struct vec3 three(const double *numbers) {
+    return vec3_make(numbers[0], numbers[1], numbers[2]);
+}
+
+static struct shape shape_of(enum added_kind kind) {
+    switch (kind) {
+    case ADDED_CUBE:
+        return (struct shape){.kind = SHAPE_BOX, .box = {vec3_all(-1), vec3_all(1)}};
+    case ADDED_CYLINDER:
+        return (struct shape){.kind = SHAPE_CONIC,
+                              .conic = conic_cylinder(vec3_make(0, -1, 0), vec3_make(0, 1, 0), 1, false)};
+    case ADDED_CONE:
+        return (struct shape){.kind = SHAPE_CONIC,
+                              .conic = conic_frustum(vec3_make(0, -1, 0), 1, vec3_make(0, 1, 0), 0, false)};
+    case ADDED_TORUS:
+        return (struct shape){.kind = SHAPE_TORUS, .torus = {0.75, 0.25}};
+    case ADDED_SPHERE:
+    case ADDED_COPY:
+    case ADDED_KINDS:
+        break;
+    }
+    return (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}};
+}
+
+/* The scene's own numbers are not used up, so that later nodes keep theirs. */
+static struct node *make_node(struct laying *l, struct node *source) {
+    const struct change *change = l->change;
+    uint32_t node_count = l->scene->node_count, material_count = l->scene->material_count;
+    enum node_kind kind = source ? NODE_GROUP : NODE_GEOMETRY;
+    struct node *node = scene_node(l->scene, kind, added_kind_name(change->added), l->error);
+    struct material *material = source ? NULL : scene_material(l->scene, MATERIAL_PHONG, NULL, l->error);
+    l->scene->node_count = node_count;
+    l->scene->material_count = material_count;
+    if (!node || (!source && !material))
+        return NULL;
+    node->serial = UINT32_MAX - change->number;
+    if (source)
+        return node_add_child(l->scene, node, source, l->error) ? node : NULL;
+    material->phong.ks = vec3_all(0.3);
+    material->phong.shininess = 30;
+    material->phong.ior = 1;
+    material->serial = UINT32_MAX - change->number;
+    node->material = material;
+    node->shape = shape_of(change->added);
+    return node;
+}
+
+/* One that was made before is used again: somebody who drags things about lays changes over many times a second. */
+static struct node *new_node(struct laying *l, struct node *source) {
+    const struct change *change = l->change;
+    struct added_node *made = l->scene->added;
+    while (made && (made->number != change->number || made->kind != (int)change->added || made->source != source))
+        made = made->next;
+    if (!made) {
+        made = arena_alloc(&l->scene->arena, sizeof *made);
+        if (!made) {
+            error_no_memory(l->error, "a node");
+            return NULL;
+        }
+        *made = (struct added_node){
+            .number = change->number, .kind = (int)change->added, .source = source, .next = l->scene->added};
+        made->node = make_node(l, source);
+        if (!made->node)
+            return NULL;
+        l->scene->added = made;
+    }
+    if (!source)
+        ((struct material *)(uintptr_t)made->node->material)->phong.kd = three(change->numbers);
+    return made->node;
+}
+
+static bool add_node(struct laying *l) {
+    struct node *source = NULL;
+    if (l->change->added == ADDED_COPY && !(source = node_of(l, l->change->source, ""))) {
+        tell_missing(l, "a copy under the node");
+        return true;
+    }
+    struct node *parent = begin_node(l);
+    if (!parent)
+        return true;
+    struct node *node = new_node(l, source);
+    if (!node || !node_add_child(l->scene, parent, node, l->error))
+        return false;
+    l->out->added[l->out->added_count++] = node;
+    return true;
+}
+
+static void colour_material(struct laying *l) {
+    struct material *material = l->scene->last_material;
+    while (material && material->serial != l->change->serial)
+        material = material->older;
+    if (!material || material->kind != MATERIAL_PHONG) {
+        tell_missing(l, "the material");
+        return;
+    }
+    l->out->materials[l->out->material_count++] = (struct changed_material){material, material->phong.kd};
+    material->phong.kd = three(l->change->numbers);
+}
+
+static void change_light(struct laying *l) {
+    if (l->change->serial < 1 || l->change->serial > l->out->light_count) {
+        tell_missing(l, "the light");
+        return;
+    }
+    struct light *light = &l->out->lights[l->change->serial - 1];
+    struct vec3 way = three(l->change->numbers);
+    if (l->change->kind == CHANGE_DARK) {
+        light->colour = vec3_all(0);
+        light->visible = false;
+        return;
+    }
+    light->position = vec3_add(light->position, way);
+    light->corner = vec3_add(light->corner, way);
+    light->colour = vec3_mul(light->colour, three(l->change->numbers + 3));
+}
+
+static void add_light(struct laying *l) {
+    l->out->lights[l->out->light_count++] = (struct light){.kind = LIGHT_POINT,
+                                                           .position = three(l->change->numbers),
+                                                           .colour = three(l->change->numbers + 3),
+                                                           .falloff = {1, 0, 0}};
+}
+
+static bool lay(struct laying *l) {
+    struct node *node;
+    switch (l->change->kind) {
+    case CHANGE_PLACE:
+        place_node(l);
+        break;
+    case CHANGE_GONE:
+        if ((node = begin_node(l)))
+            node->singular = true;
+        break;
+    case CHANGE_ADD:
+        return add_node(l);
+    case CHANGE_MATERIAL:
+        colour_material(l);
+        break;
+    case CHANGE_LIGHT:
+    case CHANGE_DARK:
+        change_light(l);
+        break;
+    case CHANGE_ADD_LIGHT:
+        add_light(l);
+        break;
+    case CHANGE_KINDS:
+        break;
+    }
+    return !l->finding.no_memory || error_no_memory(l->error, "the changes of the scene");
+}
+
+bool changes_lay_over(const struct change *changes, uint32_t count, struct scene *scene, struct node *root,
+                      const struct light *lights, uint32_t light_count, change_warning *warn, void *context,
+                      struct changed_scene *out, struct error *error) {
+    *out = (struct changed_scene){.lights = mem_alloc_zero((size_t)light_count + count, sizeof *out->lights),
+                                  .light_count = light_count,
+                                  .nodes = mem_alloc_zero((size_t)count + 1, sizeof *out->nodes),
+                                  .materials = mem_alloc_zero((size_t)count + 1, sizeof *out->materials),
+                                  .added = mem_alloc_zero((size_t)count + 1, sizeof(struct node *))};
+    struct laying l = {.scene = scene, .root = root, .out = out, .warn = warn, .context = context, .error = error};
+    bool ok = out->lights && out->nodes && out->materials && out->added;
+    if (!ok)
+        error_no_memory(error, "the changes of the scene");
+    if (ok && light_count > 0)
+        memcpy(out->lights, lights, light_count * sizeof *lights);
+    for (uint32_t i = 0; ok && i < count; i++) {
+        l.change = &changes[i];
+        ok = lay(&l);
+    }
+    mem_free(l.finding.stack);
+    if (!ok)
+        changes_take_off(out);
+    return ok;
+}
+
+void changes_take_off(struct changed_scene *changed) {
+    for (uint32_t i = changed->node_count; i-- > 0;) {
+        struct changed_node *note = &changed->nodes[i];
+        memcpy(note->node, &note->before, COMMON_PART);
+        if (note->end)
+            note->end->next = NULL;
+    }
+    for (uint32_t i = changed->material_count; i-- > 0;)
+        changed->materials[i].material->phong.kd = changed->materials[i].kd;
+    mem_free(changed->lights);
+    mem_free(changed->nodes);
+    mem_free(changed->materials);
+    mem_free(changed->added);
+    *changed = (struct changed_scene){0};
+}

@@ -1,0 +1,80 @@
+/* Changes of a scene that somebody makes beside its script: in the window, and again by a file that the window wrote.
+ * They are laid over the scene as the script left it when a picture is made, and taken off again afterwards; the same
+ * changes in the same order give the same bits. Nodes and materials are known by their order of creation, nodes by
+ * their name, too, lights by their number in the list of the picture. */
+#ifndef GRAY_SCENE_CHANGE_H
+#define GRAY_SCENE_CHANGE_H
+
+#include "scene/node.h"
+
+/* In the order in which they are made: what is added is there before it is changed. */
+enum change_kind {
+    CHANGE_ADD,       /* a new node under another */
+    CHANGE_PLACE,     /* of a node: a map after its own, in its parent's space */
+    CHANGE_GONE,      /* a node is not drawn */
+    CHANGE_MATERIAL,  /* the colour (kd) of a material's base */
+    CHANGE_ADD_LIGHT, /* a point light at the end of the list */
+    CHANGE_LIGHT,     /* a light is moved, its colour multiplied */
+    CHANGE_DARK,      /* a light is taken away */
+    CHANGE_KINDS
+};
+enum added_kind { ADDED_SPHERE, ADDED_CUBE, ADDED_CYLINDER, ADDED_CONE, ADDED_TORUS, ADDED_COPY, ADDED_KINDS };
+const char *added_kind_name(enum added_kind kind);
+
+enum { CHANGE_NAME = 64, CHANGE_LIMIT = 4096 };
+
+struct change {
+    enum change_kind kind;
+    /* Of the node, or of the one that the new node hangs under; of the material; the light's number, from 1. */
+    uint32_t serial;
+    char name[CHANGE_NAME]; /* of that node, cut; "" fits all */
+    enum added_kind added;
+    uint32_t number; /* of what is added, from 0; a node's serial is UINT32_MAX - number */
+    uint32_t source; /* ADDED_COPY: the serial of the node that is shown once more */
+    /* PLACE: 3 rows of 4. ADD, MATERIAL: a colour. LIGHT: a way and three factors. ADD_LIGHT: a place, a colour. */
+    double numbers[12];
+};
+
+/* Zero value: none. Owner: the caller; change_list_destroy gives it back. */
+struct change_list {
+    struct change *items;
+    uint32_t count, room;
+};
+/* Two changes of the same thing: the later one takes the place of the earlier. */
+bool change_same_target(const struct change *a, const struct change *b);
+/* The change is in the list (in the place of one of the same target, else in order of kind and number: the list does
+ * not depend on what was changed first), or, with `present` false, no such one is. False: no memory, or too many. */
+bool change_list_set(struct change_list *list, const struct change *change, bool present);
+const struct change *change_list_find(const struct change_list *list, const struct change *like);
+void change_list_destroy(struct change_list *list);
+/* One of the changes is to be seen without the world being built anew. */
+bool change_keeps_world(const struct change *change);
+
+/* The name of what was left out is told: a node or a material that the script does not make any more. */
+typedef void change_warning(void *context, const char *text);
+
+struct changed_node {
+    struct node *node;
+    struct node before;     /* its first part, which all kinds have */
+    struct node_child *end; /* its last child before */
+};
+struct changed_material {
+    struct material *material;
+    struct vec3 kd;
+};
+/* What is laid over a scene. Owner: the caller; changes_take_off gives everything back. */
+struct changed_scene {
+    struct light *lights; /* the list of the picture */
+    uint32_t light_count;
+    struct changed_node *nodes; /* in order */
+    struct changed_material *materials;
+    struct node **added;
+    uint32_t node_count, material_count, added_count;
+};
+/* In order, one after the other; new nodes live in the arena of the scene. Errors: no memory. */
+bool changes_lay_over(const struct change *changes, uint32_t count, struct scene *scene, struct node *root,
+                      const struct light *lights, uint32_t light_count, change_warning *warn, void *context,
+                      struct changed_scene *out, struct error *error);
+void changes_take_off(struct changed_scene *changed);
+
+#endif

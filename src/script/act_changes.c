@@ -1,0 +1,181 @@
+/* What somebody has changed in a window, as calls: they are noted, and laid over every picture that is made afterwards.
+ * Nothing of the script's own tree is changed for good. */
+#include "script/actions.h"
+#include "script/context.h"
+
+#include <string.h>
+
+/* Room for one more; zeroed. */
+static struct change *note(struct context *context, enum change_kind kind, const char *name, double serial,
+                           struct error *error) {
+    if (context->change_count == context->change_room) {
+        uint32_t room = context->change_room ? 2 * context->change_room : 16;
+        struct change *more = room <= CHANGE_LIMIT ? arena_alloc_array(&context->keep, room, sizeof *more) : NULL;
+        if (!more) {
+            if (room > CHANGE_LIMIT)
+                error_set(error, ERROR_SCENE, "a script makes more than %d changes", CHANGE_LIMIT / 2);
+            else
+                error_no_memory(error, "the changes of the scene");
+            return NULL;
+        }
+        if (context->change_count > 0)
+            memcpy(more, context->changes, context->change_count * sizeof *more);
+        context->changes = more;
+        context->change_room = room;
+    }
+    struct change *change = &context->changes[context->change_count++];
+    *change = (struct change){.kind = kind, .serial = (uint32_t)serial};
+    size_t length = name ? strlen(name) : 0;
+    memcpy(change->name, name ? name : "", length < sizeof change->name ? length : sizeof change->name - 1);
+    return change;
+}
+
+static void put(double *numbers, struct vec3 v) {
+    numbers[0] = v.x;
+    numbers[1] = v.y;
+    numbers[2] = v.z;
+}
+
+bool act_change_node(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    (void)result;
+    const struct value *matrix = &args[CHANGENODE_MATRIX];
+    struct affine map;
+    struct transform ignored;
+    if (matrix->count != 12)
+        return error_set(error, ERROR_SCENE, "matrix has %u numbers, not 12", matrix->count);
+    memcpy(map.m, matrix->numbers, sizeof map.m);
+    if (!transform_from_affine(&map, &ignored))
+        return error_set(error, ERROR_SCENE, "matrix flattens everything: it has no inverse");
+    struct change *change =
+        note(context, CHANGE_PLACE, args[CHANGENODE_NAME].text, args[CHANGENODE_SERIAL].number, error);
+    if (change)
+        memcpy(change->numbers, map.m, sizeof map.m);
+    return change != NULL;
+}
+
+bool act_change_delete(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    (void)result;
+    return note(context, CHANGE_GONE, args[CHANGEGONE_NAME].text, args[CHANGEGONE_SERIAL].number, error) != NULL;
+}
+
+bool act_change_add(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    (void)result;
+    struct change *change = note(context, CHANGE_ADD, args[CHANGEADD_NAME].text, args[CHANGEADD_SERIAL].number, error);
+    if (!change)
+        return false;
+    change->added = (enum added_kind)args[CHANGEADD_SHAPE].choice; /* listed in the order of the enum */
+    change->number = context->added++;
+    change->source = (uint32_t)args[CHANGEADD_SOURCE].number;
+    put(change->numbers, args[CHANGEADD_COLOUR].given ? args[CHANGEADD_COLOUR].vector : vec3_all(0.7));
+    return true;
+}
+
+bool act_change_material(struct context *context, const struct value *args, struct result *result,
+                         struct error *error) {
+    (void)result;
+    struct change *change = note(context, CHANGE_MATERIAL, NULL, args[CHANGEMATERIAL_SERIAL].number, error);
+    if (change)
+        put(change->numbers, args[CHANGEMATERIAL_COLOUR].vector);
+    return change != NULL;
+}
+
+bool act_change_light(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    (void)result;
+    struct change *change = note(context, CHANGE_LIGHT, NULL, args[CHANGELIGHT_NUMBER].number, error);
+    if (!change)
+        return false;
+    put(change->numbers, args[CHANGELIGHT_MOVE].vector);
+    put(change->numbers + 3, args[CHANGELIGHT_FACTOR].given ? args[CHANGELIGHT_FACTOR].vector : vec3_all(1));
+    return true;
+}
+
+bool act_change_delete_light(struct context *context, const struct value *args, struct result *result,
+                             struct error *error) {
+    (void)result;
+    return note(context, CHANGE_DARK, NULL, args[CHANGEDARK_NUMBER].number, error) != NULL;
+}
+
+bool act_change_add_light(struct context *context, const struct value *args, struct result *result,
+                          struct error *error) {
+    (void)result;
+    struct change *change = note(context, CHANGE_ADD_LIGHT, NULL, 0, error);
+    if (!change)
+        return false;
+    put(change->numbers, args[CHANGENEWLIGHT_POSITION].vector);
+    put(change->numbers + 3, args[CHANGENEWLIGHT_COLOUR].vector);
+    return true;
+}
+
+static struct changed_view *note_view(struct context *context, const char *picture, struct error *error) {
+    struct changed_view *view = arena_alloc(&context->keep, sizeof *view);
+    const char *name = arena_copy_text(&context->keep, picture, strlen(picture));
+    if (!view || !name) {
+        error_no_memory(error, "the changes of the scene");
+        return NULL;
+    }
+    *view = (struct changed_view){.picture = name, .next = context->views};
+    context->views = view;
+    return view;
+}
+
+bool act_change_view(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    (void)result;
+    struct changed_view *view = note_view(context, args[CHANGEVIEW_PICTURE].text, error);
+    if (!view)
+        return false;
+    view->has_camera = true;
+    view->camera = (struct camera){args[CHANGEVIEW_EYE].vector, args[CHANGEVIEW_VIEW].vector,
+                                   args[CHANGEVIEW_UP].vector, args[CHANGEVIEW_FOV].number};
+    return true;
+}
+
+bool act_change_exposure(struct context *context, const struct value *args, struct result *result,
+                         struct error *error) {
+    (void)result;
+    struct changed_view *view = note_view(context, args[CHANGEEXPOSURE_PICTURE].text, error);
+    if (!view)
+        return false;
+    view->has_exposure = true;
+    view->exposure = args[CHANGEEXPOSURE_STOPS].number;
+    return true;
+}
+
+/* The newest of each kind counts. */
+static void change_views(const struct context *context, struct render_request *request) {
+    bool camera = false, exposure = false;
+    for (const struct changed_view *view = context->views; view; view = view->next) {
+        if (strcmp(view->picture, request->file) != 0)
+            continue;
+        if (view->has_camera && !camera) {
+            request->camera = view->camera;
+            request->settings.view_is_target = false;
+            request->settings.motion = (struct camera_motion){0};
+        }
+        if (view->has_exposure && !exposure)
+            request->settings.tone.exposure = view->exposure;
+        camera = camera || view->has_camera;
+        exposure = exposure || view->has_exposure;
+    }
+}
+
+static void warn_once(void *user, const char *text) {
+    struct context *context = user;
+    if (!context->changes_told)
+        context_warn(context, "%s", text);
+}
+
+bool changes_begin(struct context *context, struct render_request *request, struct changed_scene *changed,
+                   struct error *error) {
+    *changed = (struct changed_scene){0};
+    request->added = context->added;
+    change_views(context, request);
+    if (context->change_count == 0)
+        return true;
+    if (!changes_lay_over(context->changes, context->change_count, request->scene, request->root, request->lights,
+                          request->light_count, warn_once, context, changed, error))
+        return false;
+    context->changes_told = true;
+    request->lights = changed->lights;
+    request->light_count = changed->light_count;
+    return true;
+}

@@ -1,0 +1,365 @@
+/* What somebody changes in a window: steps and their inverses, changes laid over a scene and taken off again, the same
+ * changes as calls of a script, and what a click finds. */
+#include "app/edits.h"
+#include "app/pick.h"
+#include "render/camera.h"
+#include "tests/harness.h"
+#include "tests/stage.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static struct change change_of(enum change_kind kind, uint32_t target, double number) {
+    return (struct change){.kind = kind, .serial = target, .number = target, .numbers = {number}};
+}
+
+static bool same_list(const struct change_list *a, const struct change_list *b) {
+    if (a->count != b->count)
+        return false;
+    for (uint32_t i = 0; i < a->count; i++) {
+        if (!change_same_target(&a->items[i], &b->items[i]) || a->items[i].numbers[0] < b->items[i].numbers[0] ||
+            a->items[i].numbers[0] > b->items[i].numbers[0])
+            return false;
+    }
+    return true;
+}
+
+/* What holds after the first steps, worked out from nothing. */
+static bool holds(const struct edits *edits) {
+    struct change_list list = {0};
+    for (uint32_t i = 0; i < edits->at; i++)
+        CHECK(change_list_set(&list, &edits->steps[i].after, edits->steps[i].has));
+    bool same = same_list(&list, &edits->now);
+    change_list_destroy(&list);
+    return same;
+}
+
+TEST(edits_undone_and_made_again_in_any_order_hold_what_their_steps_say) {
+    struct edits edits = {0};
+    struct test_random random = {7};
+    struct change target;
+    for (int i = 0; i < 3000; i++) {
+        double what = test_uniform(&random, 0, 1);
+        if (what < 0.5) {
+            enum change_kind kind = (enum change_kind)(test_uniform(&random, 0, CHANGE_KINDS - 0.01));
+            struct change change = change_of(kind, (uint32_t)test_uniform(&random, 1, 6), i);
+            CHECK(edits_make(&edits, &change, test_uniform(&random, 0, 1) < 0.9, test_uniform(&random, 0, 1) < 0.3));
+        } else if (what < 0.8) {
+            CHECK(edits_undo(&edits, &target) == (edits.at < edits.count));
+        } else {
+            (void)edits_redo(&edits, &target);
+        }
+        if (i % 16 == 0)
+            CHECK(holds(&edits));
+    }
+    uint32_t count = edits.count;
+    while (edits_redo(&edits, &target))
+        ;
+    CHECK(holds(&edits) && edits.at == count);
+    while (edits_undo(&edits, &target))
+        ;
+    CHECK(edits.at == 0 && edits.now.count == 0);
+    edits_destroy(&edits);
+}
+
+TEST(edits_of_one_drag_are_one_step) {
+    struct edits edits = {0};
+    struct change target, change = change_of(CHANGE_PLACE, 3, 1);
+    CHECK(edits_make(&edits, &change, true, false));
+    for (int i = 2; i < 50; i++) {
+        change.numbers[0] = i;
+        CHECK(edits_make(&edits, &change, true, true));
+    }
+    struct change other = change_of(CHANGE_PLACE, 4, 1);
+    CHECK(edits_make(&edits, &other, true, true)); /* of another target: a step of its own */
+    CHECK_EQ_INT(edits.count, 2);
+    CHECK(edits_undo(&edits, &target) && target.serial == 4);
+    CHECK(edits_undo(&edits, &target) && target.serial == 3);
+    CHECK_EQ_INT(edits.now.count, 0);
+    CHECK(!edits_undo(&edits, &target));
+    CHECK(edits_redo(&edits, &target));
+    CHECK_NEAR(edits.now.items[0].numbers[0], 49, 0);
+    CHECK(edits_make(&edits, &other, true, false)); /* what was undone is forgotten */
+    CHECK(!edits_redo(&edits, &target));
+    edits_destroy(&edits);
+}
+
+TEST(edits_lists_do_not_depend_on_what_was_changed_first) {
+    struct change_list forward = {0}, backward = {0};
+    struct change changes[24];
+    for (int i = 0; i < 24; i++)
+        changes[i] = change_of((enum change_kind)(i % CHANGE_KINDS), (uint32_t)(1 + i * 7 % 11), i);
+    for (int i = 0; i < 24; i++) {
+        CHECK(change_list_set(&forward, &changes[i], true));
+        CHECK(change_list_set(&backward, &changes[23 - i], true));
+    }
+    CHECK_EQ_INT(forward.count, backward.count);
+    for (uint32_t i = 0; i < forward.count; i++)
+        CHECK(change_same_target(&forward.items[i], &backward.items[i]));
+    change_list_destroy(&forward);
+    change_list_destroy(&backward);
+}
+
+static void count_warning(void *context, const char *text) {
+    CHECK(strstr(text, "is left out") != NULL);
+    ++*(int *)context;
+}
+
+TEST(changes_that_are_taken_off_leave_the_scene_as_it_was) {
+    static struct stage s;
+    struct changed_scene changed;
+    struct error error;
+    int warnings = 0;
+    stage_begin(&s, 1);
+    struct material *red = stage_phong(&s, vec3_make(1, 0, 0), vec3_all(0), 1);
+    struct node *group = stage_group(&s, s.root), *ball = stage_sphere(&s, group, red);
+    stage_move(&s, ball, 1, 2, 3);
+    stage_point_light(&s, vec3_make(1, 2, 3), vec3_all(1));
+    struct transform before = ball->parent_from_node;
+    uint32_t nodes = s.scene.node_count, materials = s.scene.material_count;
+    const struct change changes[] = {
+        {.kind = CHANGE_ADD, .serial = group->serial, .added = ADDED_CUBE, .numbers = {0.1, 0.2, 0.3}},
+        {.kind = CHANGE_ADD, .serial = group->serial, .added = ADDED_COPY, .number = 1, .source = ball->serial},
+        {.kind = CHANGE_PLACE, .serial = UINT32_MAX, .numbers = {2, 0, 0, 5, 0, 2, 0, 0, 0, 0, 2, 0}},
+        {.kind = CHANGE_PLACE, .serial = ball->serial, .numbers = {0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 7}},
+        {.kind = CHANGE_GONE, .serial = ball->serial},
+        {.kind = CHANGE_MATERIAL, .serial = red->serial, .numbers = {0, 1, 0}},
+        {.kind = CHANGE_ADD_LIGHT, .numbers = {9, 8, 7, 0.5, 0.5, 0.5}},
+        {.kind = CHANGE_LIGHT, .serial = 1, .numbers = {0, 0, 1, 2, 2, 2}},
+        {.kind = CHANGE_DARK, .serial = 2},
+        {.kind = CHANGE_PLACE, .serial = 12345, .name = "nowhere"},
+        {.kind = CHANGE_MATERIAL, .serial = 12345},
+        {.kind = CHANGE_LIGHT, .serial = 12345},
+    };
+    for (int round = 0; round < 3; round++) {
+        CHECK(changes_lay_over(changes, sizeof changes / sizeof *changes, &s.scene, s.root, s.lights, s.light_count,
+                               count_warning, &warnings, &changed, &error));
+        CHECK_EQ_INT(group->child_count, 3);
+        const struct node *cube = group->first_child->next->node, *copy = group->last_child->node;
+        CHECK(cube->kind == NODE_GEOMETRY && cube->serial == UINT32_MAX && cube->shape.kind == SHAPE_BOX);
+        CHECK_NEAR(affine_point(&cube->parent_from_node.forward, vec3_make(1, 1, 1)).x, 7, 0);
+        CHECK(copy->kind == NODE_GROUP && copy->first_child->node == ball && copy->serial == UINT32_MAX - 1);
+        CHECK(ball->singular);
+        struct vec3 centre = affine_point(&ball->parent_from_node.forward, vec3_make(0, 0, 0));
+        CHECK(centre.x == -2 && centre.y == 1 && centre.z == 10);
+        CHECK(red->phong.kd.y == 1 && red->phong.kd.x == 0);
+        CHECK(changed.light_count == 2 && changed.lights[0].position.z == 4 && changed.lights[0].colour.x == 2);
+        CHECK(changed.lights[1].position.x == 9 && changed.lights[1].colour.x == 0);
+        changes_take_off(&changed);
+        CHECK(memcmp(&before, &ball->parent_from_node, sizeof before) == 0);
+        CHECK(!ball->singular && group->child_count == 1 && group->last_child->node == ball);
+        CHECK(group->last_child->next == NULL && red->phong.kd.x == 1 && s.lights[0].colour.x == 1);
+        CHECK(s.scene.node_count == nodes && s.scene.material_count == materials);
+    }
+    CHECK_EQ_INT(warnings, 9);
+    stage_end(&s);
+}
+
+TEST(changes_find_a_node_that_has_another_number_now_by_its_name_if_only_one_has_it) {
+    static struct stage s;
+    struct changed_scene changed;
+    struct error error;
+    int warnings = 0;
+    stage_begin(&s, 1);
+    struct material *gray = stage_phong(&s, vec3_all(0.5), vec3_all(0), 1);
+    struct node *a = stage_sphere(&s, s.root, gray), *b = stage_sphere(&s, s.root, gray);
+    a->name = "left";
+    b->name = "right";
+    const struct change gone = {.kind = CHANGE_GONE, .serial = a->serial, .name = "right"};
+    CHECK(changes_lay_over(&gone, 1, &s.scene, s.root, NULL, 0, count_warning, &warnings, &changed, &error));
+    CHECK(b->singular && !a->singular);
+    changes_take_off(&changed);
+    a->name = "right";
+    a->serial = 1000;
+    b->serial = 1001;
+    CHECK(changes_lay_over(&gone, 1, &s.scene, s.root, NULL, 0, count_warning, &warnings, &changed, &error));
+    CHECK(!b->singular && !a->singular);
+    CHECK_EQ_INT(warnings, 1);
+    changes_take_off(&changed);
+    stage_end(&s);
+}
+
+/* The same by calls of a script. */
+
+#define SCENE_HEAD                                                                                                     \
+    "local red = gr.material({0.8, 0.2, 0.1}, {0.4, 0.4, 0.4}, 20)\n"                                                  \
+    "local r = gr.node('root')\nlocal ball = gr.geometry('ball', gr.sphere(red))\nr:add_child(ball)\n"                 \
+    "local box = gr.geometry('box', gr.cube(gr.material({0.2, 0.5, 0.3}, {0, 0, 0}, 1)))\nbox:translate(-2, -1, -3)\n" \
+    "r:add_child(box)\n"
+#define SCENE_TAIL(eye, lights)                                                                                        \
+    "gr.render(r, 'out.png', 60, 40, " eye ", {0, 0, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2}, {" lights "})\n"
+#define LIGHT "gr.light({4, 5, 6}, {0.5, 0.5, 0.5}, {1, 0, 0})"
+
+static char *picture_of(const char *scene, const char *name, size_t *size) {
+    struct test_result result = test_gray_scene(scene, "-q scene.lua", NULL);
+    char path[4096];
+    CHECK_EQ_INT(result.status, 0);
+    CHECK_TEXT(result.err, "");
+    free(result.out);
+    free(result.err);
+    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    return test_read_file(path, size);
+}
+
+static void same_picture(const char *a, const char *b, bool same) {
+    size_t size_a = 0, size_b = 0;
+    char *first = picture_of(a, "out.png", &size_a), *second = picture_of(b, "out.png", &size_b);
+    CHECK((first && second && size_a == size_b && memcmp(first, second, size_a) == 0) == same);
+    free(first);
+    free(second);
+}
+
+TEST(changes_by_calls_give_the_bytes_of_a_script_that_says_the_same_itself) {
+    same_picture(SCENE_HEAD "ball:translate(1, 0.5, 0)\nbox:translate(1, 0, 0)\n" SCENE_TAIL("{0, 1, 6}", LIGHT),
+                 SCENE_HEAD
+                 "gr.change_node('ball', 2, {1, 0, 0, 1, 0, 1, 0, 0.5, 0, 0, 1, 0})\n"
+                 "gr.change_node('box', 4, {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0})\n"
+                 "gr.change_view('out.png', {0, 1, 6}, {0, 0, -1}, {0, 1, 0}, 40)\n"
+                 "gr.change_view('other.png', {0, 1, 99}, {0, 0, -1}, {0, 1, 0}, 40)\n" SCENE_TAIL("{0, 0, 9}", LIGHT),
+                 true);
+    same_picture(SCENE_HEAD SCENE_TAIL("{0, 0, 6}", LIGHT ", gr.light({1, 2, 3}, {0.2, 0.2, 0.2}, {1, 0, 0})"),
+                 SCENE_HEAD
+                 "gr.change_add_light({1, 2, 3}, {0.2, 0.2, 0.2})\ngr.change_light(1, {1, 1, 1}, "
+                 "{2, 2, 2})\n" SCENE_TAIL("{0, 0, 6}", "gr.light({3, 4, 5}, {0.25, 0.25, 0.25}, {1, 0, 0})"),
+                 true);
+    same_picture(SCENE_HEAD SCENE_TAIL("{0, 0, 6}", LIGHT),
+                 SCENE_HEAD "gr.change_delete('ball', 2)\n" SCENE_TAIL("{0, 0, 6}", LIGHT), false);
+    same_picture(SCENE_HEAD SCENE_TAIL("{0, 0, 6}", LIGHT),
+                 SCENE_HEAD "gr.change_exposure('out.png', 0)\n" SCENE_TAIL("{0, 0, 6}", LIGHT), true);
+    same_picture(SCENE_HEAD SCENE_TAIL("{0, 0, 6}", LIGHT),
+                 SCENE_HEAD "gr.change_exposure('out.png', 1)\n" SCENE_TAIL("{0, 0, 6}", LIGHT), false);
+}
+
+TEST(changes_hold_for_every_picture_and_leave_the_scripts_own_tree_alone) {
+    /* The second picture is made after the script has moved the ball itself: both moves count. */
+    same_picture(SCENE_HEAD "ball:translate(1, 0, 0)\nball:translate(0, 1, 0)\n" SCENE_TAIL("{0, 0, 6}", LIGHT),
+                 SCENE_HEAD "gr.change_node('ball', 2, {1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 1, 0})\n" SCENE_TAIL(
+                     "{0, 0, 6}", LIGHT) "ball:translate(1, 0, 0)\n" SCENE_TAIL("{0, 0, 6}", LIGHT),
+                 true);
+}
+
+TEST(changes_of_what_is_not_there_are_told_once_and_left_out) {
+    struct test_result result = test_gray_scene(
+        SCENE_HEAD "gr.change_delete('no such', 77)\n" SCENE_TAIL("{0, 0, 6}", LIGHT) SCENE_TAIL("{0, 0, 6}", LIGHT),
+        "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    const char *told = strstr(result.err, "the node 'no such' (77) is left out");
+    CHECK(told && !strstr(told + 15, "the node"));
+    free(result.out);
+    free(result.err);
+}
+
+struct collected {
+    char text[16384];
+};
+static bool collect(void *context, const char *line) {
+    struct collected *c = context;
+    strncat(c->text, line, sizeof c->text - strlen(c->text) - 1);
+    return true;
+}
+
+TEST(edits_as_lua_text_are_read_back_to_the_bit) {
+    static struct collected c;
+    struct change_list list = {0};
+    struct test_random random = {5};
+    struct change changes[] = {
+        {.kind = CHANGE_ADD, .name = "root", .added = ADDED_CONE, .numbers = {0.1, 0.7, 1.0 / 3}},
+        {.kind = CHANGE_PLACE, .serial = UINT32_MAX, .name = "cone"},
+        {.kind = CHANGE_PLACE, .serial = 2, .name = "ba'l\\l\n"},
+        {.kind = CHANGE_MATERIAL, .serial = 1, .numbers = {1.0 / 7, 2.0 / 7, 3.0 / 7}},
+        {.kind = CHANGE_ADD_LIGHT, .numbers = {0.3, 3, 1, 0.1, 0.2, 0.3}},
+        {.kind = CHANGE_LIGHT, .serial = 1, .numbers = {0.1, 0.1, 0.1, 1.1, 1.1, 1.1}},
+    };
+    for (int i = 0; i < 12; i++) {
+        changes[1].numbers[i] = (i % 5 == 0 ? 0.3 : 0) + test_uniform(&random, -0.1, 0.1);
+        changes[2].numbers[i] = (i % 5 == 0 ? 1 : 0) + test_uniform(&random, -0.2, 0.2);
+    }
+    for (size_t i = 0; i < sizeof changes / sizeof *changes; i++)
+        CHECK(change_list_set(&list, &changes[i], true));
+    const struct camera camera = {{0.1, 0.2, 6.3}, {0.01, -0.02, -1.03}, {0, 1.0 / 3, 0}, 41.7};
+    const double exposure = 1.0 / 3;
+    CHECK(edits_tell(&list, "out.png", &camera, &exposure, collect, &c));
+    CHECK(strstr(c.text, "'ba\\039l\\092l\\010'") != NULL);
+    /* Numbers as C reads them are the numbers as they were. */
+    const char *at = strstr(c.text, "gr.change_material(1, {");
+    CHECK(at && strtod(at + strlen("gr.change_material(1, {"), NULL) == 1.0 / 7);
+    /* And Lua runs it. */
+    static char scene[20000];
+    (void)snprintf(scene, sizeof scene, "local ball = gr.geometry('ba\\039l\\092l\\010', gr.sphere('s'))\n%s\n%s",
+                   c.text, SCENE_HEAD SCENE_TAIL("{0, 0, 6}", LIGHT));
+    struct test_result result = test_gray_scene(scene, "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    free(result.out);
+    free(result.err);
+    change_list_destroy(&list);
+}
+
+/* Clicks. */
+
+TEST(camera_projects_a_point_to_where_its_ray_goes_through) {
+    const struct camera camera = {{1, 2, 3}, {-0.3, -0.1, -1}, {0.1, 1, 0}, 50};
+    struct test_random random = {11};
+    for (int kind = 0; kind < 4; kind++) {
+        struct settings settings = settings_default();
+        struct camera_frame frame;
+        struct error error;
+        char warning[256];
+        settings.lens.projection = (enum projection)kind;
+        settings.lens.view_height = 5;
+        settings.lens.angle = 200;
+        settings.lens.shift_x = kind == PROJECTION_PANORAMA ? 0 : 0.1;
+        settings.lens.shift_y = kind == PROJECTION_PANORAMA ? 0 : -0.05;
+        CHECK(camera_prepare(&camera, &settings, 200, 150, &frame, warning, &error));
+        for (int i = 0; i < 300; i++) {
+            double x = test_uniform(&random, 40, 160), y = test_uniform(&random, 30, 120), u, v;
+            struct ray ray;
+            if (!camera_ray_through(&frame, x, y, (struct sample2){0.5, 0.5}, 0, &ray))
+                continue;
+            CHECK(camera_project(&frame, vec3_add_scaled(ray.origin, ray.direction, test_uniform(&random, 0.5, 9)), &u,
+                                 &v));
+            CHECK_NEAR(u, x, 1e-9);
+            CHECK_NEAR(v, y, 1e-9);
+        }
+    }
+}
+
+TEST(picking_tells_the_way_to_a_node_its_place_and_its_box) {
+    static struct stage s;
+    struct picked picked;
+    stage_begin(&s, 1);
+    struct material *red = stage_phong(&s, vec3_make(1, 0.5, 0.25), vec3_all(0), 1);
+    struct node *group = stage_group(&s, s.root), *ball = stage_sphere(&s, group, red);
+    group->name = "group";
+    ball->name = "ball";
+    stage_scale(&s, ball, 2, 2, 2);
+    stage_move(&s, group, 0, 0, -1);
+    struct node *other = stage_sphere(&s, group, red);
+    stage_move(&s, other, 50, 0, 0);
+    CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+    const struct render_job job = {
+        .world = &s.world, .camera = s.camera, .settings = s.settings, .width = 100, .height = 80};
+    CHECK(pick_at(&job, s.root, 50, 40, 0, &picked, &s.error));
+    CHECK(picked.hit && strstr(picked.path, "/ group#") && strstr(picked.path, "/ ball#"));
+    CHECK_TEXT(picked.name, "ball");
+    CHECK_TEXT(picked.shape, "sphere");
+    CHECK(picked.serial == ball->serial && picked.parent_serial == group->serial && picked.levels == 2);
+    CHECK_NEAR(picked.distance, 9, 1e-9); /* from z = 10 to z = 1 */
+    CHECK_NEAR(picked.position.z, 1, 1e-9);
+    CHECK(picked.material_serial == red->serial && picked.kd.y == 0.5);
+    CHECK(picked.has_box);
+    CHECK_NEAR(picked.corners[0].x, -2, 1e-12);
+    CHECK_NEAR(picked.corners[7].z, 1, 1e-12);
+    CHECK_NEAR(affine_point(&picked.world_from_parent, vec3_make(0, 0, 0)).z, -1, 1e-12);
+    /* One up: the group, with all that is under it. */
+    CHECK(pick_at(&job, s.root, 50, 40, 1, &picked, &s.error));
+    CHECK_TEXT(picked.name, "group");
+    CHECK_TEXT(picked.shape, "group");
+    CHECK(picked.corners[7].x > 50.9 && picked.corners[7].x < 51.1 && picked.corners[0].x < -1.9);
+    CHECK(pick_at(&job, s.root, 50, 40, 99, &picked, &s.error));
+    CHECK_EQ_INT(picked.levels, 0);
+    CHECK(pick_at(&job, s.root, 1, 1, 0, &picked, &s.error));
+    CHECK(!picked.hit);
+    stage_end(&s);
+}
