@@ -13,8 +13,9 @@
 #include "geom/part_tree.h"
 #include "geom/wrap.h"
 
-enum { CELL_DEPTH = 7, REGIONS = 4, BODY = 0, BALL_A = 1, BALL_B = 2 };
+enum { CELL_DEPTH = 7, FINE_DEPTH = 9, REGIONS = 4, BODY = 0, BALL_A = 1, BALL_B = 2 };
 #define CELL_WORK (UINT32_C(1) << 23) /* fields looked at while the bounds are found; beyond it cells count as full */
+#define FINE_WORK (UINT32_C(1) << 22) /* and while they are made finer, which is given up beyond it */
 
 struct blob {
     struct blob_element *elements;
@@ -42,7 +43,8 @@ static double field(const struct blob_element *e, double distance) {
 struct cells {
     const struct blob *blob;
     struct box found;
-    uint32_t work;
+    uint32_t work, most_work;
+    int depth;
 };
 
 static bool may_be_inside(struct cells *cells, const struct box *cell) {
@@ -70,10 +72,10 @@ static bool may_be_inside(struct cells *cells, const struct box *cell) {
 static void find_bounds(struct cells *cells, const struct box *cell, int depth) {
     if (box_contains(&cells->found, cell->min) && box_contains(&cells->found, cell->max))
         return;
-    if (cells->work < CELL_WORK) {
+    if (cells->work < cells->most_work) {
         if (!may_be_inside(cells, cell))
             return;
-        if (depth < CELL_DEPTH) {
+        if (depth < cells->depth) {
             struct vec3 middle = vec3_add(vec3_scale(cell->min, 0.5), vec3_scale(cell->max, 0.5));
             for (int i = 0; i < 8; i++) {
                 struct box child = {
@@ -85,6 +87,33 @@ static void find_bounds(struct cells *cells, const struct box *cell, int depth) 
         }
     }
     cells->found = box_join(cells->found, *cell);
+}
+
+static struct box a_point(const struct blob *blob) { /* where the threshold is nowhere attained */
+    return (struct box){blob->elements[0].a, blob->elements[0].a};
+}
+
+/* k (1 - x^2)^2 = threshold. */
+static struct box bounds_of_one(const struct blob *blob) {
+    const struct blob_element *e = &blob->elements[0];
+    if (!(e->strength >= blob->threshold))
+        return a_point(blob);
+    double reach = e->radius * sqrt(fmax(1 - sqrt(blob->threshold / e->strength), 0)) * (1 + 0x1p-40);
+    return (struct box){vec3_sub(vec3_min(e->a, e->b), vec3_all(reach)),
+                        vec3_add(vec3_max(e->a, e->b), vec3_all(reach))};
+}
+
+/* Cells of the fields' reach, then finer ones of what they left. */
+static struct box bounds_of_many(const struct blob *blob, const struct box *all) {
+    struct cells cells = {.blob = blob, .found = box_empty(), .most_work = CELL_WORK, .depth = CELL_DEPTH};
+    find_bounds(&cells, all, 0);
+    if (box_is_empty(&cells.found))
+        return a_point(blob);
+    struct cells fine = {.blob = blob, .found = box_empty(), .most_work = FINE_WORK, .depth = FINE_DEPTH};
+    find_bounds(&fine, &cells.found, 0);
+    if (fine.work >= FINE_WORK)
+        return cells.found;
+    return box_is_empty(&fine.found) ? a_point(blob) : fine.found;
 }
 
 static bool check(const struct blob_input *in, struct error *error) {
@@ -127,11 +156,7 @@ const struct blob *blob_build(struct arena *arena, const struct blob_input *in, 
         error_no_memory(error, "a blob");
         return NULL;
     }
-    struct cells cells = {.blob = blob, .found = box_empty()};
-    find_bounds(&cells, &all, 0);
-    if (box_is_empty(&cells.found)) /* the threshold is nowhere attained: a point */
-        cells.found = (struct box){elements[0].a, elements[0].a};
-    blob->bounds = box_pad(cells.found);
+    blob->bounds = box_pad(in->count == 1 ? bounds_of_one(blob) : bounds_of_many(blob, &all));
     blob->middle =
         box_is_empty(&adding) ? elements[0].a : vec3_add(vec3_scale(adding.min, 0.5), vec3_scale(adding.max, 0.5));
     blob->size = fmax(vec3_max_abs(all.min), vec3_max_abs(all.max));
