@@ -24,6 +24,7 @@ const char *gltf_library(void) {
 #include "base/hash.h"
 #include "formats/gltf.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -87,7 +88,8 @@ bool gltf_numbers(const struct gltf *g, const json_t *object, const char *key, d
         return gltf_fail(g, where, "%s is not an array of %d numbers", key, count);
     for (int i = 0; i < count; i++) {
         const json_t *value = json_array_get(array, (size_t)i);
-        if (!json_is_number(value) || !isfinite(json_number_value(value)))
+        assert(isfinite(json_number_value(value))); /* JSON has no others, and 0 is told of what is none */
+        if (!json_is_number(value))
             return gltf_fail(g, where, "%s[%d] is not a finite number", key, i);
         out[i] = json_number_value(value);
     }
@@ -169,8 +171,9 @@ static bool read_attribute(struct gltf *g, const struct primitive *p, uint32_t a
     if (!produce(g, a.sparse_count, p->where))
         return false;
     size_t count;
-    if (__builtin_mul_overflow((size_t)corners->vertices, (size_t)a.components, &count))
-        return error_no_memory(g->error, g->path);
+    bool beyond = __builtin_mul_overflow((size_t)corners->vertices, (size_t)a.components, &count);
+    assert(!beyond); /* produce() bounds the vertices */
+    (void)beyond;
     *out = mem_alloc_zero(count, sizeof **out);
     if (!*out)
         return error_no_memory(g->error, g->path);

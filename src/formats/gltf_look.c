@@ -4,7 +4,7 @@
  * A metallic-roughness surface is not a Phong surface; this is what we take for it. Base colour c, metallic m,
  * roughness r: kd = c (1 - m); ks = F0 (1 - m) + c m, F0 = ((ior - 1) / (ior + 1))^2; the width of the highlight is
  * that of the microfacet distribution at the same roughness, n = 2 / r^4 - 2 (B. Walter et al., "Microfacet Models for
- * Refraction through Rough Surfaces", EGSR 2007, section 5.2), at most 2000; what is smooth mirrors: reflect = (1 -
+ * Refraction through Rough Surfaces", EGSR 2007, section 5.2), at most 1998; what is smooth mirrors: reflect = (1 -
  * r)^2 for metals, and for others by Fresnel when they let light through. Pictures are used as they are stored, as all
  * ours. */
 #ifdef HAVE_JANSSON
@@ -158,7 +158,7 @@ static bool read_material(struct gltf *g, const json_t *source, struct model_mat
     m->kd = m->by_metal ? colour : vec3_scale(colour, 1 - metallic);
     m->ks = vec3_add(vec3_scale(vec3_all(f0), 1 - metallic), vec3_scale(colour, metallic));
     double n = 2 / fmax(r * r * r * r, 1e-3) - 2;
-    m->shininess = n < 1 ? 1 : n > 2000 ? 2000 : n;
+    m->shininess = n < 1 ? 1 : n;
     m->has_shininess = true;
     m->reflect = metallic * (1 - r) * (1 - r);
     m->ke = vec3_make(emitted[0], emitted[1], emitted[2]);

@@ -7,6 +7,7 @@
 #include "base/unreachable.h"
 #include "geom/mesh_smooth.h"
 
+#include <assert.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -140,7 +141,8 @@ static struct mesh_input tables_input(const struct model_mesh *m) {
     }
     if (m->face_slot.count && m->slots.count > 1)
         input.face_material = m->face_slot.items;
-    if (m->colours.count && m->colours.count == m->vertices.count)
+    assert(m->colours.count == 0 || m->colours.count == m->vertices.count);
+    if (m->colours.count)
         input.colours = m->colours.items;
     return input;
 }

@@ -25,6 +25,7 @@ const char *jpeg_library(void) {
 
 #include "image/levels.h"
 
+#include <assert.h>
 #include <setjmp.h>
 #include <stdio.h>
 #include <string.h>
@@ -83,10 +84,9 @@ static __attribute__((noinline)) void to_rgba(const uint8_t *from, int component
     }
 }
 
-static bool decode(struct reader *reader, const uint8_t *data, struct error *error) {
+/* Whatever is wrong leaves this function through on_error. */
+static bool decode_to_the_end(struct reader *reader, const uint8_t *data, struct error *error) {
     struct jpeg_decompress_struct *const jpeg = &reader->jpeg;
-    if (setjmp(reader->back))
-        return false;
     jpeg_create_decompress(jpeg);
     jpeg->progress = &reader->progress;
     jpeg_mem_src(jpeg, data, (unsigned long)reader->size);
@@ -107,10 +107,7 @@ static bool decode(struct reader *reader, const uint8_t *data, struct error *err
     jpeg->dct_method = JDCT_ISLOW;
     (void)jpeg_start_decompress(jpeg);
     int const components = jpeg->output_components;
-    if (components != 1 && components != 3 && components != 4) {
-        (void)snprintf(reader->message, sizeof reader->message, "%d components are unknown", components);
-        return false;
-    }
+    assert(components == 1 || components == 3 || components == 4); /* as the colour space was chosen above */
     reader->image = image_allocate(reader->path, width, height, 8, error);
     if (!reader->image)
         return false;
@@ -123,6 +120,10 @@ static bool decode(struct reader *reader, const uint8_t *data, struct error *err
     }
     (void)jpeg_finish_decompress(jpeg);
     return true;
+}
+
+static bool decode(struct reader *reader, const uint8_t *data, struct error *error) {
+    return setjmp(reader->back) == 0 && decode_to_the_end(reader, data, error);
 }
 
 struct image *image_parse_jpeg(const char *path, const uint8_t *data, size_t size, struct error *error) {

@@ -174,4 +174,56 @@ TEST(jpeg_survives_every_failed_allocation) {
     free(data);
 }
 
+/* More scans than a picture can use: each coefficient alone, in four rounds. */
+TEST(jpeg_with_hundreds_of_scans_is_refused) {
+    static jpeg_scan_info scans[260];
+    struct jpeg_compress_struct jpeg;
+    struct jpeg_error_mgr errors;
+    uint8_t *data = NULL, line[WIDTH] = {0};
+    unsigned long length = 0;
+    int count = 0;
+    scans[count++] = (jpeg_scan_info){1, {0}, 0, 0, 0, 0};
+    for (int low = 3; low >= 0; low--)
+        for (int k = 1; k < 64; k++)
+            scans[count++] = (jpeg_scan_info){1, {0}, k, k, low == 3 ? 0 : low + 1, low};
+    jpeg.err = jpeg_std_error(&errors);
+    jpeg_create_compress(&jpeg);
+    jpeg_mem_dest(&jpeg, &data, &length);
+    jpeg.image_width = WIDTH;
+    jpeg.image_height = HEIGHT;
+    jpeg.input_components = 1;
+    jpeg.in_color_space = JCS_GRAYSCALE;
+    jpeg_set_defaults(&jpeg);
+    jpeg.scan_info = scans;
+    jpeg.num_scans = count;
+    jpeg_start_compress(&jpeg, TRUE);
+    for (int y = 0; y < HEIGHT; y++) {
+        JSAMPROW row = line;
+        (void)jpeg_write_scanlines(&jpeg, &row, 1);
+    }
+    jpeg_finish_compress(&jpeg);
+    jpeg_destroy_compress(&jpeg);
+    struct error error;
+    CHECK(parse(data, length, &error) == NULL);
+    CHECK(strstr(error.text, "more than 200 scans") != NULL);
+    free(data);
+}
+
+/* The size in the header made larger. */
+TEST(jpeg_that_claims_a_huge_size_is_refused) {
+    static const struct { unsigned width, height; } sizes[] = {{65500, 16}, {16, 65500}, {30000, 30000}, {4000, 4000}};
+    size_t size, at = 0;
+    uint8_t *data = encode(3, false, &size);
+    while (!(data[at] == 0xff && data[at + 1] == 0xc0))
+        at++;
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        struct error error;
+        data[at + 5] = (uint8_t)(sizes[i].height >> 8), data[at + 6] = (uint8_t)sizes[i].height;
+        data[at + 7] = (uint8_t)(sizes[i].width >> 8), data[at + 8] = (uint8_t)sizes[i].width;
+        CHECK(parse(data, size, &error) == NULL);
+        CHECK(strstr(error.text, "too many") || strstr(error.text, "too short"));
+    }
+    free(data);
+}
+
 #endif

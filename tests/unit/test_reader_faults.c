@@ -291,6 +291,27 @@ TEST(any_word_of_an_obj_file_may_be_another) {
     check_text("t.obj", obj_text, strlen(obj_text), 5);
 }
 
+/* As two members of gzip, with zeros behind them. */
+TEST(any_allocation_may_fail_while_gzip_is_read) {
+    char line[2048];
+    prepare();
+    put("t.obj", obj_text, strlen(obj_text));
+    (void)snprintf(line, sizeof line,
+                   "cd '%s' && head -n 9 t.obj | gzip >z.obj.gz && tail -n +10 t.obj | gzip >>z.obj.gz && "
+                   "head -c 100 /dev/zero >>z.obj.gz",
+                   test_folder());
+    if (system(line) != 0)
+        test_skip("there is no gzip");
+    struct model_options plain = {0};
+    struct error error;
+    int triangles = 0;
+    char path[512];
+    (void)snprintf(path, sizeof path, "%s/z.obj.gz", test_folder());
+    CHECK(read_and_place(path, &plain, &error, &triangles));
+    CHECK_EQ_INT(triangles, 5);
+    fail_everything("z.obj.gz", &plain);
+}
+
 TEST(any_word_of_a_ply_file_may_be_another) {
     check_text("t.ply", ply_text, strlen(ply_text), 6);
     check_text("c.ply", ply_corner_text, strlen(ply_corner_text), 3);

@@ -1,0 +1,277 @@
+/* The corners of the readers, one short file each: read, or refused with these words. */
+#include "formats/decimal.h"
+#include "image/image_file.h"
+#include "model_makers.h"
+
+#include "base/fault.h"
+
+#include <math.h>
+
+struct corner {
+    const char *name, *text, *words; /* NULL: it is read */
+};
+
+#define HEAD "{\"asset\":{\"version\":\"2.0\"},"
+/* Three corners and a list of three indices, in 39 bytes. */
+#define BUFFER                                                                                                         \
+    "\"buffers\":[{\"uri\":\"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAECAA==\"}],"               \
+    "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":3}],"
+#define POINTS "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}"
+#define INDICES "{\"bufferView\":1,\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"}"
+#define TRIANGLE BUFFER "\"accessors\":[" POINTS "," INDICES "],"
+#define ONE "{\"attributes\":{\"POSITION\":0},\"indices\":1}"
+#define MESH "\"meshes\":[{\"primitives\":[" ONE "]}]"
+
+static const struct corner corners[] = {
+    {"a.gltf", HEAD TRIANGLE MESH "}", NULL},
+    {"bom.gltf", "\xef\xbb\xbf" HEAD TRIANGLE MESH "}", NULL},
+    {"bom", "\xef\xbb\xbf " HEAD TRIANGLE MESH "}", NULL},
+    {"folder.x/bom", HEAD TRIANGLE MESH "}", NULL},
+    {"a.gltf", "[1]", "an object must be at the top"},
+    {"a.gltf", HEAD "\"extensionsRequired\":[\"x\\u0001\\u007f\"]}", "the file needs 'x\?\?'"},
+    {"a.gltf", HEAD "\"extensionsRequired\":[5]}", "something without a name"},
+    {"a.gltf",
+     HEAD BUFFER "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":1,\"type\":\"MAT3\"}],"
+                 "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}",
+     "has 9 numbers an element"},
+    {"a.gltf",
+     HEAD "\"accessors\":[{\"componentType\":5126,\"count\":400000,\"type\":\"VEC3\"}],\"meshes\":[{"
+          "\"primitives\":[{\"attributes\":{\"POSITION\":0}},{\"attributes\":{\"POSITION\":0}}]}]}",
+     "more vertices than a file of"},
+    {"a.gltf",
+     HEAD BUFFER "\"accessors\":[" POINTS ",{\"componentType\":5121,\"count\":2000000,\"type\":\"SCALAR\"}]," MESH "}",
+     "more vertices than a file of"},
+    {"a.gltf",
+     HEAD BUFFER "\"accessors\":[" POINTS ",{\"bufferView\":1,\"componentType\":5121,\"count\":3,\"type\":"
+                 "\"SCALAR\",\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":1,\"componentType\":5121},\"values\":{"
+                 "\"bufferView\":1}}}]," MESH "}",
+     "it cannot be the indices of vertices"},
+    /* sparse elements before and behind the two vertices that the indices name */
+    {"a.gltf",
+     HEAD
+     "\"buffers\":[{\"uri\":\"data:;base64,AQIBAAI=\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":3},{"
+     "\"buffer\":0,\"byteOffset\":3,\"byteLength\":2}],\"accessors\":[{\"componentType\":5120,\"count\":4,"
+     "\"type\":\"VEC3\",\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":1,\"componentType\":5121},"
+     "\"values\":{\"bufferView\":0}}},{\"bufferView\":0,\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"}]," MESH
+     "}",
+     "no faces"},
+    {"a.gltf",
+     HEAD
+     "\"buffers\":[{\"uri\":\"data:;base64,AAEAAwE=\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":3},{"
+     "\"buffer\":0,\"byteOffset\":3,\"byteLength\":2}],\"accessors\":[{\"componentType\":5120,\"count\":4,"
+     "\"type\":\"VEC3\",\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":1,\"componentType\":5121},"
+     "\"values\":{\"bufferView\":0}}},{\"bufferView\":0,\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"}]," MESH
+     "}",
+     "no faces"},
+    {"a.gltf",
+     HEAD "\"buffers\":[{\"uri\":\"data:x\"}],\"bufferViews\":[{\"buffer\":0}],\"accessors\":[" POINTS "],"
+          "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}",
+     "a data URI that is not base64"},
+    {"a.gltf",
+     HEAD "\"buffers\":[{\"uri\":\"data:;base64,==\"}],\"bufferViews\":[{\"buffer\":0}],\"accessors\":[" POINTS
+          "],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}",
+     "3 elements of 12 bytes do not fit"},
+    {"a.gltf",
+     HEAD "\"buffers\":[{\"uri\":\"a%2fb%2F%4g%g4%4%00%zz%/\"}],\"bufferViews\":[{\"buffer\":0}],\"accessors\":[" POINTS
+          "],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}",
+     "the file 'a/b/%4g%g4%4%00%zz%/' is not there"},
+    {"a.gltf", HEAD TRIANGLE MESH ",\"nodes\":[{\"mesh\":0,\"children\":[-1,77,1.5]},{\"children\":[0]}]}",
+     "a child that does not exist"},
+    {"a.gltf", HEAD TRIANGLE MESH ",\"nodes\":[{\"mesh\":0},{\"children\":[0]}]}", NULL},
+    {"a.gltf", HEAD TRIANGLE MESH ",\"scenes\":[{\"nodes\":[-1]}],\"nodes\":[{\"mesh\":0}]}",
+     "a root that does not exist"},
+    {"a.gltf", HEAD TRIANGLE MESH ",\"nodes\":[{\"mesh\":0,\"children\":[-1]}]}", "a child that does not exist"},
+    {"a.gltf",
+     HEAD TRIANGLE MESH ",\"materials\":[{\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":0}}],"
+                        "\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"gone.png\"}]}",
+     NULL},
+    /* OBJ and MTL */
+    {"a.obj", "\xfe\xff", "this is UTF-16 text"},
+    {"a.obj", "\xff\xfe", "this is UTF-16 text"},
+    {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nfx 1 2 3\nfo 1 2 3\nf 1/", "f needs at least 3 corners"},
+    {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -", "is not a corner of a face"},
+    {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 3/", NULL},
+    {"a.obj", "", "no faces in this file"},
+    {"a.obj",
+     "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+     "endsolid x\n",
+     NULL},
+    {"a.obj", "solid x\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", NULL},
+    {"a", "solid", "no faces in this file"},
+    {"a.obj", "mtllib corner.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n", NULL},
+    {"a.obj", "mtllib nothing corner.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n", NULL},
+    {"a.obj", "mtllib wrong.mtl\nv 0 0 0\n", "wrong.mtl:2: '' is not a finite number"},
+    {"a.obj", "mtllib long.mtl\nv 0 0 0\n",
+     "long.mtl:2: 'xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx' is not a finite number"},
+    {"a.obj", "mtllib bom.mtl\nmtllib tiny.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl b\nf 1 2 3\n", NULL},
+    /* STL */
+    {"a.stl",
+     "\xef\xbb\xbfsolid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+     "endfacet\nendsolid x\n",
+     NULL},
+    {"a.stl", "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0", "the file ends where a finite number must be"},
+    {"a.stl", "so", "a binary STL file has at least 84 bytes"},
+    /* PLY */
+    {"a.ply", "ply\r", "the file ends before end_header"},
+    {"a.ply", "ply\nend_header\n", "stands before the format"},
+    {"a.ply", "ply\nformat ascii 1.0\nformat ascii 1.0\n", "stands here a second time"},
+    {"a.ply", "ply\nformat xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx 1.0\n", "is none of ascii"},
+    {"a.ply", "ply\nformat\n", "'' is none of ascii"},
+    {"a.ply", "ply\nformat ascii 1.0\nelement aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa 5\n",
+     "needs a name and a count"},
+    {"a.ply",
+     "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+     "0 0 0\r",
+     "no faces"},
+    {"a.ply", "ply\nformat binary_little_endian 1.0\nelement other 3\nproperty char a\nend_header\n12",
+     "the file ends too early"},
+    {"a.ply", "ply\nformat binary_little_endian 1.0\nelement other 3\nproperty short a\nend_header\n12345",
+     "the file ends too early"},
+    {"a.ply",
+     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+     "property float u\nproperty float v\nelement face 1\nproperty list uchar int vertex_indices\n"
+     "property list uchar float texcoord\nend_header\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2 6 0 0 1 0 0 1\n",
+     NULL},
+};
+
+static void put(const char *name, const char *text) {
+    char path[512];
+    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    test_write_text(path, text);
+}
+
+static void expect(const char *name, const void *data, size_t size, const char *words) {
+    char path[512];
+    struct model model;
+    struct error error;
+    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    bool ok = parse_model(&model, path, data, size, NULL, &error);
+    if (ok != !words || (words && !strstr(error.text, words)))
+        test_fail(__FILE__, __LINE__, "%s, %.60s: %s, not '%s'", name, (const char *)data, ok ? "is read" : error.text,
+                  words ? words : "read");
+    if (ok)
+        model_destroy(&model);
+}
+
+TEST(corners_of_the_mesh_readers_are_read_or_told) {
+    put("corner.mtl", "newmtl a\rKd\v1\f1 1\r\nNs 5\nillum 9.5\n-\nmap_Kd\t-texres 5 -\n");
+    put("wrong.mtl", "newmtl a\nNs\n");
+    put("long.mtl", "newmtl a\nNs xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx\n");
+    put("bom.mtl", "\xef\xbb\xbfnewmtl b\nillum 11\nillum -1\n");
+    put("tiny.mtl", "#");
+    for (size_t i = 0; i < sizeof corners / sizeof corners[0]; i++) {
+#ifndef HAVE_JANSSON
+        if (strchr(corners[i].text, '{'))
+            continue;
+#endif
+        expect(corners[i].name, corners[i].text, strlen(corners[i].text), corners[i].words);
+    }
+}
+
+static char *repeated(const char *before, const char *piece, int count, const char *after) {
+    size_t length = strlen(piece);
+    char *text = malloc(strlen(before) + length * (size_t)count + strlen(after) + 1), *to = stpcpy(text, before);
+    for (int i = 0; i < count; i++)
+        to = stpcpy(to, piece);
+    strcpy(to, after);
+    return text;
+}
+
+static void expect_repeated(const char *name, const char *before, const char *piece, int count, const char *after,
+                            const char *words) {
+    char *text = repeated(before, piece, count, after);
+    expect(name, text, strlen(text), words);
+    free(text);
+}
+
+TEST(mesh_files_with_too_many_of_anything_are_told) {
+    char name[64];
+    char *text = malloc(1 << 20);
+    size_t used = (size_t)sprintf(text, "ply\nformat ascii 1.0\n");
+    for (int i = 0; i < 65; i++)
+        used += (size_t)sprintf(text + used, "element e%d 0\n", i);
+    expect("a.ply", text, used, "is one too many");
+    expect_repeated("a.ply", "ply\nformat ascii 1.0\nelement x 0\n", "property int a\n", 513, "", "is one too many");
+    put("many.mtl", "newmtl a\n");
+    (void)snprintf(name, sizeof name, "a.obj");
+    expect_repeated(name, "mtllib ", "x", 4100, "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", NULL);
+    expect_repeated(name, "mtllib many.mtl\nusemtl ", "x", 300, "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", NULL);
+    expect(name, "mtllib a\0b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 47, NULL);
+    char *library = repeated("", "newmtl a\n", 65537, "");
+    put("many.mtl", library);
+    expect(name, "mtllib many.mtl\n", 16, "many.mtl:65537: more than 65536 materials");
+    free(library);
+    free(text);
+#ifdef HAVE_JANSSON
+    expect_repeated("a.gltf", HEAD "\"x\":", "[", 1048577, "", "more than 1048576 objects");
+    expect_repeated("a.gltf", HEAD "\"x\":[1", ",", 16777217, "]}", "16777216 values");
+    expect_repeated("a.gltf", HEAD "\"materials\":[{}", ",{}", 65536, "]}", "materials: more than 65536");
+    /* more warnings than are kept */
+    expect_repeated("a.gltf", HEAD TRIANGLE "\"meshes\":[{\"primitives\":[" ONE,
+                    ",{\"attributes\":{\"POSITION\":0},\"mode\":0}", 30, "]}]}", NULL);
+    /* more slots in a mesh than are searched, and one that comes again */
+    struct bytes b = {0};
+    bytes_print(&b, "%s", HEAD TRIANGLE "\"materials\":[{}");
+    for (int i = 1; i < 300; i++)
+        bytes_print(&b, ",{}");
+    bytes_print(&b, "],\"meshes\":[{\"primitives\":[" ONE);
+    for (int i = 0; i < 310; i++)
+        bytes_print(&b, ",{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":%d}", i < 300 ? i : 299);
+    bytes_print(&b, "]}]}");
+    expect("a.gltf", b.data, b.size, NULL);
+    bytes_free(&b);
+#endif
+}
+
+#ifdef HAVE_JANSSON
+TEST(a_second_binary_chunk_of_a_glb_is_passed_over) {
+    struct maker m = {0};
+    struct bytes b = {0};
+    maker_sphere(&m, 3);
+    write_glb(&b, &m);
+    bytes_number(&b, 4, 4, false);
+    bytes_add(&b, "BIN\0abcd", 8);
+    b.data[8] = (uint8_t)b.size, b.data[9] = (uint8_t)(b.size >> 8), b.data[10] = (uint8_t)(b.size >> 16);
+    expect("a.glb", b.data, b.size, NULL);
+    bytes_free(&b);
+    maker_free(&m);
+}
+
+/* Files without scenes, without nodes, and with more children than a stack begins with. */
+TEST(any_allocation_may_fail_while_nodes_are_read) {
+#ifndef GRAY_FAULTS
+    test_skip("allocations fail on demand only in builds with GRAY_FAULTS");
+#endif
+    struct bytes b = {0};
+    check_failed_allocations("t.gltf", &(struct bytes){(uint8_t *)(uintptr_t)(HEAD TRIANGLE MESH "}"),
+                                                       sizeof(HEAD TRIANGLE MESH "}") - 1, 0});
+    bytes_print(&b, "%s", HEAD TRIANGLE MESH ",\"nodes\":[{\"mesh\":0,\"children\":[1");
+    for (int i = 2; i < 150; i++)
+        bytes_print(&b, ",%d", i);
+    bytes_print(&b, "]}");
+    for (int i = 1; i < 150; i++)
+        bytes_print(&b, ",{\"mesh\":0}");
+    bytes_print(&b, "]}");
+    check_failed_allocations("t.gltf", &b);
+    bytes_free(&b);
+}
+#endif
+
+TEST(numbers_of_any_length_are_read_exactly_or_refused) {
+    double x = 7;
+    char *much = malloc(200000);
+    static const char sign[] = "-";
+    CHECK(decimal_read(sign, sign, &x) == NULL && decimal_read(sign, sign + 1, &x) == NULL);
+    memset(much, '0', 200000);
+    much[1] = '.';
+    CHECK(decimal_read(much, much + 150000, &x) == much + 150000 && x == 0);
+    much[149999] = '1';
+    CHECK(decimal_read(much, much + 150000, &x) == NULL); /* too long for what remains of it */
+    memset(much, '9', 1300);
+    CHECK(decimal_read(much, much + 1300, &x) == NULL);
+    CHECK(decimal_read(much, much + 300, &x) == much + 300 && x > 9e299);
+    static const char large[] = "1e400", small[] = "1e-400";
+    CHECK(decimal_read(large, large + 5, &x) == NULL);
+    CHECK(decimal_read(small, small + 6, &x) == small + 6 && x == 0);
+    free(much);
+}
