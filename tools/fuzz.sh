@@ -7,12 +7,15 @@ root=$PWD
 with=$1 seconds=$2
 shift 2
 status=0
+mkdir -p build/fuzz
 export ASAN_OPTIONS="allocator_may_return_null=1:detect_leaks=1:abort_on_error=1:symbolize=${FUZZ_SYMBOLS:-1}:$ASAN_OPTIONS"
 export UBSAN_OPTIONS="print_stacktrace=1:halt_on_error=1:$UBSAN_OPTIONS"
 
-# Seconds of processor time of all processes that this shell has waited for.
+# Seconds of processor time of all processes that this shell has waited for (not in a shell of its own: that has none).
+clock=build/fuzz/clock
 processor() {
-    times | tail -n 1 | awk '{ split($1, u, /[ms]/); split($2, s, /[ms]/); print u[1] * 60 + u[2] + s[1] * 60 + s[2] }'
+    times >"$clock"
+    tail -n 1 "$clock" | awk '{ split($1, u, /[ms]/); split($2, s, /[ms]/); print u[1] * 60 + u[2] + s[1] * 60 + s[2] }' >"$1"
 }
 
 seeds() {
@@ -46,6 +49,7 @@ afl() {
         afl-fuzz -V "$seconds" -t 10000 -m none -G 32768 $dictionary -i "$out/in" -o "$out/out" -- \
         "build/afl/fuzz_$1" >"build/fuzz/$1.afl.log" 2>&1 || return 1
     runs=$(awk '/^execs_done/ { print $3 }' "$out/out/default/fuzzer_stats")
+    wall=$(awk '/^run_time/ { print $3 }' "$out/out/default/fuzzer_stats") # it does not wait for its targets
     cp "$out/out/default/queue/"id* "build/fuzz/corpus/$1/" 2>/dev/null
     found=0
     for file in "$out/out/default/crashes/"id* "$out/out/default/hangs/"id*; do
@@ -56,11 +60,11 @@ afl() {
 
 for name in "$@"; do
     mkdir -p "build/fuzz/corpus/$name"
-    before=$(processor)
-    runs=0
+    processor build/fuzz/before
+    runs=0 wall=
     if "$with" "$name"; then word="no finding"; else word="FOUND: build/fuzz/$name-* and build/fuzz/$name*.log" status=1; fi
-    after=$(processor)
-    echo "$name $with ${runs:-0} $before $after" | awk -v word="$word" \
-        '{ t = $5 - $4; printf "%-9s %-8s %7.0f s of processor time, %9d runs, %6.0f a second, %s\n", $1, $2, t, $3, t > 0 ? $3 / t : 0, word }'
+    processor build/fuzz/after
+    echo "$name $with ${runs:-0} $(cat build/fuzz/before build/fuzz/after | tr '\n' ' ')" | awk -v word="$word" -v wall="$wall" \
+        '{ t = wall ? wall : $5 - $4; printf "%-9s %-8s %7.0f s%s, %9d runs, %6.0f a second, %s\n", $1, $2, t, (wall ? "" : " of processor time"), $3, (t > 0 ? $3 / t : 0), word }'
 done
 exit $status

@@ -51,8 +51,16 @@ else
     build tsan
     run release --long "$@"
     if [ $# -eq 0 ]; then
+        build debug
+        run debug --long faults_
         run asan
         run tsan
+        if command -v clang >/dev/null; then # four hours for all targets together
+            if make -s fuzz FUZZ_SECONDS="${FUZZ_SECONDS:-850}"; then passed=$((passed + 1)); else failed=$((failed + 1)); fi
+        else
+            echo "fuzzing needs clang"
+            skipped=$((skipped + 1))
+        fi
     fi
 fi
 echo "$passed passed, $failed failed, $skipped skipped"

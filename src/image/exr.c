@@ -267,6 +267,16 @@ static bool decode_chunks(exr_context_t context, const exr_attr_box2i_t *window,
     return ok;
 }
 
+/* How many pixels a byte of the file can stand for at most: one channel of two bytes through zlib (1032 : 1), and with
+ * the lossy codings that for one number of a block of 8 x 8. */
+static uint64_t pixels_per_byte(exr_context_t context) {
+    const uint64_t zipped = 520;
+    exr_compression_t compression;
+    bool blocks = exr_get_compression(context, 0, &compression) == EXR_ERR_SUCCESS &&
+                  (compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB);
+    return blocks ? 64 * zipped : zipped;
+}
+
 static struct image *decode(exr_context_t context, const char *path, struct stream *stream, struct error *error) {
     exr_storage_t storage;
     exr_attr_box2i_t window;
@@ -282,7 +292,8 @@ static struct image *decode(exr_context_t context, const char *path, struct stre
     int64_t width = (int64_t)window.max.x - window.min.x + 1, height = (int64_t)window.max.y - window.min.y + 1;
     /* Every row costs a few bytes even when it is black, in chunks of at most 256 rows. */
     if (width < 1 || height < 1 || width > UINT32_MAX || height > UINT32_MAX ||
-        (uint64_t)height / 256 > stream->size / 8) {
+        (uint64_t)height / 256 > stream->size / 8 ||
+        (uint64_t)width * (uint64_t)height / pixels_per_byte(context) > stream->size) {
         error_set(error, ERROR_SCENE, "%s: broken EXR: the file is too short for its pixels", path);
         return NULL;
     }

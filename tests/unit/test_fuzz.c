@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
 #define TARGETS(X)                                                                                                     \
     X(font)                                                                                                            \
@@ -59,6 +60,10 @@ static void feed(const char *target, int (*input)(const uint8_t *data, size_t si
         free(exact);
         free(inputs.bytes[i]);
     }
+    /* A few bytes that claim to be much are refused before memory is taken for them. */
+    struct rusage usage;
+    (void)getrusage(RUSAGE_SELF, &usage);
+    CHECK(usage.ru_maxrss < 2 << 20); /* KiB */
 }
 
 #define REPLAY(target)                                                                                                 \

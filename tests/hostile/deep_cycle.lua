@@ -1,0 +1,6 @@
+-- expect: SCRIPT:6: gr.render: the nodes form a cycle: 'a' > 'b' > 'a'
+-- Nodes that hold each other.
+local a, b = gr.node('a'), gr.node('b')
+a:add_child(b)
+b:add_child(a)
+gr.render{node = a, file = 'x.png', width = 8, height = 8, eye = {0, 0, 9}}

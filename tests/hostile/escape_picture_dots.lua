@@ -1,0 +1,3 @@
+-- expect: SCRIPT:3: gr.render: a/../../x.png: scripts have pictures written below the working directory only, and under no hidden name (-o FILE or --allow-write DIR allow other places)
+-- A folder that need not be there, and two steps up from it.
+gr.render{node = gr.sphere{}, file = 'a/../../x.png', width = 8, height = 8, eye = {0, 0, 9}}
