@@ -560,13 +560,21 @@ static inline __attribute__((always_inline)) enum beginning search_begin(struct 
                  ray->t_max > 0;
     if (__builtin_expect(!usual, 0))
         return search_begin_far(s, o, d);
-    simd4 r4 = simd4_div(simd4_all(1), d4);
+    simd4 r4 = simd4_div(simd4_all(1), d4), half = simd4_load(index->half_single);
+    float last = (float)(ray->t_max < 0x1p60 ? ray->t_max : 0x1p60);
+    if (simd4_any_of_three_below(half, simd4_size(o4))) { /* from outside many rays miss the frame */
+        simd4 middle = simd4_mul(o4, r4), reach = simd4_mul(half, simd4_size(r4));
+        float enter = simd4_largest_of_three(simd4_sub(simd4_sub(simd4_all(0), middle), reach));
+        float leave = simd4_smallest_of_three(simd4_sub(reach, middle));
+        if (!(enter <= leave && leave >= 0 && enter <= last))
+            return RAY_MISSES;
+    }
     s->t_to_local = 1;
     s->t_offset = 0;
     s->blur = 0;
     s->error = 16 * 0x1p-24f;
     s->far_away = false;
-    search_start(s, o4, d4, r4, (float)(ray->t_max < 0x1p60 ? ray->t_max : 0x1p60));
+    search_start(s, o4, d4, r4, last);
     return RAY_INSIDE;
 }
 
