@@ -142,6 +142,49 @@ TEST(rays_from_a_few_sizes_away_meet_what_trying_every_triangle_meets_and_nothin
     maker_free(&m);
 }
 
+/* Whether a ray leaves the floor it starts on is more than single precision can say below some height, and the floor is
+ * so large that the slack of its test is, too. Odd sides, so that no number of the floor is exact; the same tilted. */
+TEST(rays_that_start_close_above_or_below_a_huge_floor_meet_what_trying_every_triangle_meets) {
+    static const char *const sets[] = {"base", "avx2", "avx512"};
+    for (int isa = 0; isa < 3; isa++) {
+        if (!accel_select_isa(sets[isa]))
+            continue;
+        struct test_random random = {15};
+        int hits = 0, rays = 0;
+        for (int tilted = 0; tilted < 2; tilted++) {
+            struct maker m = {0};
+            maker_sphere(&m, 4);
+            double slope = tilted ? 0.37 : 0;
+            uint32_t first = m.vertex_count;
+            for (int i = 0; i < 4; i++) {
+                double x = i & 1 ? 310.7 : -290.3, z = i & 2 ? 301.9 : -330.1;
+                maker_vertex(&m, x, slope * x - 1.1, z);
+            }
+            maker_triangle(&m, first, first + 1, first + 3);
+            maker_triangle(&m, first, first + 3, first + 2);
+            struct triangle_set set = set_of(&m);
+            struct triangle_index *index = build(&set, 0, NULL);
+            struct triangle_cost cost = {0};
+            for (int i = 0; i < 4000; i++) {
+                struct vec3 origin = vec3_scale(test_point(&random, 1), i & 1 ? 200 : 3);
+                double height = pow(10, test_uniform(&random, -14, 0));
+                origin.y = slope * origin.x - 1.1 + (i & 2 ? height : i & 4 ? -height : 0);
+                struct ray ray = test_ray(origin, test_point(&random, 1));
+                if (i % 5 == 0)
+                    ray.direction = vec3_make(i % 3 == 0, i % 3 == 1, i % 3 == 2 ? -1 : 0);
+                if (i % 7 == 0)
+                    ray.t_max = test_uniform(&random, 0, 3);
+                hits += meets_the_same(index, &set, &ray, &cost);
+                rays++;
+            }
+            triangle_index_destroy(index);
+            maker_free(&m);
+        }
+        CHECK(hits > rays / 6 && hits < rays * 5 / 6);
+    }
+    CHECK(accel_select_isa("auto"));
+}
+
 TEST(rays_that_are_not_finite_or_have_no_direction_meet_nothing) {
     struct maker m = {0};
     maker_sphere(&m, 4);
