@@ -137,7 +137,7 @@ void live_end(struct live *live) {
 void live_detach(struct live *live) {
     live->block = NULL;
     live->film = (struct film){0};
-    live->running = live->waiting = live->stopping = live->partial = live->asks = false;
+    live->running = live->waiting = live->stopping = live->partial = live->asks = live->asks_story = false;
     live->selection.kind = SELECTED_NOTHING;
     live->told = 0;
 }
@@ -148,6 +148,12 @@ void live_keep(struct live *live) {
 
 bool live_skips(const struct live *live, unsigned number) {
     return live->keep && number < live->number;
+}
+
+void live_hear(struct live *live, const char *text) {
+    size_t used = strlen(live->story);
+    (void)snprintf(live->story + used, sizeof live->story - used, "%s", text);
+    live->over_dirty = true;
 }
 
 void live_tell(struct live *live, const char *text) {
@@ -237,12 +243,22 @@ static void order_pick(struct live *live) {
                                         .up = live->asked.up};
 }
 
+static void order_story(struct live *live) {
+    live->asks_story = false;
+    live->story[0] = '\0';
+    live->story_line = 0;
+    live->order = (struct studio_order){
+        .kind = ORDER_STORY, .view = view_now(live, 1, false), .x = live->story_x, .y = live->story_y};
+}
+
 static enum live_order next_order(struct live *live, double now) {
     uint32_t divide = live->again ? FIRST_DIVIDE : live->divide;
     if (live->pending.count > 0) {
         order_change(live);
     } else if (live->asks) {
         order_pick(live);
+    } else if (live->asks_story) {
+        order_story(live);
     } else if (live->moved) {
         live->again = false;
         begin_pass(live, divide, true, false, now);
@@ -265,8 +281,8 @@ static enum live_order next_order(struct live *live, double now) {
 static enum live_order step_running(struct live *live) {
     /* A coarse pass is over soon and is worth showing; a fine one is not. */
     bool coarse = live->view.plain && live->view.divide >= live->divide;
-    bool wanted =
-        live->moved || live->asks || live->pending.count > 0 || differ(live->view.exposure, live->request.exposure);
+    bool wanted = live->moved || live->asks || live->asks_story || live->pending.count > 0 ||
+                  differ(live->view.exposure, live->request.exposure);
     if (!live->running || !wanted || live->stopping || coarse)
         return LIVE_NOTHING;
     live->stopping = true;
@@ -279,7 +295,7 @@ enum live_order live_step(struct live *live, double now) {
     live->stepped = now;
     if (live->block && walk_step(&live->walk, seconds < 0.1 ? seconds : 0.1))
         live_change_view(live);
-    while (live->wish == LIVE_NOTHING && live->driver->poll(live->driver->context, &event))
+    while (live->wish == LIVE_NOTHING && !live->quit && live->driver->poll(live->driver->context, &event))
         live_take_event(live, &event);
     if (live->running)
         live_draw_tiles(live);

@@ -73,6 +73,10 @@ struct live {
     struct studio_news scene;          /* lights and root, as the child told last */
     struct selection selection, asked; /* asked: a click that the child is to answer */
     bool asks;
+    bool asks_story;         /* of the pixel under the mouse */
+    double story_x, story_y; /* pixels of the whole picture */
+    char story[16384];       /* of a pixel, in words; empty: none is shown */
+    int story_line;          /* the first one shown */
     enum live_tool tool;
     bool joins;             /* the next change by the mouse is part of the last one */
     double script_exposure; /* stops */
@@ -106,6 +110,8 @@ void live_keep(struct live *live);
 bool live_skips(const struct live *live, unsigned number);
 /* Shows what went wrong until a picture begins; the first line is shown. */
 void live_tell(struct live *live, const char *text);
+/* A piece of a story that was asked for. */
+void live_hear(struct live *live, const char *text);
 /* The film that a pass fills: the picture's rectangle divided, in the same block. */
 struct film live_film(const struct picture_request *request, void *block, uint32_t divide);
 /* Something is done; the child waits for the next order. */

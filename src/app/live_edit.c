@@ -232,6 +232,16 @@ static bool near_light(const struct live *live, double x, double y, uint32_t *nu
     return found;
 }
 
+/* From pixels of the window to those of the whole picture. False: beside it. */
+static bool pixel_at(const struct live *live, double x, double y, double *u, double *v) {
+    *u = floor((x - live->place.left) / zoom(live));
+    *v = floor((y - live->place.top) / zoom(live));
+    bool inside = *u >= 0 && *v >= 0 && *u < live->request.width && *v < live->request.height;
+    *u += live->request.x0;
+    *v += live->request.y0;
+    return inside;
+}
+
 void live_click(struct live *live, double x, double y) {
     uint32_t number;
     live->joins = false;
@@ -240,12 +250,17 @@ void live_click(struct live *live, double x, double y) {
         live->selection = (struct selection){.kind = SELECTED_LIGHT, .light = number};
         return;
     }
-    double u = (x - live->place.left) / zoom(live), v = (y - live->place.top) / zoom(live);
-    if (u < 0 || v < 0 || u >= live->request.width || v >= live->request.height)
-        return;
     /* The middle of the pixel: what is told is what its first ray meets. */
-    live->asked = (struct selection){.x = floor(u) + live->request.x0 + 0.5, .y = floor(v) + live->request.y0 + 0.5};
+    live->asked = (struct selection){0};
+    if (!pixel_at(live, x, y, &live->asked.x, &live->asked.y))
+        return;
+    live->asked.x += 0.5;
+    live->asked.y += 0.5;
     live->asks = true;
+}
+
+void live_ask_story(struct live *live, double x, double y) {
+    live->asks_story = pixel_at(live, x, y, &live->story_x, &live->story_y);
 }
 
 void live_select_parent(struct live *live) {

@@ -122,6 +122,13 @@ static bool take_edit_key(struct live *live, const struct window_event *event) {
     case 't':
         choose_tool(live, TOOL_TURN);
         return true;
+    case 'p':
+        live_ask_story(live, live->panel.mouse_x, live->panel.mouse_y);
+        return true;
+    case WINDOW_PAGE_DOWN:
+        live->story_line += 10;
+        live->over_dirty = true;
+        return true;
     case WINDOW_DELETE:
         live_delete(live);
         return true;
@@ -133,6 +140,7 @@ static bool take_edit_key(struct live *live, const struct window_event *event) {
             return false;
         live->selection.kind = SELECTED_NOTHING;
         live->tool = TOOL_NONE;
+        live->story[0] = '\0';
         live->over_dirty = true;
         return true;
     default:

@@ -276,6 +276,29 @@ static void tell_selection(struct live *live, int top) {
         tell_light(live, &column);
 }
 
+/* The story of a pixel, from the line on that was scrolled to; after its end it begins again. */
+static void tell_story(struct live *live, int top) {
+    struct panel *panel = &live->panel;
+    int scale = panel->paper.scale, line = panel_line_height(panel), y = top + 2 * scale;
+    const char *at = live->story;
+    if (at[0] == '\0')
+        return;
+    for (int i = 0; i < live->story_line && *at; i++)
+        at += strcspn(at, "\n") + (at[strcspn(at, "\n")] == '\n');
+    if (*at == '\0') {
+        live->story_line = 0;
+        at = live->story;
+    }
+    panel_ground(panel, 0, top, panel->paper.width, panel->paper.height - top);
+    for (; *at && y + line <= panel->paper.height; y += line) {
+        size_t length = strcspn(at, "\n");
+        char row[400];
+        (void)snprintf(row, sizeof row, "%.*s", (int)(length < sizeof row ? length : sizeof row - 1), at);
+        panel_text(panel, 2 * scale, y, row);
+        at += length + (at[length] == '\n');
+    }
+}
+
 /* What went wrong, broken into lines at the bottom. */
 static void tell_message(struct live *live) {
     struct panel *panel = &live->panel;
@@ -305,9 +328,10 @@ void live_tell_over(struct live *live, const struct figures *figures) {
         tell_menu(live);
         if (room && live->block)
             tell_work(live);
-        (void)tell_figures(live, figures, top);
+        int below = tell_figures(live, figures, top);
         if (live->block)
             tell_selection(live, top);
+        tell_story(live, below + live->panel.paper.scale);
     }
     tell_message(live);
     panel_end(&live->panel);

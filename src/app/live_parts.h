@@ -12,6 +12,7 @@ void live_change_view(struct live *live); /* the camera was moved */
 /* live_edit.c */
 /* A click on the picture, at pixels of the window: a light that shows there is selected, else the child is asked. */
 void live_click(struct live *live, double x, double y);
+void live_ask_story(struct live *live, double x, double y);
 void live_take_picked(struct live *live, const struct picked *picked);
 void live_select_parent(struct live *live);
 void live_drag(struct live *live, double dx, double dy); /* with the tool, by pixels of the window */

@@ -2,6 +2,7 @@
  * off and laid over anew as a whole, so that their order is that of the list, as it is when a script makes them. */
 #include "app/studio.h"
 
+#include "app/inspect.h"
 #include "app/live.h"
 #include "app/progress.h"
 
@@ -141,6 +142,23 @@ static struct render_job looking_job(const struct at_work *work, const struct li
     return job;
 }
 
+static void print_piece(void *context, const char *text) {
+    const struct studio *studio = context;
+    studio->services->line(studio->services->context, LINE_OUTPUT, text);
+}
+
+static bool tell_story(struct at_work *work, const struct studio_order *order, struct error *error) {
+    struct studio *studio = work->studio;
+    struct render_job job = looking_job(work, &order->view);
+    struct inspected picture = {studio->request->file, &job, studio->request->root};
+    struct sheet sheet = {.put = print_piece, .context = studio};
+    const uint32_t pixel[1][2] = {{(uint32_t)order->x, (uint32_t)order->y}};
+    /* The supervisor asks for pixels of the picture; another one has no story. */
+    if (!(order->x >= 0 && order->y >= 0 && order->x < job.width && order->y < job.height))
+        return true;
+    return inspect_pixels(&picture, pixel, 1, false, studio->pool, &sheet, error);
+}
+
 static bool obey(struct at_work *work, const struct studio_order *order, struct studio_news *news,
                  struct error *error) {
     struct render_job job;
@@ -157,7 +175,7 @@ static bool obey(struct at_work *work, const struct studio_order *order, struct 
         return change_scene(work, order, news, error);
     case ORDER_STORY:
         news->kind = NEWS_STORY;
-        return true;
+        return tell_story(work, order, error);
     case ORDER_END:
         break;
     }

@@ -77,6 +77,8 @@ static void tell(struct supervisor *supervisor, enum line_kind kind, const char 
     desk_line(&supervisor->desk, kind, text);
     if (kind == LINE_ERROR)
         live_tell(&supervisor->live, text);
+    if (kind == LINE_OUTPUT)
+        live_hear(&supervisor->live, text);
 }
 
 static void note_error(struct supervisor *supervisor, const struct error *error) {
@@ -126,7 +128,8 @@ static bool finish_tiles(struct supervisor *supervisor) {
 
 static void cancel(struct supervisor *supervisor) {
     if (supervisor->deadline > 0 && !supervisor->restarts) {
-        (void)kill(supervisor->child, SIGKILL);
+        if (supervisor->child > 0)
+            (void)kill(supervisor->child, SIGKILL);
         return;
     }
     supervisor->stop = supervisor->ended = true;

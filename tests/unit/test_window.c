@@ -721,6 +721,33 @@ TEST(window_deletes_and_adds_nodes_and_lights) {
     end(&t);
 }
 
+TEST(window_asks_for_the_story_of_the_pixel_under_the_mouse) {
+    struct table t;
+    begin(&t);
+    enlarge(&t);
+    go_to_the_end(&t);
+    t.fake.queue[t.fake.count++] = mouse(WINDOW_MOVE, 8 * 12 + 3, 8 * 60 + 7);
+    key(&t.fake, 'p', true);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    CHECK_EQ_INT(t.live.order.kind, ORDER_STORY);
+    CHECK(t.live.order.x == 12 && t.live.order.y == 60 && t.live.order.view.own);
+    live_hear(&t.live, "one line\n");
+    live_hear(&t.live, "another\n");
+    tell_news(&t, &(struct studio_news){.kind = NEWS_STORY});
+    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    CHECK_TEXT(t.live.story, "one line\nanother\n");
+    key(&t.fake, WINDOW_PAGE_DOWN, true); /* past its end: from the beginning */
+    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    CHECK_EQ_INT(t.live.story_line, 0);
+    for (int i = 0; i < 5000; i++) /* more than there is room for */
+        live_hear(&t.live, "a line of some length\n");
+    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    key(&t.fake, WINDOW_ESCAPE, true);
+    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    CHECK_TEXT(t.live.story, "");
+    end(&t);
+}
+
 TEST(window_makes_the_picture_anew_in_another_exposure_and_does_not_write_it_as_the_scripts) {
     struct table t;
     begin(&t);
@@ -789,5 +816,21 @@ TEST(window_that_moves_a_node_saves_changes_that_give_the_same_bytes) {
     gives("cat out-changes1.lua >&2; grep change_node out-changes1.lua && grep change_view out-changes1.lua && grep "
           "change_exposure "
           "out-changes1.lua",
+          0);
+}
+
+TEST(window_that_is_resized_and_looked_about_in_shows_the_same_picture_at_home) {
+    need_display();
+    gives("xvfb-run -a -s '-screen 0 900x700x24' sh -c '$gray -gui scene.lua & pid=$!; "
+          "sh wait.sh \"test -s out.png\" || exit 20; cp out.png first.png; "
+          "xdotool search --name out.png windowsize 520 300 sleep 0.2 windowsize 170 400 sleep 0.2 windowsize 700 500; "
+          "xdotool sleep 0.2 key Tab key f sleep 0.3 key f sleep 0.2 key ctrl+1 click 4 click 4 sleep 0.2 key "
+          "bracketright "
+          "sleep 0.1 key l sleep 0.1 key 1 sleep 0.3 click 5 sleep 0.2; "
+          "sh wait.sh \"xdotool search --name ready\" || exit 19; xdotool key s; "
+          "sh wait.sh \"test -s out-view1.png\" || exit 18; cmp -s out-view1.png first.png && exit 17; "
+          "xdotool key Home sleep 0.3; sh wait.sh \"xdotool search --name ready\" || exit 16; xdotool key s; "
+          "sh wait.sh \"test -s out-view2.png\" || exit 15; cmp out-view2.png first.png || exit 14; "
+          "xdotool key q; wait $pid'",
           0);
 }

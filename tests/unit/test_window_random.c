@@ -1,0 +1,234 @@
+/* People who press everything: the whole program, supervisor and confined child, under a window without a screen that
+ * tells random events, while the scene's file changes under it. GRAY_RANDOM_SECONDS says how long the long test goes on
+ * (an hour); GRAY_RANDOM_SEED repeats one. Nothing may crash, leak, hang or be told as a broken protocol. */
+#define _GNU_SOURCE
+#include "app/supervisor.h"
+#include "tests/harness.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+struct crowd {
+    struct test_random random;
+    int polls, polls_left; /* until the window is closed */
+    bool open, mutates;
+    int width, height;
+    double x, y;
+    int titles, frames;
+};
+
+static int below(struct crowd *crowd, int limit) {
+    return (int)test_uniform(&crowd->random, 0, limit - 1e-9);
+}
+
+static const char scene_head[] =
+    "local red = gr.material({0.8, 0.2, 0.1}, {0.4, 0.4, 0.4}, 20)\n"
+    "local glass = gr.rr_material({0.1, 0.1, 0.1}, {0.9, 0.9, 0.9}, 100, 0.2, 0.7, 1.4)\n"
+    "local r = gr.node('root')\nlocal g = gr.node('group')\nr:add_child(g)\n"
+    "g:add_child(gr.geometry('ball', gr.sphere(red)))\n"
+    "local lens = gr.geometry('lens', gr.sphere(glass))\nlens:translate(1.5, 0, 1)\nr:add_child(lens)\n"
+    "local cut = gr.csg_difference('cut', gr.cube(red), gr.sphere(glass))\ncut:translate(-2, -1, 0)\nr:add_child(cut)\n"
+    "r:add_child(gr.instances{name = 'many', of = gr.geometry('small', gr.sphere(red)), at = {{-3, 2, -4}, {0, 2, -4}, "
+    "{3, 2, -4}}, size = 0.4})\n"
+    "r:add_child(gr.mesh('tetra', {{0, 2, 0}, {1, 3, 0}, {-1, 3, 0}, {0, 2.5, 1}}, {{0, 1, 2}, {0, 1, 3}, {1, 2, 3}, "
+    "{0, 2, 3}}))\n";
+
+/* One of some scenes: good ones with one and two pictures, and two kinds of bad ones. */
+static void write_scene(struct crowd *crowd) {
+    static const char *const tails[] = {
+        "gr.render(r, 'out.png', 160, 120, {0, 1, 7}, {0, -0.1, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2}, {gr.light({4, 5, "
+        "6}, {0.6, 0.6, 0.6}, {1, 0, 0}), gr.area_light({-1, 4, 0}, {2, 0, 0}, {0, 0, 2}, {0.4, 0.4, 0.4}, {1, 0, "
+        "0})})\n",
+        "for i = 1, 2 do gr.render(r, 'out' .. i .. '.png', 120 * i, 90, {0, 1, 7}, {0, 0, -1}, {0, 1, 0}, 50, {0.2, "
+        "0.2, 0.2}, {gr.light({4, 5, 6}, {0.6, 0.6, 0.6}, {1, 0, 0})}) end\n",
+        "gr.no_such_thing()\n",
+        "gr.render(r, \n",
+    };
+    char text[4096];
+    (void)snprintf(text, sizeof text, "%s%s", scene_head, tails[crowd->polls == 0 ? below(crowd, 2) : below(crowd, 4)]);
+    test_write_text("new.lua", text);
+    CHECK(rename("new.lua", "scene.lua") == 0);
+}
+
+static bool crowd_open(void *context, uint32_t width, uint32_t height, const char *title, struct error *error) {
+    struct crowd *crowd = context;
+    (void)error;
+    CHECK(!crowd->open && width > 0 && height > 0 && title);
+    crowd->width = crowd->height = 0;
+    return crowd->open = true;
+}
+
+/* Every byte that is to be shown can be read. */
+static void crowd_show(void *context, const struct window_frame *frame) {
+    struct crowd *crowd = context;
+    unsigned sum = 0;
+    for (size_t i = 0; i < 3 * (size_t)frame->width * frame->height; i += 97)
+        sum += frame->picture[i];
+    for (size_t i = 0; i < 4 * (size_t)frame->window_width * frame->window_height; i += 97)
+        sum += frame->overlay[i];
+    crowd->frames += sum > 0;
+    CHECK(crowd->open && (int)frame->window_width == crowd->width && (int)frame->window_height == crowd->height);
+    CHECK(frame->shown_width >= 1 && frame->shown_height >= 1);
+}
+
+static struct window_event random_key(struct crowd *crowd) {
+    static const int keys[] = {'r',
+                               'l',
+                               '[',
+                               ']',
+                               '1',
+                               '2',
+                               'm',
+                               't',
+                               'z',
+                               'z',
+                               'y',
+                               'y',
+                               'w',
+                               'a',
+                               'd',
+                               'e',
+                               '+',
+                               '-',
+                               'f',
+                               WINDOW_SPACE,
+                               WINDOW_ESCAPE,
+                               WINDOW_SHIFT,
+                               WINDOW_CONTROL,
+                               WINDOW_ARROW_UP,
+                               WINDOW_ARROW_DOWN,
+                               WINDOW_ARROW_LEFT,
+                               WINDOW_ARROW_RIGHT,
+                               WINDOW_HOME,
+                               WINDOW_DELETE,
+                               WINDOW_PAGE_UP,
+                               WINDOW_PAGE_DOWN,
+                               WINDOW_TAB};
+    static const int rare[] = {'s', 'v', 'c', 'n', 'p'};
+    int count = (int)(sizeof keys / sizeof *keys), key = keys[below(crowd, count)];
+    if (below(crowd, 60) == 0)
+        key = rare[below(crowd, 5)];
+    return (struct window_event){.kind = WINDOW_KEY,
+                                 .key = key,
+                                 .down = below(crowd, 3) > 0,
+                                 .control = below(crowd, 3) == 0,
+                                 .shift = below(crowd, 4) == 0};
+}
+
+static struct window_event random_event(struct crowd *crowd) {
+    int what = below(crowd, 100);
+    struct window_event event = {.kind = WINDOW_MOVE, .x = crowd->x, .y = crowd->y};
+    if (what < 30)
+        return random_key(crowd);
+    if (what < 65) {
+        bool far = below(crowd, 5) == 0;
+        event.dx = test_uniform(&crowd->random, -20, 20);
+        event.dy = test_uniform(&crowd->random, -20, 20);
+        event.x = far ? test_uniform(&crowd->random, -5, crowd->width + 5) : crowd->x + event.dx;
+        event.y = far ? test_uniform(&crowd->random, -5, crowd->height + 5) : crowd->y + event.dy;
+    } else if (what < 92) {
+        event.kind = below(crowd, 2) ? WINDOW_PRESS : WINDOW_RELEASE;
+        event.button = below(crowd, 12) == 0 ? WINDOW_RIGHT : WINDOW_LEFT;
+    } else if (what < 96) {
+        event = (struct window_event){.kind = WINDOW_WHEEL, .y = test_uniform(&crowd->random, -3, 3)};
+    } else if (what < 98) {
+        event = (struct window_event){.kind = WINDOW_LEAVE};
+    } else {
+        event = (struct window_event){.kind = WINDOW_SIZE,
+                                      .x = 1 + below(crowd, 900),
+                                      .y = 1 + below(crowd, 700),
+                                      .density = 1 + 0.5 * below(crowd, 3)};
+    }
+    return event;
+}
+
+static bool crowd_poll(void *context, struct window_event *event) {
+    struct crowd *crowd = context;
+    crowd->polls++;
+    if (crowd->width == 0) {
+        *event = (struct window_event){.kind = WINDOW_SIZE, .x = 800, .y = 600, .density = 1};
+    } else if (--crowd->polls_left <= 0) {
+        *event = (struct window_event){.kind = WINDOW_CLOSE};
+    } else {
+        if (crowd->mutates && below(crowd, 400) == 0)
+            write_scene(crowd);
+        if (below(crowd, 3) == 0)
+            return false;
+        *event = random_event(crowd);
+    }
+    if (event->kind == WINDOW_SIZE) {
+        crowd->width = (int)event->x;
+        crowd->height = (int)event->y;
+    }
+    if (event->kind == WINDOW_MOVE) {
+        crowd->x = event->x;
+        crowd->y = event->y;
+    }
+    return true;
+}
+
+static void crowd_title(void *context, const char *text) {
+    struct crowd *crowd = context;
+    crowd->titles += text[0] != '\0';
+}
+static void crowd_grab(void *context, bool on) {
+    (void)context, (void)on;
+}
+static void crowd_nothing(void *context) {
+    (void)context;
+}
+static void crowd_close(void *context) {
+    struct crowd *crowd = context;
+    CHECK(crowd->open);
+    crowd->open = false;
+}
+
+/* One sitting, of so many questions for events. */
+static void sit(uint64_t seed, int polls) {
+    struct crowd crowd = {.random = {seed}, .polls_left = polls};
+    const struct window_driver driver = {&crowd,      crowd_open, crowd_show,    crowd_poll,
+                                         crowd_title, crowd_grab, crowd_nothing, crowd_close};
+    struct arena arena = {0};
+    struct options options;
+    struct error error;
+    crowd.mutates = seed % 2 == 1;
+    write_scene(&crowd);
+    char *words[] = {"gray", "-gui", "-q", "--progress=none", "scene.lua", "--watch"};
+    CHECK(options_parse(&options, crowd.mutates ? 6 : 5, words, &arena, &error));
+    int status = supervisor_run(&options, &(struct program_parts){.window = &driver});
+    if (status != 0 && status != 130 && !(status == 1 && crowd.mutates))
+        test_fail(__FILE__, __LINE__, "seed %llu: status %d", (unsigned long long)seed, status);
+    CHECK(!crowd.open);
+    arena_destroy(&arena);
+    CHECK(system("rm -f -- *") == 0);
+}
+
+static uint64_t first_seed(uint64_t otherwise) {
+    const char *given = getenv("GRAY_RANDOM_SEED");
+    return given ? strtoull(given, NULL, 10) : otherwise;
+}
+
+static void enter_folder(void) {
+    CHECK(chdir(test_folder()) == 0);
+    /* What goes wrong in scenes is told in a file, not between the lines of the tests. */
+    CHECK(freopen("/dev/null", "w", stderr) != NULL);
+}
+
+TEST(window_survives_random_events) {
+    enter_folder();
+    sit(first_seed(1), 400);
+    sit(first_seed(2), 400);
+}
+
+TEST_LONG(window_survives_an_hour_of_random_events) {
+    const char *given = getenv("GRAY_RANDOM_SECONDS");
+    double seconds = given ? atof(given) : 3600;
+    (void)alarm((unsigned)seconds + 300);
+    enter_folder();
+    time_t end = time(NULL) + (time_t)seconds;
+    for (uint64_t seed = first_seed(100); time(NULL) < end; seed++)
+        sit(seed, 5000);
+}
