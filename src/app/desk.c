@@ -288,6 +288,8 @@ static bool write_view(const struct picture *picture, const char *name, enum fil
         return pfm_write(name, request->width, request->height, row_linear, &rows, error);
     if (ends_in(name, ".hdr"))
         return hdr_write(name, request->width, request->height, row_linear, &rows, error);
+    if (ends_in(name, ".exr") && view == FILM_FINAL && picture->film.layer_mask)
+        return layers_write_exr(name, &picture->film, error);
     if (ends_in(name, ".exr"))
         return exr_write(name, request->width, request->height, row_linear, &rows, error);
     if (request->deep)

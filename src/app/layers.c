@@ -56,11 +56,40 @@ static void layer_row_linear(void *context, uint32_t y, float *line) {
     memcpy(line, rows->values + (size_t)y * rows->width, rows->width * sizeof *rows->values);
 }
 
+static const char *const channel_names[AOV_COUNT][3] = {
+    [AOV_DEPTH] = {"depth.Z"},
+    [AOV_NORMAL] = {"normal.X", "normal.Y", "normal.Z"},
+    [AOV_ALBEDO] = {"albedo.R", "albedo.G", "albedo.B"},
+    [AOV_UV] = {"uv.U", "uv.V"},
+    [AOV_NODE] = {"node.N"},
+    [AOV_MATERIAL] = {"material.N"},
+    [AOV_COST] = {"cost.N"},
+    [AOV_SAMPLES] = {"samples.N"},
+    [AOV_LIGHTS] = {"lights.N"},
+};
+
+bool layers_write_exr(const char *picture, const struct film *film, struct error *error) {
+    static const char *const light[3] = {"R", "G", "B"};
+    struct exr_channel channels[3 + 3 * AOV_COUNT];
+    uint32_t count = 0, floats = sizeof *film->pixels / sizeof(float);
+    size_t pixels = (size_t)film->width * film->height;
+    for (int c = 0; c < 3; c++)
+        channels[count++] = (struct exr_channel){light[c], &film->pixels[0].rgb[c], floats};
+    for (int i = 0; i < AOV_COUNT; i++) {
+        if (!(film->layer_mask >> i & 1))
+            continue;
+        const float(*values)[3] = (const float(*)[3])(film->layers + aov_layer(film->layer_mask, (enum aov)i) * pixels);
+        for (int c = 0; c < 3 && channel_names[i][c]; c++)
+            channels[count++] = (struct exr_channel){channel_names[i][c], &values[0][c], 3};
+    }
+    return exr_write_channels(picture, film->width, film->height, channels, count, error);
+}
+
 bool layers_write(const char *picture, const struct film *film, bool deep_picture, struct error *error) {
     size_t pixels = (size_t)film->width * film->height;
     char name[LAYER_NAME_LIMIT];
     for (int i = 0; i < AOV_COUNT; i++) {
-        if (!(film->layer_mask >> i & 1))
+        if (!(film->layer_mask >> i & 1) || ends_in(picture, ".exr"))
             continue;
         struct layer_rows rows = {.aov = (enum aov)i, .width = film->width};
         rows.values = (const float(*)[3])(film->layers + aov_layer(film->layer_mask, rows.aov) * pixels);
@@ -70,7 +99,6 @@ bool layers_write(const char *picture, const struct film *film, bool deep_pictur
         bool deep = deep_picture || rows.aov == AOV_DEPTH;
         bool ok = ends_in(name, ".pfm")   ? pfm_write(name, film->width, film->height, layer_row_linear, &rows, error)
                   : ends_in(name, ".hdr") ? hdr_write(name, film->width, film->height, layer_row_linear, &rows, error)
-                  : ends_in(name, ".exr") ? exr_write(name, film->width, film->height, layer_row_linear, &rows, error)
                   : deep                  ? png_write_16(name, film->width, film->height, layer_row_16, &rows, error)
                                           : png_write(name, film->width, film->height, layer_row, &rows, error);
         if (!ok)

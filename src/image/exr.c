@@ -35,6 +35,12 @@ bool exr_write(const char *path, uint32_t width, uint32_t height, float_rows *ro
     return no_library(path, error);
 }
 
+bool exr_write_channels(const char *path, uint32_t width, uint32_t height, const struct exr_channel *channels,
+                        uint32_t count, struct error *error) {
+    (void)width, (void)height, (void)channels, (void)count;
+    return no_library(path, error);
+}
+
 struct image *image_parse_exr(const char *path, const uint8_t *data, size_t size, struct error *error) {
     (void)data, (void)size;
     no_library(path, error);
@@ -153,9 +159,47 @@ static int channel_number(const char *name) {
     return strcmp(name, "Y") == 0 ? 0 : 3;
 }
 
-/* `lines` holds the rows of one chunk. */
-static bool write_chunks(exr_context_t context, int part, uint32_t width, uint32_t height, float_rows *rows,
-                         void *rows_context, float *lines) {
+/* Where the values come from: rows that are asked for, put into `lines`, which holds one chunk; or channels in memory.
+ */
+struct source {
+    float_rows *rows;
+    void *rows_context;
+    float *lines;
+    const struct exr_channel *channels;
+    uint32_t count;
+};
+
+static bool add_all_channels(exr_context_t context, int part, const struct source *source) {
+    if (source->rows)
+        return add_channels(context, part);
+    for (uint32_t i = 0; i < source->count; i++)
+        if (exr_add_channel(context, part, source->channels[i].name, EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LINEAR, 1, 1) !=
+            EXR_ERR_SUCCESS)
+            return false;
+    return true;
+}
+
+/* The library keeps channels in the order of their names. */
+static void aim_encoder(exr_coding_channel_info_t *channel, const struct source *source, uint32_t width, uint32_t y) {
+    uint32_t stride = 3;
+    const float *from = source->lines;
+    if (source->rows)
+        from += channel_number(channel->channel_name);
+    for (uint32_t i = 0; i < source->count; i++) {
+        if (strcmp(source->channels[i].name, channel->channel_name) == 0) {
+            stride = source->channels[i].stride;
+            from = source->channels[i].values + (size_t)y * width * stride;
+        }
+    }
+    channel->user_bytes_per_element = 4;
+    channel->user_data_type = EXR_PIXEL_FLOAT;
+    channel->user_pixel_stride = (int32_t)stride * 4;
+    channel->user_line_stride = (int32_t)(width * stride) * 4;
+    channel->encode_from_ptr = (const uint8_t *)from;
+}
+
+static bool write_chunks(exr_context_t context, int part, uint32_t width, uint32_t height,
+                         const struct source *source) {
     exr_encode_pipeline_t encoder = EXR_ENCODE_PIPELINE_INITIALIZER;
     bool ok = true, begun = false;
     int step = 0;
@@ -165,16 +209,10 @@ static bool write_chunks(exr_context_t context, int part, uint32_t width, uint32
         ok = exr_write_scanline_chunk_info(context, part, (int)y, &chunk) == EXR_ERR_SUCCESS;
         ok = ok && (begun ? exr_encoding_update(context, part, &chunk, &encoder)
                           : exr_encoding_initialize(context, part, &chunk, &encoder)) == EXR_ERR_SUCCESS;
-        for (int32_t i = 0; ok && i < chunk.height; i++)
-            rows(rows_context, y + (uint32_t)i, lines + (size_t)i * width * 3);
-        for (int16_t i = 0; ok && i < encoder.channel_count; i++) {
-            exr_coding_channel_info_t *channel = &encoder.channels[i];
-            channel->user_bytes_per_element = 4;
-            channel->user_data_type = EXR_PIXEL_FLOAT;
-            channel->user_pixel_stride = 12;
-            channel->user_line_stride = (int32_t)width * 12;
-            channel->encode_from_ptr = (const uint8_t *)(lines + channel_number(channel->channel_name));
-        }
+        for (int32_t i = 0; ok && source->rows && i < chunk.height; i++)
+            source->rows(source->rows_context, y + (uint32_t)i, source->lines + (size_t)i * width * 3);
+        for (int16_t i = 0; ok && i < encoder.channel_count; i++)
+            aim_encoder(&encoder.channels[i], source, width, y);
         ok = ok && (begun || exr_encoding_choose_default_routines(context, part, &encoder) == EXR_ERR_SUCCESS);
         begun = true;
         ok = ok && exr_encoding_run(context, part, &encoder) == EXR_ERR_SUCCESS;
@@ -183,33 +221,27 @@ static bool write_chunks(exr_context_t context, int part, uint32_t width, uint32
     return ok;
 }
 
-static bool encode(struct stream *stream, uint32_t width, uint32_t height, float_rows *rows, void *rows_context) {
-    enum { CHUNK_ROWS = 16 }; /* of zip compression */
+static bool encode(struct stream *stream, uint32_t width, uint32_t height, const struct source *source) {
     exr_context_initializer_t init = callbacks(stream);
     exr_context_t context;
     int part;
-    float *lines = mem_alloc_zero((size_t)width * 3 * CHUNK_ROWS, sizeof *lines);
-    stream->no_memory = !lines;
-    if (!lines)
-        return false;
     bool ok = exr_start_write(&context, "picture", EXR_WRITE_FILE_DIRECTLY, &init) == EXR_ERR_SUCCESS;
     if (ok) {
         ok = exr_add_part(context, "light", EXR_STORAGE_SCANLINE, &part) == EXR_ERR_SUCCESS &&
              exr_initialize_required_attr_simple(context, part, (int32_t)width, (int32_t)height, EXR_COMPRESSION_ZIP) ==
                  EXR_ERR_SUCCESS &&
-             add_channels(context, part) && exr_write_header(context) == EXR_ERR_SUCCESS &&
-             write_chunks(context, part, width, height, rows, rows_context, lines);
+             add_all_channels(context, part, source) && exr_write_header(context) == EXR_ERR_SUCCESS &&
+             write_chunks(context, part, width, height, source);
         ok = exr_finish(&context) == EXR_ERR_SUCCESS && ok;
     }
-    mem_free(lines);
     return ok;
 }
 
-bool exr_write(const char *path, uint32_t width, uint32_t height, float_rows *rows, void *context,
-               struct error *error) {
+static bool write_source(const char *path, uint32_t width, uint32_t height, const struct source *source,
+                         struct error *error) {
     struct stream stream = {0};
     struct file_output output;
-    bool ok = encode(&stream, width, height, rows, context) || tell(path, &stream, "cannot be written", error);
+    bool ok = encode(&stream, width, height, source) || tell(path, &stream, "cannot be written", error);
     if (ok) {
         ok = file_output_open(&output, path, error);
         if (ok && file_output_write(&output, stream.bytes, stream.size, error))
@@ -219,6 +251,24 @@ bool exr_write(const char *path, uint32_t width, uint32_t height, float_rows *ro
     }
     mem_free(stream.bytes);
     return ok;
+}
+
+bool exr_write(const char *path, uint32_t width, uint32_t height, float_rows *rows, void *context,
+               struct error *error) {
+    enum { CHUNK_ROWS = 16 }; /* of zip compression */
+    struct source source = {.rows = rows, .rows_context = context};
+    source.lines = mem_alloc_zero((size_t)width * 3 * CHUNK_ROWS, sizeof *source.lines);
+    if (!source.lines)
+        return error_no_memory(error, path);
+    bool ok = write_source(path, width, height, &source, error);
+    mem_free(source.lines);
+    return ok;
+}
+
+bool exr_write_channels(const char *path, uint32_t width, uint32_t height, const struct exr_channel *channels,
+                        uint32_t count, struct error *error) {
+    struct source source = {.channels = channels, .count = count};
+    return write_source(path, width, height, &source, error);
 }
 
 /* --- reading --- */

@@ -14,6 +14,17 @@ const char *exr_library(void);
 bool exr_can_write(void);
 /* Scan lines of floats R, G, B, zip-compressed. Errors: no library, no memory, the file. */
 bool exr_write(const char *path, uint32_t width, uint32_t height, float_rows *rows, void *context, struct error *error);
+/* A named channel ("depth.Z" is the channel Z of the layer depth) in memory: the value of pixel x, y is
+ * values[(y * width + x) * stride]. */
+struct exr_channel {
+    const char *name;
+    const float *values;
+    uint32_t stride;
+};
+/* The same with any channels, at most EXR_CHANNELS. */
+enum { EXR_CHANNELS = 64 };
+bool exr_write_channels(const char *path, uint32_t width, uint32_t height, const struct exr_channel *channels,
+                        uint32_t count, struct error *error);
 bool exr_is(const uint8_t *data, size_t size);
 /* R, G, B or Y of the first part, in scan lines; anything else in it is passed over. NaN and negative light become 0.
  * Errors name the path. */

@@ -1,11 +1,17 @@
 /* Pictures beside the picture against closed forms, and statistics that must agree with one another. */
+#include "app/layers.h"
 #include "render/aov.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#ifdef HAVE_EXR
+#include <openexr.h>
+#endif
 
 static const float *layer(const struct stage *s, enum aov aov, uint32_t x, uint32_t y) {
     size_t pixels = (size_t)s->film.width * s->film.height;
@@ -50,6 +56,97 @@ TEST(layers_of_a_ball_are_their_closed_forms) {
     CHECK(met > 20);
     CHECK(worst < 1e-5);
     stage_end(&s);
+}
+
+#ifdef HAVE_EXR
+/* One channel of a file by OpenEXR itself; from malloc. */
+static float *read_channel(const char *path, const char *name, int *width, int *height) {
+    exr_context_t context;
+    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    exr_decode_pipeline_t decoder = EXR_DECODE_PIPELINE_INITIALIZER;
+    exr_attr_box2i_t window;
+    int step = 0;
+    bool begun = false, met = false;
+    if (exr_start_read(&context, path, &init) != EXR_ERR_SUCCESS)
+        return NULL;
+    (void)exr_get_data_window(context, 0, &window);
+    (void)exr_get_scanlines_per_chunk(context, 0, &step);
+    *width = window.max.x + 1;
+    *height = window.max.y + 1;
+    float *out = calloc((size_t)*width * (size_t)*height, sizeof *out);
+    for (int y = 0; y < *height; y += step) {
+        exr_chunk_info_t chunk;
+        CHECK(exr_read_scanline_chunk_info(context, 0, y, &chunk) == EXR_ERR_SUCCESS);
+        CHECK((begun ? exr_decoding_update(context, 0, &chunk, &decoder)
+                     : exr_decoding_initialize(context, 0, &chunk, &decoder)) == EXR_ERR_SUCCESS);
+        for (int i = 0; i < decoder.channel_count; i++) {
+            exr_coding_channel_info_t *channel = &decoder.channels[i];
+            bool wanted = strcmp(channel->channel_name, name) == 0;
+            met = met || wanted;
+            channel->decode_to_ptr = wanted ? (uint8_t *)(out + (size_t)y * (size_t)*width) : NULL;
+            channel->user_bytes_per_element = 4;
+            channel->user_data_type = EXR_PIXEL_FLOAT;
+            channel->user_pixel_stride = 4;
+            channel->user_line_stride = *width * 4;
+        }
+        CHECK(begun || exr_decoding_choose_default_routines(context, 0, &decoder) == EXR_ERR_SUCCESS);
+        begun = true;
+        CHECK(exr_decoding_run(context, 0, &decoder) == EXR_ERR_SUCCESS);
+    }
+    (void)exr_decoding_destroy(context, &decoder);
+    (void)exr_finish(&context);
+    if (!met)
+        test_fail(__FILE__, __LINE__, "%s has no channel %s", path, name);
+    return out;
+}
+#endif
+
+TEST(an_exr_picture_has_its_layers_in_itself_with_every_value) {
+#ifdef HAVE_EXR
+    static const struct {
+        const char *name;
+        enum aov aov;
+        int component;
+    } channels[] = {{"depth.Z", AOV_DEPTH, 0},
+                    {"normal.X", AOV_NORMAL, 0},
+                    {"normal.Y", AOV_NORMAL, 1},
+                    {"normal.Z", AOV_NORMAL, 2},
+                    {"albedo.R", AOV_ALBEDO, 0},
+                    {"albedo.G", AOV_ALBEDO, 1},
+                    {"albedo.B", AOV_ALBEDO, 2},
+                    {"uv.U", AOV_UV, 0},
+                    {"uv.V", AOV_UV, 1},
+                    {"node.N", AOV_NODE, 0},
+                    {"material.N", AOV_MATERIAL, 0},
+                    {"cost.N", AOV_COST, 0},
+                    {"samples.N", AOV_SAMPLES, 0},
+                    {"lights.N", AOV_LIGHTS, 0}};
+    struct stage s;
+    char path[600];
+    int width, height;
+    (void)snprintf(path, sizeof path, "%s/out.exr", test_folder());
+    stage_begin(&s, 2);
+    stage_sphere(&s, s.root, stage_phong(&s, vec3_make(0.2, 0.4, 0.6), vec3_all(0), 1));
+    stage_point_light(&s, vec3_make(0, 5, 20), vec3_all(1));
+    s.settings.aov = AOV_ALL;
+    CHECK(stage_render(&s, 53, 37));
+    CHECK(layers_write_exr(path, &s.film, &s.error));
+    for (size_t i = 0; i < sizeof channels / sizeof *channels; i++) {
+        float *values = read_channel(path, channels[i].name, &width, &height);
+        CHECK(values && width == 53 && height == 37);
+        for (uint32_t y = 0; values && y < 37; y++)
+            for (uint32_t x = 0; x < 53; x++)
+                CHECK(values[y * 53 + x] == layer(&s, channels[i].aov, x, y)[channels[i].component]);
+        free(values);
+    }
+    float *red = read_channel(path, "R", &width, &height);
+    for (int i = 0; red && i < 53 * 37; i++)
+        CHECK(red[i] == s.film.pixels[i].rgb[0]);
+    free(red);
+    stage_end(&s);
+#else
+    test_skip("built without OpenEXR");
+#endif
 }
 
 TEST(layers_change_nothing_in_the_picture_and_its_statistics) {
