@@ -12,6 +12,7 @@
 #include "base/pool.h"
 #include "image/image.h"
 #include "render/aov.h"
+#include "render/overlay.h"
 #include "render/render.h"
 #include "script/script.h"
 #include "world/world.h"
@@ -235,7 +236,7 @@ static bool make_picture(struct child *child, const struct render_request *reque
         if (!asked->live)
             atomic_store(&child->services->control->tiles, film_tile_count(job->film));
         ok = asked->live ? make_in_window(child, request, job, &world, asked, report, built - begun, error)
-                         : render_run(job, child->pool, &report->rays, error);
+                         : render_run(job, child->pool, &report->rays, error) && overlay_draw(job, child->pool, error);
     }
     report->rays.build_seconds = built - begun;
     report->rays.render_seconds = progress_clock() - built;

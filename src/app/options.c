@@ -126,6 +126,9 @@ static const struct option table[] = {
      "for dir/foo.png also write dir/foo.NAME.png for each NAME of LIST, parted by commas: depth, normal, albedo, uv, "
      "node, material, cost, samples, lights, or all"},
 
+    {GROUP_FILES, "--overlay", OPTION_CHOICE, "none|boxes|grid", NO_RANGE, FIELD(settings.overlay), "none",
+     "lines over the picture: the boxes of all that is placed, or the cells of what rays search (see --accel)"},
+
     {GROUP_OLD, "--transform-order", OPTION_CHOICE, "auto|new|old|separate", NO_RANGE, FIELD(script.transform_order),
      "auto",
      "new: transforms act in the order they are written; old: the last one acts first; separate: scale, rotate, "
@@ -225,7 +228,8 @@ _Static_assert(offsetof(struct options, shards) == offsetof(struct options, shar
 /* Values are stored through their size: an enum is an int here. */
 _Static_assert(sizeof(enum specular_kind) == sizeof(int) && sizeof(enum accel_kind) == sizeof(int) &&
                    sizeof(enum script_order) == sizeof(int) && sizeof(enum tone_curve) == sizeof(int) &&
-                   sizeof(enum progress_mode) == sizeof(int) && sizeof(enum order) == sizeof(int),
+                   sizeof(enum progress_mode) == sizeof(int) && sizeof(enum order) == sizeof(int) &&
+                   sizeof(enum overlay) == sizeof(int),
                "choices are stored as int");
 
 /* The next piece of a text parted by '|'; *rest moves behind it. Empty at the end. */
@@ -676,6 +680,12 @@ static bool check_parts(struct options *options, struct error *error) {
         return error_set(error, ERROR_USAGE,
                          "--aov is for pictures that one process makes in one go: no --shard, --mpi, --checkpoint, "
                          "--resume or merge");
+    if ((options->shards || options->mpi || options->checkpoint || options->window ||
+         options->action == ACTION_MERGE) &&
+        options->settings.overlay != OVERLAY_NONE)
+        return error_set(error, ERROR_USAGE,
+                         "--overlay is for pictures that one process makes in one go: no --shard, --mpi, --checkpoint, "
+                         "--resume, -gui or merge");
     if (options->shards && (options->targets_prefix || options->first_pass_prefix))
         return error_set(error, ERROR_USAGE, "--shard writes no debug pictures; give -write-... to gray merge");
     return true;

@@ -47,6 +47,7 @@ struct caustics {
 };
 enum { PHOTONS_MOST = 100000000, PHOTONS_USUAL = 200000 };
 
+enum overlay { OVERLAY_NONE, OVERLAY_OF_BOXES, OVERLAY_OF_GRID };
 enum order { ORDER_SPREAD, ORDER_CENTRE, ORDER_ROWS };
 
 struct settings {
@@ -68,12 +69,13 @@ struct settings {
     enum specular_kind specular; /* --specular */
     bool ambient_plain;          /* --ambient plain: ambient is added itself, not times kd */
     enum accel_kind accel;
-    double cutoff;    /* rays that can change a pixel by less (of 1) are not followed; 0: all are */
-    enum order order; /* of the tiles; the picture does not depend on it */
-    uint32_t aov;     /* layers beside the picture: a mask of render/aov.h */
-    bool keep_first;  /* the first pass is wanted even where -full makes it needless */
-    bool coarse;      /* rough surfaces send one ray, lights as many as area_samples says, whatever they ask for */
-    bool show_marks;  /* pixels that are to be resampled are marked in the film before (FILM_MARK_WAITS) */
+    double cutoff;        /* rays that can change a pixel by less (of 1) are not followed; 0: all are */
+    enum overlay overlay; /* lines over the picture */
+    enum order order;     /* of the tiles; the picture does not depend on it */
+    uint32_t aov;         /* layers beside the picture: a mask of render/aov.h */
+    bool keep_first;      /* the first pass is wanted even where -full makes it needless */
+    bool coarse;          /* rough surfaces send one ray, lights as many as area_samples says, whatever they ask for */
+    bool show_marks;      /* pixels that are to be resampled are marked in the film before (FILM_MARK_WAITS) */
     bool cropped;
     int64_t crop_x, crop_y, crop_width, crop_height;
 };
