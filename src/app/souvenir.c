@@ -49,16 +49,22 @@ static bool end_file(struct written *written, bool ok) {
 }
 
 bool souvenir_camera(const struct live *live, const char *picture_name, char *name, struct error *error) {
+    static const char head[] =
+        "-- A camera found by walking. With require and the name of this file without .lua, before gr.render, the\n"
+        "-- picture is made with it; it is given back as a table, too.\n";
+    static const struct change_list none;
     struct camera c = live->flown ? walk_camera(&live->walk) : live->request.camera;
     struct written written = {.error = error};
     char text[1024];
     (void)snprintf(text, sizeof text,
-                   "-- A camera found by walking: local camera = dofile('...'), then eye = camera.eye and so on.\n"
                    "return {\n  eye = {%.17g, %.17g, %.17g},\n  view = {%.17g, %.17g, %.17g},\n"
                    "  up = {%.17g, %.17g, %.17g},\n  fov = %.17g,\n}\n",
                    c.eye.x, c.eye.y, c.eye.z, c.view.x, c.view.y, c.view.z, c.up.x, c.up.y, c.up.z, c.fov);
-    return free_name(picture_name, "-view", "lua", name, error) && file_output_open(&written.file, name, error) &&
-           end_file(&written, put_line(&written, text));
+    if (!free_name(picture_name, "-view", "lua", name, error) || !file_output_open(&written.file, name, error))
+        return false;
+    return end_file(&written, put_line(&written, head) &&
+                                  edits_tell(&none, live->request.file, &c, NULL, put_line, &written) &&
+                                  put_line(&written, text));
 }
 
 bool souvenir_changes(const struct live *live, const char *picture_name, char *name, struct error *error) {

@@ -13,7 +13,7 @@ static struct change *note(struct context *context, enum change_kind kind, const
         struct change *more = room <= CHANGE_LIMIT ? arena_alloc_array(&context->keep, room, sizeof *more) : NULL;
         if (!more) {
             if (room > CHANGE_LIMIT)
-                error_set(error, ERROR_SCENE, "a script makes more than %d changes", CHANGE_LIMIT / 2);
+                error_set(error, ERROR_SCENE, "a script makes more than %d changes", CHANGE_LIMIT);
             else
                 error_no_memory(error, "the changes of the scene");
             return NULL;
