@@ -67,15 +67,13 @@ struct stream {
     char message[160];
 };
 
-static struct stream *stream_of(exr_const_context_t context) {
-    void *data = NULL;
-    return exr_get_user_data(context, &data) == EXR_ERR_SUCCESS ? data : NULL;
-}
+/* The library tells some errors with its own lock held, so its context must not be asked for our data then: that waits
+ * for ever. Hence this one variable, which lives while a picture is written or read. */
+static _Thread_local struct stream *telling;
 
 static void on_error(exr_const_context_t context, exr_result_t code, const char *message) {
-    struct stream *stream = stream_of(context);
-    if (!stream)
-        return;
+    struct stream *stream = telling;
+    (void)context;
     stream->no_memory = stream->no_memory || code == EXR_ERR_OUT_OF_MEMORY;
     (void)snprintf(stream->message, sizeof stream->message, "%s", message);
     for (char *c = stream->message; *c; c++)
@@ -225,7 +223,9 @@ static bool encode(struct stream *stream, uint32_t width, uint32_t height, const
     exr_context_initializer_t init = callbacks(stream);
     exr_context_t context;
     int part;
-    bool ok = exr_start_write(&context, "picture", EXR_WRITE_FILE_DIRECTLY, &init) == EXR_ERR_SUCCESS;
+    exr_result_t begun = exr_start_write(&context, "picture", EXR_WRITE_FILE_DIRECTLY, &init);
+    bool ok = begun == EXR_ERR_SUCCESS;
+    stream->no_memory = begun == EXR_ERR_OUT_OF_MEMORY; /* told by nobody, since there is no context yet */
     if (ok) {
         ok = exr_add_part(context, "light", EXR_STORAGE_SCANLINE, &part) == EXR_ERR_SUCCESS &&
              exr_initialize_required_attr_simple(context, part, (int32_t)width, (int32_t)height, EXR_COMPRESSION_ZIP) ==
@@ -241,7 +241,9 @@ static bool write_source(const char *path, uint32_t width, uint32_t height, cons
                          struct error *error) {
     struct stream stream = {0};
     struct file_output output;
+    telling = &stream;
     bool ok = encode(&stream, width, height, source) || tell(path, &stream, "cannot be written", error);
+    telling = NULL;
     if (ok) {
         ok = file_output_open(&output, path, error);
         if (ok && file_output_write(&output, stream.bytes, stream.size, error))
@@ -374,12 +376,17 @@ struct image *image_parse_exr(const char *path, const uint8_t *data, size_t size
     exr_context_t context;
     init.max_image_width = init.max_image_height = IMAGE_MAX_SIDE;
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
-    if (exr_start_read(&context, path, &init) != EXR_ERR_SUCCESS) {
+    telling = &stream;
+    exr_result_t begun = exr_start_read(&context, path, &init);
+    struct image *image = NULL;
+    stream.no_memory = stream.no_memory || begun == EXR_ERR_OUT_OF_MEMORY;
+    if (begun == EXR_ERR_SUCCESS) {
+        image = decode(context, path, &stream, error);
+        (void)exr_finish(&context);
+    } else {
         tell(path, &stream, "broken EXR", error);
-        return NULL;
     }
-    struct image *image = decode(context, path, &stream, error);
-    (void)exr_finish(&context);
+    telling = NULL;
     return image;
 }
 
