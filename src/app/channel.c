@@ -95,7 +95,9 @@ static bool frame_is_sound(const struct frame *frame) {
                request->full_height <= 1u << 20 && request->width <= request->full_width &&
                request->height <= request->full_height && request->x0 <= request->full_width - request->width &&
                request->y0 <= request->full_height - request->height && request->exposure >= -100 &&
-               request->exposure <= 100 && request->curve <= TONE_FILMIC;
+               request->exposure <= 100 && request->curve <= TONE_FILMIC &&
+               (unsigned)request->lens.projection <= PROJECTION_PANORAMA &&
+               (unsigned)request->lens.stereo <= STEREO_ANAGLYPH;
     case FRAME_DONE:
         return frame->size == sizeof frame->body.report;
     case FRAME_NEWS:

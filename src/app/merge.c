@@ -115,7 +115,7 @@ static bool merge_picture(struct desk *desk, const struct part *parts, size_t co
                                       .srgb = first->tone.srgb,
                                       .deep = first->deep};
     memcpy(request.file, first->name, sizeof request.file);
-    bool already;
+    bool already = false;
     if (!check_parts(parts, count, error) || !desk_begin(desk, &request, &already, error))
         return false;
     const struct picture_report report = {0};

@@ -27,7 +27,7 @@ static size_t whole_size(uint32_t kind, size_t size) {
 static bool take(struct desk *desk, const struct frame *frame) {
     const struct picture_request *request = &frame->body.request;
     struct error error = {0};
-    bool already, ok = true, fits = true;
+    bool already = false, ok = true, fits = true;
     if (frame->kind == FRAME_LINE) {
         desk_line(desk, frame->body.line.kind, frame->body.line.text);
     } else if (frame->kind == FRAME_BEGIN) {
