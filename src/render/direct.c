@@ -218,14 +218,17 @@ struct vec3 direct_light(struct tracer *tracer, const struct hit *hit, const str
     struct vec3 sum = vec3_mul(tracer->job->ambient, shading->ambient);
     for (uint32_t i = 0; i < world->light_count && !dark_side; i++) {
         const struct light *light = &world->lights[i];
-        bool ours = !light->lit || light->lit[hit->placed];
+        if (light->lit && !light->lit[hit->placed]) {
+            if (tracer->story)
+                story_light_excluded(tracer->story, i, light);
+            continue;
+        }
         if (tracer->story)
             story_light_begin(tracer->story, i, light);
-        struct vec3 own =
-            ours ? one_light(tracer, light, i, hit, shading, normal, random_combine(key, i)) : vec3_all(0);
-        sum = ours ? vec3_add(sum, own) : sum;
+        struct vec3 own = one_light(tracer, light, i, hit, shading, normal, random_combine(key, i));
+        sum = vec3_add(sum, own);
         if (tracer->story)
-            story_light_end(tracer->story, ours, own);
+            story_light_end(tracer->story, own);
     }
     struct vec3 photons = {0, 0, 0};
     bool asked = tracer->caustics && !dark_side;

@@ -174,15 +174,21 @@ void story_light_begin(struct story *story, uint32_t number, const struct light 
     ray->last_light = told;
 }
 
-void story_light_end(struct story *story, bool ours, struct vec3 colour) {
+void story_light_end(struct story *story, struct vec3 colour) {
     struct story_light *light = story_light_of(story);
     if (light) {
         light->colour = colour;
-        if (!ours)
-            light->lit = STORY_LIGHT_NOT_OURS;
-        else if (light->asked > 0)
+        if (light->asked > 0)
             light->lit = light->arrived > 0 ? STORY_LIGHT_REACHES : STORY_LIGHT_BLOCKED;
     }
+    story->light = NULL;
+}
+
+void story_light_excluded(struct story *story, uint32_t number, const struct light *light) {
+    story_light_begin(story, number, light);
+    struct story_light *told = story_light_of(story);
+    if (told)
+        told->lit = STORY_LIGHT_NOT_OURS;
     story->light = NULL;
 }
 

@@ -154,7 +154,8 @@ void story_tell_link(void *story, const struct material *link, const struct surf
 void story_surface(struct story *story, const struct surface_look *look, const struct interface *interface,
                    const struct shading *shading, struct vec3 normal, bool dark_side);
 void story_light_begin(struct story *story, uint32_t number, const struct light *light);
-void story_light_end(struct story *story, bool ours, struct vec3 colour);
+void story_light_end(struct story *story, struct vec3 colour);
+void story_light_excluded(struct story *story, uint32_t number, const struct light *light);
 void story_direct(struct story *story, struct vec3 ambient_light, struct vec3 ambient, bool has_photons,
                   struct vec3 photons, struct vec3 direct);
 

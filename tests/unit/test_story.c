@@ -150,6 +150,10 @@ static void fill_stage(struct stage *s) {
                                                  .edge2 = {0, 0, 1},
                                                  .colour = {0.3, 0.3, 0.3},
                                                  .falloff = {1, 0.01, 0}};
+    const struct node **not_lit = arena_alloc_array(&s->scene.arena, 1, sizeof *not_lit);
+    not_lit[0] = floor;
+    s->lights[1].exclude = not_lit;
+    s->lights[1].exclude_count = 1;
     s->ambient = vec3_all(0.2);
     s->sky = (struct sky){.kind = SKY_GRADIENT};
 }
@@ -160,7 +164,7 @@ TEST(the_parts_of_every_told_ray_are_what_it_brings) {
     fill_stage(&s);
     struct tally t = tell_picture(&s, 60, 44).tally;
     CHECK(t.rays > 2000 && t.kinds[STORY_REFLECTED] > 100 && t.kinds[STORY_REFRACTED] > 100);
-    CHECK(t.limits > 0 && t.blocked > 0 && t.reached > 0 && t.absorbed > 0);
+    CHECK(t.excluded > 0 && t.limits > 0 && t.blocked > 0 && t.reached > 0 && t.absorbed > 0);
     stage_end(&s);
 }
 
