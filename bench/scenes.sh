@@ -1,29 +1,57 @@
 #!/bin/sh
-# Whole pictures against POV-Ray on the paired scenes of bench/pov: user seconds of tracing alone, one thread each, both at
-# their adaptive anti-aliasing with 9 samples for a marked pixel; runs interleaved, medians of RUNS (default 3). Pictures go
-# to OUT (default build/bench). MODELS: the folder with stanford-bunny.obj (default ../shared/models).
+# Whole pictures against POV-Ray on the paired scenes of bench/pov: the trace alone, without reading and building, one thread
+# each (THREADS), both at their adaptive anti-aliasing with 9 samples for a marked pixel, both without the rays that change a pixel by less than 1/255
+# (POV-Ray's adc_bailout, --cutoff); runs interleaved, medians of RUNS
+# (default 3). User is the processor time that each program tells of its own trace, wall what the clock says; memory is the
+# peak of each process. ksmp is thousands of samples. Pictures go to OUT (default build/bench), side by side in
+# OUT/scenes.html. MODELS: the folder with stanford-bunny.obj (default ../shared/models). Arguments: scenes (default: all).
 cd "$(dirname "$0")/.." || exit 1
 here=$(pwd)
 gray=${GRAY:-$here/gray}
 runs=${RUNS:-3}
-models=${MODELS:-$here/../shared/models}
+threads=${THREADS:-1}
+models=$(cd "${MODELS:-../shared/models}" 2>/dev/null && pwd)
 out=${OUT:-$here/build/bench}
 command -v povray >/dev/null 2>&1 || { echo "povray is not installed: left out"; exit 0; }
+[ -x "$gray" ] || { echo "no program $gray: make first"; exit 1; }
 mkdir -p "$out" && cd "$out" || exit 1
+[ $# -gt 0 ] || set -- primitives solids bunny
+[ -x /usr/bin/time ] && timer=/usr/bin/time || timer=
+
+# Runs a program; the kilobytes of its peak go to memory.kb where GNU time is installed.
+measured() {
+    if [ -n "$timer" ]; then "$timer" -f %M -o memory.kb "$@"; else echo 0 >memory.kb && "$@"; fi
+}
 
 median() { sort -n | awk '{ v[NR] = $1 } END { print NR ? v[int((NR + 1) / 2)] : "-" }'; }
 
-# POV-Ray tells the CPU seconds of its trace stage on stderr.
+# POV-Ray tells wall and processor seconds of its trace on stderr. Its file is written without gamma, as gray's is; the
+# anti-aliasing compares by its own gamma all the same.
 pov_once() {
-    povray +I"$here/bench/pov/$1.pov" +L"$out" +O"$out/$1-pov.png" +W640 +H480 -D -V +WT1 +FN +A0.05 +AM1 +R3 -J 2>"$1.log" >/dev/null
-    sed -n 's/^ *Trace Time:.*(\([0-9.]*\) seconds).*/\1/p; s/^ *Trace Time:.*using.*(\([0-9.]*\) CPU.*/\1/p' "$1.log" | tail -n 1
+    measured povray +I"$here/bench/pov/$1.pov" +L"$out" +O"$out/$1-pov.png" +W640 +H480 -D -V +WT"$threads" +FN File_Gamma=1.0 \
+        +A0.05 +AM1 +R3 -J 2>"$1.log" >/dev/null
+    awk '/^ *Trace Time:/ { sub(/.*\(/, ""); wall = $1; getline; sub(/.*with /, ""); user = $1 }
+         /Samples:/ { sub(/.*Samples: */, ""); samples = $1 }
+         END { printf "%s %s %s ", user, wall, samples }' "$1.log" >>"$1-pov.times"
+    cat memory.kb >>"$1-pov.times"
 }
 
 gray_once() {
     scene=$1
     shift
-    "$gray" -q -j 1 --stats=json -o "$out/$scene-gray.png" "$@" "$here/bench/pov/$scene.lua" 2>/dev/null |
-        sed -n 's/.*"render_seconds":\([0-9.]*\).*/\1/p' | tail -n 1
+    measured "$gray" -q -j "$threads" --stats=json --cutoff 0.0039 -o "$out/$scene-gray.png" "$@" "$here/bench/pov/$scene.lua" 2>"$scene-gray.log" >"$scene.json"
+    [ -s "$scene.json" ] || { cat "$scene-gray.log"; return 1; }
+    awk 'function figure(key) { return substr($0, index($0, "\"" key "\":") + length(key) + 3) + 0 }
+         { printf "%s %s %s ", figure("render_processor_seconds"), figure("render_seconds"), figure("samples") }' \
+        "$scene.json" >>"$scene-gray.times"
+    cat memory.kb >>"$scene-gray.times"
+}
+
+column() { cut -d ' ' -f "$2" "$1" | median; }
+
+# A line of the page that shows both pictures beside each other, gray's on the left.
+show() {
+    printf '<h2>%s</h2><pre>%s</pre><p><img src="%s-gray.png" alt="gray"> <img src="%s-pov.png" alt="POV-Ray"></p>\n' "$1" "$2" "$1" "$1" >>scenes.html
 }
 
 pair() {
@@ -34,20 +62,37 @@ pair() {
     i=0
     while [ $i -lt "$runs" ]; do
         i=$((i + 1))
-        pov_once "$scene" >>"$scene-pov.times"
-        gray_once "$scene" "$@" >>"$scene-gray.times"
+        pov_once "$scene"
+        gray_once "$scene" "$@" || return 1
     done
-    pov=$(median <"$scene-pov.times")
-    mine=$(median <"$scene-gray.times")
-    awk -v s="$scene" -v p="$pov" -v g="$mine" 'BEGIN { printf "%-12s %9.3f %9.3f %8.2f\n", s, p, g, (g > 0 ? p / g : 0) }'
+    line=$(for k in 1 2 3 4; do echo "$(column "$scene-pov.times" $k) $(column "$scene-gray.times" $k)"; done |
+        awk -v scene="$scene" '{ pov[NR] = $1; gray[NR] = $2 }
+            END { printf "%-12s %8.3f %8.3f %6.2f %8.3f %8.3f %6.2f %8.0f %8.0f %8.1f %8.1f", scene, pov[1], gray[1],
+                  pov[1] / gray[1], pov[2], gray[2], pov[2] / gray[2], pov[3] / 1000, gray[3] / 1000, pov[4] / 1024, gray[4] / 1024 }')
+    echo "$line" | tee -a scenes.table
+    show "$scene" "$head
+$line"
 }
 
-printf '%-12s %9s %9s %8s\n' scene 'pov s' 'gray s' ratio
-pair primitives -reflect-limit 4 -refract-limit 4
-pair solids
-if [ -f "$models/stanford-bunny.obj" ]; then
-    "$gray" -q --allow-read "$models" -D MODEL="$models/stanford-bunny.obj" -D EXPORT=yes "$here/bench/pov/bunny.lua" >mesh.inc &&
-        pair bunny -reflect-limit 4 --allow-read "$models" -D MODEL="$models/stanford-bunny.obj"
-else
-    echo "bunny: no $models/stanford-bunny.obj: left out"
-fi
+head=$(printf '%-12s %8s %8s %6s %8s %8s %6s %8s %8s %8s %8s' scene 'pov user' gray ratio 'pov wall' gray ratio 'pov ksmp' gray 'pov MB' gray)
+echo '<!DOCTYPE html><meta charset="utf-8"><title>gray and POV-Ray</title><style>img { width: 49% }</style>' >scenes.html
+: >scenes.table
+echo "$head"
+for scene in "$@"; do
+    case $scene in
+    primitives) pair primitives -reflect-limit 8 -refract-limit 8 ;;
+    solids) pair solids ;;
+    bunny)
+        if [ -f "$models/stanford-bunny.obj" ]; then
+            "$gray" -q --allow-read "$models" -D MODEL="$models/stanford-bunny.obj" -D EXPORT=yes "$here/bench/pov/bunny.lua" >mesh.inc &&
+                pair bunny -reflect-limit 4 --allow-read "$models" -D MODEL="$models/stanford-bunny.obj"
+        else
+            echo "bunny: no stanford-bunny.obj in MODELS: left out"
+        fi
+        ;;
+    *) echo "no scene $scene: primitives, solids, bunny" ;;
+    esac
+done
+awk '{ user += log($4); wall += log($7); n++ }
+    END { if (n) printf "geometric mean of %d: user %.2f, wall %.2f\n", n, exp(user / n), exp(wall / n) }' scenes.table
+echo "pictures: $out/scenes.html"

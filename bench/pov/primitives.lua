@@ -1,6 +1,5 @@
 -- Twin of primitives.pov: the same solids, lamps and camera, z turned round; materials as alike as both languages allow.
--- POV-Ray drops rays of less than 1/255 weight (adc_bailout) and counts reflections and refractions together: limits 4 and 4
--- trace about as many rays.
+-- Rendered with limits of 8 and 8 and --cutoff 0.0039: POV-Ray counts to 8 and drops rays of less than 1/255 weight (adc_bailout).
 local ambient = 0.08
 
 -- diffuse * colour, a highlight, and a mirror of its own weight: ks filters both, so reflect is taken relative to it.

@@ -223,11 +223,11 @@ static bool make_in_window(struct child *child, const struct render_request *req
 static bool make_picture(struct child *child, const struct render_request *request, struct render_job *job,
                          const struct picture_request *asked, struct picture_report *report, struct error *error) {
     struct world world = {0};
-    double begun = progress_clock();
+    double begun = progress_clock(), worked = progress_processor_clock();
     if (!build_world(child, request, job, request->lights, request->light_count, &world, error))
         return false;
     bool ok = true;
-    double built = progress_clock();
+    double built = progress_clock(), built_worked = progress_processor_clock();
     if (is_asked(child->options)) {
         job->world = &world;
         ok = answer_questions(child, request, job, error);
@@ -239,7 +239,9 @@ static bool make_picture(struct child *child, const struct render_request *reque
                          : render_run(job, child->pool, &report->rays, error) && overlay_draw(job, child->pool, error);
     }
     report->rays.build_seconds = built - begun;
+    report->rays.build_processor_seconds = built_worked - worked;
     report->rays.render_seconds = progress_clock() - built;
+    report->rays.render_processor_seconds = progress_processor_clock() - built_worked;
     fill_report(child, &world, request->scene, job->film, report);
     world_destroy(&world);
     if (ok)

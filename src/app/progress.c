@@ -19,6 +19,12 @@ double progress_clock(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+double progress_processor_clock(void) {
+    struct timespec now;
+    (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
 void progress_init(struct progress *progress, enum progress_mode mode, bool quiet) {
     *progress = (struct progress){.mode = mode};
     if (mode == PROGRESS_AUTO)

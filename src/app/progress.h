@@ -20,7 +20,8 @@ struct progress {
 
 enum progress_end { PROGRESS_WRITTEN, PROGRESS_GIVEN_UP };
 
-double progress_clock(void); /* seconds of a clock that never jumps */
+double progress_clock(void);           /* seconds of a clock that never jumps */
+double progress_processor_clock(void); /* seconds that all threads of the process have worked */
 /* AUTO becomes a bar on a terminal, else lines; nothing when quiet. */
 void progress_init(struct progress *progress, enum progress_mode mode, bool quiet);
 /* `name` must stay until progress_end. */

@@ -30,6 +30,8 @@ static int list_figures(struct figure out[FIGURES], const struct picture_report 
     const struct figure all[] = {
         {"build_seconds", "build", FIGURE_SECONDS, rays->build_seconds, 0},
         {"render_seconds", "render", FIGURE_SECONDS, rays->render_seconds, 0},
+        {"build_processor_seconds", "processors: build", FIGURE_SECONDS, rays->build_processor_seconds, 0},
+        {"render_processor_seconds", "render", FIGURE_SECONDS, rays->render_processor_seconds, 0},
         {"threads", "threads", FIGURE_COUNT, 0, (uint64_t)report->threads},
         {"pixels", "pixels", FIGURE_COUNT, 0, rays->pixels},
         {"marked_pixels", "marked pixels", FIGURE_COUNT, 0, rays->marked_pixels},
