@@ -36,6 +36,16 @@ bool conic_is_closed(const struct conic *c) {
     return !c->open || (!isfinite(c->lo) && !isfinite(c->hi));
 }
 
+/* The radius r(s), the root of q = a s^2 + b s + c, is concave where b^2 >= 4 a c. Of a cone (equal) only one side of
+ * its tip may be there; of two sheets, neither. */
+bool conic_is_convex(const struct conic *c) {
+    if (c->a <= 0)
+        return c->b * c->b >= 4 * c->a * c->c;
+    double excess = c->b * c->b - 4 * c->a * c->c, size = c->b * c->b + fabs(4 * c->a * c->c);
+    double tip = -c->b / (2 * c->a), slack = 0x1p-40 * (c->hi - c->lo);
+    return fabs(excess) <= 0x1p-40 * size && (tip <= c->lo + slack || tip >= c->hi - slack);
+}
+
 bool conic_contains(const struct conic *c, struct vec3 point) {
     struct vec3 f = vec3_sub(point, c->base);
     double s = vec3_dot(f, c->axis);
@@ -99,7 +109,8 @@ static void describe_side(const struct conic *c, const struct ray *ray, struct v
 void conic_describe(const struct conic *c, const struct ray *ray, const struct crossing *crossing,
                     struct surface *out) {
     struct vec3 f = vec3_sub(ray_at(ray, crossing->t), c->base);
-    *out = (struct surface){.has_uv = true};
+    surface_make(out, f, f, 0);
+    out->has_uv = true;
     if (crossing->part == CONIC_SIDE)
         describe_side(c, ray, f, out);
     else

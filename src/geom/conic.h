@@ -27,6 +27,7 @@ static inline struct conic conic_upright(double a, double b, double c, double lo
  * line there is a crossing at t = -INFINITY or INFINITY. The same holds for quadric_crossings. */
 int conic_crossings(const struct conic *conic, const struct ray *ray, struct crossing out[4]);
 bool conic_is_closed(const struct conic *conic);
+bool conic_is_convex(const struct conic *conic); /* up to rounding; false where it is not known */
 bool conic_contains(const struct conic *conic, struct vec3 point);
 /* u runs round the axis, to the right seen from outside with the axis upwards, v along it. */
 void conic_describe(const struct conic *conic, const struct ray *ray, const struct crossing *crossing,

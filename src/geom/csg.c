@@ -16,8 +16,9 @@
  * always shows. A solid thinner than the rounding error is not seen. A clip is followed beside the solid by the same
  * rule; a surface that coincides with the clip's is shown.
  *
- * A leaf is asked when the sweep comes to the box in which it matters, not before: the argument of csg_plan.c that a
- * leaf outside of its box may be taken as false holds at every single point.
+ * Leaves that the solid is a part of are asked at once: a ray that misses one misses the solid, and where it leaves one
+ * nothing more can come. Any other leaf is asked when the sweep comes to the box in which it matters, not before: the
+ * argument of csg_plan.c that a leaf outside of its box may be taken as false holds at every single point.
  *
  * The truth of nodes and leaves lives on the scratch, above what was there; nothing is allocated inside a ray. */
 #include "geom/csg.h"
@@ -258,6 +259,22 @@ static void keep_crossings(struct sweep *s, uint32_t leaf, uint32_t first) {
     scratch->used = kept;
 }
 
+/* Outside of a leaf that the solid is a part of nothing is looked for, but for what may be in one group with its ends.
+ * items: all its crossings on the line. */
+static void narrow(struct sweep *s, const struct crossing *items, uint32_t count) {
+    if (count == 0) {
+        s->from = INFINITY;
+        s->to = -INFINITY;
+        return;
+    }
+    double enter = items[0].t, leave = items[count - 1].t;
+    double from = enter - (s->coarse + COARSE * fabs(enter)), to = leave + (s->coarse + COARSE * fabs(leave));
+    if (from > s->from)
+        s->from = from;
+    if (to < s->to && count % 2 == 0)
+        s->to = to;
+}
+
 /* The crossings of a leaf where surfaces are looked for, on top of the scratch. False: scratch overflow. */
 static bool ask_leaf(struct sweep *s, uint32_t leaf) {
     struct geom_scratch *scratch = s->scratch;
@@ -270,6 +287,8 @@ static bool ask_leaf(struct sweep *s, uint32_t leaf) {
         s->leaf_ray->direction = affine_vector(&operand->csg_from_leaf.inverse, s->ray->direction);
         (void)shape_crossings(&operand->shape, s->leaf_ray, scratch, &list);
     }
+    if (s->plan->is_needed[leaf])
+        narrow(s, &scratch->items[list.first], scratch->used - list.first);
     if (scratch->used > list.first)
         keep_crossings(s, leaf, list.first);
     return !scratch->overflow;
@@ -416,37 +435,44 @@ static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray
     t_from = t_from - coarse - COARSE * fabs(t_from);
     t_to = t_to + coarse + COARSE * fabs(t_to);
     const struct csg_token *first_of_clip = csg->clipped ? &csg->program[csg->solid_length] : NULL;
-    *s = (struct sweep){.csg = csg,
-                        .plan = plan,
-                        .ray = ray,
-                        .items = &scratch->items[first],
-                        .scratch = scratch,
-                        .waiting = waiting,
-                        .leaf_ray = leaf_ray,
-                        .first_clip_leaf = first_of_clip ? first_of_clip->leaf : UINT32_MAX,
-                        .counts = words,
-                        .inside = words + plan->node_count,
-                        .in = plan->starts_in,
-                        .shown = plan->starts_shown,
-                        .from = t_from,
-                        .to = t_to,
-                        .coarse = coarse};
+    s->csg = csg;
+    s->plan = plan;
+    s->ray = ray;
+    s->items = &scratch->items[first];
+    s->count = s->next = 0;
+    s->scratch = scratch;
+    s->waiting = waiting;
+    s->leaf_ray = leaf_ray;
+    s->first_clip_leaf = first_of_clip ? first_of_clip->leaf : UINT32_MAX;
+    s->counts = words;
+    s->inside = words + plan->node_count;
+    s->in = plan->starts_in;
+    s->shown = plan->starts_shown;
+    s->from = t_from;
+    s->to = t_to;
+    s->coarse = coarse;
     for (uint32_t i = 0; i < plan->node_count; i++)
         s->counts[i] = plan->start_counts[i];
     for (uint32_t i = 0; i < (csg->leaf_count + 31) / 32; i++)
         s->inside[i] = 0;
     if (waiting)
         waiting->count = 0;
+    for (uint32_t i = 0; i < plan->needed_count; i++) {
+        if (!ask_leaf(s, plan->needed[i]) || !(s->from <= s->to))
+            return false;
+    }
     for (uint32_t b = 0; b < plan->bound_count;) {
         const struct csg_bound *bound = &plan->bounds[b];
-        if (!bound->unprobed && !box_probe_meets(&probe, &bound->box, t_from, t_to)) {
+        if (!bound->unprobed && !box_probe_meets(&probe, &bound->box, s->from, s->to)) {
             b = bound->skip;
             continue;
         }
         for (uint32_t i = 0; i < bound->count; i++) {
             uint32_t leaf = plan->order[bound->first + i];
+            if (plan->is_needed[leaf])
+                continue;
             struct box_span span = box_probe_span(&probe, &plan->boxes[leaf]);
-            if (box_span_meets(span, t_from, t_to) && !add_leaf(s, leaf, span.enter))
+            if (box_span_meets(span, s->from, s->to) && !add_leaf(s, leaf, span.enter))
                 return false;
         }
         b++;

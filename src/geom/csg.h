@@ -43,6 +43,7 @@ struct csg {
     struct box bounds;     /* of the surface; of the solid too unless it is inside out */
     uint32_t stack_depth;
     uint32_t max_crossings; /* scratch items one ray needs, a guess when meshes are leaves */
+    const bool *hull;       /* of each leaf: it is convex, and the solid lies in it */
     const void *plan;       /* whatever csg_build prepares for the search (private to csg.c) */
 };
 

@@ -9,6 +9,9 @@
  * the axes takes off an end. A leaf matters only inside the boxes of all nodes above it: a ray that misses their common
  * part does not ask it, and what is subtracted costs nothing beside the solid it is subtracted from.
  *
+ * A leaf that the solid as a whole is a part of is asked first, since a ray that misses it misses the solid, and where
+ * it leaves it nothing more can come.
+ *
  * These boxes of the leaves stand in a binary tree (halves at the median of the longest axis), so that a ray asks only
  * the leaves near it. Programs may be as deep as they are long: they are read with explicit stacks. */
 #include "geom/csg_plan.h"
@@ -318,6 +321,32 @@ static void choose_probes(struct csg_plan *plan) {
     }
 }
 
+/* Leaves that a ray is asked for first: the solid is a part of each of them. Cheap ones before lists, small ones before
+ * large ones. */
+static bool needed_before(const struct csg *csg, const struct csg_plan *plan, uint32_t a, uint32_t b) {
+    bool a_listed = csg->leaves[a].shape.kind >= SHAPE_LATHE, b_listed = csg->leaves[b].shape.kind >= SHAPE_LATHE;
+    if (a_listed != b_listed)
+        return b_listed;
+    return half_surface(&plan->own_boxes[a]) < half_surface(&plan->own_boxes[b]);
+}
+
+static void choose_needed(struct csg *csg, struct csg_plan *plan, const bool *is_all) {
+    bool *hull = plan->is_hull;
+    csg->hull = hull;
+    if (csg->open || !is_all[0])
+        return;
+    for (uint32_t i = 0; i < csg->leaf_count; i++) {
+        if (plan->literals[i].parent != 0 || plan->literals[i].negated)
+            continue;
+        uint32_t at = plan->needed_count++;
+        for (; at > 0 && needed_before(csg, plan, i, plan->needed[at - 1]); at--)
+            plan->needed[at] = plan->needed[at - 1];
+        plan->needed[at] = i;
+        plan->is_needed[i] = true;
+        hull[i] = shape_hull(&csg->leaves[i].shape) == HULL_BEHIND;
+    }
+}
+
 /* Everything that needs memory only while building. */
 static bool fill_plan(struct csg *csg, struct csg_plan *plan, struct error *error) {
     uint32_t length = csg->program_length, leaf_count = csg->leaf_count;
@@ -359,6 +388,7 @@ static bool fill_plan(struct csg *csg, struct csg_plan *plan, struct error *erro
         live_boxes(csg, plan, flags, live, trims);
         build_bounds(plan, 0, leaf_count, leaf_count <= FEW_LEAVES ? FEW_LEAVES : LEAVES_PER_BOUND);
         choose_probes(plan);
+        choose_needed(csg, plan, flags);
 
         /* The truth of nodes and leaves, or the stack of csg_contains in bits, and all crossings above it. */
         uint64_t words = plan->node_count + (leaf_count + 31) / 32;
@@ -409,8 +439,11 @@ const struct csg *csg_build_clipped(struct arena *arena, const struct csg_leaf *
         plan->bounds =
             arena_alloc_array(arena, leaf_count, sizeof *plan->bounds); /* at least two leaves each, or one */
         plan->as_it_is = arena_alloc_array(arena, leaf_count, sizeof *plan->as_it_is);
+        plan->needed = arena_alloc_array(arena, leaf_count, sizeof *plan->needed);
+        plan->is_needed = arena_alloc_array(arena, leaf_count, sizeof *plan->is_needed);
+        plan->is_hull = arena_alloc_array(arena, leaf_count, sizeof *plan->is_hull);
         ok = plan->nodes && plan->start_counts && plan->literals && plan->boxes && plan->own_boxes && plan->order &&
-             plan->bounds && plan->as_it_is;
+             plan->bounds && plan->as_it_is && plan->needed && plan->is_needed && plan->is_hull;
     }
     if (!ok) {
         error_no_memory(error, "CSG");

@@ -38,7 +38,9 @@ struct csg_plan {
     bool *as_it_is;        /* csg_from_leaf of a leaf changes nothing */
     struct csg_bound *bounds;
     uint32_t *order;
-    uint32_t node_count, bound_count;
+    uint32_t *needed; /* leaves outside of which the solid is nowhere; asked first, what is soonest missed before */
+    bool *is_needed, *is_hull;
+    uint32_t node_count, bound_count, needed_count;
     uint32_t state_items; /* scratch items that hold the truth of all nodes and leaves */
     double size;          /* largest coordinate of any leaf's box */
 };

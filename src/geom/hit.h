@@ -7,6 +7,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* Where the whole primitive lies: anywhere; behind the tangent plane of the hit (convex shapes); in it (flat ones). */
+enum hit_hull { HULL_NONE, HULL_BEHIND, HULL_FLAT };
+
 /* A surface point in the object space of the shape, filled by shape_describe. */
 struct surface {
     struct vec3 point;          /* in the shape's object space */
@@ -23,6 +26,19 @@ struct surface {
     uint32_t leaf; /* CSG operand, else 0 */
     uint32_t material_slot; /* per-face materials of a mesh; 0 = the only one */
 };
+
+/* A surface without image coordinates outside of CSG, written field by field: clearing so much memory by its size takes
+ * longer than finding the point. */
+static inline void surface_make(struct surface *out, struct vec3 point, struct vec3 normal, double error) {
+    const struct vec3 zero = {0, 0, 0};
+    out->point = out->pattern_point = point;
+    out->normal = out->shading_normal = out->pattern_normal = normal;
+    out->has_uv = out->has_colour = false;
+    out->colour = out->dpdu = out->dpdv = zero;
+    out->u = out->v = 0;
+    out->error = error;
+    out->leaf = out->material_slot = 0;
+}
 
 struct hit {
     double t;
@@ -42,9 +58,18 @@ struct hit {
     bool front;             /* the ray came from outside: dot(view, normal_geometric) >= 0 */
     uint32_t placed;        /* index of the placed primitive */
     uint32_t leaf, part;
-    uint32_t material;      /* index into the world's materials */
+    uint32_t material; /* index into the world's materials */
+    enum hit_hull hull;
     bool on_sphere, on_box; /* what kind of shape (CSG: operand) made the surface; some mappings depend on it */
     double time;
 };
+
+/* For ray->passes: a ray that leaves the surface in `direction` on the side where nothing more of its primitive is does
+ * not meet it again. Directions within 2^-20 of the surface are left to the search, which knows what rounding does. */
+static inline uint32_t hit_passes(const struct hit *hit, struct vec3 direction) {
+    double rise = vec3_dot(direction, hit->normal_geometric), least = 0x1p-20 * vec3_max_abs(direction);
+    bool apart = hit->hull == HULL_BEHIND ? rise > least : hit->hull == HULL_FLAT && fabs(rise) > least;
+    return apart ? hit->placed + 1 : 0;
+}
 
 #endif

@@ -354,7 +354,7 @@ void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct 
                 c = load(mesh->vertices[corner[2]]);
     struct vec3 e1 = vec3_sub(b, a), e2 = vec3_sub(c, a);
     double u = crossing->u, v = crossing->v, w = 1 - u - v;
-    *out = (struct surface){0};
+    surface_make(out, (struct vec3){0, 0, 0}, (struct vec3){0, 0, 0}, 0);
     out->point = vec3_add_scaled(vec3_add_scaled(vec3_scale(a, w), b, u), c, v);
     out->error = 0x1p-49 * fmax(vec3_max_abs(a), fmax(vec3_max_abs(b), vec3_max_abs(c)));
     out->normal = mesh_triangle_normal(mesh, triangle);

@@ -157,6 +157,32 @@ bool shape_is_closed(const struct shape *shape) {
     return false;
 }
 
+enum hit_hull shape_hull(const struct shape *shape) {
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+    case SHAPE_BOX:
+    case SHAPE_ELLIPSOID:
+        return HULL_BEHIND;
+    case SHAPE_CONIC:
+        return conic_is_convex(&shape->conic) ? HULL_BEHIND : HULL_NONE;
+    case SHAPE_FLAT:
+        return HULL_FLAT;
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_HEIGHT_FIELD:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE:
+    case SHAPE_MESH:
+    case SHAPE_CSG: /* by its leaves */
+        break;
+    }
+    return HULL_NONE;
+}
+
 const char *shape_why_open(const struct shape *shape) {
     if (shape_is_closed(shape))
         return NULL;

@@ -77,6 +77,8 @@ struct box shape_bounds_under(const struct shape *shape, const struct affine *ma
 /* Closed: every line crosses it an even number of times, so it has an inside (CSG operand, media). A solid without end
  * (a half-space) is closed too: a line that begins or ends inside crosses it at t = -INFINITY or INFINITY. */
 bool shape_is_closed(const struct shape *shape);
+/* Where all of the shape lies as seen from its outside at any of its points: HULL_BEHIND for convex ones. */
+enum hit_hull shape_hull(const struct shape *shape);
 /* Why it is not, as the end of a sentence about it; NULL when it is closed. Of a mesh, mesh_open_edge knows more. */
 const char *shape_why_open(const struct shape *shape);
 /* The crossing with the smallest t in the open interval (ray->t_min, ray->t_max). On equal t the one that comes first

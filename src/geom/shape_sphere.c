@@ -72,12 +72,7 @@ void sphere_describe(struct vec3 centre, double radius, const struct ray *ray, c
 
     /* The point is put back on the sphere, so its error no longer depends on how far the ray came. */
     struct vec3 point = vec3_add_scaled(centre, n, radius);
-    *out = (struct surface){.point = point,
-                            .normal = n,
-                            .shading_normal = n,
-                            .pattern_point = point,
-                            .pattern_normal = n,
-                            .error = 0x1p-49 * (vec3_max_abs(centre) + radius)};
+    surface_make(out, point, n, 0x1p-49 * (vec3_max_abs(centre) + radius));
 }
 
 void sphere_uv(double radius, struct surface *surface) {

@@ -66,22 +66,23 @@ static void material_link(const struct material *material, const struct hit *hit
     struct vec3 p = hit->pattern_point;
     switch (material->kind) {
     case MATERIAL_PHONG:
-        *look = (struct surface_look){.kd = material->phong.kd,
-                                      .ks = material->phong.ks,
-                                      .shininess = material->phong.shininess,
-                                      .reflect = material->phong.reflect,
-                                      .refract = material->phong.refract,
-                                      .ior = material->phong.ior,
-                                      .has_ior = material->phong.has_ior,
-                                      .two_sided = material->phong.two_sided,
-                                      .unlit = material->phong.unlit,
-                                      .highlight = material->phong.highlight,
-                                      .emission = material->phong.emission,
-                                      .absorption = material->phong.absorption,
-                                      .roughness = material->phong.roughness,
-                                      .glossy_samples = material->phong.glossy_samples,
-                                      .normal = hit->normal,
-                                      .opacity = 1};
+        look->kd = material->phong.kd;
+        look->ks = material->phong.ks;
+        look->shininess = material->phong.shininess;
+        look->reflect = material->phong.reflect;
+        look->refract = material->phong.refract;
+        look->ior = material->phong.ior;
+        look->has_ior = material->phong.has_ior;
+        look->two_sided = material->phong.two_sided;
+        look->unlit = material->phong.unlit;
+        look->normal = hit->normal;
+        look->opacity = 1;
+        look->highlight = material->phong.highlight;
+        look->emission = material->phong.emission;
+        look->absorption = material->phong.absorption;
+        look->roughness = material->phong.roughness;
+        look->glossy_samples = material->phong.glossy_samples;
+        look->fresnel = false;
         if (material->phong.by_vertex && hit->has_colour)
             look->kd = vec3_mul(look->kd, hit->colour);
         break;

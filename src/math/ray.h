@@ -6,6 +6,8 @@
 #include "math/affine.h"
 #include "math/vec3.h"
 
+#include <stdint.h>
+
 struct media; /* the stack of solids the ray is inside of; render/media.h */
 
 /* A cone round the ray: its diameter at t is width + spread * t * |direction| (world units). */
@@ -19,6 +21,7 @@ struct ray {
     double time; /* 0 at shutter open, 1 at shutter close */
     struct footprint footprint;
     const struct media *media;
+    uint32_t passes; /* 1 + the number of a placed primitive that the ray is known not to meet; 0: none */
 };
 
 static inline struct vec3 ray_at(const struct ray *ray, double t) {

@@ -27,15 +27,20 @@ static void tell_shadow(const struct tracer *tracer, uint32_t asked, uint32_t ar
     light->has_blocker = false;
 }
 
-static bool is_free(struct tracer *tracer, struct vec3 from, struct vec3 direction, double t_max, double time) {
-    struct ray shadow = {.origin = from, .direction = direction, .t_max = t_max, .time = time};
+static bool is_free(struct tracer *tracer, const struct hit *hit, struct vec3 from, struct vec3 direction,
+                    double t_max) {
+    struct ray shadow = {.origin = from,
+                         .direction = direction,
+                         .t_max = t_max,
+                         .time = hit->time,
+                         .passes = hit_passes(hit, direction)};
     tracer->shadow_rays++;
     bool free = !world_any(tracer->job->world, &shadow, tracer->scratch);
     struct story_light *light = story_light_of(tracer->story);
     if (light) {
         tell_shadow(tracer, 1, free);
         light->has_blocker = light->asked == 1 && !free && tracer->job->world->accel != ACCEL_NONE;
-        light->blocker = tracer->scratch->last_blocker;
+        light->blocker = tracer->scratch->blockers[tracer->scratch->light];
     }
     return free;
 }
@@ -71,23 +76,35 @@ static struct sample2 fan_place(const struct fan *fan, uint32_t cell) {
                        : sample_cell(fan->key, i, j, fan->side);
 }
 
+/* What stands between: not the hit's own primitive where all of it is behind the surface and all of the light before.
+ */
+static struct between fan_between(const struct world *world, const struct fan *fan, const struct hit *hit) {
+    struct vec3 corner = fan->frame.corner, edge1 = fan->frame.edge1, edge2 = fan->frame.edge2;
+    uint32_t passes = hit_passes(hit, vec3_sub(corner, fan->from));
+    for (int i = 1; i < 4 && passes != 0; i++) {
+        struct vec3 other = vec3_add(i & 1 ? vec3_add(corner, edge1) : corner, i & 2 ? edge2 : vec3_all(0));
+        passes = hit_passes(hit, vec3_sub(other, fan->from));
+    }
+    return world_between(world, fan->from, corner, edge1, edge2, passes);
+}
+
 /* The share of a light that reaches the hit: 0 or 1 for a point, of jittered shadow rays for an extent. */
 static double visible_share(struct tracer *tracer, const struct light *light, uint32_t number, const struct hit *hit,
                             uint64_t key) {
     const struct world *world = tracer->job->world;
     if (light->kind == LIGHT_DIRECTIONAL) {
         struct vec3 to_light = vec3_negate(light->direction);
-        return is_free(tracer, off_surface(hit, to_light), to_light, INFINITY, hit->time);
+        return is_free(tracer, hit, off_surface(hit, to_light), to_light, INFINITY);
     }
     struct vec3 from = off_surface(hit, vec3_sub(light->position, hit->point));
     if (!light_has_extent(light))
-        return is_free(tracer, from, vec3_sub(light->position, from), 1, hit->time);
+        return is_free(tracer, hit, from, vec3_sub(light->position, from), 1);
     struct fan fan = fan_make(tracer, light, number, key);
     fan.from = from;
     if (!light_frame_make(light, fan.from, &fan.frame))
-        return is_free(tracer, fan.from, vec3_sub(light->position, fan.from), 1, hit->time);
+        return is_free(tracer, hit, fan.from, vec3_sub(light->position, fan.from), 1);
     uint32_t all = fan.side * fan.side, seen = 0, have = 0;
-    struct between between = world_between(world, fan.from, fan.frame.corner, fan.frame.edge1, fan.frame.edge2);
+    struct between between = fan_between(world, &fan, hit);
     tracer->shadow_rays += all;
     if (between.known && between.count == 0) {
         if (tracer->story)
@@ -110,12 +127,12 @@ static double visible_share(struct tracer *tracer, const struct light *light, ui
 }
 
 /* Which of the targets of a fan arrive. Skies and lamps all around have no shaft: each ray looks for itself. */
-static void ask_targets(struct tracer *tracer, const struct fan *fan, double time, const struct vec3 *targets,
+static void ask_targets(struct tracer *tracer, const struct fan *fan, const struct hit *hit, const struct vec3 *targets,
                         uint32_t count, bool *visible) {
     if (fan->frame.bounded) {
         const struct world *world = tracer->job->world;
-        struct between between = world_between(world, fan->from, fan->frame.corner, fan->frame.edge1, fan->frame.edge2);
-        uint32_t seen = world_visible(world, &between, fan->from, time, targets, count, tracer->scratch, visible);
+        struct between between = fan_between(world, fan, hit);
+        uint32_t seen = world_visible(world, &between, fan->from, hit->time, targets, count, tracer->scratch, visible);
         tracer->shadow_rays += count;
         if (tracer->story)
             tell_shadow(tracer, count, seen);
@@ -124,7 +141,7 @@ static void ask_targets(struct tracer *tracer, const struct fan *fan, double tim
     bool sky = fan->light->kind == LIGHT_SKY;
     for (uint32_t i = 0; i < count; i++)
         visible[i] =
-            is_free(tracer, fan->from, sky ? targets[i] : vec3_sub(targets[i], fan->from), sky ? INFINITY : 1, time);
+            is_free(tracer, hit, fan->from, sky ? targets[i] : vec3_sub(targets[i], fan->from), sky ? INFINITY : 1);
 }
 
 /* A lamp: every shadow ray shades by itself, with the cosine at the lamp. Rays that cannot bring light are not asked.
@@ -152,7 +169,7 @@ static struct vec3 lamp_light(struct tracer *tracer, const struct light *light, 
         }
         if (have == 0 || (have < AREA_BATCH && cell + 1 < all))
             continue;
-        ask_targets(tracer, &fan, hit->time, targets, have, visible);
+        ask_targets(tracer, &fan, hit, targets, have, visible);
         for (uint32_t i = 0; i < have; i++)
             sum = visible[i] ? vec3_add(sum, carried[i]) : sum;
         have = 0;
@@ -223,6 +240,7 @@ struct vec3 direct_light(struct tracer *tracer, const struct hit *hit, const str
                 story_light_excluded(tracer->story, i, light);
             continue;
         }
+        tracer->scratch->light = i % WORLD_BLOCKERS;
         if (tracer->story)
             story_light_begin(tracer->story, i, light);
         struct vec3 own = one_light(tracer, light, i, hit, shading, normal, random_combine(key, i));

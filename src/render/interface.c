@@ -74,5 +74,6 @@ struct ray interface_ray(const struct hit *hit, const struct ray *from, struct v
                         .t_max = INFINITY,
                         .time = from->time,
                         .footprint = {hit->footprint, from->footprint.spread},
-                        .media = media};
+                        .media = media,
+                        .passes = hit_passes(hit, direction)};
 }

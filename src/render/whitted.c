@@ -17,7 +17,7 @@ struct path {
     int holes;                    /* went through so far */
 };
 
-static struct vec3 trace(struct tracer *tracer, const struct ray *ray, struct path path);
+static struct vec3 trace(struct tracer *tracer, const struct ray *ray, const struct path *path);
 
 /* The nearest light that shows itself before t_max, or NULL. */
 static const struct light *visible_light(const struct world *world, const struct ray *ray, double t_max, double *t) {
@@ -40,6 +40,16 @@ static bool is_black(struct vec3 c) {
     return c.x == 0 && c.y == 0 && c.z == 0;
 }
 
+/* Number by number: a copy of the whole would wait for what has just been written of it. */
+static struct path path_on(const struct path *path, double share) {
+    return (struct path){.key = path->key,
+                         .reflections = path->reflections,
+                         .refractions = path->refractions,
+                         .rough = path->rough,
+                         .weight = path->weight * share,
+                         .holes = path->holes};
+}
+
 /* Whether what a ray brings cannot count any more; the story hears of it. */
 static bool is_given_up(struct tracer *tracer, enum story_kind kind, bool limit, struct vec3 filter,
                         const struct path *path) {
@@ -55,45 +65,45 @@ static bool is_given_up(struct tracer *tracer, enum story_kind kind, bool limit,
 
 /* Times the filter. What cannot change the pixel by the cut-off is not followed. */
 static struct vec3 follow_mirror(struct tracer *tracer, const struct hit *hit, const struct ray *ray,
-                                 struct vec3 direction, struct vec3 filter, struct path path) {
+                                 struct vec3 direction, struct vec3 filter, const struct path *from) {
     const struct settings *settings = &tracer->job->settings;
-    path.weight *= vec3_max_abs(filter);
+    struct path path = path_on(from, vec3_max_abs(filter));
     if (is_given_up(tracer, STORY_REFLECTED, path.reflections >= settings->reflect_limit, filter, &path))
         return vec3_all(0);
     struct ray reflected = interface_ray(hit, ray, direction, ray->media);
     tracer->reflected_rays++;
     path.key = random_combine(path.key, UINT32_MAX);
     path.reflections++;
-    return vec3_mul(filter, trace(tracer, &reflected, path));
+    return vec3_mul(filter, trace(tracer, &reflected, &path));
 }
 
 static struct vec3 follow_refraction(struct tracer *tracer, const struct hit *hit, const struct ray *ray,
                                      struct vec3 direction, const struct media *behind, struct vec3 filter,
-                                     struct path path) {
+                                     const struct path *from) {
     const struct settings *settings = &tracer->job->settings;
-    path.weight *= vec3_max_abs(filter);
+    struct path path = path_on(from, vec3_max_abs(filter));
     if (is_given_up(tracer, STORY_REFRACTED, path.refractions >= settings->refract_limit, filter, &path))
         return vec3_all(0);
     struct ray refracted = interface_ray(hit, ray, direction, behind);
     tracer->refracted_rays++;
     path.key = random_combine(path.key, (uint64_t)UINT32_MAX + 1);
     path.refractions++;
-    return vec3_mul(filter, trace(tracer, &refracted, path));
+    return vec3_mul(filter, trace(tracer, &refracted, &path));
 }
 
 /* What is seen through the holes of a surface that is only partly there (a picture of leaves): the ray goes on as it
  * was. Bounded, since every hole is a deeper call. */
 static struct vec3 follow_hole(struct tracer *tracer, const struct hit *hit, const struct ray *ray, double share,
-                               struct path path) {
+                               const struct path *from) {
     enum { HOLE_LIMIT = 200 };
-    path.weight *= share;
+    struct path path = path_on(from, share);
     if (is_given_up(tracer, STORY_HOLE, path.holes >= HOLE_LIMIT, vec3_all(share), &path))
         return vec3_all(0);
     struct ray onward = interface_ray(hit, ray, vec3_negate(hit->view), ray->media);
     tracer->refracted_rays++;
     path.key = random_combine(path.key, (uint64_t)UINT32_MAX + 3);
     path.holes++;
-    return vec3_scale(trace(tracer, &onward, path), share);
+    return vec3_scale(trace(tracer, &onward, &path), share);
 }
 
 /* A rough surface: the mean over facets of what each reflects and refracts. */
@@ -108,32 +118,32 @@ struct rough {
 enum { GLOSSY_SAMPLES = 4 };
 
 static struct vec3 follow_rough(struct tracer *tracer, const struct rough *rough, struct vec3 mirror,
-                                struct vec3 refraction, struct path path) {
+                                struct vec3 refraction, const struct path *path) {
     const struct hit *hit = rough->hit;
-    bool coarse = path.rough || tracer->job->settings.coarse;
+    bool coarse = path->rough || tracer->job->settings.coarse;
     uint32_t n = coarse ? 1 : rough->samples ? (uint32_t)rough->samples : GLOSSY_SAMPLES;
-    uint32_t turns = tracer->strata.side, turn = turns > 1 ? sample_turn(&tracer->strata, path.key) : 0;
-    uint64_t key = random_combine(path.key, (uint64_t)UINT32_MAX + 2);
+    uint32_t turns = tracer->strata.side, turn = turns > 1 ? sample_turn(&tracer->strata, path->key) : 0;
+    uint64_t key = random_combine(path->key, (uint64_t)UINT32_MAX + 2);
     struct vec3 sum = {0, 0, 0};
     for (uint32_t cell = 0; cell < n * n; cell++) {
         struct sample2 place = turns > 1 ? sample_cell_part(key, cell % n, cell / n, n, turn, turns)
                                          : sample_cell(key, cell % n, cell / n, n);
         struct vec3 facet = microfacet_normal(rough->interface->side, hit->view, rough->alpha, place);
-        struct path branch = path;
+        struct path branch = path_on(path, 1);
         branch.key = random_combine(key, cell);
         branch.rough = true;
         if (tracer->story)
             tracer->story->part = 1 / ((double)n * (double)n);
         if (!is_black(mirror)) {
             struct vec3 direction = interface_facet_mirror(rough->interface, facet, hit->view);
-            sum = vec3_add(sum, follow_mirror(tracer, hit, rough->ray, direction, mirror, branch));
+            sum = vec3_add(sum, follow_mirror(tracer, hit, rough->ray, direction, mirror, &branch));
         }
         if (!is_black(refraction)) {
             struct vec3 direction = interface_facet_through(rough->interface, facet, hit->view);
             if (tracer->story)
                 tracer->story->part = 1 / ((double)n * (double)n);
             struct vec3 light =
-                follow_refraction(tracer, hit, rough->ray, direction, &rough->interface->behind, refraction, branch);
+                follow_refraction(tracer, hit, rough->ray, direction, &rough->interface->behind, refraction, &branch);
             sum = vec3_add(sum, light);
         }
     }
@@ -142,19 +152,19 @@ static struct vec3 follow_rough(struct tracer *tracer, const struct rough *rough
 
 /* --- one hit --- */
 
-static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const struct hit *hit,
-                         const struct surface_look *surface, struct path path) {
+/* The look's shares of reflection and refraction become final. */
+static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const struct hit *hit, struct surface_look *look,
+                         const struct path *path) {
     const struct settings *settings = &tracer->job->settings;
-    struct surface_look look = *surface;
     struct interface interface;
-    interface_make(hit, ray->media, &look, &interface);
-    bool dark_side = !hit->front && !look.two_sided;
-    struct vec3 normal = look.two_sided && !hit->front ? vec3_negate(look.normal) : look.normal;
+    interface_make(hit, ray->media, look, &interface);
+    bool dark_side = !hit->front && !look->two_sided;
+    struct vec3 normal = look->two_sided && !hit->front ? vec3_negate(look->normal) : look->normal;
     struct shading shading;
-    material_shading(&look, settings->specular, settings->ambient_plain, &shading);
+    material_shading(look, settings->specular, settings->ambient_plain, &shading);
     if (tracer->story)
-        story_surface(tracer->story, &look, &interface, &shading, normal, dark_side);
-    struct vec3 colour = direct_light(tracer, hit, &shading, normal, dark_side, path.key);
+        story_surface(tracer->story, look, &interface, &shading, normal, dark_side);
+    struct vec3 colour = direct_light(tracer, hit, &shading, normal, dark_side, path->key);
     colour = vec3_add(colour, shading.emission);
 
     struct vec3 mirror = {0, 0, 0}, refraction = {0, 0, 0};
@@ -171,7 +181,7 @@ static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const str
         refraction = vec3_all(0);
     }
     if (shading.alpha > 0) {
-        struct rough rough = {hit, ray, &interface, shading.alpha, look.glossy_samples};
+        struct rough rough = {hit, ray, &interface, shading.alpha, look->glossy_samples};
         return vec3_add(colour, follow_rough(tracer, &rough, mirror, refraction, path));
     }
     if (!is_black(mirror)) {
@@ -185,7 +195,8 @@ static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const str
     return colour;
 }
 
-static struct vec3 shade_hit(struct tracer *tracer, const struct ray *ray, const struct hit *hit, struct path path) {
+static struct vec3 shade_hit(struct tracer *tracer, const struct ray *ray, const struct hit *hit,
+                             const struct path *path) {
     struct surface_look look;
     tracer->hits++;
     material_look_told(tracer->job->world->materials[hit->material], hit, &look, tracer->story ? story_tell_link : NULL,
@@ -196,12 +207,12 @@ static struct vec3 shade_hit(struct tracer *tracer, const struct ray *ray, const
     struct vec3 behind = follow_hole(tracer, hit, ray, hole, path);
     if (hole >= 1)
         return behind;
-    path.weight *= look.opacity;
-    return vec3_add_scaled(behind, shade(tracer, ray, hit, &look, path), look.opacity);
+    struct path covered = path_on(path, look.opacity);
+    return vec3_add_scaled(behind, shade(tracer, ray, hit, &look, &covered), look.opacity);
 }
 
 /* What a ray brings that has met `hit`, or nothing: NULL. */
-static struct vec3 bring(struct tracer *tracer, const struct ray *ray, const struct hit *hit, struct path path) {
+static struct vec3 bring(struct tracer *tracer, const struct ray *ray, const struct hit *hit, const struct path *path) {
     const struct world *world = tracer->job->world;
     const struct fog *fog = tracer->job->fog;
     bool met = hit != NULL;
@@ -212,6 +223,7 @@ static struct vec3 bring(struct tracer *tracer, const struct ray *ray, const str
     bool inside = ray->media && ray->media->count > 0, endless = !met && !lamp, clear = true;
     double length = vec3_length(ray->direction), distance = endless ? INFINITY : end * length;
     struct vec3 left = {1, 1, 1};
+    struct path dimmed;
     if (inside) {
         left = media_left(ray->media, distance);
         clear = false;
@@ -220,11 +232,14 @@ static struct vec3 bring(struct tracer *tracer, const struct ray *ray, const str
         clear = false;
     }
     if (tracer->story)
-        story_ray_begin(tracer->story, ray, hit, lamp, distance, path.weight);
-    path.weight *= vec3_max_abs(left);
+        story_ray_begin(tracer->story, ray, hit, lamp, distance, path->weight);
+    if (!clear) {
+        dimmed = path_on(path, vec3_max_abs(left));
+        path = &dimmed;
+    }
 
     struct vec3 colour = {0, 0, 0}, seen, veil = {0, 0, 0};
-    bool looked = !(path.weight < tracer->cutoff);
+    bool looked = !(path->weight < tracer->cutoff);
     if (!looked)
         left = vec3_all(0);
     else if (lamp)
@@ -245,7 +260,7 @@ static struct vec3 bring(struct tracer *tracer, const struct ray *ray, const str
     return colour;
 }
 
-static struct vec3 trace(struct tracer *tracer, const struct ray *ray, struct path path) {
+static struct vec3 trace(struct tracer *tracer, const struct ray *ray, const struct path *path) {
     struct hit hit;
     if (tracer->pool && pool_cancelled(tracer->pool))
         return vec3_all(0); /* deep paths through glass grow exponentially */
@@ -256,7 +271,8 @@ static struct vec3 trace(struct tracer *tracer, const struct ray *ray, struct pa
 struct vec3 whitted_trace(struct tracer *tracer, const struct ray *ray, uint64_t key) {
     struct ray from_eye = *ray;
     from_eye.media = tracer->eye_media;
-    return trace(tracer, &from_eye, (struct path){.key = key, .weight = 1});
+    const struct path path = {.key = key, .weight = 1};
+    return trace(tracer, &from_eye, &path);
 }
 
 struct vec3 whitted_trace_met(struct tracer *tracer, const struct ray *ray, const struct packet_answer *met,
@@ -268,5 +284,6 @@ struct vec3 whitted_trace_met(struct tracer *tracer, const struct ray *ray, cons
         return vec3_all(0);
     if (met)
         world_describe(tracer->job->world, &from_eye, met->placed, &met->crossing, &hit);
-    return bring(tracer, &from_eye, met ? &hit : NULL, (struct path){.key = key, .weight = 1});
+    const struct path path = {.key = key, .weight = 1};
+    return bring(tracer, &from_eye, met ? &hit : NULL, &path);
 }

@@ -241,15 +241,22 @@ static uint64_t pass(struct packet_search *s, struct between *between) {
 }
 
 struct between world_between(const struct world *world, struct vec3 from, struct vec3 corner, struct vec3 edge1,
-                             struct vec3 edge2) {
+                             struct vec3 edge2, uint32_t passes) {
     struct between between;
     between.count = 0;
+    between.passes = passes;
     between.known = world->accel == ACCEL_AUTO || world->accel == ACCEL_BVH;
     if (!between.known)
         return between;
     struct shaft shaft = shaft_make(from, corner, edge1, edge2);
     between.count = box_tree_in_shaft(&world->tree, &shaft, between.items, BETWEEN_LIMIT);
     between.known = between.count <= BETWEEN_LIMIT;
+    for (uint32_t i = 0; between.known && i < between.count; i++) {
+        if (between.items[i] + 1 == passes) {
+            between.items[i] = between.items[--between.count];
+            break;
+        }
+    }
     return between;
 }
 
@@ -263,7 +270,11 @@ uint32_t world_visible(const struct world *world, struct between *between, struc
     }
     if (!between->known) {
         for (uint32_t i = 0; i < count; i++) {
-            struct ray ray = {.origin = from, .direction = vec3_sub(targets[i], from), .t_max = 1, .time = time};
+            struct ray ray = {.origin = from,
+                              .direction = vec3_sub(targets[i], from),
+                              .t_max = 1,
+                              .time = time,
+                              .passes = between->passes};
             bool free_way = !world_any(world, &ray, scratch);
             seen += free_way;
             if (visible)

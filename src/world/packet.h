@@ -18,10 +18,11 @@ uint64_t world_nearest_packet(const struct world *world, const struct ray_packet
 enum { BETWEEN_LIMIT = 24 };
 struct between {
     uint32_t items[BETWEEN_LIMIT], count;
+    uint32_t passes; /* as of a ray */
     bool known;
 };
 struct between world_between(const struct world *world, struct vec3 from, struct vec3 corner, struct vec3 edge1,
-                             struct vec3 edge2);
+                             struct vec3 edge2, uint32_t passes);
 /* How many of the points targets[0 .. count-1], all inside the parallelogram, are seen from `from`: as world_any would
  * say of every segment, t in (0, 1). visible (count entries, or NULL) says it of each. What stops some rays comes first
  * in `between` afterwards. */

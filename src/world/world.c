@@ -26,6 +26,8 @@ enum { MAILBOX = 32, SCRATCH_START = 256 };
 
 bool world_scratch_init(struct world_scratch *scratch, const struct world *world) {
     *scratch = (struct world_scratch){0};
+    for (int i = 0; i < WORLD_BLOCKERS; i++)
+        scratch->blockers[i] = UINT32_MAX;
     uint32_t need = world->scratch_need > SCRATCH_START ? world->scratch_need : SCRATCH_START;
     return geom_scratch_init(&scratch->geom, need);
 }
@@ -117,6 +119,7 @@ static bool place_boxes(struct world *world, const struct box *limits, struct po
     for (uint32_t i = 0; i < world->thing_count; i++) {
         uint32_t need = shape_scratch_need(&world->things[i].shape);
         world->scratch_need = need > world->scratch_need ? need : world->scratch_need;
+        world->things[i].hull = shape_hull(&world->things[i].shape);
     }
     return true;
 }
@@ -267,6 +270,8 @@ bool world_ask_nearest(const struct world *world, uint32_t index, const struct r
 }
 
 static void try_placed(struct search *s, uint32_t index) {
+    if (index + 1 == s->ray->passes)
+        return;
     bool as_it_is = s->world->placed[index].linear == LINEAR_NONE;
     struct ray ray_object;
     struct crossing crossing;
@@ -399,6 +404,8 @@ static bool any_with_holes(const struct world *world, uint32_t index, const stru
 
 bool world_ask_any(const struct world *world, uint32_t index, const struct ray *ray, struct world_scratch *scratch) {
     const struct thing *thing = placed_thing(world, index);
+    if (index + 1 == ray->passes)
+        return false;
     if (thing->holes)
         return any_with_holes(world, index, ray, scratch);
     struct ray ray_object = placed_ray(world, index, ray);
@@ -429,7 +436,7 @@ static bool any_in_grid(const struct world *world, const struct ray *ray, const 
                         struct world_scratch *scratch) {
     struct mailbox mailbox;
     memset(&mailbox, 0xff, sizeof mailbox);
-    (void)mailbox_first(&mailbox, scratch->last_blocker);
+    (void)mailbox_first(&mailbox, scratch->blockers[scratch->light]);
     struct grid_walk walk = {0};
     bool found = false;
     for (bool go_on = grid_walk_begin(&walk, &world->grid, ray); go_on && !found; go_on = grid_walk_next(&walk)) {
@@ -437,7 +444,7 @@ static bool any_in_grid(const struct world *world, const struct ray *ray, const 
             uint32_t index = walk.items[i];
             found = mailbox_first(&mailbox, index) && any_boxed(world, index, ray, probe, scratch);
             if (found)
-                scratch->last_blocker = index;
+                scratch->blockers[scratch->light] = index;
         }
         if (found)
             break;
@@ -448,13 +455,13 @@ static bool any_in_grid(const struct world *world, const struct ray *ray, const 
 
 static bool any_in_tree(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
     struct box_tree_walk walk;
-    uint32_t index, asked = scratch->last_blocker;
+    uint32_t index, asked = scratch->blockers[scratch->light];
     bool found = false;
     box_tree_walk_begin(&walk, &world->tree, ray);
     while (!found && box_tree_walk_any(&walk, ray->t_max, &index)) {
         found = index != asked && world_ask_any(world, index, ray, scratch);
         if (found)
-            scratch->last_blocker = index;
+            scratch->blockers[scratch->light] = index;
     }
     scratch->geom.cost.hierarchy_steps += walk.steps;
     return found;
@@ -464,7 +471,7 @@ static bool any_in_kd_tree(const struct world *world, const struct ray *ray, con
                            struct world_scratch *scratch) {
     struct mailbox mailbox;
     memset(&mailbox, 0xff, sizeof mailbox);
-    (void)mailbox_first(&mailbox, scratch->last_blocker);
+    (void)mailbox_first(&mailbox, scratch->blockers[scratch->light]);
     struct kd_walk walk;
     bool found = false;
     kd_walk_begin(&walk, &world->kd_tree, ray, 0);
@@ -473,7 +480,7 @@ static bool any_in_kd_tree(const struct world *world, const struct ray *ray, con
             uint32_t index = walk.items[i];
             found = mailbox_first(&mailbox, index) && any_boxed(world, index, ray, probe, scratch);
             if (found)
-                scratch->last_blocker = index;
+                scratch->blockers[scratch->light] = index;
         }
     }
     scratch->geom.cost.hierarchy_steps += walk.steps;
@@ -492,11 +499,14 @@ bool world_any(const struct world *world, const struct ray *ray, struct world_sc
         return false;
     }
     /* Neighbouring shadow rays mostly end at the same thing: it is asked first. The answer cannot depend on it. */
-    if (scratch->last_blocker < world->placed_count && any_boxed(world, scratch->last_blocker, ray, &probe, scratch))
+    uint32_t *blocker = &scratch->blockers[scratch->light];
+    if (*blocker < world->placed_count && any_boxed(world, *blocker, ray, &probe, scratch))
         return true;
-    if (world->accel == ACCEL_KDTREE)
-        return any_in_kd_tree(world, ray, &probe, scratch);
-    return world->accel == ACCEL_GRID ? any_in_grid(world, ray, &probe, scratch) : any_in_tree(world, ray, scratch);
+    bool found = world->accel == ACCEL_KDTREE ? any_in_kd_tree(world, ray, &probe, scratch)
+                 : world->accel == ACCEL_GRID ? any_in_grid(world, ray, &probe, scratch)
+                                              : any_in_tree(world, ray, scratch);
+    *blocker = found ? *blocker : UINT32_MAX;
+    return found;
 }
 
 /* --- describing --- */
@@ -511,11 +521,21 @@ static double row_sum(const struct affine *a, struct vec3 p) {
 }
 
 /* How far a secondary ray must start off the surface. The point is known up to the surface's own error and the rounding
- * of both transforms; everything scales with the numbers involved, so no length is wired in. */
+ * of both transforms; everything scales with the numbers involved, so no length is wired in. map NULL: as it is. */
 static double offset_of(const struct transform *map, double scale, const struct surface *surface, struct vec3 point) {
-    double mapped = row_sum(&map->forward, surface->point);
-    double back = row_sum(&map->inverse, point) * scale;
+    double mapped = map ? row_sum(&map->forward, surface->point) : vec3_max_abs(surface->point);
+    double back = map ? row_sum(&map->inverse, point) * scale : vec3_max_abs(point);
     return 16 * surface->error * scale + (mapped + back) * 0x1p-42;
+}
+
+/* What the identity makes of a vector, down to the signs of zeros. */
+static struct vec3 as_it_is(struct vec3 v) {
+    return vec3_make(v.x + 0 * v.y + 0 * v.z, 0 * v.x + v.y + 0 * v.z, 0 * v.x + 0 * v.y + v.z);
+}
+
+/* Normals of most shapes are the same for shading. */
+static bool same_vector(const struct vec3 *a, const struct vec3 *b) {
+    return memcmp(a, b, sizeof *a) == 0;
 }
 
 /* What bumps need: the world's vector of one unit along the operand's normal, and on spheres the tangents that other
@@ -543,20 +563,76 @@ static void describe_relief(const struct thing *thing, const struct affine *map,
 
 static double stretch_of(const struct world *world, uint32_t index, const struct transform *map) {
     uint32_t linear = world->placed[index].linear;
-    if (linear == LINEAR_NONE)
-        return 1;
     return linear & LINEAR_MOVING ? transform_stretch(map) : world->linear_maps[linear].stretch;
+}
+
+static enum hit_hull hull_of(const struct thing *thing, const struct csg_leaf *leaf, const struct crossing *crossing) {
+    if (!leaf)
+        return thing->hull;
+    return thing->shape.csg->hull[crossing->leaf] && !crossing->flip ? HULL_BEHIND : HULL_NONE;
+}
+
+/* The surface of an object in the world; map NULL: the object's space is the world. Every field of the hit is written
+ * once: clearing it as a whole would take longer than all the rest. */
+static void place_surface(const struct surface *surface, const struct transform *map, struct hit *hit) {
+    const struct vec3 zero = {0, 0, 0};
+    if (map) {
+        hit->point = affine_point(&map->forward, surface->point);
+        hit->normal_geometric = vec3_normalize(transform_normal(map, surface->normal));
+    } else {
+        hit->point = vec3_add(as_it_is(surface->point), zero);
+        hit->normal_geometric = vec3_normalize(as_it_is(surface->normal));
+    }
+    if (same_vector(&surface->normal, &surface->shading_normal))
+        hit->normal = hit->normal_geometric;
+    else
+        hit->normal =
+            vec3_normalize(map ? transform_normal(map, surface->shading_normal) : as_it_is(surface->shading_normal));
+    hit->pattern_point = surface->pattern_point;
+    hit->pattern_normal = surface->pattern_normal;
+    hit->has_uv = surface->has_uv;
+    hit->u = surface->u;
+    hit->v = surface->v;
+    hit->dpdu = hit->dpdv = hit->raise = zero;
+    if (surface->has_uv) {
+        hit->dpdu = map ? affine_vector(&map->forward, surface->dpdu) : as_it_is(surface->dpdu);
+        hit->dpdv = map ? affine_vector(&map->forward, surface->dpdv) : as_it_is(surface->dpdv);
+    }
+    hit->has_colour = surface->has_colour;
+    hit->colour = surface->colour;
+    hit->leaf = surface->leaf;
+}
+
+/* How the ray's cone falls on patterns, where a picture asks. */
+static double pattern_scale(const struct transform *map, const struct csg_leaf *leaf, struct vec3 normal) {
+    struct vec3 a, b;
+    frame_tangents(normal, &a, &b);
+    if (map) {
+        a = affine_vector(&map->inverse, a);
+        b = affine_vector(&map->inverse, b);
+    }
+    if (leaf) {
+        a = affine_vector(&leaf->csg_from_leaf.inverse, a);
+        b = affine_vector(&leaf->csg_from_leaf.inverse, b);
+    }
+    return fmax(vec3_length(a), vec3_length(b));
 }
 
 void world_describe(const struct world *world, const struct ray *ray, uint32_t index, const struct crossing *crossing,
                     struct hit *hit) {
     const struct thing *thing = placed_thing(world, index);
-    struct transform world_from_object = world_placement(world, index, ray->time);
-    const struct transform *map = &world_from_object;
-    struct ray ray_object =
-        world->placed[index].linear == LINEAR_NONE ? *ray : ray_transform(&world_from_object.inverse, ray);
+    struct transform world_from_object;
+    struct ray ray_object;
+    const struct transform *map = NULL;
+    const struct ray *own_ray = ray;
+    if (world->placed[index].linear != LINEAR_NONE) {
+        world_from_object = world_placement(world, index, ray->time);
+        ray_object = ray_transform(&world_from_object.inverse, ray);
+        map = &world_from_object;
+        own_ray = &ray_object;
+    }
     struct surface surface;
-    shape_describe(&thing->shape, &ray_object, crossing, &surface);
+    shape_describe(&thing->shape, own_ray, crossing, &surface);
     double length = vec3_length(ray->direction);
     bool in_csg = thing->shape.kind == SHAPE_CSG;
     const struct csg_leaf *leaf = in_csg ? &thing->shape.csg->leaves[surface.leaf] : NULL;
@@ -565,45 +641,27 @@ void world_describe(const struct world *world, const struct ray *ray, uint32_t i
     if (surface.material_slot < slot_count)
         material += surface.material_slot;
     enum shape_kind kind = in_csg ? leaf->shape.kind : thing->shape.kind;
-    *hit = (struct hit){.t = crossing->t,
-                        .point = affine_point(&map->forward, surface.point),
-                        .view = vec3_scale(ray->direction, -1 / length),
-                        .normal_geometric = vec3_normalize(transform_normal(map, surface.normal)),
-                        .pattern_point = surface.pattern_point,
-                        .pattern_normal = surface.pattern_normal,
-                        .has_uv = surface.has_uv,
-                        .u = surface.u,
-                        .v = surface.v,
-                        .placed = index,
-                        .leaf = surface.leaf,
-                        .part = crossing->part,
-                        .material = material,
-                        .has_colour = surface.has_colour,
-                        .colour = surface.colour,
-                        .on_sphere = kind == SHAPE_SPHERE,
-                        .on_box = kind == SHAPE_BOX,
-                        .time = ray->time};
-    hit->normal = vec3_normalize(transform_normal(map, surface.shading_normal));
-    if (surface.has_uv) {
-        hit->dpdu = affine_vector(&map->forward, surface.dpdu);
-        hit->dpdv = affine_vector(&map->forward, surface.dpdv);
+    place_surface(&surface, map, hit);
+    hit->t = crossing->t;
+    hit->view = vec3_scale(ray->direction, -1 / length);
+    hit->placed = index;
+    hit->part = crossing->part;
+    hit->material = material;
+    hit->hull = hull_of(thing, leaf, crossing);
+    hit->on_sphere = kind == SHAPE_SPHERE;
+    hit->on_box = kind == SHAPE_BOX;
+    hit->time = ray->time;
+    if (world->material_has_relief[material]) {
+        if (!map)
+            world_from_object = transform_identity();
+        describe_relief(thing, &world_from_object.forward, leaf, hit);
     }
-    if (world->material_has_relief[material])
-        describe_relief(thing, &map->forward, leaf, hit);
     hit->front = vec3_dot(hit->view, hit->normal_geometric) >= 0;
-    hit->offset = offset_of(map, stretch_of(world, index, map), &surface, hit->point);
+    hit->offset = offset_of(map, map ? stretch_of(world, index, map) : 1, &surface, hit->point);
     hit->footprint = ray->footprint.width + ray->footprint.spread * crossing->t * length;
-    if (hit->footprint > 0 && world->material_has_image[material]) {
-        struct vec3 a, b;
-        frame_tangents(hit->normal_geometric, &a, &b);
-        a = affine_vector(&map->inverse, a);
-        b = affine_vector(&map->inverse, b);
-        if (leaf) {
-            a = affine_vector(&leaf->csg_from_leaf.inverse, a);
-            b = affine_vector(&leaf->csg_from_leaf.inverse, b);
-        }
-        hit->pattern_scale = fmax(vec3_length(a), vec3_length(b));
-    }
+    hit->pattern_scale = 0;
+    if (hit->footprint > 0 && world->material_has_image[material])
+        hit->pattern_scale = pattern_scale(map, leaf, hit->normal_geometric);
 }
 
 bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit) {

@@ -35,6 +35,7 @@ struct thing {
     enum node_cull cull; /* of a mesh */
     uint32_t parts;      /* of a union placed in parts: how many things from this one on belong to its node; else 1 */
     bool is_later_part;  /* not the first of them */
+    enum hit_hull hull;  /* unused for CSG, like material */
     bool holes;          /* some of its materials let rays through by a picture */
 };
 
@@ -78,12 +79,15 @@ struct world {
     size_t mesh_memory; /* bytes of the distinct meshes */
 };
 
+enum { WORLD_BLOCKERS = 8 };
+
 /* One worker's mutable memory while it asks the world. */
 struct world_scratch {
     struct geom_scratch geom;
     bool failed; /* no memory to grow: the frame is abandoned with ERROR_MACHINE */
     uint64_t rays, any_rays;
-    uint32_t last_blocker; /* what stopped the last shadow ray */
+    /* What stopped the last shadow ray to the light in question (its number, modulo); UINT32_MAX: nothing. */
+    uint32_t blockers[WORLD_BLOCKERS], light;
 };
 bool world_scratch_init(struct world_scratch *scratch, const struct world *world);
 void world_scratch_destroy(struct world_scratch *scratch);

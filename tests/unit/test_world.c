@@ -1,6 +1,7 @@
 /* The world beside brute force, and what flattening promises. */
 #include "tests/harness.h"
 
+#include "geom/shape_disc.h"
 #include "tests/stage.h"
 #include "world/packet.h"
 
@@ -186,13 +187,86 @@ TEST(points_of_a_parallelogram_seen_through_a_shaft_are_those_that_single_rays_s
                 seen += !world_any(&s.world, &ray, &scratch);
             }
             partly += seen > 0 && seen < 16;
-            struct between between = world_between(&s.world, from, corner, edge1, edge2);
+            struct between between = world_between(&s.world, from, corner, edge1, edge2, 0);
             CHECK_EQ_INT(world_visible(&s.world, &between, from, 0, targets, 16, &scratch, NULL), seen);
         }
         world_scratch_destroy(&scratch);
         stage_end(&s);
     }
     CHECK(partly > 1000);
+}
+
+/* Cylinders, cones from either side of their tip, both kinds of hyperboloid, discs, ellipsoids. */
+static struct node *random_convex_or_not(struct stage *s, struct test_random *random) {
+    struct node *node = scene_node(&s->scene, NODE_GEOMETRY, "shape", &s->error);
+    struct conic conics[] = {conic_upright(0, 0, 1, -1, 1, false),     conic_upright(0.25, 0.5, 0.25, -1, 1, false),
+                             conic_upright(0.25, -1, 1, 0, 2, true),   conic_upright(-1, 0, 1, -0.5, 1, false),
+                             conic_upright(1, 0, -0.25, -1, 1, false), conic_upright(1, 0, 0.25, -1, 1, false),
+                             conic_upright(0.25, 0, 0, -1, 1, false),  conic_upright(0, 1, 0, 0, 1, false)};
+    int kind = (int)test_uniform(random, 0, 10);
+    if (kind < 8)
+        node->shape = (struct shape){.kind = SHAPE_CONIC, .conic = conics[kind]};
+    else if (kind == 8)
+        node->shape = (struct shape){.kind = SHAPE_FLAT, .flat = flat_disc(vec3_all(0), vec3_make(0, 1, 1), 1, 0.4)};
+    else
+        node->shape = (struct shape){.kind = SHAPE_ELLIPSOID, .ellipsoid = {vec3_all(0.1), {1, 0.4, 0.7}}};
+    random_place(s, random, node, 0.3);
+    return node;
+}
+
+/* Rays that leave a surface and are told to pass its primitive by. */
+TEST(what_a_ray_is_told_to_pass_by_it_would_not_have_met) {
+    struct test_random random = {77};
+    int told = 0, met_others = 0;
+    for (int w = 0; w < 40; w++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        struct node *root = random_world(&s, &random, 12, 2, false);
+        for (int i = 0; i < 12; i++) {
+            struct node *node = random_convex_or_not(&s, &random);
+            random_place(&s, &random, node, 2);
+            CHECK(node_add_child(&s.scene, root, node, &s.error));
+        }
+        CHECK(stage_build(&s, root, w % 2 ? ACCEL_AUTO : ACCEL_GRID));
+        struct world_scratch scratch;
+        CHECK(world_scratch_init(&scratch, &s.world));
+        for (int i = 0; i < 3000; i++) {
+            struct ray ray = random_ray(&random, 2);
+            struct hit hit;
+            if (!world_nearest(&s.world, &ray, &scratch, &hit))
+                continue;
+            struct vec3 direction = random_ray(&random, 1).direction;
+            if (i % 3 == 0) /* nearly along the surface */
+                direction = vec3_add_scaled(vec3_cross(direction, hit.normal_geometric), hit.normal_geometric,
+                                            test_uniform(&random, -1e-5, 1e-5));
+            double side = vec3_dot(direction, hit.normal_geometric) < 0 ? -hit.offset : hit.offset;
+            struct ray onward = {.origin = vec3_add_scaled(hit.point, hit.normal_geometric, side),
+                                 .direction = direction,
+                                 .t_max = i % 2 ? INFINITY : 3};
+            struct ray passing = onward;
+            passing.passes = hit_passes(&hit, direction);
+            if (!passing.passes)
+                continue;
+            told++;
+            uint32_t a = 0, b = 0;
+            struct crossing x = {0}, y = {0};
+            bool met = world_nearest_crossing(&s.world, &onward, &scratch, &a, &x);
+            met_others += met;
+            CHECK_EQ_INT(world_nearest_crossing(&s.world, &passing, &scratch, &b, &y), met);
+            CHECK(!met || (a == b && x.t == y.t && a != hit.placed));
+            CHECK_EQ_INT(world_any(&s.world, &passing, &scratch), met);
+            struct vec3 edge = vec3_scale(hit.normal_geometric, 1e-3);
+            struct between between =
+                world_between(&s.world, onward.origin, vec3_add(onward.origin, direction), edge, edge, passing.passes);
+            struct vec3 target = vec3_add(onward.origin, direction);
+            struct ray segment = {.origin = onward.origin, .direction = vec3_sub(target, onward.origin), .t_max = 1};
+            CHECK_EQ_INT(world_visible(&s.world, &between, onward.origin, 0, &target, 1, &scratch, NULL),
+                         !world_any(&s.world, &segment, &scratch));
+        }
+        world_scratch_destroy(&scratch);
+        stage_end(&s);
+    }
+    CHECK(told > 10000 && met_others > 2000);
 }
 
 /* Camera rays of a few pixels, rays along an axis, and rays that go all round, which must fall to single ones. */
