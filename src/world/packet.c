@@ -162,7 +162,7 @@ uint64_t world_nearest_packet(const struct world *world, const struct ray_packet
                               struct packet_answer *out) {
     enum { FEWEST = 4 };
     struct beam beam;
-    bool tree = world->accel == ACCEL_AUTO || world->accel == ACCEL_BVH;
+    bool tree = world->frame == ACCEL_BVH;
     if (!tree || rays->count < FEWEST || !beam_make(&beam, rays)) {
         uint64_t found = 0;
         for (uint32_t i = 0; i < rays->count; i++) {
@@ -245,7 +245,7 @@ struct between world_between(const struct world *world, struct vec3 from, struct
     struct between between;
     between.count = 0;
     between.passes = passes;
-    between.known = world->accel == ACCEL_AUTO || world->accel == ACCEL_BVH;
+    between.known = world->frame == ACCEL_BVH;
     if (!between.known)
         return between;
     struct shaft shaft = shaft_make(from, corner, edge1, edge2);

@@ -1,17 +1,18 @@
 /* The world: flattening, the frame over the placed primitives, and the three questions a renderer asks.
  *
  * How many voxels has the frame? A voxel spares a ray that passes it the upper levels of the hierarchy and costs it a
- * step, and every occupied one on its way the start of a hierarchy of its own. In a cloud of alike primitives without
- * anything round it, with a voxel to three of them, steps win by a tenth (10,000 spheres) to a fifth (200,000): the
- * account of one voxel is (levels) x (node visit), log4 of the number, against as many steps as the cloud is thick. But
- * one floor round the cloud makes voxels of the floor's size, which hold everything at once: 25 times slower at 10,000,
- * 190 times at 200,000. No resolution that is the same everywhere suits both; a hierarchy does, and only it can be
- * asked by packets and shafts. So the frame of ACCEL_AUTO is one voxel, which holds the hierarchy of box_tree.c;
- * ACCEL_GRID is the frame of many voxels that hold indices. docs/performance.md has the measurements.
+ * step. In a cloud of alike primitives without anything round it, with three voxels to each of them, steps win by a
+ * tenth (10,000 spheres) to a fifth (200,000) of the whole picture. But one floor round the cloud makes voxels of the
+ * floor's size, which hold everything at once: 25 times slower at 10,000, 190 times at 200,000. No resolution that is
+ * the same everywhere suits both. ACCEL_AUTO asks the cost model of accel/frame_cost.c, which knows from a sample of
+ * the boxes how many voxels a line visits, how long their lists are, and how long for somebody who looks at the
+ * crowd: voxels with lists where they cost clearly less, else one voxel with the hierarchy of box_tree.c in it, which
+ * also lets packets and shafts through. ACCEL_GRID and ACCEL_BVH pin it. docs/performance.md has the measurements.
  *
  * Where a primitive stands in several cells it is tried once per ray all the same (a small mailbox remembers). */
 #include "world/world.h"
 
+#include "accel/frame_cost.h"
 #include "base/mem.h"
 #include "geom/shape_sphere.h"
 #include "math/frame.h"
@@ -129,8 +130,34 @@ static void add_up_meshes(struct world *world, const struct assets *assets) {
         world->mesh_memory += mesh_memory(entry->mesh);
 }
 
+static struct box box_of_placed(const void *context, uint32_t i) {
+    return ((const struct world *)context)->boxes[i];
+}
+
+/* Voxels only where the account is clear: packets and shafts, which the hierarchy alone can answer, are worth about a
+ * third of it, and few primitives cost little either way. */
+static enum accel_kind choose_frame(const struct world *world) {
+    enum { FEW = 1000, SAMPLES = 4096 };
+    const double clear = 0.6;
+    if (world->accel != ACCEL_AUTO || world->placed_count < FEW)
+        return world->accel == ACCEL_AUTO ? ACCEL_BVH : world->accel;
+    struct box bounds = box_empty();
+    for (uint32_t i = 0; i < world->placed_count; i++) {
+        const struct box *box = &world->boxes[i];
+        if (!box_is_empty(box) && vec3_finite(box->min) && vec3_finite(box->max))
+            bounds = box_join(bounds, *box);
+    }
+    if (box_is_empty(&bounds))
+        return ACCEL_BVH;
+    struct frame_census census;
+    frame_census_take(&census, &bounds, box_of_placed, world, world->placed_count, SAMPLES, FRAME_LEVELS);
+    struct frame_choice cost = frame_lists_or_hierarchy(&census);
+    return cost.lists < clear * cost.hierarchy ? ACCEL_GRID : ACCEL_BVH;
+}
+
 static bool build_accel(struct world *world, struct pool *pool, struct error *error) {
-    switch (world->accel) {
+    world->frame = choose_frame(world);
+    switch (world->frame) {
     case ACCEL_GRID:
         return grid_build(&world->grid, world->boxes, world->placed_count, pool, error);
     case ACCEL_AUTO:
@@ -212,7 +239,7 @@ size_t world_placed_memory(const struct world *world) {
 }
 
 size_t world_search_memory(const struct world *world) {
-    switch (world->accel) {
+    switch (world->frame) {
     case ACCEL_GRID:
         return grid_memory(&world->grid);
     case ACCEL_AUTO:
@@ -357,10 +384,10 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
     s.found = false;
     s.placed = 0;
     s.best = (struct crossing){0};
-    if (world->accel != ACCEL_AUTO && world->accel != ACCEL_BVH)
+    if (world->frame != ACCEL_BVH)
         s.probe = box_probe_make(ray); /* the hierarchy has one of its own */
     scratch->rays++;
-    switch (world->accel) {
+    switch (world->frame) {
     case ACCEL_AUTO:
     case ACCEL_BVH:
         search_tree(&s);
@@ -491,7 +518,7 @@ static bool any_in_kd_tree(const struct world *world, const struct ray *ray, con
 bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
     scratch->any_rays++;
     struct box_probe probe = box_probe_make(ray);
-    if (world->accel == ACCEL_NONE) {
+    if (world->frame == ACCEL_NONE) {
         for (uint32_t i = 0; i < world->placed_count; i++) {
             if (any_boxed(world, i, ray, &probe, scratch))
                 return true;
@@ -502,8 +529,8 @@ bool world_any(const struct world *world, const struct ray *ray, struct world_sc
     uint32_t *blocker = &scratch->blockers[scratch->light];
     if (*blocker < world->placed_count && any_boxed(world, *blocker, ray, &probe, scratch))
         return true;
-    bool found = world->accel == ACCEL_KDTREE ? any_in_kd_tree(world, ray, &probe, scratch)
-                 : world->accel == ACCEL_GRID ? any_in_grid(world, ray, &probe, scratch)
+    bool found = world->frame == ACCEL_KDTREE ? any_in_kd_tree(world, ray, &probe, scratch)
+                 : world->frame == ACCEL_GRID ? any_in_grid(world, ray, &probe, scratch)
                                               : any_in_tree(world, ray, scratch);
     *blocker = found ? *blocker : UINT32_MAX;
     return found;

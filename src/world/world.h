@@ -71,9 +71,10 @@ struct world {
     uint32_t light_count;
     struct sky sky;
     struct grid grid;     /* ACCEL_GRID */
-    struct box_tree tree; /* ACCEL_AUTO, ACCEL_BVH */
+    struct box_tree tree; /* ACCEL_BVH */
     struct kd_tree kd_tree;
-    enum accel_kind accel;
+    enum accel_kind accel; /* as asked for; of the meshes too */
+    enum accel_kind frame; /* over the placed primitives: of ACCEL_AUTO what the cost model chose, GRID or BVH */
     uint32_t scratch_need;
     uint64_t triangles; /* instances counted */
     size_t mesh_memory; /* bytes of the distinct meshes */

@@ -1,0 +1,179 @@
+/* The cost model of the frame. Two kinds of rays stand for all: lines through the frame at random, of which the share
+ * S(voxel) / S(frame) visits a voxel (S: surface; Cauchy and Crofton, as in the surface area heuristic of MacDonald and
+ * Booth, "Heuristics for Ray Tracing Using Space Subdivision", 1990), and lines to a random thing, since people look at
+ * things and light comes from them: for those a crowded voxel counts by how much is in it. Where a ray ends does not
+ * matter to the choice: steps and nodes end with it.
+ *
+ * A hierarchy is taken for the occupied voxels of all levels, 2, 4, 8 ... along the longest axis; from one to the next
+ * it needs log(growth of their number) / log(children) nodes on top of each other: one in a volume, two thirds along a
+ * surface with eight children to a node. So a frame at level a spares a ray the nodes of
+ * levels 0 .. a - 1, those of the line that are occupied, and costs it
+ *   - a step for every voxel on its way (2^a of them), about 0.35 visits of a node;
+ *   - the start of a hierarchy in every occupied one, about one visit more than the root itself;
+ *   - one more hierarchy for what is too big to be listed in voxels.
+ * In a volume filled evenly 2^a - 1 nodes are spared for 1.4 x 2^a; along a surface 2/3 a of them for 0.35 x 2^a + 1.
+ * The levels of a wide hierarchy are cheaper than the steps that would spare them: with hierarchies in its voxels the
+ * frame is one voxel unless a step and a start together cost less than a node, and the account tells so for every scene
+ * (docs/performance.md has counts and times).
+ *
+ * With lists in the voxels nothing has to be started, and in clouds of like things a step spares more than it costs;
+ * but one crowded voxel (a heap on a wide floor) costs whoever looks at it all that it holds. */
+#include "accel/frame_cost.h"
+
+#include "base/mem.h"
+#include "math/elementary.h"
+
+/* In visits of a node; measured (docs/performance.md). */
+#define STEP_COST 0.35  /* one voxel on */
+#define START_COST 1.05 /* a hierarchy in a voxel, beside its root */
+#define LIST_COST 0.3   /* an entry of a list: its box */
+#define OVERLAP 1.5     /* nodes over boxes that overlap, and are not full, for those that would do */
+
+enum { BIG_ITEM = 64 /* voxels */, ENOUGH = 4 /* samples to an occupied voxel */ };
+
+static double half_surface(struct vec3 size) {
+    return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
+static void level_shape(struct frame_level *level, struct vec3 size, uint32_t along) {
+    double longest = vec3_max_abs(size);
+    for (int k = 0; k < 3; k++) {
+        double cells = floor(vec3_get(size, k) / longest * along + 0.5);
+        level->cells[k] = cells >= 1 ? (uint32_t)cells : 1;
+    }
+}
+
+/* The voxels that a box touches along one axis. */
+static uint32_t cells_along(const struct frame_level *level, const struct box *bounds, const struct box *box, int axis,
+                            uint32_t *first) {
+    double scale = level->cells[axis] / (vec3_get(bounds->max, axis) - vec3_get(bounds->min, axis));
+    double low = (vec3_get(box->min, axis) - vec3_get(bounds->min, axis)) * scale;
+    double high = (vec3_get(box->max, axis) - vec3_get(bounds->min, axis)) * scale;
+    uint32_t last = level->cells[axis] - 1;
+    *first = low >= last ? last : low > 0 ? (uint32_t)low : 0;
+    uint32_t end = high >= last ? last : high > 0 ? (uint32_t)high : 0;
+    return end >= *first ? end - *first + 1 : 1;
+}
+
+struct sample {
+    const struct box *boxes;
+    uint32_t count;
+    double each; /* items that one of them stands for */
+};
+
+/* False: the sample is too small for the level. */
+static bool count_level(struct frame_level *level, const struct box *bounds, const struct sample *sample,
+                        uint32_t *counts) {
+    const uint32_t *cells = level->cells;
+    size_t all = (size_t)cells[0] * cells[1] * cells[2];
+    double entries = 0, squares = 0, occupied = 0, listed = 0;
+    for (uint32_t i = 0; i < sample->count; i++) {
+        uint32_t first[3], number[3];
+        for (int k = 0; k < 3; k++)
+            number[k] = cells_along(level, bounds, &sample->boxes[i], k, &first[k]);
+        double touched = (double)number[0] * number[1] * number[2];
+        listed += touched;
+        if (touched > BIG_ITEM) {
+            level->big += sample->each;
+            continue;
+        }
+        for (uint32_t z = first[2]; z < first[2] + number[2]; z++)
+            for (uint32_t y = first[1]; y < first[1] + number[1]; y++)
+                for (uint32_t x = first[0]; x < first[0] + number[0]; x++)
+                    counts[((size_t)z * cells[1] + y) * cells[0] + x]++;
+    }
+    for (size_t v = 0; v < all; v++) {
+        occupied += counts[v] > 0;
+        entries += counts[v];
+        squares += (double)counts[v] * counts[v];
+    }
+    struct vec3 size = vec3_sub(bounds->max, bounds->min);
+    struct vec3 voxel = {size.x / cells[0], size.y / cells[1], size.z / cells[2]};
+    double share = half_surface(voxel) / half_surface(size);
+    level->filled = occupied;
+    level->visited = (double)all * share;
+    level->occupied = occupied * share;
+    level->listed = listed * sample->each * share;
+    /* One of them is the thing itself; the others stand for as many more. */
+    level->around = entries > 0 ? 1 + (squares / entries - 1) * sample->each : 0;
+    return sample->each == 1 || entries >= ENOUGH * occupied;
+}
+
+static bool is_usable(const struct box *box) {
+    return !box_is_empty(box) && vec3_finite(box->min) && vec3_finite(box->max);
+}
+
+void frame_census_take(struct frame_census *census, const struct box *bounds, frame_box *box_of, const void *context,
+                       uint32_t count, uint32_t samples, uint32_t levels) {
+    struct vec3 size = vec3_sub(bounds->max, bounds->min);
+    *census = (struct frame_census){.level_count = 1, .items = count};
+    census->levels[0] = (struct frame_level){
+        .cells = {1, 1, 1}, .filled = 1, .visited = 1, .occupied = 1, .listed = count, .around = count};
+    double surface = half_surface(size), longest = vec3_max_abs(size);
+    if (count == 0 || !(surface > 0x1p-900) || !(surface < 0x1p900) || !(longest > 0))
+        return;
+    uint32_t stride = count > samples ? count / samples : 1, most = 2, kept = 0;
+    while (most < levels && (double)(UINT64_C(1) << 3 * (most - 1)) < count)
+        most++;
+    most = most < FRAME_LEVELS ? most : FRAME_LEVELS;
+    size_t largest = (size_t)1 << 3 * (most - 1);
+    struct box *boxes = mem_alloc(((size_t)count / stride + 1) * sizeof *boxes);
+    uint32_t *counts = mem_alloc(largest * sizeof *counts);
+    for (uint32_t i = 0; boxes && i < count; i += stride) {
+        boxes[kept] = box_of(context, i);
+        kept += is_usable(&boxes[kept]);
+    }
+    struct sample sample = {boxes, kept, stride};
+    for (uint32_t l = 1; boxes && counts && l < most; l++) {
+        struct frame_level *level = &census->levels[l];
+        level_shape(level, size, UINT32_C(1) << l);
+        for (size_t v = 0; v < largest; v++)
+            counts[v] = 0;
+        /* Of finer levels a sample would find too few that are occupied. */
+        if (!count_level(level, bounds, &sample, counts))
+            break;
+        census->level_count = l + 1;
+    }
+    mem_free(boxes);
+    mem_free(counts);
+}
+
+/* Levels of a hierarchy with so many children to a node that part what is in level - 1 into what is in level. */
+static double growth(const struct frame_census *census, uint32_t level, uint32_t children) {
+    double before = census->levels[level - 1].filled, after = census->levels[level].filled;
+    return after > before ? el_log(after / before) / el_log(children) : 0;
+}
+
+uint32_t frame_level_of_hierarchies(const struct frame_census *census) {
+    double spared_lines = 0, spared_things = 0, best_cost = START_COST;
+    uint32_t best = 0;
+    for (uint32_t l = 1; l < census->level_count; l++) {
+        const struct frame_level *level = &census->levels[l];
+        spared_lines += growth(census, l, 8) * census->levels[l - 1].occupied;
+        spared_things += growth(census, l, 8);
+        double met = level->occupied > 1 ? level->occupied : 1; /* a line to a thing meets its voxel at least */
+        double big = level->big > 0 ? START_COST + el_log(1 + level->big) / el_log(8) : 0;
+        double lines = STEP_COST * level->visited + START_COST * level->occupied - spared_lines;
+        double things = STEP_COST * level->visited + START_COST * met - spared_things;
+        double cost = (lines + things) / 2 + big;
+        if (cost < best_cost) {
+            best_cost = cost;
+            best = l;
+        }
+    }
+    return best;
+}
+
+struct frame_choice frame_lists_or_hierarchy(const struct frame_census *census) {
+    /* The level of three voxels to an item, which may be finer than the census is. */
+    double wanted = el_log(3 * census->items) / el_log(8);
+    uint32_t last = census->level_count - 1, level = wanted < last ? (uint32_t)(wanted + 0.5) : last;
+    double beyond = wanted > level ? wanted - level : 0, finer = el_exp2(beyond);
+    const struct frame_level *at = &census->levels[level];
+    double steps = STEP_COST * at->visited * finer, nodes = at->occupied;
+    for (uint32_t l = 1; l <= level; l++)
+        nodes += OVERLAP * growth(census, l, 4) * census->levels[l - 1].occupied;
+    double crowd = at->around / (finer * finer * finer), depth = el_log(census->items) / el_log(4);
+    double lists = 2 * steps + LIST_COST * (at->listed / (finer * finer) + (crowd > 1 ? crowd : 1));
+    return (struct frame_choice){.lists = lists / 2, .hierarchy = (nodes + depth) / 2};
+}
