@@ -18,7 +18,7 @@ struct build_item {
 };
 
 struct builder {
-    struct build_item *items, *spare; /* spare: room for partitions, used at the places of the run that is parted */
+    struct build_item *items;
     struct pool *pool;
 };
 
@@ -148,18 +148,20 @@ static struct split best_split(const struct builder *b, const struct run *run) {
     return best;
 }
 
-/* Stable partition keeps flattening order inside both halves: the tree does not depend on addresses or time. */
+/* By exchange, in place: the order depends on the boxes alone, not on addresses or time. */
 static uint32_t partition(struct builder *b, const struct run *run, const struct split *split) {
-    struct build_item *spare = b->spare + run->first;
-    uint32_t left = 0, right = 0;
-    for (uint32_t i = 0; i < run->count; i++) {
-        struct build_item item = b->items[run->first + i];
-        if (bin_of(centre_of(&item, split->axis), split->lo, split->scale, split->bins) <= split->bin)
-            b->items[run->first + left++] = item;
-        else
-            spare[right++] = item;
+    struct build_item *items = b->items + run->first;
+    uint32_t left = 0, end = run->count;
+    while (left < end) {
+        int bin = bin_of(centre_of(&items[left], split->axis), split->lo, split->scale, split->bins);
+        if (bin <= split->bin) {
+            left++;
+            continue;
+        }
+        struct build_item moved = items[left];
+        items[left] = items[--end];
+        items[end] = moved;
     }
-    memcpy(b->items + run->first + left, spare, right * sizeof *spare);
     return left;
 }
 
@@ -234,40 +236,74 @@ struct task {
     uint32_t node, depth;
 };
 
-/* Nodes of one part of the tree, at the places of its items: a run of n items needs fewer than n nodes. Runs of at most
- * `leave` items are left to others: their child index is the number of an entry in `left`, marked by LEFT_OVER. */
+/* Nodes of one part of the tree; they grow with it, so that memory while building stays close to that of the tree. Runs
+ * of at most `leave` items are left to others: their child index is the number of an entry in `left`, marked by
+ * LEFT_OVER. */
 struct part {
     struct box_tree_node *nodes;
-    struct task *tasks, *left;
-    uint32_t node_count, left_count, leave;
-    bool cancelled;
+    struct task *left;
+    uint32_t node_count, node_capacity, left_count, left_capacity, leave;
+    bool cancelled, failed; /* failed: no memory */
 };
 
 #define LEFT_OVER UINT32_C(0x40000000)
 
+static void part_destroy(struct part *part) {
+    mem_free(part->nodes);
+    mem_free(part->left);
+    part->nodes = NULL;
+    part->left = NULL;
+}
+
+/* The number of a new node; they move when they grow. */
+static uint32_t add_node(struct part *part) {
+    if (part->node_count == part->node_capacity) {
+        uint32_t capacity = part->node_capacity + part->node_capacity / 4 + 16;
+        struct box_tree_node *nodes = mem_resize_array(part->nodes, capacity, sizeof *nodes);
+        part->failed = part->failed || !nodes;
+        if (part->failed)
+            return 0;
+        part->nodes = nodes;
+        part->node_capacity = capacity;
+    }
+    return part->node_count++;
+}
+
+static uint32_t leave_run(struct part *part, const struct run *run, uint32_t depth) {
+    if (part->left_count == part->left_capacity) {
+        uint32_t capacity = 2 * part->left_capacity + 64;
+        struct task *left = mem_resize_array(part->left, capacity, sizeof *left);
+        part->failed = part->failed || !left;
+        if (part->failed)
+            return 0;
+        part->left = left;
+        part->left_capacity = capacity;
+    }
+    part->left[part->left_count] = (struct task){*run, 0, depth};
+    return part->left_count++;
+}
+
 static void build_part(struct builder *b, struct part *part, struct run root, uint32_t root_depth) {
     struct box nothing = box_empty();
+    struct task tasks[BOX_TREE_STACK]; /* as deep as a walk's */
     uint32_t waiting = 0;
-    part->node_count = 1;
-    part->tasks[waiting++] = (struct task){root, 0, root_depth};
-    while (waiting > 0 && !part->cancelled) {
-        struct task task = part->tasks[--waiting];
+    tasks[waiting++] = (struct task){root, add_node(part), root_depth};
+    while (waiting > 0 && !part->cancelled && !part->failed) {
+        struct task task = tasks[--waiting];
         struct run children[BOX_TREE_WIDTH];
-        struct box_tree_node *node = &part->nodes[task.node];
         int count = children_of(b, &task.run, task.depth >= DEEP, children);
-        for (int i = 0; i < BOX_TREE_WIDTH; i++) {
-            if (i >= count) {
-                set_child(node, i, &nothing, BOX_TREE_NONE);
-            } else if (children[i].count == 1) {
-                set_child(node, i, &children[i].box, b->items[children[i].first].item | BOX_TREE_ITEM);
-            } else if (children[i].count <= part->leave) {
-                set_child(node, i, &children[i].box, LEFT_OVER | part->left_count);
-                part->left[part->left_count++] = (struct task){children[i], 0, task.depth + 1};
-            } else {
-                uint32_t next = part->node_count++;
-                set_child(node, i, &children[i].box, next);
-                part->tasks[waiting++] = (struct task){children[i], next, task.depth + 1};
+        for (int i = 0; i < BOX_TREE_WIDTH && !part->failed; i++) {
+            uint32_t child = BOX_TREE_NONE;
+            if (i < count && children[i].count == 1) {
+                child = b->items[children[i].first].item | BOX_TREE_ITEM;
+            } else if (i < count && children[i].count <= part->leave) {
+                child = LEFT_OVER | leave_run(part, &children[i], task.depth + 1);
+            } else if (i < count) {
+                child = add_node(part);
+                tasks[waiting++] = (struct task){children[i], child, task.depth + 1};
             }
+            if (!part->failed)
+                set_child(&part->nodes[task.node], i, i < count ? &children[i].box : &nothing, child);
         }
         bool is_long = task.run.count > 1000 || (part->node_count & 255) == 0;
         part->cancelled = is_long && pool_cancelled(b->pool);
@@ -280,8 +316,6 @@ enum { PARTS = 64, PART_ITEMS = 4096 };
 
 struct forest {
     struct builder *builder;
-    struct box_tree_node *nodes; /* part i of the forest lives at the places of its items */
-    struct task *tasks;
     const struct task *roots;
     struct part *parts;
 };
@@ -289,9 +323,7 @@ struct forest {
 static void build_root(void *context, uint32_t item, int worker) {
     (void)worker;
     struct forest *forest = context;
-    struct run run = forest->roots[item].run;
-    forest->parts[item] = (struct part){.nodes = forest->nodes + run.first, .tasks = forest->tasks + run.first};
-    build_part(forest->builder, &forest->parts[item], run, forest->roots[item].depth);
+    build_part(forest->builder, &forest->parts[item], forest->roots[item].run, forest->roots[item].depth);
 }
 
 /* Puts the top and the parts behind each other; the numbers do not depend on which thread made what. */
@@ -333,51 +365,47 @@ static bool join_parts(struct box_tree *tree, const struct part *top, const stru
     return true;
 }
 
+/* All parts under the top; false: no memory or cancelled, as `error` says. */
+static bool build_parts(struct builder *b, const struct part *top, struct part *parts, struct error *error) {
+    struct forest forest = {.builder = b, .roots = top->left, .parts = parts};
+    bool whole = !top->cancelled && (top->left_count == 0 || pool_run(b->pool, top->left_count, build_root, &forest));
+    bool failed = false;
+    for (uint32_t i = 0; i < top->left_count && parts; i++) {
+        whole = whole && !parts[i].cancelled;
+        failed = failed || parts[i].failed;
+    }
+    if (failed)
+        return error_no_memory(error, "the hierarchy of the scene");
+    return whole || error_set(error, ERROR_CANCELLED, "stopped while the hierarchy of the scene was built");
+}
+
 static bool build_forest(struct builder *b, struct box_tree *tree, uint32_t count, struct error *error) {
-    /* The top may visit every place once, and so may the parts: both use the same arrays at different places or times.
-     */
-    struct box_tree_node *top_nodes = mem_alloc_aligned(64, ((size_t)count + 1) * sizeof *top_nodes);
-    struct box_tree_node *nodes = mem_alloc_aligned(64, ((size_t)count + 1) * sizeof *nodes);
-    struct task *tasks = mem_alloc_zero((size_t)count + 1, sizeof *tasks);
-    struct part top = {.nodes = top_nodes, .tasks = tasks};
-    struct part *parts = NULL;
-    if (count > PART_ITEMS) {
+    struct part top = {0}, *parts = NULL;
+    if (count > PART_ITEMS)
         top.leave = count / PARTS > PART_ITEMS / 4 ? count / PARTS : PART_ITEMS / 4;
-        top.left = mem_alloc_zero(count, sizeof *top.left);
-        parts = mem_alloc_zero(count, sizeof *parts);
+    build_part(b, &top, (struct run){0, count, tree->bounds}, 0);
+    bool ok = !top.failed || error_no_memory(error, "the hierarchy of the scene");
+    if (ok && top.left_count > 0) {
+        parts = mem_alloc_zero(top.left_count, sizeof *parts);
+        ok = parts || error_no_memory(error, "the hierarchy of the scene");
     }
-    bool ok = top_nodes && nodes && tasks && (count <= PART_ITEMS || (top.left && parts));
-    if (!ok)
-        error_no_memory(error, "the hierarchy of the scene");
-    if (ok) {
-        build_part(b, &top, (struct run){0, count, tree->bounds}, 0);
-        struct forest forest = {.builder = b, .nodes = nodes, .tasks = tasks, .roots = top.left, .parts = parts};
-        bool whole = !top.cancelled && (top.left_count == 0 || pool_run(b->pool, top.left_count, build_root, &forest));
-        for (uint32_t i = 0; whole && i < top.left_count; i++)
-            whole = !parts[i].cancelled;
-        if (!whole)
-            ok = error_set(error, ERROR_CANCELLED, "stopped while the hierarchy of the scene was built");
-        mem_free(b->items); /* nothing is kept that the joined tree does not need */
-        mem_free(b->spare);
-        b->items = b->spare = NULL;
-        if (whole && !join_parts(tree, &top, parts))
-            ok = error_no_memory(error, "the hierarchy of the scene");
-    }
-    mem_free(top_nodes);
-    mem_free(nodes);
-    mem_free(tasks);
-    mem_free(top.left);
+    ok = ok && build_parts(b, &top, parts, error);
+    mem_free(b->items); /* nothing is kept that the joined tree does not need */
+    b->items = NULL;
+    if (ok && !join_parts(tree, &top, parts))
+        ok = error_no_memory(error, "the hierarchy of the scene");
+    for (uint32_t i = 0; parts && i < top.left_count; i++)
+        part_destroy(&parts[i]);
     mem_free(parts);
+    part_destroy(&top);
     return ok;
 }
 
 bool box_tree_build(struct box_tree *tree, const struct box *boxes, uint32_t count, struct pool *pool,
                     struct error *error) {
     *tree = (struct box_tree){.bounds = box_empty()};
-    struct builder builder = {.items = mem_alloc_zero(count, sizeof *builder.items),
-                              .spare = mem_alloc_zero(count, sizeof *builder.spare),
-                              .pool = pool};
-    bool ok = builder.items && builder.spare;
+    struct builder builder = {.items = mem_alloc_zero(count, sizeof *builder.items), .pool = pool};
+    bool ok = builder.items != NULL;
     if (!ok)
         error_no_memory(error, "the hierarchy of the scene");
     for (uint32_t i = 0; ok && i < count; i++) {
@@ -390,7 +418,6 @@ bool box_tree_build(struct box_tree *tree, const struct box *boxes, uint32_t cou
     if (ok && tree->item_count > 0)
         ok = build_forest(&builder, tree, tree->item_count, error);
     mem_free(builder.items);
-    mem_free(builder.spare);
     if (!ok)
         box_tree_destroy(tree);
     return ok;

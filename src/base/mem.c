@@ -3,10 +3,58 @@
 
 #include "base/checked.h"
 #include "base/fault.h"
+#include "base/mem_peak.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+
+#ifdef GRAY_FAULTS
+#include <malloc.h>
+#include <stdatomic.h>
+
+/* What blocks hold now, and at most since mem_peak_begin; only builds that inject faults count, and only tests read. */
+static _Atomic uint64_t bytes_held, bytes_most;
+
+static void *taken(void *block) {
+    uint64_t held = atomic_fetch_add(&bytes_held, block ? malloc_usable_size(block) : 0);
+    uint64_t now = held + (block ? malloc_usable_size(block) : 0), most = atomic_load(&bytes_most);
+    while (now > most && !atomic_compare_exchange_weak(&bytes_most, &most, now))
+        continue;
+    return block;
+}
+
+static void given_back(void *block) {
+    if (block)
+        atomic_fetch_sub(&bytes_held, malloc_usable_size(block));
+}
+
+uint64_t mem_peak_begin(void) {
+    uint64_t held = atomic_load(&bytes_held);
+    atomic_store(&bytes_most, held);
+    return held;
+}
+
+uint64_t mem_peak(void) {
+    return atomic_load(&bytes_most);
+}
+#else
+static void *taken(void *block) {
+    return block;
+}
+
+static void given_back(const void *block) {
+    (void)block;
+}
+
+uint64_t mem_peak_begin(void) {
+    return 0;
+}
+
+uint64_t mem_peak(void) {
+    return 0;
+}
+#endif
 
 static bool allocation_fails(void) {
     return fault_now(FAULT_OF_ALLOCATION);
@@ -21,13 +69,13 @@ uint64_t mem_allocations(void) {
 }
 
 void *mem_alloc(size_t size) {
-    return allocation_fails() ? NULL : malloc(size ? size : 1);
+    return allocation_fails() ? NULL : taken(malloc(size ? size : 1));
 }
 
 void *mem_alloc_zero(size_t count, size_t size) {
     if (allocation_fails())
         return NULL;
-    return count && size ? calloc(count, size) : calloc(1, 1);
+    return taken(count && size ? calloc(count, size) : calloc(1, 1));
 }
 
 void *mem_alloc_aligned(size_t alignment, size_t size) {
@@ -38,11 +86,16 @@ void *mem_alloc_aligned(size_t alignment, size_t size) {
     if (alignment >= MEM_LARGE_PAGE)
         (void)madvise(block, size, MADV_HUGEPAGE);
 #endif
-    return block;
+    return taken(block);
 }
 
 void *mem_resize(void *block, size_t size) {
-    return allocation_fails() ? NULL : realloc(block, size ? size : 1);
+    if (allocation_fails())
+        return NULL;
+    given_back(block);
+    void *resized = realloc(block, size ? size : 1);
+    (void)taken(resized ? resized : block);
+    return resized;
 }
 
 void *mem_resize_array(void *block, size_t count, size_t size) {
@@ -51,6 +104,7 @@ void *mem_resize_array(void *block, size_t count, size_t size) {
 }
 
 void mem_free(void *block) {
+    given_back(block);
     free(block);
 }
 

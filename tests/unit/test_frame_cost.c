@@ -1,8 +1,11 @@
 /* The cost model of the frame beside what is counted when frames of many sizes are walked. */
 #include "tests/harness.h"
 
+#include "accel/box_tree.h"
 #include "accel/frame_cost.h"
+#include "accel/grid.h"
 #include "accel/triangle_index.h"
+#include "base/mem_peak.h"
 #include "tests/stage.h"
 
 #include <stdlib.h>
@@ -197,4 +200,60 @@ TEST(frames_over_placed_primitives_cost_little_more_than_the_better_of_cells_and
         CHECK(cost[0] <= 1.6 * (cost[1] < cost[2] ? cost[1] : cost[2]));
     }
     CHECK(cells > 0 && hierarchies > 0);
+}
+
+/* --- memory while building --- */
+
+static void check_peak(const char *what, uint64_t before, uint64_t result) {
+    uint64_t peak = mem_peak() - before;
+    if (peak > 2 * result)
+        test_fail(__FILE__, __LINE__, "%s: %llu bytes at the peak for %llu", what, (unsigned long long)peak,
+                  (unsigned long long)result);
+}
+
+TEST(building_takes_at_most_twice_the_memory_of_what_is_built) {
+#ifndef GRAY_FAULTS
+    test_skip("memory is counted only in builds with GRAY_FAULTS");
+#endif
+    struct test_random random = {4};
+    struct stage stage;
+    stage_begin(&stage, 2);
+    for (int form = 0; form < FORMS; form += 2) {
+        struct soup s = make_soup(form, &random);
+        struct triangle_set set = {.vertices = (const double(*)[3])s.vertices,
+                                   .corners = (const uint32_t(*)[3])s.corners,
+                                   .count = s.count,
+                                   .bounds = s.bounds};
+        struct triangle_index *index;
+        struct error error;
+        uint64_t before = mem_peak_begin();
+        CHECK(triangle_index_build(&index, &set, 0, stage.pool, &error));
+        check_peak("a mesh", before, triangle_index_memory(index));
+        triangle_index_destroy(index);
+
+        /* Boxes of the triangles, as if each were placed by itself; the boxes are a part of what is built. */
+        struct box *boxes = malloc(s.count * sizeof *boxes);
+        for (uint32_t i = 0; i < s.count; i++) {
+            boxes[i] = box_empty();
+            for (int j = 0; j < 3; j++) {
+                const double *v = s.vertices[3 * i + (uint32_t)j];
+                boxes[i] = box_add_point(boxes[i], vec3_make(v[0], v[1], v[2]));
+            }
+        }
+        struct box_tree tree;
+        before = mem_peak_begin();
+        CHECK(box_tree_build(&tree, boxes, s.count, stage.pool, &error));
+        check_peak("a hierarchy of placed primitives", before - s.count * sizeof *boxes,
+                   box_tree_memory(&tree) + s.count * sizeof *boxes);
+        box_tree_destroy(&tree);
+        struct grid grid;
+        before = mem_peak_begin();
+        CHECK(grid_build(&grid, boxes, s.count, stage.pool, &error));
+        check_peak("a grid of placed primitives", before, grid_memory(&grid));
+        grid_destroy(&grid);
+        free(boxes);
+        free(s.vertices);
+        free(s.corners);
+    }
+    stage_end(&stage);
 }
