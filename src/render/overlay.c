@@ -253,7 +253,7 @@ static void draw_halves(struct pen *pen) {
 }
 
 static void draw_cells(struct pen *pen) {
-    switch (pen->job->world->accel) {
+    switch (pen->job->world->frame) {
     case ACCEL_GRID:
         draw_voxels(pen);
         return;
