@@ -2,6 +2,7 @@
 #include "tests/harness.h"
 #include "tests/stage.h"
 
+#include "base/mem.h"
 #include "render/camera.h"
 #include "render/media.h"
 
@@ -306,6 +307,25 @@ TEST(every_accelerator_gives_the_same_picture) {
         stage_end(&s);
     }
     free(reference);
+}
+
+/* What is set up for a picture does not depend on its size, and nothing else takes memory. */
+TEST(rendering_a_hundred_times_as_many_pixels_takes_no_more_allocations) {
+#ifndef GRAY_FAULTS
+    test_skip("allocations are counted only in builds with GRAY_FAULTS");
+#endif
+    struct stage s;
+    uint64_t taken[3];
+    stage_begin(&s, 2);
+    busy_scene(&s, 1, false);
+    for (int i = 0; i < 3; i++) { /* the first one indexes meshes */
+        uint64_t before = mem_allocations();
+        CHECK(stage_render(&s, i < 2 ? 16 : 160, i < 2 ? 12 : 120));
+        taken[i] = mem_allocations() - before;
+    }
+    CHECK(taken[1] > 0);
+    CHECK_EQ_INT((int64_t)taken[2], (int64_t)taken[1]);
+    stage_end(&s);
 }
 
 TEST(crop_is_exactly_that_part_of_the_whole) {
