@@ -464,6 +464,12 @@ void desk_line(struct desk *desk, enum line_kind kind, const char *text) {
         text_print_line(stderr, text);
 }
 
+void desk_tell_trust(struct desk *desk) {
+    if (desk->options->script.no_sandbox)
+        desk_line(desk, LINE_WARNING,
+                  "gray: warning: --no-sandbox: scenes may read and write all your files and start programs");
+}
+
 bool desk_settle(struct desk *desk, struct error *error) {
     bool ok = true;
     if (desk->held.open && !desk->several_under_one_name)

@@ -64,6 +64,8 @@ void desk_line(struct desk *desk, enum line_kind kind, const char *text);
 /* --watch: the end of one run, and the beginning of the next, whose pictures count from 1 again. */
 bool desk_settle(struct desk *desk, struct error *error);
 void desk_restart(struct desk *desk);
+/* With --no-sandbox: a warning. */
+void desk_tell_trust(struct desk *desk);
 /* After all scripts: writes the picture that was held. all_well: everything else was written, so that the checkpoint
  * may go. False: error. */
 bool desk_finish(struct desk *desk, bool all_well, struct error *error);

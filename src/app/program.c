@@ -3,6 +3,7 @@
 #include "app/program.h"
 
 #include "accel/isa.h"
+#include "app/alone.h"
 #include "app/merge.h"
 #include "app/options.h"
 #include "app/supervisor.h"
@@ -85,7 +86,7 @@ static void help_only(struct options *options) {
 
 static int render(struct options *options, const struct program_parts *parts) {
     if (options->no_fork)
-        return supervisor_run_without_fork(options);
+        return alone_run(options);
     struct program_parts wanted = {.transport = options->mpi ? parts->transport : NULL,
                                    .window = options->window ? parts->window : NULL};
     if (wanted.transport && wanted.transport->rank > 0)

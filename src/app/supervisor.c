@@ -37,9 +37,6 @@ static const double patience_again = 0.3;
 /* Seconds from the end of the channel to the end of the process. */
 static const double farewell = 10;
 
-static const char no_sandbox_warning[] =
-    "gray: warning: --no-sandbox: scenes may read and write all your files and start programs";
-
 struct supervisor {
     const struct options *options;
     struct desk desk;
@@ -693,8 +690,7 @@ int supervisor_run(const struct options *options, const struct program_parts *pa
                      ? listen_to_signals(&supervisor, &error) && start_farm(&supervisor, transport, &error) &&
                            (!options->watch || watch_scripts(&supervisor, &error))
                      : error_no_memory(&error, "the rendering process");
-    if (options->script.no_sandbox)
-        desk_line(&supervisor.desk, LINE_WARNING, no_sandbox_warning);
+    desk_tell_trust(&supervisor.desk);
     if (ready)
         run_and_watch(&supervisor);
     else
@@ -708,73 +704,4 @@ int supervisor_run(const struct options *options, const struct program_parts *pa
         (void)close(supervisor.signals);
     mem_unshare(supervisor.control, sizeof *supervisor.control);
     return supervisor.status;
-}
-
-/* The same services, answered on the spot. */
-
-struct alone {
-    struct desk desk;
-    int status;
-};
-
-static bool alone_begin(void *context, const struct picture_request *request, struct film *film, bool *already,
-                        struct error *error) {
-    struct alone *alone = context;
-    if (!desk_begin(&alone->desk, request, already, error))
-        return false;
-    *film = alone->desk.current.film;
-    return true;
-}
-
-static void alone_abandon(void *context) {
-    struct alone *alone = context;
-    desk_abandon(&alone->desk);
-}
-
-static bool alone_done(void *context, const struct picture_report *report, struct error *error) {
-    struct alone *alone = context;
-    return desk_done(&alone->desk, report, error);
-}
-
-static void alone_line(void *context, enum line_kind kind, const char *text) {
-    struct alone *alone = context;
-    desk_line(&alone->desk, kind, text);
-}
-
-static void alone_script_ended(void *context, int index, int status) {
-    struct alone *alone = context;
-    (void)index;
-    if (status > alone->status)
-        alone->status = status;
-}
-
-static void alone_poll(void *context) {
-    struct alone *alone = context;
-    desk_show_progress(&alone->desk);
-}
-
-int supervisor_run_without_fork(const struct options *options) {
-    struct alone alone = {0};
-    struct control control = {0};
-    struct error error;
-    struct child_services services = {.context = &alone,
-                                      .control = &control,
-                                      .begin = alone_begin,
-                                      .abandon = alone_abandon,
-                                      .done = alone_done,
-                                      .line = alone_line,
-                                      .script_ended = alone_script_ended,
-                                      .poll = alone_poll};
-    pool_raise_stack();
-    (void)signal(SIGPIPE, SIG_IGN);
-    (void)signal(SIGXFSZ, SIG_IGN);
-    desk_init(&alone.desk, options, &control);
-    if (options->script.no_sandbox)
-        desk_line(&alone.desk, LINE_WARNING, no_sandbox_warning);
-    child_run(options, &services, 0);
-    if (!desk_finish(&alone.desk, alone.status == 0, &error)) {
-        desk_line(&alone.desk, LINE_ERROR, error.text);
-        alone_script_ended(&alone, 0, (int)error.kind);
-    }
-    return alone.status;
 }

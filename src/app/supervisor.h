@@ -8,7 +8,5 @@
 /* Makes every picture of every script; returns the exit status of the program. The process must have no threads but
  * those of the transport or the window. */
 int supervisor_run(const struct options *options, const struct program_parts *parts);
-/* The same in this one process, for debuggers (--no-fork): a crash is a crash, Ctrl-C ends it at once. */
-int supervisor_run_without_fork(const struct options *options);
 
 #endif

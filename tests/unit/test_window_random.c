@@ -39,11 +39,11 @@ static const char scene_head[] =
 /* One of some scenes: good ones with one and two pictures, and two kinds of bad ones. */
 static void write_scene(struct crowd *crowd) {
     static const char *const tails[] = {
-        "gr.render(r, 'out.png', 160, 120, {0, 1, 7}, {0, -0.1, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2}, {gr.light({4, 5, "
-        "6}, {0.6, 0.6, 0.6}, {1, 0, 0}), gr.area_light({-1, 4, 0}, {2, 0, 0}, {0, 0, 2}, {0.4, 0.4, 0.4}, {1, 0, "
-        "0})})\n",
-        "for i = 1, 2 do gr.render(r, 'out' .. i .. '.png', 120 * i, 90, {0, 1, 7}, {0, 0, -1}, {0, 1, 0}, 50, {0.2, "
-        "0.2, 0.2}, {gr.light({4, 5, 6}, {0.6, 0.6, 0.6}, {1, 0, 0})}) end\n",
+        ("gr.render(r, 'out.png', 160, 120, {0, 1, 7}, {0, -0.1, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2}, {gr.light({4, 5, "
+         "6}, {0.6, 0.6, 0.6}, {1, 0, 0}), gr.area_light({-1, 4, 0}, {2, 0, 0}, {0, 0, 2}, {0.4, 0.4, 0.4}, {1, 0, "
+         "0})})\n"),
+        ("for i = 1, 2 do gr.render(r, 'out' .. i .. '.png', 120 * i, 90, {0, 1, 7}, {0, 0, -1}, {0, 1, 0}, 50, {0.2, "
+         "0.2, 0.2}, {gr.light({4, 5, 6}, {0.6, 0.6, 0.6}, {1, 0, 0})}) end\n"),
         "gr.no_such_thing()\n",
         "gr.render(r, \n",
     };
