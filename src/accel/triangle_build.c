@@ -225,13 +225,46 @@ static void split_range(struct reference *references, const struct range *range,
     right->count = range->count - left->count;
 }
 
+/* Parts a floor, whose triangles have half the surface of the range each, from all that stands on it, if it is much
+ * thinner; false: there is none. The surface says that this brings nothing, but rays start on floors, and those that
+ * leave them miss a box that is flat. */
+static bool split_floor(struct reference *references, const struct range *range, struct range *floor,
+                        struct range *rest) {
+    float least = half_area(range->min, range->max) / 2;
+    uint32_t end = range->first;
+    for (uint32_t i = range->first; i < range->first + range->count; i++) {
+        if (half_area(reference_min(&references[i]), reference_max(&references[i])) < least)
+            continue;
+        struct reference swap = references[i];
+        references[i] = references[end];
+        references[end++] = swap;
+    }
+    *floor = (struct range){.first = range->first, .count = end - range->first};
+    *rest = (struct range){.first = end, .count = range->count - floor->count};
+    if (floor->count == 0 || rest->count == 0)
+        return false;
+    range_measure(references, floor);
+    float extent[4], thin[4];
+    simd4_store(extent, simd4_sub(range->max, range->min));
+    simd4_store(thin, simd4_sub(floor->max, floor->min));
+    if (!(thin[0] < extent[0] / 16 || thin[1] < extent[1] / 16 || thin[2] < extent[2] / 16))
+        return false;
+    range_measure(references, rest);
+    return true;
+}
+
 /* Splits into at most eight, the one with the largest surface first; none below `limit` references is split. */
 static uint32_t split_wide(struct reference *references, const struct range *whole, uint32_t limit, bool halve,
                            struct range part[WIDTH]) {
     float area[WIDTH];
     uint32_t parts = 1;
     part[0] = *whole;
-    area[0] = half_area(whole->min, whole->max);
+    if (!halve && split_floor(references, whole, &part[0], &part[1]))
+        parts = 2;
+    else
+        part[0] = *whole;
+    for (uint32_t j = 0; j < parts; j++)
+        area[j] = half_area(part[j].min, part[j].max);
     while (parts < WIDTH) {
         uint32_t largest = WIDTH;
         for (uint32_t j = 0; j < parts; j++)
