@@ -78,9 +78,11 @@ static struct state state_of(const struct progress *progress, double now, uint32
 static void draw_bar(struct progress *progress, const struct state *state) {
     char cells[BAR_CELLS + 1], line[COLUMNS_LIMIT], left[80] = "", elapsed[48];
     double share = state->share > 0 ? state->share : 0;
-    memset(cells, '.', BAR_CELLS);
-    memset(cells, '#', (size_t)(share * BAR_CELLS));
-    cells[BAR_CELLS] = '\0';
+    /* In a narrow terminal the time left is worth more than a long bar. */
+    int limit = terminal_columns(), bar = limit < 78 ? BAR_CELLS / 3 : BAR_CELLS;
+    memset(cells, '.', (size_t)bar);
+    memset(cells, '#', (size_t)(share * bar));
+    cells[bar] = '\0';
     say_time(state->elapsed, elapsed, sizeof elapsed);
     if (state->left >= 0 && state->elapsed > 1) {
         char time[48];
@@ -88,13 +90,13 @@ static void draw_bar(struct progress *progress, const struct state *state) {
         (void)snprintf(left, sizeof left, ", about %s left", time);
     }
     /* A long path shows its end. */
-    size_t length = strlen(progress->name);
-    const char *name = length > 30 ? progress->name + length - 30 : progress->name;
+    size_t length = strlen(progress->name), shown = limit < 78 ? 14 : 30;
+    const char *name = length > shown ? progress->name + length - shown : progress->name;
     if (state->count > 0)
         (void)snprintf(line, sizeof line, "%s [%s] %3.0f %%  %s%s", name, cells, 100 * share, elapsed, left);
     else
         (void)snprintf(line, sizeof line, "%s: building the scene  %s", name, elapsed);
-    int columns = (int)strlen(line), limit = terminal_columns();
+    int columns = (int)strlen(line);
     if (columns > limit)
         columns = limit;
     for (int i = 0; i < columns; i++)
