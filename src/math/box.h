@@ -8,6 +8,9 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
 
 struct box {
     struct vec3 min, max;
@@ -42,15 +45,20 @@ bool box_clip(const struct box *b, const struct ray *ray, double *t_enter, doubl
 
 /* The same question asked of many boxes by one ray: reciprocals are taken once. */
 struct box_probe {
-    double origin[3], inverse[3]; /* of the direction; infinite where it is 0 */
+    double origin[3][2];       /* twice, for both planes of a slab */
+    double inverse[3][2];      /* of the direction, and its negative; infinite where it is 0 */
     ptrdiff_t near[3], far[3]; /* which of a box's six numbers is the plane of each slab that comes first, and last */
 };
 
 static inline struct box_probe box_probe_make(const struct ray *ray) {
-    struct box_probe probe = {.origin = {ray->origin.x, ray->origin.y, ray->origin.z},
-                              .inverse = {1 / ray->direction.x, 1 / ray->direction.y, 1 / ray->direction.z}};
+    const double origin[3] = {ray->origin.x, ray->origin.y, ray->origin.z};
+    const double direction[3] = {ray->direction.x, ray->direction.y, ray->direction.z};
+    struct box_probe probe;
     for (int i = 0; i < 3; i++) {
-        bool negative = probe.inverse[i] < 0;
+        double inverse = 1 / direction[i];
+        bool negative = inverse < 0;
+        probe.origin[i][0] = probe.origin[i][1] = origin[i];
+        probe.inverse[i][0] = inverse, probe.inverse[i][1] = -inverse;
         probe.near[i] = negative ? i + 3 : i;
         probe.far[i] = negative ? i : i + 3;
     }
@@ -64,19 +72,38 @@ struct box_span {
     double enter, leave;
 };
 
-static inline struct box_span box_probe_span(const struct box_probe *probe, const struct box *b) {
-    _Static_assert(sizeof(struct box) == 6 * sizeof(double), "a box is its six numbers");
+static inline struct box_span box_probe_span_plain(const struct box_probe *probe, const struct box *b) {
     const double *planes = (const double *)(const void *)b;
     double near_most = -INFINITY, far_least = INFINITY;
     for (int i = 0; i < 3; i++) {
-        double near = (planes[probe->near[i]] - probe->origin[i]) * probe->inverse[i];
-        double far = (planes[probe->far[i]] - probe->origin[i]) * probe->inverse[i];
+        double near = (planes[probe->near[i]] - probe->origin[i][0]) * probe->inverse[i][0];
+        double far = (planes[probe->far[i]] - probe->origin[i][0]) * probe->inverse[i][0];
         near_most = near > near_most ? near : near_most;
         far_least = far < far_least ? far : far_least;
     }
     const double near_less = near_most * (1 - 0x1p-49), near_more = near_most * (1 + 0x1p-49); /* infinities stay */
     const double far_less = far_least * (1 - 0x1p-49), far_more = far_least * (1 + 0x1p-49);
     return (struct box_span){near_less < near_more ? near_less : near_more, far_less > far_more ? far_less : far_more};
+}
+
+/* The same to the bit, with both planes of a slab at once: the nearest far one is minus the largest of what the
+ * negatives give. Of a NaN the maximum is its second operand. */
+static inline struct box_span box_probe_span(const struct box_probe *probe, const struct box *b) {
+    _Static_assert(sizeof(struct box) == 6 * sizeof(double), "a box is its six numbers");
+#ifdef __SSE2__
+    const double *planes = (const double *)(const void *)b;
+    __m128d most = _mm_set1_pd(-INFINITY);
+    for (int i = 0; i < 3; i++) {
+        __m128d plane = _mm_loadh_pd(_mm_load_sd(&planes[probe->near[i]]), &planes[probe->far[i]]);
+        __m128d way = _mm_sub_pd(plane, _mm_loadu_pd(probe->origin[i]));
+        most = _mm_max_pd(_mm_mul_pd(way, _mm_loadu_pd(probe->inverse[i])), most);
+    }
+    __m128d less = _mm_mul_pd(most, _mm_set1_pd(1 - 0x1p-49)), more = _mm_mul_pd(most, _mm_set1_pd(1 + 0x1p-49));
+    __m128d wide = _mm_min_pd(less, more);
+    return (struct box_span){_mm_cvtsd_f64(wide), -_mm_cvtsd_f64(_mm_unpackhi_pd(wide, wide))};
+#else
+    return box_probe_span_plain(probe, b);
+#endif
 }
 
 /* Whether some t of [t_min, t_max] may lie inside the box; never wrong by rounding in the negative. A direction

@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static struct transform random_transform(struct test_random *random) {
     struct transform t = transform_identity();
@@ -162,4 +163,26 @@ TEST(boxes_of_hair_are_those_of_balls_along_it) {
         check_tight("hair", shape_bounds_under(&curve, &map.forward), wanted);
         arena_destroy(&arena);
     }
+}
+
+/* Rays along planes, from planes, along axes; boxes without end or without size: all bits agree. */
+TEST(boxes_are_probed_two_planes_at_a_time_with_the_bits_of_one_at_a_time) {
+    struct test_random random = {17};
+    static const double special[] = {0, -0.0, 1, -1, INFINITY, -INFINITY, 0x1p-1000, 0x1p1000};
+    long differ = 0;
+    for (int i = 0; i < 200000; i++) {
+        double n[12];
+        for (int k = 0; k < 12; k++) {
+            n[k] = test_uniform(&random, -2, 2);
+            bool odd = test_uniform(&random, 0, 1) < 0.3;
+            if (odd) /* origins and directions are finite */
+                n[k] = special[(int)test_uniform(&random, 0, k < 6 ? 4 : 8)];
+        }
+        struct ray ray = {.origin = {n[0], n[1], n[2]}, .direction = {n[3], n[4], n[5]}};
+        struct box box = {{n[6], n[7], n[8]}, {n[9], n[10], n[11]}};
+        struct box_probe probe = box_probe_make(&ray);
+        struct box_span plain = box_probe_span_plain(&probe, &box), both = box_probe_span(&probe, &box);
+        differ += memcmp(&plain, &both, sizeof plain) != 0;
+    }
+    CHECK_EQ_INT(differ, 0);
 }
