@@ -226,9 +226,9 @@ TEST(window_survives_random_events) {
 TEST_LONG(window_survives_an_hour_of_random_events) {
     const char *given = getenv("GRAY_RANDOM_SECONDS");
     double seconds = given ? atof(given) : 3600;
-    (void)alarm((unsigned)seconds + 300);
+    (void)alarm((unsigned)seconds + 900);
     enter_folder();
     time_t end = time(NULL) + (time_t)seconds;
     for (uint64_t seed = first_seed(100); time(NULL) < end; seed++)
-        sit(seed, 5000);
+        sit(seed, 1500);
 }
