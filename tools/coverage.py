@@ -7,7 +7,8 @@ summary.md (rooms, marks, files below their mark) and missing.txt (every line an
 Counted is what the source says: `a && b` has two conditions and so four outcomes, a case of a switch is one condition (that none of the cases of a closed
 kind fits is none).
 Not counted are conditions that clang knows the answer of (while (true), sizeof), the conditions of assert() and what
-stands in a line that is UNREACHABLE, and the switch of MAY_FAIL, which other builds do not have.
+stands in a line that is UNREACHABLE, the switch of MAY_FAIL, which other builds do not have, and the answer of functions
+that tell an error and always answer false (in `a || error_set(...)`).
 """
 import json
 import os
@@ -24,6 +25,9 @@ MARKS = {
 }
 ALL_LINES, ALL_BRANCHES = 95.0, 90.0
 NOT_COUNTED = re.compile(r"\b(assert|UNREACHABLE|MAY_FAIL|MAY_GIVE_NULL)\(")
+# What tells an error and always answers false; what is assigned on the way.
+TELLS = re.compile(r"(error_\w+|wrong|refuse|tell|no_memory|\w*fail\w*)\(")
+ASSIGNS = re.compile(r"\(.* = true\)")
 FAULT = ("MAY_FAIL", "MAY_GIVE_NULL")
 
 
@@ -149,6 +153,11 @@ def read(folder, root):
                 pair[side] += count if 0 < count < 1 << 62 else 0
     for file in files.values():
         for key, pair in list(file.branches.items()):
+            text = file.source.text[file.source.offset(key[0], key[1]):file.source.offset(key[2], key[3])]
+            if TELLS.match(text):
+                pair[0] = pair[0] or pair[1]
+            if ASSIGNS.fullmatch(text):
+                pair[1] = pair[0] or pair[1]
             # Reached, and neither outcome counted: the compiler knew the answer.
             if pair == [0, 0] and file.lines.get(key[0], 0) > 0 and is_known(file.source, key):
                 del file.branches[key]
