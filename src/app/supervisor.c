@@ -32,6 +32,8 @@
 /* Seconds a cancelled child has to give up politely before it is killed. It writes no files: nothing is lost with it,
  * and giving back the memory of a large scene takes longer than a kill. */
 static const double patience = 0.03;
+/* The same when the window is closed, which is to be over within 50 milliseconds. */
+static const double patience_quit = 0.01;
 /* Seconds for the scripts to end before they run again; afterwards the process is started anew. */
 static const double patience_again = 0.3;
 /* Seconds from the end of the channel to the end of the process. */
@@ -293,7 +295,7 @@ static void quit_window(struct supervisor *supervisor) {
     if (supervisor->deadline > 0 || supervisor->waits)
         return;
     supervisor->stop = true;
-    supervisor->deadline = progress_clock() + patience;
+    supervisor->deadline = progress_clock() + patience_quit;
     atomic_store(&supervisor->control->cancel, CANCEL_ALL);
     if (!supervisor->live.written)
         note_status(supervisor, ERROR_CANCELLED);
