@@ -185,37 +185,6 @@ TEST(rays_that_start_close_above_or_below_a_huge_floor_meet_what_trying_every_tr
     CHECK(accel_select_isa("auto"));
 }
 
-TEST(rays_that_leave_a_floor_do_not_try_it_for_the_grass_on_it) {
-    struct test_random random = {16};
-    struct maker m = {0};
-    for (int i = 0; i < 4; i++)
-        maker_vertex(&m, i & 1 ? 10 : -10, 0, i & 2 ? 10 : -10);
-    maker_triangle(&m, 0, 1, 3);
-    maker_triangle(&m, 0, 3, 2);
-    for (int i = 0; i < 300; i++) {
-        struct vec3 p = vec3_scale(test_point(&random, 1), 0.3);
-        uint32_t v = m.vertex_count;
-        maker_vertex(&m, p.x, 0, p.z);
-        maker_vertex(&m, p.x + 0.01, 0, p.z);
-        maker_vertex(&m, p.x, 0.2, p.z + 0.01);
-        maker_triangle(&m, v, v + 1, v + 2);
-    }
-    struct triangle_set set = set_of(&m);
-    struct triangle_index *index = build(&set, 1, NULL);
-    struct triangle_cost cost = {0}, brute = {0};
-    enum { RAYS = 1000 };
-    for (int i = 0; i < RAYS; i++) {
-        struct vec3 origin = vec3_scale(test_point(&random, 1), 9), away = test_point(&random, 1);
-        origin.y = 0.01;
-        away.y = fabs(away.y) + 1;
-        struct ray ray = test_ray(origin, away);
-        CHECK(triangle_index_any(index, &set, &ray, &cost) == triangle_brute_any(&set, &ray, &brute));
-    }
-    CHECK(cost.triangle_tests < RAYS);
-    triangle_index_destroy(index);
-    maker_free(&m);
-}
-
 TEST(rays_that_are_not_finite_or_have_no_direction_meet_nothing) {
     struct maker m = {0};
     maker_sphere(&m, 4);
