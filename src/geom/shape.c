@@ -56,9 +56,11 @@ static bool shape_extent(const struct shape *shape, struct vec3 g, double *lo, d
     case SHAPE_CURVE:
         curve_extent(shape->curve, g, lo, hi);
         return true;
+    case SHAPE_BLOB:
+        blob_extent(shape->blob, g, lo, hi);
+        return true;
     case SHAPE_QUADRIC:
         return quadric_extent(shape->quadric, g, lo, hi);
-    case SHAPE_BLOB:
     case SHAPE_BOX:
     case SHAPE_MESH:
     case SHAPE_CSG:

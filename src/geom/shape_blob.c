@@ -4,8 +4,9 @@
  * between two places and zero elsewhere; a cylinder has up to three such stretches. The ends of all stretches cut the
  * line into intervals; in each the polynomials that act are summed up in Bernstein form on that very interval, which
  * loses nothing however long the line is, and its roots are the crossings. Inside or outside is carried from interval
- * to interval, so rounding where two of them meet cannot upset the parity. The bounds come from an octree over the
- * fields' reach: cells in which the sum cannot attain the threshold are left out. */
+ * to interval, so rounding where two of them meet cannot upset the parity. How far it reaches in a
+ * direction is found by branch and bound over an octree: cells in which the sum cannot attain the threshold are left
+ * out. */
 #include "geom/shape_blob.h"
 
 #include "geom/bernstein.h"
@@ -13,9 +14,8 @@
 #include "geom/part_tree.h"
 #include "geom/wrap.h"
 
-enum { CELL_DEPTH = 7, FINE_DEPTH = 9, REGIONS = 4, BODY = 0, BALL_A = 1, BALL_B = 2 };
-#define CELL_WORK (UINT32_C(1) << 23) /* fields looked at while the bounds are found; beyond it cells count as full */
-#define FINE_WORK (UINT32_C(1) << 22) /* and while they are made finer, which is given up beyond it */
+enum { CELL_DEPTH = 9, REGIONS = 4, BODY = 0, BALL_A = 1, BALL_B = 2 };
+#define CELL_WORK (UINT32_C(1) << 21) /* fields looked at in one direction; beyond it cells count as full */
 
 struct blob {
     struct blob_element *elements;
@@ -40,17 +40,18 @@ static double field(const struct blob_element *e, double distance) {
 
 /* ---- building ---- */
 
-struct cells {
+/* The search for the place that lies furthest along a direction. */
+struct reach {
     const struct blob *blob;
-    struct box found;
-    uint32_t work, most_work;
-    int depth;
+    struct vec3 g;
+    double furthest; /* dot(g, p) of the cells found so far */
+    uint32_t work;
 };
 
-static bool may_be_inside(struct cells *cells, const struct box *cell) {
+static bool may_be_inside(struct reach *search, const struct box *cell) {
     struct vec3 middle = vec3_add(vec3_scale(cell->min, 0.5), vec3_scale(cell->max, 0.5));
     double reach = vec3_length(vec3_sub(cell->max, middle)), sum = 0;
-    const struct part_tree *tree = &cells->blob->tree;
+    const struct part_tree *tree = &search->blob->tree;
     for (uint32_t n = 0; n < tree->node_count;) {
         const struct part_node *node = &tree->nodes[n];
         struct box common = box_meet(node->box, *cell);
@@ -59,61 +60,78 @@ static bool may_be_inside(struct cells *cells, const struct box *cell) {
             continue;
         }
         for (uint32_t i = 0; i < node->count; i++) {
-            const struct blob_element *e = &cells->blob->elements[tree->order[node->first + i]];
+            const struct blob_element *e = &search->blob->elements[tree->order[node->first + i]];
             double distance = vec3_length(vec3_sub(middle, axis_point(e, middle)));
             sum += field(e, e->strength > 0 ? fmax(0, distance - reach) : distance + reach);
-            cells->work++;
+            search->work++;
         }
         n++;
     }
-    return sum >= cells->blob->threshold * (1 - 0x1p-30);
+    return sum >= search->blob->threshold * (1 - 0x1p-30);
 }
 
-static void find_bounds(struct cells *cells, const struct box *cell, int depth) {
-    if (box_contains(&cells->found, cell->min) && box_contains(&cells->found, cell->max))
+static struct vec3 corner(const struct box *box, unsigned i) {
+    return vec3_make(i & 1 ? box->max.x : box->min.x, i & 2 ? box->max.y : box->min.y, i & 4 ? box->max.z : box->min.z);
+}
+
+/* The corner furthest along g: bits of corner(). */
+static unsigned front(struct vec3 g) {
+    return (g.x > 0 ? 1u : 0) | (g.y > 0 ? 2u : 0) | (g.z > 0 ? 4u : 0);
+}
+
+/* Cells that lie behind what was found are left out, and so are those in which the sum cannot attain the threshold; the
+ * cells in front come first. A cell of the last level, or any when the search has taken too long, counts as full. */
+static void reach_along(struct reach *search, const struct box *cell, int depth) {
+    double most = vec3_dot(search->g, corner(cell, front(search->g)));
+    if (most <= search->furthest)
         return;
-    if (cells->work < cells->most_work) {
-        if (!may_be_inside(cells, cell))
+    if (search->work < CELL_WORK) {
+        if (!may_be_inside(search, cell))
             return;
-        if (depth < cells->depth) {
+        if (depth < CELL_DEPTH) {
             struct vec3 middle = vec3_add(vec3_scale(cell->min, 0.5), vec3_scale(cell->max, 0.5));
-            for (int i = 0; i < 8; i++) {
-                struct box child = {
-                    {i & 1 ? middle.x : cell->min.x, i & 2 ? middle.y : cell->min.y, i & 4 ? middle.z : cell->min.z},
-                    {i & 1 ? cell->max.x : middle.x, i & 2 ? cell->max.y : middle.y, i & 4 ? cell->max.z : middle.z}};
-                find_bounds(cells, &child, depth + 1);
+            for (unsigned i = 0; i < 8; i++) {
+                struct vec3 end = corner(cell, i ^ front(search->g));
+                struct box child = {vec3_min(middle, end), vec3_max(middle, end)};
+                reach_along(search, &child, depth + 1);
             }
             return;
         }
     }
-    cells->found = box_join(cells->found, *cell);
-}
-
-static struct box a_point(const struct blob *blob) { /* where the threshold is nowhere attained */
-    return (struct box){blob->elements[0].a, blob->elements[0].a};
+    search->furthest = most;
 }
 
 /* k (1 - x^2)^2 = threshold. */
-static struct box bounds_of_one(const struct blob *blob) {
+static double reach_of_one(const struct blob *blob) {
     const struct blob_element *e = &blob->elements[0];
-    if (!(e->strength >= blob->threshold))
-        return a_point(blob);
-    double reach = e->radius * sqrt(fmax(1 - sqrt(blob->threshold / e->strength), 0)) * (1 + 0x1p-40);
-    return (struct box){vec3_sub(vec3_min(e->a, e->b), vec3_all(reach)),
-                        vec3_add(vec3_max(e->a, e->b), vec3_all(reach))};
+    return e->radius * sqrt(fmax(1 - sqrt(blob->threshold / e->strength), 0)) * (1 + 0x1p-40);
 }
 
-/* Cells of the fields' reach, then finer ones of what they left. */
-static struct box bounds_of_many(const struct blob *blob, const struct box *all) {
-    struct cells cells = {.blob = blob, .found = box_empty(), .most_work = CELL_WORK, .depth = CELL_DEPTH};
-    find_bounds(&cells, all, 0);
-    if (box_is_empty(&cells.found))
-        return a_point(blob);
-    struct cells fine = {.blob = blob, .found = box_empty(), .most_work = FINE_WORK, .depth = FINE_DEPTH};
-    find_bounds(&fine, &cells.found, 0);
-    if (fine.work >= FINE_WORK)
-        return cells.found;
-    return box_is_empty(&fine.found) ? a_point(blob) : fine.found;
+static double furthest(const struct blob *blob, struct vec3 g) {
+    const struct blob_element *e = &blob->elements[0];
+    if (blob->count == 1)
+        return e->strength >= blob->threshold
+                   ? fmax(vec3_dot(g, e->a), vec3_dot(g, e->b)) + reach_of_one(blob) * vec3_length(g)
+                   : vec3_dot(g, e->a);
+    struct reach search = {.blob = blob, .g = g, .furthest = -INFINITY};
+    reach_along(&search, &blob->bounds, 0);
+    return search.furthest > -INFINITY ? search.furthest : vec3_dot(g, e->a); /* the threshold is attained nowhere */
+}
+
+void blob_extent(const struct blob *blob, struct vec3 g, double *lo, double *hi) {
+    *lo = -furthest(blob, vec3_negate(g));
+    *hi = furthest(blob, g);
+}
+
+/* Twice, so that the cells of the second time are parts of the box itself and not of the fields' reach. */
+static void find_bounds(struct blob *blob) {
+    for (int turn = 0; turn < 2; turn++) {
+        double lo[3], hi[3];
+        for (int axis = 0; axis < 3; axis++)
+            blob_extent(blob, vec3_make(axis == 0, axis == 1, axis == 2), &lo[axis], &hi[axis]);
+        blob->bounds = (struct box){vec3_make(lo[0], lo[1], lo[2]), vec3_make(hi[0], hi[1], hi[2])};
+    }
+    blob->bounds = box_pad(blob->bounds);
 }
 
 static bool check(const struct blob_input *in, struct error *error) {
@@ -156,7 +174,7 @@ const struct blob *blob_build(struct arena *arena, const struct blob_input *in, 
         error_no_memory(error, "a blob");
         return NULL;
     }
-    blob->bounds = box_pad(in->count == 1 ? bounds_of_one(blob) : bounds_of_many(blob, &all));
+    find_bounds(blob);
     blob->middle =
         box_is_empty(&adding) ? elements[0].a : vec3_add(vec3_scale(adding.min, 0.5), vec3_scale(adding.max, 0.5));
     blob->size = fmax(vec3_max_abs(all.min), vec3_max_abs(all.max));

@@ -27,6 +27,8 @@ struct blob_input {
 
 const struct blob *blob_build(struct arena *arena, const struct blob_input *input, struct error *error);
 struct box blob_bounds(const struct blob *blob);
+/* The least and the greatest dot(g, p) over the blob, at most a five-hundredth of its size too far out. */
+void blob_extent(const struct blob *blob, struct vec3 g, double *lo, double *hi);
 /* The part is the element that is strongest where the line crosses. */
 bool blob_crossings(const struct blob *blob, const struct ray *ray, struct geom_scratch *scratch,
                     struct crossing_list *out);

@@ -125,24 +125,39 @@ bool height_field_is_closed(const struct height_field *f) {
     return !f->open;
 }
 
-/* From the corners of the blocks of one level: exact at level 0, where a block is a cell with its least and greatest
- * height; no finer than a million blocks. */
-void height_field_extent(const struct height_field *f, struct vec3 g, double *lo, double *hi) {
-    int k = 0;
-    while (k + 1 < f->level_count && (double)f->levels[k].columns * f->levels[k].rows > 0x1p20)
-        k++;
+static struct vec3 point_at(const struct height_field *f, uint32_t column, uint32_t row) {
+    return vec3_make((double)column / f->columns, height(f, column, row), (double)row / f->rows);
+}
+
+/* The greatest dot(g, p) over the points of a block of 2^k cells a side, if it is above what was found: blocks whose
+ * corners do not reach so far are left out, the one in front comes first. */
+static void reach_along(const struct height_field *f, struct vec3 g, int k, uint32_t i, uint32_t j, double *found) {
     const struct level *level = &f->levels[k];
-    *lo = INFINITY, *hi = -INFINITY;
-    for (uint32_t j = 0; j < level->rows; j++)
-        for (uint32_t i = 0; i < level->columns; i++) {
-            struct range r = level->ranges[(size_t)j * level->columns + i];
-            if (!f->open)
-                r.lo = f->floor;
-            double a = g.x * fmin(1, ldexp(i, k) / f->columns), b = g.x * fmin(1, ldexp(i + 1.0, k) / f->columns);
-            double c = g.z * fmin(1, ldexp(j, k) / f->rows), d = g.z * fmin(1, ldexp(j + 1.0, k) / f->rows);
-            *lo = fmin(*lo, fmin(a, b) + fmin(c, d) + fmin(g.y * r.lo, g.y * r.hi));
-            *hi = fmax(*hi, fmax(a, b) + fmax(c, d) + fmax(g.y * r.lo, g.y * r.hi));
-        }
+    if (i >= level->columns || j >= level->rows)
+        return;
+    uint32_t right = g.x > 0, behind = g.z > 0;
+    if (k == 0) {
+        for (uint32_t n = 0; n < 4; n++)
+            *found = fmax(*found, vec3_dot(g, point_at(f, i + (n & 1), j + (n >> 1))));
+        return;
+    }
+    struct range r = level->ranges[(size_t)j * level->columns + i];
+    double x = fmin(1, ldexp(i + right, k) / f->columns), z = fmin(1, ldexp(j + behind, k) / f->rows);
+    if (vec3_dot(g, vec3_make(x, g.y > 0 ? r.hi : r.lo, z)) <= *found)
+        return;
+    for (uint32_t n = 0; n < 4; n++)
+        reach_along(f, g, k - 1, 2 * i + ((n & 1) ^ right), 2 * j + ((n >> 1) ^ behind), found);
+}
+
+static double furthest(const struct height_field *f, struct vec3 g) {
+    double found = f->open ? -INFINITY : fmax(g.x, 0) + g.y * f->floor + fmax(g.z, 0);
+    reach_along(f, g, f->level_count - 1, 0, 0, &found);
+    return found;
+}
+
+void height_field_extent(const struct height_field *f, struct vec3 g, double *lo, double *hi) {
+    *lo = -furthest(f, vec3_negate(g));
+    *hi = furthest(f, g);
 }
 
 uint32_t height_field_scratch_need(const struct height_field *f) {

@@ -331,6 +331,33 @@ TEST(blobs_have_boxes_within_a_percent_of_the_tightest) {
     geom_scratch_destroy(&scratch);
 }
 
+TEST(height_field_has_the_box_of_its_points_under_affine_maps) {
+    struct arena arena = {0};
+    struct test_random random = {62};
+    enum { COLUMNS = 13, ROWS = 10 };
+    double heights[COLUMNS * ROWS];
+    struct error error = {0};
+    for (int turn = 0; turn < 100; turn++) {
+        for (int i = 0; i < COLUMNS * ROWS; i++)
+            heights[i] = test_uniform(&random, 0, 0.6);
+        struct height_field_input in = {heights, COLUMNS, ROWS, turn & 1, -0.2, false};
+        struct shape shape = {.kind = SHAPE_HEIGHT_FIELD, .height_field = height_field_build(&arena, &in, &error)};
+        CHECK(shape.height_field != NULL);
+        struct transform map = random_transform(&random);
+        struct box found = shape_bounds_under(&shape, &map.forward), points = box_empty();
+        for (int i = 0; i < COLUMNS * ROWS; i++) {
+            double x = i % COLUMNS / (COLUMNS - 1.0), z = (double)(i / COLUMNS) / (ROWS - 1.0);
+            points = box_add_point(points, affine_point(&map.forward, vec3_make(x, heights[i], z)));
+            if (!in.open)
+                points = box_add_point(points, affine_point(&map.forward, vec3_make(x, in.floor, z)));
+        }
+        double size = vec3_length(vec3_sub(points.max, points.min));
+        CHECK(vec3_length(vec3_sub(found.min, points.min)) <= 1e-9 * size);
+        CHECK(vec3_length(vec3_sub(found.max, points.max)) <= 1e-9 * size);
+    }
+    arena_destroy(&arena);
+}
+
 /* Every triangle and wall by brute force. */
 TEST(height_field_is_crossed_where_its_triangles_are) {
     struct arena arena = {0};

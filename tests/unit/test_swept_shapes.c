@@ -384,7 +384,9 @@ TEST(swept_shapes_never_show_pictures_mirrored) {
 TEST(swept_shapes_have_tight_boxes_under_affine_maps) {
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 256));
-    for (int maker = 0; maker < FIELD; maker++) {
+    for (int maker = 0; maker < MAKERS; maker++) {
+        if (maker == FIELD) /* lines miss its peaks: height_field_has_the_box_of_its_points_under_affine_maps */
+            continue;
         struct test_random random = {(uint64_t)(500 + maker)};
         int outside = 0, loose = 0;
         for (int turn = 0; turn < 40; turn++) {
