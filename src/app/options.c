@@ -728,9 +728,6 @@ struct digest options_digest(const struct options *options) {
 
 bool options_parse(struct options *options, int argc, char *const *argv, struct arena *arena, struct error *error) {
     *options = (struct options){.settings = settings_default(), .checkpoint_every = 10};
-    bool merge = argc > 1 && strcmp(argv[1], "merge") == 0;
-    if (merge)
-        options->action = ACTION_MERGE;
     size_t room = argc > 0 ? (size_t)argc : 1;
     const char **scripts = arena_alloc_array(arena, room, sizeof *scripts);
     struct lists lists = {.defines = arena_alloc_array(arena, room, sizeof *lists.defines),
@@ -745,8 +742,14 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
     options->script.allow_read = lists.folders[0];
     options->script.allow_write = lists.folders[1];
     bool only_scripts = false;
-    for (int i = merge ? 2 : 1; i < argc; i++) {
+    for (int i = 1; i < argc; i++) {
         const char *word = argv[i];
+        /* The first word of its own; `gray -- merge` is a scene of that name. */
+        if (!only_scripts && options->action == ACTION_RENDER && options->script_count == 0 &&
+            strcmp(word, "merge") == 0) {
+            options->action = ACTION_MERGE;
+            continue;
+        }
         if (only_scripts || word[0] != '-' || word[1] == '\0') {
             scripts[options->script_count++] = word;
             continue;

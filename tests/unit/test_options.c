@@ -283,3 +283,18 @@ TEST(numbered_names_take_widths_zeros_and_percent_signs) {
     CHECK(!output_name("1234567%d", 1, small, sizeof small));
     CHECK(output_name("123456%d", 1, small, sizeof small));
 }
+
+TEST(merge_is_the_first_word_that_is_no_option) {
+    static const char *const lines[] = {"merge a.part", "-q merge a.part", "-o merge -q merge a.part"};
+    for (int i = 0; i < 3; i++) {
+        struct parsed *parsed = parse(lines[i]);
+        CHECK(parsed->ok && parsed->options.action == ACTION_MERGE && parsed->options.script_count == 1);
+        forget(parsed);
+    }
+    static const char *const scenes[] = {"-- merge a.part", "a.lua merge"};
+    for (int i = 0; i < 2; i++) {
+        struct parsed *parsed = parse(scenes[i]);
+        CHECK(parsed->ok && parsed->options.action == ACTION_RENDER && parsed->options.script_count == 2);
+        forget(parsed);
+    }
+}
