@@ -3,28 +3,19 @@
  * and argument. And with everything right, every form runs. */
 #include "base/fault.h"
 #include "formats/font.h"
-#include "image/png_write.h"
 #include "script/table.h"
+#include "tests/unit/file_makers.h"
 #include "tests/unit/script_host.h"
 
 #include <math.h>
 
 enum { CALL_SIZE = 2048 };
 
-static void white_row(void *context, uint32_t y, uint8_t *line) {
-    (void)context;
-    (void)y;
-    memset(line, 255, 3 * 8);
-}
-
 /* The files that the right arguments name. */
 static void write_files(void) {
     char path[512];
-    struct error error = {0};
-    (void)snprintf(path, sizeof path, "%s/cross.png", test_folder());
-    CHECK(png_write(path, 8, 6, white_row, NULL, &error));
-    (void)snprintf(path, sizeof path, "%s/square.png", test_folder());
-    CHECK(png_write(path, 8, 8, white_row, NULL, &error));
+    write_white_png("cross.png", 8, 6);
+    write_white_png("square.png", 8, 8);
     (void)snprintf(path, sizeof path, "%s/flag.obj", test_folder());
     test_write_text(path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     (void)snprintf(path, sizeof path, "%s/letters.ttf", test_folder());

@@ -1,9 +1,9 @@
 /* What scripts rarely do, one short text each: it runs, or it is refused with these words. Beside them scripts of an
  * older Lua, names that do not exist under --lenient, values of -D, texts for the transform order cut anywhere. */
 #include "base/fault.h"
-#include "image/png_write.h"
 #include "script/order.h"
 #include "script/table.h"
+#include "tests/unit/file_makers.h"
 #include "tests/unit/script_host.h"
 
 #include <sys/stat.h>
@@ -139,17 +139,8 @@ static void put(const char *name, const char *text, size_t size) {
     test_write_file(path, text, size);
 }
 
-static void white_row(void *context, uint32_t y, uint8_t *line) {
-    (void)context;
-    (void)y;
-    memset(line, 255, 3 * 8);
-}
-
 static void write_files(void) {
-    char path[512];
-    struct error error = {0};
-    (void)snprintf(path, sizeof path, "%s/pic1.png", test_folder());
-    CHECK(png_write(path, 8, 8, white_row, NULL, &error));
+    write_white_png("pic1.png", 8, 8);
     put("flag.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\ng a\nf 1 2 3\n", 36);
     put("bad.lua", "x = = 1", 7);
     put("thrower.lua", "local x = nil; return x.y", 25);

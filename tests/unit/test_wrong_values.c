@@ -1,7 +1,7 @@
 /* Values that are right one by one and wrong together, or right and rarely asked for: each call of the first table is
  * refused with its words, with the line and the function; each of the second runs, and runs out of memory cleanly. */
 #include "base/fault.h"
-#include "image/png_write.h"
+#include "tests/unit/file_makers.h"
 #include "tests/unit/script_host.h"
 
 static const char preparation[] =
@@ -234,19 +234,10 @@ static const char *const rights[] = {
     "gr.render{node = ball, file = 'x.png', width = 4, height = 4, eye = {0, 0, 9}, background = 'gradient'}",
 };
 
-static void white_row(void *context, uint32_t y, uint8_t *line) {
-    (void)context;
-    (void)y;
-    memset(line, 255, 3 * 8);
-}
-
 static void write_files(void) {
     char path[512];
-    struct error error = {0};
-    (void)snprintf(path, sizeof path, "%s/cross.png", test_folder());
-    CHECK(png_write(path, 8, 6, white_row, NULL, &error));
-    (void)snprintf(path, sizeof path, "%s/square.png", test_folder());
-    CHECK(png_write(path, 8, 8, white_row, NULL, &error));
+    write_white_png("cross.png", 8, 6);
+    write_white_png("square.png", 8, 8);
     (void)snprintf(path, sizeof path, "%s/broken.png", test_folder());
     test_write_text(path, "\x89PNG");
     (void)snprintf(path, sizeof path, "%s/flag.obj", test_folder());

@@ -1,0 +1,23 @@
+/* Small files that scenes of the tests name, in the folder of the test. */
+#ifndef GRAY_TESTS_FILE_MAKERS_H
+#define GRAY_TESTS_FILE_MAKERS_H
+
+#include "image/png_write.h"
+#include "tests/harness.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static inline void white_row(void *context, uint32_t y, uint8_t *line) {
+    (void)y;
+    memset(line, 255, 3 * (size_t) * (const uint32_t *)context);
+}
+
+static inline void write_white_png(const char *name, uint32_t width, uint32_t height) {
+    char path[512];
+    struct error error = {0};
+    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    CHECK(png_write(path, width, height, white_row, &width, &error));
+}
+
+#endif
