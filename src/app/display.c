@@ -145,7 +145,9 @@ static bool connect_soon(int made, const struct addrinfo *at) {
 static bool connect_tev(struct display *display, struct error *error) {
     struct addrinfo hints = {.ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM}, *list = NULL;
     const struct display_choice *choice = &display->choice;
-    int failure = MAY_FAIL(getaddrinfo(choice->host, choice->port, &hints, &list)), yes = 1, saved = 0;
+    /* "localhost" is this machine also where no table of names says so (RFC 6761, 6.3). */
+    const char *host = strcmp(choice->host, "localhost") == 0 ? "127.0.0.1" : choice->host;
+    int failure = MAY_FAIL(getaddrinfo(host, choice->port, &hints, &list)), yes = 1, saved = 0;
     if (failure != 0)
         return error_set(error, ERROR_MACHINE, "--display tev:%s:%s: %s", choice->host, choice->port,
                          failure == EAI_SYSTEM || failure == -1 ? strerror(errno) : gai_strerror(failure));

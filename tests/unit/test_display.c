@@ -49,7 +49,13 @@ static bool receiver_begin(struct receiver *r, int most) {
     return ok && pthread_create(&r->thread, NULL, receive, r) == 0;
 }
 
+/* Where nobody has called, the thread waits: it is called from here. */
 static void receiver_end(struct receiver *r) {
+    struct sockaddr_in address = {
+        .sin_family = AF_INET, .sin_port = htons((uint16_t)r->port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    int caller = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    (void)connect(caller, (struct sockaddr *)&address, sizeof address);
+    (void)close(caller);
     (void)pthread_join(r->thread, NULL);
     (void)close(r->listening);
 }
