@@ -161,7 +161,7 @@ TEST(corners_of_the_mesh_readers_are_read_or_told) {
     put("tiny.mtl", "#");
     for (size_t i = 0; i < sizeof corners / sizeof corners[0]; i++) {
 #ifndef HAVE_JANSSON
-        if (strchr(corners[i].text, '{'))
+        if (strstr(corners[i].name, ".gl") || strchr(corners[i].text, '{'))
             continue;
 #endif
         expect(corners[i].name, corners[i].text, strlen(corners[i].text), corners[i].words);
