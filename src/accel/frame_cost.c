@@ -5,29 +5,18 @@
  * matter to the choice: steps and nodes end with it.
  *
  * A hierarchy is taken for the occupied voxels of all levels, 2, 4, 8 ... along the longest axis; from one to the next
- * it needs log(growth of their number) / log(children) nodes on top of each other: one in a volume, two thirds along a
- * surface with eight children to a node. So a frame at level a spares a ray the nodes of
- * levels 0 .. a - 1, those of the line that are occupied, and costs it
- *   - a step for every voxel on its way (2^a of them), about 0.35 visits of a node;
- *   - the start of a hierarchy in every occupied one, about one visit more than the root itself;
- *   - one more hierarchy for what is too big to be listed in voxels.
- * In a volume filled evenly 2^a - 1 nodes are spared for 1.4 x 2^a; along a surface 2/3 a of them for 0.35 x 2^a + 1.
- * The levels of a wide hierarchy are cheaper than the steps that would spare them: with hierarchies in its voxels the
- * frame is one voxel unless a step and a start together cost less than a node, and the account tells so for every scene
- * (docs/performance.md has counts and times).
- *
- * With lists in the voxels nothing has to be started, and in clouds of like things a step spares more than it costs;
- * but one crowded voxel (a heap on a wide floor) costs whoever looks at it all that it holds. */
+ * it needs log(growth of their number) / log(children) nodes on top of each other. With lists in the voxels nothing has
+ * to be started, and in clouds of like things a step, about 0.35 visits of a node, spares more than it costs; but one
+ * crowded voxel (a heap on a wide floor) costs whoever looks at it all that it holds. */
 #include "accel/frame_cost.h"
 
 #include "base/mem.h"
 #include "math/elementary.h"
 
 /* In visits of a node; measured (docs/performance.md). */
-#define STEP_COST 0.35  /* one voxel on */
-#define START_COST 1.05 /* a hierarchy in a voxel, beside its root */
-#define LIST_COST 0.3   /* an entry of a list: its box */
-#define OVERLAP 1.5     /* nodes over boxes that overlap, and are not full, for those that would do */
+#define STEP_COST 0.35 /* one voxel on */
+#define LIST_COST 0.3  /* an entry of a list: its box */
+#define OVERLAP 1.5    /* nodes over boxes that overlap, and are not full, for those that would do */
 
 enum { BIG_ITEM = 64 /* voxels */, ENOUGH = 4 /* samples to an occupied voxel */ };
 
@@ -73,10 +62,8 @@ static bool count_level(struct frame_level *level, const struct box *bounds, con
             number[k] = cells_along(level, bounds, &sample->boxes[i], k, &first[k]);
         double touched = (double)number[0] * number[1] * number[2];
         listed += touched;
-        if (touched > BIG_ITEM) {
-            level->big += sample->each;
+        if (touched > BIG_ITEM)
             continue;
-        }
         for (uint32_t z = first[2]; z < first[2] + number[2]; z++)
             for (uint32_t y = first[1]; y < first[1] + number[1]; y++)
                 for (uint32_t x = first[0]; x < first[0] + number[0]; x++)
@@ -142,26 +129,6 @@ void frame_census_take(struct frame_census *census, const struct box *bounds, fr
 static double growth(const struct frame_census *census, uint32_t level, uint32_t children) {
     double before = census->levels[level - 1].filled, after = census->levels[level].filled;
     return after > before ? el_log(after / before) / el_log(children) : 0;
-}
-
-uint32_t frame_level_of_hierarchies(const struct frame_census *census) {
-    double spared_lines = 0, spared_things = 0, best_cost = START_COST;
-    uint32_t best = 0;
-    for (uint32_t l = 1; l < census->level_count; l++) {
-        const struct frame_level *level = &census->levels[l];
-        spared_lines += growth(census, l, 8) * census->levels[l - 1].occupied;
-        spared_things += growth(census, l, 8);
-        double met = level->occupied > 1 ? level->occupied : 1; /* a line to a thing meets its voxel at least */
-        double big = level->big > 0 ? START_COST + el_log(1 + level->big) / el_log(8) : 0;
-        double lines = STEP_COST * level->visited + START_COST * level->occupied - spared_lines;
-        double things = STEP_COST * level->visited + START_COST * met - spared_things;
-        double cost = (lines + things) / 2 + big;
-        if (cost < best_cost) {
-            best_cost = cost;
-            best = l;
-        }
-    }
-    return best;
 }
 
 struct frame_choice frame_lists_or_hierarchy(const struct frame_census *census) {

@@ -17,7 +17,6 @@ struct frame_level {
     double occupied; /* those of them that hold something */
     double listed;   /* entries of their lists that it passes */
     double around;   /* things in the voxel of a random thing */
-    double big;      /* things that touch very many voxels */
 };
 
 struct frame_census {
@@ -32,9 +31,6 @@ typedef struct box frame_box(const void *context, uint32_t item);
  * where voxels would be many times as many as items. Deterministic. */
 void frame_census_take(struct frame_census *census, const struct box *bounds, frame_box *box_of, const void *context,
                        uint32_t count, uint32_t samples, uint32_t levels);
-
-/* The level whose voxels, each with a wide hierarchy (eight children to a node) in it, cost rays least. */
-uint32_t frame_level_of_hierarchies(const struct frame_census *census);
 
 /* A frame of about three voxels to an item with lists in them, against one voxel with a hierarchy of four children to a
  * node; in visits of its nodes. */

@@ -1,11 +1,16 @@
 /* The index of a mesh: frame, voxels, searches.
  *
- * How many voxels? The cost model of frame_cost.c tells it for every mesh, from a sample of its triangles, unless the
- * caller asks for a number; the account stands there. With eight children to a node it is one voxel for all meshes that
- * were measured; then the frame is only the box every ray is cut to. */
+ * How many voxels? A voxel spares a ray the upper levels of the hierarchy and costs it a step (about a third of a node
+ * visit), every occupied voxel on its way the start of a hierarchy (about one and a half), and memory for what lies in
+ * several. With eight children to a node and lambda voxels to a triangle the levels spared are log8 of the number of
+ * occupied voxels, at best, that is, if all are filled alike: 1.3 for 16 of them, 2 for 64; but a ray through a body of
+ * that many meets 2 to 4 occupied ones before it is done. So the account is about even for compact bodies, where 0.001
+ * voxels a triangle were measured 0 to 4 % faster, and is lost where much is open or filled unevenly
+ * (docs/performance.md has the numbers: terrain 4 % slower, a pyramid of Sierpinski's 10 %, rooms and worlds 20 to 60
+ * %), and packets of rays and floors apart need one voxel. Hence one voxel, unless the caller asks for more; then the
+ * frame is only the box every ray is cut to. */
 #include "accel/triangle_index.h"
 
-#include "accel/frame_cost.h"
 #include "accel/isa.h"
 #include "accel/triangle_build.h"
 #include "accel/triangle_kernels.h"
@@ -199,28 +204,6 @@ static bool fill_voxels(struct triangle_index *index, const struct triangle_set 
     return complete;
 }
 
-/* The box of a triangle. */
-static struct box box_of_triangle(const void *context, uint32_t i) {
-    const struct triangle_set *set = context;
-    struct box box = box_empty();
-    for (int k = 0; k < 3; k++) {
-        const double *v = set->vertices[set->corners[i][k]];
-        box = box_add_point(box, vec3_make(v[0], v[1], v[2]));
-    }
-    return box;
-}
-
-/* About how many voxels the frame is to have: as the cost model says. */
-static double choose_voxels(const struct triangle_set *set) {
-    enum { FEW = 64, SAMPLES = 1024, LEVELS = 5 };
-    if (set->count < FEW)
-        return 1;
-    struct frame_census census;
-    frame_census_take(&census, &set->bounds, box_of_triangle, set, set->count, SAMPLES, LEVELS);
-    const uint32_t *cells = census.levels[frame_level_of_hierarchies(&census)].cells;
-    return (double)cells[0] * cells[1] * cells[2];
-}
-
 bool triangle_index_build(struct triangle_index **out, const struct triangle_set *set, uint32_t voxels,
                           struct pool *pool, struct error *error) {
     struct triangle_index *index = mem_alloc_zero(1, sizeof *index);
@@ -228,7 +211,7 @@ bool triangle_index_build(struct triangle_index **out, const struct triangle_set
         return error_no_memory(error, "the index of a mesh");
     if (set->count > 0) {
         set_space(index, set);
-        set_cells(index, voxels > 0 ? voxels : choose_voxels(set));
+        set_cells(index, voxels > 1 ? voxels : 1);
         if (!fill_voxels(index, set, pool, error)) {
             triangle_index_destroy(index);
             return false;
