@@ -11,6 +11,7 @@
 
 struct fault_counters {
     _Atomic uint64_t count[2], failing[2];
+    _Atomic int error;
     pid_t first; /* the process that tells the counts */
 };
 
@@ -20,6 +21,7 @@ void fault_apart(void) {
     void *page = mmap(NULL, sizeof own, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (page != MAP_FAILED)
         counters = page;
+    atomic_store(&counters->error, EIO);
     counters->first = getpid();
 }
 
@@ -31,6 +33,8 @@ __attribute__((constructor)) static void read_environment(void) {
         if (text)
             fault_at((enum fault_kind)kind, strtoull(text, NULL, 10));
     }
+    const char *number = getenv("GRAY_FAIL_ERRNO");
+    (void)fault_errno(number ? atoi(number) : 0);
 }
 
 __attribute__((destructor)) static void tell_counts(void) {
@@ -52,6 +56,10 @@ bool fault_now(enum fault_kind kind) {
 
 void fault_at(enum fault_kind kind, uint64_t number) {
     atomic_store(&counters->failing[kind], number == 0 ? 0 : atomic_load(&counters->count[kind]) + number);
+}
+
+int fault_errno(int number) {
+    return number == 0 ? atomic_load(&counters->error) : atomic_exchange(&counters->error, number);
 }
 
 uint64_t fault_count(enum fault_kind kind) {

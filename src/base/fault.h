@@ -1,7 +1,7 @@
 /* Failures on demand, for tests: in builds with GRAY_FAULTS every allocation and every call to the system that can fail
  * is counted, over both processes of a run in the order in which they happen, and one of them can be made to fail by
  * its number: GRAY_FAIL_ALLOC=k or GRAY_FAIL_CALL=k in the environment, GRAY_FAULT_COUNT=FILE writes how many there
- * were. Other builds have none of this. */
+ * were, GRAY_FAIL_ERRNO=n is the error that a failing call gives (EIO without it). Other builds have none of this. */
 #ifndef GRAY_BASE_FAULT_H
 #define GRAY_BASE_FAULT_H
 
@@ -17,6 +17,8 @@ bool fault_now(enum fault_kind kind);
 /* From now on number `number` (1 is the next) fails once; 0 turns it off. */
 void fault_at(enum fault_kind kind, uint64_t number);
 uint64_t fault_count(enum fault_kind kind);
+/* What errno says of a call that is made to fail; 0 as the new one changes nothing. Answers the one before. */
+int fault_errno(int number);
 /* This process, and those it starts from now on, count apart from the others, from 0, and nothing fails. */
 void fault_apart(void);
 #else
@@ -32,12 +34,16 @@ static inline uint64_t fault_count(enum fault_kind kind) {
     (void)kind;
     return 0;
 }
+static inline int fault_errno(int number) {
+    (void)number;
+    return EIO;
+}
 static inline void fault_apart(void) {
 }
 #endif
 
 /* A call that gives a negative number, or a null pointer, when it fails. */
-#define MAY_FAIL(call) (fault_now(FAULT_OF_CALL) ? (errno = EIO, -1) : (call))
-#define MAY_GIVE_NULL(call) (fault_now(FAULT_OF_CALL) ? (errno = EIO, NULL) : (call))
+#define MAY_FAIL(call) (fault_now(FAULT_OF_CALL) ? (errno = fault_errno(0), -1) : (call))
+#define MAY_GIVE_NULL(call) (fault_now(FAULT_OF_CALL) ? (errno = fault_errno(0), NULL) : (call))
 
 #endif

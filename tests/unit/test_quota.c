@@ -1,0 +1,111 @@
+/* A quota that is used up: one line, status 3, the old picture and nothing beside it. Once for real, on a small file
+ * system with a quota where this user may mount one (btrfs counts what a subvolume takes, for root too), and once with
+ * every call to the system saying so in its turn, as network file systems may at fsync, close and rename as well. */
+#define _GNU_SOURCE
+#include "base/fault.h"
+#include "tests/harness.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+
+/* %s is the file, then its width and height. */
+#define SCENE                                                                                                          \
+    "local r = gr.node('root')\n"                                                                                      \
+    "r:add_child(gr.geometry('ball', gr.sphere(gr.material({0.8, 0.3, 0.2}, {0.5, 0.5, 0.5}, 20))))\n"                 \
+    "gr.render(r, '%s', %d, %d, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2},\n"                              \
+    "  {gr.light({4, 5, 6}, {0.9, 0.9, 0.9}, {1, 0, 0})})\n"
+
+static const char *path_in(const char *name) {
+    static char path[4096];
+    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    return path;
+}
+
+static int shell(const char *line) {
+    char *command = NULL, binary[4096];
+    const char *named = getenv("GRAY_TEST_BINARY");
+    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
+    if (asprintf(&command, "cd '%s' && export gray='%s' && { %s; }", test_folder(), binary, line) < 0)
+        exit(1);
+    int how = system(command);
+    free(command);
+    return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
+}
+
+static void put_scene(const char *name, const char *picture, int width, int height) {
+    char text[1024];
+    (void)snprintf(text, sizeof text, SCENE, picture, width, height);
+    test_write_text(path_in(name), text);
+}
+
+static void expect_text(const char *name, const char *text) {
+    char *have = test_read_file(path_in(name), NULL);
+    if (!have || strcmp(have, text) != 0)
+        test_fail(__FILE__, __LINE__, "%s is \"%.300s\", not \"%s\"", name, have ? have : "(not there)", text);
+    free(have);
+}
+
+/* In a mount namespace of its own: what is mounted goes with it. 77: not possible here. */
+static const char with_quota[] =
+    "command -v unshare mkfs.btrfs btrfs >/dev/null || exit 77\n"
+    "[ -n \"$inside\" ] || { inside=1 exec unshare -m sh \"$0\" || exit 77; }\n"
+    "truncate -s 120M image && mkfs.btrfs -q image >said.txt 2>&1 && mkdir disk || exit 77\n"
+    "mount -o loop image disk 2>>said.txt && btrfs quota enable disk 2>>said.txt || exit 77\n"
+    "btrfs subvolume create disk/own >>said.txt && btrfs qgroup limit 400K disk/own || exit 77\n"
+    "printf 'an old picture' >disk/own/out.pfm && sync -f disk/own\n"
+    "$gray -q scene.lua >err.txt 2>&1; echo $? >status.txt\n"
+    "ls -A disk/own >names.txt; cp disk/own/out.pfm kept.txt\n"
+    "$gray -q scene.lua -o disk/own/b.pfm --shard 1/1 >part.txt 2>&1; echo $? >>status.txt; ls -A disk/own "
+    ">>names.txt\n"
+    "btrfs qgroup limit none disk/own && $gray -q scene.lua >>err.txt 2>&1; echo $? >>status.txt\n"
+    "$gray -q scene.lua -o free.pfm; cmp disk/own/out.pfm free.pfm >>err.txt 2>&1; echo $? >>status.txt; umount disk\n";
+
+TEST(a_quota_that_is_used_up_leaves_the_old_picture_and_no_temporary_file) {
+    put_scene("scene.lua", "disk/own/out.pfm", 330, 250);
+    test_write_text(path_in("quota.sh"), with_quota);
+    int status = shell("sh quota.sh");
+    if (status == 77)
+        test_skip("this user, kernel or machine has no file system with a quota to mount (btrfs-progs, loop devices)");
+    CHECK_EQ_INT(status, 0);
+    expect_text("err.txt", "scene.lua: disk/own/out.pfm: cannot be written: Disk quota exceeded\n");
+    expect_text("kept.txt", "an old picture");
+    expect_text("names.txt", "out.pfm\nout.pfm\n");
+    expect_text("status.txt", "3\n3\n0\n0\n");
+    char *part = test_read_file(path_in("part.txt"), NULL);
+    CHECK(part && strstr(part, "disk/own/b.pfm.1-of-1.part: cannot be written: Disk quota exceeded\n"));
+    free(part);
+}
+
+TEST(a_quota_may_be_met_by_any_call_to_the_system) {
+#ifndef GRAY_FAULTS
+    test_skip("failures on demand are only in builds with GRAY_FAULTS");
+#endif
+    put_scene("scene.lua", "sub/out.png", 12, 9);
+    CHECK_EQ_INT(shell("GRAY_FAULT_COUNT=$PWD/counts $gray -q -j 1 scene.lua && mv sub/out.png whole.png"), 0);
+    char *text = test_read_file(path_in("counts"), NULL), line[700];
+    long long allocations = 0, calls = 0;
+    CHECK(text && sscanf(text, "%lld %lld", &allocations, &calls) == 2 && calls > 20);
+    free(text);
+    int told = 0;
+    for (long long k = 1; k <= calls; k++) {
+        (void)snprintf(
+            line, sizeof line,
+            "rm -rf sub; mkdir sub; printf old >sub/out.png; "
+            "GRAY_FAIL_CALL=%lld GRAY_FAIL_ERRNO=%d timeout 60 $gray -q -j 1 scene.lua >err.txt 2>&1; s=$?; "
+            "test \"$(ls -A sub)\" = out.png || s=90; "
+            "printf old | cmp -s - sub/out.png || cmp -s whole.png sub/out.png || s=91; "
+            "if [ $s = 0 ]; then cmp -s whole.png sub/out.png || s=92; "
+            "else test $(wc -l <err.txt) -ge 1 || s=93; fi; "
+            "if [ $s = 3 ] && grep -qx 'scene.lua: sub/out.png: cannot be written: Disk quota exceeded' err.txt; then "
+            "test $(wc -l <err.txt) = 1 && s=4; fi; exit $s",
+            k, EDQUOT);
+        int status = shell(line);
+        told += status == 4;
+        if (status != 0 && status != 1 && status != 3 && status != 4)
+            test_fail(__FILE__, __LINE__, "call %lld: %d", k, status);
+    }
+    CHECK(told >= 3); /* a write, the sync, the rename */
+}
