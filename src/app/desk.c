@@ -15,6 +15,7 @@
 
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 /* A viewer that is gone is told of; the picture does not depend on it. */
 static void show_elsewhere(struct desk *desk, bool ok, const struct error *error) {
@@ -280,7 +281,8 @@ static void row_linear(void *context, uint32_t y, float *line) {
 
 /* The extension says the format; whatever is not .pfm, .hdr or .exr is PNG. Tone is for PNG alone: the others hold
  * light. */
-static bool write_view(const struct picture *picture, const char *name, enum film_view view, struct error *error) {
+static bool write_view(const struct picture *picture, const char *name, enum film_view view, struct pool *pool,
+                       struct error *error) {
     const struct picture_request *request = &picture->request;
     struct tone tone = {request->exposure, (enum tone_curve)request->curve, request->srgb != 0};
     struct rows rows = {&picture->film, view, &tone};
@@ -292,17 +294,31 @@ static bool write_view(const struct picture *picture, const char *name, enum fil
         return layers_write_exr(name, &picture->film, error);
     if (ends_in(name, ".exr"))
         return exr_write(name, request->width, request->height, row_linear, &rows, error);
+    struct png_source source = {.width = request->width, .height = request->height, .context = &rows};
     if (request->deep)
-        return png_write_16(name, request->width, request->height, row_16, &rows, error);
-    return png_write(name, request->width, request->height, row, &rows, error);
+        source.words = row_16;
+    else
+        source.bytes = row;
+    return png_write_from(name, &source, pool, error);
 }
 
-static bool write_prefixed(const struct picture *picture, const char *prefix, enum film_view view,
+static bool write_prefixed(const struct picture *picture, const char *prefix, enum film_view view, struct pool *pool,
                            struct error *error) {
     char name[NAME_LIMIT];
     if (!prefix)
         return true;
-    return prefixed_name(picture->name, prefix, name, error) && write_view(picture, name, view, error);
+    return prefixed_name(picture->name, prefix, name, error) && write_view(picture, name, view, pool, error);
+}
+
+/* Threads for the time of writing: there are none while a process is started. NULL: this one alone. */
+static struct pool *writing_pool(const struct desk *desk, const struct picture *picture) {
+    const struct picture_request *request = &picture->request;
+    uint32_t parts = png_write_stripes(request->width, request->height, request->deep ? 16 : 8);
+    int threads = desk->options->threads > 0 ? desk->options->threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
+    char warning[256];
+    if (parts < (uint32_t)threads)
+        threads = (int)parts;
+    return threads > 1 ? pool_create(threads, warning) : NULL;
 }
 
 static bool write_files(const struct desk *desk, const struct picture *picture, const char *name, struct error *error) {
@@ -311,10 +327,13 @@ static bool write_files(const struct desk *desk, const struct picture *picture, 
         whole.whole = true;
         return tile_file_write(name, NULL, 0, &whole, &picture->film, error);
     }
-    return write_prefixed(picture, desk->options->targets_prefix, FILM_TARGETS, error) &&
-           write_prefixed(picture, desk->options->first_pass_prefix, FILM_FIRST, error) &&
-           layers_write(picture->name, &picture->film, picture->request.deep != 0, error) &&
-           write_view(picture, name, FILM_FINAL, error);
+    struct pool *pool = writing_pool(desk, picture);
+    bool ok = write_prefixed(picture, desk->options->targets_prefix, FILM_TARGETS, pool, error) &&
+              write_prefixed(picture, desk->options->first_pass_prefix, FILM_FIRST, pool, error) &&
+              layers_write(picture->name, &picture->film, picture->request.deep != 0, error) &&
+              write_view(picture, name, FILM_FINAL, pool, error);
+    pool_destroy(pool);
+    return ok;
 }
 
 static bool write_picture(struct desk *desk, const struct picture *picture, struct error *error) {
@@ -332,7 +351,7 @@ static void write_partial(struct desk *desk) {
     if (done == 0)
         return;
     film_clear_unfinished(&picture->film);
-    if (!layers_name(picture->name, "partial", name, &error) || !write_view(picture, name, FILM_FINAL, &error)) {
+    if (!layers_name(picture->name, "partial", name, &error) || !write_view(picture, name, FILM_FINAL, NULL, &error)) {
         desk_line(desk, LINE_ERROR, error.text);
         return;
     }

@@ -1,7 +1,8 @@
 /* One child runs all scripts, so that what one script has read serves the next; when it dies, a new child goes on with
- * the script after the one that was running. The supervisor starts no thread (it forks) and keeps no state that a
- * signal handler changes: signals are blocked and read from a descriptor beside the channel. Invariant: files are
- * written by this process alone, and only from a film that the child has declared complete. */
+ * the script after the one that was running. The supervisor has no thread while it forks (only while it writes a
+ * picture) and keeps no state that a signal handler changes: signals are blocked and read from a descriptor beside the
+ * channel. Invariant: files are written by this process alone, and only from a film that the child has declared
+ * complete. */
 #define _GNU_SOURCE
 #include "app/supervisor.h"
 

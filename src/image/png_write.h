@@ -1,17 +1,31 @@
-/* PNG out: 8-bit RGB through a struct file_output, so the old picture stays until the new one is whole. */
+/* PNG out: RGB through a struct file_output, so the old picture stays until the new one is whole. */
 #ifndef GRAY_IMAGE_PNG_WRITE_H
 #define GRAY_IMAGE_PNG_WRITE_H
 
 #include "base/error.h"
+#include "base/pool.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/* rows(context, y, line) fills 3 * width bytes for row y, called once per row from the top. Missing folders of `path`
- * are made. The bytes of the file depend on the pixels only (no time chunk, fixed zlib level and filter). */
+/* Where the rows come from: bytes(context, y, line) fills 3 * width bytes for row y, words the same with 16 bits a
+ * channel in the machine's own order; one of the two. */
+struct png_source {
+    uint32_t width, height;
+    void (*bytes)(void *context, uint32_t y, uint8_t *line);
+    void (*words)(void *context, uint32_t y, uint16_t *line);
+    void *context;
+};
+
+/* Missing folders of `path` are made. The bytes of the file depend on the pixels only. With a pool its threads ask for
+ * rows at the same time; without one they come once each from the top. */
+bool png_write_from(const char *path, const struct png_source *rows, struct pool *pool, struct error *error);
+/* Into how many parts a picture of that size falls: more threads have nothing to do. Sides from 1. */
+uint32_t png_write_stripes(uint32_t width, uint32_t height, int bits);
+
+/* The same in this thread alone, with 8 and with 16 bits. */
 bool png_write(const char *path, uint32_t width, uint32_t height,
                void (*rows)(void *context, uint32_t y, uint8_t *line), void *context, struct error *error);
-/* The same with 16 bits a channel: rows fills 3 * width words in the machine's own order. */
 bool png_write_16(const char *path, uint32_t width, uint32_t height,
                   void (*rows)(void *context, uint32_t y, uint16_t *line), void *context, struct error *error);
 /* (Not png_byte: that is a type of libpng.) floor(255 c + 0.5) after clamping to [0,1]; NaN gives 0. */

@@ -360,6 +360,52 @@ TEST(png_bytes_depend_on_the_pixels_alone) {
     free(b);
 }
 
+static void noise_words(void *context, uint32_t y, uint16_t *line) {
+    uint32_t width = *(const uint32_t *)context;
+    for (uint32_t i = 0; i < 3 * width; i++)
+        line[i] = (uint16_t)(i * 1777 + y * 1313 + (i * y) % 1100);
+}
+
+/* A picture of many stripes and a narrow one, with 8 and 16 bits, against the rows themselves and each other. */
+TEST(png_bytes_are_the_same_by_any_number_of_threads) {
+    uint32_t width = 1500;
+    struct error error = {0};
+    struct png_source kinds[2] = {{.width = width, .height = 301, .bytes = noise_rows, .context = &width},
+                                  {.width = width, .height = 301, .words = noise_words, .context = &width}};
+    CHECK(png_write_stripes(width, 301, 8) > 8 && png_write_stripes(width, 301, 16) > 16);
+    for (int kind = 0; kind < 2; kind++) {
+        char *first = NULL, path[300], warning[256];
+        size_t first_size = 0, size = 0;
+        for (int threads = 0; threads < 4; threads++) {
+            struct pool *pool = threads ? pool_create(threads, warning) : NULL;
+            (void)snprintf(path, sizeof path, "%s/%d-%d.png", test_folder(), kind, threads);
+            CHECK(png_write_from(path, &kinds[kind], pool, &error));
+            pool_destroy(pool);
+            char *bytes = test_read_file(path, &size);
+            first = first ? first : bytes;
+            first_size = threads ? first_size : size;
+            CHECK(size == first_size && memcmp(bytes, first, size) == 0);
+            if (bytes != first)
+                free(bytes);
+        }
+        free(first);
+        struct image *image = image_read_png(path, &error);
+        CHECK(image);
+        for (uint32_t y = 0; image && y < 301; y += 50) {
+            static uint8_t line[3 * 1500];
+            static uint16_t words[3 * 1500];
+            noise_rows(&width, y, line);
+            noise_words(&width, y, words);
+            for (uint32_t x = 0; x < width; x += 7) {
+                struct rgba c = image_texel(image, x, y);
+                CHECK_NEAR(c.r, kind ? words[3 * x] / 65535.0 : line[3 * x] / 255.0, 1e-6);
+                CHECK_NEAR(c.b, kind ? words[3 * x + 2] / 65535.0 : line[3 * x + 2] / 255.0, 1e-6);
+            }
+        }
+        image_release(image);
+    }
+}
+
 TEST(png_write_tells_of_a_full_disk) {
     struct error error = {0};
     uint32_t width = 2000;
