@@ -212,7 +212,8 @@ bool file_null_input(void) {
 
 bool file_canonical(const char *path, char *out, size_t size) {
     char resolved[PATH_MAX];
-    if (!realpath(path, resolved) || strlen(resolved) >= size)
+    const char *found = MAY_GIVE_NULL(realpath(path, resolved));
+    if (!found || strlen(found) >= size)
         return false;
     memcpy(out, resolved, strlen(resolved) + 1);
     return true;

@@ -36,6 +36,12 @@ enum { FONT_TEXT_LIMIT = 100000 }; /* letters */
 bool font_layout(const char *path, const uint8_t *data, size_t size, const char *text, struct arena *arena,
                  struct font_text *out, struct error *error);
 
+/* Whether this build can read any. */
+#ifdef HAVE_FREETYPE
+enum { FONTS_READABLE = 1 };
+#else
+enum { FONTS_READABLE = 0 };
+#endif
 /* "FreeType 2.13.0", or "none". */
 const char *font_library(void);
 

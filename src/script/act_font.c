@@ -5,8 +5,6 @@
 #include "base/file.h"
 #include "formats/font.h"
 
-#include <string.h>
-
 bool act_glyphs(struct context *context, const struct value *args, struct result *result, struct error *error) {
     char path[PATH_SIZE];
     struct file_bytes bytes;
@@ -14,7 +12,7 @@ bool act_glyphs(struct context *context, const struct value *args, struct result
     if (!text)
         return error_no_memory(error, "letters");
     /* What no file can change is told before any is looked for. */
-    if (strcmp(font_library(), "none") == 0)
+    if (!FONTS_READABLE)
         return font_layout(args[GLYPHS_FONT].text, NULL, 0, "", &context->call, text, error);
     if (!files_require(context, args[GLYPHS_FONT].text, path, error) ||
         !reach_map(context->reach, path, FILE_LIMIT, &bytes, error))

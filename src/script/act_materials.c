@@ -162,12 +162,12 @@ bool act_image_material(struct context *context, const struct value *args, struc
     return give(result, m);
 }
 
-/* The amount and the kind are args[0] and args[1]. A bump map keeps what its template says. */
-static bool set_relief(struct material *m, const struct value *template, const struct value *args) {
+/* The amount and the kind are args[0] and args[1]. A bump map keeps what its template says. m itself, or NULL. */
+static struct material *set_relief(struct material *m, const struct value *template, const struct value *args) {
     const struct material *from = template->material;
     bool known = from && (from->kind == MATERIAL_BUMP || from->kind == MATERIAL_NORMAL);
     if (!m)
-        return false;
+        return NULL;
     if (args[1].given)
         m->kind = args[1].choice == 0 ? MATERIAL_BUMP : MATERIAL_NORMAL;
     else if (known)
@@ -179,22 +179,22 @@ static bool set_relief(struct material *m, const struct value *template, const s
         m->image.relative = m->kind == MATERIAL_BUMP;
         m->image.height = m->kind == MATERIAL_BUMP ? RELIEF_HEIGHT : 1;
     }
-    return true;
+    return m;
 }
 
 bool act_bump(struct context *context, const struct value *args, struct result *result, struct error *error) {
     struct material *m = image_over(context, MATERIAL_BUMP, &args[RELIEF_FILE], &args[RELIEF_LOOKUP], NULL, error);
-    return give(result, m) && set_relief(m, &args[RELIEF_FILE], &args[RELIEF_AMOUNT]);
+    return give(result, set_relief(m, &args[RELIEF_FILE], &args[RELIEF_AMOUNT]));
 }
 
 bool act_bump_material(struct context *context, const struct value *args, struct result *result, struct error *error) {
     struct material *m =
         image_over(context, MATERIAL_BUMP, &args[OVER_IMAGE], &args[OVER_LOOKUP], args[OVER_MATERIAL].material, error);
-    return give(result, m) && set_relief(m, &args[OVER_IMAGE], &args[RELIEF_OVER_AMOUNT]);
+    return give(result, set_relief(m, &args[OVER_IMAGE], &args[RELIEF_OVER_AMOUNT]));
 }
 
 struct material *act_relief(struct context *context, const struct value *value, struct error *error) {
     static const struct value nothing[LOOKUP_COUNT];
     struct material *m = image_over(context, MATERIAL_BUMP, value, nothing, NULL, error);
-    return set_relief(m, value, nothing) ? m : NULL;
+    return set_relief(m, value, nothing);
 }

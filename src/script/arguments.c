@@ -102,20 +102,23 @@ static void read_tuple(struct context *c, int index, struct place place, int cou
     }
 }
 
-static struct vec3 read_vector(struct context *c, int index, const struct place *place) {
+/* An argument that is a table of `count` numbers. */
+static void read_row(struct context *c, int index, const struct place *place, int count, double *out) {
     if (!lua_istable(c->lua, index))
         wrong_type(c, place, kind_words(place->parameter->kind), index);
+    read_tuple(c, index, *place, count, out);
+}
+
+static struct vec3 read_vector(struct context *c, int index, const struct place *place) {
     double x[3];
-    read_tuple(c, index, *place, 3, x);
+    read_row(c, index, place, 3, x);
     return (struct vec3){x[0], x[1], x[2]};
 }
 
 static struct vec3 read_interval(struct context *c, int index, const struct place *place) {
-    if (!lua_istable(c->lua, index))
-        wrong_type(c, place, kind_words(place->parameter->kind), index);
     double x[2];
     char words[128];
-    read_tuple(c, index, *place, 2, x);
+    read_row(c, index, place, 2, x);
     if (x[0] > x[1])
         context_raise(c, "%s must not end before it begins", place_words(place, words));
     return (struct vec3){x[0], x[1], 0};
@@ -472,9 +475,7 @@ static bool read_value(struct context *c, int index, const struct parameter *p, 
         return true;
     case KIND_QUATERNION: {
         double q[4];
-        if (!lua_istable(L, index))
-            wrong_type(c, &place, kind_words(p->kind), index);
-        read_tuple(c, index, place, 4, q);
+        read_row(c, index, &place, 4, q);
         value->number = q[0];
         value->vector = vec3_make(q[1], q[2], q[3]);
         return true;
@@ -551,8 +552,6 @@ static bool read_value(struct context *c, int index, const struct parameter *p, 
         return true;
     }
     case KIND_FACES:
-        if (!lua_istable(L, index))
-            wrong_type(c, &place, kind_words(p->kind), index);
         read_faces(c, index, place, value);
         return true;
     case KIND_NUMBERS: {
@@ -584,57 +583,61 @@ static bool read_parameter(struct context *c, int index, const struct parameter 
     return (p->flags & GHOST_IS_NONE) != 0;
 }
 
-/* Whether a value looks like that kind, by its type alone. */
-static bool looks_like(lua_State *L, int index, enum kind kind) {
+/* What a value can be taken for, by its type alone: bits. Texts that read as numbers are both, a ghost is any handle.
+ */
+enum {
+    LIKE_NUMBER = 1 << HANDLE_TYPES,
+    LIKE_BOOLEAN = LIKE_NUMBER << 1,
+    LIKE_TEXT = LIKE_NUMBER << 2,
+    LIKE_TABLE = LIKE_NUMBER << 3,
+    LIKE_HANDLE = LIKE_NUMBER - 1, /* bit `type` for each type of handle */
+};
+
+static int looks_of(lua_State *L, int index) {
     const struct handle *handle = handle_at(L, index);
-    bool ghost = handle && handle->type == HANDLE_GHOST;
-    switch (kind) {
-    case KIND_NUMBER:
-    case KIND_WHOLE:
-        return lua_isnumber(L, index);
-    case KIND_BOOLEAN:
-        return lua_isboolean(L, index);
-    case KIND_TEXT:
-    case KIND_FILE:
-    case KIND_OUTPUT:
-    case KIND_CHOICE:
-    case KIND_AXIS:
-        return lua_isstring(L, index);
-    case KIND_SIZE:
-    case KIND_PAIR:
-    case KIND_NUMBERS:
-    case KIND_CAUSTICS:
-        return lua_istable(L, index) || lua_isnumber(L, index);
-    case KIND_NODE:
-        return handle && (ghost || handle->type == HANDLE_NODE);
-    case KIND_MATERIAL:
-        return handle && (ghost || handle->type == HANDLE_MATERIAL);
-    case KIND_IMAGE:
-        return lua_isstring(L, index) || (handle && (ghost || handle->type == HANDLE_TEXTURE));
-    case KIND_BACKGROUND:
-        return lua_istable(L, index) || lua_isstring(L, index) || (handle && (ghost || handle->type == HANDLE_SKY));
-    case KIND_FOG:
-        return handle && (ghost || handle->type == HANDLE_FOG);
-    case KIND_POINT:
-    case KIND_DIRECTION:
-    case KIND_COLOUR:
-    case KIND_TRIPLE:
-    case KIND_INTERVAL:
-    case KIND_QUATERNION:
-    case KIND_MATERIALS:
-    case KIND_NODES:
-    case KIND_LIGHTS:
-    case KIND_POINTS:
-    case KIND_PAIRS:
-    case KIND_STOPS:
-    case KIND_FACES:
-    case KIND_ROWS:
-    case KIND_CURVES:
-        return lua_istable(L, index);
-    case KIND_COUNT:
-        break;
-    }
-    UNREACHABLE("a parameter of no kind");
+    if (handle)
+        return handle->type == HANDLE_GHOST ? LIKE_HANDLE : 1 << handle->type;
+    return (lua_isnumber(L, index) ? LIKE_NUMBER : 0) | (lua_isboolean(L, index) ? LIKE_BOOLEAN : 0) |
+           (lua_isstring(L, index) ? LIKE_TEXT : 0) | (lua_istable(L, index) ? LIKE_TABLE : 0);
+}
+
+static bool looks_like(lua_State *L, int index, enum kind kind) {
+    static const int wanted[KIND_COUNT] = {
+        [KIND_NUMBER] = LIKE_NUMBER,
+        [KIND_WHOLE] = LIKE_NUMBER,
+        [KIND_BOOLEAN] = LIKE_BOOLEAN,
+        [KIND_TEXT] = LIKE_TEXT,
+        [KIND_FILE] = LIKE_TEXT,
+        [KIND_OUTPUT] = LIKE_TEXT,
+        [KIND_CHOICE] = LIKE_TEXT,
+        [KIND_AXIS] = LIKE_TEXT,
+        [KIND_POINT] = LIKE_TABLE,
+        [KIND_DIRECTION] = LIKE_TABLE,
+        [KIND_COLOUR] = LIKE_TABLE,
+        [KIND_TRIPLE] = LIKE_TABLE,
+        [KIND_SIZE] = LIKE_TABLE | LIKE_NUMBER,
+        [KIND_INTERVAL] = LIKE_TABLE,
+        [KIND_QUATERNION] = LIKE_TABLE,
+        [KIND_PAIR] = LIKE_TABLE | LIKE_NUMBER,
+        [KIND_NODE] = 1 << HANDLE_NODE,
+        [KIND_MATERIAL] = 1 << HANDLE_MATERIAL,
+        [KIND_MATERIALS] = LIKE_TABLE,
+        [KIND_IMAGE] = LIKE_TEXT | 1 << HANDLE_TEXTURE,
+        [KIND_BACKGROUND] = LIKE_TABLE | LIKE_TEXT | 1 << HANDLE_SKY,
+        [KIND_FOG] = 1 << HANDLE_FOG,
+        [KIND_CAUSTICS] = LIKE_TABLE | LIKE_NUMBER,
+        [KIND_NODES] = LIKE_TABLE,
+        [KIND_LIGHTS] = LIKE_TABLE,
+        [KIND_POINTS] = LIKE_TABLE,
+        [KIND_PAIRS] = LIKE_TABLE,
+        [KIND_STOPS] = LIKE_TABLE,
+        [KIND_FACES] = LIKE_TABLE,
+        [KIND_NUMBERS] = LIKE_TABLE | LIKE_NUMBER,
+        [KIND_ROWS] = LIKE_TABLE,
+        [KIND_CURVES] = LIKE_TABLE,
+    };
+    assert(wanted[kind]); /* every kind has its line */
+    return (looks_of(L, index) & wanted[kind]) != 0;
 }
 
 /* How well the arguments fit a form: how many of the first ones do, then how near their number is to the form's. */
@@ -725,8 +728,8 @@ static bool read_positional(struct context *c, const struct function *function, 
     int index = 0, place = first;
     bool optional;
     for (const char *form = best; form_next(function, &form, &index, &optional); place++) {
-        /* The name is told in messages about the arguments after it. */
-        if (function->parameters[index].kind == KIND_TEXT && function->owner == OWNER_GR && lua_isstring(L, place))
+        /* The name is told in messages about the arguments after it; no method takes one, a test looks. */
+        if (function->parameters[index].kind == KIND_TEXT && lua_isstring(L, place))
             c->subject = read_text(c, place, &(struct place){.parameter = &function->parameters[index]});
     }
     if (best_fit.leading == 0 && function->forms[1])
@@ -802,7 +805,7 @@ static bool read_named(struct context *c, const struct function *function, int t
     int value = lua_gettop(L) + 1;
     for (int k = 0; k < function->parameter_count; k++) {
         const struct parameter *p = &function->parameters[k];
-        if (p->kind != KIND_TEXT || function->owner == OWNER_NODE)
+        if (p->kind != KIND_TEXT)
             continue;
         lua_pushstring(L, p->name);
         if (lua_rawget(L, table) == LUA_TSTRING)
@@ -814,7 +817,7 @@ static bool read_named(struct context *c, const struct function *function, int t
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
         const struct parameter *p = &function->parameters[k];
         lua_pushstring(L, p->name);
-        bool may_miss = (p->flags & OPTIONAL) || (listed && p->kind == KIND_NODE);
+        bool may_miss = (p->flags & OPTIONAL) || listed; /* nodes in a list: none needs a name of its own */
         if (lua_rawget(L, table) == LUA_TNIL && !may_miss)
             context_raise(c, "%s is missing", p->name);
         if (!read_parameter(c, value, p, &args[k]))

@@ -289,8 +289,9 @@ static int module_begin(lua_State *L) {
     lua_pushvalue(L, 1);
     lua_setfield(L, module, "_NAME");
     lua_Debug place;
-    if (lua_getstack(L, 1, &place) && lua_getinfo(L, "f", &place) && !lua_iscfunction(L, -1)) {
-        int k = environment_upvalue(L, lua_gettop(L));
+    if (lua_getstack(L, 1, &place)) {
+        (void)lua_getinfo(L, "f", &place);
+        int k = lua_iscfunction(L, -1) ? 0 : environment_upvalue(L, lua_gettop(L));
         if (k > 0) { /* the chunk and all its functions share this variable */
             lua_pushvalue(L, module);
             (void)lua_setupvalue(L, -2, k);

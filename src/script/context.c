@@ -2,6 +2,7 @@
  * so that gr functions called through pcall or other C functions still name the script's line. */
 #include "script/context.h"
 
+#include <assert.h>
 #include <lauxlib.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -13,7 +14,7 @@ struct context *context_of(lua_State *L) {
 
 void context_where(const struct context *context, char *out, size_t size) {
     lua_Debug place;
-    for (int level = 0; context->lua && lua_getstack(context->lua, level, &place); level++) {
+    for (int level = 0; lua_getstack(context->lua, level, &place); level++) {
         lua_getinfo(context->lua, "Sl", &place);
         if (place.currentline <= 0)
             continue;
@@ -35,7 +36,8 @@ static void compose(const struct context *context, const char *text, char *out, 
     if (context->function)
         function_title(context->function, title);
     size_t used = (size_t)snprintf(out, size, "%s%s%s", title, context->function ? ": " : "", text);
-    if (context->subject && used < size)
+    assert(used < size); /* there is room for a title and the longest text */
+    if (context->subject)
         snprintf(out + used, size - used, " (node '%.200s')", context->subject);
     for (char *end = out; (end = strpbrk(end, "\n\r"));)
         *end = '?';
@@ -102,6 +104,6 @@ void context_raise_error(struct context *context, const struct error *error) {
 
 void context_raise_no_memory(struct context *context) {
     struct error error;
-    error_no_memory(&error, context->function ? context->function->name : "the script");
+    error_no_memory(&error, context->function->name);
     context_raise_error(context, &error);
 }

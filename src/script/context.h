@@ -49,7 +49,8 @@ struct limits {
     uint32_t known_meshes, known_images; /* counted so far, or there before */
     const void *refused_block;           /* the request that was refused last: Lua asks again after a collection */
     size_t refused_size;
-    bool memory_out;               /* refused for good: the script ends */
+    bool memory_out;               /* something was refused: the script ends, unless it is got at once */
+    bool refused_for_good;         /* it was asked for again in vain, or something else was */
     double time_begun, time_limit; /* seconds of this thread's processor time; a limit of 0 is none */
     uint64_t output, output_limit; /* bytes printed and written */
 };
@@ -110,7 +111,7 @@ _Noreturn void context_raise(struct context *context, const char *format, ...) _
 /* Raises an error of the middle paragraph: script errors as above, others so that no script catches them. */
 _Noreturn void context_raise_error(struct context *context, const struct error *error);
 _Noreturn void context_raise_fatal(lua_State *L);
-_Noreturn void context_raise_no_memory(struct context *context);
+_Noreturn void context_raise_no_memory(struct context *context); /* in the call of a gr function */
 
 /* act_changes.c: what gr.change_... has said is laid over a picture about to be made, and taken off again. */
 bool changes_begin(struct context *context, struct render_request *request, struct changed_scene *changed,

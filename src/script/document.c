@@ -3,6 +3,7 @@
 #include "base/unreachable.h"
 #include "script/context.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -22,9 +23,9 @@ __attribute__((format(printf, 2, 3))) static void add(struct document *document,
     char line[LINE_SIZE];
     va_list arguments;
     va_start(arguments, format);
-    int length = vsnprintf(line, sizeof line, format, arguments);
+    size_t size = (size_t)vsnprintf(line, sizeof line, format, arguments);
     va_end(arguments);
-    size_t size = length < (int)sizeof line ? (size_t)length : sizeof line - 1;
+    assert(size < sizeof line); /* the texts of the table are what they are, and tests write them all */
     if (document->used + size + 1 > document->capacity) {
         size_t capacity = 2 * document->capacity + LINE_SIZE;
         char *grown = arena_alloc(document->arena, capacity);
@@ -262,8 +263,15 @@ static void annotate_fields(struct document *document, const struct function *fu
     add(document, "\n");
 }
 
+/* ": gr.node", where a function answers something. */
+static void add_result(struct document *document, const struct function *function) {
+    const char *result = annotation_result(function);
+    if (result)
+        add(document, ": %s", result);
+}
+
 static void annotate_overload(struct document *document, const struct function *function, const char *form) {
-    const char *result = annotation_result(function), *separator = "";
+    const char *separator = "";
     int index;
     bool optional;
     add(document, "---@overload fun(");
@@ -277,7 +285,9 @@ static void annotate_overload(struct document *document, const struct function *
         add(document, "%s%s%s: %s", separator, p->name, optional ? "?" : "", annotation_type(p, type));
         separator = ", ";
     }
-    add(document, "%s)%s%s\n", takes_more(function) ? ", ...: gr.node" : "", result ? ": " : "", result ? result : "");
+    add(document, "%s)", takes_more(function) ? ", ...: gr.node" : "");
+    add_result(document, function);
+    add(document, "\n");
 }
 
 static void annotate_function(struct document *document, const struct function *function) {
@@ -304,10 +314,12 @@ static void annotate_function(struct document *document, const struct function *
         add(document, "---@return %s\n", result);
     for (int k = 1; k < FORM_LIMIT && function->forms[k]; k++)
         annotate_overload(document, function, function->forms[k]);
-    if (table_form)
-        add(document, "---@overload fun(%sfields: gr.%s.fields)%s%s\n",
-            function->owner == OWNER_NODE ? "self: gr.node, " : "", function->name, result ? ": " : "",
-            result ? result : "");
+    if (table_form) {
+        add(document, "---@overload fun(%sfields: gr.%s.fields)",
+            function->owner == OWNER_NODE ? "self: gr.node, " : "", function->name);
+        add_result(document, function);
+        add(document, "\n");
+    }
     add(document, "function %s%s(%s) end\n\n", function->owner == OWNER_GR ? "gr." : "node:", function->name, names);
 }
 
@@ -323,7 +335,7 @@ const char *script_annotations(struct arena *arena) {
         "local node = {}\n\ngr = {}\n\n---The version of the renderer.\ngr.version = ''\n\n");
     for (int k = 0; k < function_count; k++) {
         const struct function *function = &function_table[k];
-        if (function->owner == OWNER_GR && has_table_form(function))
+        if (function->owner == OWNER_GR)
             annotate_fields(&document, function);
         annotate_function(&document, function);
     }

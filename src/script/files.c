@@ -218,9 +218,9 @@ static int dofile_continue(lua_State *L, int status, lua_KContext base) {
 static int file_do(lua_State *L) {
     lua_settop(L, 1);
     if (load_named(L) != LUA_OK) {
-        if (lua_type(L, -1) == LUA_TSTRING &&
-            (lua_tostring(L, -1)[0] == '\'' || strncmp(lua_tostring(L, -1), "cannot find", 11) == 0))
-            return luaL_error(L, "dofile: %s", lua_tostring(L, -1));
+        const char *message = lua_tostring(L, -1); /* what loading answers is always text */
+        if (message[0] == '\'' || strncmp(message, "cannot find", 11) == 0)
+            return luaL_error(L, "dofile: %s", message);
         return lua_error(L);
     }
     lua_callk(L, 0, LUA_MULTRET, 0, dofile_continue);

@@ -56,7 +56,8 @@ static uint64_t cost(size_t size) {
 }
 
 /* What is refused is refused for good, unless Lua asks for the same again after it has collected its garbage and gets
- * it: that comes at once, so whoever looks at `memory_out` later sees what became of it. */
+ * it: that comes at once, so whoever looks at `memory_out` later sees what became of it. What is asked for later, by
+ * whoever handles the error, changes nothing, even if it is of the same size. */
 void *limits_allocate(void *user, void *block, size_t old_size, size_t size) {
     struct limits *limits = &((struct context *)user)->limits;
     uint64_t before = block ? cost(old_size) : 0, after = cost(size);
@@ -66,6 +67,7 @@ void *limits_allocate(void *user, void *block, size_t old_size, size_t size) {
         return NULL;
     }
     if (limits->memory_limit > 0 && after > before && limits->memory - before + after > limits->memory_limit) {
+        limits->refused_for_good = limits->memory_out;
         limits->memory_out = true;
         limits->refused_size = size;
         limits->refused_block = block;
@@ -75,8 +77,11 @@ void *limits_allocate(void *user, void *block, size_t old_size, size_t size) {
     if (!moved)
         return NULL;
     limits->memory = limits->memory - before + after;
-    if (limits->memory_out && limits->refused_size == size && limits->refused_block == block)
-        limits->memory_out = false;
+    bool again = limits->refused_size == size && limits->refused_block == block;
+    if (limits->memory_out && after > before && !limits->refused_for_good) {
+        limits->memory_out = !again;
+        limits->refused_for_good = !again;
+    }
     return moved;
 }
 

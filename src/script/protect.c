@@ -79,7 +79,8 @@ static int wrap_coroutine(lua_State *L) {
 
 static int set_metatable(lua_State *L) {
     int type = lua_type(L, 2);
-    luaL_argexpected(L, type == LUA_TNIL || type == LUA_TTABLE, 2, "nil or table");
+    if (type != LUA_TNIL && type != LUA_TTABLE)
+        return luaL_typeerror(L, 2, "nil or table");
     luaL_checktype(L, 1, LUA_TTABLE);
     if (luaL_getmetafield(L, 1, "__metatable") != LUA_TNIL)
         return luaL_error(L, "cannot change a protected metatable");

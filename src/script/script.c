@@ -26,6 +26,16 @@ static size_t place_length(const struct context *context, const char *message) {
     return digits > 0 && end[0] == ':' && end[1] == ' ' ? (size_t)(end + 2 - message) : 0;
 }
 
+/* The message from its place on: coroutine.wrap and error put another one in front, and the innermost tells most. Whole
+ * paths are written where Lua shortened them. NULL without memory. */
+static const char *innermost(struct context *context, const char *message, bool *has_place) {
+    message = files_unshorten(context, message);
+    size_t outer = message ? place_length(context, message) : 0;
+    *has_place = outer > 0;
+    const char *inner = outer > 0 ? files_unshorten(context, message + outer) : message;
+    return inner && outer > 0 && place_length(context, inner) == 0 ? message : inner;
+}
+
 /* Text with every line indented, a tab counting as two more blanks. */
 static const char *indent(struct arena *arena, const char *text) {
     size_t size = 3;
@@ -62,15 +72,14 @@ static int describe_error(lua_State *L) {
         message = luaL_tolstring(L, 1, NULL);
     else
         message = lua_pushfstring(L, "the script raised %s", value_words(L, 1));
-    message = files_unshorten(context, message);
-    if (!message)
+    bool has_place;
+    message = innermost(context, message, &has_place);
+    if (!message) {
+        error_no_memory(&context->fatal, "the script");
         return 1;
-    /* coroutine.wrap and error put another place in front: the innermost one tells most. */
-    size_t outer = place_length(context, message);
-    if (outer > 0 && place_length(context, message + outer) > 0)
-        message += outer;
+    }
     size_t first = strcspn(message, "\n");
-    error_set(&context->failure, ERROR_SCENE, "%s%.*s", outer > 0 ? "" : where, (int)first, message);
+    error_set(&context->failure, ERROR_SCENE, "%s%.*s", has_place ? "" : where, (int)first, message);
     const char *rest = message + first + (message[first] == '\n');
     luaL_traceback(L, L, *rest ? rest : NULL, 1);
     context->traceback = indent(context->out, lua_tostring(L, -1));
@@ -112,8 +121,6 @@ static bool conclude(struct context *context, int status, struct error *error) {
                          (unsigned long long)(context->limits.memory_limit >> 20));
     if (status == LUA_ERRMEM)
         return error_set(error, ERROR_MACHINE, "%s: out of memory for the script", context->path);
-    if (context->failure.kind == ERROR_NONE)
-        return error_set(error, ERROR_SCENE, "%s: an error while an error was reported", context->path);
     *error = context->failure;
     return false;
 }
@@ -178,6 +185,8 @@ bool script_run(const char *path, const struct script_options *options, const st
     scene_init(&context.scene, assets);
     struct reach reach = {0};
     context.reach = options->no_sandbox ? NULL : &reach;
+    /* What stays where the handler of messages came to nothing. */
+    error_set(&context.failure, ERROR_SCENE, "%s: an error while an error was reported", path);
     limits_begin(&context);
     bool done = prepare(&context, error) && (options->no_sandbox || script_reach(path, options, &reach, error));
     lua_State *L = done ? lua_newstate(limits_allocate, &context) : NULL;

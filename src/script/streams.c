@@ -59,7 +59,8 @@ static int open_stream(lua_State *L, const char *name, const char *mode) {
 
 static int io_open(lua_State *L) {
     const char *name = luaL_checkstring(L, 1), *mode = luaL_optstring(L, 2, "r");
-    luaL_argcheck(L, is_mode(mode), 2, "invalid mode");
+    if (!is_mode(mode))
+        return luaL_argerror(L, 2, "invalid mode");
     return open_stream(L, name, mode);
 }
 

@@ -5,6 +5,7 @@
 
 #include "script/actions.h"
 
+#include <assert.h>
 #include <string.h>
 
 #define ANY 0, 0, NULL
@@ -1211,12 +1212,12 @@ bool form_next(const struct function *function, const char **form, int *index, b
     size_t length = strcspn(word, " ?");
     *optional = word[length] == '?';
     *form = word + length + (*optional ? 1 : 0);
-    for (*index = 0; *index < function->parameter_count; (*index)++) {
+    for (*index = 0;; (*index)++) {
+        assert(*index < function->parameter_count); /* every name in a form is that of a parameter: a test looks */
         const char *name = function->parameters[*index].name;
         if (strncmp(name, word, length) == 0 && name[length] == '\0')
             return true;
     }
-    UNREACHABLE("the form of a function names no parameter"); /* a test looks at all of them */
 }
 
 const char *kind_words(enum kind kind) {

@@ -179,9 +179,7 @@ static int fixed_pairs(lua_State *L) {
         lua_pushinteger(L, (lua_Integer)length);
         lua_pushcclosure(L, next_in_sequence, 1);
     } else {
-        if (count > INT32_MAX)
-            return luaL_error(L, "pairs: the table has too many entries");
-        lua_createtable(L, (int)count, 0);
+        lua_createtable(L, (int)(count & INT32_MAX), 0); /* a hint; Lua's tables end below 2^32 entries */
         struct key *keys = lua_newuserdatauv(L, (size_t)count * sizeof *keys, 0);
         uint32_t slot = 0;
         for (lua_pushnil(L); slot < count; lua_pop(L, 1)) {

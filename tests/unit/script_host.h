@@ -19,6 +19,7 @@ struct listener {
     struct affine first_child[64];           /* parent_from_node of the root's first child, by render */
     void (*seen)(struct listener *listener, const struct render_request *request); /* NULL: nothing more */
     uint64_t fail_at, failing; /* the first picture makes this allocation after it fail; which one that is */
+    enum fault_kind fail_kind; /* or this call to the system */
     struct error answer;       /* what render fails with; ERROR_NONE: it succeeds */
 };
 
@@ -30,8 +31,8 @@ static inline bool listener_render(void *context, const struct render_request *r
         listener->seen(listener, request);
     listener->renders++;
     if (listener->fail_at && !listener->failing) {
-        listener->failing = fault_count(FAULT_OF_ALLOCATION) + listener->fail_at;
-        fault_at(FAULT_OF_ALLOCATION, listener->fail_at);
+        listener->failing = fault_count(listener->fail_kind) + listener->fail_at;
+        fault_at(listener->fail_kind, listener->fail_at);
     }
     listener->last = *request;
     size_t used = strlen(listener->files);
@@ -86,6 +87,23 @@ static inline bool listen_to_text(struct listener *listener, const char *text, c
     (void)snprintf(path, sizeof path, "%s/scene.lua", test_folder());
     test_write_text(path, text);
     return listen_to(listener, path, options, error, NULL);
+}
+
+/* A short text that runs, or is refused with these words. */
+struct corner {
+    const char *text, *words; /* NULL: it runs */
+};
+
+/* Before each text comes `preparation`, and the name of its folder as arg_folder. */
+static inline void check_corner(const char *preparation, const struct corner *corner,
+                                const struct script_options *options) {
+    char text[4096];
+    struct listener listener = {.renders = 0};
+    struct error error = {0};
+    (void)snprintf(text, sizeof text, "arg_folder = '%s/' %s%s\n", test_folder(), preparation, corner->text);
+    bool done = listen_to_text(&listener, text, options, &error);
+    if (done != !corner->words || (corner->words && !strstr(error.text, corner->words)))
+        test_fail(__FILE__, __LINE__, "%s: %s", corner->text, done ? "runs" : error.text);
 }
 
 #endif

@@ -8,10 +8,6 @@
 
 #include <sys/stat.h>
 
-struct corner {
-    const char *text, *words; /* NULL: it runs */
-};
-
 /* long(x): a table of 41 entries whose length is 2^40, since its border is looked for by doubling. */
 static const char preparation[] =
     "glass = gr.rr_material({1, 1, 1}, {1, 1, 1}, 10, 0.5, 0.5, 1.5) ball = gr.sphere('ball') "
@@ -152,19 +148,8 @@ static void write_files(void) {
     put("mark.lua", "\xEF\xBB\xBFx = 2", 8);
 }
 
-static bool run(const struct corner *corner, const struct script_options *options, struct error *error) {
-    char text[4096];
-    struct listener listener = {.renders = 0};
-    *error = (struct error){0};
-    (void)snprintf(text, sizeof text, "arg_folder = '%s/' %s%s\n", test_folder(), preparation, corner->text);
-    return listen_to_text(&listener, text, options, error);
-}
-
 static void check(const struct corner *corner, const struct script_options *options) {
-    struct error error;
-    bool done = run(corner, options, &error);
-    if (done != !corner->words || (corner->words && !strstr(error.text, corner->words)))
-        test_fail(__FILE__, __LINE__, "%s: %s", corner->text, done ? "runs" : error.text);
+    check_corner(preparation, corner, options);
 }
 
 TEST(rare_ways_of_scripts_run_or_are_told) {

@@ -1,0 +1,473 @@
+/* The rarest ways through the binding: solids nested deeper than anybody builds, changes by the thousand, a library
+ * with modules of every kind, what happens after the end of a script, messages that only look as if they named a place,
+ * and every allocation and call to the system that fails on such ways. */
+#define _GNU_SOURCE
+#include "base/fault.h"
+#include "script/context.h"
+#include "script/order.h"
+#include "tests/unit/file_makers.h"
+#include "tests/unit/script_host.h"
+
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static const char preparation[] =
+    "glass = gr.rr_material({1, 1, 1}, {1, 1, 1}, 10, 0.5, 0.5, 1.5) ball = gr.sphere('ball') "
+    "picture = {node = ball, file = 'x.png', width = 4, height = 4, eye = {0, 0, 9}}\n";
+
+/* 26 fields that nobody has, so that in any order of Lua's some come after a smaller one. */
+#define MANY "local t = {} for i = 0, 25 do t[string.char(97 + i) .. '_'] = i end "
+
+static const struct corner corners[] = {
+    /* bounds */
+    {"local n = ball for i = 1, 2001 do n = gr.inverse(n) end n:bounds()", "nested more than 2000 deep"},
+    {"gr.intersection('i', ball, gr.sphere{centre = {10, 0, 0}}):bounds()", "nothing is under this node"},
+    /* changes */
+    {"for i = 1, 4097 do gr.change_delete{name = 'x', serial = i} end", "more than 4096 changes"},
+    {"gr.change_delete{name = ('n'):rep(100), serial = 7} gr.node(('n'):rep(100)):add_child(ball) gr.render(picture)",
+     NULL},
+    /* arguments */
+    {"gr.mesh{file = 'flag.obj', materials = {}}", NULL},
+    {"gr.mesh{file = 'flag.obj', materials = {" /* longer than any word that is compared */
+     "wrong_wrong_wrong_wrong_wrong = glass}}",
+     "has no part 'wrong_wrong_wrong_wrong_wrong'"},
+    {"gr.union{operands = {ball, gr.cube('c')}, b = gr.cube('d')}", NULL},
+    {"gr.union{ball, gr.cube('c'), b = gr.cube('d')}", NULL},
+    {"gr.polygon{points = {{0, 0, 0}, {1, 0, 0}}}", "points has 2 corners, not 3 or more"},
+    {"gr.prism{outline = {{0, 0}, {1, 0}, {0, 1}}, holes = {{5}}}", "holes[1][1] must be a pair of numbers"},
+    {MANY "gr.sphere(t)", "unknown field 'a_'"},
+    {MANY "picture.caustics = t gr.render(picture)", "not 'a_'"},
+    /* environments of an older Lua */
+    {"local m = module m('one') m('one')", NULL},
+    {"local m = module local function f() m('two') end f() assert(package.loaded.two)", NULL},
+    /* files */
+    {"gr.mesh{file = 'tests/scripts/flag.obj'} dofile('lua/knot.lua') error('...x', 0)", "...x"},
+    {"gr.mesh{file = 'asset.obj'}", NULL},
+    {"gr.image_material(glass, 'none1.0.png')", "cannot find 'none1.0.png'"},
+    {"gr.image_material(glass, arg_folder .. 'none.png')", "cannot find '/"},
+    {"dofile('huge.lua')", "huge.lua"},
+    {"require('lua.knot')", NULL},
+    /* places and what looks like one */
+    {"error('...' .. (arg_folder .. 'scene.lua'):sub(-56) .. ' x', 0)", "scene.lua x"},
+    {"error(arg_folder .. 'scene.luax', 0)", "scene.luax"},
+    {"error('[string \"x\"] y', 0)", "] y"},
+    {"error('[string \"x\"]:12 y', 0)", "]:12 y"},
+    {"error('[string \"x\"]:12:y', 0)", "]:12:y"},
+    /* after the end */
+    {"local c <close> = setmetatable({}, {__close = function() gr.node('late') end}) os.exit()", NULL},
+    {"xpcall(os.exit, error)", NULL},
+};
+
+static void put(const char *name, const char *text) {
+    char path[512];
+    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    test_write_text(path, text);
+}
+
+static void make_folder(const char *name) {
+    char path[512];
+    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    CHECK(mkdir(path, 0777) == 0);
+}
+
+static void make_huge(const char *name, off_t size) {
+    char path[512];
+    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    test_write_text(path, "");
+    CHECK(truncate(path, size) == 0);
+}
+
+static const char flag[] =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\ng a_group_with_a_name_that_is_longer_than_forty_letters\nf 1 2 3\n";
+
+static void write_files(void) {
+    write_white_png("pic1.png", 8, 8);
+    make_folder("Assets");
+    put("Assets/asset.obj", flag);
+    put("flag.obj", flag);
+    put("good.lua", "return 5");
+    make_huge("huge.lua", ((off_t)1 << 28) + 1);
+}
+
+TEST(the_rarest_ways_of_scripts_run_or_are_told) {
+    write_files();
+    for (size_t i = 0; i < sizeof corners / sizeof corners[0]; i++)
+        check_corner(preparation, &corners[i], NULL);
+}
+
+/* The first 3354 are measured corner by corner, the others by the corners of a box. */
+TEST(bounds_of_millions_of_faces_are_those_of_a_few) {
+    static const struct corner many = {
+        "local faces, at = {}, {} for i = 1, 5000 do faces[i] = {0, 1, 2} end for i = 1, 3400 do at[i] = {i, 0, 0} end "
+        "local sheet = gr.mesh{verts = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, faces = faces} "
+        "local low, high = gr.instances{of = sheet, at = at}:bounds() "
+        "assert(low[1] == 1 and low[2] == 0 and high[1] == 3401 and high[2] == 1)",
+        NULL};
+    check_corner("", &many, NULL);
+}
+
+TEST(ghosts_stand_in_lists_of_materials_and_behind_forms) {
+    static const struct corner ghosts[] = {
+        {"local g = gr.unknown() gr.mesh{verts = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, faces = {{0, 1, 2}, {0, 2, 1}}, "
+         "materials = {g, glass}, face_materials = {1, 2}}",
+         NULL},
+        {"local g = gr.unknown() gr.union('u', ball, gr.cube('c'), g, gr.cube('d'))", NULL},
+    };
+    const struct script_options lenient = {
+        .transform_order = SCRIPT_ORDER_NEW, .library_folder = "lua", .lenient = true};
+    for (size_t i = 0; i < sizeof ghosts / sizeof ghosts[0]; i++)
+        check_corner(preparation, &ghosts[i], &lenient);
+}
+
+/* Otherwise the name would be told in messages instead of the node's own. */
+TEST(no_method_takes_a_text) {
+    for (int f = 0; f < function_count; f++)
+        for (int p = 0; p < function_table[f].parameter_count; p++)
+            CHECK(function_table[f].owner == OWNER_GR || function_table[f].parameters[p].kind != KIND_TEXT);
+}
+
+TEST(the_newest_change_of_a_view_and_of_the_exposure_counts) {
+    struct listener listener = {.renders = 0};
+    struct error error;
+    static const char text[] =
+        "local ball = gr.sphere('ball')\n"
+        "gr.change_view{picture = 'x.png', eye = {0, 0, 5}, view = {0, 0, -1}, up = {0, 1, 0}, fov = 30}\n"
+        "gr.change_view{picture = 'x.png', eye = {0, 0, 7}, view = {0, 0, -1}, up = {0, 1, 0}, fov = 40}\n"
+        "gr.change_view{picture = 'y.png', eye = {0, 0, 6}, view = {0, 0, -1}, up = {0, 1, 0}, fov = 20}\n"
+        "gr.change_exposure{picture = 'x.png', stops = 1} gr.change_exposure{picture = 'x.png', stops = 2}\n"
+        "gr.render{node = ball, file = 'x.png', width = 4, height = 4, eye = {0, 0, 9}}\n";
+    CHECK(listen_to_text(&listener, text, NULL, &error));
+    CHECK(listener.last.camera.eye.z == 7 && listener.last.camera.fov == 40);
+    CHECK(listener.last.settings.tone.exposure == 2);
+}
+
+TEST(a_change_that_fits_nothing_is_told_once_for_all_pictures) {
+    struct listener listener = {.renders = 0};
+    struct error error;
+    static const char text[] =
+        "local ball = gr.sphere('ball') gr.change_delete{name = 'nobody', serial = 7}\n"
+        "for i = 1, 3 do gr.render{node = ball, file = 'x.png', width = 4, height = 4, eye = {0, 0, 9}} end\n";
+    CHECK(listen_to_text(&listener, text, NULL, &error));
+    CHECK_EQ_INT(listener.renders, 3);
+    CHECK_EQ_INT(listener.messages, 1);
+}
+
+/* coroutine.wrap and error put places in front of one another: one is told, the innermost. */
+TEST(an_error_that_was_caught_and_raised_again_names_one_place) {
+    struct listener listener = {.renders = 0};
+    struct error error;
+    CHECK(!listen_to_text(&listener, "local ok, m = pcall(function()\nerror('deep') end)\nerror(m)", NULL, &error));
+    const char *place = strstr(error.text, "scene.lua:2: deep");
+    CHECK(place && !strstr(place + 1, "scene.lua:") && !strstr(error.text, "scene.lua:3"));
+}
+
+/* What is closed while an error that no script catches is on its way gets nothing more done. */
+TEST(nothing_is_made_after_a_picture_that_failed_for_good) {
+    struct listener listener = {.renders = 0};
+    struct error error;
+    error_set(&listener.answer, ERROR_MACHINE, "the disc is full");
+    static const char text[] =
+        "local ball = gr.sphere('ball')\n"
+        "local c <close> = setmetatable({}, {__close = function() gr.node('late') print('never') end})\n"
+        "gr.render{node = ball, file = 'x.png', width = 4, height = 4, eye = {0, 0, 9}}\n";
+    CHECK(!listen_to_text(&listener, text, NULL, &error));
+    CHECK(error.kind == ERROR_MACHINE);
+    CHECK(strstr(error.text, "the disc is full") != NULL);
+    CHECK_EQ_INT(listener.renders, 1);
+}
+
+/* Limits. */
+
+TEST(scripts_end_where_memory_ends_whatever_they_are_doing) {
+    static const char *const texts[] = {
+        /* nearly all that is asked for here is a chunk for setfenv */
+        "local e, hold = {}, {} local function f() return x end while true do hold = {hold} setfenv(f, e) end",
+        /* a handler that would be called for an error while things are closed */
+        "xpcall(function() local c <close> = setmetatable({}, {__close = function() error('again') end})\n"
+        "local t = {} while true do t[#t + 1] = {} end end, function(m) return m end)",
+    };
+    const struct script_options small = {.transform_order = SCRIPT_ORDER_NEW, .memory_limit = 1};
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+        struct listener listener = {.renders = 0};
+        struct error error;
+        CHECK(!listen_to_text(&listener, texts[i], &small, &error));
+        CHECK(strstr(error.text, "used up its memory of 1 MiB") != NULL);
+    }
+}
+
+TEST(warnings_count_as_output_too) {
+    const struct script_options lenient = {.transform_order = SCRIPT_ORDER_NEW, .lenient = true, .output_limit = 1};
+    struct listener listener = {.renders = 0};
+    struct error error;
+    CHECK(!listen_to_text(&listener, "local b = gr.sphere('b') for i = 1, 1e6 do local _ = b['x' .. i] end", &lenient,
+                          &error));
+    CHECK(strstr(error.text, "printed more than its 1 MiB") != NULL);
+}
+
+/* Lua asks again for the same after it has collected its garbage; getting anything else does not undo the refusal. */
+TEST(memory_that_was_refused_is_forgotten_only_when_it_is_got_after_all) {
+    struct context context = {.limits = {.memory_limit = 10000}};
+    char *kept = limits_allocate(&context, NULL, 0, 100), *large = limits_allocate(&context, NULL, 0, 9000);
+    CHECK(kept && large && !context.limits.memory_out);
+    CHECK(!limits_allocate(&context, kept, 100, 2000) && context.limits.memory_out);
+    CHECK(!limits_allocate(&context, large, 9000, 0));
+    kept = limits_allocate(&context, kept, 100, 2000); /* garbage was collected, and now it fits */
+    CHECK(kept && !context.limits.memory_out);
+    large = limits_allocate(&context, NULL, 0, 7000);
+    CHECK(!limits_allocate(&context, kept, 2000, 8000) && context.limits.memory_out);
+    large = limits_allocate(&context, large, 7000, 50); /* what shrinks is no request */
+    CHECK(large && !context.limits.refused_for_good);
+    void *same_size = limits_allocate(&context, NULL, 0, 8000); /* for somebody else */
+    CHECK(!same_size && context.limits.memory_out);
+    CHECK(!limits_allocate(&context, large, 50, 0));
+    kept = limits_allocate(&context, kept, 2000, 8000);
+    CHECK(kept && context.limits.memory_out); /* too late */
+    CHECK(!limits_allocate(&context, kept, 8000, 0));
+    /* Something else was got first. */
+    context.limits.memory_out = context.limits.refused_for_good = false;
+    kept = limits_allocate(&context, NULL, 0, 100);
+    CHECK(!limits_allocate(&context, kept, 100, 20000) && context.limits.memory_out);
+    void *other = limits_allocate(&context, NULL, 0, 20), *more = limits_allocate(&context, other, 20, 200);
+    CHECK(more && context.limits.memory_out && context.limits.refused_for_good);
+    CHECK(!limits_allocate(&context, more, 200, 0) && !limits_allocate(&context, kept, 100, 0));
+    CHECK_EQ_INT((long long)context.limits.memory, 0);
+}
+
+/* The library. */
+
+static void write_library(void) {
+    make_folder("lib");
+    put("lib/outer.lua", "return {get = function(name) return require(name) end}");
+    put("lib/inner.lua", "return 'library'");
+    put("lib/broken.lua", "x = = 1");
+    put("inner.lua", "return 'mine'");
+    put("broken.lua", "return 'mine too'");
+    put("libx.lua", "return 'beside'");
+}
+
+TEST(modules_of_the_library_find_each_other_whatever_they_are_asked_for) {
+    static const struct corner all[] = {
+        {"assert(outer.get('inner') == 'library' and outer.get('inner') == 'library' and require('inner') == 'mine')",
+         NULL},
+        {"outer.get('broken')", "lib/broken.lua:1"},
+        {"outer.get('a.b')", "cannot find module 'a.b'"},
+        {"outer.get(('x'):rep(5000))", "cannot find module 'xxx"},
+        {"outer.get('nothing')", "cannot find module 'nothing'"},
+        {"assert(dofile('libx.lua') == 'beside')", NULL},
+        {"package.path = nil outer.get('inner')", "package.path must be a string"},
+        {"package.path = '' outer.get('inner')", "cannot find module 'inner'"},
+    };
+    char folder[512];
+    (void)snprintf(folder, sizeof folder, "%s/lib", test_folder());
+    const struct script_options options = {.transform_order = SCRIPT_ORDER_AUTO, .library_folder = folder};
+    write_library();
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+        check_corner("outer = require('outer') ", &all[i], &options);
+}
+
+/* Without the sandbox a chunk may be byte code, which may have no globals to be given others. */
+TEST(byte_code_without_globals_is_loaded_where_there_is_no_sandbox) {
+    static const struct corner all[] = {
+        {"local function put(name) local f = assert(io.open(arg_folder .. name, 'wb')) "
+         "f:write(string.dump(load('local function f() return 7 end return f')())) f:close() end "
+         "put('lib/byte.lua') put('byte.out') assert(require('byte') == 7) "
+         "assert(loadfile('byte.out', 'b', {})() == 7)",
+         NULL},
+    };
+    char folder[512];
+    (void)snprintf(folder, sizeof folder, "%s/lib", test_folder());
+    const struct script_options options = {
+        .transform_order = SCRIPT_ORDER_NEW, .library_folder = folder, .no_sandbox = true};
+    make_folder("lib");
+    check_corner("", &all[0], &options);
+}
+
+TEST(modules_beside_and_above_are_named_as_people_would_name_them) {
+    static const char beside[] = "package.path = './?.lua' require('module')",
+                      above[] = "package.path = '../?.lua' assert(require('above') == 8)";
+    char path[512];
+    struct listener listener = {.renders = 0};
+    struct error error;
+    const struct script_options options = {.transform_order = SCRIPT_ORDER_NEW};
+    put("module.lua", "local t = nil; return t.x");
+    put("above.lua", "return 8");
+    make_folder("Assets");
+    make_folder("scenes");
+    put("Assets/asset.obj", flag);
+    put("scenes/scene.lua", "gr.mesh{file = 'asset.obj'}");
+    CHECK(chdir(test_folder()) == 0);
+    CHECK(!listen_to_text(&listener, beside, &options, &error));
+    CHECK(strncmp(error.text, "module.lua:1: ", 14) == 0);
+    CHECK(chdir("scenes") == 0);
+    CHECK(listen_to_text(&listener, above, &options, &error));
+    (void)snprintf(path, sizeof path, "%s/scenes/scene.lua", test_folder());
+    CHECK(listen_to(&listener, path, &options, &error, NULL));
+}
+
+/* A file that its owner has closed, asked for by somebody who is not root: the reason is the system's own words. */
+TEST(what_the_system_refuses_is_told_in_its_words_where_there_is_no_sandbox) {
+    const struct script_options options = {.transform_order = SCRIPT_ORDER_NEW, .no_sandbox = true};
+    static const struct corner refused = {"assert(io.open(arg_folder .. 'closed.txt'))",
+                                          "closed.txt: Permission denied"};
+    char path[512];
+    (void)snprintf(path, sizeof path, "%s/closed.txt", test_folder());
+    test_write_text(path, "x");
+    (void)snprintf(path, sizeof path, "%s/scene.lua", test_folder());
+    test_write_text(path, "");
+    CHECK(chmod(path, 0666) == 0 && chmod(test_folder(), 0755) == 0);
+    (void)snprintf(path, sizeof path, "%s/closed.txt", test_folder());
+    CHECK(chmod(path, 0) == 0);
+    uid_t me = geteuid();
+    if (me == 0)
+        CHECK(seteuid(65534) == 0);
+    check_corner("", &refused, &options);
+    CHECK(seteuid(me) == 0);
+}
+
+/* The order of transforms. */
+
+TEST(calls_of_meshes_tell_the_transform_order_by_their_arguments) {
+    static const struct {
+        const char *text;
+        enum transform_order order;
+        const char *reason;
+    } all[] = {
+        {"gr.mesh(gr.material({1}), {2}, {3})", ORDER_NEW, "gr.mesh is given a material (line 1)"},
+        {"gr.mesh(t[1], {2}, {3})", ORDER_OLD, "gr.mesh is given vertex tables (line 1)"},
+        {"\ngr.mesh(t[1], u, v)", ORDER_OLD, "gr.mesh is given vertex tables (line 2)"},
+        {"gr.mesh(t, u, )", ORDER_NEW, ""},
+        {"gr.mesh('a', 'b.obj')", ORDER_NEW, "gr.mesh reads a file (line 1)"},
+    };
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+        struct order_finding finding;
+        order_of_text(all[i].text, strlen(all[i].text), &finding);
+        CHECK(finding.order == all[i].order);
+        CHECK_TEXT(finding.reason, all[i].reason);
+    }
+}
+
+static struct order_finding order_of_scene(const char *name, const char *text, const char *library) {
+    char path[512];
+    struct order_finding finding;
+    struct error error = {0};
+    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    if (text)
+        test_write_text(path, text);
+    CHECK(order_detect(path, library, &finding, &error));
+    return finding;
+}
+
+TEST(the_transform_order_is_looked_for_in_files_wherever_require_finds_them) {
+    char library[512], many[4096] = "", path[8192];
+    struct order_finding finding;
+    struct error error = {0};
+    make_folder("lib");
+    make_folder("lua");
+    make_folder("scenes");
+    (void)snprintf(library, sizeof library, "%s/lib", test_folder());
+    put("libx.lua", "readobj('x') gr.x()");
+    put("lib/in_library.lua", "readobj('x') gr.x()");
+    put("lua/shared.lua", "readobj('x') gr.x()");
+    CHECK(order_of_scene("scenes/a.lua", "require('shared')", library).order == ORDER_OLD);
+    CHECK(order_of_scene("a.lua", "require('lib.in_library') gr.mesh('a', 'b.obj')", library).order == ORDER_NEW);
+    CHECK(order_of_scene("a.lua", "require('libx')", library).order == ORDER_OLD);
+    CHECK(order_of_scene("scenes/b.lua", "require('tests.scripts.classic')", library).order ==
+          order_of_scene("scenes/b.lua", "dofile('tests/scripts/classic.lua')", library).order);
+    CHECK(strstr(order_of_scene("missing.lua", NULL, library).reason, "of its neighbour libx.lua") != NULL);
+    /* The 64th file is the last that is looked at. */
+    for (int i = 1; i <= 70; i++) {
+        char name[32];
+        (void)snprintf(name, sizeof name, "scenes/m%d.lua", i);
+        put(name, i == 70 ? "readobj('x') gr.x()" : "gr.mesh('a', 'b.obj')");
+        (void)snprintf(many + strlen(many), sizeof many - strlen(many), "require 'm%d' ", i);
+    }
+    CHECK(order_of_scene("scenes/c.lua", many, library).order == ORDER_NEW);
+    /* A path that is nearly too long, and a name that makes it so. */
+    (void)snprintf(path, sizeof path, "%s/scenes/", test_folder());
+    while (strlen(path) < 4000)
+        strcat(path, "./");
+    strcat(path, "d.lua");
+    (void)snprintf(many, sizeof many, "require '%0300d'", 1);
+    put("scenes/d.lua", many);
+    CHECK(order_detect(path, library, &finding, &error));
+}
+
+TEST(old_neighbours_are_counted_and_the_first_is_named) {
+    put("one.lua", "readobj('x') gr.x()");
+    put("two.lua", "readobj('y') gr.x()");
+    put("none.lua", "print(1)");
+    make_huge("huge.lua", (1 << 20) + 1);
+    struct order_finding finding = order_of_scene("zero.lua", "gr.x()", NULL);
+    CHECK(finding.order == ORDER_OLD);
+    CHECK(strstr(finding.reason, "of its neighbour ") && strstr(finding.reason, ".lua: it uses readobj (line 1)"));
+}
+
+/* Failures on demand. */
+#ifdef GRAY_FAULTS
+
+/* Runs the text again and again, whatever fails first after the picture it makes. Own: words of the error that it ends
+ * with by itself, or NULL. */
+static void fail_after_picture(const char *text, enum fault_kind kind, const struct script_options *options,
+                               const char *own) {
+    char whole[4096];
+    (void)snprintf(whole, sizeof whole, "%s gr.render(picture) %s\n", preparation, text);
+    for (uint64_t k = 1;; k++) {
+        struct error error;
+        struct listener listener = {.fail_at = k, .fail_kind = kind};
+        bool done = listen_to_text(&listener, whole, options, &error);
+        bool over = fault_count(kind) < listener.failing;
+        fault_at(kind, 0);
+        bool expected = own ? !done && strstr(error.text, own) : done;
+        bool told = !done && error.kind == (kind == FAULT_OF_ALLOCATION ? ERROR_MACHINE : error.kind) && error.text[0];
+        if (over ? !expected : !expected && !told)
+            test_fail(__FILE__, __LINE__, "%s: failure %llu: %s (kind %d)", text, (unsigned long long)k,
+                      done ? "runs" : error.text, (int)error.kind);
+        if (over || listener.failing == 0)
+            break;
+    }
+}
+
+TEST(memory_may_end_on_the_rarest_ways) {
+    const struct script_options lenient = {
+        .transform_order = SCRIPT_ORDER_NEW, .library_folder = "lua", .lenient = true};
+    write_files();
+    fail_after_picture("gr.union('u', ball, gr.unknown())", FAULT_OF_ALLOCATION, &lenient, NULL);
+    fail_after_picture("gr.sphere(5) gr.sphere(1.5)", FAULT_OF_ALLOCATION, NULL, NULL);
+    fail_after_picture("gr.image_material(glass, 'pic1.0.png')", FAULT_OF_ALLOCATION, NULL, NULL);
+    fail_after_picture("gr.change_delete{name = 'ball', serial = 0} gr.render(picture)", FAULT_OF_ALLOCATION, NULL,
+                       NULL);
+    fail_after_picture("local function f()\nerror('first\\n\\tsecond') end f()", FAULT_OF_ALLOCATION, NULL, "first");
+    fail_after_picture("dofile('good.lua')", FAULT_OF_ALLOCATION, NULL, NULL);
+}
+
+TEST(calls_to_the_system_may_fail_on_the_rarest_ways) {
+    char folder[512];
+    (void)snprintf(folder, sizeof folder, "%s/lib", test_folder());
+    const struct script_options options = {.transform_order = SCRIPT_ORDER_NEW, .library_folder = folder};
+    write_files();
+    write_library();
+    fail_after_picture("gr.mesh{file = 'flag.obj'}", FAULT_OF_CALL, NULL, NULL);
+    fail_after_picture("gr.image_material(glass, 'pic1.png')", FAULT_OF_CALL, NULL, NULL);
+    fail_after_picture("dofile('good.lua')", FAULT_OF_CALL, NULL, NULL);
+    fail_after_picture("require('outer').get('inner')", FAULT_OF_CALL, &options, NULL);
+}
+
+TEST(memory_may_end_while_the_transform_order_is_looked_for) {
+    const struct script_options automatic = {.transform_order = SCRIPT_ORDER_AUTO};
+    int failed = 0;
+    for (uint64_t k = 1; k <= 8; k++) {
+        struct listener listener = {.renders = 0};
+        struct error error;
+        char path[512];
+        (void)snprintf(path, sizeof path, "%s/scene.lua", test_folder());
+        test_write_text(path, "gr.node('n')");
+        fault_at(FAULT_OF_ALLOCATION, k);
+        bool done = listen_to(&listener, path, &automatic, &error, NULL);
+        fault_at(FAULT_OF_ALLOCATION, 0);
+        CHECK(done || error.kind == ERROR_MACHINE);
+        failed += !done;
+    }
+    CHECK(failed > 2);
+}
+#endif
