@@ -89,9 +89,9 @@ ifeq ($(config),release)
 all: check-libraries $(BUILD)/gray $(if $(MPI_LIBS),$(BUILD)/gray-mpi) $(if $(SDL_LIBS),$(BUILD)/gray-gui)
 	@ln -sf $(BUILD)/gray gray && ln -sf gray rt
 else
-all: check-libraries $(BUILD)/gray
+all: check-libraries $(BUILD)/gray $(if $(SDL_LIBS),$(BUILD)/gray-gui)
 ifeq ($(config),coverage)
-all: $(if $(MPI_LIBS),$(BUILD)/gray-mpi) $(if $(SDL_LIBS),$(BUILD)/gray-gui)
+all: $(if $(MPI_LIBS),$(BUILD)/gray-mpi)
 endif
 endif
 

@@ -110,6 +110,7 @@ struct studio_news {
     uint32_t light_count; /* of BUILT and CHANGED: the lights, those in `lights` and others */
     struct told_light lights[TOLD_LIGHTS];
     char text[512]; /* of CHANGED: what could not be done, or empty */
+    bool unbuilt;   /* of CHANGED: the building of the world was stopped; the next pass begins with it */
 };
 
 enum studio_order_kind { ORDER_END, ORDER_PASS, ORDER_PICK, ORDER_CHANGE, ORDER_STORY };

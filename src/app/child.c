@@ -206,6 +206,8 @@ static bool make_in_window(struct child *child, const struct render_request *req
                            struct world *world, const struct picture_request *asked, struct picture_report *report,
                            double build_seconds, struct error *error) {
     struct sitting sitting = {child, request, job, world};
+    bool built = job->world != NULL;
+    job->world = world;
     struct studio studio = {.services = child->services,
                             .pool = child->pool,
                             .request = request,
@@ -216,7 +218,7 @@ static bool make_in_window(struct child *child, const struct render_request *req
                             .build = sitting_build,
                             .fill = sitting_fill,
                             .warn = sitting_warn};
-    return studio_run(&studio, report, build_seconds, error);
+    return studio_run(&studio, built, report, build_seconds, error);
 }
 
 /* From the flattened scene to the finished film. */
@@ -224,15 +226,15 @@ static bool make_picture(struct child *child, const struct render_request *reque
                          const struct picture_request *asked, struct picture_report *report, struct error *error) {
     struct world world = {0};
     double begun = progress_clock(), worked = progress_processor_clock();
-    if (!build_world(child, request, job, request->lights, request->light_count, &world, error))
+    if (build_world(child, request, job, request->lights, request->light_count, &world, error))
+        job->world = &world;
+    else if (!asked->live || !studio_was_stopped(child->services->control, error))
         return false;
     bool ok = true;
     double built = progress_clock(), built_worked = progress_processor_clock();
     if (is_asked(child->options)) {
-        job->world = &world;
         ok = answer_questions(child, request, job, error);
     } else if (!child->options->check) {
-        job->world = &world;
         if (!asked->live)
             atomic_store(&child->services->control->tiles, film_tile_count(job->film));
         ok = asked->live ? make_in_window(child, request, job, &world, asked, report, built - begun, error)

@@ -138,6 +138,7 @@ void live_detach(struct live *live) {
     live->block = NULL;
     live->film = (struct film){0};
     live->running = live->waiting = live->stopping = live->partial = live->asks = live->asks_story = false;
+    live->halted = live->unbuilt = false;
     live->selection.kind = SELECTED_NOTHING;
     live->told = 0;
 }
@@ -164,10 +165,14 @@ void live_tell(struct live *live, const char *text) {
 
 /* Orders. */
 
+bool live_is_idle(const struct live *live) {
+    return live->waiting && live->complete && !live->moved && !live->asks && !live->asks_story &&
+           live->pending.count == 0;
+}
+
 static void end_pass(struct live *live, const struct picture_report *report, double now) {
     bool known = live->report.threads > 0;
     live->partial = report->stopped != 0;
-    live->stopping = false;
     if (report->stopped)
         return;
     live_draw_tiles(live);
@@ -180,12 +185,13 @@ static void end_pass(struct live *live, const struct picture_report *report, dou
 }
 
 void live_take_news(struct live *live, const struct studio_news *news, double now) {
-    live->running = false;
-    live->waiting = true;
-    live->over_dirty = true;
+    live->running = live->stopping = false;
+    live->waiting = live->over_dirty = true;
+    live->unbuilt = news->unbuilt;
     switch (news->kind) {
     case NEWS_BUILT:
         walk_measure(&live->walk, &news->report.bounds);
+        live->moved = true;
         live->scene = *news;
         return;
     case NEWS_PASS:
@@ -195,8 +201,10 @@ void live_take_news(struct live *live, const struct studio_news *news, double no
         live_take_picked(live, &news->picked);
         return;
     case NEWS_CHANGED:
-        live->scene.light_count = news->light_count;
-        memcpy(live->scene.lights, news->lights, sizeof live->scene.lights);
+        if (!news->unbuilt) {
+            live->scene.light_count = news->light_count;
+            memcpy(live->scene.lights, news->lights, sizeof live->scene.lights);
+        }
         if (news->text[0] != '\0')
             live_tell(live, news->text);
         live->moved = true;
@@ -253,12 +261,16 @@ static void order_story(struct live *live) {
 
 static enum live_order next_order(struct live *live, double now) {
     uint32_t divide = live->again ? FIRST_DIVIDE : live->divide;
-    if (live->pending.count > 0) {
+    if (live->halted && live->unbuilt) /* what is asked now has no answer */
+        live->asks = live->asks_story = false;
+    if (live->pending.count > 0 && !live->halted) {
         order_change(live);
     } else if (live->asks) {
         order_pick(live);
     } else if (live->asks_story) {
         order_story(live);
+    } else if (live->halted) {
+        return LIVE_NOTHING;
     } else if (live->moved) {
         live->again = false;
         begin_pass(live, divide, true, false, now);
@@ -281,6 +293,10 @@ static enum live_order next_order(struct live *live, double now) {
 static enum live_order step_running(struct live *live) {
     /* A coarse pass is over soon and is worth showing; a fine one is not. */
     bool coarse = live->view.plain && live->view.divide >= live->divide;
+    if (live->halted && live->block && !live->stopping) {
+        live->stopping = true;
+        return LIVE_STOP;
+    }
     bool wanted = live->moved || live->asks || live->asks_story || live->pending.count > 0 ||
                   differ(live->view.exposure, live->request.exposure);
     if (!live->running || !wanted || live->stopping || coarse)

@@ -88,6 +88,8 @@ struct live {
     bool partial;           /* the last pass was stopped for a moment, and can go on */
     bool edited;            /* the last pass shows a changed scene */
     bool complete, written; /* the last pass was the finest; the script's picture was written */
+    bool halted;            /* somebody said stop: nothing is begun until something is wanted */
+    bool unbuilt;           /* the child has no world of what is wanted */
     bool grabbed, next, quit;
     bool keep; /* the scripts run again: the camera stays where somebody has flown, pictures before are left out */
     bool pressed, dragged;   /* the left button is down on the picture, and has moved since */

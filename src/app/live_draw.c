@@ -122,7 +122,10 @@ static void tell_state(const struct live *live, struct figures *figures) {
     uint32_t done = live->block ? film_tiles_in(&live->film, FILM_TILE_DONE) : 0;
     uint32_t count = live->block ? film_tile_count(&live->film) : 0;
     figures->share = count > 0 ? (double)done / count : live->complete ? 1 : 0;
-    if (step > 0) {
+    if (live->halted && live->block) {
+        (void)snprintf(figures->state, sizeof figures->state, live->unbuilt ? "stopped building" : "stopped, %.0f %%",
+                       100 * figures->share);
+    } else if (step > 0) {
         figures->share = 0.001 * atomic_load_explicit(&live->control->build_done, memory_order_relaxed);
         (void)snprintf(figures->state, sizeof figures->state, "building, step %u: %.0f %%", step, 100 * figures->share);
     } else if (!live->block) {
@@ -130,7 +133,7 @@ static void tell_state(const struct live *live, struct figures *figures) {
     } else if (live->report.threads == 0 && done == 0) {
         (void)snprintf(figures->state, sizeof figures->state, "building");
     } else if (live->complete) {
-        (void)snprintf(figures->state, sizeof figures->state, "ready");
+        (void)snprintf(figures->state, sizeof figures->state, live_is_idle(live) ? "ready" : "working");
     } else {
         (void)snprintf(figures->state, sizeof figures->state, "%.0f %%%s", 100 * figures->share,
                        live->view.plain ? " (coarse)" : "");

@@ -41,6 +41,7 @@ bool live_project(const struct live *live, const struct camera_frame *frame, str
 void live_make(struct live *live, const struct change *change, bool present, bool join) {
     if (!edits_make(&live->edits, change, present, join) || !change_list_set(&live->pending, change, true))
         live_tell(live, "gray: there is no room for more changes");
+    live_halt(live, false);
     live->over_dirty = true;
 }
 
@@ -51,6 +52,7 @@ void live_undo(struct live *live, bool again) {
     if (!did)
         return;
     (void)change_list_set(&live->pending, &target, true);
+    live_halt(live, false);
     /* What is not there any more cannot be selected. */
     bool gone = target.kind == CHANGE_ADD || target.kind == CHANGE_GONE || target.kind == CHANGE_ADD_LIGHT ||
                 target.kind == CHANGE_DARK;

@@ -5,6 +5,23 @@
 
 void live_change_view(struct live *live) {
     live->moved = live->flown = true;
+    live_halt(live, false);
+}
+
+void live_halt(struct live *live, bool on) {
+    on = on && live->block && !live_is_idle(live);
+    if (on == live->halted)
+        return;
+    live->halted = on;
+    live->over_dirty = true;
+    live->told = 0;
+}
+
+void live_render(struct live *live) {
+    if (!live->block)
+        return;
+    live->again = live->moved = true;
+    live_halt(live, false);
 }
 
 static void grab(struct live *live, bool on) {
@@ -58,7 +75,7 @@ static void take_view_key(struct live *live, int key, bool control) {
         break;
     case WINDOW_HOME:
         walk_home(walk);
-        live->moved = true;
+        live_change_view(live);
         live->flown = false;
         return;
     default:
@@ -103,6 +120,17 @@ static void choose_tool(struct live *live, enum live_tool tool) {
     live->over_dirty = true;
 }
 
+/* Esc, while the mouse is free: what was chosen, and where nothing was, what is being made. */
+static void put_away(struct live *live) {
+    bool something = live->selection.kind != SELECTED_NOTHING || live->tool != TOOL_NONE || live->story[0] != '\0';
+    if (!something)
+        live_halt(live, true);
+    live->selection.kind = SELECTED_NOTHING;
+    live->tool = TOOL_NONE;
+    live->story[0] = '\0';
+    live->over_dirty = true;
+}
+
 /* True: it was one of those that change the scene. */
 static bool take_edit_key(struct live *live, const struct window_event *event) {
     switch (event->key) {
@@ -138,10 +166,7 @@ static bool take_edit_key(struct live *live, const struct window_event *event) {
     case WINDOW_ESCAPE:
         if (live->grabbed)
             return false;
-        live->selection.kind = SELECTED_NOTHING;
-        live->tool = TOOL_NONE;
-        live->story[0] = '\0';
-        live->over_dirty = true;
+        put_away(live);
         return true;
     default:
         return false;
@@ -156,7 +181,10 @@ static void take_key(struct live *live, const struct window_event *event) {
         return;
     switch (event->key) {
     case 'r':
-        live->again = live->moved = true;
+        live_render(live);
+        return;
+    case 'x':
+        live_halt(live, !live->halted);
         return;
     case 'n':
         live->next = true;

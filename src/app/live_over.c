@@ -61,35 +61,38 @@ static void draw_lights(struct live *live, const struct camera_frame *frame) {
 
 /* The menu. */
 
-static int tell_buttons(struct live *live, int y, const char *const *words, int count, bool *used) {
+/* on: by bit, which of them are drawn as chosen. */
+static int tell_buttons(struct live *live, int y, const char *const *words, int count, unsigned on, bool *used) {
     struct panel *panel = &live->panel;
     int scale = panel->paper.scale, x = 2 * scale;
     for (int i = 0; i < count; i++) {
         int width = panel_button_width(panel, words[i]);
         if (x + width > panel->paper.width)
             break;
-        used[i] = panel_button(panel, x, y, words[i], false);
+        used[i] = panel_button(panel, x, y, words[i], on >> i & 1);
         x += width + 2 * scale;
     }
     return x;
 }
 
 static void tell_menu(struct live *live) {
-    static const char *const words[] = {"Render", "Quit", "Save picture", "Save view", "Save changes", "Hide"};
+    static const char *const words[] = {"Render", "Quit", "Stop", "Save picture", "Save view", "Save changes", "Hide"};
     struct panel *panel = &live->panel;
-    bool used[6] = {false};
+    bool used[7] = {false};
     panel_ground(panel, 0, 0, panel->paper.width, 15 * panel->paper.scale);
-    (void)tell_buttons(live, 2 * panel->paper.scale, words, 6, used);
-    if (used[0] && live->block)
-        live->again = live->moved = true;
+    (void)tell_buttons(live, 2 * panel->paper.scale, words, 7, live->halted ? 1 << 2 : 0, used);
+    if (used[0])
+        live_render(live);
     live->quit = live->quit || used[1];
     if (used[2])
+        live_halt(live, !live->halted);
+    if (used[3])
         live->wish = LIVE_SAVE;
-    else if (used[3] && live->block)
+    else if (used[4] && live->block)
         live->wish = LIVE_RECORD;
-    else if (used[4])
+    else if (used[5])
         live->wish = LIVE_CHANGES;
-    live->bare = live->bare || used[5];
+    live->bare = live->bare || used[6];
 }
 
 /* Undoing, adding, exposure: a second row. */
@@ -100,7 +103,7 @@ static void tell_work(struct live *live) {
     int scale = panel->paper.scale, y = 17 * scale, wide = 10 * PAPER_CELL * scale;
     bool used[8] = {false};
     panel_ground(panel, 0, 15 * scale, panel->paper.width, 15 * scale);
-    int x = tell_buttons(live, y, words, 8, used);
+    int x = tell_buttons(live, y, words, 8, 0, used);
     if (used[0] || used[1])
         live_undo(live, used[1]);
     for (int i = 0; i < 5; i++) {

@@ -5,9 +5,15 @@
 #include "app/live.h"
 #include "render/camera.h"
 
+/* live.c: the picture is complete, and nobody wants anything. */
+bool live_is_idle(const struct live *live);
+
 /* live_input.c */
 void live_take_event(struct live *live, const struct window_event *event);
 void live_change_view(struct live *live); /* the camera was moved */
+/* Nothing is rendered or built any more, and what is shown stays; or it goes on. */
+void live_halt(struct live *live, bool on);
+void live_render(struct live *live); /* again, from coarse to fine */
 
 /* live_edit.c */
 /* A click on the picture, at pixels of the window: a light that shows there is selected, else the child is asked. */

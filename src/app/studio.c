@@ -14,7 +14,8 @@ struct at_work {
     struct studio *studio;
     struct change_list changes;
     struct changed_scene changed;
-    bool stale; /* the world is not that of the changes */
+    bool stale; /* the world is not that of the changes, or there is none */
+    bool told;  /* the world was told of for the first time */
     struct live_view view;
     double build_seconds;
 };
@@ -59,14 +60,9 @@ static struct box finite_bounds(const struct world *world) {
     return bounds;
 }
 
-static bool everything_cancelled(const struct studio *studio) {
-    return atomic_load(&studio->services->control->cancel) == CANCEL_ALL;
-}
-
-/* The wish to stop a pass is used up; that to stop everything stays. */
-static void forget_stop(const struct studio *studio) {
-    int stop = CANCEL_PASS;
-    (void)atomic_compare_exchange_strong(&studio->services->control->cancel, &stop, CANCEL_NOTHING);
+/* The wish to stop is the supervisor's: it takes it back before it sends the next order. */
+bool studio_was_stopped(const struct control *control, const struct error *error) {
+    return error->kind == ERROR_CANCELLED && atomic_load(&control->cancel) != CANCEL_ALL;
 }
 
 static bool make_pass(struct at_work *work, struct picture_report *report, struct error *error) {
@@ -75,13 +71,11 @@ static bool make_pass(struct at_work *work, struct picture_report *report, struc
     struct film film;
     double begun = progress_clock();
     set_pass(&job, studio->job, &work->view, studio->asked, &film, studio->job->film->pixels);
-    forget_stop(studio);
     report->rays = (struct render_statistics){.build_seconds = work->build_seconds};
     bool ok = render_run(&job, studio->pool, &report->rays, error);
-    report->stopped = !ok && error->kind == ERROR_CANCELLED && !everything_cancelled(studio);
+    report->stopped = !ok && studio_was_stopped(studio->services->control, error);
     if (!ok && !report->stopped)
         return false;
-    forget_stop(studio);
     pool_reset_cancel(studio->pool);
     report->rays.render_seconds = progress_clock() - begun;
     studio->fill(studio->context, &film, report);
@@ -103,11 +97,22 @@ static bool build_again(struct at_work *work, struct error *error) {
     const struct render_request *request = studio->request;
     bool over = work->changes.count > 0;
     double begun = progress_clock();
-    work->stale = false;
     bool ok = studio->build(studio->context, over ? work->changed.lights : request->lights,
                             over ? work->changed.light_count : request->light_count, error);
     work->build_seconds = progress_clock() - begun;
+    work->stale = !ok;
+    pool_reset_cancel(studio->pool);
     return ok;
+}
+
+/* The world of the changes; where people stop its building it stays stale, and `news` says so. False: an error. */
+static bool need_world(struct at_work *work, struct studio_news *news, struct error *error) {
+    if (!work->stale || build_again(work, error))
+        return true;
+    news->unbuilt = studio_was_stopped(work->studio->services->control, error);
+    if (news->unbuilt)
+        news->kind = NEWS_CHANGED;
+    return news->unbuilt;
 }
 
 static bool change_scene(struct at_work *work, const struct studio_order *order, struct studio_news *news,
@@ -125,9 +130,11 @@ static bool change_scene(struct at_work *work, const struct studio_order *order,
                           request->light_count, studio->warn, studio->context, &work->changed, error))
         return false;
     work->stale = work->stale || !change_keeps_world(&order->change);
-    if (work->stale && !order->more && !build_again(work, error))
+    if (!order->more && !need_world(work, news, error))
         return false;
-    tell_lights(work, news);
+    news->unbuilt = work->stale;
+    if (!work->stale)
+        tell_lights(work, news);
     return true;
 }
 
@@ -159,9 +166,27 @@ static bool tell_story(struct at_work *work, const struct studio_order *order, s
     return inspect_pixels(&picture, pixel, 1, false, studio->pool, &sheet, error);
 }
 
+static void tell_world(struct at_work *work, struct studio_news *news) {
+    const struct node *root = work->studio->request->root;
+    news->kind = NEWS_BUILT;
+    news->added = work->studio->request->added;
+    news->report.bounds = finite_bounds(work->studio->world);
+    news->root = root->serial;
+    news->world_from_root = node_parent_from_node(root).forward;
+    pick_words(news->root_name, root->name);
+    tell_lights(work, news);
+    work->told = true;
+}
+
 static bool obey(struct at_work *work, const struct studio_order *order, struct studio_news *news,
                  struct error *error) {
     struct render_job job;
+    if (order->kind != ORDER_CHANGE && (!need_world(work, news, error) || news->unbuilt))
+        return news->unbuilt;
+    if (order->kind != ORDER_CHANGE && !work->told) {
+        tell_world(work, news);
+        return true;
+    }
     switch (order->kind) {
     case ORDER_PASS:
         news->kind = NEWS_PASS;
@@ -184,16 +209,13 @@ static bool obey(struct at_work *work, const struct studio_order *order, struct 
 
 static bool work_on(struct at_work *work, struct picture_report *report, struct error *error) {
     struct studio *studio = work->studio;
-    struct studio_news news = {.kind = NEWS_BUILT, .added = studio->request->added};
+    struct studio_news news = {.kind = NEWS_CHANGED, .report = *report, .unbuilt = work->stale};
     struct studio_order order;
-    report->bounds = finite_bounds(studio->world);
-    news.report = *report;
-    const struct node *root = studio->request->root;
-    news.root = root->serial;
-    news.world_from_root = node_parent_from_node(root).forward;
-    pick_words(news.root_name, root->name);
-    tell_lights(work, &news);
+    if (!work->stale)
+        tell_world(work, &news);
     for (;;) {
+        if (news.kind == NEWS_BUILT)
+            report->bounds = news.report.bounds;
         if (!studio->services->news(studio->services->context, &news, &order, error))
             return false;
         if (order.kind == ORDER_END)
@@ -206,8 +228,9 @@ static bool work_on(struct at_work *work, struct picture_report *report, struct 
     }
 }
 
-bool studio_run(struct studio *studio, struct picture_report *report, double build_seconds, struct error *error) {
-    struct at_work work = {.studio = studio, .build_seconds = build_seconds};
+bool studio_run(struct studio *studio, bool built, struct picture_report *report, double build_seconds,
+                struct error *error) {
+    struct at_work work = {.studio = studio, .stale = !built, .build_seconds = build_seconds};
     bool ok = work_on(&work, report, error);
     changes_take_off(&work.changed);
     change_list_destroy(&work.changes);

@@ -17,13 +17,17 @@ struct studio {
     struct render_job *job; /* as the script wants it; its world is the one to use */
     struct world *world;
     void *context; /* of the functions below */
-    /* Builds job->world again with these lights. False: there is none. */
+    /* Builds job->world again with these lights. False: there is none; its building can be stopped as a pass can. */
     bool (*build)(void *context, const struct light *lights, uint32_t light_count, struct error *error);
     void (*fill)(void *context, const struct film *film, struct picture_report *report);
     void (*warn)(void *context, const char *text);
 };
 
-/* Until people are done with the picture. False: the window was closed, or an error. */
-bool studio_run(struct studio *studio, struct picture_report *report, double build_seconds, struct error *error);
+/* Until people are done with the picture. built: the world is there; else its building was stopped by people who may
+ * want it later. False: the window was closed, or an error. */
+bool studio_run(struct studio *studio, bool built, struct picture_report *report, double build_seconds,
+                struct error *error);
+/* Whether this is the error of something that was stopped for a while. */
+bool studio_was_stopped(const struct control *control, const struct error *error);
 
 #endif

@@ -263,6 +263,13 @@ static void send_answer(struct supervisor *supervisor, enum frame_kind kind, boo
         supervisor->broken = true;
 }
 
+/* The wish to stop a pass is used up; that to stop everything stays. To be called while the child waits for an answer:
+ * a wish that comes later is one to stop what it will do then. */
+static void forget_stop(const struct supervisor *supervisor) {
+    int stop = CANCEL_PASS;
+    (void)atomic_compare_exchange_strong(&supervisor->control->cancel, &stop, CANCEL_NOTHING);
+}
+
 static void answer_begin(struct supervisor *supervisor, const struct frame *frame) {
     struct desk *desk = &supervisor->desk;
     struct error error = {0};
@@ -276,11 +283,13 @@ static void answer_begin(struct supervisor *supervisor, const struct frame *fram
         desk_abandon(desk);
         film = ok = false;
     }
+    forget_stop(supervisor);
     send_answer(supervisor, FRAME_FILM, ok, already, &error, film ? desk->current.memory.descriptor : -1);
 }
 
 static void send_order(struct supervisor *supervisor, const struct studio_order *order) {
     supervisor->live.waiting = false;
+    forget_stop(supervisor);
     if (!channel_send(&supervisor->channel, FRAME_ORDER, order, sizeof *order, -1))
         supervisor->broken = true;
 }

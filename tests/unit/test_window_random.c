@@ -94,6 +94,7 @@ static struct window_event random_key(struct crowd *crowd) {
                                '+',
                                '-',
                                'f',
+                               'x',
                                WINDOW_SPACE,
                                WINDOW_ESCAPE,
                                WINDOW_SHIFT,
