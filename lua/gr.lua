@@ -1153,17 +1153,45 @@ function gr.change_add(name, serial, shape, colour, source) end
 ---@overload fun(fields: gr.change_material.fields)
 function gr.change_material(serial, colour) end
 
+---@class gr.change_look.fields
+---@field serial integer serial (a whole number, 0 to 4294967295): Which material, by order of creation: the first is 1.
+---@field part 'kd'|'ks'|'shininess'|'reflect'|'roughness'|'refract'|'ior'|'emission'|'absorption' part ('kd'|'ks'|'shininess'|'reflect'|'roughness'|'refract'|'ior'|'emission'|'absorption'): What of its base, by the name that gr.material has for it.
+---@field value number|number[] value (a number or a table of numbers): Three numbers for a colour, else one.
+
+---Changes any part of the base of a material in every picture from here on.
+---@param serial integer serial (a whole number, 0 to 4294967295): Which material, by order of creation: the first is 1.
+---@param part 'kd'|'ks'|'shininess'|'reflect'|'roughness'|'refract'|'ior'|'emission'|'absorption' part ('kd'|'ks'|'shininess'|'reflect'|'roughness'|'refract'|'ior'|'emission'|'absorption'): What of its base, by the name that gr.material has for it.
+---@param value number|number[] value (a number or a table of numbers): Three numbers for a colour, else one.
+---@overload fun(fields: gr.change_look.fields)
+function gr.change_look(serial, part, value) end
+
+---@class gr.change_own.fields
+---@field name string name (a string): Name of the node; a node of another name is not meant.
+---@field serial integer serial (a whole number, 0 to 4294967295): Which one, by order of creation: the first is 0, what was added in a window counts down from 4294967295.
+---@field like? integer like (a whole number, 0 to 4294967295; default 0): A material by order of creation, for a shape that has none itself; 0: plain gray.
+
+---Gives a shape a material of its own in every picture from here on: a copy of the one it has. The first is numbered 2147483647, the next ones count down.
+---@param name string name (a string): Name of the node; a node of another name is not meant.
+---@param serial integer serial (a whole number, 0 to 4294967295): Which one, by order of creation: the first is 0, what was added in a window counts down from 4294967295.
+---@param like? integer like (a whole number, 0 to 4294967295; default 0): A material by order of creation, for a shape that has none itself; 0: plain gray.
+---@overload fun(fields: gr.change_own.fields)
+function gr.change_own(name, serial, like) end
+
 ---@class gr.change_light.fields
 ---@field number integer number (a whole number, 1 to 4294967295): Its place in the list of gr.render, from 1.
 ---@field move gr.triple move (a table of 3 numbers): The way it is moved.
 ---@field factor? gr.triple factor (a table of 3 numbers; default {1, 1, 1}): What its colour is multiplied by.
+---@field linear? number|number[] linear (a number or a table of numbers; default none): Three rows of a matrix, 9 numbers: how it is turned and sized about its place.
+---@field colour? gr.triple colour (a colour {r, g, b}; default its own): Another colour, before it is multiplied.
 
----Moves a light of every picture from here on, and makes it brighter or darker.
+---Moves a light of every picture from here on, turns it and makes it larger or smaller, brighter or darker.
 ---@param number integer number (a whole number, 1 to 4294967295): Its place in the list of gr.render, from 1.
 ---@param move gr.triple move (a table of 3 numbers): The way it is moved.
 ---@param factor? gr.triple factor (a table of 3 numbers; default {1, 1, 1}): What its colour is multiplied by.
+---@param linear? number|number[] linear (a number or a table of numbers; default none): Three rows of a matrix, 9 numbers: how it is turned and sized about its place.
+---@param colour? gr.triple colour (a colour {r, g, b}; default its own): Another colour, before it is multiplied.
 ---@overload fun(fields: gr.change_light.fields)
-function gr.change_light(number, move, factor) end
+function gr.change_light(number, move, factor, linear, colour) end
 
 ---@class gr.change_delete_light.fields
 ---@field number integer number (a whole number, 1 to 4294967295): Its place in the list of gr.render, from 1.

@@ -84,11 +84,15 @@ struct live_view {
     bool own;             /* the camera, lens and motion of the script */
 };
 
+/* Lights of a scene are told so many at a time. */
 enum { TOLD_LIGHTS = 32 };
 struct told_light {
     uint32_t kind; /* an enum light_kind */
     bool placed;   /* it has a position */
     struct vec3 position, colour;
+    struct vec3 direction, edge1, edge2; /* as in struct light, zero where it has none */
+    double radius, cos_outer;
+    bool moves, turns, sizes; /* what can be done with it */
 };
 
 enum studio_news_kind {
@@ -96,7 +100,8 @@ enum studio_news_kind {
     NEWS_PASS,
     NEWS_PICKED,
     NEWS_CHANGED,
-    NEWS_STORY
+    NEWS_STORY,
+    NEWS_LIGHTS
 };
 /* What the child has done for a window; it waits for an order. */
 struct studio_news {
@@ -104,22 +109,25 @@ struct studio_news {
     struct picture_report report; /* of BUILT (its bounds) and PASS */
     struct picked picked;
     uint32_t added; /* of BUILT: nodes that the script has added by gr.change_add */
+    uint32_t owned; /* of BUILT: materials of gr.change_own */
     uint32_t root;  /* of BUILT: the serial of the root, and the space of its children */
     char root_name[PICK_WORDS];
     struct affine world_from_root;
-    uint32_t light_count; /* of BUILT and CHANGED: the lights, those in `lights` and others */
+    uint32_t light_count; /* of BUILT, CHANGED and LIGHTS: all of them; those told begin with first_light, from 0 */
+    uint32_t first_light;
     struct told_light lights[TOLD_LIGHTS];
     char text[512]; /* of CHANGED: what could not be done, or empty */
     bool unbuilt;   /* of CHANGED: the building of the world was stopped; the next pass begins with it */
 };
 
-enum studio_order_kind { ORDER_END, ORDER_PASS, ORDER_PICK, ORDER_CHANGE, ORDER_STORY };
+enum studio_order_kind { ORDER_END, ORDER_PASS, ORDER_PICK, ORDER_CHANGE, ORDER_STORY, ORDER_LIGHTS };
 struct studio_order {
     enum studio_order_kind kind;
     bool quit;             /* of END: the window was closed */
     struct live_view view; /* of PASS, and from where PICK and STORY look */
     double x, y;           /* of PICK and STORY: pixels of the whole picture */
     uint32_t up;           /* of PICK: nodes above the one that is hit */
+    uint32_t first_light;  /* of CHANGE and LIGHTS: tell them from this one on, counted from 0 */
     struct change change;
     bool present; /* of CHANGE: it is made; else it is undone */
     bool more;    /* of CHANGE: another one follows at once */

@@ -88,6 +88,19 @@ static void tell_numbers(char *out, size_t size, const double *numbers, int coun
     (void)snprintf(out + used, size - used, "}");
 }
 
+static void tell_light(const struct change *c, char *line, size_t size) {
+    char move[120], factor[120], turn[300] = "nil", colour[120] = "";
+    bool more = c->turns || c->colours;
+    tell_numbers(move, sizeof move, c->numbers, 3);
+    tell_numbers(factor, sizeof factor, c->numbers + 3, 3);
+    if (c->turns)
+        tell_numbers(turn, sizeof turn, c->numbers + TURN_AT, TURN_NUMBERS);
+    if (c->colours)
+        tell_numbers(colour, sizeof colour, c->numbers + COLOUR_AT, 3);
+    (void)snprintf(line, size, "gr.change_light(%u, %s, %s%s%s%s%s)\n", c->serial, move, factor, more ? ", " : "",
+                   more ? turn : "", c->colours ? ", " : "", colour);
+}
+
 static void tell_change(const struct change *c, char *line, size_t size) {
     char name[8 * CHANGE_NAME], a[400], b[120];
     quote(name, sizeof name, c->name);
@@ -104,14 +117,18 @@ static void tell_change(const struct change *c, char *line, size_t size) {
         (void)snprintf(line, size, "gr.change_add(%s, %u, '%s', %s, %u)\n", name, c->serial, added_kind_name(c->added),
                        a, c->source);
         return;
+    case CHANGE_OWN:
+        (void)snprintf(line, size, "gr.change_own(%s, %u, %u)\n", name, c->serial, c->source);
+        return;
     case CHANGE_MATERIAL:
-        tell_numbers(a, sizeof a, c->numbers, 3);
-        (void)snprintf(line, size, "gr.change_material(%u, %s)\n", c->serial, a);
+        tell_numbers(a, sizeof a, c->numbers, look_part_count(c->part));
+        if (c->part == LOOK_KD)
+            (void)snprintf(line, size, "gr.change_material(%u, %s)\n", c->serial, a);
+        else
+            (void)snprintf(line, size, "gr.change_look(%u, '%s', %s)\n", c->serial, look_part_name(c->part), a);
         return;
     case CHANGE_LIGHT:
-        tell_numbers(a, sizeof a, c->numbers, 3);
-        tell_numbers(b, sizeof b, c->numbers + 3, 3);
-        (void)snprintf(line, size, "gr.change_light(%u, %s, %s)\n", c->serial, a, b);
+        tell_light(c, line, size);
         return;
     case CHANGE_DARK:
         (void)snprintf(line, size, "gr.change_delete_light(%u)\n", c->serial);

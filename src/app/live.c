@@ -114,6 +114,7 @@ bool live_begin(struct live *live, const struct window_driver *driver, const str
                           .pass_began = now,
                           .stepped = now,
                           .shown = now};
+    mem_free(before.lights);
     keep_window(live, &before);
     (void)snprintf(live->name, sizeof live->name, "%s", name);
     walk_begin(&live->walk, &request->camera, &unknown);
@@ -131,6 +132,7 @@ bool live_begin(struct live *live, const struct window_driver *driver, const str
 void live_end(struct live *live) {
     close_window(live);
     forget_work(live);
+    mem_free(live->lights);
     *live = (struct live){.control = live->control};
 }
 
@@ -193,6 +195,7 @@ void live_take_news(struct live *live, const struct studio_news *news, double no
         walk_measure(&live->walk, &news->report.bounds);
         live->moved = true;
         live->scene = *news;
+        live_take_lights(live, news);
         return;
     case NEWS_PASS:
         end_pass(live, &news->report, now);
@@ -201,13 +204,14 @@ void live_take_news(struct live *live, const struct studio_news *news, double no
         live_take_picked(live, &news->picked);
         return;
     case NEWS_CHANGED:
-        if (!news->unbuilt) {
-            live->scene.light_count = news->light_count;
-            memcpy(live->scene.lights, news->lights, sizeof live->scene.lights);
-        }
+        if (!news->unbuilt || news->light_count > 0)
+            live_take_lights(live, news);
         if (news->text[0] != '\0')
             live_tell(live, news->text);
         live->moved = true;
+        return;
+    case NEWS_LIGHTS:
+        live_take_lights(live, news);
         return;
     case NEWS_STORY:
         return;
@@ -238,8 +242,12 @@ static void order_change(struct live *live) {
     struct change target = live->pending.items[0];
     const struct change *now = change_list_find(&live->edits.now, &target);
     (void)change_list_set(&live->pending, &target, false);
-    live->order = (struct studio_order){
-        .kind = ORDER_CHANGE, .change = now ? *now : target, .present = now != NULL, .more = live->pending.count > 0};
+    bool light = target.kind == CHANGE_LIGHT || target.kind == CHANGE_DARK;
+    live->order = (struct studio_order){.kind = ORDER_CHANGE,
+                                        .change = now ? *now : target,
+                                        .present = now != NULL,
+                                        .more = live->pending.count > 0,
+                                        .first_light = light ? target.serial - 1 : 0};
 }
 
 static void order_pick(struct live *live) {
@@ -274,6 +282,8 @@ static enum live_order next_order(struct live *live, double now) {
     } else if (live->moved) {
         live->again = false;
         begin_pass(live, divide, true, false, now);
+    } else if (live->lights_known < live->light_count) {
+        live->order = (struct studio_order){.kind = ORDER_LIGHTS, .first_light = live->lights_known};
     } else if (!live->view.plain && differ(live->view.exposure, live->request.exposure)) {
         begin_pass(live, 1, false, false, now);
     } else if (live->partial) {

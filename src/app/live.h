@@ -1,8 +1,8 @@
 /* A picture in a window: shows it while it is made, lets people walk and change things, and decides what the child does
  * next. The child renders one pass after the other (coarse ones first, and while somebody walks) and asks after each
  * what comes next; the answer is an order. Neither waits for the other: the window is drawn from the film as it is.
- * live.c decides, live_input.c reads what people do, live_edit.c changes the scene, live_draw.c and live_over.c draw.
- */
+ * live.c decides, live_input.c reads what people do, live_edit.c and live_lights.c change the scene, live_draw.c,
+ * live_over.c and live_panel.c draw. */
 #ifndef GRAY_APP_LIVE_H
 #define GRAY_APP_LIVE_H
 
@@ -69,8 +69,13 @@ struct live {
     enum live_order wish;
 
     struct edits edits;
-    struct change_list pending;        /* what the child has not been told yet: what holds now for these targets */
-    struct studio_news scene;          /* lights and root, as the child told last */
+    struct change_list pending; /* what the child has not been told yet: what holds now for these targets */
+    struct studio_news scene;   /* lights and root, as the child told last */
+    struct told_light *lights;  /* owned; those from lights_known on are not known yet */
+    uint32_t light_room, light_count, lights_known;
+    double light_top;  /* of the sliders of a light's colour */
+    bool lists_lights; /* a list of them is shown, from this one on: */
+    uint32_t list_first;
     struct selection selection, asked; /* asked: a click that the child is to answer */
     bool asks;
     bool asks_story;         /* of the pixel under the mouse */

@@ -8,8 +8,6 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MARKER = 8 }; /* how near a click must be to a light, dots of letters */
-
 /* Seeing. */
 
 bool live_frame(const struct live *live, struct camera_frame *frame) {
@@ -90,12 +88,6 @@ static struct change node_change(const struct live *live, enum change_kind kind)
     return change;
 }
 
-static struct change light_change(const struct live *live, enum change_kind kind) {
-    struct change change = {.kind = kind, .serial = live->selection.light, .numbers = {0, 0, 0, 1, 1, 1}};
-    const struct change *now = change_list_find(&live->edits.now, &change);
-    return now ? *now : change;
-}
-
 static bool map_of(const struct change *change, struct transform *out) {
     struct affine matrix;
     memcpy(matrix.m, change->numbers, sizeof matrix.m);
@@ -145,28 +137,19 @@ static struct vec3 pivot(const struct live *live) {
     return live_moved_point(live, picked->has_box ? sum : picked->position);
 }
 
-static struct vec3 light_position(const struct live *live) {
-    uint32_t i = live->selection.light - 1;
-    return i < TOLD_LIGHTS ? live->scene.lights[i].position : vec3_make(0, 0, 0);
-}
-
 static void move_by(struct live *live, struct vec3 way) {
-    if (live->selection.kind == SELECTED_NODE) {
-        struct transform map = transform_translate(way);
+    struct transform map = transform_translate(way);
+    if (live->selection.kind == SELECTED_NODE)
         apply_in_world(live, &map);
-        return;
-    }
-    uint32_t i = live->selection.light - 1;
-    struct change change = light_change(live, CHANGE_LIGHT);
-    put(change.numbers, vec3_add(three(change.numbers), way));
-    live_make(live, &change, true, live->joins);
-    live->joins = true;
-    if (i < TOLD_LIGHTS) /* until the child says the same */
-        live->scene.lights[i].position = vec3_add(live->scene.lights[i].position, way);
+    else
+        live_light_move(live, way);
 }
 
 static struct vec3 place_of_selection(const struct live *live) {
-    return live->selection.kind == SELECTED_LIGHT ? light_position(live) : pivot(live);
+    const struct told_light *light = live_light(live, live->selection.light);
+    if (live->selection.kind == SELECTED_LIGHT)
+        return light && light->placed ? light->position : live->walk.centre;
+    return pivot(live);
 }
 
 /* About a point: there, the linear part, and back. */
@@ -184,7 +167,7 @@ void live_drag(struct live *live, double dx, double dy) {
     double depth = vec3_dot(vec3_sub(at, frame.eye), frame.forward), pixel = vec3_length(frame.right) / zoom(live);
     if (live->request.lens.projection != PROJECTION_ORTHOGRAPHIC)
         pixel *= fabs(depth);
-    if (live->tool == TOOL_MOVE || live->selection.kind == SELECTED_LIGHT) {
+    if (live->tool == TOOL_MOVE) {
         struct vec3 way = vec3_scale(frame.unit_right, dx * pixel);
         move_by(live, vec3_add_scaled(way, frame.unit_down, dy * pixel));
         return;
@@ -200,6 +183,10 @@ void live_drag(struct live *live, double dx, double dy) {
     } else {
         map = transform_scale(vec3_all(el_exp(-2 * dy / live->place.shown_height)));
     }
+    if (live->selection.kind == SELECTED_LIGHT) {
+        live_light_turn(live, &map, live->tool == TOOL_SIZE);
+        return;
+    }
     map = about(at, &map);
     apply_in_world(live, &map);
 }
@@ -213,26 +200,6 @@ void live_push(struct live *live, double steps) {
 }
 
 /* Selecting. */
-
-static bool near_light(const struct live *live, double x, double y, uint32_t *number) {
-    struct camera_frame frame;
-    double best = MARKER * live->panel.paper.scale, u, v;
-    bool found = false;
-    if (!live_frame(live, &frame))
-        return false;
-    for (uint32_t i = 0; i < live->scene.light_count && i < TOLD_LIGHTS; i++) {
-        const struct told_light *light = &live->scene.lights[i];
-        if (!light->placed || !live_project(live, &frame, light->position, &u, &v))
-            continue;
-        double apart = sqrt((u - x) * (u - x) + (v - y) * (v - y));
-        if (apart < best) {
-            best = apart;
-            *number = i + 1;
-            found = true;
-        }
-    }
-    return found;
-}
 
 /* From pixels of the window to those of the whole picture. False: beside it. */
 static bool pixel_at(const struct live *live, double x, double y, double *u, double *v) {
@@ -248,8 +215,8 @@ void live_click(struct live *live, double x, double y) {
     uint32_t number;
     live->joins = false;
     live->over_dirty = true;
-    if (!live->bare && near_light(live, x, y, &number)) {
-        live->selection = (struct selection){.kind = SELECTED_LIGHT, .light = number};
+    if (!live->bare && live_near_light(live, x, y, &number)) {
+        live_select_light(live, number);
         return;
     }
     /* The middle of the pixel: what is told is what its first ray meets. */
@@ -295,11 +262,12 @@ void live_delete(struct live *live) {
     live->joins = false;
     if (live->selection.kind == SELECTED_NOTHING)
         return;
-    if (live->selection.kind == SELECTED_LIGHT)
-        change = light_change(live, CHANGE_DARK);
-    else
+    if (live->selection.kind == SELECTED_LIGHT) {
+        live_light_delete(live);
+    } else {
         change = node_change(live, CHANGE_GONE);
-    live_make(live, &change, true, false);
+        live_make(live, &change, true, false);
+    }
     live->selection.kind = SELECTED_NOTHING;
 }
 
@@ -311,7 +279,7 @@ static uint32_t count_of(const struct live *live, enum change_kind kind) {
 }
 
 /* Where new things go: where somebody clicked last, or before the camera. */
-static struct vec3 new_place(const struct live *live) {
+struct vec3 live_new_place(const struct live *live) {
     if (live->selection.kind == SELECTED_NODE)
         return live_moved_point(live, live->selection.picked.position);
     struct vec3 eye = live->view.camera.eye, ahead = vec3_normalize(live->view.camera.view);
@@ -378,7 +346,7 @@ void live_add(struct live *live, enum added_kind kind) {
         add_copy(live);
         return;
     }
-    struct vec3 place = new_place(live);
+    struct vec3 place = live_new_place(live);
     double size = 0.1 * vec3_length(vec3_sub(place, live->view.camera.eye));
     struct change change = {.kind = CHANGE_ADD,
                             .serial = live->scene.root,
@@ -405,20 +373,6 @@ void live_add(struct live *live, enum added_kind kind) {
     live->tool = TOOL_MOVE;
 }
 
-void live_add_light(struct live *live) {
-    struct change change = {.kind = CHANGE_ADD_LIGHT, .number = count_of(live, CHANGE_ADD_LIGHT)};
-    struct vec3 place = new_place(live), eye = live->view.camera.eye;
-    put(change.numbers, vec3_add_scaled(place, vec3_sub(eye, place), 0.5));
-    put(change.numbers + 3, vec3_all(0.5));
-    live_make(live, &change, true, false);
-    live->selection = (struct selection){.kind = SELECTED_LIGHT, .light = live->scene.light_count + 1};
-    if (live->scene.light_count < TOLD_LIGHTS) /* until the child says the same */
-        live->scene.lights[live->scene.light_count] =
-            (struct told_light){.placed = true, .position = three(change.numbers), .colour = vec3_all(0.5)};
-    live->scene.light_count++;
-    live->tool = TOOL_MOVE;
-}
-
 /* Looks. */
 
 static struct change material_change(const struct live *live) {
@@ -439,18 +393,6 @@ void live_colour(struct live *live, struct vec3 colour) {
     if (change.serial == 0)
         return;
     put(change.numbers, colour);
-    live_make(live, &change, true, live->joins);
-    live->joins = true;
-}
-
-double live_stops_now(const struct live *live) {
-    struct change change = light_change(live, CHANGE_LIGHT);
-    return el_log2(change.numbers[3]);
-}
-
-void live_brighten(struct live *live, double stops) {
-    struct change change = light_change(live, CHANGE_LIGHT);
-    put(change.numbers + 3, vec3_all(el_exp2(stops)));
     live_make(live, &change, true, live->joins);
     live->joins = true;
 }

@@ -153,6 +153,14 @@ static bool take_edit_key(struct live *live, const struct window_event *event) {
     case 'p':
         live_ask_story(live, live->panel.mouse_x, live->panel.mouse_y);
         return true;
+    case ',':
+    case '.':
+        live_next_light(live, event->key == ',');
+        return true;
+    case 'i':
+        live->lists_lights = !live->lists_lights;
+        live->over_dirty = true;
+        return true;
     case WINDOW_PAGE_DOWN:
         live->story_line += 10;
         live->over_dirty = true;

@@ -27,21 +27,38 @@ void live_make(struct live *live, const struct change *change, bool present, boo
 void live_undo(struct live *live, bool again);
 void live_delete(struct live *live);
 void live_add(struct live *live, enum added_kind kind);
-void live_add_light(struct live *live);
 void live_colour(struct live *live, struct vec3 colour); /* of the material that was hit */
-void live_brighten(struct live *live, double stops);     /* the light, to so many above the script's */
 void live_expose(struct live *live, double stops);
 /* The child is told everything anew. */
 void live_resend(struct live *live);
 /* What holds now. */
 struct vec3 live_colour_now(const struct live *live);
-double live_stops_now(const struct live *live);
 /* A place on what is selected, as it was when it was picked: where it is now. */
 struct vec3 live_moved_point(const struct live *live, struct vec3 point);
 /* The camera of the last pass; false: it cannot be. */
 bool live_frame(const struct live *live, struct camera_frame *frame);
+/* Where new things go: where somebody clicked last, or before the camera. */
+struct vec3 live_new_place(const struct live *live);
 /* From a place in the world to pixels of the window; false: it is not to be seen. */
 bool live_project(const struct live *live, const struct camera_frame *frame, struct vec3 point, double *x, double *y);
+
+/* live_lights.c; lights are numbered from 1 */
+void live_take_lights(struct live *live, const struct studio_news *news);
+const struct told_light *live_light(const struct live *live, uint32_t number); /* NULL: nothing is known of it */
+/* Where it is marked, pixels of the window. False: nowhere. */
+bool live_light_mark(const struct live *live, const struct camera_frame *frame, uint32_t number, double *x, double *y);
+bool live_near_light(const struct live *live, double x, double y, uint32_t *number);
+void live_select_light(struct live *live, uint32_t number);
+void live_next_light(struct live *live, bool back);
+/* Of the one that is selected; what it cannot do changes nothing. */
+void live_light_move(struct live *live, struct vec3 way);
+void live_light_turn(struct live *live, const struct transform *map, bool sizes); /* turned by the map, or sized */
+void live_light_delete(struct live *live);
+void live_add_light(struct live *live);
+void live_brighten(struct live *live, double stops); /* to so many above the script's */
+double live_stops_now(const struct live *live);
+struct vec3 live_light_colour_now(const struct live *live); /* before it is brightened */
+void live_light_colour(struct live *live, struct vec3 colour);
 
 /* live_draw.c */
 struct figures {
@@ -53,6 +70,12 @@ void live_redraw(struct live *live);     /* the canvas, in another exposure */
 void live_show(struct live *live, double now);
 /* Where the picture goes when the window has so many pixels. False: no memory for what is drawn over it. */
 bool live_resize(struct live *live, int width, int height, double density);
+
+/* live_panel.c */
+void live_draw_edge(struct live *live, const struct camera_frame *frame, struct vec3 a, struct vec3 b, struct ink ink);
+void live_draw_lights(struct live *live, const struct camera_frame *frame);
+void live_tell_lights(struct live *live, int top); /* the list, where it is wanted */
+void live_tell_selection(struct live *live, int top);
 
 /* live_over.c: what lies over the picture, and what people do there. */
 void live_tell_over(struct live *live, const struct figures *figures);

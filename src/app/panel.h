@@ -5,7 +5,7 @@
 
 #include "app/paper.h"
 
-enum { PANEL_GROUNDS = 8 };
+enum { PANEL_GROUNDS = 16 };
 
 struct panel {
     struct paper paper;

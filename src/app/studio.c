@@ -82,14 +82,31 @@ static bool make_pass(struct at_work *work, struct picture_report *report, struc
     return true;
 }
 
-static void tell_lights(const struct at_work *work, struct studio_news *news) {
-    const struct world *world = work->studio->world;
-    news->light_count = world->light_count;
-    for (uint32_t i = 0; i < world->light_count && i < TOLD_LIGHTS; i++) {
-        const struct light *light = &world->lights[i];
-        bool placed = light->kind == LIGHT_POINT || light->kind == LIGHT_SPOT || light_has_extent(light);
-        news->lights[i] = (struct told_light){(uint32_t)light->kind, placed, light->position, light->colour};
-    }
+/* The light as changed, which may not be built yet; of a mesh the world, if there is one, knows where it is. */
+static void tell_light(const struct world *world, const struct light *light, uint32_t number, struct told_light *out) {
+    const struct light_mesh *mesh = world && number < world->light_count ? world->lights[number].mesh : NULL;
+    bool pointed = light->kind == LIGHT_DIRECTIONAL || light->kind == LIGHT_SPOT || light->kind == LIGHT_DISC;
+    *out = (struct told_light){.kind = (uint32_t)light->kind,
+                               .placed = light_can_move(light) || (light->kind == LIGHT_MESH && mesh),
+                               .position = light->kind == LIGHT_MESH && mesh ? mesh->centre : light->position,
+                               .colour = light->colour,
+                               .direction = pointed ? light->direction : vec3_all(0),
+                               .edge1 = light->edge1,
+                               .edge2 = light->edge2,
+                               .radius = light->radius,
+                               .cos_outer = light->cos_outer,
+                               .moves = light_can_move(light),
+                               .turns = light_can_turn(light),
+                               .sizes = light_can_size(light)};
+}
+
+static void tell_lights(const struct at_work *work, uint32_t first, struct studio_news *news) {
+    bool over = work->changes.count > 0;
+    const struct light *lights = over ? work->changed.lights : work->studio->request->lights;
+    news->light_count = over ? work->changed.light_count : work->studio->request->light_count;
+    news->first_light = first;
+    for (uint32_t i = 0; i < TOLD_LIGHTS && first < news->light_count && i < news->light_count - first; i++)
+        tell_light(work->stale ? NULL : work->studio->world, &lights[first + i], first + i, &news->lights[i]);
 }
 
 static bool build_again(struct at_work *work, struct error *error) {
@@ -121,6 +138,7 @@ static bool change_scene(struct at_work *work, const struct studio_order *order,
     const struct render_request *request = studio->request;
     news->kind = NEWS_CHANGED;
     if ((unsigned)order->change.kind >= CHANGE_KINDS || (unsigned)order->change.added >= ADDED_KINDS ||
+        (unsigned)order->change.part >= LOOK_PARTS ||
         !change_list_set(&work->changes, &order->change, order->present)) {
         (void)snprintf(news->text, sizeof news->text, "there are too many changes");
         return true;
@@ -133,8 +151,7 @@ static bool change_scene(struct at_work *work, const struct studio_order *order,
     if (!order->more && !need_world(work, news, error))
         return false;
     news->unbuilt = work->stale;
-    if (!work->stale)
-        tell_lights(work, news);
+    tell_lights(work, order->first_light, news);
     return true;
 }
 
@@ -170,11 +187,12 @@ static void tell_world(struct at_work *work, struct studio_news *news) {
     const struct node *root = work->studio->request->root;
     news->kind = NEWS_BUILT;
     news->added = work->studio->request->added;
+    news->owned = work->studio->request->owned;
     news->report.bounds = finite_bounds(work->studio->world);
     news->root = root->serial;
     news->world_from_root = node_parent_from_node(root).forward;
     pick_words(news->root_name, root->name);
-    tell_lights(work, news);
+    tell_lights(work, 0, news);
     work->told = true;
 }
 
@@ -201,6 +219,10 @@ static bool obey(struct at_work *work, const struct studio_order *order, struct 
     case ORDER_STORY:
         news->kind = NEWS_STORY;
         return tell_story(work, order, error);
+    case ORDER_LIGHTS:
+        news->kind = NEWS_LIGHTS;
+        tell_lights(work, order->first_light, news);
+        return true;
     case ORDER_END:
         break;
     }

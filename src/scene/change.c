@@ -16,8 +16,11 @@ const char *added_kind_name(enum added_kind kind) {
 }
 
 /* What tells changes of a kind apart. */
-static uint32_t target_of(const struct change *change) {
-    return change->kind == CHANGE_ADD || change->kind == CHANGE_ADD_LIGHT ? change->number : change->serial;
+static uint64_t target_of(const struct change *change) {
+    if (change->kind == CHANGE_MATERIAL)
+        return (uint64_t)change->serial * LOOK_PARTS + (uint64_t)change->part;
+    bool counted = change->kind == CHANGE_ADD || change->kind == CHANGE_ADD_LIGHT || change->kind == CHANGE_OWN;
+    return counted ? change->number : change->serial;
 }
 
 bool change_same_target(const struct change *a, const struct change *b) {
@@ -25,7 +28,7 @@ bool change_same_target(const struct change *a, const struct change *b) {
 }
 
 bool change_keeps_world(const struct change *change) {
-    return change->kind == CHANGE_MATERIAL;
+    return change->kind == CHANGE_MATERIAL && look_part_keeps_world(change->part);
 }
 
 /* Of the first one that does not come before it. */
@@ -180,6 +183,7 @@ static struct node *begin_node(struct laying *l) {
     struct changed_node *note = &l->out->nodes[l->out->node_count++];
     note->node = node;
     note->end = node->last_child;
+    note->material = node->kind == NODE_GEOMETRY ? node->material : NULL;
     memcpy(&note->before, node, COMMON_PART);
     return node;
 }
@@ -280,33 +284,114 @@ static bool add_node(struct laying *l) {
     return true;
 }
 
-static void colour_material(struct laying *l) {
+static struct material *material_of(const struct laying *l, uint32_t serial) {
     struct material *material = l->scene->last_material;
-    while (material && material->serial != l->change->serial)
+    while (material && material->serial != serial)
         material = material->older;
+    return material;
+}
+
+static void change_material(struct laying *l) {
+    struct material *material = material_of(l, l->change->serial);
     if (!material || material->kind != MATERIAL_PHONG) {
         tell_missing(l, "the material");
         return;
     }
-    l->out->materials[l->out->material_count++] = (struct changed_material){material, material->phong.kd};
-    material->phong.kd = three(l->change->numbers);
+    l->out->materials[l->out->material_count++] = (struct changed_material){material, *material};
+    look_part_set(material, l->change->part, l->change->numbers);
+}
+
+/* Own materials. */
+
+/* What is shown of a shape without a material (world/flatten_material.c). */
+static const struct material plain = {
+    .kind = MATERIAL_PHONG, .depth = 1, .phong = {.kd = {0.5, 0.5, 0.5}, .shininess = 1, .ior = 1}};
+
+/* A chain of as many links, the base a material of the scene. */
+static struct material *copy_links(struct laying *l, const struct material *like) {
+    uint32_t material_count = l->scene->material_count;
+    struct material *first = NULL, *above = NULL;
+    for (const struct material *link = like; link; link = link->base) {
+        struct material *copy = link->base ? arena_alloc(&l->scene->arena, sizeof *copy)
+                                           : scene_material(l->scene, MATERIAL_PHONG, NULL, l->error);
+        l->scene->material_count = material_count;
+        if (!copy) {
+            error_no_memory(l->error, "a material");
+            return NULL;
+        }
+        if (above)
+            above->base = copy;
+        first = first ? first : copy;
+        above = copy;
+    }
+    return first;
+}
+
+/* As `like` is now, link by link. The copy that was made before is used again. */
+static const struct material *own_material(struct laying *l, const struct material *like) {
+    struct own_material *own = l->scene->own;
+    uint32_t serial = OWN_SERIAL - l->change->number;
+    while (own && (own->number != l->change->number || own->like != like))
+        own = own->next;
+    if (!own) {
+        own = arena_alloc(&l->scene->arena, sizeof *own);
+        struct material *first = own ? copy_links(l, like) : NULL;
+        if (!first) {
+            error_no_memory(l->error, "a material");
+            return NULL;
+        }
+        *own = (struct own_material){.number = l->change->number, .like = like, .first = first, .next = l->scene->own};
+        l->scene->own = own;
+    }
+    struct material *other = material_of(l, serial), *copy = own->first;
+    if (other)
+        other->serial = 0;
+    for (const struct material *link = like;; link = link->base) {
+        struct material *base = (struct material *)(uintptr_t)copy->base, *older = copy->older;
+        *copy = *link;
+        copy->base = base;
+        copy->older = older;
+        if (!base)
+            break;
+        copy = base;
+    }
+    copy->serial = serial;
+    return own->first;
+}
+
+static bool give_own(struct laying *l) {
+    struct node *node = begin_node(l);
+    if (!node)
+        return true;
+    if (node->kind != NODE_GEOMETRY) {
+        tell_missing(l, "the shape");
+        return true;
+    }
+    const struct material *like = node->material;
+    if (!like && l->change->source != 0)
+        like = material_of(l, l->change->source);
+    node->material = own_material(l, like ? like : &plain);
+    return node->material != NULL;
 }
 
 static void change_light(struct laying *l) {
+    const double *numbers = l->change->numbers;
     if (l->change->serial < 1 || l->change->serial > l->out->light_count) {
         tell_missing(l, "the light");
         return;
     }
     struct light *light = &l->out->lights[l->change->serial - 1];
-    struct vec3 way = three(l->change->numbers);
     if (l->change->kind == CHANGE_DARK) {
         light->colour = vec3_all(0);
         light->visible = false;
         return;
     }
-    light->position = vec3_add(light->position, way);
-    light->corner = vec3_add(light->corner, way);
-    light->colour = vec3_mul(light->colour, three(l->change->numbers + 3));
+    light_move(light, three(numbers));
+    if (l->change->turns)
+        light_turn(light, numbers + TURN_AT);
+    if (l->change->colours)
+        light->colour = three(numbers + COLOUR_AT);
+    light->colour = vec3_mul(light->colour, three(numbers + 3));
 }
 
 static void add_light(struct laying *l) {
@@ -328,8 +413,10 @@ static bool lay(struct laying *l) {
         break;
     case CHANGE_ADD:
         return add_node(l);
+    case CHANGE_OWN:
+        return give_own(l);
     case CHANGE_MATERIAL:
-        colour_material(l);
+        change_material(l);
         break;
     case CHANGE_LIGHT:
     case CHANGE_DARK:
@@ -372,14 +459,24 @@ void changes_take_off(struct changed_scene *changed) {
     for (uint32_t i = changed->node_count; i-- > 0;) {
         struct changed_node *note = &changed->nodes[i];
         memcpy(note->node, &note->before, COMMON_PART);
+        if (note->node->kind == NODE_GEOMETRY)
+            note->node->material = note->material;
         if (note->end)
             note->end->next = NULL;
     }
     for (uint32_t i = changed->material_count; i-- > 0;)
-        changed->materials[i].material->phong.kd = changed->materials[i].kd;
+        *changed->materials[i].material = changed->materials[i].before;
     mem_free(changed->lights);
     mem_free(changed->nodes);
     mem_free(changed->materials);
     mem_free(changed->added);
     *changed = (struct changed_scene){0};
+}
+
+const struct material *changes_before(const struct changed_scene *changed, const struct material *base) {
+    for (uint32_t i = 0; i < changed->material_count; i++) {
+        if (changed->materials[i].material == base)
+            return &changed->materials[i].before;
+    }
+    return base;
 }

@@ -5,6 +5,7 @@
 #ifndef GRAY_SCENE_CHANGE_H
 #define GRAY_SCENE_CHANGE_H
 
+#include "scene/change_look.h"
 #include "scene/node.h"
 
 /* In the order in which they are made: what is added is there before it is changed. */
@@ -12,16 +13,19 @@ enum change_kind {
     CHANGE_ADD,       /* a new node under another */
     CHANGE_PLACE,     /* of a node: a map after its own, in its parent's space */
     CHANGE_GONE,      /* a node is not drawn */
-    CHANGE_MATERIAL,  /* the colour (kd) of a material's base */
+    CHANGE_OWN,       /* a shape gets a material of its own */
+    CHANGE_MATERIAL,  /* a part of a material's base */
     CHANGE_ADD_LIGHT, /* a point light at the end of the list */
-    CHANGE_LIGHT,     /* a light is moved, its colour multiplied */
+    CHANGE_LIGHT,     /* a light is moved, turned, sized, its colour multiplied or another */
     CHANGE_DARK,      /* a light is taken away */
     CHANGE_KINDS
 };
+enum { TURN_AT = 6, COLOUR_AT = 15 };
+#define OWN_SERIAL (UINT32_MAX / 2)
 enum added_kind { ADDED_SPHERE, ADDED_CUBE, ADDED_CYLINDER, ADDED_CONE, ADDED_TORUS, ADDED_COPY, ADDED_KINDS };
 const char *added_kind_name(enum added_kind kind);
 
-enum { CHANGE_NAME = 64, CHANGE_LIMIT = 4096 };
+enum { CHANGE_NAME = 64, CHANGE_LIMIT = 4096, CHANGE_NUMBERS = 18 };
 
 struct change {
     enum change_kind kind;
@@ -29,10 +33,18 @@ struct change {
     uint32_t serial;
     char name[CHANGE_NAME]; /* of that node, cut; "" fits all */
     enum added_kind added;
-    uint32_t number; /* of what is added, from 0; a node's serial is UINT32_MAX - number */
-    uint32_t source; /* ADDED_COPY: the serial of the node that is shown once more */
-    /* PLACE: 3 rows of 4. ADD, MATERIAL: a colour. LIGHT: a way and three factors. ADD_LIGHT: a place, a colour. */
-    double numbers[12];
+    /* Of what is added, from 0; a node's serial is UINT32_MAX - number. Of OWN, counted apart: the material's serial is
+     * OWN_SERIAL - number. */
+    uint32_t number;
+    /* ADDED_COPY: the serial of the node that is shown once more. OWN: that of the base which the new one is like where
+     * the shape has none itself; 0: plain gray. */
+    uint32_t source;
+    enum look_part part; /* of MATERIAL */
+    bool turns, colours; /* of LIGHT: it has a turn; a colour */
+    /* PLACE: 3 rows of 4. ADD: a colour. MATERIAL: as many as the part has. LIGHT: a way, three factors, and from
+     * TURN_AT on 3 rows of 3, from COLOUR_AT on a colour that takes the place of its own. ADD_LIGHT: a place, a
+     * colour. */
+    double numbers[CHANGE_NUMBERS];
 };
 
 /* Zero value: none. Owner: the caller; change_list_destroy gives it back. */
@@ -55,12 +67,13 @@ typedef void change_warning(void *context, const char *text);
 
 struct changed_node {
     struct node *node;
-    struct node before;     /* its first part, which all kinds have */
-    struct node_child *end; /* its last child before */
+    struct node before;              /* its first part, which all kinds have */
+    struct node_child *end;          /* its last child before */
+    const struct material *material; /* of a shape */
 };
 struct changed_material {
     struct material *material;
-    struct vec3 kd;
+    struct material before;
 };
 /* What is laid over a scene. Owner: the caller; changes_take_off gives everything back. */
 struct changed_scene {
@@ -76,5 +89,7 @@ bool changes_lay_over(const struct change *changes, uint32_t count, struct scene
                       const struct light *lights, uint32_t light_count, change_warning *warn, void *context,
                       struct changed_scene *out, struct error *error);
 void changes_take_off(struct changed_scene *changed);
+/* A base as it was before all that is laid over the scene. */
+const struct material *changes_before(const struct changed_scene *changed, const struct material *base);
 
 #endif

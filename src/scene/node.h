@@ -111,6 +111,14 @@ struct added_node {
     struct added_node *next;
 };
 
+/* The same of a material that a change gives to one shape: a copy of another, link by link. */
+struct own_material {
+    uint32_t number;
+    const struct material *like;
+    struct material *first;
+    struct own_material *next;
+};
+
 enum { SCENE_NAMES = 64 };
 struct scene {
     struct arena arena;
@@ -118,6 +126,7 @@ struct scene {
     struct assets *assets;          /* not owned */
     uint32_t node_count, material_count;
     struct added_node *added;
+    struct own_material *own;
     struct material *last_material; /* they are linked from the newest to the oldest */
     enum transform_order order;
 };

@@ -3,6 +3,7 @@
 #include "script/actions.h"
 #include "script/context.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Room for one more; zeroed. */
@@ -79,13 +80,57 @@ bool act_change_material(struct context *context, const struct value *args, stru
     return change != NULL;
 }
 
+bool act_change_look(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    (void)result;
+    enum look_part part = (enum look_part)args[CHANGELOOK_PART].choice; /* listed in the order of the enum */
+    const struct value *value = &args[CHANGELOOK_VALUE];
+    uint32_t wanted = (uint32_t)look_part_count(part);
+    double low, high;
+    look_part_range(part, &low, &high);
+    if (value->count != wanted)
+        return error_set(error, ERROR_SCENE, "value has %u number%s, but %s has %u", value->count,
+                         value->count == 1 ? "" : "s", look_part_name(part), wanted);
+    for (uint32_t i = 0; i < wanted; i++) {
+        if (!(value->numbers[i] >= low && value->numbers[i] <= high))
+            return error_set(error, ERROR_SCENE, "value of %s must be from %g to %g, not %g", look_part_name(part), low,
+                             high, value->numbers[i]);
+    }
+    struct change *change = note(context, CHANGE_MATERIAL, NULL, args[CHANGELOOK_SERIAL].number, error);
+    if (!change)
+        return false;
+    change->part = part;
+    memcpy(change->numbers, value->numbers, wanted * sizeof *value->numbers);
+    return true;
+}
+
+bool act_change_own(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    (void)result;
+    struct change *change = note(context, CHANGE_OWN, args[CHANGEOWN_NAME].text, args[CHANGEOWN_SERIAL].number, error);
+    if (!change)
+        return false;
+    change->number = context->owned++;
+    change->source = (uint32_t)args[CHANGEOWN_LIKE].number;
+    return true;
+}
+
 bool act_change_light(struct context *context, const struct value *args, struct result *result, struct error *error) {
     (void)result;
+    const struct value *turn = &args[CHANGELIGHT_TURN], *colour = &args[CHANGELIGHT_COLOUR];
+    if (turn->given && turn->count != TURN_NUMBERS)
+        return error_set(error, ERROR_SCENE, "linear has %u numbers, not %d", turn->count, TURN_NUMBERS);
+    if (turn->given && !(fabs(light_turn_volume(turn->numbers)) > 0))
+        return error_set(error, ERROR_SCENE, "linear flattens everything: it has no inverse");
     struct change *change = note(context, CHANGE_LIGHT, NULL, args[CHANGELIGHT_NUMBER].number, error);
     if (!change)
         return false;
     put(change->numbers, args[CHANGELIGHT_MOVE].vector);
     put(change->numbers + 3, args[CHANGELIGHT_FACTOR].given ? args[CHANGELIGHT_FACTOR].vector : vec3_all(1));
+    change->turns = turn->given;
+    change->colours = colour->given;
+    if (turn->given)
+        memcpy(change->numbers + TURN_AT, turn->numbers, TURN_NUMBERS * sizeof *turn->numbers);
+    if (colour->given)
+        put(change->numbers + COLOUR_AT, colour->vector);
     return true;
 }
 
@@ -168,6 +213,7 @@ bool changes_begin(struct context *context, struct render_request *request, stru
                    struct error *error) {
     *changed = (struct changed_scene){0};
     request->added = context->added;
+    request->owned = context->owned;
     change_views(context, request);
     if (context->change_count == 0)
         return true;

@@ -83,7 +83,7 @@ struct context {
     const char *subject;             /* the node it is about, or NULL */
     uint8_t *warned;                 /* WARNED_ bits by row of the table */
     struct change *changes;          /* gr.change_node and its like, in order; in `keep` */
-    uint32_t change_count, change_room, added;
+    uint32_t change_count, change_room, added, owned;
     struct changed_view *views; /* the newest first */
     bool changes_told;          /* what was left out */
     bool number_repaired;       /* the notice about ".0" was given */

@@ -47,6 +47,7 @@ struct render_request {
     struct sky sky;
     struct settings settings; /* the host's settings with the call's named fields applied */
     uint32_t added;           /* nodes that gr.change_add has added: those of others are numbered from here on */
+    uint32_t owned;           /* the same of materials and gr.change_own */
     const char *where;        /* "scene.lua:12: gr.render", for messages that do not stop the script */
 };
 

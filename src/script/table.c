@@ -118,12 +118,32 @@ static const struct parameter change_material_parameters[] = {
     [CHANGEMATERIAL_COLOUR] = {"colour", KIND_COLOUR, 0, ANY, NULL, NULL, "The new diffuse colour of its base."},
 };
 
+static const struct parameter change_look_parameters[] = {
+    [CHANGELOOK_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL,
+                           "Which material, by order of creation: the first is 1."},
+    [CHANGELOOK_PART] = {"part", KIND_CHOICE, 0, 0, 0,
+                         "kd ks shininess reflect roughness refract ior emission absorption", NULL, NULL,
+                         "What of its base, by the name that gr.material has for it."},
+    [CHANGELOOK_VALUE] = {"value", KIND_NUMBERS, 0, ANY, NULL, NULL, "Three numbers for a colour, else one."},
+};
+
+static const struct parameter change_own_parameters[] = {
+    [CHANGEOWN_NAME] = {"name", KIND_TEXT, 0, ANY, NULL, NULL, CHANGED_NAME},
+    [CHANGEOWN_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL, SERIAL_HELP},
+    [CHANGEOWN_LIKE] = {"like", KIND_WHOLE, OPTIONAL, SERIALS, NULL, "0",
+                        "A material by order of creation, for a shape that has none itself; 0: plain gray."},
+};
+
 static const struct parameter change_light_parameters[] = {
     [CHANGELIGHT_NUMBER] = {"number", KIND_WHOLE, 0, 1, 4294967295.0, NULL, NULL, NULL,
                             "Its place in the list of gr.render, from 1."},
     [CHANGELIGHT_MOVE] = {"move", KIND_TRIPLE, 0, ANY, NULL, NULL, "The way it is moved."},
     [CHANGELIGHT_FACTOR] = {"factor", KIND_TRIPLE, OPTIONAL, ANY, NULL, "{1, 1, 1}",
                             "What its colour is multiplied by."},
+    [CHANGELIGHT_TURN] = {"linear", KIND_NUMBERS, OPTIONAL, ANY, NULL, "none",
+                          "Three rows of a matrix, 9 numbers: how it is turned and sized about its place."},
+    [CHANGELIGHT_COLOUR] = {"colour", KIND_COLOUR, OPTIONAL, ANY, NULL, "its own",
+                            "Another colour, before it is multiplied."},
 };
 
 static const struct parameter change_delete_light_parameters[] = {
@@ -1123,8 +1143,15 @@ const struct function function_table[] = {
        "name serial shape colour? source?"),
     GR("change_material", change_material_parameters, RESULT_NOTHING, act_change_material,
        "Gives a material another colour in every picture from here on.", "serial colour"),
+    GR("change_look", change_look_parameters, RESULT_NOTHING, act_change_look,
+       "Changes any part of the base of a material in every picture from here on.", "serial part value"),
+    GR("change_own", change_own_parameters, RESULT_NOTHING, act_change_own,
+       "Gives a shape a material of its own in every picture from here on: a copy of the one it has. The first is "
+       "numbered 2147483647, the next ones count down.",
+       "name serial like?"),
     GR("change_light", change_light_parameters, RESULT_NOTHING, act_change_light,
-       "Moves a light of every picture from here on, and makes it brighter or darker.", "number move factor?"),
+       "Moves a light of every picture from here on, turns it and makes it larger or smaller, brighter or darker.",
+       "number move factor? linear? colour?"),
     GR("change_delete_light", change_delete_light_parameters, RESULT_NOTHING, act_change_delete_light,
        "Takes a light away from every picture from here on.", "number"),
     GR("change_add_light", change_add_light_parameters, RESULT_NOTHING, act_change_add_light,

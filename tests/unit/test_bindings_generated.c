@@ -113,6 +113,8 @@ static void right_text(const struct parameter *p, char *out, size_t size) {
         text = strcmp(p->name, "densities") == 0 ? "{1, 2, 3, 4, 5, 6}" : "{1, 2, 1}"; /* {1, 2, 3} cells */
         if (strcmp(p->name, "matrix") == 0)
             text = "{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}";
+        if (strcmp(p->name, "linear") == 0)
+            text = "{0, 1, 0, 1, 0, 0, 0, 0, 2}";
         break;
     case KIND_ROWS:
         text = strcmp(p->name, "heights") == 0   ? "{{2, 3}, {3, 2}}"

@@ -270,7 +270,14 @@ TEST(edits_as_lua_text_are_read_back_to_the_bit) {
         {.kind = CHANGE_PLACE, .serial = 2, .name = "ba'l\\l\n"},
         {.kind = CHANGE_MATERIAL, .serial = 1, .numbers = {1.0 / 7, 2.0 / 7, 3.0 / 7}},
         {.kind = CHANGE_ADD_LIGHT, .numbers = {0.3, 3, 1, 0.1, 0.2, 0.3}},
-        {.kind = CHANGE_LIGHT, .serial = 1, .numbers = {0.1, 0.1, 0.1, 1.1, 1.1, 1.1}},
+        {.kind = CHANGE_LIGHT,
+         .serial = 1,
+         .turns = true,
+         .colours = true,
+         .numbers = {0.1, 0.1, 0.1, 1.1, 1.1, 1.1, 0.1, 1, 0, 0, 0.1, 1, 1, 0, 0.1, 0.1, 0.3, 0.7}},
+        {.kind = CHANGE_LIGHT, .serial = 2, .colours = true, .numbers = {0, 0, 0, 1, 1, 1, [COLOUR_AT] = 0.3}},
+        {.kind = CHANGE_MATERIAL, .serial = 1, .part = LOOK_ROUGHNESS, .numbers = {0.1}},
+        {.kind = CHANGE_OWN, .serial = 2, .name = "ball", .source = 1},
     };
     for (int i = 0; i < 12; i++) {
         changes[1].numbers[i] = (i % 5 == 0 ? 0.3 : 0) + test_uniform(&random, -0.1, 0.1);
@@ -362,4 +369,121 @@ TEST(picking_tells_the_way_to_a_node_its_place_and_its_box) {
     CHECK(pick_at(&job, s.root, 1, 1, 0, &picked, &s.error));
     CHECK(!picked.hit);
     stage_end(&s);
+}
+
+/* Lights. */
+
+static bool near(struct vec3 a, struct vec3 b) {
+    return vec3_length(vec3_sub(a, b)) < 1e-12;
+}
+
+TEST(changes_turn_and_size_lights_about_their_place) {
+    const double quarter[9] = {0, 0, 1, 0, 1, 0, -1, 0, 0}; /* z to x, x to -z */
+    const double double_size[9] = {2, 0, 0, 0, 2, 0, 0, 0, 2};
+    struct light sun = {.kind = LIGHT_DIRECTIONAL, .direction = {0, 0, 1}};
+    light_turn(&sun, quarter);
+    CHECK(near(sun.direction, vec3_make(1, 0, 0)));
+    light_turn(&sun, double_size);
+    CHECK(near(sun.direction, vec3_make(1, 0, 0)));
+    struct light area = {.kind = LIGHT_PARALLELOGRAM,
+                         .position = {1, 2, 3},
+                         .corner = {0, 2, 2},
+                         .edge1 = {2, 0, 0},
+                         .edge2 = {0, 0, 2}};
+    light_turn(&area, double_size);
+    CHECK(near(area.position, vec3_make(1, 2, 3)) && near(area.corner, vec3_make(-1, 2, 1)));
+    CHECK(near(area.edge1, vec3_make(4, 0, 0)) && near(area.edge2, vec3_make(0, 0, 4)));
+    light_turn(&area, quarter);
+    CHECK(near(area.corner, vec3_make(-1, 2, 5)) && near(area.edge1, vec3_make(0, 0, -4)));
+    struct light ball = {.kind = LIGHT_SPHERE, .position = {1, 1, 1}, .radius = 0.5};
+    light_turn(&ball, double_size);
+    CHECK_NEAR(ball.radius, 1, 1e-15);
+    CHECK(light_can_size(&ball) && !light_can_turn(&ball) && light_can_move(&ball));
+    CHECK(light_can_turn(&sun) && !light_can_size(&sun) && !light_can_move(&sun));
+}
+
+TEST(changes_of_the_size_of_a_spot_keep_its_cone_a_cone) {
+    for (double degrees = 1; degrees < 180; degrees += 7) {
+        for (double size = 0.01; size < 200; size *= 3) {
+            const double turn[9] = {size, 0, 0, 0, size, 0, 0, 0, size};
+            double half = degrees * M_PI / 180, wanted = 2 * atan(size * tan(half / 2));
+            struct light spot = {.kind = LIGHT_SPOT, .cos_inner = cos(half / 2), .cos_outer = cos(half)};
+            light_turn(&spot, turn);
+            CHECK_NEAR(spot.cos_outer, cos(wanted), 1e-12);
+            CHECK(spot.cos_inner >= spot.cos_outer && spot.cos_inner <= 1 && spot.cos_outer >= -1);
+        }
+    }
+}
+
+TEST(changes_of_lights_by_calls_give_the_bytes_of_a_script_that_says_the_same_itself) {
+    const char area[] = "gr.area_light({-1, 3, 1}, {2, 0, 0}, {0, 0, 2}, {0.4, 0.4, 0.4}, {1, 0, 0})";
+    char one[4096], other[4096];
+    (void)snprintf(one, sizeof one,
+                   "%sgr.render(r, 'out.png', 60, 40, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40, {0, 0, 0}, "
+                   "{gr.area_light({-2, 3, 0}, {4, 0, 0}, {0, 0, 4}, {0.4, 0.4, 0.4}, {1, 0, 0}), "
+                   "gr.directional_light{direction={1, 0, 0}, colour={0, 0.5, 1}}})\n",
+                   SCENE_HEAD);
+    (void)snprintf(other, sizeof other,
+                   "%sgr.change_light(1, {0, 0, 0}, nil, {2, 0, 0, 0, 2, 0, 0, 0, 2})\n"
+                   "gr.change_light(2, {0, 0, 0}, {2, 2, 2}, {0, 0, 1, 0, 1, 0, -1, 0, 0}, {0, 0.25, 0.5})\n"
+                   "gr.render(r, 'out.png', 60, 40, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40, {0, 0, 0}, {%s, "
+                   "gr.directional_light{direction={0, 0, 1}, colour={1, 0, 0}}})\n",
+                   SCENE_HEAD, area);
+    same_picture(one, other, true);
+}
+
+/* Materials. */
+
+TEST(changes_of_every_part_of_a_material_give_the_bytes_of_a_script_that_says_the_same_itself) {
+    static const struct {
+        const char *in_script, *call;
+    } parts[] = {
+        {"{kd={0.1, 0.2, 0.3}, ks={0.4, 0.4, 0.4}, shininess=20}", "'kd', {0.1, 0.2, 0.3}"},
+        {"{kd={0.8, 0.2, 0.1}, ks={0.1, 0.9, 0.4}, shininess=20}", "'ks', {0.1, 0.9, 0.4}"},
+        {"{kd={0.8, 0.2, 0.1}, ks={0.4, 0.4, 0.4}, shininess=5}", "'shininess', 5"},
+        {"{kd={0.8, 0.2, 0.1}, ks={0.4, 0.4, 0.4}, shininess=20, reflect=0.5}", "'reflect', 0.5"},
+        {"{kd={0.8, 0.2, 0.1}, ks={0.4, 0.4, 0.4}, shininess=20, emission={0.3, 0, 0.1}}", "'emission', {0.3, 0, 0.1}"},
+    };
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        char one[4096], other[4096];
+        (void)snprintf(one, sizeof one, "%slocal new = gr.material%s\nball:set_material(new)\n%s", SCENE_HEAD,
+                       parts[i].in_script, SCENE_TAIL("{0, 0, 6}", LIGHT));
+        (void)snprintf(other, sizeof other, "%sgr.change_look(1, %s)\n%s", SCENE_HEAD, parts[i].call,
+                       SCENE_TAIL("{0, 0, 6}", LIGHT));
+        same_picture(one, other, true);
+        same_picture(SCENE_HEAD SCENE_TAIL("{0, 0, 6}", LIGHT), other, false);
+    }
+    same_picture(SCENE_HEAD
+                 "ball:set_material(gr.rr_material({0.8, 0.2, 0.1}, {0.4, 0.4, 0.4}, 20, 0.1, 0.8, 1.5))\n" SCENE_TAIL(
+                     "{0, 0, 6}", LIGHT),
+                 SCENE_HEAD "gr.change_look(1, 'reflect', 0.1)\ngr.change_look(1, 'refract', 0.8)\n"
+                            "gr.change_look(1, 'ior', 1.5)\n" SCENE_TAIL("{0, 0, 6}", LIGHT),
+                 true);
+}
+
+TEST(changes_give_a_shape_a_material_of_its_own_which_is_changed_alone) {
+    same_picture("local function red(kd) return gr.material(kd, {0.4, 0.4, 0.4}, 20) end\nlocal r = gr.node('root')\n"
+                 "local a, b = gr.geometry('a', gr.sphere(red({0.8, 0.2, 0.1}))), gr.geometry('b', gr.sphere(red({0.1, "
+                 "0.9, 0.1})))\na:translate(-1, 0, 0)\nb:translate(1, 0, 0)\nr:add_child(a)\nr:add_child(b)\n"
+                 "local c = gr.geometry('c', gr.sphere(gr.material({0.2, 0.2, 1}, {0, 0, 0}, 1)))\nc:translate(0, 1.5, "
+                 "0)\nr:add_child(c)\n" SCENE_TAIL("{0, 0, 6}", LIGHT),
+                 "local m = gr.material({0.8, 0.2, 0.1}, {0.4, 0.4, 0.4}, 20)\nlocal r = gr.node('root')\n"
+                 "local a, b, c = gr.geometry('a', gr.sphere(m)), gr.geometry('b', gr.sphere(m)), gr.geometry('c', "
+                 "gr.sphere('s'))\na:translate(-1, 0, 0)\nb:translate(1, 0, 0)\nr:add_child(a)\nr:add_child(b)\n"
+                 "c:translate(0, 1.5, 0)\nr:add_child(c)\n"
+                 "gr.change_own('b', 3)\ngr.change_own('c', 6)\ngr.change_material(2147483647, {0.1, 0.9, "
+                 "0.1})\ngr.change_material(2147483646, {0.2, 0.2, 1})\n" SCENE_TAIL("{0, 0, 6}", LIGHT),
+                 true); /* What stands over the base stays, and other chains over it stay with the old one. */
+    same_picture(
+        "local function glaze(kd) return gr.difresnel_material(gr.rr_material(kd, {0.4, 0.4, 0.4}, 20, 0, 0, 1.5)) "
+        "end\n"
+        "local r = gr.node('root')\nlocal a, b = gr.geometry('a', gr.sphere(glaze({0.8, 0.2, 0.1}))), "
+        "gr.geometry('b', gr.sphere(glaze({0.1, 0.9, 0.1})))\n"
+        "a:translate(-1, 0, 0)\nb:translate(1, 0, 0)\nr:add_child(a)\nr:add_child(b)\n" SCENE_TAIL("{0, 0, 6}", LIGHT),
+        "local m = gr.difresnel_material(gr.rr_material({0.8, 0.2, 0.1}, {0.4, 0.4, 0.4}, 20, 0, 0, 1.5))\nlocal r = "
+        "gr.node('root')\n"
+        "local a, b = gr.geometry('a', gr.sphere(m)), gr.geometry('b', gr.sphere(m))\n"
+        "a:translate(-1, 0, 0)\nb:translate(1, 0, 0)\nr:add_child(a)\nr:add_child(b)\n"
+        "gr.change_own('b', 4)\ngr.change_material(2147483647, {0.1, 0.9, 0.1})\n" SCENE_TAIL("{0, 0, 6}", LIGHT),
+        true);
 }

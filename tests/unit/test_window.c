@@ -170,7 +170,8 @@ static void tell_news(struct table *t, const struct studio_news *news) {
 static void build(struct table *t) {
     struct studio_news news = {.kind = NEWS_BUILT, .light_count = 1, .world_from_root = affine_identity()};
     news.report.bounds = (struct box){{-1, -1, -1}, {1, 1, 1}};
-    news.lights[0] = (struct told_light){LIGHT_POINT, true, {0, 1, 0}, {1, 1, 1}};
+    news.lights[0] = (struct told_light){
+        .kind = LIGHT_POINT, .placed = true, .position = {0, 1, 0}, .colour = {1, 1, 1}, .moves = true};
     memcpy(news.root_name, "root", 5);
     tell_news(t, &news);
     CHECK_EQ_INT(step(t), LIVE_ORDER);
@@ -586,7 +587,8 @@ static void take_change(struct table *t) {
     CHECK_EQ_INT(step(t), LIVE_ORDER);
     CHECK_EQ_INT(t->live.order.kind, ORDER_CHANGE);
     struct studio_news news = {.kind = NEWS_CHANGED, .light_count = 1};
-    news.lights[0] = (struct told_light){LIGHT_POINT, true, {0, 1, 0}, {1, 1, 1}};
+    news.lights[0] = (struct told_light){
+        .kind = LIGHT_POINT, .placed = true, .position = {0, 1, 0}, .colour = {1, 1, 1}, .moves = true};
     tell_news(t, &news);
 }
 

@@ -1,0 +1,80 @@
+/* Changing things in the real window (under Xvfb, driven by xdotool): what is on the screen is what the file of changes
+ * gives without a window, byte for byte; undone it is the script's picture. No time decides: what was saved is compared
+ * again and again until it is right, or long over. */
+#define _GNU_SOURCE
+#include "tests/harness.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+
+/* `finds NAME`: S is pressed until a picture that was saved has the bytes of NAME. `changes N`: C writes the N-th file
+ * of changes, and what it gives is again.png. `drag DX DY`: with the left button, from the middle of the picture. */
+static const char helpers[] =
+    "titled() { for i in $(seq 400); do xdotool search --name \"$1\" >/dev/null && return 0; sleep 0.05; done; "
+    "echo the title never said $1 >&2; exit 9; }\n"
+    "there() { for i in $(seq 400); do test -s \"$1\" && return 0; sleep 0.05; done; echo no $1 >&2; exit 8; }\n"
+    "finds() { for i in $(seq 150); do xdotool key s; sleep 0.1; for view in $(ls -t out-view*.png 2>/dev/null | "
+    "head -2); do cmp -s $view $1 && return 0; done; done; echo nothing like $1 >&2; exit 7; }\n"
+    "changes() { xdotool key c; there out-changes$1.lua; sleep 0.1; "
+    "{ echo \"require 'out-changes$1'\"; cat scene.lua; } >again.lua; "
+    "$gray -q again.lua -o again.png || exit 6; }\n"
+    "drag() { xdotool mousemove 450 380 mousedown 1 mousemove $((450 + $1 / 2)) $((380 + $2 / 2)) mousemove "
+    "$((450 + $1)) $((380 + $2)) mouseup 1; }\n"
+    "says() { grep -q \"$1\" out-changes1.lua || { echo no $1 >&2; cat out-changes1.lua >&2; exit 5; }; }\n"
+    "$gray -gui -q --progress=none scene.lua & pid=$!\n"
+    "there out.png; cp out.png first.png; titled ready\n";
+
+static void file(const char *name, const char *text) {
+    char path[4096];
+    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    test_write_text(path, text);
+}
+
+static int shell(const char *line) {
+    char *command = NULL, binary[4096];
+    const char *named = getenv("GRAY_TEST_BINARY");
+    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
+    CHECK(asprintf(&command, "cd %s && gray=%s && export gray && { %s; } >out.txt 2>err.txt", test_folder(), binary,
+                   line) > 0);
+    int status = system(command);
+    free(command);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/* Runs the steps (after the helpers) with the window of the scene. */
+static void drive(const char *scene, const char *steps) {
+    if (shell("test -x $gray-gui && command -v Xvfb && command -v xdotool && command -v xvfb-run") != 0)
+        test_skip("there is no gray-gui beside the program, or no Xvfb, xvfb-run or xdotool");
+    char *script = NULL, path[4096];
+    CHECK(asprintf(&script, "%s%s\nxdotool key q; wait $pid\n", helpers, steps) > 0);
+    file("scene.lua", scene);
+    file("steps.sh", script);
+    free(script);
+    int status = shell("timeout 100 xvfb-run -a -s '-screen 0 900x700x24' sh steps.sh");
+    (void)snprintf(path, sizeof path, "%s/err.txt", test_folder());
+    char *said = test_read_file(path, NULL);
+    if (status != 0)
+        test_fail(__FILE__, __LINE__, "status %d:\n%s", status, said ? said : "");
+    free(said);
+}
+
+#define BALL                                                                                                           \
+    "local red = gr.material({0.8, 0.3, 0.2}, {0.5, 0.5, 0.5}, 20)\nlocal r = gr.node('root')\n"                       \
+    "r:add_child(gr.geometry('ball', gr.sphere(red)))\n"
+#define RENDER(lights)                                                                                                 \
+    "gr.render(r, 'out.png', 320, 240, {0, 1, 6}, {0, -0.15, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2}, {" lights "})\n"
+
+TEST(window_that_turns_sizes_and_deletes_lights_saves_what_gives_the_same_bytes) {
+    drive(BALL RENDER("gr.directional_light{direction={-1, -1, -0.5}, colour={0.4, 0.3, 0.3}}, "
+                      "gr.area_light({-1, 3, 0}, {2, 0, 0}, {0, 0, 2}, {0.3, 0.3, 0.4}, {1, 0, 0}), "
+                      "gr.spot_light{position={3, 1, 3}, direction={-3, -1, -3}, colour={0.5, 0.5, 0}, inner=5, "
+                      "outer=8}, gr.sky_light{sky={0.2, 0.2, 0.3}}"),
+          "xdotool key period key t; drag 60 40; xdotool key period key z; drag 0 -60; xdotool key period; drag 0 -70; "
+          "xdotool key t; drag 30 10; xdotool key period key Delete\n"
+          "changes 1; finds again.png; cmp -s again.png first.png && exit 4\n"
+          "says 'change_light(1, {0, 0, 0}, {1, 1, 1}, {'; says 'change_light(2'; says 'change_light(3'; "
+          "says 'change_delete_light(4'\n"
+          "for i in 1 2 3 4 5; do xdotool key ctrl+z; done; finds first.png\n"
+          "for i in 1 2 3 4 5; do xdotool key ctrl+y; done; finds again.png");
+}
