@@ -12,6 +12,8 @@
 struct fault_counters {
     _Atomic uint64_t count[2], failing[2];
     _Atomic int error;
+    uint64_t acting; /* of calls; 0: none */
+    void (*act)(void);
     pid_t first; /* the process that tells the counts */
 };
 
@@ -51,7 +53,14 @@ __attribute__((destructor)) static void tell_counts(void) {
 
 bool fault_now(enum fault_kind kind) {
     uint64_t number = atomic_fetch_add(&counters->count[kind], 1) + 1;
+    if (kind == FAULT_OF_CALL && number == counters->acting)
+        counters->act();
     return number == atomic_load(&counters->failing[kind]);
+}
+
+void fault_before(uint64_t number, void (*act)(void)) {
+    counters->act = act;
+    counters->acting = atomic_load(&counters->count[FAULT_OF_CALL]) + number;
 }
 
 void fault_at(enum fault_kind kind, uint64_t number) {

@@ -19,6 +19,8 @@ void fault_at(enum fault_kind kind, uint64_t number);
 uint64_t fault_count(enum fault_kind kind);
 /* What errno says of a call that is made to fail; 0 as the new one changes nothing. Answers the one before. */
 int fault_errno(int number);
+/* Just before the call to the system with that number (1 is the next) `act` happens, as another process could do it. */
+void fault_before(uint64_t number, void (*act)(void));
 /* This process, and those it starts from now on, count apart from the others, from 0, and nothing fails. */
 void fault_apart(void);
 #else
@@ -37,6 +39,10 @@ static inline uint64_t fault_count(enum fault_kind kind) {
 static inline int fault_errno(int number) {
     (void)number;
     return EIO;
+}
+static inline void fault_before(uint64_t number, void (*act)(void)) {
+    (void)number;
+    (void)act;
 }
 static inline void fault_apart(void) {
 }

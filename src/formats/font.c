@@ -20,6 +20,7 @@ const char *font_library(void) {
 
 #else
 
+#include "base/fault.h"
 #include "base/mem.h"
 
 #include <assert.h>
@@ -121,11 +122,15 @@ static void add_piece(struct setting *s, double ax, double ay, double bx, double
     s->at = *to;
 }
 
+/* What has been walked along is a contour, unless it has no length. */
+static void end_contour(struct setting *s) {
+    if (s->point_count > s->starts[s->contour_count])
+        s->starts[++s->contour_count] = s->point_count;
+}
+
 static int on_move(const FT_Vector *to, void *user) {
     struct setting *s = user;
-    /* A contour of no length, or of one piece there and back along a line, holds nothing. */
-    if (s->contour_count == 0 || s->point_count > s->starts[s->contour_count - 1])
-        s->starts[s->contour_count++] = s->point_count;
+    end_contour(s);
     s->at = *to;
     return 0;
 }
@@ -158,10 +163,9 @@ static bool outline_of(struct setting *s, FT_UInt index, struct font_glyph *glyp
         return fail(s, code);
     FT_GlyphSlot slot = s->face->glyph;
     glyph->advance = (double)slot->metrics.horiAdvance * s->scale;
-    if (slot->format != FT_GLYPH_FORMAT_OUTLINE)
-        return error_set(s->error, ERROR_SCENE, "%s: this font has pictures of its letters, not outlines", s->path);
+    assert(slot->format == FT_GLYPH_FORMAT_OUTLINE); /* as FT_LOAD_NO_BITMAP asks of a scalable face */
     FT_Outline *outline = &slot->outline;
-    if (outline->n_points <= 0 || outline->n_contours <= 0)
+    if (outline->n_points <= 0)
         return true;
     /* A point makes at most one piece, and a contour is closed by one more. */
     size_t pieces = (size_t)outline->n_points + (size_t)outline->n_contours;
@@ -169,13 +173,11 @@ static bool outline_of(struct setting *s, FT_UInt index, struct font_glyph *glyp
     s->starts = arena_alloc_array(s->arena, (size_t)outline->n_contours + 1, sizeof *s->starts);
     if (!s->points || !s->starts)
         return error_no_memory(s->error, s->path);
-    s->point_count = s->contour_count = 0;
-    code = FT_Outline_Decompose(outline, &walk, s);
+    s->point_count = s->contour_count = s->starts[0] = 0;
+    code = MAY_FAIL(FT_Outline_Decompose(outline, &walk, s));
     if (code)
         return fail(s, code);
-    if (s->contour_count > 0 && s->starts[s->contour_count - 1] == s->point_count)
-        s->contour_count--;
-    s->starts[s->contour_count] = s->point_count;
+    end_contour(s);
     glyph->contour_count = s->contour_count;
     glyph->starts = s->starts;
     glyph->points = (const double(*)[2])s->points;
@@ -256,9 +258,10 @@ static bool open_and_set(struct setting *s, const uint8_t *data, size_t size, co
     code = FT_New_Memory_Face(s->library, data, (FT_Long)size, 0, &s->face);
     if (code)
         return fail(s, code);
-    if (!FT_IS_SCALABLE(s->face) || s->face->units_per_EM == 0)
+    int units = MAY_FAIL(s->face->units_per_EM); /* FreeType has refused 0, as far as is known */
+    if (!FT_IS_SCALABLE(s->face) || units <= 0)
         return error_set(s->error, ERROR_SCENE, "%s: this font has pictures of its letters, not outlines", s->path);
-    s->scale = 1.0 / s->face->units_per_EM;
+    s->scale = 1.0 / units;
     out->ascender = s->face->ascender * s->scale;
     out->descender = s->face->descender * s->scale;
     out->line = s->face->height * s->scale;

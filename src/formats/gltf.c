@@ -301,7 +301,7 @@ static bool add_primitive(struct gltf *g, const struct primitive *p, const struc
                           p->normal == MODEL_NONE ? MODEL_NONE : (uint32_t)mesh->normals.count,
                           p->uv == MODEL_NONE ? MODEL_NONE : (uint32_t)mesh->uvs.count};
     bool ok = read_corners(g, p, a.count, &corners);
-    if (ok && mesh->vertices.count + corners.vertices >= UINT32_MAX)
+    if (ok && mesh->vertices.count + corners.vertices > model_most(g->model))
         ok = gltf_fail(g, p->where, "too many vertices");
     ok = ok && add_vertices(g, p, &corners, a.count, plan, mesh) &&
          add_triangles(g, p, &corners, plan, &bases, slot, mesh);

@@ -148,8 +148,9 @@ static struct mesh_input tables_input(const struct model_mesh *m) {
 }
 
 static bool finish_mesh(struct model *model, struct model_mesh *m, struct error *error) {
-    if (m->vertices.count >= MODEL_NONE || m->vertex_index.count >= MODEL_NONE - 1 || m->starts.count >= MODEL_NONE - 1)
-        return error_set(error, ERROR_SCENE, "%s: more than 4294967294 vertices or corners", model->path);
+    if (m->vertices.count > model_most(model) || m->vertex_index.count > model_most(model))
+        return error_set(error, ERROR_SCENE, "%s: more than %zu vertices or corners", model->path, model_most(model));
+    assert(m->starts.count <= m->vertex_index.count); /* no face without corners */
     uint32_t *start = list_room(&m->starts, 1, sizeof *start);
     if (!start)
         return error_no_memory(error, model->path);

@@ -69,6 +69,7 @@ struct model_options {
     bool weld, flip;           /* one vertex for each place; faces turned round */
     const struct reach *reach; /* where files may be read; NULL: everywhere */
     bool alone;                /* no other file is opened (tests of readers with strangers' bytes) */
+    size_t most;               /* vertices, and corners, of a mesh; 0: as many as an index can name */
 };
 
 enum { MODEL_WARNINGS = 16 };
@@ -82,6 +83,11 @@ struct model {
     const char *warnings[MODEL_WARNINGS];
     int warning_count;
 };
+
+/* How many vertices, and how many corners, a mesh may have: some numbers of 32 bits are kept for other meanings. */
+static inline size_t model_most(const struct model *model) {
+    return model->options.most ? model->options.most : MODEL_NONE - 8;
+}
 
 /* Reads the file; meshes are made with the options. Errors are one line: FILE:LINE: what, or FILE: byte N: what. */
 bool model_read(struct model *model, const char *path, const struct model_options *options, struct error *error);

@@ -20,7 +20,7 @@ struct library {
 };
 
 static bool is_blank(char c) {
-    return c == ' ' || c == '\t' || c == '\v' || c == '\f' || c == '\r';
+    return c == ' ' || c == '\t' || c == '\v' || c == '\f'; /* \r ends a line */
 }
 
 static bool fail(const struct library *l, const char *what) {
@@ -49,8 +49,7 @@ static bool is_word(const struct library *l, size_t length, const char *word) {
 }
 
 static bool word_is_number(const struct library *l, size_t length, double *out) {
-    const char *after = length ? decimal_read(l->at, l->at + length, out) : NULL;
-    return after == l->at + length && length > 0;
+    return length > 0 && decimal_read(l->at, l->at + length, out) == l->at + length;
 }
 
 static bool read_number(struct library *l, double *out) {

@@ -18,6 +18,7 @@
 #include "formats/model.h"
 #include "formats/names.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -164,16 +165,17 @@ static bool read_element(struct reader *reader, int kind, int least, int kept) {
     if (count < least)
         return error_set(reader->error, ERROR_SCENE, "%s:%zu: %s needs %d number%s, not %d", reader->path, reader->line,
                          kind == VERTEX ? "v" : kind_names[kind], least, least == 1 ? "" : "s", count);
-    if (++reader->elements[kind].count >= MISSING)
-        return fail(reader, "more than 4294967294 elements");
+    if (++reader->elements[kind].count > model_most(reader->model))
+        return fail(reader, "more elements than an index can name");
     return true;
 }
 
 /* One index of a corner, 0-based into *out. */
 static bool read_index(struct reader *reader, int kind, const char *word, uint32_t *out) {
     const char *p = reader->at, *end = reader->end;
-    bool negative = p < end && *p == '-';
-    if (p < end && (*p == '-' || *p == '+'))
+    assert(p < end); /* read_corner() has looked */
+    bool negative = *p == '-';
+    if (*p == '-' || *p == '+')
         p++;
     const char *first = p;
     uint64_t value = 0;
@@ -223,8 +225,8 @@ static bool read_corner(struct reader *reader, uint32_t corner[KINDS]) {
 /* One more corner in the index lists; those of uvs and normals come into being with the first index that they hold. */
 static bool add_corner(struct reader *reader, const uint32_t corner[KINDS]) {
     size_t before = reader->indices[VERTEX].count;
-    if (before >= MISSING - 1)
-        return fail(reader, "more than 4294967294 corners");
+    if (before >= model_most(reader->model))
+        return fail(reader, "more corners than an index can name");
     for (int kind = VERTEX; kind < KINDS; kind++) {
         struct list *list = &reader->indices[kind];
         if (kind != VERTEX && list->count == 0) {
@@ -424,7 +426,7 @@ static bool check_indices(const struct reader *reader) {
 static bool make_slots(struct reader *reader, struct model_mesh *mesh) {
     bool by_material = reader->materials.names.entries.count > 0;
     struct slotting *used = by_material ? &reader->materials : &reader->groups;
-    struct names known = {0};
+    struct names known = {.most = model_most(reader->model)};
     struct list last = {0}; /* uint32_t: the material of a known name */
     bool ok = true;
     for (uint32_t i = 0; ok && i < reader->model->materials.count; i++) {
@@ -483,7 +485,9 @@ bool obj_load(struct model *model, const char *text, size_t size, struct error *
                             .error = error,
                             .model = model,
                             .materials.current = UNNAMED,
-                            .groups.current = UNNAMED};
+                            .groups.current = UNNAMED,
+                            .materials.names.most = model_most(model),
+                            .groups.names.most = model_most(model)};
     if (size >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0))
         return fail(&reader, "this is UTF-16 text; an OBJ file is plain ASCII or UTF-8");
     if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0)

@@ -9,6 +9,7 @@
 #include "formats/model.h"
 #include "formats/scan.h"
 
+#include <assert.h>
 #include <math.h>
 
 enum { ELEMENTS = 64, PROPERTIES = 512 };
@@ -391,8 +392,7 @@ static float colour_of(const struct ply *ply, double value) {
 static bool add_vertex(struct ply *ply, const double value[SCALARS]) {
     struct model_mesh *mesh = ply->mesh;
     double *v = list_room(&mesh->vertices, 1, 3 * sizeof *v);
-    if (!v)
-        return no_memory(ply);
+    assert(v); /* of the room that reserve() made */
     v[0] = value[X], v[1] = value[Y], v[2] = value[Z];
     mesh->vertices.count++;
     if (mesh->normals_by_vertex) {
@@ -425,8 +425,8 @@ static bool add_face(struct ply *ply, const uint32_t *corners, uint32_t count) {
     uint32_t *index = start ? list_room(&mesh->vertex_index, count, sizeof *index) : NULL;
     if (!index)
         return no_memory(ply);
-    if (mesh->vertex_index.count > UINT32_MAX - 4 - (size_t)count)
-        return fail(ply, "more than 4294967290 corners");
+    if (mesh->vertex_index.count + count > model_most(ply->model))
+        return fail(ply, "more corners than an index can name");
     *start = (uint32_t)mesh->vertex_index.count;
     mesh->starts.count++;
     memcpy(index, corners, count * sizeof *index);
@@ -600,7 +600,7 @@ static bool reserve(struct ply *ply, const struct element *element) {
     struct model_mesh *mesh = ply->mesh;
     if (element->kind == VERTICES)
         return list_room(&mesh->vertices, element->count, 3 * sizeof(double)) != NULL;
-    if (element->kind == OTHER || element->least == 0)
+    if (element->kind == OTHER)
         return true;
     uint64_t left = (uint64_t)(ply->end - ply->at), corners = 3 * element->count;
     return list_room(&mesh->starts, element->count + 2, sizeof(uint32_t)) &&

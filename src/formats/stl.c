@@ -8,6 +8,7 @@
 
 #include "geom/mesh_weld.h"
 
+#include <assert.h>
 #include <math.h>
 #include <strings.h>
 
@@ -49,7 +50,7 @@ static bool load_binary(struct model *model, struct model_mesh *mesh, const uint
     if (count > (size - HEADER) / FACET)
         return error_set(error, ERROR_SCENE, "%s: byte 80: %u triangles need %llu bytes, but the file has only %zu",
                          model->path, count, (unsigned long long)count * FACET + HEADER, size);
-    if (count > UINT32_MAX / 3 - 1)
+    if (3 * (size_t)count > model_most(model))
         return error_set(error, ERROR_SCENE, "%s: byte 80: %u triangles are too many", model->path, count);
     double(*vertices)[3] = list_room(&mesh->vertices, 3 * (size_t)count, sizeof *vertices);
     if (!vertices)
@@ -113,10 +114,9 @@ static bool expect(struct text *t, const char *word) {
 static bool read_point(struct text *t, double out[3]) {
     for (int k = 0; k < 3; k++) {
         size_t length = next_word(t);
-        const char *after = length ? decimal_read(t->at, t->at + length, &out[k]) : NULL;
-        if (after != t->at + length || length == 0)
+        if (length == 0 || decimal_read(t->at, t->at + length, &out[k]) != t->at + length)
             return fail(t, length, "a finite number");
-        t->at = after;
+        t->at += length;
     }
     return true;
 }
@@ -153,7 +153,8 @@ static void skip_line(struct text *t) {
 static bool load_text(struct model *model, struct model_mesh *mesh, const char *data, size_t size,
                       struct error *error) {
     struct text t = {.path = model->path, .at = data, .end = data + size, .line = 1, .error = error};
-    if (size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0)
+    assert(size >= 3); /* a text begins with "solid", else it is none */
+    if (memcmp(data, "\xef\xbb\xbf", 3) == 0)
         t.at += 3;
     bool inside = false;
     for (size_t length; (length = next_word(&t)) > 0;) {
@@ -170,7 +171,7 @@ static bool load_text(struct model *model, struct model_mesh *mesh, const char *
         } else {
             return fail(&t, length, inside ? "facet or endsolid" : "solid");
         }
-        if (mesh->vertices.count > UINT32_MAX - 4)
+        if (mesh->vertices.count > model_most(model))
             return error_set(error, ERROR_SCENE, "%s:%zu: too many triangles", model->path, t.line);
     }
     if (inside)

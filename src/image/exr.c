@@ -2,10 +2,12 @@
  * back to fill in a table at the front, and what it reads is in memory already. Memory comes from base/mem.h. */
 #include "image/exr.h"
 
+#include "base/fault.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "image/levels.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -86,8 +88,8 @@ static int64_t on_write(exr_const_context_t context, void *data, const void *buf
     (void)context, (void)tell;
     uint64_t end = offset + size;
     if (end > stream->capacity) {
-        size_t capacity = end > SIZE_MAX / 2 ? 0 : (size_t)end * 2;
-        uint8_t *bytes = capacity ? mem_resize(stream->bytes, capacity) : NULL;
+        size_t capacity = (size_t)end * 2; /* a picture that is in memory is no half of what addresses can name */
+        uint8_t *bytes = mem_resize(stream->bytes, capacity);
         stream->no_memory = !bytes;
         if (!bytes)
             return -1;
@@ -204,16 +206,17 @@ static bool write_chunks(exr_context_t context, int part, uint32_t width, uint32
     (void)exr_get_scanlines_per_chunk(context, part, &step);
     for (uint32_t y = 0; ok && y < height; y += (uint32_t)step) {
         exr_chunk_info_t chunk;
-        ok = exr_write_scanline_chunk_info(context, part, (int)y, &chunk) == EXR_ERR_SUCCESS;
-        ok = ok && (begun ? exr_encoding_update(context, part, &chunk, &encoder)
-                          : exr_encoding_initialize(context, part, &chunk, &encoder)) == EXR_ERR_SUCCESS;
+        ok = MAY_FAIL(exr_write_scanline_chunk_info(context, part, (int)y, &chunk)) == EXR_ERR_SUCCESS;
+        ok = ok && MAY_FAIL(begun ? exr_encoding_update(context, part, &chunk, &encoder)
+                                  : exr_encoding_initialize(context, part, &chunk, &encoder)) == EXR_ERR_SUCCESS;
         for (int32_t i = 0; ok && source->rows && i < chunk.height; i++)
             source->rows(source->rows_context, y + (uint32_t)i, source->lines + (size_t)i * width * 3);
         for (int16_t i = 0; ok && i < encoder.channel_count; i++)
             aim_encoder(&encoder.channels[i], source, width, y);
-        ok = ok && (begun || exr_encoding_choose_default_routines(context, part, &encoder) == EXR_ERR_SUCCESS);
+        ok =
+            ok && (begun || MAY_FAIL(exr_encoding_choose_default_routines(context, part, &encoder)) == EXR_ERR_SUCCESS);
         begun = true;
-        ok = ok && exr_encoding_run(context, part, &encoder) == EXR_ERR_SUCCESS;
+        ok = ok && MAY_FAIL(exr_encoding_run(context, part, &encoder)) == EXR_ERR_SUCCESS;
     }
     (void)exr_encoding_destroy(context, &encoder);
     return ok;
@@ -232,7 +235,8 @@ static bool encode(struct stream *stream, uint32_t width, uint32_t height, const
                  EXR_ERR_SUCCESS &&
              add_all_channels(context, part, source) && exr_write_header(context) == EXR_ERR_SUCCESS &&
              write_chunks(context, part, width, height, source);
-        ok = exr_finish(&context) == EXR_ERR_SUCCESS && ok;
+        exr_result_t finished = exr_finish(&context);
+        ok = MAY_FAIL(finished) == EXR_ERR_SUCCESS && ok;
     }
     return ok;
 }
@@ -302,16 +306,18 @@ static bool decode_chunks(exr_context_t context, const exr_attr_box2i_t *window,
     exr_decode_pipeline_t decoder = EXR_DECODE_PIPELINE_INITIALIZER;
     uint32_t width = image->levels[0].width, height = image->levels[0].height;
     int step = 0;
-    bool ok = exr_get_scanlines_per_chunk(context, 0, &step) == EXR_ERR_SUCCESS && step > 0, begun = false;
+    bool ok = MAY_FAIL(exr_get_scanlines_per_chunk(context, 0, &step)) == EXR_ERR_SUCCESS, begun = false;
+    assert(!ok || step > 0); /* 1 to 256, as the compression says */
     for (uint32_t y = 0; ok && y < height; y += (uint32_t)step) {
         exr_chunk_info_t chunk;
         ok = exr_read_scanline_chunk_info(context, 0, window->min.y + (int)y, &chunk) == EXR_ERR_SUCCESS;
-        ok = ok && (uint32_t)chunk.width == width && chunk.height > 0 && (uint32_t)chunk.height <= height - y;
-        ok = ok && (begun ? exr_decoding_update(context, 0, &chunk, &decoder)
-                          : exr_decoding_initialize(context, 0, &chunk, &decoder)) == EXR_ERR_SUCCESS;
+        /* The library counts chunks from the top of the data window and cuts the last one off at its end. */
+        assert(!ok || ((uint32_t)chunk.width == width && chunk.height > 0 && (uint32_t)chunk.height <= height - y));
+        ok = ok && MAY_FAIL(begun ? exr_decoding_update(context, 0, &chunk, &decoder)
+                                  : exr_decoding_initialize(context, 0, &chunk, &decoder)) == EXR_ERR_SUCCESS;
         if (ok)
             *met = aim_channels(&decoder, (float *)image->levels[0].texels + (size_t)y * width * 4, width);
-        ok = ok && (begun || exr_decoding_choose_default_routines(context, 0, &decoder) == EXR_ERR_SUCCESS);
+        ok = ok && (begun || MAY_FAIL(exr_decoding_choose_default_routines(context, 0, &decoder)) == EXR_ERR_SUCCESS);
         begun = true;
         ok = ok && exr_decoding_run(context, 0, &decoder) == EXR_ERR_SUCCESS;
     }
@@ -324,7 +330,7 @@ static bool decode_chunks(exr_context_t context, const exr_attr_box2i_t *window,
 static uint64_t pixels_per_byte(exr_context_t context) {
     const uint64_t zipped = 520;
     exr_compression_t compression;
-    bool blocks = exr_get_compression(context, 0, &compression) == EXR_ERR_SUCCESS &&
+    bool blocks = MAY_FAIL(exr_get_compression(context, 0, &compression)) == EXR_ERR_SUCCESS &&
                   (compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB);
     return blocks ? 64 * zipped : zipped;
 }
@@ -332,8 +338,8 @@ static uint64_t pixels_per_byte(exr_context_t context) {
 static struct image *decode(exr_context_t context, const char *path, struct stream *stream, struct error *error) {
     exr_storage_t storage;
     exr_attr_box2i_t window;
-    if (exr_get_storage(context, 0, &storage) != EXR_ERR_SUCCESS ||
-        exr_get_data_window(context, 0, &window) != EXR_ERR_SUCCESS) {
+    if (MAY_FAIL(exr_get_storage(context, 0, &storage)) != EXR_ERR_SUCCESS ||
+        MAY_FAIL(exr_get_data_window(context, 0, &window)) != EXR_ERR_SUCCESS) {
         tell(path, stream, "broken EXR", error);
         return NULL;
     }
@@ -343,8 +349,8 @@ static struct image *decode(exr_context_t context, const char *path, struct stre
     }
     int64_t width = (int64_t)window.max.x - window.min.x + 1, height = (int64_t)window.max.y - window.min.y + 1;
     /* Every row costs a few bytes even when it is black, in chunks of at most 256 rows. */
-    if (width < 1 || height < 1 || width > UINT32_MAX || height > UINT32_MAX ||
-        (uint64_t)height / 256 > stream->size / 8 ||
+    assert(width >= 1 && height >= 1 && width <= IMAGE_MAX_SIDE && height <= IMAGE_MAX_SIDE); /* it was told so */
+    if ((uint64_t)height / 256 > stream->size / 8 ||
         (uint64_t)width * (uint64_t)height / pixels_per_byte(context) > stream->size) {
         error_set(error, ERROR_SCENE, "%s: broken EXR: the file is too short for its pixels", path);
         return NULL;
@@ -363,10 +369,14 @@ static struct image *decode(exr_context_t context, const char *path, struct stre
             texels[i + k] = bounded(texels[i + (met == 8 ? 0 : k)]);
         texels[i + 3] = 1;
     }
-    if (ok && image_build_levels(image, error))
-        return image;
-    image_release(image);
-    return NULL;
+    if (!ok) {
+        image_release(image);
+        return NULL;
+    }
+    bool built = image_build_levels(image, error);
+    assert(built); /* floats take no memory for it */
+    (void)built;
+    return image;
 }
 
 struct image *image_parse_exr(const char *path, const uint8_t *data, size_t size, struct error *error) {
@@ -379,7 +389,7 @@ struct image *image_parse_exr(const char *path, const uint8_t *data, size_t size
     telling = &stream;
     exr_result_t begun = exr_start_read(&context, path, &init);
     struct image *image = NULL;
-    stream.no_memory = stream.no_memory || begun == EXR_ERR_OUT_OF_MEMORY;
+    stream.no_memory |= begun == EXR_ERR_OUT_OF_MEMORY;
     if (begun == EXR_ERR_SUCCESS) {
         image = decode(context, path, &stream, error);
         (void)exr_finish(&context);

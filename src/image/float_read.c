@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "image/levels.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -40,22 +41,26 @@ static bool next_line(struct reading *r, char line[LINE_LIMIT]) {
     return memchr(line, 0, length) == NULL;
 }
 
+/* The sides have at most nine digits; those that are 0 or too large are refused in the words of all images. */
 static struct image *allocate(struct reading *r, unsigned long long width, unsigned long long height) {
     if (width > 0 && height > 0 && width <= IMAGE_MAX_SIDE && height <= IMAGE_MAX_SIDE &&
         width * height / PIXELS_PER_BYTE > r->size) {
         tell(r, "the file is too short for its pixels");
         return NULL;
     }
-    if (width > UINT32_MAX || height > UINT32_MAX)
-        width = height = UINT32_MAX; /* refused in the words of all images */
+    assert(width <= UINT32_MAX && height <= UINT32_MAX);
     return image_allocate(r->path, (uint32_t)width, (uint32_t)height, 32, r->error);
 }
 
 static struct image *finish(struct reading *r, struct image *image, bool ok) {
-    if (ok && image_build_levels(image, r->error))
-        return image;
-    image_release(image);
-    return NULL;
+    if (!ok) {
+        image_release(image);
+        return NULL;
+    }
+    bool built = image_build_levels(image, r->error);
+    assert(built); /* floats take no memory for it */
+    (void)built;
+    return image;
 }
 
 static float bounded(double light) {

@@ -134,16 +134,17 @@ struct image *image_parse_jpeg(const char *path, const uint8_t *data, size_t siz
     reader.progress.progress_monitor = on_progress;
     error->kind = ERROR_NONE;
     bool ok = decode(&reader, data, error);
-    size_t left = reader.jpeg.src ? reader.jpeg.src->bytes_in_buffer : 0;
     if (!ok && error->kind == ERROR_NONE) {
         if (reader.code == JERR_OUT_OF_MEMORY)
             error_no_memory(error, path);
-        else if (reader.code == JWRN_JPEG_EOF || reader.code == JERR_INPUT_EOF)
+        else if (reader.code == JWRN_JPEG_EOF)
             error_set(error, ERROR_SCENE,
                       "%s: truncated JPEG: the file ends at byte %zu, before the picture is complete", path, size);
-        else
-            error_set(error, ERROR_SCENE, "%s: broken JPEG: %s (before byte %zu)", path, reader.message,
-                      left <= size ? size - left : size);
+        else {
+            size_t left = reader.jpeg.src ? reader.jpeg.src->bytes_in_buffer : 0; /* of an empty file */
+            assert(left <= size); /* no more than there is, or the two bytes of an end of its own */
+            error_set(error, ERROR_SCENE, "%s: broken JPEG: %s (before byte %zu)", path, reader.message, size - left);
+        }
     }
     jpeg_destroy_decompress(&reader.jpeg);
     ok = ok && image_build_levels(reader.image, error);

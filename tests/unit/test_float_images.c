@@ -90,6 +90,11 @@ TEST(radiance_pictures_of_every_spelling_are_read) {
     CHECK_NEAR(first_red("a", WHOLE(HEAD "EXPOSURE=2\nEXPOSURE= 2.0\n\n-Y 1 +X 1\n\x80\0\0\x81"), 0, 0), one / 4, 0);
     /* Repeated pixels, 2 and then 1 * 256 of them. */
     CHECK_NEAR(first_red("a", WHOLE(HEAD "\n-Y 1 +X 259\n\x80\0\0\x81\1\1\1\2\1\1\1\1"), 258, 0), one, 0);
+    /* A row too long for runs of channels, in a file that is long enough for it. */
+    static char row[1024];
+    int head = snprintf(row, sizeof row, HEAD "#%0500d\n\n-Y 1 +X 32768\n", 0);
+    memcpy(row + head, "\x80\0\0\x81\1\1\1\xff\1\1\1\x7f", 12);
+    CHECK_NEAR(first_red("a", row, (size_t)head + 12, 32767, 0), one, 0);
     /* Runs of channels, literal ones and repeated ones. */
     CHECK_NEAR(first_red("a", WHOLE(HEAD "\n-Y 1 +X 8\n\2\2\0\x08\x03\0\0\0\x85\x80\x88\0\x88\0\x88\x81"), 7, 0), one,
                0);
@@ -113,6 +118,7 @@ TEST(broken_pictures_of_light_are_one_line) {
         {WHOLE("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n\0\0\0\0"), "FORMAT"},
         {WHOLE(HEAD "EXPOSURE=0\n\n-Y 1 +X 1\n\0\0\0\0"), "EXPOSURE"},
         {WHOLE(HEAD "\n+X 1 +Y 1\n\0\0\0\0"), "columns"},
+        {WHOLE(HEAD "\n-Y 1 +Y 1\n\0\0\0\0"), "columns"},
         {WHOLE(HEAD "\n-Y one +X 1\n\0\0\0\0"), "size"},
         {WHOLE(HEAD "\n-Y 0 +X 1\n\0\0\0\0"), "at least one pixel"},
         {WHOLE(HEAD "\n-Y 32768 +X 8192\n\0\0\0\0"), "too short"},
@@ -194,7 +200,7 @@ TEST(levels_of_a_picture_of_light_are_means) {
 }
 
 TEST(reading_light_survives_every_failed_allocation) {
-    const char text[] = HEAD "\n-Y 2 +X 1\n\x80\0\0\x81\x40\0\0\x81";
+    const char text[] = HEAD "\n-Y 1 +X 64\n\x80\0\0\x81\1\1\1\x3f";
     for (uint64_t k = 1; k < 20; k++) {
         struct error error = {0};
         mem_fail_at(k);

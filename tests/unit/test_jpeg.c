@@ -8,6 +8,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #ifndef HAVE_JPEG
 
@@ -223,6 +226,61 @@ TEST(jpeg_that_claims_a_huge_size_is_refused) {
         CHECK(parse(data, size, &error) == NULL);
         CHECK(strstr(error.text, "too many") || strstr(error.text, "too short"));
     }
+    free(data);
+}
+
+/* Adobe's mark in the place of JFIF's, with a transform that nobody knows: taken for the usual one. */
+TEST(jpeg_with_an_unknown_transform_is_read) {
+    size_t size;
+    uint8_t *data = encode(3, false, &size);
+    struct error error;
+    CHECK(data[2] == 0xff && data[3] == 0xe0 && data[5] == 16);
+    memcpy(data + 4,
+           "\xff\xee\0\x0e"
+           "Adobe\0\x64\0\0\0\0\7",
+           16); /* two bytes shorter */
+    memcpy(data + 2, "\xff\xd8", 2);
+    struct image *image = parse(data + 2, size - 2, &error);
+    CHECK_TEXT(error.text, "");
+    CHECK(image && fabs(image_texel(image, WIDTH - 1, 0).r * 255 - 6 * (WIDTH - 1)) < 16);
+    image_release(image);
+    free(data);
+}
+
+TEST(jpeg_of_no_bytes_is_one_line) {
+    struct error error = {0};
+    CHECK(image_parse_jpeg("t.jpg", (const uint8_t *)"", 0, &error) == NULL);
+    CHECK(strstr(error.text, "t.jpg: broken JPEG: ") == error.text);
+}
+
+/* libjpeg takes the coefficients of a progressive picture before we take its texels. */
+TEST(jpeg_that_finds_no_memory_for_its_coefficients_is_told) {
+#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
+    test_skip("the sanitizers' own memory is beyond any limit on addresses");
+#endif
+    size_t size, at = 0;
+    uint8_t *data = encode(3, true, &size);
+    while (!(data[at] == 0xff && data[at + 1] == 0xc2))
+        at++;
+    memcpy(data + at + 5, "\x02\x58\x02\x58", 4); /* 600 x 600 */
+    (void)fflush(stdout);
+    pid_t child = fork();
+    if (child == 0) {
+        struct error error = {0};
+        FILE *sizes = fopen("/proc/self/statm", "r");
+        unsigned long pages = 0;
+        if (!sizes || fscanf(sizes, "%lu", &pages) != 1)
+            _exit(2);
+        struct rlimit limit = {pages * 4096 + (1 << 18), pages * 4096 + (1 << 18)};
+        if (setrlimit(RLIMIT_AS, &limit) != 0)
+            _exit(2);
+        _exit(!image_parse("t.jpg", data, size, &error) && error.kind == ERROR_MACHINE &&
+                      strcmp(error.text, "out of memory for t.jpg") == 0
+                  ? 0
+                  : 1);
+    }
+    int how = 0;
+    CHECK(waitpid(child, &how, 0) == child && WIFEXITED(how) && WEXITSTATUS(how) == 0);
     free(data);
 }
 

@@ -254,6 +254,8 @@ TEST(png_errors_say_what_is_wrong) {
          "t.png: 32768 x 32767 pixels are too many (at most 32768 a side and 268435456 in all)"},
         {"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\0\0\0\0\x01\x08\x02\0\0\0....", 33,
          "t.png: broken PNG: its size is 0 x 1 (at byte 16)"},
+        {"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\0\x08\x02\0\0\0....", 33,
+         "t.png: broken PNG: its size is 1 x 0 (at byte 16)"},
         {"\x89PNG\r\n\x1a\n\0\0\0\rIDAT\0\0\0\0\0\0\0\x01\x08\x02\0\0\0....", 33,
          "t.png: broken PNG: the first chunk is not IHDR (at byte 8)"},
     };

@@ -103,12 +103,21 @@ TEST(a_folder_that_may_be_written_takes_files_and_gives_none_away) {
     CHECK(!reach_rename(&reach, in_folder("below/missing"), in_folder("below/x")));
     CHECK(reach_remove(&reach, in_folder("below/other.txt")) && !reach_remove(&reach, in_folder("below/other.txt")));
     CHECK(!reach_remove(&reach, in_folder("outside.txt")) && !reach_remove(&reach, in_folder("no/such")));
+    CHECK(!reach_remove(&reach, in_folder("below/")) && errno == EINVAL);
+    CHECK(!reach_remove(&reach, in_folder("below/.")) && errno == EINVAL);
+    CHECK(!reach_remove(&reach, in_folder("below/..")) && errno == EINVAL);
     CHECK(reach_may_create(&reach, in_folder("below/a/b/c.png")) && reach_may_create(&reach, in_folder("below/x.png")));
     CHECK(!reach_may_create(&reach, in_folder("below/.x.png")) && !reach_may_create(&reach, in_folder("below/a/../x")));
     CHECK(!reach_may_create(&reach, in_folder("below/a/.x")) && !reach_may_create(&reach, in_folder("x.png")));
     CHECK(!reach_may_create(&reach, in_folder("below/no/../../x")) && !reach_may_create(&reach, "../x"));
     CHECK(!reach_may_create(&reach, in_folder("below/inner.txt/x")) && !reach_may_create(&reach, "/x"));
     CHECK(!reach_may_create(&reach, in_folder("below/a/..")) && !reach_may_create(&reach, "x"));
+    /* hidden folders that are there */
+    CHECK(mkdir(in_folder("below/.own"), 0777) == 0 && mkdir(in_folder("below/sub/.own"), 0777) == 0);
+    CHECK(!reach_may_create(&reach, in_folder("below/.own/x")) &&
+          !reach_may_create(&reach, in_folder("below/sub/.own/x")));
+    FILE *everywhere = reach_stream(NULL, in_folder("outside2.txt"), "w");
+    CHECK(everywhere && fclose(everywhere) == 0);
     reach_destroy(&reach);
 }
 
@@ -158,6 +167,124 @@ TEST(any_allocation_or_call_may_fail_while_files_are_reached) {
         }
 }
 
+/* In a folder that has been removed nothing has a place. */
+TEST(a_working_directory_that_is_gone_holds_nothing) {
+    struct reach reach = {0};
+    struct error error;
+    prepare();
+    CHECK(reach_add(&reach, in_folder("below"), REACH_WRITE, &error));
+    CHECK(mkdir(in_folder("gone"), 0777) == 0);
+    fflush(stdout);
+    pid_t child = fork();
+    if (child == 0) {
+        const char *gone = in_folder("gone");
+        if (chdir(gone) != 0 || rmdir(gone) != 0)
+            _exit(1);
+        _exit(reach_is_outside(&reach, "x") && !reach_may_create(&reach, "x") ? 0 : 2);
+    }
+    int how = 0;
+    CHECK(waitpid(child, &how, 0) == child && WIFEXITED(how) && WEXITSTATUS(how) == 0);
+    reach_destroy(&reach);
+}
+
+#ifdef GRAY_FAULTS
+static char race_from[600], race_to[600], race_kept[600];
+
+/* What stood at the name goes aside, a link that leads out takes its place. */
+static void change_places(void) {
+    (void)rename(race_from, race_kept);
+    (void)rename(race_to, race_from);
+}
+
+/* In below/sub or outer, which have names of the same length or not, with the kernel's openat2 refused for that reason
+ * (0: it is there). */
+static void race(const char *outer, const char *mode, int number) {
+    struct reach reach = {0};
+    struct error error;
+    char line[600];
+    CHECK(reach_add(&reach, in_folder("below"), REACH_WRITE, &error));
+    CHECK(mkdir(in_folder("below/sub"), 0777) == 0 || errno == EEXIST);
+    CHECK(mkdir(in_folder(outer), 0777) == 0 || errno == EEXIST);
+    test_write_text(in_folder("below/sub/f"), "inside");
+    (void)snprintf(line, sizeof line, "%s/f", in_folder(outer));
+    test_write_text(line, "outside");
+    (void)snprintf(race_from, sizeof race_from, "%s", in_folder("below/sub"));
+    (void)snprintf(race_to, sizeof race_to, "%s", in_folder("link_to_outer"));
+    (void)snprintf(race_kept, sizeof race_kept, "%s", in_folder("kept"));
+    CHECK(symlink(in_folder(outer), race_to) == 0);
+    int before = fault_errno(number);
+    fault_at(FAULT_OF_CALL, number ? 1 : 0);
+    fault_before(number ? 2 : 1, change_places);
+    FILE *stream = reach_stream(&reach, in_folder("below/sub/f"), mode);
+    int why = errno;
+    fault_at(FAULT_OF_CALL, 0);
+    fault_before(0, change_places);
+    (void)fault_errno(before);
+    if (stream)
+        test_fail(__FILE__, __LINE__, "%s was opened in the place of below/sub", outer);
+    CHECK(why == EACCES || why == ELOOP || why == EXDEV);
+    CHECK(unlink(race_from) == 0 && rename(race_kept, race_from) == 0);
+    char *text = test_read_file(line, NULL);
+    CHECK_TEXT(text, "outside"); /* nor was it emptied */
+    free(text);
+    reach_destroy(&reach);
+}
+#endif
+
+TEST(a_folder_that_becomes_a_link_between_two_looks_leads_nowhere) {
+#ifndef GRAY_FAULTS
+    test_skip("what happens between two calls to the system is only in builds with GRAY_FAULTS");
+#else
+    prepare();
+    race("outer", "r", 0);
+    race("outer", "w", 0);
+    /* without openat2: asked where it is */
+    race("outer", "r", ENOSYS);
+    race("outer", "r", EPERM);
+    race("outer", "w", ENOSYS);
+    race("below/too", "r", ENOSYS);
+#endif
+}
+
+TEST(any_call_may_fail_where_the_kernel_opens_no_file_below_a_folder) {
+#ifndef GRAY_FAULTS
+    test_skip("failures on demand are only in builds with GRAY_FAULTS");
+#endif
+    prepare();
+    fflush(stdout);
+    pid_t child = fork();
+    if (child == 0) {
+        static const char *const scripts[] = {"tests/hostile/time_loop.lua"};
+        const char *const folders[] = {in_folder("below")};
+        struct options options = {.scripts = scripts, .script_count = 1};
+        struct reach reach = {0};
+        struct error error = {0};
+        char report[4096] = "";
+        int opened = 0;
+        options.script.allow_write = folders;
+        options.script.allow_write_count = 1;
+        if (!reach_add(&reach, folders[0], REACH_WRITE, &error) ||
+            !confine_process_as(&options, 2, 0, report, sizeof report, &error))
+            _exit(64);
+        if (!strstr(report, ", seccomp; "))
+            _exit(77);
+        reach.folders[0].descriptor = open(folders[0], O_PATH | O_DIRECTORY); /* the others were closed */
+        for (uint64_t k = 1; k <= 8; k++) {
+            fault_at(FAULT_OF_CALL, k);
+            opened += can_open(&reach, "below/inner.txt", k % 2 ? "w" : "r");
+            fault_at(FAULT_OF_CALL, k);
+            opened += can_open(&reach, "below/inner.txt", k % 2 ? "r" : "w");
+        }
+        fault_at(FAULT_OF_CALL, 0);
+        _exit(opened > 0 && opened < 16 && can_open(&reach, "below/inner.txt", "w") ? 0 : 1);
+    }
+    int how = 0;
+    CHECK(waitpid(child, &how, 0) == child && WIFEXITED(how));
+    if (WEXITSTATUS(how) == 77)
+        test_skip("no seccomp filter in this build or kernel");
+    CHECK_EQ_INT(WEXITSTATUS(how), 0);
+}
+
 /* As on kernels without Landlock and with every version of it: the report says so, and what is refused by name is
  * refused there too. The exit status is a bit for each thing that is not as it should be; 128 without seccomp. */
 static int status_of_confined(long version, const char *allowed, size_t report_size) {
@@ -203,6 +330,7 @@ TEST(a_process_is_confined_as_on_kernels_of_every_age) {
     }
     CHECK_EQ_INT(status_of_confined(LONG_MAX, below, 60), 0); /* a report that is cut */
     CHECK_EQ_INT(status_of_confined(LONG_MAX, "/", 100) & 64, 0);
+    CHECK_EQ_INT(status_of_confined(LONG_MAX, "/", 4096) & 64, 0);
 }
 
 TEST(a_process_that_cannot_be_confined_says_why) {

@@ -100,6 +100,7 @@ static const struct corner corners[] = {
     {"a", "solid", "no faces in this file"},
     {"a.obj", "mtllib corner.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n", NULL},
     {"a.obj", "mtllib nothing corner.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n", NULL},
+    {"a.obj", "mtllib corner.mtl nothing corner.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n", NULL},
     {"a.obj", "mtllib wrong.mtl\nv 0 0 0\n", "wrong.mtl:2: '' is not a finite number"},
     {"a.obj", "mtllib long.mtl\nv 0 0 0\n",
      "long.mtl:2: 'xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx' is not a finite number"},
@@ -111,6 +112,7 @@ static const struct corner corners[] = {
      NULL},
     {"a.stl", "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0", "the file ends where a finite number must be"},
     {"a.stl", "so", "a binary STL file has at least 84 bytes"},
+    {"a.stl", "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 ", "the file ends where a finite number must be"},
     /* PLY */
     {"a.ply", "ply\r", "the file ends before end_header"},
     {"a.ply", "ply\nend_header\n", "stands before the format"},
@@ -254,6 +256,220 @@ TEST(any_allocation_may_fail_while_nodes_are_read) {
     bytes_print(&b, "]}");
     check_failed_allocations("t.gltf", &b);
     bytes_free(&b);
+}
+#endif
+
+/* What a test says of how many there may be stands for the numbers that an index of 32 bits cannot name. */
+static void expect_most(const char *name, const void *data, size_t size, size_t most, const char *words) {
+    char path[512];
+    struct model model;
+    struct error error;
+    struct model_options options = {.most = most};
+    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    bool ok = parse_model(&model, path, data, size, &options, &error);
+    if (ok != !words || (words && !strstr(error.text, words)))
+        test_fail(__FILE__, __LINE__, "%s, at most %zu: %s, not '%s'", name, most, ok ? "is read" : error.text,
+                  words ? words : "read");
+    if (ok)
+        model_destroy(&model);
+}
+
+TEST(more_than_an_index_can_name_is_told_by_every_reader) {
+    static const char obj[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 4\n";
+    static const char names[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nusemtl b\nusemtl c\nusemtl d\nf 1 2 3\n";
+    static const char ply[] = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                              "property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+                              "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 2 1\n";
+    static const char strip[] = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                                "property float z\nelement tristrips 1\nproperty list uchar int vertex_indices\n"
+                                "end_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n4 0 1 2 3\n";
+    static const char stl[] = "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+                              "endloop\nendfacet\nendsolid\n";
+    expect_most("t.obj", obj, strlen(obj), 6, NULL);
+    expect_most("t.obj", obj, strlen(obj), 5, "t.obj:8: more corners than an index can name");
+    expect_most("t.obj", obj, strlen(obj), 3, "t.obj:4: more elements than an index can name");
+    expect_most("t.obj", names, strlen(names), 4, NULL);
+    expect_most("t.obj", names, strlen(names), 3, "out of memory");
+    expect_most("t.ply", ply, strlen(ply), 6, NULL);
+    expect_most("t.ply", ply, strlen(ply), 5, "more corners than an index can name");
+    expect_most("t.ply", ply, strlen(ply), 2, "more corners than an index can name");
+    expect_most("t.ply", strip, strlen(strip), 6, NULL);
+    expect_most("t.ply", strip, strlen(strip), 5, "more corners than an index can name");
+    expect_most("t.stl", stl, strlen(stl), 3, NULL);
+    expect_most("t.stl", stl, strlen(stl), 2, "t.stl:8: too many triangles");
+    struct maker m = {0};
+    struct bytes b = {0};
+    maker_sphere(&m, 3);
+    write_stl(&b, &m, true, "ball");
+    expect_most("t.stl", b.data, b.size, 5, "triangles are too many");
+    bytes_free(&b);
+    /* More vertices than corners, which no reader needs to count by itself. */
+    bytes_print(&b, "ply\nformat ascii 1.0\nelement vertex 7\nproperty float x\nproperty float y\nproperty float z\n"
+                    "element face 1\nproperty list uchar int vertex_indices\nend_header\n");
+    for (int i = 0; i < 7; i++)
+        bytes_print(&b, "%d %d 0\n", i, i * i);
+    bytes_print(&b, "3 0 1 2\n");
+    expect_most("t.ply", b.data, b.size, 6, "more than 6 vertices or corners");
+    bytes_free(&b);
+#ifdef HAVE_JANSSON
+    static const char gltf[] = HEAD TRIANGLE "\"meshes\":[{\"primitives\":[" ONE "," ONE "]}]}";
+    expect_most("t.gltf", gltf, strlen(gltf), 6, NULL);
+    expect_most("t.gltf", gltf, strlen(gltf), 5, "too many vertices");
+    /* three vertices, each of them twice */
+    bytes_print(&b, "%s",
+                HEAD
+                "\"buffers\":[{\"uri\":\"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAECAAEC\"}],"
+                "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,"
+                "\"byteLength\":6}],\"accessors\":[" POINTS
+                ",{\"bufferView\":1,\"componentType\":5121,\"count\":6,\"type\":\"SCALAR\"}]," MESH "}");
+    expect_most("t.gltf", b.data, b.size, 6, NULL);
+    expect_most("t.gltf", b.data, b.size, 5, "more than 5 vertices or corners");
+    bytes_free(&b);
+#endif
+    maker_free(&m);
+}
+
+/* Lists that grow while they are filled, and one that is full when its end is added. */
+TEST(any_allocation_may_fail_while_long_lists_grow) {
+#ifndef GRAY_FAULTS
+    test_skip("allocations fail on demand only in builds with GRAY_FAULTS");
+#endif
+    struct bytes b = {0};
+    bytes_print(&b, "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl x\nf 1 2 3\n");
+    for (int i = 0; i < 300; i++)
+        bytes_print(&b, "usemtl m%d\ng g%d\nf 1/1/1 2 3//1\n", i % 70, i % 3);
+    check_failed_allocations("t.obj", &b);
+    bytes_free(&b);
+    bytes_add(&b, (const char[80]){0}, 80);
+    bytes_number(&b, 100, 4, false);
+    for (int i = 0; i < 100; i++) {
+        for (int k = 0; k < 12; k++)
+            bytes_float(&b, k == 6 || k == 10 ? 1 : k % 3 == 2 ? i : 0, false);
+        bytes_number(&b, 0, 2, false);
+    }
+    check_failed_allocations("t.stl", &b);
+    bytes_free(&b);
+    /* strips and faces with places on a picture, in both orders */
+    for (int order = 0; order < 2; order++) {
+        bytes_print(&b, "ply\nformat ascii 1.0\nelement vertex 150\nproperty float x\nproperty float y\n"
+                        "property float z\n");
+        for (int k = 0; k < 2; k++)
+            bytes_print(&b, k == order ? "element tristrips 1\nproperty list int int vertex_indices\n"
+                                       : "element face 40\nproperty list uchar int vertex_indices\n"
+                                         "property list uchar float texcoord\n");
+        bytes_print(&b, "end_header\n");
+        for (int i = 0; i < 150; i++)
+            bytes_print(&b, "%d %d %d\n", i / 2, i % 2, i % 7);
+        for (int k = 0; k < 2; k++) {
+            for (int i = 0; k != order && i < 40; i++)
+                bytes_print(&b, "6 %d %d %d %d %d %d 12 0 0 1 0 1 1 0 1 0 0 1 1\n", i, i + 1, i + 2, i + 3, i + 5,
+                            i + 4);
+            if (k == order)
+                bytes_print(&b, "150");
+            for (int i = 0; k == order && i < 150; i++)
+                bytes_print(&b, i == 149 ? " %d\n" : " %d", i);
+        }
+        check_failed_allocations("t.ply", &b);
+        bytes_free(&b);
+    }
+    /* many strips of one triangle, whose room nobody foresees */
+    bytes_print(&b, "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                    "element tristrips 3\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n");
+    for (int k = 0; k < 3; k++) {
+        bytes_print(&b, "200");
+        for (int i = 0; i < 200; i++)
+            bytes_print(&b, " %d", i % 3);
+        bytes_print(&b, "\n");
+    }
+    check_failed_allocations("t.ply", &b);
+    bytes_free(&b);
+}
+
+TEST(a_place_on_a_picture_that_is_no_number_is_told) {
+    struct bytes b = {0};
+    bytes_print(&b, "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                    "property float z\nelement face 1\nproperty list uchar uchar vertex_indices\n"
+                    "property list uchar float texcoord\nend_header\n");
+    for (int k = 0; k < 9; k++)
+        bytes_float(&b, k == 3 || k == 7, false);
+    bytes_add(&b, "\3\0\1\2\6", 5);
+    for (int k = 0; k < 6; k++)
+        bytes_float(&b, k == 4 ? (double)INFINITY : 0.5, false);
+    expect("t.ply", b.data, b.size, "not a finite number");
+    bytes_free(&b);
+}
+
+/* Members of gzip whose parts do not meet the pieces they go through zlib in: an empty one, a name of 10,000 bytes, and
+ * megabytes. */
+TEST(gzip_of_any_length_is_read_piece_by_piece) {
+    char line[4096];
+    (void)snprintf(
+        line, sizeof line,
+        "cd '%s' && { printf 'v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nf 1 2 3\\n'; yes '# nothing' | head -n 60000; } "
+        ">t.obj && { printf '\\037\\213\\010\\010\\0\\0\\0\\0\\0\\003'; head -c 10000 /dev/zero | tr '\\0' n; "
+        "printf '\\0'; gzip -n <t.obj | tail -c +11; gzip -n </dev/null; } >t.obj.gz",
+        test_folder());
+    if (system(line) != 0)
+        test_skip("there is no gzip");
+    char path[512];
+    (void)snprintf(path, sizeof path, "%s/t.obj.gz", test_folder());
+    struct bytes b = {0};
+    b.data = (uint8_t *)test_read_file(path, &b.size);
+    CHECK(b.data != NULL);
+    expect("t.obj.gz", b.data, b.size, NULL);
+    check_failed_allocations("t.obj.gz", &b);
+    bytes_free(&b);
+}
+
+TEST(names_in_a_library_that_stands_alone_are_kept_as_they_are) {
+    static const char text[] = "newmtl a\nmap_Kd x\\y.png\n";
+    struct model model = {.path = "d/t.obj", .options.alone = true};
+    struct error error = {0};
+    CHECK(mtl_load(&model, "d/t.mtl", text, strlen(text), &error));
+    CHECK(model.materials.count == 1 && strstr(model_materials(&model)[0].map_kd.name, "y.png"));
+    model_destroy(&model);
+}
+
+#ifdef HAVE_JANSSON
+/* Each of 400 primitives uses three vertices and walks twice along 2,000 sparse ones. */
+TEST(sparse_parts_that_are_walked_through_too_often_are_refused) {
+    enum { SPARSE = 2000 };
+    struct bytes b = {0}, buffer = {0};
+    for (int i = 0; i < SPARSE; i++)
+        bytes_number(&buffer, (uint64_t)i, 2, false);
+    bytes_add(&buffer, "\0\1\2\0", 4);
+    buffer.data = realloc(buffer.data, buffer.size + 12 * SPARSE);
+    memset(buffer.data + buffer.size, 0, 12 * SPARSE);
+    size_t used = buffer.size;
+    buffer.size += 12 * SPARSE;
+    bytes_print(&b, HEAD "\"buffers\":[{\"uri\":\"data:;base64,");
+    write_base64(&b, &buffer);
+    bytes_print(&b,
+                "\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":%d},{\"buffer\":0,\"byteOffset\":%d,"
+                "\"byteLength\":3},{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%d}],\"accessors\":[{"
+                "\"componentType\":5126,\"count\":%d,\"type\":\"VEC3\",\"sparse\":{\"count\":%d,\"indices\":{"
+                "\"bufferView\":0,\"componentType\":5123},\"values\":{\"bufferView\":2}}}," INDICES
+                "],\"meshes\":[{\"primitives\":[",
+                2 * SPARSE, 2 * SPARSE, used, 12 * SPARSE, SPARSE, SPARSE);
+    for (int i = 0; i < 400; i++)
+        bytes_print(&b, "%s{\"attributes\":{\"POSITION\":0,\"NORMAL\":0},\"indices\":1}", i ? "," : "");
+    bytes_print(&b, "]}]}");
+    expect("t.gltf", b.data, b.size, "more vertices than a file of");
+    bytes_free(&b), bytes_free(&buffer);
+}
+
+TEST(a_picture_is_not_looked_for_when_a_file_stands_alone) {
+    static const char text[] = HEAD TRIANGLE MESH ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{"
+                                                  "\"index\":0}}}],\"textures\":[{\"source\":0}],"
+                                                  "\"images\":[{\"uri\":\"gone.png\"}]}";
+    for (int alone = 0; alone < 2; alone++) {
+        struct model model;
+        struct error error;
+        struct model_options options = {.alone = alone};
+        CHECK(parse_model(&model, "t.gltf", text, strlen(text), &options, &error));
+        CHECK_EQ_INT(model.warning_count, 1 - alone);
+        model_destroy(&model);
+    }
 }
 #endif
 

@@ -321,6 +321,80 @@ TEST(any_word_of_an_stl_file_may_be_another) {
     check_text("t.stl", stl_text, strlen(stl_text), 1);
 }
 
+/* Each kind of map alone, each way to bend and to shine, metal without a map; an STL with a part that it does not name;
+ * a mesh without triangles. */
+TEST(any_allocation_may_fail_while_looks_are_placed) {
+    static const char library[] = "newmtl a\nillum 2\nKs 1 1 1\nNs 0\nmap_Ks pic.png\nnewmtl b\nbump pic.png\n"
+                                  "newmtl c\nillum 6\nNi 0.5\nNs 7\nnewmtl d\nillum 7\nNi 1.5\nnewmtl e\nillum 10\n"
+                                  "newmtl f\nillum 5\nNi 1.2\nnewmtl g\nillum 9\nNi 1.2\nmap_d pic.png\n";
+    static const char model[] = "mtllib looks.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n"
+                                "usemtl c\nf 1 2 3\nusemtl d\nf 1 2 3\nusemtl e\nf 1 2 3\nusemtl f\nf 1 2 3\n"
+                                "usemtl g\nf 1 2 3\n";
+    struct model_options plain = {0};
+    struct error error;
+    char path[512];
+    int triangles = 0;
+    prepare();
+    put("looks.mtl", library, strlen(library));
+    put("looks.obj", model, strlen(model));
+    (void)snprintf(path, sizeof path, "%s/looks.obj", test_folder());
+    CHECK(read_and_place(path, &plain, &error, &triangles));
+    CHECK_EQ_INT(triangles, 7);
+    fail_everything("looks.obj", &plain);
+#ifdef HAVE_JANSSON
+    static const char metal[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"data:;base64,"
+        "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAECAA==\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":3}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"
+        "{\"bufferView\":1,\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"}],"
+        "\"materials\":[{\"pbrMetallicRoughness\":{\"metallicFactor\":0.5,\"baseColorTexture\":{\"index\":0}}}],"
+        "\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"pic.png\"}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":0}]},"
+        "{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"mode\":0}]}],"
+        "\"nodes\":[{\"mesh\":0},{\"mesh\":1}],\"scenes\":[{\"nodes\":[0,1]}]}";
+    put("metal.gltf", metal, strlen(metal));
+    (void)snprintf(path, sizeof path, "%s/metal.gltf", test_folder());
+    CHECK(read_and_place(path, &plain, &error, &triangles));
+    CHECK_EQ_INT(triangles, 1);
+    fail_everything("metal.gltf", &plain);
+#endif
+}
+
+TEST(a_part_that_a_file_does_not_name_changes_nothing) {
+    struct assets assets = {0};
+    struct scene scene;
+    struct model model;
+    struct error error = {0};
+    struct material *red;
+    const char *const names[] = {"hull"};
+    scene_init(&scene, &assets);
+    CHECK((red = scene_material(&scene, MATERIAL_PHONG, NULL, &error)) != NULL);
+    CHECK(
+        model_parse(&model, "t.stl", (const uint8_t *)stl_text, strlen(stl_text), &(struct model_options){0}, &error));
+    const struct material *const materials[] = {red};
+    struct model_placing placing = {.name = "n", .part_names = names, .part_materials = materials, .part_count = 1};
+    CHECK(!model_has_part(&model, "hull"));
+    const struct node *node = model_place(&scene, &model, &placing, &error);
+    CHECK(node && node->material != red);
+    model_destroy(&model);
+    scene_destroy(&scene);
+    assets_destroy(&assets);
+}
+
+TEST(a_model_whose_real_name_is_too_long_for_the_store_is_told) {
+    struct assets assets = {0};
+    struct error error = {0};
+    bool fresh;
+    char *name = malloc(6000);
+    memset(name, 'x', 5999);
+    name[5999] = '\0';
+    CHECK(!model_asset(&assets, "t.obj", name, &(struct model_options){0}, &fresh, &error));
+    CHECK_TEXT(error.text, "t.obj: its path is too long");
+    free(name);
+    assets_destroy(&assets);
+}
+
 /* The library of materials is another file: its lines name it. */
 TEST(any_word_of_a_material_library_may_be_another) {
     char path[512];

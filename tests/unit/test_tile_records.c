@@ -205,6 +205,13 @@ TEST(a_file_of_tiles_with_right_checks_and_wrong_tiles_is_refused) {
     add_picture(&m, &right, "a.png");
     add_tile(&m, 1, 1);
     refused(&m, "a tile has not the size of a tile");
+    for (uint32_t tile = 2; tile <= 3; tile++) { /* the last one has 8 x 8 pixels, one of 32 x 8 comes before */
+        begin(&m);
+        add_picture(&m, &right, "a.png");
+        add_tile(&m, 3, 8 + 64 * 12);
+        add_tile(&m, tile, tile == 3 ? 8 + 64 * 12 : 32 + 256 * 12);
+        refused(&m, "a tile is not the next one");
+    }
     begin(&m);
     add_record(&m, 77, &p);
     refused(&m, "there is no such kind of record");

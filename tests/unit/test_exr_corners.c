@@ -1,0 +1,152 @@
+/* EXR that the library reads and we do not, or not so easily: tiles, windows that are none, the lossy codings; and
+ * every allocation and every call into the library failing in its turn. */
+#include "base/fault.h"
+#include "image/exr.h"
+#include "image/image_file.h"
+#include "model_makers.h"
+
+#include <math.h>
+
+#ifdef HAVE_EXR
+
+enum { WIDTH = 20, HEIGHT = 40 }; /* three chunks */
+
+static void ramp_row(void *context, uint32_t y, float *line) {
+    (void)context;
+    for (uint32_t x = 0; x < 3 * WIDTH; x++)
+        line[x] = (float)(x + y) / 64;
+}
+
+static void attribute(struct bytes *b, const char *name, const char *type, size_t size) {
+    bytes_add(b, name, strlen(name) + 1);
+    bytes_add(b, type, strlen(type) + 1);
+    bytes_number(b, size, 4, false);
+}
+
+static void window(struct bytes *b, const char *name, const int32_t corners[4]) {
+    attribute(b, name, "box2i", 16);
+    for (int i = 0; i < 4; i++)
+        bytes_number(b, (uint32_t)corners[i], 4, false);
+}
+
+/* The beginning of a file ("Technical Introduction to OpenEXR"): all that is looked at before chunks are. */
+static void make_header(struct bytes *b, bool tiled, int compression, const int32_t corners[4]) {
+    bytes_add(b, "\x76\x2f\x31\x01\x02\0\0\0", 8);
+    b->data[b->size - 3] = tiled ? 2 : 0;
+    attribute(b, "channels", "chlist", 3 * 18 + 1);
+    for (int i = 0; i < 3; i++) {
+        bytes_add(b, i == 0 ? "B" : i == 1 ? "G" : "R", 2);
+        bytes_number(b, 2, 4, false);
+        bytes_number(b, 0, 4, false);
+        bytes_number(b, 1, 4, false);
+        bytes_number(b, 1, 4, false);
+    }
+    bytes_add(b, "", 1);
+    attribute(b, "compression", "compression", 1);
+    bytes_number(b, (uint64_t)compression, 1, false);
+    window(b, "dataWindow", corners);
+    window(b, "displayWindow", (const int32_t[]){0, 0, 9, 9});
+    attribute(b, "lineOrder", "lineOrder", 1);
+    bytes_add(b, "", 1);
+    attribute(b, "pixelAspectRatio", "float", 4);
+    bytes_float(b, 1, false);
+    attribute(b, "screenWindowCenter", "v2f", 8);
+    bytes_number(b, 0, 8, false);
+    attribute(b, "screenWindowWidth", "float", 4);
+    bytes_float(b, 1, false);
+    if (tiled) {
+        attribute(b, "tiles", "tiledesc", 9);
+        bytes_number(b, 16, 4, false);
+        bytes_number(b, 16, 4, false);
+        bytes_number(b, 0, 1, false);
+    }
+    bytes_add(b, "", 1);
+    for (int i = 0; i < 64; i++) /* a table of chunks that leads nowhere */
+        bytes_number(b, 0, 8, false);
+}
+
+static void expect_line(const struct bytes *b, const char *words) {
+    struct error error = {0};
+    uint8_t *copy = malloc(b->size); /* exactly its size, for the sanitizer */
+    memcpy(copy, b->data, b->size);
+    struct image *image = image_parse("t.exr", copy, b->size, &error);
+    if (image || strncmp(error.text, "t.exr: ", 7) != 0 || strchr(error.text, '\n') || !strstr(error.text, words))
+        test_fail(__FILE__, __LINE__, "%s, not '%s'", image ? "is read" : error.text, words);
+    image_release(image);
+    free(copy);
+}
+
+TEST(exr_of_other_kinds_is_told) {
+    static const int32_t ten[] = {0, 0, 9, 9}, wide[] = {0, 0, 4999, 999}, tall[] = {-2000, -2000, -1999, 26000};
+    struct bytes b = {0};
+    make_header(&b, true, 3, ten);
+    expect_line(&b, "only EXR pictures in scan lines are read, not tiled or deep ones");
+    bytes_free(&b);
+    for (int compression = 0; compression < 10; compression++) { /* 8 and 9: DWAA and DWAB */
+        make_header(&b, false, compression, wide);
+        /* Pictures of blocks may be so small, others may not. */
+        expect_line(&b, compression < 8 ? "the file is too short for its pixels" : "");
+        bytes_free(&b);
+    }
+    make_header(&b, false, 3, tall);
+    expect_line(&b, "");
+    bytes_free(&b);
+}
+
+TEST(exr_windows_that_are_none_are_one_line) {
+    static const int32_t windows[][4] = {{0, 0, -1, 9},
+                                         {0, 0, 9, -1},
+                                         {5, 5, 4, 4},
+                                         {INT32_MIN, 0, INT32_MAX, 9},
+                                         {0, INT32_MIN, 9, INT32_MAX},
+                                         {0, 0, 1 << 20, 0},
+                                         {0, 0, 0, 1 << 20},
+                                         {INT32_MAX, INT32_MAX, INT32_MIN, INT32_MIN},
+                                         {0, 0, 32768, 0},
+                                         {0, 0, 0, 32768}};
+    for (size_t i = 0; i < sizeof windows / sizeof windows[0]; i++) {
+        struct bytes b = {0};
+        make_header(&b, false, 3, windows[i]);
+        expect_line(&b, "");
+        bytes_free(&b);
+    }
+}
+
+static bool write_read(const char *path, struct error *error) {
+    static float values[2 * WIDTH * HEIGHT];
+    const struct exr_channel channels[] = {{"Y", values, 2}, {"Z", values + 1, 2}};
+    char rows[600];
+    (void)snprintf(rows, sizeof rows, "%s.exr", path);
+    if (!exr_write(rows, WIDTH, HEIGHT, ramp_row, NULL, error) ||
+        !exr_write_channels(path, WIDTH, HEIGHT, channels, 2, error))
+        return false;
+    struct image *image = image_read(rows, error);
+    bool ok = image && fabs(image_texel(image, 3, 5).g - 15.0 / 64) < 1e-6;
+    if (image && !ok)
+        test_fail(__FILE__, __LINE__, "another picture");
+    image_release(image);
+    return ok;
+}
+
+TEST(any_allocation_or_call_may_fail_while_exr_is_written_and_read) {
+#ifndef GRAY_FAULTS
+    test_skip("failures on demand are only in builds with GRAY_FAULTS");
+#endif
+    char path[512];
+    int failed[2] = {0};
+    (void)snprintf(path, sizeof path, "%s/a.exr", test_folder());
+    for (int kind = 0; kind < 2; kind++)
+        for (uint64_t k = 1, over = 0; !over; k++) {
+            struct error error = {0};
+            uint64_t before = fault_count((enum fault_kind)kind);
+            fault_at((enum fault_kind)kind, k);
+            bool ok = write_read(path, &error);
+            fault_at((enum fault_kind)kind, 0);
+            over = fault_count((enum fault_kind)kind) - before < k;
+            CHECK(ok || (error.text[0] && !strchr(error.text, '\n')));
+            failed[kind] += !ok;
+        }
+    CHECK(failed[0] > 20 && failed[1] > 20);
+}
+
+#endif
