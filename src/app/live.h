@@ -83,6 +83,8 @@ struct live {
     char story[16384];       /* of a pixel, in words; empty: none is shown */
     int story_line;          /* the first one shown */
     enum live_tool tool;
+    enum look_part part;    /* of the material, that the panel has sliders for */
+    int panel_height;       /* of the panel of the selection, as it was needed last */
     bool joins;             /* the next change by the mouse is part of the last one */
     double script_exposure; /* stops */
 

@@ -176,6 +176,7 @@ void live_show(struct live *live, double now) {
     bool over = due || live->over_dirty;
     if (over) {
         struct figures figures;
+        live->over_dirty = false; /* what is used in the panel asks for another frame */
         work_out(live, &figures);
         live_tell_over(live, &figures);
         if (due)
@@ -197,5 +198,5 @@ void live_show(struct live *live, double now) {
                                  .overlay_changed = over};
     driver->show(driver->context, &frame);
     live->shown = now;
-    live->dirty = live->over_dirty = false;
+    live->dirty = false;
 }

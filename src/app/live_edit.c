@@ -52,8 +52,8 @@ void live_undo(struct live *live, bool again) {
     (void)change_list_set(&live->pending, &target, true);
     live_halt(live, false);
     /* What is not there any more cannot be selected. */
-    bool gone = target.kind == CHANGE_ADD || target.kind == CHANGE_GONE || target.kind == CHANGE_ADD_LIGHT ||
-                target.kind == CHANGE_DARK;
+    bool gone = target.kind == CHANGE_OWN || target.kind == CHANGE_ADD || target.kind == CHANGE_GONE ||
+                target.kind == CHANGE_ADD_LIGHT || target.kind == CHANGE_DARK;
     if (gone)
         live->selection.kind = SELECTED_NOTHING;
     live->over_dirty = true;
@@ -62,12 +62,6 @@ void live_undo(struct live *live, bool again) {
 void live_resend(struct live *live) {
     for (uint32_t i = 0; i < live->edits.now.count; i++)
         (void)change_list_set(&live->pending, &live->edits.now.items[i], true);
-}
-
-static void put(double *numbers, struct vec3 v) {
-    numbers[0] = v.x;
-    numbers[1] = v.y;
-    numbers[2] = v.z;
 }
 
 static struct vec3 three(const double *numbers) {
@@ -293,11 +287,13 @@ static struct picked new_picked(const struct live *live, const struct change *ch
                             .parent_serial = change->serial,
                             .levels = 1,
                             .material_serial = UINT32_MAX - change->number,
-                            .kd = three(change->numbers),
                             .distance = vec3_length(vec3_sub(place, live->view.camera.eye)),
                             .position = place,
                             .has_box = true,
                             .world_from_parent = live->scene.world_from_root};
+    const struct material look = added_material(three(change->numbers));
+    for (int part = 0; part < LOOK_PARTS; part++)
+        look_part_get(&look, (enum look_part)part, picked.look[part]);
     pick_words(picked.name, added_kind_name(change->added));
     pick_words(picked.shape, added_kind_name(change->added));
     pick_words(picked.material, "phong");
@@ -375,26 +371,54 @@ void live_add(struct live *live, enum added_kind kind) {
 
 /* Looks. */
 
-static struct change material_change(const struct live *live) {
-    struct change change = {.kind = CHANGE_MATERIAL, .serial = live->selection.picked.material_serial};
+static struct change material_change(const struct live *live, enum look_part part) {
+    const struct picked *picked = &live->selection.picked;
+    struct change change = {.kind = CHANGE_MATERIAL, .serial = picked->material_serial, .part = part};
     const struct change *now = change_list_find(&live->edits.now, &change);
     if (!now)
-        put(change.numbers, live->selection.picked.kd);
+        memcpy(change.numbers, picked->look[part], sizeof picked->look[part]);
     return now ? *now : change;
 }
 
-struct vec3 live_colour_now(const struct live *live) {
-    struct change change = material_change(live);
-    return three(change.numbers);
+void live_look_now(const struct live *live, enum look_part part, double numbers[3]) {
+    struct change change = material_change(live, part);
+    memcpy(numbers, change.numbers, 3 * sizeof *numbers);
 }
 
-void live_colour(struct live *live, struct vec3 colour) {
-    struct change change = material_change(live);
+void live_look(struct live *live, enum look_part part, const double numbers[3]) {
+    struct change change = material_change(live, part);
     if (change.serial == 0)
         return;
-    put(change.numbers, colour);
+    memcpy(change.numbers, numbers, 3 * sizeof *numbers);
     live_make(live, &change, true, live->joins);
     live->joins = true;
+}
+
+/* The copy is made of the script's material; what was changed of that is changed of the copy, too. */
+void live_own(struct live *live) {
+    struct picked *picked = &live->selection.picked;
+    struct change held[LOOK_PARTS];
+    int count = 0;
+    if (live->selection.kind != SELECTED_NODE || !picked->can_own)
+        return;
+    for (int part = 0; part < LOOK_PARTS; part++) {
+        struct change change = material_change(live, (enum look_part)part);
+        if (change_list_find(&live->edits.now, &change))
+            held[count++] = change;
+    }
+    struct change change = {.kind = CHANGE_OWN,
+                            .serial = picked->serial,
+                            .number = live->scene.owned + count_of(live, CHANGE_OWN),
+                            .source = picked->material_serial};
+    (void)snprintf(change.name, sizeof change.name, "%s", picked->name);
+    live_make(live, &change, true, false);
+    picked->material_serial = OWN_SERIAL - change.number;
+    for (int i = 0; i < count; i++) {
+        held[i].serial = picked->material_serial;
+        live_make(live, &held[i], true, false);
+    }
+    picked->can_own = false;
+    live->joins = false;
 }
 
 void live_expose(struct live *live, double stops) {

@@ -1,6 +1,7 @@
 /* The lights on the picture, the list of them, and the panel that tells of what is selected. */
 #include "app/inspect.h"
 #include "app/live_parts.h"
+#include "math/elementary.h"
 #include "math/frame.h"
 
 #include <math.h>
@@ -201,10 +202,64 @@ static bool tell_sliders(struct live *live, struct column *column, double top, s
     return changed;
 }
 
-static void tell_colour(struct live *live, struct column *column) {
-    struct vec3 colour = live_colour_now(live);
-    if (live->selection.picked.material_serial != 0 && tell_sliders(live, column, 1, &colour))
-        live_colour(live, colour);
+/* One slider for a number that is no share: its logarithm, or from 1 on. */
+static bool tell_number(struct live *live, struct column *column, enum look_part part, double *number) {
+    struct panel *panel = &live->panel;
+    int width = column->columns * PAPER_CELL * panel->paper.scale;
+    double low, high, at = part == LOOK_SHININESS ? el_log2(1 + *number) : *number;
+    look_part_range(part, &low, &high);
+    double top = part == LOOK_SHININESS ? 12 : part == LOOK_IOR ? 3 : 1;
+    bool changed = panel_slider(panel, column->x, column->y, width, low, top, bulb, &at);
+    column->y += panel_line_height(panel);
+    if (changed)
+        *number = part == LOOK_SHININESS ? el_exp2(at) - 1 : at;
+    return changed;
+}
+
+/* Rows of buttons, one for each part. */
+static void choose_part(struct live *live, struct column *column) {
+    struct panel *panel = &live->panel;
+    int scale = panel->paper.scale, x = column->x, right = column->x + column->columns * PAPER_CELL * scale;
+    for (int i = 0; i < LOOK_PARTS; i++) {
+        const char *name = look_part_name((enum look_part)i);
+        int width = panel_button_width(panel, name);
+        if (x + width > right) {
+            x = column->x;
+            column->y += panel_line_height(panel) + 3 * scale;
+        }
+        if (panel_button(panel, x, column->y, name, live->part == (enum look_part)i))
+            live->part = (enum look_part)i;
+        x += width + 2 * scale;
+    }
+    column->y += panel_line_height(panel) + 4 * scale;
+}
+
+static void tell_look(struct live *live, struct column *column) {
+    struct panel *panel = &live->panel;
+    char row[128];
+    double numbers[3];
+    if (live->selection.picked.material_serial != 0) {
+        choose_part(live, column);
+        live_look_now(live, live->part, numbers);
+        bool colour = look_part_count(live->part) == 3, changed;
+        struct vec3 c = {numbers[0], numbers[1], numbers[2]};
+        double top = live->part == LOOK_KD || live->part == LOOK_KS ? 1 : 4;
+        if (panel->pressed)
+            live->joins = false;
+        changed = colour ? tell_sliders(live, column, top, &c) : tell_number(live, column, live->part, &numbers[0]);
+        if (colour)
+            numbers[0] = c.x, numbers[1] = c.y, numbers[2] = c.z;
+        if (changed)
+            live_look(live, live->part, numbers);
+        (void)snprintf(row, sizeof row, colour ? "%s %.3g %.3g %.3g" : "%s %.4g", look_part_name(live->part),
+                       numbers[0], numbers[1], numbers[2]);
+        tell_text(live, column, row);
+    }
+    if (!live->selection.picked.can_own)
+        return;
+    if (panel_button(panel, column->x, column->y, "A material of its own", false))
+        live_own(live);
+    column->y += panel_line_height(panel) + 4 * panel->paper.scale;
 }
 
 static void tell_node(struct live *live, struct column *column) {
@@ -219,7 +274,7 @@ static void tell_node(struct live *live, struct column *column) {
     tell_text(live, column, row);
     tell_tools(live, column);
     if (live->selection.kind == SELECTED_NODE)
-        tell_colour(live, column);
+        tell_look(live, column);
 }
 
 static void tell_light(struct live *live, struct column *column) {
@@ -272,10 +327,10 @@ static void tell_shortly(struct live *live) {
 void live_tell_selection(struct live *live, int top) {
     struct panel *panel = &live->panel;
     int scale = panel->paper.scale, columns = 38, width = (columns * PAPER_CELL + 4) * scale;
-    int height = 12 * panel_line_height(panel);
+    int usual = 12 * panel_line_height(panel), height = live->panel_height > 0 ? live->panel_height : usual;
     if (live->selection.kind == SELECTED_NOTHING)
         return;
-    if (5 * width > 2 * panel->paper.width || 2 * (top + height) > panel->paper.height) {
+    if (5 * width > 2 * panel->paper.width || 2 * (top + usual) > panel->paper.height) {
         tell_shortly(live);
         return;
     }
@@ -285,4 +340,7 @@ void live_tell_selection(struct live *live, int top) {
         tell_node(live, &column);
     else
         tell_light(live, &column);
+    /* How high it must be is known now: the next frame has it right. */
+    live->over_dirty = live->over_dirty || live->panel_height != column.y - top;
+    live->panel_height = column.y - top;
 }

@@ -27,12 +27,13 @@ void live_make(struct live *live, const struct change *change, bool present, boo
 void live_undo(struct live *live, bool again);
 void live_delete(struct live *live);
 void live_add(struct live *live, enum added_kind kind);
-void live_colour(struct live *live, struct vec3 colour); /* of the material that was hit */
+void live_look(struct live *live, enum look_part part, const double numbers[3]); /* of the material that was hit */
+void live_own(struct live *live); /* gives what is selected a material of its own */
 void live_expose(struct live *live, double stops);
 /* The child is told everything anew. */
 void live_resend(struct live *live);
 /* What holds now. */
-struct vec3 live_colour_now(const struct live *live);
+void live_look_now(const struct live *live, enum look_part part, double numbers[3]);
 /* A place on what is selected, as it was when it was picked: where it is now. */
 struct vec3 live_moved_point(const struct live *live, struct vec3 point);
 /* The camera of the last pass; false: it cannot be. */

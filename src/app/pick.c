@@ -108,7 +108,8 @@ static void tell_material(const struct material *material, struct picked *out) {
     if (base->kind != MATERIAL_PHONG)
         return;
     out->material_serial = base->serial;
-    out->kd = base->phong.kd;
+    for (int part = 0; part < LOOK_PARTS; part++)
+        look_part_get(base, (enum look_part)part, out->look[part]);
 }
 
 static bool describe(struct picking *p, const struct node *root, const struct hit *hit, struct error *error) {
@@ -128,6 +129,7 @@ static bool describe(struct picking *p, const struct node *root, const struct hi
     bool itself = node == placed_node(p->world, p->placed);
     pick_words(out->shape, itself ? inspect_shape(placed_shape(p->world, p->placed)->kind) : "group");
     tell_material(p->world->materials[hit->material], out);
+    out->can_own = itself && node->kind == NODE_GEOMETRY;
     out->world_from_parent = world_from_parent(p->steps, p->depth).forward;
     return box_node(p, root, itself, error);
 }

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "math/affine.h"
 #include "render/render.h"
+#include "scene/change_look.h"
 
 enum { PICK_PATH = 512, PICK_WORDS = 64 };
 
@@ -14,10 +15,11 @@ struct picked {
     char name[PICK_WORDS], shape[PICK_WORDS], material[PICK_WORDS];
     uint32_t serial, parent_serial; /* of the node, and of the one above it */
     char parent_name[PICK_WORDS];
-    uint32_t levels;          /* nodes above it */
-    uint32_t material_serial; /* of the base that can be coloured; 0: there is none */
-    struct vec3 kd;           /* of that base */
-    double distance;          /* from the eye */
+    uint32_t levels;            /* nodes above it */
+    uint32_t material_serial;   /* of the base, which can be changed; 0: it is plain gray */
+    double look[LOOK_PARTS][3]; /* of that base */
+    bool can_own;               /* a shape was hit and is told: it can be given a material of its own */
+    double distance;            /* from the eye */
     struct vec3 position, normal;
     bool has_box;
     struct vec3 corners[8];          /* of a box round the node: bit 0 of the number is its first axis, and so on */

@@ -166,6 +166,18 @@ static struct render_job looking_job(const struct at_work *work, const struct li
     return job;
 }
 
+/* The look is told as it was before the changes of the window, which knows these itself. */
+static bool answer_click(const struct at_work *work, const struct studio_order *order, struct picked *picked,
+                         struct error *error) {
+    struct render_job job = looking_job(work, &order->view);
+    if (!pick_at(&job, work->studio->request->root, order->x, order->y, order->up, picked, error))
+        return false;
+    const struct material *before = changes_before(&work->changed, picked->material_serial);
+    for (int part = 0; before && part < LOOK_PARTS; part++)
+        look_part_get(before, (enum look_part)part, picked->look[part]);
+    return true;
+}
+
 static void print_piece(void *context, const char *text) {
     const struct studio *studio = context;
     studio->services->line(studio->services->context, LINE_OUTPUT, text);
@@ -198,7 +210,6 @@ static void tell_world(struct at_work *work, struct studio_news *news) {
 
 static bool obey(struct at_work *work, const struct studio_order *order, struct studio_news *news,
                  struct error *error) {
-    struct render_job job;
     if (order->kind != ORDER_CHANGE && (!need_world(work, news, error) || news->unbuilt))
         return news->unbuilt;
     if (order->kind != ORDER_CHANGE && !work->told) {
@@ -212,8 +223,7 @@ static bool obey(struct at_work *work, const struct studio_order *order, struct 
         return make_pass(work, &news->report, error);
     case ORDER_PICK:
         news->kind = NEWS_PICKED;
-        job = looking_job(work, &order->view);
-        return pick_at(&job, work->studio->request->root, order->x, order->y, order->up, &news->picked, error);
+        return answer_click(work, order, &news->picked, error);
     case ORDER_CHANGE:
         return change_scene(work, order, news, error);
     case ORDER_STORY:

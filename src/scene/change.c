@@ -15,6 +15,11 @@ const char *added_kind_name(enum added_kind kind) {
     return names[kind];
 }
 
+struct material added_material(struct vec3 colour) {
+    return (struct material){
+        .kind = MATERIAL_PHONG, .depth = 1, .phong = {.kd = colour, .ks = vec3_all(0.3), .shininess = 30, .ior = 1}};
+}
+
 /* What tells changes of a kind apart. */
 static uint64_t target_of(const struct change *change) {
     if (change->kind == CHANGE_MATERIAL)
@@ -235,9 +240,7 @@ static struct node *make_node(struct laying *l, struct node *source) {
     node->serial = UINT32_MAX - change->number;
     if (source)
         return node_add_child(l->scene, node, source, l->error) ? node : NULL;
-    material->phong.ks = vec3_all(0.3);
-    material->phong.shininess = 30;
-    material->phong.ior = 1;
+    material->phong = added_material(three(change->numbers)).phong;
     material->serial = UINT32_MAX - change->number;
     node->material = material;
     node->shape = shape_of(change->added);
@@ -473,10 +476,10 @@ void changes_take_off(struct changed_scene *changed) {
     *changed = (struct changed_scene){0};
 }
 
-const struct material *changes_before(const struct changed_scene *changed, const struct material *base) {
+const struct material *changes_before(const struct changed_scene *changed, uint32_t serial) {
     for (uint32_t i = 0; i < changed->material_count; i++) {
-        if (changed->materials[i].material == base)
+        if (changed->materials[i].before.serial == serial)
             return &changed->materials[i].before;
     }
-    return base;
+    return NULL;
 }

@@ -24,6 +24,8 @@ enum { TURN_AT = 6, COLOUR_AT = 15 };
 #define OWN_SERIAL (UINT32_MAX / 2)
 enum added_kind { ADDED_SPHERE, ADDED_CUBE, ADDED_CYLINDER, ADDED_CONE, ADDED_TORUS, ADDED_COPY, ADDED_KINDS };
 const char *added_kind_name(enum added_kind kind);
+/* What new shapes are made of; its serial is 0. */
+struct material added_material(struct vec3 colour);
 
 enum { CHANGE_NAME = 64, CHANGE_LIMIT = 4096, CHANGE_NUMBERS = 18 };
 
@@ -89,7 +91,7 @@ bool changes_lay_over(const struct change *changes, uint32_t count, struct scene
                       const struct light *lights, uint32_t light_count, change_warning *warn, void *context,
                       struct changed_scene *out, struct error *error);
 void changes_take_off(struct changed_scene *changed);
-/* A base as it was before all that is laid over the scene. */
-const struct material *changes_before(const struct changed_scene *changed, const struct material *base);
+/* A base as it was before all that is laid over the scene; NULL: it was not changed. */
+const struct material *changes_before(const struct changed_scene *changed, uint32_t serial);
 
 #endif

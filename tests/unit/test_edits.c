@@ -354,7 +354,7 @@ TEST(picking_tells_the_way_to_a_node_its_place_and_its_box) {
     CHECK(picked.serial == ball->serial && picked.parent_serial == group->serial && picked.levels == 2);
     CHECK_NEAR(picked.distance, 9, 1e-9); /* from z = 10 to z = 1 */
     CHECK_NEAR(picked.position.z, 1, 1e-9);
-    CHECK(picked.material_serial == red->serial && picked.kd.y == 0.5);
+    CHECK(picked.material_serial == red->serial && picked.look[LOOK_KD][1] == 0.5 && picked.can_own);
     CHECK(picked.has_box);
     CHECK_NEAR(picked.corners[0].x, -2, 1e-12);
     CHECK_NEAR(picked.corners[7].z, 1, 1e-12);

@@ -1,7 +1,7 @@
 /* The window: walking by quaternions, what is rendered next while people look, and, where there are a display without a
  * screen (Xvfb) and something that presses keys (xdotool), the program itself. */
 #define _GNU_SOURCE
-#include "app/live.h"
+#include "app/live_parts.h"
 #include "base/mem.h"
 #include "tests/harness.h"
 
@@ -549,7 +549,8 @@ static const struct picked a_ball = {
     .serial = 2,
     .levels = 1,
     .material_serial = 1,
-    .kd = {0.5, 0.5, 0.5},
+    .can_own = true,
+    .look = {[LOOK_KD] = {0.5, 0.5, 0.5}},
     .distance = 4,
     .position = {0, 0, 1},
     .has_box = true,
@@ -725,6 +726,79 @@ TEST(window_deletes_and_adds_nodes_and_lights) {
     key(&t.fake, WINDOW_DELETE, true);
     take_change(&t);
     CHECK(t.live.order.change.kind == CHANGE_DARK);
+    end(&t);
+}
+
+TEST(window_changes_parts_of_a_material_and_copies_them_to_one_of_its_own) {
+    struct table t;
+    const double half[3] = {0.5, 0, 0};
+    double now[3];
+    begin(&t);
+    enlarge(&t);
+    go_to_the_end(&t);
+    pick_ball(&t);
+    live_look_now(&t.live, LOOK_KD, now);
+    CHECK(now[0] == 0.5 && now[2] == 0.5);
+    live_look(&t.live, LOOK_REFLECT, half);
+    take_change(&t);
+    const struct change *change = &t.live.order.change;
+    CHECK(change->kind == CHANGE_MATERIAL && change->serial == 1 && change->part == LOOK_REFLECT);
+    refine(&t);
+    live_own(&t.live);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    CHECK(change->kind == CHANGE_OWN && change->serial == 2 && change->source == 1 && t.live.order.more);
+    tell_news(&t, &(struct studio_news){.kind = NEWS_CHANGED});
+    take_change(&t);
+    CHECK(change->kind == CHANGE_MATERIAL && change->serial == OWN_SERIAL && change->numbers[0] == 0.5);
+    CHECK(t.live.selection.picked.material_serial == OWN_SERIAL && !t.live.selection.picked.can_own);
+    refine(&t);
+    live_undo(&t.live, false);
+    live_undo(&t.live, false);
+    CHECK(t.live.selection.kind == SELECTED_NOTHING && t.live.edits.now.count == 1);
+    end(&t);
+}
+
+TEST(window_asks_for_lights_until_it_knows_them_all_and_goes_through_them_by_keys) {
+    struct table t;
+    begin(&t);
+    enlarge(&t);
+    struct studio_news news = {.kind = NEWS_BUILT, .light_count = 70, .world_from_root = affine_identity()};
+    for (int i = 0; i < TOLD_LIGHTS; i++)
+        news.lights[i] = (struct told_light){.kind = LIGHT_DIRECTIONAL, .turns = true, .direction = {0, 0, -1}};
+    tell_news(&t, &news);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    for (uint32_t first = TOLD_LIGHTS; first < 70; first += TOLD_LIGHTS) {
+        finish_pass(&t, 0.02, false);
+        CHECK_EQ_INT(step(&t), LIVE_ORDER);
+        CHECK(t.live.order.kind == ORDER_LIGHTS && t.live.order.first_light == first);
+        news.kind = NEWS_LIGHTS;
+        news.first_light = first;
+        tell_news(&t, &news);
+        CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    }
+    while (t.live.order.kind == ORDER_PASS && t.live.view.plain) {
+        finish_pass(&t, 0.02, false);
+        CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    }
+    finish_pass(&t, 0.02, false);
+    CHECK_EQ_INT(step(&t), LIVE_WRITE);
+    CHECK_EQ_INT(t.live.lights_known, 70);
+    key(&t.fake, 'i', true);
+    key(&t.fake, ',', true);
+    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    CHECK(t.live.selection.kind == SELECTED_LIGHT && t.live.selection.light == 70 && t.live.lists_lights);
+    key(&t.fake, '.', true);
+    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    CHECK_EQ_INT(t.live.selection.light, 1);
+    key(&t.fake, ',', true);
+    key(&t.fake, 't', true);
+    drag(&t, 560, 0); /* the height of the picture: half a turn */
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    const struct change *change = &t.live.order.change;
+    CHECK(change->kind == CHANGE_LIGHT && change->serial == 70 && change->turns && t.live.order.first_light == 69);
+    CHECK_NEAR(change->numbers[TURN_AT], -1, 1e-9);
+    CHECK_NEAR(change->numbers[TURN_AT + 4], 1, 1e-9);
+    CHECK_NEAR(live_light(&t.live, 70)->direction.z, 1, 1e-9);
     end(&t);
 }
 

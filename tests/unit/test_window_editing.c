@@ -78,3 +78,17 @@ TEST(window_that_turns_sizes_and_deletes_lights_saves_what_gives_the_same_bytes)
           "for i in 1 2 3 4 5; do xdotool key ctrl+z; done; finds first.png\n"
           "for i in 1 2 3 4 5; do xdotool key ctrl+y; done; finds again.png");
 }
+
+TEST(window_that_gives_a_shape_a_material_saves_what_gives_the_same_bytes) {
+    /* In the panel: "A material of its own", the sliders of red and green; then emission, and its blue. */
+    drive("local r = gr.node('root')\nr:add_child(gr.geometry('ball', gr.sphere('plain')))\n"
+          "gr.render(r, 'out.png', 800, 600, {0, 1, 6}, {0, -0.15, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2}, "
+          "{gr.light({4, 5, 6}, {0.9, 0.9, 0.9}, {1, 0, 0})})\n",
+          "at() { xdotool mousemove $1 $2 sleep 0.1 mousedown 1 sleep 0.1 mouseup 1 sleep 0.2; }\n"
+          "xdotool mousemove 450 370 click 1 sleep 1\n"
+          "at 660 142; at 800 166; at 640 176; at 720 154; at 660 186\n"
+          "changes 1; finds again.png; cmp -s again.png first.png && exit 4\n"
+          "says change_own; says 'change_material(2147483647, '; says \"change_look(2147483647, 'emission', \"\n"
+          "for i in 1 2 3 4 5; do xdotool key ctrl+z; done; finds first.png\n"
+          "for i in 1 2 3 4 5; do xdotool key ctrl+y; done; finds again.png\n");
+}
