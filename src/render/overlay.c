@@ -10,22 +10,46 @@
 
 #include <math.h>
 
-struct pen {
-    const struct render_job *job;
-    const struct pool *pool;
-    struct camera_frame camera;
-    struct world_scratch scratch;
-    float *depths; /* of the surface in each pixel of the film: negative while nobody has asked */
-    bool flat;     /* lines are straight in the picture */
-    bool inverse;  /* 1 / depth is linear along them, not depth */
-    int eye;       /* -1, 1 of a pair side by side; else 0 */
-    struct vec3 colour;
-    uint32_t drawn;
-};
-
 /* A place in the picture, and how deep it lies. */
 struct place3 {
     double x, y, depth;
+};
+
+/* A line in the picture, cut at its borders; depth, or 1 / depth, goes evenly from one end to the other. */
+struct stroke {
+    struct place3 from, way;
+    double steps; /* dots are drawn at from + i / steps * way */
+    uint32_t box; /* of the chunk */
+};
+
+struct boxed {
+    struct box box;
+    struct vec3 colour;
+};
+
+/* Boxes are drawn in chunks: first each one's strokes are found, box by box, then they are drawn, band of rows by band.
+ * So every thread has its own memory, and every dot gets its lines in the order of the boxes. */
+enum { CHUNK = 512, PIECES = 32, EDGES = 12 };
+
+struct pen {
+    const struct render_job *job;
+    struct pool *pool;
+    const struct overlay_wish *wish;
+    struct camera_frame camera;
+    struct world_scratch *scratch; /* by worker */
+    float *depths;                 /* of the surface in each cell of the film: negative while nobody has asked */
+    uint32_t cells_across;
+    float (*lines)[4];
+    bool flat;    /* lines are straight in the picture */
+    bool inverse; /* 1 / depth is linear along them, not depth */
+    bool pair;    /* two pictures side by side */
+    struct vec3 colour;
+    uint32_t drawn;
+    struct boxed *boxes; /* of the chunk */
+    uint32_t count, band;
+    struct stroke *strokes; /* `room` for each box */
+    uint32_t *stroke_count;
+    uint32_t room;
 };
 
 static double depth_of(const struct pen *pen, struct vec3 point) {
@@ -33,34 +57,24 @@ static double depth_of(const struct pen *pen, struct vec3 point) {
     return pen->flat ? vec3_dot(d, pen->camera.forward) : vec3_length(d);
 }
 
-static double surface_depth(struct pen *pen, uint32_t x, uint32_t y) {
+/* Through the middle of the cell. */
+static double surface_depth(struct pen *pen, struct world_scratch *scratch, uint32_t x, uint32_t y) {
     const struct film *film = pen->job->film;
-    float *depth = &pen->depths[(size_t)y * film->width + x];
+    uint32_t cell = pen->wish->cell;
+    float *depth = &pen->depths[(size_t)(y / cell) * pen->cells_across + x / cell];
     struct ray ray;
     struct hit hit;
     if (*depth >= 0)
         return (double)*depth;
-    double px = x + film->x0 + 0.5, py = y + film->y0 + 0.5;
+    double px = x / cell * cell + film->x0 + 0.5 * cell, py = y / cell * cell + film->y0 + 0.5 * cell;
     *depth = INFINITY;
     if (camera_ray_through(&pen->camera, px, py, (struct sample2){0.5, 0.5}, 0, &ray) &&
-        world_nearest(pen->job->world, &ray, &pen->scratch, &hit))
+        world_nearest(pen->job->world, &ray, scratch, &hit))
         *depth = (float)fmax(0, depth_of(pen, hit.point));
     return (double)*depth;
 }
 
-static void dot(struct pen *pen, int64_t x, int64_t y, double depth) {
-    const struct film *film = pen->job->film;
-    x -= film->x0;
-    y -= film->y0;
-    if (x < 0 || y < 0 || x >= film->width || y >= film->height)
-        return;
-    /* A box often lies in the faces of its shape: those lines are in front. */
-    bool seen = depth <= surface_depth(pen, (uint32_t)x, (uint32_t)y) * 1.002;
-    double share = seen ? 0.8 : 0.2;
-    float *rgb = film->pixels[(size_t)y * film->width + (size_t)x].rgb;
-    for (int c = 0; c < 3; c++)
-        rgb[c] = (float)((1 - share) * (double)rgb[c] + share * vec3_get(pen->colour, c));
-}
+/* Finding strokes. */
 
 /* The part of a line from 0 to 1 on which low <= from + t * way <= high; false: none. */
 static bool cut(double from, double way, double low, double high, double *t0, double *t1) {
@@ -72,43 +86,38 @@ static bool cut(double from, double way, double low, double high, double *t0, do
     return *t0 < *t1;
 }
 
-static void line(struct pen *pen, struct place3 a, struct place3 b) {
+/* eye: -1, 1 of a pair; else 0. */
+static void line(struct pen *pen, uint32_t box, int eye, struct place3 a, struct place3 b) {
     const struct film *film = pen->job->film;
     double t0 = 0, t1 = 1, dx = b.x - a.x, dy = b.y - a.y;
-    double left = pen->eye > 0 ? pen->camera.width : 0, right = pen->eye < 0 ? pen->camera.width : INFINITY;
+    double left = eye > 0 ? pen->camera.width : 0, right = eye < 0 ? pen->camera.width : INFINITY;
     left = fmax(left, film->x0);
     right = fmin(right, (double)film->x0 + film->width);
     if (!isfinite(dx) || !isfinite(dy) || !cut(a.x, dx, left, right, &t0, &t1) ||
         !cut(a.y, dy, film->y0, (double)film->y0 + film->height, &t0, &t1))
         return;
-    double from = pen->inverse ? 1 / a.depth : a.depth, to = pen->inverse ? 1 / b.depth : b.depth;
-    double steps = ceil(fmax(fabs(dx), fabs(dy)) * (t1 - t0));
-    int64_t last_x = INT64_MIN, last_y = INT64_MIN;
-    for (double i = 0; i <= steps; i++) {
-        double t = t0 + (t1 - t0) * (steps > 0 ? i / steps : 0), depth = from + t * (to - from);
-        int64_t x = (int64_t)floor(a.x + t * dx), y = (int64_t)floor(a.y + t * dy);
-        if (x != last_x || y != last_y)
-            dot(pen, x, y, pen->inverse ? 1 / depth : depth);
-        last_x = x;
-        last_y = y;
-    }
+    double from = pen->inverse ? 1 / a.depth : a.depth, to = pen->inverse ? 1 / b.depth : b.depth, way = t1 - t0;
+    pen->strokes[(size_t)box * pen->room + pen->stroke_count[box]++] =
+        (struct stroke){{a.x + t0 * dx - film->x0, a.y + t0 * dy - film->y0, from + t0 * (to - from)},
+                        {way * dx, way * dy, way * (to - from)},
+                        ceil(fmax(fabs(dx), fabs(dy)) * way),
+                        box};
 }
 
-static bool place(const struct pen *pen, struct vec3 point, struct place3 *out) {
+static bool place(const struct pen *pen, int eye, struct vec3 point, struct place3 *out) {
     out->depth = depth_of(pen, point);
-    if (pen->eye == 0)
+    if (eye == 0)
         return camera_project(&pen->camera, point, &out->x, &out->y);
     /* The eye of a pair stands beside, and its window is moved back to where both see the same. */
     struct camera_frame beside = pen->camera;
-    double offset = 0.5 * pen->eye * beside.lens.eye_distance;
+    double offset = 0.5 * eye * beside.lens.eye_distance;
     beside.eye = vec3_add_scaled(beside.eye, beside.unit_right, offset);
     bool seen = camera_project(&beside, point, &out->x, &out->y);
-    out->x += offset / beside.lens.screen / vec3_length(beside.right) + (pen->eye > 0 ? beside.width : 0);
+    out->x += offset / beside.lens.screen / vec3_length(beside.right) + (eye > 0 ? beside.width : 0);
     return seen;
 }
 
-static void edge(struct pen *pen, struct vec3 a, struct vec3 b) {
-    enum { PIECES = 32 };
+static void edge(struct pen *pen, uint32_t box, int eye, struct vec3 a, struct vec3 b) {
     struct place3 from, to;
     if (pen->flat) {
         /* Before the eye. */
@@ -121,43 +130,103 @@ static void edge(struct pen *pen, struct vec3 a, struct vec3 b) {
             a = vec3_add_scaled(a, way, (near - da) / (db - da));
         else if (db < near)
             b = vec3_add_scaled(a, way, (near - da) / (db - da));
-        if (place(pen, a, &from) && place(pen, b, &to))
-            line(pen, from, to);
+        if (place(pen, eye, a, &from) && place(pen, eye, b, &to))
+            line(pen, box, eye, from, to);
         return;
     }
-    bool have = place(pen, a, &from);
+    bool have = place(pen, eye, a, &from);
     for (int i = 1; i <= PIECES; i++) {
-        bool next = place(pen, vec3_add_scaled(a, vec3_sub(b, a), (double)i / PIECES), &to);
+        bool next = place(pen, eye, vec3_add_scaled(a, vec3_sub(b, a), (double)i / PIECES), &to);
         /* A panorama ends at the back: what jumps from edge to edge is no line. */
         if (have && next && fabs(to.x - from.x) < pen->camera.width / 2)
-            line(pen, from, to);
+            line(pen, box, eye, from, to);
         from = to;
         have = next;
     }
 }
 
-static void draw_box(struct pen *pen, const struct box *box) {
+static void find_strokes(void *context, uint32_t number, int worker) {
+    struct pen *pen = context;
+    const struct box *box = &pen->boxes[number].box;
     struct vec3 c[8];
-    if (!vec3_finite(box->min) || !vec3_finite(box->max) || !(box->min.x <= box->max.x))
-        return;
+    (void)worker;
+    pen->stroke_count[number] = 0;
     for (int i = 0; i < 8; i++)
         c[i] = vec3_make(i & 1 ? box->max.x : box->min.x, i & 2 ? box->max.y : box->min.y,
                          i & 4 ? box->max.z : box->min.z);
-    for (int i = 0; i < 8; i++)
-        for (int axis = 1; axis <= 4; axis *= 2)
-            if (!(i & axis))
-                edge(pen, c[i], c[i | axis]);
+    for (int eye = pen->pair ? -1 : 0; eye <= (pen->pair ? 1 : 0); eye += 2)
+        for (int i = 0; i < 8; i++)
+            for (int axis = 1; axis <= 4; axis *= 2)
+                if (!(i & axis))
+                    edge(pen, number, eye, c[i], c[i | axis]);
+}
+
+/* Drawing them. */
+
+static void dot(struct pen *pen, struct world_scratch *scratch, uint32_t x, uint32_t y, double depth,
+                const struct vec3 *colour) {
+    float *ink = pen->lines[(size_t)y * pen->job->film->width + x];
+    /* A box often lies in the faces of its shape: those lines are in front. */
+    bool seen = depth <= surface_depth(pen, scratch, x, y) * 1.002;
+    double share = seen ? 0.8 : 0.2;
+    for (int c = 0; c < 3; c++)
+        ink[c] = (float)((1 - share) * (double)ink[c] + share * vec3_get(*colour, c));
+    ink[3] = (float)((1 - share) * (double)ink[3]);
+}
+
+/* The dots of a stroke in rows from top to bottom - 1. Some more are looked at, so that what is one dot in the whole
+ * picture is one here. */
+static void draw_stroke(struct pen *pen, struct world_scratch *scratch, const struct stroke *stroke, double top,
+                        double bottom) {
+    double t0 = 0, t1 = 1, width = pen->job->film->width;
+    const struct vec3 *colour = &pen->boxes[stroke->box].colour;
+    if (!cut(stroke->from.y, stroke->way.y, top, bottom, &t0, &t1))
+        return;
+    double last = fmin(stroke->steps, ceil(t1 * stroke->steps) + 1), last_x = -1, last_y = -1;
+    for (double i = fmax(0, floor(t0 * stroke->steps) - 1); i <= last; i++) {
+        double t = stroke->steps > 0 ? i / stroke->steps : 0, depth = stroke->from.depth + t * stroke->way.depth;
+        double x = floor(stroke->from.x + t * stroke->way.x), y = floor(stroke->from.y + t * stroke->way.y);
+        bool another = x < last_x || x > last_x || y < last_y || y > last_y;
+        if (another && x >= 0 && x < width && y >= top && y < bottom)
+            dot(pen, scratch, (uint32_t)x, (uint32_t)y, pen->inverse ? 1 / depth : depth, colour);
+        last_x = x;
+        last_y = y;
+    }
+}
+
+static void draw_band(void *context, uint32_t band, int worker) {
+    struct pen *pen = context;
+    uint32_t top = band * pen->band, bottom = top + pen->band, height = pen->job->film->height;
+    bottom = bottom < height ? bottom : height;
+    for (uint32_t box = 0; box < pen->count && !pool_cancelled(pen->pool); box++)
+        for (uint32_t i = 0; i < pen->stroke_count[box]; i++)
+            draw_stroke(pen, &pen->scratch[worker], &pen->strokes[(size_t)box * pen->room + i], top, bottom);
+}
+
+static void draw_chunk(struct pen *pen) {
+    uint32_t height = pen->job->film->height;
+    if (pen->count > 0 && pool_run(pen->pool, pen->count, find_strokes, pen))
+        (void)pool_run(pen->pool, (height + pen->band - 1) / pen->band, draw_band, pen);
+    pen->count = 0;
+}
+
+static void draw_box(struct pen *pen, const struct box *box) {
+    if (!vec3_finite(box->min) || !vec3_finite(box->max) || !(box->min.x <= box->max.x))
+        return;
+    pen->boxes[pen->count++] = (struct boxed){*box, pen->colour};
     pen->drawn++;
+    if (pen->count == CHUNK)
+        draw_chunk(pen);
 }
 
 static bool stopped(const struct pen *pen) {
-    return (pen->drawn & 63) == 0 && pen->pool && pool_cancelled(pen->pool);
+    return (pen->drawn & 63) == 0 && pool_cancelled(pen->pool);
 }
 
 /* --- what is drawn --- */
 
-static uint32_t step_for(uint64_t count) {
-    return (uint32_t)((count + OVERLAY_BOXES - 1) / OVERLAY_BOXES);
+static uint32_t step_for(const struct pen *pen, uint64_t count) {
+    return (uint32_t)((count + pen->wish->limit - 1) / pen->wish->limit);
 }
 
 static void number_colour(struct pen *pen, uint64_t number) {
@@ -169,7 +238,7 @@ static void number_colour(struct pen *pen, uint64_t number) {
 /* Boxes of one node have one colour, that of --aov node. */
 static void draw_boxes(struct pen *pen) {
     const struct world *world = pen->job->world;
-    uint32_t step = step_for(world->placed_count);
+    uint32_t step = step_for(pen, world->placed_count);
     for (uint32_t i = 0; i < world->placed_count && !stopped(pen); i += step) {
         number_colour(pen, placed_node(world, i)->serial + UINT64_C(1));
         draw_box(pen, &world->boxes[i]);
@@ -186,7 +255,7 @@ static void share_colour(struct pen *pen, double share) {
 static void draw_voxels(struct pen *pen) {
     const struct grid *grid = &pen->job->world->grid;
     uint64_t count = (uint64_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
-    uint32_t step = step_for(count);
+    uint32_t step = step_for(pen, count);
     pen->colour = vec3_all(1);
     draw_box(pen, &grid->bounds);
     for (uint64_t i = 0; i < count && !stopped(pen); i += step) {
@@ -204,7 +273,7 @@ static void draw_voxels(struct pen *pen) {
 /* Inner nodes of the hierarchy: those near the root are red. */
 static void draw_tree(struct pen *pen) {
     const struct box_tree *tree = &pen->job->world->tree;
-    uint32_t step = step_for((uint64_t)tree->node_count * BOX_TREE_WIDTH);
+    uint32_t step = step_for(pen, (uint64_t)tree->node_count * BOX_TREE_WIDTH);
     pen->colour = vec3_all(1);
     draw_box(pen, &tree->bounds);
     for (uint32_t i = 0; i < tree->node_count && !stopped(pen); i += step) {
@@ -232,7 +301,7 @@ static void draw_halves(struct pen *pen) {
         return;
     stack[depth].cell = tree->bounds;
     stack[depth++].node = 0;
-    while (depth > 0 && !stopped(pen) && pen->drawn < OVERLAY_BOXES) {
+    while (depth > 0 && !stopped(pen) && pen->drawn < pen->wish->limit) {
         struct box cell = stack[--depth].cell, lower = cell, upper = cell;
         uint32_t number = stack[depth].node;
         const struct kd_node *node = &tree->nodes[number];
@@ -270,7 +339,7 @@ static void draw_cells(struct pen *pen) {
 }
 
 static void draw(struct pen *pen) {
-    switch (pen->job->settings.overlay) {
+    switch (pen->wish->kind) {
     case OVERLAY_NONE:
         return;
     case OVERLAY_OF_BOXES:
@@ -282,13 +351,48 @@ static void draw(struct pen *pen) {
     }
 }
 
-bool overlay_draw(const struct render_job *job, const struct pool *pool, struct error *error) {
+static void give_back(struct pen *pen) {
+    for (int i = 0; pen->scratch && i < pool_workers(pen->pool); i++)
+        world_scratch_destroy(&pen->scratch[i]);
+    mem_free(pen->scratch);
+    mem_free(pen->depths);
+    mem_free(pen->boxes);
+    mem_free(pen->strokes);
+    mem_free(pen->stroke_count);
+}
+
+static bool make_room(struct pen *pen) {
+    const struct film *film = pen->job->film;
+    uint32_t cell = pen->wish->cell, workers = (uint32_t)pool_workers(pen->pool);
+    uint32_t rows = (film->height + cell - 1) / cell, share = (rows + 4 * workers - 1) / (4 * workers);
+    pen->cells_across = (film->width + cell - 1) / cell;
+    pen->band = share * cell;
+    pen->room = EDGES * (pen->flat ? 1u : PIECES) * (pen->pair ? 2u : 1u);
+    size_t cells = (size_t)rows * pen->cells_across;
+    pen->scratch = mem_alloc_zero(workers, sizeof *pen->scratch);
+    pen->depths = mem_alloc_zero(cells, sizeof *pen->depths);
+    pen->boxes = mem_alloc_zero(CHUNK, sizeof *pen->boxes);
+    pen->strokes = mem_alloc_zero((size_t)CHUNK * pen->room, sizeof *pen->strokes);
+    pen->stroke_count = mem_alloc_zero(CHUNK, sizeof *pen->stroke_count);
+    bool ok = pen->scratch && pen->depths && pen->boxes && pen->strokes && pen->stroke_count;
+    for (uint32_t i = 0; ok && i < workers; i++)
+        ok = world_scratch_init(&pen->scratch[i], pen->job->world);
+    for (size_t i = 0; ok && i < cells; i++)
+        pen->depths[i] = -1;
+    return ok;
+}
+
+bool overlay_lines(const struct render_job *job, struct pool *pool, const struct overlay_wish *wish, float (*lines)[4],
+                   struct error *error) {
     const struct film *film = job->film;
     struct camera camera = job->camera;
     char warning[256];
-    struct pen pen = {.job = job, .pool = pool};
-    size_t pixels = (size_t)film->width * film->height;
-    if (job->settings.overlay == OVERLAY_NONE)
+    struct pen pen = {.job = job, .pool = pool, .wish = wish, .lines = lines};
+    for (size_t i = 0; i < (size_t)film->width * film->height; i++) {
+        lines[i][0] = lines[i][1] = lines[i][2] = 0;
+        lines[i][3] = 1;
+    }
+    if (wish->kind == OVERLAY_NONE)
         return true;
     if (job->settings.motion.moves)
         camera = camera_at(&job->camera, &job->settings.motion, shutter_time(job->settings.shutter, 0));
@@ -297,20 +401,36 @@ bool overlay_draw(const struct render_job *job, const struct pool *pool, struct 
     enum projection projection = pen.camera.lens.projection;
     pen.inverse = projection == PROJECTION_PERSPECTIVE;
     pen.flat = pen.inverse || projection == PROJECTION_ORTHOGRAPHIC;
-    pen.depths = mem_alloc_zero(pixels, sizeof *pen.depths);
-    if (!pen.depths || !world_scratch_init(&pen.scratch, job->world)) {
-        mem_free(pen.depths);
-        return error_no_memory(error, "the lines over a picture");
-    }
-    for (size_t i = 0; i < pixels; i++)
-        pen.depths[i] = -1;
-    bool pair = pen.camera.lens.stereo == STEREO_SIDE;
-    for (pen.eye = pair ? -1 : 0; pen.eye <= (pair ? 1 : 0); pen.eye += 2)
+    pen.pair = pen.camera.lens.stereo == STEREO_SIDE;
+    bool ok = make_room(&pen);
+    if (ok) {
         draw(&pen);
-    bool failed = pen.scratch.failed;
-    world_scratch_destroy(&pen.scratch);
-    mem_free(pen.depths);
-    if (failed)
+        draw_chunk(&pen);
+    }
+    for (int i = 0; ok && i < pool_workers(pool); i++)
+        ok = !pen.scratch[i].failed;
+    give_back(&pen);
+    if (!ok)
         return error_no_memory(error, "the lines over a picture");
-    return !(pool && pool_cancelled(pool)) || error_set(error, ERROR_CANCELLED, "stopped while rendering");
+    return !pool_cancelled(pool) || error_set(error, ERROR_CANCELLED, "stopped while rendering");
+}
+
+void overlay_lay(struct film *film, float (*lines)[4]) {
+    for (size_t i = 0; i < (size_t)film->width * film->height; i++)
+        overlay_ink(lines[i], film->pixels[i].rgb);
+}
+
+bool overlay_draw(const struct render_job *job, struct pool *pool, struct error *error) {
+    const struct overlay_wish wish = {job->settings.overlay, OVERLAY_BOXES, 1};
+    struct film *film = job->film;
+    if (wish.kind == OVERLAY_NONE)
+        return true;
+    float(*lines)[4] = mem_alloc_zero((size_t)film->width * film->height, sizeof *lines);
+    if (!lines)
+        return error_no_memory(error, "the lines over a picture");
+    bool ok = overlay_lines(job, pool, &wish, lines, error);
+    if (ok)
+        overlay_lay(film, lines);
+    mem_free(lines);
+    return ok;
 }

@@ -5,10 +5,28 @@
 #include "base/pool.h"
 #include "render/render.h"
 
-/* Draws what job->settings.overlay says into the film of a job that is done, on the calling thread. Lines are seen
- * through the middle of the lens when the shutter opens; what lies behind a surface is drawn faintly. At most
- * OVERLAY_BOXES boxes: of more, every second, third ... False: no memory, or cancelled. */
 enum { OVERLAY_BOXES = 200000 };
-bool overlay_draw(const struct render_job *job, const struct pool *pool, struct error *error);
+
+struct overlay_wish {
+    enum overlay kind;
+    uint32_t limit; /* at most so many boxes, from 1: of more, every second, third ... */
+    uint32_t cell;  /* what is behind a surface is asked once for so many pixels across and down, from 1 */
+};
+
+/* Finds the lines of a wish for the film of a job, whose pixels are not looked at. Lines are seen through the middle of
+ * the lens when the shutter opens; what lies behind a surface is drawn faintly. lines: by pixel what overlay_ink does
+ * to it. The same for any number of threads. False: no memory, or cancelled. */
+bool overlay_lines(const struct render_job *job, struct pool *pool, const struct overlay_wish *wish, float (*lines)[4],
+                   struct error *error);
+
+/* One pixel under its lines: the share of it that is still seen, and the light of the lines. */
+static inline void overlay_ink(const float lines[4], float rgb[3]) {
+    for (int c = 0; c < 3; c++)
+        rgb[c] = lines[3] * rgb[c] + lines[c];
+}
+void overlay_lay(struct film *film, float (*lines)[4]);
+
+/* Draws what job->settings.overlay says into the film of a job that is done. False: as overlay_lines. */
+bool overlay_draw(const struct render_job *job, struct pool *pool, struct error *error);
 
 #endif

@@ -181,3 +181,33 @@ TEST(lines_are_drawn_in_every_projection_and_for_every_way_of_searching) {
     free(result.out);
     free(result.err);
 }
+
+TEST(lines_over_a_picture_are_the_same_for_any_number_of_threads) {
+    enum { WIDTH = 90, HEIGHT = 61 };
+    static float lines[3][WIDTH * HEIGHT][4];
+    for (int threads = 1; threads <= 3; threads++) {
+        struct stage s;
+        stage_begin(&s, threads);
+        struct material *material = stage_phong(&s, vec3_all(0.5), vec3_all(0), 1);
+        for (int i = 0; i < 40; i++)
+            stage_move(&s, stage_sphere(&s, s.root, material), i % 7 - 3, i % 5 - 2, -i % 11);
+        s.camera = (struct camera){{0.4, 0.7, 5}, {0, 0, -1}, {0, 1, 0}, 60};
+        s.settings.lens.projection = PROJECTION_PERSPECTIVE;
+        CHECK(stage_render(&s, WIDTH, HEIGHT));
+        struct render_job job = {.world = &s.world,
+                                 .camera = s.camera,
+                                 .settings = s.settings,
+                                 .width = WIDTH,
+                                 .height = HEIGHT,
+                                 .film = &s.film};
+        const struct overlay_wish wish = {OVERLAY_OF_BOXES, 1000, 3};
+        CHECK(overlay_lines(&job, s.pool, &wish, lines[threads - 1], &s.error));
+        stage_end(&s);
+    }
+    CHECK(memcmp(lines[0], lines[1], sizeof lines[0]) == 0);
+    CHECK(memcmp(lines[0], lines[2], sizeof lines[0]) == 0);
+    int drawn = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        drawn += lines[0][i][3] < 1;
+    CHECK(drawn > 500);
+}
