@@ -102,11 +102,10 @@ static bool add_rules(int ruleset, const struct options *options, const struct r
     }
     /* How many processors there are; memory maps for the sanitizers' reports. */
     ok = ok && add_path(ruleset, "/sys/devices/system/cpu", read_rights);
-    if (SANITIZED) {
-        ok = ok && add_path(ruleset, "/proc", read_rights) && add_path(ruleset, "/usr", read_rights) &&
-             add_path(ruleset, "/lib", read_rights) &&
-             add_path(ruleset, "/proc/self/exe", LANDLOCK_ACCESS_FS_READ_FILE);
-    }
+#if SANITIZED
+    ok = ok && add_path(ruleset, "/proc", read_rights) && add_path(ruleset, "/usr", read_rights) &&
+         add_path(ruleset, "/lib", read_rights) && add_path(ruleset, "/proc/self/exe", LANDLOCK_ACCESS_FS_READ_FILE);
+#endif
     return ok;
 }
 

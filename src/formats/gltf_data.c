@@ -224,28 +224,12 @@ bool gltf_accessor(struct gltf *g, uint32_t index, struct gltf_accessor *out) {
     return !sparse || sparse_part(g, sparse, out, where);
 }
 
-/* Section 3.6.2.2: how whole numbers stand for 0..1 or -1..1. */
+/* Section 3.6.2.2: how whole numbers stand for 0..1 or -1..1; others stand for themselves. */
 static double value_of(const uint8_t *p, enum number_type type, bool normalized) {
+    static const double one[NUMBER_TYPES] = {
+        [NUMBER_I8] = 127, [NUMBER_U8] = 255, [NUMBER_I16] = 32767, [NUMBER_U16] = 65535};
     double x = scan_number(p, type, false);
-    if (!normalized)
-        return x;
-    switch (type) {
-    case NUMBER_I8:
-        return fmax(x / 127, -1);
-    case NUMBER_U8:
-        return x / 255;
-    case NUMBER_I16:
-        return fmax(x / 32767, -1);
-    case NUMBER_U16:
-        return x / 65535;
-    case NUMBER_I32:
-    case NUMBER_U32:
-    case NUMBER_F32:
-    case NUMBER_F64:
-    case NUMBER_TYPES:
-        break;
-    }
-    return x;
+    return normalized && one[type] > 0 ? fmax(x / one[type], -1) : x;
 }
 
 bool gltf_accessor_read(struct gltf *g, uint32_t index, const struct gltf_accessor *a, uint64_t first, uint64_t count,

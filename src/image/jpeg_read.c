@@ -123,7 +123,9 @@ static bool decode_to_the_end(struct reader *reader, const uint8_t *data, struct
 }
 
 static bool decode(struct reader *reader, const uint8_t *data, struct error *error) {
-    return setjmp(reader->back) == 0 && decode_to_the_end(reader, data, error);
+    if (setjmp(reader->back))
+        return false;
+    return decode_to_the_end(reader, data, error);
 }
 
 struct image *image_parse_jpeg(const char *path, const uint8_t *data, size_t size, struct error *error) {

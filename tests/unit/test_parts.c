@@ -71,7 +71,7 @@ static void gives(const char *line, int status, const char *says) {
 
 TEST(any_number_of_shards_gives_the_bytes_of_one_run) {
     put("scene.lua", ONE);
-    gives("$gray scene.lua", 0, NULL);
+    gives("$gray scene.lua -q", 0, NULL);
     for (int shards = 1; shards <= 16; shards += shards < 4 ? 1 : 6) {
         char line[1024];
         (void)snprintf(line, sizeof line,
@@ -84,7 +84,7 @@ TEST(any_number_of_shards_gives_the_bytes_of_one_run) {
 
 TEST(shards_of_a_crop_with_every_sample_give_its_bytes) {
     put("scene.lua", ONE);
-    gives("$gray scene.lua -full --crop 61,30,150,99 --tone filmic --deep", 0, NULL);
+    gives("$gray scene.lua -q -full --crop 61,30,150,99 --tone filmic --deep", 0, NULL);
     gives("for i in 1 2 3; do $gray scene.lua -q -full --crop 61,30,150,99 --tone filmic --deep -o n.png --shard $i/3; "
           "done; $gray merge -o n2.png n.png.*.part && cmp n2.png out.png",
           0, NULL);
@@ -92,7 +92,7 @@ TEST(shards_of_a_crop_with_every_sample_give_its_bytes) {
 
 TEST(shards_of_several_pictures_are_merged_picture_by_picture) {
     put("scene.lua", THREE);
-    gives("$gray scene.lua && mkdir whole && mv a.png b.png c.png whole", 0, NULL);
+    gives("$gray scene.lua -q && mkdir whole && mv a.png b.png c.png whole", 0, NULL);
     gives("for i in 1 2; do $gray scene.lua --shard $i/2; done; $gray merge *.part && "
           "for p in a b c; do cmp $p.png whole/$p.png || exit 1; done",
           0, NULL);
@@ -166,7 +166,7 @@ static void resume_until_done(int tries, double from, double step) {
 
 TEST(killed_runs_that_go_on_give_the_bytes_of_one_run) {
     put("scene.lua", ONE);
-    gives("$gray scene.lua -full -ss 3 -o whole.png", 0, NULL);
+    gives("$gray scene.lua -q -full -ss 3 -o whole.png", 0, NULL);
     resume_until_done(20, 0.02, 0.01);
     CHECK(shell("cmp out.png whole.png") == 0);
     CHECK(shell("ls -A | grep -q part-") != 0);
@@ -249,7 +249,7 @@ TEST_LONG(a_thousand_killed_runs_that_go_on_give_the_bytes_of_one_run) {
     struct test_random random = {2024};
     struct kills kills = {0};
     put("scene.lua", SCENE "picture('out.png', 200, 160)\n");
-    gives("$gray scene.lua -full -ss 5 -j 1 -o whole.png", 0, NULL);
+    gives("$gray scene.lua -q -full -ss 5 -j 1 -o whole.png", 0, NULL);
     double length = clock_now();
     gives("$gray " KILLED_RUN " && rm out.png", 0, NULL);
     length = clock_now() - length;
@@ -414,7 +414,7 @@ static void need_mpi(void) {
 TEST(one_to_four_ranks_give_the_bytes_of_one_run) {
     need_mpi();
     put("scene.lua", SCENE "picture('a.png', 330, 250)\npicture('b.png', 70, 50)\n");
-    gives("$gray scene.lua -o whole%d.png", 0, NULL);
+    gives("$gray scene.lua -q -o whole%d.png", 0, NULL);
     for (int ranks = 1; ranks <= 4; ranks += ranks < 2 ? 1 : 2) {
         char line[256];
         (void)snprintf(
@@ -429,7 +429,7 @@ TEST(one_to_four_ranks_give_the_bytes_of_one_run) {
 TEST(a_rank_that_falls_out_is_done_without) {
     need_mpi();
     put("scene.lua", ONE);
-    gives("$gray scene.lua -full -ss 6 -o whole.png", 0, NULL);
+    gives("$gray scene.lua -q -full -ss 6 -o whole.png", 0, NULL);
     /* The youngest rendering process is killed, not its supervisor: that one gives its tiles back. */
     gives("export gray; sh farm.sh 3 scene.lua -full -ss 6 & pid=$!; "
           "for i in $(seq 400); do c=; for p in $(pgrep -P $pid); do c=$(pgrep -P $p | head -n 1); done; "
@@ -441,7 +441,7 @@ TEST(a_rank_that_falls_out_is_done_without) {
 TEST(a_farm_that_was_killed_goes_on_from_its_checkpoint) {
     need_mpi();
     put("scene.lua", ONE);
-    gives("$gray scene.lua -full -ss 6 -o whole.png", 0, NULL);
+    gives("$gray scene.lua -q -full -ss 6 -o whole.png", 0, NULL);
     gives("export gray; sh farm.sh 3 scene.lua -full -ss 6 --checkpoint c.tiles --checkpoint-every 0 & pid=$!; "
           "for i in $(seq 400); do test -s c.tiles && break; sleep 0.02; done; kill -9 $(pgrep -P $pid | tail -n 1); "
           "wait $pid; test -e out.png || test -s c.tiles",

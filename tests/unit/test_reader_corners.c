@@ -24,6 +24,10 @@ struct corner {
 
 static const struct corner corners[] = {
     {"a.gltf", HEAD TRIANGLE MESH "}", NULL},
+    {"a.gltf",
+     HEAD BUFFER "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"normalized\":true,\"count\":3,\"type\":"
+                 "\"VEC3\"}," INDICES "]," MESH "}",
+     NULL},
     {"bom.gltf", "\xef\xbb\xbf" HEAD TRIANGLE MESH "}", NULL},
     {"bom", "\xef\xbb\xbf " HEAD TRIANGLE MESH "}", NULL},
     {"folder.x/bom", HEAD TRIANGLE MESH "}", NULL},
