@@ -1,6 +1,8 @@
-/* A quota that is used up: one line, status 3, the old picture and nothing beside it. Once for real, on a small file
- * system with a quota where this user may mount one (btrfs counts what a subvolume takes, for root too), and once with
- * every call to the system saying so in its turn, as network file systems may at fsync, close and rename as well. */
+/* A quota that is used up: one line, status 3, the old picture and nothing beside it; and folders that may not be
+ * written, by their mode or because their file system is read-only, with status 1. The quota is met once for real, on a
+ * small file system with a quota where this user may mount one (btrfs counts what a subvolume takes, for root too), and
+ * once with every call to the system saying so in its turn, as network file systems may at fsync, close and rename as
+ * well. */
 #define _GNU_SOURCE
 #include "base/fault.h"
 #include "tests/harness.h"
@@ -108,4 +110,47 @@ TEST(a_quota_may_be_met_by_any_call_to_the_system) {
             test_fail(__FILE__, __LINE__, "call %lld: %d", k, status);
     }
     CHECK(told >= 3); /* a write, the sync, the rename */
+}
+
+/* 77: not possible here. Root gives up its rights over files first. */
+static const char without_rights[] =
+    "mkdir shut && printf 'an old picture' >shut/out.png && chmod 555 shut\n"
+    "rights=; [ $(id -u) != 0 ] || rights='setpriv --bounding-set=-all --inh-caps=-all'\n"
+    "$rights true || exit 77\n"
+    "$rights $gray -q scene.lua >err.txt 2>&1; echo $? >status.txt\n"
+    "$rights $gray -q scene.lua -o shut/new/b.png >>err.txt 2>&1; echo $? >>status.txt\n"
+    "ls -A shut >names.txt; cp shut/out.png kept.txt; chmod 755 shut\n";
+static const char without_writing[] =
+    "[ -n \"$inside\" ] || { inside=1 exec unshare -m sh \"$0\" || exit 77; }\n"
+    "mkdir -p shut && printf 'an old picture' >shut/out.png && mount --bind shut shut 2>/dev/null || exit 77\n"
+    "mount -o remount,ro,bind shut 2>/dev/null || exit 77\n"
+    "$gray -q scene.lua >err.txt 2>&1; echo $? >status.txt\n"
+    "$gray -q scene.lua -o shut/new/b.png >>err.txt 2>&1; echo $? >>status.txt\n"
+    "ls -A shut >names.txt; cp shut/out.png kept.txt\n";
+
+static void expect_shut(const char *script, const char *why) {
+    char lines[400];
+    put_scene("scene.lua", "shut/out.png", 33, 25);
+    test_write_text(path_in("shut.sh"), script);
+    int status = shell("sh shut.sh 2>said.txt");
+    if (status == 77)
+        test_skip("this user may not give up rights or mount");
+    CHECK_EQ_INT(status, 0);
+    (void)snprintf(lines, sizeof lines,
+                   "scene.lua:3: gr.render: shut/out.png: cannot be written: %s\n  stack traceback:\n"
+                   "    [C]: in function 'gr.render'\n    scene.lua:3: in main chunk\n    [C]: in ?\n"
+                   "shut/new/b.png: the folder shut/new cannot be made: %s\n",
+                   why, why);
+    expect_text("err.txt", lines);
+    expect_text("status.txt", "1\n1\n");
+    expect_text("names.txt", "out.png\n");
+    expect_text("kept.txt", "an old picture");
+}
+
+TEST(a_folder_whose_mode_forbids_writing_keeps_the_old_picture) {
+    expect_shut(without_rights, "Permission denied");
+}
+
+TEST(a_folder_of_a_read_only_file_system_keeps_the_old_picture) {
+    expect_shut(without_writing, "Read-only file system");
 }
