@@ -121,8 +121,8 @@ $(BUILD)/bench/formats $(BUILD)/bench/shapes $(BUILD)/bench/lamps: $(BUILD)/benc
 
 # Kernels for one instruction set each live in files of their own; nothing is fused but what they fuse themselves, and
 # only where single precision proposes.
-$(BUILD)/src/accel/%_avx2.o: override CFLAGS += -mavx2 -mfma -mpopcnt
-$(BUILD)/src/accel/%_avx512.o: override CFLAGS += -mavx512f -mavx512vl -mavx512dq -mavx512bw -mfma -mpopcnt
+$(BUILD)/src/accel/%_avx2.o: override CFLAGS += -mavx2 -mfma -mpopcnt -fno-tree-slp-vectorize
+$(BUILD)/src/accel/%_avx512.o: override CFLAGS += -mavx512f -mavx512vl -mavx512dq -mavx512bw -mfma -mpopcnt -fno-tree-slp-vectorize
 # Its functions are the C library's own names: the compiler must not see calls of itself in them.
 $(BUILD)/src/script/libm_override.o: override CFLAGS += -fno-builtin
 

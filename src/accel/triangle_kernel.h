@@ -32,6 +32,14 @@
 /* How far from the middle of the mesh, in local units, BOX_GROWTH covers what the distance adds to the rounding. */
 #define FAR_AWAY 0x1p20
 
+/* W for each local unit that the ray is away from the middle, and that its start is moved before a block is tried. */
+#define PLACE_ERROR (20 * 0x1p-24f)
+#if defined(GRAY_KERNEL_FMA)
+#define MOVING_ERROR PLACE_ERROR
+#else
+#define MOVING_ERROR (26 * 0x1p-24f)
+#endif
+
 /* Of L in the slack, local units. What is smaller is never a certain hit, and edge functions of what is one are so
  * large that the products they are differences of do not cancel: their sizes are below 4 (S + L)^2, of the difference
  * at least 95 (S + L) L e is left, and doubts begin at 2^-49. */
@@ -299,21 +307,30 @@ static __attribute__((noinline)) void keep_lanes(struct search *s, const struct 
     } while (lanes);
 }
 
-static inline __attribute__((always_inline)) bool try_block(struct search *s, uint32_t number,
+static inline __attribute__((always_inline)) bool try_block(struct search *s, uint32_t number, const float from_t,
                                                             const enum triangle_search kind) {
     const struct triangle_block *b = s->index->blocks + number;
+    simd8 ox = simd8_all(s->origin[0]), oy = simd8_all(s->origin[1]), oz = simd8_all(s->origin[2]);
     if (kind == TRIANGLE_NEAREST)
         fetch_vertex_numbers(b);
     simd8 dx = simd8_all(s->direction[0]), dy = simd8_all(s->direction[1]), dz = simd8_all(s->direction[2]);
+    const simd8 moved = simd8_all(from_t);
+    float error = s->error;
+    if (kind == TRIANGLE_NEAREST) {
+        error += MOVING_ERROR * from_t * s->longest;
+        ox = simd8_multiply_add(moved, dx, ox);
+        oy = simd8_multiply_add(moved, dy, oy);
+        oz = simd8_multiply_add(moved, dz, oz);
+    }
     simd8 e1x = simd8_load(b->edge1[0]), e1y = simd8_load(b->edge1[1]), e1z = simd8_load(b->edge1[2]);
     simd8 e2x = simd8_load(b->edge2[0]), e2y = simd8_load(b->edge2[1]), e2z = simd8_load(b->edge2[2]);
     simd8 px = simd8_multiply_sub(dy, e2z, simd8_mul(dz, e2y));
     simd8 py = simd8_multiply_sub(dz, e2x, simd8_mul(dx, e2z));
     simd8 pz = simd8_multiply_sub(dx, e2y, simd8_mul(dy, e2x));
     simd8 det = simd8_multiply_add(e1x, px, simd8_multiply_add(e1y, py, simd8_mul(e1z, pz)));
-    simd8 sx = simd8_sub(simd8_all(s->origin[0]), simd8_load(b->corner[0]));
-    simd8 sy = simd8_sub(simd8_all(s->origin[1]), simd8_load(b->corner[1]));
-    simd8 sz = simd8_sub(simd8_all(s->origin[2]), simd8_load(b->corner[2]));
+    simd8 sx = simd8_sub(ox, simd8_load(b->corner[0]));
+    simd8 sy = simd8_sub(oy, simd8_load(b->corner[1]));
+    simd8 sz = simd8_sub(oz, simd8_load(b->corner[2]));
     simd8 qx = simd8_multiply_sub(sy, e1z, simd8_mul(sz, e1y));
     simd8 qy = simd8_multiply_sub(sz, e1x, simd8_mul(sx, e1z));
     simd8 qz = simd8_multiply_sub(sx, e1y, simd8_mul(sy, e1x));
@@ -329,18 +346,18 @@ static inline __attribute__((always_inline)) bool try_block(struct search *s, ui
     simd8 reach = simd8_max(simd8_max(lx, ly), lz);
     reach = simd8_max(reach, simd8_all(LEAST_REACH)); /* no slack at all would make points certain hits */
     simd8 ax = simd8_size(sx), ay = simd8_size(sy), az = simd8_size(sz);
-    simd8 w = simd8_multiply_add(reach, simd8_all(180 * 0x1p-24f), simd8_all(s->error));
+    simd8 w = simd8_multiply_add(reach, simd8_all(180 * 0x1p-24f), simd8_all(error));
     simd8 e = simd8_multiply_add(simd8_max(simd8_max(ax, ay), az), simd8_all(146 * 0x1p-24f), w);
     e = simd8_mul(simd8_mul(e, reach), simd8_all(s->longest));
     simd8 yz = simd8_mul(ly, lz), zx = simd8_mul(lz, lx), xy = simd8_mul(lx, ly);
-    simd8 least = simd8_all(s->error / 2), each = simd8_all(36 * 0x1p-24f);
+    simd8 least = simd8_all(error / 2), each = simd8_all(36 * 0x1p-24f);
     simd8 slack = simd8_mul(simd8_multiply_add(lx, simd8_all(54 * 0x1p-24f), simd8_multiply_add(ax, each, least)), yz);
     slack = simd8_multiply_add(simd8_multiply_add(ay, each, least), zx, slack);
     slack = simd8_multiply_add(simd8_multiply_add(az, each, least), xy, slack);
     simd8 smaller = simd8_min(u, v), rest = simd8_sub(det, simd8_add(u, v));
     simd8 a = simd8_add(smaller, e), c = simd8_multiply_add(e, simd8_all(3), rest);
     simd8 f = simd8_add(t, slack);
-    simd8 g = simd8_sub(simd8_multiply_add(det, simd8_all(s->limit), slack), t);
+    simd8 g = simd8_sub(simd8_multiply_add(det, simd8_all(s->limit - from_t), slack), t);
     unsigned lanes = simd8_not_negative(simd8_min(simd8_min(a, c), simd8_min(f, g)));
     if (__builtin_expect(!lanes, 1))
         return false;
@@ -348,14 +365,14 @@ static inline __attribute__((always_inline)) bool try_block(struct search *s, ui
         a = simd8_sub(smaller, e);
         c = simd8_sub(rest, simd8_mul(e, simd8_all(3)));
         f = simd8_sub(t, slack);
-        g = simd8_sub(simd8_multiply_sub(det, simd8_all(s->certain), slack), t);
+        g = simd8_sub(simd8_multiply_sub(det, simd8_all(s->certain - from_t), slack), t);
         unsigned certain = lanes & simd8_not_negative(simd8_min(simd8_min(a, c), simd8_min(f, g)));
         if (certain && kind == TRIANGLE_ANY)
             return true;
         if (certain) { /* |T - t det| <= slack */
             simd8 r = simd8_div(simd8_all(1), det);
-            simd8 from = simd8_mul(simd8_mul(f, r), simd8_all(1 - 0x1p-20f));
-            simd8 to = simd8_mul(simd8_mul(simd8_add(t, slack), r), simd8_all(1 + 0x1p-20f));
+            simd8 from = simd8_mul(simd8_multiply_add(f, r, moved), simd8_all(1 - 0x1p-20f));
+            simd8 to = simd8_mul(simd8_multiply_add(simd8_add(t, slack), r, moved), simd8_all(1 + 0x1p-20f));
             if (__builtin_expect(!(certain & (certain - 1)) && !s->waiting, 1)) {
                 unsigned lane = (unsigned)__builtin_ctz(certain);
                 keep(s, b, lane, simd8_pick(from, lane), simd8_pick(to, lane));
@@ -376,6 +393,8 @@ static inline __attribute__((always_inline)) bool descend(struct search *s, uint
     struct node_stack stack;
     uint32_t top = 0;
     bool found = false;
+    if (kind == TRIANGLE_NEAREST)
+        stack.enter[0] = 0;
     const struct wide_node *nodes = s->index->nodes;
     const simd8 rx = simd8_all(s->reciprocal[0]), ry = simd8_all(s->reciprocal[1]), rz = simd8_all(s->reciprocal[2]);
     const simd8 mx = simd8_all(s->middle[0]), my = simd8_all(s->middle[1]), mz = simd8_all(s->middle[2]);
@@ -417,7 +436,7 @@ static inline __attribute__((always_inline)) bool descend(struct search *s, uint
             }
         } else {
             tried++;
-            if (try_block(s, reference & ~REF_LEAF, kind)) {
+            if (try_block(s, reference & ~REF_LEAF, kind == TRIANGLE_NEAREST ? stack.enter[top] : 0, kind)) {
                 found = true;
                 break;
             }
@@ -530,7 +549,7 @@ static __attribute__((noinline)) enum beginning search_begin_far(struct search *
     double certain = (s->ray->t_max - enter) * to_local * (1 - 0x1p-20) - 0x1p-20;
     s->certain = certain < 16 ? (float)certain : 16;
     s->longest = 1;
-    s->error = 16 * 0x1p-24f + (float)(far * 8 * 0x1p-46);
+    s->error = PLACE_ERROR + (float)(far * 8 * 0x1p-46);
     s->far_away = far > FAR_AWAY;
     simd4_store(s->widen, simd4_mul(simd4_size(r4), simd4_all((float)(far * 0x1p-45))));
     return RAY_INSIDE;
@@ -572,7 +591,7 @@ static inline __attribute__((always_inline)) enum beginning search_begin(struct 
     s->t_to_local = 1;
     s->t_offset = 0;
     s->blur = 0;
-    s->error = 16 * 0x1p-24f;
+    s->error = PLACE_ERROR * simd4_largest_of_three(simd4_size(o4)) + 0x1p-40f;
     s->far_away = false;
     search_start(s, o4, d4, r4, last);
     return RAY_INSIDE;

@@ -53,24 +53,25 @@ struct triangle_block {
     uint32_t ids[WIDTH], vertices[3][WIDTH];
 };
 
+/* What every ray reads comes first. Vectors of three have a fourth number, not used or 0, so that they load whole. */
 struct triangle_index {
-    double centre[4]; /* the last is not used */
-    double half[4];   /* local half extents, margin included; the last is not used */
+    double centre[4];
     double scale;
-    uint32_t cells[3]; /* without the border */
-    /* Each with a fourth number, 0, so that they load as vectors. */
-    float cell[4], inverse_cell[4], half_single[4], last_cell[4]; /* last_cell: cells - 1 */
-    int32_t offset[8]
-                  [8];  /* where the next voxel is: by the direction's negative axes, then by the axes stepped along */
-    uint32_t stride[2]; /* of y and z in voxels[] */
-    uint32_t *voxels;   /* (cells + 2) of each axis */
-    uint32_t big;       /* reference to the triangles that touch very many voxels */
-    uint32_t only;      /* the only voxel's, if there is one */
-    float near_by;      /* rays that start nearer (NEAR_BY) need not be brought to the frame; 0: all do */
+    float near_by;           /* rays that start nearer (NEAR_BY) need not be brought to the frame; 0: all do */
+    uint32_t only;           /* the only voxel's, if there is one */
+    float half_single[4];    /* local half extents, margin included */
     struct wide_node *nodes; /* nodes[0] is not used */
     struct triangle_block *blocks;
-    uint32_t node_count, block_count;
     size_t voxel_count;
+    uint32_t big; /* reference to the triangles that touch very many voxels */
+    uint32_t node_count, block_count;
+    uint32_t cells[3]; /* without the border */
+    double half[4];
+    float cell[4], inverse_cell[4], last_cell[4]; /* last_cell: cells - 1 */
+    uint32_t *voxels;                             /* (cells + 2) of each axis */
+    uint32_t stride[2];                           /* of y and z in voxels[] */
+    /* where the next voxel is: by the direction's negative axes, then by the axes stepped along */
+    int32_t offset[8][8];
 };
 
 #endif

@@ -18,7 +18,7 @@ enum {
 };
 
 /* References still to be visited, and where the ray enters them (only kept for a nearest search). How many there are is
- * kept apart, or it would not stay in a register. */
+ * kept apart, or it would not stay in a register. enter[top], above them, is where the ray enters what it visits. */
 struct node_stack {
     float enter[STACK_ROOM];
     uint32_t reference[STACK_ROOM];
@@ -81,9 +81,9 @@ static inline bool node_take_nearest(const struct wide_node *node, uint32_t octa
     if (!lanes)
         return false;
     unsigned first = 31 - (unsigned)__builtin_clz(lanes);
+    node_push_enter(stack, *top, enter, lanes); /* with the first, on top */
     lanes ^= 1u << first;
     node_push_lanes(stack, *top, children, lanes);
-    node_push_enter(stack, *top, enter, lanes);
     *top += (unsigned)__builtin_popcount(lanes);
     *reference = child[first];
     return true;
@@ -109,12 +109,13 @@ static inline bool node_take_nearest(const struct wide_node *node, uint32_t octa
     unsigned lanes = simd8_at_most_bits(enter, leave);
     if (!lanes)
         return false;
+    _Alignas(32) float t[WIDTH];
+    simd8_store(t, enter);
     if (!(lanes & (lanes - 1))) {
+        stack->enter[*top] = t[__builtin_ctz(lanes)];
         *reference = node->child[__builtin_ctz(lanes)];
         return true;
     }
-    _Alignas(32) float t[WIDTH];
-    simd8_store(t, enter);
     uint32_t end = *top;
     for (uint32_t order = node->order[octant], i = 0; i < WIDTH; i++, order >>= 3) {
         stack->enter[end] = t[order & 7];
