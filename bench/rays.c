@@ -116,11 +116,13 @@ static void gray_trace(const struct mesh *mesh, const struct bench_ray *rays, st
                        bool any, struct geom_scratch *scratch) {
     for (uint64_t i = 0; i < count; i++) {
         struct ray ray = gray_ray(&rays[i]);
-        struct crossing crossing = {0};
-        bool found =
-            any ? mesh_any(mesh, &ray, ACCEL_GRID, scratch) : mesh_nearest(mesh, &ray, ACCEL_GRID, scratch, &crossing);
-        hits[i] = (struct bench_hit){(float)crossing.t, found ? crossing.part : UINT32_MAX, (float)crossing.u,
-                                     (float)crossing.v};
+        struct crossing c;
+        if (any)
+            hits[i] = (struct bench_hit){.triangle = mesh_any(mesh, &ray, ACCEL_AUTO, scratch) ? 0 : UINT32_MAX};
+        else if (mesh_nearest(mesh, &ray, ACCEL_AUTO, scratch, &c))
+            hits[i] = (struct bench_hit){(float)c.t, c.part, (float)c.u, (float)c.v};
+        else
+            hits[i] = (struct bench_hit){.triangle = UINT32_MAX};
     }
 }
 

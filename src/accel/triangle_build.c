@@ -487,9 +487,18 @@ static void finish_job(void *context, uint32_t item, int worker) {
     }
 }
 
-/* Large tables on large pages, where the system has them: a search jumps about in them. */
-static void *alloc_table(size_t size) {
-    return mem_alloc_aligned(size < MEM_LARGE_PAGE ? 64 : MEM_LARGE_PAGE, size);
+/* Nodes and blocks in one table: a search jumps about in both, and a table on large pages, where the system has them,
+ * has the nodes on them however few they are. */
+static bool alloc_tables(struct triangle_index *index, uint32_t nodes, uint32_t blocks) {
+    size_t node_bytes = nodes * sizeof *index->nodes, size = node_bytes + blocks * sizeof *index->blocks;
+    char *table = mem_alloc_aligned(size < MEM_LARGE_PAGE ? 64 : MEM_LARGE_PAGE, size);
+    if (!table)
+        return false;
+    index->nodes = (struct wide_node *)(void *)table;
+    index->blocks = (struct triangle_block *)(void *)(table + node_bytes);
+    index->node_count = nodes;
+    index->block_count = blocks;
+    return true;
 }
 
 static bool assemble(struct builder *builder) {
@@ -504,12 +513,8 @@ static bool assemble(struct builder *builder) {
         nodes += job->node_count;
         blocks += job->leaf_count;
     }
-    index->nodes = alloc_table(nodes * sizeof *index->nodes);
-    index->blocks = alloc_table(blocks * sizeof *index->blocks);
-    if (!index->nodes || !index->blocks)
+    if (!alloc_tables(index, nodes, blocks))
         return false;
-    index->node_count = nodes;
-    index->block_count = blocks;
     memset(&index->nodes[0], 0, sizeof *index->nodes);
     for (uint32_t i = 0; i < builder->top_count; i++) {
         struct wide_node *node = &builder->top[i];

@@ -225,8 +225,7 @@ void triangle_index_destroy(struct triangle_index *index) {
     if (!index)
         return;
     mem_free(index->voxels);
-    mem_free(index->nodes);
-    mem_free(index->blocks);
+    mem_free(index->nodes); /* and the blocks, in the same table */
     mem_free(index);
 }
 

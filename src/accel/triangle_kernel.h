@@ -6,19 +6,34 @@
  * more than all rounding can do, and what is found is tried again with the test of triangle.h on the original ray and
  * vertices. So the answer is the same bits as trying every triangle, whatever the instruction set.
  *
- * How far rounding reaches, in units of e = 2^-24 (unit roundoff), with s = o - corner, S = |s|, L the largest
- * component of the two edges, M the largest of the direction's; D bounds what the double arithmetic of either side may
- * move the line, about 2^-46 times the distance of the origin. |o| is at most S + 1: s           (2.5 + S) e + D, and S
- * e from the subtraction p = d x e2  7 e L M                          (|p| <= 2 L M) u = s p     ((15 + 51 S) e L + 6 L
- * D) M; v = d q the same det = e1 p  45 e L^2 M A sign of det that is wrong means |det| <= 45 e L^2 M. So with W = (15
- * + 146 S + 180 L) e + 8 D and E = W L M a true hit always has u, v >= -E and u + v <= |det| + 3 E. S counts, not its
- * bound: a ray that starts on a surface would else find its own triangle doubtful too often. For T = e2 q that is not
- * enough: where triangles are large, as floors are, so is S. But floors lie along the axes. With s_k, l_k and d_k for
- * the components and p_k the product of the other two l, every product in T, and so what it is off by, is at most one
- * of |s_k| p_k: q = s x e1  ((2.5 + 5 |s_k|) e + D) l_j from each of its two products T = e2 q    the sum over k of ((5
- * + 18 |s_k|) e + 2 D) p_k t det       the sum of 16 e |d_k| p_k t, and |d_k| t <= |s_k| + l_k So T is within F = sum
- * of ((6 + 36 |s_k| + 18 l_k) e + 2 D) p_k of t det. What passes these comparisons with E and F turned round is
- * certainly a hit.
+ * A triangle is tried from t0 on the ray, where it enters the box of the triangle's block (0 in searches that do not
+ * keep that): what rounding can do then goes by the distances near the triangle and not by how far the ray has come,
+ * which for a dense mesh in a wide scene is thousands of times more.
+ *
+ * How far rounding reaches, in units of e = 2^-24 (unit roundoff), with s = o + t0 d - corner, S = |s|, L the largest
+ * component of the two edges, M the largest of the direction's, R = |o| + t0 M, which bounds where on the ray that is,
+ * so that |corner| is at most R + S; D bounds what the double arithmetic of either side may move the line, about 2^-46
+ * times the distance of the origin:
+ *
+ * - s is off by (3 R + S) e + D (one R each for the origin and the direction, for their sum, and for the corner; one t0
+ *   M more without fused operations), and by S e from the subtraction;
+ * - p = d x e2 by 7 e L M, where |p| <= 2 L M;
+ * - u = s p by ((18 R + 51 S) e + 6 D) L M, and v = d q, with q = s x e1, by the same;
+ * - det = e1 p by 45 e L^2 M, so where its sign is wrong |det| is no more than that.
+ *
+ * So with W = (20 R + 146 S + 180 L) e + 8 D and E = W L M a true hit always has u, v >= -E and u + v <= |det| + 3 E. S
+ * counts, not its bound: a ray that starts on a surface would else find its own triangle doubtful too often.
+ *
+ * For T = e2 q that is not enough: where triangles are large, as floors are, so is S. But floors lie along the axes.
+ * With s_k, l_k and d_k for the components and p_k the product of the other two l, every product in T, and so what it
+ * is off by, is at most one of |s_k| p_k:
+ *
+ * - q by ((3 R + 5 |s_k|) e + D) l_j from each of its two products;
+ * - T by the sum over k of ((6 R + 18 |s_k|) e + 2 D) p_k;
+ * - (t - t0) det by the sum of 16 e |d_k| p_k (t - t0), where |d_k| (t - t0) <= |s_k| + l_k.
+ *
+ * So T is within F = sum of ((10 R + 36 |s_k| + 18 l_k) e + 4 D) p_k of (t - t0) det. What passes these comparisons
+ * with E and F turned round is certainly a hit.
  *
  * A certain hit ends an "any" search at once. In a "nearest" search the nearest certain hit waits, with bounds of its
  * t, until the search is over; what is not certain, or too close to say which is nearer, is decided at once. */
@@ -32,7 +47,7 @@
 /* How far from the middle of the mesh, in local units, BOX_GROWTH covers what the distance adds to the rounding. */
 #define FAR_AWAY 0x1p20
 
-/* W for each local unit that the ray is away from the middle, and that its start is moved before a block is tried. */
+/* W for each unit of |o| and of t0 M. */
 #define PLACE_ERROR (20 * 0x1p-24f)
 #if defined(GRAY_KERNEL_FMA)
 #define MOVING_ERROR PLACE_ERROR
@@ -40,9 +55,10 @@
 #define MOVING_ERROR (26 * 0x1p-24f)
 #endif
 
-/* Of L in the slack, local units. What is smaller is never a certain hit, and edge functions of what is one are so
- * large that the products they are differences of do not cancel: their sizes are below 4 (S + L)^2, of the difference
- * at least 95 (S + L) L e is left, and doubts begin at 2^-49. */
+/* Of L in the slack, local units: what is a point is never a certain hit. Edge functions of what is one are so large
+ * that the products they are differences of do not cancel: their sizes are below 4 (S + L)^2 and doubts begin at 2^-49,
+ * but of the difference 95 (S + L) L e is left. (What the double arithmetic takes of it, 2^-48 (S + L) times the
+ * distance of the origin, is little: with 2 L^2 M >= |det| >= 5 E that distance is less than 2^19 L.) */
 #define LEAST_REACH 0x1p-24f
 
 struct search {

@@ -57,11 +57,11 @@ struct triangle_block {
 struct triangle_index {
     double centre[4];
     double scale;
-    float near_by;           /* rays that start nearer (NEAR_BY) need not be brought to the frame; 0: all do */
-    uint32_t only;           /* the only voxel's, if there is one */
-    float half_single[4];    /* local half extents, margin included */
-    struct wide_node *nodes; /* nodes[0] is not used */
-    struct triangle_block *blocks;
+    float near_by;                 /* rays that start nearer (NEAR_BY) need not be brought to the frame; 0: all do */
+    uint32_t only;                 /* the only voxel's, if there is one */
+    float half_single[4];          /* local half extents, margin included */
+    struct wide_node *nodes;       /* nodes[0] is not used */
+    struct triangle_block *blocks; /* in the table that begins with the nodes */
     size_t voxel_count;
     uint32_t big; /* reference to the triangles that touch very many voxels */
     uint32_t node_count, block_count;

@@ -142,6 +142,50 @@ TEST(rays_from_a_few_sizes_away_meet_what_trying_every_triangle_meets_and_nothin
     maker_free(&m);
 }
 
+/* A small dense ball in a scene that is up to a million times as wide, not in its middle: single precision knows places
+ * hardly better there than the ball's triangles are large. Rays go at edges and corners, from near and far and from the
+ * ball itself. */
+TEST(rays_at_a_tiny_dense_ball_in_a_wide_scene_meet_what_trying_every_triangle_meets) {
+    static const char *const sets[] = {"base", "avx2", "avx512"};
+    int hits = 0;
+    for (int isa = 0; isa < 3; isa++) {
+        if (!accel_select_isa(sets[isa]))
+            continue;
+        struct test_random random = {77};
+        for (int size = 1; size <= 6; size++) {
+            struct maker m = {0};
+            maker_sphere(&m, 6);
+            double shrink = pow(10, -size);
+            struct vec3 middle = vec3_make(0.61803, -0.41421, 0.73205);
+            for (uint32_t i = 0; i < m.vertex_count; i++)
+                for (int k = 0; k < 3; k++)
+                    m.vertices[i][k] = m.vertices[i][k] * shrink + vec3_get(middle, k);
+            uint32_t ball = m.vertex_count, corner[3];
+            for (int k = 0; k < 3; k++)
+                corner[k] = maker_vertex(&m, k == 0 ? -1.1 : 1.7, -0.4142, k == 2 ? 1.9 : -1.3);
+            maker_triangle(&m, corner[0], corner[1], corner[2]);
+            struct triangle_set set = set_of(&m);
+            struct triangle_index *index = build(&set, 0, NULL);
+            struct triangle_cost cost = {0};
+            for (int i = 0; i < 1500; i++) {
+                const double *a = m.vertices[(uint32_t)test_uniform(&random, 0, ball)];
+                const double *b = m.vertices[(uint32_t)test_uniform(&random, 0, ball)];
+                double blend = i % 3 ? test_uniform(&random, 0, 1) : 0;
+                struct vec3 target =
+                    vec3_make(a[0] + blend * (b[0] - a[0]), a[1] + blend * (b[1] - a[1]), a[2] + blend * (b[2] - a[2]));
+                double reach = pow(10, test_uniform(&random, -size - 1, 1));
+                struct vec3 origin = i % 5 ? vec3_add(middle, test_point(&random, reach)) : vec3_make(b[0], b[1], b[2]);
+                struct ray ray = test_ray(origin, vec3_sub(target, origin));
+                hits += meets_the_same(index, &set, &ray, &cost);
+            }
+            triangle_index_destroy(index);
+            maker_free(&m);
+        }
+    }
+    CHECK(accel_select_isa("auto"));
+    CHECK(hits > 3000);
+}
+
 /* Whether a ray leaves the floor it starts on is more than single precision can say below some height, and the floor is
  * so large that the slack of its test is, too. Odd sides, so that no number of the floor is exact; the same tilted. */
 TEST(rays_that_start_close_above_or_below_a_huge_floor_meet_what_trying_every_triangle_meets) {
