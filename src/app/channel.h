@@ -126,7 +126,7 @@ struct studio_order {
     bool quit;             /* of END: the window was closed */
     struct live_view view; /* of PASS, and from where PICK and STORY look */
     double x, y;           /* of PICK and STORY: pixels of the whole picture */
-    uint32_t up;           /* of PICK: nodes above the one that is hit */
+    int32_t up;            /* of PICK: nodes above the one that is hit, or operands below it */
     uint32_t first_light;  /* of CHANGE and LIGHTS: tell them from this one on, counted from 0 */
     struct change change;
     bool present; /* of CHANGE: it is made; else it is undone */

@@ -41,7 +41,7 @@ struct selection {
     struct transform placed; /* the change of its place at that time */
     uint32_t light;          /* number, from 1 */
     double x, y;             /* where it was clicked: pixels of the whole picture */
-    uint32_t up;             /* nodes above what was hit */
+    int32_t up;              /* nodes above what was hit; below 0: operands below it */
 };
 /* What the mouse does with what is selected. */
 enum live_tool { TOOL_NONE, TOOL_MOVE, TOOL_TURN, TOOL_SIZE };

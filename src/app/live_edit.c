@@ -8,6 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
+enum { WAY_DOWN = 1 << 20 }; /* farther than any operand is */
+
 /* Seeing. */
 
 bool live_frame(const struct live *live, struct camera_frame *frame) {
@@ -205,11 +207,11 @@ static bool pixel_at(const struct live *live, double x, double y, double *u, dou
     return inside;
 }
 
-void live_click(struct live *live, double x, double y) {
+void live_click(struct live *live, double x, double y, bool operand) {
     uint32_t number;
     live->joins = false;
     live->over_dirty = true;
-    if (!live->bare && live_near_light(live, x, y, &number)) {
+    if (!live->bare && !operand && live_near_light(live, x, y, &number)) {
         live_select_light(live, number);
         return;
     }
@@ -217,6 +219,7 @@ void live_click(struct live *live, double x, double y) {
     live->asked = (struct selection){0};
     if (!pixel_at(live, x, y, &live->asked.x, &live->asked.y))
         return;
+    live->asked.up = operand ? -WAY_DOWN : 0;
     live->asked.x += 0.5;
     live->asked.y += 0.5;
     live->asks = true;
@@ -226,11 +229,12 @@ void live_ask_story(struct live *live, double x, double y) {
     live->asks_story = pixel_at(live, x, y, &live->story_x, &live->story_y);
 }
 
-void live_select_parent(struct live *live) {
-    if (live->selection.kind != SELECTED_NODE || live->selection.picked.levels == 0)
+void live_select_up(struct live *live, bool down) {
+    const struct picked *picked = &live->selection.picked;
+    if (live->selection.kind != SELECTED_NODE || (down ? picked->below == 0 : picked->levels == 0))
         return;
     live->asked = live->selection;
-    live->asked.up++;
+    live->asked.up += down ? -1 : 1;
     live->asks = true;
 }
 
@@ -240,7 +244,9 @@ void live_take_picked(struct live *live, const struct picked *picked) {
                                          .placed = transform_identity(),
                                          .x = live->asked.x,
                                          .y = live->asked.y,
-                                         .up = live->asked.up};
+                                         .up = picked->up < -WAY_DOWN  ? -WAY_DOWN
+                                               : picked->up > WAY_DOWN ? WAY_DOWN
+                                                                       : picked->up};
     live->joins = false;
     if (!picked->hit)
         return;

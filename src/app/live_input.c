@@ -162,6 +162,8 @@ static bool take_edit_key(struct live *live, const struct window_event *event) {
         live->over_dirty = true;
         return true;
     case WINDOW_PAGE_DOWN:
+        if (live->story[0] == '\0')
+            live_select_up(live, true);
         live->story_line += 10;
         live->over_dirty = true;
         return true;
@@ -169,7 +171,7 @@ static bool take_edit_key(struct live *live, const struct window_event *event) {
         live_delete(live);
         return true;
     case WINDOW_PAGE_UP:
-        live_select_parent(live);
+        live_select_up(live, false);
         return true;
     case WINDOW_ESCAPE:
         if (live->grabbed)
@@ -265,7 +267,7 @@ static void take_button(struct live *live, const struct window_event *event, boo
     if (!down && event->button == WINDOW_LEFT && live->pressed) {
         live->pressed = false;
         if (live->block && !is_drag(live))
-            live_click(live, event->x, event->y);
+            live_click(live, event->x, event->y, event->control);
     }
     if (down && !covered && live->block)
         press_picture(live, event);

@@ -151,20 +151,23 @@ static void tell_point(struct live *live, struct column *column, const char *wha
     tell_text(live, column, row);
 }
 
+enum { TOOL_BUTTONS = 7 };
+
 /* What can be done with what is selected. */
 static bool can_use(const struct live *live, int button) {
     const struct told_light *light = live_light(live, live->selection.light);
     if (live->selection.kind == SELECTED_NODE)
-        return true;
-    const bool can[6] = {light && light->moves, light && light->turns, light && light->sizes, false, false, true};
+        return button != 4 || live->selection.picked.below > 0;
+    const bool can[TOOL_BUTTONS] = {
+        light && light->moves, light && light->turns, light && light->sizes, false, false, false, true};
     return can[button];
 }
 
 static void tell_tools(struct live *live, struct column *column) {
-    static const char *const words[] = {"Move", "Turn", "Size", "Up", "Copy", "Delete"};
+    static const char *const words[TOOL_BUTTONS] = {"Move", "Turn", "Size", "Up", "Down", "Copy", "Delete"};
     struct panel *panel = &live->panel;
     int x = column->x;
-    for (int i = 0; i < 6; i++) {
+    for (int i = 0; i < TOOL_BUTTONS; i++) {
         enum live_tool tool = i < 3 ? (enum live_tool)(i + 1) : TOOL_NONE;
         if (!can_use(live, i))
             continue;
@@ -175,9 +178,9 @@ static void tell_tools(struct live *live, struct column *column) {
         if (tool != TOOL_NONE) {
             live->tool = live->tool == tool ? TOOL_NONE : tool;
             live->joins = false;
-        } else if (i == 3) {
-            live_select_parent(live);
-        } else if (i == 4) {
+        } else if (i < 5) {
+            live_select_up(live, i == 4);
+        } else if (i == 5) {
             live_add(live, ADDED_COPY);
         } else {
             live_delete(live);

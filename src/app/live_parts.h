@@ -16,11 +16,12 @@ void live_halt(struct live *live, bool on);
 void live_render(struct live *live); /* again, from coarse to fine */
 
 /* live_edit.c */
-/* A click on the picture, at pixels of the window: a light that shows there is selected, else the child is asked. */
-void live_click(struct live *live, double x, double y);
+/* A click on the picture, at pixels of the window: a light that shows there is selected, else the child is asked.
+ * operand: of a combined solid that one is selected whose surface is there. */
+void live_click(struct live *live, double x, double y, bool operand);
 void live_ask_story(struct live *live, double x, double y);
 void live_take_picked(struct live *live, const struct picked *picked);
-void live_select_parent(struct live *live);
+void live_select_up(struct live *live, bool down);       /* the node above, or the operand below */
 void live_drag(struct live *live, double dx, double dy); /* with the tool, by pixels of the window */
 void live_push(struct live *live, double steps);         /* what is selected goes away from the camera, or nearer */
 void live_make(struct live *live, const struct change *change, bool present, bool join);

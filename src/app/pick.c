@@ -1,5 +1,6 @@
 /* The node's box is that of its own shape, turned with it, where the node is one shape; of a group it is the box along
- * the world's axes round everything under it. */
+ * the world's axes round everything under it. The way to a combined solid goes on to the operand whose surface was hit;
+ * which of its nodes is told is a matter of going up or down on it. */
 #include "app/pick.h"
 
 #include "app/inspect.h"
@@ -10,14 +11,15 @@
 #include <stdio.h>
 #include <string.h>
 
+enum { WAY_LIMIT = 256 };
+
 struct picking {
     const struct world *world;
     struct picked *out;
     uint32_t placed; /* what was hit */
-    uint32_t up;
-    /* The way to the node, once it is known. */
-    struct path_step steps[256];
-    uint32_t depth;
+    /* The way to it, and on to the operand; the node that is told is the last of `depth`. */
+    struct path_step steps[WAY_LIMIT];
+    uint32_t way, whole, depth;
     struct box box; /* of everything under it */
 };
 
@@ -45,16 +47,25 @@ static bool find_way(void *context, uint32_t first, uint32_t count, const struct
     struct picking *p = context;
     if (p->placed < first || p->placed >= first + count)
         return true;
-    uint32_t up = p->up < depth - 1 ? p->up : depth - 1;
-    p->depth = depth - up;
-    p->out->levels = p->depth - 1;
-    if (p->depth > 256) {
-        p->depth = 0;
-        return false;
-    }
-    memcpy(p->steps, steps, p->depth * sizeof *steps);
-    (void)world_path_text(steps, p->depth, p->out->path, sizeof p->out->path);
+    p->way = depth <= WAY_LIMIT ? depth : 0;
+    memcpy(p->steps, steps, p->way * sizeof *steps);
     return false;
+}
+
+/* The node that is so many above what was placed, or below. */
+static void choose_node(struct picking *p, const struct hit *hit, int32_t up) {
+    const struct shape *shape = &placed_thing(p->world, p->placed)->shape;
+    int32_t way = (int32_t)p->way, below = 0;
+    if (shape->kind == SHAPE_CSG)
+        below = (int32_t)world_operand_way(p->steps[way - 1].node, shape->csg->leaves[hit->leaf].origin, p->steps + way,
+                                           WAY_LIMIT - p->way);
+    up = up > way - 1 ? way - 1 : up < -below ? -below : up;
+    p->whole = (uint32_t)(way + below);
+    p->depth = (uint32_t)(way - up);
+    p->out->up = up;
+    p->out->below = p->whole - p->depth;
+    p->out->levels = p->depth - 1;
+    (void)world_path_text(p->steps, p->depth, p->out->path, sizeof p->out->path);
 }
 
 static bool join_boxes(void *context, uint32_t first, uint32_t count, const struct path_step *steps, uint32_t depth) {
@@ -78,12 +89,53 @@ static void set_corners(struct picked *out, const struct box *box, const struct 
     }
 }
 
-static bool box_node(struct picking *p, const struct node *root, bool whole, struct error *error) {
+/* Of all shapes under an operand. */
+static void join_operand(struct box *box, const struct node *node, const struct transform *world_from_above) {
+    struct transform above_from_node = node_parent_from_node(node);
+    struct transform map = transform_compose(world_from_above, &above_from_node);
+    if (node->singular)
+        return;
+    if (node->kind == NODE_GEOMETRY) {
+        struct box own = shape_bounds(&node->shape);
+        if (!box_is_empty(&own))
+            own = box_transform(&map.forward, &own);
+        *box = box_join(*box, own);
+    }
+    for (uint32_t i = 0; node->kind == NODE_CSG && i < node->operand_count; i++)
+        join_operand(box, node->operands[i], &map);
+    uint32_t rounds = node->placements ? node->placements->count : 1;
+    for (uint32_t i = 0; i < rounds && node->first_child; i++) {
+        struct transform of_children = map;
+        if (node->placements) {
+            struct transform node_from_child = placement_transform(node->placements, i);
+            of_children = transform_compose(&map, &node_from_child);
+        }
+        for (const struct node_child *child = node->first_child; child; child = child->next)
+            join_operand(box, child->node, &of_children);
+    }
+}
+
+static void box_operand(struct picking *p, const struct node *node, const struct transform *above) {
+    struct transform above_from_node = node_parent_from_node(node);
+    struct transform map = transform_compose(above, &above_from_node);
+    bool shape = node->kind == NODE_GEOMETRY && !node->first_child;
+    p->box = shape ? shape_bounds(&node->shape) : box_empty();
+    if (!shape)
+        join_operand(&p->box, node, above);
+    set_corners(p->out, &p->box, shape ? &map.forward : NULL);
+}
+
+static bool box_node(struct picking *p, const struct node *root, struct error *error) {
     const struct thing *thing = placed_thing(p->world, p->placed);
-    if (whole && thing->parts == 1 && !thing->is_later_part) {
+    if (p->depth == p->way && thing->parts == 1 && !thing->is_later_part) {
         struct transform map = world_placement(p->world, p->placed, 0);
         struct box box = shape_bounds(&thing->shape);
         set_corners(p->out, &box, &map.forward);
+        return true;
+    }
+    if (p->depth > p->way) {
+        struct transform above = world_from_parent(p->steps, p->depth);
+        box_operand(p, p->steps[p->depth - 1].node, &above);
         return true;
     }
     p->box = box_empty();
@@ -91,6 +143,13 @@ static bool box_node(struct picking *p, const struct node *root, bool whole, str
         return false;
     set_corners(p->out, &p->box, NULL);
     return true;
+}
+
+static const char *shape_words(const struct picking *p, const struct node *node) {
+    if (p->depth == p->way)
+        return inspect_shape(placed_shape(p->world, p->placed)->kind);
+    bool solid = p->depth > p->way && node->kind != NODE_GROUP && node->kind != NODE_JOINT;
+    return solid ? inspect_shape(node->kind == NODE_CSG ? SHAPE_CSG : node->shape.kind) : "group";
 }
 
 /* "marble over phong", and the base. */
@@ -112,13 +171,15 @@ static void tell_material(const struct material *material, struct picked *out) {
         look_part_get(base, (enum look_part)part, out->look[part]);
 }
 
-static bool describe(struct picking *p, const struct node *root, const struct hit *hit, struct error *error) {
+static bool describe(struct picking *p, const struct node *root, const struct hit *hit, int32_t up,
+                     struct error *error) {
     struct picked *out = p->out;
     if (!world_walk_paths(p->world, root, find_way, p, error))
         return false;
-    out->hit = p->depth > 0;
+    out->hit = p->way > 0;
     if (!out->hit)
         return true;
+    choose_node(p, hit, up);
     const struct node *node = p->steps[p->depth - 1].node;
     out->serial = node->serial;
     pick_words(out->name, node->name);
@@ -126,15 +187,14 @@ static bool describe(struct picking *p, const struct node *root, const struct hi
         out->parent_serial = p->steps[p->depth - 2].node->serial;
         pick_words(out->parent_name, p->steps[p->depth - 2].node->name);
     }
-    bool itself = node == placed_node(p->world, p->placed);
-    pick_words(out->shape, itself ? inspect_shape(placed_shape(p->world, p->placed)->kind) : "group");
+    pick_words(out->shape, shape_words(p, node));
     tell_material(p->world->materials[hit->material], out);
-    out->can_own = itself && node->kind == NODE_GEOMETRY;
+    out->can_own = p->depth == p->whole && node->kind == NODE_GEOMETRY;
     out->world_from_parent = world_from_parent(p->steps, p->depth).forward;
-    return box_node(p, root, itself, error);
+    return box_node(p, root, error);
 }
 
-bool pick_at(const struct render_job *job, const struct node *root, double x, double y, uint32_t up, struct picked *out,
+bool pick_at(const struct render_job *job, const struct node *root, double x, double y, int32_t up, struct picked *out,
              struct error *error) {
     struct settings settings = job->settings;
     struct camera_frame frame;
@@ -152,11 +212,11 @@ bool pick_at(const struct render_job *job, const struct node *root, double x, do
         return error_no_memory(error, "the ray of a click");
     bool found = world_nearest(job->world, &ray, &scratch, &hit), ok = true;
     if (found) {
-        struct picking p = {.world = job->world, .out = out, .placed = hit.placed, .up = up};
+        struct picking p = {.world = job->world, .out = out, .placed = hit.placed};
         out->distance = vec3_length(vec3_sub(hit.point, ray.origin));
         out->position = hit.point;
         out->normal = hit.normal;
-        ok = describe(&p, root, &hit, error);
+        ok = describe(&p, root, &hit, up, error);
     }
     world_scratch_destroy(&scratch);
     return ok;

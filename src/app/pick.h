@@ -16,6 +16,8 @@ struct picked {
     uint32_t serial, parent_serial; /* of the node, and of the one above it */
     char parent_name[PICK_WORDS];
     uint32_t levels;            /* nodes above it */
+    int32_t up;                 /* as it was asked for, but no farther than there are nodes */
+    uint32_t below;             /* operands below it on the way to the surface that was hit */
     uint32_t material_serial;   /* of the base, which can be changed; 0: it is plain gray */
     double look[LOOK_PARTS][3]; /* of that base */
     bool can_own;               /* a shape was hit and is told: it can be given a material of its own */
@@ -30,8 +32,9 @@ struct picked {
 void pick_words(char out[PICK_WORDS], const char *text);
 
 /* The ray through (x, y) of the whole picture, in pixels, with the camera of the job as it is at time 0. up: so many
- * nodes above the one that was hit. False: no memory, or no such camera. */
-bool pick_at(const struct render_job *job, const struct node *root, double x, double y, uint32_t up, struct picked *out,
+ * nodes above the one that was hit; below 0: so many operands below it, if it is a combined solid. False: no memory, or
+ * no such camera. */
+bool pick_at(const struct render_job *job, const struct node *root, double x, double y, int32_t up, struct picked *out,
              struct error *error);
 
 #endif

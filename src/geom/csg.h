@@ -24,6 +24,7 @@ struct csg_leaf {
     uint32_t material;
     uint32_t slot_count; /* of a mesh: face slot k has material + k; below 2 all have `material` */
     enum csg_cull cull;  /* of a surface that is clipped; CSG_CULL_NONE in solids */
+    uint32_t origin;     /* a number by which whoever made the leaf finds what it is of */
 };
 
 struct csg_token {

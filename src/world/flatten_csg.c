@@ -17,7 +17,8 @@ struct csg_draft {
     struct csg_leaf *leaves;
     struct csg_token *program;
     uint32_t leaf_count, leaf_capacity, length, capacity;
-    bool unseen; /* its surfaces are not shown: leaves need no material */
+    uint32_t met; /* shapes so far, those too that the algebra has taken away again (world_operand_way counts alike) */
+    bool unseen;  /* its surfaces are not shown: leaves need no material */
 };
 
 /* What the nodes above an operand say about it. */
@@ -65,7 +66,8 @@ static bool add_leaf(struct flattening *f, struct csg_draft *draft, struct node 
         draft->leaves = leaves;
         draft->leaf_capacity = capacity;
     }
-    struct csg_leaf leaf = {.shape = node->shape, .csg_from_leaf = *csg_from_node, .limit = above->limit};
+    struct csg_leaf leaf = {
+        .shape = node->shape, .csg_from_leaf = *csg_from_node, .limit = above->limit, .origin = draft->met++};
     if (!flatten_mesh_index(f, &node->shape))
         return false;
     if (!draft->unseen && !flatten_material(f, node, above->inherited, &leaf.material, &leaf.slot_count))

@@ -149,3 +149,49 @@ bool world_find_paths(const struct world *world, const struct node *root, const 
         return false;
     return !paths.failed || error_no_memory(error, "the ways to the nodes");
 }
+
+/* --- inside of combined solids --- */
+
+struct operand_walk {
+    struct path_step *steps;
+    uint32_t capacity, depth;
+    uint32_t left; /* shapes before the one that is looked for */
+};
+
+static bool seek_operand(struct operand_walk *walk, const struct node *node, uint32_t level);
+
+static bool seek_operands(struct operand_walk *walk, const struct node *node, uint32_t level) {
+    uint32_t count = node->operation == NODE_BOUNDED ? 1 : node->operand_count; /* the bound is no part of it */
+    for (uint32_t i = 0; i < count; i++)
+        if (seek_operand(walk, node->operands[i], level))
+            return true;
+    return false;
+}
+
+/* In the order of flatten_csg.c: the node's own surface, its operands, its children at every place. */
+static bool seek_operand(struct operand_walk *walk, const struct node *node, uint32_t level) {
+    if (node->singular || level == walk->capacity)
+        return false;
+    walk->steps[level] = (struct path_step){node, 0};
+    bool nothing =
+        node->kind == NODE_GEOMETRY && node->shape.kind == SHAPE_MESH && mesh_triangle_count(node->shape.mesh) == 0;
+    if (node->kind == NODE_GEOMETRY && !nothing && walk->left-- == 0) {
+        walk->depth = level + 1;
+        return true;
+    }
+    if (node->kind == NODE_CSG && seek_operands(walk, node, level + 1))
+        return true;
+    uint32_t rounds = node->placements ? node->placements->count : 1;
+    for (uint32_t i = 0; i < rounds && node->first_child; i++) {
+        walk->steps[level].place = node->placements ? i + 1 : 0;
+        for (const struct node_child *child = node->first_child; child; child = child->next)
+            if (seek_operand(walk, child->node, level + 1))
+                return true;
+    }
+    return false;
+}
+
+uint32_t world_operand_way(const struct node *solid, uint32_t origin, struct path_step *steps, uint32_t capacity) {
+    struct operand_walk walk = {.steps = steps, .capacity = capacity, .left = origin};
+    return solid->kind == NODE_CSG && seek_operands(&walk, solid, 0) ? walk.depth : 0;
+}

@@ -28,4 +28,8 @@ size_t world_path_text(const struct path_step *steps, uint32_t depth, char *out,
 bool world_find_paths(const struct world *world, const struct node *root, const uint32_t *wanted, uint32_t count,
                       struct arena *arena, const char **out, struct error *error);
 
+/* The way from a combined solid (NODE_CSG) down to the shape that a leaf of it was made of (csg_leaf.origin), without
+ * the solid itself; steps has room for `capacity`. Returns its length; 0: there is none, or it is longer. */
+uint32_t world_operand_way(const struct node *solid, uint32_t origin, struct path_step *steps, uint32_t capacity);
+
 #endif

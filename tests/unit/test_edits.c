@@ -487,3 +487,115 @@ TEST(changes_give_a_shape_a_material_of_its_own_which_is_changed_alone) {
         "gr.change_own('b', 4)\ngr.change_material(2147483647, {0.1, 0.9, 0.1})\n" SCENE_TAIL("{0, 0, 6}", LIGHT),
         true);
 }
+
+/* Operands of combined solids. */
+
+struct forest {
+    struct stage *stage;
+    struct test_random random;
+    struct material *material;
+    struct node *nodes[4096]; /* by serial */
+};
+
+static struct node *grow(struct forest *f, int depth) {
+    struct stage *s = f->stage;
+    double what = test_uniform(&f->random, 0, 1);
+    struct node *node;
+    if (depth == 0 || what < 0.2) {
+        node = stage_sphere(s, stage_group(s, s->root), f->material);
+        s->root->last_child->node->singular = true; /* it stands in the solid only */
+        node->singular = test_uniform(&f->random, 0, 1) < 0.1;
+    } else if (what < 0.35) {
+        static const double places[2][3] = {{-0.4, 0, 0}, {0.6, 0.1, 0}};
+        static const struct placements twice = {.count = 2, .at = places};
+        node = scene_node(&s->scene, NODE_GROUP, "twice", &s->error);
+        node->placements = &twice;
+        CHECK(node_add_child(&s->scene, node, grow(f, depth - 1), &s->error));
+    } else {
+        struct node *operands[3] = {grow(f, depth - 1), grow(f, depth - 1), grow(f, depth - 1)};
+        enum node_csg operation = (enum node_csg)(test_uniform(&f->random, 0, NODE_DIFFERENCE + 0.99));
+        node = scene_combine(&s->scene, "solid", operation, operands, what < 0.7 ? 2 : 3, &s->error);
+    }
+    stage_move(s, node, test_uniform(&f->random, -0.6, 0.6), test_uniform(&f->random, -0.6, 0.6),
+               test_uniform(&f->random, -0.3, 0.3));
+    stage_rotate(s, node, depth % 3, test_uniform(&f->random, -180, 180));
+    CHECK(node->serial < 4096);
+    f->nodes[node->serial] = node;
+    return node;
+}
+
+TEST(picking_goes_down_to_the_operand_whose_surface_was_hit) {
+    static struct stage s;
+    static struct forest f;
+    int hits = 0;
+    for (int round = 0; round < 12; round++) {
+        stage_begin(&s, 1);
+        f = (struct forest){.stage = &s, .random = {(uint64_t)round + 3}};
+        f.material = stage_phong(&s, vec3_all(0.5), vec3_all(0), 1);
+        struct node *parts[2] = {grow(&f, 3), grow(&f, 3)};
+        struct node *whole = scene_combine(&s.scene, "whole", NODE_UNION, parts, 2, &s.error);
+        f.nodes[whole->serial] = whole;
+        CHECK(node_add_child(&s.scene, s.root, whole, &s.error) && stage_build(&s, s.root, ACCEL_AUTO));
+        const struct render_job job = {
+            .world = &s.world, .camera = s.camera, .settings = s.settings, .width = 100, .height = 100};
+        for (int i = 0; i < 200; i++) {
+            double x = test_uniform(&f.random, 25, 75), y = test_uniform(&f.random, 25, 75);
+            struct picked picked, leaf, between;
+            CHECK(pick_at(&job, s.root, x, y, 0, &picked, &s.error));
+            CHECK(pick_at(&job, s.root, x, y, -1000, &leaf, &s.error));
+            CHECK(leaf.hit == picked.hit);
+            if (!leaf.hit)
+                continue;
+            hits++;
+            CHECK(picked.serial == whole->serial && picked.below > 0 && !picked.can_own);
+            CHECK(leaf.below == 0 && leaf.up == -(int32_t)picked.below && leaf.can_own);
+            CHECK_TEXT(leaf.shape, "sphere");
+            /* The place that was hit lies on the unit sphere of that operand. */
+            const struct node *node = f.nodes[leaf.serial];
+            struct transform above;
+            CHECK(node && transform_from_affine(&leaf.world_from_parent, &above));
+            struct vec3 p = affine_point(&above.inverse, leaf.position);
+            p = affine_point(&node->parent_from_node.inverse, p);
+            CHECK_NEAR(vec3_length(p), 1, 1e-9);
+            /* And in the box of whatever is between. */
+            int32_t up = -(int32_t)(test_uniform(&f.random, 0, picked.below + 0.99));
+            CHECK(pick_at(&job, s.root, x, y, up, &between, &s.error));
+            CHECK(between.levels == picked.levels + (uint32_t)-up && between.has_box);
+            struct box box = box_empty();
+            for (int corner = 0; corner < 8; corner++)
+                box = box_join(box, (struct box){between.corners[corner], between.corners[corner]});
+            for (int axis = 0; axis < 3; axis++)
+                CHECK(vec3_get(leaf.position, axis) >= vec3_get(box.min, axis) - 1e-9 &&
+                      vec3_get(leaf.position, axis) <= vec3_get(box.max, axis) + 1e-9);
+        }
+        stage_end(&s);
+    }
+    CHECK(hits > 200);
+}
+
+#define CUT                                                                                                            \
+    "local function m(r, g, b) return gr.material({r, g, b}, {0.4, 0.4, 0.4}, 20) end\nlocal r = gr.node('root')\n"    \
+    "local a, b = gr.geometry('a', gr.cube(m(0.8, 0.2, 0.1))), gr.geometry('b', gr.sphere(m(0.1, 0.8, 0.1)))\n"        \
+    "local c = gr.geometry('c', gr.sphere(m(0.1, 0.1, 0.8)))\nb:translate(0.5, 0.5, 1)\nc:translate(1, 0, 0.2)\n"
+
+TEST(changes_of_operands_give_the_bytes_of_a_script_that_says_the_same_itself) {
+    static const char whole[] = "r:add_child(gr.csg_difference('cut', gr.csg_union('both', a, c), b))\n";
+    char one[4096], other[4096];
+    (void)snprintf(one, sizeof one, CUT "b:scale(0.5, 0.5, 0.5)\nb:translate(0.25, 0, 0)\n%s%s", whole,
+                   SCENE_TAIL("{0, 0, 6}", LIGHT));
+    (void)snprintf(other, sizeof other,
+                   CUT "b:scale(0.5, 0.5, 0.5)\ngr.change_node('b', 4, {1, 0, 0, 0.25, 0, 1, 0, 0, 0, 0, 1, 0})\n%s%s",
+                   whole, SCENE_TAIL("{0, 0, 6}", LIGHT));
+    same_picture(one, other, true);
+    (void)snprintf(one, sizeof one, CUT "r:add_child(gr.csg_union('both', a, c))\n%s", SCENE_TAIL("{0, 0, 6}", LIGHT));
+    (void)snprintf(other, sizeof other, CUT "gr.change_delete('b', 4)\n%s%s", whole, SCENE_TAIL("{0, 0, 6}", LIGHT));
+    same_picture(one, other, true);
+    (void)snprintf(one, sizeof one, CUT "r:add_child(gr.csg_difference('cut', c, b))\n%s",
+                   SCENE_TAIL("{0, 0, 6}", LIGHT));
+    (void)snprintf(other, sizeof other, CUT "gr.change_delete('a', 2)\n%s%s", whole, SCENE_TAIL("{0, 0, 6}", LIGHT));
+    same_picture(one, other, true);
+    (void)snprintf(other, sizeof other, CUT "gr.change_own('b', 4)\ngr.change_material(2147483647, {1, 1, 0})\n%s%s",
+                   whole, SCENE_TAIL("{0, 0, 6}", LIGHT));
+    (void)snprintf(one, sizeof one, CUT "b:set_material(m(1, 1, 0))\n%s%s", whole, SCENE_TAIL("{0, 0, 6}", LIGHT));
+    same_picture(one, other, true);
+}

@@ -92,3 +92,22 @@ TEST(window_that_gives_a_shape_a_material_saves_what_gives_the_same_bytes) {
           "for i in 1 2 3 4 5; do xdotool key ctrl+z; done; finds first.png\n"
           "for i in 1 2 3 4 5; do xdotool key ctrl+y; done; finds again.png\n");
 }
+
+TEST(window_that_changes_operands_of_a_solid_saves_what_gives_the_same_bytes) {
+    /* A ball is taken out of a larger one: what Ctrl-click finds in the middle is the hollow. */
+    drive(
+        "local function m(r, g, b) return gr.material({r, g, b}, {0.4, 0.4, 0.4}, 20) end\nlocal r = gr.node('root')\n"
+        "local a, b = gr.geometry('a', gr.sphere(m(0.8, 0.2, 0.1))), gr.geometry('b', gr.sphere(m(0.1, 0.8, 0.1)))\n"
+        "a:scale(1.5, 1.5, 1.5)\nb:translate(0, 0, 1.2)\nr:add_child(gr.csg_difference('cut', a, b))\n"
+        "gr.render(r, 'out.png', 320, 240, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2}, "
+        "{gr.light({4, 5, 6}, {0.9, 0.9, 0.9}, {1, 0, 0})})\n",
+        "xdotool mousemove 450 380 keydown ctrl click 1 sleep 0.2 keyup ctrl sleep 1 key m; drag 20 -12\n"
+        "xdotool sleep 0.3 key z; drag 0 20; xdotool key t; drag 10 10\n"
+        "changes 1; finds again.png; cmp -s again.png first.png && exit 4\n"
+        "says \"change_node('b'\"; grep -q \"'cut'\\|'a'\" out-changes1.lua && exit 3\n"
+        "for i in 1 2 3; do xdotool key ctrl+z; done; finds first.png\n"
+        /* Up to the whole, down again, and without it. */
+        "xdotool key Prior sleep 0.5 key Next sleep 0.5 key Delete sleep 0.2; changes 2; finds again.png\n"
+        "grep -q \"change_delete('b'\" out-changes2.lua || exit 2\n"
+        "xdotool key ctrl+z; finds first.png\n");
+}
