@@ -32,7 +32,7 @@ void desk_init(struct desk *desk, const struct options *options, struct control 
     desk->options = options;
     desk->control = control;
     keeper_init(&desk->keeper, options);
-    progress_init(&desk->progress, options->progress, options->quiet);
+    progress_init(&desk->progress, options->progress, options->quiet, options->threads);
     show_elsewhere(desk, display_open(&desk->display, options->display, &error), &error);
     bool ok = reach_add(&desk->places, ".", REACH_WRITE, &desk->places_error);
     for (int i = 0; ok && i < options->script.allow_write_count; i++)
@@ -200,9 +200,8 @@ bool desk_begin(struct desk *desk, const struct picture_request *request, bool *
     picture->open = true;
     atomic_store(&desk->control->tiles, 0);
     atomic_store(&desk->control->tiles_done, 0);
-    atomic_store(&desk->control->outlook.all, 0);
-    atomic_store(&desk->control->outlook.begun,
-                 progress_wants_outlook(&desk->progress) && !request->live ? OUTLOOK_WANTED : 0);
+    bool helps = desk->farm && !farm_is_first(desk->farm);
+    outlook_reset(&desk->control->outlook, progress_wants_outlook(&desk->progress) && !request->live && !helps);
     progress_begin(&desk->progress, picture->name, request->width, request->height);
     struct tone tone = {request->exposure, (enum tone_curve)request->curve, request->srgb != 0};
     if (!request->live)

@@ -1,5 +1,5 @@
-/* The estimate of the time left is the time so far, stretched over the work that is missing (render/outlook.h). The bar
- * is erased with blanks, not with escape sequences, so that any terminal shows it. */
+/* The time left is that until the end that the render foretells (render/outlook.h), and that of writing. The bar is
+ * erased with blanks, not with escape sequences, so that any terminal shows it. */
 #define _GNU_SOURCE
 #include "app/progress.h"
 
@@ -13,6 +13,9 @@
 
 enum { BAR_CELLS = 24, COLUMNS_LIMIT = 200 };
 
+/* Seconds of one core for a pixel of a PNG file: what comes after the last tile. */
+static const double writing = 5e-8;
+
 double progress_clock(void) {
     struct timespec now;
     (void)clock_gettime(CLOCK_MONOTONIC, &now);
@@ -25,8 +28,8 @@ double progress_processor_clock(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-void progress_init(struct progress *progress, enum progress_mode mode, bool quiet) {
-    *progress = (struct progress){.mode = mode};
+void progress_init(struct progress *progress, enum progress_mode mode, bool quiet, int threads) {
+    *progress = (struct progress){.mode = mode, .threads = threads > 0 ? threads : (int)sysconf(_SC_NPROCESSORS_ONLN)};
     if (mode == PROGRESS_AUTO)
         progress->mode = quiet ? PROGRESS_NONE : isatty(STDERR_FILENO) ? PROGRESS_BAR : PROGRESS_LINES;
 }
@@ -56,22 +59,30 @@ static void say_time(double seconds, char *out, size_t size) {
         (void)snprintf(out, size, "%lu h %lu min", whole / 3600, whole / 60 % 60);
 }
 
-/* How far the picture is. Without an estimate tiles are counted: in a farm, and where nobody asked. */
+/* How far the picture is. Where nobody asked for an estimate tiles are counted. */
 struct state {
     double elapsed, share, left; /* share and left: negative while they are not known */
     uint32_t done, count;
 };
 
-static struct state state_of(const struct progress *progress, double now, uint32_t done, uint32_t count,
+static struct state state_of(struct progress *progress, double now, uint32_t done, uint32_t count,
                              const struct outlook *outlook) {
     struct state state = {now - progress->begun, -1, -1, done, count};
-    bool asked = atomic_load(&outlook->begun) != 0 && atomic_load(&outlook->begun) != OUTLOOK_WANTED;
+    bool asked = outlook_is_asked(outlook);
     if (count == 0)
         return state;
     state.share = asked ? outlook_share(outlook) : (double)done / (double)count;
     state.left = asked             ? outlook_left(outlook, now)
                  : state.share > 0 ? state.elapsed / state.share - state.elapsed
                                    : -1;
+    if (asked && state.share > 0 && state.left >= 0) {
+        /* The file is written by all threads, after the last tile. */
+        double last = writing * outlook_pace(outlook) * progress->width * progress->height / progress->threads;
+        double whole = state.elapsed + state.left;
+        state.share = fmax(progress->share, state.share * whole / (whole + last));
+        progress->share = state.share;
+        state.left += last;
+    }
     return state;
 }
 
@@ -139,6 +150,7 @@ static void print_json(const struct progress *progress, const char *event, const
 void progress_begin(struct progress *progress, const char *name, uint32_t width, uint32_t height) {
     progress->name = name;
     progress->said = false;
+    progress->share = 0;
     progress->width = width;
     progress->height = height;
     progress->begun = progress->shown = progress_clock();

@@ -13,8 +13,10 @@ struct progress {
     enum progress_mode mode; /* never PROGRESS_AUTO */
     const char *name;        /* of the picture; NULL while there is none */
     uint32_t width, height;
+    int threads;
     double begun, shown; /* seconds; when the picture began, when it was last told */
     bool said;           /* a line was printed */
+    double share;        /* that was told; it never falls */
     int columns;         /* that the bar on the screen covers; 0: none is there */
 };
 
@@ -23,7 +25,7 @@ enum progress_end { PROGRESS_WRITTEN, PROGRESS_GIVEN_UP };
 double progress_clock(void);           /* seconds of a clock that never jumps */
 double progress_processor_clock(void); /* seconds that all threads of the process have worked */
 /* AUTO becomes a bar on a terminal, else lines; nothing when quiet. */
-void progress_init(struct progress *progress, enum progress_mode mode, bool quiet);
+void progress_init(struct progress *progress, enum progress_mode mode, bool quiet, int threads);
 /* `name` must stay until progress_end. */
 void progress_begin(struct progress *progress, const char *name, uint32_t width, uint32_t height);
 /* count 0: the scene is still being built. Tells at most ten times a second. */

@@ -10,6 +10,7 @@
 #include "render/shard.h"
 #include "render/story.h"
 
+#include <math.h>
 #include <stdatomic.h>
 #include <string.h>
 #include <time.h>
@@ -34,6 +35,11 @@ static struct vec3 toned(const struct tone *tone, struct vec3 c) {
 static double squared_distance(struct vec3 a, struct vec3 b) {
     struct vec3 d = {clamp01(a.x) - clamp01(b.x), clamp01(a.y) - clamp01(b.y), clamp01(a.z) - clamp01(b.z)};
     return vec3_dot(d, d);
+}
+
+bool run_differs(const struct run *run, struct vec3 a, struct vec3 b) {
+    const struct tone *tone = &run->job->settings.tone;
+    return squared_distance(toned(tone, a), toned(tone, b)) > run->job->settings.side_tolerance;
 }
 
 /* First-pass colours of the tile and its rim, as far as they are in the picture. `area` is the rectangle with the rim.
@@ -136,6 +142,7 @@ static bool render_tile(struct run *run, struct worker *worker, struct rectangle
                 return false;
             sample_patch(run, worker, &area, x, y);
         }
+        run_tile_goes_on(run, worker, 0, fmin(1, (double)(y + PATCH - area.y0) / (double)(area.y1 - area.y0)));
     }
     if (settings->show_marks && have_first)
         show_marks(run, worker, &area, &tile);
@@ -145,6 +152,7 @@ static bool render_tile(struct run *run, struct worker *worker, struct rectangle
                 return false;
             finish_pixel(run, worker, &area, x, y, have_first);
         }
+        run_tile_goes_on(run, worker, 1, (double)(y + 1 - tile.y0) / (double)(tile.y1 - tile.y0));
     }
     return true;
 }
@@ -188,14 +196,7 @@ static bool choose_tiles(struct run *run, struct error *error) {
     return ok || error_no_memory(error, "the tiles of a shard");
 }
 
-static void tell_outlook(const struct run *run, uint32_t tile, uint64_t part) {
-    if (run->toll)
-        atomic_fetch_add_explicit(&run->job->outlook->done,
-                                  part == 1 ? run->toll[tile] / 2 : run->toll[tile] - run->toll[tile] / 2,
-                                  memory_order_relaxed);
-}
-
-static bool is_enough(const struct run *run) {
+bool run_is_enough(const struct run *run) {
     return run->job->enough && atomic_load_explicit(run->job->enough, memory_order_relaxed) != 0;
 }
 
@@ -205,11 +206,11 @@ static void tile_item(void *context, uint32_t place, int index) {
     struct worker *worker = &run->workers[index];
     struct film *film = run->job->film;
     uint8_t wanted = FILM_TILE_WANTED;
-    if (is_enough(run) || !atomic_compare_exchange_strong(&film->tiles[item], &wanted, FILM_TILE_TAKEN))
+    if (run_is_enough(run) || !atomic_compare_exchange_strong(&film->tiles[item], &wanted, FILM_TILE_TAKEN))
         return;
     struct film_rectangle r = film_tile_rectangle(film, item);
     struct rectangle tile = {r.x0, r.y0, r.x1, r.y1};
-    tell_outlook(run, item, 1);
+    run_tile_begins(run, worker, item);
     /* A ray that was given up leaves a wrong colour: what ends after a wish to stop counts as not done. */
     bool whole = render_tile(run, worker, tile) && !run_stopped(run, worker);
     if (worker->scratch.failed) {
@@ -219,7 +220,7 @@ static void tile_item(void *context, uint32_t place, int index) {
     atomic_store_explicit(&film->tiles[item], whole ? FILM_TILE_DONE : FILM_TILE_WANTED, memory_order_release);
     if (!whole)
         return;
-    tell_outlook(run, item, 2);
+    run_tile_ends(run, worker, item);
     if (run->job->tile_done) {
         uint32_t done = atomic_fetch_add(&run->done, 1) + 1;
         run->job->tile_done(run->job->context, item, done, run->tiles_wanted);
@@ -233,7 +234,7 @@ static void gated_item(void *context, uint32_t item, int index) {
     const struct timespec pause = {0, 500000};
     uint32_t count = film_tile_count(film);
     (void)item;
-    while (!run_stopped(run, &run->workers[index]) && !is_enough(run)) {
+    while (!run_stopped(run, &run->workers[index]) && !run_is_enough(run)) {
         uint32_t tile = 0;
         while (tile < count && atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) != FILM_TILE_WANTED)
             tile++;
@@ -243,6 +244,8 @@ static void gated_item(void *context, uint32_t item, int index) {
             return;
         else
             (void)nanosleep(&pause, NULL);
+        if (run->foretold)
+            run_tell_outlook(run);
     }
 }
 
@@ -304,6 +307,7 @@ static bool start_workers(struct run *run, int workers) {
         struct worker *worker = &run->workers[i];
         if (!world_scratch_init(&worker->scratch, run->job->world))
             return false;
+        worker->index = i;
         worker->tracer = (struct tracer){.job = run->job,
                                          .pool = run->pool,
                                          .scratch = &worker->scratch,
@@ -388,7 +392,7 @@ static void end_run(struct run *run, int workers) {
     mem_free(run->workers);
     mem_free(run->closed);
     mem_free(run->order);
-    mem_free(run->toll);
+    forecast_destroy(&run->forecast);
 }
 
 /* The tile is one pixel: its first sample, those of its neighbours, and the others if it is marked. */
@@ -439,14 +443,14 @@ bool render_pixels(const struct render_job *job, struct pool *pool, const uint32
 
 /* In a farm tiles are made as they are handed out. */
 static bool order_tiles(struct run *run) {
-    uint32_t count = film_tile_count(run->job->film);
+    const struct film *film = run->job->film;
+    uint32_t count = film_tile_count(film);
+    if (run->job->outlook && !forecast_create(&run->forecast, count, film_tiles_across(film), pool_workers(run->pool)))
+        return false;
     if (run->job->gate)
         return true;
     run->order = mem_alloc_zero(count, sizeof *run->order);
-    if (run->job->outlook)
-        run->toll = mem_alloc_zero(count, sizeof *run->toll);
-    return run->order && (run->toll || !run->job->outlook) &&
-           tile_order(run->job->film, run->job->settings.order, run->order);
+    return run->order && tile_order(film, run->job->settings.order, run->order);
 }
 
 static bool is_unfinished(const struct run *run) {
@@ -454,67 +458,13 @@ static bool is_unfinished(const struct run *run) {
     return film_tiles_in(film, FILM_TILE_WANTED) > 0;
 }
 
-/* --- how long it will take --- */
-
-static uint64_t nanoseconds_of(clockid_t clock) {
-    struct timespec now;
-    (void)clock_gettime(clock, &now);
-    return (uint64_t)now.tv_sec * UINT64_C(1000000000) + (uint64_t)now.tv_nsec;
-}
-
-/* First samples on a lattice in the tile. Processor time, so that what else the machine does counts for nothing. */
-static void toll_item(void *context, uint32_t tile, int index) {
-    enum { SIDE = 4 };
-    struct run *run = context;
-    struct worker *worker = &run->workers[index];
-    const struct film *film = run->job->film;
-    struct film_rectangle r = film_tile_rectangle(film, tile);
-    if (atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) != FILM_TILE_WANTED)
-        return;
-    uint64_t begun = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID);
-    for (uint32_t i = 0; i < SIDE * SIDE && !run_stopped(run, worker) && !is_enough(run); i++) {
-        struct place place = run_first_place(run, r.x0 + (r.x1 - r.x0) * (2 * (i % SIDE) + 1) / (2 * SIDE),
-                                             r.y0 + (r.y1 - r.y0) * (2 * (i / SIDE) + 1) / (2 * SIDE));
-        (void)run_sample(run, worker, &place);
-    }
-    run->toll[tile] = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID) - begun + 1;
-}
-
-/* What was looked at for the estimate is no part of the picture's statistics. */
-static void forget_counts(struct run *run) {
-    for (int i = 0; i < pool_workers(run->pool); i++) {
-        struct worker *worker = &run->workers[i];
-        struct geom_scratch *geom = &worker->scratch.geom;
-        worker->camera_rays = 0;
-        worker->tracer.hits = worker->tracer.shadow_rays = 0;
-        worker->tracer.reflected_rays = worker->tracer.refracted_rays = 0;
-        geom->shape_tests = geom->box_tests = 0;
-        memset(&geom->cost, 0, sizeof geom->cost);
-    }
-}
-
-static bool estimate_tiles(struct run *run) {
-    uint32_t count = film_tile_count(run->job->film);
-    struct outlook *outlook = run->job->outlook;
-    uint64_t all = 0;
-    if (!run->toll)
-        return true;
-    if (!pool_run(run->pool, count, toll_item, run))
-        return false;
-    forget_counts(run);
-    for (uint32_t i = 0; i < count; i++)
-        all += run->toll[i];
-    atomic_store(&outlook->done, 0);
-    atomic_store(&outlook->begun, nanoseconds_of(CLOCK_MONOTONIC));
-    atomic_store_explicit(&outlook->all, all, memory_order_release);
-    return true;
-}
-
 static bool make_tiles(struct run *run, struct error *error) {
     if (!order_tiles(run))
         return error_no_memory(error, "the order of the tiles");
     count_tiles(run);
-    bool whole = estimate_tiles(run) && run_tiles(run) && !(is_enough(run) && is_unfinished(run));
+    bool whole = run_look_ahead(run) && run_tiles(run) && !(run_is_enough(run) && is_unfinished(run));
+    if (whole && run->job->outlook)
+        run_tell_end(run);
     if (!atomic_load(&run->failed))
         return whole || error_set(error, ERROR_CANCELLED, "stopped while rendering");
     if (!whole)

@@ -1,9 +1,11 @@
-/* What the files of a render share: tiles (render.c), samples (sample.c), pictures beside the picture (layers.c).
+/* What the files of a render share: tiles (render.c), samples (sample.c), how long it will take (ahead.c), pictures
+ * beside the picture (layers.c).
  * Nobody else includes it. */
 #ifndef GRAY_RENDER_RUN_H
 #define GRAY_RENDER_RUN_H
 
 #include "render/camera.h"
+#include "render/forecast.h"
 #include "render/photon_map.h"
 #include "render/render.h"
 #include "render/whitted.h"
@@ -33,6 +35,8 @@ struct worker {
     struct media ray_media;
     struct camera_frame camera; /* of the sample's moment, when the camera moves */
     struct batch batch;
+    int index;
+    uint64_t tile_begun, first_ended; /* processor time, while somebody asks how long it will take */
     struct vec3 first[(FILM_TILE + 2) * (FILM_TILE + 2)];
 };
 
@@ -54,7 +58,10 @@ struct run {
     uint32_t tiles_wanted; /* of this process, those that were there before too */
     uint64_t *cost;        /* of each tile while shards are chosen */
     uint32_t *order;       /* of the tiles; NULL: as they are numbered */
-    uint64_t *toll;        /* what rays through each tile took, nanoseconds; NULL: nobody asks */
+    bool foretold;         /* the tiles have been looked at */
+    struct forecast forecast;
+    uint64_t worked;       /* processor time when the first tile began */
+    _Atomic uint64_t told; /* when the outlook was told, nanoseconds */
     _Atomic uint32_t done;
     _Atomic bool failed;
 };
@@ -80,6 +87,21 @@ struct vec3 run_all_samples(struct run *run, struct worker *worker, int64_t x, i
 static inline bool run_stopped(const struct run *run, const struct worker *worker) {
     return pool_cancelled(run->pool) || worker->scratch.failed;
 }
+
+/* Whether two colours differ as much as marks a pixel beside another one. */
+bool run_differs(const struct run *run, struct vec3 a, struct vec3 b);
+
+/* Before the first tile; false: stopped. Nothing happens where nobody asks how long it will take. */
+bool run_look_ahead(struct run *run);
+void run_tile_begins(struct run *run, struct worker *worker, uint32_t tile);
+/* So much of its first pass (0) or its second is done. */
+void run_tile_goes_on(struct run *run, struct worker *worker, int pass, double part);
+void run_tile_ends(struct run *run, struct worker *worker, uint32_t tile);
+void run_tell_outlook(struct run *run);
+void run_tell_end(struct run *run); /* all tiles are done */
+
+/* No further tile is to be begun. */
+bool run_is_enough(const struct run *run);
 
 /* A pool_function: the layers of a tile that is done. */
 void run_layer_item(void *context, uint32_t tile, int worker);

@@ -1,6 +1,8 @@
 /* The order of tiles, how far the work is, drafts, and what Ctrl-C leaves. */
 #include "tests/harness.h"
 
+#include "base/random.h"
+#include "render/forecast.h"
 #include "render/order.h"
 #include "render/outlook.h"
 #include "tests/stage.h"
@@ -111,7 +113,7 @@ TEST(what_is_foretold_is_done_in_the_end_and_counts_for_nothing) {
     CHECK(run_job(&s, &films[0], NULL, NULL, &plain));
     CHECK(run_job(&s, &films[1], &outlook, NULL, &asked));
     CHECK(outlook_share(&outlook) == 1);
-    CHECK(outlook.all == outlook.done && outlook.all > 0);
+    CHECK(outlook_left(&outlook, 1e9) == 0);
     CHECK(memcmp(films[0].pixels, films[1].pixels, (size_t)200 * 150 * sizeof(struct film_pixel)) == 0);
     CHECK_EQ_INT(plain.camera_rays, asked.camera_rays);
     CHECK_EQ_INT(plain.refracted_rays, asked.refracted_rays);
@@ -123,13 +125,147 @@ TEST(what_is_foretold_is_done_in_the_end_and_counts_for_nothing) {
 }
 
 TEST(the_time_left_is_the_time_so_far_over_the_work_that_is_missing) {
-    struct outlook outlook = {.all = 1000, .done = 250, .begun = UINT64_C(5000000000)};
-    CHECK_NEAR(outlook_share(&outlook), 0.25, 1e-12);
-    CHECK_NEAR(outlook_left(&outlook, 7), 6, 1e-12);
-    outlook.done = 1000;
-    CHECK_NEAR(outlook_left(&outlook, 7), 0, 1e-12);
-    outlook.done = 0;
-    CHECK(outlook_left(&outlook, 7) < 0);
+    struct outlook outlook;
+    const uint64_t second = 1000000000;
+    outlook_reset(&outlook, true);
+    CHECK(outlook_is_asked(&outlook));
+    CHECK(outlook_share(&outlook) < 0 && outlook_left(&outlook, 7) < 0);
+    atomic_store(&outlook.begun, 5 * second);
+    outlook_tell(&outlook, 0, 1, 5 * second);
+    CHECK(outlook_share(&outlook) == 0 && outlook_left(&outlook, 7) < 0);
+    outlook_tell(&outlook, 25, 75, 7 * second);
+    CHECK_NEAR(outlook_share(&outlook), 0.25, 1e-8);
+    CHECK_NEAR(outlook_left(&outlook, 7), 6, 1e-6);
+    CHECK_NEAR(outlook_left(&outlook, 9.5), 3.5, 1e-6); /* it falls with the clock */
+    CHECK_NEAR(outlook_left(&outlook, 20), 0, 0);
+    outlook_tell(&outlook, 20, 80, 7 * second); /* the share never falls, what is left may grow */
+    CHECK_NEAR(outlook_share(&outlook), 0.25, 1e-8);
+    CHECK_NEAR(outlook_left(&outlook, 7), 8, 1e-6);
+    outlook_reset(&outlook, false);
+    CHECK(!outlook_is_asked(&outlook) && outlook_left(&outlook, 7) < 0);
+}
+
+/* A picture of 20 x 10 tiles whose left half costs ten times the right one, made row by row or column by column, with
+ * rays that tell the truth, that tell nothing, and that are wrong by half as much again from tile to tile. */
+static double cost_of(uint32_t tile) {
+    return tile % 20 < 10 ? 1000 : 100;
+}
+
+static double scatter(uint32_t tile, double width) {
+    return 1 + width * (2 * random_unit(random_combine(7, tile)) - 1);
+}
+
+static void look_at_halves(struct forecast *forecast, double told, double width) {
+    for (uint32_t tile = 0; tile < 200; tile++)
+        forecast_look(forecast, tile, 1024, (told * cost_of(tile) + (1 - told) * 500) * 0.01 * scatter(tile, width),
+                      0.1);
+    forecast_settle(forecast);
+}
+
+/* The largest error of what is left, of itself, from `from` tiles on until `until`. */
+static double worst_error(struct forecast *forecast, const uint32_t *order, int from, int until) {
+    double left = 0, done = 0, worst = 0;
+    for (int i = 0; i < 200; i++)
+        left += cost_of(order[i]);
+    for (int i = 0; i < until; i++) {
+        forecast_begin(forecast, i % forecast->workers, order[i]);
+        forecast_done(forecast, i % forecast->workers, order[i], cost_of(order[i]), 0.3 * cost_of(order[i]));
+        left -= cost_of(order[i]);
+        done += cost_of(order[i]);
+        struct forecast_work work = forecast_work(forecast, NULL);
+        if (i + 1 >= from)
+            worst = fmax(worst, fabs(done * work.left / work.done - left) / left);
+    }
+    return worst;
+}
+
+TEST(forecast_of_a_picture_whose_left_half_costs_ten_times_the_right_one) {
+    struct film film = film_of(20 * 32, 10 * 32);
+    struct forecast forecast;
+    uint32_t rows[200], columns[200], spread[200];
+    for (uint32_t i = 0; i < 200; i++) {
+        rows[i] = i;
+        columns[i] = i % 10 * 20 + i / 10;
+    }
+    CHECK(tile_order(&film, ORDER_SPREAD, spread));
+    /* Rays that tell the truth: from the first tiles on, by any number of workers. Column by column all dear tiles come
+     * first, and what is believed before of cheap ones is not put to the test. */
+    for (int workers = 1; workers <= 3; workers++) {
+        const uint32_t *orders[3] = {rows, columns, spread};
+        for (int i = 0; i < 3; i++) {
+            CHECK(forecast_create(&forecast, 200, 20, workers));
+            look_at_halves(&forecast, 1, 0);
+            CHECK(worst_error(&forecast, orders[i], 10, 199) < (i == 1 ? 1 : 0.1));
+            forecast_destroy(&forecast);
+        }
+    }
+    /* Rays that tell nothing: tiles that are spread stand for the others. */
+    CHECK(forecast_create(&forecast, 200, 20, 2));
+    look_at_halves(&forecast, 0, 0);
+    CHECK(worst_error(&forecast, spread, 66, 180) < 0.2);
+    forecast_destroy(&forecast);
+    /* Half of each: the model learns what the rays left out. */
+    CHECK(forecast_create(&forecast, 200, 20, 2));
+    look_at_halves(&forecast, 0.5, 0);
+    CHECK(worst_error(&forecast, spread, 66, 190) < 0.1);
+    forecast_destroy(&forecast);
+    /* Each tile's rays wrong by up to half. */
+    CHECK(forecast_create(&forecast, 200, 20, 2));
+    look_at_halves(&forecast, 1, 0.5);
+    CHECK(worst_error(&forecast, spread, 66, 180) < 0.15);
+    forecast_destroy(&forecast);
+}
+
+/* A cost that rays cannot time: tiles cost by their edges alone. */
+TEST(forecast_learns_what_edges_cost) {
+    struct forecast forecast;
+    double left = 0, done = 0;
+    CHECK(forecast_create(&forecast, 400, 20, 1));
+    for (uint32_t tile = 0; tile < 400; tile++) {
+        double edges = tile % 7 == 0 ? 0.8 : 0.05;
+        forecast_look(&forecast, tile, 1024, 10, edges);
+        left += 1 + 20 * edges;
+    }
+    forecast_settle(&forecast);
+    for (uint32_t tile = 0; tile < 390; tile++) { /* in rows of 20 */
+        double cost = 1 + 20 * (tile % 7 == 0 ? 0.8 : 0.05);
+        forecast_begin(&forecast, 0, tile);
+        forecast_done(&forecast, 0, tile, cost, 1);
+        left -= cost;
+        done += cost;
+        struct forecast_work work = forecast_work(&forecast, NULL);
+        CHECK(tile < 130 || fabs(done * work.left / work.done - left) < 0.05 * left);
+    }
+    forecast_destroy(&forecast);
+}
+
+TEST(forecast_counts_tiles_under_way_and_those_of_others) {
+    struct film film = film_of(4 * 32, 32);
+    size_t bytes;
+    struct error error;
+    struct forecast forecast;
+    CHECK(film_size(128, 32, &bytes, &error));
+    void *block = calloc(1, bytes);
+    film_place(&film, block, 128, 32);
+    CHECK(forecast_create(&forecast, 4, 4, 1));
+    for (uint32_t tile = 0; tile < 4; tile++)
+        forecast_look(&forecast, tile, 1024, 10, 0);
+    forecast_settle(&forecast);
+    forecast_begin(&forecast, 0, 0);
+    forecast_done(&forecast, 0, 0, 100, 40);
+    struct forecast_work work = forecast_work(&forecast, NULL);
+    CHECK_NEAR(work.left / work.done, 3, 1e-6);
+    forecast_begin(&forecast, 0, 1);
+    forecast_part(&forecast, 0, 0, 1); /* all of the first pass, which is 0.4 of a tile, and half of the second */
+    forecast_part(&forecast, 0, 1, 0.5);
+    work = forecast_work(&forecast, NULL);
+    CHECK_NEAR(work.left / work.done, (4 - 1.7) / 1.7, 1e-6);
+    atomic_store(&film.tiles[0], FILM_TILE_DONE);
+    atomic_store(&film.tiles[3], FILM_TILE_DONE); /* made elsewhere */
+    work = forecast_work(&forecast, &film);
+    CHECK_NEAR(work.left / work.done, (4 - 2.7) / 2.7, 1e-6);
+    forecast_destroy(&forecast);
+    free(block);
 }
 
 /* Tiles that are begun are finished, others are not begun. */

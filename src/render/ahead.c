@@ -1,0 +1,122 @@
+/* Looking ahead, where somebody asks how long a picture will take: SIDE x SIDE rays through each tile before the first
+ * one, about 1 % of the work, and from then on the forecast (render/forecast.h) a few times a second, told by whichever
+ * worker comes by. Processor time, so that what else the machine does counts for nothing. */
+#include "render/run.h"
+
+#include <string.h>
+#include <time.h>
+
+enum { SIDE = 4, RAYS = SIDE * SIDE, PAIRS = 2 * SIDE * (SIDE - 1) };
+/* Nanoseconds between two forecasts. */
+static const uint64_t pause = 50000000;
+
+static uint64_t nanoseconds_of(clockid_t clock) {
+    struct timespec now;
+    (void)clock_gettime(clock, &now);
+    return (uint64_t)now.tv_sec * UINT64_C(1000000000) + (uint64_t)now.tv_nsec;
+}
+
+/* Between how many neighbours on the lattice the picture changes as much as makes pixels be sampled again. */
+static uint32_t edges_between(const struct run *run, const struct vec3 *colours) {
+    uint32_t edges = 0;
+    for (uint32_t i = 0; i < RAYS; i++) {
+        edges += i % SIDE + 1 < SIDE && run_differs(run, colours[i], colours[i + 1]);
+        edges += i / SIDE + 1 < SIDE && run_differs(run, colours[i], colours[i + SIDE]);
+    }
+    return edges;
+}
+
+/* Tiles that others will make, of a farm, are looked at, too. */
+static void look_item(void *context, uint32_t tile, int index) {
+    struct run *run = context;
+    struct worker *worker = &run->workers[index];
+    const struct film *film = run->job->film;
+    struct film_rectangle r = film_tile_rectangle(film, tile);
+    struct vec3 colours[RAYS];
+    uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_relaxed);
+    if (state == FILM_TILE_DONE || state == FILM_TILE_ELSEWHERE)
+        return;
+    uint64_t begun = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID);
+    for (uint32_t i = 0; i < RAYS; i++) {
+        struct place place = run_first_place(run, r.x0 + (r.x1 - r.x0) * (2 * (i % SIDE) + 1) / (2 * SIDE),
+                                             r.y0 + (r.y1 - r.y0) * (2 * (i / SIDE) + 1) / (2 * SIDE));
+        if (run_stopped(run, worker) || run_is_enough(run))
+            return;
+        colours[i] = run_sample(run, worker, &place);
+    }
+    uint64_t took = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID) - begun;
+    forecast_look(&run->forecast, tile, (double)(r.x1 - r.x0) * (r.y1 - r.y0), 1 + (double)took,
+                  (double)edges_between(run, colours) / PAIRS);
+}
+
+/* What was looked at is no part of the picture's statistics. */
+static void forget_counts(struct run *run) {
+    for (int i = 0; i < pool_workers(run->pool); i++) {
+        struct worker *worker = &run->workers[i];
+        struct geom_scratch *geom = &worker->scratch.geom;
+        worker->camera_rays = 0;
+        worker->tracer.hits = worker->tracer.shadow_rays = 0;
+        worker->tracer.reflected_rays = worker->tracer.refracted_rays = 0;
+        geom->shape_tests = geom->box_tests = 0;
+        memset(&geom->cost, 0, sizeof geom->cost);
+    }
+}
+
+bool run_look_ahead(struct run *run) {
+    struct outlook *outlook = run->job->outlook;
+    const struct film *film = run->job->film;
+    if (!outlook)
+        return true;
+    /* Others of a farm have begun already. */
+    uint64_t begun = nanoseconds_of(CLOCK_MONOTONIC);
+    if (!pool_run(run->pool, film_tile_count(film), look_item, run))
+        return false;
+    forget_counts(run);
+    forecast_settle(&run->forecast);
+    run->foretold = true;
+    atomic_store(&outlook->begun, run->job->gate ? begun : nanoseconds_of(CLOCK_MONOTONIC));
+    outlook_tell(outlook, 0, 1, 0);
+    run->worked = nanoseconds_of(CLOCK_PROCESS_CPUTIME_ID);
+    return true;
+}
+
+void run_tell_outlook(struct run *run) {
+    uint64_t now = nanoseconds_of(CLOCK_MONOTONIC), told = atomic_load_explicit(&run->told, memory_order_relaxed);
+    if (now - told < pause || !atomic_compare_exchange_strong(&run->told, &told, now))
+        return;
+    struct outlook *outlook = run->job->outlook;
+    struct forecast_work work = forecast_work(&run->forecast, run->job->gate ? run->job->film : NULL);
+    uint64_t worked = nanoseconds_of(CLOCK_PROCESS_CPUTIME_ID) - run->worked + 1;
+    double passed = (double)(now - atomic_load(&outlook->begun)) * pool_workers(run->pool);
+    atomic_store_explicit(&outlook->pace, (uint64_t)(1000 * passed / (double)worked), memory_order_relaxed);
+    outlook_tell(outlook, work.done, work.left, now);
+}
+
+void run_tell_end(struct run *run) {
+    outlook_tell(run->job->outlook, 1, 0, nanoseconds_of(CLOCK_MONOTONIC));
+}
+
+void run_tile_begins(struct run *run, struct worker *worker, uint32_t tile) {
+    if (!run->foretold)
+        return;
+    worker->tile_begun = worker->first_ended = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID);
+    forecast_begin(&run->forecast, worker->index, tile);
+}
+
+void run_tile_goes_on(struct run *run, struct worker *worker, int pass, double part) {
+    if (!run->foretold)
+        return;
+    if (pass == 0 && part >= 1)
+        worker->first_ended = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID);
+    forecast_part(&run->forecast, worker->index, pass, part);
+    run_tell_outlook(run);
+}
+
+void run_tile_ends(struct run *run, struct worker *worker, uint32_t tile) {
+    if (!run->foretold)
+        return;
+    uint64_t now = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID);
+    forecast_done(&run->forecast, worker->index, tile, (double)(now - worker->tile_begun),
+                  (double)(worker->first_ended - worker->tile_begun));
+    run_tell_outlook(run);
+}
