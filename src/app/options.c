@@ -7,6 +7,7 @@
 
 #include "render/aov.h"
 
+#include <assert.h>
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
@@ -254,12 +255,12 @@ static struct piece without_dashes(struct piece piece) {
     return piece;
 }
 
+/* A word of the command line and a name of the table, which has no '_'. */
 static bool same_name(struct piece a, struct piece b) {
     if (a.length != b.length)
         return false;
     for (size_t i = 0; i < a.length; i++) {
-        char x = a.text[i] == '_' ? '-' : a.text[i], y = b.text[i] == '_' ? '-' : b.text[i];
-        if (x != y)
+        if ((a.text[i] == '_' ? '-' : a.text[i]) != b.text[i])
             return false;
     }
     return true;
@@ -275,11 +276,13 @@ static const struct option *find_option(struct piece name) {
     return NULL;
 }
 
-/* Edits (insert, delete, replace, swap of neighbours) between two short names; names over 31 letters count as far. */
+/* Edits (insert, delete, replace, swap of neighbours) between a word and a short name of the table; words over 31
+ * letters count as far. */
 static int name_distance(struct piece a, struct piece b) {
     enum { LIMIT = 32 };
     int rows[3][LIMIT];
-    if (a.length >= LIMIT || b.length >= LIMIT)
+    assert(b.length < LIMIT);
+    if (a.length >= LIMIT)
         return LIMIT;
     int *before = rows[0], *last = rows[1], *row = rows[2];
     for (size_t j = 0; j <= b.length; j++)
@@ -436,15 +439,18 @@ static bool is_lua_keyword(struct piece name) {
     return false;
 }
 
-/* Room for one more definition was made by options_parse. */
-static bool read_define(struct options *options, struct script_define *defines, const char *text, struct arena *arena,
-                        struct error *error) {
+static bool is_define(const char *text) {
     struct piece name = {text, strcspn(text, "=")};
     bool ok = name.length > 0 && text[name.length] == '=' && is_word_start(text[0]) && !is_lua_keyword(name);
     for (size_t i = 0; ok && i < name.length; i++)
         ok = is_word_start(text[i]) || isdigit((unsigned char)text[i]);
-    if (!ok)
-        return error_set(error, ERROR_USAGE, "-D needs name=value with a Lua name, not '%s'", text);
+    return ok;
+}
+
+/* Room for one more definition was made by options_parse. */
+static bool note_define(struct options *options, struct script_define *defines, const char *text, struct arena *arena,
+                        struct error *error) {
+    struct piece name = {text, strcspn(text, "=")};
     char *copy = arena_copy_text(arena, name.text, name.length);
     if (!copy)
         return error_no_memory(error, "the command line");
@@ -506,9 +512,11 @@ static bool value_error(const struct option *option, const char *text, struct er
                          option->names, text);
     case OPTION_FOLDER:
         return error_set(error, ERROR_USAGE, "%.*s needs the name of a folder", shown, option->names);
+    case OPTION_DEFINE:
+        return error_set(error, ERROR_USAGE, "%.*s needs name=value with a Lua name, not '%s'", shown, option->names,
+                         text);
     case OPTION_FLAG:
     case OPTION_ACTION:
-    case OPTION_DEFINE:
         break;
     }
     return error_set(error, ERROR_USAGE, "%.*s takes no value", shown, option->names);
@@ -561,7 +569,10 @@ static bool apply_option(const struct option *option, const char *text, struct o
         ok = read_seed(options, text);
         break;
     case OPTION_DEFINE:
-        return read_define(options, lists->defines, text, arena, error);
+        ok = is_define(text);
+        if (ok)
+            return note_define(options, lists->defines, text, arena, error);
+        break;
     case OPTION_FOLDER:
         ok = text[0] != '\0';
         lists->folders[(int)option->low][option->low == 0 ? options->script.allow_read_count++
@@ -578,13 +589,14 @@ static bool apply_option(const struct option *option, const char *text, struct o
         options->statistics = strcmp(text, "json") == 0 ? STATISTICS_JSON : STATISTICS_TEXT;
         break;
     }
-    return ok || value_error(option, text, error);
+    if (!ok)
+        return value_error(option, text, error);
+    return true;
 }
 
 /* -j4 and -Dname=value: the one-letter options whose value may follow without a blank. */
 static const struct option *find_attached(const char *word, const char **text) {
-    bool threads = word[0] == '-' && word[1] == 'j' && isdigit((unsigned char)word[2]);
-    bool define = word[0] == '-' && word[1] == 'D' && is_word_start(word[2]);
+    bool threads = word[1] == 'j' && isdigit((unsigned char)word[2]), define = word[1] == 'D' && is_word_start(word[2]);
     if (!threads && !define)
         return NULL;
     *text = word + 2;
@@ -660,12 +672,12 @@ static bool check_parts(struct options *options, struct error *error) {
         options->checkpoint = "auto";
     if (options->mpi && (options->shards || options->shards_of_pictures || options->no_fork || options->check))
         return error_set(error, ERROR_USAGE, "--mpi takes no --shard, --shard-pictures, --no-fork or --check");
-    if (options->window && (options->checkpoint || options->resume || options->shards || options->shards_of_pictures ||
-                            options->mpi || options->no_fork || options->check || options->settings.aov))
+    if (options->window && (options->checkpoint || options->shards || options->shards_of_pictures || options->mpi ||
+                            options->no_fork || options->check || options->settings.aov))
         return error_set(error, ERROR_USAGE,
                          "-gui takes no --checkpoint, --resume, --shard, --mpi, --no-fork, --check or --aov");
-    if (options->watch && (options->checkpoint || options->resume || options->shards || options->shards_of_pictures ||
-                           options->mpi || options->no_fork || pipe))
+    if (options->watch && (options->checkpoint || options->shards || options->shards_of_pictures || options->mpi ||
+                           options->no_fork || pipe))
         return error_set(error, ERROR_USAGE,
                          "--watch takes no --checkpoint, --resume, --shard, --mpi, --no-fork or -o -");
     if (options->no_fork && (options->checkpoint || options->shards))
@@ -693,12 +705,8 @@ static bool check_parts(struct options *options, struct error *error) {
 
 /* Two options may change the order in which they are written, not what they are: so the values are looked at. */
 static struct digest digest_option(const struct option *option, const struct options *options, struct digest digest) {
-    const char *field = (const char *)options + option->offset;
-    if (option->kind != OPTION_TEXT)
-        return digest_bytes(field, option->size, digest);
-    const char *text;
-    memcpy(&text, field, sizeof text);
-    return digest_bytes(text ? text : "", text ? strlen(text) + 1 : 0, digest);
+    assert(option->kind != OPTION_TEXT); /* of those the pointer would be looked at */
+    return digest_bytes((const char *)options + option->offset, option->size, digest);
 }
 
 struct digest options_digest(const struct options *options) {

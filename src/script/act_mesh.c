@@ -140,7 +140,7 @@ static struct mesh *mesh_from_tables(struct context *context, const struct value
 
 /* Every name must be that of a part. */
 static bool check_parts(const struct model *model, const struct value *materials, struct error *error) {
-    if (materials->given && !materials->names && materials->count > 0)
+    if (materials->given && !materials->names)
         return error_set(error, ERROR_SCENE, "materials of a file have names, as in {paint = m}");
     for (uint32_t i = 0; i < materials->count; i++) {
         struct suggestion suggestion;

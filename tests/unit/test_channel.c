@@ -63,7 +63,8 @@ TEST(a_line_that_is_too_long_is_cut_with_dots) {
 static void broken(enum frame_kind kind, const void *body, size_t size) {
     static struct frame frame;
     CHECK(channel_send(&ends[1], kind, body, size, -1));
-    CHECK_EQ_INT(receive(&frame), CHANNEL_BROKEN);
+    if (receive(&frame) != CHANNEL_BROKEN)
+        test_fail(__FILE__, __LINE__, "a frame of kind %d and %zu bytes is taken", (int)kind, size);
 }
 
 TEST(frames_of_wrong_kind_size_or_content_are_refused) {
@@ -111,6 +112,77 @@ TEST(requests_for_impossible_pictures_are_refused) {
     request = sound_request();
     memset(request.file, 'x', sizeof request.file);
     broken_request(request);
+    request = sound_request();
+    request.height = 0;
+    broken_request(request);
+    request = sound_request();
+    request.height = 81;
+    broken_request(request);
+    request = sound_request();
+    request.full_height = UINT32_MAX;
+    broken_request(request);
+    for (int side = -1; side <= 1; side += 2) {
+        request = sound_request();
+        request.exposure = 101 * side;
+        broken_request(request);
+    }
+    request = sound_request();
+    request.curve = 1000;
+    broken_request(request);
+    request = sound_request();
+    request.lens.projection = (enum projection)1000;
+    broken_request(request);
+    request = sound_request();
+    request.lens.stereo = (enum stereo)1000;
+    broken_request(request);
+    request = sound_request();
+    static struct frame frame;
+    CHECK(channel_send(&ends[1], FRAME_BEGIN, &request, sizeof request, -1));
+    CHECK_EQ_INT(receive(&frame), CHANNEL_FRAME);
+}
+
+/* What a child that was taken over might send: texts without an end, kinds that do not exist. */
+TEST(news_answers_and_names_without_an_end_are_refused) {
+    open_channel();
+    static const struct studio_news sound;
+    struct studio_news news = sound;
+    char *const words[] = {news.picked.name, news.picked.shape, news.picked.material, news.picked.parent_name,
+                           news.root_name};
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        news = sound;
+        memset(words[i], 'x', PICK_WORDS);
+        broken(FRAME_NEWS, &news, sizeof news);
+    }
+    news = sound;
+    memset(news.text, 'x', sizeof news.text);
+    broken(FRAME_NEWS, &news, sizeof news);
+    news = sound;
+    memset(news.picked.path, 'x', sizeof news.picked.path);
+    broken(FRAME_NEWS, &news, sizeof news);
+    news = sound;
+    news.kind = (enum studio_news_kind)1000;
+    broken(FRAME_NEWS, &news, sizeof news);
+    broken(FRAME_NEWS, &sound, sizeof sound - 1);
+    struct frame_answer answer;
+    memset(&answer, 'x', sizeof answer);
+    broken(FRAME_ANSWER, &answer, sizeof answer);
+    broken(FRAME_ANSWER, &answer, 3);
+    struct frame_read read;
+    memset(&read, 'x', sizeof read);
+    broken(FRAME_READ, &read, sizeof read);
+    static const char bytes[FRAME_SIZE_LIMIT];
+    broken(FRAME_READ, bytes, 5);
+    broken(FRAME_AGAIN, bytes, 1);
+    broken(FRAME_ORDER, bytes, 1);
+    broken(FRAME_LINE, bytes, sizeof(struct frame_line) + 1);
+}
+
+TEST(a_channel_that_is_closed_twice_is_closed_once) {
+    static struct frame frame;
+    open_channel();
+    channel_close(&ends[1]);
+    channel_close(&ends[1]);
+    CHECK_EQ_INT(receive(&frame), CHANNEL_END);
 }
 
 TEST(shared_memory_passes_through_the_channel) {

@@ -57,6 +57,7 @@ static const struct corner corners[] = {
     /* after the end */
     {"local c <close> = setmetatable({}, {__close = function() gr.node('late') end}) os.exit()", NULL},
     {"xpcall(os.exit, error)", NULL},
+    {"assert(getmetatable(setmetatable(setmetatable({}, {}), nil)) == nil)", NULL},
 };
 
 static void put(const char *name, const char *text) {
@@ -136,6 +137,7 @@ TEST(the_newest_change_of_a_view_and_of_the_exposure_counts) {
         "gr.change_view{picture = 'x.png', eye = {0, 0, 7}, view = {0, 0, -1}, up = {0, 1, 0}, fov = 40}\n"
         "gr.change_view{picture = 'y.png', eye = {0, 0, 6}, view = {0, 0, -1}, up = {0, 1, 0}, fov = 20}\n"
         "gr.change_exposure{picture = 'x.png', stops = 1} gr.change_exposure{picture = 'x.png', stops = 2}\n"
+        "gr.change_view{picture = 'x.png', eye = {0, 0, 7}, view = {0, 0, -1}, up = {0, 1, 0}, fov = 40}\n"
         "gr.render{node = ball, file = 'x.png', width = 4, height = 4, eye = {0, 0, 9}}\n";
     CHECK(listen_to_text(&listener, text, NULL, &error));
     CHECK(listener.last.camera.eye.z == 7 && listener.last.camera.fov == 40);
@@ -264,6 +266,14 @@ TEST(modules_of_the_library_find_each_other_whatever_they_are_asked_for) {
     write_library();
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         check_corner("outer = require('outer') ", &all[i], &options);
+}
+
+TEST(an_empty_name_of_the_library_is_none_where_there_is_no_sandbox) {
+    const struct script_options options = {
+        .transform_order = SCRIPT_ORDER_NEW, .library_folder = "", .no_sandbox = true};
+    static const struct corner none = {"dofile('good.lua') require('knot')", "cannot find module 'knot'"};
+    put("good.lua", "return 5");
+    check_corner("", &none, &options);
 }
 
 /* Without the sandbox a chunk may be byte code, which may have no globals to be given others. */

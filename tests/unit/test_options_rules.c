@@ -1,0 +1,163 @@
+/* What options ask of one another: every pair that does not go together is refused with the sentence of its rule, and
+ * either of the two alone is taken. Words at the borders of what is read; memory that ends. */
+#include "app/options.h"
+#include "base/fault.h"
+#include "tests/harness.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WORDS = 16 };
+
+/* Parses the words of a line, split at single blanks; "~" stands for an empty word. The words live on in `copy`. */
+static bool parse(const char *line, char copy[512], struct options *options, struct arena *arena, struct error *error) {
+    char *words[WORDS] = {copy};
+    int count = 1;
+    *error = (struct error){0};
+    strcpy(copy, line);
+    for (char *word = strtok(copy, " "); word && count < WORDS; word = strtok(NULL, " "))
+        words[count++] = strcmp(word, "~") == 0 ? word + 1 : word;
+    return options_parse(options, count, words, arena, error);
+}
+
+/* Taken where the sentence is NULL. */
+static void expect(const char *line, const char *sentence) {
+    char copy[512];
+    struct options options;
+    struct arena arena = {0};
+    struct error error;
+    bool ok = parse(line, copy, &options, &arena, &error);
+    if (ok != !sentence || (sentence && (error.kind != ERROR_USAGE || strcmp(error.text, sentence) != 0)))
+        test_fail(__FILE__, __LINE__, "'%s': %s", line, ok ? "taken" : error.text);
+    arena_destroy(&arena);
+}
+
+/* Each of the options (parted by bars) beside `first`: refused with this sentence, and each without it is taken. */
+static void exclude(const char *first, const char *options, const char *sentence) {
+    char copy[512], line[600];
+    strcpy(copy, options);
+    for (char *rest = copy, *option; (option = strtok_r(rest, "|", &rest));) {
+        bool merge = strcmp(option, "merge") == 0;
+        (void)snprintf(line, sizeof line, "%s%s x %s", merge ? "merge " : "", first, merge ? "" : option);
+        expect(line, sentence);
+        (void)snprintf(line, sizeof line, "%s x", option);
+        expect(line, NULL);
+    }
+    (void)snprintf(line, sizeof line, "%s x", first);
+    expect(line, NULL);
+}
+
+TEST(options_that_do_not_go_together_are_refused_pair_by_pair) {
+    static const char pixel[] = "--pixel renders nothing: it goes with no -gui, --check, --shard, --mpi, --checkpoint, "
+                                "--resume or merge",
+                      merge[] = "merge takes no --checkpoint, --resume, --shard or --check",
+                      display[] = "--display takes no -gui, --check, --shard or merge, nor term with -o -",
+                      partial[] = "--partial takes no -gui, --shard, --mpi, --no-fork, merge or -o -",
+                      mpi[] = "--mpi takes no --shard, --shard-pictures, --no-fork or --check",
+                      window[] = "-gui takes no --checkpoint, --resume, --shard, --mpi, --no-fork, --check or --aov",
+                      watch[] = "--watch takes no --checkpoint, --resume, --shard, --mpi, --no-fork or -o -",
+                      no_fork[] = "--no-fork is for debuggers: it takes no --checkpoint, --resume or --shard",
+                      aov[] = "--aov is for pictures that one process makes in one go: no --shard, --mpi, "
+                              "--checkpoint, --resume or merge",
+                      overlay[] = "--overlay is for pictures that one process makes in one go: no --shard, --mpi, "
+                                  "--checkpoint, --resume, -gui or merge",
+                      debug[] = "--shard writes no debug pictures; give -write-... to gray merge";
+    exclude("--pixel 1,2", "-gui|--check|--shard 1/2|--shard-pictures 1/2|--mpi|--checkpoint c|--resume|merge", pixel);
+    exclude("--checkpoint c", "merge", merge);
+    exclude("--resume", "merge", merge);
+    exclude("--shard 1/2", "merge", merge);
+    exclude("--shard-pictures 1/2", "merge", merge);
+    exclude("--check", "merge", merge);
+    exclude("--display tev", "-gui|--check|--shard 1/2|merge", display);
+    exclude("--display term", "-o -", display);
+    expect("--display tev -o - x", NULL);
+    exclude("--partial", "-gui|--shard 1/2|--mpi|--no-fork|-o -|merge", partial);
+    exclude("--mpi", "--shard 1/2|--shard-pictures 1/2|--no-fork|--check", mpi);
+    exclude("-gui", "--checkpoint c|--resume|--shard 1/2|--shard-pictures 1/2|--mpi|--no-fork|--check|--aov all",
+            window);
+    exclude("--watch", "--checkpoint c|--resume|--shard 1/2|--shard-pictures 1/2|--mpi|--no-fork|-o -", watch);
+    exclude("--no-fork", "--checkpoint c|--resume|--shard 1/2", no_fork);
+    exclude("--aov depth", "--shard 1/2|--mpi|--checkpoint c|--resume|merge", aov);
+    exclude("--overlay boxes", "--shard 1/2|--mpi|--checkpoint c|--resume|-gui|merge", overlay);
+    exclude("--shard 1/2", "-write-aa-targets t-|-write-pre-aa p-", debug);
+    exclude("--resume", "-o -", "-o - leaves no name for a checkpoint; --checkpoint FILE gives one");
+    expect("-o - --checkpoint c x", NULL);
+    exclude("--shard 1/2", "-o -", "-o - leaves no name for the parts of --shard");
+    exclude("-write-aa-targets t-", "-o -", "-o - leaves no name for -write-aa-targets and -write-pre-aa");
+    exclude("-write-pre-aa t-", "-o -", "-o - leaves no name for -write-aa-targets and -write-pre-aa");
+    exclude("-write-pre-aa t-", "-write-aa-targets t-",
+            "-write-aa-targets and -write-pre-aa would write the same file");
+    expect("-write-pre-aa t- -write-aa-targets u- x", NULL);
+    exclude("--stats=json", "-o -", "-o - and --stats=json both write to standard output");
+    exclude("--aov uv", "-o -", "-o - leaves no name for --aov");
+}
+
+TEST(words_at_the_borders_of_what_is_read_are_taken_or_refused) {
+    static const char ss[] = "-ss needs a whole number from 1 to 64, not '%s'";
+    char sentence[200], line[200], name[8];
+    static const char *const wrong[] = {
+        "+", "-", "65", "0", "3x", "123456789012345678901234567890", "99999999999999999999"};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        (void)snprintf(line, sizeof line, "-ss %s x", wrong[i]);
+        (void)snprintf(sentence, sizeof sentence, ss, wrong[i]);
+        expect(line, sentence);
+    }
+    expect("-ss +3 x", NULL);
+    expect("--cutoff 1 x", NULL);
+    expect("--cutoff +.5 x", NULL);
+    expect("--cutoff 1.5 x", "--cutoff needs a number of at least 0, not '1.5'");
+    expect("--cutoff ~ x", "--cutoff needs a number of at least 0, not ''");
+    expect("--cutoff 1e999 x", "--cutoff needs a number of at least 0, not '1e999'");
+    expect("--shard 2/2 x", NULL);
+    expect("--shard 3/2 x", "--shard needs I/N, whole numbers with I from 1 to N, not '3/2'");
+    expect("--shard 3 x", "--shard needs I/N, whole numbers with I from 1 to N, not '3'");
+    expect("--seed 12a x", "--seed needs a whole number from 0 to 18446744073709551615, not '12a'");
+    expect("-D _a=1 x", NULL);
+    expect("-D {=1 x", "-D needs name=value with a Lua name, not '{=1'");
+    expect("-D [=1 x", "-D needs name=value with a Lua name, not '[=1'");
+    expect("-D5=1 x", "there is no option '-D5=1'");
+    expect("-x x", "there is no option '-x'");
+    expect("-=5 x", "there is no option '-=5'");
+    expect("--an-option-with-a-name-that-is-longer-than-any x",
+           "there is no option '--an-option-with-a-name-that-is-longer-than-any'");
+    expect("--help=5", "--help takes no value");
+    expect("--lenient=yes x", "--lenient takes no value");
+    CHECK(!output_name("picture-%d.png", 1, name, sizeof name));
+    CHECK(!output_name("%d", 12345678, name, sizeof name));
+    CHECK(output_name("%d", 1234567, name, sizeof name));
+    CHECK_TEXT(name, "1234567");
+}
+
+TEST(a_command_line_of_no_words_names_no_scene) {
+    struct options options;
+    struct arena arena = {0};
+    struct error error = {0};
+    CHECK(!options_parse(&options, 0, (char *[]){NULL}, &arena, &error));
+    CHECK_TEXT(error.text, "no scene script was given");
+    arena_destroy(&arena);
+}
+
+#ifdef GRAY_FAULTS
+/* An arena asks for memory seldom: each list here is larger than what it asks for at once. */
+TEST(memory_may_end_anywhere_in_a_command_line) {
+    enum { MANY = 20000 };
+    static char option[] = "-D", define[] = "a_name_that_is_rather_long=1", script[] = "x";
+    char **words = malloc(MANY * sizeof *words);
+    for (int i = 0; i < MANY; i++)
+        words[i] = i > 1000 || i == 0 ? script : i % 2 ? option : define;
+    for (uint64_t k = 1, over = 0; !over; k++) {
+        struct options options;
+        struct arena arena = {0};
+        struct error error = {0};
+        uint64_t before = fault_count(FAULT_OF_ALLOCATION);
+        fault_at(FAULT_OF_ALLOCATION, k);
+        bool ok = options_parse(&options, MANY, words, &arena, &error);
+        fault_at(FAULT_OF_ALLOCATION, 0);
+        over = fault_count(FAULT_OF_ALLOCATION) - before < k;
+        CHECK(over ? ok : !ok && error.kind == ERROR_MACHINE);
+        arena_destroy(&arena);
+    }
+    free(words);
+}
+#endif
