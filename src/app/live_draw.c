@@ -1,6 +1,7 @@
 /* The canvas follows the film tile by tile; over it lie the menu and the figures. The window is drawn at most every 16
  * milliseconds, and what lies over the picture only when something in it can have changed. */
 #include "app/live_parts.h"
+#include "app/text.h"
 #include "base/mem.h"
 #include "image/png_write.h"
 
@@ -117,7 +118,19 @@ static uint32_t building_step(const struct live *live) {
     return live->control ? atomic_load_explicit(&live->control->build_step, memory_order_relaxed) : 0;
 }
 
-static void tell_state(const struct live *live, struct figures *figures) {
+/* The picture itself by its work, with the time left once it is known (render/outlook.h); coarse ones by their tiles.
+ */
+static void tell_pass(const struct live *live, struct figures *figures, double now) {
+    const struct outlook *outlook = live->control && !live->view.plain ? &live->control->outlook : NULL;
+    double share = outlook ? outlook_share(outlook) : -1, left = outlook ? outlook_left(outlook, now) : -1;
+    char time[48];
+    figures->share = share >= 0 ? share : figures->share;
+    text_time(left > 0 ? left : 0, time, sizeof time);
+    (void)snprintf(figures->state, sizeof figures->state, left > 0 ? "%.0f %%%s, %s left" : "%.0f %%%s",
+                   100 * figures->share, live->view.plain ? " (coarse)" : "", time);
+}
+
+static void tell_state(const struct live *live, struct figures *figures, double now) {
     uint32_t step = building_step(live);
     uint32_t done = live->block ? film_tiles_in(&live->film, FILM_TILE_DONE) : 0;
     uint32_t count = live->block ? film_tile_count(&live->film) : 0;
@@ -135,12 +148,11 @@ static void tell_state(const struct live *live, struct figures *figures) {
     } else if (live->complete) {
         (void)snprintf(figures->state, sizeof figures->state, live_is_idle(live) ? "ready" : "working");
     } else {
-        (void)snprintf(figures->state, sizeof figures->state, "%.0f %%%s", 100 * figures->share,
-                       live->view.plain ? " (coarse)" : "");
+        tell_pass(live, figures, now);
     }
 }
 
-static void work_out(const struct live *live, struct figures *figures) {
+static void work_out(const struct live *live, struct figures *figures, double now) {
     const struct picture_report *report = &live->report;
     const struct render_statistics *rays = &report->rays;
     double seconds = rays->render_seconds;
@@ -151,7 +163,7 @@ static void work_out(const struct live *live, struct figures *figures) {
     for (int i = 0; i < 3; i++)
         voxels *= report->grid_cells[i] > 1 ? report->grid_cells[i] : 1;
     *figures = (struct figures){0};
-    tell_state(live, figures);
+    tell_state(live, figures, now);
     (void)snprintf(figures->size, sizeof figures->size, "%ux%u", live->request.width, live->request.height);
     count_words(figures->rays, sizeof figures->rays, seconds > 0 ? traced / seconds : 0, "rays/s");
     count_words(figures->triangles, sizeof figures->triangles, (double)report->triangles, "triangles");
@@ -177,7 +189,7 @@ void live_show(struct live *live, double now) {
     if (over) {
         struct figures figures;
         live->over_dirty = false; /* what is used in the panel asks for another frame */
-        work_out(live, &figures);
+        work_out(live, &figures, now);
         live_tell_over(live, &figures);
         if (due)
             set_title(live, &figures);

@@ -98,7 +98,7 @@ static int tell_figures(struct live *live, const struct figures *figures, int to
     struct panel *panel = &live->panel;
     int scale = panel->paper.scale, line = panel_line_height(panel), y = top + 2 * scale, x = 2 * scale;
     const char *const rows[] = {figures->rays, figures->triangles, figures->voxels, figures->frames};
-    int count = panel->paper.height >= 24 * line ? 4 : 0, width = 30 * PAPER_CELL * scale;
+    int count = panel->paper.height >= 24 * line ? 4 : 0, width = 33 * PAPER_CELL * scale;
     int height = (count + 1) * line + 3 * scale;
     panel_ground(panel, 0, top, width, height);
     panel_bar(panel, x, y, 8 * PAPER_CELL * scale, figures->share);

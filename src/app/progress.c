@@ -48,17 +48,6 @@ static int terminal_columns(void) {
     return columns < COLUMNS_LIMIT ? columns : COLUMNS_LIMIT - 1;
 }
 
-/* What is left as people say it: 40 s, 3 min 20 s, 2 h 5 min. */
-static void say_time(double seconds, char *out, size_t size) {
-    unsigned long whole = seconds < 1e9 ? (unsigned long)(seconds + 0.5) : 1000000000;
-    if (whole < 60)
-        (void)snprintf(out, size, "%lu s", whole);
-    else if (whole < 3600)
-        (void)snprintf(out, size, "%lu min %lu s", whole / 60, whole % 60);
-    else
-        (void)snprintf(out, size, "%lu h %lu min", whole / 3600, whole / 60 % 60);
-}
-
 /* How far the picture is. Where nobody asked for an estimate tiles are counted. */
 struct state {
     double elapsed, share, left; /* share and left: negative while they are not known */
@@ -94,10 +83,10 @@ static void draw_bar(struct progress *progress, const struct state *state) {
     memset(cells, '.', (size_t)bar);
     memset(cells, '#', (size_t)(share * bar));
     cells[bar] = '\0';
-    say_time(state->elapsed, elapsed, sizeof elapsed);
+    text_time(state->elapsed, elapsed, sizeof elapsed);
     if (state->left >= 0 && state->elapsed > 1) {
         char time[48];
-        say_time(state->left, time, sizeof time);
+        text_time(state->left, time, sizeof time);
         (void)snprintf(left, sizeof left, ", about %s left", time);
     }
     /* A long path shows its end. */
@@ -120,9 +109,9 @@ static void draw_bar(struct progress *progress, const struct state *state) {
 
 static void print_line(struct progress *progress, const struct state *state) {
     char line[4096 + 160], elapsed[48], left[48] = "";
-    say_time(state->elapsed, elapsed, sizeof elapsed);
+    text_time(state->elapsed, elapsed, sizeof elapsed);
     if (state->left >= 0)
-        say_time(state->left, left, sizeof left);
+        text_time(state->left, left, sizeof left);
     if (state->count > 0)
         (void)snprintf(line, sizeof line, "%s: %.0f %% after %s%s%s%s", progress->name,
                        100 * (state->share > 0 ? state->share : 0), elapsed, left[0] ? ", about " : "", left,

@@ -71,6 +71,11 @@ static bool make_pass(struct at_work *work, struct picture_report *report, struc
     struct film film;
     double begun = progress_clock();
     set_pass(&job, studio->job, &work->view, studio->asked, &film, studio->job->film->pixels);
+    /* How long a coarse pass takes nobody needs to know. */
+    struct outlook *outlook = &studio->services->control->outlook;
+    bool fine = work->view.divide <= 1 && !work->view.plain;
+    outlook_reset(outlook, fine);
+    job.outlook = fine ? outlook : NULL;
     report->rays = (struct render_statistics){.build_seconds = work->build_seconds};
     bool ok = render_run(&job, studio->pool, &report->rays, error);
     report->stopped = !ok && studio_was_stopped(studio->services->control, error);

@@ -91,3 +91,13 @@ void text_print_json(FILE *stream, const char *text) {
     }
     (void)fputc('"', stream);
 }
+
+void text_time(double seconds, char *out, size_t size) {
+    unsigned long whole = seconds < 1e9 ? (unsigned long)(seconds + 0.5) : 1000000000;
+    if (whole < 60)
+        (void)snprintf(out, size, "%lu s", whole);
+    else if (whole < 3600)
+        (void)snprintf(out, size, "%lu min %lu s", whole / 60, whole % 60);
+    else
+        (void)snprintf(out, size, "%lu h %lu min", whole / 3600, whole / 60 % 60);
+}

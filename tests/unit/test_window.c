@@ -461,6 +461,31 @@ TEST(window_places_the_picture_in_its_middle_for_any_size_and_density) {
     end(&t);
 }
 
+TEST(window_tells_how_long_the_picture_will_take) {
+    struct table t;
+    struct control control = {.build_step = 0};
+    begin(&t);
+    t.live.control = &control;
+    outlook_reset(&control.outlook, true);
+    atomic_store(&control.outlook.begun, (uint64_t)((t.now - 30) * 1e9));
+    outlook_tell(&control.outlook, 1, 3, (uint64_t)(t.now * 1e9));
+    finish_pass(&t, 0.02, false);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    t.now += 1;
+    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    CHECK(t.live.view.plain && strstr(t.fake.title, "(coarse)") && !strstr(t.fake.title, "left"));
+    for (int i = 0; i < 9 && t.live.view.plain; i++) {
+        finish_pass(&t, 1, false);
+        CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    }
+    atomic_store(&control.outlook.begun, (uint64_t)((t.now - 30) * 1e9));
+    outlook_tell(&control.outlook, 1, 3, (uint64_t)(t.now * 1e9));
+    t.now += 10;
+    (void)step(&t);
+    CHECK(strstr(t.fake.title, "25 %, 1 min 20 s left"));
+    end(&t);
+}
+
 TEST(window_tells_how_far_building_is_and_what_went_wrong) {
     struct table t;
     struct control control = {.build_step = 3, .build_done = 250};
