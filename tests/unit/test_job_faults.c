@@ -1,7 +1,11 @@
 /* Bad luck while a picture is made: over scenes with every kind of thing in them, whichever allocation fails while the
  * world is built and the picture rendered, with every way to find hits, the job ends with one error of the machine or
  * with the picture, and the next one is as it should be. */
+#include "app/inspect.h"
+#include "app/pick.h"
 #include "base/fault.h"
+#include "render/aov.h"
+#include "render/overlay.h"
 #include "render/render.h"
 #include "tests/unit/script_host.h"
 #include "world/world.h"
@@ -118,13 +122,152 @@ static void fail_each(struct listener *listener, const struct render_request *re
     pool_destroy(pool);
 }
 
+/* What may be asked of a picture besides it. */
+enum question {
+    ASK_PIXELS,
+    ASK_PIXELS_JSON,
+    ASK_DUMP,
+    ASK_DUMP_JSON,
+    ASK_BOXES,
+    ASK_CELLS,
+    ASK_LAYERS,
+    ASK_PICK,
+    ASK_SHARD,
+    QUESTIONS
+};
+
+/* The answer as one number: texts letter by letter, pictures byte by byte. */
+static void add_bytes(uint64_t *sum, const void *bytes, size_t size) {
+    for (size_t i = 0; i < size; i++)
+        *sum = (*sum ^ ((const uint8_t *)bytes)[i]) * UINT64_C(0x100000001b3);
+}
+
+static void add_text(void *context, const char *text) {
+    add_bytes(context, text, strlen(text));
+}
+
+static bool answer(enum question question, const struct render_request *request, struct render_job *job,
+                   struct pool *pool, uint64_t *sum, struct error *error) {
+    static struct sheet sheet;
+    struct inspected picture = {"a.png", job, request->root};
+    const uint32_t pixels[][2] = {{3, 3}, {1, 4}, {5, 0}};
+    struct render_statistics statistics = {0};
+    struct picked picked;
+    bool ok = false;
+    sheet = (struct sheet){.put = add_text, .context = sum};
+    switch (question) {
+    case ASK_PIXELS:
+    case ASK_PIXELS_JSON:
+        return inspect_pixels(&picture, pixels, 3, question == ASK_PIXELS_JSON, pool, &sheet, error);
+    case ASK_DUMP:
+    case ASK_DUMP_JSON:
+        return inspect_world(&picture, question == ASK_DUMP_JSON, &sheet, error);
+    case ASK_BOXES:
+    case ASK_CELLS:
+        job->settings.overlay = question == ASK_BOXES ? OVERLAY_OF_BOXES : OVERLAY_OF_GRID;
+        ok = overlay_draw(job, pool, error);
+        add_bytes(sum, job->film->pixels, sizeof(struct film_pixel) * SIDE * SIDE);
+        return ok;
+    case ASK_LAYERS:
+        ok = render_run(job, pool, &statistics, error);
+        add_bytes(sum, job->film->layers, sizeof(float[3]) * SIDE * SIDE);
+        return ok;
+    case ASK_PICK:
+        for (int place = 0; place < SIDE * SIDE; place++) {
+            if (!pick_at(job, request->root, place % SIDE + 0.5, place / SIDE + 0.5, place % 3 - 1, &picked, error))
+                return false;
+            add_text(sum, picked.path);
+        }
+        return true;
+    case ASK_SHARD:
+        job->shard = 1;
+        job->shards = 2;
+        ok = render_run(job, pool, &statistics, error);
+        add_bytes(sum, job->film->pixels, sizeof(struct film_pixel) * SIDE * SIDE);
+        return ok;
+    case QUESTIONS:
+        break;
+    }
+    return ok;
+}
+
+/* One answer of a world that is built, with allocation k failing (0: none); *over: there was none of that number. */
+static bool ask(enum question question, const struct render_request *request, const struct world *world,
+                struct pool *pool, uint64_t k, bool *over, uint64_t *sum, struct error *error) {
+    struct film film = {.full_width = SIDE, .full_height = SIDE};
+    struct render_job job = {.world = world,
+                             .camera = request->camera,
+                             .settings = request->settings,
+                             .width = SIDE,
+                             .height = SIDE,
+                             .ambient = request->ambient,
+                             .fog = request->fog,
+                             .film = &film};
+    size_t bytes;
+    *error = (struct error){0};
+    *sum = 0;
+    job.settings.aov = question == ASK_LAYERS ? AOV_ALL : 0;
+    CHECK(film_size_layered(SIDE, SIDE, aov_layers(job.settings.aov), &bytes, error));
+    void *block = calloc(1, bytes);
+    film_place(&film, block, SIDE, SIDE);
+    film_place_layers(&film, block, job.settings.aov);
+    film.full_width = film.full_height = SIDE;
+    uint64_t before = fault_count(FAULT_OF_ALLOCATION);
+    fault_at(FAULT_OF_ALLOCATION, k);
+    bool ok = answer(question, request, &job, pool, sum, error);
+    fault_at(FAULT_OF_ALLOCATION, 0);
+    *over = fault_count(FAULT_OF_ALLOCATION) - before < k;
+    free(block);
+    return ok;
+}
+
+static void ask_all(enum question question, const struct render_request *request, const struct world *world,
+                    struct pool *pool) {
+    uint64_t wanted, sum;
+    struct error error;
+    bool over = false;
+    if (!ask(question, request, world, pool, 0, &over, &wanted, &error))
+        test_fail(__FILE__, __LINE__, "question %d: %s", (int)question, error.text);
+    over = false;
+    for (uint64_t k = 1; !over; k++) {
+        bool ok = ask(question, request, world, pool, k, &over, &sum, &error);
+        failed_runs += !ok;
+        if (ok ? sum != wanted : error.kind != ERROR_MACHINE)
+            test_fail(__FILE__, __LINE__, "question %d, allocation %llu: kind %d: %s", (int)question,
+                      (unsigned long long)k, (int)error.kind, ok ? "another answer" : error.text);
+        pool_reset_cancel(pool);
+    }
+}
+
+static void ask_each(struct listener *listener, const struct render_request *request) {
+    static const enum accel_kind kinds[] = {ACCEL_AUTO, ACCEL_GRID, ACCEL_KDTREE, ACCEL_BVH, ACCEL_NONE};
+    char warning[256];
+    struct error error = {0};
+    struct pool *pool = pool_create(1, warning);
+    (void)listener;
+    pictures++;
+    for (size_t a = 0; a < sizeof kinds / sizeof kinds[0]; a++) {
+        struct world world = {0};
+        struct arena arena = {0};
+        CHECK(world_build(&world, &arena, request->scene, request->root, request->lights, request->light_count,
+                          &request->sky, request->settings.shutter, kinds[a], pool, no_warning, NULL, &error));
+        for (int question = 0; question < QUESTIONS; question++)
+            if (kinds[a] == ACCEL_AUTO || question == ASK_CELLS)
+                ask_all((enum question)question, request, &world, pool);
+        world_destroy(&world);
+        arena_destroy(&arena);
+    }
+    pool_destroy(pool);
+}
+
 static void white_row(void *context, uint32_t y, uint8_t *line) {
     (void)context;
     memset(line, 100 + 20 * (int)y, 3 * 8);
 }
 
-static void run(const char *renders) {
-    struct listener listener = {.seen = fail_each};
+static void run_seen(const char *renders,
+                     void (*seen)(struct listener *listener, const struct render_request *request)) {
+    struct listener listener = {.seen = seen};
     struct error error = {0};
     char path[512], text[8192];
 #ifndef GRAY_FAULTS
@@ -138,6 +281,21 @@ static void run(const char *renders) {
         test_fail(__FILE__, __LINE__, "%s", error.text);
     CHECK(pictures > 0);
     CHECK(failed_runs > 50);
+}
+
+static void run(const char *renders) {
+    run_seen(renders, fail_each);
+}
+
+TEST(any_allocation_of_an_answer_about_a_picture_may_fail) {
+    char text[4096];
+    (void)snprintf(text, sizeof text,
+                   "local sky = gr.sky_map('pic.png')\n"
+                   "local lamp = gr.mesh_light{mesh = gr.mesh{verts = verts, faces = faces}, emission = {1, 1, 1}}\n"
+                   "gr.render{node = root, %s lights = {gr.light({4, 5, 6}, {0.9, 0.9, 0.9}, {1, 0, 0}), lamp, "
+                   "gr.sky_light{sky = sky}}, caustics = {photons = 60, radius = 0.5}, background = sky}\n",
+                   view);
+    run_seen(text, ask_each);
 }
 
 TEST(any_allocation_of_a_job_may_fail_and_the_next_job_is_whole) {
