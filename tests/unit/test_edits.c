@@ -432,6 +432,22 @@ TEST(changes_of_lights_by_calls_give_the_bytes_of_a_script_that_says_the_same_it
     same_picture(one, other, true);
 }
 
+TEST(changes_of_skies_and_suns_give_the_bytes_of_a_script_that_says_the_same_itself) {
+    same_picture(SCENE_HEAD SCENE_TAIL("{0, 0, 6}", "gr.sky_light{sky={0.25, 0.5, 1}, samples=2}, "
+                                                    "gr.sun_light{sun={0, 0, 1}, colour={1, 0.5, 0.25}}"),
+                 SCENE_HEAD
+                 "gr.change_light(1, {5, 5, 5}, {2, 2, 2})\n" /* a sky has no place */
+                 "gr.change_light(2, {0, 0, 0}, nil, {0, 0, 1, 0, 1, 0, -1, 0, 0}, {1, 0.5, 0.25})\n" SCENE_TAIL(
+                     "{0, 0, 6}", "gr.sky_light{sky={0.125, 0.25, 0.5}, samples=2}, "
+                                  "gr.sun_light{sun={-1, 0, 0}, colour={0.1, 0, 0}}"),
+                 true);
+    same_picture(SCENE_HEAD SCENE_TAIL("{0, 0, 6}", LIGHT),
+                 SCENE_HEAD "gr.change_delete_light(1)\ngr.change_delete_light(2)\n" SCENE_TAIL(
+                     "{0, 0, 6}", "gr.sky_light{sky={0.125, 0.25, 0.5}, samples=2}, "
+                                  "gr.sun_light{sun={-1, 0, 0}, colour={0.1, 0, 0}}, " LIGHT),
+                 true);
+}
+
 /* Materials. */
 
 TEST(changes_of_every_part_of_a_material_give_the_bytes_of_a_script_that_says_the_same_itself) {

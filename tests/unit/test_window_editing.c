@@ -35,8 +35,10 @@ static int shell(const char *line) {
     char *command = NULL, binary[4096];
     const char *named = getenv("GRAY_TEST_BINARY");
     CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
-    CHECK(asprintf(&command, "cd %s && gray=%s && export gray && { %s; } >out.txt 2>err.txt", test_folder(), binary,
-                   line) > 0);
+    CHECK(asprintf(&command,
+                   "cd %s && gray=%s && echo leak:libdbus-1 >leaks && export gray LSAN_OPTIONS=suppressions=$PWD/leaks:"
+                   "print_suppressions=0 && { %s; } >out.txt 2>err.txt",
+                   test_folder(), binary, line) > 0);
     int status = system(command);
     free(command);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -110,4 +112,14 @@ TEST(window_that_changes_operands_of_a_solid_saves_what_gives_the_same_bytes) {
         "xdotool key Prior sleep 0.5 key Next sleep 0.5 key Delete sleep 0.2; changes 2; finds again.png\n"
         "grep -q \"change_delete('b'\" out-changes2.lua || exit 2\n"
         "xdotool key ctrl+z; finds first.png\n");
+}
+
+TEST(window_that_has_more_lights_than_are_told_at_once_changes_the_last_one) {
+    drive(BALL "local lamps = {}\nfor i = 1, 70 do lamps[i] = gr.light({math.sin(i) * 5, 3, math.cos(i) * 5}, {0.005, "
+               "0.005, 0.005}, {1, 0, 0}) end\nlamps[71] = gr.sun_light{sun={1, 2, 3}, colour={0.4, 0.4, 0.3}}\n"
+               "gr.render(r, 'out.png', 320, 240, {0, 1, 6}, {0, -0.15, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2}, lamps)\n",
+          "xdotool key i key comma key t; drag 70 -20\n"
+          "changes 1; finds again.png; cmp -s again.png first.png && exit 4\n"
+          "says 'change_light(71, '\n"
+          "xdotool key ctrl+z; finds first.png\n");
 }

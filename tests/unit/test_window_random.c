@@ -107,7 +107,10 @@ static struct window_event random_key(struct crowd *crowd) {
                                WINDOW_DELETE,
                                WINDOW_PAGE_UP,
                                WINDOW_PAGE_DOWN,
-                               WINDOW_TAB};
+                               WINDOW_TAB,
+                               ',',
+                               '.',
+                               'i'};
     static const int rare[] = {'s', 'v', 'c', 'n', 'p'};
     int count = (int)(sizeof keys / sizeof *keys), key = keys[below(crowd, count)];
     if (below(crowd, 60) == 0)
@@ -133,6 +136,7 @@ static struct window_event random_event(struct crowd *crowd) {
     } else if (what < 92) {
         event.kind = below(crowd, 2) ? WINDOW_PRESS : WINDOW_RELEASE;
         event.button = below(crowd, 12) == 0 ? WINDOW_RIGHT : WINDOW_LEFT;
+        event.control = below(crowd, 3) == 0;
     } else if (what < 96) {
         event = (struct window_event){.kind = WINDOW_WHEEL, .y = test_uniform(&crowd->random, -3, 3)};
     } else if (what < 98) {
