@@ -73,7 +73,7 @@ static bool ends_with_zero(const char *text, size_t size) {
 static bool news_is_sound(const struct studio_news *news) {
     const struct picked *picked = &news->picked;
     const char *const words[] = {picked->name, picked->shape, picked->material, picked->parent_name, news->root_name};
-    bool sound = (unsigned)news->kind <= NEWS_LIGHTS && ends_with_zero(news->text, sizeof news->text) &&
+    bool sound = (unsigned)news->kind <= NEWS_MARKS && ends_with_zero(news->text, sizeof news->text) &&
                  ends_with_zero(picked->path, sizeof picked->path);
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         sound = sound && ends_with_zero(words[i], PICK_WORDS);
@@ -95,7 +95,7 @@ static bool frame_is_sound(const struct frame *frame) {
                request->full_height <= 1u << 20 && request->width <= request->full_width &&
                request->height <= request->full_height && request->x0 <= request->full_width - request->width &&
                request->y0 <= request->full_height - request->height && request->exposure >= -100 &&
-               request->exposure <= 100 && request->curve <= TONE_FILMIC &&
+               request->exposure <= 100 && request->curve <= TONE_FILMIC && request->overlay <= OVERLAY_OF_GRID &&
                (unsigned)request->lens.projection <= PROJECTION_PANORAMA &&
                (unsigned)request->lens.stereo <= STEREO_ANAGLYPH;
     case FRAME_DONE:

@@ -4,6 +4,7 @@
 #ifndef GRAY_APP_CHANNEL_H
 #define GRAY_APP_CHANNEL_H
 
+#include "app/marks.h"
 #include "app/pick.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -56,6 +57,7 @@ struct picture_request {
     uint32_t deep;                    /* not 0: 16 bits a channel in a PNG file */
     uint32_t layers;                  /* mask of the layers beside the picture */
     uint32_t live;                    /* not 0: in a window */
+    uint32_t overlay;                 /* in a window: an enum overlay, the lines that are asked for */
     struct camera camera;             /* its view a direction */
     struct lens lens;
     uint32_t check;      /* not 0 for --check: only the names are looked at, no film is wanted */
@@ -101,16 +103,18 @@ enum studio_news_kind {
     NEWS_PICKED,
     NEWS_CHANGED,
     NEWS_STORY,
-    NEWS_LIGHTS
+    NEWS_LIGHTS,
+    NEWS_MARKS
 };
 /* What the child has done for a window; it waits for an order. */
 struct studio_news {
     enum studio_news_kind kind;
     struct picture_report report; /* of BUILT (its bounds) and PASS */
     struct picked picked;
-    uint32_t added; /* of BUILT: nodes that the script has added by gr.change_add */
-    uint32_t owned; /* of BUILT: materials of gr.change_own */
-    uint32_t root;  /* of BUILT: the serial of the root, and the space of its children */
+    struct marks marks; /* of PASS, PICKED and MARKS: those that were asked for and made */
+    uint32_t added;     /* of BUILT: nodes that the script has added by gr.change_add */
+    uint32_t owned;     /* of BUILT: materials of gr.change_own */
+    uint32_t root;      /* of BUILT: the serial of the root, and the space of its children */
     char root_name[PICK_WORDS];
     struct affine world_from_root;
     uint32_t light_count; /* of BUILT, CHANGED and LIGHTS: all of them; those told begin with first_light, from 0 */
@@ -120,14 +124,15 @@ struct studio_news {
     bool unbuilt;   /* of CHANGED: the building of the world was stopped; the next pass begins with it */
 };
 
-enum studio_order_kind { ORDER_END, ORDER_PASS, ORDER_PICK, ORDER_CHANGE, ORDER_STORY, ORDER_LIGHTS };
+enum studio_order_kind { ORDER_END, ORDER_PASS, ORDER_PICK, ORDER_CHANGE, ORDER_STORY, ORDER_LIGHTS, ORDER_MARKS };
 struct studio_order {
     enum studio_order_kind kind;
-    bool quit;             /* of END: the window was closed */
-    struct live_view view; /* of PASS, and from where PICK and STORY look */
-    double x, y;           /* of PICK and STORY: pixels of the whole picture */
-    int32_t up;            /* of PICK: nodes above the one that is hit, or operands below it */
-    uint32_t first_light;  /* of CHANGE and LIGHTS: tell them from this one on, counted from 0 */
+    bool quit;               /* of END: the window was closed */
+    struct live_view view;   /* of PASS, and from where PICK, STORY and MARKS look */
+    struct marks_wish marks; /* of PASS: made after it; of MARKS. After PICK the outline is made of what is picked */
+    double x, y;             /* of PICK and STORY: pixels of the whole picture */
+    int32_t up;              /* of PICK: nodes above the one that is hit, or operands below it */
+    uint32_t first_light;    /* of CHANGE and LIGHTS: tell them from this one on, counted from 0 */
     struct change change;
     bool present; /* of CHANGE: it is made; else it is undone */
     bool more;    /* of CHANGE: another one follows at once */

@@ -261,6 +261,7 @@ static bool begin_picture(struct child *child, const struct render_request *requ
                                     .deep = job->settings.deep,
                                     .layers = job->settings.aov,
                                     .live = child->options->window,
+                                    .overlay = (uint32_t)job->settings.overlay,
                                     .camera = job->camera,
                                     .lens = job->settings.lens,
                                     .check = child->options->check || is_asked(child->options)};

@@ -2,8 +2,6 @@
  * fails as "cancelled", which ends the scripts. */
 #include "app/child_link.h"
 
-#include "render/aov.h"
-
 #include <string.h>
 
 static bool nobody_there(struct child_link *link, struct error *error) {
@@ -20,7 +18,7 @@ static bool link_begin(void *context, const struct picture_request *request, str
     struct child_link *link = context;
     struct frame frame;
     size_t bytes;
-    if (!film_size_layered(request->width, request->height, aov_layers(request->layers), &bytes, error))
+    if (!film_size_layered(request->width, request->height, marks_layers(request), &bytes, error))
         return false;
     if (!channel_send(&link->channel, FRAME_BEGIN, request, sizeof *request, -1) ||
         channel_receive(&link->channel, &frame) != CHANNEL_FRAME || frame.kind != FRAME_FILM)

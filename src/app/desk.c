@@ -115,7 +115,7 @@ static bool make_film(struct desk *desk, struct picture *picture, struct error *
     const struct picture_request *request = &picture->request;
     size_t bytes;
     char notice[256];
-    if (!film_size_layered(request->width, request->height, aov_layers(request->layers), &bytes, error))
+    if (!film_size_layered(request->width, request->height, marks_layers(request), &bytes, error))
         return false;
     if (!share_create(&picture->memory, bytes, error))
         return error_prefix(error, "%s", picture->name);

@@ -63,6 +63,7 @@ static void close_window(struct live *live) {
     mem_free(live->canvas);
     mem_free(live->light);
     mem_free(live->drawn);
+    live_destroy_marks(live);
     mem_free(live->panel.paper.rgba);
     live->canvas = live->drawn = live->panel.paper.rgba = NULL;
     live->light = NULL;
@@ -80,6 +81,7 @@ static void keep_window(struct live *live, const struct live *before) {
     live->place = before->place;
     live->panel = before->panel;
     live->bare = before->bare;
+    live->overlay = before->open ? before->overlay : live->overlay;
     live->open = before->open;
 }
 
@@ -102,18 +104,21 @@ bool live_begin(struct live *live, const struct window_driver *driver, const str
     bool kept = live->keep && live->open;
     if (live->open && (live->request.width != request->width || live->request.height != request->height))
         close_window(live);
+    live_destroy_marks(live);
     struct live before = *live;
-    *live = (struct live){.driver = driver,
-                          .request = *request,
-                          .block = block,
-                          .script_exposure = request->exposure,
-                          .tiles = film_tile_count(&whole),
-                          .moved = true,
-                          .again = true,
-                          .divide = FIRST_DIVIDE / 2,
-                          .pass_began = now,
-                          .stepped = now,
-                          .shown = now};
+    *live =
+        (struct live){.driver = driver,
+                      .request = *request,
+                      .block = block,
+                      .script_exposure = request->exposure,
+                      .overlay = request->overlay <= OVERLAY_OF_GRID ? (enum overlay)request->overlay : OVERLAY_NONE,
+                      .tiles = film_tile_count(&whole),
+                      .moved = true,
+                      .again = true,
+                      .divide = FIRST_DIVIDE / 2,
+                      .pass_began = now,
+                      .stepped = now,
+                      .shown = now};
     mem_free(before.lights);
     keep_window(live, &before);
     (void)snprintf(live->name, sizeof live->name, "%s", name);
@@ -199,9 +204,17 @@ void live_take_news(struct live *live, const struct studio_news *news, double no
         return;
     case NEWS_PASS:
         end_pass(live, &news->report, now);
+        if (!news->report.stopped && live->order.marks.lines.limit > 0)
+            live_take_marks(live, &live->order.marks, &news->marks);
+        return;
+    case NEWS_MARKS:
+        live_take_marks(live, &live->order.marks, &news->marks);
         return;
     case NEWS_PICKED:
         live_take_picked(live, &news->picked);
+        live->order.marks = live_marks_wish(live, false);
+        live->order.marks.lines.kind = OVERLAY_NONE;
+        live_take_marks(live, &live->order.marks, &news->marks);
         return;
     case NEWS_CHANGED:
         if (!news->unbuilt || news->light_count > 0)
@@ -209,6 +222,7 @@ void live_take_news(struct live *live, const struct studio_news *news, double no
         if (news->text[0] != '\0')
             live_tell(live, news->text);
         live->moved = true;
+        live_stale_marks(live);
         return;
     case NEWS_LIGHTS:
         live_take_lights(live, news);
@@ -232,6 +246,10 @@ static void begin_pass(struct live *live, uint32_t divide, bool plain, bool resu
             atomic_store(&live->film.tiles[tile], FILM_TILE_WANTED);
     }
     live->order = (struct studio_order){.kind = ORDER_PASS, .view = live->view};
+    if (live->moved)
+        live_stale_marks(live);
+    if (plain && !resume && live_wants_marks(live))
+        live->order.marks = live_marks_wish(live, live->moved);
     live->moved = live->complete = live->partial = false;
     live->running = true;
     live->pass_began = now;
@@ -267,8 +285,14 @@ static void order_story(struct live *live) {
         .kind = ORDER_STORY, .view = view_now(live, 1, false), .x = live->story_x, .y = live->story_y};
 }
 
+static void order_marks(struct live *live) {
+    live->order = (struct studio_order){
+        .kind = ORDER_MARKS, .view = view_now(live, 1, true), .marks = live_marks_wish(live, false)};
+}
+
 static enum live_order next_order(struct live *live, double now) {
     uint32_t divide = live->again ? FIRST_DIVIDE : live->divide;
+    bool coarse = live->view.plain && live->view.divide > MIDDLE_DIVIDE && !live->halted;
     if (live->halted && live->unbuilt) /* what is asked now has no answer */
         live->asks = live->asks_story = false;
     if (live->pending.count > 0 && !live->halted) {
@@ -277,6 +301,8 @@ static enum live_order next_order(struct live *live, double now) {
         order_pick(live);
     } else if (live->asks_story) {
         order_story(live);
+    } else if (!live->moved && !coarse && live_wants_marks(live)) {
+        order_marks(live);
     } else if (live->halted) {
         return LIVE_NOTHING;
     } else if (live->moved) {
@@ -307,12 +333,18 @@ static enum live_order step_running(struct live *live) {
         live->stopping = true;
         return LIVE_STOP;
     }
-    bool wanted = live->moved || live->asks || live->asks_story || live->pending.count > 0 ||
-                  differ(live->view.exposure, live->request.exposure);
+    bool wanted = live->moved || (!coarse && live_wants_marks(live)) || live->asks || live->asks_story ||
+                  live->pending.count > 0 || differ(live->view.exposure, live->request.exposure);
     if (!live->running || !wanted || live->stopping || coarse)
         return LIVE_NOTHING;
     live->stopping = true;
     return LIVE_STOP;
+}
+
+/* The picture is written with the lines of the command line, which are there where people look at them. */
+static bool lines_of_script(const struct live *live) {
+    return live->request.overlay == OVERLAY_NONE || (live->overlay == (enum overlay)live->request.overlay &&
+                                                     live->lines_fresh && live->has_lines && !live->moved);
 }
 
 enum live_order live_step(struct live *live, double now) {
@@ -332,8 +364,10 @@ enum live_order live_step(struct live *live, double now) {
         return wish;
     if (live->quit)
         return LIVE_QUIT;
-    if (live->complete && live->view.own && !live->edited && !live->written) {
+    if (live->complete && live->view.own && !live->edited && !live->written && lines_of_script(live)) {
         live->written = true;
+        if (live->request.overlay != OVERLAY_NONE)
+            overlay_lay(&live->film, live->lines);
         return LIVE_WRITE;
     }
     if (live->waiting && live->next && live->written)

@@ -14,6 +14,13 @@
 #include "app/window.h"
 #include "render/film.h"
 
+/* A side between a pixel that shows what is selected and one that does not: of the pixel (x, y), its left one or its
+ * upper one. */
+struct live_side {
+    uint32_t x, y;
+    bool upright;
+};
+
 enum live_order {
     LIVE_NOTHING,
     LIVE_STOP,    /* the pass that runs is of no use any more */
@@ -95,8 +102,16 @@ struct live {
     bool partial;           /* the last pass was stopped for a moment, and can go on */
     bool edited;            /* the last pass shows a changed scene */
     bool complete, written; /* the last pass was the finest; the script's picture was written */
-    bool halted;            /* somebody said stop: nothing is begun until something is wanted */
-    bool unbuilt;           /* the child has no world of what is wanted */
+    /* What lies over the picture and is made by the child (live_marks.c). */
+    enum overlay overlay;            /* what people want to see */
+    float (*lines)[4];               /* over the canvas, where has_lines; owned */
+    bool has_lines;                  /* some are shown, perhaps those of another view */
+    bool lines_fresh, outline_fresh; /* those of the view, as fine as they can be; or asked for in vain */
+    struct live_side *sides;         /* the outline; owned */
+    uint32_t side_count, side_room;
+
+    bool halted;  /* somebody said stop: nothing is begun until something is wanted */
+    bool unbuilt; /* the child has no world of what is wanted */
     bool grabbed, next, quit;
     bool keep; /* the scripts run again: the camera stays where somebody has flown, pictures before are left out */
     bool pressed, dragged;   /* the left button is down on the picture, and has moved since */

@@ -42,14 +42,22 @@ bool live_resize(struct live *live, int width, int height, double density) {
 /* The canvas. */
 
 static void tone_pixel(const struct live *live, const struct tone *tone, size_t pixel) {
-    for (int c = 0; c < 3; c++)
-        live->canvas[3 * pixel + (size_t)c] =
-            png_write_byte(tone_apply(tone, (double)live->light[3 * pixel + (size_t)c]));
+    float rgb[3];
+    memcpy(rgb, live->light + 3 * pixel, sizeof rgb);
+    if (live->has_lines)
+        overlay_ink(live->lines[pixel], rgb);
+    for (size_t c = 0; c < 3; c++)
+        live->canvas[3 * pixel + c] = png_write_byte(tone_apply(tone, (double)rgb[c]));
 }
 
 static struct tone tone_of(const struct live *live) {
     const struct picture_request *request = &live->request;
     return (struct tone){request->exposure, (enum tone_curve)request->curve, request->srgb != 0};
+}
+
+void live_draw_again(struct live *live, size_t pixel) {
+    struct tone tone = tone_of(live);
+    tone_pixel(live, &tone, pixel);
 }
 
 void live_redraw(struct live *live) {
@@ -75,11 +83,13 @@ static void draw_pixel(struct live *live, const struct tone *tone, uint32_t x, u
                 continue;
             }
             memcpy(live->light + 3 * pixel, colour, 3 * sizeof *colour);
-            if (!begun)
-                tone_pixel(live, tone, first = pixel);
+            bool lined = live->has_lines && live->lines[pixel][3] < 1;
+            if (!begun || lined)
+                tone_pixel(live, tone, pixel);
             else
                 memcpy(live->canvas + 3 * pixel, live->canvas + 3 * first, 3);
-            begun = true;
+            first = lined || begun ? first : pixel;
+            begun = begun || !lined;
         }
     }
 }

@@ -105,6 +105,12 @@ static bool take_plain_key(struct live *live, int key) {
     case 'f':
         live->driver->full_screen(live->driver->context);
         return true;
+    case 'b':
+        live_choose_overlay(live, OVERLAY_OF_BOXES);
+        return true;
+    case 'g':
+        live_choose_overlay(live, OVERLAY_OF_GRID);
+        return true;
     case WINDOW_TAB:
         live->bare = !live->bare;
         live->over_dirty = true;

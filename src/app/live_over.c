@@ -19,6 +19,8 @@ static void draw_selection(struct live *live, const struct camera_frame *frame) 
     double x, y;
     if (live_project(live, frame, live_moved_point(live, picked->position), &x, &y))
         paper_ring(&live->panel.paper, x, y, 3 * live->panel.paper.scale, outline);
+    if (live_draw_outline(live, outline))
+        return;
     for (int i = 0; i < 8 && picked->has_box; i++)
         corners[i] = live_moved_point(live, picked->corners[i]);
     for (int i = 0; i < 8 && picked->has_box; i++) {
@@ -46,12 +48,14 @@ static int tell_buttons(struct live *live, int y, const char *const *words, int 
 }
 
 static void tell_menu(struct live *live) {
-    static const char *const words[] = {"Render",    "Quit",         "Stop", "Save picture",
-                                        "Save view", "Save changes", "Hide", "Lights"};
+    static const char *const words[] = {"Render",       "Quit", "Stop",   "Save picture", "Save view",
+                                        "Save changes", "Hide", "Lights", "Boxes",        "Grid"};
     struct panel *panel = &live->panel;
-    bool used[8] = {false};
+    bool used[10] = {false};
+    unsigned on = (live->halted ? 1u << 2 : 0) | (live->overlay == OVERLAY_OF_BOXES ? 1u << 8 : 0) |
+                  (live->overlay == OVERLAY_OF_GRID ? 1u << 9 : 0);
     panel_ground(panel, 0, 0, panel->paper.width, 15 * panel->paper.scale);
-    (void)tell_buttons(live, 2 * panel->paper.scale, words, 8, live->halted ? 1 << 2 : 0, used);
+    (void)tell_buttons(live, 2 * panel->paper.scale, words, 10, on, used);
     if (used[0])
         live_render(live);
     live->quit = live->quit || used[1];
@@ -64,6 +68,8 @@ static void tell_menu(struct live *live) {
     else if (used[5])
         live->wish = LIVE_CHANGES;
     live->bare = live->bare || used[6];
+    if (used[8] || used[9])
+        live_choose_overlay(live, used[8] ? OVERLAY_OF_BOXES : OVERLAY_OF_GRID);
     live->lists_lights = live->lists_lights != used[7];
 }
 

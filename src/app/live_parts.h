@@ -62,13 +62,24 @@ double live_stops_now(const struct live *live);
 struct vec3 live_light_colour_now(const struct live *live); /* before it is brightened */
 void live_light_colour(struct live *live, struct vec3 colour);
 
+/* live_marks.c */
+void live_choose_overlay(struct live *live, enum overlay overlay); /* or none, where it is shown already */
+void live_stale_marks(struct live *live);                          /* the view or the scene is another one */
+bool live_wants_marks(const struct live *live);
+struct marks_wish live_marks_wish(const struct live *live, bool walking);
+void live_take_marks(struct live *live, const struct marks_wish *asked, const struct marks *marks);
+/* False: there is none that is true now. */
+bool live_draw_outline(struct live *live, struct ink ink);
+void live_destroy_marks(struct live *live);
+
 /* live_draw.c */
 struct figures {
     char state[64], size[48], rays[48], triangles[48], voxels[64], frames[48];
     double share; /* of the work */
 };
-void live_draw_tiles(struct live *live); /* film to canvas */
-void live_redraw(struct live *live);     /* the canvas, in another exposure */
+void live_draw_tiles(struct live *live);               /* film to canvas */
+void live_redraw(struct live *live);                   /* the canvas, in another exposure */
+void live_draw_again(struct live *live, size_t pixel); /* one pixel of it */
 void live_show(struct live *live, double now);
 /* Where the picture goes when the window has so many pixels. False: no memory for what is drawn over it. */
 bool live_resize(struct live *live, int width, int height, double density);

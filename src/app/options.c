@@ -692,12 +692,11 @@ static bool check_parts(struct options *options, struct error *error) {
         return error_set(error, ERROR_USAGE,
                          "--aov is for pictures that one process makes in one go: no --shard, --mpi, --checkpoint, "
                          "--resume or merge");
-    if ((options->shards || options->mpi || options->checkpoint || options->window ||
-         options->action == ACTION_MERGE) &&
+    if ((options->shards || options->mpi || options->checkpoint || options->action == ACTION_MERGE) &&
         options->settings.overlay != OVERLAY_NONE)
         return error_set(error, ERROR_USAGE,
                          "--overlay is for pictures that one process makes in one go: no --shard, --mpi, --checkpoint, "
-                         "--resume, -gui or merge");
+                         "--resume or merge");
     if (options->shards && (options->targets_prefix || options->first_pass_prefix))
         return error_set(error, ERROR_USAGE, "--shard writes no debug pictures; give -write-... to gray merge");
     return true;

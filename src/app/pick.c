@@ -4,6 +4,7 @@
 #include "app/pick.h"
 
 #include "app/inspect.h"
+#include "app/marks.h"
 #include "geom/csg.h"
 #include "render/camera.h"
 #include "world/path.h"
@@ -182,6 +183,7 @@ static bool describe(struct picking *p, const struct node *root, const struct hi
     choose_node(p, hit, up);
     const struct node *node = p->steps[p->depth - 1].node;
     out->serial = node->serial;
+    out->way = marks_way(p->steps, p->depth);
     pick_words(out->name, node->name);
     if (p->depth > 1) {
         out->parent_serial = p->steps[p->depth - 2].node->serial;

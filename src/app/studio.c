@@ -213,6 +213,32 @@ static void tell_world(struct at_work *work, struct studio_news *news) {
     work->told = true;
 }
 
+/* Marks that are stopped are made later. False: an error. */
+static bool make_marks(struct at_work *work, const struct live_view *view, const struct marks_wish *wish,
+                       struct studio_news *news, struct error *error) {
+    struct studio *studio = work->studio;
+    struct render_job job = looking_job(work, view);
+    struct marks_place place;
+    marks_place(studio->asked, job.film->pixels, &place);
+    if (wish->lines.limit == 0 || wish->lines.cell == 0) /* nothing is asked for */
+        return true;
+    bool ok = marks_make(&job, studio->request->root, studio->pool, wish, &place, &news->marks, error);
+    news->marks.stopped = !ok && studio_was_stopped(studio->services->control, error);
+    pool_reset_cancel(studio->pool);
+    return ok || news->marks.stopped;
+}
+
+/* What stands there, and where it is seen. */
+static bool pick(struct at_work *work, const struct studio_order *order, struct studio_news *news,
+                 struct error *error) {
+    struct marks_wish wish = {.lines = {OVERLAY_NONE, 1, 1}, .outline = true};
+    if (!answer_click(work, order, &news->picked, error))
+        return false;
+    wish.serial = news->picked.serial;
+    wish.way = news->picked.way;
+    return !news->picked.hit || make_marks(work, &order->view, &wish, news, error);
+}
+
 static bool obey(struct at_work *work, const struct studio_order *order, struct studio_news *news,
                  struct error *error) {
     if (order->kind != ORDER_CHANGE && (!need_world(work, news, error) || news->unbuilt))
@@ -225,10 +251,14 @@ static bool obey(struct at_work *work, const struct studio_order *order, struct 
     case ORDER_PASS:
         news->kind = NEWS_PASS;
         work->view = order->view;
-        return make_pass(work, &news->report, error);
+        return make_pass(work, &news->report, error) &&
+               (news->report.stopped || make_marks(work, &order->view, &order->marks, news, error));
     case ORDER_PICK:
         news->kind = NEWS_PICKED;
-        return answer_click(work, order, &news->picked, error);
+        return pick(work, order, news, error);
+    case ORDER_MARKS:
+        news->kind = NEWS_MARKS;
+        return make_marks(work, &order->view, &order->marks, news, error);
     case ORDER_CHANGE:
         return change_scene(work, order, news, error);
     case ORDER_STORY:

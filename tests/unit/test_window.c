@@ -330,11 +330,11 @@ static int shell(const char *line) {
     const char *named = getenv("GRAY_TEST_BINARY");
     CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
     /* What the library of the desktop's bus never gives back is not ours (address sanitizer). */
-    if (asprintf(
-            &command,
-            "cd '%s' && gray='%s' && echo leak:libdbus-1 >leaks && export gray LSAN_OPTIONS=suppressions=$PWD/leaks:"
-            "print_suppressions=0 && { %s; } >out.txt 2>err.txt",
-            test_folder(), binary, line) < 0)
+    if (asprintf(&command,
+                 "cd '%s' && gray='%s' && echo leak:libdbus-1 >leaks && export gray SDL_RENDER_DRIVER=software "
+                 "LSAN_OPTIONS=suppressions=$PWD/leaks:"
+                 "print_suppressions=0 && { %s; } >out.txt 2>err.txt",
+                 test_folder(), binary, line) < 0)
         exit(1);
     int how = system(command);
     free(command);

@@ -95,6 +95,8 @@ static struct window_event random_key(struct crowd *crowd) {
                                '-',
                                'f',
                                'x',
+                               'b',
+                               'g',
                                WINDOW_SPACE,
                                WINDOW_ESCAPE,
                                WINDOW_SHIFT,

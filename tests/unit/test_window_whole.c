@@ -1,13 +1,17 @@
-/* Stop: what is rendered or built ends, what is shown stays, and it goes on when somebody wants it. The whole program
- * under a window without a screen. When exactly a stop comes is not known, so several moments are tried. */
+/* The whole program under a window without a screen, in which somebody waits for words in the title and then does
+ * something: Stop (what is rendered or built ends, what is shown stays, and it goes on when somebody wants it; when
+ * exactly a stop comes is not known, so several moments are tried), lines over the picture, outlines. */
 #define _GNU_SOURCE
 #include "app/supervisor.h"
 #include "tests/harness.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+enum { WIDE = 640, HIGH = 480 };
 
 /* Somebody who waits for words in the title, and then does something. */
 struct deed {
@@ -23,23 +27,20 @@ struct person {
     int at, waited;
     bool open, size_told;
     char title[1024];
-    uint8_t *seen; /* what was shown last */
-    size_t bytes;
-    uint32_t width, height;
+    uint8_t *over; /* what lay over the picture last: of the whole window */
 };
 
 static bool person_open(void *context, uint32_t width, uint32_t height, const char *title, struct error *error) {
     struct person *person = context;
-    (void)error, (void)title;
-    person->width = width;
-    person->height = height;
-    person->bytes = 3 * (size_t)width * height;
-    person->seen = calloc(1, person->bytes);
-    return person->open = person->seen != NULL;
+    (void)error;
+    CHECK(width > 0 && height > 0 && title);
+    return person->open = true;
 }
 static void person_show(void *context, const struct window_frame *frame) {
     struct person *person = context;
-    memcpy(person->seen, frame->picture, person->bytes);
+    CHECK(frame->window_width == WIDE && frame->window_height == HIGH);
+    if (person->over)
+        memcpy(person->over, frame->overlay, (size_t)4 * WIDE * HIGH);
 }
 static bool says(const char *title, const char *words) {
     if (strcmp(words, SETTLED) == 0)
@@ -51,7 +52,7 @@ static bool person_poll(void *context, struct window_event *event) {
     const struct deed *deed = &person->deeds[person->at];
     if (!person->size_told) {
         person->size_told = true;
-        *event = (struct window_event){.kind = WINDOW_SIZE, .x = 640, .y = 480, .density = 1};
+        *event = (struct window_event){.kind = WINDOW_SIZE, .x = WIDE, .y = HIGH, .density = 1};
         return true;
     }
     if ((deed->title && !says(person->title, deed->title)) || person->waited++ < deed->pause)
@@ -74,7 +75,6 @@ static void person_nothing(void *context) {
 }
 static void person_close(void *context) {
     struct person *person = context;
-    free(person->seen);
     person->open = false;
 }
 
@@ -94,26 +94,41 @@ static const char scene[] =
 #define AT_THE_BALL .button = WINDOW_LEFT, .x = 320, .y = 240
 
 /* The status of the program. */
-static int live_with(const struct deed *deeds) {
-    struct person person = {.deeds = deeds};
+static int live_over(const struct deed *deeds, const char *overlay, uint8_t *over) {
+    struct person person = {.deeds = deeds, .over = over};
     const struct window_driver driver = {&person,      person_open, person_show,    person_poll,
                                          person_title, person_grab, person_nothing, person_close};
     struct arena arena = {0};
     struct options options;
     struct error error;
-    char *words[] = {"gray", "-gui", "-q", "--progress=none", "scene.lua"};
-    CHECK(chdir(test_folder()) == 0);
+    char *words[] = {"gray", "-gui", "-q", "--progress=none", "--overlay", (char *)(uintptr_t)overlay, "scene.lua"};
+    char before[4096];
+    CHECK(getcwd(before, sizeof before) && chdir(test_folder()) == 0);
     test_write_text("scene.lua", scene);
-    CHECK(options_parse(&options, 5, words, &arena, &error));
+    CHECK(options_parse(&options, 7, words, &arena, &error));
     int status = supervisor_run(&options, &(struct program_parts){.window = &driver});
     CHECK(!person.open);
     arena_destroy(&arena);
+    CHECK(chdir(before) == 0);
     return status;
+}
+
+static int live_with(const struct deed *deeds) {
+    return live_over(deeds, "none", NULL);
+}
+
+/* Two of them can be used at a time. */
+static const char *in_folder(const char *name) {
+    static char paths[2][4096];
+    static int next;
+    next = 1 - next;
+    (void)snprintf(paths[next], sizeof paths[next], "%s/%s", test_folder(), name);
+    return paths[next];
 }
 
 static bool same_files(const char *one, const char *other) {
     size_t a, b;
-    char *x = test_read_file(one, &a), *y = test_read_file(other, &b);
+    char *x = test_read_file(in_folder(one), &a), *y = test_read_file(in_folder(other), &b);
     bool same = x && y && a == b && memcmp(x, y, a) == 0;
     free(x);
     free(y);
@@ -128,7 +143,7 @@ TEST(window_goes_on_after_a_stop_to_the_picture_of_one_that_was_never_stopped) {
                                    {NULL, KEY('x'), 0},    {"stopped", KEY('x'), 0},      {"ready", KEY('s'), 0},
                                    {NULL, KEY('q'), 0}};
     CHECK_EQ_INT(live_with(plain), 0);
-    CHECK(rename("out.png", "whole.png") == 0);
+    CHECK(rename(in_folder("out.png"), in_folder("whole.png")) == 0);
     CHECK_EQ_INT(live_with(stopped), 0);
     CHECK(same_files("out.png", "whole.png") && same_files("out-view1.png", "out-view2.png"));
 }
@@ -161,4 +176,52 @@ TEST(window_stops_building_after_an_edit_and_goes_on_with_it_or_without) {
     CHECK_EQ_INT(live_with(deeds), 0);
     CHECK(same_files("out.png", "out-view1.png") && same_files("out.png", "out-view3.png"));
     CHECK(!same_files("out.png", "out-view4.png"));
+}
+
+static void picture_without_window(const char *overlay, const char *name) {
+    char arguments[100];
+    (void)snprintf(arguments, sizeof arguments, "-q --progress=none --overlay %s scene.lua -o %s", overlay, name);
+    struct test_result result = test_gray(NULL, arguments);
+    CHECK_EQ_INT(result.status, 0);
+    free(result.out);
+    free(result.err);
+}
+
+TEST(window_shows_and_saves_the_lines_that_overlay_draws) {
+    const struct deed deeds[] = {{"ready", KEY('b'), 0}, {"ready", KEY('s'), 0}, {NULL, KEY('g'), 0},
+                                 {"ready", KEY('s'), 0}, {NULL, KEY('g'), 0},    {"ready", KEY('s'), 0},
+                                 {NULL, KEY('q'), 0}};
+    const struct deed nothing[] = {{"ready", KEY('b'), 0}, {"ready", KEY('q'), 0}};
+    CHECK_EQ_INT(live_with(deeds), 0);
+    picture_without_window("boxes", "boxes.png");
+    picture_without_window("grid", "grid.png");
+    CHECK(same_files("out-view1.png", "boxes.png") && same_files("out-view2.png", "grid.png"));
+    CHECK(same_files("out-view3.png", "out.png") && !same_files("out.png", "boxes.png"));
+    /* Asked for on the command line, they are part of the script's picture. */
+    CHECK_EQ_INT(live_over(nothing, "boxes", NULL), 0);
+    CHECK(same_files("out.png", "boxes.png"));
+}
+
+TEST(window_outlines_what_is_picked_by_its_silhouette) {
+    static uint8_t over[4 * WIDE * HIGH];
+    const struct window_event press = {.kind = WINDOW_PRESS, AT_THE_BALL};
+    const struct window_event release = {.kind = WINDOW_RELEASE, AT_THE_BALL};
+    const struct deed deeds[] = {{"ready", press, 0}, {NULL, release, 0}, {"ready", KEY('x'), 0}, {NULL, KEY('q'), 20}};
+    CHECK_EQ_INT(live_over(deeds, "none", over), 0);
+    /* A ball of radius 1 that is 6 away, under 40 degrees for 480 pixels; pixels of the picture are 10 wide. */
+    double radius = HIGH / 2.0 * tan(asin(1.0 / 6)) / tan(20 * M_PI / 180);
+    bool turns[36] = {false};
+    const uint8_t ink[4] = {255, 190, 60, 255};
+    for (int y = 0; y < HIGH; y++) {
+        for (int x = 0; x < WIDE; x++) {
+            const uint8_t *p = over + 4 * ((size_t)y * WIDE + (size_t)x);
+            double dx = x + 0.5 - WIDE / 2.0, dy = y + 0.5 - HIGH / 2.0, far = hypot(dx, dy);
+            if (memcmp(p, ink, 4) != 0 || far < 20) /* the mark of the click */
+                continue;
+            CHECK(far > radius - 16 && far < radius + 16);
+            turns[(int)((atan2(dy, dx) / M_PI + 1) * 17.999)] = true;
+        }
+    }
+    for (int i = 0; i < 36; i++)
+        CHECK(turns[i]);
 }

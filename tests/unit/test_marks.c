@@ -1,0 +1,71 @@
+/* Which pixels show a node. */
+#include "app/marks.h"
+#include "render/camera.h"
+#include "tests/harness.h"
+#include "tests/stage.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { WIDTH = 80, HEIGHT = 60 };
+
+static bool way_of_second(void *context, uint32_t first, uint32_t count, const struct path_step *steps,
+                          uint32_t depth) {
+    (void)count;
+    if (first == 1)
+        *(uint64_t *)context = marks_way(steps, depth);
+    return true;
+}
+
+TEST(a_node_shows_where_the_ray_through_the_middle_of_a_pixel_meets_it_first) {
+    static uint8_t shows[WIDTH * HEIGHT];
+    struct stage s;
+    stage_begin(&s, 2);
+    struct material *material = stage_phong(&s, vec3_all(0.5), vec3_all(0), 1);
+    struct node *front = stage_sphere(&s, s.root, material);
+    stage_move(&s, front, 0.5, 0, 2);
+    struct node *behind = stage_sphere(&s, s.root, material);
+    stage_move(&s, behind, -0.4, 0.2, 0);
+    s.camera = (struct camera){{0, 0, 8}, {0, 0, -1}, {0, 1, 0}, 35};
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    struct render_job job = {.world = &s.world,
+                             .camera = s.camera,
+                             .settings = s.settings,
+                             .width = WIDTH,
+                             .height = HEIGHT,
+                             .film = &s.film};
+    struct marks_place place = {.shows = shows};
+    uint64_t way = 0;
+    CHECK(world_walk_paths(&s.world, s.root, way_of_second, &way, &s.error));
+    for (int by_way = 0; by_way < 2; by_way++) {
+        const struct marks_wish wish = {.outline = true, .serial = behind->serial, .way = by_way ? way : 0};
+        struct marks marks;
+        memset(shows, 7, sizeof shows);
+        CHECK(marks_make(&job, s.root, s.pool, &wish, &place, &marks, &s.error));
+        CHECK(marks.has_outline && !marks.has_lines && !marks.stopped);
+        int seen = 0;
+        for (uint32_t y = 0; y < HEIGHT; y++) {
+            for (uint32_t x = 0; x < WIDTH; x++) {
+                /* Distances of the line to the centres, and which is met first. */
+                double half = tan(17.5 * M_PI / 180), px = (x + 0.5 - WIDTH / 2.0) / (HEIGHT / 2.0) * half;
+                double py = (HEIGHT / 2.0 - y - 0.5) / (HEIGHT / 2.0) * half;
+                struct vec3 d = vec3_normalize(vec3_make(px, py, -1)), a = {0.5, 0, -6}, b = {-0.4, 0.2, -8};
+                double apart_a = vec3_length(vec3_sub(a, vec3_scale(d, vec3_dot(a, d))));
+                double apart_b = vec3_length(vec3_sub(b, vec3_scale(d, vec3_dot(b, d))));
+                bool inside =
+                    x >= marks.outline.x0 && x < marks.outline.x1 && y >= marks.outline.y0 && y < marks.outline.y1;
+                bool expected = apart_b < 1 && apart_a > 1;
+                CHECK_EQ_INT(inside && shows[y * WIDTH + x], expected);
+                CHECK(inside || shows[y * WIDTH + x] == 7);
+                seen += expected;
+            }
+        }
+        CHECK(seen > 100);
+        CHECK(marks.outline.x1 - marks.outline.x0 < 40); /* not all of the picture was asked */
+    }
+    const struct marks_wish nobody = {.outline = true, .serial = 12345};
+    struct marks none;
+    CHECK(marks_make(&job, s.root, s.pool, &nobody, &place, &none, &s.error));
+    CHECK(none.has_outline && none.outline.x1 == 0);
+    stage_end(&s);
+}
