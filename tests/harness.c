@@ -79,6 +79,20 @@ static void remove_tree(const char *path) {
     (void)rmdir(path);
 }
 
+void test_need_window(void) {
+    const char *named = getenv("GRAY_TEST_BINARY"), *options = getenv("ASAN_OPTIONS");
+    char text[4096];
+    (void)snprintf(
+        text, sizeof text,
+        "test -x '%s-gui' && for tool in Xvfb xvfb-run xdotool; do command -v $tool || exit 1; done >/dev/null",
+        named ? named : "build/release/gray");
+    if (system(text) != 0)
+        test_skip("there is no gray-gui beside the program, or no Xvfb, xvfb-run or xdotool");
+    (void)snprintf(text, sizeof text, "%s%sdetect_leaks=0", options ? options : "", options ? ":" : "");
+    (void)setenv("ASAN_OPTIONS", text, 1);
+    (void)setenv("SDL_RENDER_DRIVER", "software", 1);
+}
+
 const char *test_folder(void) {
     if (!folder_path[0]) {
         const char *base = getenv("TMPDIR");

@@ -56,6 +56,12 @@ _Noreturn void test_skip(const char *format, ...) __attribute__((format(printf, 
                       check_b ? check_b : "(null)");                                                                   \
     } while (0)
 
+/* For tests with the program in a real window: skips this one where there is no gray-gui beside the program, or no
+ * Xvfb, xvfb-run or xdotool. From then on windows are drawn without OpenGL, whose threads the thread sanitizer does not
+ * know, and the libraries of the desktop may leak; what the supervisor itself leaks is found under a window of the
+ * tests' own. */
+void test_need_window(void);
+
 /* A fresh empty folder for this test, removed when the test passes; the working directory stays the repository root. */
 const char *test_folder(void);
 void test_write_file(const char *path, const void *data, size_t size);

@@ -46,8 +46,7 @@ static int shell(const char *line) {
 
 /* Runs the steps (after the helpers) with the window of the scene. */
 static void drive(const char *scene, const char *steps) {
-    if (shell("test -x $gray-gui && command -v Xvfb && command -v xdotool && command -v xvfb-run") != 0)
-        test_skip("there is no gray-gui beside the program, or no Xvfb, xvfb-run or xdotool");
+    test_need_window();
     char *script = NULL, path[4096];
     CHECK(asprintf(&script, "%s%s\nxdotool key q; wait $pid\n", helpers, steps) > 0);
     file("scene.lua", scene);
