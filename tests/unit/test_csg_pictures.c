@@ -242,3 +242,59 @@ TEST(solids_of_any_number_of_operands_are_those_of_two_by_two) {
     CHECK(differing("9.png", "10.png", 1) <= 7);
     CHECK(differing("1.png", "3.png", 8) > 150 && differing("3.png", "6.png", 8) > 40);
 }
+
+/* Nothing: a mesh without faces, a node that is scaled flat, a solid of such. Everything: the inverse of nothing. */
+#define NOTHINGS                                                                                                       \
+    "function hollow() return gr.mesh{verts={{0,0,0}}, faces={}} end\n"                                                \
+    "function squashed() return ball(blue, 0, 0, 0, 9):scale(0, 1, 1) end\n"                                           \
+    "function all(n) return gr.inverse(n) end\n"
+
+TEST(solids_of_nothing_and_of_everything_are_what_sets_are) {
+    static const struct {
+        const char *solid, *same; /* NULL: nothing is seen of it */
+    } all[] = {{"gr.union('u', a(), hollow())", "a()"},
+               {"gr.union('u', squashed(), a(), hollow())", "a()"},
+               {"gr.union('u', hollow(), squashed())", NULL},
+               {"gr.union('u', a(), all(hollow()))", NULL},
+               {"gr.union('u', all(squashed()), a())", NULL},
+               {"gr.intersection('i', a(), hollow())", NULL},
+               {"gr.intersection('i', hollow(), a())", NULL},
+               {"gr.intersection('i', a(), all(hollow()))", "a()"},
+               {"gr.intersection('i', all(hollow()), a(), b())", "gr.intersection('i', a(), b())"},
+               {"gr.difference('d', a(), hollow())", "a()"},
+               {"gr.difference('d', hollow(), a())", NULL},
+               {"gr.difference('d', a(), all(hollow()))", NULL},
+               {"gr.difference('d', a(), b(), squashed())", "gr.difference('d', a(), b())"},
+               {"gr.difference('d', all(hollow()), a())", "gr.inverse(a())"},
+               {"gr.inverse(gr.inverse(gr.union('u', a(), hollow())))", "a()"},
+               {"gr.union('u', gr.node{children={a(), hollow()}}, squashed())", "a()"},
+               {"gr.union('u', gr.instances{of=a(), at={{-1,0,0}, {1,0,0}}}, hollow())",
+                "gr.union('u', a():translate(-1,0,0), a():translate(1,0,0))"},
+               {"gr.difference('d', gr.bounded_by{object=a(), by=gr.cube{corner={-3,-3,-3}, size=6}}, b())",
+                "gr.difference('d', a(), b())"},
+               {"gr.bounded_by{object=gr.union('u', a(), b()), by=hollow()}", "gr.union('u', a(), b())"},
+               {"gr.clipped_by{object=a(), by=hollow()}", NULL},
+               {"gr.clipped_by{object=a(), by=all(hollow())}", "a()"},
+               {"gr.clipped_by{object=gr.clipped_by{object=a(), by=b()}, by=all(squashed())}",
+                "gr.clipped_by{object=a(), by=b()}"}};
+    char text[16000] = STAGE NOTHINGS "local function a() return ball(red,-.5,0,0,1.2) end\n"
+                                      "local function b() return ball(blue,.6,.3,0,.9) end\n"
+                                      "show(gr.node('none'), 'none.png')\n";
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+        size_t used = strlen(text);
+        (void)snprintf(text + used, sizeof text - used, "show(%s, 'x%zu.png')\n", all[i].solid, i);
+        used = strlen(text);
+        if (all[i].same)
+            (void)snprintf(text + used, sizeof text - used, "show(%s, 'y%zu.png')\n", all[i].same, i);
+    }
+    renders(text);
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+        char have[32], wanted[32];
+        (void)snprintf(have, sizeof have, "x%zu.png", i);
+        (void)snprintf(wanted, sizeof wanted, all[i].same ? "y%zu.png" : "none.png", i);
+        uint32_t wrong = differing(have, wanted, 0);
+        if (wrong > 0)
+            test_fail(__FILE__, __LINE__, "%s: %u pixels are not those of %s", all[i].solid, wrong,
+                      all[i].same ? all[i].same : "nothing");
+    }
+}
