@@ -12,14 +12,17 @@
  * are scalar products of the ray's direction d with vectors that are worked out once for the eight triangles of a
  * block. Then either one ray meets eight triangles or one triangle many rays, whichever is less work.
  *
- * Single precision proposes, doubles decide, as in triangle_kernel.h, with the same meaning of e, S, L and D; the
- * origin is not moved to the frame, so it may be up to FARTHEST from the middle and is rounded by |o| e <= (S + 1) e:
- *   s                 (1.5 + |o|) e + D, and S e from the subtraction
- *   e2 x e1           8 e L^2 a component, det 46 e L^2
- *   e2 x s, s x e1    (3 + 8 S + 2 |o|) e L + 2 D L a component; u, v (15 + 52 S) e L + 6 D L
- *   T                 (15 + 58 S) e L^2 + 6 D L^2, and 46 e L^2 t from comparing it with t det; a direction's largest
- *                     component is 1/4 to 1, so t <= 4 (S + 2 L)
- * With E = ((16 + 64 S + 64 L) e + 8 D) L a true hit has u, v >= -E, u + v <= |det| + 3 E, and T within 6 E L. What
+ * Single precision proposes, doubles decide, as in triangle_kernel.h, with the same meaning of e, S, L and D. The rays
+ * are tried from their origin, which is not moved and up to FARTHEST from the middle; with R = |o| a corner is at most
+ * R + S:
+ *
+ * - s is off by (2 R + S) e + D (R for the origin, R + S for the corner), and by S e from the subtraction;
+ * - e2 x e1 by 8 e L^2 a component, det by 46 e L^2;
+ * - e2 x s and s x e1 by (4 R + 10 S) e L + 2 D L a component; u and v by (12 R + 52 S) e L + 6 D L;
+ * - T by (12 R + 58 S) e L^2 + 6 D L^2, and 46 e L^2 t from comparing it with t det; a direction's largest component is
+ *   1/4 to 1, so t <= 4 (S + 2 L).
+ *
+ * With E = ((13 R + 64 S + 64 L) e + 8 D) L a true hit has u, v >= -E, u + v <= |det| + 3 E, and T within 6 E L. What
  * passes with these turned round is certainly a hit.
  *
  * A certain hit of a "nearest" search only waits as the ray's candidate, with bounds of its t. A nearer one takes its
@@ -47,7 +50,7 @@ struct packet {
     double best[PACKET_RAYS]; /* as decided */
     float shifted[6];         /* origin moved out by the slack of boxes, in the order of a node's rows */
     float origin[3];
-    float error; /* 16 e + 8 D */
+    float error; /* 13 R e + 8 D */
     float begun; /* local t from which the rays' interval surely has begun */
     /* The beam: over the axis `ahead`, on which all rays go the same way. */
     int ahead, side[2];
@@ -561,12 +564,13 @@ static bool begin(struct packet *p, uint64_t active) {
     double o[3] = {(rays->origin.x - index->centre[0]) * index->scale,
                    (rays->origin.y - index->centre[1]) * index->scale,
                    (rays->origin.z - index->centre[2]) * index->scale};
-    double far = 1;
+    double away = 0;
     for (int k = 0; k < 3; k++) {
         if (!(fabs(o[k]) <= FARTHEST))
             return false;
-        far = fabs(o[k]) > far ? fabs(o[k]) : far;
+        away = fabs(o[k]) > away ? fabs(o[k]) : away;
     }
+    double far = away > 1 ? away : 1;
     uint64_t exponent;
     memcpy(&exponent, &scaled, sizeof exponent);
     exponent >>= 52;
@@ -607,7 +611,7 @@ static bool begin(struct packet *p, uint64_t active) {
         p->shifted[2 * k] = p->origin[k] + slack;
         p->shifted[2 * k + 1] = p->origin[k] - slack;
     }
-    p->error = 16 * 0x1p-24f + (float)(far * 8 * 0x1p-46);
+    p->error = (float)(away * 13 * 0x1p-24 + far * 8 * 0x1p-46);
     p->alive = active;
     p->found = p->waiting = p->tests = p->nodes = 0;
     return true;

@@ -119,6 +119,17 @@ static inline void maker_sphere(struct maker *m, int size) {
     }
 }
 
+/* A dense ball of radius `shrink` beside the middle of a triangle some units wide; the ball's vertices come first. */
+#define TINY_BALL_MIDDLE vec3_make(0.61803, -0.41421, 0.73205)
+static inline void maker_tiny_ball(struct maker *m, double shrink) {
+    maker_sphere(m, 6);
+    for (uint32_t i = 0; i < m->vertex_count; i++)
+        for (int k = 0; k < 3; k++)
+            m->vertices[i][k] = m->vertices[i][k] * shrink + vec3_get(TINY_BALL_MIDDLE, k);
+    uint32_t a = maker_vertex(m, -1.1, -0.4142, -1.3), b = maker_vertex(m, 1.7, -0.4142, -1.3);
+    maker_triangle(m, a, b, maker_vertex(m, 1.7, -0.4142, 1.9));
+}
+
 /* A torus with a square section that turns `twist` quarter turns on its way round, `around` steps. */
 static inline void maker_twisted_torus(struct maker *m, int around, int section, int twist) {
     uint32_t base = m->vertex_count;

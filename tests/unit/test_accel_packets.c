@@ -130,6 +130,39 @@ TEST(packets_answer_as_single_rays_for_every_instruction_set) {
     CHECK(accel_select_isa("auto"));
 }
 
+/* Single precision knows places hardly better than the ball's triangles are large. */
+TEST(packets_from_near_a_tiny_dense_ball_in_a_wide_scene_answer_as_single_rays) {
+    uint64_t hits = 0;
+    for (int isa = 0; isa < 3; isa++) {
+        if (!accel_select_isa(sets[isa]))
+            continue;
+        struct test_random random = {22};
+        for (int size = 1; size <= 6; size++) {
+            struct maker m = {0};
+            maker_tiny_ball(&m, pow(10, -size));
+            struct triangle_set set = set_of(&m);
+            struct triangle_index *index = build(&set);
+            for (int i = 0; i < 60; i++) {
+                struct ray_packet packet = {.t_min = 0, .count = 64};
+                double away = pow(10, test_uniform(&random, -size, 1 - size));
+                packet.origin = vec3_add_scaled(TINY_BALL_MIDDLE, test_point(&random, 1), away);
+                for (uint32_t k = 0; k < packet.count; k++) {
+                    const double *v = m.vertices[(uint32_t)test_uniform(&random, 0, m.vertex_count - 3)];
+                    struct vec3 target = vec3_add_scaled(vec3_make(v[0], v[1], v[2]), test_point(&random, 1),
+                                                         (k & 1) * 0.1 * pow(10, -size));
+                    set_direction(&packet, k, vec3_sub(target, packet.origin));
+                    packet.t_max[k] = INFINITY;
+                }
+                hits += (uint64_t)__builtin_popcountll(check_packet(index, &set, &packet, UINT64_MAX, "tiny ball"));
+            }
+            triangle_index_destroy(index);
+            maker_free(&m);
+        }
+    }
+    CHECK(accel_select_isa("auto"));
+    CHECK(hits > 10000);
+}
+
 /* The rays of pixels: edges that run through every pixel, straight on and askew, and rays exactly through vertices. */
 TEST(the_camera_rays_of_a_tile_answer_as_single_rays) {
     for (int isa = 0; isa < 3; isa++) {

@@ -154,16 +154,9 @@ TEST(rays_at_a_tiny_dense_ball_in_a_wide_scene_meet_what_trying_every_triangle_m
         struct test_random random = {77};
         for (int size = 1; size <= 6; size++) {
             struct maker m = {0};
-            maker_sphere(&m, 6);
-            double shrink = pow(10, -size);
-            struct vec3 middle = vec3_make(0.61803, -0.41421, 0.73205);
-            for (uint32_t i = 0; i < m.vertex_count; i++)
-                for (int k = 0; k < 3; k++)
-                    m.vertices[i][k] = m.vertices[i][k] * shrink + vec3_get(middle, k);
-            uint32_t ball = m.vertex_count, corner[3];
-            for (int k = 0; k < 3; k++)
-                corner[k] = maker_vertex(&m, k == 0 ? -1.1 : 1.7, -0.4142, k == 2 ? 1.9 : -1.3);
-            maker_triangle(&m, corner[0], corner[1], corner[2]);
+            maker_tiny_ball(&m, pow(10, -size));
+            uint32_t ball = m.vertex_count - 3;
+            struct vec3 middle = TINY_BALL_MIDDLE;
             struct triangle_set set = set_of(&m);
             struct triangle_index *index = build(&set, 0, NULL);
             struct triangle_cost cost = {0};
