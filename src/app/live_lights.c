@@ -68,45 +68,46 @@ static bool free_part(const struct live *live, double *left, double *top, double
     return *left < *right && *top < *bottom;
 }
 
-static bool mark_direction(const struct live *live, const struct camera_frame *frame, struct vec3 toward, double *x,
-                           double *y) {
+/* Where that point is, or at the border on the way there. */
+static bool mark_point(const struct live *live, const struct camera_frame *frame, struct vec3 point, double *x,
+                       double *y, bool *seen) {
     double left, top, right, bottom;
     if (!free_part(live, &left, &top, &right, &bottom))
         return false;
-    double far = 1e6 * (1 + vec3_max_abs(frame->eye));
-    bool ahead = vec3_dot(toward, frame->forward) > 0 && live->request.lens.projection != PROJECTION_ORTHOGRAPHIC;
-    if (ahead && live_project(live, frame, vec3_add_scaled(frame->eye, toward, far), x, y) && *x >= left &&
-        *x <= right && *y >= top && *y <= bottom)
+    *seen = live_project(live, frame, point, x, y) && *x >= left && *x <= right && *y >= top && *y <= bottom;
+    if (*seen)
         return true;
+    struct vec3 toward = vec3_sub(point, frame->eye);
     double dx = vec3_dot(toward, frame->unit_right), dy = vec3_dot(toward, frame->unit_down);
-    double wide = (right - left) / 2, high = (bottom - top) / 2;
-    if (!(fabs(dx) + fabs(dy) > 0))
-        dy = 1;
+    double wide = (right - left) / 2, high = (bottom - top) / 2, size = fmax(fabs(dx), fabs(dy));
+    dx = size > 0 ? dx / size : 0;
+    dy = size > 0 ? dy / size : 1;
     double reach = fmin(wide / fmax(fabs(dx), 1e-9), high / fmax(fabs(dy), 1e-9));
     *x = left + wide + reach * dx;
     *y = top + high + reach * dy;
     return isfinite(*x) && isfinite(*y);
 }
 
-bool live_light_mark(const struct live *live, const struct camera_frame *frame, uint32_t number, double *x, double *y) {
+bool live_light_mark(const struct live *live, const struct camera_frame *frame, uint32_t number, double *x, double *y,
+                     bool *seen) {
     const struct told_light *light = live_light(live, number);
     if (!light || !(largest(light->colour) > 0)) /* one that was taken away is black */
         return false;
     if (light->placed)
-        return live_project(live, frame, light->position, x, y);
-    if (light->kind == LIGHT_DIRECTIONAL)
-        return mark_direction(live, frame, vec3_negate(light->direction), x, y);
-    return light->kind == LIGHT_SKY && mark_direction(live, frame, vec3_make(0, 1, 0), x, y);
+        return mark_point(live, frame, light->position, x, y, seen);
+    struct vec3 from = light->kind == LIGHT_DIRECTIONAL ? vec3_negate(light->direction) : vec3_make(0, 1, 0);
+    double far = 1e6 * (1 + vec3_max_abs(frame->eye));
+    return mark_point(live, frame, vec3_add_scaled(frame->eye, from, far), x, y, seen);
 }
 
 bool live_near_light(const struct live *live, double x, double y, uint32_t *number) {
     struct camera_frame frame;
     double best = MARKER * live->panel.paper.scale, u, v;
-    bool found = false;
+    bool found = false, seen;
     if (!live_frame(live, &frame))
         return false;
     for (uint32_t i = 1; i <= live->lights_known; i++) {
-        if (!live_light_mark(live, &frame, i, &u, &v))
+        if (!live_light_mark(live, &frame, i, &u, &v, &seen))
             continue;
         double apart = sqrt((u - x) * (u - x) + (v - y) * (v - y));
         if (apart < best) {

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const struct ink outline = {255, 190, 60, 255}, bulb = {255, 235, 120, 255};
+static const struct ink outline = {255, 190, 60, 255}, bulb = {255, 235, 120, 255}, dim = {200, 185, 110, 150};
 static const struct ink parts_of_colour[3] = {{210, 70, 60, 255}, {80, 180, 80, 255}, {80, 110, 220, 255}};
 
 /* On the picture. */
@@ -81,11 +81,11 @@ void live_draw_lights(struct live *live, const struct camera_frame *frame) {
     const struct paper *paper = &live->panel.paper;
     double x, y, r = 4 * paper->scale;
     for (uint32_t i = 1; i <= live->lights_known; i++) {
-        bool chosen = live->selection.kind == SELECTED_LIGHT && live->selection.light == i;
+        bool chosen = live->selection.kind == SELECTED_LIGHT && live->selection.light == i, seen;
         const struct told_light *light = live_light(live, i);
-        if (!live_light_mark(live, frame, i, &x, &y))
+        if (!live_light_mark(live, frame, i, &x, &y, &seen))
             continue;
-        struct ink ink = chosen ? outline : bulb;
+        struct ink ink = chosen ? outline : seen ? bulb : dim;
         paper_ring(paper, x, y, chosen ? 1.5 * r : r, ink);
         paper_line(paper, x - r / 2, y, x + r / 2, y, ink);
         if (light->kind != LIGHT_SKY)

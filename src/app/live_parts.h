@@ -47,8 +47,10 @@ bool live_project(const struct live *live, const struct camera_frame *frame, str
 /* live_lights.c; lights are numbered from 1 */
 void live_take_lights(struct live *live, const struct studio_news *news);
 const struct told_light *live_light(const struct live *live, uint32_t number); /* NULL: nothing is known of it */
-/* Where it is marked, pixels of the window. False: nowhere. */
-bool live_light_mark(const struct live *live, const struct camera_frame *frame, uint32_t number, double *x, double *y);
+/* Where it is marked, pixels of the window; *seen: it is there, and not only at the border on the way to it. False:
+ * nowhere. */
+bool live_light_mark(const struct live *live, const struct camera_frame *frame, uint32_t number, double *x, double *y,
+                     bool *seen);
 bool live_near_light(const struct live *live, double x, double y, uint32_t *number);
 void live_select_light(struct live *live, uint32_t number);
 void live_next_light(struct live *live, bool back);
