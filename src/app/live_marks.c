@@ -24,7 +24,8 @@ struct marks_wish live_marks_wish(const struct live *live, bool walking) {
         .lines = {live->overlay, walking ? BOXES_WALKING : OVERLAY_BOXES, walking ? live->divide : 1},
         .outline = outline,
         .serial = outline ? live->selection.picked.serial : 0,
-        .way = outline ? live->selection.picked.way : 0};
+        .way = outline ? live->selection.picked.way : 0,
+        .solid = outline ? live->selection.picked.solid : 0};
 }
 
 void live_choose_overlay(struct live *live, enum overlay overlay) {

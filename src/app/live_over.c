@@ -19,7 +19,8 @@ static void draw_selection(struct live *live, const struct camera_frame *frame) 
     double x, y;
     if (live_project(live, frame, live_moved_point(live, picked->position), &x, &y))
         paper_ring(&live->panel.paper, x, y, 3 * live->panel.paper.scale, outline);
-    if (live_draw_outline(live, outline))
+    /* Of an operand much may not be seen at all: its box shows where it is. */
+    if (live_draw_outline(live, outline) && picked->solid == 0)
         return;
     for (int i = 0; i < 8 && picked->has_box; i++)
         corners[i] = live_moved_point(live, picked->corners[i]);

@@ -6,6 +6,7 @@
 #include "app/channel.h"
 #include "base/hash.h"
 #include "base/mem.h"
+#include "geom/csg.h"
 #include "render/aov.h"
 #include "render/camera.h"
 
@@ -40,14 +41,36 @@ uint64_t marks_way(const struct path_step *steps, uint32_t depth) {
 struct seeking {
     const struct world *world;
     const struct marks_wish *wish;
-    uint8_t *member; /* by primitive: part of the node */
+    uint8_t *member; /* by primitive: part of the node, or of the solid that it is an operand of */
     struct box box;
+    uint32_t first_leaf, end_leaf; /* of that solid, by origin: those of the operand */
+    const struct path_step *to_solid;
+    uint32_t depth;
 };
+
+static bool note_leaves(void *context, uint32_t first, uint32_t end, const struct path_step *steps, uint32_t depth) {
+    struct path_step way[2 * OPERAND_DEPTH];
+    struct seeking *s = context;
+    if (steps[depth - 1].node->serial != s->wish->serial || s->depth > OPERAND_DEPTH)
+        return true;
+    memcpy(way, s->to_solid, s->depth * sizeof *way);
+    memcpy(way + s->depth, steps, depth * sizeof *way);
+    if (marks_way(way, s->depth + depth) != s->wish->way)
+        return true;
+    s->first_leaf = first;
+    s->end_leaf = end;
+    return false;
+}
 
 static bool note_members(void *context, uint32_t first, uint32_t count, const struct path_step *steps, uint32_t depth) {
     struct seeking *s = context;
-    bool below = false;
-    for (uint32_t i = 0; i < depth && !below; i++)
+    bool below = s->wish->solid != 0 && marks_way(steps, depth) == s->wish->solid;
+    if (below) {
+        s->to_solid = steps;
+        s->depth = depth;
+        world_walk_operands(steps[depth - 1].node, note_leaves, s);
+    }
+    for (uint32_t i = 0; i < depth && !below && s->wish->solid == 0; i++)
         below =
             steps[i].node->serial == s->wish->serial && (s->wish->way == 0 || marks_way(steps, i + 1) == s->wish->way);
     for (uint32_t i = first; below && i < first + count; i++) {
@@ -89,11 +112,19 @@ struct outlining {
     const struct render_job *job;
     const struct camera_frame *frame;
     const struct pool *pool;
-    const uint8_t *member;
+    const struct seeking *seeking;
     struct world_scratch *scratch; /* by worker */
     struct film_rectangle area;
     uint8_t *shows;
 };
+
+static bool is_member(const struct seeking *s, const struct hit *hit) {
+    const struct shape *shape = placed_shape(s->world, hit->placed);
+    if (!s->member[hit->placed] || s->wish->solid == 0 || shape->kind != SHAPE_CSG)
+        return s->member[hit->placed];
+    uint32_t origin = shape->csg->leaves[hit->leaf].origin;
+    return origin >= s->first_leaf && origin < s->end_leaf;
+}
 
 static void outline_rows(void *context, uint32_t item, int worker) {
     const struct outlining *o = context;
@@ -104,7 +135,7 @@ static void outline_rows(void *context, uint32_t item, int worker) {
         for (uint32_t x = o->area.x0; x < o->area.x1; x++) {
             bool shows = camera_ray_through(o->frame, film->x0 + x + 0.5, film->y0 + y + 0.5,
                                             (struct sample2){0.5, 0.5}, 0, &ray) &&
-                         world_nearest(o->job->world, &ray, &o->scratch[worker], &hit) && o->member[hit.placed];
+                         world_nearest(o->job->world, &ray, &o->scratch[worker], &hit) && is_member(o->seeking, &hit);
             o->shows[(size_t)y * film->width + x] = shows;
         }
         if (pool_cancelled(o->pool))
@@ -146,7 +177,7 @@ static bool make_outline(const struct render_job *job, const struct node *root, 
         return error_no_memory(error, "the outline of a node");
     bool ok = world_walk_paths(job->world, root, note_members, &seeking, error);
     if (ok && !box_is_empty(&seeking.box)) {
-        struct outlining o = {.job = job, .frame = &frame, .pool = pool, .member = seeking.member, .shows = shows};
+        struct outlining o = {.job = job, .frame = &frame, .pool = pool, .seeking = &seeking, .shows = shows};
         o.area = rectangle_of(&frame, job->film, &seeking.box);
         ok = run_outline(&o, pool, error);
         *found = o.area;

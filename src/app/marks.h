@@ -14,7 +14,8 @@ struct marks_wish {
     struct overlay_wish lines; /* none: OVERLAY_NONE */
     bool outline;              /* of the node with this serial ... */
     uint32_t serial;
-    uint64_t way; /* ... on this way, as marks_way tells it; 0: on all ways */
+    uint64_t way;   /* ... on this way, as marks_way tells it; 0: on all ways */
+    uint64_t solid; /* of an operand: the way to the combined solid that it is in; else 0 */
 };
 
 struct marks {

@@ -184,6 +184,7 @@ static bool describe(struct picking *p, const struct node *root, const struct hi
     const struct node *node = p->steps[p->depth - 1].node;
     out->serial = node->serial;
     out->way = marks_way(p->steps, p->depth);
+    out->solid = p->depth > p->way ? marks_way(p->steps, p->way) : 0;
     pick_words(out->name, node->name);
     if (p->depth > 1) {
         out->parent_serial = p->steps[p->depth - 2].node->serial;

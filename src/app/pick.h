@@ -16,6 +16,7 @@ struct picked {
     uint32_t serial, parent_serial; /* of the node, and of the one above it */
     char parent_name[PICK_WORDS];
     uint64_t way;               /* to it (app/marks.h); 0: not known */
+    uint64_t solid;             /* of an operand: the way to the solid that was placed; else 0 */
     uint32_t levels;            /* nodes above it */
     int32_t up;                 /* as it was asked for, but no farther than there are nodes */
     uint32_t below;             /* operands below it on the way to the surface that was hit */

@@ -236,6 +236,7 @@ static bool pick(struct at_work *work, const struct studio_order *order, struct 
         return false;
     wish.serial = news->picked.serial;
     wish.way = news->picked.way;
+    wish.solid = news->picked.solid;
     return !news->picked.hit || make_marks(work, &order->view, &wish, news, error);
 }
 

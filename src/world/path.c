@@ -153,45 +153,69 @@ bool world_find_paths(const struct world *world, const struct node *root, const 
 /* --- inside of combined solids --- */
 
 struct operand_walk {
-    struct path_step *steps;
-    uint32_t capacity, depth;
-    uint32_t left; /* shapes before the one that is looked for */
+    world_operand_visit *visit;
+    void *context;
+    struct path_step steps[OPERAND_DEPTH];
+    uint32_t met; /* shapes so far */
+    bool ended;
 };
 
-static bool seek_operand(struct operand_walk *walk, const struct node *node, uint32_t level);
+static void walk_operand(struct operand_walk *walk, const struct node *node, uint32_t level);
 
-static bool seek_operands(struct operand_walk *walk, const struct node *node, uint32_t level) {
+static void walk_operands(struct operand_walk *walk, const struct node *node, uint32_t level) {
     uint32_t count = node->operation == NODE_BOUNDED ? 1 : node->operand_count; /* the bound is no part of it */
-    for (uint32_t i = 0; i < count; i++)
-        if (seek_operand(walk, node->operands[i], level))
-            return true;
-    return false;
+    for (uint32_t i = 0; i < count && !walk->ended; i++)
+        walk_operand(walk, node->operands[i], level);
 }
 
 /* In the order of flatten_csg.c: the node's own surface, its operands, its children at every place. */
-static bool seek_operand(struct operand_walk *walk, const struct node *node, uint32_t level) {
-    if (node->singular || level == walk->capacity)
-        return false;
+static void walk_operand(struct operand_walk *walk, const struct node *node, uint32_t level) {
+    uint32_t first = walk->met;
+    if (node->singular)
+        return;
+    if (level == OPERAND_DEPTH) {
+        walk->ended = true;
+        return;
+    }
     walk->steps[level] = (struct path_step){node, 0};
     bool nothing =
         node->kind == NODE_GEOMETRY && node->shape.kind == SHAPE_MESH && mesh_triangle_count(node->shape.mesh) == 0;
-    if (node->kind == NODE_GEOMETRY && !nothing && walk->left-- == 0) {
-        walk->depth = level + 1;
-        return true;
-    }
-    if (node->kind == NODE_CSG && seek_operands(walk, node, level + 1))
-        return true;
+    walk->met += node->kind == NODE_GEOMETRY && !nothing;
+    if (node->kind == NODE_CSG)
+        walk_operands(walk, node, level + 1);
     uint32_t rounds = node->placements ? node->placements->count : 1;
     for (uint32_t i = 0; i < rounds && node->first_child; i++) {
         walk->steps[level].place = node->placements ? i + 1 : 0;
-        for (const struct node_child *child = node->first_child; child; child = child->next)
-            if (seek_operand(walk, child->node, level + 1))
-                return true;
+        for (const struct node_child *child = node->first_child; child && !walk->ended; child = child->next)
+            walk_operand(walk, child->node, level + 1);
     }
+    walk->steps[level].place = 0;
+    walk->ended = walk->ended || !walk->visit(walk->context, first, walk->met, walk->steps, level + 1);
+}
+
+void world_walk_operands(const struct node *solid, world_operand_visit *visit, void *context) {
+    struct operand_walk walk = {.visit = visit, .context = context};
+    if (solid->kind == NODE_CSG)
+        walk_operands(&walk, solid, 0);
+}
+
+struct wanted_operand {
+    struct path_step *steps;
+    uint32_t capacity, origin, depth;
+};
+
+static bool keep_operand(void *context, uint32_t first, uint32_t end, const struct path_step *steps, uint32_t depth) {
+    struct wanted_operand *wanted = context;
+    /* What is below a shape was told before it, so the first one that has the leaf is what it was made of. */
+    if (wanted->origin < first || wanted->origin >= end || depth > wanted->capacity)
+        return wanted->origin >= end;
+    memcpy(wanted->steps, steps, depth * sizeof *steps);
+    wanted->depth = depth;
     return false;
 }
 
 uint32_t world_operand_way(const struct node *solid, uint32_t origin, struct path_step *steps, uint32_t capacity) {
-    struct operand_walk walk = {.steps = steps, .capacity = capacity, .left = origin};
-    return solid->kind == NODE_CSG && seek_operands(&walk, solid, 0) ? walk.depth : 0;
+    struct wanted_operand wanted = {.steps = steps, .capacity = capacity, .origin = origin};
+    world_walk_operands(solid, keep_operand, &wanted);
+    return wanted.depth;
 }

@@ -28,8 +28,15 @@ size_t world_path_text(const struct path_step *steps, uint32_t depth, char *out,
 bool world_find_paths(const struct world *world, const struct node *root, const uint32_t *wanted, uint32_t count,
                       struct arena *arena, const char **out, struct error *error);
 
-/* The way from a combined solid (NODE_CSG) down to the shape that a leaf of it was made of (csg_leaf.origin), without
- * the solid itself; steps has room for `capacity`. Returns its length; 0: there is none, or it is longer. */
+/* Inside of combined solids (NODE_CSG): every node under one, told after what is below it. steps: the way to it,
+ * without the solid; its leaves, and those of what is below it, are the ones of origin first .. end - 1
+ * (csg_leaf.origin). Ways of more than OPERAND_DEPTH nodes are not told. False: the walk may end. */
+enum { OPERAND_DEPTH = 256 };
+typedef bool world_operand_visit(void *context, uint32_t first, uint32_t end, const struct path_step *steps,
+                                 uint32_t depth);
+void world_walk_operands(const struct node *solid, world_operand_visit *visit, void *context);
+/* The way down to the shape that a leaf was made of; steps has room for `capacity`. Returns its length; 0: there is
+ * none, or it is longer. */
 uint32_t world_operand_way(const struct node *solid, uint32_t origin, struct path_step *steps, uint32_t capacity);
 
 #endif

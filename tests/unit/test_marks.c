@@ -1,5 +1,6 @@
 /* Which pixels show a node. */
 #include "app/marks.h"
+#include "app/pick.h"
 #include "render/camera.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
@@ -67,5 +68,53 @@ TEST(a_node_shows_where_the_ray_through_the_middle_of_a_pixel_meets_it_first) {
     struct marks none;
     CHECK(marks_make(&job, s.root, s.pool, &nobody, &place, &none, &s.error));
     CHECK(none.has_outline && none.outline.x1 == 0);
+    stage_end(&s);
+}
+
+TEST(an_operand_shows_where_its_surface_is_that_of_the_solid) {
+    static uint8_t shows[WIDTH * HEIGHT];
+    struct stage s;
+    stage_begin(&s, 2);
+    struct material *material = stage_phong(&s, vec3_all(0.5), vec3_all(0), 1);
+    struct node *shelf = stage_group(&s, s.root);
+    struct node *large = stage_sphere(&s, shelf, material), *hollow = stage_sphere(&s, shelf, material);
+    struct node *lump = stage_sphere(&s, shelf, material);
+    shelf->singular = true;
+    stage_move(&s, hollow, 0.2, 0.1, 0.9);
+    stage_move(&s, lump, 0.9, 0, 0);
+    struct node *first[2] = {large, lump};
+    struct node *operands[2] = {scene_combine(&s.scene, "both", NODE_UNION, first, 2, &s.error), hollow};
+    struct node *cut = scene_combine(&s.scene, "cut", NODE_DIFFERENCE, operands, 2, &s.error);
+    CHECK(node_add_child(&s.scene, s.root, cut, &s.error));
+    s.camera = (struct camera){{0, 0, 8}, {0, 0, -1}, {0, 1, 0}, 35};
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    struct render_job job = {.world = &s.world,
+                             .camera = s.camera,
+                             .settings = s.settings,
+                             .width = WIDTH,
+                             .height = HEIGHT,
+                             .film = &s.film};
+    struct marks_place place = {.shows = shows};
+    struct picked picked;
+    struct marks marks;
+    /* The middle is in the hollow; its outline is where a click finds it. */
+    for (int32_t down = 0; down <= 1; down++) {
+        int seen = 0;
+        CHECK(pick_at(&job, s.root, WIDTH / 2.0, HEIGHT / 2.0, -down, &picked, &s.error));
+        CHECK_EQ_INT(picked.serial, down ? hollow->serial : cut->serial);
+        const struct marks_wish wish = {
+            .outline = true, .serial = picked.serial, .way = picked.way, .solid = picked.solid};
+        memset(shows, 0, sizeof shows);
+        CHECK(marks_make(&job, s.root, s.pool, &wish, &place, &marks, &s.error));
+        for (uint32_t y = 0; y < HEIGHT; y++) {
+            for (uint32_t x = 0; x < WIDTH; x++) {
+                CHECK(pick_at(&job, s.root, x + 0.5, y + 0.5, -down, &picked, &s.error));
+                bool expected = picked.hit && picked.serial == wish.serial;
+                CHECK_EQ_INT(shows[y * WIDTH + x] != 0, expected);
+                seen += expected;
+            }
+        }
+        CHECK(seen > 100);
+    }
     stage_end(&s);
 }
