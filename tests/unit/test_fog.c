@@ -74,6 +74,45 @@ TEST(fog_is_the_exponential_of_its_integral) {
     CHECK_NEAR(fog_transmittance(&grid, vec3_make(50, 0, 0), up, INFINITY), 1, 0);
 }
 
+/* Beside and on the borders of what it is made of, and along axes: the closed forms are the numbers on the right. */
+TEST(fog_is_integrated_on_its_borders_and_along_axes) {
+    static const double heights[] = {0, 1, 3}, levels[] = {0, 0.4, 0.2}, sums[] = {0, 0.2, 0.8};
+    static const double cells[] = {0.1, 0.2, 0.3, 0.4};
+    const struct fog profile = {.kind = FOG_PROFILE, .count = 3, .heights = heights, .densities = levels, .sums = sums};
+    const struct fog grid = {
+        .kind = FOG_GRID, .corner = {0, 0, 0}, .size = {2, 1, 2}, .cells = {2, 1, 2}, .densities = cells};
+    const struct fog height = {.kind = FOG_HEIGHT, .density = 0.5, .base = 0, .scale = 1};
+    const struct {
+        const struct fog *fog;
+        struct vec3 from, way;
+        double distance, depth;
+    } all[] = {{&profile, {0, -5, 0}, {1, 0, 0}, 7, 0},               /* level, below: none */
+               {&profile, {0, 0, 0}, {1, 0, 0}, 7, 0},                /* level, on the border */
+               {&profile, {0, 0.5, 0}, {1, 0, 0}, 7, 7 * 0.2},        /* level, between */
+               {&profile, {0, 9, 0}, {1, 0, 0}, 7, 7 * 0.2},          /* level, above */
+               {&profile, {0, 0.5, 0}, {1, 1e-12, 0}, 7, 7 * 0.2},    /* nearly level */
+               {&profile, {0, 1e6, 0}, {1, 1e-12, 0}, 7, 7 * 0.2},    /* the same far above */
+               {&profile, {0, -5, 0}, {0, 1, 0}, 8, 0.8},             /* from below to the upper border */
+               {&profile, {0, 9, 0}, {0, -1, 0}, 20, 0.8 + 6 * 0.2},  /* from above to far below */
+               {&grid, {-1, 0.5, 0.5}, {1, 0, 0}, 9, 0.1 + 0.2},      /* along x, from outside */
+               {&grid, {0.5, 0.5, 9}, {0, 0, -1}, 99, 0.1 + 0.3},     /* along -z */
+               {&grid, {1.5, 0.5, 0.5}, {0, 1, 0}, 99, 0.5 * 0.2},    /* along y, from inside */
+               {&grid, {-1, 0.5, 5}, {1, 0, 0}, 9, 0},                /* beside it */
+               {&grid, {-1, 0.5, -5}, {1, 0, 0}, 9, 0},               /* on the other side */
+               {&grid, {0.5, 0.5, 0.5}, {1, 0, 0}, 0.25, 0.25 * 0.1}, /* ends in its cell */
+               {&grid, {2, 0.5, 0.5}, {-1, 0, 0}, 99, 0.1 + 0.2},     /* from its face on */
+               {&grid, {0, 0.5, 0}, {0.6, 0, 0.8}, 2.5, 0},           /* on its edge, see below */
+               {&height, {0, 1e4, 0}, {0, 1, 0}, INFINITY, 0},        /* where there is no more of it, and up */
+               {&height, {0, 0, 0}, {0, 1, 0}, INFINITY, 0.5},        /* all that is above */
+               {&height, {0, 0, 0}, {1, 0, 0}, 3, 1.5}};
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+        double depth = all[i].depth;
+        if (all[i].fog == &grid && all[i].way.z > 0) /* leaves cell (0,0) at z = 1, then (0,1) at x = 1, then (1,1) */
+            depth = 1.25 * 0.1 + (1 / 0.6 - 1.25) * 0.3 + (2.5 - 1 / 0.6) * 0.4;
+        CHECK_NEAR(fog_transmittance(all[i].fog, all[i].from, all[i].way, all[i].distance), exp(-depth), 1e-9);
+    }
+}
+
 TEST(simple_fogs_follow_their_formulas) {
     struct vec3 o = {1, 2, 3}, d = {0, 0.6, 0.8};
     struct fog fog = {.kind = FOG_EXPONENTIAL, .density = 0.3, .near = 2, .far = 6};

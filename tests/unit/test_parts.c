@@ -142,6 +142,23 @@ TEST(merge_says_which_parts_are_missing_double_or_foreign) {
     CHECK(exists("out.png"));
 }
 
+TEST(merge_takes_parts_in_any_order_and_counts_many_that_are_missing) {
+    put("scene.lua", SCENE "picture('a.png', 40, 30)\npicture('b.png', 30, 40)\n");
+    gives("mkdir whole; $gray scene.lua -o whole/%d.png && $gray scene.lua --shard 1/2 && $gray scene.lua --shard 2/2",
+          0, NULL);
+    gives("$gray merge b.png.2*.part a.png.2*.part b.png.1*.part a.png.1*.part && cmp a.png whole/1.png && "
+          "cmp b.png whole/2.png",
+          0, NULL);
+    gives("$gray scene.lua -o %d.png --shard 2/2; $gray merge a.png.1*.part 2.png.2*.part b.png.1*.part 1.png.2*.part",
+          1, "it is of 1.png, not of a.png");
+    gives("$gray scene.lua --shard 1/12; $gray merge a.png.1-of-12.part", 1,
+          "a.png: parts 2, 3, 4, 5, 6, 7, 8, 9 and 3 more of 12 are missing");
+    gives("$gray scene.lua --shard 12/12; $gray merge a.png.*-of-12.part", 1,
+          "a.png: parts 2, 3, 4, 5, 6, 7, 8, 9 and 2 more of 12 are missing");
+    gives("for i in 3 4 5 6 7 8 9; do $gray scene.lua --shard $i/12; done; $gray merge a.png.*-of-12.part", 1,
+          "a.png: parts 2, 10 and 11 of 12 are missing");
+}
+
 TEST(merge_writes_only_where_a_script_might) {
     put("scene.lua", SCENE "picture('out.png', 40, 40)\n");
     gives("mkdir in; $gray scene.lua -o ../up.png --shard 1/1; cd in; $gray merge ../../up.png.1-of-1.part", 1,
