@@ -198,8 +198,16 @@ static void place_node(struct laying *l) {
     struct transform map;
     memcpy(matrix.m, l->change->numbers, sizeof matrix.m);
     struct node *node = begin_node(l);
-    if (node && transform_from_affine(&matrix, &map))
-        node->parent_from_node = transform_compose(&map, &node->parent_from_node);
+    if (!node || !transform_from_affine(&matrix, &map))
+        return;
+    if (node->moves_to && node->moves_to != node) { /* where it goes to is moved alike */
+        struct node *end = &l->out->nodes[l->out->node_count - 1].moved_end;
+        struct transform from = node_parent_from_node(node->moves_to);
+        *end = (struct node){.name = node->moves_to->name, .kind = NODE_GROUP};
+        end->parent_from_node = transform_compose(&map, &from);
+        node->moves_to = end;
+    }
+    node->parent_from_node = transform_compose(&map, &node->parent_from_node);
 }
 
 static struct vec3 three(const double *numbers) {

@@ -72,6 +72,7 @@ struct changed_node {
     struct node before;              /* its first part, which all kinds have */
     struct node_child *end;          /* its last child before */
     const struct material *material; /* of a shape */
+    struct node moved_end;           /* of a node that moves to another's place: that place, changed alike */
 };
 struct changed_material {
     struct material *material;

@@ -240,6 +240,21 @@ TEST(changes_hold_for_every_picture_and_leave_the_scripts_own_tree_alone) {
                  true);
 }
 
+TEST(changes_of_a_node_that_moves_move_its_whole_way) {
+    static const char tail[] = "r:render{file='out.png', width=60, height=40, eye={0, 0, 6}, view={0, 0, -1}, fov=40, "
+                               "shutter={0, 1}, samples=4, lights={gr.light({4, 5, 6}, {0.5, 0.5, 0.5}, {1, 0, 0})}}\n";
+    char one[4096], other[4096];
+    (void)snprintf(one, sizeof one,
+                   SCENE_HEAD "local there = gr.node('there'):translate(1.5, 0.5, 0)\nball:translate(0.5, 0.5, "
+                              "0)\nball:moves_to(there)\n%s",
+                   tail);
+    (void)snprintf(other, sizeof other,
+                   SCENE_HEAD "local there = gr.node('there'):translate(1, 0, 0)\nball:moves_to(there)\n"
+                              "gr.change_node('ball', 2, {1, 0, 0, 0.5, 0, 1, 0, 0.5, 0, 0, 1, 0})\n%s",
+                   tail);
+    same_picture(one, other, true);
+}
+
 TEST(changes_of_what_is_not_there_are_told_once_and_left_out) {
     struct test_result result = test_gray_scene(
         SCENE_HEAD "gr.change_delete('no such', 77)\n" SCENE_TAIL("{0, 0, 6}", LIGHT) SCENE_TAIL("{0, 0, 6}", LIGHT),
