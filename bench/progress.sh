@@ -70,7 +70,7 @@ for scene in ${SCENES:-data/??demo.lua data/light.lua data/meshes.lua data/pyram
     case $scene in
     *03demo* | *04demo* | *06demo* | *11demo* | *12demo* | *pyramid-fog*) size='--size 2560x1920' ;;
     *01demo* | *02demo* | *05demo* | *08demo* | *09demo* | *13demo* | *meshes*) size='--size 1920x1440' ;;
-    *light* | *relief*) size='--size 1280x960' ;;
+    *10demo* | *14demo* | *relief* | *solids*) size='--size 1280x960' ;;
     *) size= ;;
     esac
     run=0

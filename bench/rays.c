@@ -1,10 +1,13 @@
-/* The same rays through gray's mesh kernel and through Embree, interleaved in one process on one thread: camera rays
- * 1024 x 1024, shadow rays from their hits to a point light, cosine-distributed bounces from there (fixed seed).
- * Every number is thread CPU time, the median of the repetitions; ratios are gray's speed over Embree's, each from two
- * runs side by side. Camera rays go through gray's packets of 64 and Embree's of 16 (coherent flag), too. Embree is
- * optional: build with -DHAVE_EMBREE and -lembree3.
+/* The same rays through gray's mesh kernel and through Embree, interleaved in one process, on one thread or more:
+ * camera rays 1024 x 1024, shadow rays from their hits to a point light, cosine-distributed bounces from there (fixed
+ * seed). Every number is thread CPU time, the median of the repetitions; ratios are gray's speed over Embree's, each
+ * from two runs side by side. Camera rays go through gray's packets of 64 and Embree's of 16 (coherent flag), too.
+ * Embree is optional: build with -DHAVE_EMBREE and -lembree3.
  *
- *   rays [--models FOLDER] [--seed N] [--reps N] [--size N] [--json] [--isa NAME] [SCENE ...]
+ *   rays [--models FOLDER] [--seed N] [--reps N] [--size N] [--threads N] [--json] [--isa NAME] [SCENE ...]
+ *
+ * With --threads the rays are dealt to so many threads in turns of 4096, and a time is that of the thread that takes
+ * longest; structures are built by as many threads, and that time is by the clock of the wall.
  *
  * SCENE is a part of a scene's name; without one all are run. Meshes that are not in FOLDER are skipped, and said to
  * be. A disagreement is a ray where one kernel hits and the other does not, or the t differ by more than 1e-4 of their
@@ -15,6 +18,7 @@
 #include "geom/mesh.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,7 +45,7 @@ struct bench_hit {
 struct options {
     const char *models;
     uint64_t seed;
-    int reps;
+    int reps, threads;
     uint32_t size;
     bool json, explain;
     const char **wanted;
@@ -62,6 +66,16 @@ static double cpu_seconds(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+static double wall_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static double build_seconds(int threads) {
+    return threads > 1 ? wall_seconds() : cpu_seconds();
+}
+
 static int compare_doubles(const void *a, const void *b) {
     double x = *(const double *)a, y = *(const double *)b;
     return x < y ? -1 : x > y;
@@ -74,7 +88,9 @@ static double median(double *values, int count) {
 
 /* gray */
 
-static struct mesh *gray_build(const struct bench_scene *scene, double *seconds, double *memory) {
+static struct mesh *gray_build(const struct bench_scene *scene, int threads, double *seconds, double *memory) {
+    char warning[256];
+    struct pool *pool = threads > 1 ? pool_create(threads, warning) : NULL;
     double(*vertices)[3] = malloc(scene->vertex_count * sizeof *vertices);
     uint32_t *starts = malloc(((size_t)scene->triangle_count + 1) * sizeof *starts);
     if (!vertices || !starts)
@@ -93,13 +109,14 @@ static struct mesh *gray_build(const struct bench_scene *scene, double *seconds,
     struct error error = {0};
     struct mesh *mesh = mesh_create(&input, &error);
     size_t bare = mesh ? mesh_memory(mesh) : 0;
-    double start = cpu_seconds();
-    if (!mesh || !mesh_build_index(mesh, NULL, &error)) {
+    double start = build_seconds(threads);
+    if (!mesh || !mesh_build_index(mesh, pool, &error)) {
         fprintf(stderr, "rays: %s\n", error.text);
         exit(3);
     }
-    *seconds = cpu_seconds() - start;
+    *seconds = build_seconds(threads) - start;
     *memory = (double)(mesh_memory(mesh) - bare);
+    pool_destroy(pool);
     free(vertices);
     free(starts);
     return mesh;
@@ -166,8 +183,10 @@ static bool count_memory(void *user, ssize_t bytes, bool post) {
     return true;
 }
 
-static struct embree embree_build(const struct bench_scene *scene, double *seconds, double *memory) {
-    struct embree e = {.device = rtcNewDevice("threads=1")};
+static struct embree embree_build(const struct bench_scene *scene, int threads, double *seconds, double *memory) {
+    char configuration[32];
+    snprintf(configuration, sizeof configuration, "threads=%d", threads);
+    struct embree e = {.device = rtcNewDevice(configuration)};
     embree_bytes = 0;
     rtcSetDeviceMemoryMonitorFunction(e.device, count_memory, NULL);
     e.scene = rtcNewScene(e.device);
@@ -178,12 +197,12 @@ static struct embree embree_build(const struct bench_scene *scene, double *secon
     memcpy(v, scene->vertices, (size_t)12 * scene->vertex_count);
     memcpy(c, scene->corners, (size_t)12 * scene->triangle_count);
     int64_t before = embree_bytes;
-    double start = cpu_seconds();
+    double start = build_seconds(threads);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(e.scene, geometry);
     rtcReleaseGeometry(geometry);
     rtcCommitScene(e.scene);
-    *seconds = cpu_seconds() - start;
+    *seconds = build_seconds(threads) - start;
     *memory = (double)(embree_bytes - before);
     return e;
 }
@@ -330,15 +349,104 @@ static void explain(const struct bench_scene *scene, const char *kind, const str
 }
 #endif
 
+/* Rays on threads */
+
+enum tracer { GRAY_ALONE, GRAY_PACKETS, EMBREE_ALONE, EMBREE_PACKETS };
+enum { TURN = 4096, MOST_THREADS = 64 };
+
+struct work {
+    enum tracer tracer;
+    bool any;
+    const struct mesh *mesh;
+#if defined(HAVE_EMBREE)
+    const struct embree *embree;
+#endif
+    const struct bench_ray *rays;
+    struct bench_hit *hits;
+    uint64_t count;
+};
+
+struct share {
+    const struct work *work;
+    int number, threads;
+    struct geom_scratch scratch;
+    double seconds;
+};
+
+static void trace_piece(const struct work *work, uint64_t from, uint64_t count, struct geom_scratch *scratch) {
+    const struct bench_ray *rays = work->rays + from;
+    struct bench_hit *hits = work->hits + from;
+    switch (work->tracer) {
+    case GRAY_ALONE:
+        gray_trace(work->mesh, rays, hits, count, work->any, scratch);
+        return;
+    case GRAY_PACKETS:
+        gray_trace64(work->mesh, rays, hits, count, scratch);
+        return;
+    case EMBREE_ALONE:
+    case EMBREE_PACKETS:
+#if defined(HAVE_EMBREE)
+        if (work->tracer == EMBREE_ALONE)
+            embree_trace(work->embree, rays, hits, count, work->any);
+        else
+            embree_trace16(work->embree, rays, hits, count);
+#endif
+        return;
+    }
+}
+
+static void *trace_share(void *argument) {
+    struct share *share = argument;
+    const struct work *work = share->work;
+    uint64_t turn = share->threads > 1 ? TURN : work->count;
+#if defined(HAVE_EMBREE)
+    unsigned mode = _mm_getcsr();
+    if (work->tracer >= EMBREE_ALONE)
+        _mm_setcsr(mode | 0x8040); /* Embree wants denormals flushed */
+#endif
+    double start = cpu_seconds();
+    for (uint64_t from = turn * (uint64_t)share->number; from < work->count; from += turn * (uint64_t)share->threads)
+        trace_piece(work, from, work->count - from < turn ? work->count - from : turn, &share->scratch);
+    share->seconds = cpu_seconds() - start;
+#if defined(HAVE_EMBREE)
+    _mm_setcsr(mode);
+#endif
+    return NULL;
+}
+
+/* Seconds of the thread that takes longest. */
+static double trace(const struct work *work, struct share *shares, int threads) {
+    pthread_t thread[MOST_THREADS];
+    double longest = 0;
+    for (int i = 0; i < threads; i++) {
+        shares[i].work = work;
+        if (i > 0 && pthread_create(&thread[i], NULL, trace_share, &shares[i]) != 0)
+            exit(3);
+    }
+    trace_share(&shares[0]);
+    for (int i = 0; i < threads; i++) {
+        if (i > 0)
+            pthread_join(thread[i], NULL);
+        longest = fmax(longest, shares[i].seconds);
+    }
+    return longest;
+}
+
 static void measure(const struct bench_scene *scene, const struct options *options, struct result *result) {
     *result = (struct result){.triangles = scene->triangle_count};
     snprintf(result->name, sizeof result->name, "%s", scene->name);
-    struct geom_scratch scratch;
-    if (!geom_scratch_init(&scratch, 1024))
-        exit(3);
-    struct mesh *mesh = gray_build(scene, &result->build[0], &result->memory[0]);
+    int threads = options->threads;
+    struct share shares[MOST_THREADS];
+    for (int i = 0; i < threads; i++) {
+        shares[i] = (struct share){.number = i, .threads = threads};
+        if (!geom_scratch_init(&shares[i].scratch, 1024))
+            exit(3);
+    }
+    struct mesh *mesh = gray_build(scene, threads, &result->build[0], &result->memory[0]);
+    struct work work = {.mesh = mesh};
 #if defined(HAVE_EMBREE)
-    struct embree embree = embree_build(scene, &result->build[1], &result->memory[1]);
+    struct embree embree = embree_build(scene, threads, &result->build[1], &result->memory[1]);
+    work.embree = &embree;
 #endif
     uint64_t pixels = (uint64_t)options->size * options->size;
     struct bench_ray *rays[KINDS];
@@ -348,7 +456,7 @@ static void measure(const struct bench_scene *scene, const struct options *optio
     for (int i = 0; i < 2; i++)
         hits[i] = calloc(pixels, sizeof *hits[i]);
     camera_rays(scene, options->size, rays[0]);
-    gray_trace(mesh, rays[0], hits[0], pixels, false, &scratch);
+    gray_trace(mesh, rays[0], hits[0], pixels, false, &shares[0].scratch);
     secondary_rays(scene, mesh, rays[0], hits[0], pixels, rays[1], rays[2], &result->rays[1]);
     result->rays[0] = pixels;
     result->rays[2] = result->rays[1];
@@ -358,13 +466,15 @@ static void measure(const struct bench_scene *scene, const struct options *optio
         if (count == 0)
             continue;
         for (int rep = 0; rep < options->reps; rep++) {
-            double start = cpu_seconds();
-            gray_trace(mesh, rays[kind], hits[0], count, kind == 1, &scratch);
-            seconds[0][rep] = cpu_seconds() - start;
-            start = cpu_seconds();
-            if (kind == 0)
-                gray_trace64(mesh, rays[kind], packet_hits, count, &scratch);
-            packet[0][rep] = cpu_seconds() - start;
+            work.rays = rays[kind];
+            work.count = count;
+            work.any = kind == 1;
+            work.hits = hits[0];
+            work.tracer = GRAY_ALONE;
+            seconds[0][rep] = trace(&work, shares, threads);
+            work.hits = packet_hits;
+            work.tracer = GRAY_PACKETS;
+            packet[0][rep] = kind == 0 ? trace(&work, shares, threads) : 0;
             for (uint64_t i = 0; rep == 0 && kind == 0 && i < count; i++)
                 if (packet_hits[i].triangle != hits[0][i].triangle ||
                     (packet_hits[i].triangle != UINT32_MAX && memcmp(&packet_hits[i], &hits[0][i], sizeof *hits[0]))) {
@@ -373,20 +483,15 @@ static void measure(const struct bench_scene *scene, const struct options *optio
                     exit(3);
                 }
 #if defined(HAVE_EMBREE)
-            unsigned mode = _mm_getcsr();
-            _mm_setcsr(mode | 0x8040); /* Embree wants denormals flushed */
-            start = cpu_seconds();
-            embree_trace(&embree, rays[kind], hits[1], count, kind == 1);
-            seconds[1][rep] = cpu_seconds() - start;
+            work.hits = hits[1];
+            work.tracer = EMBREE_ALONE;
+            seconds[1][rep] = trace(&work, shares, threads);
             for (uint64_t i = 0; rep == 0 && i < count; i++)
                 if (!agree(&hits[0][i], &hits[1][i], kind == 1) && result->disagreements[kind]++ < 5 &&
                     options->explain)
                     explain(scene, kind_names[kind], &hits[0][i], &hits[1][i]);
-            start = cpu_seconds();
-            if (kind == 0)
-                embree_trace16(&embree, rays[kind], hits[1], count);
-            packet[1][rep] = cpu_seconds() - start;
-            _mm_setcsr(mode);
+            work.tracer = EMBREE_PACKETS;
+            packet[1][rep] = kind == 0 ? trace(&work, shares, threads) : 0;
 #else
             seconds[1][rep] = packet[1][rep] = INFINITY;
 #endif
@@ -408,7 +513,8 @@ static void measure(const struct bench_scene *scene, const struct options *optio
     free(hits[1]);
     free(packet_hits);
     mesh_release(mesh);
-    geom_scratch_destroy(&scratch);
+    for (int i = 0; i < threads; i++)
+        geom_scratch_destroy(&shares[i].scratch);
 #if defined(HAVE_EMBREE)
     rtcReleaseScene(embree.scene);
     rtcReleaseDevice(embree.device);
@@ -578,7 +684,7 @@ static void run_all(struct bench *bench) {
 }
 
 int main(int argc, char **argv) {
-    static struct bench bench = {.options = {.models = "models", .seed = 1, .reps = 5, .size = 1024}};
+    static struct bench bench = {.options = {.models = "models", .seed = 1, .reps = 5, .threads = 1, .size = 1024}};
     const char *names[64];
     bench.options.wanted = names;
     for (int i = 1; i < argc; i++) {
@@ -593,6 +699,8 @@ int main(int argc, char **argv) {
             bench.options.seed = strtoull(value, NULL, 10), i++;
         else if (strcmp(word, "--reps") == 0)
             bench.options.reps = atoi(value), i++;
+        else if (strcmp(word, "--threads") == 0)
+            bench.options.threads = atoi(value), i++;
         else if (strcmp(word, "--size") == 0)
             bench.options.size = (uint32_t)atoi(value) / 8 * 8, i++;
         else if (strcmp(word, "--isa") == 0 && accel_select_isa(value))
@@ -600,13 +708,14 @@ int main(int argc, char **argv) {
         else if (word[0] != '-' && bench.options.wanted_count < 64)
             names[bench.options.wanted_count++] = word;
         else {
-            fprintf(stderr, "usage: rays [--models FOLDER] [--seed N] [--reps N] [--size N] [--isa NAME] [--json] "
-                            "[--explain] [SCENE ...]\n");
+            fprintf(stderr, "usage: rays [--models FOLDER] [--seed N] [--reps N] [--size N] [--threads N] [--isa NAME] "
+                            "[--json] [--explain] [SCENE ...]\n");
             return 2;
         }
     }
-    if (bench.options.reps < 1 || bench.options.reps > MOST_REPS || bench.options.size < 8) {
-        fprintf(stderr, "rays: --reps is 1 to %d, --size at least 8\n", MOST_REPS);
+    if (bench.options.reps < 1 || bench.options.reps > MOST_REPS || bench.options.size < 8 ||
+        bench.options.threads < 1 || bench.options.threads > MOST_THREADS) {
+        fprintf(stderr, "rays: --reps is 1 to %d, --threads 1 to %d, --size at least 8\n", MOST_REPS, MOST_THREADS);
         return 2;
     }
     run_all(&bench);

@@ -428,10 +428,14 @@ bool desk_done(struct desk *desk, const struct picture_report *report, struct er
         desk->current = (struct picture){0};
         return true;
     }
+    struct picture_report whole = *report;
+    double begun = progress_clock(), worked = progress_processor_clock();
     bool ok = write_picture(desk, &desk->current, error);
+    whole.write_seconds = progress_clock() - begun;
+    whole.write_processor_seconds = progress_processor_clock() - worked;
     progress_end(&desk->progress, ok ? PROGRESS_WRITTEN : PROGRESS_GIVEN_UP);
     if (ok)
-        tell_statistics(desk, report);
+        tell_statistics(desk, &whole);
     close_picture(&desk->current);
     return ok;
 }

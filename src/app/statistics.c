@@ -14,7 +14,7 @@ struct figure {
     uint64_t count;
 };
 
-enum { FIGURES = 40 };
+enum { FIGURES = 44 };
 
 static uint64_t all_rays(const struct render_statistics *rays) {
     return rays->camera_rays + rays->reflected_rays + rays->refracted_rays + rays->shadow_rays + rays->photon_rays;
@@ -30,8 +30,11 @@ static int list_figures(struct figure out[FIGURES], const struct picture_report 
     const struct figure all[] = {
         {"build_seconds", "build", FIGURE_SECONDS, rays->build_seconds, 0},
         {"render_seconds", "render", FIGURE_SECONDS, rays->render_seconds, 0},
+        {"write_seconds", "write", FIGURE_SECONDS, report->write_seconds, 0},
+        {"idle_seconds", "idle at the end", FIGURE_SECONDS, rays->idle_seconds, 0},
         {"build_processor_seconds", "processors: build", FIGURE_SECONDS, rays->build_processor_seconds, 0},
         {"render_processor_seconds", "render", FIGURE_SECONDS, rays->render_processor_seconds, 0},
+        {"write_processor_seconds", "write", FIGURE_SECONDS, report->write_processor_seconds, 0},
         {"threads", "threads", FIGURE_COUNT, 0, (uint64_t)report->threads},
         {"pixels", "pixels", FIGURE_COUNT, 0, rays->pixels},
         {"marked_pixels", "marked pixels", FIGURE_COUNT, 0, rays->marked_pixels},

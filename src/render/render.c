@@ -218,6 +218,7 @@ static void tile_item(void *context, uint32_t place, int index) {
         pool_cancel(run->pool);
     }
     atomic_store_explicit(&film->tiles[item], whole ? FILM_TILE_DONE : FILM_TILE_WANTED, memory_order_release);
+    worker->tile_ended = seconds_now();
     if (!whole)
         return;
     run_tile_ends(run, worker, item);
@@ -249,10 +250,17 @@ static void gated_item(void *context, uint32_t item, int index) {
     }
 }
 
-static bool run_tiles(struct run *run) {
-    if (run->job->gate)
-        return pool_run(run->pool, (uint32_t)pool_workers(run->pool), gated_item, run);
-    return pool_run(run->pool, film_tile_count(run->job->film), tile_item, run);
+static bool run_tiles(struct run *run, struct render_statistics *statistics) {
+    int workers = pool_workers(run->pool);
+    double begun = seconds_now();
+    for (int i = 0; i < workers; i++)
+        run->workers[i].tile_ended = begun;
+    bool whole = run->job->gate ? pool_run(run->pool, (uint32_t)workers, gated_item, run)
+                                : pool_run(run->pool, film_tile_count(run->job->film), tile_item, run);
+    double ended = seconds_now();
+    for (int i = 0; i < workers; i++)
+        statistics->idle_seconds += ended - run->workers[i].tile_ended;
+    return whole;
 }
 
 bool render_prepare(struct render_job *job, uint32_t *x0, uint32_t *y0, uint32_t *width, uint32_t *height,
@@ -458,11 +466,11 @@ static bool is_unfinished(const struct run *run) {
     return film_tiles_in(film, FILM_TILE_WANTED) > 0;
 }
 
-static bool make_tiles(struct run *run, struct error *error) {
+static bool make_tiles(struct run *run, struct render_statistics *statistics, struct error *error) {
     if (!order_tiles(run))
         return error_no_memory(error, "the order of the tiles");
     count_tiles(run);
-    bool whole = run_look_ahead(run) && run_tiles(run) && !(run_is_enough(run) && is_unfinished(run));
+    bool whole = run_look_ahead(run) && run_tiles(run, statistics) && !(run_is_enough(run) && is_unfinished(run));
     if (whole && run->job->outlook)
         run_tell_end(run);
     if (!atomic_load(&run->failed))
@@ -477,7 +485,8 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
     struct run run = {.job = job, .pool = pool};
     int workers = pool_workers(pool);
     double begin = seconds_now();
-    bool ok = begin_run(&run, workers, statistics, error) && choose_tiles(&run, error) && make_tiles(&run, error);
+    bool ok =
+        begin_run(&run, workers, statistics, error) && choose_tiles(&run, error) && make_tiles(&run, statistics, error);
     if (run.workers)
         add_statistics(&run, workers, statistics);
     if (ok && job->film->layers && !pool_run(pool, film_tile_count(job->film), run_layer_item, &run))

@@ -20,6 +20,7 @@ struct render_statistics {
     uint64_t photons, photons_landed, photon_rays;
     /* Photons are part of the render, their map is part of them. */
     double build_seconds, render_seconds, photon_seconds, photon_map_seconds;
+    double idle_seconds; /* of all threads: no tile was left, and others still made theirs */
     double build_processor_seconds, render_processor_seconds; /* of all threads of the process */
 };
 

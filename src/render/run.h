@@ -36,6 +36,7 @@ struct worker {
     struct camera_frame camera; /* of the sample's moment, when the camera moves */
     struct batch batch;
     int index;
+    double tile_ended;                /* seconds, of the last one */
     uint64_t tile_begun, first_ended; /* processor time, while somebody asks how long it will take */
     struct vec3 first[(FILM_TILE + 2) * (FILM_TILE + 2)];
 };
