@@ -155,3 +155,70 @@ TEST_LONG(faults_any_allocation_may_fail_in_a_whole_run) {
     for (uint64_t number = 1; number <= counts[0]; number++)
         survive("GRAY_FAIL_ALLOC", number);
 }
+
+/* The same of other ways to use the program, on a smaller scene: `line` runs with the variable set; what it makes
+ * (`names`) is what a run without failures makes, or is not there. */
+static void survive_line(const char *variable, uint64_t step, const char *line, const char *names) {
+    static const char kind_of[] = "GRAY_FAIL_CALL";
+    char text[2048];
+    unsigned long long counts[2] = {0, 0};
+    (void)snprintf(text, sizeof text,
+                   "rm -rf whole; mkdir whole; GRAY_FAULT_COUNT=$PWD/counts $gray %s >whole/out.txt && mv %s whole",
+                   line, names);
+    CHECK_EQ_INT(shell(text), 0);
+    char *told = content("counts", NULL);
+    CHECK(told && sscanf(told, "%llu %llu", &counts[0], &counts[1]) == 2);
+    free(told);
+    uint64_t last = counts[strcmp(variable, kind_of) == 0];
+    CHECK(last > 5);
+    for (uint64_t number = 1; number <= last; number += step) {
+        size_t size = 0;
+        (void)snprintf(text, sizeof text, "rm -f %s; %s=%llu timeout 60 $gray %s >out.txt 2>err.txt", names, variable,
+                       (unsigned long long)number, line);
+        int status = shell(text);
+        char *said = content("err.txt", &size);
+        bool known = status == 0 || status == 1 || status == 3, sound = status == 0 || size > 10;
+        bool blind = said && strstr(said, "LeakSanitizer has encountered a fatal error");
+        bool clean = !said || blind || (!strstr(said, "Sanitizer") && !strstr(said, "runtime error"));
+        (void)snprintf(text, sizeof text,
+                       "for f in %s; do test ! -e $f || cmp -s $f whole/$f || exit 1; done; ! ls -A | grep -q 'part-'",
+                       names);
+        bool whole = shell(text) == 0;
+        (void)snprintf(text, sizeof text, "for f in %s; do test -e $f || exit 1; done", names);
+        bool all = status != 0 || shell(text) == 0;
+        if (!known || !sound || !clean || !whole || !all)
+            test_fail(__FILE__, __LINE__, "%s=%llu gray %s: status %d%s%s%s; standard error:\n%s", variable,
+                      (unsigned long long)number, line, status, clean ? "" : ", a report",
+                      whole ? "" : ", a harmed file", all ? "" : ", a missing file", said ? said : "");
+        free(said);
+    }
+}
+
+static const char small_scene[] =
+    "local red, root = gr.material({0.8, 0.3, 0.2}, {0.5, 0.5, 0.5}, 20), gr.node('root')\n"
+    "root:add_child(gr.sphere{name = 'ball', material = red})\n"
+    "gr.render{node = root, file = 'a.png', width = 40, height = 34, eye = {0, 0, 6}, fov = 40, ambient = {0.2, 0.2, "
+    "0.2}, lights = {gr.light({4, 5, 6}, {0.9, 0.9, 0.9}, {1, 0, 0})}}\n";
+
+TEST(faults_any_call_may_fail_while_parts_are_made_and_merged) {
+    static const char call[] = "GRAY_FAIL_CALL", allocation[] = "GRAY_FAIL_ALLOC";
+#ifndef GRAY_FAULTS
+    test_skip("failures on demand are only in builds with GRAY_FAULTS");
+#endif
+    put("scene.lua", small_scene);
+    survive_line(call, 1, "-q -j 1 --shard 1/2 scene.lua", "a.png.1-of-2.part");
+    CHECK_EQ_INT(shell("$gray -q --shard 1/2 scene.lua; $gray -q --shard 2/2 scene.lua"), 0);
+    survive_line(call, 1, "merge a.png.1-of-2.part a.png.2-of-2.part", "a.png");
+    survive_line(allocation, 2, "merge a.png.1-of-2.part a.png.2-of-2.part", "a.png");
+}
+
+TEST(faults_any_call_may_fail_while_layers_are_written) {
+    static const char call[] = "GRAY_FAIL_CALL";
+#ifndef GRAY_FAULTS
+    test_skip("failures on demand are only in builds with GRAY_FAULTS");
+#endif
+    put("scene.lua", small_scene);
+    survive_line(call, 2, "-q -j 1 --aov depth,normal --overlay boxes -write-aa-targets t- --deep scene.lua",
+                 "a.png a.depth.png a.normal.png t-a.png");
+    survive_line(call, 3, "-q -j 1 --aov depth -o a.hdr scene.lua", "a.hdr a.depth.hdr");
+}
