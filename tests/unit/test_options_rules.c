@@ -61,7 +61,7 @@ TEST(options_that_do_not_go_together_are_refused_pair_by_pair) {
                       aov[] = "--aov is for pictures that one process makes in one go: no --shard, --mpi, "
                               "--checkpoint, --resume or merge",
                       overlay[] = "--overlay is for pictures that one process makes in one go: no --shard, --mpi, "
-                                  "--checkpoint, --resume, -gui or merge",
+                                  "--checkpoint, --resume or merge",
                       debug[] = "--shard writes no debug pictures; give -write-... to gray merge";
     exclude("--pixel 1,2", "-gui|--check|--shard 1/2|--shard-pictures 1/2|--mpi|--checkpoint c|--resume|merge", pixel);
     exclude("--checkpoint c", "merge", merge);
@@ -79,7 +79,7 @@ TEST(options_that_do_not_go_together_are_refused_pair_by_pair) {
     exclude("--watch", "--checkpoint c|--resume|--shard 1/2|--shard-pictures 1/2|--mpi|--no-fork|-o -", watch);
     exclude("--no-fork", "--checkpoint c|--resume|--shard 1/2", no_fork);
     exclude("--aov depth", "--shard 1/2|--mpi|--checkpoint c|--resume|merge", aov);
-    exclude("--overlay boxes", "--shard 1/2|--mpi|--checkpoint c|--resume|-gui|merge", overlay);
+    exclude("--overlay boxes", "--shard 1/2|--mpi|--checkpoint c|--resume|merge", overlay);
     exclude("--shard 1/2", "-write-aa-targets t-|-write-pre-aa p-", debug);
     exclude("--resume", "-o -", "-o - leaves no name for a checkpoint; --checkpoint FILE gives one");
     expect("-o - --checkpoint c x", NULL);

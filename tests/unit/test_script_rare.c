@@ -25,6 +25,8 @@ static const struct corner corners[] = {
     {"gr.intersection('i', ball, gr.sphere{centre = {10, 0, 0}}):bounds()", "nothing is under this node"},
     /* changes */
     {"for i = 1, 4097 do gr.change_delete{name = 'x', serial = i} end", "more than 4096 changes"},
+    {"gr.change_look(1, 'reflect', -1)", "value of reflect must be from 0 to 1, not -1"},
+    {"gr.change_look(1, 'reflect', {1, 2})", "value has 2 numbers, but reflect has 1"},
     {"gr.change_delete{name = ('n'):rep(100), serial = 7} gr.node(('n'):rep(100)):add_child(ball) gr.render(picture)",
      NULL},
     /* arguments */
@@ -138,6 +140,8 @@ TEST(the_newest_change_of_a_view_and_of_the_exposure_counts) {
         "gr.change_view{picture = 'y.png', eye = {0, 0, 6}, view = {0, 0, -1}, up = {0, 1, 0}, fov = 20}\n"
         "gr.change_exposure{picture = 'x.png', stops = 1} gr.change_exposure{picture = 'x.png', stops = 2}\n"
         "gr.change_view{picture = 'x.png', eye = {0, 0, 7}, view = {0, 0, -1}, up = {0, 1, 0}, fov = 40}\n"
+        "gr.change_exposure{picture = 'y.png', stops = 3}\n"
+        "gr.render{node = ball, file = 'y.png', width = 4, height = 4, eye = {0, 0, 9}}\n"
         "gr.render{node = ball, file = 'x.png', width = 4, height = 4, eye = {0, 0, 9}}\n";
     CHECK(listen_to_text(&listener, text, NULL, &error));
     CHECK(listener.last.camera.eye.z == 7 && listener.last.camera.fov == 40);
