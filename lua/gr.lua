@@ -1211,6 +1211,18 @@ function gr.change_delete_light(number) end
 ---@overload fun(fields: gr.change_add_light.fields)
 function gr.change_add_light(position, colour) end
 
+---@class gr.change_copy_light.fields
+---@field number integer number (a whole number, 1 to 4294967295): Its place in the list of gr.render, from 1.
+---@field move gr.triple move (a table of 3 numbers): How far the copy stands from it.
+---@field factor? gr.triple factor (a table of 3 numbers; default {1, 1, 1}): What the copy's colour is multiplied by.
+
+---Adds a copy of a light to every picture from here on.
+---@param number integer number (a whole number, 1 to 4294967295): Its place in the list of gr.render, from 1.
+---@param move gr.triple move (a table of 3 numbers): How far the copy stands from it.
+---@param factor? gr.triple factor (a table of 3 numbers; default {1, 1, 1}): What the copy's colour is multiplied by.
+---@overload fun(fields: gr.change_copy_light.fields)
+function gr.change_copy_light(number, move, factor) end
+
 ---@class gr.change_view.fields
 ---@field picture string picture (a string): The picture that it is for, by the name that gr.render gives it.
 ---@field eye gr.triple eye (a point {x, y, z}): Where the camera is.

@@ -136,7 +136,10 @@ static void tell_change(const struct change *c, char *line, size_t size) {
     case CHANGE_ADD_LIGHT:
         tell_numbers(a, sizeof a, c->numbers, 3);
         tell_numbers(b, sizeof b, c->numbers + 3, 3);
-        (void)snprintf(line, size, "gr.change_add_light(%s, %s)\n", a, b);
+        if (c->source)
+            (void)snprintf(line, size, "gr.change_copy_light(%u, %s, %s)\n", c->source, a, b);
+        else
+            (void)snprintf(line, size, "gr.change_add_light(%s, %s)\n", a, b);
         return;
     case CHANGE_KINDS:
         break;

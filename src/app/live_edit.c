@@ -345,7 +345,10 @@ static void add_copy(struct live *live) {
 
 void live_add(struct live *live, enum added_kind kind) {
     if (kind == ADDED_COPY) {
-        add_copy(live);
+        if (live->selection.kind == SELECTED_LIGHT)
+            live_copy_light(live);
+        else
+            add_copy(live);
         return;
     }
     struct vec3 place = live_new_place(live);

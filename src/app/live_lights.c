@@ -231,21 +231,53 @@ void live_light_delete(struct live *live) {
     live_make(live, &change, true, false);
 }
 
-void live_add_light(struct live *live) {
+/* The next one that is added; what it is told to be holds until the child says the same. */
+static struct change new_light(struct live *live) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < live->edits.now.count; i++)
         count += live->edits.now.items[i].kind == CHANGE_ADD_LIGHT;
-    struct change change = {.kind = CHANGE_ADD_LIGHT, .number = count};
-    struct vec3 place = live_new_place(live), eye = live->view.camera.eye;
-    put(change.numbers, vec3_add_scaled(place, vec3_sub(eye, place), 0.5));
-    put(change.numbers + 3, vec3_all(0.5));
-    live_make(live, &change, true, false);
+    return (struct change){.kind = CHANGE_ADD_LIGHT, .number = count};
+}
+
+static void select_new(struct live *live, const struct told_light *light) {
     if (live->light_count < LIGHT_LIMIT && make_room(live, live->light_count + 1)) {
-        live->lights[live->light_count] = (struct told_light){
-            .placed = true, .position = three(change.numbers), .colour = vec3_all(0.5), .moves = true};
+        live->lights[live->light_count] = *light;
         live->lights_known += live->lights_known == live->light_count;
         live->light_count++;
     }
     live_select_light(live, live->light_count);
-    live->tool = TOOL_MOVE;
+    live->tool = light->moves ? TOOL_MOVE : light->turns ? TOOL_TURN : TOOL_NONE;
+}
+
+void live_add_light(struct live *live) {
+    struct change change = new_light(live);
+    struct vec3 place = live_new_place(live), eye = live->view.camera.eye;
+    put(change.numbers, vec3_add_scaled(place, vec3_sub(eye, place), 0.5));
+    put(change.numbers + 3, vec3_all(0.5));
+    live_make(live, &change, true, false);
+    select_new(live, &(struct told_light){
+                         .placed = true, .position = three(change.numbers), .colour = vec3_all(0.5), .moves = true});
+}
+
+/* What was changed of the light is changed of its copy, which stands a little to the right. */
+void live_copy_light(struct live *live) {
+    const struct told_light *light = selected(live);
+    struct change change = new_light(live), held = light_change(live, CHANGE_LIGHT);
+    bool has = change_list_find(&live->edits.now, &held) != NULL;
+    struct camera_frame frame;
+    if (!light || live->light_count != live->lights_known || !live_frame(live, &frame))
+        return;
+    struct told_light copy = *light;
+    struct vec3 way = vec3_scale(frame.unit_right, 0.1 * vec3_length(vec3_sub(light->position, frame.eye)));
+    if (!light->moves)
+        way = vec3_all(0);
+    change.source = live->selection.light;
+    put(change.numbers, way);
+    put(change.numbers + 3, vec3_all(1));
+    live_make(live, &change, true, false);
+    held.serial = live->light_count + 1;
+    if (has)
+        live_make(live, &held, true, false);
+    copy.position = vec3_add(copy.position, way);
+    select_new(live, &copy);
 }

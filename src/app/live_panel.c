@@ -159,7 +159,7 @@ static bool can_use(const struct live *live, int button) {
     if (live->selection.kind == SELECTED_NODE)
         return button != 4 || live->selection.picked.below > 0;
     const bool can[TOOL_BUTTONS] = {
-        light && light->moves, light && light->turns, light && light->sizes, false, false, false, true};
+        light && light->moves, light && light->turns, light && light->sizes, false, false, true, true};
     return can[button];
 }
 

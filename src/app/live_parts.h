@@ -59,6 +59,7 @@ void live_light_move(struct live *live, struct vec3 way);
 void live_light_turn(struct live *live, const struct transform *map, bool sizes); /* turned by the map, or sized */
 void live_light_delete(struct live *live);
 void live_add_light(struct live *live);
+void live_copy_light(struct live *live);
 void live_brighten(struct live *live, double stops); /* to so many above the script's */
 double live_stops_now(const struct live *live);
 struct vec3 live_light_colour_now(const struct live *live); /* before it is brightened */

@@ -405,11 +405,22 @@ static void change_light(struct laying *l) {
     light->colour = vec3_mul(light->colour, three(numbers + 3));
 }
 
+/* A copy of a light that is not there any more is black: those after it keep their numbers. */
 static void add_light(struct laying *l) {
-    l->out->lights[l->out->light_count++] = (struct light){.kind = LIGHT_POINT,
-                                                           .position = three(l->change->numbers),
-                                                           .colour = three(l->change->numbers + 3),
-                                                           .falloff = {1, 0, 0}};
+    struct vec3 first = three(l->change->numbers), second = three(l->change->numbers + 3);
+    uint32_t number = l->out->light_count++, like = l->change->source;
+    struct light *light = &l->out->lights[number];
+    *light = (struct light){.kind = LIGHT_POINT, .falloff = {1, 0, 0}};
+    if (like == 0) {
+        light->position = first;
+        light->colour = second;
+    } else if (like <= number) {
+        *light = l->out->lights[like - 1];
+        light_move(light, first);
+        light->colour = vec3_mul(light->colour, second);
+    } else {
+        tell_missing(l, "the light of a copy");
+    }
 }
 
 static bool lay(struct laying *l) {

@@ -15,7 +15,7 @@ enum change_kind {
     CHANGE_GONE,      /* a node is not drawn */
     CHANGE_OWN,       /* a shape gets a material of its own */
     CHANGE_MATERIAL,  /* a part of a material's base */
-    CHANGE_ADD_LIGHT, /* a point light at the end of the list */
+    CHANGE_ADD_LIGHT, /* a point light, or a copy of a light, at the end of the list */
     CHANGE_LIGHT,     /* a light is moved, turned, sized, its colour multiplied or another */
     CHANGE_DARK,      /* a light is taken away */
     CHANGE_KINDS
@@ -39,13 +39,13 @@ struct change {
      * OWN_SERIAL - number. */
     uint32_t number;
     /* ADDED_COPY: the serial of the node that is shown once more. OWN: that of the base which the new one is like where
-     * the shape has none itself; 0: plain gray. */
+     * the shape has none itself; 0: plain gray. ADD_LIGHT: the number of the light that it is like; 0: none. */
     uint32_t source;
     enum look_part part; /* of MATERIAL */
     bool turns, colours; /* of LIGHT: it has a turn; a colour */
     /* PLACE: 3 rows of 4. ADD: a colour. MATERIAL: as many as the part has. LIGHT: a way, three factors, and from
      * TURN_AT on 3 rows of 3, from COLOUR_AT on a colour that takes the place of its own. ADD_LIGHT: a place, a
-     * colour. */
+     * colour; of a copy a way, three factors. */
     double numbers[CHANGE_NUMBERS];
 };
 

@@ -151,6 +151,19 @@ bool act_change_add_light(struct context *context, const struct value *args, str
     return true;
 }
 
+bool act_change_copy_light(struct context *context, const struct value *args, struct result *result,
+                           struct error *error) {
+    const struct value *factor = &args[CHANGECOPYLIGHT_FACTOR];
+    (void)result;
+    struct change *change = note(context, CHANGE_ADD_LIGHT, NULL, 0, error);
+    if (!change)
+        return false;
+    change->source = (uint32_t)args[CHANGECOPYLIGHT_NUMBER].number;
+    put(change->numbers, args[CHANGECOPYLIGHT_MOVE].vector);
+    put(change->numbers + 3, factor->given ? factor->vector : vec3_all(1));
+    return true;
+}
+
 static struct changed_view *note_view(struct context *context, const char *picture, struct error *error) {
     struct changed_view *view = arena_alloc(&context->keep, sizeof *view);
     const char *name = arena_copy_text(&context->keep, picture, strlen(picture));

@@ -36,11 +36,13 @@ enum {
     CHANGELIGHT_COUNT
 };
 enum { CHANGEDARK_NUMBER, CHANGEDARK_COUNT };
+enum { CHANGECOPYLIGHT_NUMBER, CHANGECOPYLIGHT_MOVE, CHANGECOPYLIGHT_FACTOR, CHANGECOPYLIGHT_COUNT };
 enum { CHANGENEWLIGHT_POSITION, CHANGENEWLIGHT_COLOUR, CHANGENEWLIGHT_COUNT };
 enum { CHANGEVIEW_PICTURE, CHANGEVIEW_EYE, CHANGEVIEW_VIEW, CHANGEVIEW_UP, CHANGEVIEW_FOV, CHANGEVIEW_COUNT };
 enum { CHANGEEXPOSURE_PICTURE, CHANGEEXPOSURE_STOPS, CHANGEEXPOSURE_COUNT };
 action act_change_node, act_change_delete, act_change_add, act_change_material, act_change_look, act_change_own,
-    act_change_light, act_change_delete_light, act_change_add_light, act_change_view, act_change_exposure;
+    act_change_copy_light, act_change_light, act_change_delete_light, act_change_add_light, act_change_view,
+    act_change_exposure;
 
 /* act_shapes.c: each begins with name and material */
 enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_FIRST };

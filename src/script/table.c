@@ -156,6 +156,14 @@ static const struct parameter change_add_light_parameters[] = {
     [CHANGENEWLIGHT_COLOUR] = {"colour", KIND_COLOUR, 0, ANY, NULL, NULL, "Its colour."},
 };
 
+static const struct parameter change_copy_light_parameters[] = {
+    [CHANGECOPYLIGHT_NUMBER] = {"number", KIND_WHOLE, 0, 1, 4294967295.0, NULL, NULL, NULL,
+                                "Its place in the list of gr.render, from 1."},
+    [CHANGECOPYLIGHT_MOVE] = {"move", KIND_TRIPLE, 0, ANY, NULL, NULL, "How far the copy stands from it."},
+    [CHANGECOPYLIGHT_FACTOR] = {"factor", KIND_TRIPLE, OPTIONAL, ANY, NULL, "{1, 1, 1}",
+                                "What the copy's colour is multiplied by."},
+};
+
 static const struct parameter change_view_parameters[] = {
     [CHANGEVIEW_PICTURE] = {"picture", KIND_TEXT, 0, ANY, NULL, NULL, PICTURE_HELP},
     [CHANGEVIEW_EYE] = {"eye", KIND_POINT, 0, ANY, NULL, NULL, "Where the camera is."},
@@ -1156,6 +1164,8 @@ const struct function function_table[] = {
        "Takes a light away from every picture from here on.", "number"),
     GR("change_add_light", change_add_light_parameters, RESULT_NOTHING, act_change_add_light,
        "Adds a point light to every picture from here on.", "position colour"),
+    GR("change_copy_light", change_copy_light_parameters, RESULT_NOTHING, act_change_copy_light,
+       "Adds a copy of a light to every picture from here on.", "number move factor?"),
     GR("change_view", change_view_parameters, RESULT_NOTHING, act_change_view, "Gives a picture another camera.",
        "picture eye view up fov"),
     GR("change_exposure", change_exposure_parameters, RESULT_NOTHING, act_change_exposure,

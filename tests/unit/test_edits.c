@@ -293,6 +293,7 @@ TEST(edits_as_lua_text_are_read_back_to_the_bit) {
         {.kind = CHANGE_LIGHT, .serial = 2, .colours = true, .numbers = {0, 0, 0, 1, 1, 1, [COLOUR_AT] = 0.3}},
         {.kind = CHANGE_MATERIAL, .serial = 1, .part = LOOK_ROUGHNESS, .numbers = {0.1}},
         {.kind = CHANGE_OWN, .serial = 2, .name = "ball", .source = 1},
+        {.kind = CHANGE_ADD_LIGHT, .number = 1, .source = 1, .numbers = {0.1, 0, 0, 1, 1, 1}},
     };
     for (int i = 0; i < 12; i++) {
         changes[1].numbers[i] = (i % 5 == 0 ? 0.3 : 0) + test_uniform(&random, -0.1, 0.1);
@@ -461,6 +462,26 @@ TEST(changes_of_skies_and_suns_give_the_bytes_of_a_script_that_says_the_same_its
                      "{0, 0, 6}", "gr.sky_light{sky={0.125, 0.25, 0.5}, samples=2}, "
                                   "gr.sun_light{sun={-1, 0, 0}, colour={0.1, 0, 0}}, " LIGHT),
                  true);
+}
+
+TEST(changes_copy_lights_of_every_kind) {
+    static const char area[] = "gr.area_light({%g, 3, 1}, {2, 0, 0}, {0, 0, 2}, {0.2, 0.2, 0.2}, {1, 0, 0})";
+    char one[4096], other[4096], first[200], second[200];
+    (void)snprintf(first, sizeof first, area, -1.0);
+    (void)snprintf(second, sizeof second, area, 1.5);
+    (void)snprintf(
+        one, sizeof one,
+        SCENE_HEAD
+        "local sun = gr.sun_light{sun={0, 0, 1}, colour={0.25, 0.25, 0.5}}\n"
+        "gr.render(r, 'out.png', 60, 40, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40, {0, 0, 0}, {%s, sun, %s, sun})\n",
+        first, second);
+    (void)snprintf(other, sizeof other,
+                   SCENE_HEAD
+                   "local sun = gr.sun_light{sun={0, 0, 1}, colour={0.25, 0.25, 0.5}}\n"
+                   "gr.change_copy_light(1, {2.5, 0, 0})\ngr.change_copy_light(2, {0, 0, 0}, {1, 1, 1})\n"
+                   "gr.render(r, 'out.png', 60, 40, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40, {0, 0, 0}, {%s, sun})\n",
+                   first);
+    same_picture(one, other, true);
 }
 
 /* Materials. */

@@ -823,6 +823,11 @@ TEST(window_asks_for_lights_until_it_knows_them_all_and_goes_through_them_by_key
     CHECK_NEAR(change->numbers[TURN_AT], -1, 1e-9);
     CHECK_NEAR(change->numbers[TURN_AT + 4], 1, 1e-9);
     CHECK_NEAR(live_light(&t.live, 70)->direction.z, 1, 1e-9);
+    live_add(&t.live, ADDED_COPY); /* with what was changed of it */
+    CHECK(t.live.selection.light == 71 && t.live.light_count == 71 && t.live.tool == TOOL_TURN);
+    const struct change *copy = &t.live.edits.steps[t.live.edits.count - 2].after;
+    CHECK(copy->kind == CHANGE_ADD_LIGHT && copy->source == 70);
+    CHECK(copy[0].number == 0 && t.live.edits.steps[t.live.edits.count - 1].after.serial == 71);
     end(&t);
 }
 
