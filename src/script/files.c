@@ -258,7 +258,7 @@ void files_open(lua_State *L) {
 
     const char *f = context->folder, *library = context->options->library_folder;
     lua_pushfstring(L, "%s?.lua;%s?/init.lua;./?.lua;%slua/?.lua;%s../lua/?.lua", f, f, f, f);
-    if (library && library[0]) {
+    if (library) {
         lua_pushfstring(L, "%s;%s/?.lua", lua_tostring(L, -1), library);
         lua_remove(L, -2);
     }
