@@ -113,6 +113,7 @@ struct studio_news {
     struct picture_report report; /* of BUILT (its bounds) and PASS */
     struct picked picked;
     struct marks marks; /* of PASS, PICKED and MARKS: those that were asked for and made */
+    double built;       /* of BUILT: when, on progress_clock */
     uint32_t added;     /* of BUILT: nodes that the script has added by gr.change_add */
     uint32_t owned;     /* of BUILT: materials of gr.change_own */
     uint32_t root;      /* of BUILT: the serial of the root, and the space of its children */

@@ -75,6 +75,7 @@ static void close_window(struct live *live) {
 static void keep_window(struct live *live, const struct live *before) {
     live->control = before->control;
     live->number = before->number;
+    live->tells = before->tells;
     live->canvas = before->canvas;
     live->light = before->light;
     live->drawn = before->drawn;
@@ -138,7 +139,7 @@ void live_end(struct live *live) {
     close_window(live);
     forget_work(live);
     mem_free(live->lights);
-    *live = (struct live){.control = live->control};
+    *live = (struct live){.control = live->control, .tells = live->tells};
 }
 
 void live_detach(struct live *live) {
@@ -172,6 +173,10 @@ void live_tell(struct live *live, const char *text) {
 
 /* Orders. */
 
+void live_note_stop(struct live *live, double seconds) {
+    (void)snprintf(live->note, sizeof live->note, "%.100s: stopped in %.1f ms", live->request.file, 1000 * seconds);
+}
+
 bool live_is_idle(const struct live *live) {
     return live->waiting && live->complete && !live->moved && !live->asks && !live->asks_story &&
            live->pending.count == 0;
@@ -192,6 +197,9 @@ static void end_pass(struct live *live, const struct picture_report *report, dou
 }
 
 void live_take_news(struct live *live, const struct studio_news *news, double now) {
+    if (live->halted && live->halted_at > 0)
+        live_note_stop(live, now - live->halted_at);
+    live->halted_at = 0;
     live->running = live->stopping = false;
     live->waiting = live->over_dirty = true;
     live->unbuilt = news->unbuilt;
@@ -199,6 +207,7 @@ void live_take_news(struct live *live, const struct studio_news *news, double no
     case NEWS_BUILT:
         walk_measure(&live->walk, &news->report.bounds);
         live->moved = true;
+        live->built = news->built;
         live->scene = *news;
         live_take_lights(live, news);
         return;
@@ -362,6 +371,8 @@ enum live_order live_step(struct live *live, double now) {
     live->wish = LIVE_NOTHING;
     if (wish != LIVE_NOTHING)
         return wish;
+    if (live->tells && live->note[0] != '\0')
+        return LIVE_NOTE;
     if (live->quit)
         return LIVE_QUIT;
     if (live->complete && live->view.own && !live->edited && !live->written && lines_of_script(live)) {

@@ -29,6 +29,7 @@ enum live_order {
     LIVE_SAVE,    /* somebody wants what is shown in a file: live->canvas */
     LIVE_RECORD,  /* somebody wants the camera in a file: walk_camera(&live->walk) */
     LIVE_CHANGES, /* somebody wants what was changed in a file */
+    LIVE_NOTE,    /* live->note is to be told where details are */
     LIVE_NEXT,    /* the child waits, and this picture is done with: the script goes on */
     LIVE_QUIT,    /* the window was closed, or Q */
 };
@@ -118,6 +119,9 @@ struct live {
     double press_x, press_y; /* where */
     uint32_t divide;         /* of passes while somebody walks */
     double pass_began, stepped, shown, told;
+    double built, halted_at; /* 0: what was to be told of them has been told */
+    bool tells;              /* notes are wanted */
+    char note[160];
     bool dirty;      /* the canvas was changed since it was shown */
     bool over_dirty; /* what is drawn over it is not right any more */
 };

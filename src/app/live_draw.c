@@ -1,6 +1,7 @@
 /* The canvas follows the film tile by tile; over it lie the menu and the figures. The window is drawn at most every 16
  * milliseconds, and what lies over the picture only when something in it can have changed. */
 #include "app/live_parts.h"
+#include "app/progress.h"
 #include "app/text.h"
 #include "base/mem.h"
 #include "image/png_write.h"
@@ -36,6 +37,8 @@ bool live_resize(struct live *live, int width, int height, double density) {
     place->left = floor((width - place->shown_width) / 2);
     place->top = floor((height - place->shown_height) / 2);
     live->over_dirty = true;
+    (void)snprintf(live->note, sizeof live->note, "%.60s: window of %dx%d pixels, density %g, letters of %d",
+                   live->request.file, width, height, density, paper->scale);
     return true;
 }
 
@@ -219,6 +222,12 @@ void live_show(struct live *live, double now) {
                                  .window_height = (uint32_t)place->height,
                                  .overlay_changed = over};
     driver->show(driver->context, &frame);
+    /* The picture that is on the screen now, coarse as it may be, is of the world that was built. */
+    if (live->built > 0 && live->report.threads > 0) {
+        (void)snprintf(live->note, sizeof live->note, "%.100s: on the screen %.1f ms after its world was built",
+                       live->request.file, 1000 * (progress_clock() - live->built));
+        live->built = 0;
+    }
     live->shown = now;
     live->dirty = false;
 }

@@ -13,6 +13,9 @@ void live_halt(struct live *live, bool on) {
     if (on == live->halted)
         return;
     live->halted = on;
+    live->halted_at = on && !live->waiting ? live->stepped : 0;
+    if (on && live->waiting) /* between two passes */
+        live_note_stop(live, 0);
     live->over_dirty = true;
     live->told = 0;
 }

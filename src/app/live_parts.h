@@ -7,6 +7,7 @@
 
 /* live.c: the picture is complete, and nobody wants anything. */
 bool live_is_idle(const struct live *live);
+void live_note_stop(struct live *live, double seconds);
 
 /* live_input.c */
 void live_take_event(struct live *live, const struct window_event *event);

@@ -12,7 +12,8 @@ struct sdl {
     SDL_Texture *picture, *overlay;
     int overlay_width, overlay_height;
     int width, height; /* of the window in pixels */
-    double density;    /* pixels for a unit of the desktop */
+    double unit;       /* pixels for a unit of the desktop, in which the mouse is told */
+    double density;    /* pixels for what people see as one: of letters */
     bool full, size_told;
 };
 
@@ -30,6 +31,17 @@ static void close_window(void *context) {
     *sdl = (struct sdl){0};
 }
 
+/* Where the desktop has the pixels of the screen as its units (X11), only the dots an inch tell how small they are: 96
+ * are seen as one. Below one and a half of that, and beyond ten, nothing is believed: many screens tell nonsense. */
+static double screen_density(SDL_Window *window) {
+    float across = 0, dots = 0;
+    int screen = SDL_GetWindowDisplayIndex(window);
+    if (screen < 0 || SDL_GetDisplayDPI(screen, NULL, &across, &dots) != 0)
+        return 1;
+    double density = (double)SDL_min(across, dots) / 96;
+    return density >= 1.5 && density <= 10 ? SDL_floor(2 * density + 0.5) / 2 : 1;
+}
+
 /* True: it is another size than before. */
 static bool measure(struct sdl *sdl) {
     int width = 0, height = 0, units = 0, ignored = 0;
@@ -39,7 +51,8 @@ static bool measure(struct sdl *sdl) {
     bool other = width != sdl->width || height != sdl->height || !sdl->size_told;
     sdl->width = width;
     sdl->height = height;
-    sdl->density = units > 0 && width > 0 ? (double)width / units : 1;
+    sdl->unit = units > 0 && width > 0 ? (double)width / units : 1;
+    sdl->density = SDL_max(sdl->unit, screen_density(sdl->window));
     return other;
 }
 
@@ -167,7 +180,7 @@ static void tell_size(struct sdl *sdl, struct window_event *out) {
 
 /* True: it is one that the program knows. */
 static bool translate(struct sdl *sdl, const SDL_Event *in, struct window_event *out) {
-    double density = sdl->density;
+    double density = sdl->unit;
     *out = (struct window_event){0};
     switch (in->type) {
     case SDL_QUIT:

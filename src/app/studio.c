@@ -203,6 +203,7 @@ static bool tell_story(struct at_work *work, const struct studio_order *order, s
 static void tell_world(struct at_work *work, struct studio_news *news) {
     const struct node *root = work->studio->request->root;
     news->kind = NEWS_BUILT;
+    news->built = progress_clock();
     news->added = work->studio->request->added;
     news->owned = work->studio->request->owned;
     news->report.bounds = finite_bounds(work->studio->world);

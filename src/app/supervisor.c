@@ -59,6 +59,7 @@ struct supervisor {
     double deadline; /* when the cancelled child is killed; 0: not cancelled */
     bool waits;      /* the child has run all scripts and waits for a change */
     bool restarts;   /* the scripts are cancelled because they will run again */
+    double quit_at;  /* when the window was closed, or 0 */
     bool ended;      /* somebody has said so: Ctrl-C, or the window was closed */
     /* The script's own processor time: the child's clock while no picture is being made. */
     double script_used;  /* seconds of earlier stretches of the script that runs */
@@ -302,6 +303,7 @@ static void end_picture(struct supervisor *supervisor, bool quit) {
 /* No picture is lost by closing the window: it is there already, or people did not wait for it. */
 static void quit_window(struct supervisor *supervisor) {
     supervisor->ended = true;
+    supervisor->quit_at = progress_clock();
     if (supervisor->deadline > 0 || supervisor->waits)
         return;
     supervisor->stop = true;
@@ -360,6 +362,10 @@ static void step_window(struct supervisor *supervisor) {
             break;
         case LIVE_CHANGES:
             take_home(supervisor, souvenir_changes);
+            break;
+        case LIVE_NOTE:
+            desk_line(&supervisor->desk, LINE_DETAIL, live->note);
+            live->note[0] = '\0';
             break;
         case LIVE_NEXT:
             end_picture(supervisor, false);
@@ -697,6 +703,7 @@ int supervisor_run(const struct options *options, const struct program_parts *pa
     struct error error;
     supervisor.control = mem_share(sizeof *supervisor.control);
     supervisor.live.control = supervisor.control;
+    supervisor.live.tells = options->verbose;
     desk_init(&supervisor.desk, options, supervisor.control);
     bool ready = supervisor.control
                      ? listen_to_signals(&supervisor, &error) && start_farm(&supervisor, transport, &error) &&
@@ -709,6 +716,12 @@ int supervisor_run(const struct options *options, const struct program_parts *pa
         note_error(&supervisor, &error);
     end_farm(&supervisor);
     live_end(&supervisor.live);
+    if (supervisor.quit_at > 0) {
+        char line[80];
+        (void)snprintf(line, sizeof line, "gray: the window closed in %.1f ms",
+                       1000 * (progress_clock() - supervisor.quit_at));
+        desk_line(&supervisor.desk, LINE_DETAIL, line);
+    }
     watch_close(&supervisor.watch);
     if (!desk_finish(&supervisor.desk, supervisor.status == 0, &error))
         note_error(&supervisor, &error);
