@@ -96,11 +96,11 @@ void run_tell_end(struct run *run) {
     outlook_tell(run->job->outlook, 1, 0, nanoseconds_of(CLOCK_MONOTONIC));
 }
 
-void run_tile_begins(struct run *run, struct worker *worker, uint32_t tile) {
+void run_tile_begins(struct run *run, struct worker *worker, uint32_t tile, double share) {
     if (!run->foretold)
         return;
     worker->tile_begun = worker->first_ended = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID);
-    forecast_begin(&run->forecast, worker->index, tile);
+    forecast_begin(&run->forecast, worker->index, tile, share);
 }
 
 void run_tile_goes_on(struct run *run, struct worker *worker, int pass, double part) {
@@ -112,11 +112,11 @@ void run_tile_goes_on(struct run *run, struct worker *worker, int pass, double p
     run_tell_outlook(run);
 }
 
-void run_tile_ends(struct run *run, struct worker *worker, uint32_t tile) {
+void run_tile_ends(struct run *run, struct worker *worker) {
     if (!run->foretold)
         return;
     uint64_t now = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID);
-    forecast_done(&run->forecast, worker->index, tile, (double)(now - worker->tile_begun),
+    forecast_done(&run->forecast, worker->index, (double)(now - worker->tile_begun),
                   (double)(worker->first_ended - worker->tile_begun));
     run_tell_outlook(run);
 }

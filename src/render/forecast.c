@@ -90,8 +90,9 @@ void forecast_settle(struct forecast *forecast) {
 
 /* --- what tiles took --- */
 
-void forecast_begin(struct forecast *forecast, int worker, uint32_t tile) {
+void forecast_begin(struct forecast *forecast, int worker, uint32_t tile, double share) {
     struct forecast_sums *sums = &forecast->sums[worker];
+    set(&sums->share, share);
     set(&sums->part[0], 0);
     set(&sums->part[1], 0);
     atomic_store_explicit(&sums->tile, tile, memory_order_relaxed);
@@ -101,19 +102,21 @@ void forecast_part(struct forecast *forecast, int worker, int pass, double part)
     set(&forecast->sums[worker].part[pass], part);
 }
 
-void forecast_done(struct forecast *forecast, int worker, uint32_t tile, double cost, double first_pass_cost) {
+void forecast_done(struct forecast *forecast, int worker, double cost, double first_pass_cost) {
     struct forecast_sums *sums = &forecast->sums[worker];
-    const float *terms = forecast->terms[tile];
-    double expected = 0;
-    for (int i = 0; i < FORECAST_TERMS; i++)
-        expected += (double)terms[i] * believed[i];
+    const float *of_tile = forecast->terms[atomic_load_explicit(&sums->tile, memory_order_relaxed)];
+    double terms[FORECAST_TERMS], expected = 0, share = get(&sums->share);
+    for (int i = 0; i < FORECAST_TERMS; i++) {
+        terms[i] = share * (double)of_tile[i];
+        expected += terms[i] * believed[i];
+    }
     double weight = 1 / fmax(expected, 0.1);
     atomic_store_explicit(&sums->tile, FORECAST_NO_TILE, memory_order_relaxed);
     for (int i = 0; i < FORECAST_TERMS; i++) {
         for (int k = 0; k < FORECAST_TERMS; k++)
-            add(&sums->products[i][k], weight * (double)terms[i] * (double)terms[k]);
-        add(&sums->costs[i], weight * (double)terms[i] * cost);
-        add(&sums->done[i], (double)terms[i]);
+            add(&sums->products[i][k], weight * terms[i] * terms[k]);
+        add(&sums->costs[i], weight * terms[i] * cost);
+        add(&sums->done[i], terms[i]);
     }
     add(&sums->weight, expected);
     add(&sums->cost, cost);
@@ -207,7 +210,7 @@ static void add_parts(const struct forecast *forecast, const struct totals *tota
     for (int w = 0; w < forecast->workers; w++) {
         const struct forecast_sums *sums = &forecast->sums[w];
         uint32_t tile = atomic_load_explicit(&sums->tile, memory_order_relaxed);
-        double part = first * get(&sums->part[0]) + (1 - first) * get(&sums->part[1]);
+        double part = get(&sums->share) * (first * get(&sums->part[0]) + (1 - first) * get(&sums->part[1]));
         for (int i = 0; tile < forecast->count && i < FORECAST_TERMS; i++)
             done[i] += part * (double)forecast->terms[tile][i];
     }

@@ -14,6 +14,7 @@ struct forecast_sums {
     _Atomic double done[FORECAST_TERMS];
     _Atomic double weight, cost, first_cost;
     _Atomic uint32_t tile;  /* under way, or FORECAST_NO_TILE */
+    _Atomic double share;   /* of the tile, that this worker makes */
     _Atomic double part[2]; /* of its first pass and of the second, 0..1 */
 };
 #define FORECAST_NO_TILE UINT32_MAX
@@ -36,10 +37,10 @@ void forecast_look(struct forecast *forecast, uint32_t tile, double pixels, doub
 /* After the last look, before the first tile. */
 void forecast_settle(struct forecast *forecast);
 
-/* The worker begins a tile, is so far with its first or second pass, has done it. */
-void forecast_begin(struct forecast *forecast, int worker, uint32_t tile);
+/* The worker begins a tile, or that share of it; is so far with its first or second pass; has done it. */
+void forecast_begin(struct forecast *forecast, int worker, uint32_t tile, double share);
 void forecast_part(struct forecast *forecast, int worker, int pass, double part);
-void forecast_done(struct forecast *forecast, int worker, uint32_t tile, double cost, double first_pass_cost);
+void forecast_done(struct forecast *forecast, int worker, double cost, double first_pass_cost);
 
 /* Work that is done and that is left, in a unit of its own: with what was done in a time, the rest takes that time
  * times left / done. film: what others have made counts, too (a farm); else NULL. At any time, from any thread. */

@@ -200,32 +200,73 @@ bool run_is_enough(const struct run *run) {
     return run->job->enough && atomic_load_explicit(run->job->enough, memory_order_relaxed) != 0;
 }
 
-static void tile_item(void *context, uint32_t place, int index) {
-    struct run *run = context;
-    uint32_t item = run->order ? run->order[place] : place;
-    struct worker *worker = &run->workers[index];
-    struct film *film = run->job->film;
-    uint8_t wanted = FILM_TILE_WANTED;
-    if (run_is_enough(run) || !atomic_compare_exchange_strong(&film->tiles[item], &wanted, FILM_TILE_TAKEN))
-        return;
-    struct film_rectangle r = film_tile_rectangle(film, item);
-    struct rectangle tile = {r.x0, r.y0, r.x1, r.y1};
-    run_tile_begins(run, worker, item);
-    /* A ray that was given up leaves a wrong colour: what ends after a wish to stop counts as not done. */
-    bool whole = render_tile(run, worker, tile) && !run_stopped(run, worker);
+/* Makes a tile or a part of it; false: stopped. A ray that was given up leaves a wrong colour: what ends after a wish
+ * to stop counts as not done. */
+static bool make_part(struct run *run, struct worker *worker, uint32_t tile, struct rectangle part, double share) {
+    run_tile_begins(run, worker, tile, share);
+    bool whole = render_tile(run, worker, part) && !run_stopped(run, worker);
     if (worker->scratch.failed) {
         atomic_store(&run->failed, true);
         pool_cancel(run->pool);
     }
-    atomic_store_explicit(&film->tiles[item], whole ? FILM_TILE_DONE : FILM_TILE_WANTED, memory_order_release);
     worker->tile_ended = seconds_now();
-    if (!whole)
-        return;
-    run_tile_ends(run, worker, item);
-    if (run->job->tile_done) {
+    if (whole)
+        run_tile_ends(run, worker);
+    return whole;
+}
+
+static void end_tile(struct run *run, uint32_t tile, bool whole) {
+    struct film *film = run->job->film;
+    atomic_store_explicit(&film->tiles[tile], whole ? FILM_TILE_DONE : FILM_TILE_WANTED, memory_order_release);
+    if (whole && run->job->tile_done) {
         uint32_t done = atomic_fetch_add(&run->done, 1) + 1;
-        run->job->tile_done(run->job->context, item, done, run->tiles_wanted);
+        run->job->tile_done(run->job->context, tile, done, run->tiles_wanted);
     }
+}
+
+static void make_tile(struct run *run, uint32_t tile, int index) {
+    struct film *film = run->job->film;
+    uint8_t wanted = FILM_TILE_WANTED;
+    if (run_is_enough(run) || !atomic_compare_exchange_strong(&film->tiles[tile], &wanted, FILM_TILE_TAKEN))
+        return;
+    struct film_rectangle r = film_tile_rectangle(film, tile);
+    end_tile(run, tile, make_part(run, &run->workers[index], tile, (struct rectangle){r.x0, r.y0, r.x1, r.y1}, 1));
+}
+
+/* The last tiles of the order are made in quarters, so that no thread waits long for another one's last tile. Who comes
+ * first takes the tile, who ends last ends it; once it is begun, its other quarters are made even when it is enough. */
+enum { QUARTERS = 4, QUARTER_FAILED = 0x80, TAIL_SHARE = 16, TAIL_LIMIT = 64 };
+
+static void make_quarter(struct run *run, uint32_t number, int index) {
+    struct film *film = run->job->film;
+    uint32_t tile = run->order[run->whole_tiles + number / QUARTERS];
+    _Atomic uint8_t *count = &run->quarters[number / QUARTERS];
+    uint8_t state = atomic_load(&film->tiles[tile]);
+    if (state == FILM_TILE_WANTED && run_is_enough(run))
+        return;
+    if (state == FILM_TILE_WANTED && atomic_compare_exchange_strong(&film->tiles[tile], &state, FILM_TILE_TAKEN))
+        state = FILM_TILE_TAKEN;
+    if (state != FILM_TILE_TAKEN)
+        return;
+    struct film_rectangle r = film_tile_rectangle(film, tile);
+    uint32_t x = r.x0 + (r.x1 - r.x0 + 1) / 2, y = r.y0 + (r.y1 - r.y0 + 1) / 2;
+    bool right = number % 2 == 1, low = number / 2 % 2 == 1;
+    struct rectangle part = {right ? x : r.x0, low ? y : r.y0, right ? r.x1 : x, low ? r.y1 : y};
+    int64_t pixels = (part.x1 - part.x0) * (part.y1 - part.y0);
+    double share = (double)pixels / ((double)(r.x1 - r.x0) * (r.y1 - r.y0));
+    if (pixels > 0 && !make_part(run, &run->workers[index], tile, part, share))
+        atomic_fetch_or(count, QUARTER_FAILED);
+    uint8_t before = atomic_fetch_add(count, 1);
+    if ((before & ~QUARTER_FAILED) + 1 == QUARTERS)
+        end_tile(run, tile, !(before & QUARTER_FAILED));
+}
+
+static void tile_item(void *context, uint32_t place, int index) {
+    struct run *run = context;
+    if (place < run->whole_tiles)
+        make_tile(run, run->order[place], index);
+    else
+        make_quarter(run, place - run->whole_tiles, index);
 }
 
 /* Makes whatever becomes wanted until no more can. */
@@ -240,7 +281,7 @@ static void gated_item(void *context, uint32_t item, int index) {
         while (tile < count && atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) != FILM_TILE_WANTED)
             tile++;
         if (tile < count)
-            tile_item(run, tile, index);
+            make_tile(run, tile, index);
         else if (atomic_load(run->job->gate) != 1)
             return;
         else
@@ -255,9 +296,15 @@ static bool run_tiles(struct run *run, struct render_statistics *statistics) {
     double begun = seconds_now();
     for (int i = 0; i < workers; i++)
         run->workers[i].tile_ended = begun;
+    uint32_t tail = film_tile_count(run->job->film) - run->whole_tiles;
     bool whole = run->job->gate ? pool_run(run->pool, (uint32_t)workers, gated_item, run)
-                                : pool_run(run->pool, film_tile_count(run->job->film), tile_item, run);
+                                : pool_run(run->pool, run->whole_tiles + QUARTERS * tail, tile_item, run);
     double ended = seconds_now();
+    for (uint32_t i = 0; i < tail && !whole; i++) { /* those of which quarters are missing */
+        uint8_t taken = FILM_TILE_TAKEN;
+        (void)atomic_compare_exchange_strong(&run->job->film->tiles[run->order[run->whole_tiles + i]], &taken,
+                                             FILM_TILE_WANTED);
+    }
     for (int i = 0; i < workers; i++)
         statistics->idle_seconds += ended - run->workers[i].tile_ended;
     return whole;
@@ -400,6 +447,7 @@ static void end_run(struct run *run, int workers) {
     mem_free(run->workers);
     mem_free(run->closed);
     mem_free(run->order);
+    mem_free(run->quarters);
     forecast_destroy(&run->forecast);
 }
 
@@ -455,10 +503,15 @@ static bool order_tiles(struct run *run) {
     uint32_t count = film_tile_count(film);
     if (run->job->outlook && !forecast_create(&run->forecast, count, film_tiles_across(film), pool_workers(run->pool)))
         return false;
+    run->whole_tiles = count;
     if (run->job->gate)
         return true;
+    uint32_t tail = (count + TAIL_SHARE - 1) / TAIL_SHARE;
+    tail = tail < TAIL_LIMIT ? tail : TAIL_LIMIT;
+    run->whole_tiles = count - tail;
     run->order = mem_alloc_zero(count, sizeof *run->order);
-    return run->order && tile_order(film, run->job->settings.order, run->order);
+    run->quarters = mem_alloc_zero(tail, sizeof *run->quarters);
+    return run->order && run->quarters && tile_order(film, run->job->settings.order, run->order);
 }
 
 static bool is_unfinished(const struct run *run) {

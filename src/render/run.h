@@ -55,11 +55,13 @@ struct run {
     uint32_t closed_count;
     struct photon_map caustics;
     struct worker *workers;
-    struct story *story;   /* of one pixel, or NULL */
-    uint32_t tiles_wanted; /* of this process, those that were there before too */
-    uint64_t *cost;        /* of each tile while shards are chosen */
-    uint32_t *order;       /* of the tiles; NULL: as they are numbered */
-    bool foretold;         /* the tiles have been looked at */
+    struct story *story;       /* of one pixel, or NULL */
+    uint32_t tiles_wanted;     /* of this process, those that were there before too */
+    uint64_t *cost;            /* of each tile while shards are chosen */
+    uint32_t *order;           /* of the tiles; NULL: as they are numbered */
+    uint32_t whole_tiles;      /* so many are made as a whole, the others of the order in quarters */
+    _Atomic uint8_t *quarters; /* of each of the others, how many are done; and QUARTER_FAILED */
+    bool foretold;             /* the tiles have been looked at */
     struct forecast forecast;
     uint64_t worked;       /* processor time when the first tile began */
     _Atomic uint64_t told; /* when the outlook was told, nanoseconds */
@@ -94,10 +96,10 @@ bool run_differs(const struct run *run, struct vec3 a, struct vec3 b);
 
 /* Before the first tile; false: stopped. Nothing happens where nobody asks how long it will take. */
 bool run_look_ahead(struct run *run);
-void run_tile_begins(struct run *run, struct worker *worker, uint32_t tile);
+void run_tile_begins(struct run *run, struct worker *worker, uint32_t tile, double share); /* that share of it */
 /* So much of its first pass (0) or its second is done. */
 void run_tile_goes_on(struct run *run, struct worker *worker, int pass, double part);
-void run_tile_ends(struct run *run, struct worker *worker, uint32_t tile);
+void run_tile_ends(struct run *run, struct worker *worker);
 void run_tell_outlook(struct run *run);
 void run_tell_end(struct run *run); /* all tiles are done */
 

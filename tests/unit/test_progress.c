@@ -168,8 +168,8 @@ static double worst_error(struct forecast *forecast, const uint32_t *order, int 
     for (int i = 0; i < 200; i++)
         left += cost_of(order[i]);
     for (int i = 0; i < until; i++) {
-        forecast_begin(forecast, i % forecast->workers, order[i]);
-        forecast_done(forecast, i % forecast->workers, order[i], cost_of(order[i]), 0.3 * cost_of(order[i]));
+        forecast_begin(forecast, i % forecast->workers, order[i], 1);
+        forecast_done(forecast, i % forecast->workers, cost_of(order[i]), 0.3 * cost_of(order[i]));
         left -= cost_of(order[i]);
         done += cost_of(order[i]);
         struct forecast_work work = forecast_work(forecast, NULL);
@@ -229,8 +229,8 @@ TEST(forecast_learns_what_edges_cost) {
     forecast_settle(&forecast);
     for (uint32_t tile = 0; tile < 390; tile++) { /* in rows of 20 */
         double cost = 1 + 20 * (tile % 7 == 0 ? 0.8 : 0.05);
-        forecast_begin(&forecast, 0, tile);
-        forecast_done(&forecast, 0, tile, cost, 1);
+        forecast_begin(&forecast, 0, tile, 1);
+        forecast_done(&forecast, 0, cost, 1);
         left -= cost;
         done += cost;
         struct forecast_work work = forecast_work(&forecast, NULL);
@@ -251,11 +251,13 @@ TEST(forecast_counts_tiles_under_way_and_those_of_others) {
     for (uint32_t tile = 0; tile < 4; tile++)
         forecast_look(&forecast, tile, 1024, 10, 0);
     forecast_settle(&forecast);
-    forecast_begin(&forecast, 0, 0);
-    forecast_done(&forecast, 0, 0, 100, 40);
+    for (int quarter = 0; quarter < 4; quarter++) {
+        forecast_begin(&forecast, 0, 0, 0.25);
+        forecast_done(&forecast, 0, 25, 10);
+    }
     struct forecast_work work = forecast_work(&forecast, NULL);
     CHECK_NEAR(work.left / work.done, 3, 1e-6);
-    forecast_begin(&forecast, 0, 1);
+    forecast_begin(&forecast, 0, 1, 1);
     forecast_part(&forecast, 0, 0, 1); /* all of the first pass, which is 0.4 of a tile, and half of the second */
     forecast_part(&forecast, 0, 1, 0.5);
     work = forecast_work(&forecast, NULL);
