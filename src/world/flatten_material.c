@@ -158,13 +158,6 @@ bool flatten_material(struct flattening *f, struct node *node, const struct mate
                           : "has a bump map, but its mesh has no texture coordinates (vt): it is not shown");
         texture = relief = NULL;
     }
-    if ((texture || relief) && (node->shape.kind == SHAPE_BLOB || node->shape.kind == SHAPE_QUADRIC)) {
-        warn_once(f, node,
-                  texture ? "has a texture, but blobs and general quadrics have no texture coordinates: it is not shown"
-                          : "has a bump map, but blobs and general quadrics have no texture coordinates: it is not "
-                            "shown");
-        texture = relief = NULL;
-    }
     if ((!f->materials || f->materials->count * 2 >= f->materials->capacity) && !grow(f))
         return false;
     const void *key = by_slot ? (const void *)node->slots : only ? (const void *)only : &plain_gray;
