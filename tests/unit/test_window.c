@@ -782,6 +782,36 @@ TEST(window_changes_parts_of_a_material_and_copies_them_to_one_of_its_own) {
     end(&t);
 }
 
+TEST(window_goes_up_to_the_node_above_and_down_to_the_operand_below) {
+    struct table t;
+    struct studio_news news = {.kind = NEWS_PICKED, .picked = a_ball};
+    begin(&t);
+    enlarge(&t);
+    go_to_the_end(&t);
+    t.fake.queue[t.fake.count++] = mouse(WINDOW_PRESS, 400, 280);
+    t.fake.queue[t.fake.count++] = mouse(WINDOW_RELEASE, 400, 280);
+    t.fake.queue[1].control = true; /* as far down as it goes */
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    CHECK(t.live.order.kind == ORDER_PICK && t.live.order.up < -1000);
+    news.picked.up = -1;
+    news.picked.levels = 2;
+    tell_news(&t, &news);
+    key(&t.fake, WINDOW_PAGE_DOWN, true); /* there is nothing below */
+    key(&t.fake, WINDOW_PAGE_UP, true);
+    do
+        CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    while (t.live.order.kind == ORDER_MARKS);
+    CHECK(t.live.order.kind == ORDER_PICK && t.live.order.up == 0 && t.live.order.x == 50.5);
+    news.picked.up = 0;
+    news.picked.levels = 1;
+    news.picked.below = 1;
+    tell_news(&t, &news);
+    key(&t.fake, WINDOW_PAGE_DOWN, true);
+    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    CHECK(t.live.order.kind == ORDER_PICK && t.live.order.up == -1);
+    end(&t);
+}
+
 TEST(window_asks_for_lights_until_it_knows_them_all_and_goes_through_them_by_keys) {
     struct table t;
     begin(&t);

@@ -9,18 +9,24 @@
 #include <sys/wait.h>
 
 /* `finds NAME`: S is pressed until a picture that was saved has the bytes of NAME. `changes N`: C writes the N-th file
- * of changes, and what it gives is again.png. `drag DX DY`: with the left button, from the middle of the picture. */
+ * of changes, and what it gives is again.png. `until_says PATTERN STEPS MEND`: steps again and again (what was clicked
+ * is known some time later) until a file of changes says so; n is its number. `drag DX DY`: with the left button, from
+ * the middle of the picture. */
 static const char helpers[] =
     "titled() { for i in $(seq 400); do xdotool search --name \"$1\" >/dev/null && return 0; sleep 0.05; done; "
     "echo the title never said $1 >&2; exit 9; }\n"
     "there() { for i in $(seq 400); do test -s \"$1\" && return 0; sleep 0.05; done; echo no $1 >&2; exit 8; }\n"
-    "finds() { for i in $(seq 150); do xdotool key s; sleep 0.1; for view in $(ls -t out-view*.png 2>/dev/null | "
+    "finds() { for i in $(seq 500); do xdotool key s; sleep 0.1; for view in $(ls -t out-view*.png 2>/dev/null | "
     "head -2); do cmp -s $view $1 && return 0; done; done; echo nothing like $1 >&2; exit 7; }\n"
     "changes() { xdotool key c; there out-changes$1.lua; sleep 0.1; "
     "{ echo \"require 'out-changes$1'\"; cat scene.lua; } >again.lua; "
     "$gray -q again.lua -o again.png || exit 6; }\n"
     "drag() { xdotool mousemove 450 380 mousedown 1 mousemove $((450 + $1 / 2)) $((380 + $2 / 2)) mousemove "
     "$((450 + $1)) $((380 + $2)) mouseup 1; }\n"
+    "until_says() { for i in $(seq 20); do eval \"$2\"; n=$((n + 1)); xdotool key c; there out-changes$n.lua; sleep "
+    "0.1; "
+    "grep -q \"$1\" out-changes$n.lua && return 0; eval \"$3\"; done; echo never $1 >&2; cat out-changes$n.lua >&2; "
+    "exit 5; }\n"
     "says() { grep -q \"$1\" out-changes1.lua || { echo no $1 >&2; cat out-changes1.lua >&2; exit 5; }; }\n"
     "$gray -gui -q --progress=none scene.lua & pid=$!\n"
     "there out.png; cp out.png first.png; titled ready\n";
@@ -52,7 +58,7 @@ static void drive(const char *scene, const char *steps) {
     file("scene.lua", scene);
     file("steps.sh", script);
     free(script);
-    int status = shell("timeout 100 xvfb-run -a -s '-screen 0 900x700x24' sh steps.sh");
+    int status = shell("timeout 250 xvfb-run -a -s '-screen 0 900x700x24' sh steps.sh");
     (void)snprintf(path, sizeof path, "%s/err.txt", test_folder());
     char *said = test_read_file(path, NULL);
     if (status != 0)
@@ -86,12 +92,12 @@ TEST(window_that_gives_a_shape_a_material_saves_what_gives_the_same_bytes) {
           "gr.render(r, 'out.png', 800, 600, {0, 1, 6}, {0, -0.15, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2}, "
           "{gr.light({4, 5, 6}, {0.9, 0.9, 0.9}, {1, 0, 0})})\n",
           "at() { xdotool mousemove $1 $2 sleep 0.1 mousedown 1 sleep 0.1 mouseup 1 sleep 0.2; }\n"
-          "xdotool mousemove 450 370 click 1 sleep 1\n"
-          "at 660 142; at 800 166; at 640 176; at 720 154; at 660 186\n"
-          "changes 1; finds again.png; cmp -s again.png first.png && exit 4\n"
-          "says change_own; says 'change_material(2147483647, '; says \"change_look(2147483647, 'emission', \"\n"
-          "for i in 1 2 3 4 5; do xdotool key ctrl+z; done; finds first.png\n"
-          "for i in 1 2 3 4 5; do xdotool key ctrl+y; done; finds again.png\n");
+          "until_says change_own 'xdotool mousemove 450 370 click 1 sleep 0.5; at 660 142'\n"
+          "until_says 'change_material(2147483647, ' 'at 800 166; at 640 176'\n"
+          "until_says 'change_look(2147483647, .emission., ' 'at 720 154; at 660 186'\n"
+          "changes $((n + 1)); finds again.png; cmp -s again.png first.png && exit 4\n"
+          "for i in $(seq 40); do xdotool key ctrl+z; done; finds first.png\n"
+          "for i in $(seq 40); do xdotool key ctrl+y; done; finds again.png\n");
 }
 
 TEST(window_that_changes_operands_of_a_solid_saves_what_gives_the_same_bytes) {
@@ -102,15 +108,18 @@ TEST(window_that_changes_operands_of_a_solid_saves_what_gives_the_same_bytes) {
         "a:scale(1.5, 1.5, 1.5)\nb:translate(0, 0, 1.2)\nr:add_child(gr.csg_difference('cut', a, b))\n"
         "gr.render(r, 'out.png', 320, 240, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2}, "
         "{gr.light({4, 5, 6}, {0.9, 0.9, 0.9}, {1, 0, 0})})\n",
-        "xdotool mousemove 450 380 keydown ctrl click 1 sleep 0.2 keyup ctrl sleep 1 key m; drag 20 -12\n"
-        "xdotool sleep 0.3 key z; drag 0 20; xdotool key t; drag 10 10\n"
-        "changes 1; finds again.png; cmp -s again.png first.png && exit 4\n"
-        "says \"change_node('b'\"; grep -q \"'cut'\\|'a'\" out-changes1.lua && exit 3\n"
-        "for i in 1 2 3; do xdotool key ctrl+z; done; finds first.png\n"
-        /* Up to the whole, down again, and without it. */
-        "xdotool key Prior sleep 0.5 key Next sleep 0.5 key Delete sleep 0.2; changes 2; finds again.png\n"
-        "grep -q \"change_delete('b'\" out-changes2.lua || exit 2\n"
-        "xdotool key ctrl+z; finds first.png\n");
+        "pick() { xdotool mousemove 450 380 keydown ctrl click 1 sleep 0.1 keyup ctrl sleep 0.5; }\n"
+        "until_says \"change_node('b'\" 'xdotool key Home; pick; xdotool key m; drag 20 -12; xdotool key m sleep 0.2'\n"
+        "xdotool key z; drag 0 20; xdotool key t; drag 10 10; xdotool key t Home\n"
+        "n=$((n + 1)); changes $n; finds again.png; cmp -s again.png first.png && exit 4\n"
+        "grep -q \"'cut'\\|'a'\" out-changes$n.lua && exit 3\n"
+        "for i in $(seq 9); do xdotool key ctrl+z; done; finds first.png\n"
+        /* Without it; and without the whole. */
+        "until_says \"change_delete('b'\" 'pick; xdotool key Delete sleep 0.2' 'xdotool key ctrl+z'\n"
+        "n=$((n + 1)); changes $n; finds again.png; cmp -s again.png first.png && exit 2; xdotool key ctrl+z\n"
+        "until_says \"change_delete('cut'\" 'pick; xdotool key Prior sleep 0.5 key Delete sleep 0.2' "
+        "'xdotool key ctrl+z'\n"
+        "n=$((n + 1)); changes $n; finds again.png; xdotool key ctrl+z; finds first.png\n");
 }
 
 TEST(window_that_has_more_lights_than_are_told_at_once_changes_the_last_one) {
