@@ -9,7 +9,8 @@
 #include <string.h>
 
 /* How near a click must be to a light, and how far its mark is kept from the border: dots of letters. */
-enum { MARKER = 8, MARGIN = 12, LIGHT_LIMIT = 1 << 16 };
+enum { MARKER = 8, MARGIN = 12 };
+enum { LIGHT_LIMIT = 4096 }; /* further ones are not known in the window */
 
 /* What is known. */
 
@@ -231,6 +232,13 @@ void live_light_delete(struct live *live) {
     live_make(live, &change, true, false);
 }
 
+/* Whether there is a number for one more. */
+static bool room_for_one(struct live *live) {
+    if (live->light_count >= LIGHT_LIMIT)
+        live_tell(live, "gray: the window knows no more lights than 4,096");
+    return live->light_count < LIGHT_LIMIT && live->light_count == live->lights_known;
+}
+
 /* The next one that is added; what it is told to be holds until the child says the same. */
 static struct change new_light(struct live *live) {
     uint32_t count = 0;
@@ -240,7 +248,7 @@ static struct change new_light(struct live *live) {
 }
 
 static void select_new(struct live *live, const struct told_light *light) {
-    if (live->light_count < LIGHT_LIMIT && make_room(live, live->light_count + 1)) {
+    if (make_room(live, live->light_count + 1)) {
         live->lights[live->light_count] = *light;
         live->lights_known += live->lights_known == live->light_count;
         live->light_count++;
@@ -252,6 +260,8 @@ static void select_new(struct live *live, const struct told_light *light) {
 void live_add_light(struct live *live) {
     struct change change = new_light(live);
     struct vec3 place = live_new_place(live), eye = live->view.camera.eye;
+    if (!room_for_one(live))
+        return;
     put(change.numbers, vec3_add_scaled(place, vec3_sub(eye, place), 0.5));
     put(change.numbers + 3, vec3_all(0.5));
     live_make(live, &change, true, false);
@@ -265,7 +275,7 @@ void live_copy_light(struct live *live) {
     struct change change = new_light(live), held = light_change(live, CHANGE_LIGHT);
     bool has = change_list_find(&live->edits.now, &held) != NULL;
     struct camera_frame frame;
-    if (!light || live->light_count != live->lights_known || !live_frame(live, &frame))
+    if (!light || !room_for_one(live) || !live_frame(live, &frame))
         return;
     struct told_light copy = *light;
     struct vec3 way = vec3_scale(frame.unit_right, 0.1 * vec3_length(vec3_sub(light->position, frame.eye)));
