@@ -4,6 +4,7 @@
 
 #include "math/elementary.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -110,8 +111,7 @@ void paper_clear(const struct paper *paper) {
 }
 
 static void put(const struct paper *paper, int x, int y, struct ink ink) {
-    if (x < 0 || y < 0 || x >= paper->width || y >= paper->height)
-        return;
+    assert(x >= 0 && y >= 0 && x < paper->width && y < paper->height); /* boxes are cut before */
     uint8_t *at = paper->rgba + 4 * ((size_t)y * (size_t)paper->width + (size_t)x);
     at[0] = ink.red;
     at[1] = ink.green;

@@ -44,7 +44,13 @@ static const char things[] =
     "root:add_child(gr.plane{material = image, normal = {0, 1, 0}, distance = -4})\n"
     "local bounded = gr.bounded_by{object = gr.sphere(red), by = gr.cube(red)} root:add_child(bounded)\n"
     "root:add_child(gr.clipped_by{object = gr.mesh{material = red, verts = verts, faces = faces}, by = "
-    "gr.sphere(red)})\n";
+    "gr.sphere(red)})\n"
+    /* solids that fall apart, one of them with holes, one in a bound; nothing at all */
+    "root:add_child(gr.union{name = 'apart', gr.sphere{material = image, centre = {-9, 0, 0}}, gr.sphere{material = "
+    "red, centre = {9, 0, 0}},\n"
+    "  gr.bounded_by{object = gr.sphere{material = red, centre = {0, 9, 0}}, by = gr.cube{corner = {-2, 7, -2}, size = "
+    "4}}})\n"
+    "root:add_child(gr.mesh{verts = verts, faces = {}})\n";
 static const char view[] = "file = 'a.png', width = 6, height = 6, eye = {0, 1, 9}, view = {0, 0, -1}, fov = 60, ";
 
 /* Keeps what the plain run gave, to see that the runs after a failure give the same. */

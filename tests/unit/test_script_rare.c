@@ -451,6 +451,12 @@ TEST(memory_may_end_on_the_rarest_ways) {
     fail_after_picture("gr.image_material(glass, 'pic1.0.png')", FAULT_OF_ALLOCATION, NULL, NULL);
     fail_after_picture("gr.change_delete{name = 'ball', serial = 0} gr.render(picture)", FAULT_OF_ALLOCATION, NULL,
                        NULL);
+    fail_after_picture(
+        "picture.lights = {gr.light({0, 0, 9}, {1, 1, 1}, {1, 0, 0})}\n"
+        "gr.change_node('ball', 0, {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0}) gr.change_add('ball', 0, 'cube')\n"
+        "gr.change_add('ball', 0, 'copy', {1, 1, 1}, 0) gr.change_light(1, {1, 0, 0})\n"
+        "gr.change_delete_light(1) gr.change_add_light({1, 2, 3}, {1, 1, 1}) gr.render(picture)",
+        FAULT_OF_ALLOCATION, NULL, NULL);
     fail_after_picture("local function f()\nerror('first\\n\\tsecond') end f()", FAULT_OF_ALLOCATION, NULL, "first");
     fail_after_picture("dofile('good.lua')", FAULT_OF_ALLOCATION, NULL, NULL);
 }

@@ -1,0 +1,176 @@
+/* The parts of the window that know no window, where they end: paper that is drawn over its edges, walks that look
+ * anywhere, steps and watched files without memory. */
+#include "app/edits.h"
+#include "app/paper.h"
+#include "app/walk.h"
+#include "app/watch.h"
+#include "base/fault.h"
+#include "tests/harness.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static int inked(const struct paper *paper) {
+    int count = 0;
+    for (int i = 0; i < paper->width * paper->height; i++)
+        count += paper->rgba[4 * i + 3] != 0;
+    return count;
+}
+
+TEST(nothing_is_drawn_beyond_the_edges_of_the_paper) {
+    enum { WIDTH = 30, HEIGHT = 20, ROOM = 4 * WIDTH * HEIGHT, AROUND = 4096 };
+    static uint8_t block[AROUND + ROOM + AROUND];
+    const struct paper paper = {block + AROUND, WIDTH, HEIGHT, 1};
+    const struct ink ink = {255, 200, 100, 255};
+    struct test_random random = {4};
+    memset(block, 77, sizeof block);
+    paper_clear(&paper);
+    CHECK_EQ_INT(inked(&paper), 0);
+    for (int i = 0; i < 3000; i++) {
+        double v[4];
+        int at[4];
+        for (int k = 0; k < 4; k++) {
+            v[k] = test_uniform(&random, 0, 1) < 0.1 ? 1e9 : test_uniform(&random, -60, 90);
+            at[k] = (int)test_uniform(&random, -50, 60);
+        }
+        paper_line(&paper, v[0], v[1], v[2], v[3], ink);
+        paper_ring(&paper, v[0], v[1], fabs(v[2]), ink);
+        paper_box(&paper, at[0], at[1], at[2], at[3], ink);
+        paper_frame(&paper, at[0], at[1], at[2], at[3], ink);
+        paper_text(&paper, at[0], at[1], "Text \xC3\xA4 \x7f~!", ink);
+    }
+    for (int i = 0; i < AROUND; i++)
+        CHECK(block[i] == 77 && block[AROUND + ROOM + i] == 77);
+    /* What is no place draws nothing, what has no length draws a dot. */
+    paper_clear(&paper);
+    for (int k = 0; k < 4; k++)
+        for (int bad = 0; bad < 3; bad++) {
+            double v[4] = {5, 5, 9, 9};
+            v[k] = bad == 0 ? NAN : bad == 1 ? INFINITY : -1e300;
+            paper_line(&paper, v[0], v[1], v[2], v[3], ink);
+        }
+    CHECK_EQ_INT(inked(&paper), 0);
+    paper_line(&paper, 7, 8, 7, 8, ink);
+    CHECK(inked(&paper) >= 1 && inked(&paper) <= 9);
+    /* Letters that are none look like the question mark, one for each character. */
+    CHECK_EQ_INT(paper_text_width(&paper, "\xC3\xA4\xE2\x82\xAC\x7f"), paper_text_width(&paper, "???"));
+    static uint8_t other[ROOM];
+    const struct paper second = {other, WIDTH, HEIGHT, 1};
+    paper_clear(&paper);
+    paper_clear(&second);
+    paper_text(&paper, 1, 1, "\xC3\xA4\x7f", ink);
+    paper_text(&second, 1, 1, "\?\?", ink);
+    CHECK(memcmp(paper.rgba, other, ROOM) == 0);
+}
+
+/* Whatever it looks at, also straight up and with an up that is no direction across. */
+TEST(a_walk_begins_where_the_camera_looks) {
+    const struct box box = {{-1, -1, -1}, {1, 1, 1}}, endless = {{-INFINITY, -1, -1}, {1, 1, 1}},
+                     nothing = {{1, 1, 1}, {-1, -1, -1}}, above = {{-1, -1, -1}, {1, INFINITY, 1}};
+    const struct box *const boxes[] = {&box, &endless, &nothing, &above};
+    for (int x = -1; x <= 1; x++)
+        for (int y = -1; y <= 1; y++)
+            for (int z = -1; z <= 1; z++)
+                for (int k = 0; k < 4; k++) {
+                    struct vec3 view = {x, y, z}, up = k == 3 ? view : vec3_make(k == 1, k == 0, k == 2);
+                    if (x == 0 && y == 0 && z == 0)
+                        continue;
+                    const struct camera camera = {{3, 4, 5}, view, up, 40};
+                    struct walk walk;
+                    walk_begin(&walk, &camera, boxes[(x + y + z + 3) % 4]);
+                    struct camera now = walk_camera(&walk);
+                    struct vec3 have = vec3_normalize(now.view), wanted = vec3_normalize(view);
+                    CHECK(vec3_length(vec3_sub(have, wanted)) < 1e-9);
+                    CHECK(fabs(vec3_dot(vec3_normalize(now.up), have)) < 1e-9);
+                    CHECK(now.eye.x == 3 && now.eye.y == 4 && now.eye.z == 5);
+                    CHECK(walk.speed > 0 && isfinite(walk.speed));
+                    walk.down[WALK_FORWARD] = true;
+                    CHECK(!walk_step(&walk, 0) && walk_step(&walk, 1));
+                    struct vec3 way = vec3_normalize(vec3_sub(walk_camera(&walk).eye, now.eye));
+                    CHECK(vec3_length(vec3_sub(way, wanted)) < 1e-9);
+                    walk.down[WALK_BACK] = true; /* both: nowhere */
+                    CHECK(!walk_step(&walk, 1));
+                }
+    struct walk walk;
+    const struct camera camera = {{0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 40};
+    walk_begin(&walk, &camera, &box);
+    walk_zoom(&walk, 1000);
+    CHECK_NEAR(walk_camera(&walk).fov, 0.01, 1e-12);
+    walk_zoom(&walk, -2000);
+    CHECK_NEAR(walk_camera(&walk).fov, 170, 1e-9);
+}
+
+/* --- steps --- */
+
+static bool put_until(void *context, const char *line) {
+    int *left = context;
+    CHECK(line[0] != '\0');
+    return --*left >= 0;
+}
+
+TEST(edits_are_told_until_somebody_has_enough) {
+    struct edits edits = {0};
+    struct change change = {.kind = CHANGE_GONE, .serial = 3};
+    strcpy(change.name, "it's \\ a\x7f\nname");
+    for (int i = 0; i < 40; i++, change.serial++)
+        CHECK(edits_make(&edits, &change, true, false));
+    const struct camera camera = {{1, 2, 3}, {0, 0, -1}, {0, 1, 0}, 30};
+    const double exposure = 1.5;
+    int lines = 1000;
+    CHECK(edits_tell(&edits.now, "a.png", &camera, &exposure, put_until, &lines));
+    int all = 1000 - lines;
+    for (int room = 0; room < all; room++) {
+        lines = room;
+        CHECK(!edits_tell(&edits.now, "a.png", &camera, &exposure, put_until, &lines));
+    }
+    lines = 1000;
+    CHECK(edits_tell(&edits.now, "a.png", NULL, NULL, put_until, &lines));
+    CHECK(1000 - lines < all);
+    edits_destroy(&edits);
+}
+
+#ifdef GRAY_FAULTS
+TEST(edits_and_watched_files_survive_any_allocation_that_fails) {
+    for (uint64_t k = 1, over = 0; !over; k++) {
+        struct edits edits = {0};
+        struct change change = {.kind = CHANGE_GONE}, target;
+        uint64_t before = fault_count(FAULT_OF_ALLOCATION);
+        int made = 0, undone = 0;
+        fault_at(FAULT_OF_ALLOCATION, k);
+        for (int i = 0; i < 100; i++, change.serial++)
+            made += edits_make(&edits, &change, true, i % 3 == 0);
+        for (int i = 0; i < 100; i++)
+            undone += edits_undo(&edits, &target);
+        for (int i = 0; i < 100; i++)
+            undone -= edits_redo(&edits, &target);
+        fault_at(FAULT_OF_ALLOCATION, 0);
+        over = fault_count(FAULT_OF_ALLOCATION) - before < k;
+        CHECK(made >= 99 && (!over || (made == 100 && undone == 0)));
+        edits_destroy(&edits);
+    }
+    CHECK(chdir(test_folder()) == 0);
+    test_write_text("a.lua", "x");
+    CHECK(symlink("a.lua", "link.lua") == 0);
+    for (uint64_t k = 1, over = 0; !over; k++) {
+        struct watch watch = {0};
+        struct error error;
+        uint64_t before = fault_count(FAULT_OF_ALLOCATION);
+        bool ok = watch_open(&watch, &error);
+        CHECK(ok);
+        fault_at(FAULT_OF_ALLOCATION, k);
+        for (int i = 0; ok && i < 40; i++) {
+            char name[32];
+            (void)snprintf(name, sizeof name, "file%d.lua", i);
+            ok = watch_add(&watch, name, NULL, 0);
+        }
+        ok = ok && watch_add(&watch, "link.lua", NULL, 0) && watch_add(&watch, "", NULL, 0);
+        fault_at(FAULT_OF_ALLOCATION, 0);
+        over = fault_count(FAULT_OF_ALLOCATION) - before < k;
+        CHECK(ok == (bool)over);
+        watch_close(&watch);
+    }
+}
+#endif
