@@ -91,6 +91,7 @@ void test_need_window(void) {
     (void)snprintf(text, sizeof text, "%s%sdetect_leaks=0", options ? options : "", options ? ":" : "");
     (void)setenv("ASAN_OPTIONS", text, 1);
     (void)setenv("SDL_RENDER_DRIVER", "software", 1);
+    (void)setenv("SDL_FRAMEBUFFER_ACCELERATION", "0", 1);
 }
 
 const char *test_folder(void) {

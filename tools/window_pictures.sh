@@ -1,15 +1,16 @@
 #!/bin/sh
-# Makes the pictures of the window in docs/window: the program under a display without a screen (Xvfb), keys and mouse
-# by xdotool, pictures by ImageMagick. Waits for signs in the window's title, not for times.
+# Makes the pictures of the window in docs/window, or the folder that is given: the program under a display without a
+# screen (Xvfb), keys and mouse by xdotool, pictures by ImageMagick. Waits for signs in the window's title, not for times.
 cd "$(dirname "$0")/.." || exit 1
 gray=$PWD/build/release/gray
-out=$PWD/docs/window
+[ "$1" = inside ] && out=$2 || out=${1:-$PWD/docs/window}
+export SDL_RENDER_DRIVER=software SDL_FRAMEBUFFER_ACCELERATION=0
 if [ "$1" != inside ]; then
     for tool in Xvfb xvfb-run xdotool import; do
         command -v $tool >/dev/null || { echo "$tool is missing" >&2; exit 1; }
     done
     mkdir -p "$out"
-    exec xvfb-run -a -s "-screen 0 1000x760x24" sh "$0" inside
+    exec xvfb-run -a -s "-screen 0 1000x760x24" sh "$0" inside "$(cd "$out" && pwd)"
 fi
 
 work=$(mktemp -d) || exit 1
@@ -18,7 +19,7 @@ cp -r data/12demo.lua data/stage.lua "$work" 2>/dev/null
 cd "$work" || exit 1
 
 titled() { # waits until the title holds the word
-    for i in $(seq 400); do
+    for i in $(seq 2400); do
         xdotool search --name "$1" >/dev/null 2>&1 && return 0
         sleep 0.05
     done
@@ -26,7 +27,7 @@ titled() { # waits until the title holds the word
     exit 1
 }
 take() {
-    sleep 0.4
+    sleep "${2:-0.4}"
     import -window "$(xdotool search --onlyvisible --name . | head -1)" "$work/$1.png"
     convert "$work/$1.png" -strip +dither -colors 160 "$out/$1.png"
 }
@@ -34,12 +35,23 @@ take() {
 "$gray" -gui --watch -q --progress=none 12demo.lua >story.txt 2>said.txt &
 pid=$!
 titled '(building|%)'
-titled '[2-9][0-9] %  '
-take making
+titled '[2-9][0-9] %[^(]*frames'
+take making 0
 titled ready
 take ready
 xdotool mousemove 500 320 click 1
 take picked
+xdotool key b sleep 0.5
+titled ready
+take boxes
+xdotool key g sleep 0.5
+titled ready
+take grid
+xdotool key g key r sleep 0.4 key x
+titled stopped
+take stopped
+xdotool key x sleep 0.3
+titled ready
 xdotool key p
 take story
 xdotool key Escape mousemove 541 301 click 1 sleep 0.5 key m
@@ -92,4 +104,5 @@ xdotool mousemove 400 600 mousedown 1 mousemove 405 590 sleep 0.1 mousemove 430 
 sleep 0.5
 titled ready
 take operand
-kill $pid
+xdotool key q
+wait $pid

@@ -12,7 +12,7 @@ if [ "$1" != inside ]; then
 fi
 shift
 gray=$PWD/build/release/gray
-export SDL_RENDER_DRIVER=software
+export SDL_RENDER_DRIVER=software SDL_FRAMEBUFFER_ACCELERATION=0
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 said() { # waits until the file has so many lines with the word

@@ -31,14 +31,16 @@ static void close_window(void *context) {
     *sdl = (struct sdl){0};
 }
 
-/* Where the desktop has the pixels of the screen as its units (X11), only the dots an inch tell how small they are: 96
- * are seen as one. Below one and a half of that, and beyond ten, nothing is believed: many screens tell nonsense. */
+/* Where the desktop has the pixels of the screen as its units (X11), people say how small they are (GDK_SCALE, which
+ * desktops set), or the dots an inch tell it: 96 are seen as one. Below one and a half of that, and beyond ten, nothing
+ * is believed: many screens tell nonsense. */
 static double screen_density(SDL_Window *window) {
+    const char *said = SDL_getenv("GDK_SCALE");
     float across = 0, dots = 0;
     int screen = SDL_GetWindowDisplayIndex(window);
-    if (screen < 0 || SDL_GetDisplayDPI(screen, NULL, &across, &dots) != 0)
-        return 1;
-    double density = (double)SDL_min(across, dots) / 96;
+    double density = said ? SDL_atof(said) : 0;
+    if (!(density > 0) && screen >= 0 && SDL_GetDisplayDPI(screen, NULL, &across, &dots) == 0)
+        density = (double)SDL_min(across, dots) / 96;
     return density >= 1.5 && density <= 10 ? SDL_floor(2 * density + 0.5) / 2 : 1;
 }
 

@@ -974,3 +974,15 @@ TEST(window_that_is_resized_and_looked_about_in_shows_the_same_picture_at_home) 
           "xdotool key q; wait $pid'",
           0);
 }
+
+/* X11 has no other units than pixels. */
+TEST(window_on_a_screen_of_high_density_has_larger_letters) {
+    need_display();
+    gives("xvfb-run -a -s '-screen 0 900x700x24' sh -c 'for density in 1 2; do rm -f out.png; "
+          "GDK_SCALE=$density $gray -gui --verbose --progress=none scene.lua 2>said.txt & pid=$!; "
+          "sh wait.sh \"test -s out.png && grep -q density.$density, said.txt\" || exit 9; "
+          "sh wait.sh \"xdotool search --name ready\" || exit 8; xdotool search --name ready windowsize 600 450; "
+          "sh wait.sh \"grep -q 600x450.pixels,.density.$density,.letters.of.$density said.txt\" || exit 7; "
+          "xdotool key q; wait $pid; done'",
+          0);
+}

@@ -1,0 +1,40 @@
+/* Pictures of the window with the demo that is made for it, kept below build/window to be looked at. */
+#define _GNU_SOURCE
+#include "tests/harness.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* How many pixels differ, of a share of all. */
+static double difference(const struct test_picture *a, const struct test_picture *b) {
+    size_t count = (size_t)a->width * a->height, other = 0;
+    CHECK(a->width == b->width && a->height == b->height);
+    for (size_t i = 0; i < count && a->width == b->width && a->height == b->height; i++)
+        other += memcmp(a->rgb + 3 * i, b->rgb + 3 * i, 3) != 0;
+    return (double)other / (double)count;
+}
+
+TEST_LONG(window_pictures_of_the_demo_are_made_and_kept) {
+    static const char *const names[] = {"making",  "ready", "picked", "boxes", "grid",
+                                        "stopped", "story", "moved",  "added", "error"};
+    enum { COUNT = sizeof names / sizeof *names };
+    struct test_picture pictures[COUNT];
+    test_need_window();
+    if (system("command -v import >/dev/null && command -v convert >/dev/null") != 0)
+        test_skip("there is no ImageMagick, which takes the pictures");
+    CHECK(system("rm -rf build/window && tools/window_pictures.sh build/window") == 0);
+    for (int i = 0; i < COUNT; i++) {
+        char path[64];
+        (void)snprintf(path, sizeof path, "build/window/%s.png", names[i]);
+        pictures[i] = test_read_picture(path);
+        CHECK(pictures[i].rgb != NULL);
+        if (!pictures[i].rgb)
+            return;
+    }
+    /* Each shows something else than the one when all was done: from the outline of a ball to a page of text. */
+    for (int i = 2; i < COUNT; i++)
+        CHECK(difference(&pictures[1], &pictures[i]) > 0.005);
+    for (int i = 0; i < COUNT; i++)
+        free(pictures[i].rgb);
+}
