@@ -200,7 +200,7 @@ TEST(solids_are_answered_or_say_that_room_is_missing_with_any_room) {
             struct shape box = {.kind = SHAPE_BOX};
             box.box.min = random_vec3(&random, 0.9);
             box.box.max = vec3_add(box.box.min, vec3_make(0.9, 0.7, 1.1));
-            leaves[i] = (struct csg_leaf){.shape = i % 3 == 2 ? make(turn % MAKERS, &arena, &random)
+            leaves[i] = (struct csg_leaf){.shape = i % 3 == 2 ? make((enum maker)(turn % MAKERS), &arena, &random)
                                                    : i % 2    ? ball
                                                               : box,
                                           .csg_from_leaf = transform_identity()};
