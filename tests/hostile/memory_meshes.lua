@@ -1,5 +1,5 @@
 -- expect: *used up its memory of 64 MiB
--- arguments: --script-time 5
+-- arguments: --script-time 30
 local m, n = gr.material({1, 1, 1}, {1, 1, 1}, 1), 0
 while true do
     n = n + 1
