@@ -14,22 +14,11 @@ runs=${RUNS:-1}
 least=${LEAST:-0.05}
 mkdir -p "$out"
 
-# The first line is the number of the process; before each other one comes its processor time in seconds.
-with_clock() {
-    read -r process
-    clock=0
-    while read -r line; do
-        if read -r spent rest 2>/dev/null <"/proc/$process/schedstat"; then clock=$spent; fi
-        echo "$clock $line"
-    done
-}
-
 once() {
-    # shellcheck disable=SC2016,SC2086
-    sh -c 'echo "$$"; exec "$@" 2>&1 >/dev/null' sh "$gray" --no-fork -j 1 --progress=json $OPTIONS $2 \
-        --shard-pictures 1/1000 -o "$out/progress-%d.png" "$1" |
-        with_clock |
-        awk -v least="$least" '
+    # shellcheck disable=SC2086
+    "$gray" --no-fork -j 1 --progress=json $OPTIONS $2 --shard-pictures 1/1000 -o "$out/progress-%d.png" "$1" \
+        2>"$out/progress.log" >/dev/null
+    awk -v least="$least" '
             function field(name,    at) {
                 at = index($0, "\"" name "\":")
                 return at ? substr($0, at + length(name) + 3) + 0 : -1
@@ -38,7 +27,7 @@ once() {
                 error = error < 0 ? -error / of : error / of
                 return error > old ? error : old
             }
-            { clock = $1 / 1e9 }
+            { clock = field("processor") }
             /"event":"(begin|build)"/ || /"event":"render"/ && field("share") <= 0 { begun = clock }
             /"event":"render"/ && field("share") > 0 {
                 n++; at[n] = clock; share[n] = field("share"); left[n] = field("left"); wall[n] = field("seconds")
@@ -60,7 +49,7 @@ once() {
                         worst_clock = worse(worst_clock, left[i] - (end_wall - wall[i]), end_wall - wall[i])
                 }
                 printf "%.2f %d %.1f %.1f %.1f %.1f\n", whole, n, 100 * worst, 100 * worst_left, 100 * to_end, 100 * worst_clock
-            }'
+            }' "$out/progress.log"
 }
 
 median() { sort -n | awk '{ v[NR] = $1 } END { print v[int((NR + 1) / 2)] }'; }

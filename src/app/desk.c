@@ -278,6 +278,43 @@ static void row_linear(void *context, uint32_t y, float *line) {
     film_row_linear(rows->film, rows->view, y, line);
 }
 
+/* Finished tiles one below the other: what packing the picture will take, before it is there. */
+enum { TRIAL_TILES = 16 };
+struct trial {
+    const struct film *film;
+    struct tone tone;
+    uint32_t tiles[TRIAL_TILES], count;
+};
+
+static void trial_row(void *context, uint32_t y, uint8_t *line) {
+    const struct trial *trial = context;
+    struct film_rectangle r = film_tile_rectangle(trial->film, trial->tiles[y / FILM_TILE]);
+    size_t at = (size_t)(r.y0 + y % FILM_TILE - trial->film->y0) * trial->film->width + (r.x0 - trial->film->x0);
+    for (uint32_t x = 0; x < FILM_TILE; x++) {
+        for (uint32_t c = 0; c < 3; c++)
+            line[3 * x + c] = png_write_byte(tone_apply(&trial->tone, (double)trial->film->pixels[at + x].rgb[c]));
+    }
+}
+
+static void try_writing(struct desk *desk) {
+    const struct picture *picture = &desk->current;
+    const struct picture_request *request = &picture->request;
+    const struct film *film = &picture->film;
+    struct trial trial = {film, {request->exposure, (enum tone_curve)request->curve, request->srgb != 0}, {0}, 0};
+    uint32_t count = film_tile_count(film), step = count / TRIAL_TILES / 4 + 1;
+    for (uint32_t tile = 0; tile < count && trial.count < TRIAL_TILES;) {
+        struct film_rectangle r = film_tile_rectangle(film, tile);
+        bool done = atomic_load_explicit(&film->tiles[tile], memory_order_acquire) == FILM_TILE_DONE &&
+                    r.x1 - r.x0 == FILM_TILE && r.y1 - r.y0 == FILM_TILE;
+        if (done)
+            trial.tiles[trial.count++] = tile;
+        tile += done ? count / TRIAL_TILES : step;
+    }
+    struct png_source source = {FILM_TILE, FILM_TILE * trial.count, trial_row, NULL, &trial};
+    double seconds = trial.count > 0 ? png_write_trial(&source) : -1;
+    progress_note_trial(&desk->progress, request->deep ? 2 * seconds : seconds, source.width * source.height);
+}
+
 /* The extension says the format; whatever is not .pfm, .hdr or .exr is PNG. Tone is for PNG alone: the others hold
  * light. */
 static bool write_view(const struct picture *picture, const char *name, enum film_view view, struct pool *pool,
@@ -453,6 +490,8 @@ void desk_show_progress(struct desk *desk) {
         progress_hide(&desk->progress);
     show_elsewhere(desk, display_step(&desk->display, progress_clock(), &error), &error);
     progress_update(&desk->progress, done, count, &desk->control->outlook);
+    if (desk->current.open && !desk->current.request.live && progress_wants_trial(&desk->progress))
+        try_writing(desk);
 }
 
 void desk_line(struct desk *desk, enum line_kind kind, const char *text) {

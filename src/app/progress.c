@@ -13,8 +13,9 @@
 
 enum { BAR_CELLS = 24, COLUMNS_LIMIT = 200 };
 
-/* Seconds of one core for a pixel of a PNG file: what comes after the last tile. */
-static const double writing = 5e-8;
+/* Seconds of one core for a pixel of a PNG file, which is written after the last tile, until it is measured on tiles
+ * that are done: it depends on the picture. */
+static const double usual_writing = 5e-8;
 
 double progress_clock(void) {
     struct timespec now;
@@ -66,7 +67,8 @@ static struct state state_of(struct progress *progress, double now, uint32_t don
                                    : -1;
     if (asked && state.share > 0 && state.left >= 0) {
         /* The file is written by all threads, after the last tile. */
-        double last = writing * outlook_pace(outlook) * progress->width * progress->height / progress->threads;
+        double pixels = (double)progress->width * progress->height;
+        double last = progress->writing * outlook_pace(outlook) * pixels / progress->threads;
         double whole = state.elapsed + state.left;
         state.share = fmax(progress->share, state.share * whole / (whole + last));
         progress->share = state.share;
@@ -132,7 +134,7 @@ static void print_json(const struct progress *progress, const char *event, const
         (void)fprintf(stderr, ",\"share\":%.4f", state->share);
     if (state->left >= 0)
         (void)fprintf(stderr, ",\"left\":%.3f", state->left);
-    (void)fputs("}\n", stderr);
+    (void)fprintf(stderr, ",\"processor\":%.4f}\n", progress_processor_clock());
     (void)fflush(stderr);
 }
 
@@ -140,11 +142,23 @@ void progress_begin(struct progress *progress, const char *name, uint32_t width,
     progress->name = name;
     progress->said = false;
     progress->share = 0;
+    progress->writing = usual_writing;
+    progress->tried = progress->known = false;
     progress->width = width;
     progress->height = height;
     progress->begun = progress->shown = progress_clock();
     if (progress->mode == PROGRESS_JSON)
         print_json(progress, "begin", &(struct state){0, -1, -1, 0, 0});
+}
+
+bool progress_wants_trial(const struct progress *progress) {
+    return progress->mode != PROGRESS_NONE && !progress->tried && progress->share > 0.25;
+}
+
+void progress_note_trial(struct progress *progress, double seconds, uint32_t pixels) {
+    progress->tried = true;
+    if (seconds > 0 && pixels > 0)
+        progress->writing = seconds / pixels;
 }
 
 bool progress_wants_outlook(const struct progress *progress) {
@@ -170,8 +184,10 @@ static double pause_of(const struct progress *progress, double now) {
 
 void progress_update(struct progress *progress, uint32_t done, uint32_t count, const struct outlook *outlook) {
     double now = progress_clock();
-    if (!progress->name || now - progress->shown < pause_of(progress, now))
+    bool first = progress->mode == PROGRESS_JSON && !progress->known && outlook_share(outlook) >= 0;
+    if (!progress->name || (now - progress->shown < pause_of(progress, now) && !first))
         return;
+    progress->known = progress->known || first;
     struct state state = state_of(progress, now, done, count, outlook);
     progress->shown = now;
     if (progress->mode == PROGRESS_BAR)

@@ -16,6 +16,9 @@ struct progress {
     int threads;
     double begun, shown; /* seconds; when the picture began, when it was last told */
     bool said;           /* a line was printed */
+    double writing;      /* seconds of one core for a pixel of the file */
+    bool tried;          /* that was measured; else it is a guess */
+    bool known;          /* that tiles have begun was told */
     double share;        /* that was told; it never falls */
     int columns;         /* that the bar on the screen covers; 0: none is there */
 };
@@ -30,6 +33,10 @@ void progress_init(struct progress *progress, enum progress_mode mode, bool quie
 void progress_begin(struct progress *progress, const char *name, uint32_t width, uint32_t height);
 /* count 0: the scene is still being built. Tells at most ten times a second. */
 void progress_update(struct progress *progress, uint32_t done, uint32_t count, const struct outlook *outlook);
+/* It is time to measure what writing the file will take: enough of it is there, and somebody wants to know. */
+bool progress_wants_trial(const struct progress *progress);
+/* Processor seconds for so many pixels; negative: it could not be measured. */
+void progress_note_trial(struct progress *progress, double seconds, uint32_t pixels);
 /* Whether anybody will see an estimate. */
 bool progress_wants_outlook(const struct progress *progress);
 /* Takes the bar off the screen, so that a line can be printed; the next update draws it again. */

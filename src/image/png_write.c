@@ -11,6 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <zlib.h>
 
 /* Measured on a picture of 1280 x 960 of spheres over a floor (size, time of one core): level 6 as one stream 529 kB in
@@ -226,16 +227,35 @@ uint32_t png_write_stripes(uint32_t width, uint32_t height, int bits) {
     return (height - 1) / rows + 1;
 }
 
-bool png_write_from(const char *path, const struct png_source *rows, struct pool *pool, struct error *error) {
-    if (rows->width == 0 || rows->height == 0 || rows->width > SIDE_LIMIT / 8 || rows->height > SIDE_LIMIT)
-        return error_set(error, ERROR_SCENE, "%s: a PNG file cannot have %u x %u pixels", path, rows->width,
-                         rows->height);
+static struct writer writer_for(const struct png_source *rows, const struct pool *pool) {
     struct writer writer = {.rows = rows, .row_bytes = (size_t)rows->width * 3 * (rows->words ? 2 : 1)};
     writer.stripe_count = png_write_stripes(rows->width, rows->height, rows->words ? 16 : 8);
     writer.stripe_rows = writer.row_bytes + 1 < STRIPE ? (uint32_t)(STRIPE / (writer.row_bytes + 1)) : 1;
     writer.stripe_bytes = writer.stripe_rows * (writer.row_bytes + 1);
     writer.workers = pool ? pool_workers(pool) : 1;
     writer.in_flight = pool ? IN_FLIGHT * writer.workers : 1;
+    return writer;
+}
+
+double png_write_trial(const struct png_source *source) {
+    struct writer writer = writer_for(source, NULL);
+    struct timespec begun, ended;
+    bool ready = begin(&writer);
+    for (int round = 0; round < 2; round++) { /* the first one warms what a long run has warm */
+        (void)clock_gettime(CLOCK_THREAD_CPUTIME_ID, &begun);
+        for (writer.first = 0; ready && writer.first < writer.stripe_count; writer.first++)
+            pack_stripe(&writer, 0, 0);
+    }
+    (void)clock_gettime(CLOCK_THREAD_CPUTIME_ID, &ended);
+    end(&writer);
+    return ready ? (double)(ended.tv_sec - begun.tv_sec) + 1e-9 * (double)(ended.tv_nsec - begun.tv_nsec) : -1;
+}
+
+bool png_write_from(const char *path, const struct png_source *rows, struct pool *pool, struct error *error) {
+    if (rows->width == 0 || rows->height == 0 || rows->width > SIDE_LIMIT / 8 || rows->height > SIDE_LIMIT)
+        return error_set(error, ERROR_SCENE, "%s: a PNG file cannot have %u x %u pixels", path, rows->width,
+                         rows->height);
+    struct writer writer = writer_for(rows, pool);
     if (!file_output_open(&writer.output, path, error))
         return false;
     bool ready = begin(&writer);

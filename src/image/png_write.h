@@ -23,7 +23,10 @@ bool png_write_from(const char *path, const struct png_source *rows, struct pool
 /* Into how many parts a picture of that size falls: more threads have nothing to do. Sides from 1. */
 uint32_t png_write_stripes(uint32_t width, uint32_t height, int bits);
 
-/* The same in this thread alone, with 8 and with 16 bits. */
+/* Seconds of processor time that packing such a picture takes this thread; nothing is written. Negative: no memory. */
+double png_write_trial(const struct png_source *source);
+
+/* Writing in this thread alone, with 8 and with 16 bits. */
 bool png_write(const char *path, uint32_t width, uint32_t height,
                void (*rows)(void *context, uint32_t y, uint8_t *line), void *context, struct error *error);
 bool png_write_16(const char *path, uint32_t width, uint32_t height,

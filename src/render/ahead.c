@@ -1,6 +1,6 @@
 /* Looking ahead, where somebody asks how long a picture will take: SIDE x SIDE rays through each tile before the first
- * one, about 1 % of the work, and from then on the forecast (render/forecast.h) a few times a second, told by whichever
- * worker comes by. Processor time, so that what else the machine does counts for nothing. */
+ * one, about 1 % of the work, and from then on the forecast (render/forecast.h) a hundred times a second, told by
+ * whichever worker comes by. Processor time, so that what else the machine does counts for nothing. */
 #include "render/run.h"
 
 #include <string.h>
@@ -8,7 +8,7 @@
 
 enum { SIDE = 4, RAYS = SIDE * SIDE, PAIRS = 2 * SIDE * (SIDE - 1) };
 /* Nanoseconds between two forecasts. */
-static const uint64_t pause = 50000000;
+static const uint64_t pause = 10000000;
 
 static uint64_t nanoseconds_of(clockid_t clock) {
     struct timespec now;

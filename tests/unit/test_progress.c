@@ -378,5 +378,6 @@ TEST(progress_as_json_tells_the_share_of_the_work_and_the_time_left) {
     if (lines > 1)
         CHECK(strstr(result.err, "\"left\":"));
     CHECK(strstr(result.err, "\"event\":\"written\""));
+    CHECK(strstr(result.err, "\"processor\":"));
     release(result);
 }
