@@ -51,20 +51,30 @@ end
 ---@return number[] du
 ---@return number[] dv
 function M.eval(c, u, v)
-    local p, du, dv = {}, {}, {}
+    local p, du, dv, cubic = {}, {}, {}, M.cubic
+    local r1, r2, r3, r4, r5, r6, r7, r8 = c[1], c[2], c[3], c[4], c[5], c[6], c[7], c[8]
+    local r9, r10, r11, r12, r13, r14, r15, r16 = c[9], c[10], c[11], c[12], c[13], c[14], c[15], c[16]
     for k = 1, 3 do
-        local a, da = M.cubic(c[1][k], c[2][k], c[3][k], c[4][k], u)
-        local b, db = M.cubic(c[5][k], c[6][k], c[7][k], c[8][k], u)
-        local d, dd = M.cubic(c[9][k], c[10][k], c[11][k], c[12][k], u)
-        local e, de = M.cubic(c[13][k], c[14][k], c[15][k], c[16][k], u)
-        p[k], dv[k] = M.cubic(a, b, d, e, v)
-        du[k] = M.cubic(da, db, dd, de, v)
+        local a, da = cubic(r1[k], r2[k], r3[k], r4[k], u)
+        local b, db = cubic(r5[k], r6[k], r7[k], r8[k], u)
+        local d, dd = cubic(r9[k], r10[k], r11[k], r12[k], u)
+        local e, de = cubic(r13[k], r14[k], r15[k], r16[k], u)
+        p[k], dv[k] = cubic(a, b, d, e, v)
+        du[k] = cubic(da, db, dd, de, v)
     end
     return p, du, dv
 end
 
 local function cross(a, b)
     return a[2] * b[3] - a[3] * b[2], a[3] * b[1] - a[1] * b[3], a[1] * b[2] - a[2] * b[1]
+end
+
+-- The cross product of the derivatives as a unit vector; nil where one of them vanishes.
+local function normal_of(du, dv)
+    local x, y, z = cross(du, dv)
+    local size = math.sqrt((du[1] ^ 2 + du[2] ^ 2 + du[3] ^ 2) * (dv[1] ^ 2 + dv[2] ^ 2 + dv[3] ^ 2))
+    local length = math.sqrt(x * x + y * y + z * z)
+    if length > 1e-9 * size and length > 0 then return { x / length, y / length, z / length } end
 end
 
 --- Unit normal of a patch, du x dv.
@@ -75,12 +85,9 @@ end
 function M.normal(c, u, v)
     local step = 0
     repeat
-        local inside_u, inside_v = u + (0.5 - u) * step, v + (0.5 - v) * step
-        local _, du, dv = M.eval(c, inside_u, inside_v)
-        local x, y, z = cross(du, dv)
-        local size = math.sqrt((du[1] ^ 2 + du[2] ^ 2 + du[3] ^ 2) * (dv[1] ^ 2 + dv[2] ^ 2 + dv[3] ^ 2))
-        local length = math.sqrt(x * x + y * y + z * z)
-        if length > 1e-9 * size and length > 0 then return { x / length, y / length, z / length } end
+        local _, du, dv = M.eval(c, u + (0.5 - u) * step, v + (0.5 - v) * step)
+        local normal = normal_of(du, dv)
+        if normal then return normal end
         step = step == 0 and 1e-4 or step * 10
     until step > 1
     return { 0, 1, 0 }
@@ -116,8 +123,8 @@ function M.mesh(control, patches, n, flip)
         local base = #verts
         for j = 0, n do
             for i = 0, n do
-                local p = M.eval(c, i / n, j / n)
-                local normal = M.normal(c, i / n, j / n)
+                local p, du, dv = M.eval(c, i / n, j / n)
+                local normal = normal_of(du, dv) or M.normal(c, i / n, j / n)
                 if flip then normal = { -normal[1], -normal[2], -normal[3] } end
                 verts[#verts + 1], normals[#normals + 1] = p, normal
             end
