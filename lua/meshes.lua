@@ -185,14 +185,55 @@ end
 function M.face_normal(verts, face)
     local x, y, z = 0, 0, 0
     local p = verts[face[#face] + 1]
-    for _, index in ipairs(face) do
-        local q = verts[index + 1]
-        x = x + (p[2] - q[2]) * (p[3] + q[3])
-        y = y + (p[3] - q[3]) * (p[1] + q[1])
-        z = z + (p[1] - q[1]) * (p[2] + q[2])
-        p = q
+    local px, py, pz = p[1], p[2], p[3]
+    for i = 1, #face do
+        local q = verts[face[i] + 1]
+        local qx, qy, qz = q[1], q[2], q[3]
+        x = x + (py - qy) * (pz + qz)
+        y = y + (pz - qz) * (px + qx)
+        z = z + (px - qx) * (py + qy)
+        px, py, pz = qx, qy, qz
     end
     return x, y, z
+end
+
+-- The angle of a face at each of its corners. An edge seen from its other end is its negative, to the bit; one of no
+-- length is +y from both.
+local function angles_of(verts, face, angles)
+    local count = #face
+    local p, q = verts[face[count] + 1], verts[face[1] + 1]
+    local ax, ay, az = M.unit(p[1] - q[1], p[2] - q[2], p[3] - q[3])
+    for i = 1, count do
+        local r = verts[face[i % count + 1] + 1]
+        local bx, by, bz = r[1] - q[1], r[2] - q[2], r[3] - q[3]
+        local length = sqrt(bx * bx + by * by + bz * bz)
+        if length == 0 then
+            angles[i] = acos(ay > 1 and 1 or ay < -1 and -1 or ay)
+            ax, ay, az = 0, 1, 0
+        else
+            bx, by, bz = bx / length, by / length, bz / length
+            local dot = ax * bx + ay * by + az * bz
+            angles[i] = acos(dot > 1 and 1 or dot < -1 and -1 or dot)
+            ax, ay, az = -bx, -by, -bz
+        end
+        q = r
+    end
+end
+
+-- Without a crease: sums at the vertices, face after face.
+local function smooth_everywhere(verts, faces)
+    local sx, sy, sz, angles, normals = {}, {}, {}, {}, {}
+    for k = 1, #verts do sx[k], sy[k], sz[k] = 0, 0, 0 end
+    for _, face in ipairs(faces) do
+        local x, y, z = M.unit(M.face_normal(verts, face))
+        angles_of(verts, face, angles)
+        for i = 1, #face do
+            local at, w = face[i] + 1, angles[i]
+            sx[at], sy[at], sz[at] = sx[at] + x * w, sy[at] + y * w, sz[at] + z * w
+        end
+    end
+    for k = 1, #verts do normals[k] = { M.unit(sx[k], sy[k], sz[k]) } end
+    return { verts, normals, faces, faces }
 end
 
 --- Vertex normals: the sum of the normals of the faces round a vertex, weighted by their angle there.
@@ -202,36 +243,21 @@ end
 ---@param crease number?  degrees; default: smooth everywhere
 ---@return table mesh
 function M.smooth(verts, faces, crease)
-    local flat, around = {}, {}
+    if not crease then return smooth_everywhere(verts, faces) end
+    local flat, around, angles, normals = {}, {}, {}, {}
     for k, face in ipairs(faces) do
         local n = { M.unit(M.face_normal(verts, face)) }
         flat[k] = n
-        local count = #face
-        for i = 1, count do
+        angles_of(verts, face, angles)
+        for i = 1, #face do
             local here = face[i]
-            local p, a, b = verts[here + 1], verts[face[(i - 2) % count + 1] + 1], verts[face[i % count + 1] + 1]
-            local ax, ay, az = M.unit(a[1] - p[1], a[2] - p[2], a[3] - p[3])
-            local bx, by, bz = M.unit(b[1] - p[1], b[2] - p[2], b[3] - p[3])
-            local dot = ax * bx + ay * by + az * bz
             local list = around[here]
             if not list then
                 list = {}
                 around[here] = list
             end
-            list[#list + 1] = { n, acos(dot > 1 and 1 or dot < -1 and -1 or dot) }
+            list[#list + 1] = { n, angles[i] }
         end
-    end
-    local normals = {}
-    if not crease then
-        for index = 0, #verts - 1 do
-            local x, y, z = 0, 0, 0
-            for _, item in ipairs(around[index] or {}) do
-                local n, w = item[1], item[2]
-                x, y, z = x + n[1] * w, y + n[2] * w, z + n[3] * w
-            end
-            normals[index + 1] = { M.unit(x, y, z) }
-        end
-        return { verts, normals, faces, faces }
     end
     local limit, face_normals = cos(rad(crease)), {}
     for k, face in ipairs(faces) do
