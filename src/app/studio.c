@@ -223,7 +223,9 @@ static bool make_marks(struct at_work *work, const struct live_view *view, const
     marks_place(studio->asked, job.film->pixels, &place);
     if (wish->lines.limit == 0 || wish->lines.cell == 0) /* nothing is asked for */
         return true;
+    double begun = progress_clock();
     bool ok = marks_make(&job, studio->request->root, studio->pool, wish, &place, &news->marks, error);
+    news->report.rays.render_seconds += progress_clock() - begun; /* a frame is not there before its lines */
     news->marks.stopped = !ok && studio_was_stopped(studio->services->control, error);
     pool_reset_cancel(studio->pool);
     return ok || news->marks.stopped;
