@@ -152,7 +152,8 @@ int merge_run(const struct options *options) {
     /* A part that cannot be read may be of any picture: nothing is put together without it. */
     if (status != 0)
         count = 0;
-    qsort(parts, count, sizeof *parts, by_picture_and_shard);
+    if (count > 0)
+        qsort(parts, count, sizeof *parts, by_picture_and_shard);
     for (size_t end; first < count; first = end) {
         for (end = first + 1; end < count && parts[end].picture.number == parts[first].picture.number;)
             end++;
