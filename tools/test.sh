@@ -46,7 +46,8 @@ build release
 build asan
 if [ $long = no ]; then
     run release
-    run asan smoke errors_ script allocation png obj ply stl gltf mtl jpeg font_ gzip mesh_faces test_program test_channel test_options
+    run asan smoke errors_ script allocation png obj ply stl gltf mtl jpeg font_ gzip mesh_faces test_program test_channel test_options \
+        window_survives_random window_outlines window_shows_and window_stops_b
 else
     build tsan
     run release --long "$@"
