@@ -15,7 +15,7 @@
 #include "geom/wrap.h"
 
 enum { CELL_DEPTH = 9, REGIONS = 4, BODY = 0, BALL_A = 1, BALL_B = 2 };
-#define CELL_WORK (UINT32_C(1) << 21) /* fields looked at in one direction; beyond it cells count as full */
+#define CELL_WORK (UINT32_C(1) << 16) /* fields looked at in one direction; beyond it cells count as full */
 
 struct blob {
     struct blob_element *elements;
