@@ -65,15 +65,19 @@ bool stage_build(struct stage *s, struct node *root, enum accel_kind accel) {
                        accel, s->pool, count_warning, s, &s->error);
 }
 
+struct render_job stage_job(struct stage *s, uint32_t width, uint32_t height) {
+    return (struct render_job){.world = &s->world,
+                               .camera = s->camera,
+                               .settings = s->settings,
+                               .width = width,
+                               .height = height,
+                               .ambient = s->ambient,
+                               .fog = s->fog,
+                               .film = &s->film};
+}
+
 bool stage_render(struct stage *s, uint32_t width, uint32_t height) {
-    struct render_job job = {.world = &s->world,
-                             .camera = s->camera,
-                             .settings = s->settings,
-                             .width = width,
-                             .height = height,
-                             .ambient = s->ambient,
-                             .fog = s->fog,
-                             .film = &s->film};
+    struct render_job job = stage_job(s, width, height);
     char warning[256];
     size_t bytes;
     uint32_t x0, y0, w, h;

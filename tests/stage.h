@@ -37,6 +37,8 @@ double stage_variance_about_half(struct stage *s, bool alone);
 bool stage_build(struct stage *s, struct node *root, enum accel_kind accel);
 /* Builds the world of s->root and renders; the film lives until the next render or the end. Failures fail the test. */
 bool stage_render(struct stage *s, uint32_t width, uint32_t height);
+/* What stage_render renders, for what else can be asked of it; borrows the stage's world and film. */
+struct render_job stage_job(struct stage *s, uint32_t width, uint32_t height);
 struct vec3 stage_pixel(const struct stage *s, uint32_t x, uint32_t y);
 
 struct material *stage_phong(struct stage *s, struct vec3 kd, struct vec3 ks, double shininess);

@@ -29,12 +29,7 @@ TEST(a_node_shows_where_the_ray_through_the_middle_of_a_pixel_meets_it_first) {
     stage_move(&s, behind, -0.4, 0.2, 0);
     s.camera = (struct camera){{0, 0, 8}, {0, 0, -1}, {0, 1, 0}, 35};
     CHECK(stage_render(&s, WIDTH, HEIGHT));
-    struct render_job job = {.world = &s.world,
-                             .camera = s.camera,
-                             .settings = s.settings,
-                             .width = WIDTH,
-                             .height = HEIGHT,
-                             .film = &s.film};
+    struct render_job job = stage_job(&s, WIDTH, HEIGHT);
     struct marks_place place = {.shows = shows};
     uint64_t way = 0;
     CHECK(world_walk_paths(&s.world, s.root, way_of_second, &way, &s.error));
@@ -88,12 +83,7 @@ TEST(an_operand_shows_where_its_surface_is_that_of_the_solid) {
     CHECK(node_add_child(&s.scene, s.root, cut, &s.error));
     s.camera = (struct camera){{0, 0, 8}, {0, 0, -1}, {0, 1, 0}, 35};
     CHECK(stage_render(&s, WIDTH, HEIGHT));
-    struct render_job job = {.world = &s.world,
-                             .camera = s.camera,
-                             .settings = s.settings,
-                             .width = WIDTH,
-                             .height = HEIGHT,
-                             .film = &s.film};
+    struct render_job job = stage_job(&s, WIDTH, HEIGHT);
     struct marks_place place = {.shows = shows};
     struct picked picked;
     struct marks marks;

@@ -96,12 +96,7 @@ TEST(a_pair_of_pictures_has_the_lines_of_each_eye_in_its_half) {
     CHECK(stage_render(&s, WIDTH, HEIGHT));
     /* Extent of the cube in each half, then of the lines. */
     double low[2][2] = {{1e9, 1e9}, {1e9, 1e9}}, high[2][2] = {{0, 0}, {0, 0}};
-    struct render_job job = {.world = &s.world,
-                             .camera = s.camera,
-                             .settings = s.settings,
-                             .width = WIDTH,
-                             .height = HEIGHT,
-                             .film = &s.film};
+    struct render_job job = stage_job(&s, WIDTH, HEIGHT);
     job.settings.overlay = OVERLAY_OF_BOXES;
     for (int pass = 0; pass < 2; pass++) {
         for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
@@ -194,12 +189,7 @@ TEST(lines_over_a_picture_are_the_same_for_any_number_of_threads) {
         s.camera = (struct camera){{0.4, 0.7, 5}, {0, 0, -1}, {0, 1, 0}, 60};
         s.settings.lens.projection = PROJECTION_PERSPECTIVE;
         CHECK(stage_render(&s, WIDTH, HEIGHT));
-        struct render_job job = {.world = &s.world,
-                                 .camera = s.camera,
-                                 .settings = s.settings,
-                                 .width = WIDTH,
-                                 .height = HEIGHT,
-                                 .film = &s.film};
+        struct render_job job = stage_job(&s, WIDTH, HEIGHT);
         const struct overlay_wish wish = {OVERLAY_OF_BOXES, 1000, 3};
         CHECK(overlay_lines(&job, s.pool, &wish, lines[threads - 1], &s.error));
         stage_end(&s);

@@ -70,12 +70,7 @@ TEST(edges_round_the_camera_are_drawn_where_their_points_are) {
         s.settings.full = true;
         s.settings.samples = 1;
         CHECK(stage_render(&s, WIDTH, HEIGHT));
-        struct render_job job = {.world = &s.world,
-                                 .camera = s.camera,
-                                 .settings = s.settings,
-                                 .width = WIDTH,
-                                 .height = HEIGHT,
-                                 .film = &s.film};
+        struct render_job job = stage_job(&s, WIDTH, HEIGHT);
         const struct overlay_wish wish = {OVERLAY_OF_BOXES, OVERLAY_BOXES, 1};
         CHECK(overlay_lines(&job, s.pool, &wish, lines, &s.error));
         CHECK(camera_prepare(&s.camera, &s.settings, WIDTH, HEIGHT, &frame, warning, &s.error));
@@ -110,12 +105,7 @@ TEST(lines_may_be_stopped_and_some_boxes_stand_for_all) {
     for (int k = 0; k < 8; k++) {
         s.settings.accel = kinds[k % 4];
         CHECK(stage_render(&s, WIDTH, HEIGHT));
-        struct render_job job = {.world = &s.world,
-                                 .camera = s.camera,
-                                 .settings = s.settings,
-                                 .width = WIDTH,
-                                 .height = HEIGHT,
-                                 .film = &s.film};
+        struct render_job job = stage_job(&s, WIDTH, HEIGHT);
         const struct overlay_wish whole = {k < 4 ? OVERLAY_OF_BOXES : OVERLAY_OF_GRID, OVERLAY_BOXES, 1},
                                   part = {whole.kind, 3, 4};
         CHECK(overlay_lines(&job, s.pool, &whole, all, &s.error) && overlay_lines(&job, s.pool, &part, some, &s.error));
