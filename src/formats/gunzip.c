@@ -3,8 +3,9 @@
  * members one behind the other; zeros behind the last one are padding. */
 #include "formats/model.h"
 
+#include "image/zlib_memory.h"
+
 #include <assert.h>
-#include <zlib.h>
 
 /* zlib counts in 32 bits: long files go through it piece by piece (small ones in test builds). */
 #ifdef GRAY_FAULTS
@@ -13,16 +14,6 @@ enum { PIECE = 1 << 12 };
 enum { PIECE = 1 << 30 };
 #endif
 enum { GROWTH = 64, START = 1 << 24 };
-
-static voidpf on_alloc(voidpf context, uInt count, uInt size) {
-    (void)context;
-    return mem_alloc_zero(count, size);
-}
-
-static void on_free(voidpf context, voidpf block) {
-    (void)context;
-    mem_free(block);
-}
 
 static size_t consumed(const z_stream *stream, const uint8_t *data) {
     return (size_t)(stream->next_in - data);
@@ -63,7 +54,7 @@ static bool member(z_stream *stream, const char *path, const uint8_t *data, size
 }
 
 bool gunzip(const char *path, const uint8_t *data, size_t size, uint8_t **out, size_t *out_size, struct error *error) {
-    z_stream stream = {.zalloc = on_alloc, .zfree = on_free};
+    z_stream stream = {.zalloc = zlib_alloc, .zfree = zlib_free};
     struct list bytes = {0};
     *out = NULL;
     if (inflateInit2(&stream, 16 + MAX_WBITS) != Z_OK)

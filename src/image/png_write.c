@@ -7,12 +7,12 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "image/zlib_memory.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include <zlib.h>
 
 /* Measured on a picture of 1280 x 960 of spheres over a floor (size, time of one core): level 6 as one stream 529 kB in
  * 0.079 s; in stripes level 6 553 kB in 0.068 s, 5 564 kB in 0.050 s, 4 577 kB in 0.040 s, 1 635 kB in 0.027 s. */
@@ -44,16 +44,6 @@ struct writer {
     struct file_output output;
     uint32_t adler;
 };
-
-static voidpf on_alloc(voidpf context, uInt count, uInt size) {
-    (void)context;
-    return mem_alloc_zero(count, size);
-}
-
-static void on_free(voidpf context, voidpf block) {
-    (void)context;
-    mem_free(block);
-}
 
 static void fetch_row(const struct writer *writer, struct packer *packer, uint32_t y) {
     const struct png_source *rows = writer->rows;
@@ -180,7 +170,7 @@ static bool encode(struct writer *writer, struct pool *pool, struct error *error
 }
 
 static bool begin_packer(const struct writer *writer, struct packer *packer) {
-    packer->stream = (z_stream){.zalloc = on_alloc, .zfree = on_free};
+    packer->stream = (z_stream){.zalloc = zlib_alloc, .zfree = zlib_free};
     packer->words = writer->rows->words ? mem_alloc_zero(writer->row_bytes / 2, sizeof *packer->words) : NULL;
     packer->row = mem_alloc(writer->row_bytes);
     packer->above = mem_alloc(writer->row_bytes);
