@@ -120,7 +120,8 @@ $(BUILD)/bench/formats $(BUILD)/bench/shapes $(BUILD)/bench/lamps: $(BUILD)/benc
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
 # Kernels for one instruction set each live in files of their own; nothing is fused but what they fuse themselves, and
-# only where single precision proposes.
+# only where single precision proposes. Numbers that a search stores one by one are not to be joined into vectors: what is
+# needed first would wait for the others.
 $(BUILD)/src/accel/%_avx2.o: override CFLAGS += -mavx2 -mfma -mpopcnt -fno-tree-slp-vectorize
 $(BUILD)/src/accel/%_avx512.o: override CFLAGS += -mavx512f -mavx512vl -mavx512dq -mavx512bw -mfma -mpopcnt -fno-tree-slp-vectorize
 # Its functions are the C library's own names: the compiler must not see calls of itself in them.

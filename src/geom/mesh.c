@@ -159,7 +159,9 @@ struct way {
     const struct kd_triangles *kd_tree;
 };
 
-static struct way way_for(const struct mesh *mesh, enum accel_kind accel) {
+static inline struct way way_for(const struct mesh *mesh, enum accel_kind accel) {
+    if (accel == ACCEL_AUTO && mesh->index) /* nearly always */
+        return (struct way){.index = mesh->index};
     switch (accel) {
     case ACCEL_GRID:
         return (struct way){.index = mesh->grid ? mesh->grid : mesh->index};
@@ -178,15 +180,10 @@ bool mesh_nearest(const struct mesh *mesh, const struct ray *ray, enum accel_kin
                   struct crossing *out) {
     struct triangle_cost *cost = count_search(scratch, 1);
     struct triangle_hit hit;
-    bool found;
-    if (accel == ACCEL_AUTO && mesh->index) { /* nearly always */
-        found = triangle_index_nearest(mesh->index, &mesh->set, ray, &hit, cost);
-    } else {
-        struct way way = way_for(mesh, accel);
-        found = way.index     ? triangle_index_nearest(way.index, &mesh->set, ray, &hit, cost)
-                : way.kd_tree ? kd_triangles_nearest(way.kd_tree, &mesh->set, ray, &hit, cost)
-                              : triangle_brute_nearest(&mesh->set, ray, &hit, cost);
-    }
+    struct way way = way_for(mesh, accel);
+    bool found = way.index     ? triangle_index_nearest(way.index, &mesh->set, ray, &hit, cost)
+                 : way.kd_tree ? kd_triangles_nearest(way.kd_tree, &mesh->set, ray, &hit, cost)
+                               : triangle_brute_nearest(&mesh->set, ray, &hit, cost);
     if (found) { /* field by field: what was just stored in pieces is slow to load whole */
         out->t = hit.t;
         out->u = hit.u;
