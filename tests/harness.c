@@ -106,6 +106,14 @@ const char *test_folder(void) {
     return folder_path;
 }
 
+const char *test_path(const char *name) {
+    static char paths[8][4096];
+    static int next;
+    char *path = paths[next++ % 8];
+    (void)snprintf(path, sizeof paths[0], "%s/%s", test_folder(), name);
+    return path;
+}
+
 void test_write_file(const char *path, const void *data, size_t size) {
     FILE *file = fopen(path, "wb");
     if (!file || fwrite(data, 1, size, file) != size || fclose(file) != 0)

@@ -64,6 +64,8 @@ void test_need_window(void);
 
 /* A fresh empty folder for this test, removed when the test passes; the working directory stays the repository root. */
 const char *test_folder(void);
+/* The path of a name in it; the last eight answers stay as they are. */
+const char *test_path(const char *name);
 void test_write_file(const char *path, const void *data, size_t size);
 void test_write_text(const char *path, const char *text);
 /* Whole file, NUL-terminated, from malloc; NULL when it cannot be read. */

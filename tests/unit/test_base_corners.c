@@ -18,14 +18,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static const char *in_folder(const char *name) {
-    static char paths[4][600];
-    static int next;
-    char *path = paths[next++ % 4];
-    (void)snprintf(path, sizeof paths[0], "%s/%s", test_folder(), name);
-    return path;
-}
-
 /* --- memory --- */
 
 TEST(more_memory_than_there_can_be_is_not_there) {
@@ -116,8 +108,8 @@ TEST(files_that_cannot_be_written_are_told_with_whose_fault_it_is) {
     memset(long_name, 'x', sizeof long_name);
     long_name[sizeof long_name - 1] = '\0';
     (void)snprintf(long_part, sizeof long_part, "%s/%.300s/a.png", test_folder(), long_name);
-    test_write_text(in_folder("file.txt"), "x");
-    CHECK(symlink("loop", in_folder("loop")) == 0);
+    test_write_text(test_path("file.txt"), "x");
+    CHECK(symlink("loop", test_path("loop")) == 0);
     const struct {
         const char *target;
         enum error_kind kind;
@@ -125,8 +117,8 @@ TEST(files_that_cannot_be_written_are_told_with_whose_fault_it_is) {
     } all[] = {{"", ERROR_SCENE, "the name of the output file is empty"},
                {long_name, ERROR_SCENE, "the file name is longer than 4095 bytes"},
                {test_folder(), ERROR_SCENE, "is a folder"},
-               {in_folder("file.txt/a.png"), ERROR_SCENE, "Not a directory"},
-               {in_folder("loop/a.png"), ERROR_SCENE, "symbolic links"},
+               {test_path("file.txt/a.png"), ERROR_SCENE, "Not a directory"},
+               {test_path("loop/a.png"), ERROR_SCENE, "symbolic links"},
                {long_part, ERROR_SCENE, "File name too long"},
                {"/proc/nothing/a.png", ERROR_SCENE, "the folder /proc/nothing cannot be made"}};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
@@ -141,7 +133,7 @@ TEST(files_that_cannot_be_written_are_told_with_whose_fault_it_is) {
     CHECK(!file_make_folders_for(long_name, &error));
     CHECK(!file_remove(test_folder(), &error));
     CHECK_EQ_INT(error.kind, ERROR_SCENE);
-    CHECK(file_remove(in_folder("nothing"), &error) && file_remove(in_folder("file.txt"), &error));
+    CHECK(file_remove(test_path("nothing"), &error) && file_remove(test_path("file.txt"), &error));
     char small[8];
     CHECK(!file_canonical(test_folder(), small, sizeof small));
     CHECK(file_canonical("/", small, sizeof small));
@@ -170,13 +162,13 @@ TEST(folders_are_listed_in_order_up_to_a_limit_or_until_it_is_enough) {
     char names[200] = "";
     static const char *const files[] = {"charlie", "alpha", "bravo", "delta"};
     for (int i = 0; i < 4; i++)
-        test_write_text(in_folder(files[i]), "");
+        test_write_text(test_path(files[i]), "");
     CHECK(file_list(test_folder(), 100, take, names));
     CHECK_TEXT(names, "alpha bravo ");
     names[0] = '\0';
     CHECK(file_list(test_folder(), 0, take, names));
     CHECK_TEXT(names, "");
-    CHECK(!file_list(in_folder("nothing"), 100, take, names));
+    CHECK(!file_list(test_path("nothing"), 100, take, names));
 #ifdef GRAY_FAULTS
     for (uint64_t k = 1; k <= 6; k++) {
         names[0] = '\0';
@@ -199,8 +191,8 @@ TEST(a_witness_counts_every_content_once_in_any_order) {
             char name[16], text[16];
             (void)snprintf(name, sizeof name, "%d.txt", n);
             (void)snprintf(text, sizeof text, "%d", n % 40);
-            test_write_text(in_folder(name), text);
-            CHECK(file_map(in_folder(name), 100, &bytes, &error));
+            test_write_text(test_path(name), text);
+            CHECK(file_map(test_path(name), 100, &bytes, &error));
             file_unmap(&bytes);
         }
     }
@@ -211,7 +203,7 @@ TEST(a_witness_counts_every_content_once_in_any_order) {
         struct file_witness poor = {0};
         file_set_witness(&poor);
         fault_at(FAULT_OF_ALLOCATION, k);
-        bool read = file_map(in_folder("1.txt"), 100, &bytes, &error);
+        bool read = file_map(test_path("1.txt"), 100, &bytes, &error);
         fault_at(FAULT_OF_ALLOCATION, 0);
         CHECK(read == (k == 2) && poor.incomplete == (k == 2));
         if (read)
@@ -226,18 +218,18 @@ TEST(a_witness_counts_every_content_once_in_any_order) {
 
 TEST(versions_of_files_are_their_contents_wherever_time_says_otherwise) {
     struct file_version first, second;
-    test_write_text(in_folder("a"), "one");
-    CHECK(file_version_of(in_folder("a"), NULL, &first));
-    CHECK(file_version_of(in_folder("a"), &first, &second) && digest_equal(first.content, second.content));
+    test_write_text(test_path("a"), "one");
+    CHECK(file_version_of(test_path("a"), NULL, &first));
+    CHECK(file_version_of(test_path("a"), &first, &second) && digest_equal(first.content, second.content));
     struct file_version known = first;
     known.content.a ^= 1; /* believed where size and time are the same */
-    CHECK(file_version_of(in_folder("a"), &known, &second) && digest_equal(known.content, second.content));
+    CHECK(file_version_of(test_path("a"), &known, &second) && digest_equal(known.content, second.content));
     known.seconds--;
-    CHECK(file_version_of(in_folder("a"), &known, &second) && digest_equal(first.content, second.content));
-    CHECK(!file_version_of(in_folder("nothing"), NULL, &second) && !file_version_of(test_folder(), NULL, &second));
+    CHECK(file_version_of(test_path("a"), &known, &second) && digest_equal(first.content, second.content));
+    CHECK(!file_version_of(test_path("nothing"), NULL, &second) && !file_version_of(test_folder(), NULL, &second));
     struct file_bytes bytes;
     struct error error = {0};
-    CHECK(!file_map(in_folder("a"), 2, &bytes, &error));
+    CHECK(!file_map(test_path("a"), 2, &bytes, &error));
     CHECK(strstr(error.text, "3 bytes are more than the limit of 2") != NULL);
     CHECK(!file_map("/dev/null", 2, &bytes, &error) && strstr(error.text, "is a pipe or device, not a regular file"));
     CHECK(!file_map(test_folder(), 2, &bytes, &error) && strstr(error.text, "is a folder, not a regular file"));

@@ -60,20 +60,24 @@ static void no_warning(void *context, const char *text) {
     (void)context, (void)text;
 }
 
+static struct render_job job_of(const struct render_request *request, const struct world *world, struct film *film) {
+    return (struct render_job){.world = world,
+                               .camera = request->camera,
+                               .settings = request->settings,
+                               .width = SIDE,
+                               .height = SIDE,
+                               .ambient = request->ambient,
+                               .fog = request->fog,
+                               .film = film};
+}
+
 static bool make(const struct render_request *request, enum accel_kind accel, struct pool *pool,
                  struct film_pixel *pixels, struct error *error) {
     struct world world = {0};
     struct arena arena = {0};
     struct film film = {0};
     struct render_statistics statistics = {0};
-    struct render_job job = {.world = &world,
-                             .camera = request->camera,
-                             .settings = request->settings,
-                             .width = SIDE,
-                             .height = SIDE,
-                             .ambient = request->ambient,
-                             .fog = request->fog,
-                             .film = &film};
+    struct render_job job = job_of(request, &world, &film);
     char warning[256];
     uint32_t x0, y0, width, height;
     *error = (struct error){0};
@@ -201,14 +205,7 @@ static bool answer(enum question question, const struct render_request *request,
 static bool ask(enum question question, const struct render_request *request, const struct world *world,
                 struct pool *pool, uint64_t k, bool *over, uint64_t *sum, struct error *error) {
     struct film film = {.full_width = SIDE, .full_height = SIDE};
-    struct render_job job = {.world = world,
-                             .camera = request->camera,
-                             .settings = request->settings,
-                             .width = SIDE,
-                             .height = SIDE,
-                             .ambient = request->ambient,
-                             .fog = request->fog,
-                             .film = &film};
+    struct render_job job = job_of(request, world, &film);
     size_t bytes;
     *error = (struct error){0};
     *sum = 0;

@@ -16,30 +16,22 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static const char *in_folder(const char *name) {
-    static char paths[8][600];
-    static int next;
-    char *path = paths[next++ % 8];
-    (void)snprintf(path, sizeof paths[0], "%s/%s", test_folder(), name);
-    return path;
-}
-
 /* below/inner.txt, below/.hidden, below/link -> outside.txt, below/to -> inner.txt, below/gone -> nothing; outside.txt
  */
 static void prepare(void) {
-    CHECK(mkdir(in_folder("below"), 0777) == 0 && mkdir(in_folder("below/sub"), 0777) == 0);
-    test_write_text(in_folder("below/inner.txt"), "inner");
-    test_write_text(in_folder("below/.hidden"), "hidden");
-    test_write_text(in_folder("outside.txt"), "outside");
-    test_write_text(in_folder("below2.txt"), "beside");
-    CHECK(symlink(in_folder("outside.txt"), in_folder("below/link")) == 0);
-    CHECK(symlink("inner.txt", in_folder("below/to")) == 0);
-    CHECK(symlink("nothing", in_folder("below/gone")) == 0);
-    CHECK(mkfifo(in_folder("below/pipe"), 0666) == 0);
+    CHECK(mkdir(test_path("below"), 0777) == 0 && mkdir(test_path("below/sub"), 0777) == 0);
+    test_write_text(test_path("below/inner.txt"), "inner");
+    test_write_text(test_path("below/.hidden"), "hidden");
+    test_write_text(test_path("outside.txt"), "outside");
+    test_write_text(test_path("below2.txt"), "beside");
+    CHECK(symlink(test_path("outside.txt"), test_path("below/link")) == 0);
+    CHECK(symlink("inner.txt", test_path("below/to")) == 0);
+    CHECK(symlink("nothing", test_path("below/gone")) == 0);
+    CHECK(mkfifo(test_path("below/pipe"), 0666) == 0);
 }
 
 static bool can_open(const struct reach *reach, const char *name, const char *mode) {
-    FILE *stream = reach_stream(reach, in_folder(name), mode);
+    FILE *stream = reach_stream(reach, test_path(name), mode);
     if (stream)
         (void)fclose(stream);
     return stream != NULL;
@@ -49,18 +41,18 @@ TEST(a_scene_reaches_what_lies_below_its_folders_by_any_spelling) {
     struct reach reach = {0};
     struct error error;
     prepare();
-    CHECK(reach_add(&reach, in_folder("below"), REACH_IMPLIED, &error));
-    CHECK(reach_is_readable(&reach, in_folder("below/inner.txt")));
-    CHECK(reach_is_readable(&reach, in_folder("below/./sub/..//inner.txt")));
-    CHECK(reach_is_readable(&reach, in_folder("below/to")));
-    CHECK(!reach_is_readable(&reach, in_folder("below/.hidden")) &&
-          !reach_is_readable(&reach, in_folder("below/link")));
-    CHECK(!reach_is_readable(&reach, in_folder("outside.txt")) && !reach_is_readable(&reach, in_folder("below2.txt")));
-    CHECK(!reach_is_readable(&reach, in_folder("below")) && !reach_is_readable(&reach, in_folder("below/sub")));
-    CHECK(reach_is_outside(&reach, in_folder("outside.txt")) && reach_is_outside(&reach, "x") &&
+    CHECK(reach_add(&reach, test_path("below"), REACH_IMPLIED, &error));
+    CHECK(reach_is_readable(&reach, test_path("below/inner.txt")));
+    CHECK(reach_is_readable(&reach, test_path("below/./sub/..//inner.txt")));
+    CHECK(reach_is_readable(&reach, test_path("below/to")));
+    CHECK(!reach_is_readable(&reach, test_path("below/.hidden")) &&
+          !reach_is_readable(&reach, test_path("below/link")));
+    CHECK(!reach_is_readable(&reach, test_path("outside.txt")) && !reach_is_readable(&reach, test_path("below2.txt")));
+    CHECK(!reach_is_readable(&reach, test_path("below")) && !reach_is_readable(&reach, test_path("below/sub")));
+    CHECK(reach_is_outside(&reach, test_path("outside.txt")) && reach_is_outside(&reach, "x") &&
           reach_is_outside(&reach, "../../../../../../../../../../..") && !reach_is_outside(NULL, "/etc/passwd"));
-    CHECK(!reach_is_outside(&reach, in_folder("below/./x/")) &&
-          !reach_is_outside(&reach, in_folder("below/.x/../y")) == 1);
+    CHECK(!reach_is_outside(&reach, test_path("below/./x/")) &&
+          !reach_is_outside(&reach, test_path("below/.x/../y")) == 1);
     CHECK(can_open(&reach, "below/inner.txt", "r") && can_open(&reach, "below/inner.txt", "rb"));
     CHECK(!can_open(&reach, "below/inner.txt", "w") && !can_open(&reach, "below/inner.txt", "r+"));
     CHECK(!can_open(&reach, "below/inner.txt", "x") && errno == EINVAL);
@@ -78,8 +70,8 @@ TEST(a_folder_that_may_be_written_takes_files_and_gives_none_away) {
     struct reach reach = {0};
     struct error error;
     prepare();
-    CHECK(reach_add(&reach, in_folder("below"), REACH_WRITE, &error));
-    CHECK(reach_add(&reach, in_folder("below/sub/.."), REACH_IMPLIED, &error) && reach.count == 1);
+    CHECK(reach_add(&reach, test_path("below"), REACH_WRITE, &error));
+    CHECK(reach_add(&reach, test_path("below/sub/.."), REACH_IMPLIED, &error) && reach.count == 1);
     CHECK(can_open(&reach, "below/new.txt", "w") && can_open(&reach, "below/new.txt", "a+"));
     CHECK(can_open(&reach, "below/sub/x.txt", "w+") && can_open(&reach, "below/to", "r+"));
     CHECK(!can_open(&reach, "below/link", "w") && !can_open(&reach, "below/gone", "w"));
@@ -97,26 +89,26 @@ TEST(a_folder_that_may_be_written_takes_files_and_gives_none_away) {
     much[4092] = '\0';
     CHECK(!reach_remove(&reach, much) && !reach_may_create(&reach, strcat(much, "yyyyyyyyyyyyyyyy")));
     free(much);
-    CHECK(reach_rename(&reach, in_folder("below/new.txt"), in_folder("below/other.txt")));
-    CHECK(!reach_rename(&reach, in_folder("below/other.txt"), in_folder("outside.txt")));
-    CHECK(!reach_rename(&reach, in_folder("outside.txt"), in_folder("below/x")));
-    CHECK(!reach_rename(&reach, in_folder("below/missing"), in_folder("below/x")));
-    CHECK(reach_remove(&reach, in_folder("below/other.txt")) && !reach_remove(&reach, in_folder("below/other.txt")));
-    CHECK(!reach_remove(&reach, in_folder("outside.txt")) && !reach_remove(&reach, in_folder("no/such")));
-    CHECK(!reach_remove(&reach, in_folder("below/")) && errno == EINVAL);
-    CHECK(!reach_remove(&reach, in_folder("below/.")) && errno == EINVAL);
-    CHECK(!reach_remove(&reach, in_folder("below/..")) && errno == EINVAL);
-    CHECK(reach_may_create(&reach, in_folder("below/a/b/c.png")) && reach_may_create(&reach, in_folder("below/x.png")));
-    CHECK(!reach_may_create(&reach, in_folder("below/.x.png")) && !reach_may_create(&reach, in_folder("below/a/../x")));
-    CHECK(!reach_may_create(&reach, in_folder("below/a/.x")) && !reach_may_create(&reach, in_folder("x.png")));
-    CHECK(!reach_may_create(&reach, in_folder("below/no/../../x")) && !reach_may_create(&reach, "../x"));
-    CHECK(!reach_may_create(&reach, in_folder("below/inner.txt/x")) && !reach_may_create(&reach, "/x"));
-    CHECK(!reach_may_create(&reach, in_folder("below/a/..")) && !reach_may_create(&reach, "x"));
+    CHECK(reach_rename(&reach, test_path("below/new.txt"), test_path("below/other.txt")));
+    CHECK(!reach_rename(&reach, test_path("below/other.txt"), test_path("outside.txt")));
+    CHECK(!reach_rename(&reach, test_path("outside.txt"), test_path("below/x")));
+    CHECK(!reach_rename(&reach, test_path("below/missing"), test_path("below/x")));
+    CHECK(reach_remove(&reach, test_path("below/other.txt")) && !reach_remove(&reach, test_path("below/other.txt")));
+    CHECK(!reach_remove(&reach, test_path("outside.txt")) && !reach_remove(&reach, test_path("no/such")));
+    CHECK(!reach_remove(&reach, test_path("below/")) && errno == EINVAL);
+    CHECK(!reach_remove(&reach, test_path("below/.")) && errno == EINVAL);
+    CHECK(!reach_remove(&reach, test_path("below/..")) && errno == EINVAL);
+    CHECK(reach_may_create(&reach, test_path("below/a/b/c.png")) && reach_may_create(&reach, test_path("below/x.png")));
+    CHECK(!reach_may_create(&reach, test_path("below/.x.png")) && !reach_may_create(&reach, test_path("below/a/../x")));
+    CHECK(!reach_may_create(&reach, test_path("below/a/.x")) && !reach_may_create(&reach, test_path("x.png")));
+    CHECK(!reach_may_create(&reach, test_path("below/no/../../x")) && !reach_may_create(&reach, "../x"));
+    CHECK(!reach_may_create(&reach, test_path("below/inner.txt/x")) && !reach_may_create(&reach, "/x"));
+    CHECK(!reach_may_create(&reach, test_path("below/a/..")) && !reach_may_create(&reach, "x"));
     /* hidden folders that are there */
-    CHECK(mkdir(in_folder("below/.own"), 0777) == 0 && mkdir(in_folder("below/sub/.own"), 0777) == 0);
-    CHECK(!reach_may_create(&reach, in_folder("below/.own/x")) &&
-          !reach_may_create(&reach, in_folder("below/sub/.own/x")));
-    FILE *everywhere = reach_stream(NULL, in_folder("outside2.txt"), "w");
+    CHECK(mkdir(test_path("below/.own"), 0777) == 0 && mkdir(test_path("below/sub/.own"), 0777) == 0);
+    CHECK(!reach_may_create(&reach, test_path("below/.own/x")) &&
+          !reach_may_create(&reach, test_path("below/sub/.own/x")));
+    FILE *everywhere = reach_stream(NULL, test_path("outside2.txt"), "w");
     CHECK(everywhere && fclose(everywhere) == 0);
     reach_destroy(&reach);
 }
@@ -126,18 +118,18 @@ TEST(folders_that_are_none_are_told_or_left_out) {
     struct error error = {0};
     char *much = malloc(6000);
     prepare();
-    CHECK(reach_add(&reach, in_folder("nothing"), REACH_IMPLIED, &error) && reach.count == 0);
+    CHECK(reach_add(&reach, test_path("nothing"), REACH_IMPLIED, &error) && reach.count == 0);
     CHECK(reach_add(&reach, "/", REACH_IMPLIED, &error) && reach.count == 0);
-    CHECK(!reach_add(&reach, in_folder("nothing"), REACH_READ, &error) && error.kind == ERROR_USAGE);
-    CHECK(!reach_add(&reach, in_folder("outside.txt"), REACH_READ, &error) && error.kind == ERROR_USAGE);
+    CHECK(!reach_add(&reach, test_path("nothing"), REACH_READ, &error) && error.kind == ERROR_USAGE);
+    CHECK(!reach_add(&reach, test_path("outside.txt"), REACH_READ, &error) && error.kind == ERROR_USAGE);
     CHECK(reach_add(&reach, "/", REACH_READ, &error) && reach.count == 1 && reach.folders[0].length == 0);
-    CHECK(reach_is_readable(&reach, in_folder("outside.txt")) && reach_is_readable(&reach, in_folder("below/.hidden")));
+    CHECK(reach_is_readable(&reach, test_path("outside.txt")) && reach_is_readable(&reach, test_path("below/.hidden")));
     memset(much, 'x', 5000);
     strcpy(much + 5000, "/scene.lua");
     CHECK(!reach_add_scene(&reach, much, NULL, &error) && strstr(error.text, "the path is too long"));
-    CHECK(!reach_add_scene(&reach, "scene.lua", in_folder("nothing"), &error));
-    CHECK(reach_add_scene(&reach, in_folder("below/scene.lua"), NULL, &error));
-    CHECK(reach_is_readable(NULL, in_folder("outside.txt")));
+    CHECK(!reach_add_scene(&reach, "scene.lua", test_path("nothing"), &error));
+    CHECK(reach_add_scene(&reach, test_path("below/scene.lua"), NULL, &error));
+    CHECK(reach_is_readable(NULL, test_path("outside.txt")));
     free(much);
     reach_destroy(&reach);
 }
@@ -154,10 +146,10 @@ TEST(any_allocation_or_call_may_fail_while_files_are_reached) {
             struct file_bytes bytes;
             uint64_t before = fault_count((enum fault_kind)kind);
             fault_at((enum fault_kind)kind, k);
-            bool ok = reach_add_scene(&reach, in_folder("below/scene.lua"), "lua", &error) &&
-                      reach_add(&reach, in_folder("below"), REACH_WRITE, &error);
+            bool ok = reach_add_scene(&reach, test_path("below/scene.lua"), "lua", &error) &&
+                      reach_add(&reach, test_path("below"), REACH_WRITE, &error);
             CHECK(ok || error.text[0]);
-            if (ok && reach_map(&reach, in_folder("below/inner.txt"), 100, &bytes, &error))
+            if (ok && reach_map(&reach, test_path("below/inner.txt"), 100, &bytes, &error))
                 file_unmap(&bytes);
             (void)can_open(&reach, "below/new.txt", "w");
             (void)can_open(NULL, "below/new.txt", "r");
@@ -172,12 +164,12 @@ TEST(a_working_directory_that_is_gone_holds_nothing) {
     struct reach reach = {0};
     struct error error;
     prepare();
-    CHECK(reach_add(&reach, in_folder("below"), REACH_WRITE, &error));
-    CHECK(mkdir(in_folder("gone"), 0777) == 0);
+    CHECK(reach_add(&reach, test_path("below"), REACH_WRITE, &error));
+    CHECK(mkdir(test_path("gone"), 0777) == 0);
     fflush(stdout);
     pid_t child = fork();
     if (child == 0) {
-        const char *gone = in_folder("gone");
+        const char *gone = test_path("gone");
         if (chdir(gone) != 0 || rmdir(gone) != 0)
             _exit(1);
         _exit(reach_is_outside(&reach, "x") && !reach_may_create(&reach, "x") ? 0 : 2);
@@ -202,20 +194,20 @@ static void race(const char *outer, const char *mode, int number) {
     struct reach reach = {0};
     struct error error;
     char line[600];
-    CHECK(reach_add(&reach, in_folder("below"), REACH_WRITE, &error));
-    CHECK(mkdir(in_folder("below/sub"), 0777) == 0 || errno == EEXIST);
-    CHECK(mkdir(in_folder(outer), 0777) == 0 || errno == EEXIST);
-    test_write_text(in_folder("below/sub/f"), "inside");
-    (void)snprintf(line, sizeof line, "%s/f", in_folder(outer));
+    CHECK(reach_add(&reach, test_path("below"), REACH_WRITE, &error));
+    CHECK(mkdir(test_path("below/sub"), 0777) == 0 || errno == EEXIST);
+    CHECK(mkdir(test_path(outer), 0777) == 0 || errno == EEXIST);
+    test_write_text(test_path("below/sub/f"), "inside");
+    (void)snprintf(line, sizeof line, "%s/f", test_path(outer));
     test_write_text(line, "outside");
-    (void)snprintf(race_from, sizeof race_from, "%s", in_folder("below/sub"));
-    (void)snprintf(race_to, sizeof race_to, "%s", in_folder("link_to_outer"));
-    (void)snprintf(race_kept, sizeof race_kept, "%s", in_folder("kept"));
-    CHECK(symlink(in_folder(outer), race_to) == 0);
+    (void)snprintf(race_from, sizeof race_from, "%s", test_path("below/sub"));
+    (void)snprintf(race_to, sizeof race_to, "%s", test_path("link_to_outer"));
+    (void)snprintf(race_kept, sizeof race_kept, "%s", test_path("kept"));
+    CHECK(symlink(test_path(outer), race_to) == 0);
     int before = fault_errno(number);
     fault_at(FAULT_OF_CALL, number ? 1 : 0);
     fault_before(number ? 2 : 1, change_places);
-    FILE *stream = reach_stream(&reach, in_folder("below/sub/f"), mode);
+    FILE *stream = reach_stream(&reach, test_path("below/sub/f"), mode);
     int why = errno;
     fault_at(FAULT_OF_CALL, 0);
     fault_before(0, change_places);
@@ -255,7 +247,7 @@ TEST(any_call_may_fail_where_the_kernel_opens_no_file_below_a_folder) {
     pid_t child = fork();
     if (child == 0) {
         static const char *const scripts[] = {"tests/hostile/time_loop.lua"};
-        const char *const folders[] = {in_folder("below")};
+        const char *const folders[] = {test_path("below")};
         struct options options = {.scripts = scripts, .script_count = 1};
         struct reach reach = {0};
         struct error error = {0};
@@ -320,7 +312,7 @@ static int status_of_confined(long version, const char *allowed, size_t report_s
 
 TEST(a_process_is_confined_as_on_kernels_of_every_age) {
     prepare();
-    const char *below = in_folder("below");
+    const char *below = test_path("below");
     for (long version = -1; version <= 7; version++) {
         int status = status_of_confined(version, below, 4096);
         if (status == 128)

@@ -308,14 +308,6 @@ static struct film half_film(void) {
     return film;
 }
 
-static const char *in_folder(const char *name) {
-    static char paths[4][600];
-    static int next;
-    char *path = paths[next++ % 4];
-    (void)snprintf(path, sizeof paths[0], "%s/%s", test_folder(), name);
-    return path;
-}
-
 /* Once one of them has failed, the next try is as it should be. */
 TEST(any_allocation_or_call_may_fail_while_tiles_are_written_and_read) {
 #ifndef GRAY_FAULTS
@@ -324,7 +316,7 @@ TEST(any_allocation_or_call_may_fail_while_tiles_are_written_and_read) {
     struct film film = half_film();
     const struct tile_picture picture = some_picture();
     const struct tile_done done = {.number = 1, .key = picture.key, .name = "first.png"};
-    const char *path = in_folder("x.tiles");
+    const char *path = test_path("x.tiles");
     struct error error;
     for (int kind = 0; kind < 2; kind++)
         for (uint64_t k = 1, over = 0; !over; k++) {
@@ -378,7 +370,7 @@ TEST(a_keeper_tells_names_that_are_too_long_and_files_that_are_damaged) {
     CHECK(!keeper_open(&keeper, name, notice, &error));
     CHECK(strstr(error.text, "the name of its checkpoint is longer than 4095 bytes") != NULL);
     free(name);
-    const char *path = in_folder("broken.tiles");
+    const char *path = test_path("broken.tiles");
     test_write_text(path, "GRAYTILE and no more");
     options = options_for(path, true);
     keeper_init(&keeper, &options);
@@ -417,7 +409,7 @@ static void leave_checkpoint(const char *path, const char *first, struct film *f
 }
 
 TEST(a_keeper_goes_on_only_with_what_is_the_same) {
-    const char *path = in_folder("c.tiles"), *first = in_folder("first.png");
+    const char *path = test_path("c.tiles"), *first = test_path("first.png");
     struct film film = half_film(), back = half_film();
     const struct tile_picture picture = some_picture();
     struct tile_picture second = picture;
@@ -472,7 +464,7 @@ TEST(a_keeper_goes_on_only_with_what_is_the_same) {
 }
 
 TEST(a_keeper_refuses_the_checkpoint_of_somebody_else) {
-    const char *path = in_folder("d.tiles"), *first = in_folder("first.png");
+    const char *path = test_path("d.tiles"), *first = test_path("first.png");
     struct film film = half_film();
     struct options options = options_for(path, false);
     struct keeper keeper;
@@ -482,15 +474,15 @@ TEST(a_keeper_refuses_the_checkpoint_of_somebody_else) {
     keeper_init(&keeper, &options);
     CHECK(!keeper_open(&keeper, first, notice, &error));
     CHECK(error.kind == ERROR_USAGE && strstr(error.text, "--resume goes on with it, or remove it"));
-    options = options_for(in_folder("none.tiles"), true);
+    options = options_for(test_path("none.tiles"), true);
     keeper_init(&keeper, &options);
     CHECK(keeper_open(&keeper, first, notice, &error) && strstr(notice, "the run starts from its beginning"));
     free(film.pixels);
 }
 
 TEST(a_checkpoint_that_cannot_be_written_is_told_once_and_again_when_asked_for) {
-    struct options options = options_for(in_folder("no/such\x01/folder/c.tiles"), false);
-    const char *file = in_folder("no");
+    struct options options = options_for(test_path("no/such\x01/folder/c.tiles"), false);
+    const char *file = test_path("no");
     struct film film = half_film();
     const struct tile_picture picture = some_picture();
     struct keeper keeper;
@@ -514,7 +506,7 @@ TEST(any_allocation_or_call_may_fail_in_a_keeper) {
 #ifndef GRAY_FAULTS
     test_skip("failures on demand are only in builds with GRAY_FAULTS");
 #endif
-    const char *path = in_folder("e.tiles"), *first = in_folder("first.png");
+    const char *path = test_path("e.tiles"), *first = test_path("first.png");
     struct film film = half_film(), back = half_film();
     const struct tile_picture picture = some_picture();
     struct tile_picture second = picture;

@@ -118,17 +118,9 @@ static int live_with(const struct deed *deeds) {
 }
 
 /* Two of them can be used at a time. */
-static const char *in_folder(const char *name) {
-    static char paths[2][4096];
-    static int next;
-    next = 1 - next;
-    (void)snprintf(paths[next], sizeof paths[next], "%s/%s", test_folder(), name);
-    return paths[next];
-}
-
 static bool same_files(const char *one, const char *other) {
     size_t a, b;
-    char *x = test_read_file(in_folder(one), &a), *y = test_read_file(in_folder(other), &b);
+    char *x = test_read_file(test_path(one), &a), *y = test_read_file(test_path(other), &b);
     bool same = x && y && a == b && memcmp(x, y, a) == 0;
     free(x);
     free(y);
@@ -143,7 +135,7 @@ TEST(window_goes_on_after_a_stop_to_the_picture_of_one_that_was_never_stopped) {
                                    {NULL, KEY('x'), 0},    {"stopped", KEY('x'), 0},      {"ready", KEY('s'), 0},
                                    {NULL, KEY('q'), 0}};
     CHECK_EQ_INT(live_with(plain), 0);
-    CHECK(rename(in_folder("out.png"), in_folder("whole.png")) == 0);
+    CHECK(rename(test_path("out.png"), test_path("whole.png")) == 0);
     CHECK_EQ_INT(live_with(stopped), 0);
     CHECK(same_files("out.png", "whole.png") && same_files("out-view1.png", "out-view2.png"));
 }
