@@ -80,6 +80,8 @@ bool WALK(next)(struct box_tree_walk *walk, double t_max, uint32_t *item) {
         if (enter_child * (enter_child > 0 ? 1 - 0x1p-50 : 1 + 0x1p-50) > t_max)
             continue;
         if (child & BOX_TREE_ITEM) {
+            if (child == BOX_TREE_NONE) /* met by rays that are not finite: of NaN nothing can be said */
+                continue;
             *item = child & ~BOX_TREE_ITEM;
             return true;
         }
@@ -110,6 +112,8 @@ bool WALK(any)(struct box_tree_walk *walk, double t_max, uint32_t *item) {
     while (walk->top > 0) {
         uint32_t child = walk->child[--walk->top];
         if (child & BOX_TREE_ITEM) {
+            if (child == BOX_TREE_NONE) /* met by rays that are not finite: of NaN nothing can be said */
+                continue;
             *item = child & ~BOX_TREE_ITEM;
             return true;
         }

@@ -36,7 +36,7 @@ static struct vec3 scaled(struct vec3 a, int exponent) {
 
 static bool solve_scaled(struct vec3 f, struct vec3 d, double radius, double t[2]) {
     double reach = fmax(vec3_max_abs(f), radius), speed = vec3_max_abs(d);
-    if (!(speed > 0) || !isfinite(speed) || !isfinite(reach))
+    if (!(speed > 0) || !vec3_finite(d) || !vec3_finite(f) || !isfinite(radius))
         return false;
     int reach_exponent, speed_exponent;
     (void)frexp(reach, &reach_exponent);

@@ -5,6 +5,8 @@
 #include "tests/stage.h"
 #include "world/packet.h"
 
+#include <float.h>
+#include <math.h>
 #include <string.h>
 
 static struct mesh *small_mesh(struct stage *s, struct test_random *random, bool closed) {
@@ -329,6 +331,35 @@ TEST(packets_of_rays_meet_in_a_world_what_single_rays_meet) {
         stage_end(&s);
     }
     CHECK(hits > 10000);
+}
+
+/* Lights and scales near the end of the numbers make such rays. What they meet nobody can say, but it is in the world.
+ */
+TEST(rays_that_are_not_finite_meet_only_what_is_there) {
+    static const double odd[] = {NAN, INFINITY, -INFINITY, DBL_MAX, -DBL_MAX, 0, 1, DBL_MIN};
+    static const enum accel_kind kinds[] = {ACCEL_AUTO, ACCEL_BVH, ACCEL_GRID, ACCEL_KDTREE, ACCEL_NONE};
+    struct test_random random = {81};
+    for (int w = 0; w < 15; w++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        static const int counts[] = {2, 5, 30};
+        CHECK(stage_build(&s, random_world(&s, &random, counts[w % 3], 10, false), kinds[w / 3]));
+        struct world_scratch scratch;
+        CHECK(world_scratch_init(&scratch, &s.world));
+        for (int i = 0; i < 3000; i++) {
+            struct ray ray = random_ray(&random, 10);
+            double *numbers[] = {&ray.origin.x, &ray.direction.x};
+            for (int k = 0; k < 6; k++)
+                if (test_uniform(&random, 0, 1) < 0.7)
+                    numbers[k / 3][k % 3] = odd[(int)test_uniform(&random, 0, 7.999)];
+            uint32_t placed = 0;
+            struct crossing c;
+            CHECK(!world_nearest_crossing(&s.world, &ray, &scratch, &placed, &c) || placed < s.world.placed_count);
+            (void)world_any(&s.world, &ray, &scratch);
+        }
+        world_scratch_destroy(&scratch);
+        stage_end(&s);
+    }
 }
 
 TEST(world_names_the_nodes_of_a_cycle) {
