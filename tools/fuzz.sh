@@ -12,7 +12,7 @@ export ASAN_OPTIONS="allocator_may_return_null=1:detect_leaks=1:abort_on_error=1
 export UBSAN_OPTIONS="print_stacktrace=1:halt_on_error=1:$UBSAN_OPTIONS"
 
 # Seconds of processor time of all processes that this shell has waited for (not in a shell of its own: that has none).
-clock=build/fuzz/clock
+clock=build/fuzz/clock.$$ # two runs at once do not disturb each other
 processor() {
     times >"$clock"
     tail -n 1 "$clock" | awk '{ split($1, u, /[ms]/); split($2, s, /[ms]/); print u[1] * 60 + u[2] + s[1] * 60 + s[2] }' >"$1"
@@ -60,11 +60,12 @@ afl() {
 
 for name in "$@"; do
     mkdir -p "build/fuzz/corpus/$name"
-    processor build/fuzz/before
+    processor $clock.before
     runs=0 wall=
     if "$with" "$name"; then word="no finding"; else word="FOUND: build/fuzz/$name-* and build/fuzz/$name*.log" status=1; fi
-    processor build/fuzz/after
-    echo "$name $with ${runs:-0} $(cat build/fuzz/before build/fuzz/after | tr '\n' ' ')" | awk -v word="$word" -v wall="$wall" \
+    processor $clock.after
+    echo "$name $with ${runs:-0} $(cat $clock.before $clock.after | tr '\n' ' ')" | awk -v word="$word" -v wall="$wall" \
         '{ t = wall ? wall : $5 - $4; printf "%-9s %-8s %7.0f s%s, %9d runs, %6.0f a second, %s\n", $1, $2, t, (wall ? "" : " of processor time"), $3, (t > 0 ? $3 / t : 0), word }'
 done
+rm -f "$clock"*
 exit $status
