@@ -1,52 +1,39 @@
-/* Wide hierarchies by the surface area heuristic in bins: Ingo Wald, "On fast Construction of SAH-based Bounding Volume
- * Hierarchies", RT 2007; a node's largest child is split until there are eight (Wald, Benthin, Boulos, "Getting Rid of
- * Packets", RT 2008). The cost of a leaf counts blocks of eight triangles, not triangles.
+/* Hierarchies of eight children to a node (Wald, Benthin, Boulos, "Getting Rid of Packets", RT 2008), cut from binary
+ * ones (triangle_tree.h).
  *
- * Parallel and deterministic: ranges above a size that only the data decides are split one after the other into top
- * nodes, until what is left can be shared out; each job then builds its own nodes and list of leaves, and since the
- * jobs' numbers are known only then, references are moved to their final place while the parts are put together. Blocks
- * are made at the end, when their number is known: no memory beyond the result and the references. */
+ * Parallel and deterministic: ranges above a size that only the data decides are split one after the other, until what
+ * is left can be shared out; the parts are built by jobs, put together, made better by reinsertion on one thread,
+ * weighed from below by jobs and on top of them, and written by jobs to where a count of all before them says. The
+ * binary hierarchy is a third as large as what is made, and gone by the time the references are. */
 #include "accel/triangle_build.h"
 
-#include "accel/simd.h"
+#include "accel/triangle_tree.h"
 #include "base/mem.h"
 
 #include <string.h>
 
-enum {
-    BINS = 16,
-    LEAF_TRIANGLES = WIDTH,
-    JOB_REFERENCES = 4096, /* small hierarchies are gathered into jobs of about so many */
-    MEDIAN_DEPTH = 20,     /* below this many wide levels ranges are halved: bounds the stack of a search */
+enum { JOB_REFERENCES = 4096 /* small pieces are gathered into jobs of about so many */ };
+
+/* Something that one worker works on: a range, before there is a branch over it, and then a branch. */
+struct piece {
+    struct range range;
+    uint32_t depth;
+    uint32_t branch; /* while it is built, in its job's own tree */
+    uint32_t count;  /* its references */
+    uint32_t node_count, block_count, node_base, block_base;
 };
 
-/* References first .. first + count - 1, their box and the box of their centres (times two). */
-struct range {
-    simd4 min, max, centre_min, centre_max;
-    uint32_t first, count;
+struct pieces {
+    struct piece *items;
+    uint32_t count, capacity;
 };
 
-struct leaf {
-    uint32_t first, count;
-};
-
-/* A stretch of roots that one worker builds. References inside are relative: to nodes[0], to leaves[0]. */
+/* Pieces that follow each other. */
 struct job {
-    uint32_t first_root, root_count;
-    struct wide_node *nodes;
-    struct leaf *leaves;
-    uint32_t node_count, node_capacity, leaf_count, leaf_capacity;
-    uint32_t node_base, leaf_base;
+    uint32_t first, count;
+    struct tree tree;
     bool failed;
 };
-
-struct root {
-    uint32_t first, count, result, job;
-    uint32_t depth;
-};
-
-/* What a child of a top node is until everything has its place. */
-enum { TOP_NODE = 1 << 30 };
 
 struct builder {
     struct triangle_index *index;
@@ -54,11 +41,23 @@ struct builder {
     struct reference *references;
     struct pool *pool;
     uint32_t job_limit;
-    struct wide_node *top;
-    struct root *roots;
+    struct tree tree;
+    struct pieces pieces; /* of the stage under way */
     struct job *jobs;
-    uint32_t top_count, top_capacity, root_count, root_capacity, job_count;
+    uint32_t job_count;
+    struct lane_costs *costs; /* of each piece */
+    struct top_node *top;     /* nodes above the pieces */
+    uint32_t top_count, top_capacity;
 };
+
+/* A node whose children may be pieces. */
+struct top_node {
+    uint32_t branch, children;
+    uint32_t child[WIDTH]; /* a piece, or the number of a top node */
+};
+
+/* What is a piece rather than something above them. */
+#define PIECE (UINT32_C(1) << 31)
 
 static bool reserve(void **array, uint32_t *capacity, uint32_t used, size_t size) {
     if (used < *capacity)
@@ -72,213 +71,248 @@ static bool reserve(void **array, uint32_t *capacity, uint32_t used, size_t size
     return true;
 }
 
-static simd4 reference_min(const struct reference *r) {
-    return simd4_three(simd4_load(r->min));
+static bool is_cancelled(const struct builder *builder) {
+    return builder->pool && pool_cancelled(builder->pool);
 }
 
-static simd4 reference_max(const struct reference *r) {
-    return simd4_three(simd4_load(r->max));
+/* --- pieces and jobs --- */
+
+static struct piece *add_piece(struct builder *builder, uint32_t references) {
+    struct pieces *pieces = &builder->pieces;
+    if (!reserve((void **)&pieces->items, &pieces->capacity, pieces->count, sizeof *pieces->items))
+        return NULL;
+    struct piece *piece = &pieces->items[pieces->count++];
+    *piece = (struct piece){.count = references};
+    return piece;
 }
 
-static void range_clear(struct range *range) {
-    range->min = range->centre_min = simd4_all(INFINITY);
-    range->max = range->centre_max = simd4_all(-INFINITY);
-}
-
-static inline void range_add(struct range *range, simd4 lo, simd4 hi, simd4 centre) {
-    range->min = simd4_min(range->min, lo);
-    range->max = simd4_max(range->max, hi);
-    range->centre_min = simd4_min(range->centre_min, centre);
-    range->centre_max = simd4_max(range->centre_max, centre);
-}
-
-static void range_measure(const struct reference *references, struct range *range) {
-    range_clear(range);
-    for (uint32_t i = range->first; i < range->first + range->count; i++) {
-        simd4 lo = reference_min(&references[i]), hi = reference_max(&references[i]);
-        range_add(range, lo, hi, simd4_add(lo, hi));
-    }
-}
-
-static float half_area(simd4 lo, simd4 hi) {
-    float e[4];
-    simd4_store(e, simd4_sub(hi, lo));
-    return e[0] * e[1] + e[1] * e[2] + e[2] * e[0];
-}
-
-/* Half blocks, so that filling a block is worth something and a few more triangles are not free. */
-static float leaf_cost(uint32_t triangles) {
-    return (float)((triangles + 3) / 4);
-}
-
-struct split {
-    int axis; /* -1: nothing separates the centres */
-    int32_t last_left;
-    float low[4], scale[4];
-};
-
-static void bins_of(const struct split *split, simd4 centre, int32_t bin[4]) {
-    simd4_store_int(bin, simd4_mul(simd4_sub(centre, simd4_load(split->low)), simd4_load(split->scale)));
-}
-
-static void find_split(const struct reference *references, const struct range *range, struct split *split) {
-    float extent[4];
-    simd4_store(extent, simd4_sub(range->centre_max, range->centre_min));
-    simd4_store(split->low, range->centre_min);
-    split->axis = -1;
-    bool any = false;
-    int bins = range->count < 64 ? BINS / 2 : BINS;
-    for (int k = 0; k < 3; k++) {
-        split->scale[k] = extent[k] > 0 ? (float)bins * 0.999f / extent[k] : 0;
-        if (!(split->scale[k] < 0x1p100f))
-            split->scale[k] = 0;
-        any |= split->scale[k] > 0;
-    }
-    split->low[3] = split->scale[3] = 0;
-    if (!any)
-        return;
-    simd4 lo[3][BINS], hi[3][BINS];
-    uint32_t count[3][BINS] = {{0}};
-    for (int k = 0; k < 3; k++)
-        for (int b = 0; b < bins; b++) {
-            lo[k][b] = simd4_all(INFINITY);
-            hi[k][b] = simd4_all(-INFINITY);
+/* Gathers the pieces into jobs. */
+static bool make_jobs(struct builder *builder) {
+    const struct pieces *pieces = &builder->pieces;
+    uint64_t gathered = UINT64_MAX / 2;
+    builder->job_count = 0;
+    builder->jobs = mem_alloc_zero((size_t)pieces->count + 1, sizeof *builder->jobs);
+    for (uint32_t i = 0; builder->jobs && i < pieces->count; i++) {
+        if (gathered + pieces->items[i].count > JOB_REFERENCES) {
+            builder->jobs[builder->job_count++].first = i;
+            gathered = 0;
         }
-    for (uint32_t i = range->first; i < range->first + range->count; i++) {
-        simd4 a = reference_min(&references[i]), b = reference_max(&references[i]);
-        int32_t bin[4];
-        bins_of(split, simd4_add(a, b), bin);
-        for (int k = 0; k < 3; k++) {
-            lo[k][bin[k]] = simd4_min(lo[k][bin[k]], a);
-            hi[k][bin[k]] = simd4_max(hi[k][bin[k]], b);
-            count[k][bin[k]]++;
-        }
+        builder->jobs[builder->job_count - 1].count++;
+        gathered += pieces->items[i].count;
     }
-    float best = INFINITY;
-    for (int k = 0; k < 3; k++) {
-        if (!(split->scale[k] > 0))
-            continue;
-        float right_cost[BINS];
-        simd4 a = simd4_all(INFINITY), b = simd4_all(-INFINITY);
-        uint32_t n = 0;
-        for (int j = bins - 1; j > 0; j--) {
-            a = simd4_min(a, lo[k][j]);
-            b = simd4_max(b, hi[k][j]);
-            n += count[k][j];
-            right_cost[j] = n ? half_area(a, b) * leaf_cost(n) : -1;
-        }
-        a = simd4_all(INFINITY);
-        b = simd4_all(-INFINITY);
-        n = 0;
-        for (int j = 0; j + 1 < bins; j++) {
-            a = simd4_min(a, lo[k][j]);
-            b = simd4_max(b, hi[k][j]);
-            n += count[k][j];
-            if (n == 0 || right_cost[j + 1] < 0)
-                continue;
-            float cost = half_area(a, b) * leaf_cost(n) + right_cost[j + 1];
-            if (cost < best) {
-                best = cost;
-                split->axis = k;
-                split->last_left = j;
-            }
-        }
-    }
+    return builder->jobs != NULL;
 }
 
-/* Splits a range in two that are not empty. */
-static void split_range(struct reference *references, const struct range *range, bool halve, struct range *left,
-                        struct range *right) {
-    struct split split = {.axis = -1};
-    if (!halve)
-        find_split(references, range, &split);
-    if (split.axis < 0) {
-        left->first = range->first;
-        left->count = range->count / 2;
-        right->first = range->first + left->count;
-        right->count = range->count - left->count;
-        range_measure(references, left);
-        range_measure(references, right);
-        return;
-    }
-    range_clear(left);
-    range_clear(right);
-    uint32_t i = range->first, end = range->first + range->count;
-    while (i < end) {
-        simd4 lo = reference_min(&references[i]), hi = reference_max(&references[i]), centre = simd4_add(lo, hi);
-        int32_t bin[4];
-        bins_of(&split, centre, bin);
-        if (bin[split.axis] <= split.last_left) {
-            range_add(left, lo, hi, centre);
-            i++;
-            continue;
-        }
-        range_add(right, lo, hi, centre);
-        end--;
-        struct reference swap = references[i];
-        references[i] = references[end];
-        references[end] = swap;
-    }
-    left->first = range->first;
-    left->count = i - range->first;
-    right->first = i;
-    right->count = range->count - left->count;
+static void drop_jobs(struct builder *builder) {
+    for (uint32_t i = 0; builder->jobs && i < builder->job_count; i++)
+        mem_free(builder->jobs[i].tree.branches);
+    mem_free(builder->jobs);
+    builder->jobs = NULL;
+    builder->job_count = 0;
 }
 
-/* Parts a floor, whose triangles have half the surface of the range each, from all that stands on it, if it is much
- * thinner; false: there is none. The surface says that this brings nothing, but rays start on floors, and those that
- * leave them miss a box that is flat. */
-static bool split_floor(struct reference *references, const struct range *range, struct range *floor,
-                        struct range *rest) {
-    float least = half_area(range->min, range->max) / 2;
-    uint32_t end = range->first;
-    for (uint32_t i = range->first; i < range->first + range->count; i++) {
-        if (half_area(reference_min(&references[i]), reference_max(&references[i])) < least)
-            continue;
-        struct reference swap = references[i];
-        references[i] = references[end];
-        references[end++] = swap;
+/* False when it was cancelled or a job has failed. */
+static bool run_jobs(struct builder *builder, pool_function *function) {
+    bool complete = true;
+    if (builder->pool)
+        complete = pool_run(builder->pool, builder->job_count, function, builder);
+    else
+        for (uint32_t i = 0; i < builder->job_count; i++)
+            function(builder, i, 0);
+    for (uint32_t i = 0; i < builder->job_count; i++)
+        complete = complete && !builder->jobs[i].failed;
+    return complete;
+}
+
+/* --- the binary hierarchies --- */
+
+/* Branches over a range until its parts are small enough for one job each. */
+static bool plan_range(struct builder *builder, const struct range *range, uint32_t depth, uint32_t parent,
+                       uint32_t *result) {
+    if (range->count <= builder->job_limit) {
+        struct piece *piece = add_piece(builder, range->count);
+        if (!piece)
+            return false;
+        piece->range = *range;
+        piece->depth = depth;
+        *result = PIECE | (builder->pieces.count - 1);
+        return true;
     }
-    *floor = (struct range){.first = range->first, .count = end - range->first};
-    *rest = (struct range){.first = end, .count = range->count - floor->count};
-    if (floor->count == 0 || rest->count == 0)
+    struct range part[2];
+    uint32_t child[2];
+    if (is_cancelled(builder) || !tree_add(&builder->tree, range, parent, result))
         return false;
-    range_measure(references, floor);
-    float extent[4], thin[4];
-    simd4_store(extent, simd4_sub(range->max, range->min));
-    simd4_store(thin, simd4_sub(floor->max, floor->min));
-    if (!(thin[0] < extent[0] / 16 || thin[1] < extent[1] / 16 || thin[2] < extent[2] / 16))
-        return false;
-    range_measure(references, rest);
+    tree_part(builder->references, range, depth, part);
+    for (int i = 0; i < 2; i++)
+        if (!plan_range(builder, &part[i], depth + 1, *result, &child[i]))
+            return false;
+    memcpy(builder->tree.branches[*result].child, child, sizeof child);
     return true;
 }
 
-/* Splits into at most eight, the one with the largest surface first; none below `limit` references is split. */
-static uint32_t split_wide(struct reference *references, const struct range *whole, uint32_t limit, bool halve,
-                           struct range part[WIDTH]) {
-    float area[WIDTH];
-    uint32_t parts = 1;
-    part[0] = *whole;
-    if (!halve && split_floor(references, whole, &part[0], &part[1]))
-        parts = 2;
-    else
-        part[0] = *whole;
-    for (uint32_t j = 0; j < parts; j++)
-        area[j] = half_area(part[j].min, part[j].max);
-    while (parts < WIDTH) {
-        uint32_t largest = WIDTH;
-        for (uint32_t j = 0; j < parts; j++)
-            if (part[j].count > limit && (largest == WIDTH || area[j] > area[largest]))
-                largest = j;
-        if (largest == WIDTH)
-            break;
-        struct range range = part[largest];
-        split_range(references, &range, halve, &part[largest], &part[parts]);
-        area[largest] = half_area(part[largest].min, part[largest].max);
-        area[parts] = half_area(part[parts].min, part[parts].max);
-        parts++;
+static bool plan(struct builder *builder, struct hierarchy *hierarchies, uint32_t count) {
+    uint64_t total = 0;
+    for (uint32_t i = 0; i < count; i++)
+        total += hierarchies[i].count;
+    uint64_t share = total / 64;
+    builder->job_limit = share < JOB_REFERENCES ? JOB_REFERENCES : (uint32_t)share;
+    for (uint32_t i = 0; i < count; i++) {
+        struct hierarchy *h = &hierarchies[i];
+        struct range range = {.first = h->first, .count = h->count};
+        if (h->count == 0)
+            continue;
+        if (h->count > builder->job_limit) /* else its job does */
+            range_measure(builder->references, &range);
+        if (!plan_range(builder, &range, 0, NO_BRANCH, &h->result))
+            return false;
     }
-    return parts;
+    return true;
+}
+
+static void build_job(void *context, uint32_t item, int worker) {
+    struct builder *builder = context;
+    struct job *job = &builder->jobs[item];
+    (void)worker;
+    for (uint32_t i = job->first; i < job->first + job->count && !job->failed; i++) {
+        struct piece *piece = &builder->pieces.items[i];
+        range_measure(builder->references, &piece->range);
+        job->failed =
+            !tree_build(&job->tree, builder->references, &piece->range, piece->depth, builder->pool, &piece->branch);
+    }
+}
+
+/* Puts the trees of all jobs behind what is above them. */
+static bool join_trees(struct builder *builder, struct hierarchy *hierarchies, uint32_t count) {
+    struct tree *tree = &builder->tree;
+    uint32_t top = tree->count;
+    uint64_t all = top;
+    for (uint32_t i = 0; i < builder->job_count; i++)
+        all += builder->jobs[i].tree.count;
+    struct branch *grown = mem_resize_array(tree->branches, all + 1, sizeof *grown);
+    if (!grown)
+        return false;
+    tree->branches = grown;
+    tree->capacity = (uint32_t)all;
+    for (uint32_t i = 0; i < builder->job_count; i++) {
+        struct job *job = &builder->jobs[i];
+        uint32_t base = tree->count;
+        for (uint32_t j = 0; j < job->tree.count; j++) {
+            struct branch *branch = &tree->branches[base + j];
+            *branch = job->tree.branches[j];
+            branch->parent += branch->parent == NO_BRANCH ? 0 : base;
+            for (int k = 0; k < 2; k++)
+                branch->child[k] += base;
+        }
+        tree->count += job->tree.count;
+        for (uint32_t j = job->first; j < job->first + job->count; j++)
+            builder->pieces.items[j].branch += base;
+    }
+    for (uint32_t i = top; i-- > 0;) {
+        struct branch *branch = &tree->branches[i];
+        for (int k = 0; k < 2; k++) {
+            if (branch->child[k] & PIECE)
+                branch->child[k] = builder->pieces.items[branch->child[k] & ~PIECE].branch;
+            tree->branches[branch->child[k]].parent = i;
+        }
+        const struct branch *a = &tree->branches[branch->child[0]], *b = &tree->branches[branch->child[1]];
+        branch->height = (uint8_t)(1 + (a->height > b->height ? a->height : b->height));
+    }
+    for (uint32_t i = 0; i < count; i++)
+        if (hierarchies[i].count > 0 && hierarchies[i].result & PIECE)
+            hierarchies[i].result = builder->pieces.items[hierarchies[i].result & ~PIECE].branch;
+    return true;
+}
+
+/* --- which branches become nodes --- */
+
+/* Branches of at most job_limit references become pieces. */
+static bool cut_pieces(struct builder *builder, uint32_t number) {
+    struct branch *branch = &builder->tree.branches[number];
+    if (branch->height == 0)
+        return true;
+    if (branch->count > builder->job_limit)
+        return cut_pieces(builder, branch->child[0]) && cut_pieces(builder, branch->child[1]);
+    struct piece *piece = add_piece(builder, branch->count);
+    if (!piece)
+        return false;
+    piece->branch = number;
+    return true;
+}
+
+static void weigh_job(void *context, uint32_t item, int worker) {
+    struct builder *builder = context;
+    const struct job *job = &builder->jobs[item];
+    (void)worker;
+    for (uint32_t i = job->first; i < job->first + job->count; i++) {
+        uint32_t number = builder->pieces.items[i].branch;
+        builder->costs[i] = tree_weigh(&builder->tree, number, 0, NULL);
+        builder->tree.branches[number].first = i;
+    }
+}
+
+static bool weigh(struct builder *builder, const struct hierarchy *hierarchies, uint32_t count) {
+    builder->pieces.count = 0;
+    for (uint32_t i = 0; i < count; i++)
+        if (hierarchies[i].count > 0 && !cut_pieces(builder, hierarchies[i].result))
+            return false;
+    builder->costs = mem_alloc(((size_t)builder->pieces.count + 1) * sizeof *builder->costs);
+    if (!builder->costs || !make_jobs(builder) || !run_jobs(builder, weigh_job))
+        return false;
+    drop_jobs(builder);
+    for (uint32_t i = 0; i < count; i++)
+        if (hierarchies[i].count > 0)
+            (void)tree_weigh(&builder->tree, hierarchies[i].result, builder->job_limit, builder->costs);
+    return true;
+}
+
+/* --- what is made --- */
+
+static bool is_node(const struct branch *branch) {
+    return branch->height > 0 && !branch->is_block;
+}
+
+/* Nodes above what becomes a piece: what branch `number` is, a piece or the number of a top node, is *result. */
+static bool place_top(struct builder *builder, uint32_t number, uint32_t *result) {
+    const struct branch *branch = &builder->tree.branches[number];
+    if (branch->count <= builder->job_limit || !is_node(branch)) {
+        struct piece *piece = add_piece(builder, branch->count);
+        if (!piece)
+            return false;
+        piece->branch = number;
+        *result = PIECE | (builder->pieces.count - 1);
+        return true;
+    }
+    if (!reserve((void **)&builder->top, &builder->top_capacity, builder->top_count, sizeof *builder->top))
+        return false;
+    uint32_t place = builder->top_count++, children[WIDTH], count = tree_children(&builder->tree, number, children);
+    builder->top[place] = (struct top_node){.branch = number, .children = count};
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t child;
+        if (!place_top(builder, children[i], &child))
+            return false;
+        builder->top[place].child[i] = child;
+    }
+    *result = place;
+    return true;
+}
+
+static void count_parts(const struct tree *tree, uint32_t number, struct piece *piece) {
+    if (!is_node(&tree->branches[number])) {
+        piece->block_count++;
+        return;
+    }
+    uint32_t children[WIDTH], count = tree_children(tree, number, children);
+    piece->node_count++;
+    for (uint32_t i = 0; i < count; i++)
+        count_parts(tree, children[i], piece);
+}
+
+static void count_job(void *context, uint32_t item, int worker) {
+    struct builder *builder = context;
+    const struct job *job = &builder->jobs[item];
+    (void)worker;
+    for (uint32_t i = job->first; i < job->first + job->count; i++)
+        count_parts(&builder->tree, builder->pieces.items[i].branch, &builder->pieces.items[i]);
 }
 
 /* By the middles of the boxes along the diagonal of each octant, those that hold nothing first. */
@@ -303,135 +337,16 @@ static void node_set_order(struct wide_node *node, uint32_t parts) {
     }
 }
 
-static void node_set_bounds(struct wide_node *node, const struct range *part, uint32_t parts) {
+static void node_set(struct wide_node *node, const struct tree *tree, const uint32_t *children, uint32_t count) {
     for (uint32_t j = 0; j < WIDTH; j++) {
-        float lo[4] = {1e30f, 1e30f, 1e30f}, hi[4] = {-1e30f, -1e30f, -1e30f};
-        if (j < parts) {
-            simd4_store(lo, simd4_sub(part[j].min, simd4_all(BOX_GROWTH)));
-            simd4_store(hi, simd4_add(part[j].max, simd4_all(BOX_GROWTH)));
-        }
+        const struct branch *branch = j < count ? &tree->branches[children[j]] : NULL;
         for (int k = 0; k < 3; k++) {
-            node->bounds[2 * k][j] = lo[k];
-            node->bounds[2 * k + 1][j] = hi[k];
+            node->bounds[2 * k][j] = branch ? branch->min[k] - BOX_GROWTH : 1e30f;
+            node->bounds[2 * k + 1][j] = branch ? branch->max[k] + BOX_GROWTH : -1e30f;
         }
         node->child[j] = REF_EMPTY;
     }
-    node_set_order(node, parts);
-}
-
-enum { POLL_COUNT = 2000 }; /* references that are split without asking whether to stop */
-
-static bool is_cancelled(const struct builder *builder) {
-    return builder->pool && pool_cancelled(builder->pool);
-}
-
-/* Relative reference to the hierarchy of a range; marks the job when memory is out. */
-static uint32_t build_range(struct builder *builder, struct job *job, const struct range *range, uint32_t depth) {
-    if (range->count <= LEAF_TRIANGLES) {
-        if (!reserve((void **)&job->leaves, &job->leaf_capacity, job->leaf_count, sizeof *job->leaves)) {
-            job->failed = true;
-            return REF_EMPTY;
-        }
-        job->leaves[job->leaf_count] = (struct leaf){range->first, range->count};
-        return REF_LEAF | job->leaf_count++;
-    }
-    if (range->count > POLL_COUNT && is_cancelled(builder))
-        job->failed = true; /* told apart from a lack of memory at the end */
-    struct range part[WIDTH];
-    uint32_t parts = split_wide(builder->references, range, LEAF_TRIANGLES, depth > MEDIAN_DEPTH, part);
-    if (!reserve((void **)&job->nodes, &job->node_capacity, job->node_count, sizeof *job->nodes)) {
-        job->failed = true;
-        return REF_EMPTY;
-    }
-    uint32_t number = job->node_count++;
-    node_set_bounds(&job->nodes[number], part, parts);
-    for (uint32_t j = 0; j < parts && !job->failed; j++) {
-        uint32_t child = build_range(builder, job, &part[j], depth + 1);
-        job->nodes[number].child[j] = child;
-    }
-    return number;
-}
-
-static void run_job(void *context, uint32_t item, int worker) {
-    struct builder *builder = context;
-    struct job *job = &builder->jobs[item];
-    (void)worker;
-    for (uint32_t i = job->first_root; i < job->first_root + job->root_count && !job->failed; i++) {
-        struct root *root = &builder->roots[i];
-        struct range range = {.first = root->first, .count = root->count};
-        range_measure(builder->references, &range);
-        root->result = build_range(builder, job, &range, root->depth);
-    }
-}
-
-static bool add_root(struct builder *builder, uint32_t first, uint32_t count, uint32_t depth, uint32_t *result) {
-    if (!reserve((void **)&builder->roots, &builder->root_capacity, builder->root_count, sizeof *builder->roots))
-        return false;
-    builder->roots[builder->root_count] = (struct root){.first = first, .count = count, .depth = depth};
-    *result = builder->root_count++;
-    return true;
-}
-
-/* Top nodes over a range until its parts are small enough for one job each. */
-static bool plan_range(struct builder *builder, const struct range *range, uint32_t depth, uint32_t *result) {
-    if (range->count <= builder->job_limit)
-        return add_root(builder, range->first, range->count, depth, result);
-    if (is_cancelled(builder))
-        return false;
-    struct range part[WIDTH];
-    uint32_t parts = split_wide(builder->references, range, LEAF_TRIANGLES, depth > MEDIAN_DEPTH, part);
-    if (!reserve((void **)&builder->top, &builder->top_capacity, builder->top_count, sizeof *builder->top))
-        return false;
-    uint32_t number = builder->top_count++;
-    node_set_bounds(&builder->top[number], part, parts);
-    for (uint32_t j = 0; j < parts; j++) {
-        uint32_t child;
-        if (!plan_range(builder, &part[j], depth + 1, &child))
-            return false;
-        builder->top[number].child[j] = child;
-    }
-    *result = TOP_NODE | number;
-    return true;
-}
-
-static bool make_jobs(struct builder *builder) {
-    builder->jobs = mem_alloc_zero((size_t)builder->root_count + 1, sizeof *builder->jobs);
-    if (!builder->jobs)
-        return false;
-    uint64_t gathered = UINT64_MAX / 2;
-    for (uint32_t i = 0; i < builder->root_count; i++) {
-        if (gathered + builder->roots[i].count > JOB_REFERENCES) {
-            builder->jobs[builder->job_count++].first_root = i;
-            gathered = 0;
-        }
-        builder->roots[i].job = builder->job_count - 1;
-        builder->jobs[builder->job_count - 1].root_count++;
-        gathered += builder->roots[i].count;
-    }
-    return true;
-}
-
-static bool run(struct builder *builder, uint32_t count, pool_function *function) {
-    if (builder->pool)
-        return pool_run(builder->pool, count, function, builder);
-    for (uint32_t i = 0; i < count; i++)
-        function(builder, i, 0);
-    return true;
-}
-
-static bool is_used(const struct wide_node *node, uint32_t lane) {
-    return node->bounds[0][lane] <= node->bounds[1][lane];
-}
-
-static uint32_t moved(const struct job *job, uint32_t reference) {
-    return reference & REF_LEAF ? reference + job->leaf_base : reference + job->node_base;
-}
-
-static uint32_t resolve(const struct builder *builder, uint32_t tag) {
-    if (tag & TOP_NODE)
-        return (tag & ~(uint32_t)TOP_NODE) + 1;
-    const struct root *root = &builder->roots[tag];
-    return moved(&builder->jobs[root->job], root->result);
+    node_set_order(node, count);
 }
 
 static void set_lane(const struct triangle_index *index, const struct triangle_set *set, uint32_t triangle,
@@ -463,30 +378,6 @@ static void set_unused_lane(struct triangle_block *block, uint32_t lane) {
         block->vertices[j][lane] = 0;
 }
 
-/* Moves a job's nodes into the index and fills its blocks. */
-static void finish_job(void *context, uint32_t item, int worker) {
-    struct builder *builder = context;
-    struct triangle_index *index = builder->index;
-    struct job *job = &builder->jobs[item];
-    (void)worker;
-    for (uint32_t i = 0; i < job->node_count; i++) {
-        struct wide_node *node = &index->nodes[job->node_base + i];
-        *node = job->nodes[i];
-        for (uint32_t j = 0; j < WIDTH; j++)
-            if (is_used(node, j))
-                node->child[j] = moved(job, node->child[j]);
-    }
-    for (uint32_t i = 0; i < job->leaf_count; i++) {
-        struct leaf leaf = job->leaves[i];
-        struct triangle_block *block = &index->blocks[job->leaf_base + i];
-        for (uint32_t lane = 0; lane < WIDTH; lane++)
-            if (lane < leaf.count)
-                set_lane(index, builder->set, builder->references[leaf.first + lane].triangle, block, lane);
-            else
-                set_unused_lane(block, lane);
-    }
-}
-
 /* Nodes and blocks in one table: a search jumps about in both, and a table on large pages, where the system has them,
  * has the nodes on them however few they are. */
 static bool alloc_tables(struct triangle_index *index, uint32_t nodes, uint32_t blocks) {
@@ -501,73 +392,102 @@ static bool alloc_tables(struct triangle_index *index, uint32_t nodes, uint32_t 
     return true;
 }
 
-static bool assemble(struct builder *builder) {
-    struct triangle_index *index = builder->index;
-    uint32_t nodes = 1 + builder->top_count, blocks = 0;
-    for (uint32_t i = 0; i < builder->job_count; i++) {
-        struct job *job = &builder->jobs[i];
-        if (job->failed)
-            return false;
-        job->node_base = nodes;
-        job->leaf_base = blocks;
-        nodes += job->node_count;
-        blocks += job->leaf_count;
+/* The triangles below a branch into the lanes of a block from `lane` on; the next lane. */
+static uint32_t fill_lanes(const struct builder *builder, uint32_t number, struct triangle_block *block,
+                           uint32_t lane) {
+    const struct branch *branch = &builder->tree.branches[number];
+    if (branch->height > 0) {
+        lane = fill_lanes(builder, branch->child[0], block, lane);
+        return fill_lanes(builder, branch->child[1], block, lane);
     }
-    if (!alloc_tables(index, nodes, blocks))
-        return false;
-    memset(&index->nodes[0], 0, sizeof *index->nodes);
-    for (uint32_t i = 0; i < builder->top_count; i++) {
-        struct wide_node *node = &builder->top[i];
-        for (uint32_t j = 0; j < WIDTH && is_used(node, j); j++)
-            node->child[j] = resolve(builder, node->child[j]);
-        index->nodes[1 + i] = *node;
-    }
-    return true;
+    for (uint32_t i = 0; i < branch->count; i++)
+        set_lane(builder->index, builder->set, builder->references[branch->first + i].triangle, block, lane++);
+    return lane;
 }
 
-static bool plan(struct builder *builder, struct hierarchy *hierarchies, uint32_t count) {
-    uint64_t total = 0;
-    for (uint32_t i = 0; i < count; i++)
-        total += hierarchies[i].count;
-    uint64_t share = total / 64;
-    builder->job_limit = share < JOB_REFERENCES ? JOB_REFERENCES : (uint32_t)share;
-    for (uint32_t i = 0; i < count; i++) {
-        struct hierarchy *h = &hierarchies[i];
-        if (h->count == 0)
-            continue;
-        if (h->count <= builder->job_limit) {
-            if (!add_root(builder, h->first, h->count, 0, &h->result))
-                return false;
-            continue;
-        }
-        struct range range = {.first = h->first, .count = h->count};
-        range_measure(builder->references, &range);
-        if (!plan_range(builder, &range, 0, &h->result))
-            return false;
+/* Writes what is below a branch behind what its piece has written so far; the reference to it. */
+static uint32_t write_branch(const struct builder *builder, struct piece *piece, uint32_t number) {
+    struct triangle_index *index = builder->index;
+    if (!is_node(&builder->tree.branches[number])) {
+        uint32_t place = piece->block_base + piece->block_count++;
+        struct triangle_block *block = &index->blocks[place];
+        for (uint32_t lane = fill_lanes(builder, number, block, 0); lane < WIDTH; lane++)
+            set_unused_lane(block, lane);
+        return REF_LEAF | place;
     }
-    return make_jobs(builder);
+    uint32_t children[WIDTH], count = tree_children(&builder->tree, number, children);
+    uint32_t place = piece->node_base + piece->node_count++;
+    node_set(&index->nodes[place], &builder->tree, children, count);
+    for (uint32_t i = 0; i < count; i++)
+        index->nodes[place].child[i] = write_branch(builder, piece, children[i]);
+    return place;
+}
+
+static void write_job(void *context, uint32_t item, int worker) {
+    struct builder *builder = context;
+    const struct job *job = &builder->jobs[item];
+    (void)worker;
+    for (uint32_t i = job->first; i < job->first + job->count; i++) {
+        struct piece *piece = &builder->pieces.items[i];
+        piece->node_count = piece->block_count = 0; /* counted once more */
+        (void)write_branch(builder, piece, piece->branch);
+    }
+}
+
+/* The final reference to a piece or a top node. */
+static uint32_t reference_to(const struct builder *builder, uint32_t result) {
+    if (!(result & PIECE))
+        return result + 1;
+    const struct piece *piece = &builder->pieces.items[result & ~PIECE];
+    return is_node(&builder->tree.branches[piece->branch]) ? piece->node_base : REF_LEAF | piece->block_base;
+}
+
+static bool write_all(struct builder *builder, struct hierarchy *hierarchies, uint32_t count) {
+    builder->pieces.count = 0;
+    for (uint32_t i = 0; i < count; i++)
+        if (hierarchies[i].count > 0 && !place_top(builder, hierarchies[i].result, &hierarchies[i].result))
+            return false;
+    if (!make_jobs(builder) || !run_jobs(builder, count_job))
+        return false;
+    uint32_t nodes = 1 + builder->top_count, blocks = 0;
+    for (uint32_t i = 0; i < builder->pieces.count; i++) {
+        struct piece *piece = &builder->pieces.items[i];
+        piece->node_base = nodes;
+        piece->block_base = blocks;
+        nodes += piece->node_count;
+        blocks += piece->block_count;
+    }
+    if (!alloc_tables(builder->index, nodes, blocks))
+        return false;
+    memset(&builder->index->nodes[0], 0, sizeof *builder->index->nodes);
+    for (uint32_t i = 0; i < builder->top_count; i++) {
+        const struct top_node *top = &builder->top[i];
+        struct wide_node *node = &builder->index->nodes[1 + i];
+        uint32_t children[WIDTH];
+        (void)tree_children(&builder->tree, top->branch, children);
+        node_set(node, &builder->tree, children, top->children);
+        for (uint32_t j = 0; j < top->children; j++)
+            node->child[j] = reference_to(builder, top->child[j]);
+    }
+    for (uint32_t i = 0; i < count; i++)
+        hierarchies[i].result = hierarchies[i].count ? reference_to(builder, hierarchies[i].result) : REF_EMPTY;
+    return run_jobs(builder, write_job);
 }
 
 bool hierarchies_build(struct triangle_index *index, const struct triangle_set *set, struct reference *references,
                        struct hierarchy *hierarchies, uint32_t count, struct pool *pool, struct error *error) {
     struct builder builder = {.index = index, .set = set, .references = references, .pool = pool};
-    bool enough = plan(&builder, hierarchies, count), complete = true;
-    if (enough)
-        complete = run(&builder, builder.job_count, run_job);
-    if (enough && complete)
-        enough = assemble(&builder);
-    if (enough && complete)
-        complete = run(&builder, builder.job_count, finish_job);
-    for (uint32_t i = 0; i < count && enough && complete; i++)
-        hierarchies[i].result = hierarchies[i].count ? resolve(&builder, hierarchies[i].result) : REF_EMPTY;
-    for (uint32_t i = 0; i < builder.job_count; i++) {
-        mem_free(builder.jobs[i].nodes);
-        mem_free(builder.jobs[i].leaves);
-    }
+    bool complete = plan(&builder, hierarchies, count) && make_jobs(&builder) && run_jobs(&builder, build_job) &&
+                    join_trees(&builder, hierarchies, count);
+    drop_jobs(&builder);
+    complete = complete && tree_improve(&builder.tree, pool) && weigh(&builder, hierarchies, count) &&
+               write_all(&builder, hierarchies, count);
+    drop_jobs(&builder);
+    mem_free(builder.tree.branches);
+    mem_free(builder.pieces.items);
+    mem_free(builder.costs);
     mem_free(builder.top);
-    mem_free(builder.roots);
-    mem_free(builder.jobs);
-    if (!enough && !is_cancelled(&builder))
-        return error_no_memory(error, "the index of a mesh");
-    return (enough && complete) || error_set(error, ERROR_CANCELLED, "cancelled while indexing a mesh");
+    if (!complete && is_cancelled(&builder))
+        return error_set(error, ERROR_CANCELLED, "cancelled while indexing a mesh");
+    return complete || error_no_memory(error, "the index of a mesh");
 }

@@ -12,10 +12,7 @@
 #include "accel/simd.h"
 #include "accel/triangle_layout.h"
 
-enum {
-    STACK_ENTRIES = 256,               /* what one hierarchy can need */
-    STACK_ROOM = STACK_ENTRIES + WIDTH /* pushing writes whole vectors */
-};
+enum { STACK_ROOM = STACK_ENTRIES + WIDTH }; /* pushing writes whole vectors */
 
 /* References still to be visited, and where the ray enters them (only kept for a nearest search). How many there are is
  * kept apart, or it would not stay in a register. enter[top], above them, is where the ray enters what it visits. */

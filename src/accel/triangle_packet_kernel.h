@@ -35,7 +35,7 @@
 
 #include <string.h>
 
-enum { GROUPS = PACKET_RAYS / LANES, STACK_ENTRIES = 256 };
+enum { GROUPS = PACKET_RAYS / LANES };
 
 /* Local units. */
 #define FARTHEST 64.0

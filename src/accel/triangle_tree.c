@@ -1,0 +1,301 @@
+/* From the top downwards the surface area heuristic sees one split at a time, and where large and small triangles are
+ * mixed (a statue in a stadium) a small one is soon in a box that is as large as the large ones beside it. Reinsertion
+ * takes such a branch out and puts it where the sum of all surfaces becomes smallest: J. Bittner, M. Hapala, V. Havran,
+ * "Fast Insertion-Based Optimization of Bounding Volume Hierarchies", CGF 32(1), 2013; the search from the branch
+ * upwards, into each sibling on the way, is that of D. Meister, J. Bittner, "Parallel Reinsertion for Bounding Volume
+ * Hierarchy Optimization", CGF 37(2), 2018. One after the other, so that the outcome is always the same; and only the
+ * branches that promise most, which is a tenth of the time of building: those whose parent is large, by itself and
+ * beside them.
+ *
+ * Which branches become nodes of eight children, and which blocks, is the cheapest choice of all: H. Ylitie, T. Karras,
+ * S. Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017, section 3.1. For every
+ * branch and 1 .. 8 lanes the least cost of standing in so many lanes of a node is known when that of both children is.
+ *
+ * What it brings: docs/performance.md. */
+#include "accel/triangle_tree.h"
+
+#include "base/mem.h"
+#include "base/sort.h"
+
+#include <string.h>
+
+enum {
+    HALVE_DEPTH = 60, /* below so many branches ranges are halved, so 31 more are the most */
+    FLOOR_STEP = 3,   /* a floor is looked for at every third branch: where nodes of eight would begin */
+    PASSES = 2,       /* of reinsertion, */
+    PASS_SHARE = 7,   /* each over a seventh of all branches */
+    KEY_BITS = 12,    /* of a promise, in which it is counted */
+    POLL_COUNT = 2000 /* references that are split without asking whether to stop */
+};
+
+/* What a ray pays for a node and for a block that it meets, the time of a node (docs/performance.md: 30 cycles, 60). */
+#define NODE_COST 1.0f
+#define BLOCK_COST 2.0f
+
+/* A move must bring that much of the surface of the parent: less is rounding, or not worth its time. */
+#define LEAST_GAIN 1e-3f
+
+static void set_box(struct branch *branch, simd4 min, simd4 max) {
+    float lo[4], hi[4];
+    simd4_store(lo, min);
+    simd4_store(hi, max);
+    memcpy(branch->min, lo, sizeof branch->min);
+    memcpy(branch->max, hi, sizeof branch->max);
+    branch->area = half_area(min, max);
+}
+
+bool tree_add(struct tree *tree, const struct range *range, uint32_t parent, uint32_t *out) {
+    if (tree->count == tree->capacity) {
+        uint32_t larger = tree->capacity + tree->capacity / 2 + 32;
+        struct branch *grown = mem_resize_array(tree->branches, larger, sizeof *grown);
+        if (!grown)
+            return false;
+        tree->branches = grown;
+        tree->capacity = larger;
+    }
+    struct branch *branch = &tree->branches[tree->count];
+    *branch = (struct branch){.parent = parent, .count = range->count, .first = range->first};
+    set_box(branch, range->min, range->max);
+    *out = tree->count++;
+    return true;
+}
+
+void tree_part(struct reference *references, const struct range *range, uint32_t depth, struct range part[2]) {
+    bool halve = depth > HALVE_DEPTH;
+    if (halve || depth % FLOOR_STEP != 0 || !split_floor(references, range, &part[0], &part[1]))
+        split_range(references, range, halve, &part[0], &part[1]);
+}
+
+bool tree_build(struct tree *tree, struct reference *references, const struct range *range, uint32_t depth,
+                const struct pool *pool, uint32_t *root) {
+    struct range part[2];
+    uint32_t child[2];
+    if (!tree_add(tree, range, NO_BRANCH, root))
+        return false;
+    if (range->count <= WIDTH)
+        return true;
+    if (range->count > POLL_COUNT && pool && pool_cancelled(pool))
+        return false;
+    tree_part(references, range, depth, part);
+    for (int i = 0; i < 2; i++) {
+        if (!tree_build(tree, references, &part[i], depth + 1, pool, &child[i]))
+            return false;
+        tree->branches[child[i]].parent = *root;
+    }
+    struct branch *branch = &tree->branches[*root];
+    uint8_t low = tree->branches[child[0]].height, high = tree->branches[child[1]].height;
+    memcpy(branch->child, child, sizeof child);
+    branch->height = (uint8_t)(1 + (low > high ? low : high));
+    return true;
+}
+
+void tree_refit(struct tree *tree, uint32_t number) {
+    while (number != NO_BRANCH) {
+        struct branch *branch = &tree->branches[number];
+        const struct branch *a = &tree->branches[branch->child[0]], *b = &tree->branches[branch->child[1]];
+        set_box(branch, simd4_min(branch_min(a), branch_min(b)), simd4_max(branch_max(a), branch_max(b)));
+        branch->count = a->count + b->count;
+        branch->height = (uint8_t)(1 + (a->height > b->height ? a->height : b->height));
+        number = branch->parent;
+    }
+}
+
+/* --- reinsertion --- */
+
+static uint32_t sibling_of(const struct branch *branches, uint32_t number) {
+    const uint32_t *child = branches[branches[number].parent].child;
+    return child[child[0] == number];
+}
+
+static void put_child(struct branch *branches, uint32_t parent, uint32_t old, uint32_t new) {
+    branches[parent].child[branches[parent].child[1] == old] = new;
+    branches[new].parent = parent;
+}
+
+static uint32_t depth_of(const struct branch *branches, uint32_t number) {
+    uint32_t depth = 0;
+    while ((number = branches[number].parent) != NO_BRANCH)
+        depth++;
+    return depth;
+}
+
+/* The branch beside which `number` would lie best, or NO_BRANCH: where it is. Its parent goes with it. */
+static uint32_t best_place(const struct branch *branches, uint32_t number) {
+    struct {
+        uint32_t number;
+        float gain;
+    } stack[MOST_BRANCH_DEPTH + 2];
+    const struct branch *moved = &branches[number];
+    const simd4 lo = branch_min(moved), hi = branch_max(moved);
+    const uint32_t parent = moved->parent;
+    uint32_t pivot = parent, sibling = sibling_of(branches, number), best = NO_BRANCH;
+    float best_gain = branches[parent].area * LEAST_GAIN;
+    float shrunk = branches[parent].area; /* by which all surfaces up to the pivot become smaller without it */
+    simd4 rest_lo = branch_min(&branches[sibling]),
+          rest_hi = branch_max(&branches[sibling]); /* the pivot's without it */
+    for (;;) {
+        uint32_t top = 0;
+        stack[top].number = sibling;
+        stack[top++].gain = shrunk;
+        while (top > 0) {
+            uint32_t place = stack[--top].number;
+            float gain = stack[top].gain;
+            if (gain - moved->area <= best_gain)
+                continue;
+            const struct branch *there = &branches[place];
+            gain -= half_area(simd4_min(branch_min(there), lo), simd4_max(branch_max(there), hi));
+            if (gain > best_gain) {
+                best_gain = gain;
+                best = place;
+            }
+            for (int i = 0; there->height > 0 && i < 2; i++) {
+                stack[top].number = there->child[i];
+                stack[top++].gain = gain + there->area;
+            }
+        }
+        if (pivot != parent) {
+            rest_lo = simd4_min(rest_lo, branch_min(&branches[sibling]));
+            rest_hi = simd4_max(rest_hi, branch_max(&branches[sibling]));
+            shrunk += branches[pivot].area - half_area(rest_lo, rest_hi);
+        }
+        if (branches[pivot].parent == NO_BRANCH)
+            return best;
+        sibling = sibling_of(branches, pivot);
+        pivot = branches[pivot].parent;
+    }
+}
+
+static void reinsert(struct tree *tree, uint32_t number) {
+    struct branch *branches = tree->branches;
+    uint32_t parent = branches[number].parent, sibling = sibling_of(branches, number);
+    uint32_t place = best_place(branches, number);
+    if (place == NO_BRANCH || place == sibling)
+        return;
+    uint8_t here = branches[number].height, there = branches[place].height;
+    if (depth_of(branches, place) + 1 + (here > there ? here : there) > MOST_BRANCH_DEPTH)
+        return;
+    uint32_t above = branches[parent].parent;
+    put_child(branches, above, parent, sibling);
+    tree_refit(tree, above);
+    put_child(branches, branches[place].parent, place, parent);
+    branches[parent].child[0] = place;
+    branches[parent].child[1] = number;
+    branches[place].parent = parent;
+    tree_refit(tree, parent);
+}
+
+/* How much a branch may bring, as bits that order like the number; 0: it stays. */
+static uint32_t promise(const struct tree *tree, uint32_t number) {
+    uint32_t parent = tree->branches[number].parent, bits;
+    if (parent == NO_BRANCH || tree->branches[parent].parent == NO_BRANCH)
+        return 0;
+    float size = tree->branches[parent].area, own = tree->branches[number].area;
+    float value = size * (size / (own > size * 0x1p-20f ? own : size * 0x1p-20f));
+    if (!(value > 0 && value < INFINITY))
+        return 0;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+/* The branches that promise most, about `wanted`, the best first: words whose lower half is a branch. NULL: no memory.
+ */
+static uint64_t *most_promising(const struct tree *tree, uint32_t wanted, uint32_t *count) {
+    uint32_t number_of[1 << KEY_BITS] = {0}, least = (1 << KEY_BITS) - 1, found = 0;
+    for (uint32_t i = 0; i < tree->count; i++)
+        number_of[promise(tree, i) >> (32 - KEY_BITS)]++;
+    for (; least > 0 && found + number_of[least] <= wanted; least--)
+        found += number_of[least];
+    least++; /* the last number that could be counted whole */
+    uint64_t *words = mem_alloc(((size_t)found + 1) * sizeof *words);
+    *count = 0;
+    for (uint32_t i = 0; words && i < tree->count; i++) {
+        uint32_t bits = promise(tree, i);
+        if (bits >> (32 - KEY_BITS) >= least)
+            words[(*count)++] = (uint64_t)~bits << 32 | i;
+    }
+    if (words)
+        sort_words(words, *count);
+    return words;
+}
+
+bool tree_improve(struct tree *tree, const struct pool *pool) {
+    for (int pass = 0; pass < PASSES; pass++) {
+        uint32_t count;
+        uint64_t *words = most_promising(tree, tree->count / PASS_SHARE, &count);
+        bool go_on = words != NULL;
+        for (uint32_t i = 0; go_on && i < count; i++) {
+            uint32_t number = (uint32_t)words[i];
+            if (promise(tree, number) > 0) /* others may have moved since */
+                reinsert(tree, number);
+            go_on = i % 256 != 0 || !pool || !pool_cancelled(pool);
+        }
+        mem_free(words);
+        if (!go_on)
+            return false;
+    }
+    return true;
+}
+
+/* --- nodes of eight children --- */
+
+struct lane_costs tree_weigh(struct tree *tree, uint32_t number, uint32_t limit, const struct lane_costs *costs) {
+    struct branch *branch = &tree->branches[number];
+    struct lane_costs out, a, b;
+    float as_block = branch->count <= WIDTH ? branch->area * BLOCK_COST : INFINITY;
+    if (branch->height == 0) {
+        branch->is_block = true;
+        for (int i = 0; i < WIDTH; i++)
+            out.of[i] = as_block;
+        return out;
+    }
+    if (costs && branch->count <= limit)
+        return costs[branch->first];
+    a = tree_weigh(tree, branch->child[0], limit, costs);
+    b = tree_weigh(tree, branch->child[1], limit, costs);
+    float parted = INFINITY;
+    for (int i = 0; i < WIDTH; i++) {
+        uint8_t best = 0;
+        parted = INFINITY;
+        for (int k = 0; k < i; k++) {
+            float cost = a.of[k] + b.of[i - 1 - k];
+            if (cost < parted) {
+                parted = cost;
+                best = (uint8_t)(k + 1);
+            }
+        }
+        out.of[i] = parted;
+        branch->as_part[i] = best;
+    }
+    float as_node = branch->area * NODE_COST + parted; /* in all eight lanes */
+    branch->as_node = branch->as_part[WIDTH - 1];
+    branch->is_block = as_block <= as_node;
+    out.of[0] = branch->is_block ? as_block : as_node;
+    for (int i = 1; i < WIDTH; i++)
+        if (out.of[i - 1] <= out.of[i]) {
+            out.of[i] = out.of[i - 1];
+            branch->as_part[i] = 0;
+        }
+    return out;
+}
+
+static void add_parts(const struct tree *tree, uint32_t number, uint32_t lanes, uint32_t parts[WIDTH],
+                      uint32_t *count) {
+    const struct branch *branch = &tree->branches[number];
+    while (lanes > 1 && branch->as_part[lanes - 1] == 0)
+        lanes--;
+    if (lanes == 1) {
+        parts[(*count)++] = number;
+        return;
+    }
+    uint32_t left = branch->as_part[lanes - 1];
+    add_parts(tree, branch->child[0], left, parts, count);
+    add_parts(tree, branch->child[1], lanes - left, parts, count);
+}
+
+uint32_t tree_children(const struct tree *tree, uint32_t number, uint32_t children[WIDTH]) {
+    const struct branch *branch = &tree->branches[number];
+    uint32_t count = 0;
+    add_parts(tree, branch->child[0], branch->as_node, children, &count);
+    add_parts(tree, branch->child[1], WIDTH - branch->as_node, children, &count);
+    return count;
+}
