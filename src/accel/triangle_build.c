@@ -315,14 +315,23 @@ static void count_job(void *context, uint32_t item, int worker) {
         count_parts(&builder->tree, builder->pieces.items[i].branch, &builder->pieces.items[i]);
 }
 
-/* By the middles of the boxes along the diagonal of each octant, those that hold nothing first. */
-static void node_set_order(struct wide_node *node, uint32_t parts) {
+/* Half the surface of a child's box. */
+static float child_area(const struct wide_node *node, uint32_t j) {
+    float e[3];
+    for (int k = 0; k < 3; k++)
+        e[k] = node->bounds[2 * k + 1][j] - node->bounds[2 * k][j];
+    return e[0] * e[1] + e[1] * e[2] + e[2] * e[0];
+}
+
+/* By the middles of the boxes along the diagonal of each octant, those that hold nothing first, and next what has more
+ * than half of the surface of all (a floor): what stands before or in it is met first, and mostly ends the ray. */
+static void node_set_order(struct wide_node *node, uint32_t parts, float area) {
     for (uint32_t octant = 0; octant < 8; octant++) {
         float along[WIDTH];
         uint32_t lanes[WIDTH];
         node->order[octant] = 0;
         for (uint32_t j = 0; j < WIDTH; j++) {
-            along[j] = j < parts ? 0 : INFINITY;
+            along[j] = j >= parts ? INFINITY : child_area(node, j) > area / 2 ? 1e30f : 0;
             for (int k = 0; k < 3; k++) {
                 float middle = node->bounds[2 * k][j] + node->bounds[2 * k + 1][j];
                 along[j] += octant >> k & 1 ? -middle : middle;
@@ -337,7 +346,8 @@ static void node_set_order(struct wide_node *node, uint32_t parts) {
     }
 }
 
-static void node_set(struct wide_node *node, const struct tree *tree, const uint32_t *children, uint32_t count) {
+static void node_set(struct wide_node *node, const struct tree *tree, uint32_t number, const uint32_t *children,
+                     uint32_t count) {
     for (uint32_t j = 0; j < WIDTH; j++) {
         const struct branch *branch = j < count ? &tree->branches[children[j]] : NULL;
         for (int k = 0; k < 3; k++) {
@@ -346,7 +356,7 @@ static void node_set(struct wide_node *node, const struct tree *tree, const uint
         }
         node->child[j] = REF_EMPTY;
     }
-    node_set_order(node, count);
+    node_set_order(node, count, tree->branches[number].area);
 }
 
 static void set_lane(const struct triangle_index *index, const struct triangle_set *set, uint32_t triangle,
@@ -417,7 +427,7 @@ static uint32_t write_branch(const struct builder *builder, struct piece *piece,
     }
     uint32_t children[WIDTH], count = tree_children(&builder->tree, number, children);
     uint32_t place = piece->node_base + piece->node_count++;
-    node_set(&index->nodes[place], &builder->tree, children, count);
+    node_set(&index->nodes[place], &builder->tree, number, children, count);
     for (uint32_t i = 0; i < count; i++)
         index->nodes[place].child[i] = write_branch(builder, piece, children[i]);
     return place;
@@ -465,7 +475,7 @@ static bool write_all(struct builder *builder, struct hierarchy *hierarchies, ui
         struct wide_node *node = &builder->index->nodes[1 + i];
         uint32_t children[WIDTH];
         (void)tree_children(&builder->tree, top->branch, children);
-        node_set(node, &builder->tree, children, top->children);
+        node_set(node, &builder->tree, top->branch, children, top->children);
         for (uint32_t j = 0; j < top->children; j++)
             node->child[j] = reference_to(builder, top->child[j]);
     }
