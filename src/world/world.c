@@ -271,8 +271,10 @@ static bool nearest_of_mesh(const struct world *world, uint32_t index, const str
                             struct geom_scratch *geom, struct crossing *out) {
     const struct thing *thing = placed_thing(world, index);
     bool found = mesh_nearest(thing->shape.mesh, ray_object, world->accel, geom, out);
+    if (thing->cull == CULL_NONE)
+        return found;
     struct ray rest = *ray_object;
-    while (found && thing->cull != CULL_NONE && out->enter == (thing->cull == CULL_FRONT)) {
+    while (found && out->enter == (thing->cull == CULL_FRONT)) {
         rest.t_min = out->t;
         found = mesh_nearest(thing->shape.mesh, &rest, world->accel, geom, out);
     }
