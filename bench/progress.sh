@@ -57,8 +57,8 @@ median() { sort -n | awk '{ v[NR] = $1 } END { print v[int((NR + 1) / 2)] }'; }
 printf '%-12s %8s %6s %8s %8s %8s %8s\n' scene seconds lines whole left 'to end' clock
 for scene in ${SCENES:-data/??demo.lua data/light.lua data/meshes.lua data/pyramid-fog.lua data/relief.lua data/solids.lua data/swept.lua}; do
     case $scene in
-    *03demo* | *04demo* | *06demo* | *11demo* | *12demo* | *pyramid-fog*) size='--size 2560x1920' ;;
-    *01demo* | *02demo* | *05demo* | *08demo* | *09demo* | *13demo* | *meshes*) size='--size 1920x1440' ;;
+    *03demo* | *04demo* | *06demo* | *09demo* | *11demo* | *12demo* | *pyramid-fog*) size='--size 2560x1920' ;;
+    *01demo* | *02demo* | *05demo* | *08demo* | *13demo* | *meshes*) size='--size 1920x1440' ;;
     *10demo* | *14demo* | *relief* | *solids*) size='--size 1280x960' ;;
     *) size= ;;
     esac
