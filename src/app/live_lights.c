@@ -177,6 +177,13 @@ void live_light_turn(struct live *live, const struct transform *map, bool sizes)
     struct affine before = affine_identity();
     if (!light || !(sizes ? light->sizes : light->turns))
         return;
+    struct transform about_y;
+    if (light->kind == LIGHT_SKY) { /* it is turned about the y axis alone */
+        const struct affine *m = &map->forward;
+        double angle = el_atan2(m->m[0][2] - m->m[2][0], m->m[0][0] + m->m[2][2]);
+        about_y = transform_rotate_about(vec3_make(0, 1, 0), angle * (180 / 3.14159265358979323846));
+        map = &about_y;
+    }
     for (int i = 0; change.turns && i < TURN_NUMBERS; i++)
         before.m[i / 3][i % 3] = change.numbers[TURN_AT + i];
     struct affine after = affine_compose(&map->forward, &before);

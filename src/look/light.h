@@ -63,6 +63,8 @@ struct light {
     struct vec3 emission;
     const struct light_mesh *mesh;
     const struct sky *sky; /* its colour multiplies it */
+    bool sky_turned; /* the sky is to be turned further, by the angle of this sine and cosine (world_build does) */
+    double turn_sine, turn_cosine;
     const struct sky_table *table;
     /* The nodes (with everything under them) that it lights, or does not; NULL: no such list. Arrays of the script. */
     const struct node *const *include, *const *exclude;

@@ -16,6 +16,7 @@
 #include "look/sky_parts.h"
 
 #include <math.h>
+#include <string.h>
 
 struct face {
     uint32_t column, row; /* cell of the cross */
@@ -245,6 +246,41 @@ static double unturned_brightest(const struct sky *sky) {
 
 double sky_brightest(const struct sky *sky) {
     return unturned_brightest(sky) * (sky->adjusted ? sky->intensity : 1);
+}
+
+void sky_turn(struct sky *sky, double sine, double cosine) {
+    if (!sky->adjusted) {
+        sky->adjusted = true;
+        sky->intensity = sky->turn_cosine = 1;
+        sky->turn_sine = 0;
+    }
+    double s = sky->turn_sine, c = sky->turn_cosine;
+    sky->turn_sine = s * cosine + c * sine;
+    sky->turn_cosine = c * cosine - s * sine;
+}
+
+bool sky_same(const struct sky *a, const struct sky *b) {
+    bool adjusted = a->adjusted &&
+                    (a->turn_sine != b->turn_sine || a->turn_cosine != b->turn_cosine || a->intensity != b->intensity);
+    if (a->kind != b->kind || a->adjusted != b->adjusted || adjusted)
+        return false;
+    switch (a->kind) {
+    case SKY_GRADIENT:
+        return true;
+    case SKY_CONSTANT:
+        return memcmp(&a->colour, &b->colour, sizeof a->colour) == 0;
+    case SKY_CROSS:
+        return a->image == b->image && a->mirror == b->mirror;
+    case SKY_FACES:
+        return memcmp(a->faces, b->faces, sizeof a->faces) == 0;
+    case SKY_MAP:
+        return a->image == b->image;
+    case SKY_STOPS:
+        return a->stops == b->stops && a->stop_count == b->stop_count;
+    case SKY_CLEAR:
+        return memcmp(&a->clear, &b->clear, sizeof a->clear) == 0;
+    }
+    return false;
 }
 
 struct vec3 sky_colour(const struct sky *sky, struct vec3 direction, double spread) {

@@ -36,6 +36,10 @@ void sky_make_clear(struct vec3 sun, double turbidity, struct vec3 ground, struc
 /* The unit direction to the sun: y up, -z north, +x east. day: 1..365; hour: of the clock; degrees, east and north
  * positive; zone: hours that the clock is ahead of Greenwich. */
 struct vec3 sky_sun(double day, double hour, double latitude, double longitude, double zone);
+/* Turned further about the y axis: what came from +x then comes from (cosine, 0, -sine). */
+void sky_turn(struct sky *sky, double sine, double cosine);
+/* They are the same function, made of the same images and stops. */
+bool sky_same(const struct sky *a, const struct sky *b);
 /* At least the largest component of its colours. */
 double sky_brightest(const struct sky *sky);
 /* `spread`: angle of the ray's cone in radians, for filtering; 0 = unknown. */

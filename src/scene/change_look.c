@@ -12,7 +12,7 @@ bool light_can_move(const struct light *light) {
 
 bool light_can_turn(const struct light *light) {
     return light->kind == LIGHT_SPOT || light->kind == LIGHT_DIRECTIONAL || light->kind == LIGHT_PARALLELOGRAM ||
-           light->kind == LIGHT_DISC;
+           light->kind == LIGHT_DISC || light->kind == LIGHT_SKY;
 }
 
 bool light_can_size(const struct light *light) {
@@ -41,6 +41,19 @@ static double cone_sized(double cosine, double size) {
     return near + far > 0 ? (near - far) / (near + far) : cosine;
 }
 
+/* The turn about the y axis that is nearest to a map (the trace of its product with the map is largest). */
+static void turn_sky(struct light *light, const double turn[TURN_NUMBERS]) {
+    double sine = turn[2] - turn[6], cosine = turn[0] + turn[8], length = sqrt(sine * sine + cosine * cosine);
+    if (!(length > 0 && length < INFINITY))
+        return;
+    double s = light->sky_turned ? light->turn_sine : 0, c = light->sky_turned ? light->turn_cosine : 1;
+    sine /= length;
+    cosine /= length;
+    light->sky_turned = true;
+    light->turn_sine = s * cosine + c * sine;
+    light->turn_cosine = c * cosine - s * sine;
+}
+
 void light_turn(struct light *light, const double turn[TURN_NUMBERS]) {
     double size = el_cbrt(fabs(light_turn_volume(turn)));
     struct vec3 direction = row_times(turn, light->direction);
@@ -55,6 +68,8 @@ void light_turn(struct light *light, const double turn[TURN_NUMBERS]) {
         light->cos_inner = cone_sized(light->cos_inner, size);
         light->cos_outer = cone_sized(light->cos_outer, size);
     }
+    if (light->kind == LIGHT_SKY)
+        turn_sky(light, turn);
     if (light->kind == LIGHT_POINT)
         light->range *= size;
     light->radius *= size;

@@ -131,10 +131,28 @@ static bool resolve_mesh(const struct world *world, struct light *light, struct 
     return true;
 }
 
-bool light_lamps_resolve(const struct world *world, struct light *lights, struct arena *arena, struct node *root,
+/* A sky that was turned by a change. The script's own stays as it is. */
+static bool turn_sky(struct world *world, const struct sky *behind, struct light *light, struct arena *arena,
+                     struct error *error) {
+    struct sky *turned = arena_alloc(arena, sizeof *turned);
+    if (!turned)
+        return error_no_memory(error, "a sky");
+    *turned = *light->sky;
+    sky_turn(turned, light->turn_sine, light->turn_cosine);
+    if (sky_same(light->sky, behind))
+        world->sky = *turned;
+    light->sky = turned;
+    light->sky_turned = false;
+    return true;
+}
+
+bool light_lamps_resolve(struct world *world, struct light *lights, struct arena *arena, struct node *root,
                          struct pool *pool, world_warning *warn, void *warn_context, struct error *error) {
+    const struct sky behind = world->sky;
     for (uint32_t i = 0; i < world->light_count; i++) {
         struct light *light = &lights[i];
+        if (light->kind == LIGHT_SKY && light->sky_turned && !turn_sky(world, &behind, light, arena, error))
+            return false;
         if (light->kind == LIGHT_MESH && !resolve_mesh(world, light, arena, root, warn, warn_context, error))
             return false;
         if (light->kind == LIGHT_SKY) {

@@ -464,6 +464,29 @@ TEST(changes_of_skies_and_suns_give_the_bytes_of_a_script_that_says_the_same_its
                  true);
 }
 
+#define SKY_SCENE(rotation, change, background)                                                                        \
+    SCENE_HEAD "local function sky(turn) return gr.clear_sky{sun={0.6, 0.5, 1}, intensity=0.05, rotation=turn} end\n"  \
+               "local s = sky(" rotation ")\n" change                                                                  \
+               "gr.render{node=r, file='out.png', width=60, height=40, eye={0, 0, 6}, view={0, 0, -1}, up={0, 1, 0}, " \
+               "fov=40, ambient={0, 0, 0}, lights={gr.sky_light{sky=s, samples=2}}, background=" background "}\n"
+
+TEST(changes_that_turn_a_sky_give_the_bytes_of_a_script_that_turns_it_itself) {
+    const char *turned = SKY_SCENE("90", "", "s");
+    same_picture(turned, SKY_SCENE("0", "gr.change_light(1, {0, 0, 0}, nil, {0, 0, 1, 0, 1, 0, -1, 0, 0})\n", "s"),
+                 true);
+    same_picture(turned, SKY_SCENE("0", "", "s"), false);
+    /* Of a turn and a size only what goes about the y axis counts; the sky behind is turned if it is the same. */
+    same_picture(turned, SKY_SCENE("-90", "gr.change_light(1, {0, 0, 0}, nil, {-3, 0, 0, 0, 2, 0, 0, 0, -3})\n", "s"),
+                 true);
+    same_picture(turned, SKY_SCENE("0", "gr.change_light(1, {0, 0, 0}, nil, {0, 0, 1, 0, 1, 0, -1, 0, 0})\n", "sky(0)"),
+                 true);
+    same_picture(SKY_SCENE("90", "", "sky(1)"),
+                 SKY_SCENE("0", "gr.change_light(1, {0, 0, 0}, nil, {0, 0, 1, 0, 1, 0, -1, 0, 0})\n", "sky(1)"), true);
+    same_picture(
+        SKY_SCENE("90", "", "{0.1, 0.2, 0.3}"),
+        SKY_SCENE("0", "gr.change_light(1, {0, 0, 0}, nil, {0, 0, 1, 0, 1, 0, -1, 0, 0})\n", "{0.1, 0.2, 0.3}"), true);
+}
+
 TEST(changes_copy_lights_of_every_kind) {
     static const char area[] = "gr.area_light({%g, 3, 1}, {2, 0, 0}, {0, 0, 2}, {0.2, 0.2, 0.2}, {1, 0, 0})";
     char one[4096], other[4096], first[200], second[200];

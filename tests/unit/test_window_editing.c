@@ -123,6 +123,17 @@ TEST(window_that_changes_operands_of_a_solid_saves_what_gives_the_same_bytes) {
         "n=$((n + 1)); changes $n; finds again.png; xdotool key ctrl+z; finds first.png\n");
 }
 
+TEST(window_that_turns_a_sky_turns_what_is_seen_behind_and_saves_what_gives_the_same_bytes) {
+    drive(BALL
+          "local s = gr.clear_sky{sun={0.6, 0.5, 1}, intensity=0.05}\n"
+          "gr.render{node=r, file='out.png', width=320, height=240, eye={0, 1, 6}, view={0, -0.15, -1}, up={0, 1, 0}, "
+          "fov=40, ambient={0, 0, 0}, background=s, lights={gr.sky_light{sky=s, samples=1}}}\n",
+          "xdotool key period key t; drag 70 -20\n" /* also upwards, which is not heard */
+          "changes 1; finds again.png; cmp -s again.png first.png && exit 4\n"
+          "says 'change_light(1, {0, 0, 0}, {1, 1, 1}, {0[.][0-9]*, 0, 0[.][0-9]*, 0, 1, 0, '\n"
+          "xdotool key ctrl+z; finds first.png\n");
+}
+
 TEST(window_that_has_more_lights_than_are_told_at_once_changes_the_last_one) {
     drive(BALL "local lamps = {}\nfor i = 1, 70 do lamps[i] = gr.light({math.sin(i) * 5, 3, math.cos(i) * 5}, {0.005, "
                "0.005, 0.005}, {1, 0, 0}) end\nlamps[71] = gr.sun_light{sun={1, 2, 3}, colour={0.4, 0.4, 0.3}}\n"
