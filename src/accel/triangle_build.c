@@ -1,10 +1,10 @@
 /* Hierarchies of eight children to a node (Wald, Benthin, Boulos, "Getting Rid of Packets", RT 2008), cut from binary
  * ones (triangle_tree.h).
  *
- * Parallel and deterministic: ranges above a size that only the data decides are split one after the other, until what
- * is left can be shared out; the parts are built by jobs, put together, made better by reinsertion on one thread,
- * weighed from below by jobs and on top of them, and written by jobs to where a count of all before them says. The
- * binary hierarchy is a third as large as what is made, and gone by the time the references are. */
+ * Parallel and deterministic: ranges above a size that only the data decides are parted all at once, round by round,
+ * until what is left can be shared out; the parts are built by jobs, put together, made better by reinsertion on one
+ * thread, weighed from below by jobs and on top of them, and written by jobs to where a count of all before them says.
+ * The binary hierarchy is a third as large as what is made, and gone by the time the references are. */
 #include "accel/triangle_build.h"
 
 #include "accel/triangle_tree.h"
@@ -43,6 +43,7 @@ struct builder {
     uint32_t job_limit;
     struct tree tree;
     struct pieces pieces; /* of the stage under way */
+    struct open_branch *open;
     struct job *jobs;
     uint32_t job_count;
     struct lane_costs *costs; /* of each piece */
@@ -126,9 +127,20 @@ static bool run_jobs(struct builder *builder, pool_function *function) {
 
 /* --- the binary hierarchies --- */
 
-/* Branches over a range until its parts are small enough for one job each. */
-static bool plan_range(struct builder *builder, const struct range *range, uint32_t depth, uint32_t parent,
-                       uint32_t *result) {
+/* A branch above the pieces that is not parted yet. */
+struct open_branch {
+    struct range range, part[2];
+    uint32_t branch, depth;
+};
+
+struct front {
+    struct open_branch *items;
+    uint32_t count, capacity;
+};
+
+/* What becomes of a range: a piece, or a branch that joins the front. */
+static bool place_range(struct builder *builder, struct front *front, const struct range *range, uint32_t depth,
+                        uint32_t parent, uint32_t *result) {
     if (range->count <= builder->job_limit) {
         struct piece *piece = add_piece(builder, range->count);
         if (!piece)
@@ -138,35 +150,63 @@ static bool plan_range(struct builder *builder, const struct range *range, uint3
         *result = PIECE | (builder->pieces.count - 1);
         return true;
     }
-    struct range part[2];
-    uint32_t child[2];
-    if (is_cancelled(builder) || !tree_add(&builder->tree, range, parent, result))
+    if (!reserve((void **)&front->items, &front->capacity, front->count, sizeof *front->items) ||
+        !tree_add(&builder->tree, range, parent, result))
         return false;
-    tree_part(builder->references, range, depth, part);
-    for (int i = 0; i < 2; i++)
-        if (!plan_range(builder, &part[i], depth + 1, *result, &child[i]))
-            return false;
-    memcpy(builder->tree.branches[*result].child, child, sizeof child);
+    front->items[front->count++] = (struct open_branch){.range = *range, .branch = *result, .depth = depth};
     return true;
 }
 
+static void part_open(void *context, uint32_t item, int worker) {
+    const struct builder *builder = context;
+    struct open_branch *open = &builder->open[item];
+    (void)worker;
+    tree_part(builder->references, &open->range, open->depth, open->part);
+}
+
+/* Parts all branches of a front at once; what is not small enough then is the next one. */
+static bool part_front(struct builder *builder, const struct front *front, struct front *next) {
+    bool go_on = true;
+    builder->open = front->items;
+    if (builder->pool)
+        go_on = pool_run(builder->pool, front->count, part_open, builder);
+    for (uint32_t i = 0; !builder->pool && i < front->count; i++)
+        part_open(builder, i, 0);
+    next->count = 0;
+    for (uint32_t i = 0; go_on && i < front->count; i++) {
+        const struct open_branch *open = &front->items[i];
+        uint32_t child[2];
+        for (int k = 0; k < 2; k++)
+            go_on = go_on && place_range(builder, next, &open->part[k], open->depth + 1, open->branch, &child[k]);
+        if (go_on)
+            memcpy(builder->tree.branches[open->branch].child, child, sizeof child);
+    }
+    return go_on;
+}
+
+/* Branches until all their parts are small enough for one job each. */
 static bool plan(struct builder *builder, struct hierarchy *hierarchies, uint32_t count) {
+    struct front fronts[2] = {{0}};
     uint64_t total = 0;
     for (uint32_t i = 0; i < count; i++)
         total += hierarchies[i].count;
     uint64_t share = total / 64;
     builder->job_limit = share < JOB_REFERENCES ? JOB_REFERENCES : (uint32_t)share;
-    for (uint32_t i = 0; i < count; i++) {
+    bool go_on = true;
+    for (uint32_t i = 0; go_on && i < count; i++) {
         struct hierarchy *h = &hierarchies[i];
         struct range range = {.first = h->first, .count = h->count};
         if (h->count == 0)
             continue;
         if (h->count > builder->job_limit) /* else its job does */
             range_measure(builder->references, &range);
-        if (!plan_range(builder, &range, 0, NO_BRANCH, &h->result))
-            return false;
+        go_on = place_range(builder, &fronts[0], &range, 0, NO_BRANCH, &h->result);
     }
-    return true;
+    for (int turn = 0; go_on && fronts[turn].count > 0; turn = !turn)
+        go_on = !is_cancelled(builder) && part_front(builder, &fronts[turn], &fronts[!turn]);
+    mem_free(fronts[0].items);
+    mem_free(fronts[1].items);
+    return go_on;
 }
 
 static void build_job(void *context, uint32_t item, int worker) {

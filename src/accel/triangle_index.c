@@ -128,6 +128,43 @@ static bool is_time_to_stop(const struct pool *pool, uint32_t i) {
     return i % 4096 == 0 && pool && pool_cancelled(pool);
 }
 
+enum { CHUNK = 8192 }; /* triangles that one item of the pool takes */
+
+struct referring {
+    const struct triangle_index *index;
+    const struct triangle_set *set;
+    struct reference *references;
+};
+
+static void refer_to_chunk(void *context, uint32_t item, int worker) {
+    const struct referring *r = context;
+    uint32_t first = item * CHUNK, left = r->set->count - first;
+    (void)worker;
+    for (uint32_t i = first; i < first + (left < CHUNK ? left : CHUNK); i++)
+        r->references[i] = whole_reference(r->index, r->set, i);
+}
+
+/* One voxel: all triangles lie in it. */
+static bool fill_one_voxel(struct triangle_index *index, const struct triangle_set *set, struct pool *pool,
+                           struct error *error) {
+    struct referring referring = {index, set, mem_alloc_aligned(64, set->count * sizeof(struct reference))};
+    struct hierarchy whole = {.count = set->count};
+    uint32_t chunks = (set->count - 1) / CHUNK + 1;
+    bool complete = true;
+    if (!referring.references)
+        return error_no_memory(error, "the index of a mesh");
+    if (pool)
+        complete = pool_run(pool, chunks, refer_to_chunk, &referring) ||
+                   error_set(error, ERROR_CANCELLED, "cancelled while indexing a mesh");
+    for (uint32_t i = 0; !pool && i < chunks; i++)
+        refer_to_chunk(&referring, i, 0);
+    complete = complete && hierarchies_build(index, set, referring.references, &whole, 1, pool, error);
+    index->only = whole.result;
+    index->near_by = NEAR_BY;
+    mem_free(referring.references);
+    return complete;
+}
+
 /* Count, prefix sum, fill: references of every voxel in ascending order of triangles, those of the big ones at the end.
  */
 static bool fill_voxels(struct triangle_index *index, const struct triangle_set *set, struct pool *pool,
@@ -194,10 +231,6 @@ static bool fill_voxels(struct triangle_index *index, const struct triangle_set 
                     index->voxels[v] = lists[v].result;
                 }
         index->big = big->result;
-        if (index->voxel_count == ONE_VOXEL) {
-            index->only = lists[voxel_at(index, 0, 0, 0)].result;
-            index->near_by = NEAR_BY;
-        }
     }
     mem_free(lists);
     mem_free(references);
@@ -212,7 +245,7 @@ bool triangle_index_build(struct triangle_index **out, const struct triangle_set
     if (set->count > 0) {
         set_space(index, set);
         set_cells(index, voxels > 1 ? voxels : 1);
-        if (!fill_voxels(index, set, pool, error)) {
+        if (!(index->voxel_count == ONE_VOXEL ? fill_one_voxel : fill_voxels)(index, set, pool, error)) {
             triangle_index_destroy(index);
             return false;
         }
@@ -230,7 +263,8 @@ void triangle_index_destroy(struct triangle_index *index) {
 }
 
 size_t triangle_index_memory(const struct triangle_index *index) {
-    return sizeof *index + index->voxel_count * sizeof *index->voxels + index->node_count * sizeof *index->nodes +
+    size_t voxels = index->voxels ? index->voxel_count * sizeof *index->voxels : 0;
+    return sizeof *index + voxels + index->node_count * sizeof *index->nodes +
            index->block_count * sizeof *index->blocks;
 }
 

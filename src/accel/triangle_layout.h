@@ -72,7 +72,7 @@ struct triangle_index {
     uint32_t cells[3]; /* without the border */
     double half[4];
     float cell[4], inverse_cell[4], last_cell[4]; /* last_cell: cells - 1 */
-    uint32_t *voxels;                             /* (cells + 2) of each axis */
+    uint32_t *voxels;                             /* (cells + 2) of each axis; NULL: there is one */
     uint32_t stride[2];                           /* of y and z in voxels[] */
     /* where the next voxel is: by the direction's negative axes, then by the axes stepped along */
     int32_t offset[8][8];

@@ -621,8 +621,8 @@ static void search(struct packet *p, struct triangle_cost *cost, const bool any)
     const struct triangle_index *index = p->index;
     if (index->big)
         walk(p, index->big, any);
-    if (index->voxels[13] != REF_EMPTY)
-        walk(p, index->voxels[13], any);
+    if (index->only != REF_EMPTY)
+        walk(p, index->only, any);
     cost->triangle_tests += p->tests;
     cost->hierarchy_steps += p->nodes;
 }

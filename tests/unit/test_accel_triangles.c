@@ -255,10 +255,11 @@ TEST(the_index_has_the_same_bytes_for_any_number_of_threads) {
             struct pool *pool = pool_create(threads[k], warning);
             struct triangle_index *other = build(&set, voxels, pool);
             CHECK(first->node_count == other->node_count && first->block_count == other->block_count &&
-                  first->voxel_count == other->voxel_count && first->big == other->big);
+                  first->voxel_count == other->voxel_count && first->big == other->big && first->only == other->only);
             CHECK(memcmp(first->nodes, other->nodes, first->node_count * sizeof *first->nodes) == 0);
             CHECK(memcmp(first->blocks, other->blocks, first->block_count * sizeof *first->blocks) == 0);
-            CHECK(memcmp(first->voxels, other->voxels, first->voxel_count * sizeof *first->voxels) == 0);
+            CHECK((first->voxels == NULL) == (voxels == 0));
+            CHECK(voxels == 0 || memcmp(first->voxels, other->voxels, first->voxel_count * sizeof *first->voxels) == 0);
             triangle_index_destroy(other);
             pool_destroy(pool);
         }
