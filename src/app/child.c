@@ -6,6 +6,7 @@
 #include "app/inspect.h"
 #include "app/progress.h"
 #include "app/studio.h"
+#include "app/text.h"
 #include "base/arena.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -149,18 +150,26 @@ static bool is_asked(const struct options *options) {
     return options->pixel_count > 0 || options->dump_scene;
 }
 
+/* Not by way of the supervisor: what the script prints next stands behind it. */
 static void print_piece(void *context, const char *text) {
-    tell(context, LINE_OUTPUT, text);
+    (void)context;
+    text_print(stdout, text);
+}
+
+static bool is_printed(struct error *error) {
+    return (fflush(stdout) == 0 && !ferror(stdout)) ||
+           error_set(error, ERROR_MACHINE, "standard output cannot be written");
 }
 
 static bool answer_questions(struct child *child, const struct render_request *request, const struct render_job *job,
                              struct error *error) {
     const struct options *options = child->options;
     struct inspected picture = {request->file, job, request->root};
-    struct sheet sheet = {.put = print_piece, .context = child};
+    struct sheet sheet = {.put = print_piece};
     return (!options->dump_scene || inspect_world(&picture, options->json, &sheet, error)) &&
-           (options->pixel_count == 0 ||
-            inspect_pixels(&picture, options->pixels, options->pixel_count, options->json, child->pool, &sheet, error));
+           (options->pixel_count == 0 || inspect_pixels(&picture, options->pixels, options->pixel_count, options->json,
+                                                        child->pool, &sheet, error)) &&
+           is_printed(error);
 }
 
 static bool build_world(struct child *child, const struct render_request *request, const struct render_job *job,

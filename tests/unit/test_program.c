@@ -722,6 +722,9 @@ TEST(closed_standard_streams_do_not_spoil_a_picture) {
     CHECK_EQ_INT(shell("\"$gray\" --help >&- 2>err.txt"), 3);
     holds_text("err.txt", "gray: standard output cannot be written\n");
     CHECK_EQ_INT(shell("\"$gray\" --help >/dev/full 2>err.txt"), 3);
+    CHECK_EQ_INT(shell("\"$gray\" --pixel 3,3 scene.lua >/dev/full 2>err.txt"), 3);
+    CHECK_EQ_INT(shell("grep -q 'standard output cannot be written' err.txt"), 0);
+    CHECK_EQ_INT(shell("\"$gray\" --dump-scene --no-fork scene.lua >/dev/full 2>err.txt"), 3);
 }
 
 TEST(the_library_is_found_from_any_folder_and_through_the_environment) {

@@ -324,6 +324,34 @@ static void tell_scene(const char *path, uint32_t width, uint32_t height, int co
     release(told);
 }
 
+TEST(what_a_script_prints_after_a_picture_stands_behind_its_stories) {
+    static const char scene[] =
+        "local r = gr.node('r')\nr:add_child(gr.geometry('ball', gr.sphere('plain')))\n"
+        "for i = 1, 5 do\n"
+        "    gr.render{node=r, file='p%d.png', width=40, height=30, eye={0, 0, 4}, view={0, 0, -1}, "
+        "up={0, 1, 0}, fov=40, lights={gr.light({4, 5, 6}, {1, 1, 1}, {1, 0, 0})}}\n"
+        "    print('after ' .. i)\nend\n";
+    char words[8192] = "-q --json scene.lua";
+    for (int i = 0; i < 200; i++)
+        (void)snprintf(words + strlen(words), sizeof words - strlen(words), " --pixel %d,%d", i % 40, i / 40 * 5);
+    struct test_result told = test_gray_scene(scene, words, NULL);
+    CHECK_EQ_INT(told.status, 0);
+    const char *line = told.out;
+    for (int picture = 1; picture <= 5; picture++) {
+        char after[20];
+        for (int i = 0; i < 200 && line; i++) {
+            const char *end = strchr(line, '\n');
+            CHECK(end && line[0] == '{' && end[-1] == '}');
+            line = end ? end + 1 : NULL;
+        }
+        (void)snprintf(after, sizeof after, "after %d\n", picture);
+        CHECK(line && strncmp(line, after, strlen(after)) == 0);
+        line = line ? line + strlen(after) : NULL;
+    }
+    CHECK(line && *line == '\0');
+    release(told);
+}
+
 static int by_name(const void *a, const void *b) {
     return strcmp(*(char *const *)a, *(char *const *)b);
 }
