@@ -67,5 +67,5 @@ for name in "$@"; do
     echo "$name $with ${runs:-0} $(cat $clock.before $clock.after | tr '\n' ' ')" | awk -v word="$word" -v wall="$wall" \
         '{ t = wall ? wall : $5 - $4; printf "%-9s %-8s %7.0f s%s, %9d runs, %6.0f a second, %s\n", $1, $2, t, (wall ? "" : " of processor time"), $3, (t > 0 ? $3 / t : 0), word }'
 done
-rm -f "$clock"*
+rm -f "$clock" "$clock.before" "$clock.after"
 exit $status

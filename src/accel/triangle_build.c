@@ -53,7 +53,7 @@ struct builder {
 
 /* A node whose children may be pieces. */
 struct top_node {
-    uint32_t branch, children;
+    uint32_t branch;
     uint32_t child[WIDTH]; /* a piece, or the number of a top node */
 };
 
@@ -215,7 +215,8 @@ static void build_job(void *context, uint32_t item, int worker) {
     (void)worker;
     for (uint32_t i = job->first; i < job->first + job->count && !job->failed; i++) {
         struct piece *piece = &builder->pieces.items[i];
-        range_measure(builder->references, &piece->range);
+        if (piece->depth == 0) /* a whole hierarchy; the others were measured when they were parted */
+            range_measure(builder->references, &piece->range);
         job->failed =
             !tree_build(&job->tree, builder->references, &piece->range, piece->depth, builder->pool, &piece->branch);
     }
@@ -254,8 +255,7 @@ static bool join_trees(struct builder *builder, struct hierarchy *hierarchies, u
                 branch->child[k] = builder->pieces.items[branch->child[k] & ~PIECE].branch;
             tree->branches[branch->child[k]].parent = i;
         }
-        const struct branch *a = &tree->branches[branch->child[0]], *b = &tree->branches[branch->child[1]];
-        branch->height = (uint8_t)(1 + (a->height > b->height ? a->height : b->height));
+        branch->height = branch_height(&tree->branches[branch->child[0]], &tree->branches[branch->child[1]]);
     }
     for (uint32_t i = 0; i < count; i++)
         if (hierarchies[i].count > 0 && hierarchies[i].result & PIECE)
@@ -325,7 +325,7 @@ static bool place_top(struct builder *builder, uint32_t number, uint32_t *result
     if (!reserve((void **)&builder->top, &builder->top_capacity, builder->top_count, sizeof *builder->top))
         return false;
     uint32_t place = builder->top_count++, children[WIDTH], count = tree_children(&builder->tree, number, children);
-    builder->top[place] = (struct top_node){.branch = number, .children = count};
+    builder->top[place] = (struct top_node){.branch = number};
     for (uint32_t i = 0; i < count; i++) {
         uint32_t child;
         if (!place_top(builder, children[i], &child))
@@ -513,10 +513,9 @@ static bool write_all(struct builder *builder, struct hierarchy *hierarchies, ui
     for (uint32_t i = 0; i < builder->top_count; i++) {
         const struct top_node *top = &builder->top[i];
         struct wide_node *node = &builder->index->nodes[1 + i];
-        uint32_t children[WIDTH];
-        (void)tree_children(&builder->tree, top->branch, children);
-        node_set(node, &builder->tree, top->branch, children, top->children);
-        for (uint32_t j = 0; j < top->children; j++)
+        uint32_t children[WIDTH], parts = tree_children(&builder->tree, top->branch, children);
+        node_set(node, &builder->tree, top->branch, children, parts);
+        for (uint32_t j = 0; j < parts; j++)
             node->child[j] = reference_to(builder, top->child[j]);
     }
     for (uint32_t i = 0; i < count; i++)

@@ -83,9 +83,8 @@ bool tree_build(struct tree *tree, struct reference *references, const struct ra
         tree->branches[child[i]].parent = *root;
     }
     struct branch *branch = &tree->branches[*root];
-    uint8_t low = tree->branches[child[0]].height, high = tree->branches[child[1]].height;
     memcpy(branch->child, child, sizeof child);
-    branch->height = (uint8_t)(1 + (low > high ? low : high));
+    branch->height = branch_height(&tree->branches[child[0]], &tree->branches[child[1]]);
     return true;
 }
 
@@ -95,7 +94,7 @@ void tree_refit(struct tree *tree, uint32_t number) {
         const struct branch *a = &tree->branches[branch->child[0]], *b = &tree->branches[branch->child[1]];
         set_box(branch, simd4_min(branch_min(a), branch_min(b)), simd4_max(branch_max(a), branch_max(b)));
         branch->count = a->count + b->count;
-        branch->height = (uint8_t)(1 + (a->height > b->height ? a->height : b->height));
+        branch->height = branch_height(a, b);
         number = branch->parent;
     }
 }

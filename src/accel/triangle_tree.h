@@ -37,6 +37,11 @@ static inline simd4 branch_max(const struct branch *branch) {
     return simd4_three(simd4_load(branch->max));
 }
 
+/* Of a branch with these children. */
+static inline uint8_t branch_height(const struct branch *a, const struct branch *b) {
+    return (uint8_t)(1 + (a->height > b->height ? a->height : b->height));
+}
+
 /* A branch without children over a range; its number is *out. False: no memory. */
 bool tree_add(struct tree *tree, const struct range *range, uint32_t parent, uint32_t *out);
 /* Parts a range that lies `depth` branches below its root. */
