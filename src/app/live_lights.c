@@ -177,16 +177,18 @@ void live_light_turn(struct live *live, const struct transform *map, bool sizes)
     struct affine before = affine_identity();
     if (!light || !(sizes ? light->sizes : light->turns))
         return;
-    struct transform about_y;
+    struct affine turn = map->forward;
     if (light->kind == LIGHT_SKY) { /* it is turned about the y axis alone */
-        const struct affine *m = &map->forward;
-        double angle = el_atan2(m->m[0][2] - m->m[2][0], m->m[0][0] + m->m[2][2]);
-        about_y = transform_rotate_about(vec3_make(0, 1, 0), angle * (180 / 3.14159265358979323846));
-        map = &about_y;
+        double linear[TURN_NUMBERS], sine, cosine;
+        for (int i = 0; i < TURN_NUMBERS; i++)
+            linear[i] = turn.m[i / 3][i % 3];
+        if (!turn_about_y(linear, &sine, &cosine))
+            return;
+        turn = (struct affine){{{cosine, 0, sine, 0}, {0, 1, 0, 0}, {-sine, 0, cosine, 0}}};
     }
     for (int i = 0; change.turns && i < TURN_NUMBERS; i++)
         before.m[i / 3][i % 3] = change.numbers[TURN_AT + i];
-    struct affine after = affine_compose(&map->forward, &before);
+    struct affine after = affine_compose(&turn, &before);
     struct transform checked;
     if (!transform_from_affine(&after, &checked)) /* made so small that it has no inverse */
         return;
@@ -194,11 +196,11 @@ void live_light_turn(struct live *live, const struct transform *map, bool sizes)
     for (int i = 0; i < TURN_NUMBERS; i++)
         change.numbers[TURN_AT + i] = after.m[i / 3][i % 3];
     make(live, &change);
-    light->edge1 = affine_vector(&map->forward, light->edge1);
-    light->edge2 = affine_vector(&map->forward, light->edge2);
-    light->radius *= el_cbrt(fabs(affine_determinant(&map->forward)));
+    light->edge1 = affine_vector(&turn, light->edge1);
+    light->edge2 = affine_vector(&turn, light->edge2);
+    light->radius *= el_cbrt(fabs(affine_determinant(&turn)));
     if (vec3_max_abs(light->direction) > 0)
-        light->direction = vec3_normalize(affine_vector(&map->forward, light->direction));
+        light->direction = vec3_normalize(affine_vector(&turn, light->direction));
 }
 
 double live_stops_now(const struct live *live) {

@@ -41,14 +41,19 @@ static double cone_sized(double cosine, double size) {
     return near + far > 0 ? (near - far) / (near + far) : cosine;
 }
 
-/* The turn about the y axis that is nearest to a map (the trace of its product with the map is largest). */
+/* The trace of its product with the map is largest. */
+bool turn_about_y(const double turn[TURN_NUMBERS], double *sine, double *cosine) {
+    double s = turn[2] - turn[6], c = turn[0] + turn[8], length = sqrt(s * s + c * c);
+    *sine = s / length;
+    *cosine = c / length;
+    return length > 0 && length < INFINITY;
+}
+
 static void turn_sky(struct light *light, const double turn[TURN_NUMBERS]) {
-    double sine = turn[2] - turn[6], cosine = turn[0] + turn[8], length = sqrt(sine * sine + cosine * cosine);
-    if (!(length > 0 && length < INFINITY))
+    double sine, cosine;
+    if (!turn_about_y(turn, &sine, &cosine))
         return;
     double s = light->sky_turned ? light->turn_sine : 0, c = light->sky_turned ? light->turn_cosine : 1;
-    sine /= length;
-    cosine /= length;
     light->sky_turned = true;
     light->turn_sine = s * cosine + c * sine;
     light->turn_cosine = c * cosine - s * sine;

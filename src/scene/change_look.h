@@ -18,6 +18,9 @@ void light_move(struct light *light, struct vec3 way);
  * spot's cone becomes h' with tan(h'/2) = size tan(h/2), which keeps every cone between nothing and everything. */
 void light_turn(struct light *light, const double turn[TURN_NUMBERS]);
 /* The determinant of a turn. */
+/* The turn about the y axis that is nearest to a map; false: there is none (what it takes the x and z axes to says
+ * nothing). */
+bool turn_about_y(const double turn[TURN_NUMBERS], double *sine, double *cosine);
 double light_turn_volume(const double turn[TURN_NUMBERS]);
 
 /* Parts of a base (MATERIAL_PHONG), by the names that scripts use. */
