@@ -201,11 +201,37 @@ typedef __m256 simd8;
 /* One lane of four in all eight. */
 #define simd8_lane(a, i) simd8_all_of(_mm_shuffle_ps(a, a, (i)*0x55))
 static inline simd8 simd8_all_of(simd4 a) {
+#if defined(__AVX2__)
+    return _mm256_broadcastss_ps(a);
+#else
     return _mm256_insertf128_ps(_mm256_castps128_ps256(a), a, 1);
+#endif
 }
 
 static inline simd8 simd8_load(const float *p) {
     return _mm256_load_ps(p);
+}
+static inline float simd8_first(simd8 a) {
+    return _mm256_cvtss_f32(a);
+}
+static inline simd4 simd8_low(simd8 a) {
+    return _mm256_castps256_ps128(a);
+}
+static inline simd4 simd8_high(simd8 a) {
+    return _mm256_extractf128_ps(a, 1);
+}
+/* Of lanes 0 to 2 in lane 0, of lanes 4 to 6 in lane 4. */
+static inline simd8 simd8_largest_of_threes(simd8 a) {
+    return _mm256_max_ps(_mm256_max_ps(a, _mm256_permute_ps(a, 1)), _mm256_permute_ps(a, 2));
+}
+static inline simd8 simd8_of(simd4 low, simd4 high) {
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(low), high, 1);
+}
+/* Whether from <= a < to in every lane; a NaN is not. */
+static inline int simd8_all_within(simd8 a, const float *from, const float *to) {
+    __m256 inside = _mm256_and_ps(_mm256_cmp_ps(a, _mm256_loadu_ps(from), _CMP_GE_OQ),
+                                  _mm256_cmp_ps(a, _mm256_loadu_ps(to), _CMP_LT_OQ));
+    return _mm256_movemask_ps(inside) == 255;
 }
 static inline void simd8_store(float *p, simd8 a) {
     _mm256_store_ps(p, a);
@@ -244,6 +270,11 @@ static inline simd8 simd8_min_bits(simd8 a, simd8 b) {
 static inline simd8 simd8_max_bits(simd8 a, simd8 b) {
     return _mm256_castsi256_ps(_mm256_max_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b)));
 }
+/* The largest of three, or, if all are negative, the one farthest below 0, which simd8_at_most_bits takes for more than
+ * any negative number that is nearer to 0. (Without integers: 0.) */
+static inline simd8 simd8_latest_bits(simd8 a, simd8 b, simd8 c) {
+    return simd8_max_bits(simd8_max_bits(a, b), c);
+}
 static inline unsigned simd8_at_most_bits(simd8 a, simd8 b) {
 #if defined(__AVX512VL__)
     return _mm256_cmple_epi32_mask(_mm256_castps_si256(a), _mm256_castps_si256(b));
@@ -253,9 +284,9 @@ static inline unsigned simd8_at_most_bits(simd8 a, simd8 b) {
 #endif
 }
 #endif
-/* One bit per lane whose sign is not set. */
-static inline unsigned simd8_not_negative(simd8 a) {
-    return (unsigned)_mm256_movemask_ps(a) ^ 255u;
+/* One bit per lane whose sign is set. */
+static inline unsigned simd8_negative(simd8 a) {
+    return (unsigned)_mm256_movemask_ps(a);
 }
 static inline simd8 simd8_sign(simd8 a) {
     return _mm256_and_ps(a, _mm256_set1_ps(-0.0f));
@@ -289,6 +320,26 @@ static inline simd8 simd8_all_of(simd4 a) {
 static inline simd8 simd8_load(const float *p) {
     return (simd8){_mm_load_ps(p), _mm_load_ps(p + 4)};
 }
+static inline float simd8_first(simd8 a) {
+    return _mm_cvtss_f32(a.low);
+}
+static inline simd4 simd8_low(simd8 a) {
+    return a.low;
+}
+static inline simd4 simd8_high(simd8 a) {
+    return a.high;
+}
+static inline simd8 simd8_largest_of_threes(simd8 a) {
+    return (simd8){_mm_set_ss(simd4_largest_of_three(a.low)), _mm_set_ss(simd4_largest_of_three(a.high))};
+}
+static inline simd8 simd8_of(simd4 low, simd4 high) {
+    return (simd8){low, high};
+}
+static inline int simd8_all_within(simd8 a, const float *from, const float *to) {
+    __m128 low = _mm_and_ps(_mm_cmpge_ps(a.low, _mm_loadu_ps(from)), _mm_cmplt_ps(a.low, _mm_loadu_ps(to)));
+    __m128 high = _mm_and_ps(_mm_cmpge_ps(a.high, _mm_loadu_ps(from + 4)), _mm_cmplt_ps(a.high, _mm_loadu_ps(to + 4)));
+    return _mm_movemask_ps(_mm_and_ps(low, high)) == 15;
+}
 static inline void simd8_store(float *p, simd8 a) {
     _mm_store_ps(p, a.low);
     _mm_store_ps(p + 4, a.high);
@@ -318,8 +369,8 @@ static inline unsigned simd8_at_most(simd8 a, simd8 b) {
     return (unsigned)_mm_movemask_ps(_mm_cmple_ps(a.low, b.low)) |
            (unsigned)_mm_movemask_ps(_mm_cmple_ps(a.high, b.high)) << 4;
 }
-static inline unsigned simd8_not_negative(simd8 a) {
-    return ((unsigned)_mm_movemask_ps(a.low) | (unsigned)_mm_movemask_ps(a.high) << 4) ^ 255u;
+static inline unsigned simd8_negative(simd8 a) {
+    return (unsigned)_mm_movemask_ps(a.low) | (unsigned)_mm_movemask_ps(a.high) << 4;
 }
 static inline simd8 simd8_sign(simd8 a) {
     __m128 sign = _mm_set1_ps(-0.0f);
@@ -346,6 +397,32 @@ static inline simd8 simd8_load(const float *p) {
     for (int i = 0; i < 8; i++)
         a.lane[i] = p[i];
     return a;
+}
+static inline float simd8_first(simd8 a) {
+    return a.lane[0];
+}
+static inline simd4 simd8_low(simd8 a) {
+    return simd4_load(a.lane);
+}
+static inline simd4 simd8_high(simd8 a) {
+    return simd4_load(a.lane + 4);
+}
+static inline simd8 simd8_largest_of_threes(simd8 a) {
+    a.lane[0] = simd4_largest_of_three(simd8_low(a));
+    a.lane[4] = simd4_largest_of_three(simd8_high(a));
+    return a;
+}
+static inline simd8 simd8_of(simd4 low, simd4 high) {
+    simd8 a;
+    for (int i = 0; i < 8; i++)
+        a.lane[i] = i < 4 ? low.lane[i] : high.lane[i - 4];
+    return a;
+}
+static inline int simd8_all_within(simd8 a, const float *from, const float *to) {
+    int inside = 0;
+    for (int i = 0; i < 8; i++)
+        inside += a.lane[i] >= from[i] && a.lane[i] < to[i];
+    return inside == 8;
 }
 static inline void simd8_store(float *p, simd8 a) {
     for (int i = 0; i < 8; i++)
@@ -383,10 +460,10 @@ static inline simd8 simd8_size(simd8 a) {
         a.lane[i] = fabsf(a.lane[i]);
     return a;
 }
-static inline unsigned simd8_not_negative(simd8 a) {
+static inline unsigned simd8_negative(simd8 a) {
     unsigned bits = 0;
     for (int i = 0; i < 8; i++)
-        bits |= (unsigned)!signbit(a.lane[i]) << i;
+        bits |= (unsigned)(signbit(a.lane[i]) != 0) << i;
     return bits;
 }
 static inline unsigned simd8_at_most(simd8 a, simd8 b) {
@@ -396,6 +473,10 @@ static inline unsigned simd8_at_most(simd8 a, simd8 b) {
     return bits;
 }
 #endif
+
+static inline unsigned simd8_not_negative(simd8 a) {
+    return simd8_negative(a) ^ 255u;
+}
 
 /* One lane, whose number is not known before. */
 static inline float simd8_pick(simd8 a, unsigned lane) {
@@ -416,6 +497,9 @@ static inline simd8 simd8_min_bits(simd8 a, simd8 b) {
 }
 static inline simd8 simd8_max_bits(simd8 a, simd8 b) {
     return simd8_max(a, b);
+}
+static inline simd8 simd8_latest_bits(simd8 a, simd8 b, simd8 c) {
+    return simd8_max(simd8_max(a, b), simd8_max(c, simd8_all(0)));
 }
 static inline unsigned simd8_at_most_bits(simd8 a, simd8 b) {
     return simd8_at_most(a, b);
@@ -461,6 +545,56 @@ static inline wide4 wide4_size(wide4 a) {
 static inline wide4 wide4_signed(wide4 a, wide4 b) {
     return _mm256_or_pd(a, _mm256_and_pd(_mm256_set1_pd(-0.0), b));
 }
+/* Three numbers, and 0 in lane 3. */
+static inline wide4 wide4_load_three(const double *p) {
+#if defined(__AVX512VL__)
+    return _mm256_maskz_loadu_pd(7, p);
+#else
+    return _mm256_maskload_pd(p, _mm256_setr_epi64x(-1, -1, -1, 0));
+#endif
+}
+/* The same, number by number: the caller has just stored them one by one, and a wider load would have to wait until the
+ * stores are through. The compiler, which would join the loads, is not to know that they belong together. */
+static inline wide4 wide4_load_singly(const double *p) {
+    __m128d low = _mm_load_sd(p);
+    __asm__("" : "+x"(low));
+    return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadh_pd(low, p + 1)), _mm_load_sd(p + 2), 1);
+}
+/* Lanes in another order: halves tells for each half of the four where it comes from. */
+static inline wide4 wide4_permuted(wide4 a, const uint32_t halves[8]) {
+    __m256i order = _mm256_load_si256((const __m256i *)(const void *)halves);
+    return _mm256_castps_pd(_mm256_permutevar8x32_ps(_mm256_castpd_ps(a), order));
+}
+/* Lane 2 in all. */
+static inline wide4 wide4_third(wide4 a) {
+    return _mm256_permute4x64_pd(a, _MM_SHUFFLE(2, 2, 2, 2));
+}
+/* Lanes 0, 1, 2 of three vectors, each in a vector of its own; lane 3 is anything. Lanes 2 and 3 must be alike. */
+static inline wide4 wide4_firsts(wide4 a, wide4 b, wide4 c) {
+    return _mm256_insertf128_pd(_mm256_unpacklo_pd(a, b), _mm256_castpd256_pd128(c), 1);
+}
+static inline wide4 wide4_seconds(wide4 a, wide4 b, wide4 c) {
+    __m128d turned = _mm_permute_pd(_mm256_castpd256_pd128(c), 1);
+    return _mm256_insertf128_pd(_mm256_unpackhi_pd(a, b), turned, 1);
+}
+static inline wide4 wide4_thirds(wide4 a, wide4 b, wide4 c) {
+    return _mm256_permute2f128_pd(_mm256_unpacklo_pd(a, b), c, 0x31);
+}
+static inline wide4 wide4_with_last_two(wide4 a, double last) {
+    return _mm256_blend_pd(a, _mm256_set1_pd(last), 12);
+}
+static inline wide4 wide4_with_first_of(wide4 a, wide4 first) {
+    return _mm256_blend_pd(a, first, 1);
+}
+/* (b0 + b1) + b2 in lane 0 and a1, a2 behind it, all over (a0 + a1) + a2. */
+static inline wide4 wide4_weighted(wide4 a, wide4 b) {
+    __m128d a_low = _mm256_castpd256_pd128(a), b_low = _mm256_castpd256_pd128(b);
+    __m128d a_high = _mm256_extractf128_pd(a, 1), b_high = _mm256_extractf128_pd(b, 1);
+    __m128d sums = _mm_add_pd(_mm_add_pd(_mm_unpacklo_pd(a_low, b_low), _mm_unpackhi_pd(a_low, b_low)),
+                              _mm_unpacklo_pd(a_high, b_high));
+    __m256d over = _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_shuffle_pd(sums, a_low, 3)), a_high, 1);
+    return _mm256_div_pd(over, _mm256_broadcastsd_pd(sums));
+}
 /* Lane 3 replaced. */
 static inline wide4 wide4_with_last(wide4 a, double last) {
     return _mm256_blend_pd(a, _mm256_set1_pd(last), 8);
@@ -488,9 +622,6 @@ static inline simd4 wide4_to_single(wide4 a) {
 }
 static inline void wide4_store(double *p, wide4 a) {
     _mm256_storeu_pd(p, a);
-}
-static inline wide4 wide4_with_first(wide4 a, double first) {
-    return _mm256_blend_pd(a, _mm256_set1_pd(first), 1);
 }
 static inline double wide4_lane(wide4 a, int i) {
     __m128d b = i < 2 ? _mm256_castpd256_pd128(a) : _mm256_extractf128_pd(a, 1);
@@ -572,9 +703,37 @@ static inline void wide4_store(double *p, wide4 a) {
 static inline double wide4_lane(wide4 a, int i) {
     return a.lane[i];
 }
-static inline wide4 wide4_with_first(wide4 a, double first) {
-    a.lane[0] = first;
+static inline wide4 wide4_load_three(const double *p) {
+    return wide4_make(p[0], p[1], p[2], 0);
+}
+static inline wide4 wide4_load_singly(const double *p) {
+    return wide4_load_three(p);
+}
+static inline wide4 wide4_permuted(wide4 a, const uint32_t halves[8]) {
+    return wide4_make(a.lane[halves[0] / 2], a.lane[halves[2] / 2], a.lane[halves[4] / 2], a.lane[halves[6] / 2]);
+}
+static inline wide4 wide4_third(wide4 a) {
+    return wide4_all(a.lane[2]);
+}
+static inline wide4 wide4_firsts(wide4 a, wide4 b, wide4 c) {
+    return wide4_make(a.lane[0], b.lane[0], c.lane[0], 0);
+}
+static inline wide4 wide4_seconds(wide4 a, wide4 b, wide4 c) {
+    return wide4_make(a.lane[1], b.lane[1], c.lane[1], 0);
+}
+static inline wide4 wide4_thirds(wide4 a, wide4 b, wide4 c) {
+    return wide4_make(a.lane[2], b.lane[2], c.lane[2], 0);
+}
+static inline wide4 wide4_with_last_two(wide4 a, double last) {
+    return wide4_make(a.lane[0], a.lane[1], last, last);
+}
+static inline wide4 wide4_with_first_of(wide4 a, wide4 first) {
+    a.lane[0] = first.lane[0];
     return a;
+}
+static inline wide4 wide4_weighted(wide4 a, wide4 b) {
+    double first = b.lane[0] + b.lane[1] + b.lane[2], sum = a.lane[0] + a.lane[1] + a.lane[2];
+    return wide4_make(first / sum, a.lane[1] / sum, a.lane[2] / sum, 0);
 }
 static inline wide4 wide4_cab(wide4 a) {
     return wide4_make(a.lane[2], a.lane[0], a.lane[1], a.lane[3]);
@@ -599,11 +758,6 @@ static inline unsigned wide4_negative(wide4 a) {
     return bits;
 }
 #endif
-
-/* (a0 + a1) + a2 */
-static inline double wide4_sum_of_three(wide4 a) {
-    return wide4_lane(a, 0) + wide4_lane(a, 1) + wide4_lane(a, 2);
-}
 
 /* a * b - c and a * b + c */
 static inline simd8 simd8_multiply_sub(simd8 a, simd8 b, simd8 c) {

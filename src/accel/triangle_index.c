@@ -160,7 +160,12 @@ static bool fill_one_voxel(struct triangle_index *index, const struct triangle_s
         refer_to_chunk(&referring, i, 0);
     complete = complete && hierarchies_build(index, set, referring.references, &whole, 1, pool, error);
     index->only = whole.result;
-    index->near_by = NEAR_BY;
+    for (int k = 0; k < 4; k++) {
+        index->usual_from[k] = -1;
+        index->usual_to[k] = NEAR_BY;
+        index->usual_from[4 + k] = k < 3 ? 0x1p-80f : -1;
+        index->usual_to[4 + k] = 0x1p30f;
+    }
     mem_free(referring.references);
     return complete;
 }

@@ -42,6 +42,7 @@
 #include "accel/triangle_kernels.h"
 #include "accel/triangle_nodes.h"
 
+#include <stddef.h>
 #include <string.h>
 
 /* How far from the middle of the mesh, in local units, BOX_GROWTH covers what the distance adds to the rounding. */
@@ -61,36 +62,6 @@
  * distance of the origin, is little: with 2 L^2 M >= |det| >= 5 E that distance is less than 2^19 L.) */
 #define LEAST_REACH 0x1p-24f
 
-struct search {
-    const struct triangle_index *index;
-    const struct triangle_set *set;
-    const struct ray *ray;
-    enum triangle_search kind;
-    /* In local space, single numbers: spreading one over a vector costs no more than loading the vector. */
-    _Alignas(16) float origin[4], direction[4];
-    float reciprocal[4]; /* 1 / direction */
-    float middle[4];     /* origin / direction: a plane is met at plane * reciprocal - middle */
-    float widen[4];      /* for rays from far away: how much the boxes' growth falls short, in local t */
-    float longest;       /* the largest size of the direction's components, M */
-    uint32_t octant;     /* bit k: the direction is negative along axis k */
-    float error;         /* 15 e + 8 D */
-    float limit;         /* local t beyond which nothing matters */
-    float certain;       /* local t below which the ray's own interval surely has not ended */
-    float blur;          /* what a local t of a hit may be off, beyond its last places */
-    bool found, sheared_ready, far_away;
-    double t_to_local, t_offset; /* local t = t * t_to_local - t_offset */
-    double best;                 /* as decided */
-    struct triangle_hit *hit;
-    triangle_visit *visit;
-    void *context;
-    uint32_t blocks, nodes, voxels;
-    struct triangle_ray sheared;
-    /* A hit that is certain and the nearest so far, with bounds of its local t; NULL: none waits. */
-    const struct triangle_block *waiting;
-    unsigned waiting_lane;
-    float waiting_from;
-};
-
 /* The vertices of so few are at hand, and the index of so many is not. */
 enum { FEW_TRIANGLES = 50000, MANY_TRIANGLES = 400000 };
 
@@ -109,31 +80,83 @@ static inline __attribute__((always_inline)) void fetch_ahead(const struct trian
         __builtin_prefetch(place + 64 * i);
 }
 
-/* triangle_ray_axes by a table: which of the direction's components are larger than those before (wide4_larger), and
- * above that their signs. */
-struct axes {
-    uint8_t x, y, z;
-};
+/* The axes of triangle_ray_axes by a table, as halves of lanes x, y, z, z: which of the direction's components are
+ * larger than those before (wide4_larger), and above that their signs. */
+#define LANE(i) 2 * (i), 2 * (i) + 1
 #define AXES(z, negative)                                                                                              \
-    { ((z) + 1 + (negative)) % 3, ((z) + 2 - (negative)) % 3, z }
+    { LANE(((z) + 1 + (negative)) % 3), LANE(((z) + 2 - (negative)) % 3), LANE(z), LANE(z) }
 #define AXES_4(s) AXES(0, (s)&1), AXES(1, (s) >> 1 & 1), AXES(2, (s) >> 2 & 1), AXES(2, (s) >> 2 & 1)
-static const struct axes axes_of[32] = {AXES_4(0), AXES_4(1), AXES_4(2), AXES_4(3),
-                                        AXES_4(4), AXES_4(5), AXES_4(6), AXES_4(7)};
+static const _Alignas(32) uint32_t axes_of[32][8] = {AXES_4(0), AXES_4(1), AXES_4(2), AXES_4(3),
+                                                     AXES_4(4), AXES_4(5), AXES_4(6), AXES_4(7)};
 #undef AXES_4
 #undef AXES
+#undef LANE
 
-/* triangle_ray_set with one division for all three. */
-static inline void sheared_set(struct triangle_ray *out, const struct ray *ray) {
-    const double *d = (const double *)(const void *)&ray->direction;
-    wide4 direction = wide4_make(ray->direction.x, ray->direction.y, ray->direction.z, 0);
-    struct axes axes = axes_of[wide4_larger(wide4_size(direction)) | (wide4_negative(direction) & 7) << 2];
-    out->x = axes.x;
-    out->y = axes.y;
-    out->z = axes.z;
-    wide4_store(out->shear, wide4_div(wide4_make(d[axes.x], d[axes.y], 1, 0), wide4_all(d[axes.z])));
-    out->origin[0] = ray->origin.x;
-    out->origin[1] = ray->origin.y;
-    out->origin[2] = ray->origin.z;
+/* triangle_ray in vectors. */
+struct sheared_ray {
+    const uint32_t *axes;
+    wide4 origin; /* x, y, z, z */
+    wide4 shear;  /* of x, of y, and twice the factor that makes t of z */
+};
+
+/* triangle_ray_set with one division for all three. What lies behind the vectors of the ray is read with them. */
+static inline void sheared_set(struct sheared_ray *out, const struct ray *ray) {
+    const double *numbers = (const double *)(const void *)ray;
+    _Static_assert(offsetof(struct ray, direction) == 3 * sizeof(double) && sizeof(struct ray) > 7 * sizeof(double),
+                   "vectors of a ray are read four numbers at a time");
+    wide4 direction = wide4_load(numbers + 3);
+    const uint32_t *axes = axes_of[wide4_larger(wide4_size(direction)) | (wide4_negative(direction) & 7) << 2];
+    out->axes = axes;
+    out->origin = wide4_permuted(wide4_load(numbers), axes);
+    direction = wide4_permuted(direction, axes);
+    out->shear = wide4_div(wide4_with_last_two(direction, 1), wide4_third(direction));
+}
+
+struct search {
+    const struct triangle_index *index;
+    const struct triangle_set *set;
+    const struct ray *ray;
+    enum triangle_search kind;
+    /* In local space, single numbers: spreading one over a vector costs no more than loading the vector. */
+    _Alignas(16) float origin[4], direction[4];
+    simd4 reciprocal; /* 1 / direction */
+    simd4 middle;     /* origin / direction: a plane is met at plane * reciprocal - middle */
+    float widen[4];   /* for rays from far away: how much the boxes' growth falls short, in local t */
+    float longest;    /* the largest size of the direction's components, M */
+    uint32_t octant;  /* bit k: the direction is negative along axis k */
+    float error;      /* 15 e + 8 D */
+    float limit;      /* local t beyond which nothing matters */
+    float certain;    /* local t below which the ray's own interval surely has not ended */
+    float blur;       /* what a local t of a hit may be off, beyond its last places */
+    bool found, sheared_ready;
+    bool moved, far_away;        /* if moved: the ray was brought to the frame, maybe from FAR_AWAY */
+    double t_to_local, t_offset; /* if moved: local t = t * t_to_local - t_offset; else they are the same */
+    double best;                 /* as decided */
+    struct triangle_hit *hit;
+    triangle_visit *visit;
+    void *context;
+    struct triangle_cost *cost;
+    struct sheared_ray sheared; /* if it is ready */
+    /* A hit that is certain and the nearest so far, with bounds of its local t; NULL: none waits. */
+    const struct triangle_block *waiting;
+    unsigned waiting_lane;
+    float waiting_from;
+};
+
+/* Rows of a node in which a ray of the octant meets the near and the far sides of boxes, in bytes. */
+struct sides {
+    size_t near_x, near_y, near_z, far_x, far_y, far_z;
+};
+#define ROW(i) (i) * WIDTH * sizeof(float)
+#define SIDES(x, y, z)                                                                                                 \
+    { ROW(0 + (x)), ROW(2 + (y)), ROW(4 + (z)), ROW(1 - (x)), ROW(3 - (y)), ROW(5 - (z)) }
+static const struct sides sides_of[8] = {SIDES(0, 0, 0), SIDES(1, 0, 0), SIDES(0, 1, 0), SIDES(1, 1, 0),
+                                         SIDES(0, 0, 1), SIDES(1, 0, 1), SIDES(0, 1, 1), SIDES(1, 1, 1)};
+#undef SIDES
+#undef ROW
+
+static inline simd8 sides_load(const struct wide_node *node, size_t row) {
+    return simd8_load((const float *)(const void *)((const char *)node + row));
 }
 
 /* The edge functions of triangle_cross, rounded, and the way to the corners along the ray's axis; lane 3 is not used.
@@ -142,61 +165,62 @@ struct edges {
     wide4 e, p, q, along;
 };
 
-static inline __attribute__((always_inline)) struct edges edges_of(const struct triangle_ray *ray, const double a[3],
+static inline __attribute__((always_inline)) wide4 seen_from(const struct sheared_ray *ray, const double corner[3]) {
+    return wide4_sub(wide4_permuted(wide4_load_three(corner), ray->axes), ray->origin);
+}
+
+static inline __attribute__((always_inline)) wide4 sheared(const struct sheared_ray *ray, wide4 corner) {
+    return wide4_sub(corner, wide4_mul(ray->shear, wide4_third(corner)));
+}
+
+static inline __attribute__((always_inline)) struct edges edges_of(const struct sheared_ray *ray, const double a[3],
                                                                    const double b[3], const double c[3]) {
-    int x = ray->x, y = ray->y, z = ray->z;
-    wide4 pz = wide4_sub(wide4_make(a[z], b[z], c[z], c[z]), wide4_all(ray->origin[z]));
-    wide4 px = wide4_sub(wide4_make(a[x], b[x], c[x], c[x]), wide4_all(ray->origin[x]));
-    wide4 py = wide4_sub(wide4_make(a[y], b[y], c[y], c[y]), wide4_all(ray->origin[y]));
-    px = wide4_sub(px, wide4_mul(wide4_all(ray->shear[0]), pz));
-    py = wide4_sub(py, wide4_mul(wide4_all(ray->shear[1]), pz));
-    struct edges edges = {
-        .p = wide4_mul(wide4_cab(px), wide4_bca(py)), .q = wide4_mul(wide4_cab(py), wide4_bca(px)), .along = pz};
+    wide4 from_a = seen_from(ray, a), from_b = seen_from(ray, b), from_c = seen_from(ray, c);
+    wide4 plane_a = sheared(ray, from_a), plane_b = sheared(ray, from_b), plane_c = sheared(ray, from_c);
+    wide4 px = wide4_firsts(plane_a, plane_b, plane_c), py = wide4_seconds(plane_a, plane_b, plane_c);
+    struct edges edges = {.p = wide4_mul(wide4_cab(px), wide4_bca(py)),
+                          .q = wide4_mul(wide4_cab(py), wide4_bca(px)),
+                          .along = wide4_thirds(from_a, from_b, from_c)};
     edges.e = wide4_sub(edges.p, edges.q);
     return edges;
 }
 
-static inline __attribute__((always_inline)) void hit_set(struct triangle_hit *hit, const struct triangle_ray *ray,
+static inline __attribute__((always_inline)) void hit_set(struct triangle_hit *hit, const struct sheared_ray *ray,
                                                           const struct edges *edges) {
-    wide4 e = edges->e;
-    double sum = wide4_sum_of_three(e);
-    wide4 found = wide4_div(wide4_with_first(e, wide4_sum_of_three(wide4_mul(e, edges->along))), wide4_all(sum));
-    hit->t = wide4_lane(found, 0) * ray->shear[2];
-    hit->u = wide4_lane(found, 1);
-    hit->v = wide4_lane(found, 2);
-    hit->enter = !(wide4_negative(e) & 1);
+    _Static_assert(offsetof(struct triangle_hit, u) == sizeof(double) &&
+                       offsetof(struct triangle_hit, v) == 2 * sizeof(double) &&
+                       sizeof(struct triangle_hit) >= 4 * sizeof(double),
+                   "t, u and v are written with what is behind them");
+    wide4 found = wide4_weighted(edges->e, wide4_mul(edges->e, edges->along));
+    wide4_store((double *)(void *)hit, wide4_mul(found, wide4_with_first_of(wide4_all(1), wide4_third(ray->shear))));
+    unsigned enter = ~wide4_negative(edges->e) & 1;
+    hit->enter = enter;
 }
 
 /* triangle_cross, its three edge functions at a time and with the same bits; what is near zero is left to it. */
-static inline __attribute__((always_inline)) bool cross(const struct triangle_ray *ray, const double a[3],
-                                                        const double b[3], const double c[3],
-                                                        struct triangle_hit *hit) {
-    struct edges edges = edges_of(ray, a, b, c);
+static inline __attribute__((always_inline)) bool cross(const struct search *s, const double a[3], const double b[3],
+                                                        const double c[3], struct triangle_hit *hit) {
+    struct edges edges = edges_of(&s->sheared, a, b, c);
     wide4 doubt = wide4_mul(wide4_all(0x1p-49), wide4_add(wide4_size(edges.p), wide4_size(edges.q)));
     if (__builtin_expect((wide4_below(doubt, wide4_size(edges.e)) & 7) != 7, 0)) {
-        struct triangle_hit exact; /* so that *hit can stay in registers */
-        if (!triangle_cross(ray, a, b, c, &exact))
-            return false;
-        hit->t = exact.t;
-        hit->u = exact.u;
-        hit->v = exact.v;
-        hit->enter = exact.enter;
-        return true;
+        struct triangle_ray exactly;
+        triangle_ray_set(&exactly, s->ray); /* search_begin has seen that the ray is good */
+        return triangle_cross(&exactly, a, b, c, hit);
     }
     unsigned negative = wide4_negative(edges.e) & 7;
     if (negative != 0 && negative != 7)
         return false;
-    hit_set(hit, ray, &edges);
+    hit_set(hit, &s->sheared, &edges);
     return true;
 }
 
-static inline __attribute__((always_inline)) bool is_crossed(const struct search *s, const struct triangle_ray *sheared,
-                                                             const struct triangle_block *block, unsigned lane,
-                                                             struct triangle_hit *hit) {
+static inline bool is_crossed(const struct search *s, const struct triangle_block *block, unsigned lane,
+                              struct triangle_hit *hit) {
     const double(*vertices)[3] = s->set->vertices;
+    bool crossed = cross(s, vertices[block->vertices[0][lane]], vertices[block->vertices[1][lane]],
+                         vertices[block->vertices[2][lane]], hit);
     hit->triangle = block->ids[lane];
-    return cross(sheared, vertices[block->vertices[0][lane]], vertices[block->vertices[1][lane]],
-                 vertices[block->vertices[2][lane]], hit);
+    return crossed;
 }
 
 static inline bool is_nearer(const struct search *s, const struct triangle_hit *h) {
@@ -217,7 +241,7 @@ static inline void hit_copy(struct triangle_hit *to, const struct triangle_hit *
 /* The answer for one proposed triangle. True when an "any" search is over. */
 static inline bool decide(struct search *s, const struct triangle_block *block, unsigned lane) {
     struct triangle_hit h;
-    if (!is_crossed(s, &s->sheared, block, lane, &h))
+    if (!is_crossed(s, block, lane, &h))
         return false;
     if (s->kind == TRIANGLE_ALL) {
         struct triangle_hit visited = h;
@@ -231,41 +255,42 @@ static inline bool decide(struct search *s, const struct triangle_block *block, 
         return true;
     s->best = h.t;
     hit_copy(s->hit, &h);
-    float local = (float)(h.t * s->t_to_local - s->t_offset) * (1 + 0x1p-20f) + s->blur;
+    double t = s->moved ? h.t * s->t_to_local - s->t_offset : h.t;
+    float local = (float)t * (1 + 0x1p-20f) + s->blur;
     if (local < s->limit)
         s->limit = local;
     return false;
+}
+
+static inline void make_ready(struct search *s) {
+    if (s->sheared_ready)
+        return;
+    sheared_set(&s->sheared, s->ray);
+    s->sheared_ready = true;
 }
 
 /* The end of a "nearest" search. A hit that is certain, when nothing else has been found, is what it is: only its
  * numbers are left to be worked out, and none of its edge functions is anywhere near zero (LEAST_REACH). */
 static inline bool decide_last(struct search *s) {
     const struct triangle_block *block = s->waiting;
-    struct triangle_hit h;
-    struct triangle_ray sheared;
     if (!block)
         return s->found;
     unsigned lane = s->waiting_lane;
     const double(*vertices)[3] = s->set->vertices;
-    sheared_set(&sheared, s->ray);
     if (__builtin_expect(s->found, 0)) {
-        if (!is_crossed(s, &sheared, block, lane, &h) || !is_nearer(s, &h))
-            return true;
-    } else {
-        struct edges edges = edges_of(&sheared, vertices[block->vertices[0][lane]], vertices[block->vertices[1][lane]],
-                                      vertices[block->vertices[2][lane]]);
-        hit_set(&h, &sheared, &edges);
-        h.triangle = block->ids[lane];
+        struct triangle_hit h;
+        make_ready(s);
+        if (is_crossed(s, block, lane, &h) && is_nearer(s, &h))
+            hit_copy(s->hit, &h);
+        return true;
     }
-    hit_copy(s->hit, &h);
+    struct sheared_ray ray;
+    sheared_set(&ray, s->ray);
+    struct edges edges = edges_of(&ray, vertices[block->vertices[0][lane]], vertices[block->vertices[1][lane]],
+                                  vertices[block->vertices[2][lane]]);
+    hit_set(s->hit, &ray, &edges);
+    s->hit->triangle = block->ids[lane];
     return true;
-}
-
-static inline void make_ready(struct search *s) {
-    if (s->sheared_ready)
-        return;
-    sheared_set(&s->sheared, s->ray); /* search_begin has seen that the ray is good */
-    s->sheared_ready = true;
 }
 
 /* Decides a block's proposals. True when an "any" search is over. */
@@ -374,18 +399,20 @@ static inline __attribute__((always_inline)) bool try_block(struct search *s, ui
     simd8 a = simd8_add(smaller, e), c = simd8_multiply_add(e, simd8_all(3), rest);
     simd8 f = simd8_add(t, slack);
     simd8 g = simd8_sub(simd8_multiply_add(det, simd8_all(s->limit - from_t), slack), t);
-    unsigned lanes = simd8_not_negative(simd8_min(simd8_min(a, c), simd8_min(f, g)));
-    if (__builtin_expect(!lanes, 1))
+    const unsigned all = (1 << WIDTH) - 1, missed = simd8_negative(simd8_min(simd8_min(a, c), simd8_min(f, g)));
+    unsigned doubtful = all;
+    if (__builtin_expect(missed == all, 1))
         return false;
     if (kind != TRIANGLE_ALL) {
         a = simd8_sub(smaller, e);
         c = simd8_sub(rest, simd8_mul(e, simd8_all(3)));
         f = simd8_sub(t, slack);
         g = simd8_sub(simd8_multiply_sub(det, simd8_all(s->certain - from_t), slack), t);
-        unsigned certain = lanes & simd8_not_negative(simd8_min(simd8_min(a, c), simd8_min(f, g)));
-        if (certain && kind == TRIANGLE_ANY)
+        doubtful = missed | simd8_negative(simd8_min(simd8_min(a, c), simd8_min(f, g)));
+        if (doubtful != all && kind == TRIANGLE_ANY)
             return true;
-        if (certain) { /* |T - t det| <= slack */
+        if (doubtful != all) { /* |T - t det| <= slack */
+            unsigned certain = doubtful ^ all;
             simd8 r = simd8_div(simd8_all(1), det);
             simd8 from = simd8_mul(simd8_multiply_add(f, r, moved), simd8_all(1 - 0x1p-20f));
             simd8 to = simd8_mul(simd8_multiply_add(simd8_add(t, slack), r, moved), simd8_all(1 + 0x1p-20f));
@@ -395,43 +422,38 @@ static inline __attribute__((always_inline)) bool try_block(struct search *s, ui
             } else {
                 keep_lanes(s, b, certain, from, to);
             }
-            lanes ^= certain;
-            if (!lanes)
+            if (doubtful == missed)
                 return false;
         }
     }
-    return decide_lanes(s, b, lanes);
+    return decide_lanes(s, b, doubtful ^ missed);
 }
 
 /* One hierarchy. True when an "any" search is over. */
-static inline __attribute__((always_inline)) bool descend(struct search *s, uint32_t reference,
-                                                          const enum triangle_search kind, const bool far_away) {
+static inline __attribute__((always_inline)) bool
+descend(struct search *s, uint32_t reference, const enum triangle_search kind, const bool far_away, const bool many) {
     struct node_stack stack;
-    uint32_t top = 0;
+    size_t top = 0;
     bool found = false;
     if (kind == TRIANGLE_NEAREST)
         stack.enter[0] = 0;
     const struct wide_node *nodes = s->index->nodes;
-    const simd8 rx = simd8_all(s->reciprocal[0]), ry = simd8_all(s->reciprocal[1]), rz = simd8_all(s->reciprocal[2]);
-    const simd8 mx = simd8_all(s->middle[0]), my = simd8_all(s->middle[1]), mz = simd8_all(s->middle[2]);
-    uint32_t visited = 0, tried = 0;
-    const bool many = kind == TRIANGLE_NEAREST && s->set->count > MANY_TRIANGLES;
+    const simd8 rx = simd8_lane(s->reciprocal, 0), ry = simd8_lane(s->reciprocal, 1), rz = simd8_lane(s->reciprocal, 2);
+    const simd8 mx = simd8_lane(s->middle, 0), my = simd8_lane(s->middle, 1), mz = simd8_lane(s->middle, 2);
+    uint64_t visited = 0, tried = 0;
+    simd8 limit = simd8_all(s->limit);
     const uint32_t octant = s->octant;
-    /* Rows of a node in which the ray meets the near sides, in floats. The far ones are beside them. */
-    const size_t near_x = (octant & 1) * WIDTH, near_y = (2 + (octant >> 1 & 1)) * WIDTH,
-                 near_z = (4 + (octant >> 2 & 1)) * WIDTH;
-    const size_t far_x = near_x ^ WIDTH, far_y = near_y ^ WIDTH, far_z = near_z ^ WIDTH;
+    const struct sides sides = sides_of[octant];
     for (;;) {
         if (!(reference & REF_LEAF)) {
             const struct wide_node *n = nodes + reference;
-            const float *bounds = n->bounds[0];
             visited++;
-            simd8 ax = simd8_multiply_sub(simd8_load(bounds + near_x), rx, mx);
-            simd8 ay = simd8_multiply_sub(simd8_load(bounds + near_y), ry, my);
-            simd8 az = simd8_multiply_sub(simd8_load(bounds + near_z), rz, mz);
-            simd8 bx = simd8_multiply_sub(simd8_load(bounds + far_x), rx, mx);
-            simd8 by = simd8_multiply_sub(simd8_load(bounds + far_y), ry, my);
-            simd8 bz = simd8_multiply_sub(simd8_load(bounds + far_z), rz, mz);
+            simd8 ax = simd8_multiply_sub(sides_load(n, sides.near_x), rx, mx);
+            simd8 ay = simd8_multiply_sub(sides_load(n, sides.near_y), ry, my);
+            simd8 az = simd8_multiply_sub(sides_load(n, sides.near_z), rz, mz);
+            simd8 bx = simd8_multiply_sub(sides_load(n, sides.far_x), rx, mx);
+            simd8 by = simd8_multiply_sub(sides_load(n, sides.far_y), ry, my);
+            simd8 bz = simd8_multiply_sub(sides_load(n, sides.far_z), rz, mz);
             if (far_away) {
                 simd8 wx = simd8_all(s->widen[0]), wy = simd8_all(s->widen[1]), wz = simd8_all(s->widen[2]);
                 ax = simd8_sub(ax, wx);
@@ -441,9 +463,12 @@ static inline __attribute__((always_inline)) bool descend(struct search *s, uint
                 by = simd8_add(by, wy);
                 bz = simd8_add(bz, wz);
             }
-            /* Neither 0 nor the limit is negative, so comparing bits is enough. */
-            simd8 enter = simd8_max_bits(simd8_max_bits(ax, ay), simd8_max_bits(az, simd8_all(0)));
-            simd8 leave = simd8_min_bits(simd8_min_bits(bx, by), simd8_min_bits(bz, simd8_all(s->limit)));
+            /* Comparing bits is enough, though it turns the order of negative numbers round: the limit is none. Of a
+             * box that begins behind the ray's start `enter` is negative, whichever side it is taken from. If the box
+             * ends there as well, `leave` is the far side next to the start and `enter` no nearer to it than that
+             * side's near one, so as bits it is not less. */
+            simd8 enter = simd8_latest_bits(ax, ay, az);
+            simd8 leave = simd8_min_bits(simd8_min_bits(bx, by), simd8_min_bits(bz, limit));
             if (kind == TRIANGLE_NEAREST ? node_take_nearest(n, octant, enter, leave, &stack, &top, &reference)
                                          : node_take_any(n, enter, leave, &stack, &top, &reference)) {
                 if (many && top)
@@ -452,33 +477,35 @@ static inline __attribute__((always_inline)) bool descend(struct search *s, uint
             }
         } else {
             tried++;
-            if (try_block(s, reference & ~REF_LEAF, kind == TRIANGLE_NEAREST ? stack.enter[top] : 0, kind)) {
+            float enter = kind == TRIANGLE_NEAREST && stack.enter[top] > 0 ? stack.enter[top] : 0;
+            if (try_block(s, reference & ~REF_LEAF, enter, kind)) {
                 found = true;
                 break;
             }
+            if (kind == TRIANGLE_NEAREST)
+                limit = simd8_all(s->limit);
         }
         do {
             if (!top)
                 goto done;
             top--;
-        } while (kind == TRIANGLE_NEAREST && stack.enter[top] > s->limit);
+        } while (kind == TRIANGLE_NEAREST && stack.enter[top] > simd8_first(limit));
         reference = stack.reference[top];
     }
 done:
-    s->nodes += visited;
-    s->blocks += tried;
+    s->cost->hierarchy_steps += visited;
+    s->cost->triangle_tests += tried * WIDTH;
     return found;
 }
 
-static inline __attribute__((always_inline)) bool walk(struct search *s, const enum triangle_search kind,
-                                                       const bool far_away) {
+static inline __attribute__((always_inline)) bool walk_voxels(struct search *s, const enum triangle_search kind,
+                                                              const bool many) {
     const struct triangle_index *index = s->index;
-    if (index->big && descend(s, index->big, kind, far_away))
+    if (!index->voxels)
+        return false;
+    if (index->big && descend(s, index->big, kind, true, many))
         return true;
-    if (index->voxel_count == ONE_VOXEL) { /* one voxel: nothing to walk */
-        return index->only != REF_EMPTY && descend(s, index->only, kind, far_away);
-    }
-    simd4 origin = simd4_load(s->origin), reciprocal = simd4_load(s->reciprocal), cell = simd4_load(index->cell),
+    simd4 origin = simd4_load(s->origin), reciprocal = s->reciprocal, cell = simd4_load(index->cell),
           place = simd4_mul(simd4_add(origin, simd4_load(index->half_single)), simd4_load(index->inverse_cell));
     int32_t at[4];
     simd4 start = simd4_max(simd4_all(0), simd4_min(place, simd4_load(index->last_cell)));
@@ -497,8 +524,8 @@ static inline __attribute__((always_inline)) bool walk(struct search *s, const e
         if (reference != REF_EMPTY) {
             if (reference == REF_OUTSIDE)
                 return false;
-            s->voxels++;
-            if (descend(s, reference, kind, far_away))
+            s->cost->voxels++;
+            if (descend(s, reference, kind, true, many))
                 return true;
         }
         if (s->limit <= simd4_first(leave))
@@ -507,6 +534,23 @@ static inline __attribute__((always_inline)) bool walk(struct search *s, const e
         next_t = simd4_add_where_reached(next_t, leave, step_t, &lanes);
         voxel += offset[lanes & 7];
     }
+}
+
+/* Rays that have been brought to the frame. */
+static inline __attribute__((always_inline)) bool walk(struct search *s, const enum triangle_search kind) {
+    const bool many = kind == TRIANGLE_NEAREST && s->set->count > MANY_TRIANGLES;
+    if (s->index->only == REF_EMPTY)
+        return walk_voxels(s, kind, many);
+    return s->far_away ? descend(s, s->index->only, kind, true, many) : descend(s, s->index->only, kind, false, many);
+}
+
+/* Apart from the kernel of the others, which needs its registers. */
+static __attribute__((noinline)) bool walk_nearest_apart(struct search *s) {
+    return walk(s, TRIANGLE_NEAREST);
+}
+
+static __attribute__((noinline)) bool walk_any_apart(struct search *s) {
+    return walk(s, TRIANGLE_ANY);
 }
 
 static inline double power_of_two(uint64_t exponent_bits) {
@@ -520,15 +564,14 @@ static inline double power_of_two(uint64_t exponent_bits) {
 static inline void search_start(struct search *s, simd4 origin, simd4 direction, simd4 reciprocal, float last) {
     simd4_store(s->origin, origin);
     simd4_store(s->direction, direction);
-    simd4_store(s->reciprocal, reciprocal);
-    simd4_store(s->middle, simd4_mul(origin, reciprocal));
-    s->octant = simd4_negative(reciprocal) & 7;
+    s->reciprocal = reciprocal;
+    s->middle = simd4_mul(origin, reciprocal);
+    s->octant = simd4_negative(direction) & 7;
     s->limit = last * (1 + 0x1p-20f) + s->blur;
     s->certain = last * (1 - 0x1p-20f) - s->blur;
     s->found = s->sheared_ready = false;
     s->waiting = NULL;
     s->best = s->ray->t_max;
-    s->blocks = s->nodes = s->voxels = 0;
 }
 
 enum beginning { RAY_INSIDE, RAY_MISSES, RAY_UNUSABLE };
@@ -557,6 +600,7 @@ static __attribute__((noinline)) enum beginning search_begin_far(struct search *
     r = wide4_mul(r, wide4_all(to_local));
     r = wide4_signed(wide4_min(wide4_size(r), wide4_all(0x1p60)), r);
     simd4 r4 = wide4_to_single(r);
+    s->moved = true;
     s->t_to_local = to_local;
     s->t_offset = enter * to_local;
     s->blur = 0x1p-20f;
@@ -571,57 +615,43 @@ static __attribute__((noinline)) enum beginning search_begin_far(struct search *
     return RAY_INSIDE;
 }
 
-/* Number by number, whatever the compiler thinks of it: the caller has just stored them one by one, and a wider load
- * would have to wait until the stores are through. */
-static inline wide4 load_vec3(const struct vec3 *v) {
-    const volatile struct vec3 *each = v;
-    double x = each->x, y = each->y, z = each->z;
-    return wide4_make(x, y, z, 0);
-}
-
 /* Most rays start near the mesh and at t = 0. They are taken as they are, in single precision from here on: nothing
  * they meet first has to wait for where they enter the frame, and their t is the local one. */
 static inline __attribute__((always_inline)) enum beginning search_begin(struct search *s) {
     const struct triangle_index *index = s->index;
     const struct ray *ray = s->ray;
     wide4 scale = wide4_all(index->scale);
-    wide4 o = wide4_mul(wide4_sub(load_vec3(&ray->origin), wide4_load(index->centre)), scale);
-    wide4 d = wide4_mul(load_vec3(&ray->direction), scale);
-    simd4 o4 = wide4_to_single(o), d4 = wide4_to_single(d), d_size = simd4_size(d4);
-    s->longest = simd4_largest_of_three(d_size);
-    bool usual = simd4_all_below(simd4_max(simd4_size(o4), simd4_mul(d_size, simd4_all(NEAR_BY * 0x1p-30f))),
-                                 simd4_all(index->near_by)) &&
-                 s->longest > 0x1p-30f && !simd4_any_of_three_below(d_size, simd4_all(0x1p-80f)) && ray->t_min == 0 &&
-                 ray->t_max > 0;
+    wide4 o = wide4_mul(wide4_sub(wide4_load_singly(&ray->origin.x), wide4_load(index->centre)), scale);
+    wide4 d = wide4_mul(wide4_load_singly(&ray->direction.x), scale);
+    simd4 o4 = wide4_to_single(o), d4 = wide4_to_single(d);
+    simd8 sizes = simd8_size(simd8_of(o4, d4)), largest = simd8_largest_of_threes(sizes);
+    s->longest = simd4_first(simd8_high(largest));
+    uint64_t from_bits;
+    memcpy(&from_bits, &ray->t_min, sizeof from_bits);
+    bool usual = simd8_all_within(sizes, index->usual_from, index->usual_to) && s->longest > 0x1p-30f &&
+                 from_bits == 0 && ray->t_max > 0;
     if (__builtin_expect(!usual, 0))
         return search_begin_far(s, o, d);
     simd4 r4 = simd4_div(simd4_all(1), d4), half = simd4_load(index->half_single);
     float last = (float)(ray->t_max < 0x1p60 ? ray->t_max : 0x1p60);
-    if (simd4_any_of_three_below(half, simd4_size(o4))) { /* from outside many rays miss the frame */
+    if (simd4_any_of_three_below(half, simd8_low(sizes))) { /* from outside many rays miss the frame */
         simd4 middle = simd4_mul(o4, r4), reach = simd4_mul(half, simd4_size(r4));
         float enter = simd4_largest_of_three(simd4_sub(simd4_sub(simd4_all(0), middle), reach));
         float leave = simd4_smallest_of_three(simd4_sub(reach, middle));
         if (!(enter <= leave && leave >= 0 && enter <= last))
             return RAY_MISSES;
     }
-    s->t_to_local = 1;
-    s->t_offset = 0;
     s->blur = 0;
-    s->error = PLACE_ERROR * simd4_largest_of_three(simd4_size(o4)) + 0x1p-40f;
-    s->far_away = false;
+    s->error = PLACE_ERROR * simd8_first(largest) + 0x1p-40f;
+    s->moved = false;
     search_start(s, o4, d4, r4, last);
     return RAY_INSIDE;
-}
-
-static inline void add_cost(const struct search *s, struct triangle_cost *cost) {
-    cost->triangle_tests += (uint64_t)s->blocks * WIDTH;
-    cost->hierarchy_steps += s->nodes;
-    cost->voxels += s->voxels;
 }
 
 bool KERNEL(nearest)(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
                      struct triangle_hit *hit, struct triangle_cost *cost) {
     struct search s;
+    s.cost = cost;
     s.index = index;
     s.set = set;
     s.ray = ray;
@@ -630,17 +660,19 @@ bool KERNEL(nearest)(const struct triangle_index *index, const struct triangle_s
     enum beginning beginning = search_begin(&s);
     if (beginning != RAY_INSIDE)
         return beginning == RAY_UNUSABLE && triangle_brute_nearest(set, ray, hit, cost);
-    if (s.far_away)
-        walk(&s, TRIANGLE_NEAREST, true);
+    if (s.moved)
+        walk_nearest_apart(&s);
+    else if (set->count > MANY_TRIANGLES)
+        descend(&s, index->only, TRIANGLE_NEAREST, false, true);
     else
-        walk(&s, TRIANGLE_NEAREST, false);
-    add_cost(&s, cost);
+        descend(&s, index->only, TRIANGLE_NEAREST, false, false);
     return decide_last(&s);
 }
 
 bool KERNEL(any)(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
                  struct triangle_cost *cost) {
     struct search s;
+    s.cost = cost;
     s.index = index;
     s.set = set;
     s.ray = ray;
@@ -648,15 +680,14 @@ bool KERNEL(any)(const struct triangle_index *index, const struct triangle_set *
     enum beginning beginning = search_begin(&s);
     if (beginning != RAY_INSIDE)
         return beginning == RAY_UNUSABLE && triangle_brute_any(set, ray, cost);
-    bool found = s.far_away ? walk(&s, TRIANGLE_ANY, true) : walk(&s, TRIANGLE_ANY, false);
-    add_cost(&s, cost);
-    return found;
+    return s.moved ? walk_any_apart(&s) : descend(&s, index->only, TRIANGLE_ANY, false, false);
 }
 
 void KERNEL(all)(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
                  triangle_visit *visit, void *context, struct triangle_cost *cost) {
     struct search s;
     struct ray line = *ray;
+    s.cost = cost;
     line.t_min = -INFINITY;
     line.t_max = INFINITY;
     s.index = index;
@@ -670,6 +701,5 @@ void KERNEL(all)(const struct triangle_index *index, const struct triangle_set *
         triangle_brute_all(set, &line, visit, context, cost);
     if (beginning != RAY_INSIDE)
         return;
-    walk(&s, TRIANGLE_ALL, true);
-    add_cost(&s, cost);
+    walk(&s, TRIANGLE_ALL);
 }

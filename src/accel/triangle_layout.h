@@ -60,8 +60,10 @@ struct triangle_block {
 /* What every ray reads comes first. Vectors of three have a fourth number, not used or 0, so that they load whole. */
 struct triangle_index {
     double centre[4];
+    /* Sizes of the origin (lanes 0 to 2) and direction (lanes 4 to 6) of rays that need not be brought to the frame:
+     * from .. less than to. All 0: every ray does. */
+    float usual_from[WIDTH], usual_to[WIDTH];
     double scale;
-    float near_by;                 /* rays that start nearer (NEAR_BY) need not be brought to the frame; 0: all do */
     uint32_t only;                 /* the only voxel's, if there is one */
     float half_single[4];          /* local half extents, margin included */
     struct wide_node *nodes;       /* nodes[0] is not used */

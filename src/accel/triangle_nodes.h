@@ -28,11 +28,11 @@ static inline __m256i node_children(const struct wide_node *node) {
 }
 
 #if defined(__AVX512VL__)
-static inline void node_push_lanes(struct node_stack *stack, uint32_t top, __m256i children, unsigned lanes) {
+static inline void node_push_lanes(struct node_stack *stack, size_t top, __m256i children, unsigned lanes) {
     _mm256_storeu_si256((__m256i *)(void *)(stack->reference + top),
                         _mm256_maskz_compress_epi32((__mmask8)lanes, children));
 }
-static inline void node_push_enter(struct node_stack *stack, uint32_t top, simd8 enter, unsigned lanes) {
+static inline void node_push_enter(struct node_stack *stack, size_t top, simd8 enter, unsigned lanes) {
     _mm256_storeu_ps(stack->enter + top, _mm256_maskz_compress_ps((__mmask8)lanes, enter));
 }
 #else
@@ -54,11 +54,11 @@ static const uint64_t node_lanes[256] = {LANES_64(0), LANES_64(64), LANES_64(128
 static inline __m256i node_compressing(unsigned lanes) {
     return _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)(node_lanes + lanes)));
 }
-static inline void node_push_lanes(struct node_stack *stack, uint32_t top, __m256i children, unsigned lanes) {
+static inline void node_push_lanes(struct node_stack *stack, size_t top, __m256i children, unsigned lanes) {
     _mm256_storeu_si256((__m256i *)(void *)(stack->reference + top),
                         _mm256_permutevar8x32_epi32(children, node_compressing(lanes)));
 }
-static inline void node_push_enter(struct node_stack *stack, uint32_t top, simd8 enter, unsigned lanes) {
+static inline void node_push_enter(struct node_stack *stack, size_t top, simd8 enter, unsigned lanes) {
     _mm256_storeu_ps(stack->enter + top, _mm256_permutevar8x32_ps(enter, node_compressing(lanes)));
 }
 #endif
@@ -66,7 +66,7 @@ static inline void node_push_enter(struct node_stack *stack, uint32_t top, simd8
 /* False: no child is met. Else *reference is the first child on the ray's way and the others are on the stack, the next
  * one on top. */
 static inline bool node_take_nearest(const struct wide_node *node, uint32_t octant, simd8 enter, simd8 leave,
-                                     struct node_stack *stack, uint32_t *top, uint32_t *reference) {
+                                     struct node_stack *stack, size_t *top, uint32_t *reference) {
     __m256i order =
         _mm256_srlv_epi32(_mm256_set1_epi32((int)node->order[octant]), _mm256_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21));
     __m256i children = _mm256_permutevar8x32_epi32(node_children(node), order);
@@ -77,18 +77,17 @@ static inline bool node_take_nearest(const struct wide_node *node, uint32_t octa
     unsigned lanes = simd8_at_most_bits(enter, leave);
     if (!lanes)
         return false;
-    unsigned first = 31 - (unsigned)__builtin_clz(lanes);
-    node_push_enter(stack, *top, enter, lanes); /* with the first, on top */
-    lanes ^= 1u << first;
+    /* With the first, which comes to lie above the top. */
+    node_push_enter(stack, *top, enter, lanes);
     node_push_lanes(stack, *top, children, lanes);
-    *top += (unsigned)__builtin_popcount(lanes);
-    *reference = child[first];
+    *top += (unsigned)__builtin_popcount(lanes) - 1;
+    *reference = child[31 - __builtin_clz(lanes)];
     return true;
 }
 
 /* The same in any order and without where the ray enters. */
 static inline bool node_take_any(const struct wide_node *node, simd8 enter, simd8 leave, struct node_stack *stack,
-                                 uint32_t *top, uint32_t *reference) {
+                                 size_t *top, uint32_t *reference) {
     unsigned lanes = simd8_at_most_bits(enter, leave);
     if (!lanes)
         return false;
@@ -102,7 +101,7 @@ static inline bool node_take_any(const struct wide_node *node, simd8 enter, simd
 #else
 
 static inline bool node_take_nearest(const struct wide_node *node, uint32_t octant, simd8 enter, simd8 leave,
-                                     struct node_stack *stack, uint32_t *top, uint32_t *reference) {
+                                     struct node_stack *stack, size_t *top, uint32_t *reference) {
     unsigned lanes = simd8_at_most_bits(enter, leave);
     if (!lanes)
         return false;
@@ -113,7 +112,7 @@ static inline bool node_take_nearest(const struct wide_node *node, uint32_t octa
         *reference = node->child[__builtin_ctz(lanes)];
         return true;
     }
-    uint32_t end = *top;
+    size_t end = *top;
     for (uint32_t order = node->order[octant], i = 0; i < WIDTH; i++, order >>= 3) {
         stack->enter[end] = t[order & 7];
         stack->reference[end] = node->child[order & 7];
@@ -125,7 +124,7 @@ static inline bool node_take_nearest(const struct wide_node *node, uint32_t octa
 }
 
 static inline bool node_take_any(const struct wide_node *node, simd8 enter, simd8 leave, struct node_stack *stack,
-                                 uint32_t *top, uint32_t *reference) {
+                                 size_t *top, uint32_t *reference) {
     unsigned lanes = simd8_at_most_bits(enter, leave);
     if (!lanes)
         return false;

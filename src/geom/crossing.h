@@ -6,16 +6,25 @@
 #include "accel/triangle_index.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 struct crossing {
-    double t;
-    double u, v;   /* barycentric weights of vertices 1 and 2 on a mesh; free for other shapes */
-    uint32_t part; /* which face, triangle or nappe */
-    uint16_t leaf; /* which CSG operand made the surface; 0 outside CSG */
-    bool enter;    /* the line goes from outside to inside here (geometric, after a CSG flip) */
-    bool flip;     /* CSG difference or inverse turned the surface inside out */
+    union {
+        struct {
+            double t;
+            double u, v;   /* barycentric weights of vertices 1 and 2 on a mesh; free for other shapes */
+            uint32_t part; /* which face, triangle or nappe */
+            bool enter;    /* the line goes from outside to inside here (geometric, after a CSG flip) */
+            bool flip;     /* CSG difference or inverse turned the surface inside out */
+            uint16_t leaf; /* which CSG operand made the surface; 0 outside CSG */
+        };
+        struct triangle_hit on_mesh; /* t to enter, so that a search of triangles writes them where they belong */
+    };
 };
+_Static_assert(offsetof(struct crossing, part) == offsetof(struct triangle_hit, triangle) &&
+                   offsetof(struct crossing, enter) == offsetof(struct triangle_hit, enter),
+               "a hit on a mesh is a crossing but for what follows enter");
 
 /* One worker's memory for lists of crossings, used as a stack. It grows between rays, never inside one: when it is too
  * small a push fails, `overflow` is set, and the caller of the whole ray calls geom_scratch_grow and asks again. */

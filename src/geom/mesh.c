@@ -179,18 +179,12 @@ static inline struct way way_for(const struct mesh *mesh, enum accel_kind accel)
 bool mesh_nearest(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch,
                   struct crossing *out) {
     struct triangle_cost *cost = count_search(scratch, 1);
-    struct triangle_hit hit;
     struct way way = way_for(mesh, accel);
-    bool found = way.index     ? triangle_index_nearest(way.index, &mesh->set, ray, &hit, cost)
-                 : way.kd_tree ? kd_triangles_nearest(way.kd_tree, &mesh->set, ray, &hit, cost)
-                               : triangle_brute_nearest(&mesh->set, ray, &hit, cost);
-    if (found) { /* field by field: what was just stored in pieces is slow to load whole */
-        out->t = hit.t;
-        out->u = hit.u;
-        out->v = hit.v;
-        out->part = hit.triangle;
+    bool found = way.index     ? triangle_index_nearest(way.index, &mesh->set, ray, &out->on_mesh, cost)
+                 : way.kd_tree ? kd_triangles_nearest(way.kd_tree, &mesh->set, ray, &out->on_mesh, cost)
+                               : triangle_brute_nearest(&mesh->set, ray, &out->on_mesh, cost);
+    if (found) {
         out->leaf = 0;
-        out->enter = hit.enter;
         out->flip = false;
     }
     return found;
