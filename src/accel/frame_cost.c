@@ -17,6 +17,10 @@
 #define STEP_COST 0.35 /* one voxel on */
 #define LIST_COST 0.3  /* an entry of a list: its box */
 #define OVERLAP 1.5    /* nodes over boxes that overlap, and are not full, for those that would do */
+#define START_COST 1.2 /* of a hierarchy in a voxel */
+/* Of a ray that walks voxels over a mesh, once: it is brought to the frame and less sure of its hits (2.5), and goes
+ * alone where rays of one origin go together (a third of them, at half the price: 1.5). */
+#define WALK_COST 4.0
 
 enum { BIG_ITEM = 64 /* voxels */, ENOUGH = 4 /* samples to an occupied voxel */ };
 
@@ -143,4 +147,24 @@ struct frame_choice frame_lists_or_hierarchy(const struct frame_census *census) 
     double crowd = at->around / (finer * finer * finer), depth = el_log(census->items) / el_log(4);
     double lists = 2 * steps + LIST_COST * (at->listed / (finer * finer) + (crowd > 1 ? crowd : 1));
     return (struct frame_choice){.lists = lists / 2, .hierarchy = (nodes + depth) / 2};
+}
+
+/* Both kinds of rays; the one that looks at a thing goes through all levels above it. */
+struct frame_of_mesh frame_over_mesh(const struct frame_census *census) {
+    struct frame_of_mesh frame = {.level = 0};
+    uint32_t last = census->level_count - 1;
+    for (uint32_t l = 0; l <= last; l++) {
+        const struct frame_level *at = &census->levels[l];
+        double walk = l > 0 ? WALK_COST + STEP_COST * at->visited : 0, starts = START_COST * at->occupied;
+        double across = 0, depth = 0;
+        for (uint32_t below = l + 1; below <= last; below++) {
+            double nodes = growth(census, below, 8);
+            across += OVERLAP * nodes * census->levels[below - 1].occupied;
+            depth += nodes;
+        }
+        frame.costs[l] = walk + starts + (across + depth) / 2;
+        if (frame.costs[l] < frame.costs[frame.level])
+            frame.level = l;
+    }
+    return frame;
 }

@@ -39,4 +39,12 @@ struct frame_choice {
 };
 struct frame_choice frame_lists_or_hierarchy(const struct frame_census *census);
 
+/* A frame over a mesh: for every level of the census what a ray costs through voxels with hierarchies of eight children
+ * to a node in them, in visits of a node and beyond what all levels have in common; and the level that costs least. */
+struct frame_of_mesh {
+    double costs[FRAME_LEVELS];
+    uint32_t level;
+};
+struct frame_of_mesh frame_over_mesh(const struct frame_census *census);
+
 #endif

@@ -1,16 +1,17 @@
 /* The index of a mesh: frame, voxels, searches.
  *
- * How many voxels? A voxel spares a ray the upper levels of the hierarchy and costs it a step (about a third of a node
- * visit), every occupied voxel on its way the start of a hierarchy (about one and a half), and memory for what lies in
- * several. With eight children to a node and lambda voxels to a triangle the levels spared are log8 of the number of
- * occupied voxels, at best, that is, if all are filled alike: 1.3 for 16 of them, 2 for 64; but a ray through a body of
- * that many meets 2 to 4 occupied ones before it is done. So the account is about even for compact bodies, where 0.001
- * voxels a triangle were measured 0 to 4 % faster, and is lost where much is open or filled unevenly
- * (docs/performance.md has the numbers: terrain 4 % slower, a pyramid of Sierpinski's 10 %, rooms and worlds 20 to 60
- * %), and packets of rays and floors apart need one voxel. Hence one voxel, unless the caller asks for more; then the
- * frame is only the box every ray is cut to. */
+ * How many voxels? The caller says, or the cost model of frame_cost.c, which looks at a sample of the triangles. A
+ * voxel spares a ray the upper levels of the hierarchy and costs it a step (about a third of a node visit), every
+ * occupied voxel on its way the start of a hierarchy (about one), and memory for what lies in several. With eight
+ * children to a node the levels spared are log8 of the number of occupied voxels, at best, that is, if all are filled
+ * alike: 1.3 for 16 of them, 2 for 64; but a ray through a body of that many meets 2 to 4 occupied ones before it is
+ * done. That much is about even for compact bodies. But with one voxel a ray need not be brought to the frame, and rays
+ * of one origin walk the hierarchy together, which is worth four visits of a node to a ray; so one voxel is what the
+ * model answers for every mesh that was measured, and each was fastest so (docs/performance.md has what the model says,
+ * and the times of 8 to 4,096 voxels). The frame is then only the box every ray is cut to. */
 #include "accel/triangle_index.h"
 
+#include "accel/frame_cost.h"
 #include "accel/isa.h"
 #include "accel/triangle_build.h"
 #include "accel/triangle_kernels.h"
@@ -242,6 +243,24 @@ static bool fill_voxels(struct triangle_index *index, const struct triangle_set 
     return complete;
 }
 
+static struct box box_of_triangle(const void *context, uint32_t i) {
+    const struct triangle_set *set = context;
+    struct box box = box_empty();
+    for (int j = 0; j < 3; j++) {
+        const double *v = set->vertices[set->corners[i][j]];
+        box = box_add_point(box, vec3_make(v[0], v[1], v[2]));
+    }
+    return box;
+}
+
+static uint32_t voxels_by_cost(const struct triangle_set *set) {
+    enum { SAMPLES = 512, LEVELS = 5 };
+    struct frame_census census;
+    frame_census_take(&census, &set->bounds, box_of_triangle, set, set->count, SAMPLES, LEVELS);
+    const uint32_t *cells = census.levels[frame_over_mesh(&census).level].cells;
+    return cells[0] * cells[1] * cells[2];
+}
+
 bool triangle_index_build(struct triangle_index **out, const struct triangle_set *set, uint32_t voxels,
                           struct pool *pool, struct error *error) {
     struct triangle_index *index = mem_alloc_zero(1, sizeof *index);
@@ -249,7 +268,7 @@ bool triangle_index_build(struct triangle_index **out, const struct triangle_set
         return error_no_memory(error, "the index of a mesh");
     if (set->count > 0) {
         set_space(index, set);
-        set_cells(index, voxels > 1 ? voxels : 1);
+        set_cells(index, voxels > 0 ? voxels : voxels_by_cost(set));
         if (!(index->voxel_count == ONE_VOXEL ? fill_one_voxel : fill_voxels)(index, set, pool, error)) {
             triangle_index_destroy(index);
             return false;

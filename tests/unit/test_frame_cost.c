@@ -121,6 +121,46 @@ TEST(frames_of_meshes_cost_little_more_than_the_best_of_all_resolutions) {
     }
 }
 
+static struct box soup_box(const void *context, uint32_t i) {
+    const struct soup *s = context;
+    struct box box = box_empty();
+    for (int j = 0; j < 3; j++) {
+        const double *v = s->vertices[s->corners[i][j]];
+        box = box_add_point(box, vec3_make(v[0], v[1], v[2]));
+    }
+    return box;
+}
+
+TEST(frames_of_meshes_have_the_voxels_that_the_model_finds_cheapest) {
+    struct test_random random = {3};
+    for (int form = 0; form < FORMS; form++) {
+        struct soup s = make_soup(form, &random);
+        struct frame_census census;
+        frame_census_take(&census, &s.bounds, soup_box, &s, s.count, 512, 5);
+        struct frame_of_mesh frame = frame_over_mesh(&census);
+        CHECK(census.level_count > 1);
+        for (uint32_t l = 0; l < census.level_count; l++)
+            CHECK(frame.costs[frame.level] <= frame.costs[l]);
+        const uint32_t *cells = census.levels[frame.level].cells;
+        CHECK(counted(&s, 0) == counted(&s, cells[0] * cells[1] * cells[2]));
+        free(s.vertices);
+        free(s.corners);
+    }
+}
+
+/* Of a made-up mesh: a million voxels that hold something, of which a ray meets one. */
+TEST(a_mesh_whose_voxels_spare_more_than_the_walk_costs_gets_them) {
+    struct frame_census census = {.level_count = 4, .items = 1e6};
+    for (uint32_t l = 0; l < 4; l++)
+        census.levels[l] = (struct frame_level){
+            .cells = {1, 1, 1}, .filled = 1, .visited = 1, .occupied = 1, .listed = 1, .around = 1};
+    CHECK_EQ_INT(frame_over_mesh(&census).level, 0);
+    census.levels[3].filled = 1e6;
+    CHECK_EQ_INT(frame_over_mesh(&census).level, 3);
+    census.levels[3].visited = 1000;
+    CHECK_EQ_INT(frame_over_mesh(&census).level, 0);
+}
+
 /* --- over placed primitives --- */
 
 static void add_ball(struct stage *s, struct node *root, struct vec3 at, double radius) {
