@@ -284,6 +284,13 @@ static inline unsigned simd8_at_most_bits(simd8 a, simd8 b) {
 #endif
 }
 #endif
+#if defined(__AVX2__)
+/* The same but for lanes where both are equal, and from vectors rather than masks. */
+static inline unsigned simd8_below_bits(simd8 a, simd8 b) {
+    __m256i below = _mm256_cmpgt_epi32(_mm256_castps_si256(b), _mm256_castps_si256(a));
+    return (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(below));
+}
+#endif
 /* One bit per lane whose sign is set. */
 static inline unsigned simd8_negative(simd8 a) {
     return (unsigned)_mm256_movemask_ps(a);

@@ -88,7 +88,7 @@ static inline bool node_take_nearest(const struct wide_node *node, uint32_t octa
 /* The same in any order and without where the ray enters. */
 static inline bool node_take_any(const struct wide_node *node, simd8 enter, simd8 leave, struct node_stack *stack,
                                  size_t *top, uint32_t *reference) {
-    unsigned lanes = simd8_at_most_bits(enter, leave);
+    unsigned lanes = simd8_below_bits(enter, leave);
     if (!lanes)
         return false;
     *reference = node->child[__builtin_ctz(lanes)];
