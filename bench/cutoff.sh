@@ -2,7 +2,7 @@
 # What the cut-off by contribution changes: every demo and classic scene with CUTOFF (default: the program's own) and with
 # `--cutoff 0`, the largest change of an 8-bit value and how many values change. Arguments: scripts (default: all of data/);
 # GRAY: the program; SIZE: of the pictures (default 160x120); LEVELS: the most that may change (default 1). Needs ImageMagick.
-# Exit status 1: a scene changes by more.
+# Exit status 1: a scene changes by more. Without ImageMagick nothing is measured, and that is said.
 cd "$(dirname "$0")/.." || exit 1
 here=$(pwd)
 gray=${GRAY:-$here/gray}
@@ -11,7 +11,8 @@ size=${SIZE:-160x120}
 [ $# -gt 0 ] || set -- data/*.lua data/classic/*.lua
 folder=$(mktemp -d) || exit 1
 trap 'rm -rf "$folder"' EXIT
-command -v convert >/dev/null || { echo 'bench/cutoff.sh: ImageMagick (convert) is missing' >&2; exit 1; }
+convert -version 2>/dev/null | grep -q ImageMagick ||
+    { echo 'bench/cutoff.sh: ImageMagick (convert) is missing: left out' >&2; exit 0; }
 failed=0
 printf '%-26s %7s %9s %9s %9s\n' scene levels values 'rays M' 'all M'
 for script in "$@"; do

@@ -283,8 +283,6 @@ static inline unsigned simd8_at_most_bits(simd8 a, simd8 b) {
     return (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(above)) ^ 255u;
 #endif
 }
-#endif
-#if defined(__AVX2__)
 /* The same but for lanes where both are equal, and from vectors rather than masks. */
 static inline unsigned simd8_below_bits(simd8 a, simd8 b) {
     __m256i below = _mm256_cmpgt_epi32(_mm256_castps_si256(b), _mm256_castps_si256(a));
@@ -576,7 +574,8 @@ static inline wide4 wide4_permuted(wide4 a, const uint32_t halves[8]) {
 static inline wide4 wide4_third(wide4 a) {
     return _mm256_permute4x64_pd(a, _MM_SHUFFLE(2, 2, 2, 2));
 }
-/* Lanes 0, 1, 2 of three vectors, each in a vector of its own; lane 3 is anything. Lanes 2 and 3 must be alike. */
+/* Lanes 0, 1 and 2 of three vectors, each in a vector of its own; lane 3 is anything. For the last the vectors must
+ * have the same in lane 3 as in lane 2. */
 static inline wide4 wide4_firsts(wide4 a, wide4 b, wide4 c) {
     return _mm256_insertf128_pd(_mm256_unpacklo_pd(a, b), _mm256_castpd256_pd128(c), 1);
 }
@@ -627,7 +626,8 @@ static inline int wide4_all_below(wide4 a, wide4 b) {
 static inline simd4 wide4_to_single(wide4 a) {
     return _mm256_cvtpd_ps(a);
 }
-static inline void wide4_store(double *p, wide4 a) {
+/* Lanes 0 to 2; a fourth number may be written behind them. */
+static inline void wide4_store_three(double *p, wide4 a) {
     _mm256_storeu_pd(p, a);
 }
 static inline double wide4_lane(wide4 a, int i) {
@@ -703,8 +703,8 @@ static inline int wide4_all_below(wide4 a, wide4 b) {
 static inline simd4 wide4_to_single(wide4 a) {
     return simd4_make((float)a.lane[0], (float)a.lane[1], (float)a.lane[2], (float)a.lane[3]);
 }
-static inline void wide4_store(double *p, wide4 a) {
-    for (int i = 0; i < 4; i++)
+static inline void wide4_store_three(double *p, wide4 a) {
+    for (int i = 0; i < 3; i++)
         p[i] = a.lane[i];
 }
 static inline double wide4_lane(wide4 a, int i) {

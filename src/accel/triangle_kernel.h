@@ -192,7 +192,7 @@ static inline __attribute__((always_inline)) void hit_set(struct triangle_hit *h
                        sizeof(struct triangle_hit) >= 4 * sizeof(double),
                    "t, u and v are written with what is behind them");
     wide4 found = wide4_weighted(edges->e, wide4_mul(edges->e, edges->along));
-    wide4_store((double *)(void *)hit, wide4_mul(found, wide4_with_first_of(wide4_all(1), wide4_third(ray->shear))));
+    wide4_store_three(&hit->t, wide4_mul(found, wide4_with_first_of(wide4_all(1), wide4_third(ray->shear))));
     unsigned enter = ~wide4_negative(edges->e) & 1;
     hit->enter = enter;
 }
