@@ -200,7 +200,9 @@ static void finish_row(struct bench *bench, struct stand *stand, const struct be
         exit(3);
     camera_rays(view, rays);
     row->camera_ns = trace(&stand->world, rays, SIDE * SIDE, &scratch, row);
-    struct box box = stand->world.tree.bounds;
+    struct box box = box_empty();
+    for (uint32_t i = 0; i < stand->world.placed_count; i++)
+        box = box_join(box, stand->world.boxes[i]);
     chords(&box, rays);
     row->chord_ns = trace(&stand->world, rays, SIDE * SIDE, &scratch, NULL);
     world_scratch_destroy(&scratch);
