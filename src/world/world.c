@@ -261,7 +261,8 @@ struct search {
     struct world_scratch *scratch;
     struct box_probe probe;
     struct ray limited; /* the ray with t_max just behind the best answer, so that an equal t is still found */
-    struct crossing best;
+    /* The best answer, if there is one, and where the next goes: what has just been written in pieces is slow to copy. */
+    struct crossing *best, *next;
     uint32_t placed;
     bool found;
 };
@@ -303,17 +304,18 @@ static void try_placed(struct search *s, uint32_t index) {
         return;
     bool as_it_is = s->world->placed[index].linear == LINEAR_NONE;
     struct ray ray_object;
-    struct crossing crossing;
+    struct crossing *crossing = s->next;
     if (!as_it_is)
         ray_object = placed_ray(s->world, index, &s->limited);
-    if (!world_ask_nearest(s->world, index, as_it_is ? &s->limited : &ray_object, s->scratch, &crossing))
+    if (!world_ask_nearest(s->world, index, as_it_is ? &s->limited : &ray_object, s->scratch, crossing))
         return;
-    if (s->found && !(crossing.t < s->best.t || (crossing.t == s->best.t && index < s->placed)))
+    if (s->found && !(crossing->t < s->best->t || (crossing->t == s->best->t && index < s->placed)))
         return;
+    s->next = s->best;
     s->best = crossing;
     s->placed = index;
     s->found = true;
-    double just_behind = crossing.t + fabs(crossing.t) * 0x1p-52;
+    double just_behind = crossing->t + fabs(crossing->t) * 0x1p-52;
     s->limited.t_max = just_behind < s->ray->t_max ? just_behind : s->ray->t_max;
 }
 
@@ -345,7 +347,7 @@ static void search_grid(struct search *s) {
                 try_boxed(s, walk.items[i]);
         }
         /* Strictly before the end of the voxel: an equal t may still wait in the next one. */
-        if (s->found && s->best.t < walk.t_exit)
+        if (s->found && s->best->t < walk.t_exit)
             break;
     }
     s->scratch->geom.cost.voxels += walk.voxels;
@@ -379,13 +381,15 @@ static void search_kd_tree(struct search *s) {
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
                             uint32_t *placed, struct crossing *crossing) {
     struct search s;
+    struct crossing other;
     s.world = world;
     s.ray = ray;
     s.scratch = scratch;
     s.limited = *ray;
     s.found = false;
     s.placed = 0;
-    s.best = (struct crossing){0};
+    s.next = crossing;
+    s.best = &other;
     if (world->frame != ACCEL_BVH)
         s.probe = box_probe_make(ray); /* the hierarchy has one of its own */
     scratch->rays++;
@@ -406,7 +410,8 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
         break;
     }
     *placed = s.placed;
-    *crossing = s.best;
+    if (s.found && s.best != crossing)
+        *crossing = *s.best;
     return s.found;
 }
 
