@@ -454,12 +454,12 @@ void box_tree_walk_begin(struct box_tree_walk *walk, const struct box_tree *tree
     }
 }
 
-bool box_tree_walk_next(struct box_tree_walk *walk, double t_max, uint32_t *item) {
+bool box_tree_walk_down(struct box_tree_walk *walk, double t_max, uint32_t *item) {
 #if defined(__x86_64__)
     if (walk->isa != ACCEL_ISA_BASE)
-        return box_tree_walk_next_avx2(walk, t_max, item);
+        return box_tree_walk_down_avx2(walk, t_max, item);
 #endif
-    return box_tree_walk_next_base(walk, t_max, item);
+    return box_tree_walk_down_base(walk, t_max, item);
 }
 
 bool box_tree_walk_any(struct box_tree_walk *walk, double t_max, uint32_t *item) {

@@ -55,14 +55,38 @@ struct box_tree_walk {
     double enter[BOX_TREE_STACK];
 };
 void box_tree_walk_begin(struct box_tree_walk *walk, const struct box_tree *tree, const struct ray *ray);
-bool box_tree_walk_next(struct box_tree_walk *walk, double t_max, uint32_t *item);
+static inline bool box_tree_walk_next(struct box_tree_walk *walk, double t_max, uint32_t *item);
 /* The same without order, for questions that any item may answer. */
 bool box_tree_walk_any(struct box_tree_walk *walk, double t_max, uint32_t *item);
 
+/* Takes what is on top of a walk. False: t_max ends before it, or it is nothing, which is met by rays that are not
+ * finite (of NaN nothing can be said). */
+static inline bool box_tree_take(struct box_tree_walk *walk, double t_max, uint32_t *child) {
+    *child = walk->child[--walk->top];
+    double enter = walk->enter[walk->top];
+    return !(enter * (enter > 0 ? 1 - 0x1p-50 : 1 + 0x1p-50) > t_max) && *child != BOX_TREE_NONE;
+}
+
+/* box_tree_walk_next where a node is on top. Items that lie ready are worth no call. */
+bool box_tree_walk_down(struct box_tree_walk *walk, double t_max, uint32_t *item);
+
+static inline bool box_tree_walk_next(struct box_tree_walk *walk, double t_max, uint32_t *item) {
+    while (walk->top > 0) {
+        if (!(walk->child[walk->top - 1] & BOX_TREE_ITEM))
+            return box_tree_walk_down(walk, t_max, item);
+        uint32_t child;
+        if (box_tree_take(walk, t_max, &child)) {
+            *item = child & ~BOX_TREE_ITEM;
+            return true;
+        }
+    }
+    return false;
+}
+
 /* Both in each instruction set. */
-bool box_tree_walk_next_base(struct box_tree_walk *walk, double t_max, uint32_t *item);
+bool box_tree_walk_down_base(struct box_tree_walk *walk, double t_max, uint32_t *item);
 bool box_tree_walk_any_base(struct box_tree_walk *walk, double t_max, uint32_t *item);
-bool box_tree_walk_next_avx2(struct box_tree_walk *walk, double t_max, uint32_t *item);
+bool box_tree_walk_down_avx2(struct box_tree_walk *walk, double t_max, uint32_t *item);
 bool box_tree_walk_any_avx2(struct box_tree_walk *walk, double t_max, uint32_t *item);
 
 /* The shaft from one point to a parallelogram (Haines and Wallace, "Shaft Culling for Efficient Ray-Traced Radiosity",

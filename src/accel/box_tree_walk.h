@@ -73,15 +73,12 @@ static unsigned meet_children(const struct box_tree_walk *walk, const struct box
 }
 #endif
 
-bool WALK(next)(struct box_tree_walk *walk, double t_max, uint32_t *item) {
+bool WALK(down)(struct box_tree_walk *walk, double t_max, uint32_t *item) {
     while (walk->top > 0) {
-        uint32_t child = walk->child[--walk->top];
-        double enter_child = walk->enter[walk->top];
-        if (enter_child * (enter_child > 0 ? 1 - 0x1p-50 : 1 + 0x1p-50) > t_max)
+        uint32_t child;
+        if (!box_tree_take(walk, t_max, &child))
             continue;
         if (child & BOX_TREE_ITEM) {
-            if (child == BOX_TREE_NONE) /* met by rays that are not finite: of NaN nothing can be said */
-                continue;
             *item = child & ~BOX_TREE_ITEM;
             return true;
         }
