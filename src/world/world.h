@@ -144,7 +144,7 @@ static inline struct ray placed_ray(const struct world *world, uint32_t placed, 
 /* Nearest hit in the ray's open interval, fully described. Equal t: the primitive that comes first in flattening order.
  */
 bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit);
-/* Only which primitive and where; for tests and counters. */
+/* Only which primitive and where, both anything if there is none; for tests and counters. */
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
                             uint32_t *placed, struct crossing *crossing);
 bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch);
