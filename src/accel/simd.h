@@ -73,14 +73,6 @@ static inline float simd4_first(simd4 a) {
 static inline simd4 simd4_div(simd4 a, simd4 b) {
     return _mm_div_ps(a, b);
 }
-/* The size of a with the sign of b. */
-static inline simd4 simd4_signed(simd4 a, simd4 b) {
-    return _mm_or_ps(a, _mm_and_ps(_mm_set1_ps(-0.0f), b));
-}
-/* Whether a < b in every lane; a NaN is not. */
-static inline int simd4_all_below(simd4 a, simd4 b) {
-    return _mm_movemask_ps(_mm_cmplt_ps(a, b)) == 15;
-}
 static inline int simd4_any_of_three_below(simd4 a, simd4 b) {
     return _mm_movemask_ps(_mm_cmplt_ps(a, b)) & 7;
 }
@@ -171,9 +163,8 @@ static inline float simd4_first(simd4 a) {
     return a.lane[0];
 }
 SIMD4_EACH(simd4_div, x / y)
-SIMD4_EACH(simd4_signed, copysignf(x, y))
-static inline int simd4_all_below(simd4 a, simd4 b) {
-    return a.lane[0] < b.lane[0] && a.lane[1] < b.lane[1] && a.lane[2] < b.lane[2] && a.lane[3] < b.lane[3];
+static inline int simd4_any_of_three_below(simd4 a, simd4 b) {
+    return a.lane[0] < b.lane[0] || a.lane[1] < b.lane[1] || a.lane[2] < b.lane[2];
 }
 static inline float simd4_largest_of_three(simd4 a) {
     float m = a.lane[0] > a.lane[1] ? a.lane[0] : a.lane[1];
@@ -630,10 +621,6 @@ static inline simd4 wide4_to_single(wide4 a) {
 static inline void wide4_store_three(double *p, wide4 a) {
     _mm256_storeu_pd(p, a);
 }
-static inline double wide4_lane(wide4 a, int i) {
-    __m128d b = i < 2 ? _mm256_castpd256_pd128(a) : _mm256_extractf128_pd(a, 1);
-    return _mm_cvtsd_f64(i & 1 ? _mm_unpackhi_pd(b, b) : b);
-}
 /* Lanes 0, 1, 2 turned round; lane 3 stays. */
 static inline wide4 wide4_cab(wide4 a) {
     return _mm256_permute4x64_pd(a, _MM_SHUFFLE(3, 1, 0, 2));
@@ -706,9 +693,6 @@ static inline simd4 wide4_to_single(wide4 a) {
 static inline void wide4_store_three(double *p, wide4 a) {
     for (int i = 0; i < 3; i++)
         p[i] = a.lane[i];
-}
-static inline double wide4_lane(wide4 a, int i) {
-    return a.lane[i];
 }
 static inline wide4 wide4_load_three(const double *p) {
     return wide4_make(p[0], p[1], p[2], 0);
