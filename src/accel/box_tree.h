@@ -55,10 +55,6 @@ struct box_tree_walk {
     double enter[BOX_TREE_STACK];
 };
 void box_tree_walk_begin(struct box_tree_walk *walk, const struct box_tree *tree, const struct ray *ray);
-static inline bool box_tree_walk_next(struct box_tree_walk *walk, double t_max, uint32_t *item);
-/* The same without order, for questions that any item may answer. */
-bool box_tree_walk_any(struct box_tree_walk *walk, double t_max, uint32_t *item);
-
 /* Takes what is on top of a walk. False: t_max ends before it, or it is nothing, which is met by rays that are not
  * finite (of NaN nothing can be said). */
 static inline bool box_tree_take(struct box_tree_walk *walk, double t_max, uint32_t *child) {
@@ -82,6 +78,9 @@ static inline bool box_tree_walk_next(struct box_tree_walk *walk, double t_max, 
     }
     return false;
 }
+
+/* The same without order, for questions that any item may answer. */
+bool box_tree_walk_any(struct box_tree_walk *walk, double t_max, uint32_t *item);
 
 /* Both in each instruction set. */
 bool box_tree_walk_down_base(struct box_tree_walk *walk, double t_max, uint32_t *item);

@@ -85,7 +85,8 @@ static inline bool node_take_nearest(const struct wide_node *node, uint32_t octa
     return true;
 }
 
-/* The same in any order and without where the ray enters. */
+/* The same in any order and without where the ray enters. Boxes are larger than what is in them by more than rounding
+ * can do, so one that the ray leaves where it enters holds nothing that it meets. */
 static inline bool node_take_any(const struct wide_node *node, simd8 enter, simd8 leave, struct node_stack *stack,
                                  size_t *top, uint32_t *reference) {
     unsigned lanes = simd8_below_bits(enter, leave);

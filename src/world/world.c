@@ -261,7 +261,7 @@ struct search {
     struct world_scratch *scratch;
     struct box_probe probe;
     struct ray limited; /* the ray with t_max just behind the best answer, so that an equal t is still found */
-    /* The best answer, if there is one, and where the next goes: what has just been written in pieces is slow to copy. */
+    /* The best answer, if there is one, and where the next goes: what was just written in pieces is slow to copy. */
     struct crossing *best, *next;
     uint32_t placed;
     bool found;
