@@ -127,6 +127,9 @@ $(BUILD)/src/accel/%_avx512.o: override CFLAGS += -mavx512f -mavx512vl -mavx512d
 # Its functions are the C library's own names: the compiler must not see calls of itself in them.
 $(BUILD)/src/script/libm_override.o: override CFLAGS += -fno-builtin
 
+# Kernels in plain C are so long that gcc gives up telling a debugger where variables are, and says so.
+$(BUILD)/tests/unit/test_portable_kernel.o: override CFLAGS += -g0
+
 # A change of compiler or flags rebuilds everything.
 FLAGS_STAMP := $(BUILD)/flags
 $(BUILD)/%.o: %.c $(FLAGS_STAMP)
