@@ -1,0 +1,95 @@
+#!/bin/sh
+# Renders every scene of the repository in small, in several ways, and compares the files with recorded hashes: the
+# measure of a change that must not change pictures.
+#   tools/picture_hashes.sh check [DIR]    renders into DIR (build/pictures), names what differs; status 1 if anything does
+#   tools/picture_hashes.sh record [DIR]   renders, and writes tests/picture_hashes.txt anew
+# WAYS="default j1 bvh base" chooses among the ways; ONLY="word ..." scenes whose path holds one of the words.
+# The hashes are of whole PNG files, so they hold for one version of zlib; tools/picture_difference.py OLD NEW shows by
+# how many levels the pictures of two folders differ.
+cd "$(dirname "$0")/.." || exit 1
+action=${1:-check}
+folder=${2:-build/pictures}
+list=tests/picture_hashes.txt
+ways=${WAYS:-default j1 bvh base}
+gray=$PWD/${GRAY:-gray}
+case $action in check | record) ;; *) sed -n '2,9p' "$0" >&2; exit 2 ;; esac
+[ -x "$gray" ] || { echo "picture_hashes.sh: there is no $gray; run make first" >&2; exit 2; }
+mkdir -p "$folder" || exit 1
+rm -f "$folder"/*
+folder=$(cd "$folder" && pwd)
+
+options_of_way() {
+    case $1 in
+    default) echo "-j 2" ;;
+    j1) echo "-j 1" ;;
+    bvh) echo "-j 2 --accel bvh" ;;
+    base) echo "-j 2 --isa base" ;;
+    esac
+}
+
+wanted() { # wanted PATH
+    [ -z "${ONLY:-}" ] && return 0
+    for word in $ONLY; do
+        case $1 in *"$word"*) return 0 ;; esac
+    done
+    return 1
+}
+
+# Scenes read their own files only; what they print is part of the list, too.
+render() { # render NAME SCENE OPTION...
+    name=$1
+    scene=$2
+    shift 2
+    "$gray" -q -D quick=true --allow-read . --script-time 600 "$@" -- "$scene" >"$folder/$name.txt" 2>&1 ||
+        echo "status $?" >>"$folder/$name.txt"
+    [ -s "$folder/$name.txt" ] || rm -f "$folder/$name.txt"
+}
+
+scenes=$(ls data/*.lua data/csg/*.lua data/library/show_*.lua data/classic/*.lua docs/first.lua tests/pictures/*.lua 2>/dev/null |
+    grep -vE '/(make_[^/]*|room|stage)\.lua$')
+for scene in $scenes; do
+    wanted "$scene" || continue
+    base=$(echo "${scene%.lua}" | tr / -)
+    # The options of the first lines, without those that choose another size.
+    options=$(head -n 20 "$scene" | sed -n 's/^-- *OPTIONS: *//p' | head -n 1)
+    for way in $ways; do
+        # shellcheck disable=SC2046,SC2086
+        render "$base.$way" "$scene" --size 96x72 -ss 2 -al-samples 2 $options $(options_of_way "$way") \
+            -o "$folder/$base.$way-%02d.png"
+    done
+    case " $ways " in *" default "*) ;; *) continue ;; esac
+    # shellcheck disable=SC2086
+    case $scene in
+    *0[2-9]demo.lua | *1[0-4]demo.lua | tests/pictures/*)
+        render "$base.aov" "$scene" --size 64x48 -ss 2 -al-samples 2 $options -j 1 --isa avx2 --aov all -o "$folder/$base.aov-%02d.pfm"
+        ;;
+    esac
+    # shellcheck disable=SC2086
+    render "$base.pixel" "$scene" --size 96x72 -al-samples 2 $options --isa avx2 --pixel 48,40 --pixel 20,60
+    # shellcheck disable=SC2086
+    render "$base.first" "$scene" --size 96x72 -al-samples 1 $options -full -ss 1 --deep -o "$folder/$base.first-%02d.png"
+done
+
+(cd "$folder" && ls | while read -r file; do
+    case $file in
+    *.txt) sed -e "s#$folder#DIR#g" "$file" | sha256sum | sed "s#-\$#$file#" ;;
+    *) sha256sum "$file" ;;
+    esac
+done) | sort -k 2 >"$folder/hashes"
+if [ "$action" = record ]; then
+    cp "$folder/hashes" "$list"
+    echo "$(wc -l <"$list") files recorded in $list"
+    exit 0
+fi
+# Only what was rendered counts.
+join -1 2 -2 2 -a 2 -e missing -o 0,1.1,2.1 "$list" "$folder/hashes" >"$folder/joined"
+different=$(awk '$2 != $3 { print "   " $1 ($2 == "missing" ? " (not in the list)" : "") }' "$folder/joined")
+count=$(wc -l <"$folder/joined")
+if [ -z "${ONLY:-}${WAYS:-}" ]; then
+    gone=$(join -1 2 -2 2 -v 1 "$list" "$folder/hashes" | sed 's/ .*//; s/^/   /; s/$/ (not made)/')
+    different=$(printf '%s\n%s' "$different" "$gone" | sed '/^$/d')
+fi
+[ -z "$different" ] && { echo "$count files, all as recorded"; exit 0; }
+echo "$different"
+echo "$(echo "$different" | wc -l) of $count files differ"
+exit 1
