@@ -1,5 +1,10 @@
-/* The runner: every test in a process of its own, several at a time, with a time limit, results told in order of
- * names. The environment GRAY_TEST_BINARY names the program under test. */
+/* The runner: every test in a process of its own, several at a time, with a time limit. The environment
+ * GRAY_TEST_BINARY names the program under test.
+ *
+ * Between the runner and each test stands a reaper, the parent of the test. It adopts every process whose parent dies
+ * below it, so that none can leave its tree, whatever group or session it moves to. When the test has ended, or the
+ * runner is gone, the reaper ends what is left of the tree and removes the folder of the test. Invariant: no process
+ * and no folder of a test outlives the runner by more than a moment, even when the runner is ended by SIGKILL. */
 #define _GNU_SOURCE
 #include "tests/harness.h"
 
@@ -17,19 +22,21 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
-enum { STATUS_PASSED = 0, STATUS_FAILED = 1, STATUS_SKIPPED = 77, LIMIT_SECONDS = 300 };
+enum { STATUS_PASSED = 0, STATUS_FAILED = 1, STATUS_SKIPPED = 77, LIMIT_SECONDS = 300, JOBS_MAX = 64 };
 
 static struct test *all_tests;
 static int test_count;
 /* Inside the process of one test. */
 static int failures;
-static char folder_path[256];
-static const char *current_name = "test";
+static char folder_path[404]; /* made when it is first needed */
+static bool folder_made;
 
 void test_register(struct test *test) {
     test->next = all_tests;
@@ -60,25 +67,6 @@ void test_skip(const char *format, ...) {
     _exit(failures ? STATUS_FAILED : STATUS_SKIPPED);
 }
 
-static void remove_tree(const char *path) {
-    DIR *stream = opendir(path);
-    if (stream) {
-        for (struct dirent *entry; (entry = readdir(stream)) != NULL;) {
-            if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0)
-                continue;
-            char inner[1024];
-            (void)snprintf(inner, sizeof inner, "%s/%s", path, entry->d_name);
-            struct stat status;
-            if (lstat(inner, &status) == 0 && S_ISDIR(status.st_mode))
-                remove_tree(inner);
-            else
-                (void)unlink(inner);
-        }
-        (void)closedir(stream);
-    }
-    (void)rmdir(path);
-}
-
 void test_need_window(void) {
     const char *named = getenv("GRAY_TEST_BINARY"), *options = getenv("ASAN_OPTIONS");
     char text[4096];
@@ -95,14 +83,12 @@ void test_need_window(void) {
 }
 
 const char *test_folder(void) {
-    if (!folder_path[0]) {
-        const char *base = getenv("TMPDIR");
-        (void)snprintf(folder_path, sizeof folder_path, "%s/gray-%.100s-XXXXXX", base ? base : "/tmp", current_name);
-        if (!mkdtemp(folder_path)) {
-            printf("    cannot make a folder: %s\n", strerror(errno));
-            _exit(STATUS_FAILED);
-        }
+    if (!folder_made && mkdir(folder_path, 0700) != 0) {
+        printf("    cannot make the folder %s: %s\n", folder_path, strerror(errno));
+        fflush(stdout);
+        _exit(STATUS_FAILED);
     }
+    folder_made = true;
     return folder_path;
 }
 
@@ -256,18 +242,447 @@ double test_uniform(struct test_random *random, double lo, double hi) {
     return lo + (hi - lo) * ((double)(z >> 11) * 0x1p-53);
 }
 
-/* The runner. */
-struct running {
-    struct test *test;
-    pid_t pid;
-    int output;
-    double started;
-};
-
 static double now(void) {
     struct timespec time;
     (void)clock_gettime(CLOCK_MONOTONIC, &time);
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+static void pause_milliseconds(long milliseconds) {
+    const struct timespec pause = {0, milliseconds * 1000000};
+    (void)nanosleep(&pause, NULL);
+}
+
+/* Removes `name` in the folder of the descriptor `at`, with all that is in it. */
+static void remove_at(int at, const char *name) {
+    if (unlinkat(at, name, 0) == 0 || errno == ENOENT)
+        return;
+    int folder = openat(at, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (folder < 0 && fchmodat(at, name, 0700, 0) == 0)
+        folder = openat(at, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (folder < 0)
+        return;
+    (void)fchmod(folder, 0700);
+    DIR *stream = fdopendir(folder);
+    if (!stream) {
+        (void)close(folder);
+        return;
+    }
+    for (struct dirent *entry; (entry = readdir(stream)) != NULL;) {
+        if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
+            remove_at(dirfd(stream), entry->d_name);
+    }
+    (void)closedir(stream);
+    (void)unlinkat(at, name, AT_REMOVEDIR);
+}
+
+/* Processes. */
+
+struct process {
+    pid_t pid, parent;
+    bool below; /* the calling process, and not below one that is spared */
+};
+
+static bool read_process(const char *digits, struct process *process) {
+    char path[64], text[512];
+    int parent;
+    (void)snprintf(path, sizeof path, "/proc/%.20s/stat", digits);
+    int file = open(path, O_RDONLY | O_CLOEXEC);
+    if (file < 0)
+        return false;
+    ssize_t got = read(file, text, sizeof text - 1);
+    (void)close(file);
+    text[got > 0 ? got : 0] = '\0';
+    const char *end = strrchr(text, ')'); /* the name before it may hold anything */
+    if (!end || sscanf(end, ") %*c %d", &parent) != 1)
+        return false;
+    *process = (struct process){.pid = (pid_t)atoi(digits), .parent = (pid_t)parent};
+    return true;
+}
+
+/* All processes there are, from malloc; NULL when they cannot be listed. */
+static struct process *list_processes(size_t *count) {
+    struct process *list = NULL;
+    size_t room = 0;
+    DIR *stream = opendir("/proc");
+    *count = 0;
+    if (!stream)
+        return NULL;
+    for (struct dirent *entry; (entry = readdir(stream)) != NULL;) {
+        if (entry->d_name[0] < '0' || entry->d_name[0] > '9')
+            continue;
+        if (*count == room) {
+            struct process *larger = realloc(list, (room = 2 * room + 256) * sizeof *list);
+            if (!larger)
+                break;
+            list = larger;
+        }
+        *count += read_process(entry->d_name, &list[*count]);
+    }
+    (void)closedir(stream);
+    return list;
+}
+
+static bool is_one_of(pid_t pid, const pid_t *list, int count) {
+    for (int i = 0; i < count; i++) {
+        if (list[i] == pid)
+            return true;
+    }
+    return false;
+}
+
+/* Sends a signal to every process below this one, except those that are spared and what is below them. Returns how
+ * many there were. */
+static int signal_descendants(int number, const pid_t *spared, int spared_count) {
+    size_t count;
+    struct process *list = list_processes(&count);
+    int found = 0;
+    bool more = list != NULL;
+    while (more) {
+        more = false;
+        for (size_t i = 0; i < count; i++) {
+            bool below = list[i].parent == getpid();
+            for (size_t k = 0; k < count && !below; k++)
+                below = list[k].below && list[k].pid == list[i].parent;
+            if (list[i].below || !below || is_one_of(list[i].pid, spared, spared_count))
+                continue;
+            list[i].below = more = true;
+            (void)kill(list[i].pid, number);
+            found++;
+        }
+    }
+    free(list);
+    return found;
+}
+
+/* Ends every process below this one, which adopts what loses its parent: first politely, for servers that have files to
+ * remove, then by force. Returns when none is left, or after 10 seconds. */
+static void end_descendants(void) {
+    double begun = now();
+    bool asked = false;
+    while (now() - begun < 10) {
+        pid_t got;
+        while ((got = waitpid(-1, NULL, WNOHANG)) > 0)
+            continue;
+        if (got < 0 && errno == ECHILD)
+            return;
+        if (!asked || now() - begun > 0.3)
+            (void)signal_descendants(asked ? SIGKILL : SIGTERM, NULL, 0);
+        asked = true;
+        pause_milliseconds(5);
+    }
+}
+
+/* What a test finds: every signal that arrived ignored has its default again, none is blocked, and there is
+ * nothing to read. */
+static void reset_inheritance(void) {
+    for (int number = 1; number < NSIG; number++) {
+        struct sigaction action;
+        if (sigaction(number, NULL, &action) == 0 && action.sa_handler == SIG_IGN)
+            (void)signal(number, SIG_DFL);
+    }
+    sigset_t none;
+    (void)sigemptyset(&none);
+    (void)sigprocmask(SIG_SETMASK, &none, NULL);
+    int null = open("/dev/null", O_RDONLY);
+    if (null > 0) {
+        (void)dup2(null, STDIN_FILENO);
+        (void)close(null);
+    }
+}
+
+/* The runner. */
+
+struct running {
+    struct test *test;
+    pid_t reaper;
+    int output;
+    double started;
+};
+
+struct runner {
+    char folder[256]; /* of this run */
+    int *statuses;    /* of the tests in `slots`, as waitpid gives them; shared with the reapers; -1: none yet */
+    sigset_t awaited; /* signals that the runner waits for, blocked otherwise */
+    FILE *log;        /* or NULL */
+    char *title;      /* the words of the command line, which ps shows; a reaper has another one */
+    size_t title_size;
+    bool keep;    /* folders of tests that failed stay */
+    bool strays;  /* a reaper was killed: what was below it is to be ended */
+    int ended_by; /* a signal, or 0 */
+    double begun, next_progress, progress_seconds;
+    int chosen, begun_tests, ended, passed, failed, skipped;
+    struct running slots[JOBS_MAX];
+};
+
+/* quiet: where there is a log, this line is not worth one on the screen. */
+static void print_text(struct runner *runner, bool quiet, const char *text, size_t size) {
+    if (runner->log)
+        (void)fwrite(text, 1, size, runner->log);
+    if (!runner->log || !quiet)
+        (void)fwrite(text, 1, size, stdout);
+}
+
+__attribute__((format(printf, 3, 4))) static void print_line(struct runner *runner, bool quiet, const char *format,
+                                                             ...) {
+    char text[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    print_text(runner, quiet, text, strlen(text));
+}
+
+/* What ps shows of this process: who looks for the runner by its words does not find its reapers. */
+static void set_title(const struct runner *runner, const char *title) {
+    (void)prctl(PR_SET_NAME, title);
+    memset(runner->title, 0, runner->title_size);
+    (void)snprintf(runner->title, runner->title_size, "%s", title);
+}
+
+static _Noreturn void run_test(const struct runner *runner, const struct running *slot, const char *above,
+                               pid_t reaper) {
+    if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != reaper)
+        _exit(STATUS_FAILED);
+    (void)setpgid(0, 0);
+    set_title(runner, slot->test->name);
+    reset_inheritance();
+    fault_apart(); /* what this test makes fail is not to fail in the test beside it */
+    (void)dup2(slot->output, STDOUT_FILENO);
+    (void)dup2(slot->output, STDERR_FILENO);
+    (void)alarm(LIMIT_SECONDS * (slot->test->kind == TEST_SLOW ? 12 : 1));
+    (void)snprintf(folder_path, sizeof folder_path, "%s/%.100s", above, slot->test->name);
+    (void)setenv("TMPDIR", above, 1);
+    if (runner->log)
+        (void)fclose(runner->log);
+    slot->test->run();
+    fflush(stdout);
+    exit(failures ? STATUS_FAILED : STATUS_PASSED);
+}
+
+/* Waits until the test has ended, or the runner wants it to. Returns its status, or -1. */
+static int await_test(pid_t test) {
+    sigset_t awaited;
+    (void)sigemptyset(&awaited);
+    (void)sigaddset(&awaited, SIGCHLD);
+    (void)sigaddset(&awaited, SIGTERM);
+    for (;;) {
+        int status;
+        for (pid_t got; (got = waitpid(-1, &status, WNOHANG)) > 0;) {
+            if (got == test)
+                return status;
+        }
+        if (sigwaitinfo(&awaited, NULL) == SIGTERM)
+            return -1;
+    }
+}
+
+/* Never returns. SIGTERM, which is blocked, says that the test is no longer wanted; the kernel sends it when the runner
+ * is gone. */
+static _Noreturn void reap_test(struct runner *runner, int index, pid_t runner_pid) {
+    struct running *slot = &runner->slots[index];
+    char above[300];
+    sigset_t blocked;
+    (void)sigemptyset(&blocked);
+    (void)sigaddset(&blocked, SIGCHLD);
+    (void)sigaddset(&blocked, SIGTERM);
+    (void)sigprocmask(SIG_BLOCK, &blocked, NULL);
+    (void)prctl(PR_SET_PDEATHSIG, SIGTERM);
+    (void)prctl(PR_SET_CHILD_SUBREAPER, 1);
+    (void)setpgid(0, 0);
+    set_title(runner, "test-reaper");
+    int status = -1;
+    (void)snprintf(above, sizeof above, "%s/%d", runner->folder, runner->begun_tests);
+    /* As /tmp is: a test may become another user. */
+    if (getppid() == runner_pid && mkdir(above, 0700) == 0 && chmod(above, 01777) == 0) {
+        pid_t reaper = getpid(), test = fork();
+        if (test == 0)
+            run_test(runner, slot, above, reaper);
+        if (test > 0)
+            status = await_test(test);
+    }
+    runner->statuses[index] = status;
+    end_descendants();
+    bool passed = status >= 0 && WIFEXITED(status) && WEXITSTATUS(status) != STATUS_FAILED;
+    if (passed || !runner->keep)
+        remove_at(AT_FDCWD, above);
+    if (getppid() != runner_pid)
+        (void)rmdir(runner->folder); /* the last reaper finds it empty */
+    _exit(0);
+}
+
+static void show_output(struct runner *runner, const struct running *slot) {
+    char buffer[4096];
+    (void)lseek(slot->output, 0, SEEK_SET);
+    for (ssize_t got; (got = read(slot->output, buffer, sizeof buffer)) > 0;)
+        print_text(runner, false, buffer, (size_t)got);
+}
+
+static void end_test(struct runner *runner, int index) {
+    struct running *slot = &runner->slots[index];
+    int status = runner->statuses[index];
+    int code = status >= 0 && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    bool passed = code == STATUS_PASSED, skipped = code == STATUS_SKIPPED,
+         counts = runner->ended_by == 0 || status >= 0;
+    slot->reaper = 0;
+    if (counts) {
+        print_line(runner, passed, "%-8s %s (%.1f s)\n",
+                   passed    ? "ok"
+                   : skipped ? "skipped"
+                             : "FAILED",
+                   slot->test->name, now() - slot->started);
+        if (status < 0)
+            print_line(runner, false, "    its reaper was killed, or could not start it\n");
+        else if (code < 0)
+            print_line(runner, false, "    ended by signal %d (%s)%s\n", WTERMSIG(status), strsignal(WTERMSIG(status)),
+                       WTERMSIG(status) == SIGALRM ? ": over its time limit" : "");
+        if (!passed || slot->test->kind == TEST_SLOW)
+            show_output(runner, slot);
+        runner->ended++;
+        runner->passed += passed;
+        runner->skipped += skipped;
+        runner->failed += !passed && !skipped;
+    }
+    (void)close(slot->output);
+    slot->test = NULL;
+}
+
+static void begin_test(struct runner *runner, struct test *test) {
+    int index = 0;
+    while (runner->slots[index].test)
+        index++;
+    struct running *slot = &runner->slots[index];
+    pid_t runner_pid = getpid();
+    *slot = (struct running){.test = test, .started = now()};
+    slot->output = memfd_create("output", MFD_CLOEXEC);
+    runner->statuses[index] = -1;
+    runner->begun_tests++;
+    (void)fflush(NULL);
+    slot->reaper = fork();
+    if (slot->reaper == 0)
+        reap_test(runner, index, runner_pid);
+    if (slot->reaper < 0)
+        end_test(runner, index);
+}
+
+/* Takes the end of reapers and of processes that lost theirs. */
+static void reap(struct runner *runner) {
+    int how;
+    for (pid_t done; (done = waitpid(-1, &how, WNOHANG)) > 0;) {
+        for (int i = 0; i < JOBS_MAX; i++) {
+            if (runner->slots[i].test && runner->slots[i].reaper == done) {
+                runner->strays = runner->strays || how != 0;
+                end_test(runner, i);
+            }
+        }
+    }
+    if (!runner->strays)
+        return;
+    pid_t reapers[JOBS_MAX];
+    for (int i = 0; i < JOBS_MAX; i++)
+        reapers[i] = runner->slots[i].reaper;
+    runner->strays = signal_descendants(SIGKILL, reapers, JOBS_MAX) > 0;
+}
+
+static int active_tests(const struct runner *runner) {
+    int active = 0;
+    for (int i = 0; i < JOBS_MAX; i++)
+        active += runner->slots[i].test != NULL;
+    return active;
+}
+
+static void show_progress(struct runner *runner) {
+    if (now() >= runner->next_progress) {
+        printf("   %d of %d tests, %.0f s\n", runner->ended, runner->chosen, now() - runner->begun);
+        runner->next_progress = now() + runner->progress_seconds;
+    }
+    if (runner->log)
+        (void)fflush(runner->log);
+    if (fflush(stdout) != 0 && !runner->ended_by) /* nobody reads any more */
+        runner->ended_by = SIGPIPE;
+}
+
+/* Until a child ends, a signal comes or a line of progress is due. */
+static void await_signal(struct runner *runner) {
+    double wait = runner->strays ? 0.01 : runner->next_progress - now();
+    wait = wait < 0 ? 0 : wait;
+    const struct timespec timeout = {(time_t)wait, (long)((wait - (double)(time_t)wait) * 1e9)};
+    int number = sigtimedwait(&runner->awaited, NULL, &timeout);
+    if (number > 0 && number != SIGCHLD)
+        runner->ended_by = number;
+}
+
+static void run_tests(struct runner *runner, struct test **tests, int jobs) {
+    bool ending = false;
+    runner->begun = now();
+    runner->next_progress = runner->begun + runner->progress_seconds;
+    for (;;) {
+        while (!runner->ended_by && runner->begun_tests < runner->chosen && active_tests(runner) < jobs)
+            begin_test(runner, tests[runner->begun_tests]);
+        for (int i = 0; i < JOBS_MAX && runner->ended_by && !ending; i++) {
+            if (runner->slots[i].test)
+                (void)kill(runner->slots[i].reaper, SIGTERM);
+        }
+        ending = runner->ended_by != 0;
+        if (active_tests(runner) == 0 && !runner->strays)
+            return;
+        await_signal(runner);
+        reap(runner);
+        show_progress(runner);
+    }
+}
+
+/* Signals that arrive ignored stay ignored here (nohup, a shell's background), not in the tests. */
+static void listen_to_signals(struct runner *runner) {
+    static const int ending[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
+    (void)sigemptyset(&runner->awaited);
+    (void)sigaddset(&runner->awaited, SIGCHLD);
+    for (size_t i = 0; i < sizeof ending / sizeof *ending; i++) {
+        struct sigaction action;
+        if (sigaction(ending[i], NULL, &action) == 0 && action.sa_handler != SIG_IGN)
+            (void)sigaddset(&runner->awaited, ending[i]);
+    }
+    (void)signal(SIGCHLD, SIG_DFL);
+    (void)signal(SIGPIPE, SIG_IGN);
+    (void)sigprocmask(SIG_BLOCK, &runner->awaited, NULL);
+}
+
+static bool start_runner(struct runner *runner) {
+    const char *base = getenv("TMPDIR"), *progress = getenv("GRAY_TEST_PROGRESS");
+    runner->progress_seconds = progress && atof(progress) > 0 ? atof(progress) : 15;
+    runner->statuses =
+        mmap(NULL, JOBS_MAX * sizeof *runner->statuses, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    (void)snprintf(runner->folder, sizeof runner->folder, "%.200s/gray-XXXXXX", base && base[0] ? base : "/tmp");
+    if (runner->statuses == MAP_FAILED || !mkdtemp(runner->folder) || chmod(runner->folder, 0711) != 0) {
+        (void)fprintf(stderr, "%s: cannot be made: %s\n", runner->folder, strerror(errno));
+        return false;
+    }
+    (void)prctl(PR_SET_CHILD_SUBREAPER, 1);
+    listen_to_signals(runner);
+    return true;
+}
+
+/* The status of the program; a runner that was ended by a signal ends by that signal. */
+static int finish_runner(struct runner *runner) {
+    end_descendants();
+    if (runner->keep && runner->failed > 0 && rmdir(runner->folder) != 0)
+        print_line(runner, false, "the folders of tests that failed are in %s\n", runner->folder);
+    else
+        remove_at(AT_FDCWD, runner->folder);
+    if (runner->ended_by)
+        print_line(runner, false, "ended by signal %d (%s) after %d of %d tests\n", runner->ended_by,
+                   strsignal(runner->ended_by), runner->ended, runner->chosen);
+    else
+        print_line(runner, true, "%d passed, %d failed, %d skipped\n", runner->passed, runner->failed, runner->skipped);
+    bool written = fflush(stdout) == 0 && (!runner->log || fclose(runner->log) == 0);
+    if (runner->ended_by) {
+        (void)signal(runner->ended_by, SIG_DFL);
+        sigset_t none;
+        (void)sigemptyset(&none);
+        (void)raise(runner->ended_by);
+        (void)sigprocmask(SIG_SETMASK, &none, NULL);
+    }
+    return runner->failed || runner->ended_by || !written ? 1 : 0;
 }
 
 static int by_name(const void *a, const void *b) {
@@ -276,104 +691,64 @@ static int by_name(const void *a, const void *b) {
     return order ? order : strcmp(x->name, y->name);
 }
 
-static void begin(struct running *slot, struct test *test) {
-    char name[] = "/tmp/gray-test-output-XXXXXX";
-    slot->output = mkstemp(name);
-    (void)unlink(name);
-    slot->test = test;
-    slot->started = now();
-    fflush(stdout);
-    slot->pid = fork();
-    if (slot->pid == 0) {
-        (void)setpgid(0, 0);
-        fault_apart(); /* what this test makes fail is not to fail in the test beside it */
-        (void)dup2(slot->output, 1);
-        (void)alarm(LIMIT_SECONDS * (test->is_long ? 12 : 1));
-        current_name = test->name;
-        test->run();
-        fflush(stdout);
-        if (folder_path[0] && failures == 0)
-            remove_tree(folder_path);
-        exit(failures ? STATUS_FAILED : STATUS_PASSED);
+/* The tests of a kind that match a pattern, or all, in order of names; from malloc. */
+static struct test **choose_tests(enum test_kind kind, const char *const *patterns, int pattern_count, int *count) {
+    struct test **chosen = calloc((size_t)test_count + 1, sizeof *chosen);
+    *count = 0;
+    for (struct test *test = all_tests; test && chosen; test = test->next) {
+        bool wanted = pattern_count == 0;
+        for (int i = 0; i < pattern_count; i++)
+            wanted = wanted || strstr(test->name, patterns[i]) || strstr(test->file, patterns[i]) ||
+                     fnmatch(patterns[i], test->name, 0) == 0;
+        if (wanted && test->kind == kind)
+            chosen[(*count)++] = test;
     }
+    if (chosen)
+        qsort(chosen, (size_t)*count, sizeof *chosen, by_name);
+    return chosen;
 }
 
 int main(int argc, char **argv) {
-    int jobs = 2;
-    bool run_long = false, list = false;
-    const char **patterns = calloc((size_t)argc, sizeof *patterns);
-    int pattern_count = 0;
+    static struct runner runner;
+    const char **patterns = calloc((size_t)argc, sizeof *patterns), *log = NULL;
+    enum test_kind kind = TEST_FAST;
+    bool list = false;
+    int jobs = 2, pattern_count = 0, status = 0;
     if (!patterns)
         return 1;
     for (int i = 1; i < argc; i++) {
         if (strcmp(argv[i], "-j") == 0 && i + 1 < argc)
             jobs = atoi(argv[++i]);
+        else if (strcmp(argv[i], "--log") == 0 && i + 1 < argc)
+            log = argv[++i];
         else if (strcmp(argv[i], "--long") == 0)
-            run_long = true;
+            kind = TEST_SLOW;
+        else if (strcmp(argv[i], "--examples") == 0)
+            kind = TEST_EXAMPLE;
         else if (strcmp(argv[i], "--list") == 0)
             list = true;
+        else if (strcmp(argv[i], "--keep") == 0)
+            runner.keep = true;
         else
             patterns[pattern_count++] = argv[i];
     }
-    jobs = jobs < 1 ? 1 : jobs > 64 ? 64 : jobs;
-    struct test **chosen = calloc((size_t)test_count + 1, sizeof *chosen);
-    int count = 0;
-    for (struct test *test = all_tests; test; test = test->next) {
-        bool wanted = pattern_count == 0;
-        for (int i = 0; i < pattern_count; i++)
-            wanted = wanted || strstr(test->name, patterns[i]) || strstr(test->file, patterns[i]) ||
-                     fnmatch(patterns[i], test->name, 0) == 0;
-        if (wanted && test->is_long == run_long)
-            chosen[count++] = test;
-    }
+    jobs = jobs < 1 ? 1 : jobs > JOBS_MAX ? JOBS_MAX : jobs;
+    struct test **chosen = choose_tests(kind, patterns, pattern_count, &runner.chosen);
     free(patterns);
-    qsort(chosen, (size_t)count, sizeof *chosen, by_name);
-    if (list) {
-        for (int i = 0; i < count; i++)
+    runner.title = argv[0];
+    runner.title_size = (size_t)(argv[argc - 1] + strlen(argv[argc - 1]) - argv[0]);
+    if (log && !list && !(runner.log = fopen(log, "we"))) {
+        (void)fprintf(stderr, "%s: cannot be written: %s\n", log, strerror(errno));
+        status = 1;
+    } else if (list) {
+        for (int i = 0; i < runner.chosen; i++)
             printf("%s\t%s\n", chosen[i]->name, chosen[i]->file);
-        return 0;
-    }
-    struct running slots[64] = {0};
-    int next = 0, active = 0, passed = 0, failed = 0, skipped = 0;
-    while (next < count || active > 0) {
-        while (active < jobs && next < count) {
-            int free_slot = 0;
-            while (slots[free_slot].test)
-                free_slot++;
-            begin(&slots[free_slot], chosen[next++]);
-            active++;
-        }
-        int status;
-        pid_t done = wait(&status);
-        if (done < 0)
-            break;
-        for (int i = 0; i < 64; i++) {
-            struct running *slot = &slots[i];
-            if (!slot->test || slot->pid != done)
-                continue;
-            int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-            const char *word = code == STATUS_PASSED ? "ok" : code == STATUS_SKIPPED ? "skipped" : "FAILED";
-            printf("%-8s %s (%.1f s)\n", word, slot->test->name, now() - slot->started);
-            if (code != STATUS_PASSED) {
-                if (code < 0)
-                    printf("    ended by signal %d (%s)%s\n", WTERMSIG(status), strsignal(WTERMSIG(status)),
-                           WTERMSIG(status) == SIGALRM ? ": over its time limit" : "");
-                char buffer[4096];
-                (void)lseek(slot->output, 0, SEEK_SET);
-                for (ssize_t got; (got = read(slot->output, buffer, sizeof buffer)) > 0;)
-                    (void)fwrite(buffer, 1, (size_t)got, stdout);
-            }
-            (void)kill(-done, SIGKILL); /* whatever the test left running */
-            (void)close(slot->output);
-            slot->test = NULL;
-            active--;
-            passed += code == STATUS_PASSED;
-            skipped += code == STATUS_SKIPPED;
-            failed += code != STATUS_PASSED && code != STATUS_SKIPPED;
-        }
-        fflush(stdout);
+    } else if (!chosen || !start_runner(&runner)) {
+        status = 1;
+    } else {
+        run_tests(&runner, chosen, jobs);
+        status = finish_runner(&runner);
     }
     free(chosen);
-    printf("%d passed, %d failed, %d skipped\n", passed, failed, skipped);
-    return failed ? 1 : 0;
+    return status;
 }

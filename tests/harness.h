@@ -1,6 +1,9 @@
 /* A small test harness. TEST(name) registers itself; CHECK and friends report and count. A test's name is its claim.
- * Run: build/CONFIG/tests [-j N] [pattern ...]; the last line is "N passed, N failed, N skipped". Every test runs in a
- * process of its own with a time limit, so that a crash or a hang is one failed test. */
+ * Run: build/CONFIG/tests/run [-j N] [--long] [--list] [--keep] [--log FILE] [pattern ...]; the last line is
+ * "N passed, N failed, N skipped". Every test runs in a process of its own with a time limit, so that a crash or a hang
+ * is one failed test, and with standard input empty and no signal ignored. Its output is shown when it does not pass.
+ * A line says how far the run is every 15 seconds, or as many as GRAY_TEST_PROGRESS says. With --log lines of tests
+ * that passed and the last line go into FILE only, together with all others. */
 #ifndef GRAY_TESTS_HARNESS_H
 #define GRAY_TESTS_HARNESS_H
 
@@ -8,23 +11,29 @@
 #include <stddef.h>
 #include <stdint.h>
 
+enum test_kind {
+    TEST_FAST,
+    TEST_SLOW,   /* only run by make test-long */
+    TEST_EXAMPLE /* only run by the tests of the runner itself (run --examples) */
+};
 struct test {
     const char *name, *file;
     void (*run)(void);
-    bool is_long; /* only run by make test-long */
+    enum test_kind kind;
     struct test *next;
 };
 void test_register(struct test *test);
 
-#define TEST_DEFINE(test_name, long_flag)                                                                              \
+#define TEST_DEFINE(test_name, test_kind)                                                                              \
     static void test_name(void);                                                                                       \
-    static struct test test_entry_##test_name = {#test_name, __FILE__, test_name, long_flag, NULL};                    \
+    static struct test test_entry_##test_name = {#test_name, __FILE__, test_name, test_kind, NULL};                    \
     __attribute__((constructor)) static void test_enter_##test_name(void) {                                            \
         test_register(&test_entry_##test_name);                                                                        \
     }                                                                                                                  \
     static void test_name(void)
-#define TEST(test_name) TEST_DEFINE(test_name, false)
-#define TEST_LONG(test_name) TEST_DEFINE(test_name, true)
+#define TEST(test_name) TEST_DEFINE(test_name, TEST_FAST)
+#define TEST_LONG(test_name) TEST_DEFINE(test_name, TEST_SLOW)
+#define TEST_EXAMPLE(test_name) TEST_DEFINE(test_name, TEST_EXAMPLE)
 
 void test_fail(const char *file, int line, const char *format, ...) __attribute__((format(printf, 3, 4)));
 _Noreturn void test_skip(const char *format, ...) __attribute__((format(printf, 1, 2))); /* ends this test as skipped */
@@ -62,7 +71,10 @@ _Noreturn void test_skip(const char *format, ...) __attribute__((format(printf, 
  * tests' own. */
 void test_need_window(void);
 
-/* A fresh empty folder for this test, removed when the test passes; the working directory stays the repository root. */
+/* A fresh empty folder for this test; the working directory stays the repository root. The folder is removed when the
+ * test ends, except that of a failed test under run --keep. TMPDIR names the folder above it, which is this test's,
+ * too.
+ */
 const char *test_folder(void);
 /* The path of a name in it; the last eight answers stay as they are. */
 const char *test_path(const char *name);

@@ -1,0 +1,403 @@
+/* The runner of these tests and make test: what they reset, leave behind, say and end. The examples are tests that only
+ * the runs below choose. Every process of such a run carries a word in its environment, by which it is found in /proc
+ * wherever it has moved to. */
+#define _GNU_SOURCE
+#include "tests/harness.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+/* Examples. */
+
+TEST_EXAMPLE(example_passes) {
+    CHECK(test_folder()[0] == '/');
+}
+
+TEST_EXAMPLE(example_takes_a_second) {
+    (void)usleep(1000000);
+}
+
+/* A folder of its own, with one below it that cannot be written, and something in TMPDIR. */
+static void leave_files(void) {
+    test_write_text(test_path("file.txt"), "text");
+    CHECK(mkdir(test_path("locked"), 0700) == 0);
+    test_write_text(test_path("locked/file.txt"), "text");
+    CHECK(chmod(test_path("locked"), 0500) == 0);
+    CHECK(system("mktemp -d >/dev/null") == 0);
+}
+
+TEST_EXAMPLE(example_skips) {
+    leave_files();
+    test_skip("as it should");
+}
+
+TEST_EXAMPLE(example_fails) {
+    leave_files();
+    CHECK(false);
+}
+
+TEST_EXAMPLE(example_crashes) {
+    leave_files();
+    (void)raise(SIGKILL);
+}
+
+TEST_EXAMPLE(example_finds_signals_at_their_defaults) {
+    sigset_t blocked;
+    CHECK(sigprocmask(SIG_SETMASK, NULL, &blocked) == 0);
+    for (int number = 1; number < NSIG; number++) {
+        struct sigaction action;
+        if (sigaction(number, NULL, &action) == 0 && action.sa_handler == SIG_IGN)
+            test_fail(__FILE__, __LINE__, "signal %d is ignored", number);
+        if (sigismember(&blocked, number) == 1)
+            test_fail(__FILE__, __LINE__, "signal %d is blocked", number);
+    }
+    int how = system("kill -s HUP $$");
+    CHECK(WIFSIGNALED(how) && WTERMSIG(how) == SIGHUP);
+    struct test_result result = test_gray_scene("while true do end", "scene.lua --script-time 0.1", NULL);
+    CHECK_EQ_INT(result.status, 1);
+    free(result.out);
+    free(result.err);
+}
+
+/* A plain child, one in a session of its own, one that nobody waits for and that ignores what it can, one that is
+ * stopped, and the program with its rendering process. */
+static void leave_processes(void) {
+    test_write_text(test_path("scene.lua"), "gr.render(gr.node('n'), 'out.png', 8000, 8000, {0, 0, 1}, {0, 0, -1}, "
+                                            "{0, 1, 0}, 40, {1, 1, 1}, {})");
+    const char *named = getenv("GRAY_TEST_BINARY");
+    char binary[4096], *command;
+    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
+    CHECK(asprintf(&command,
+                   "cd '%s'; sleep 1000 & setsid sleep 1001 & (trap '' TERM HUP INT; setsid sleep 1002 &) & "
+                   "sh -c 'kill -s STOP $$' & '%s' -q -full -ss 60 scene.lua & sleep 0.1",
+                   test_folder(), binary) > 0);
+    CHECK(system(command) == 0);
+    free(command);
+}
+
+TEST_EXAMPLE(example_leaves_processes) {
+    leave_processes();
+    (void)usleep(200000);
+}
+
+TEST_EXAMPLE(example_waits_with_processes) {
+    leave_files();
+    leave_processes();
+    const char *ready = getenv("GRAY_EXAMPLE_READY");
+    if (ready)
+        test_write_text(ready, "");
+    for (;;)
+        (void)pause();
+}
+
+/* Runs of them. */
+
+static double clock_now(void) {
+    struct timespec time;
+    (void)clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+/* Processes that carry the word of this test. */
+static int marked_processes(void) {
+    char mark[512], path[64];
+    int found = 0;
+    (void)snprintf(mark, sizeof mark, "GRAY_EXAMPLE_RUN=%s", test_folder());
+    DIR *stream = opendir("/proc");
+    for (struct dirent *entry; stream && (entry = readdir(stream)) != NULL;) {
+        if (entry->d_name[0] < '1' || entry->d_name[0] > '9')
+            continue;
+        (void)snprintf(path, sizeof path, "/proc/%.20s/environ", entry->d_name);
+        size_t size = 0;
+        char *text = test_read_file(path, &size);
+        found += text && memmem(text, size, mark, strlen(mark)) != NULL;
+        free(text);
+    }
+    if (stream)
+        (void)closedir(stream);
+    return found;
+}
+
+static int files_in(const char *path) {
+    int count = 0;
+    DIR *stream = opendir(path);
+    while (stream && readdir(stream) != NULL)
+        count++;
+    if (stream)
+        (void)closedir(stream);
+    return count - 2;
+}
+
+/* The folder that stands for /tmp. */
+static const char *temporary(void) {
+    static char path[512];
+    (void)snprintf(path, sizeof path, "%s/tmp", test_folder());
+    (void)mkdir(path, 0700);
+    return path;
+}
+
+static const char *this_program(void) {
+    static char path[4096];
+    ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
+    path[length > 0 ? length : 0] = '\0';
+    return path;
+}
+
+/* Starts a line of shell; `$run` is the runner. What it prints goes into said.txt. It leads a group of its own. */
+static pid_t start(const char *line) {
+    char text[8192];
+    (void)snprintf(text, sizeof text, "%s", test_path("said.txt"));
+    const char *below = temporary(), *run = this_program();
+    fflush(stdout);
+    pid_t child = fork();
+    if (child != 0)
+        return child;
+    int out = open(text, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    (void)dup2(out, STDOUT_FILENO);
+    (void)dup2(out, STDERR_FILENO);
+    (void)close(out);
+    (void)setpgid(0, 0);
+    (void)setenv("TMPDIR", below, 1);
+    (void)setenv("run", run, 1);
+    (void)setenv("GRAY_EXAMPLE_RUN", test_folder(), 1);
+    (void)unsetenv("MAKELEVEL");
+    (void)unsetenv("MAKEFLAGS");
+    (void)execl("/bin/sh", "sh", "-c", line, NULL);
+    _exit(127);
+}
+
+static int wait_for(pid_t child) {
+    int how;
+    (void)waitpid(child, &how, 0);
+    return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
+}
+
+/* The last answer stays until the next one. */
+static const char *said(void) {
+    static char *text;
+    free(text);
+    text = test_read_file(test_path("said.txt"), NULL);
+    return text ? text : "";
+}
+
+static void expect(bool is, const char *what, const char *when) {
+    if (!is)
+        test_fail(__FILE__, __LINE__, "%s (%s); said:\n%s", what, when, said());
+}
+
+/* Nothing may be left, after some seconds or at once. */
+static void expect_nothing_left(double seconds, const char *when) {
+    double begun = clock_now();
+    while ((marked_processes() > 0 || files_in(temporary()) > 0) && clock_now() - begun < seconds)
+        (void)usleep(20000);
+    int processes = marked_processes(), files = files_in(temporary());
+    if (processes > 0 || files > 0)
+        test_fail(__FILE__, __LINE__, "%s: %d processes and %d folders are left", when, processes, files);
+}
+
+static bool await_file(const char *path) {
+    double begun = clock_now();
+    while (access(path, F_OK) != 0 && clock_now() - begun < 60)
+        (void)usleep(5000);
+    return access(path, F_OK) == 0;
+}
+
+static bool ends_with(const char *text, const char *end) {
+    size_t length = strlen(text), size = strlen(end);
+    return length >= size && strcmp(text + length - size, end) == 0;
+}
+
+/* Starts the line with signals ignored and blocked. */
+static pid_t start_ignoring(const char *line) {
+    static const int ignored[] = {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGPIPE, SIGCHLD, SIGUSR1, SIGALRM, SIGXFSZ};
+    const size_t count = sizeof ignored / sizeof *ignored;
+    sigset_t all, before;
+    void (*handlers[sizeof ignored / sizeof *ignored])(int);
+    (void)sigfillset(&all);
+    (void)sigprocmask(SIG_BLOCK, &all, &before);
+    for (size_t i = 0; i < count; i++)
+        handlers[i] = signal(ignored[i], SIG_IGN);
+    pid_t child = start(line);
+    for (size_t i = 0; i < count; i++)
+        (void)signal(ignored[i], handlers[i]);
+    (void)sigprocmask(SIG_SETMASK, &before, NULL);
+    return child;
+}
+
+TEST(a_runner_resets_signals_that_arrive_ignored_or_blocked) {
+    (void)temporary();
+    CHECK_EQ_INT(wait_for(start_ignoring("exec $run --examples example_finds_signals")), 0);
+    CHECK_EQ_INT(
+        wait_for(start("to=$GRAY_EXAMPLE_RUN/nohup.txt; nohup $run --examples example_finds_signals >$to 2>&1; "
+                       "s=$?; cat $to; exit $s")),
+        0);
+    CHECK_EQ_INT(wait_for(start("$run --examples example_finds_signals & wait $!")), 0);
+    expect_nothing_left(0, "after runs with ignored signals");
+}
+
+TEST(a_runner_leaves_no_folder_whether_tests_pass_skip_fail_or_crash) {
+    static const char *const words[] = {"example_passes", "example_skips", "example_fails", "example_crashes"};
+    static const char *const ends[] = {"1 passed, 0 failed, 0 skipped\n", "0 passed, 0 failed, 1 skipped\n",
+                                       "0 passed, 1 failed, 0 skipped\n", "0 passed, 1 failed, 0 skipped\n"};
+    for (int i = 0; i < 4; i++) {
+        char line[100];
+        (void)snprintf(line, sizeof line, "exec $run --examples %s", words[i]);
+        CHECK_EQ_INT(wait_for(start(line)), i >= 2);
+        expect(ends_with(said(), ends[i]), "another last line", words[i]);
+        expect_nothing_left(0, words[i]);
+    }
+    CHECK_EQ_INT(wait_for(start("exec $run --examples --keep -j 4 example_passes example_skips example_fails")), 1);
+    expect(files_in(temporary()) == 1 && strstr(said(), "the folders of tests that failed are in "),
+           "no folder was kept", "--keep");
+}
+
+TEST(a_runner_ends_what_its_tests_leave_running) {
+    CHECK_EQ_INT(wait_for(start("exec $run --examples -j 3 example_leaves_processes example_crashes")), 1);
+    expect(ends_with(said(), "\n1 passed, 1 failed, 0 skipped\n"), "another last line", "leaving processes");
+    expect_nothing_left(0, "after tests that left processes");
+}
+
+static void end_runner(int number, bool reaper) {
+    char when[64], *ready = strdup(test_path("ready"));
+    (void)snprintf(when, sizeof when, "signal %d%s", number, reaper ? " to reapers" : "");
+    (void)unlink(ready);
+    (void)setenv("GRAY_EXAMPLE_READY", ready, 1);
+    pid_t runner = start("exec $run --examples -j 3 example_waits example_crashes");
+    expect(await_file(ready) && marked_processes() >= 8, "the processes did not start", when);
+    if (reaper) { /* the runner goes on without them */
+        char line[64];
+        (void)snprintf(line, sizeof line, "pkill -KILL -P %d", (int)runner);
+        CHECK(system(line) == 0);
+        CHECK_EQ_INT(wait_for(runner), 1);
+    } else {
+        CHECK(kill(runner, number) == 0);
+        CHECK_EQ_INT(wait_for(runner), 128 + number);
+    }
+    /* After SIGKILL the reapers end the tests while nobody waits for that. */
+    expect_nothing_left(number == SIGKILL && !reaper ? 20 : 0, when);
+    free(ready);
+}
+
+TEST(a_runner_that_is_ended_by_a_signal_leaves_no_process_and_no_folder) {
+    end_runner(SIGINT, false);
+    end_runner(SIGTERM, false);
+    end_runner(SIGHUP, false);
+    end_runner(SIGQUIT, false);
+}
+
+TEST(a_runner_or_its_reapers_that_are_killed_leave_no_process_and_no_folder) {
+    end_runner(SIGKILL, false);
+    end_runner(SIGKILL, true);
+}
+
+TEST(a_runner_whose_reader_is_gone_ends) {
+    CHECK_EQ_INT(wait_for(start("export GRAY_TEST_PROGRESS=0.05; { $run --examples example_waits_with_processes; "
+                                "echo $? >$GRAY_EXAMPLE_RUN/status.txt; } | true; "
+                                "test \"$(cat $GRAY_EXAMPLE_RUN/status.txt)\" = 141")),
+                 0);
+    expect_nothing_left(0, "no reader");
+}
+
+TEST(a_runner_says_how_far_it_is) {
+    CHECK_EQ_INT(wait_for(start("export GRAY_TEST_PROGRESS=0.2; exec $run --examples -j 2 takes_a_second passes")), 0);
+    expect(strstr(said(), "\n   1 of 2 tests, ") != NULL, "no line of progress", "0.2 s");
+    expect(ends_with(said(), "\n2 passed, 0 failed, 0 skipped\n"), "another last line", "0.2 s");
+    char line[1024];
+    (void)snprintf(line, sizeof line, "exec $run --examples --log %s example_passes example_fails",
+                   test_path("tests.log"));
+    CHECK_EQ_INT(wait_for(start(line)), 1);
+    const char *shown = said();
+    char *log = test_read_file(test_path("tests.log"), NULL);
+    expect(strstr(shown, "FAILED   example_fails") && !strstr(shown, "ok  ") && !strstr(shown, "passed, "),
+           "what passed is shown, or what failed is not", "--log");
+    expect(log && strstr(log, "ok       example_passes") && ends_with(log, "\n1 passed, 1 failed, 0 skipped\n"),
+           "the log is not whole", "--log");
+    free(log);
+}
+
+/* make test, with a makefile and a runner that do as the test wants. */
+
+static void make_tree(void) {
+    CHECK(wait_for(start("d=$GRAY_EXAMPLE_RUN/tree; mkdir -p $d/tools $d/build/release/tests $d/build/asan/tests && "
+                         "cp tools/test.sh tools/test_steps.sh tools/test_session.sh $d/tools && "
+                         "printf '#!/bin/sh\\n' >$d/tools/setup.sh && cp $d/tools/setup.sh $d/tools/layers.sh && "
+                         "printf '#!/bin/sh\\nexec $run --examples $example $1 $2 $3 $4\\n' "
+                         ">$d/build/release/tests/run && cp $d/build/release/tests/run $d/build/asan/tests/run && "
+                         "printf 'test:\\n\\t@tools/test.sh\\nall:\\nbuild-tests:\\n\\t@$(build)\\n' >$d/Makefile && "
+                         "chmod +x $d/tools/setup.sh $d/tools/layers.sh $d/build/*/tests/run && "
+                         "ln -s $(realpath ${GRAY_TEST_BINARY:-build/release/gray}) $d/build/release/gray && "
+                         "ln -s ../release/gray $d/build/asan/gray")) == 0);
+}
+
+TEST(make_test_says_how_far_it_is_while_building_and_testing) {
+    make_tree();
+    CHECK_EQ_INT(wait_for(start("cd $GRAY_EXAMPLE_RUN/tree; export build='sleep 1' example=example_takes_a_second "
+                                "GRAY_TEST_PROGRESS=0.3; exec make -s test")),
+                 0);
+    const char *text = said();
+    const char *building = strstr(text, "   building release, "), *testing = strstr(text, "   0 of 1 tests, ");
+    expect(building && testing && building < testing, "no lines of progress", "make test");
+    expect(strstr(text, "\n   1 passed, 0 failed, 0 skipped\n") && ends_with(text, "\n3 passed, 0 failed, 0 skipped\n"),
+           "another last line", "make test");
+    expect_nothing_left(0, "make test");
+}
+
+TEST(make_test_passes_under_nohup_and_in_the_background) {
+    make_tree();
+    int status = wait_for(start("cd $GRAY_EXAMPLE_RUN/tree; export build=: example=example_finds_signals; "
+                                "nohup make -s test >nohup.txt 2>&1 & wait $!; s=$?; cat nohup.txt; exit $s"));
+    expect(status == 0 && ends_with(said(), "\n3 passed, 0 failed, 0 skipped\n"), "not passed", "nohup make test");
+    expect_nothing_left(0, "nohup make test");
+}
+
+/* Ends make, or the script it runs, while it builds or tests. */
+static void end_make_test(const char *command, bool builds, int number, bool group, bool script) {
+    char when[200], *ready = strdup(test_path("ready")), line[1024];
+    (void)snprintf(when, sizeof when, "%s, %s, signal %d to %s", command, builds ? "building" : "testing", number,
+                   script  ? "the script"
+                   : group ? "the group"
+                           : "it");
+    (void)unlink(ready);
+    (void)setenv("GRAY_EXAMPLE_READY", ready, 1);
+    (void)snprintf(line, sizeof line, "cd $GRAY_EXAMPLE_RUN/tree; export example=example_waits build='%s'; exec %s",
+                   builds ? "touch $$GRAY_EXAMPLE_READY; sleep 1000 & sleep 1001" : ":", command);
+    pid_t run = start(line);
+    expect(await_file(ready), "did not begin", when);
+    if (script) {
+        (void)snprintf(line, sizeof line, "pkill -%d -P %d -f tools/test.sh", number, (int)run);
+        CHECK(system(line) == 0);
+    } else {
+        CHECK(kill(group ? -run : run, number) == 0);
+    }
+    CHECK(wait_for(run) != 0);
+    expect_nothing_left(script || number == SIGKILL ? 20 : 0, when);
+    free(ready);
+}
+
+TEST(make_test_that_is_ended_by_a_signal_leaves_no_process) {
+    make_tree();
+    for (int builds = 0; builds <= 1; builds++) {
+        end_make_test("make -s test", builds, SIGINT, true, false); /* as Ctrl-C does */
+        end_make_test("make -s test", builds, SIGTERM, false, false);
+        end_make_test("tools/test.sh", builds, SIGHUP, false, false);
+    }
+}
+
+TEST(make_test_that_is_killed_leaves_no_process) {
+    make_tree();
+    for (int builds = 0; builds <= 1; builds++) {
+        end_make_test("make -s test", builds, SIGKILL, false, false);
+        end_make_test("make -s test", builds, SIGKILL, true, false);
+        end_make_test("make -s test", builds, SIGKILL, false, true);
+        end_make_test("tools/test.sh", builds, SIGKILL, false, false);
+    }
+}

@@ -1,0 +1,115 @@
+#!/bin/sh
+# tools/test_steps.sh PID PARENT [--long [NAME ...]]: what make test does. Builds and runs the tests of the release build,
+# then a smoke of the same tests under the address and undefined sanitizers. --long: everything else. Ends with one line
+# "N passed, N failed, N skipped". A line at least every GRAY_TEST_PROGRESS seconds (15) says what is under way.
+# Leads a session, which ends when process PID (tools/test.sh) is gone, or has lost its parent PARENT (unless empty).
+interval=${GRAY_TEST_PROGRESS:-15}
+
+# Twice a second: are this process and the other one there? A process that has ended but was not waited for (Z) is not.
+# Else the whole session is ended.
+sh -c '
+there() {
+    read -r _ _ state parent _ 2>/dev/null <"/proc/$1/stat" && [ "$state" != Z ] && [ "$parent" = "${2:-$parent}" ]
+}
+. tools/test_session.sh
+trap "kill \$! 2>/dev/null; wait; exit" TERM
+while there "$1" "$2" && there "$3"; do
+    sleep 0.4 &
+    wait $!
+done
+trap "" TERM
+end_group "$3" $$
+kill -s KILL 0' test-watchdog "$1" "$2" $$ >/dev/null 2>&1 </dev/null &
+watchdog=$!
+
+# finish STATUS: the end of this process.
+finish() {
+    kill "$watchdog"
+    wait 2>/dev/null
+    exit "$1"
+}
+
+# step WHAT COMMAND ...: runs a command that does not say how far it is.
+step() {
+    what=$1
+    shift
+    sh -c '
+trap "kill \$! 2>/dev/null; wait; exit" TERM
+begun=$(date +%s)
+while :; do
+    sleep "$2" >/dev/null 2>&1 &
+    wait $!
+    echo "   $1, $(($(date +%s) - begun)) s"
+done' ticker "$what" "$interval" &
+    ticker=$!
+    "$@"
+    status=$?
+    kill $ticker
+    wait $ticker 2>/dev/null
+    return $status
+}
+
+shift 2
+long=no
+if [ "$1" = --long ]; then
+    long=yes
+    shift
+fi
+jobs=$(nproc 2>/dev/null || echo 2)
+passed=0 failed=0 skipped=0
+
+build() {
+    step "building $1" make -s -j"$jobs" config="$1" build-tests all || { echo "the $1 build failed" >&2; finish 1; }
+}
+
+# Runs a test binary, which shows what did not pass and how far it is; adds its closing counts up.
+run() {
+    config=$1
+    shift
+    echo "== $config: $*"
+    log=build/$config/test.log
+    rm -f "$log"
+    ASAN_OPTIONS=detect_leaks=1:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 \
+        TSAN_OPTIONS=halt_on_error=1 GRAY_TEST_BINARY="build/$config/gray" \
+        "build/$config/tests/run" --log "$log" -j "$jobs" "$@"
+    status=$?
+    counts=$(tail -n 1 "$log" 2>/dev/null)
+    case $counts in
+    *" passed, "*" failed, "*" skipped")
+        echo "   $counts"
+        set -- $(echo "$counts" | tr -d ,)
+        passed=$((passed + $1)) failed=$((failed + $3)) skipped=$((skipped + $5))
+        ;;
+    *)
+        echo "   the runner ended early (status $status)"
+        failed=$((failed + 1))
+        ;;
+    esac
+}
+
+if step "checking layers" tools/layers.sh; then passed=$((passed + 1)); else failed=$((failed + 1)); fi
+build release
+build asan
+if [ $long = no ]; then
+    run release
+    run asan smoke errors_ script allocation png obj ply stl gltf mtl jpeg font_ gzip mesh_faces test_program test_channel test_options \
+        window_survives_random window_outlines window_shows_and window_stops_b
+else
+    build tsan
+    run release --long "$@"
+    if [ $# -eq 0 ]; then
+        build debug
+        run debug --long faults_
+        run asan
+        run tsan
+        if command -v clang >/dev/null; then # four hours for all targets together
+            if step fuzzing make -s fuzz FUZZ_SECONDS="${FUZZ_SECONDS:-850}"; then passed=$((passed + 1)); else failed=$((failed + 1)); fi
+        else
+            echo "fuzzing needs clang"
+            skipped=$((skipped + 1))
+        fi
+    fi
+fi
+echo "$passed passed, $failed failed, $skipped skipped"
+[ "$failed" -eq 0 ]
+finish $?
