@@ -29,7 +29,7 @@ static void set_space(struct triangle_index *index, const struct triangle_set *s
     double half = vec3_max_abs(extent) / 2;
     int exponent;
     (void)frexp(half, &exponent);
-    index->scale = ldexp(1, -exponent);
+    index->scale = ldexp(1, exponent < -1000 ? 1000 : -exponent); /* finite for denormal extents as well */
     for (int k = 0; k < 3; k++) {
         index->centre[k] = vec3_get(centre, k);
         index->half[k] = vec3_get(extent, k) / 2 * index->scale + (double)VOXEL_MARGIN;

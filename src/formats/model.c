@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/unreachable.h"
 #include "geom/mesh_smooth.h"
+#include "math/range.h"
 
 #include <assert.h>
 #include <stdarg.h>
@@ -174,12 +175,78 @@ static bool finish_mesh(struct model *model, struct model_mesh *m, struct error 
     return ok;
 }
 
+/* --- the range of numbers --- */
+
+/* A row of that many doubles with one beyond the limit; SIZE_MAX: there is none. */
+static size_t row_beyond(const struct list *rows, size_t width) {
+    const double *numbers = rows->items;
+    for (size_t i = 0; i < rows->count * width; i++)
+        if (!number_in_range(numbers[i]))
+            return i / width;
+    return SIZE_MAX;
+}
+
+static bool check_tables(const struct model *model, const struct model_mesh *m, struct error *error) {
+    const struct {
+        const char *what;
+        const struct list *rows;
+        size_t width;
+    } tables[] = {{"vertex", &m->vertices, 3}, {"normal", &m->normals, 3}, {"texture coordinate", &m->uvs, 2}};
+    for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++) {
+        size_t row = row_beyond(tables[i].rows, tables[i].width);
+        if (row != SIZE_MAX)
+            return error_set(error, ERROR_SCENE, "%s: a number of %s %zu is not between %g and %g", model->path,
+                             tables[i].what, row + 1, -NUMBER_LIMIT, NUMBER_LIMIT);
+    }
+    return true;
+}
+
+static bool texture_in_range(const struct model_texture *map) {
+    return number_in_range(map->scale[0]) && number_in_range(map->scale[1]) && number_in_range(map->offset[0]) &&
+           number_in_range(map->offset[1]) && number_in_range(map->strength);
+}
+
+static bool material_in_range(const struct model_material *m) {
+    return vec3_within(m->ka, NUMBER_LIMIT) && vec3_within(m->kd, NUMBER_LIMIT) && vec3_within(m->ks, NUMBER_LIMIT) &&
+           vec3_within(m->ke, NUMBER_LIMIT) && vec3_within(m->filter, NUMBER_LIMIT) && number_in_range(m->shininess) &&
+           number_in_range(m->ior) && texture_in_range(&m->map_kd) && texture_in_range(&m->map_ks) &&
+           texture_in_range(&m->map_ke) && texture_in_range(&m->map_d) && texture_in_range(&m->map_bump) &&
+           texture_in_range(&m->map_normal) && texture_in_range(&m->map_metal);
+}
+
+static bool node_in_range(const struct model_node *node) {
+    bool fine = transform_is_finite(&node->parent_from_node);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 4; j++)
+            fine = fine && number_in_range(node->parent_from_node.forward.m[i][j]);
+    return fine;
+}
+
+/* Whatever the format: what is beyond the limit for scripts is none of a file either. */
+static bool check_numbers(const struct model *model, struct error *error) {
+    for (size_t i = 0; i < model->meshes.count; i++)
+        if (!check_tables(model, &model_meshes(model)[i], error))
+            return false;
+    for (size_t i = 0; i < model->materials.count; i++)
+        if (!material_in_range(&model_materials(model)[i]))
+            return error_set(error, ERROR_SCENE, "%s: a number of material %zu is not between %g and %g", model->path,
+                             i + 1, -NUMBER_LIMIT, NUMBER_LIMIT);
+    for (size_t i = 0; i < model->nodes.count; i++)
+        if (!node_in_range(&model_nodes(model)[i]))
+            return error_set(error, ERROR_SCENE,
+                             "%s: the transform of node %zu has a number that is not between %g and %g, or no inverse",
+                             model->path, i + 1, -NUMBER_LIMIT, NUMBER_LIMIT);
+    return true;
+}
+
 bool model_finish(struct model *model, struct error *error) {
     size_t faces = 0;
     for (size_t i = 0; i < model->meshes.count; i++)
         faces += model_meshes(model)[i].starts.count;
     if (faces == 0)
         return error_set(error, ERROR_SCENE, "%s: no faces in this file", model->path);
+    if (!check_numbers(model, error))
+        return false;
     for (size_t i = 0; i < model->meshes.count; i++)
         if (!finish_mesh(model, &model_meshes(model)[i], error))
             return false;
@@ -292,10 +359,11 @@ bool model_parse(struct model *model, const char *path, const uint8_t *data, siz
 
 bool model_read(struct model *model, const char *path, const struct model_options *options, struct error *error) {
     struct file_bytes bytes;
+    uint64_t refusals = mem_refusals();
     *model = (struct model){0};
     if (!reach_map(options->reach, path, FILE_LIMIT, &bytes, error))
         return false;
-    return parse(model, path, &bytes, bytes.data, bytes.size, options, error);
+    return parse(model, path, &bytes, bytes.data, bytes.size, options, error) || error_of_file(error, path, refusals);
 }
 
 void model_destroy(struct model *model) {

@@ -9,11 +9,15 @@
 #include "look/sky_light.h"
 #include "math/elementary.h"
 #include "math/frame.h"
+#include "math/range.h"
 
 static const double pi = 3.14159265358979323846;
 /* A disc whose square fills more than this solid angle is sampled by that of the square, though a fifth of the square
  * is not of the disc: bench/lamps.c. */
 static const double disc_by_angle = 1.5;
+
+/* Where a falloff passes through zero, or a light is touched. A colour times it is finite. */
+static const double strongest = 1e200;
 
 double light_attenuation(const struct light *light, double distance) {
     const double *c = light->falloff;
@@ -21,13 +25,13 @@ double light_attenuation(const struct light *light, double distance) {
     case FADING_RANGE:
         return distance < light->range ? 1 - distance / light->range : 0;
     case FADING_INVERSE_SQUARE:
-        return light->intensity / (distance * distance);
+        return number_clamped(light->intensity / (distance * distance), strongest);
     case FADING_COEFFICIENTS:
         break;
     }
     if (c[0] == 0 && c[1] == 0 && c[2] == 0)
         return 1;
-    return 1 / (c[0] + c[1] * distance + c[2] * distance * distance);
+    return number_clamped(1 / (c[0] + c[1] * distance + c[2] * distance * distance), strongest);
 }
 
 double light_cone(const struct light *light, struct vec3 from_light) {

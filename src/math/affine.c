@@ -133,6 +133,14 @@ double transform_stretch(const struct transform *t) {
     return stretch;
 }
 
+bool transform_is_finite(const struct transform *t) {
+    double sum = 0; /* 0 times what is not finite is NaN */
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 4; j++)
+            sum += 0 * t->forward.m[i][j] + 0 * t->inverse.m[i][j];
+    return sum == 0;
+}
+
 bool transform_from_affine(const struct affine *forward, struct transform *out) {
     double determinant = affine_determinant(forward);
     if (!isfinite(determinant) || determinant == 0)

@@ -50,6 +50,8 @@ struct transform transform_rotate_about(struct vec3 axis, double degrees);
 struct transform transform_rotate_quaternion(double w, struct vec3 xyz);
 /* The largest sum of sizes in a row of the linear part: no coordinate of a vector grows more. */
 double transform_stretch(const struct transform *t);
+/* Whether all numbers of the map and of its inverse are finite. */
+bool transform_is_finite(const struct transform *t);
 /* From a matrix; false when it is singular or not finite. */
 bool transform_from_affine(const struct affine *forward, struct transform *out);
 

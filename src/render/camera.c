@@ -8,6 +8,7 @@
 #include "render/camera.h"
 
 #include "math/elementary.h"
+#include "math/range.h"
 
 #include <stdio.h>
 
@@ -36,6 +37,10 @@ static bool prepare_lens(const struct camera *camera, const struct lens *lens, s
     out->focus = lens->focus > 0 ? lens->focus : vec3_dot(vec3_sub(lens->focus_point, camera->eye), out->forward);
     if (lens->aperture > 0 && !(out->focus > 0))
         return error_set(error, ERROR_SCENE, "the place in focus must lie in front of the camera");
+    if (lens->aperture > 0 && out->focus < NUMBER_SMALLEST)
+        return error_set(error, ERROR_SCENE, "focus is too small: %g", out->focus);
+    if (lens->stereo != STEREO_NONE && lens->screen < NUMBER_SMALLEST)
+        return error_set(error, ERROR_SCENE, "screen is too small: %g", lens->screen);
     if (lens->projection == PROJECTION_ORTHOGRAPHIC) {
         double pixel = lens->view_height / out->height;
         out->right = vec3_scale(out->unit_right, pixel);

@@ -4,6 +4,8 @@
 #include "base/checked.h"
 #include "image/png_write.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdatomic.h>
 #include <string.h>
 
@@ -90,6 +92,14 @@ void film_clear_unfinished(struct film *film) {
     }
 }
 
+bool film_holds_largest(const struct film *film) {
+    for (size_t i = 0; i < (size_t)film->width * film->height; i++)
+        for (int c = 0; c < 3; c++)
+            if (fabsf(film->pixels[i].rgb[c]) == FLT_MAX)
+                return true;
+    return false;
+}
+
 static uint8_t *put_floats(uint8_t *out, const float *values) {
     memcpy(out, values, 3 * sizeof *values);
     return out + 3 * sizeof *values;
@@ -129,7 +139,15 @@ bool film_tile_fits(const struct film *film, uint32_t tile, const uint8_t *bytes
         return false;
     for (uint32_t i = 0; i < pixels; i++)
         colours += bytes[i / 8] >> (i % 8) & 1;
-    return size == mask_size(r) + colours * 12;
+    if (size != mask_size(r) + colours * 12)
+        return false;
+    for (const uint8_t *at = bytes + mask_size(r); at < bytes + size;) {
+        float rgb[3];
+        at = get_floats(at, rgb);
+        if (!isfinite(rgb[0]) || !isfinite(rgb[1]) || !isfinite(rgb[2]))
+            return false;
+    }
+    return true;
 }
 
 bool film_tile_unpack(struct film *film, uint32_t tile, const uint8_t *bytes, size_t size) {

@@ -67,11 +67,15 @@ uint32_t film_tiles_in(const struct film *film, enum film_tile state);
 /* Black where tiles are not done. */
 void film_clear_unfinished(struct film *film);
 
+/* Whether a final colour is as large as a float can be, which is what clamped light is. */
+bool film_holds_largest(const struct film *film);
+
 /* A tile as bytes: which pixels were resampled (a bit each), the final colours, and the first pass of the resampled
  * ones; elsewhere it is the final colour. At most FILM_PACKED_LIMIT bytes, little-endian. */
 enum { FILM_PACKED_LIMIT = FILM_TILE * FILM_TILE * (6 * 4) + FILM_TILE * FILM_TILE / 8 };
 size_t film_tile_pack(const struct film *film, uint32_t tile, uint8_t *out);
-/* Whether the bytes have the size that their own mask asks for; needs no more of the film than its rectangle. */
+/* Whether the bytes have the size that their own mask asks for, and all colours are finite; needs no more of the film
+ * than its rectangle. */
 bool film_tile_fits(const struct film *film, uint32_t tile, const uint8_t *bytes, size_t size);
 /* Puts it back and marks the tile as done; false: not the bytes of such a tile, nothing is changed. */
 bool film_tile_unpack(struct film *film, uint32_t tile, const uint8_t *bytes, size_t size);

@@ -402,10 +402,11 @@ static void choose_most(struct builder *b) {
 
 /* --- building --- */
 
-/* The power of two that is next above. */
+/* The power of two that is next above; its reciprocal is finite, too. */
 static double unit_of(double size) {
     int exponent;
     (void)frexp(size, &exponent);
+    exponent = exponent < -1000 ? -1000 : exponent > 1000 ? 1000 : exponent;
     return size > 0 && isfinite(size) ? ldexp(1, exponent) : 1;
 }
 

@@ -4,10 +4,14 @@
 
 #include "base/random.h"
 #include "look/microfacet.h"
+#include "math/range.h"
 #include "math/sampling.h"
 #include "render/direct.h"
 #include "render/interface.h"
 #include "render/story.h"
+
+/* Of the colour that a secondary ray brings: no filter makes an infinity of it, so infinity times 0 cannot arise. */
+static const double light_limit = 1e200;
 
 struct path {
     uint64_t key;
@@ -211,6 +215,13 @@ static struct vec3 shade_hit(struct tracer *tracer, const struct ray *ray, const
     return vec3_add_scaled(behind, shade(tracer, ray, hit, &look, &covered), look.opacity);
 }
 
+static struct vec3 clamp_light(struct tracer *tracer, struct vec3 colour, double limit) {
+    if (vec3_within(colour, limit))
+        return colour;
+    tracer->clamped = true;
+    return vec3_clamped(colour, limit);
+}
+
 /* What a ray brings that has met `hit`, or nothing: NULL. */
 static struct vec3 bring(struct tracer *tracer, const struct ray *ray, const struct hit *hit, const struct path *path) {
     const struct world *world = tracer->job->world;
@@ -255,6 +266,7 @@ static struct vec3 bring(struct tracer *tracer, const struct ray *ray, const str
         veil = vec3_scale(fog->colour, 1 - left.x);
         colour = vec3_add(colour, veil);
     }
+    colour = clamp_light(tracer, colour, light_limit);
     if (tracer->story)
         story_ray_end(tracer->story, looked, seen, left, veil, colour);
     return colour;
@@ -272,7 +284,7 @@ struct vec3 whitted_trace(struct tracer *tracer, const struct ray *ray, uint64_t
     struct ray from_eye = *ray;
     from_eye.media = tracer->eye_media;
     const struct path path = {.key = key, .weight = 1};
-    return trace(tracer, &from_eye, &path);
+    return clamp_light(tracer, trace(tracer, &from_eye, &path), (double)FLT_MAX);
 }
 
 struct vec3 whitted_trace_met(struct tracer *tracer, const struct ray *ray, const struct packet_answer *met,
@@ -285,5 +297,5 @@ struct vec3 whitted_trace_met(struct tracer *tracer, const struct ray *ray, cons
     if (met)
         world_describe(tracer->job->world, &from_eye, met->placed, &met->crossing, &hit);
     const struct path path = {.key = key, .weight = 1};
-    return bring(tracer, &from_eye, met ? &hit : NULL, &path);
+    return clamp_light(tracer, bring(tracer, &from_eye, met ? &hit : NULL, &path), (double)FLT_MAX);
 }

@@ -19,9 +19,10 @@ struct tracer {
     double cutoff;                     /* cutoff_weight of the job */
     struct story *story;               /* who writes down what happens, or NULL */
     uint64_t reflected_rays, refracted_rays, shadow_rays, hits;
+    bool clamped; /* set where a colour was not finite or too large */
 };
 
-/* The colour a camera ray brings; key: the random key of this pixel and sample. */
+/* The colour a camera ray brings, clamped to the range of float; key: the random key of this pixel and sample. */
 struct vec3 whitted_trace(struct tracer *tracer, const struct ray *ray, uint64_t key);
 /* The same for a ray that went with a packet: what it has met, or NULL. */
 struct vec3 whitted_trace_met(struct tracer *tracer, const struct ray *ray, const struct packet_answer *met,

@@ -89,6 +89,7 @@ struct assets {
     struct asset_mesh *meshes;
     struct asset_image *images;
     uint32_t mesh_count, image_count;
+    uint64_t memory; /* bytes that scripts with a limit have left here */
 };
 void assets_destroy(struct assets *assets);
 /* The mesh of this input: an equal one from the store or a new one. Owned by the store. */

@@ -2,6 +2,8 @@
 #include "script/actions.h"
 #include "script/context.h"
 
+#include <math.h>
+
 bool act_add_child(struct context *context, const struct value *args, struct result *result, struct error *error) {
     (void)result;
     return node_add_child(&context->scene, args[SELF].node, args[CHILD_NODE].node, error);
@@ -87,8 +89,9 @@ bool act_moves_to(struct context *context, const struct value *args, struct resu
 bool act_scale(struct context *context, const struct value *args, struct result *result, struct error *error) {
     (void)result;
     struct vec3 factors = step_of(args);
-    if (factors.x == 0 || factors.y == 0 || factors.z == 0) {
-        context_warn_once(context, WARNED_OTHER, "a factor is 0, so nothing under this node is drawn");
+    double least = fmin(fmin(fabs(factors.x), fabs(factors.y)), fabs(factors.z));
+    if (!isfinite(1 / least)) {
+        context_warn_once(context, WARNED_OTHER, "a factor is %g, so nothing under this node is drawn", least);
         args[SELF].node->singular = true;
         return true;
     }

@@ -124,9 +124,8 @@ bool act_cube(struct context *context, const struct value *args, struct result *
     node->shape.kind = SHAPE_BOX;
     node->shape.box = (struct box){vec3_min(corner, other), vec3_max(corner, other)};
     struct vec3 min = node->shape.box.min, max = node->shape.box.max;
-    bool flat = !(min.x < max.x && min.y < max.y && min.z < max.z);
-    if (flat || !vec3_finite(min) || !vec3_finite(max))
-        return error_set(error, ERROR_SCENE, "size is too %s for this corner", flat ? "small" : "large");
+    if (!(min.x < max.x && min.y < max.y && min.z < max.z))
+        return error_set(error, ERROR_SCENE, "size is too small for this corner");
     return give(result, node);
 }
 

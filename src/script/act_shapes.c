@@ -9,12 +9,9 @@
 #include "geom/shape_polygon.h"
 #include "geom/shape_rectangle.h"
 #include "geom/shape_triangle.h"
+#include "math/range.h"
 #include "script/actions.h"
 #include "script/context.h"
-
-/* Far from where the squares and fourth powers of lengths leave the range of doubles. */
-#define SMALLEST_LENGTH 1e-30
-#define LARGEST_LENGTH 1e30
 
 static struct node *shape_node(struct context *context, const struct value *args, const char *otherwise,
                                struct error *error) {
@@ -43,15 +40,9 @@ static struct vec3 vector_or(const struct value *value, double x, double y, doub
 
 /* A length that must not be zero. */
 static bool length_is_fine(double length, const char *name, struct error *error) {
-    if (length >= SMALLEST_LENGTH && length <= LARGEST_LENGTH)
+    if (length >= NUMBER_SMALLEST && length <= NUMBER_LIMIT)
         return true;
     return error_set(error, ERROR_SCENE, "%s is too %s: %g", name, length > 1 ? "large" : "small", length);
-}
-
-static bool point_is_fine(struct vec3 point, const char *name, struct error *error) {
-    if (vec3_max_abs(point) <= LARGEST_LENGTH)
-        return true;
-    return error_set(error, ERROR_SCENE, "%s is too far away", name);
 }
 
 /* Two ends that are places, and apart. */
@@ -59,8 +50,7 @@ static bool ends_are_fine(struct vec3 from, struct vec3 to, struct error *error)
     double length = vec3_length(vec3_sub(to, from));
     if (!(length > 0))
         return error_set(error, ERROR_SCENE, "from and to are the same point");
-    return point_is_fine(from, "from", error) && point_is_fine(to, "to", error) &&
-           length_is_fine(length, "the way from from to to", error);
+    return length_is_fine(length, "the way from from to to", error);
 }
 
 bool act_cylinder(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -125,7 +115,7 @@ bool act_ellipsoid(struct context *context, const struct value *args, struct res
     struct vec3 centre = args[ELLIPSOID_CENTRE].vector, radii = vector_or(&args[ELLIPSOID_RADII], 1, 1, 1);
     if (!(radii.x > 0 && radii.y > 0 && radii.z > 0))
         return error_set(error, ERROR_SCENE, "radii must all be positive: %g, %g, %g", radii.x, radii.y, radii.z);
-    if (!point_is_fine(centre, "centre", error) || !length_is_fine(radii.x, "the first of radii", error) ||
+    if (!length_is_fine(radii.x, "the first of radii", error) ||
         !length_is_fine(radii.y, "the second of radii", error) || !length_is_fine(radii.z, "the third of radii", error))
         return false;
     struct node *node = shape_node(context, args, "ellipsoid", error);
@@ -140,8 +130,6 @@ bool act_quadric(struct context *context, const struct value *args, struct resul
     double largest = 0;
     for (int i = 0; i < 10; i++) {
         quadric->c[i] = number_or(&args[QUADRIC_XX + i], 0);
-        if (fabs(quadric->c[i]) > LARGEST_LENGTH)
-            return error_set(error, ERROR_SCENE, "a coefficient is too large: %g", quadric->c[i]);
         if (i < 9)
             largest = fmax(largest, fabs(quadric->c[i]));
     }
@@ -152,7 +140,7 @@ bool act_quadric(struct context *context, const struct value *args, struct resul
         quadric->c[0] = quadric->c[1] = quadric->c[2] = largest = 1;
         quadric->c[9] = number_or(&args[QUADRIC_CONSTANT], -1);
     }
-    if (!(largest >= SMALLEST_LENGTH))
+    if (!(largest >= NUMBER_SMALLEST))
         return error_set(error, ERROR_SCENE, "at least one of xx, yy, zz, xy, xz, yz, x, y, z must not be 0");
     quadric->limits.min = vector_or(&args[QUADRIC_MIN], -INFINITY, -INFINITY, -INFINITY);
     quadric->limits.max = vector_or(&args[QUADRIC_MAX], INFINITY, INFINITY, INFINITY);
@@ -188,8 +176,6 @@ bool act_box(struct context *context, const struct value *args, struct result *r
     struct box box = {vec3_min(a, b), vec3_max(a, b)};
     if (!(box.min.x < box.max.x && box.min.y < box.max.y && box.min.z < box.max.z))
         return error_set(error, ERROR_SCENE, "min and max must differ along every axis");
-    if (!point_is_fine(a, "min", error) || !point_is_fine(b, "max", error))
-        return false;
     struct node *node = shape_node(context, args, "box", error);
     struct shape shape = {.kind = SHAPE_BOX, .box = box};
     return give_shape(node, &shape, result);
@@ -205,10 +191,8 @@ static bool give_flat(struct context *context, const struct value *args, const c
 /* The classic square, or with a normal or a distance the plane without end. */
 bool act_plane(struct context *context, const struct value *args, struct result *result, struct error *error) {
     bool infinite = args[PLANE_NORMAL].given || args[PLANE_DISTANCE].given;
-    double distance = args[PLANE_DISTANCE].number;
-    if (fabs(distance) > LARGEST_LENGTH)
-        return error_set(error, ERROR_SCENE, "distance is too large: %g", distance);
-    struct flat flat = infinite ? flat_plane(vector_or(&args[PLANE_NORMAL], 0, 1, 0), distance) : flat_square();
+    struct vec3 normal = vector_or(&args[PLANE_NORMAL], 0, 1, 0);
+    struct flat flat = infinite ? flat_plane(normal, args[PLANE_DISTANCE].number) : flat_square();
     return give_flat(context, args, "plane", &flat, result, error);
 }
 
@@ -218,18 +202,17 @@ bool act_square(struct context *context, const struct value *args, struct result
 }
 
 /* Edges of a length we can use that are not parallel. */
-static bool span_is_fine(struct vec3 corner, struct vec3 u, struct vec3 v, const char *what, struct error *error) {
+static bool span_is_fine(struct vec3 u, struct vec3 v, const char *what, struct error *error) {
     double along = vec3_length(u), up = vec3_length(v);
     if (!(vec3_length(vec3_cross(u, v)) > 1e-12 * along * up))
         return error_set(error, ERROR_SCENE, "%s", what);
-    return point_is_fine(corner, "a corner", error) && length_is_fine(along, "the length of an edge", error) &&
-           length_is_fine(up, "the length of an edge", error);
+    return length_is_fine(along, "the length of an edge", error) && length_is_fine(up, "the length of an edge", error);
 }
 
 bool act_rectangle(struct context *context, const struct value *args, struct result *result, struct error *error) {
     struct vec3 corner = vector_or(&args[RECTANGLE_CORNER], -0.5, 0, 0.5);
     struct vec3 along = vector_or(&args[RECTANGLE_ALONG], 1, 0, 0), up = vector_or(&args[RECTANGLE_UP], 0, 0, -1);
-    if (!span_is_fine(corner, along, up, "along and up are parallel", error))
+    if (!span_is_fine(along, up, "along and up are parallel", error))
         return false;
     struct flat flat = flat_parallelogram(corner, along, up);
     return give_flat(context, args, "rectangle", &flat, result, error);
@@ -239,7 +222,7 @@ bool act_disc(struct context *context, const struct value *args, struct result *
     double inner = number_or(&args[DISC_INNER], 0);
     double radius = number_or(&args[DISC_RADIUS], inner > 0 ? 2 * inner : 1);
     struct vec3 centre = args[DISC_CENTRE].vector;
-    if (!length_is_fine(radius, "radius", error) || !point_is_fine(centre, "centre", error))
+    if (!length_is_fine(radius, "radius", error))
         return false;
     if (!(inner < radius))
         return error_set(error, ERROR_SCENE, "inner must be smaller than radius: %g, %g", inner, radius);
@@ -249,7 +232,7 @@ bool act_disc(struct context *context, const struct value *args, struct result *
 
 bool act_triangle(struct context *context, const struct value *args, struct result *result, struct error *error) {
     struct vec3 a = args[TRIANGLE_A].vector, b = args[TRIANGLE_B].vector, c = args[TRIANGLE_C].vector;
-    if (!span_is_fine(a, vec3_sub(b, a), vec3_sub(c, a), "a, b and c lie on one line", error))
+    if (!span_is_fine(vec3_sub(b, a), vec3_sub(c, a), "a, b and c lie on one line", error))
         return false;
     struct flat flat = flat_triangle(a, b, c);
     return give_flat(context, args, "triangle", &flat, result, error);
@@ -269,8 +252,6 @@ bool act_polygon(struct context *context, const struct value *args, struct resul
             return error_set(error, ERROR_SCENE, "outlines has the index %u, but there are %u points, counted from 0",
                              index, points->count);
         corners[i] = vec3_make(points->points[index][0], points->points[index][1], points->points[index][2]);
-        if (!point_is_fine(corners[i], "a point", error))
-            return false;
     }
     for (uint32_t i = 0; i < outline_count; i++) {
         ends[i] = outlines->given ? outlines->starts[i + 1] : count;

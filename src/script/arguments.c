@@ -1,7 +1,8 @@
 /* Reading arguments: the first paragraph of every binding function, driven by the table. It may raise, so it owns
  * nothing: arrays go to the arena of the call. Tables are read raw, so that no metamethod runs in between and a million
- * vertices take a fraction of a second. NaN and infinities stop here. */
+ * vertices take a fraction of a second. NaN, infinities and numbers beyond NUMBER_LIMIT stop here. */
 #include "base/unreachable.h"
+#include "math/range.h"
 #include "render/settings.h"
 #include "script/context.h"
 
@@ -68,6 +69,8 @@ static double read_number(struct context *c, int index, const struct place *plac
         out_of_range(c, place);
     if (bounded && (p->flags & HIGH_OPEN ? x >= p->high : x > p->high))
         out_of_range(c, place);
+    if (!number_in_range(x))
+        context_raise(c, "%s must be between %g and %g", place_words(place, words), -NUMBER_LIMIT, NUMBER_LIMIT);
     if ((p->flags & NOT_ZERO) && x == 0)
         context_raise(c, "%s must not be 0", place_words(place, words));
     return x;
@@ -91,7 +94,7 @@ static void read_tuple(struct context *c, int index, struct place place, int cou
                       (unsigned long long)length);
     for (int k = 0; k < count; k++) {
         if (lua_rawgeti(L, index, k + 1) == LUA_TNUMBER && place.parameter->low == 0 && place.parameter->high == 0 &&
-            isfinite(out[k] = lua_tonumber(L, -1)) && !(place.parameter->flags & NOT_ZERO)) {
+            number_in_range(out[k] = lua_tonumber(L, -1)) && !(place.parameter->flags & NOT_ZERO)) {
             lua_pop(L, 1); /* the common case, without the cost of naming the place */
             continue;
         }

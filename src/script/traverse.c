@@ -116,6 +116,7 @@ static struct key make_key(lua_State *L, int index, lua_Unsigned length, uint32_
 /* Of a pure sequence: the control variable is the index. Upvalue 1: the length at the start. */
 static int next_in_sequence(lua_State *L) {
     lua_Integer length = lua_tointeger(L, lua_upvalueindex(1)), k = lua_isnoneornil(L, 2) ? 0 : luaL_checkinteger(L, 2);
+    luaL_checktype(L, 1, LUA_TTABLE); /* a script may call it with anything */
     while (++k <= length) {
         lua_pushinteger(L, k);
         if (lua_rawgeti(L, 1, k) != LUA_TNIL)
@@ -130,6 +131,7 @@ static int next_in_sequence(lua_State *L) {
 static int next_of_list(lua_State *L) {
     const struct key *keys = lua_touserdata(L, lua_upvalueindex(2));
     lua_Integer k = lua_tointeger(L, lua_upvalueindex(3)), count = lua_tointeger(L, lua_upvalueindex(4));
+    luaL_checktype(L, 1, LUA_TTABLE);
     while (k < count) {
         lua_rawgeti(L, lua_upvalueindex(1), (lua_Integer)keys[k++].slot + 1);
         lua_pushvalue(L, -1);

@@ -359,6 +359,8 @@ static bool stand_moving(struct flattening *f, const struct node *node, const st
         return true;
     }
     struct transform end = node_parent_from_node(node->moves_to);
+    if (!flatten_check_transform(f, node, &parent_from_node) || !flatten_check_transform(f, node->moves_to, &end))
+        return false;
     out->from_node = transform_identity();
     if (!motion_between(&parent_from_node, &end, node->velocity, &link->motion))
         return error_set(f->error, ERROR_SCENE, "node '%.100s' moves to its mirror image: there is no way between",
@@ -387,6 +389,14 @@ static const struct surroundings *surround(struct flattening *f, const struct no
     return own;
 }
 
+bool flatten_check_transform(struct flattening *f, const struct node *node, const struct transform *t) {
+    return transform_is_finite(t) ||
+           error_set(f->error, ERROR_SCENE,
+                     "node '%.100s': its transforms and those above it multiply to numbers that are too large or too "
+                     "small",
+                     node->name);
+}
+
 static bool enter_node(struct flattening *f, struct stack *stack, const struct stand *parent,
                        const struct surroundings *around, struct node *node) {
     struct stand stand = {.above = parent->above};
@@ -397,6 +407,8 @@ static bool enter_node(struct flattening *f, struct stack *stack, const struct s
         struct transform parent_from_node = node_parent_from_node(node);
         stand.from_node = transform_compose(&parent->from_node, &parent_from_node);
     }
+    if (!flatten_check_transform(f, node, &stand.from_node))
+        return false;
     struct node *operand = node_places_operand(node);
     const struct surroundings *around_operand = NULL;
     if (!place_node(f, node, &stand, around))

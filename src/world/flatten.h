@@ -60,6 +60,8 @@ bool flatten_limit(struct flattening *f, struct node *solid, const struct transf
  * *out on; everything else has 1. */
 bool flatten_material(struct flattening *f, struct node *node, const struct material *inherited, uint32_t *out,
                       uint32_t *count);
+/* False: the map of a node into the world, or into its solid, has left the range of numbers. */
+bool flatten_check_transform(struct flattening *f, const struct node *node, const struct transform *t);
 bool flatten_mesh_index(struct flattening *f, const struct shape *shape);
 /* Sets shifts and linear map of a placement. Maps that are equal to the bit are kept once. */
 bool flatten_map(struct flattening *f, const struct transform *world_from_object, struct placed *out);

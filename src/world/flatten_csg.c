@@ -232,6 +232,8 @@ static bool add_operand(struct flattening *f, struct csg_draft *draft, struct no
     struct above below = *above;
     below.csg_from_parent = transform_compose(&above->csg_from_parent, &parent_from_node);
     below.nesting++;
+    if (!flatten_check_transform(f, node, &below.csg_from_parent))
+        return false;
     if (node->kind == NODE_GEOMETRY) {
         bool nothing = node->shape.kind == SHAPE_MESH && mesh_triangle_count(node->shape.mesh) == 0;
         if (!nothing && !shape_is_closed(&node->shape))

@@ -27,6 +27,9 @@ static double luminance(struct vec3 c) {
     return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
 }
 
+/* Below it a reciprocal is not finite. */
+static const double dark = 1e-300;
+
 /* Triangles without area or light are left out. */
 static void add_triangle(struct gathering *g, const struct mesh *mesh, uint32_t number, const struct transform *map,
                          double sign, const struct thing *thing) {
@@ -47,7 +50,7 @@ static void add_triangle(struct gathering *g, const struct mesh *mesh, uint32_t 
     t->edge2 = vec3_sub(corners[2], corners[0]);
     struct vec3 across = vec3_cross(t->edge1, t->edge2);
     double area = vec3_length(across) / 2, weight = area * luminance(emission);
-    if (!(weight > 0))
+    if (!(weight > 0) || area < dark || luminance(emission) < dark)
         return;
     t->normal = vec3_scale(across, sign / (2 * area));
     t->light = vec3_scale(emission, 1 / (luminance(emission) * pi)); /* times the sum, once it is known */
