@@ -29,7 +29,13 @@ static bool arena_grow(struct arena *arena, size_t size) {
     size_t bytes;
     if (!checked_add(wanted, sizeof(struct arena_block), &bytes))
         return false;
+    uint64_t refusals = mem_refusals();
     struct arena_block *block = mem_alloc_zero(1, bytes);
+    if (!block && mem_refusals() != refusals && wanted > size && wanted > ARENA_FIRST_BLOCK) {
+        /* Near a limit on memory blocks stop growing, so that all of it can be used. */
+        wanted = size > ARENA_FIRST_BLOCK ? size : ARENA_FIRST_BLOCK;
+        block = mem_alloc_zero(1, wanted + sizeof(struct arena_block));
+    }
     if (!block)
         return false;
     block->size = wanted;

@@ -4,6 +4,7 @@
 #define GRAY_BASE_ERROR_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 enum error_kind {
     ERROR_NONE = 0,
@@ -15,13 +16,27 @@ enum error_kind {
 
 struct error {
     enum error_kind kind;
+    bool elsewhere; /* ERROR_SCENE: not the script is wrong but a name on the command line; no line of it is named */
+    bool limit; /* of ERROR_SCENE: a limit on what scenes may use is met, which no script may catch */
     char text[1024];
 };
 
-/* Fill and return false, so that `return error_set(...)` reads as a failure. Over-long text is cut with "...". */
+/* Fill and return false, so that `return error_set(...)` reads as a failure. Over-long text is cut with "...". Only a
+ * format that begins with "gray:" makes a text that does: a name that does so is marked (base/terminal_text.h). */
 bool error_set(struct error *error, enum error_kind kind, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-bool error_no_memory(struct error *error, const char *what); /* "out of memory for WHAT" */
+/* "out of memory for WHAT"; with `limit`, and the reason, where the account in charge (base/mem.h) has refused memory.
+ */
+bool error_no_memory(struct error *error, const char *what);
+/* After a failure to read a file: makes it "PATH: needs more than the 64 MiB of --script-memory" if memory was refused
+ * since mem_refusals() was `before`; a library may have given another reason. Returns false. */
+bool error_of_file(struct error *error, const char *path, uint64_t before);
+/* Fills and returns false as error_set does, for a limit that is met. */
+bool error_set_limit(struct error *error, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Marks an error as one of the command line: see `elsewhere`. Returns false. */
+bool error_elsewhere(struct error *error);
+/* Of a file that cannot be read for this errno: no descriptor or memory is left, or the name is wrong. */
+enum error_kind error_kind_of_reading(int number);
 /* Puts "PREFIX: " before the text that is already there. */
 bool error_prefix(struct error *error, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

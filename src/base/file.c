@@ -1,6 +1,5 @@
-/* Files. Everything that leaves a name in a folder goes through struct file_output: the temporary file stands beside
- * the target (a rename works only inside one file system), has no name until it is whole, and then one by chance, so
- * that two runs cannot mix. */
+/* Reading files. A file is taken as a private copy, so that one that shrinks meanwhile harms nothing, and every read is
+ * reported to whoever asked for it. */
 #define _GNU_SOURCE
 #include "base/file.h"
 
@@ -15,7 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -29,6 +27,86 @@ void file_set_witness(struct file_witness *witness) {
 
 void file_set_listener(const struct file_listener *listener) {
     file_listener = listener;
+}
+
+/* Sets of files. */
+
+static bool is_same(struct file_identity a, struct file_identity b) {
+    return a.device == b.device && a.inode == b.inode;
+}
+
+/* The slot of the identity, or the free one where it belongs. `room` is a power of two and never full. */
+static size_t slot_of(const struct file_set *set, struct file_identity identity) {
+    static const struct file_identity free_slot;
+    size_t at = (size_t)hash_bytes(&identity, sizeof identity, 0) & (set->room - 1);
+    while (!is_same(set->slots[at], free_slot) && !is_same(set->slots[at], identity))
+        at = (at + 1) & (set->room - 1);
+    return at;
+}
+
+bool file_set_has(const struct file_set *set, struct file_identity identity) {
+    return set->count > 0 && is_same(set->slots[slot_of(set, identity)], identity);
+}
+
+static bool set_grow(struct file_set *set) {
+    struct file_set larger = {.room = set->room ? 2 * set->room : 16};
+    larger.slots = mem_alloc_zero(larger.room, sizeof *larger.slots);
+    if (!larger.slots)
+        return false;
+    for (size_t i = 0; i < set->room; i++) {
+        if (set->slots[i].device || set->slots[i].inode)
+            larger.slots[slot_of(&larger, set->slots[i])] = set->slots[i];
+    }
+    larger.count = set->count;
+    mem_free(set->slots);
+    *set = larger;
+    return true;
+}
+
+bool file_set_add(struct file_set *set, struct file_identity identity) {
+    if (file_set_has(set, identity))
+        return true;
+    if (2 * (set->count + 1) > set->room && !set_grow(set))
+        return false;
+    set->slots[slot_of(set, identity)] = identity;
+    set->count++;
+    return true;
+}
+
+/* What follows in the same run of slots moves up, so that nothing is searched past a hole. */
+void file_set_remove(struct file_set *set, struct file_identity identity) {
+    if (!file_set_has(set, identity))
+        return;
+    size_t at = slot_of(set, identity);
+    set->slots[at] = (struct file_identity){0};
+    set->count--;
+    for (size_t next = (at + 1) & (set->room - 1); set->slots[next].device || set->slots[next].inode;
+         next = (next + 1) & (set->room - 1)) {
+        struct file_identity moved = set->slots[next];
+        set->slots[next] = (struct file_identity){0};
+        set->slots[slot_of(set, moved)] = moved;
+    }
+}
+
+void file_set_destroy(struct file_set *set) {
+    mem_free(set->slots);
+    *set = (struct file_set){0};
+}
+
+bool file_identity_of(const char *path, struct file_identity *out) {
+    struct stat status;
+    if (stat(path, &status) != 0)
+        return false;
+    *out = (struct file_identity){(uint64_t)status.st_dev, (uint64_t)status.st_ino};
+    return true;
+}
+
+bool file_identity_of_descriptor(int descriptor, struct file_identity *out) {
+    struct stat status;
+    if (fstat(descriptor, &status) != 0)
+        return false;
+    *out = (struct file_identity){(uint64_t)status.st_dev, (uint64_t)status.st_ino};
+    return true;
 }
 
 static void note_content(struct digest content) {
@@ -52,7 +130,7 @@ static void note_content(struct digest content) {
 
 /* False: it could not be read to its end. */
 static bool digest_of(int descriptor, struct digest *content) {
-    char piece[1 << 16];
+    char piece[1 << 14];
     *content = (struct digest){0};
     for (off_t at = 0;;) {
         ssize_t got = MAY_FAIL(pread(descriptor, piece, sizeof piece, at));
@@ -66,23 +144,35 @@ static bool digest_of(int descriptor, struct digest *content) {
 }
 
 static struct file_version version_of(const struct stat *status) {
-    return (struct file_version){.size = (uint64_t)status->st_size,
+    return (struct file_version){.identity = {(uint64_t)status->st_dev, (uint64_t)status->st_ino},
+                                 .size = (uint64_t)status->st_size,
                                  .seconds = (int64_t)status->st_mtim.tv_sec,
                                  .nanoseconds = (int64_t)status->st_mtim.tv_nsec};
 }
 
 void file_note_read(int descriptor, const char *path) {
     struct stat status;
-    if ((!file_witness && !file_listener) || MAY_FAIL(fstat(descriptor, &status)) != 0 || !S_ISREG(status.st_mode))
+    const struct file_listener *listener = file_listener;
+    if ((!file_witness && !listener) || MAY_FAIL(fstat(descriptor, &status)) != 0 || !S_ISREG(status.st_mode))
         return;
     struct file_version version = version_of(&status);
-    bool whole = digest_of(descriptor, &version.content);
-    if (file_witness && !whole)
-        file_witness->incomplete = true;
-    if (file_witness)
-        note_content(version.content);
-    if (file_listener)
-        file_listener->heard(file_listener->context, path, &version);
+    if (file_witness || listener->contents) {
+        bool whole = digest_of(descriptor, &version.content);
+        if (file_witness && !whole)
+            file_witness->incomplete = true;
+        if (file_witness)
+            note_content(version.content);
+    }
+    if (listener)
+        listener->heard(listener->context, path, &version);
+}
+
+void file_note_write(int descriptor, const char *path) {
+    struct stat status;
+    if (!file_listener || MAY_FAIL(fstat(descriptor, &status)) != 0)
+        return;
+    struct file_version version = version_of(&status);
+    file_listener->wrote(file_listener->context, path, &version);
 }
 
 bool file_version_of(const char *path, const struct file_version *known, struct file_version *out) {
@@ -99,6 +189,21 @@ bool file_version_of(const char *path, const struct file_version *known, struct 
         ok = same || digest_of(descriptor, &out->content);
     }
     (void)close(descriptor);
+    return ok;
+}
+
+bool file_digest(const char *path, struct digest *digest) {
+    struct stat status;
+    char name[64];
+    int place = MAY_FAIL(open(path, O_PATH | O_CLOEXEC));
+    if (place < 0)
+        return false;
+    (void)snprintf(name, sizeof name, "/proc/self/fd/%d", place);
+    int descriptor = fstat(place, &status) == 0 && S_ISREG(status.st_mode) ? open(name, O_RDONLY | O_CLOEXEC) : -1;
+    bool ok = descriptor >= 0 && digest_of(descriptor, digest);
+    if (descriptor >= 0)
+        (void)close(descriptor);
+    (void)close(place);
     return ok;
 }
 
@@ -119,28 +224,40 @@ void file_witness_destroy(struct file_witness *witness) {
     *witness = (struct file_witness){0};
 }
 
+/* The size of an open regular file; anything else is an error. */
+static bool regular_size(int descriptor, const char *path, uint64_t *size, struct error *error) {
+    struct stat status;
+    if (MAY_FAIL(fstat(descriptor, &status)) != 0)
+        return error_set(error, error_kind_of_reading(errno), "%s: cannot be read: %s", path, strerror(errno));
+    if (!S_ISREG(status.st_mode))
+        return error_set(error, ERROR_SCENE, "%s: is %s, not a regular file", path,
+                         S_ISDIR(status.st_mode) ? "a folder" : "a pipe or device");
+    *size = (uint64_t)status.st_size;
+    return true;
+}
+
 bool file_map_descriptor(int descriptor, const char *path, size_t limit, struct file_bytes *out, struct error *error) {
     *out = (struct file_bytes){0};
-    struct stat status;
-    bool ok = false;
-    if (MAY_FAIL(fstat(descriptor, &status)) != 0) {
-        error_set(error, ERROR_SCENE, "%s: cannot be read: %s", path, strerror(errno));
-    } else if (!S_ISREG(status.st_mode)) {
-        error_set(error, ERROR_SCENE, "%s: is %s, not a regular file", path,
-                  S_ISDIR(status.st_mode) ? "a folder" : "a pipe or device");
-    } else if ((uint64_t)status.st_size > limit) {
-        error_set(error, ERROR_SCENE, "%s: %lld bytes are more than the limit of %zu", path, (long long)status.st_size,
-                  limit);
-    } else if (status.st_size == 0) {
+    uint64_t whole = 0;
+    bool ok = regular_size(descriptor, path, &whole, error);
+    if (!ok) {
+        (void)close(descriptor);
+        return false;
+    }
+    if (whole > limit) {
+        ok = error_set(error, ERROR_SCENE, "%s: %llu bytes are more than the limit of %zu", path,
+                       (unsigned long long)whole, limit);
+    } else if (whole == 0) {
         out->data = (const uint8_t *)"";
-        ok = true;
     } else {
         /* A private copy rather than a mapping: a file that shrinks while it is mapped would kill the process. */
-        size_t size = (size_t)status.st_size, have = 0;
+        size_t size = (size_t)whole, have = 0;
+        uint64_t refusals = mem_refusals();
         uint8_t *data = mem_alloc(size);
         if (!data) {
             (void)close(descriptor);
-            return error_no_memory(error, path);
+            (void)error_no_memory(error, path);
+            return error_of_file(error, path, refusals);
         }
         while (have < size) {
             ssize_t got = MAY_FAIL(read(descriptor, data + have, size - have));
@@ -165,19 +282,57 @@ bool file_map_descriptor(int descriptor, const char *path, size_t limit, struct 
     return ok;
 }
 
-bool file_map(const char *path, size_t limit, struct file_bytes *out, struct error *error) {
-    *out = (struct file_bytes){0};
+static int open_for_reading(const char *path, struct error *error) {
     /* O_NONBLOCK: opening a named pipe must not wait for a writer. */
     int descriptor = MAY_FAIL(open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (descriptor < 0)
-        return error_set(error, ERROR_SCENE, "%s: cannot be read: %s", path, strerror(errno));
-    return file_map_descriptor(descriptor, path, limit, out, error);
+        (void)error_set(error, error_kind_of_reading(errno), "%s: cannot be read: %s", path, strerror(errno));
+    return descriptor;
+}
+
+bool file_map(const char *path, size_t limit, struct file_bytes *out, struct error *error) {
+    *out = (struct file_bytes){0};
+    int descriptor = open_for_reading(path, error);
+    return descriptor >= 0 && file_map_descriptor(descriptor, path, limit, out, error);
+}
+
+bool file_source_open(struct file_source *source, const char *path, struct error *error) {
+    *source = (struct file_source){.descriptor = open_for_reading(path, error)};
+    if (source->descriptor < 0)
+        return false;
+    source->open = regular_size(source->descriptor, path, &source->size, error);
+    if (!source->open)
+        (void)close(source->descriptor);
+    return source->open;
+}
+
+bool file_source_read(const struct file_source *source, uint64_t at, void *out, size_t size) {
+    for (size_t have = 0; have < size;) {
+        ssize_t got = MAY_FAIL(pread(source->descriptor, (char *)out + have, size - have, (off_t)(at + have)));
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got <= 0)
+            return false;
+        have += (size_t)got;
+    }
+    return true;
+}
+
+void file_source_close(struct file_source *source) {
+    if (source->open)
+        (void)close(source->descriptor);
+    *source = (struct file_source){0};
 }
 
 void file_unmap(struct file_bytes *bytes) {
     if (bytes->size)
         mem_free((void *)(uintptr_t)bytes->data);
     *bytes = (struct file_bytes){0};
+}
+
+bool file_exists(const char *path) {
+    struct stat status;
+    return lstat(path, &status) == 0;
 }
 
 bool file_is_regular(const char *path) {
@@ -220,7 +375,7 @@ bool file_canonical(const char *path, char *out, size_t size) {
 }
 
 /* A place that cannot hold the file is a wrong name; a full disk is none. */
-static enum error_kind kind_of_refusal(int number) {
+enum error_kind file_refusal_kind(int number) {
     switch (number) {
     case ENOENT:
     case ENOTDIR:
@@ -240,7 +395,7 @@ static enum error_kind kind_of_refusal(int number) {
 bool file_remove(const char *path, struct error *error) {
     if (unlink(path) == 0 || errno == ENOENT)
         return true;
-    return error_set(error, kind_of_refusal(errno), "%s: cannot be removed: %s", path, strerror(errno));
+    return error_set(error, file_refusal_kind(errno), "%s: cannot be removed: %s", path, strerror(errno));
 }
 
 bool file_make_folders_for(const char *path, struct error *error) {
@@ -253,7 +408,7 @@ bool file_make_folders_for(const char *path, struct error *error) {
     for (char *at = folder + 1; (at = strchr(at, '/')) != NULL; at++) {
         *at = '\0';
         if (MAY_FAIL(mkdir(folder, 0777)) != 0 && errno != EEXIST)
-            return error_set(error, kind_of_refusal(errno), "%s: the folder %s cannot be made: %s", path, folder,
+            return error_set(error, file_refusal_kind(errno), "%s: the folder %s cannot be made: %s", path, folder,
                              strerror(errno));
         *at = '/';
     }
@@ -272,7 +427,7 @@ bool file_list(const char *folder, size_t limit, bool (*fn)(void *context, const
     size_t count = 0;
     for (struct dirent *entry; names && count < limit && (entry = readdir(stream)) != NULL;) {
         size_t length = strlen(entry->d_name);
-        if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0)
+        if (entry->d_name[0] == '.')
             continue;
         names[count] = mem_alloc(length + 1);
         if (!names[count])
@@ -289,163 +444,4 @@ bool file_list(const char *folder, size_t limit, bool (*fn)(void *context, const
     }
     mem_free(names);
     return true;
-}
-
-static bool is_direct_target(const char *target) {
-    struct stat status;
-    return strcmp(target, "-") == 0 ||
-           (stat(target, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode));
-}
-
-/* The folder of a path with its final slash, "" when it has none. */
-static int folder_length(const char *path) {
-    const char *slash = strrchr(path, '/');
-    return slash ? (int)(slash - path) + 1 : 0;
-}
-
-/* A name that nobody can have prepared, in the target's folder: the length of the target's own name does not matter. */
-static void name_temporary(struct file_output *file) {
-    uint64_t number = 0;
-    if (getrandom(&number, sizeof number, 0) != (ssize_t)sizeof number)
-        number = (uint64_t)getpid();
-    (void)snprintf(file->temporary, sizeof file->temporary, "%.*s.gray.part-%016llx", folder_length(file->target),
-                   file->target, (unsigned long long)number);
-}
-
-/* A file without a name, where the file system knows such files (O_TMPFILE, Linux 3.11): even a kill leaves nothing
- * behind. It gets its name when it is whole. Elsewhere a new file under a name of its own. */
-static int open_temporary(struct file_output *file) {
-    char folder[sizeof file->target + 2];
-    (void)snprintf(folder, sizeof folder, "%.*s.", folder_length(file->target), file->target);
-    int descriptor = MAY_FAIL(open(folder, O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666));
-    if (descriptor >= 0) {
-        file->nameless = true;
-        return descriptor;
-    }
-    for (int i = 0; i < 100; i++) {
-        name_temporary(file);
-        descriptor = MAY_FAIL(open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666));
-        if (descriptor >= 0 || errno != EEXIST)
-            break;
-    }
-    return descriptor;
-}
-
-/* False with errno. */
-static bool give_name(struct file_output *file) {
-    char link[64];
-    (void)snprintf(link, sizeof link, "/proc/self/fd/%d", file->descriptor);
-    for (int i = 0; i < 100; i++) {
-        name_temporary(file);
-        if (MAY_FAIL(linkat(AT_FDCWD, link, AT_FDCWD, file->temporary, AT_SYMLINK_FOLLOW)) == 0) {
-            file->nameless = false;
-            return true;
-        }
-        if (errno != EEXIST)
-            return false;
-    }
-    return false;
-}
-
-bool file_output_open(struct file_output *file, const char *target, struct error *error) {
-    memset(file, 0, sizeof *file);
-    if (target[0] == '\0')
-        return error_set(error, ERROR_SCENE, "the name of the output file is empty");
-    if (strlen(target) >= sizeof file->target)
-        return error_set(error, ERROR_SCENE, "%.100s...: the file name is longer than %zu bytes", target,
-                         sizeof file->target - 1);
-    const char *name = strcmp(target, "-") == 0 ? "standard output" : target;
-    memcpy(file->target, name, strlen(name) + 1);
-    if (file_is_folder(target))
-        return error_set(error, ERROR_SCENE, "%s: is a folder, a picture cannot be written there", target);
-    file->direct = is_direct_target(target);
-    if (file->direct) {
-        file->descriptor = MAY_FAIL(strcmp(target, "-") == 0 ? dup(STDOUT_FILENO) : open(target, O_WRONLY | O_CLOEXEC));
-    } else {
-        if (!file_make_folders_for(target, error))
-            return false;
-        file->descriptor = open_temporary(file);
-    }
-    if (file->descriptor < 0)
-        return error_set(error, kind_of_refusal(errno), "%s: cannot be written: %s", target, strerror(errno));
-    file->open = true;
-    return true;
-}
-
-bool file_output_write(struct file_output *file, const void *data, size_t size, struct error *error) {
-    const char *at = data;
-    while (size > 0) {
-        ssize_t done = MAY_FAIL(write(file->descriptor, at, size));
-        if (done < 0 && errno == EINTR)
-            continue;
-        if (done <= 0)
-            return error_set(error, ERROR_MACHINE, "%s: cannot be written: %s", file->target, strerror(errno));
-        at += done;
-        size -= (size_t)done;
-        file->written += (uint64_t)done;
-    }
-    return true;
-}
-
-/* The rename is on disk only when the folder is. Some file systems refuse to sync a folder; that is no loss of ours. */
-static void sync_folder_of(const char *target) {
-    char folder[4096];
-    const char *slash = strrchr(target, '/');
-    size_t length = slash ? (size_t)(slash - target) : 0;
-    if (!slash)
-        memcpy(folder, ".", 2);
-    else if (length == 0)
-        memcpy(folder, "/", 2);
-    else {
-        memcpy(folder, target, length);
-        folder[length] = '\0';
-    }
-    int descriptor = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor >= 0) {
-        (void)fsync(descriptor);
-        (void)close(descriptor);
-    }
-}
-
-/* Closed in any case, also where the system reports a late failure of writing. */
-static int close_reliably(int descriptor) {
-    int result = close(descriptor);
-    return MAY_FAIL(result);
-}
-
-bool file_output_commit(struct file_output *file, struct error *error) {
-    bool ok = true;
-    struct stat status;
-    if (!file->direct) {
-        if (stat(file->target, &status) == 0)
-            (void)fchmod(file->descriptor, status.st_mode & 07777);
-        ok = MAY_FAIL(fsync(file->descriptor)) == 0 && (!file->nameless || give_name(file));
-    }
-    int saved = errno;
-    if (close_reliably(file->descriptor) != 0 && ok) {
-        ok = false;
-        saved = errno;
-    }
-    file->open = false;
-    if (!file->direct && ok && MAY_FAIL(rename(file->temporary, file->target)) != 0) {
-        ok = false;
-        saved = errno;
-    }
-    if (!ok) {
-        if (!file->direct && !file->nameless)
-            (void)unlink(file->temporary);
-        return error_set(error, ERROR_MACHINE, "%s: cannot be written: %s", file->target, strerror(saved));
-    }
-    if (!file->direct)
-        sync_folder_of(file->target);
-    return true;
-}
-
-void file_output_abandon(struct file_output *file) {
-    if (!file->open)
-        return;
-    (void)close(file->descriptor);
-    file->open = false;
-    if (!file->direct && !file->nameless)
-        (void)unlink(file->temporary);
 }

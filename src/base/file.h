@@ -1,5 +1,4 @@
-/* The only place that opens, maps or renames files. Reading takes whole files (mapped), writing puts a temporary file
- * beside the target, syncs it and renames it, so that an old file stays until the new one is whole. */
+/* Reading, listing and removing files; writing is in base/file_output.h. Only src/base opens, maps or renames files. */
 #ifndef GRAY_BASE_FILE_H
 #define GRAY_BASE_FILE_H
 
@@ -16,12 +15,40 @@ struct file_bytes {
     size_t size;
 };
 
+/* What makes a file the same under all its names. */
+struct file_identity {
+    uint64_t device, inode;
+};
+/* A set of files. Zero-initialise; file_set_destroy releases it. */
+struct file_set {
+    struct file_identity *slots; /* open addressing; device and inode 0: free */
+    size_t count, room;
+};
+bool file_set_add(struct file_set *set, struct file_identity identity); /* false: no memory */
+bool file_set_has(const struct file_set *set, struct file_identity identity);
+void file_set_remove(struct file_set *set, struct file_identity identity);
+void file_set_destroy(struct file_set *set);
+/* Of what the name leads to; false: nothing is there. */
+bool file_identity_of(const char *path, struct file_identity *out);
+bool file_identity_of_descriptor(int descriptor, struct file_identity *out);
+
 /* Maps a regular file; an empty file gives size 0. A pipe or device is refused as "not a regular file".
  * A file larger than `limit` bytes is an error. Errors name the path. */
 bool file_map(const char *path, size_t limit, struct file_bytes *out, struct error *error);
 /* The same of an open descriptor, which is closed in any case; `path` is what it is called. */
 bool file_map_descriptor(int descriptor, const char *path, size_t limit, struct file_bytes *out, struct error *error);
 void file_unmap(struct file_bytes *bytes);
+
+/* A regular file that is read piece by piece, whatever its size. Zero value: closed. */
+struct file_source {
+    int descriptor;
+    bool open;
+    uint64_t size; /* when it was opened */
+};
+bool file_source_open(struct file_source *source, const char *path, struct error *error); /* as file_map */
+/* False: not all of these bytes are there. */
+bool file_source_read(const struct file_source *source, uint64_t at, void *out, size_t size);
+void file_source_close(struct file_source *source);
 
 /* The contents of all files that this process has read, each once, whatever its name: whether a picture that was half
  * made elsewhere or earlier was made of the same. Zero-initialise; file_witness_destroy gives the list back. */
@@ -35,13 +62,16 @@ struct file_witness {
 void file_set_witness(struct file_witness *witness);
 /* What a file held, and when: two versions that are told apart by size and time need not be read again. */
 struct file_version {
-    struct digest content;
+    struct file_identity identity;
+    struct digest content; /* zero unless the listener wants contents */
     uint64_t size;
     int64_t seconds, nanoseconds; /* of its last change */
 };
-/* Is told every file that is read, under the name it was asked for by. */
+/* Receives every file that is read, with the name that was used, and every file that a script opens for writing. */
 struct file_listener {
     void (*heard)(void *context, const char *path, const struct file_version *version);
+    void (*wrote)(void *context, const char *path, const struct file_version *version);
+    bool contents; /* versions have digests */
     void *context;
 };
 /* As file_set_witness. */
@@ -51,10 +81,16 @@ void file_set_listener(const struct file_listener *listener);
 bool file_version_of(const char *path, const struct file_version *known, struct file_version *out);
 /* Notes the content of an open regular file without moving its position. For readers beside file_map. */
 void file_note_read(int descriptor, const char *path);
+/* The same for a file that was opened for writing. */
+void file_note_write(int descriptor, const char *path);
+/* The content of a regular file, which is opened only when it is one; false: there is none that can be read. */
+bool file_digest(const char *path, struct digest *digest);
 /* Does not depend on the order in which the files were read. */
 struct digest file_witness_sum(const struct file_witness *witness);
 void file_witness_destroy(struct file_witness *witness);
 
+/* Anything of this name, a link that leads nowhere too. */
+bool file_exists(const char *path);
 bool file_is_regular(const char *path);
 bool file_is_folder(const char *path);
 /* A descriptor (O_PATH) that only stands for a place in the file system; -1 when there is none. */
@@ -66,26 +102,14 @@ bool file_null_input(void);
 void file_fill_standard(void);
 /* The canonical absolute path (realpath) into out; false when it does not exist or does not fit. */
 bool file_canonical(const char *path, char *out, size_t size);
+/* ERROR_SCENE for a place that cannot hold a file (a wrong name), ERROR_MACHINE for the rest (a full disk). */
+enum error_kind file_refusal_kind(int number);
 /* Removes one file; fine when there is none. */
 bool file_remove(const char *path, struct error *error);
 /* mkdir -p of the folder part of `path`. */
 bool file_make_folders_for(const char *path, struct error *error);
 /* Calls fn for every entry name of a folder in byte order, at most `limit` entries; stops early when fn returns false.
- */
+ * Hidden names, which begin with a dot, are left out and do not count. */
 bool file_list(const char *folder, size_t limit, bool (*fn)(void *context, const char *name), void *context);
-
-/* A file being written. Zero value = closed. After file_output_open either commit or abandon must follow. */
-struct file_output {
-    int descriptor;
-    bool open, direct; /* direct: target is a pipe, a device or "-" and is written in place */
-    bool nameless;     /* the temporary file has no name yet */
-    uint64_t written;
-    char target[4096], temporary[4096 + 32];
-};
-bool file_output_open(struct file_output *file, const char *target, struct error *error); /* makes missing folders */
-bool file_output_write(struct file_output *file, const void *data, size_t size, struct error *error);
-/* fsync, rename over the target (mode bits of an existing file are kept), fsync of the folder. */
-bool file_output_commit(struct file_output *file, struct error *error);
-void file_output_abandon(struct file_output *file); /* removes the temporary file; fine on a closed one */
 
 #endif

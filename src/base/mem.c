@@ -1,18 +1,79 @@
-/* Allocation with failures on demand (base/fault.h). */
+/* Allocation with failures on demand (base/fault.h) and with a limit.
+ *
+ * A request is added to the account before malloc is asked, as the block's size will be, and what malloc has given
+ * corrects the number afterwards. So threads that allocate at the same time cannot exceed the limit together. The
+ * account in charge belongs to the process and not to a thread or a caller: libraries allocate through hooks that know
+ * neither. */
 #include "base/mem.h"
 
 #include "base/checked.h"
 #include "base/fault.h"
 #include "base/mem_peak.h"
 
+#include <malloc.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 
-#ifdef GRAY_FAULTS
-#include <malloc.h>
-#include <stdatomic.h>
+/* The account in charge, or NULL. */
+static _Atomic(struct mem_account *) charged;
 
+struct mem_account *mem_charge(struct mem_account *account) {
+    return atomic_exchange(&charged, account);
+}
+
+static struct mem_account *account_in_charge(void) {
+    return atomic_load_explicit(&charged, memory_order_relaxed);
+}
+
+uint64_t mem_refusals(void) {
+    struct mem_account *account = account_in_charge();
+    return account ? atomic_load(&account->refusals) : 0;
+}
+
+const struct mem_account *mem_charged(void) {
+    return account_in_charge();
+}
+
+/* What malloc takes for a block of this size: its header, multiples of 16, 32 at least (glibc's layout). */
+static uint64_t block_cost(size_t size) {
+    uint64_t whole = ((uint64_t)size + 8 + 15) & ~UINT64_C(15);
+    return size > SIZE_MAX / 2 ? size : whole < 32 ? 32 : whole;
+}
+
+static uint64_t block_held(void *block) {
+    return block ? malloc_usable_size(block) + 8 : 0;
+}
+
+static void account_add(struct mem_account *account, uint64_t more, uint64_t less) {
+    (void)atomic_fetch_add_explicit(&account->held, (int64_t)(more - less), memory_order_relaxed);
+}
+
+/* False: refused, and nothing is counted. */
+static bool account_take(struct mem_account *account, uint64_t size) {
+    if (size <= account->limit) {
+        int64_t held = atomic_fetch_add_explicit(&account->held, (int64_t)size, memory_order_relaxed);
+        if (held <= (int64_t)(account->limit - size))
+            return true;
+        account_add(account, 0, size);
+    }
+    (void)atomic_fetch_add(&account->refusals, 1);
+    return false;
+}
+
+bool mem_reserve(uint64_t size) {
+    struct mem_account *account = account_in_charge();
+    return !account || account_take(account, size);
+}
+
+void mem_unreserve(uint64_t size) {
+    struct mem_account *account = account_in_charge();
+    if (account)
+        account_add(account, 0, size);
+}
+
+#ifdef GRAY_FAULTS
 /* What blocks hold now, and at most since mem_peak_begin; only builds that inject faults count, and only tests read. */
 static _Atomic uint64_t bytes_held, bytes_most;
 
@@ -68,33 +129,87 @@ uint64_t mem_allocations(void) {
     return fault_count(FAULT_OF_ALLOCATION);
 }
 
-void *mem_alloc(size_t size) {
-    return allocation_fails() ? NULL : taken(malloc(size ? size : 1));
-}
-
-void *mem_alloc_zero(size_t count, size_t size) {
-    if (allocation_fails())
-        return NULL;
-    return taken(count && size ? calloc(count, size) : calloc(1, 1));
-}
-
-void *mem_alloc_aligned(size_t alignment, size_t size) {
-    void *block = NULL;
-    if (allocation_fails() || posix_memalign(&block, alignment, size ? size : 1) != 0)
-        return NULL;
-#ifdef MADV_HUGEPAGE
-    if (alignment >= MEM_LARGE_PAGE)
-        (void)madvise(block, size, MADV_HUGEPAGE);
-#endif
+/* A new block for which account_take has counted `cost`. */
+static void *account_new(struct mem_account *account, void *block, uint64_t cost) {
+    if (account)
+        account_add(account, block_held(block), cost);
     return taken(block);
 }
 
+void *mem_alloc(size_t size) {
+    struct mem_account *account = account_in_charge();
+    uint64_t cost = block_cost(size);
+    if (allocation_fails() || (account && !account_take(account, cost)))
+        return NULL;
+    return account_new(account, malloc(size ? size : 1), cost);
+}
+
+void *mem_alloc_zero(size_t count, size_t size) {
+    struct mem_account *account = account_in_charge();
+    size_t bytes;
+    if (allocation_fails() || !checked_mul(count, size, &bytes))
+        return NULL;
+    uint64_t cost = block_cost(bytes);
+    if (account && !account_take(account, cost))
+        return NULL;
+    return account_new(account, calloc(1, bytes ? bytes : 1), cost);
+}
+
+void *mem_alloc_aligned(size_t alignment, size_t size) {
+    struct mem_account *account = account_in_charge();
+    uint64_t cost = block_cost(size);
+    void *block = NULL;
+    if (allocation_fails() || (account && !account_take(account, cost)))
+        return NULL;
+    if (posix_memalign(&block, alignment, size ? size : 1) != 0)
+        block = NULL;
+#ifdef MADV_HUGEPAGE
+    if (block && alignment >= MEM_LARGE_PAGE)
+        (void)madvise(block, size, MADV_HUGEPAGE);
+#endif
+    return account_new(account, block, cost);
+}
+
 void *mem_resize(void *block, size_t size) {
-    if (allocation_fails())
+    struct mem_account *account = account_in_charge();
+    uint64_t before = account ? block_held(block) : 0, cost = block_cost(size);
+    if (allocation_fails() || (account && cost > before && !account_take(account, cost - before)))
         return NULL;
     given_back(block);
     void *resized = realloc(block, size ? size : 1);
     (void)taken(resized ? resized : block);
+    if (account)
+        account_add(account, resized ? block_held(resized) : before, cost > before ? cost : before);
+    return resized;
+}
+
+/* Without the cost of atomic additions; false: refused, and nothing is counted. */
+static bool account_change(struct mem_account *account, int64_t more) {
+    int64_t held = atomic_load_explicit(&account->held, memory_order_relaxed) + more;
+    if (more > 0 && held > (int64_t)account->limit) {
+        (void)atomic_fetch_add(&account->refusals, 1);
+        return false;
+    }
+    atomic_store_explicit(&account->held, held, memory_order_relaxed);
+    return true;
+}
+
+void *mem_resize_known(void *block, size_t old_size, size_t size) {
+    struct mem_account *account = account_in_charge();
+    if (size > SIZE_MAX / 2 || (size > 0 && allocation_fails()))
+        return NULL;
+    int64_t more = (int64_t)(size > 0 ? block_cost(size) : 0) - (int64_t)(block ? block_cost(old_size) : 0);
+    if (account && !account_change(account, more))
+        return NULL;
+    given_back(block);
+    if (size == 0) {
+        free(block);
+        return NULL;
+    }
+    void *resized = realloc(block, size);
+    (void)taken(resized ? resized : block);
+    if (account && !resized)
+        account_add(account, 0, (uint64_t)more);
     return resized;
 }
 
@@ -104,8 +219,21 @@ void *mem_resize_array(void *block, size_t count, size_t size) {
 }
 
 void mem_free(void *block) {
+    struct mem_account *account = account_in_charge();
+    if (account)
+        account_add(account, 0, block_held(block));
     given_back(block);
     free(block);
+}
+
+/* Otherwise glibc keeps blocks of up to 32 MiB in its heap once one of them was freed, and holes between lists that
+ * grow there count in no account: a tenth more than what is held. */
+void mem_return_large(void) {
+#ifdef M_MMAP_THRESHOLD
+    enum { LARGE = 1 << 20 };
+    (void)mallopt(M_MMAP_THRESHOLD, LARGE);
+    (void)mallopt(M_TRIM_THRESHOLD, LARGE);
+#endif
 }
 
 void *mem_share(size_t size) {

@@ -90,15 +90,7 @@ static void *thread_main(void *argument) {
  * taken. */
 static const size_t stack_size = (size_t)32 << 20;
 
-void pool_raise_stack(void) {
-    struct rlimit limit;
-    if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= stack_size)
-        return;
-    limit.rlim_cur = limit.rlim_max < stack_size ? limit.rlim_max : stack_size;
-    (void)setrlimit(RLIMIT_STACK, &limit);
-}
-
-static int start_thread(struct pool_thread *thread) {
+static int start_thread(pthread_t *thread, void *(*fn)(void *argument), void *argument) {
     pthread_attr_t attributes;
     if (fault_now(FAULT_OF_CALL))
         return EAGAIN;
@@ -106,9 +98,48 @@ static int start_thread(struct pool_thread *thread) {
     if (failure != 0)
         return failure;
     (void)pthread_attr_setstacksize(&attributes, stack_size);
-    failure = pthread_create(&thread->thread, &attributes, thread_main, thread);
+    failure = pthread_create(thread, &attributes, fn, argument);
     (void)pthread_attr_destroy(&attributes);
     return failure;
+}
+
+/* Raises the limit of the calling thread, which must be the first one of the process, as far as the system lets it. */
+static bool stack_is_large(void) {
+    struct rlimit limit;
+    if (getrlimit(RLIMIT_STACK, &limit) != 0)
+        return false;
+    if (limit.rlim_cur >= stack_size)
+        return true;
+    if (limit.rlim_max < stack_size)
+        return false;
+    limit.rlim_cur = stack_size;
+    return setrlimit(RLIMIT_STACK, &limit) == 0;
+}
+
+struct deep_call {
+    void (*fn)(void *context);
+    void *context;
+};
+
+static void *call_main(void *argument) {
+    const struct deep_call *call = argument;
+    call->fn(call->context);
+    return NULL;
+}
+
+bool pool_call_with_stack(void (*fn)(void *context), void *context, struct error *error) {
+    struct deep_call call = {fn, context};
+    pthread_t thread;
+    if (stack_is_large()) {
+        fn(context);
+        return true;
+    }
+    int failure = start_thread(&thread, call_main, &call);
+    if (failure != 0)
+        return error_set(error, ERROR_MACHINE, "gray: there is no stack of %zu MiB (ulimit -s allows less): %s",
+                         stack_size >> 20, strerror(failure));
+    (void)pthread_join(thread, NULL);
+    return true;
 }
 
 struct pool *pool_create(int threads, char warning[256]) {
@@ -131,7 +162,7 @@ struct pool *pool_create(int threads, char warning[256]) {
     pool->workers = 1;
     for (int i = 0; i < wanted - 1; i++) {
         pool->threads[i] = (struct pool_thread){.pool = pool, .worker = i + 1};
-        int failure = start_thread(&pool->threads[i]);
+        int failure = start_thread(&pool->threads[i].thread, thread_main, &pool->threads[i]);
         if (failure != 0) {
             (void)snprintf(warning, 256, "only %d of %d threads could be started: %s", pool->workers, wanted,
                            strerror(failure));

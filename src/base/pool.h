@@ -16,10 +16,10 @@ struct pool;
  * (and *warning set to a sentence, else "") when the system refuses to start some. NULL only without memory. */
 struct pool *pool_create(int threads, char warning[256]);
 void pool_destroy(struct pool *pool);
-/* Gives the calling thread the room that those of the pool have, as far as the system lets it: a path may be reflected
- * and refracted a thousand times, each time a deeper call. To be called early, in the thread that will call pool_run.
- */
-void pool_raise_stack(void);
+/* Calls the function with a stack of the size that threads of a pool have: a path may be reflected and refracted a
+ * thousand times, solids are nested ten thousand deep, each time a deeper call. Where `ulimit -s` does not let the
+ * calling thread have it, on a thread that is waited for. False: there is no such thread, nothing was called. */
+bool pool_call_with_stack(void (*fn)(void *context), void *context, struct error *error);
 int pool_workers(const struct pool *pool); /* worker indices are 0 .. pool_workers - 1 */
 
 typedef void pool_function(void *context, uint32_t item, int worker);

@@ -1,7 +1,9 @@
-/* Two steps. Deciding: the canonical path (realpath) must lie below a folder of the list. Opening: openat2 below that
- * folder's descriptor with RESOLVE_BENEATH and RESOLVE_NO_SYMLINKS (Linux 5.6, openat2(2)); a canonical path holds no
- * links, so one that is met was put there in between and is refused by the kernel. On kernels without openat2 the
- * opened descriptor is asked for its path instead. */
+/* Two steps. Deciding: a name is resolved part by part, links included (path_resolution(7)), and the moment it leaves
+ * the folders of the list it is refused, before the file system is asked about that part: the answer is the same
+ * whether something is there or not. Opening: openat2 below that folder's descriptor with RESOLVE_BENEATH and
+ * RESOLVE_NO_SYMLINKS (Linux 5.6, openat2(2)); a canonical path holds no links, so one that is met was put there in
+ * between and is refused by the kernel. On kernels without openat2 the opened descriptor is asked for its path instead.
+ */
 #define _GNU_SOURCE
 #include "base/reach.h"
 
@@ -18,7 +20,43 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-static bool add_canonical(struct reach *reach, const char *canonical, enum reach_kind kind, struct error *error) {
+/* An absolute name without ".", ".." and doubled slashes, by the letter; "" for the root. */
+static bool make_plain(const char *path, char *plain, size_t size) {
+    size_t used = 0;
+    for (const char *at = path; *at;) {
+        at += strspn(at, "/");
+        size_t length = strcspn(at, "/");
+        if (length == 2 && at[0] == '.' && at[1] == '.') {
+            while (used > 0 && plain[--used] != '/')
+                ;
+        } else if (length > 0 && !(length == 1 && at[0] == '.')) {
+            if (used + 1 + length >= size)
+                return false;
+            plain[used++] = '/';
+            memcpy(plain + used, at, length);
+            used += length;
+        }
+        at += length;
+    }
+    plain[used] = '\0';
+    return true;
+}
+
+/* The name under which a folder was given, when it is absolute and not the canonical one: a home behind a link. Without
+ * memory it is left out, and names that begin so are refused. */
+static void add_spelling(struct reach_folder *folder, const char *given) {
+    char plain[PATH_MAX], canonical[PATH_MAX];
+    if (folder->spelling || given[0] != '/' || !make_plain(given, plain, sizeof plain) ||
+        strcmp(plain, folder->path) == 0 || !realpath(plain, canonical) ||
+        strcmp(canonical, folder->length > 0 ? folder->path : "/") != 0)
+        return;
+    folder->spelling = mem_alloc(strlen(plain) + 1);
+    if (folder->spelling)
+        memcpy(folder->spelling, plain, strlen(plain) + 1);
+}
+
+static bool add_canonical(struct reach *reach, const char *given, const char *canonical, enum reach_kind kind,
+                          struct error *error) {
     size_t length = strlen(canonical);
     if (length == 1)
         length = 0;
@@ -26,6 +64,7 @@ static bool add_canonical(struct reach *reach, const char *canonical, enum reach
         struct reach_folder *have = &reach->folders[i];
         if (have->length == length && memcmp(have->path, canonical, length) == 0) {
             have->kind = kind > have->kind ? kind : have->kind;
+            add_spelling(have, given);
             return true;
         }
     }
@@ -42,10 +81,12 @@ static bool add_canonical(struct reach *reach, const char *canonical, enum reach
     if (descriptor < 0) {
         int why = errno;
         mem_free(path);
-        return kind == REACH_IMPLIED ||
-               error_set(error, ERROR_SCENE, "%s: cannot be opened: %s", canonical, strerror(why));
+        enum error_kind failure = error_kind_of_reading(why);
+        return (kind == REACH_IMPLIED && failure == ERROR_SCENE) ||
+               error_set(error, failure, "%s: cannot be opened: %s", canonical, strerror(why));
     }
-    reach->folders[reach->count++] = (struct reach_folder){path, length, kind, descriptor};
+    reach->folders[reach->count] = (struct reach_folder){path, length, kind, descriptor, NULL};
+    add_spelling(&reach->folders[reach->count++], given);
     return true;
 }
 
@@ -56,7 +97,9 @@ bool reach_add(struct reach *reach, const char *folder, enum reach_kind kind, st
         return true;
     if (!there)
         return error_set(error, ERROR_USAGE, "%s: is not a folder", folder);
-    return add_canonical(reach, canonical, kind, error);
+    /* The working directory as the shell calls it; add_spelling looks whether that is true. */
+    const char *shown = strcmp(folder, ".") == 0 ? getenv("PWD") : NULL;
+    return add_canonical(reach, shown ? shown : folder, canonical, kind, error);
 }
 
 bool reach_add_scene(struct reach *reach, const char *scene, const char *library, struct error *error) {
@@ -77,6 +120,7 @@ void reach_destroy(struct reach *reach) {
     for (size_t i = 0; i < reach->count; i++) {
         (void)close(reach->folders[i].descriptor);
         mem_free(reach->folders[i].path);
+        mem_free(reach->folders[i].spelling);
     }
     mem_free(reach->folders);
     *reach = (struct reach){0};
@@ -104,46 +148,149 @@ static const struct reach_folder *find(const struct reach *reach, const char *ca
     return NULL;
 }
 
+/* A folder of the list, or one above it: it is there, and no part of it is a link. */
+static bool leads_to_folder(const struct reach *reach, const char *canonical) {
+    size_t length = strlen(canonical);
+    for (size_t i = 0; i < reach->count; i++) {
+        const struct reach_folder *folder = &reach->folders[i];
+        if (length <= folder->length && memcmp(folder->path, canonical, length) == 0 &&
+            (folder->path[length] == '/' || folder->path[length] == '\0'))
+            return true;
+    }
+    return false;
+}
+
+/* The name as an absolute one, with the canonical path of a folder in the place of what it was given as. */
+static bool make_absolute(const struct reach *reach, const char *path, char whole[2 * PATH_MAX + 2]) {
+    char here[PATH_MAX];
+    size_t length = 0, begin = 0;
+    if (path[0] == '\0' || strlen(path) >= PATH_MAX)
+        return false;
+    if (path[0] != '/') {
+        if (!getcwd(here, sizeof here) || here[0] != '/')
+            return false;
+        (void)snprintf(whole, 2 * PATH_MAX + 2, "%s/%s", here, path);
+        return true;
+    }
+    const struct reach_folder *found = NULL;
+    for (size_t i = 0; i < reach->count; i++) {
+        const struct reach_folder *folder = &reach->folders[i];
+        length = folder->spelling ? strlen(folder->spelling) : 0;
+        if (length > begin && strncmp(path, folder->spelling, length) == 0 &&
+            (path[length] == '/' || path[length] == '\0')) {
+            found = folder;
+            begin = length;
+        }
+    }
+    (void)snprintf(whole, 2 * PATH_MAX + 2, "%s%s", found ? found->path : "", path + begin);
+    return true;
+}
+
+/* Where a name is on its way to what it means. */
+struct resolution {
+    char at[PATH_MAX];           /* canonical so far; "" for the root */
+    char rest[2 * PATH_MAX + 2]; /* what follows */
+    int links;
+    bool last_is_link; /* a link in the last place was followed */
+};
+
+/* The link at `at` plus `name` takes the place of the name. */
+static bool follow_link(struct resolution *r, const char *link, const char *rest) {
+    enum { LINKS = 40 }; /* as the kernel's limit */
+    char target[PATH_MAX];
+    ssize_t size = readlink(link, target, sizeof target - 1);
+    if (size < 0)
+        return false;
+    if (++r->links > LINKS || size == 0) {
+        errno = ELOOP;
+        return false;
+    }
+    size_t length = strlen(rest);
+    if (length + (size_t)size >= sizeof r->rest) {
+        errno = ENAMETOOLONG;
+        return false;
+    }
+    r->last_is_link = r->last_is_link || length == 0;
+    if (target[0] == '/')
+        r->at[0] = '\0';
+    memmove(r->rest + size, rest, length + 1); /* `rest` is the end of r->rest */
+    memcpy(r->rest, target, (size_t)size);
+    return true;
+}
+
+/* One part of the name. False with errno: EACCES outside, or what the file system says of what is inside. `rest` begins
+ * with the slash after the part, or is empty. */
+static bool take_part(const struct reach *reach, struct resolution *r, const char *part, size_t length,
+                      const char *rest, bool follow) {
+    char next[PATH_MAX];
+    struct stat status;
+    const char *below;
+    int size = snprintf(next, sizeof next, "%s/%.*s", r->at, (int)length, part);
+    if (size >= (int)sizeof next) {
+        errno = ENAMETOOLONG;
+        return false;
+    }
+    bool known = leads_to_folder(reach, next);
+    if (!known && !find(reach, next, false, &below)) {
+        errno = EACCES;
+        return false;
+    }
+    if (!known && lstat(next, &status) != 0)
+        return false;
+    if (!known && S_ISLNK(status.st_mode) && (follow || rest[0] != '\0'))
+        return follow_link(r, next, rest);
+    if (!known && rest[0] != '\0' && !S_ISDIR(status.st_mode)) {
+        errno = ENOTDIR;
+        return false;
+    }
+    memcpy(r->at, next, (size_t)size + 1);
+    memmove(r->rest, rest, strlen(rest) + 1);
+    return true;
+}
+
+/* Goes as far as the parts exist. True: all of them do, `at` is the canonical path. False with errno; with ENOENT `at`
+ * is what exists, inside of the list or above it, and `rest` the part that does not, with what follows. follow: a link
+ * in the last place, too. */
+static bool resolve(const struct reach *reach, const char *path, bool follow, struct resolution *r) {
+    r->at[0] = '\0';
+    r->links = 0;
+    r->last_is_link = false;
+    if (!make_absolute(reach, path, r->rest)) {
+        errno = strlen(path) >= PATH_MAX ? ENAMETOOLONG : path[0] == '\0' ? ENOENT : EACCES;
+        return false;
+    }
+    for (;;) {
+        const char *part = r->rest + strspn(r->rest, "/");
+        size_t length = strcspn(part, "/");
+        if (length == 0)
+            return true;
+        if (length == 1 && part[0] == '.') {
+            memmove(r->rest, part + length, strlen(part + length) + 1);
+        } else if (length == 2 && part[0] == '.' && part[1] == '.') {
+            char *slash = strrchr(r->at, '/');
+            if (slash)
+                *slash = '\0';
+            memmove(r->rest, part + length, strlen(part + length) + 1);
+        } else if (!take_part(reach, r, part, length, part + length, follow)) {
+            memmove(r->rest, part, strlen(part) + 1);
+            return false;
+        }
+    }
+}
+
 bool reach_is_readable(const struct reach *reach, const char *path) {
-    char canonical[PATH_MAX];
+    struct resolution r;
     const char *rest;
     if (!reach)
         return file_is_regular(path);
-    return realpath(path, canonical) && find(reach, canonical, false, &rest) && file_is_regular(canonical);
+    return resolve(reach, path, true, &r) && find(reach, r.at, false, &rest) && file_is_regular(r.at);
 }
 
 bool reach_is_outside(const struct reach *reach, const char *path) {
     char whole[2 * PATH_MAX + 2], plain[2 * PATH_MAX + 2];
     const char *rest;
-    if (!reach)
-        return false;
-    if (strlen(path) >= PATH_MAX)
-        return true;
-    if (path[0] == '/') {
-        (void)snprintf(whole, sizeof whole, "%s", path);
-    } else {
-        char here[PATH_MAX];
-        if (!getcwd(here, sizeof here))
-            return true;
-        (void)snprintf(whole, sizeof whole, "%s/%s", here, path);
-    }
-    /* "." and ".." by the letter. */
-    size_t used = 0;
-    for (const char *at = whole; *at;) {
-        at += strspn(at, "/");
-        size_t length = strcspn(at, "/");
-        if (length == 2 && at[0] == '.' && at[1] == '.') {
-            while (used > 0 && plain[--used] != '/')
-                ;
-        } else if (length > 0 && !(length == 1 && at[0] == '.')) {
-            plain[used++] = '/';
-            memcpy(plain + used, at, length);
-            used += length;
-        }
-        at += length;
-    }
-    plain[used] = '\0';
-    return !find(reach, plain, false, &rest);
+    return reach && (!make_absolute(reach, path, whole) || !make_plain(whole, plain, sizeof plain) ||
+                     !find(reach, plain, false, &rest));
 }
 
 /* The descriptor of a canonical path below a folder; the flags say what for. */
@@ -175,9 +322,10 @@ static bool is_regular(int descriptor) {
     return MAY_FAIL(fstat(descriptor, &status)) == 0 && S_ISREG(status.st_mode);
 }
 
-/* The canonical path of a name whose last part need not exist. */
-static bool canonical_parent(const char *path, char canonical[PATH_MAX]) {
+/* The canonical path of a name whose last part need not exist and is not followed. */
+static bool canonical_parent(const struct reach *reach, const char *path, char canonical[PATH_MAX]) {
     char folder[PATH_MAX];
+    struct resolution r;
     const char *slash = strrchr(path, '/'), *last = slash ? slash + 1 : path;
     size_t length = slash ? (size_t)(slash - path) + 1 : 0;
     if (length + 2 >= sizeof folder || last[0] == '\0' || strcmp(last, ".") == 0 || strcmp(last, "..") == 0) {
@@ -186,32 +334,27 @@ static bool canonical_parent(const char *path, char canonical[PATH_MAX]) {
     }
     memcpy(folder, path, length);
     memcpy(folder + length, ".", 2);
-    if (!realpath(folder, canonical))
+    if (!resolve(reach, folder, true, &r))
         return false;
-    size_t used = strlen(canonical);
-    used -= used == 1; /* "/" */
-    if (used + 1 + strlen(last) >= PATH_MAX) {
-        errno = ENAMETOOLONG;
-        return false;
-    }
-    canonical[used] = '/';
-    memcpy(canonical + used + 1, last, strlen(last) + 1);
-    return true;
+    int size = snprintf(canonical, PATH_MAX, "%s/%s", r.at, last);
+    if (size < PATH_MAX)
+        return true;
+    errno = ENAMETOOLONG;
+    return false;
 }
 
 /* A descriptor of a regular file, or -1 with errno. */
 static int open_checked(const struct reach *reach, const char *path, int flags) {
+    struct resolution r;
     char canonical[PATH_MAX];
     const char *rest = NULL;
     bool write = (flags & O_ACCMODE) != O_RDONLY;
-    if (reach_is_outside(reach, path)) {
-        errno = EACCES;
-        return -1;
-    }
     /* A link in the last place is followed to see where it leads; one that leads nowhere is not written through. */
-    bool there = realpath(path, canonical) != NULL;
-    if (!there && (!write || !canonical_parent(path, canonical)))
+    bool there = resolve(reach, path, true, &r);
+    if (!there && (errno != ENOENT || !write || r.last_is_link || !canonical_parent(reach, path, canonical)))
         return -1;
+    if (there)
+        memcpy(canonical, r.at, sizeof canonical);
     const struct reach_folder *folder = find(reach, canonical, write, &rest);
     if (!folder) {
         errno = EACCES;
@@ -232,7 +375,7 @@ bool reach_map(const struct reach *reach, const char *path, size_t limit, struct
     *out = (struct file_bytes){0};
     int descriptor = open_checked(reach, path, O_RDONLY);
     if (descriptor < 0)
-        return error_set(error, ERROR_SCENE, "%s: cannot be read: %s", path, strerror(errno));
+        return error_set(error, error_kind_of_reading(errno), "%s: cannot be read: %s", path, strerror(errno));
     return file_map_descriptor(descriptor, path, limit, out, error);
 }
 
@@ -253,19 +396,25 @@ static int flags_of(const char *mode) {
     }
 }
 
+static void note_stream(int descriptor, const char *path, const char *mode) {
+    if (mode[0] == 'r')
+        file_note_read(descriptor, path);
+    if (mode[0] != 'r' || strchr(mode, '+'))
+        file_note_write(descriptor, path);
+}
+
 FILE *reach_stream(const struct reach *reach, const char *path, const char *mode) {
     if (!reach) {
         FILE *open = MAY_GIVE_NULL(fopen(path, mode));
-        if (open && mode[0] == 'r')
-            file_note_read(fileno(open), path);
+        if (open)
+            note_stream(fileno(open), path, mode);
         return open;
     }
     int flags = flags_of(mode);
     int descriptor = flags < 0 ? -1 : open_checked(reach, path, flags);
     if (descriptor < 0)
         return NULL;
-    if (mode[0] == 'r')
-        file_note_read(descriptor, path);
+    note_stream(descriptor, path, mode);
     FILE *stream = MAY_GIVE_NULL(fdopen(descriptor, mode));
     if (!stream)
         (void)close(descriptor);
@@ -275,7 +424,7 @@ FILE *reach_stream(const struct reach *reach, const char *path, const char *mode
 /* The folder's descriptor and the last name, for a file that may be changed. */
 static const struct reach_folder *writable(const struct reach *reach, const char *path, char canonical[PATH_MAX],
                                            const char **rest) {
-    if (!canonical_parent(path, canonical))
+    if (!canonical_parent(reach, path, canonical))
         return NULL;
     const struct reach_folder *folder = find(reach, canonical, true, rest);
     if (!folder)
@@ -283,32 +432,71 @@ static const struct reach_folder *writable(const struct reach *reach, const char
     return folder;
 }
 
-/* The part that exists is looked at where it leads; what follows is taken as it is written. */
+/* A name for a new file on its way to its folder; too large for a small stack. */
+struct new_name {
+    char canonical[3 * PATH_MAX + 4];
+    struct resolution r;
+};
+
+/* The folder below which a file of this name may be made, and the name below it, canonical. The part that exists is
+ * followed, but for a link in the last place; what follows must be plain. */
+static const struct reach_folder *find_new(const struct reach *reach, const char *path, struct new_name *name,
+                                           const char **rest) {
+    struct resolution *r = &name->r;
+    bool there = resolve(reach, path, false, r);
+    if (!there && (errno != ENOENT || r->rest[0] == '.' || strstr(r->rest, "/.")))
+        return NULL;
+    (void)snprintf(name->canonical, sizeof name->canonical, "%s%s%s", r->at, there ? "" : "/", there ? "" : r->rest);
+    const struct reach_folder *found = find(reach, name->canonical, true, rest);
+    return found && (*rest)[0] != '.' && !strstr(*rest, "/.") ? found : NULL;
+}
+
 bool reach_may_create(const struct reach *reach, const char *path) {
-    char folder[PATH_MAX], canonical[2 * PATH_MAX];
-    size_t length = strlen(path), existing = length;
-    const char *rest = NULL;
-    if (length >= sizeof folder)
-        return false;
-    for (;;) {
-        while (existing > 0 && path[existing - 1] != '/')
-            existing--;
-        memcpy(folder, path, existing);
-        memcpy(folder + existing, existing == 0 ? "." : "", existing == 0 ? 2 : 1);
-        if (realpath(folder, canonical))
-            break;
-        if (existing == 0 || errno != ENOENT)
-            return false;
-        existing--;
+    struct new_name *name = mem_alloc(sizeof *name);
+    const char *rest;
+    bool may = name && find_new(reach, path, name, &rest);
+    mem_free(name);
+    return may;
+}
+
+/* One folder at a time, no links: openat2 is not needed for that. */
+static int open_folders(int folder, const char *rest) {
+    const int flags = O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
+    for (const char *slash; folder >= 0 && (slash = strchr(rest, '/')) != NULL; rest = slash + 1) {
+        char name[NAME_MAX + 1];
+        size_t length = (size_t)(slash - rest);
+        int next = -1;
+        if (length == 0)
+            continue;
+        errno = ENAMETOOLONG;
+        if (length < sizeof name) {
+            memcpy(name, rest, length);
+            name[length] = '\0';
+            next = MAY_FAIL(openat(folder, name, flags));
+            if (next < 0 && errno == ENOENT && (MAY_FAIL(mkdirat(folder, name, 0777)) == 0 || errno == EEXIST))
+                next = MAY_FAIL(openat(folder, name, flags));
+        }
+        int saved = errno;
+        (void)close(folder);
+        errno = saved;
+        folder = next;
     }
-    const char *missing = path + existing;
-    if (missing[0] == '.' || strstr(missing, "/."))
-        return false;
-    size_t used = strlen(canonical);
-    used -= used == 1;
-    (void)snprintf(canonical + used, sizeof canonical - used, "/%s", missing);
-    const struct reach_folder *found = find(reach, canonical, true, &rest);
-    return found && rest[0] != '.' && !strstr(rest, "/.");
+    return folder;
+}
+
+int reach_open_folder(const struct reach *reach, const char *path) {
+    struct new_name *name = mem_alloc(sizeof *name);
+    const char *rest = NULL;
+    const struct reach_folder *found = name ? find_new(reach, path, name, &rest) : NULL;
+    int folder = -1;
+    if (!found)
+        errno = name ? EACCES : ENOMEM;
+    else
+        folder = open_folders(MAY_FAIL(openat(found->descriptor, ".", O_PATH | O_DIRECTORY | O_CLOEXEC)), rest);
+    int saved = errno;
+    mem_free(name);
+    errno = saved;
+    return folder;
 }
 
 bool reach_remove(const struct reach *reach, const char *path) {

@@ -1,6 +1,8 @@
 /* The folders a scene may read and write: a list, decided before the scene starts. A name is looked at where it really
  * leads (symbolic links and ".." followed), and what is opened is opened below the folder's own descriptor, so that
- * nothing changed in between can lead out. For reading and streams NULL in the place of a reach means "no limits". */
+ * nothing changed in between can lead out. A name that leads out, at its end or on its way, is refused before anything
+ * outside is looked at: whether something is there changes neither the answer nor errno. For reading and streams NULL
+ * in the place of a reach means "no limits". */
 #ifndef GRAY_BASE_REACH_H
 #define GRAY_BASE_REACH_H
 
@@ -24,6 +26,7 @@ struct reach_folder {
     size_t length;
     enum reach_kind kind;
     int descriptor;
+    char *spelling; /* another absolute name by which the folder was given, or NULL */
 };
 
 /* Zero value: nothing may be read. Owner: the caller; reach_destroy gives everything back. */
@@ -40,8 +43,7 @@ void reach_destroy(struct reach *reach);
 
 /* A regular file that exists and may be read. */
 bool reach_is_readable(const struct reach *reach, const char *path);
-/* Whether the name as it is written, links not followed, lies outside of everything: such a name is refused whether
- * there is a file or not, so that a scene cannot ask what exists elsewhere. */
+/* Whether the name as it is written, links not followed, lies outside of everything: for the words of an error. */
 bool reach_is_outside(const struct reach *reach, const char *path);
 /* As file_map. */
 bool reach_map(const struct reach *reach, const char *path, size_t limit, struct file_bytes *out, struct error *error);
@@ -51,6 +53,9 @@ FILE *reach_stream(const struct reach *reach, const char *path, const char *mode
 /* Whether a file of this name, which need not exist and whose folders need not either, would lie below a folder that
  * may be written, with no hidden name on the way. */
 bool reach_may_create(const struct reach *reach, const char *path);
+/* Opens (O_PATH) the folder in which a file of this name would stand, and makes folders that are missing; no link that
+ * is put there meanwhile leads elsewhere. -1 with errno: EACCES when the name is not one for reach_may_create. */
+int reach_open_folder(const struct reach *reach, const char *path);
 /* remove and rename of files below folders that may be written; false with errno. */
 bool reach_remove(const struct reach *reach, const char *path);
 bool reach_rename(const struct reach *reach, const char *from, const char *to);

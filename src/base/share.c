@@ -44,7 +44,7 @@ bool share_create(struct share *share, size_t size, struct error *error) {
         return no_memory(error, size, "this machine has less in all");
     share->descriptor = MAY_FAIL(memfd_create("gray-film", MFD_CLOEXEC | MFD_ALLOW_SEALING));
     if (share->descriptor < 0)
-        return no_memory(error, size, strerror(errno));
+        return error_set(error, ERROR_MACHINE, "the memory of the picture cannot be shared: %s", strerror(errno));
     int failed;
     do {
         failed = MAY_FAIL(fallocate(share->descriptor, 0, 0, (off_t)share->size));

@@ -3,7 +3,7 @@
 #include "image/exr.h"
 
 #include "base/fault.h"
-#include "base/file.h"
+#include "base/file_output.h"
 #include "base/mem.h"
 #include "image/levels.h"
 
@@ -31,14 +31,14 @@ static bool no_library(const char *path, struct error *error) {
     return error_set(error, ERROR_SCENE, "%s: EXR pictures need OpenEXR, without which this gray was made", path);
 }
 
-bool exr_write(const char *path, uint32_t width, uint32_t height, float_rows *rows, void *context,
+bool exr_write(const struct file_target *target, uint32_t width, uint32_t height, float_rows *rows, void *context,
                struct error *error) {
     (void)width, (void)height, (void)rows, (void)context;
     return no_library(path, error);
 }
 
-bool exr_write_channels(const char *path, uint32_t width, uint32_t height, const struct exr_channel *channels,
-                        uint32_t count, struct error *error) {
+bool exr_write_channels(const struct file_target *target, uint32_t width, uint32_t height,
+                        const struct exr_channel *channels, uint32_t count, struct error *error) {
     (void)width, (void)height, (void)channels, (void)count;
     return no_library(path, error);
 }
@@ -241,15 +241,15 @@ static bool encode(struct stream *stream, uint32_t width, uint32_t height, const
     return ok;
 }
 
-static bool write_source(const char *path, uint32_t width, uint32_t height, const struct source *source,
+static bool write_source(const struct file_target *target, uint32_t width, uint32_t height, const struct source *source,
                          struct error *error) {
     struct stream stream = {0};
     struct file_output output;
     telling = &stream;
-    bool ok = encode(&stream, width, height, source) || tell(path, &stream, "cannot be written", error);
+    bool ok = encode(&stream, width, height, source) || tell(target->path, &stream, "cannot be written", error);
     telling = NULL;
     if (ok) {
-        ok = file_output_open(&output, path, error);
+        ok = file_output_open(&output, target, error);
         if (ok && file_output_write(&output, stream.bytes, stream.size, error))
             ok = file_output_commit(&output, error);
         else if (ok)
@@ -259,22 +259,22 @@ static bool write_source(const char *path, uint32_t width, uint32_t height, cons
     return ok;
 }
 
-bool exr_write(const char *path, uint32_t width, uint32_t height, float_rows *rows, void *context,
+bool exr_write(const struct file_target *target, uint32_t width, uint32_t height, float_rows *rows, void *context,
                struct error *error) {
     enum { CHUNK_ROWS = 16 }; /* of zip compression */
     struct source source = {.rows = rows, .rows_context = context};
     source.lines = mem_alloc_zero((size_t)width * 3 * CHUNK_ROWS, sizeof *source.lines);
     if (!source.lines)
-        return error_no_memory(error, path);
-    bool ok = write_source(path, width, height, &source, error);
+        return error_no_memory(error, target->path);
+    bool ok = write_source(target, width, height, &source, error);
     mem_free(source.lines);
     return ok;
 }
 
-bool exr_write_channels(const char *path, uint32_t width, uint32_t height, const struct exr_channel *channels,
-                        uint32_t count, struct error *error) {
+bool exr_write_channels(const struct file_target *target, uint32_t width, uint32_t height,
+                        const struct exr_channel *channels, uint32_t count, struct error *error) {
     struct source source = {.channels = channels, .count = count};
-    return write_source(path, width, height, &source, error);
+    return write_source(target, width, height, &source, error);
 }
 
 /* --- reading --- */

@@ -3,6 +3,7 @@
 #define GRAY_IMAGE_EXR_H
 
 #include "base/error.h"
+#include "base/file_output.h"
 #include "image/float_write.h"
 #include "image/image.h"
 
@@ -13,7 +14,8 @@
 const char *exr_library(void);
 bool exr_can_write(void);
 /* Scan lines of floats R, G, B, zip-compressed. Errors: no library, no memory, the file. */
-bool exr_write(const char *path, uint32_t width, uint32_t height, float_rows *rows, void *context, struct error *error);
+bool exr_write(const struct file_target *target, uint32_t width, uint32_t height, float_rows *rows, void *context,
+               struct error *error);
 /* A named channel ("depth.Z" is the channel Z of the layer depth) in memory: the value of pixel x, y is
  * values[(y * width + x) * stride]. */
 struct exr_channel {
@@ -23,8 +25,8 @@ struct exr_channel {
 };
 /* The same with any channels, at most EXR_CHANNELS. */
 enum { EXR_CHANNELS = 64 };
-bool exr_write_channels(const char *path, uint32_t width, uint32_t height, const struct exr_channel *channels,
-                        uint32_t count, struct error *error);
+bool exr_write_channels(const struct file_target *target, uint32_t width, uint32_t height,
+                        const struct exr_channel *channels, uint32_t count, struct error *error);
 bool exr_is(const uint8_t *data, size_t size);
 /* R, G, B or Y of the first part, in scan lines; anything else in it is passed over. NaN and negative light become 0.
  * Errors name the path. */

@@ -3,7 +3,7 @@
  * says for widths from 8 to 32767; other widths are written flat. */
 #include "image/float_write.h"
 
-#include "base/file.h"
+#include "base/file_output.h"
 #include "base/mem.h"
 
 #include <math.h>
@@ -18,9 +18,9 @@ struct writing {
     uint8_t *bytes, *coded;
 };
 
-static bool begin(struct writing *writing, const char *path, uint32_t width, struct error *error) {
+static bool begin(struct writing *writing, const struct file_target *target, uint32_t width, struct error *error) {
     *writing = (struct writing){0};
-    if (!file_output_open(&writing->output, path, error))
+    if (!file_output_open(&writing->output, target, error))
         return false;
     size_t channels = (size_t)width * 3;
     writing->line = mem_alloc_zero(channels, sizeof *writing->line);
@@ -28,7 +28,7 @@ static bool begin(struct writing *writing, const char *path, uint32_t width, str
     writing->coded = mem_alloc_zero((size_t)width + 64, 8);            /* a literal costs one byte in 128 more */
     if (writing->line && writing->bytes && writing->coded)
         return true;
-    return error_no_memory(error, path);
+    return error_no_memory(error, target->path);
 }
 
 static bool finish(struct writing *writing, bool ok, struct error *error) {
@@ -43,11 +43,11 @@ static bool finish(struct writing *writing, bool ok, struct error *error) {
     return false;
 }
 
-bool pfm_write(const char *path, uint32_t width, uint32_t height, float_rows *rows, void *context,
+bool pfm_write(const struct file_target *target, uint32_t width, uint32_t height, float_rows *rows, void *context,
                struct error *error) {
     struct writing writing;
     char header[64];
-    bool ok = begin(&writing, path, width, error);
+    bool ok = begin(&writing, target, width, error);
     int length = snprintf(header, sizeof header, "PF\n%u %u\n-1.0\n", width, height);
     ok = ok && file_output_write(&writing.output, header, (size_t)length, error);
     for (uint32_t y = height; ok && y-- > 0;) {
@@ -108,11 +108,11 @@ static size_t code_channel(const uint8_t *bytes, uint32_t width, uint8_t *out) {
     return used;
 }
 
-bool hdr_write(const char *path, uint32_t width, uint32_t height, float_rows *rows, void *context,
+bool hdr_write(const struct file_target *target, uint32_t width, uint32_t height, float_rows *rows, void *context,
                struct error *error) {
     struct writing writing;
     char header[128];
-    bool ok = begin(&writing, path, width, error);
+    bool ok = begin(&writing, target, width, error);
     int length = snprintf(header, sizeof header, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %u +X %u\n", height, width);
     ok = ok && file_output_write(&writing.output, header, (size_t)length, error);
     for (uint32_t y = 0; ok && y < height; y++) {

@@ -23,6 +23,7 @@ const char *jpeg_library(void) {
 
 #else
 
+#include "base/mem.h"
 #include "image/levels.h"
 
 #include <assert.h>
@@ -48,6 +49,7 @@ struct reader {
     int code;
     const char *path;
     size_t size;
+    uint64_t reserved; /* for libjpeg's own memory, which is not from mem.h */
     struct image *image;
 };
 
@@ -84,6 +86,22 @@ static __attribute__((noinline)) void to_rgba(const uint8_t *from, int component
     }
 }
 
+/* What libjpeg will hold: rows of samples in several stages, and all coefficients where a picture comes in several
+ * scans. */
+static uint64_t library_memory(struct jpeg_decompress_struct *jpeg) {
+    enum { STAGES = 8 };
+    uint64_t rows = (uint64_t)jpeg->max_v_samp_factor * DCTSIZE, bytes = 0;
+    for (int i = 0; i < jpeg->num_components; i++) {
+        const jpeg_component_info *component = &jpeg->comp_info[i];
+        /* In whole groups of blocks. */
+        uint64_t wide = component->width_in_blocks + (uint64_t)component->h_samp_factor;
+        uint64_t high = component->height_in_blocks + (uint64_t)component->v_samp_factor;
+        bytes += wide * DCTSIZE * rows * STAGES;
+        bytes += jpeg_has_multiple_scans(jpeg) ? wide * high * sizeof(JBLOCK) : 0;
+    }
+    return bytes;
+}
+
 /* Whatever is wrong leaves this function through on_error. */
 static bool decode_to_the_end(struct reader *reader, const uint8_t *data, struct error *error) {
     struct jpeg_decompress_struct *const jpeg = &reader->jpeg;
@@ -105,6 +123,10 @@ static bool decode_to_the_end(struct reader *reader, const uint8_t *data, struct
     else if (jpeg->jpeg_color_space != JCS_GRAYSCALE)
         jpeg->out_color_space = JCS_RGB;
     jpeg->dct_method = JDCT_ISLOW;
+    uint64_t needed = library_memory(jpeg);
+    if (!mem_reserve(needed))
+        return error_no_memory(error, reader->path);
+    reader->reserved = needed;
     (void)jpeg_start_decompress(jpeg);
     int const components = jpeg->output_components;
     assert(components == 1 || components == 3 || components == 4); /* as the colour space was chosen above */
@@ -149,6 +171,7 @@ struct image *image_parse_jpeg(const char *path, const uint8_t *data, size_t siz
         }
     }
     jpeg_destroy_decompress(&reader.jpeg);
+    mem_unreserve(reader.reserved);
     ok = ok && image_build_levels(reader.image, error);
     if (ok)
         return reader.image;

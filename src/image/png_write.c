@@ -5,7 +5,7 @@
  * threads. */
 #include "image/png_write.h"
 
-#include "base/file.h"
+#include "base/file_output.h"
 #include "base/mem.h"
 #include "image/zlib_memory.h"
 
@@ -241,15 +241,16 @@ double png_write_trial(const struct png_source *source) {
     return ready ? (double)(ended.tv_sec - begun.tv_sec) + 1e-9 * (double)(ended.tv_nsec - begun.tv_nsec) : -1;
 }
 
-bool png_write_from(const char *path, const struct png_source *rows, struct pool *pool, struct error *error) {
+bool png_write_from(const struct file_target *target, const struct png_source *rows, struct pool *pool,
+                    struct error *error) {
     if (rows->width == 0 || rows->height == 0 || rows->width > SIDE_LIMIT / 8 || rows->height > SIDE_LIMIT)
-        return error_set(error, ERROR_SCENE, "%s: a PNG file cannot have %u x %u pixels", path, rows->width,
+        return error_set(error, ERROR_SCENE, "%s: a PNG file cannot have %u x %u pixels", target->path, rows->width,
                          rows->height);
     struct writer writer = writer_for(rows, pool);
-    if (!file_output_open(&writer.output, path, error))
+    if (!file_output_open(&writer.output, target, error))
         return false;
     bool ready = begin(&writer);
-    bool ok = ready ? encode(&writer, pool, error) : error_no_memory(error, path);
+    bool ok = ready ? encode(&writer, pool, error) : error_no_memory(error, target->path);
     end(&writer);
     if (!ok) {
         file_output_abandon(&writer.output);
@@ -258,16 +259,16 @@ bool png_write_from(const char *path, const struct png_source *rows, struct pool
     return file_output_commit(&writer.output, error);
 }
 
-bool png_write(const char *path, uint32_t width, uint32_t height,
+bool png_write(const struct file_target *target, uint32_t width, uint32_t height,
                void (*rows)(void *context, uint32_t y, uint8_t *line), void *context, struct error *error) {
     struct png_source all = {.width = width, .height = height, .bytes = rows, .context = context};
-    return png_write_from(path, &all, NULL, error);
+    return png_write_from(target, &all, NULL, error);
 }
 
-bool png_write_16(const char *path, uint32_t width, uint32_t height,
+bool png_write_16(const struct file_target *target, uint32_t width, uint32_t height,
                   void (*rows)(void *context, uint32_t y, uint16_t *line), void *context, struct error *error) {
     struct png_source all = {.width = width, .height = height, .words = rows, .context = context};
-    return png_write_from(path, &all, NULL, error);
+    return png_write_from(target, &all, NULL, error);
 }
 
 uint8_t png_write_byte(double c) {

@@ -3,6 +3,7 @@
 #define GRAY_IMAGE_PNG_WRITE_H
 
 #include "base/error.h"
+#include "base/file_output.h"
 #include "base/pool.h"
 
 #include <stdbool.h>
@@ -17,9 +18,10 @@ struct png_source {
     void *context;
 };
 
-/* Missing folders of `path` are made. The bytes of the file depend on the pixels only. With a pool its threads ask for
- * rows at the same time; without one they come once each from the top. */
-bool png_write_from(const char *path, const struct png_source *rows, struct pool *pool, struct error *error);
+/* Missing folders of the target are made. The bytes of the file depend on the pixels only. With a pool its threads ask
+ * for rows at the same time; without one they come once each from the top. */
+bool png_write_from(const struct file_target *target, const struct png_source *rows, struct pool *pool,
+                    struct error *error);
 /* Into how many parts a picture of that size falls: more threads have nothing to do. Sides from 1. */
 uint32_t png_write_stripes(uint32_t width, uint32_t height, int bits);
 
@@ -27,9 +29,9 @@ uint32_t png_write_stripes(uint32_t width, uint32_t height, int bits);
 double png_write_trial(const struct png_source *source);
 
 /* Writing in this thread alone, with 8 and with 16 bits. */
-bool png_write(const char *path, uint32_t width, uint32_t height,
+bool png_write(const struct file_target *target, uint32_t width, uint32_t height,
                void (*rows)(void *context, uint32_t y, uint8_t *line), void *context, struct error *error);
-bool png_write_16(const char *path, uint32_t width, uint32_t height,
+bool png_write_16(const struct file_target *target, uint32_t width, uint32_t height,
                   void (*rows)(void *context, uint32_t y, uint16_t *line), void *context, struct error *error);
 /* (Not png_byte: that is a type of libpng.) floor(255 c + 0.5) after clamping to [0,1]; NaN gives 0. */
 uint8_t png_write_byte(double c);

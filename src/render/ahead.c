@@ -55,6 +55,7 @@ static void forget_counts(struct run *run) {
         struct worker *worker = &run->workers[i];
         struct geom_scratch *geom = &worker->scratch.geom;
         worker->camera_rays = 0;
+        worker->clamped = worker->tracer.clamped = false;
         worker->tracer.hits = worker->tracer.shadow_rays = 0;
         worker->tracer.reflected_rays = worker->tracer.refracted_rays = 0;
         geom->shape_tests = geom->box_tests = 0;

@@ -1,6 +1,7 @@
 /* Pictures beside the picture, tile by tile after the picture is done. */
 #include "render/run.h"
 
+#include "math/range.h"
 #include "render/aov.h"
 
 #include <string.h>
@@ -43,6 +44,19 @@ static void measure_pixel(struct run *run, struct worker *worker, int64_t x, int
     }
 }
 
+/* True where something had to be changed. */
+static bool clamp_layers(float values[AOV_COUNT][3]) {
+    bool clamped = false;
+    for (int i = 0; i < AOV_COUNT; i++) {
+        for (int c = 0; c < 3; c++) {
+            float value = (float)number_clamped((double)values[i][c], (double)FLT_MAX);
+            clamped = clamped || value != values[i][c]; /* NaN too */
+            values[i][c] = value;
+        }
+    }
+    return clamped;
+}
+
 void run_layer_item(void *context, uint32_t item, int index) {
     struct run *run = context;
     struct worker *worker = &run->workers[index];
@@ -59,6 +73,7 @@ void run_layer_item(void *context, uint32_t item, int index) {
                 aov_surface(run->job->world, &ray, mask, &worker->scratch, values);
             if (mask & (UINT32_C(1) << AOV_COST | UINT32_C(1) << AOV_SAMPLES))
                 measure_pixel(run, worker, x, y, film->marked[at], values[AOV_COST], values[AOV_SAMPLES]);
+            worker->clamped |= clamp_layers(values);
             for (int i = 0; i < AOV_COUNT; i++) {
                 size_t plane = aov_layer(mask, (enum aov)i) * (size_t)film->width * film->height;
                 if (mask >> i & 1)

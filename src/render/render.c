@@ -544,6 +544,8 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
         add_statistics(&run, workers, statistics);
     if (ok && job->film->layers && !pool_run(pool, film_tile_count(job->film), run_layer_item, &run))
         ok = error_set(error, ERROR_CANCELLED, "stopped while rendering");
+    for (int i = 0; run.workers && i < workers; i++)
+        statistics->clamped += run.workers[i].clamped || run.workers[i].tracer.clamped;
     end_run(&run, workers);
     statistics->render_seconds += seconds_now() - begin;
     return ok;

@@ -32,6 +32,7 @@ struct worker {
     struct world_scratch scratch;
     struct tracer tracer;
     uint64_t camera_rays, marked, samples;
+    bool clamped; /* a colour or a layer was not finite or beyond the largest float */
     struct media ray_media;
     struct camera_frame camera; /* of the sample's moment, when the camera moves */
     struct batch batch;

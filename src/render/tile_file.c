@@ -1,7 +1,9 @@
 /* The file is a magic word, a format number and a row of records: kind, size, payload, check. The check covers kind,
  * size, place in the row and payload, so that records cannot be swapped or left out unnoticed; the last record counts
  * them. All numbers are little-endian. Reading first walks over everything (every check, every size, every tile number)
- * and only then gives anything away. */
+ * and only then returns anything. It holds one record at a time: what a file claims, or how large it is, costs no
+ * memory.
+ */
 #include "render/tile_file.h"
 
 #include "base/mem.h"
@@ -24,8 +26,8 @@ enum {
     DONE_FIXED = 4 + KEY_SIZE + 16,
     PICTURE_FIXED = 4 + KEY_SIZE + 24 + 8 + 12 + 12,
     PAYLOAD_LIMIT = 4 + FILM_PACKED_LIMIT + TILE_FILE_NAME + PICTURE_FIXED,
+    DONE_LIMIT = 1 << 18, /* finished pictures are kept in memory, 4 KiB each */
 };
-static const size_t file_limit = (size_t)1 << 40;
 
 /* Numbers as bytes. */
 
@@ -176,12 +178,12 @@ static bool write_all(struct writer *writer, const struct tile_done *done, size_
     return ok && write_record(writer, RECORD_END, 8, error);
 }
 
-bool tile_file_write(const char *path, const struct tile_done *done, size_t done_count,
+bool tile_file_write(const struct file_target *target, const struct tile_done *done, size_t done_count,
                      const struct tile_picture *picture, const struct film *film, struct error *error) {
     struct writer writer = {.buffer = mem_alloc(RECORD_HEAD + PAYLOAD_LIMIT + RECORD_CHECK)};
     if (!writer.buffer)
-        return error_no_memory(error, path);
-    bool ok = file_output_open(&writer.file, path, error);
+        return error_no_memory(error, target->path);
+    bool ok = file_output_open(&writer.file, target, error);
     if (ok) {
         ok = write_all(&writer, done, done_count, picture, film, error);
         if (ok)
@@ -195,6 +197,10 @@ bool tile_file_write(const char *path, const struct tile_done *done, size_t done
 
 /* Reading. */
 
+bool tile_file_is(const uint8_t *head, size_t size) {
+    return size >= sizeof magic && memcmp(head, magic, sizeof magic) == 0;
+}
+
 struct record {
     uint32_t kind;
     size_t size;
@@ -203,31 +209,40 @@ struct record {
 
 struct reader {
     const char *path;
-    const uint8_t *bytes;
-    size_t size, at;
-    uint64_t records;
+    const struct tile_file *file;
+    uint64_t size, at, records;
 };
 
 static bool wrong(const struct reader *reader, struct error *error, const char *what) {
-    return error_set(error, ERROR_SCENE, "%s: is damaged: %s (record %llu, byte %zu)", reader->path, what,
-                     (unsigned long long)reader->records, reader->at);
+    return error_set(error, ERROR_SCENE, "%s: is damaged: %s (record %llu, byte %llu)", reader->path, what,
+                     (unsigned long long)reader->records, (unsigned long long)reader->at);
+}
+
+/* The next bytes, which are valid until the next call; NULL when they cannot be read. */
+static const uint8_t *fetch(const struct reader *reader, size_t size) {
+    const struct tile_file *file = reader->file;
+    if (!file->source.open)
+        return file->bytes.data + reader->at;
+    return file_source_read(&file->source, reader->at, file->buffer, size) ? file->buffer : NULL;
 }
 
 static bool next_record(struct reader *reader, struct record *out, struct error *error) {
-    struct eye eye = {reader->bytes + reader->at};
-    size_t left = reader->size - reader->at;
-    if (left < RECORD_HEAD + RECORD_CHECK)
+    uint64_t left = reader->size - reader->at;
+    struct eye eye = {left < RECORD_HEAD + RECORD_CHECK ? NULL : fetch(reader, RECORD_HEAD)};
+    if (!eye.at)
         return wrong(reader, error, "it ends too early");
     out->kind = get_u32(&eye);
     uint32_t reserved = get_u32(&eye);
     uint64_t size = get_u64(&eye);
     if (size > PAYLOAD_LIMIT || reserved != 0)
         return wrong(reader, error, "a record has a size that none can have");
-    if (size > left - RECORD_HEAD - RECORD_CHECK)
+    const uint8_t *whole =
+        size > left - RECORD_HEAD - RECORD_CHECK ? NULL : fetch(reader, RECORD_HEAD + (size_t)size + RECORD_CHECK);
+    if (!whole)
         return wrong(reader, error, "it ends too early");
     out->size = (size_t)size;
-    out->payload = eye.at;
-    eye.at += size;
+    out->payload = whole + RECORD_HEAD;
+    eye.at = out->payload + size;
     if (get_u64(&eye) != check_of(reader->records, out->kind, out->payload, out->size))
         return wrong(reader, error, "a record does not have its check");
     reader->at += RECORD_HEAD + out->size + RECORD_CHECK;
@@ -312,13 +327,15 @@ static bool check_tile(const struct reader *reader, const struct tile_file *file
     if (tile >= film_tile_count(&film) || (int64_t)tile <= *last)
         return wrong(reader, error, "a tile is not the next one");
     if (!film_tile_fits(&film, tile, eye.at, record->size - 4))
-        return wrong(reader, error, "a tile has not the size of a tile");
+        return wrong(reader, error, "a tile has not the size of a tile, or holds a colour that is not finite");
     *last = tile;
     return true;
 }
 
 static bool add_done(struct tile_file *file, const struct reader *reader, const struct record *record,
                      struct error *error) {
+    if (file->done_count == DONE_LIMIT)
+        return wrong(reader, error, "it has more finished pictures than are read");
     struct tile_done *more = mem_resize_array(file->done, file->done_count + 1, sizeof *more);
     if (!more)
         return error_no_memory(error, reader->path);
@@ -333,7 +350,7 @@ static bool read_records(struct tile_file *file, struct reader *reader, struct e
     int64_t last = -1;
     for (;;) {
         struct record record;
-        size_t start = reader->at;
+        uint64_t start = reader->at;
         if (!next_record(reader, &record, error))
             return false;
         bool ok = false;
@@ -347,6 +364,7 @@ static bool read_records(struct tile_file *file, struct reader *reader, struct e
                                     : wrong(reader, error, "there are two pictures");
             file->has_picture = true;
             file->first_tile = reader->at;
+            file->first_record = reader->records;
             break;
         case RECORD_TILE:
             ok = check_tile(reader, file, &record, &last, error);
@@ -369,18 +387,23 @@ static bool read_records(struct tile_file *file, struct reader *reader, struct e
     }
 }
 
+/* What there is of `out` stays when that fails. */
+static bool read_file(const char *path, uint64_t size, struct tile_file *out, struct error *error) {
+    struct reader reader = {.path = path, .file = out, .size = size};
+    struct eye eye = {size < sizeof magic + 8 ? NULL : fetch(&reader, sizeof magic + 8)};
+    if (!eye.at || memcmp(eye.at, magic, sizeof magic) != 0)
+        return error_set(error, ERROR_SCENE, "%s: is no file of tiles", path);
+    eye.at += sizeof magic;
+    if (get_u32(&eye) != FORMAT || get_u32(&eye) != FILM_TILE)
+        return error_set(error, ERROR_SCENE, "%s: is a file of tiles in another format, of another version of gray",
+                         path);
+    reader.at = sizeof magic + 8;
+    return read_records(out, &reader, error);
+}
+
 bool tile_file_parse(const char *path, struct file_bytes bytes, struct tile_file *out, struct error *error) {
     *out = (struct tile_file){.bytes = bytes};
-    struct reader reader = {path, bytes.data, bytes.size, sizeof magic + 8, 0};
-    struct eye eye = {bytes.data + sizeof magic};
-    bool ok = false;
-    if (bytes.size < sizeof magic + 8 || memcmp(bytes.data, magic, sizeof magic) != 0)
-        error_set(error, ERROR_SCENE, "%s: is no file of tiles", path);
-    else if (get_u32(&eye) != FORMAT || get_u32(&eye) != FILM_TILE)
-        error_set(error, ERROR_SCENE, "%s: is a file of tiles in another format, of another version of gray", path);
-    else
-        ok = read_records(out, &reader, error);
-    if (ok)
+    if (read_file(path, bytes.size, out, error))
         return true;
     mem_free(out->done);
     *out = (struct tile_file){0};
@@ -388,34 +411,39 @@ bool tile_file_parse(const char *path, struct file_bytes bytes, struct tile_file
 }
 
 bool tile_file_read(const char *path, struct tile_file *out, struct error *error) {
-    struct file_bytes bytes;
-    *out = (struct tile_file){0};
-    if (!file_map(path, file_limit, &bytes, error))
-        return false;
-    bool ok = tile_file_parse(path, bytes, out, error);
+    *out = (struct tile_file){.buffer = mem_alloc(RECORD_HEAD + PAYLOAD_LIMIT + RECORD_CHECK)};
+    bool ok = out->buffer ? file_source_open(&out->source, path, error) : error_no_memory(error, path);
+    ok = ok && read_file(path, out->source.size, out, error);
     if (!ok)
-        file_unmap(&bytes);
+        tile_file_close(out);
     return ok;
 }
 
 void tile_file_close(struct tile_file *file) {
+    file_source_close(&file->source);
     file_unmap(&file->bytes);
+    mem_free(file->buffer);
     mem_free(file->done);
     *file = (struct tile_file){0};
 }
 
 void tile_file_restore(const struct tile_file *file, struct film *film, uint32_t *restored, uint32_t *twice) {
-    struct eye eye = {file->bytes.data + file->first_tile};
+    struct reader reader = {
+        .path = "", .file = file, .size = UINT64_MAX, .at = file->first_tile, .records = file->first_record};
+    int64_t last = -1;
     *restored = *twice = 0;
     for (size_t i = 0; i < file->tiles; i++) {
-        (void)get_u64(&eye);
-        size_t size = (size_t)get_u64(&eye);
+        struct record record;
+        struct error changed;
+        if (!next_record(&reader, &record, &changed) || record.kind != RECORD_TILE ||
+            !check_tile(&reader, file, &record, &last, &changed))
+            return;
+        struct eye eye = {record.payload};
         uint32_t tile = get_u32(&eye);
         if (atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) == FILM_TILE_DONE)
             ++*twice;
         else
-            *restored += film_tile_unpack(film, tile, eye.at, size - 4);
-        eye.at += size - 4 + RECORD_CHECK;
+            *restored += film_tile_unpack(film, tile, eye.at, record.size - 4);
     }
 }
 

@@ -6,6 +6,7 @@
 #define GRAY_RENDER_TILE_FILE_H
 
 #include "base/file.h"
+#include "base/file_output.h"
 #include "base/hash.h"
 #include "render/film.h"
 
@@ -40,25 +41,31 @@ struct tile_done {
 
 /* Writes the done pictures, and of `picture` (or NULL) the finished tiles of `film`. The old file stays until the new
  * one is whole. */
-bool tile_file_write(const char *path, const struct tile_done *done, size_t done_count,
+bool tile_file_write(const struct file_target *target, const struct tile_done *done, size_t done_count,
                      const struct tile_picture *picture, const struct film *film, struct error *error);
 
-/* A file that was read and checked as a whole. Owner: the caller, tile_file_close gives it back. */
+/* A file that was read and checked as a whole. Its tiles stay in it until they are put into a film, so that a file of
+ * any size takes the memory of one record. Owner: the caller, tile_file_close gives it back. */
 struct tile_file {
-    struct file_bytes bytes;
+    struct file_source source;
+    struct file_bytes bytes; /* in the place of the source: a file in memory */
+    uint8_t *buffer;         /* for one record of the source */
     struct tile_done *done;
     size_t done_count;
     bool has_picture;
     struct tile_picture picture;
-    size_t first_tile, tiles; /* where the records of tiles begin in the bytes, and how many there are */
+    uint64_t first_tile, first_record; /* where the records of tiles begin, and the number of the first one */
+    size_t tiles;
 };
+/* Whether bytes begin like a file of tiles. */
+bool tile_file_is(const uint8_t *head, size_t size);
 /* False: `error` says which record is wrong and how; ERROR_SCENE unless memory ran out. */
 bool tile_file_read(const char *path, struct tile_file *out, struct error *error);
 /* The same of bytes in memory, which are taken over when that succeeds. */
 bool tile_file_parse(const char *path, struct file_bytes bytes, struct tile_file *out, struct error *error);
 void tile_file_close(struct tile_file *file);
 /* Puts the tiles into a film of the picture's rectangle; its size, x0 and y0 must be set. Tiles that are there already
- * count in *twice and are not put again. */
+ * count in *twice and are not put again; a file that has changed since it was read gives those before the change. */
 void tile_file_restore(const struct tile_file *file, struct film *film, uint32_t *restored, uint32_t *twice);
 
 /* Why pictures with these keys and shapes do not belong together, in a few words for people, or NULL when they do.

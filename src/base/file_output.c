@@ -1,0 +1,654 @@
+/* A file is written without a name (O_TMPFILE, Linux 3.11), synced, and then gets its name. A new name is given by
+ * linkat(2), which fails if the name exists; an existing file is exchanged with the new one (RENAME_EXCHANGE, Linux
+ * 3.15), looked at once more under the temporary name, and only then removed. So whatever another process does to the
+ * name in between, nothing is removed that was not inspected.
+ *
+ * A temporary name exists only between linkat and the removal of the old file. A kill in between leaves it; the next
+ * run that writes into the folder removes it. Every temporary file is locked (flock) by the process that writes it, so
+ * that what is not locked is a leftover, whichever machine left it. */
+#define _GNU_SOURCE
+#include "base/file_output.h"
+
+#include "base/fault.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <poll.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+static const struct file_rules no_rules;
+static const char temporary_prefix[] = ".gray.part-";
+enum { TEMPORARY_DIGITS = 16, LEFTOVER_SECONDS = 60, TRIES = 100 };
+
+void file_guard_destroy(struct file_guard *guard) {
+    file_set_destroy(&guard->kept);
+    for (int role = 0; role < FILE_ROLES; role++)
+        file_set_destroy(&guard->own[role]);
+    file_set_destroy(&guard->cleaned);
+}
+
+static const struct file_rules *rules_of(const struct file_target *target) {
+    return target->rules ? target->rules : &no_rules;
+}
+
+static struct file_identity identity_of(const struct stat *status) {
+    return (struct file_identity){(uint64_t)status->st_dev, (uint64_t)status->st_ino};
+}
+
+static bool same_file(struct file_identity a, struct file_identity b) {
+    return a.device == b.device && a.inode == b.inode;
+}
+
+static const char *advice_of(const struct file_rules *rules) {
+    return rules->advice ? rules->advice : "";
+}
+
+static bool refuse(struct error *error, const struct file_output *file, const char *what) {
+    return error_set(error, ERROR_SCENE, "%.600s: %s%s", file->target, what, advice_of(file->rules));
+}
+
+static bool cannot_write(struct error *error, const struct file_output *file, int number) {
+    return error_set(error, file_refusal_kind(number), "%.600s: cannot be written: %s", file->target, strerror(number));
+}
+
+/* Where the file stands. */
+
+static bool set_target(struct file_output *file, const struct file_target *target, struct error *error) {
+    memset(file, 0, sizeof *file);
+    file->descriptor = file->folder = -1;
+    file->rules = rules_of(target);
+    file->identity = target->written;
+    if (target->path[0] == '\0')
+        return error_set(error, ERROR_SCENE, "the name of the output file is empty");
+    if (strlen(target->path) >= sizeof file->target)
+        return error_set(error, ERROR_SCENE, "%.100s...: the file name is longer than %zu bytes", target->path,
+                         sizeof file->target - 1);
+    memcpy(file->target, target->path, strlen(target->path) + 1);
+    const char *slash = strrchr(file->target, '/');
+    file->leaf = slash ? slash + 1 : file->target;
+    return true;
+}
+
+/* The folder part with a final "."; false: too long. */
+static bool folder_of(const char *path, char folder[FILE_NAME_SIZE]) {
+    const char *slash = strrchr(path, '/');
+    size_t length = slash ? (size_t)(slash - path) + 1 : 0;
+    if (length + 2 > FILE_NAME_SIZE)
+        return false;
+    memcpy(folder, path, length);
+    memcpy(folder + length, ".", 2);
+    return true;
+}
+
+static bool open_folder(struct file_output *file, struct error *error) {
+    const struct file_rules *rules = file->rules;
+    char folder[FILE_NAME_SIZE];
+    if (file->leaf[0] == '\0' || strcmp(file->leaf, ".") == 0 || strcmp(file->leaf, "..") == 0)
+        return error_set(error, ERROR_SCENE, "%.600s: is a folder, a picture cannot be written there", file->target);
+    if (rules->places) {
+        file->folder = reach_open_folder(rules->places, file->target);
+    } else {
+        if (!file_make_folders_for(file->target, error))
+            return false;
+        file->folder = folder_of(file->target, folder) ? MAY_FAIL(open(folder, O_PATH | O_DIRECTORY | O_CLOEXEC))
+                                                       : (errno = ENAMETOOLONG, -1);
+    }
+    return file->folder >= 0 || cannot_write(error, file, errno);
+}
+
+bool file_same_place(const char *a, const char *b) {
+    const char *paths[2] = {a, b}, *leaves[2];
+    struct stat status[2];
+    for (int i = 0; i < 2; i++) {
+        char folder[FILE_NAME_SIZE];
+        const char *slash = strrchr(paths[i], '/');
+        leaves[i] = slash ? slash + 1 : paths[i];
+        if (!folder_of(paths[i], folder) || stat(folder, &status[i]) != 0)
+            return strcmp(a, b) == 0;
+    }
+    return same_file(identity_of(&status[0]), identity_of(&status[1])) && strcmp(leaves[0], leaves[1]) == 0;
+}
+
+/* What stands there already. */
+
+/* The first bytes of the regular file that `place` (O_PATH) stands for; -1: it cannot be read. */
+static ssize_t read_head(int place, uint8_t head[FILE_HEAD_SIZE]) {
+    char name[64];
+    (void)snprintf(name, sizeof name, "/proc/self/fd/%d", place);
+    int descriptor = MAY_FAIL(open(name, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+    if (descriptor < 0)
+        return -1;
+    ssize_t got = MAY_FAIL(pread(descriptor, head, FILE_HEAD_SIZE, 0));
+    (void)close(descriptor);
+    return got;
+}
+
+static bool is_standard_stream(struct file_identity identity) {
+    struct file_identity stream;
+    return (file_identity_of_descriptor(STDOUT_FILENO, &stream) && same_file(stream, identity)) ||
+           (file_identity_of_descriptor(STDERR_FILENO, &stream) && same_file(stream, identity));
+}
+
+/* What this run wrote in the same role is replaced even after it was read. */
+static bool is_kept(const struct file_rules *rules, struct file_identity identity) {
+    const struct file_guard *guard = rules->guard;
+    if (rules->role != FILE_ROLE_NONE && file_set_has(&guard->own[rules->role], identity))
+        return false;
+    for (int role = 0; role < FILE_ROLES; role++) {
+        if (file_set_has(&guard->own[role], identity))
+            return true;
+    }
+    return file_set_has(&guard->kept, identity) || is_standard_stream(identity);
+}
+
+/* Whether a regular file may be replaced. */
+static bool may_replace(const struct file_output *file, int place, const struct stat *status, struct error *error) {
+    const struct file_rules *rules = file->rules;
+    struct file_identity identity = identity_of(status);
+    uint8_t head[FILE_HEAD_SIZE] = {0};
+    if (rules->never_replace)
+        return error_set(error, ERROR_SCENE, "%.600s: is there already", file->target);
+    if (rules->guard && is_kept(rules, identity))
+        return refuse(error, file, "is a file that this run reads or uses for another purpose, and is not replaced");
+    if (!rules->may_replace || status->st_size == 0 || rules->force)
+        return true;
+    ssize_t size = read_head(place, head);
+    if (size < 0)
+        return error_set(error, ERROR_SCENE, "%.600s: cannot be read (%s), so it may be something else than %s%s",
+                         file->target, strerror(errno), rules->expected, advice_of(rules));
+    if (rules->may_replace(head, (size_t)size))
+        return true;
+    return error_set(error, ERROR_SCENE, "%.600s: is there already and is not %s%s", file->target, rules->expected,
+                     rules->named_by_user ? "; --force replaces it" : advice_of(rules));
+}
+
+/* A name that could be exchanged or removed by this process in the end, as far as that can be known. */
+static bool can_be_renamed(const struct file_output *file, const struct stat *status, struct error *error) {
+    struct statx more;
+    struct stat folder;
+    const uint64_t fixed = STATX_ATTR_IMMUTABLE | STATX_ATTR_APPEND;
+    uid_t user = geteuid();
+    if (statx(file->folder, file->leaf, AT_SYMLINK_NOFOLLOW, 0, &more) == 0) {
+        if (more.stx_attributes & fixed)
+            return cannot_write(error, file, EPERM);
+        if (more.stx_attributes & STATX_ATTR_MOUNT_ROOT)
+            return cannot_write(error, file, EBUSY);
+    }
+    bool sticky = fstat(file->folder, &folder) == 0 && (folder.st_mode & S_ISVTX);
+    if (sticky && user != 0 && user != status->st_uid && user != folder.st_uid)
+        return cannot_write(error, file, EPERM);
+    return true;
+}
+
+static const char *kind_of_file(mode_t mode) {
+    return S_ISFIFO(mode) ? "a named pipe" : S_ISSOCK(mode) ? "a socket" : "a device";
+}
+
+/* Looks at what stands under the name without opening anything but regular files. *there: something that may be
+ * replaced, with this status. */
+static bool inspect(const struct file_output *file, bool *there, struct stat *status, struct error *error) {
+    char text[96];
+    *there = false;
+    int place = MAY_FAIL(openat(file->folder, file->leaf, O_PATH | O_NOFOLLOW | O_CLOEXEC));
+    if (place < 0)
+        return errno == ENOENT || cannot_write(error, file, errno);
+    bool ok = MAY_FAIL(fstat(place, status)) == 0;
+    if (!ok) {
+        (void)cannot_write(error, file, errno);
+    } else if (S_ISDIR(status->st_mode)) {
+        ok = error_set(error, ERROR_SCENE, "%.600s: is a folder, a picture cannot be written there", file->target);
+    } else if (S_ISLNK(status->st_mode)) {
+        ok = refuse(error, file, "is a symbolic link, which is not replaced and not followed");
+    } else if (!S_ISREG(status->st_mode)) {
+        (void)snprintf(text, sizeof text, "is %s, and nothing is written to it", kind_of_file(status->st_mode));
+        ok = refuse(error, file, text);
+    } else {
+        ok = may_replace(file, place, status, error) && can_be_renamed(file, status, error);
+    }
+    (void)close(place);
+    *there = ok;
+    return ok;
+}
+
+/* Leftovers. */
+
+static bool is_temporary_name(const char *name) {
+    size_t prefix = sizeof temporary_prefix - 1;
+    if (strncmp(name, temporary_prefix, prefix) != 0 || strlen(name) != prefix + TEMPORARY_DIGITS)
+        return false;
+    for (const char *at = name + prefix; *at; at++) {
+        if (!(*at >= '0' && *at <= '9') && !(*at >= 'a' && *at <= 'f'))
+            return false;
+    }
+    return true;
+}
+
+static bool is_old_and_ours(const struct stat *status) {
+    struct timespec now;
+    if (!S_ISREG(status->st_mode) || status->st_uid != geteuid() || clock_gettime(CLOCK_REALTIME, &now) != 0)
+        return false;
+    time_t changed = status->st_ctim.tv_sec > status->st_mtim.tv_sec ? status->st_ctim.tv_sec : status->st_mtim.tv_sec;
+    return now.tv_sec - changed > LEFTOVER_SECONDS;
+}
+
+/* The lock decides: whoever writes the file holds it, on whichever machine. */
+static void remove_leftover(int folder, const char *name) {
+    struct stat before, after;
+    if (fstatat(folder, name, &before, AT_SYMLINK_NOFOLLOW) != 0 || !is_old_and_ours(&before))
+        return;
+    int descriptor = openat(folder, name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (descriptor < 0)
+        return;
+    bool same = fstat(descriptor, &after) == 0 && same_file(identity_of(&before), identity_of(&after));
+    if (same && flock(descriptor, LOCK_EX | LOCK_NB) == 0 && fstatat(folder, name, &after, AT_SYMLINK_NOFOLLOW) == 0 &&
+        same_file(identity_of(&before), identity_of(&after)))
+        (void)unlinkat(folder, name, 0);
+    (void)close(descriptor);
+}
+
+static void remove_leftovers(const struct file_output *file) {
+    struct file_guard *guard = file->rules->guard;
+    struct file_identity identity;
+    if (!guard || !file_identity_of_descriptor(file->folder, &identity) || file_set_has(&guard->cleaned, identity) ||
+        !file_set_add(&guard->cleaned, identity))
+        return;
+    int descriptor = openat(file->folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    DIR *stream = descriptor < 0 ? NULL : fdopendir(descriptor);
+    if (!stream) {
+        if (descriptor >= 0)
+            (void)close(descriptor);
+        return;
+    }
+    for (struct dirent *entry; (entry = readdir(stream)) != NULL;) {
+        if (is_temporary_name(entry->d_name))
+            remove_leftover(file->folder, entry->d_name);
+    }
+    (void)closedir(stream);
+}
+
+/* The temporary file. */
+
+static void choose_temporary_name(struct file_output *file) {
+    uint64_t number = 0;
+    if (getrandom(&number, sizeof number, 0) != (ssize_t)sizeof number)
+        number = (uint64_t)getpid();
+    (void)snprintf(file->temporary, sizeof file->temporary, "%s%016llx", temporary_prefix, (unsigned long long)number);
+}
+
+/* False with errno. A file system without O_TMPFILE gets a new file under a temporary name. */
+static bool open_temporary(struct file_output *file) {
+    file->descriptor = MAY_FAIL(openat(file->folder, ".", O_TMPFILE | O_RDWR | O_CLOEXEC, 0666));
+    file->nameless = file->descriptor >= 0;
+    for (int i = 0; i < TRIES && file->descriptor < 0; i++) {
+        choose_temporary_name(file);
+        file->descriptor =
+            MAY_FAIL(openat(file->folder, file->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666));
+        file->named = file->descriptor >= 0;
+        if (file->descriptor < 0 && errno != EEXIST)
+            break;
+    }
+    if (file->descriptor >= 0)
+        (void)flock(file->descriptor, LOCK_EX | LOCK_NB);
+    return file->descriptor >= 0;
+}
+
+static bool link_as(struct file_output *file, const char *name) {
+    char source[64];
+    (void)snprintf(source, sizeof source, "/proc/self/fd/%d", file->descriptor);
+    return MAY_FAIL(linkat(AT_FDCWD, source, file->folder, name, AT_SYMLINK_FOLLOW)) == 0;
+}
+
+/* False with errno. */
+static bool name_temporary(struct file_output *file) {
+    for (int i = 0; i < TRIES && !file->named; i++) {
+        choose_temporary_name(file);
+        file->named = link_as(file, file->temporary);
+        if (!file->named && errno != EEXIST)
+            return false;
+    }
+    file->nameless = file->nameless && !file->named;
+    return file->named;
+}
+
+static void close_all(struct file_output *file) {
+    if (file->named)
+        (void)unlinkat(file->folder, file->temporary, 0);
+    if (file->descriptor >= 0)
+        (void)close(file->descriptor);
+    if (file->folder >= 0)
+        (void)close(file->folder);
+    file->descriptor = file->folder = -1;
+    file->open = file->named = file->nameless = false;
+}
+
+/* Pipes and devices. */
+
+enum wait_end { WAIT_READY, WAIT_TIME, WAIT_STOPPED };
+
+/* Until the descriptor is ready (-1: only the time counts), the time is over, or the run has to end. */
+static enum wait_end wait_for(const struct file_output *file, short events, int milliseconds) {
+    const struct file_interrupt *interrupt = file->rules->interrupt;
+    for (;;) {
+        struct pollfd watched[2] = {{.fd = file->descriptor, .events = events},
+                                    {.fd = interrupt ? interrupt->descriptor : -1, .events = POLLIN}};
+        int ready = poll(watched, 2, milliseconds);
+        if (ready < 0 && errno != EINTR)
+            return WAIT_READY; /* the write says what is wrong */
+        if (ready > 0 && watched[1].revents && interrupt->stopped(interrupt->context))
+            return WAIT_STOPPED;
+        if (ready > 0 && watched[0].revents)
+            return WAIT_READY;
+        if (ready == 0)
+            return WAIT_TIME;
+    }
+}
+
+static bool interrupted(struct error *error, const struct file_output *file) {
+    return error_set(error, ERROR_CANCELLED, "%.600s: interrupted while it was written", file->target);
+}
+
+/* A named pipe without a reader is waited for. */
+static bool open_in_place(struct file_output *file, struct error *error) {
+    struct stat status;
+    for (;;) {
+        file->descriptor = MAY_FAIL(open(file->target, O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+        if (file->descriptor >= 0)
+            break;
+        bool waits = errno == ENXIO && stat(file->target, &status) == 0 && S_ISFIFO(status.st_mode);
+        if (!waits)
+            return cannot_write(error, file, errno);
+        if (wait_for(file, 0, 20) == WAIT_STOPPED)
+            return interrupted(error, file);
+    }
+    if (fstat(file->descriptor, &status) == 0 && !S_ISREG(status.st_mode))
+        return true;
+    (void)close(file->descriptor);
+    file->descriptor = -1;
+    return error_set(error, ERROR_SCENE, "%.600s: has become a regular file while it was opened", file->target);
+}
+
+/* What -o names: standard output, or what its links lead to when that is a pipe or device. */
+static bool find_direct(struct file_output *file, const struct file_target *target, struct error *error) {
+    struct stat status, link;
+    struct file_identity stream;
+    if (!file->rules->in_place)
+        return true;
+    bool standard = strcmp(target->path, "-") == 0;
+    if (!standard && stat(target->path, &status) == 0) {
+        bool is_link = lstat(target->path, &link) == 0 && S_ISLNK(link.st_mode);
+        /* /dev/stdout that leads to a file: the shell has opened it for us. */
+        standard = is_link && S_ISREG(status.st_mode) && file_identity_of_descriptor(STDOUT_FILENO, &stream) &&
+                   same_file(stream, identity_of(&status));
+        if (S_ISSOCK(status.st_mode))
+            return refuse(error, file, "is a socket, and nothing is written to it");
+        file->direct = !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+    }
+    if (standard) {
+        file->direct = true;
+        (void)snprintf(file->target, sizeof file->target, "standard output");
+        /* Where standard output was closed, something that is no file may have its number (a library's epoll). */
+        int flags = fcntl(STDOUT_FILENO, F_GETFL);
+        if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY || fstat(STDOUT_FILENO, &status) != 0 ||
+            (status.st_mode & S_IFMT) == 0)
+            return cannot_write(error, file, EBADF);
+    }
+    return true;
+}
+
+/* Opening, checking. */
+
+bool file_output_check(const struct file_target *target, struct error *error) {
+    struct file_output file;
+    struct stat status;
+    bool there;
+    if (!set_target(&file, target, error) || !find_direct(&file, target, error))
+        return false;
+    if (file.direct) {
+        bool ok = strcmp(file.target, "standard output") == 0 || access(file.target, W_OK) == 0;
+        return ok || cannot_write(error, &file, errno);
+    }
+    if (!open_folder(&file, error))
+        return false;
+    remove_leftovers(&file);
+    bool ok = inspect(&file, &there, &status, error) && (open_temporary(&file) || cannot_write(error, &file, errno));
+    close_all(&file);
+    return ok;
+}
+
+bool file_output_open(struct file_output *file, const struct file_target *target, struct error *error) {
+    struct stat status;
+    bool there, ok;
+    if (!set_target(file, target, error) || !find_direct(file, target, error))
+        return false;
+    if (file->direct && strcmp(file->target, "standard output") == 0) {
+        file->descriptor = MAY_FAIL(fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3));
+        ok = file->descriptor >= 0 || cannot_write(error, file, errno);
+    } else if (file->direct) {
+        ok = open_in_place(file, error);
+    } else {
+        ok = open_folder(file, error) && inspect(file, &there, &status, error) &&
+             (open_temporary(file) || cannot_write(error, file, errno));
+    }
+    if (!ok)
+        close_all(file);
+    file->open = ok;
+    return ok;
+}
+
+/* What a pipe takes at once once poll reports it writable, so that a descriptor that waits does not wait here. */
+static size_t piece_of(const struct file_output *file, size_t size) {
+    return file->direct && size > PIPE_BUF ? PIPE_BUF : size;
+}
+
+bool file_output_write(struct file_output *file, const void *data, size_t size, struct error *error) {
+    const char *at = data;
+    struct file_quota *quota = file->rules->quota;
+    if (quota && size > quota->limit - quota->written)
+        return error_set_limit(error, "%.600s: is not written: %s", file->target, quota->words);
+    if (quota)
+        quota->written += size;
+    while (size > 0) {
+        if (file->direct && wait_for(file, POLLOUT, -1) == WAIT_STOPPED)
+            return interrupted(error, file);
+        ssize_t done = MAY_FAIL(write(file->descriptor, at, piece_of(file, size)));
+        if (done < 0 && (errno == EINTR || (file->direct && errno == EAGAIN)))
+            continue;
+        if (done <= 0)
+            return error_set(error, ERROR_MACHINE, "%.600s: cannot be written: %s", file->target, strerror(errno));
+        at += done;
+        size -= (size_t)done;
+        file->written += (uint64_t)done;
+    }
+    return true;
+}
+
+/* The final name. */
+
+static void sync_folder(const struct file_output *file) {
+    /* Some file systems refuse to sync a folder; that is no loss of ours. */
+    int descriptor = openat(file->folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor >= 0) {
+        (void)fsync(descriptor);
+        (void)close(descriptor);
+    }
+}
+
+/* Network file systems report a late failure only when a descriptor is closed; the lock needs the other one. */
+static bool flush(const struct file_output *file) {
+    if (MAY_FAIL(fsync(file->descriptor)) != 0)
+        return false;
+    int copy = fcntl(file->descriptor, F_DUPFD_CLOEXEC, 3);
+    return copy < 0 || MAY_FAIL(close(copy)) == 0;
+}
+
+enum step { STEP_DONE, STEP_AGAIN, STEP_FAILED /* errno */, STEP_REFUSED /* error is set */ };
+
+/* Gives a name that nothing has. */
+static enum step publish_new(struct file_output *file) {
+    if (file->nameless) {
+        if (link_as(file, file->leaf)) {
+            file->nameless = false;
+            return STEP_DONE;
+        }
+        return errno == EEXIST ? STEP_AGAIN : STEP_FAILED;
+    }
+    if (MAY_FAIL(renameat2(file->folder, file->temporary, file->folder, file->leaf, RENAME_NOREPLACE)) == 0) {
+        file->named = false;
+        return STEP_DONE;
+    }
+    if (errno == EEXIST)
+        return STEP_AGAIN;
+    if (errno != EINVAL && errno != ENOSYS)
+        return STEP_FAILED;
+    /* A file system that knows no such rename. */
+    if (MAY_FAIL(linkat(file->folder, file->temporary, file->folder, file->leaf, 0)) == 0)
+        return STEP_DONE; /* close_all removes the temporary name */
+    if (errno == EEXIST)
+        return STEP_AGAIN;
+    if (MAY_FAIL(renameat(file->folder, file->temporary, file->folder, file->leaf)) != 0)
+        return STEP_FAILED;
+    file->named = false;
+    return STEP_DONE;
+}
+
+/* Whether the name is that of the file being written. */
+static bool is_at(const struct file_output *file, const char *name) {
+    struct stat there, own;
+    return fstatat(file->folder, name, &there, AT_SYMLINK_NOFOLLOW) == 0 && fstat(file->descriptor, &own) == 0 &&
+           same_file(identity_of(&there), identity_of(&own));
+}
+
+/* The temporary name has something that was not inspected: it gets its name back, and the file its temporary one. If
+ * another process has taken our file away meanwhile there is none to exchange with, and the file has no name. */
+static void put_back(struct file_output *file) {
+    for (int i = 0; i < 1000 * TRIES; i++) {
+        if (renameat2(file->folder, file->temporary, file->folder, file->leaf, RENAME_EXCHANGE) == 0) {
+            if (is_at(file, file->temporary))
+                return;
+            continue; /* something else came back: once more */
+        }
+        if (errno != ENOENT)
+            break;
+        if (renameat2(file->folder, file->temporary, file->folder, file->leaf, RENAME_NOREPLACE) == 0)
+            break;
+    }
+    file->named = false; /* what has that name now is not ours to remove */
+}
+
+/* Puts the file in the place of the one that was inspected; *old: what it has replaced. */
+static enum step publish_over(struct file_output *file, struct stat *old, struct error *error) {
+    struct stat now;
+    bool there;
+    if (!file->named && !name_temporary(file))
+        return STEP_FAILED;
+    if (MAY_FAIL(renameat2(file->folder, file->temporary, file->folder, file->leaf, RENAME_EXCHANGE)) == 0) {
+        bool same = fstatat(file->folder, file->temporary, &now, AT_SYMLINK_NOFOLLOW) == 0 &&
+                    same_file(identity_of(&now), identity_of(old));
+        /* Another run may have written the same picture meanwhile: what came out may be replaced, too. */
+        struct file_output out = *file;
+        struct error ignored;
+        out.leaf = file->temporary;
+        if (same || (inspect(&out, &there, &now, &ignored) && there)) {
+            *old = now;
+            return STEP_DONE; /* close_all removes the old file */
+        }
+        put_back(file);
+        return STEP_AGAIN;
+    }
+    if (errno == ENOENT)
+        return STEP_AGAIN;
+    /* Without exchange: the moment between looking and renaming is short, but it is there. */
+    if (!inspect(file, &there, &now, error))
+        return STEP_REFUSED;
+    if (!there || !same_file(identity_of(&now), identity_of(old)))
+        return STEP_AGAIN;
+    if (MAY_FAIL(renameat(file->folder, file->temporary, file->folder, file->leaf)) != 0)
+        return STEP_FAILED;
+    file->named = false;
+    return STEP_DONE;
+}
+
+static enum step publish(struct file_output *file, struct error *error) {
+    struct file_guard *guard = file->rules->guard;
+    enum step step = STEP_AGAIN;
+    for (int i = 0; i < TRIES && step == STEP_AGAIN; i++) {
+        struct stat old;
+        bool there;
+        if (!inspect(file, &there, &old, error))
+            return STEP_REFUSED;
+        if (there) /* x, setuid and the like do not belong to a picture */
+            (void)fchmod(file->descriptor, old.st_mode & 0666);
+        step = there ? publish_over(file, &old, error) : publish_new(file);
+        for (int role = 0; step == STEP_DONE && there && guard && role < FILE_ROLES; role++)
+            file_set_remove(&guard->own[role], identity_of(&old));
+    }
+    if (step == STEP_AGAIN) {
+        errno = EBUSY;
+        step = STEP_FAILED;
+    }
+    return step;
+}
+
+bool file_output_commit(struct file_output *file, struct error *error) {
+    if (file->direct) {
+        int result = close(file->descriptor), failed = MAY_FAIL(result);
+        int number = errno;
+        file->descriptor = -1;
+        close_all(file);
+        return failed == 0 ||
+               error_set(error, ERROR_MACHINE, "%.600s: cannot be written: %s", file->target, strerror(number));
+    }
+    struct stat status;
+    enum step step = flush(file) && fstat(file->descriptor, &status) == 0 ? publish(file, error) : STEP_FAILED;
+    if (step == STEP_FAILED)
+        (void)error_set(error, ERROR_MACHINE, "%.600s: cannot be written: %s", file->target, strerror(errno));
+    if (step == STEP_DONE) {
+        const struct file_rules *rules = file->rules;
+        if (file->identity)
+            *file->identity = identity_of(&status);
+        if (rules->guard && rules->role != FILE_ROLE_NONE)
+            (void)file_set_add(&rules->guard->own[rules->role], identity_of(&status));
+        sync_folder(file);
+    }
+    close_all(file);
+    return step == STEP_DONE;
+}
+
+void file_output_abandon(struct file_output *file) {
+    if (file->open)
+        close_all(file);
+}
+
+/* It gets a temporary name first, where nobody looks for it, so that what is removed is what was inspected. */
+bool file_output_remove(const struct file_target *target, struct file_identity identity, struct error *error) {
+    struct file_output file;
+    struct stat status;
+    bool there,
+        ok = set_target(&file, target, error) && open_folder(&file, error) && inspect(&file, &there, &status, error);
+    if (ok && there) {
+        choose_temporary_name(&file);
+        ok = same_file(identity_of(&status), identity) ||
+             error_set(error, ERROR_SCENE, "%.600s: is another file now, and is not removed", file.target);
+        bool moved =
+            ok && MAY_FAIL(renameat2(file.folder, file.leaf, file.folder, file.temporary, RENAME_NOREPLACE)) == 0;
+        if (moved && fstatat(file.folder, file.temporary, &status, AT_SYMLINK_NOFOLLOW) == 0 &&
+            !same_file(identity_of(&status), identity)) {
+            (void)renameat2(file.folder, file.temporary, file.folder, file.leaf, RENAME_NOREPLACE);
+            ok = error_set(error, ERROR_SCENE, "%.600s: is another file now, and is not removed", file.target);
+        } else if (ok) {
+            ok = MAY_FAIL(unlinkat(file.folder, moved ? file.temporary : file.leaf, 0)) == 0 || errno == ENOENT ||
+                 error_set(error, file_refusal_kind(errno), "%.600s: cannot be removed: %s", file.target,
+                           strerror(errno));
+        }
+    }
+    close_all(&file);
+    return ok;
+}

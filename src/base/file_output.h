@@ -1,0 +1,96 @@
+/* Writing files. A file appears whole or not at all, and only in the place of something that may be lost: a picture
+ * replaces pictures, a checkpoint replaces checkpoints, nothing replaces a file that the run has read.
+ *
+ * The name is resolved once: the folder is opened and everything after that happens relative to its descriptor, so a
+ * folder or link that is exchanged meanwhile leads nowhere else. */
+#ifndef GRAY_BASE_FILE_OUTPUT_H
+#define GRAY_BASE_FILE_OUTPUT_H
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/reach.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* What a run writes a file as. */
+enum file_role { FILE_ROLE_NONE, FILE_ROLE_PICTURE, FILE_ROLE_BESIDE, FILE_ROLES };
+
+/* Which files a run has to keep, and which are its own. Zero-initialise; file_guard_destroy releases the sets. */
+struct file_guard {
+    struct file_set kept;            /* read, or written for another purpose: never replaced */
+    struct file_set own[FILE_ROLES]; /* what this run wrote: replaced again in the same role, also after it was read */
+    struct file_set cleaned;         /* folders in which leftovers of earlier runs were removed */
+};
+void file_guard_destroy(struct file_guard *guard);
+
+/* Lets a wait for a pipe end early. `stopped` is called when `descriptor` is readable; true ends the wait. */
+struct file_interrupt {
+    int descriptor;
+    bool (*stopped)(void *context);
+    void *context;
+};
+
+/* A limit on what is written into all files whose rules have it; what exceeds it is an error with these words. */
+struct file_quota {
+    uint64_t written, limit; /* bytes */
+    char words[128];
+};
+
+/* How a file may be written. The zero value replaces every regular file, in any folder. */
+struct file_rules {
+    /* Decides by the first FILE_HEAD_SIZE bytes of an existing file that is not empty; NULL: every regular file. */
+    bool (*may_replace)(const uint8_t *head, size_t size);
+    const char *expected; /* what may_replace looks for, as in "a picture" */
+    const char *advice;   /* added to a refusal: " (-o FILE chooses another one)", or NULL */
+    enum file_role role;
+    bool never_replace;                     /* an existing file of any kind is an error */
+    bool in_place;                          /* "-" is standard output; pipes and devices are written in place */
+    bool named_by_user;                     /* the messages name --force */
+    bool force;                             /* may_replace does not matter */
+    struct file_quota *quota;               /* or NULL */
+    const struct reach *places;             /* folders that may be written; NULL: all */
+    struct file_guard *guard;               /* or NULL */
+    const struct file_interrupt *interrupt; /* or NULL */
+};
+
+enum { FILE_HEAD_SIZE = 16, FILE_NAME_SIZE = 4096 };
+
+/* A name, and the rules for it (NULL: the zero value). */
+struct file_target {
+    const char *path;
+    const struct file_rules *rules;
+    struct file_identity *written; /* NULL, or receives what the file is once it has its name */
+};
+#define FILE_AT(name) (&(const struct file_target){.path = (name)})
+
+/* Whether the file could be written now: folder, length of the name, file system, and what stands there. Creates
+ * missing folders and nothing else. Removes leftovers of killed runs in the folder, once for each guard. */
+bool file_output_check(const struct file_target *target, struct error *error);
+/* Whether two names are one place: the same folder, however it is named, and the same last part. The folders must
+ * exist. */
+bool file_same_place(const char *a, const char *b);
+/* Removes the file if it is still the one with this identity and one that the rules let replace. Fine when there is
+ * none. */
+bool file_output_remove(const struct file_target *target, struct file_identity identity, struct error *error);
+
+/* A file being written. Zero value = closed. After file_output_open either commit or abandon must follow. */
+struct file_output {
+    int descriptor, folder;
+    bool open, direct;    /* direct: a pipe, a device or standard output, written in place */
+    bool nameless, named; /* how the temporary file stands in the folder; neither: it has its final name */
+    uint64_t written;
+    const struct file_rules *rules; /* not owned */
+    struct file_identity *identity; /* target->written */
+    char target[FILE_NAME_SIZE], temporary[40];
+    const char *leaf; /* the last part of `target` */
+};
+bool file_output_open(struct file_output *file, const struct file_target *target, struct error *error);
+bool file_output_write(struct file_output *file, const void *data, size_t size, struct error *error);
+/* fsync, the final name (mode bits of a replaced file are kept, but for x, setuid and the like), fsync of the folder.
+ */
+bool file_output_commit(struct file_output *file, struct error *error);
+void file_output_abandon(struct file_output *file); /* removes the temporary file; fine on a closed one */
+
+#endif

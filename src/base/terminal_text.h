@@ -1,0 +1,55 @@
+/* Text by what a terminal shows of it, and the rule that lines of standard error that begin with "gray:" are the
+ * program's own: where a scene or a file has chosen the beginning of such a line it is shown as "scene: gray: ...". */
+#ifndef GRAY_BASE_TERMINAL_TEXT_H
+#define GRAY_BASE_TERMINAL_TEXT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum character_class {
+    CHARACTER_SHOWN,     /* tab and bytes that are no UTF-8 among them */
+    CHARACTER_INVISIBLE, /* takes no place: zero-width characters, combining marks */
+    CHARACTER_LINE_END,  /* \n */
+    CHARACTER_BREAK,     /* other ends of lines: \r, \v, \f, U+0085, U+2028, U+2029 */
+    CHARACTER_CONTROL,   /* steers the terminal or turns the direction of writing */
+};
+
+/* Length of the well-formed UTF-8 sequence at `at`, which ends in NUL or has four bytes, or 0 (RFC 3629: no overlong
+ * forms, no surrogates, up to U+10FFFF). */
+size_t utf8_length(const unsigned char *at);
+/* Its code point; `length` of 0: the byte. */
+uint32_t utf8_code(const unsigned char *at, size_t length);
+/* The character at `at`, of utf8_length bytes, or the single byte where that is 0. */
+enum character_class character_class_of(const unsigned char *at);
+
+/* "scene: " where the text would be shown as a line of the program, else "". */
+const char *scene_mark(const char *text);
+
+/* Scene-written text on its way to standard error. Ends of lines of every kind become \n, other control characters and
+ * direction marks '?', so that the place where the cursor stands is known; a line that begins with "gray:", also in
+ * pieces and with invisible characters in it, gets its mark. Of a line in which something was replaced every "gray:"
+ * gets it. Zero value: at the beginning of a line. */
+struct line_guard {
+    bool open;      /* bytes stand on the line */
+    bool begun;     /* something is shown on it */
+    bool replaced;  /* a control character was replaced on it */
+    bool had_break; /* the last character was \r, whose meaning depends on the next */
+    bool cut;       /* what was held back stands there: it must not be continued */
+    int matched;    /* letters of "gray:" that are held back */
+    size_t held_size, partial_size;
+    char held[64];   /* these letters, and invisible characters among them */
+    char partial[4]; /* the beginning of a UTF-8 sequence */
+    char ready[1024];
+    size_t ready_size;
+    void *context;
+    void (*put)(void *context, const char *text, size_t size); /* called with up to sizeof ready bytes */
+};
+
+void line_guard_take(struct line_guard *guard, const char *text, size_t size);
+/* Puts what is held back; whatever comes next begins a new line, since it could make "gray:" of it. */
+void line_guard_flush(struct line_guard *guard);
+/* Somebody else has ended the line and begun another. */
+void line_guard_new_line(struct line_guard *guard);
+
+#endif
