@@ -785,7 +785,7 @@ function gr.patch(material, points, patches) end
 ---@field emission? gr.triple emission (a colour {r, g, b}; default {0, 0, 0}): Light of its own, added to what it reflects.
 ---@field roughness? number roughness (a number, 0 to 1; default 0): Of reflection and refraction: 0 is polished.
 ---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): N x N rays where it is rough; one ray after another rough surface.
----@field absorption? gr.triple absorption (a colour {r, g, b}, 0 to 1e+300; default {0, 0, 0}): Inside, light fades by exp(-absorption * distance).
+---@field absorption? gr.triple absorption (a colour {r, g, b}, >= 0; default {0, 0, 0}): Inside, light fades by exp(-absorption * distance).
 
 ---A Phong material.
 ---@param kd gr.triple kd (a colour {r, g, b}): Colour of diffuse and ambient light.
@@ -808,7 +808,7 @@ function gr.material(kd, ks, shininess) end
 ---@field emission? gr.triple emission (a colour {r, g, b}; default {0, 0, 0}): Light of its own, added to what it reflects.
 ---@field roughness? number roughness (a number, 0 to 1; default 0): Of reflection and refraction: 0 is polished.
 ---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): N x N rays where it is rough; one ray after another rough surface.
----@field absorption? gr.triple absorption (a colour {r, g, b}, 0 to 1e+300; default {0, 0, 0}): Inside, light fades by exp(-absorption * distance).
+---@field absorption? gr.triple absorption (a colour {r, g, b}, >= 0; default {0, 0, 0}): Inside, light fades by exp(-absorption * distance).
 
 ---A Phong material that reflects and refracts.
 ---@param kd gr.triple kd (a colour {r, g, b}): Colour of diffuse and ambient light.

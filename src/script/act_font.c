@@ -17,8 +17,11 @@ bool act_glyphs(struct context *context, const struct value *args, struct result
     if (!files_require(context, args[GLYPHS_FONT].text, path, error) ||
         !reach_map(context->reach, path, FILE_LIMIT, &bytes, error))
         return false;
+    uint64_t refusals = mem_refusals();
     bool done = font_layout(path, bytes.data, bytes.size, args[GLYPHS_TEXT].text, &context->call, text, error);
     file_unmap(&bytes);
+    if (!done)
+        (void)error_of_file(error, path, refusals);
     for (uint32_t k = 0; done && k < text->count; k++)
         if (text->glyphs[k].missing)
             context_warn_once(context, WARNED_OTHER, "%s has no letter U+%04X, and maybe others", path,

@@ -87,8 +87,10 @@ struct image *act_find_image(struct context *context, const struct value *value,
     size_t length = strlen(canonical);
     if (!image && strncmp(error->text, canonical, length) == 0) { /* tell the path as the scene knows it */
         char rest[sizeof error->text];
+        bool limit = error->limit;
         memcpy(rest, error->text + length, sizeof rest - length);
         error_set(error, error->kind, "%s%s", path, rest);
+        error->limit = limit;
     }
     return image;
 }

@@ -89,16 +89,23 @@ void context_raise(struct context *context, const char *format, ...) {
     raise_text(context, line);
 }
 
+/* The value says nothing: C functions that a script has put into __close are called with it. */
 void context_raise_fatal(lua_State *L) {
-    lua_pushlightuserdata(L, context_of(L));
+    lua_pushnil(L);
     lua_error(L);
     __builtin_unreachable();
 }
 
 void context_raise_error(struct context *context, const struct error *error) {
-    if (error->kind == ERROR_SCENE)
+    if (error->kind == ERROR_SCENE && !error->elsewhere && !error->limit)
         context_raise(context, "%s", error->text);
     context->fatal = *error;
+    if (error->limit) {
+        char where[PATH_SIZE + 32], line[1536];
+        compose(context, error->text, line, sizeof line);
+        context_where(context, where, sizeof where);
+        (void)error_set_limit(&context->fatal, "%s%s", where, line);
+    }
     context_raise_fatal(context->lua);
 }
 

@@ -2,18 +2,19 @@
  * src/script.
  *
  * How errors travel. An ordinary error is a Lua error with the complete first line as its string. What a script must
- * not catch (out of memory, cancelled, os.exit) is kept in `fatal` and `ended` while a light userdata is raised;
- * whatever could catch it (pcall, xpcall, coroutine.resume, load ...) is replaced by a version that raises it again
- * (protect.c). */
+ * not catch (out of memory, cancelled, os.exit) is kept in `fatal` and `ended` while nil is raised; whatever could
+ * catch it (pcall, xpcall, coroutine.resume, load ...) is replaced by a version that raises it again (protect.c). */
 #ifndef GRAY_SCRIPT_CONTEXT_H
 #define GRAY_SCRIPT_CONTEXT_H
 
+#include "base/mem.h"
 #include "base/reach.h"
 #include "scene/change.h"
 #include "script/script.h"
 #include "script/table.h"
 
 #include <lua.h>
+#include <stdio.h>
 
 enum { PATH_SIZE = 4096, FILE_LIMIT = 1 << 28 };
 
@@ -44,10 +45,10 @@ struct source_name {
 
 /* What the script has used of what it was given (limits.c). */
 struct limits {
-    uint64_t memory, memory_limit;       /* bytes of the Lua state, as the allocator rounds them */
-    uint64_t asset_memory;               /* bytes of meshes and images made for this script */
-    uint32_t known_meshes, known_images; /* counted so far, or there before */
-    const void *refused_block;           /* the request that was refused last: Lua asks again after a collection */
+    struct mem_account account; /* of everything allocated for the script; a limit of 0 is none */
+    struct mem_account *charged_before;
+    char memory_words[128];
+    const void *refused_block; /* the request that was refused last: Lua asks again after a collection */
     size_t refused_size;
     bool memory_out;               /* something was refused: the script ends, unless it is got at once */
     bool refused_for_good;         /* it was asked for again in vain, or something else was */
@@ -70,6 +71,7 @@ struct context {
     const struct reach *reach; /* what may be read and written; NULL: everything */
     const struct script_options *options;
     const struct script_host *host;
+    FILE *output, *errors; /* standard output and error of the script, where they are not those of the process */
     struct scene scene;
     struct arena keep;      /* lives as long as the context */
     struct arena call;      /* arguments of one call */
@@ -119,11 +121,12 @@ bool changes_begin(struct context *context, struct render_request *request, stru
 
 /* limits.c */
 void limits_begin(struct context *context);
+void limits_end(struct context *context);
 void *limits_allocate(void *context, void *block, size_t old_size, size_t size); /* a lua_Alloc */
 void limits_open(lua_State *L);                                                  /* sets the hook */
-void limits_check(lua_State *L);               /* raises when time or memory is used up or somebody wants to stop */
-void limits_check_memory(lua_State *L);        /* the part of it that is about what the scene holds */
-void limits_output(lua_State *L, size_t size); /* so many bytes are about to be written; may raise */
+void limits_check(lua_State *L); /* raises when time or memory is used up or somebody wants to stop */
+_Noreturn void limits_end_for_memory(lua_State *L);
+void limits_output(lua_State *L, size_t size);                  /* so many bytes are about to be written; may raise */
 void limits_count_output(struct context *context, size_t size); /* the same without raising; the next check does */
 /* Around what is not the script's own work. */
 void limits_pause(struct context *context);
@@ -172,6 +175,7 @@ const char *files_unshorten(struct context *context, const char *message); /* NU
 /* Others that add to a fresh state. All run protected and may raise. */
 void sandbox_open(lua_State *L); /* sandbox.c: the libraries, less what a stranger's script must not have */
 void streams_open(lua_State *L); /* streams.c: files and printing within what the scene was given */
+void streams_close(struct context *context); /* after the state */
 void protect_open(lua_State *L); /* protect.c */
 /* Puts `function` in the place of library.name; its upvalue is what was there. */
 void wrap_function(lua_State *L, const char *library, const char *name, lua_CFunction function);

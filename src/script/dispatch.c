@@ -177,7 +177,6 @@ static int dispatch(lua_State *L) {
     struct error error = {0};
     if (!function->run(c, args, &result, &error))
         context_raise_error(c, &error);
-    limits_check_memory(L);
     return answer(L, function, &result);
 }
 

@@ -6,6 +6,7 @@
 #include "base/file.h"
 
 #include <lauxlib.h>
+#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -57,7 +58,23 @@ const char *files_repair_number(struct context *context, const char *name) {
     return repaired;
 }
 
+/* Longer names are those of no file; the error says so, since it cannot show all of the name. */
+static bool name_fits(const char *name, struct error *error) {
+    if (strlen(name) >= PATH_MAX)
+        return error_set(error, ERROR_SCENE, "cannot find '%.60s...': a path has at most %d bytes", name, PATH_MAX - 1);
+    for (const char *part = name; *part; part += strspn(part, "/")) {
+        size_t length = strcspn(part, "/");
+        if (length > NAME_MAX)
+            return error_set(error, ERROR_SCENE, "cannot find '%.60s...': the name of a file has at most %d bytes",
+                             name, NAME_MAX);
+        part += length;
+    }
+    return true;
+}
+
 bool files_require(struct context *context, const char *name, char out[PATH_SIZE], struct error *error) {
+    if (!name_fits(name, error))
+        return false;
     if (files_find(context, name, out))
         return true;
     const char *repaired = files_repair_number(context, name);
@@ -93,28 +110,37 @@ const char *files_unshorten(struct context *context, const char *message) {
     return message;
 }
 
+/* Raises an error that no gr function has made. */
+_Noreturn static void raise_outside(lua_State *L, const struct error *error) {
+    struct context *context = context_of(L);
+    context->lua = L;
+    context->function = NULL;
+    context->subject = NULL;
+    context_raise_error(context, error);
+}
+
 /* Pushes the chunk, or a message. Raises only before the file is mapped; nothing after that does, so it is unmapped. A
  * first line that starts with # is left out, but not its end, so that line numbers stay right. */
 int files_load(lua_State *L, const char *path) {
     struct context *context = context_of(L);
     struct source_name *source = arena_alloc(&context->keep, sizeof *source);
     char *name = source ? arena_format(&context->keep, "@%s", path) : NULL;
+    struct error error = {0};
     if (!name) {
+        (void)error_no_memory(&error, path);
+        if (error.limit)
+            raise_outside(L, &error);
         lua_pushliteral(L, "not enough memory");
         return LUA_ERRMEM;
     }
     *source = (struct source_name){.path = name + 1, .next = context->sources};
     context->sources = source;
     struct file_bytes bytes;
-    struct error error = {0};
     /* The scene itself was named by the user; it may be a link to anywhere. */
     const struct reach *reach = strcmp(path, context->path) == 0 ? NULL : context->reach;
     if (!reach_map(reach, path, FILE_LIMIT, &bytes, &error)) {
-        if (error.kind != ERROR_SCENE) {
-            context->lua = L;
-            context->function = NULL;
-            context_raise_error(context, &error);
-        }
+        if (error.kind != ERROR_SCENE || error.limit)
+            raise_outside(L, &error);
         lua_pushstring(L, error.text);
         return LUA_ERRFILE;
     }

@@ -1,5 +1,6 @@
-/* What a script may use up: memory, processor time, output. The allocator counts every byte of the Lua state as malloc
- * rounds it; a hook looks at the clock every few thousand steps. Lua's own C functions run without the hook, so the
+/* What a script may use up: memory, processor time, output. From limits_begin to limits_end an account of base/mem.h
+ * counts every block of the process, as malloc rounds it: the Lua state, the scene, and whatever reads a file or makes
+ * a mesh. A hook looks at the clock every few thousand steps. Lua's own C functions run without the hook, so the
  * supervisor watches the same clock from outside (app/supervisor.c): here the good message with its line, there the
  * certain end.
  *
@@ -8,6 +9,7 @@
 #include "script/context.h"
 
 #include "base/mem.h"
+#include "base/size.h"
 
 #include <lauxlib.h>
 #include <stdio.h>
@@ -15,11 +17,9 @@
 
 enum {
     HOOK_STEPS = 10000, /* some tenths of a millisecond */
-    STANDARD_MEMORY = 4096,
     STANDARD_TIME = 60,
-    STANDARD_OUTPUT = 64,
-    MEBIBYTE = 1 << 20,
 };
+static const uint64_t standard_memory = 4 * GIBIBYTE, standard_output = 64 * MEBIBYTE;
 
 static double processor_time(void) {
     struct timespec now;
@@ -32,27 +32,40 @@ double script_time_limit(const struct script_options *options) {
 }
 
 /* 0: no limit. */
-static uint64_t mebibytes(int given, int standard, bool unlimited) {
-    int chosen = given > 0 ? given : unlimited ? 0 : standard;
-    return (uint64_t)chosen * MEBIBYTE;
+static uint64_t limit_of(uint64_t given, uint64_t standard, bool unlimited) {
+    return given > 0 ? given : unlimited ? 0 : standard;
+}
+
+static uint64_t memory_limit(const struct script_options *options) {
+    return limit_of(options->memory_limit, standard_memory, options->no_sandbox);
+}
+
+uint64_t script_picture_memory(const struct script_options *options) {
+    uint64_t limit = memory_limit(options);
+    return limit > 0 ? limit + limit / 4 * 3 : UINT64_MAX;
 }
 
 void limits_begin(struct context *context) {
     const struct script_options *options = context->options;
-    context->limits = (struct limits){
-        .memory_limit = mebibytes(options->memory_limit, STANDARD_MEMORY, options->no_sandbox),
-        .output_limit = mebibytes(options->output_limit, STANDARD_OUTPUT, options->no_sandbox),
+    struct limits *limits = &context->limits;
+    *limits = (struct limits){
+        .account = {.limit = memory_limit(options), .option = "--script-memory", .words = limits->memory_words},
+        .output_limit = limit_of(options->output_limit, standard_output, options->no_sandbox),
         .time_limit = script_time_limit(options),
         .time_begun = processor_time(),
-        .known_meshes = context->scene.assets->mesh_count,
-        .known_images = context->scene.assets->image_count,
     };
+    char size[SIZE_WORDS];
+    (void)snprintf(limits->memory_words, sizeof limits->memory_words,
+                   "the script used up its memory of %s (--script-memory allows more)",
+                   size_words(limits->account.limit, size));
+    limits->charged_before = mem_charge(limits->account.limit > 0 ? &limits->account : NULL);
 }
 
-/* What malloc takes for a block: its header, multiples of 16, 32 at least (glibc's layout). */
-static uint64_t cost(size_t size) {
-    uint64_t whole = ((uint64_t)size + 8 + 15) & ~UINT64_C(15);
-    return size == 0 ? 0 : whole < 32 ? 32 : whole;
+/* What is still held are the assets. */
+void limits_end(struct context *context) {
+    int64_t left = context->limits.account.held;
+    context->scene.assets->memory += left > 0 ? (uint64_t)left : 0;
+    (void)mem_charge(context->limits.charged_before);
 }
 
 /* What is refused is refused for good, unless Lua asks for the same again after it has collected its garbage and gets
@@ -60,41 +73,25 @@ static uint64_t cost(size_t size) {
  * whoever handles the error, changes nothing, even if it is of the same size. */
 void *limits_allocate(void *user, void *block, size_t old_size, size_t size) {
     struct limits *limits = &((struct context *)user)->limits;
-    uint64_t before = block ? cost(old_size) : 0, after = cost(size);
-    if (size == 0) {
-        mem_free(block);
-        limits->memory -= before;
-        return NULL;
-    }
-    if (limits->memory_limit > 0 && after > before && limits->memory - before + after > limits->memory_limit) {
+    bool grows = !block || size > old_size;
+    if (size == 0)
+        return mem_resize_known(block, old_size, 0);
+    uint64_t refusals = mem_refusals();
+    void *moved = mem_resize_known(block, old_size, size);
+    if (!moved && mem_refusals() != refusals) {
         limits->refused_for_good = limits->memory_out;
         limits->memory_out = true;
         limits->refused_size = size;
         limits->refused_block = block;
-        return NULL;
     }
-    void *moved = mem_resize(block, size);
     if (!moved)
         return NULL;
-    limits->memory = limits->memory - before + after;
     bool again = limits->refused_size == size && limits->refused_block == block;
-    if (limits->memory_out && after > before && !limits->refused_for_good) {
+    if (limits->memory_out && grows && !limits->refused_for_good) {
         limits->memory_out = !again;
         limits->refused_for_good = !again;
     }
     return moved;
-}
-
-static uint64_t scene_memory(struct context *context) {
-    struct limits *limits = &context->limits;
-    const struct assets *assets = context->scene.assets;
-    const struct asset_mesh *mesh = assets->meshes;
-    for (; mesh && limits->known_meshes < assets->mesh_count; mesh = mesh->next, limits->known_meshes++)
-        limits->asset_memory += mesh_memory(mesh->mesh);
-    const struct asset_image *image = assets->images;
-    for (; image && limits->known_images < assets->image_count; image = image->next, limits->known_images++)
-        limits->asset_memory += image_memory(image->image);
-    return limits->asset_memory + context->scene.arena.total + context->keep.total + context->call.total;
 }
 
 _Noreturn static void end_script(lua_State *L, enum error_kind kind, const char *what) {
@@ -106,18 +103,8 @@ _Noreturn static void end_script(lua_State *L, enum error_kind kind, const char 
     context_raise_fatal(L);
 }
 
-static void end_for_memory(lua_State *L) {
-    char what[128];
-    snprintf(what, sizeof what, "the script used up its memory of %llu MiB (--script-memory allows more)",
-             (unsigned long long)(context_of(L)->limits.memory_limit / MEBIBYTE));
-    end_script(L, ERROR_SCENE, what);
-}
-
-void limits_check_memory(lua_State *L) {
-    struct context *context = context_of(L);
-    const struct limits *limits = &context->limits;
-    if (limits->memory_limit > 0 && limits->memory + scene_memory(context) > limits->memory_limit)
-        end_for_memory(L);
+void limits_end_for_memory(lua_State *L) {
+    end_script(L, ERROR_SCENE, context_of(L)->limits.memory_words);
 }
 
 void limits_check(lua_State *L) {
@@ -128,8 +115,7 @@ void limits_check(lua_State *L) {
     if (context->host->cancelled && context->host->cancelled(context->host->context))
         end_script(L, ERROR_CANCELLED, "cancelled");
     if (limits->memory_out)
-        end_for_memory(L);
-    limits_check_memory(L);
+        limits_end_for_memory(L);
     if (limits->output_limit > 0 && limits->output > limits->output_limit)
         limits_output(L, 0);
     if (limits->time_limit > 0 && processor_time() - limits->time_begun > limits->time_limit) {
@@ -161,9 +147,9 @@ void limits_output(lua_State *L, size_t size) {
     limits->output += size;
     if (limits->output_limit == 0 || limits->output <= limits->output_limit)
         return;
-    char what[128];
-    snprintf(what, sizeof what, "the script printed more than its %llu MiB (--script-output allows more)",
-             (unsigned long long)(limits->output_limit / MEBIBYTE));
+    char what[128], words[SIZE_WORDS];
+    snprintf(what, sizeof what, "the script printed more than its %s (--script-output allows more)",
+             size_words(limits->output_limit, words));
     end_script(L, ERROR_SCENE, what);
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/arena.h"
 #include "base/file.h"
+#include "base/reach.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -279,6 +280,7 @@ static const struct token *required(const struct token *w, bool *is_module) {
 
 struct search {
     struct arena arena;
+    const struct reach *reach;
     char folder[PATHS], library[PATHS]; /* the scene's with its final slash; the library's canonical one */
     const char *visited[FILES];
     int visited_count;
@@ -288,9 +290,10 @@ struct search {
 
 static void scan_file(struct search *search, const char *path, int depth);
 
-static bool try_path(char out[PATHS], const char *folder, const char *between, const char *name, const char *end) {
+static bool try_path(const struct search *search, char out[PATHS], const char *folder, const char *between,
+                     const char *name, const char *end) {
     int length = snprintf(out, PATHS, "%s%s%s%s", folder, between, name, end);
-    return (size_t)length < PATHS && file_is_regular(out);
+    return (size_t)length < PATHS && reach_is_readable(search->reach, out);
 }
 
 static void follow(struct search *search, const struct token *token, bool is_module, int depth) {
@@ -305,8 +308,8 @@ static void follow(struct search *search, const struct token *token, bool is_mod
     size_t length = strlen(name);
     bool has_end = length > 4 && strcmp(name + length - 4, ".lua") == 0;
     const char *end = is_module && !has_end ? ".lua" : "", *folder = name[0] == '/' ? "" : search->folder;
-    if (try_path(path, folder, "", name, end) || try_path(path, "", "", name, end) ||
-        try_path(path, folder, "lua/", name, end) || try_path(path, folder, "../lua/", name, end))
+    if (try_path(search, path, folder, "", name, end) || try_path(search, path, "", "", name, end) ||
+        try_path(search, path, folder, "lua/", name, end) || try_path(search, path, folder, "../lua/", name, end))
         scan_file(search, path, depth + 1);
 }
 
@@ -346,7 +349,8 @@ static void scan_file(struct search *search, const char *path, int depth) {
     search->visited[search->visited_count++] = copy;
     struct file_bytes bytes;
     struct error ignored;
-    if (!file_map(path, SCENE_LIMIT, &bytes, &ignored))
+    /* The scene itself was named by the user; it may be a link to anywhere. */
+    if (!reach_map(depth > 0 ? search->reach : NULL, path, SCENE_LIMIT, &bytes, &ignored))
         return;
     scan_text(search, (const char *)bytes.data, bytes.size, depth);
     file_unmap(&bytes);
@@ -363,9 +367,23 @@ static void conclude(const struct evidence *evidence, struct order_finding *find
 struct siblings {
     struct search *search;
     const char *self;
+    char folder[PATHS]; /* canonical */
     int votes_new, votes_old;
     char reason[400];
 };
+
+/* Whether a neighbour is a link to what is hidden beside the scene or elsewhere. */
+static bool is_hidden(const struct siblings *siblings, const char *path) {
+    char canonical[PATHS];
+    size_t same = 0;
+    if (!file_canonical(path, canonical, sizeof canonical))
+        return true;
+    while (canonical[same] && canonical[same] == siblings->folder[same])
+        same++;
+    while (same > 0 && canonical[same] != '/')
+        same--;
+    return strstr(canonical + same, "/.") != NULL;
+}
 
 static bool ask_sibling(void *context, const char *name) {
     struct siblings *siblings = context;
@@ -373,11 +391,11 @@ static bool ask_sibling(void *context, const char *name) {
     char path[PATHS];
     if (length < 5 || strcmp(name + length - 4, ".lua") != 0 || strcmp(name, siblings->self) == 0)
         return true;
-    if (!try_path(path, siblings->search->folder, "", name, ""))
+    if (!try_path(siblings->search, path, siblings->search->folder, "", name, "") || is_hidden(siblings, path))
         return true;
     struct file_bytes bytes;
     struct error ignored;
-    if (!file_map(path, SIBLING_LIMIT, &bytes, &ignored))
+    if (!reach_map(siblings->search->reach, path, SIBLING_LIMIT, &bytes, &ignored))
         return true;
     struct evidence before = siblings->search->evidence;
     siblings->search->evidence = (struct evidence){0};
@@ -392,8 +410,9 @@ static bool ask_sibling(void *context, const char *name) {
     return true;
 }
 
-bool order_detect(const char *path, const char *library_folder, struct order_finding *finding, struct error *error) {
-    struct search search = {.visited_count = 0};
+bool order_detect(const char *path, const char *library_folder, const struct reach *reach,
+                  struct order_finding *finding, struct error *error) {
+    struct search search = {.reach = reach};
     const char *slash = strrchr(path, '/');
     size_t folder = slash ? (size_t)(slash - path) + 1 : 0;
     *finding = (struct order_finding){.order = ORDER_NEW};
@@ -407,7 +426,9 @@ bool order_detect(const char *path, const char *library_folder, struct order_fin
     conclude(&search.evidence, finding);
     if (!search.evidence.is_new && !search.evidence.is_old) {
         struct siblings siblings = {.search = &search, .self = slash ? slash + 1 : path};
-        (void)file_list(folder > 0 ? search.folder : ".", SIBLINGS, ask_sibling, &siblings);
+        const char *around = folder > 0 ? search.folder : ".";
+        if (file_canonical(around, siblings.folder, sizeof siblings.folder))
+            (void)file_list(around, SIBLINGS, ask_sibling, &siblings);
         if (siblings.votes_old > siblings.votes_new) {
             finding->order = ORDER_OLD;
             memcpy(finding->reason, siblings.reason, sizeof finding->reason);

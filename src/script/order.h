@@ -13,9 +13,12 @@ struct order_finding {
     char reason[400]; /* "it uses readobj (line 3)"; "" when nothing spoke for anything */
 };
 
-/* The scene at `path` and what it requires by literal names; without evidence there, its siblings. Files of
- * library_folder (may be NULL) say nothing. A file that cannot be read says nothing either: running it will tell. */
-bool order_detect(const char *path, const char *library_folder, struct order_finding *finding, struct error *error);
+struct reach;
+/* The scene at `path` and what it requires by literal names; without evidence there, its siblings that are not hidden.
+ * Files of library_folder (may be NULL) do not count, nor do those that the scene may not read (reach; NULL:
+ * everything) and those that cannot be read. */
+bool order_detect(const char *path, const char *library_folder, const struct reach *reach,
+                  struct order_finding *finding, struct error *error);
 /* One text alone. */
 void order_of_text(const char *text, size_t size, struct order_finding *finding);
 

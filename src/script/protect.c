@@ -1,5 +1,5 @@
 /* What could catch an error that must not be caught: pcall, xpcall, coroutine.resume and close, load. The replacements
- * do the same and then raise the light userdata again when the context holds a fatal error or the script has ended.
+ * do the same and then raise again when the context holds a fatal error or the script has ended.
  *
  * Two more ways past the limits are closed here. Lua runs the handler of xpcall with hooks off when the error came from
  * the hook: ours answers a fatal error itself. Lua runs finalizers (__gc) with hooks off always: setmetatable leaves

@@ -6,7 +6,6 @@
 #include "base/file.h"
 #include "script/order.h"
 
-#include <assert.h>
 #include <lauxlib.h>
 #include <lualib.h>
 #include <stdio.h>
@@ -60,10 +59,8 @@ static const char *indent(struct arena *arena, const char *text) {
 /* The message handler: makes the complete first line and the traceback while the stack is still there. */
 static int describe_error(lua_State *L) {
     struct context *context = context_of(L);
-    if (lua_islightuserdata(L, 1)) { /* only ours: the error is told already */
-        assert(lua_touserdata(L, 1) == context);
+    if (context->ended || context->fatal.kind != ERROR_NONE) /* the context knows the error */
         return 1;
-    }
     context->lua = L;
     char where[PATH_SIZE + 32];
     context_where(context, where, sizeof where);
@@ -116,9 +113,7 @@ static bool conclude(struct context *context, int status, struct error *error) {
     if (status == LUA_OK || context->ended)
         return true;
     if (context->limits.memory_out)
-        return error_set(error, ERROR_SCENE,
-                         "%s: the script used up its memory of %llu MiB (--script-memory allows more)", context->path,
-                         (unsigned long long)(context->limits.memory_limit >> 20));
+        return error_set(error, ERROR_SCENE, "%s: %s", context->path, context->limits.memory_words);
     if (status == LUA_ERRMEM)
         return error_set(error, ERROR_MACHINE, "%s: out of memory for the script", context->path);
     *error = context->failure;
@@ -140,7 +135,7 @@ static bool choose_order(struct context *context, struct error *error) {
     case SCRIPT_ORDER_AUTO:
         break;
     }
-    if (!order_detect(context->path, context->options->library_folder, &finding, error))
+    if (!order_detect(context->path, context->options->library_folder, context->reach, &finding, error))
         return false;
     context->scene.order = finding.order;
     if (finding.order != ORDER_OLD)
@@ -153,7 +148,16 @@ static bool choose_order(struct context *context, struct error *error) {
     return true;
 }
 
-static bool prepare(struct context *context, struct error *error) {
+bool script_reach(const char *path, const struct script_options *options, struct reach *reach, struct error *error) {
+    bool ok = reach_add_scene(reach, path, options->library_folder, error);
+    for (int k = 0; ok && k < options->allow_read_count; k++)
+        ok = reach_add(reach, options->allow_read[k], REACH_READ, error);
+    for (int k = 0; ok && k < options->allow_write_count; k++)
+        ok = reach_add(reach, options->allow_write[k], REACH_WRITE, error);
+    return ok;
+}
+
+static bool prepare(struct context *context, struct reach *reach, struct error *error) {
     const char *slash = strrchr(context->path, '/');
     size_t length = slash ? (size_t)(slash - context->path) + 1 : 0;
     if (strlen(context->path) >= PATH_SIZE - 64)
@@ -166,16 +170,12 @@ static bool prepare(struct context *context, struct error *error) {
     if (!file_map(context->path, FILE_LIMIT, &bytes, error))
         return false;
     file_unmap(&bytes);
+    if (!context->options->no_sandbox) {
+        if (!script_reach(context->path, context->options, reach, error))
+            return false;
+        context->reach = reach;
+    }
     return choose_order(context, error);
-}
-
-bool script_reach(const char *path, const struct script_options *options, struct reach *reach, struct error *error) {
-    bool ok = reach_add_scene(reach, path, options->library_folder, error);
-    for (int k = 0; ok && k < options->allow_read_count; k++)
-        ok = reach_add(reach, options->allow_read[k], REACH_READ, error);
-    for (int k = 0; ok && k < options->allow_write_count; k++)
-        ok = reach_add(reach, options->allow_write[k], REACH_WRITE, error);
-    return ok;
 }
 
 bool script_run(const char *path, const struct script_options *options, const struct script_host *host,
@@ -184,11 +184,10 @@ bool script_run(const char *path, const struct script_options *options, const st
     *traceback = NULL;
     scene_init(&context.scene, assets);
     struct reach reach = {0};
-    context.reach = options->no_sandbox ? NULL : &reach;
     /* What stays where the handler of messages came to nothing. */
     error_set(&context.failure, ERROR_SCENE, "%s: an error while an error was reported", path);
     limits_begin(&context);
-    bool done = prepare(&context, error) && (options->no_sandbox || script_reach(path, options, &reach, error));
+    bool done = prepare(&context, &reach, error);
     lua_State *L = done ? lua_newstate(limits_allocate, &context) : NULL;
     if (done && !L)
         done = error_no_memory(error, "the script");
@@ -202,9 +201,11 @@ bool script_run(const char *path, const struct script_options *options, const st
         *traceback = done || error->kind != ERROR_SCENE ? NULL : context.traceback;
         lua_close(L);
     }
+    streams_close(&context);
     reach_destroy(&reach);
     scene_destroy(&context.scene);
     arena_destroy(&context.call);
     arena_destroy(&context.keep);
+    limits_end(&context);
     return done;
 }

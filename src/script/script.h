@@ -9,6 +9,7 @@
 #include "scene/node.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 enum script_order { SCRIPT_ORDER_AUTO, SCRIPT_ORDER_NEW, SCRIPT_ORDER_OLD, SCRIPT_ORDER_SEPARATE };
@@ -27,9 +28,9 @@ struct script_options {
     bool no_sandbox;
     const char *const *allow_read, *const *allow_write; /* folders */
     int allow_read_count, allow_write_count;
-    int memory_limit;           /* MiB; 0: 4096, without the sandbox none */
+    uint64_t memory_limit;      /* bytes; 0: 4 GiB, without the sandbox none */
     double time_limit;          /* seconds of processor time, rendering not counted; 0: 60, without the sandbox none */
-    int output_limit;           /* MiB printed and written; 0: 64, without the sandbox none */
+    uint64_t output_limit;      /* bytes printed and written; 0: 64 MiB, without the sandbox none */
     const char *library_folder; /* absolute path of lua/ (data folder of the installation), on package.path last */
 };
 
@@ -62,10 +63,16 @@ struct script_host {
     /* One complete line without newline, e.g. "scene.lua:3: warning: gr.sphere: ..." */
     void (*message)(void *context, enum script_message kind, const char *text);
     bool (*cancelled)(void *context); /* polled by a count hook; may be NULL */
+    /* What the script writes to standard error (with the sandbox), and where `output_is_error` to standard output; the
+     * text holds any bytes. NULL: the streams are those of the process. */
+    void (*error_text)(void *context, const char *text, size_t size);
+    bool output_is_error;
 };
 
 /* The time limit that holds under these options; 0: none. */
 double script_time_limit(const struct script_options *options);
+/* Bytes that a script, its scene and a picture of it may hold together; UINT64_MAX: no limit. */
+uint64_t script_picture_memory(const struct script_options *options);
 struct reach;
 /* Adds the folders that the script at `path` may read and write. */
 bool script_reach(const char *path, const struct script_options *options, struct reach *reach, struct error *error);

@@ -1,7 +1,12 @@
-/* Reading, writing and printing within what the scene was given. Files are opened by base/reach.h: regular files only,
- * below the folders of the list. Whatever is written counts towards the limit on output, on standard output too. What
- * is refused comes back the way io.open tells of every failure: nil, a sentence, a number. */
+/* Reading, writing and printing within what the scene was given. Text for standard error goes to the host, which sees
+ * to it that it is not taken for the program's: the stream behind io.stderr calls it (fopencookie(3)), and so does that
+ * behind io.stdout and print where standard output is the picture's. Files are opened by base/reach.h: regular files
+ * only, below the folders of the list. Whatever is written counts towards the limit on output, on standard output too.
+ * What is refused comes back the way io.open tells of every failure: nil, a sentence, a number. */
+#define _GNU_SOURCE
 #include "script/context.h"
+
+#include "base/fault.h"
 
 #include <errno.h>
 #include <lauxlib.h>
@@ -9,8 +14,12 @@
 #include <stdio.h>
 #include <string.h>
 
+/* What the C library takes for an open stream and its buffer. */
+enum { STREAM_COST = 9 << 10 };
+
 static int close_stream(lua_State *L) {
     luaL_Stream *stream = luaL_checkudata(L, 1, LUA_FILEHANDLE);
+    mem_unreserve(STREAM_COST);
     return luaL_fileresult(L, fclose(stream->f) == 0, NULL);
 }
 
@@ -33,6 +42,18 @@ static bool is_mode(const char *mode) {
     return strspn(mode, "b") == strlen(mode);
 }
 
+/* A message about a name that fills the message would not say what is wrong with it. */
+static void push_failure(lua_State *L, const char *name, const char *why) {
+    enum { SHOWN = 60, LONG = 512 };
+    if (strlen(name) <= LONG) {
+        lua_pushfstring(L, "%s: %s", name, why);
+        return;
+    }
+    lua_pushlstring(L, name, SHOWN);
+    lua_pushfstring(L, "%s...: %s", lua_tostring(L, -1), why);
+    lua_remove(L, -2);
+}
+
 /* Pushes the stream, or nil, a sentence and a number. Reading looks in the working directory first, as always, then
  * where meshes and images are looked for. */
 static int open_stream(lua_State *L, const char *name, const char *mode) {
@@ -45,14 +66,18 @@ static int open_stream(lua_State *L, const char *name, const char *mode) {
     luaL_Stream *stream = lua_newuserdatauv(L, sizeof *stream, 0);
     stream->closef = NULL; /* closed, as far as its finalizer is concerned */
     luaL_setmetatable(L, LUA_FILEHANDLE);
+    if (!mem_reserve(STREAM_COST))
+        limits_end_for_memory(L);
     stream->f = reach_stream(context->reach, path, mode);
+    if (!stream->f)
+        mem_unreserve(STREAM_COST);
     if (stream->f) {
         stream->closef = close_stream;
         return 1;
     }
     int why = errno;
     lua_pushnil(L);
-    lua_pushfstring(L, "%s: %s", name, refusal(context, name, write));
+    push_failure(L, name, refusal(context, name, write));
     lua_pushinteger(L, why);
     return 3;
 }
@@ -118,17 +143,19 @@ static int counted_write(lua_State *L) {
 }
 
 static int print(lua_State *L) {
+    const struct context *context = context_of(L);
+    FILE *out = context->output ? context->output : stdout;
     int count = lua_gettop(L);
     for (int k = 1; k <= count; k++) {
         size_t size;
         const char *text = luaL_tolstring(L, k, &size);
         limits_output(L, size + 1);
         if (k > 1)
-            (void)fputc('\t', stdout);
-        (void)fwrite(text, 1, size, stdout);
+            (void)fputc('\t', out);
+        (void)fwrite(text, 1, size, out);
         lua_pop(L, 1);
     }
-    (void)fputc('\n', stdout);
+    (void)fputc('\n', out);
     return 0;
 }
 
@@ -179,8 +206,43 @@ static void replace(lua_State *L, const char *name, lua_CFunction function, cons
     lua_setfield(L, -2, name);
 }
 
+static ssize_t write_to_host(void *cookie, const char *text, size_t size) {
+    const struct context *context = cookie;
+    context->host->error_text(context->host->context, text, size);
+    return (ssize_t)size;
+}
+
+/* Puts a stream to the host in the place of the process's own one of that name in the table io, which is on top. It has
+ * no buffer, so that what is written stands before what the program says next. */
+static FILE *redirect(lua_State *L, const char *name) {
+    struct context *context = context_of(L);
+    FILE *stream = MAY_GIVE_NULL(fopencookie(context, "w", (cookie_io_functions_t){.write = write_to_host}));
+    if (!stream) {
+        error_no_memory(&context->fatal, "the streams of the script");
+        context_raise_fatal(L);
+    }
+    (void)setvbuf(stream, NULL, _IONBF, 0);
+    lua_getfield(L, -1, name);
+    luaL_Stream *handle = luaL_checkudata(L, -1, LUA_FILEHANDLE);
+    handle->f = stream;
+    lua_pop(L, 1);
+    return stream;
+}
+
+void streams_close(struct context *context) {
+    if (context->output)
+        (void)fclose(context->output);
+    if (context->errors)
+        (void)fclose(context->errors);
+}
+
 void streams_open(lua_State *L) {
+    struct context *context = context_of(L);
     lua_getglobal(L, "io");
+    if (context->host->error_text && !context->options->no_sandbox)
+        context->errors = redirect(L, "stderr");
+    if (context->host->error_text && context->host->output_is_error)
+        context->output = redirect(L, "stdout");
     replace(L, "open", io_open, NULL);
     replace(L, "lines", io_lines, NULL);
     replace(L, "input", io_default, "r");
@@ -192,7 +254,7 @@ void streams_open(lua_State *L) {
     lua_pop(L, 3);
     lua_pushcfunction(L, print);
     lua_setglobal(L, "print");
-    if (context_of(L)->options->no_sandbox)
+    if (context->options->no_sandbox)
         return;
     lua_getglobal(L, "os");
     lua_pushcfunction(L, os_remove);

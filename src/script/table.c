@@ -555,7 +555,7 @@ static const struct parameter rotate_quat_parameters[] = {
     [PHONG_ABSORPTION] = {"absorption",                                                                                \
                           KIND_COLOUR,                                                                                 \
                           OPTIONAL,                                                                                    \
-                          BETWEEN(0, 1e300),                                                                           \
+                          ABOVE(0),                                                                                    \
                           NULL,                                                                                        \
                           "{0, 0, 0}",                                                                                 \
                           "Inside, light fades by exp(-absorption * distance)."}
