@@ -75,7 +75,7 @@ OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(MAIN) $(MPI_MAIN) $(GUI_MA
 MAIN_OBJECT := $(patsubst %.c,$(BUILD)/%.o,$(MAIN))
 GUI_OBJECT := $(if $(SDL_LIBS),$(patsubst %.c,$(BUILD)/%.o,$(GUI_MAIN)))
 MPI_OBJECT := $(if $(MPI_LIBS),$(patsubst %.c,$(BUILD)/%.o,$(MPI_MAIN)))
-TEST_SOURCES := $(sort $(wildcard tests/unit/*.c)) tests/harness.c tests/stage.c
+TEST_SOURCES := $(sort $(wildcard tests/unit/*.c)) tests/harness.c tests/stage.c tests/attack.c tests/attack_files.c
 TEST_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(TEST_SOURCES))
 # What fuzzers feed; the tests feed it what was found before, under a name for each target.
 FUZZ_SOURCES := $(sort $(wildcard tests/fuzz/fuzz_*.c))

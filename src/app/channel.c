@@ -13,7 +13,7 @@
 bool channel_pair(struct channel ends[2], struct error *error) {
     int descriptors[2];
     if (MAY_FAIL(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, descriptors)) != 0)
-        return error_set(error, ERROR_MACHINE, "the rendering process cannot be reached: %s", strerror(errno));
+        return error_set(error, ERROR_MACHINE, "gray: the rendering process cannot be reached: %s", strerror(errno));
     ends[0].descriptor = descriptors[0];
     ends[1].descriptor = descriptors[1];
     return true;
@@ -138,8 +138,11 @@ enum channel_result channel_receive(struct channel *channel, struct frame *frame
         memcpy(&frame->descriptor, CMSG_DATA(header), sizeof frame->descriptor);
     frame->kind = (enum frame_kind)word;
     frame->size = (size_t)got - sizeof word;
-    bool sound = (size_t)got >= sizeof word && (message.msg_flags & (MSG_TRUNC | MSG_CTRUNC)) == 0 &&
-                 frame_is_sound(frame) && (frame->descriptor < 0 || frame->kind == FRAME_FILM);
+    /* Where this process has no descriptor left, that of a film is lost; whoever needs it sees that. */
+    bool lost = (message.msg_flags & MSG_CTRUNC) != 0;
+    bool sound = (size_t)got >= sizeof word && (message.msg_flags & MSG_TRUNC) == 0 &&
+                 (!lost || (frame->kind == FRAME_FILM && frame->descriptor < 0)) && frame_is_sound(frame) &&
+                 (frame->descriptor < 0 || frame->kind == FRAME_FILM);
     if (sound)
         return CHANNEL_FRAME;
     if (frame->descriptor >= 0)

@@ -153,6 +153,7 @@ struct frame_script {
 
 struct frame_read {
     struct file_version version;
+    bool written;    /* a script opened it for writing */
     char path[4096]; /* as it was asked for: relative to the working directory, which both processes share */
 };
 
@@ -172,7 +173,7 @@ bool channel_send_line(struct channel *channel, enum line_kind kind, const char 
 struct frame {
     enum frame_kind kind;
     size_t size;
-    int descriptor; /* that came along, or -1; owned by whoever received the frame */
+    int descriptor; /* that came along, or -1, that of a film also where it was lost; owned by the receiver */
     union {
         struct frame_line line;
         struct picture_request request;

@@ -10,7 +10,10 @@
 #include "base/arena.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/mem.h"
 #include "base/pool.h"
+#include "base/size.h"
+#include "base/terminal_text.h"
 #include "image/image.h"
 #include "render/aov.h"
 #include "render/overlay.h"
@@ -22,7 +25,7 @@
 #include <string.h>
 #include <sys/resource.h>
 
-enum { TOLD_LIMIT = 256 };
+enum { TOLD_LIMIT = 256, LARGE_JOB = 64 << 20 /* bytes */ };
 
 struct child {
     const struct options *options;
@@ -31,7 +34,13 @@ struct child {
     struct pool *pool;  /* made for the first picture */
     struct arena job;   /* memory of the picture being made */
     struct assets assets;
+    struct scene_writer *errors; /* what scripts write to standard error */
+    uint64_t pictures;           /* of this run of the scripts, those that cannot be made too */
+    struct mem_account memory;   /* of the pictures of this script: worlds, indexes of meshes, photons, films */
+    struct mem_account *account; /* the same while there is a limit, or NULL */
+    uint64_t reserved;           /* in it, for the picture that is made */
     struct file_witness witness; /* what the scripts read, when tiles are kept for later */
+    struct file_set reported;    /* files that the supervisor knows of; empty under --watch */
     int status;                  /* --check: worst of the problems reported so far in this script */
     bool building;               /* the world */
     uint64_t runs_before;        /* of the pool, before that */
@@ -44,9 +53,25 @@ static bool is_cancelled(void *context) {
     return atomic_load(&child->services->control->cancel) == CANCEL_ALL;
 }
 
+/* What the script printed and said is written; the supervisor reports what could not be, once for all scripts. */
+static void finish_output(const struct child *child) {
+    scene_writer_flush(child->errors);
+    if (fflush(stdout) != 0 || ferror(stdout))
+        atomic_store(&child->services->control->lost, 1);
+}
+
 static void tell(const struct child *child, enum line_kind kind, const char *text) {
-    (void)fflush(stdout); /* what the script printed before stands before */
+    finish_output(child); /* what the script printed before stands before */
     child->services->line(child->services->context, kind, text);
+}
+
+/* A line whose beginning the scene may have chosen: by a chunk's name, or that of its file. */
+static void tell_of_scene(const struct child *child, enum line_kind kind, const char *text) {
+    const char *mark = scene_mark(text);
+    char line[FRAME_TEXT_LIMIT];
+    if (mark[0] != '\0')
+        (void)snprintf(line, sizeof line, "%s%s", mark, text);
+    tell(child, kind, mark[0] != '\0' ? line : text);
 }
 
 /* How many steps building takes depends on the scene; how far each one is can be told. */
@@ -99,7 +124,7 @@ static void warn_of_scene(void *context, const char *text) {
     bool has_word = strncmp(text, word, strlen(word)) == 0;
     char line[2048];
     (void)snprintf(line, sizeof line, "%s: %s%s", child->script, has_word ? "" : word, text);
-    tell(child, LINE_WARNING, line);
+    tell_of_scene(child, LINE_WARNING, line);
 }
 
 static void tile_done(void *context, uint32_t tile, uint32_t done, uint32_t count) {
@@ -142,7 +167,7 @@ static void tell_world(const struct child *child, const char *file, const struct
                    child->script, file, (unsigned long long)report->primitives, (unsigned long long)report->triangles,
                    report->grid_cells[0], report->grid_cells[1], report->grid_cells[2], report->rays.build_seconds,
                    report->threads);
-    tell(child, LINE_DETAIL, line);
+    tell_of_scene(child, LINE_DETAIL, line);
 }
 
 /* --pixel and --dump-scene: the scene is built, no picture is made. */
@@ -156,20 +181,14 @@ static void print_piece(void *context, const char *text) {
     text_print(stdout, text);
 }
 
-static bool is_printed(struct error *error) {
-    return (fflush(stdout) == 0 && !ferror(stdout)) ||
-           error_set(error, ERROR_MACHINE, "standard output cannot be written");
-}
-
 static bool answer_questions(struct child *child, const struct render_request *request, const struct render_job *job,
                              struct error *error) {
     const struct options *options = child->options;
     struct inspected picture = {request->file, job, request->root};
     struct sheet sheet = {.put = print_piece};
     return (!options->dump_scene || inspect_world(&picture, options->json, &sheet, error)) &&
-           (options->pixel_count == 0 || inspect_pixels(&picture, options->pixels, options->pixel_count, options->json,
-                                                        child->pool, &sheet, error)) &&
-           is_printed(error);
+           (options->pixel_count == 0 ||
+            inspect_pixels(&picture, options->pixels, options->pixel_count, options->json, child->pool, &sheet, error));
 }
 
 static bool build_world(struct child *child, const struct render_request *request, const struct render_job *job,
@@ -230,9 +249,17 @@ static bool make_in_window(struct child *child, const struct render_request *req
     return studio_run(&studio, built, report, build_seconds, error);
 }
 
+static bool too_much_memory(const struct child *child, struct error *error) {
+    const struct script_options *options = &child->options->script;
+    char size[SIZE_WORDS];
+    return error_set_limit(error, "the picture needs too much memory: --script-memory allows %s for it and the script",
+                           size_words(script_picture_memory(options), size));
+}
+
 /* From the flattened scene to the finished film. */
-static bool make_picture(struct child *child, const struct render_request *request, struct render_job *job,
-                         const struct picture_request *asked, struct picture_report *report, struct error *error) {
+static bool make_picture_unlimited(struct child *child, const struct render_request *request, struct render_job *job,
+                                   const struct picture_request *asked, struct picture_report *report,
+                                   struct error *error) {
     struct world world = {0};
     double begun = progress_clock(), worked = progress_processor_clock();
     if (build_world(child, request, job, request->lights, request->light_count, &world, error))
@@ -258,6 +285,43 @@ static bool make_picture(struct child *child, const struct render_request *reque
     if (ok)
         tell_world(child, request->file, report);
     return ok;
+}
+
+/* The same within what memory is left. */
+static bool make_picture(struct child *child, const struct render_request *request, struct render_job *job,
+                         const struct picture_request *asked, struct picture_report *report, struct error *error) {
+    (void)mem_charge(child->account);
+    uint64_t refusals = mem_refusals();
+    bool ok = make_picture_unlimited(child, request, job, asked, report, error);
+    if (!ok && mem_refusals() != refusals)
+        (void)too_much_memory(child, error);
+    /* Of a large scene nothing is kept: the next picture may need its memory in other pieces. */
+    if (child->job.total > LARGE_JOB)
+        arena_destroy(&child->job);
+    else
+        arena_reset(&child->job);
+    (void)mem_charge(NULL);
+    return ok;
+}
+
+/* What is not allocated block by block: the film with half as much again for its way into a file, unless the command
+ * line chooses its size, and the stacks of the workers, which rays of rays may use level by level. */
+static bool reserve_memory(struct child *child, const struct picture_request *asked, const struct settings *settings,
+                           struct error *error) {
+    enum { STACK_OF_A_LEVEL = 8 << 10 };
+    size_t film = 0;
+    if (asked->check)
+        return true;
+    if (!film_size_layered(asked->width, asked->height, marks_layers(asked), &film, error))
+        return false;
+    uint64_t levels = (uint64_t)settings->reflect_limit + (uint64_t)settings->refract_limit;
+    uint64_t bytes = (uint64_t)pool_workers(child->pool) * levels * STACK_OF_A_LEVEL;
+    bytes += child->options->width ? 0 : film + film / 2;
+    (void)mem_charge(child->account);
+    bool ok = mem_reserve(bytes);
+    (void)mem_charge(NULL);
+    child->reserved = ok ? bytes : 0;
+    return ok || too_much_memory(child, error);
 }
 
 static bool begin_picture(struct child *child, const struct render_request *request, struct render_job *job,
@@ -288,6 +352,8 @@ static bool begin_picture(struct child *child, const struct render_request *requ
     asked.files = file_witness_sum(&child->witness);
     if (child->witness.incomplete)
         return error_no_memory(error, "the list of files that were read");
+    if (!reserve_memory(child, &asked, &job->settings, error))
+        return false;
     if (!child->services->begin(child->services->context, &asked, film, already, error))
         return false;
     film->x0 = asked.x0;
@@ -324,7 +390,7 @@ static bool render_job_run(struct child *child, const struct render_request *req
         .enough = &services->control->enough,
     };
     settings_hasten(&job.settings, options->preview ? HASTE_PREVIEW : options->quick ? HASTE_QUICK : HASTE_NONE);
-    (void)fflush(stdout);
+    finish_output(child);
     if (is_cancelled(child))
         return error_set(error, ERROR_CANCELLED, "interrupted");
     struct picture_request asked;
@@ -337,79 +403,126 @@ static bool render_job_run(struct child *child, const struct render_request *req
         job.outlook = &services->control->outlook;
     job.gate = atomic_load(&services->control->gate) != GATE_NONE ? &services->control->gate : NULL;
     bool ok = make_picture(child, request, &job, &asked, &report, error);
-    arena_reset(&child->job);
     if (ok && !asked.check)
         return services->done(services->context, &report, error);
     services->abandon(services->context);
     return ok;
 }
 
+/* Pictures may use what the script leaves. They have an account of their own: what is kept from one to the next, as the
+ * index of a mesh, does not count as the script's. `script` is its account, or NULL. */
+static void grant_memory(struct child *child, const struct mem_account *script) {
+    uint64_t all = script_picture_memory(&child->options->script);
+    uint64_t held = script && script->held > 0 ? (uint64_t)script->held : 0;
+    child->account = script ? &child->memory : NULL;
+    child->memory.limit = all - (held < all ? held : all - 1);
+}
+
+static bool render_one(struct child *child, const struct render_request *request, struct error *error) {
+    struct mem_account *script = mem_charge(NULL);
+    grant_memory(child, script);
+    bool ok = options_allow_picture(child->options, ++child->pictures, error) && render_job_run(child, request, error);
+    (void)mem_charge(child->account);
+    mem_unreserve(child->reserved);
+    child->reserved = 0;
+    (void)mem_charge(script);
+    return ok;
+}
+
 /* With --check a scene that cannot be built is reported at once and the script goes on, to find what else is wrong. */
 static bool render(void *context, const struct render_request *request, struct error *error) {
     struct child *child = context;
-    if (render_job_run(child, request, error))
+    if (render_one(child, request, error))
         return true;
-    if (!child->options->check || error->kind != ERROR_SCENE)
+    if (!child->options->check || error->kind != ERROR_SCENE || error->limit)
         return false;
     char line[2048];
-    (void)snprintf(line, sizeof line, "%s: %s", request->where, error->text);
-    tell(child, LINE_ERROR, line);
+    (void)snprintf(line, sizeof line, "%s%s%s", error->elsewhere ? "" : request->where, error->elsewhere ? "" : ": ",
+                   error->text);
+    tell_of_scene(child, LINE_ERROR, line);
     child->status = ERROR_SCENE;
     return true;
+}
+
+static void scene_text(void *context, const char *text, size_t size) {
+    const struct child *child = context;
+    scene_writer_take(child->errors, text, size);
 }
 
 static void message(void *context, enum script_message kind, const char *text) {
     switch (kind) {
     case SCRIPT_NOTICE:
-        tell(context, LINE_NOTICE, text);
+        tell_of_scene(context, LINE_NOTICE, text);
         return;
     case SCRIPT_WARNING:
-        tell(context, LINE_WARNING, text);
+        tell_of_scene(context, LINE_WARNING, text);
         return;
     }
 }
 
 /* The first line, and below it the traceback. Wrong usage is no fault of the scene: the program speaks. What the
- * machine refused is told with the script it was for. */
+ * machine or a limit refused comes with the name of the script. */
 static void tell_error(const struct child *child, struct arena *arena, const struct error *error,
                        const char *traceback) {
     const char *below = traceback ? traceback : "", *who = "";
     bool named = strncmp(error->text, child->script, strlen(child->script)) == 0;
     if (error->kind == ERROR_USAGE)
         who = "gray";
-    else if (error->kind == ERROR_MACHINE && !named)
+    else if ((error->kind == ERROR_MACHINE || error->limit) && !named)
         who = child->script;
     size_t length = strlen(below);
     while (length > 0 && below[length - 1] == '\n')
         length--;
     const char *text = arena_format(arena, "%s%s%s%s%.*s", who, who[0] ? ": " : "", error->text, length > 0 ? "\n" : "",
                                     (int)length, below);
-    tell(child, LINE_ERROR, text ? text : error->text);
+    if (error->kind == ERROR_USAGE)
+        tell(child, LINE_ERROR, text ? text : error->text);
+    else
+        tell_of_scene(child, LINE_ERROR, text ? text : error->text);
+}
+
+/* Meshes and images of earlier scripts, with the indexes that pictures have added, stay for the next one until they
+ * exceed what a script and its picture may hold. */
+static void begin_memory(struct child *child) {
+    (void)mem_charge(child->account);
+    arena_destroy(&child->job);
+    (void)mem_charge(NULL);
+    child->assets.memory += child->memory.held > 0 ? (uint64_t)child->memory.held : 0;
+    if (child->assets.memory > script_picture_memory(&child->options->script))
+        assets_destroy(&child->assets);
+    child->account = NULL;
+    child->memory = (struct mem_account){.option = "--script-memory", .words = "--script-memory allows no more"};
 }
 
 /* Exit status of one script. */
 static int run_script(struct child *child, const char *path) {
+    /* Without the sandbox and in a process of its own standard output is a copy of standard error by now. */
+    bool sandboxed = !child->options->script.no_sandbox, alone = child->options->no_fork;
     struct script_host host = {.context = child,
                                .settings = child->options->settings,
                                .render = render,
                                .message = message,
-                               .cancelled = is_cancelled};
+                               .cancelled = is_cancelled,
+                               .error_text = scene_text,
+                               .output_is_error = options_output_is_stream(child->options) && (sandboxed || alone)};
     struct arena arena = {0};
     struct error error = {0};
     const char *traceback = NULL;
     child->script = path;
     child->status = 0;
     child->told_count = 0;
+    begin_memory(child);
     bool ok = script_run(path, &child->options->script, &host, &child->assets, &arena, &traceback, &error);
     int status = ok ? child->status : (int)error.kind;
     if (!ok && error.kind != ERROR_CANCELLED)
         tell_error(child, &arena, &error, traceback);
     arena_destroy(&arena);
-    (void)fflush(stdout);
+    finish_output(child);
     return status;
 }
 
 static void run_scripts(struct child *child, int first) {
+    child->pictures = 0;
     for (int i = first; i < child->options->script_count; i++) {
         int status = run_script(child, child->options->scripts[i]);
         child->services->script_ended(child->services->context, i, status);
@@ -418,13 +531,35 @@ static void run_scripts(struct child *child, int first) {
     }
 }
 
+/* Reads are reported so that no picture replaces what was read. Under --watch every one is, since a file may change. */
+static void report_file(struct child *child, const char *path, const struct file_version *version, bool written) {
+    bool watched = child->options->watch;
+    if (!watched && file_set_has(&child->reported, version->identity))
+        return;
+    if (!watched)
+        (void)file_set_add(&child->reported, version->identity); /* without memory for it: reported again */
+    child->services->read(child->services->context, path, version, written);
+}
+
+static void report_read(void *context, const char *path, const struct file_version *version) {
+    report_file(context, path, version, false);
+}
+
+static void report_write(void *context, const char *path, const struct file_version *version) {
+    report_file(context, path, version, true);
+}
+
 void child_run(const struct options *options, const struct child_services *services, int first) {
-    struct child child = {.options = options, .services = services};
-    const struct file_listener listener = {services->read, services->context};
+    struct scene_writer errors;
+    struct child child = {.options = options, .services = services, .errors = &errors};
+    scene_writer_init(&errors, &services->control->error_stream);
+    const struct file_listener listener = {
+        .heard = report_read, .wrote = report_write, .contents = options->watch, .context = &child};
     bool watched = options->watch && services->again;
+    mem_return_large();
     if (options->checkpoint || options->shards || options->mpi)
         file_set_witness(&child.witness);
-    if (watched)
+    if (services->read)
         file_set_listener(&listener);
     run_scripts(&child, first);
     while (watched && services->again(services->context)) {
@@ -437,4 +572,5 @@ void child_run(const struct options *options, const struct child_services *servi
     arena_destroy(&child.job);
     assets_destroy(&child.assets);
     file_witness_destroy(&child.witness);
+    file_set_destroy(&child.reported);
 }

@@ -25,9 +25,9 @@ struct child_services {
     bool (*done)(void *context, const struct picture_report *report, struct error *error);
     void (*line)(void *context, enum line_kind kind, const char *text);
     void (*script_ended)(void *context, int index, int status);
-    /* --watch: a file was read, and: all scripts have ended; waits, and says whether they are to run again in this
-     * process. NULL: nobody watches. */
-    void (*read)(void *context, const char *path, const struct file_version *version);
+    /* A script read a file, or opened it for writing. */
+    void (*read)(void *context, const char *path, const struct file_version *version, bool written);
+    /* --watch: all scripts have ended; waits, and returns whether they run again in this process. NULL: no watch. */
     bool (*again)(void *context);
     void (*poll)(void *context); /* called every few milliseconds while a picture is made; may be NULL */
 };

@@ -2,6 +2,7 @@
  * fails as "cancelled", which ends the scripts. */
 #include "app/child_link.h"
 
+#include <errno.h>
 #include <string.h>
 
 static bool nobody_there(struct child_link *link, struct error *error) {
@@ -30,8 +31,14 @@ static bool link_begin(void *context, const struct picture_request *request, str
     *already = frame.body.answer.already;
     if (request->check || *already)
         return true;
-    if (!share_attach(&link->memory, frame.descriptor, bytes, error))
+    bool attached =
+        frame.descriptor >= 0
+            ? share_attach(&link->memory, frame.descriptor, bytes, error)
+            : error_set(error, ERROR_MACHINE, "the memory of the picture cannot be reached: %s", strerror(EMFILE));
+    if (!attached) { /* the supervisor has begun the picture */
+        note(link, channel_send(&link->channel, FRAME_ABANDON, NULL, 0, -1));
         return false;
+    }
     film_place(film, link->memory.block, request->width, request->height);
     film_place_layers(film, link->memory.block, request->layers);
     return true;
@@ -67,7 +74,10 @@ static bool link_done(void *context, const struct picture_report *report, struct
 
 static void link_line(void *context, enum line_kind kind, const char *text) {
     struct child_link *link = context;
-    note(link, channel_send_line(&link->channel, kind, text));
+    bool sent = channel_send_line(&link->channel, kind, text);
+    if (sent)
+        error_stream_note_sent(link->stream);
+    note(link, sent);
 }
 
 static void link_script_ended(void *context, int index, int status) {
@@ -78,13 +88,12 @@ static void link_script_ended(void *context, int index, int status) {
         note(link, channel_send(&link->channel, FRAME_SCRIPT, &script, sizeof script, -1));
 }
 
-static void link_read(void *context, const char *path, const struct file_version *version) {
+static void link_read(void *context, const char *path, const struct file_version *version, bool written) {
     struct child_link *link = context;
-    struct frame_read read = {.version = *version};
+    struct frame_read read = {.version = *version, .written = written};
     size_t length = strlen(path);
-    if (length >= sizeof read.path)
-        return;
-    memcpy(read.path, path, length);
+    if (length < sizeof read.path) /* else its identity is enough */
+        memcpy(read.path, path, length);
     note(link, channel_send(&link->channel, FRAME_READ, &read, sizeof read, -1));
 }
 
@@ -97,6 +106,7 @@ static bool link_again(void *context) {
 }
 
 struct child_services child_link_services(struct child_link *link, struct control *control) {
+    link->stream = &control->error_stream;
     return (struct child_services){.context = link,
                                    .control = control,
                                    .begin = link_begin,

@@ -8,6 +8,7 @@
 #include "base/share.h"
 
 struct child_link {
+    struct error_stream *stream; /* of the control that child_link_services got */
     struct channel channel; /* to the supervisor */
     struct share memory;    /* the film of the picture being made */
     bool broken;            /* a message was not delivered: this process is of no use any more */

@@ -109,9 +109,13 @@ static bool add_rules(int ruleset, const struct options *options, const struct r
     return ok;
 }
 
-/* Version of the interface that is active; 0 when the kernel has none. -1: error. */
+/* Version of the interface that is active; 0 when the kernel has none, with the reason in errno. -1: error. */
 static long confine_files(const struct options *options, const struct reach *reach, long at_most, struct error *error) {
     long version = MAY_FAIL(syscall(SYS_landlock_create_ruleset, NULL, 0, LANDLOCK_CREATE_RULESET_VERSION));
+    if (at_most <= 0 && version > 0) {
+        version = 0;
+        errno = ENOSYS;
+    }
     version = version < at_most ? version : at_most;
     if (version <= 0)
         return 0;
@@ -132,128 +136,151 @@ static long confine_files(const struct options *options, const struct reach *rea
 }
 
 #ifdef AUDIT_ARCH_HERE
-/* What a system call is allowed for. */
+/* A test of one argument: these bits of it must have this value. The kernel reads an int from the low half of the
+ * register whatever the high half holds, so a test of an int looks at the low half alone; the kernel reads a pointer or
+ * a long whole, so a test of those needs a high half of 0 as well. */
+enum width { NO_TEST, INT, LONG };
+struct test {
+    enum width width;
+    uint8_t argument;
+    uint32_t bits, value; /* of the low half; the high half of a LONG must be 0 */
+};
+
 enum rule_kind {
-    RULE_ALLOW,
+    RULE_ALLOW,   /* where the arguments pass the tests; otherwise EPERM */
     RULE_KILL,    /* only an attack calls it */
-    RULE_CLEAR,   /* allowed when the bits `bits` of argument `argument` are all 0 */
-    RULE_SET,     /* allowed when the bits are all 1 */
-    RULE_EQUAL,   /* allowed when the low half of the argument is `bits` */
-    RULE_WRITING, /* allowed when some folder may be written */
+    RULE_OPEN,    /* with these flags, or with any where some folder may be written */
+    RULE_WRITING, /* as RULE_ALLOW where some folder may be written */
     RULE_BENEATH, /* allowed when Landlock is active: its arguments lie in memory */
 };
 
+enum { TESTS = 2 };
 struct rule {
     uint32_t call;
     enum rule_kind kind;
-    uint32_t argument, bits;
+    struct test tests[TESTS];
 };
 
-static const uint32_t writing_flags = O_ACCMODE | O_CREAT | O_TRUNC | O_APPEND | (O_TMPFILE & ~O_DIRECTORY);
-enum { EXECUTABLE = PROT_EXEC };
+/* Initialisers of struct test. */
+#define IS(width, argument, value)                                                                                     \
+    { width, argument, UINT32_MAX, value }
+#define WITHOUT(width, argument, bits)                                                                                 \
+    { width, argument, bits, 0 }
+
+#define WRITING_FLAGS ((uint32_t)(O_ACCMODE | O_CREAT | O_TRUNC | O_APPEND | (O_TMPFILE & ~O_DIRECTORY)))
+/* What a thread of this process is made with; no other flag may come along, least of all a new namespace. */
+#define THREAD_FLAGS ((uint32_t)(CLONE_VM | CLONE_THREAD | CLONE_SIGHAND))
+#define OTHER_FLAGS                                                                                                    \
+    (~(uint32_t)(CLONE_FS | CLONE_FILES | CLONE_SYSVSEM | CLONE_SETTLS | CLONE_PARENT_SETTID | CLONE_CHILD_CLEARTID |  \
+                 CLONE_CHILD_SETTID | CLONE_DETACHED))
+/* The clocks of other processes have negative numbers. */
+#define OTHER_CLOCKS (UINT32_C(1) << 31)
+/* Advice from 64 on is about the machine (MADV_HWPOISON) rather than about this memory. */
+#define OTHER_ADVICE (~UINT32_C(63))
 
 static const struct rule rules[] = {
-    {SYS_futex, RULE_ALLOW, 0, 0},
-    {SYS_clock_gettime, RULE_ALLOW, 0, 0},
-    {SYS_read, RULE_ALLOW, 0, 0},
-    {SYS_write, RULE_ALLOW, 0, 0},
-    {SYS_readv, RULE_ALLOW, 0, 0},
-    {SYS_writev, RULE_ALLOW, 0, 0},
-    {SYS_pread64, RULE_ALLOW, 0, 0},
-    {SYS_sendmsg, RULE_ALLOW, 0, 0},
-    {SYS_recvmsg, RULE_ALLOW, 0, 0},
-    {SYS_ppoll, RULE_ALLOW, 0, 0},
-    {SYS_close, RULE_ALLOW, 0, 0},
-    {SYS_lseek, RULE_ALLOW, 0, 0},
-    {SYS_fstat, RULE_ALLOW, 0, 0},
-    {SYS_newfstatat, RULE_ALLOW, 0, 0},
-    {SYS_statx, RULE_ALLOW, 0, 0},
-    {SYS_readlinkat, RULE_ALLOW, 0, 0},
-    {SYS_faccessat, RULE_ALLOW, 0, 0},
-    {SYS_getdents64, RULE_ALLOW, 0, 0},
-    {SYS_getcwd, RULE_ALLOW, 0, 0},
-    {SYS_dup, RULE_ALLOW, 0, 0},
-    {SYS_brk, RULE_ALLOW, 0, 0},
-    {SYS_munmap, RULE_ALLOW, 0, 0},
-    {SYS_mremap, RULE_ALLOW, 0, 0},
-    {SYS_madvise, RULE_ALLOW, 0, 0},
-    {SYS_mmap, RULE_CLEAR, 2, EXECUTABLE},
-    {SYS_mprotect, RULE_CLEAR, 2, EXECUTABLE},
-    {SYS_set_robust_list, RULE_ALLOW, 0, 0},
-    {SYS_set_tid_address, RULE_ALLOW, 0, 0},
+    {.call = SYS_futex},
+    {.call = SYS_clock_gettime, .tests = {WITHOUT(INT, 0, OTHER_CLOCKS)}},
+    {.call = SYS_read},
+    {.call = SYS_write},
+    {.call = SYS_readv},
+    {.call = SYS_writev},
+    {.call = SYS_pread64},
+    {.call = SYS_sendmsg},
+    {.call = SYS_recvmsg},
+    {.call = SYS_ppoll},
+    {.call = SYS_close},
+    {.call = SYS_lseek},
+    {.call = SYS_fstat},
+    {.call = SYS_newfstatat},
+    {.call = SYS_statx},
+    {.call = SYS_readlinkat},
+    {.call = SYS_faccessat},
+    {.call = SYS_getdents64},
+    {.call = SYS_getcwd},
+    {.call = SYS_dup},
+    {.call = SYS_brk},
+    {.call = SYS_munmap},
+    {.call = SYS_mremap},
+    {.call = SYS_madvise, .tests = {WITHOUT(INT, 2, OTHER_ADVICE)}},
+    {.call = SYS_mmap, .tests = {WITHOUT(LONG, 2, PROT_EXEC)}},
+    {.call = SYS_mprotect, .tests = {WITHOUT(LONG, 2, PROT_EXEC)}},
+    {.call = SYS_set_robust_list},
+    {.call = SYS_set_tid_address},
 #ifdef SYS_rseq
-    {SYS_rseq, RULE_ALLOW, 0, 0},
+    {.call = SYS_rseq},
 #endif
-    {SYS_clone, RULE_SET, 0, CLONE_VM | CLONE_THREAD | CLONE_SIGHAND},
-    {SYS_sched_yield, RULE_ALLOW, 0, 0},
-    {SYS_sched_getaffinity, RULE_ALLOW, 0, 0},
-    {SYS_nanosleep, RULE_ALLOW, 0, 0},
-    {SYS_clock_nanosleep, RULE_ALLOW, 0, 0},
-    {SYS_clock_getres, RULE_ALLOW, 0, 0},
-    {SYS_gettimeofday, RULE_ALLOW, 0, 0},
-    {SYS_getrandom, RULE_ALLOW, 0, 0},
-    {SYS_rt_sigaction, RULE_ALLOW, 0, 0},
-    {SYS_rt_sigprocmask, RULE_ALLOW, 0, 0},
-    {SYS_rt_sigreturn, RULE_ALLOW, 0, 0},
-    {SYS_sigaltstack, RULE_ALLOW, 0, 0},
-    {SYS_restart_syscall, RULE_ALLOW, 0, 0},
-    {SYS_gettid, RULE_ALLOW, 0, 0},
-    {SYS_getpid, RULE_ALLOW, 0, 0},
-    {SYS_getppid, RULE_ALLOW, 0, 0},
-    {SYS_getuid, RULE_ALLOW, 0, 0},
-    {SYS_geteuid, RULE_ALLOW, 0, 0},
-    {SYS_getrusage, RULE_ALLOW, 0, 0},
-    {SYS_times, RULE_ALLOW, 0, 0},
-    {SYS_sysinfo, RULE_ALLOW, 0, 0},
-    {SYS_uname, RULE_ALLOW, 0, 0},
-    {SYS_exit, RULE_ALLOW, 0, 0},
-    {SYS_exit_group, RULE_ALLOW, 0, 0},
-    {SYS_openat, RULE_CLEAR, 2, 0},
-    {SYS_openat2, RULE_BENEATH, 0, 0},
-    {SYS_fcntl, RULE_EQUAL, 1, F_GETFL},
-    {SYS_ioctl, RULE_EQUAL, 1, TCGETS},
-    {SYS_prlimit64, RULE_EQUAL, 2, 0}, /* asks, does not set */
-    {SYS_ftruncate, RULE_WRITING, 0, 0},
-    {SYS_fsync, RULE_WRITING, 0, 0},
-    {SYS_unlinkat, RULE_WRITING, 0, 0},
-    {SYS_renameat, RULE_WRITING, 0, 0},
-    {SYS_renameat2, RULE_WRITING, 0, 0},
+    {.call = SYS_clone, .tests = {{LONG, 0, OTHER_FLAGS, THREAD_FLAGS}}},
+    {.call = SYS_sched_yield},
+    {.call = SYS_sched_getaffinity, .tests = {IS(INT, 0, 0)}},
+    {.call = SYS_nanosleep},
+    {.call = SYS_clock_nanosleep, .tests = {WITHOUT(INT, 0, OTHER_CLOCKS)}},
+    {.call = SYS_clock_getres, .tests = {WITHOUT(INT, 0, OTHER_CLOCKS)}},
+    {.call = SYS_gettimeofday},
+    {.call = SYS_getrandom},
+    {.call = SYS_rt_sigaction},
+    {.call = SYS_rt_sigprocmask},
+    {.call = SYS_rt_sigreturn},
+    {.call = SYS_sigaltstack},
+    {.call = SYS_restart_syscall},
+    {.call = SYS_gettid},
+    {.call = SYS_getpid},
+    {.call = SYS_getppid},
+    {.call = SYS_getuid},
+    {.call = SYS_geteuid},
+    {.call = SYS_getrusage},
+    {.call = SYS_times},
+    {.call = SYS_sysinfo},
+    {.call = SYS_uname},
+    {.call = SYS_exit},
+    {.call = SYS_exit_group},
+    {.call = SYS_openat, .kind = RULE_OPEN, .tests = {WITHOUT(INT, 2, WRITING_FLAGS)}},
+    {.call = SYS_openat2, .kind = RULE_BENEATH},
+    {.call = SYS_fcntl, .tests = {IS(INT, 1, F_GETFL)}},
+    {.call = SYS_ioctl, .tests = {IS(INT, 1, TCGETS)}},
+    /* Its own limits, which it reads and does not set. */
+    {.call = SYS_prlimit64, .tests = {IS(INT, 0, 0), IS(LONG, 2, 0)}},
+    {.call = SYS_ftruncate, .kind = RULE_WRITING},
+    {.call = SYS_fsync, .kind = RULE_WRITING},
+    {.call = SYS_unlinkat, .kind = RULE_WRITING, .tests = {IS(INT, 2, 0)}},
+    {.call = SYS_renameat, .kind = RULE_WRITING},
+    {.call = SYS_renameat2, .kind = RULE_WRITING, .tests = {IS(INT, 4, 0)}},
 #ifdef SYS_open /* what newer architectures have left out */
-    {SYS_open, RULE_CLEAR, 1, 0},
-    {SYS_stat, RULE_ALLOW, 0, 0},
-    {SYS_lstat, RULE_ALLOW, 0, 0},
-    {SYS_access, RULE_ALLOW, 0, 0},
-    {SYS_poll, RULE_ALLOW, 0, 0},
-    {SYS_readlink, RULE_ALLOW, 0, 0},
-    {SYS_time, RULE_ALLOW, 0, 0},
-    {SYS_unlink, RULE_WRITING, 0, 0},
-    {SYS_rename, RULE_WRITING, 0, 0},
-    {SYS_fork, RULE_KILL, 0, 0},
-    {SYS_vfork, RULE_KILL, 0, 0},
+    {.call = SYS_open, .kind = RULE_OPEN, .tests = {WITHOUT(INT, 1, WRITING_FLAGS)}},
+    {.call = SYS_stat},
+    {.call = SYS_lstat},
+    {.call = SYS_access},
+    {.call = SYS_poll},
+    {.call = SYS_readlink},
+    {.call = SYS_time},
+    {.call = SYS_unlink, .kind = RULE_WRITING},
+    {.call = SYS_rename, .kind = RULE_WRITING},
+    {.call = SYS_fork, .kind = RULE_KILL},
+    {.call = SYS_vfork, .kind = RULE_KILL},
 #endif
-    {SYS_execve, RULE_KILL, 0, 0},
-    {SYS_execveat, RULE_KILL, 0, 0},
-    {SYS_socket, RULE_KILL, 0, 0},
-    {SYS_socketpair, RULE_KILL, 0, 0},
-    {SYS_connect, RULE_KILL, 0, 0},
-    {SYS_bind, RULE_KILL, 0, 0},
-    {SYS_listen, RULE_KILL, 0, 0},
-    {SYS_ptrace, RULE_KILL, 0, 0},
-    {SYS_process_vm_readv, RULE_KILL, 0, 0},
-    {SYS_process_vm_writev, RULE_KILL, 0, 0},
-    {SYS_kill, RULE_KILL, 0, 0},
-    {SYS_tkill, RULE_KILL, 0, 0},
-    {SYS_mount, RULE_KILL, 0, 0},
-    {SYS_bpf, RULE_KILL, 0, 0},
-    {SYS_setuid, RULE_KILL, 0, 0},
-    {SYS_chroot, RULE_KILL, 0, 0},
-    {SYS_init_module, RULE_KILL, 0, 0},
-    {SYS_keyctl, RULE_KILL, 0, 0},
-    {SYS_perf_event_open, RULE_KILL, 0, 0},
-    {SYS_unshare, RULE_KILL, 0, 0},
-    {SYS_setns, RULE_KILL, 0, 0},
+    {.call = SYS_execve, .kind = RULE_KILL},
+    {.call = SYS_execveat, .kind = RULE_KILL},
+    {.call = SYS_socket, .kind = RULE_KILL},
+    {.call = SYS_socketpair, .kind = RULE_KILL},
+    {.call = SYS_connect, .kind = RULE_KILL},
+    {.call = SYS_bind, .kind = RULE_KILL},
+    {.call = SYS_listen, .kind = RULE_KILL},
+    {.call = SYS_ptrace, .kind = RULE_KILL},
+    {.call = SYS_process_vm_readv, .kind = RULE_KILL},
+    {.call = SYS_process_vm_writev, .kind = RULE_KILL},
+    {.call = SYS_kill, .kind = RULE_KILL},
+    {.call = SYS_tkill, .kind = RULE_KILL},
+    {.call = SYS_mount, .kind = RULE_KILL},
+    {.call = SYS_bpf, .kind = RULE_KILL},
+    {.call = SYS_setuid, .kind = RULE_KILL},
+    {.call = SYS_chroot, .kind = RULE_KILL},
+    {.call = SYS_init_module, .kind = RULE_KILL},
+    {.call = SYS_keyctl, .kind = RULE_KILL},
+    {.call = SYS_perf_event_open, .kind = RULE_KILL},
+    {.call = SYS_unshare, .kind = RULE_KILL},
+    {.call = SYS_setns, .kind = RULE_KILL},
 };
-enum { RULE_COUNT = sizeof rules / sizeof *rules, STEPS = 16 + 6 * (RULE_COUNT + 1) };
+enum { RULE_COUNT = sizeof rules / sizeof *rules, STEPS = 16 + (2 + 7 * TESTS) * (RULE_COUNT + 1) };
 
 struct program {
     struct sock_filter steps[STEPS];
@@ -268,46 +295,52 @@ static void put_answer(struct program *program, uint32_t what) {
     put(program, BPF_RET | BPF_K, what, 0, 0);
 }
 
-/* The low half of an argument; all that is tested here fits (little-endian, as both architectures are). */
-static void put_load(struct program *program, uint32_t argument) {
-    put(program, BPF_LD | BPF_W | BPF_ABS, (uint32_t)(offsetof(struct seccomp_data, args) + 8 * argument), 0, 0);
+/* One half of an argument; both architectures are little-endian. */
+static void put_load(struct program *program, uint32_t argument, uint32_t half) {
+    uint32_t at = (uint32_t)offsetof(struct seccomp_data, args) + 8 * argument + 4 * half;
+    put(program, BPF_LD | BPF_W | BPF_ABS, at, 0, 0);
+}
+
+/* Refuses where the number just loaded is not this one. */
+static void put_equal(struct program *program, uint32_t value) {
+    put(program, BPF_JMP | BPF_JEQ | BPF_K, value, 1, 0);
+    put_answer(program, SECCOMP_RET_ERRNO | EPERM);
+}
+
+static void put_tests(struct program *program, const struct test tests[TESTS]) {
+    for (int i = 0; i < TESTS && tests[i].width != NO_TEST; i++) {
+        put_load(program, tests[i].argument, 0);
+        if (tests[i].bits != UINT32_MAX)
+            put(program, BPF_ALU | BPF_AND | BPF_K, tests[i].bits, 0, 0);
+        put_equal(program, tests[i].value);
+        if (tests[i].width == LONG) {
+            put_load(program, tests[i].argument, 1);
+            put_equal(program, 0);
+        }
+    }
 }
 
 /* One rule: when the number is not this one, jump over its answer; the number is loaded before. */
-static void put_rule(struct program *program, struct rule rule, bool writing, bool landlock) {
+static void put_rule(struct program *program, const struct rule *rule, bool writing, bool landlock) {
     const uint32_t refuse = SECCOMP_RET_ERRNO | EPERM, allow = SECCOMP_RET_ALLOW;
-    bool opens = rule.kind == RULE_CLEAR && rule.bits == 0;
-    if (opens && !writing)
-        rule.bits = writing_flags;
-    put(program, BPF_JMP | BPF_JEQ | BPF_K, rule.call, 0, 1);
+    put(program, BPF_JMP | BPF_JEQ | BPF_K, rule->call, 0, 1);
     size_t jump = program->count - 1u;
-    switch (rule.kind) {
+    switch (rule->kind) {
     case RULE_ALLOW:
+        put_tests(program, rule->tests);
         put_answer(program, allow);
         break;
     case RULE_KILL:
         put_answer(program, SECCOMP_RET_KILL_PROCESS);
         break;
-    case RULE_CLEAR:
-        put_load(program, rule.argument);
-        put(program, BPF_JMP | BPF_JSET | BPF_K, rule.bits, 0, 1);
-        put_answer(program, refuse);
-        put_answer(program, allow);
-        break;
-    case RULE_SET:
-        put_load(program, rule.argument);
-        put(program, BPF_ALU | BPF_AND | BPF_K, rule.bits, 0, 0);
-        put(program, BPF_JMP | BPF_JEQ | BPF_K, rule.bits, 1, 0);
-        put_answer(program, refuse);
-        put_answer(program, allow);
-        break;
-    case RULE_EQUAL:
-        put_load(program, rule.argument);
-        put(program, BPF_JMP | BPF_JEQ | BPF_K, rule.bits, 1, 0);
-        put_answer(program, refuse);
+    case RULE_OPEN:
+        if (!writing)
+            put_tests(program, rule->tests);
         put_answer(program, allow);
         break;
     case RULE_WRITING:
+        if (writing)
+            put_tests(program, rule->tests);
         put_answer(program, writing ? allow : refuse);
         break;
     case RULE_BENEATH:
@@ -324,9 +357,10 @@ static bool confine_calls(bool writing, bool landlock) {
     put_answer(&program, SECCOMP_RET_KILL_PROCESS);
     put(&program, BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr), 0, 0);
     for (int i = 0; i < RULE_COUNT; i++)
-        put_rule(&program, rules[i], writing, landlock);
+        put_rule(&program, &rules[i], writing, landlock);
     /* abort() and pthread_kill signal the process itself. */
-    put_rule(&program, (struct rule){SYS_tgkill, RULE_EQUAL, 0, (uint32_t)getpid()}, writing, landlock);
+    const struct rule own_signals = {.call = SYS_tgkill, .tests = {IS(INT, 0, (uint32_t)getpid())}};
+    put_rule(&program, &own_signals, writing, landlock);
     put_answer(&program, SECCOMP_RET_ERRNO | ENOSYS);
     struct sock_fprog filter = {.len = program.count, .filter = program.steps};
     return MAY_FAIL(prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter, 0, 0)) == 0;
@@ -363,14 +397,23 @@ bool confine_process_as(const struct options *options, int keep, long landlock_a
     ok = ok && (MAY_FAIL(prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)) == 0 ||
                 error_set(error, ERROR_MACHINE, "gray: privileges cannot be given up: %s", strerror(errno)));
     long landlock = ok ? confine_files(options, &reach, landlock_at_most, error) : -1;
-    char files[64] = "no Landlock in this kernel (file names are still checked)", calls[96] = "seccomp";
+    /* What is missing stands first; what confines the process nevertheless follows. */
+    char missing[256] = "", files[64] = "checks of file names";
+    const char *calls = ", seccomp";
     if (landlock > 0)
         (void)snprintf(files, sizeof files, "Landlock (version %ld)", landlock);
-    if (landlock >= 0 && SANITIZED)
-        (void)snprintf(calls, sizeof calls, "no seccomp filter in a build with sanitizers");
-    else if (landlock >= 0 && !confine_calls(options->script.allow_write_count > 0, landlock > 0))
-        (void)snprintf(calls, sizeof calls, "no seccomp filter (%s)", strerror(errno));
-    int used = snprintf(report, size, "gray: confined by %s, %s; scenes may read below", files, calls);
+    else if (landlock == 0)
+        (void)snprintf(missing, sizeof missing, "no Landlock in this kernel (%s)", strerror(errno));
+    if (landlock >= 0 && SANITIZED) {
+        calls = ", no seccomp filter in a build with sanitizers";
+    } else if (landlock >= 0 && !confine_calls(options->script.allow_write_count > 0, landlock > 0)) {
+        size_t length = strlen(missing);
+        (void)snprintf(missing + length, sizeof missing - length, "%sno seccomp filter (%s)", length > 0 ? ", " : "",
+                       strerror(errno));
+        calls = "";
+    }
+    int used = snprintf(report, size, "gray: %s%s%sconfined by %s%s; scenes may read below",
+                        missing[0] ? "warning: " : "", missing, missing[0] ? ": " : "", files, calls);
     for (size_t i = 0; (size_t)used < size && i < reach.count; i++) {
         const struct reach_folder *folder = &reach.folders[i];
         used += snprintf(report + used, size - (size_t)used, "%s %s%s", i > 0 ? "," : "",

@@ -3,6 +3,7 @@
 #ifndef GRAY_APP_CONTROL_H
 #define GRAY_APP_CONTROL_H
 
+#include "app/error_stream.h"
 #include "render/outlook.h"
 
 #include <stdatomic.h>
@@ -22,6 +23,8 @@ struct control {
     struct outlook outlook;      /* how far the picture is, when somebody asks */
     _Atomic uint32_t build_step; /* of building the world, from 1; 0: it is built */
     _Atomic uint32_t build_done; /* thousandths of that step */
+    _Atomic uint32_t lost;       /* not 0: the child could not write all of its standard output */
+    struct error_stream error_stream;
 };
 
 #endif

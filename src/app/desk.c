@@ -7,6 +7,8 @@
 #include "app/statistics.h"
 #include "app/text.h"
 #include "base/file.h"
+#include "base/size.h"
+#include "base/terminal_text.h"
 #include "base/version.h"
 #include "image/exr.h"
 #include "image/float_write.h"
@@ -26,69 +28,86 @@ static void show_elsewhere(struct desk *desk, bool ok, const struct error *error
     desk_line(desk, LINE_WARNING, line);
 }
 
+/* False: standard error takes nothing, and the run is to end; nothing more is shown. */
+static bool takes_text(struct desk *desk) {
+    if (!desk->takes_text || desk->takes_text(desk->takes_context))
+        return true;
+    desk->progress.mode = PROGRESS_NONE;
+    desk->progress.columns = 0;
+    return false;
+}
+
+/* Around what the program prints on standard error: the scene waits, and its unfinished line is ended. False: it is not
+ * to be printed. */
+static bool begin_words(struct desk *desk) {
+    if (!takes_text(desk))
+        return false;
+    if (desk->control) {
+        error_stream_take(&desk->control->error_stream, ERROR_STREAM_PROGRAM);
+        error_stream_begin_line(&desk->control->error_stream);
+    }
+    return true;
+}
+
+static void end_words(struct desk *desk) {
+    if (desk->control)
+        error_stream_give(&desk->control->error_stream, ERROR_STREAM_PROGRAM);
+}
+
 void desk_init(struct desk *desk, const struct options *options, struct control *control) {
     struct error error;
     memset(desk, 0, sizeof *desk);
     desk->options = options;
     desk->control = control;
-    keeper_init(&desk->keeper, options);
+    picture_files_init(&desk->files, options);
+    keeper_init(&desk->keeper, options, &desk->files);
     progress_init(&desk->progress, options->progress, options->quiet, options->threads);
+    desk->progress.stream = control ? &control->error_stream : NULL;
     show_elsewhere(desk, display_open(&desk->display, options->display, &error), &error);
-    bool ok = reach_add(&desk->places, ".", REACH_WRITE, &desk->places_error);
-    for (int i = 0; ok && i < options->script.allow_write_count; i++)
-        ok = reach_add(&desk->places, options->script.allow_write[i], REACH_WRITE, &desk->places_error);
 }
 
 static bool one_name_for_all(const struct desk *desk) {
     return desk->options->output && !output_name_numbered(desk->options->output);
 }
 
+/* The name of the picture, also of one that is only checked. */
 static bool choose_name(struct desk *desk, const char *from_script, char name[NAME_LIMIT], struct error *error) {
-    const char *output = desk->options->output;
+    char notice[NAME_LIMIT + 128];
     if (one_name_for_all(desk) && desk->pictures > 1) {
         desk->several_under_one_name = true;
-        return error_set(error, ERROR_USAGE, "-o %s: several pictures are rendered, so the name needs %%d", output);
+        return error_set(error, ERROR_USAGE, "-o %s: several pictures are rendered, so the name needs %%d",
+                         desk->options->output);
     }
-    if (!output && from_script[0] == '\0')
-        return error_set(error, ERROR_SCENE, "the name of the picture is empty");
-    size_t length = strlen(from_script);
-    if (output ? !output_name(output, desk->pictures, name, NAME_LIMIT) : length >= NAME_LIMIT)
-        return error_set(error, ERROR_SCENE, "the name of the picture is longer than %d bytes", NAME_LIMIT - 1);
-    if (!output)
-        memcpy(name, from_script, length + 1);
-    if (!output && desk->places_error.kind != ERROR_NONE) {
-        *error = desk->places_error;
+    if (!picture_files_name(&desk->files, from_script, desk->pictures, name, notice, error))
         return false;
-    }
-    if (!output && !desk->options->script.no_sandbox && !reach_may_create(&desk->places, name))
-        return error_set(error, ERROR_SCENE,
-                         "%s: scripts have pictures written below the working directory only, and under no hidden name "
-                         "(-o FILE or --allow-write DIR allow other places)",
-                         name);
-    if (file_is_folder(name) || name[strlen(name) - 1] == '/')
-        return error_set(error, ERROR_SCENE, "%s: is a folder, a picture cannot be written there", name);
+    if (notice[0] != '\0')
+        desk_line(desk, LINE_NOTICE, notice);
     return true;
 }
 
-/* dir/foo.png with prefix X is dir/Xfoo.png. */
-static bool prefixed_name(const char *name, const char *prefix, char out[NAME_LIMIT], struct error *error) {
-    const char *slash = strrchr(name, '/');
-    size_t folder = slash ? (size_t)(slash - name) + 1 : 0;
-    int length = snprintf(out, NAME_LIMIT, "%.*s%s%s", (int)folder, name, prefix, name + folder);
-    if (length >= NAME_LIMIT)
-        return error_set(error, ERROR_SCENE, "%s: with %s before it the name is longer than %d bytes", name, prefix,
-                         NAME_LIMIT - 1);
-    return true;
+/* Whether the files of the picture can be written. The first picture decides the name of the checkpoint. In a farm only
+ * the first rank writes. */
+static bool check_files(struct desk *desk, const struct picture *picture, struct error *error) {
+    bool keeps = desk->options->checkpoint != NULL;
+    char *checkpoint = desk->keeper.path;
+    bool first = keeps && checkpoint[0] == '\0';
+    if (desk->farm && !farm_is_first(desk->farm))
+        return true;
+    return (!first || picture_files_checkpoint(&desk->files, picture->name, checkpoint, error)) &&
+           picture_files_check(&desk->files, picture->name, picture->request.layers & AOV_ALL,
+                               keeps ? checkpoint : NULL, first, error);
 }
 
-/* What is written: the picture, or with --shard the part of it. */
-static bool written_name(const struct desk *desk, const char *name, char out[NAME_LIMIT], struct error *error) {
-    const struct options *options = desk->options;
-    int length = options->shards ? snprintf(out, NAME_LIMIT, "%s.%u-of-%u.part", name, options->shard, options->shards)
-                                 : snprintf(out, NAME_LIMIT, "%s", name);
-    if (length >= NAME_LIMIT)
-        return error_set(error, ERROR_SCENE, "%.100s...: the name of its part is longer than %d bytes", name,
-                         NAME_LIMIT - 1);
+/* --check prints the names of the pictures that a run would write. */
+static bool check_only(struct desk *desk, const struct picture *picture, struct error *error) {
+    char line[NAME_LIMIT + 96];
+    if (!desk->options->check)
+        return true; /* --pixel and --dump-scene write nothing and make no folders */
+    if (!check_files(desk, picture, error))
+        return false;
+    (void)snprintf(line, sizeof line, "%s: %u x %u\n", picture->name, picture->request.width, picture->request.height);
+    if (!desk->options->quiet)
+        desk_line(desk, LINE_OUTPUT, line);
     return true;
 }
 
@@ -111,11 +130,22 @@ static void describe_tiles(const struct desk *desk, struct picture *picture) {
     memcpy(tiles->name, picture->name, sizeof tiles->name);
 }
 
+/* The command line may choose any size. The renderer counts more exactly, but it may have been taken over. */
+static bool allow_film(const struct desk *desk, size_t bytes, struct error *error) {
+    const struct options *options = desk->options;
+    char size[SIZE_WORDS];
+    if (options->width || options->action == ACTION_MERGE || bytes <= script_picture_memory(&options->script))
+        return true;
+    return error_set_limit(error, "the picture takes more than the %s that --script-memory leaves for it",
+                           size_words(script_picture_memory(&options->script), size));
+}
+
 static bool make_film(struct desk *desk, struct picture *picture, struct error *error) {
     const struct picture_request *request = &picture->request;
     size_t bytes;
     char notice[256];
-    if (!film_size_layered(request->width, request->height, marks_layers(request), &bytes, error))
+    if (!film_size_layered(request->width, request->height, marks_layers(request), &bytes, error) ||
+        !allow_film(desk, bytes, error))
         return false;
     if (!share_create(&picture->memory, bytes, error))
         return error_prefix(error, "%s", picture->name);
@@ -169,11 +199,16 @@ bool desk_begin(struct desk *desk, const struct picture_request *request, bool *
     const struct options *options = desk->options;
     char notice[256], written[NAME_LIMIT];
     desk->pictures++;
+    if (!options_allow_picture(options, desk->pictures, error))
+        return false;
+    if (desk->files.quota.written == desk->files.quota.limit)
+        return error_set_limit(error, "%s", desk->files.quota.words);
     *already = *already || (options->shards_of_pictures &&
                             (desk->pictures - 1) % options->shards_of_pictures != options->shard_of_pictures - 1);
     if (*already)
         return true;
-    if (!choose_name(desk, request->file, picture->name, error) || !written_name(desk, picture->name, written, error))
+    if (!choose_name(desk, request->file, picture->name, error) ||
+        !picture_files_written(&desk->files, picture->name, written, error))
         return false;
     if (ends_in(written, ".exr") && !exr_can_write())
         return error_set(error, ERROR_SCENE, "%s: EXR pictures need OpenEXR, without which this gray was made",
@@ -181,9 +216,11 @@ bool desk_begin(struct desk *desk, const struct picture_request *request, bool *
     picture->request = *request;
     picture->written = false;
     if (request->check) {
-        picture->open = true;
-        return true;
+        picture->open = check_only(desk, picture, error);
+        return picture->open;
     }
+    if (!check_files(desk, picture, error))
+        return false;
     describe_tiles(desk, picture);
     *already = part_is_there(desk, written);
     if (*already)
@@ -195,13 +232,16 @@ bool desk_begin(struct desk *desk, const struct picture_request *request, bool *
     if (!keeper_has_written(&desk->keeper, desk->pictures, &picture->tiles.key, written, already, error) ||
         (!*already && !make_film(desk, picture, error)) || !join_farm(desk, already, error))
         return false;
-    if (*already)
+    if (*already) {
+        picture_files_own(&desk->files, written);
         return true;
+    }
     picture->open = true;
     atomic_store(&desk->control->tiles, 0);
     atomic_store(&desk->control->tiles_done, 0);
     bool helps = desk->farm && !farm_is_first(desk->farm);
     outlook_reset(&desk->control->outlook, progress_wants_outlook(&desk->progress) && !request->live && !helps);
+    (void)takes_text(desk);
     progress_begin(&desk->progress, picture->name, request->width, request->height);
     struct tone tone = {request->exposure, (enum tone_curve)request->curve, request->srgb != 0};
     if (!request->live)
@@ -317,33 +357,37 @@ static void try_writing(struct desk *desk) {
 
 /* The extension says the format; whatever is not .pfm, .hdr or .exr is PNG. Tone is for PNG alone: the others hold
  * light. */
-static bool write_view(const struct picture *picture, const char *name, enum film_view view, struct pool *pool,
-                       struct error *error) {
+static bool write_view(const struct picture *picture, const struct file_target *target, enum film_view view,
+                       struct pool *pool, struct error *error) {
     const struct picture_request *request = &picture->request;
     struct tone tone = {request->exposure, (enum tone_curve)request->curve, request->srgb != 0};
     struct rows rows = {&picture->film, view, &tone};
+    const char *name = target->path;
     if (ends_in(name, ".pfm"))
-        return pfm_write(name, request->width, request->height, row_linear, &rows, error);
+        return pfm_write(target, request->width, request->height, row_linear, &rows, error);
     if (ends_in(name, ".hdr"))
-        return hdr_write(name, request->width, request->height, row_linear, &rows, error);
+        return hdr_write(target, request->width, request->height, row_linear, &rows, error);
     if (ends_in(name, ".exr") && view == FILM_FINAL && picture->film.layer_mask)
-        return layers_write_exr(name, &picture->film, error);
+        return layers_write_exr(target, &picture->film, error);
     if (ends_in(name, ".exr"))
-        return exr_write(name, request->width, request->height, row_linear, &rows, error);
+        return exr_write(target, request->width, request->height, row_linear, &rows, error);
     struct png_source source = {.width = request->width, .height = request->height, .context = &rows};
     if (request->deep)
         source.words = row_16;
     else
         source.bytes = row;
-    return png_write_from(name, &source, pool, error);
+    return png_write_from(target, &source, pool, error);
 }
 
-static bool write_prefixed(const struct picture *picture, const char *prefix, enum film_view view, struct pool *pool,
-                           struct error *error) {
+static bool write_prefixed(const struct desk *desk, const struct picture *picture, enum film_view view,
+                           struct pool *pool, struct error *error) {
+    const char *prefix = view == FILM_TARGETS ? desk->options->targets_prefix : desk->options->first_pass_prefix;
     char name[NAME_LIMIT];
+    const struct file_target target = {.path = name, .rules = &desk->files.beside};
     if (!prefix)
         return true;
-    return prefixed_name(picture->name, prefix, name, error) && write_view(picture, name, view, pool, error);
+    return picture_files_prefixed(picture->name, prefix, name, error) &&
+           write_view(picture, &target, view, pool, error);
 }
 
 /* Threads for the time of writing: there are none while a process is started. NULL: this one alone. */
@@ -361,20 +405,23 @@ static bool write_files(const struct desk *desk, const struct picture *picture, 
     if (desk->options->shards) {
         struct tile_picture whole = picture->tiles;
         whole.whole = true;
-        return tile_file_write(name, NULL, 0, &whole, &picture->film, error);
+        return tile_file_write(&(struct file_target){.path = name, .rules = &desk->files.part}, NULL, 0, &whole,
+                               &picture->film, error);
     }
     struct pool *pool = writing_pool(desk, picture);
-    bool ok = write_prefixed(picture, desk->options->targets_prefix, FILM_TARGETS, pool, error) &&
-              write_prefixed(picture, desk->options->first_pass_prefix, FILM_FIRST, pool, error) &&
-              layers_write(picture->name, &picture->film, picture->request.deep != 0, error) &&
-              write_view(picture, name, FILM_FINAL, pool, error);
+    const struct file_target target = {.path = name, .rules = &desk->files.picture};
+    const struct file_target beside = {.path = picture->name, .rules = &desk->files.beside};
+    bool ok = write_prefixed(desk, picture, FILM_TARGETS, pool, error) &&
+              write_prefixed(desk, picture, FILM_FIRST, pool, error) &&
+              layers_write(&beside, &picture->film, picture->request.deep != 0, error) &&
+              write_view(picture, &target, FILM_FINAL, pool, error);
     pool_destroy(pool);
     return ok;
 }
 
 static bool write_picture(struct desk *desk, const struct picture *picture, struct error *error) {
     char name[NAME_LIMIT];
-    return written_name(desk, picture->name, name, error) && write_files(desk, picture, name, error) &&
+    return picture_files_written(&desk->files, picture->name, name, error) && write_files(desk, picture, name, error) &&
            keeper_note_written(&desk->keeper, picture->tiles.number, &picture->tiles.key, name, error);
 }
 
@@ -384,10 +431,12 @@ static void write_partial(struct desk *desk) {
     uint32_t done = film_tiles_in(&picture->film, FILM_TILE_DONE);
     struct error error;
     char name[NAME_LIMIT], line[NAME_LIMIT + 80];
+    const struct file_target target = {.path = name, .rules = &desk->files.beside};
     if (done == 0)
         return;
     film_clear_unfinished(&picture->film);
-    if (!layers_name(picture->name, "partial", name, &error) || !write_view(picture, name, FILM_FINAL, NULL, &error)) {
+    if (!layers_name(picture->name, "partial", name, &error) ||
+        !write_view(picture, &target, FILM_FINAL, NULL, &error)) {
         desk_line(desk, LINE_ERROR, error.text);
         return;
     }
@@ -416,7 +465,10 @@ static void tell_statistics(struct desk *desk, const struct picture_report *repo
     case STATISTICS_NONE:
         return;
     case STATISTICS_TEXT:
-        statistics_print_text(stderr, picture->name, &picture->request, report);
+        if (begin_words(desk)) {
+            statistics_print_text(stderr, picture->name, &picture->request, report);
+            end_words(desk);
+        }
         return;
     case STATISTICS_JSON:
         statistics_print_json(stdout, picture->name, &picture->request, report);
@@ -435,7 +487,8 @@ static bool leave_to_others(struct desk *desk) {
         return true;
     }
     farm_shares(desk->farm, shares, sizeof shares);
-    (void)snprintf(line, sizeof line, "%s: tiles made by each rank: %s", desk->current.name, shares);
+    (void)snprintf(line, sizeof line, "%s%s: tiles made by each rank: %s", scene_mark(desk->current.name),
+                   desk->current.name, shares);
     desk_line(desk, LINE_DETAIL, line);
     return false;
 }
@@ -445,12 +498,24 @@ bool desk_write(struct desk *desk, struct error *error) {
     return desk->current.written;
 }
 
+/* Tiles of a farm come from other ranks as well, those of a checkpoint from an earlier run. */
+static void warn_of_clamped(struct desk *desk, const struct picture_report *report) {
+    char line[NAME_LIMIT + 128];
+    if (!report->rays.clamped && !film_holds_largest(&desk->current.film))
+        return;
+    (void)snprintf(line, sizeof line,
+                   "gray: warning: %s: light beyond the largest float is clamped to it, undefined values are 0",
+                   desk->current.name);
+    desk_line(desk, LINE_WARNING, line);
+}
+
 bool desk_done(struct desk *desk, const struct picture_report *report, struct error *error) {
     struct error gone;
     if (leave_to_others(desk))
         return true;
     progress_hide(&desk->progress);
     show_elsewhere(desk, display_end(&desk->display, &gone), &gone);
+    warn_of_clamped(desk, report);
     if (desk->current.written) {
         progress_end(&desk->progress, PROGRESS_WRITTEN);
         tell_statistics(desk, report);
@@ -516,19 +581,29 @@ void desk_line(struct desk *desk, enum line_kind kind, const char *text) {
         (void)fflush(stdout);
         return;
     }
-    if (!shown)
+    if (!shown || !begin_words(desk))
         return;
     progress_hide(&desk->progress);
     if (kind == LINE_ERROR)
         text_print_lines(stderr, text);
     else
         text_print_line(stderr, text);
+    end_words(desk);
+}
+
+bool desk_finish_output(struct desk *desk, struct error *error) {
+    bool written = fflush(stdout) == 0 && !ferror(stdout) && (!desk->control || !atomic_load(&desk->control->lost));
+    return written || error_set(error, ERROR_MACHINE, "gray: standard output cannot be written");
 }
 
 void desk_tell_trust(struct desk *desk) {
     if (desk->options->script.no_sandbox)
         desk_line(desk, LINE_WARNING,
                   "gray: warning: --no-sandbox: scenes may read and write all your files and start programs");
+}
+
+void desk_set_interrupt(struct desk *desk, const struct file_interrupt *interrupt) {
+    desk->files.interrupt = *interrupt;
 }
 
 bool desk_settle(struct desk *desk, struct error *error) {
@@ -542,6 +617,7 @@ bool desk_settle(struct desk *desk, struct error *error) {
 void desk_restart(struct desk *desk) {
     close_picture(&desk->held);
     desk->pictures = 0;
+    desk->files.quota.written = 0;
     desk->several_under_one_name = false;
 }
 
@@ -553,7 +629,7 @@ bool desk_finish(struct desk *desk, bool all_well, struct error *error) {
         (void)snprintf(line, sizeof line, "gray: warning: the checkpoint: %s", kept.text);
         desk_line(desk, LINE_WARNING, line);
     }
-    reach_destroy(&desk->places);
+    picture_files_destroy(&desk->files);
     display_close(&desk->display);
     return ok;
 }

@@ -9,14 +9,12 @@
 #include "app/farm.h"
 #include "app/keeper.h"
 #include "app/options.h"
+#include "app/picture_files.h"
 #include "app/progress.h"
-#include "base/reach.h"
 #include "base/share.h"
 #include "render/film.h"
 
 #include <stdbool.h>
-
-enum { NAME_LIMIT = 4096 };
 
 /* One picture from its beginning until it is written or given up; the film is owned. */
 struct picture {
@@ -34,13 +32,15 @@ struct desk {
     struct control *control; /* not owned */
     struct farm *farm;       /* or NULL; not owned */
     struct progress progress;
-    struct display display;    /* --display */
-    struct keeper keeper;      /* the checkpoint */
-    struct reach places;       /* where scripts may have pictures written: the working directory and --allow-write */
-    struct error places_error; /* why there may be fewer */
-    unsigned pictures;         /* begun so far, those under --check too */
-    struct picture current;    /* being made */
-    struct picture held;       /* finished under -o without %d: written when no second picture came */
+    /* Waits until standard error takes text; false: it does not, and the run is to end. NULL: writing waits. */
+    bool (*takes_text)(void *context);
+    void *takes_context;
+    struct display display;     /* --display */
+    struct keeper keeper;       /* the checkpoint */
+    struct picture_files files; /* names, and what they may replace */
+    unsigned pictures;          /* begun so far, those under --check too */
+    struct picture current;     /* being made */
+    struct picture held;        /* finished under -o without %d: written when no second picture came */
     bool several_under_one_name;
 };
 
@@ -61,9 +61,13 @@ void desk_show_progress(struct desk *desk);
 /* One line (or several: an error with its traceback) on standard error, as -q and --verbose allow; LINE_OUTPUT on
  * standard output. */
 void desk_line(struct desk *desk, enum line_kind kind, const char *text);
+/* The wait for a pipe ends when `stopped` says so; see struct file_interrupt. */
+void desk_set_interrupt(struct desk *desk, const struct file_interrupt *interrupt);
 /* --watch: the end of one run, and the beginning of the next, whose pictures count from 1 again. */
 bool desk_settle(struct desk *desk, struct error *error);
 void desk_restart(struct desk *desk);
+/* At the end: false when something that went to standard output, of this process or of the scripts, was lost. */
+bool desk_finish_output(struct desk *desk, struct error *error);
 /* With --no-sandbox: a warning. */
 void desk_tell_trust(struct desk *desk);
 /* After all scripts: writes the picture that was held. all_well: everything else was written, so that the checkpoint

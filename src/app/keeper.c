@@ -11,21 +11,16 @@
 
 static const double pause_factor = 20;
 
-void keeper_init(struct keeper *keeper, const struct options *options) {
+void keeper_init(struct keeper *keeper, const struct options *options, const struct picture_files *files) {
     *keeper = (struct keeper){
         .on = options->checkpoint && !options->check, .resume = options->resume, .every = options->checkpoint_every};
-    if (keeper->on && strcmp(options->checkpoint, "auto") != 0)
-        (void)snprintf(keeper->path, sizeof keeper->path, "%s", options->checkpoint);
+    keeper->files = files;
 }
 
 static bool choose_path(struct keeper *keeper, const char *picture_name, struct error *error) {
     if (keeper->path[0] != '\0')
         return true;
-    int length = snprintf(keeper->path, sizeof keeper->path, "%s.checkpoint", picture_name);
-    if (length >= (int)sizeof keeper->path)
-        return error_set(error, ERROR_SCENE, "%.100s...: the name of its checkpoint is longer than %zu bytes",
-                         picture_name, sizeof keeper->path - 1);
-    return true;
+    return picture_files_checkpoint(keeper->files, picture_name, keeper->path, error);
 }
 
 bool keeper_open(struct keeper *keeper, const char *picture_name, char notice[256], struct error *error) {
@@ -55,7 +50,8 @@ bool keeper_open(struct keeper *keeper, const char *picture_name, char notice[25
         keeper->refused = *error;
         return false;
     }
-    keeper->opened = keeper->has_old = keeper->file_is_ours = true;
+    keeper->opened = keeper->has_old = true;
+    (void)file_identity_of(keeper->path, &keeper->file);
     keeper->old_number = keeper->old.has_picture ? keeper->old.picture.number : 0;
     for (size_t i = 0; i < keeper->old.done_count; i++) {
         if (keeper->old.done[i].number > keeper->old_number)
@@ -70,16 +66,6 @@ static bool refuse(struct keeper *keeper, const char *why, struct error *error) 
     keeper->opened = false;
     *error = keeper->refused;
     return false;
-}
-
-static bool file_digest(const char *path, struct digest *digest) {
-    struct file_bytes bytes;
-    struct error ignored;
-    if (!file_is_regular(path) || !file_map(path, SIZE_MAX, &bytes, &ignored))
-        return false;
-    *digest = digest_bytes(bytes.data, bytes.size, (struct digest){0});
-    file_unmap(&bytes);
-    return true;
 }
 
 static bool add_done(struct keeper *keeper, const struct tile_done *done, struct error *error) {
@@ -127,6 +113,17 @@ bool keeper_restore(struct keeper *keeper, const struct tile_picture *picture, s
     return true;
 }
 
+static struct file_target target_of(struct keeper *keeper) {
+    const struct picture_files *files = keeper->files;
+    bool named = strcmp(files->options->checkpoint, "auto") != 0;
+    return (struct file_target){keeper->path, named ? &files->named_checkpoint : &files->checkpoint, &keeper->file};
+}
+
+static bool remove_file(struct keeper *keeper, struct error *error) {
+    const struct file_target target = target_of(keeper);
+    return file_output_remove(&target, keeper->file, error);
+}
+
 bool keeper_tick(struct keeper *keeper, const struct tile_picture *picture, const struct film *film, bool now,
                  uint32_t *tiles, struct error *error) {
     if (!keeper->opened || keeper->number < keeper->old_number)
@@ -137,11 +134,11 @@ bool keeper_tick(struct keeper *keeper, const struct tile_picture *picture, cons
     uint32_t have = film ? film_tiles_in(film, FILM_TILE_DONE) : 0;
     if (!now && !keeper->pending && have == keeper->tiles_kept)
         return true;
-    bool ok = tile_file_write(keeper->path, keeper->done, keeper->done_count, film ? picture : NULL, film, error);
+    const struct file_target target = target_of(keeper);
+    bool ok = tile_file_write(&target, keeper->done, keeper->done_count, film ? picture : NULL, film, error);
     keeper->written_at = progress_clock();
     keeper->took = keeper->written_at - clock;
     if (ok) {
-        keeper->file_is_ours = true;
         keeper->pending = false;
         keeper->tiles_kept = have;
         *tiles = have;
@@ -168,8 +165,9 @@ bool keeper_note_written(struct keeper *keeper, uint32_t number, const struct ti
 bool keeper_finish(struct keeper *keeper, bool all_written, struct error *error) {
     bool ok = true;
     uint32_t tiles;
-    if (keeper->opened && all_written && keeper->file_is_ours)
-        ok = file_remove(keeper->path, error);
+    bool written = keeper->file.device || keeper->file.inode;
+    if (keeper->opened && all_written)
+        ok = !written || remove_file(keeper, error);
     else if (keeper->opened && keeper->pending)
         ok = keeper_tick(keeper, NULL, NULL, true, &tiles, error);
     tile_file_close(&keeper->old);

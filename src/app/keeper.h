@@ -5,28 +5,30 @@
 #define GRAY_APP_KEEPER_H
 
 #include "app/options.h"
+#include "app/picture_files.h"
 #include "render/tile_file.h"
 
 /* Zero value: no checkpoint is asked for, and every call does nothing. */
 struct keeper {
     bool on, opened, resume;
-    struct error refused;      /* why nothing may be made: said again for every picture */
-    uint32_t number;           /* of the picture that was begun last */
-    double every;              /* seconds */
-    char path[TILE_FILE_NAME]; /* empty until the first picture has a name */
+    const struct picture_files *files; /* not owned */
+    struct error refused;              /* why nothing may be made: said again for every picture */
+    uint32_t number;                   /* of the picture that was begun last */
+    double every;                      /* seconds */
+    char path[TILE_FILE_NAME];         /* empty until the first picture has a name */
     bool has_old;
     struct tile_file old;   /* what the earlier run left; given back at the end */
     uint32_t old_number;    /* of the last picture it knows of: until then its file is not written again */
     struct tile_done *done; /* pictures that are written, of this run and the earlier one */
     size_t done_count;
-    bool pending;            /* something is finished that the file does not have */
-    uint32_t tiles_kept;     /* of the picture being made, that the file has */
-    double written_at, took; /* seconds: when the file was last written, and how long that took */
-    bool file_is_ours;       /* written or taken over by this run */
-    bool failed;             /* it could not be written, which was told once */
+    bool pending;              /* something is finished that the file does not have */
+    uint32_t tiles_kept;       /* of the picture being made, that the file has */
+    double written_at, took;   /* seconds: when the file was last written, and how long that took */
+    struct file_identity file; /* of the checkpoint, once this run has written or taken it over; else 0 */
+    bool failed;               /* it could not be written, which was told once */
 };
 
-void keeper_init(struct keeper *keeper, const struct options *options);
+void keeper_init(struct keeper *keeper, const struct options *options, const struct picture_files *files);
 /* Called for every picture before anything else; the first one decides the file. False: there is a file already and no
  * --resume, or it is damaged. *notice: something to tell, or empty. */
 bool keeper_open(struct keeper *keeper, const char *picture_name, char notice[256], struct error *error);

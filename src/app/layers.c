@@ -68,7 +68,7 @@ static const char *const channel_names[AOV_COUNT][3] = {
     [AOV_LIGHTS] = {"lights.N"},
 };
 
-bool layers_write_exr(const char *picture, const struct film *film, struct error *error) {
+bool layers_write_exr(const struct file_target *target, const struct film *film, struct error *error) {
     static const char *const light[3] = {"R", "G", "B"};
     struct exr_channel channels[3 + 3 * AOV_COUNT];
     uint32_t count = 0, floats = sizeof *film->pixels / sizeof(float);
@@ -82,25 +82,27 @@ bool layers_write_exr(const char *picture, const struct film *film, struct error
         for (int c = 0; c < 3 && channel_names[i][c]; c++)
             channels[count++] = (struct exr_channel){channel_names[i][c], &values[0][c], 3};
     }
-    return exr_write_channels(picture, film->width, film->height, channels, count, error);
+    return exr_write_channels(target, film->width, film->height, channels, count, error);
 }
 
-bool layers_write(const char *picture, const struct film *film, bool deep_picture, struct error *error) {
+bool layers_write(const struct file_target *picture, const struct film *film, bool deep_picture, struct error *error) {
     size_t pixels = (size_t)film->width * film->height;
     char name[LAYER_NAME_LIMIT];
+    const struct file_target target = {.path = name, .rules = picture->rules};
     for (int i = 0; i < AOV_COUNT; i++) {
-        if (!(film->layer_mask >> i & 1) || ends_in(picture, ".exr"))
+        if (!(film->layer_mask >> i & 1) || ends_in(picture->path, ".exr"))
             continue;
         struct layer_rows rows = {.aov = (enum aov)i, .width = film->width};
         rows.values = (const float(*)[3])(film->layers + aov_layer(film->layer_mask, rows.aov) * pixels);
         rows.scale = aov_scale(rows.aov, rows.values, pixels);
-        if (!layers_name(picture, aov_name(rows.aov), name, error))
+        if (!layers_name(picture->path, aov_name(rows.aov), name, error))
             return false;
         bool deep = deep_picture || rows.aov == AOV_DEPTH;
-        bool ok = ends_in(name, ".pfm")   ? pfm_write(name, film->width, film->height, layer_row_linear, &rows, error)
-                  : ends_in(name, ".hdr") ? hdr_write(name, film->width, film->height, layer_row_linear, &rows, error)
-                  : deep                  ? png_write_16(name, film->width, film->height, layer_row_16, &rows, error)
-                                          : png_write(name, film->width, film->height, layer_row, &rows, error);
+        bool ok = ends_in(name, ".pfm") ? pfm_write(&target, film->width, film->height, layer_row_linear, &rows, error)
+                  : ends_in(name, ".hdr")
+                      ? hdr_write(&target, film->width, film->height, layer_row_linear, &rows, error)
+                  : deep ? png_write_16(&target, film->width, film->height, layer_row_16, &rows, error)
+                         : png_write(&target, film->width, film->height, layer_row, &rows, error);
         if (!ok)
             return false;
     }

@@ -52,6 +52,17 @@ static void list_missing(const struct part *parts, size_t count, char out[256]) 
         (void)snprintf(out + length, 256 - length, " and %u more", missing - shown);
 }
 
+/* That there are as many tiles as the picture has: its size is what a part claims, its film what the tiles fill. */
+static bool check_tiles(const struct part *parts, size_t count, struct error *error) {
+    const struct tile_picture *picture = &parts[0].picture;
+    const struct film film = {.width = picture->width, .height = picture->height, .x0 = picture->x0, .y0 = picture->y0};
+    uint64_t tiles = 0, wanted = film_tile_count(&film);
+    for (size_t i = 0; i < count; i++)
+        tiles += parts[i].tiles;
+    return tiles >= wanted || error_set(error, ERROR_SCENE, "%.400s: %llu tiles are in no part", picture->name,
+                                        (unsigned long long)(wanted - tiles));
+}
+
 /* That the parts of one picture belong together and none is missing or there twice. */
 static bool check_parts(const struct part *parts, size_t count, struct error *error) {
     const struct tile_picture *first = &parts[0].picture;
@@ -73,7 +84,7 @@ static bool check_parts(const struct part *parts, size_t count, struct error *er
                              parts[i].picture.shard, first->shards, parts[i].tiles);
     }
     if (count == first->shards)
-        return true;
+        return check_tiles(parts, count, error);
     char missing[256] = "";
     list_missing(parts, count, missing);
     return error_set(error, ERROR_SCENE, "%.400s: %s of %u %s missing", first->name, missing, first->shards,

@@ -5,11 +5,13 @@
 
 #include "app/display.h"
 
+#include "base/size.h"
 #include "render/aov.h"
 
 #include <assert.h>
 #include <ctype.h>
 #include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -19,6 +21,7 @@ enum option_kind {
     OPTION_FLAG,    /* bool, set to true; takes no value */
     OPTION_INTEGER, /* int in low..high */
     OPTION_NUMBER,  /* double in low..high */
+    OPTION_BYTES,   /* uint64_t in low..high: a size with its unit, in MiB without one */
     OPTION_CHOICE,  /* enum or bool: the position of the word in `value`, words parted by '|' */
     OPTION_TEXT,    /* const char *, not empty */
     OPTION_ACTION,  /* options.action; `low` says which */
@@ -59,6 +62,7 @@ struct option {
 #define FIELD(name) offsetof(struct options, name), sizeof(((struct options *)NULL)->name)
 #define NO_FIELD 0, 0
 #define NO_RANGE 0, 0
+#define SIZES 0x1p10, 0x1p50 /* 1 KiB to 1 PiB */
 
 static const char *const group_titles[GROUP_COUNT] = {
     [GROUP_PICTURE] = "Anti-aliasing and rays",        [GROUP_LOOK] = "Size, part and search", [GROUP_FILES] = "Files",
@@ -118,6 +122,8 @@ static const struct option table[] = {
      "pictures "
      "FILE needs %d (or %03d), which counts from "
      "1"},
+    {GROUP_FILES, "--force", OPTION_FLAG, NULL, NO_RANGE, FIELD(force), NULL,
+     "-o FILE also replaces a file that is no picture"},
     {GROUP_FILES, "-write-aa-targets", OPTION_TEXT, "X", NO_RANGE, FIELD(targets_prefix), NULL,
      "for dir/foo.png also write dir/Xfoo.png: the first pass with the marked pixels in red"},
     {GROUP_FILES, "-write-pre-aa", OPTION_TEXT, "X", NO_RANGE, FIELD(first_pass_prefix), NULL,
@@ -156,12 +162,17 @@ static const struct option table[] = {
      "and the library; may be repeated"},
     {GROUP_TRUST, "--allow-write", OPTION_FOLDER, "DIR", 1, 0, NO_FIELD, NULL,
      "scenes may write files below DIR; without it they write none (pictures are written by gray); may be repeated"},
-    {GROUP_TRUST, "--script-memory", OPTION_INTEGER, "MIB", 1, 1 << 24, FIELD(script.memory_limit), "4096",
-     "memory a script may use, in MiB"},
+    {GROUP_TRUST, "--script-memory", OPTION_BYTES, "SIZE", SIZES, FIELD(script.memory_limit), "4G",
+     "memory a script and the files it reads may use, as in 512M or 2G (a plain number is MiB); a picture and "
+     "the script together may use three quarters more"},
     {GROUP_TRUST, "--script-time", OPTION_NUMBER, "SECONDS", 0.001, HUGE_VAL, FIELD(script.time_limit), "60",
      "processor time a script may use for itself; rendering is not counted"},
-    {GROUP_TRUST, "--script-output", OPTION_INTEGER, "MIB", 1, 1 << 24, FIELD(script.output_limit), "64",
-     "how much a script may print and write, in MiB"},
+    {GROUP_TRUST, "--script-output", OPTION_BYTES, "SIZE", SIZES, FIELD(script.output_limit), "64M",
+     "how much a script may print and write (a plain number is MiB); pictures are not counted"},
+    {GROUP_TRUST, "--picture-count", OPTION_INTEGER, "N", 1, INT_MAX, FIELD(picture_count), "100000",
+     "how many pictures the scripts of a run may render, one that replaces another counted again"},
+    {GROUP_TRUST, "--picture-bytes", OPTION_BYTES, "SIZE", SIZES, FIELD(picture_bytes), "64G",
+     "how much is written into files of pictures in a run (a plain number is MiB)"},
     {GROUP_TRUST, "--no-sandbox", OPTION_FLAG, NULL, NO_RANGE, FIELD(script.no_sandbox), NULL,
      "scenes may do whatever the user may: read and write all files, start programs; for scenes you trust"},
 
@@ -187,6 +198,11 @@ static const struct option table[] = {
      "of many pictures make every Nth, from the Ith on"},
     {GROUP_PARTS, "--mpi", OPTION_FLAG, NULL, NO_RANGE, FIELD(mpi), NULL,
      "under mpirun: all processes make each picture together, tiles are handed out on demand"},
+    {GROUP_PARTS, "--farm-stall", OPTION_NUMBER, "SECONDS", 0, 1e9, FIELD(farm_stall), "30",
+     "with --mpi: a rendering process that uses no processor time for so long, though none is missing, is killed, and "
+     "another one makes its tiles; 0: never"},
+    {GROUP_PARTS, "--farm-silence", OPTION_NUMBER, "SECONDS", 0, 1e9, FIELD(farm_silence), "60",
+     "with --mpi: a process that is not heard for so long is regarded as lost, and others make its tiles; 0: never"},
 
     {GROUP_TALK, "-gui", OPTION_FLAG, NULL, NO_RANGE, FIELD(window), NULL,
      "show the picture in a window while it is made, and walk through the scene: R renders, S saves what is shown, V "
@@ -360,6 +376,14 @@ static bool read_number(const char *text, double low, double high, double *out) 
     return true;
 }
 
+static bool read_bytes(const char *text, double low, double high, uint64_t *out) {
+    uint64_t bytes;
+    if (!size_parse(text, &bytes) || (double)bytes < low || (double)bytes > high)
+        return false;
+    *out = bytes;
+    return true;
+}
+
 /* Whole numbers parted by `separator`: exactly `count` of them. */
 static bool read_list(const char *text, char separator, int count, const long long *low, long long high,
                       long long *out) {
@@ -483,6 +507,10 @@ static bool value_error(const struct option *option, const char *text, struct er
     case OPTION_NUMBER:
         return error_set(error, ERROR_USAGE, "%.*s needs a number of at least %g, not '%s'", shown, option->names,
                          option->low, text);
+    case OPTION_BYTES:
+        return error_set(error, ERROR_USAGE,
+                         "%.*s needs a size from 1K to 1024T, as in 512M or 2G (a plain number is MiB), not '%s'",
+                         shown, option->names, text);
     case OPTION_SEED:
         return error_set(error, ERROR_USAGE, "%.*s needs a whole number from 0 to 18446744073709551615, not '%s'",
                          shown, option->names, text);
@@ -548,6 +576,9 @@ static bool apply_option(const struct option *option, const char *text, struct o
         break;
     case OPTION_NUMBER:
         ok = read_number(text, option->low, option->high, field);
+        break;
+    case OPTION_BYTES:
+        ok = read_bytes(text, option->low, option->high, field);
         break;
     case OPTION_CHOICE:
         ok = read_choice(option, field, text);
@@ -733,8 +764,23 @@ struct digest options_digest(const struct options *options) {
     return digest;
 }
 
+bool options_allow_picture(const struct options *options, uint64_t number, struct error *error) {
+    enum { STANDARD = 100000 };
+    int limit = options->picture_count > 0 ? options->picture_count : STANDARD;
+    if (number <= (uint64_t)limit || (options->picture_count == 0 && options->script.no_sandbox))
+        return true;
+    return error_set_limit(error, "the scripts render more than %d picture%s (--picture-count allows more)", limit,
+                           limit > 1 ? "s" : "");
+}
+
+uint64_t options_picture_bytes(const struct options *options) {
+    uint64_t otherwise = options->script.no_sandbox ? UINT64_MAX : 64 * GIBIBYTE;
+    return options->picture_bytes > 0 ? options->picture_bytes : otherwise;
+}
+
 bool options_parse(struct options *options, int argc, char *const *argv, struct arena *arena, struct error *error) {
-    *options = (struct options){.settings = settings_default(), .checkpoint_every = 10};
+    *options =
+        (struct options){.settings = settings_default(), .checkpoint_every = 10, .farm_stall = 30, .farm_silence = 60};
     size_t room = argc > 0 ? (size_t)argc : 1;
     const char **scripts = arena_alloc_array(arena, room, sizeof *scripts);
     struct lists lists = {.defines = arena_alloc_array(arena, room, sizeof *lists.defines),
@@ -788,6 +834,11 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
     }
     options->settings.keep_first = options->targets_prefix || options->first_pass_prefix;
     return check_together(options, error) && check_questions(options, error) && check_parts(options, error);
+}
+
+bool options_output_is_stream(const struct options *options) {
+    bool asks = options->pixel_count > 0 || options->dump_scene; /* then there is no picture */
+    return options->output && strcmp(options->output, "-") == 0 && !asks;
 }
 
 /* Prints words from `column` on, broken so that no line is longer than 100 columns. */

@@ -31,10 +31,13 @@ struct options {
     const char *const *scripts;
     int script_count;
     const char *output;            /* -o, or NULL: the names the scripts give */
+    bool force;                    /* --force: -o may replace a file that is no picture */
     int width, height;             /* --size, or 0: the sizes the scripts give */
     const char *targets_prefix;    /* -write-aa-targets, or NULL */
     const char *first_pass_prefix; /* -write-pre-aa, or NULL */
     int threads;                   /* 0: one per processor */
+    int picture_count;             /* limits on the pictures of a run; 0: 100,000 and 64 GiB, */
+    uint64_t picture_bytes;        /* without the sandbox none */
     bool window;                   /* -gui */
     bool quick, preview;           /* enum haste; preview is a quarter of the size, too */
     bool watch;                    /* --watch */
@@ -46,6 +49,8 @@ struct options {
     const char *checkpoint;     /* --checkpoint: a file, or "auto", or NULL */
     double checkpoint_every;    /* seconds */
     bool mpi;                   /* one of several processes that make a picture together */
+    double farm_stall;          /* seconds after which a renderer of a farm that stands still is killed; 0: never */
+    double farm_silence;        /* seconds after which a rank that is not heard is regarded as lost; 0: never */
     const char *display;        /* --display, or NULL */
     bool partial;               /* --partial: what an interruption leaves is written beside the picture */
     bool resume;                /* go on with what the checkpoint holds */
@@ -62,6 +67,10 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
 /* Of all that can change a picture, or the number of pictures; names of files that are written, threads, ways of
  * searching and what is told are left out. */
 struct digest options_digest(const struct options *options);
+/* Whether the scripts of a run may render a picture of this number, counted from 1. */
+bool options_allow_picture(const struct options *options, uint64_t number, struct error *error);
+/* How many bytes may be written into files of pictures; UINT64_MAX: any number. */
+uint64_t options_picture_bytes(const struct options *options);
 /* What accel_select_isa understands. */
 const char *options_isa_name(const struct options *options);
 /* The options with their defaults, in groups, 100 columns wide. */
@@ -70,5 +79,8 @@ void options_print_help(FILE *stream);
 /* The name of picture `number` under -o: %d, %3d or %03d stands for the number, %% for a percent sign. */
 bool output_name_numbered(const char *pattern);
 bool output_name(const char *pattern, unsigned number, char *out, size_t size);
+
+/* -o -: standard output is the picture's. */
+bool options_output_is_stream(const struct options *options);
 
 #endif

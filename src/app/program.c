@@ -19,6 +19,7 @@
 
 #include <lua.h>
 #include <png.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -142,6 +143,9 @@ int program_run(int argc, char **argv, const struct program_parts *parts) {
     struct error error;
     int status;
     file_fill_standard();
+    /* A reader that goes away and a limit on file sizes are errors of writing, not the end of the process. */
+    (void)signal(SIGPIPE, SIG_IGN);
+    (void)signal(SIGXFSZ, SIG_IGN);
     if (!options_parse(&options, argc, argv, &arena, &error)) {
         char line[sizeof error.text + 16];
         (void)snprintf(line, sizeof line, "gray: %s", error.text);
@@ -156,8 +160,8 @@ int program_run(int argc, char **argv, const struct program_parts *parts) {
     } else {
         status = act(&options, parts, &arena);
     }
-    /* A full disk shows here when text was asked for. */
-    if (fflush(stdout) != 0 && status == 0) {
+    /* A full disk shows here when text was asked for; rendering has looked at it already. */
+    if (options.action != ACTION_RENDER && (fflush(stdout) != 0 || ferror(stdout))) {
         (void)fputs("gray: standard output cannot be written\n", stderr);
         status = ERROR_MACHINE;
     }

@@ -4,6 +4,7 @@
 #include "app/progress.h"
 
 #include "app/text.h"
+#include "base/terminal_text.h"
 
 #include <math.h>
 #include <string.h>
@@ -33,6 +34,12 @@ void progress_init(struct progress *progress, enum progress_mode mode, bool quie
     *progress = (struct progress){.mode = mode, .threads = threads > 0 ? threads : (int)sysconf(_SC_NPROCESSORS_ONLN)};
     if (mode == PROGRESS_AUTO)
         progress->mode = quiet ? PROGRESS_NONE : isatty(STDERR_FILENO) ? PROGRESS_BAR : PROGRESS_LINES;
+}
+
+/* What scenes have written to the same stream stands on a line of its own. */
+static void begin_line(const struct progress *progress) {
+    if (progress->stream)
+        error_stream_begin_line(progress->stream);
 }
 
 void progress_hide(struct progress *progress) {
@@ -77,8 +84,21 @@ static struct state state_of(struct progress *progress, double now, uint32_t don
     return state;
 }
 
+/* The last bytes of a long path, as a terminal may show them at the beginning of a line. */
+static void short_name(const char *name, size_t shown, char *out, size_t size) {
+    char clean[40];
+    size_t length = strlen(name), used = 0;
+    const char *at = length > shown ? name + length - shown : name;
+    while (((unsigned char)*at & 0xc0) == 0x80 && at > name)
+        at++; /* not from the middle of a character */
+    for (size_t taken; *at && used + 8 < sizeof clean; at += taken)
+        used += text_clean_piece(at, clean + used, &taken);
+    clean[used] = '\0';
+    (void)snprintf(out, size, "%s%s", scene_mark(clean), clean);
+}
+
 static void draw_bar(struct progress *progress, const struct state *state) {
-    char cells[BAR_CELLS + 1], line[COLUMNS_LIMIT], left[80] = "", elapsed[48];
+    char cells[BAR_CELLS + 1], line[4 * COLUMNS_LIMIT], left[80] = "", elapsed[48];
     double share = state->share > 0 ? state->share : 0;
     /* In a narrow terminal the time left is worth more than a long bar. */
     int limit = terminal_columns(), bar = limit < 78 ? BAR_CELLS / 3 : BAR_CELLS;
@@ -91,9 +111,8 @@ static void draw_bar(struct progress *progress, const struct state *state) {
         text_time(state->left, time, sizeof time);
         (void)snprintf(left, sizeof left, ", about %s left", time);
     }
-    /* A long path shows its end. */
-    size_t length = strlen(progress->name), shown = limit < 78 ? 14 : 30;
-    const char *name = length > shown ? progress->name + length - shown : progress->name;
+    char name[64];
+    short_name(progress->name, limit < 78 ? 14 : 30, name, sizeof name);
     if (state->count > 0)
         (void)snprintf(line, sizeof line, "%s [%s] %3.0f %%  %s%s", name, cells, 100 * share, elapsed, left);
     else
@@ -101,8 +120,7 @@ static void draw_bar(struct progress *progress, const struct state *state) {
     int columns = (int)strlen(line);
     if (columns > limit)
         columns = limit;
-    for (int i = 0; i < columns; i++)
-        line[i] = (unsigned char)line[i] < 32 || line[i] == 127 ? '?' : line[i];
+    begin_line(progress);
     int blanks = progress->columns > columns ? progress->columns - columns : 0;
     (void)fprintf(stderr, "\r%.*s%*s", columns, line, blanks, "");
     (void)fflush(stderr);
@@ -120,11 +138,13 @@ static void print_line(struct progress *progress, const struct state *state) {
                        left[0] ? " left" : "");
     else
         (void)snprintf(line, sizeof line, "%s: building the scene, %s", progress->name, elapsed);
-    text_print_line(stderr, line);
+    begin_line(progress);
+    text_print_scene_line(stderr, line);
     progress->said = true;
 }
 
 static void print_json(const struct progress *progress, const char *event, const struct state *state) {
+    begin_line(progress);
     (void)fputs("{\"picture\":", stderr);
     text_print_json(stderr, progress->name);
     (void)fprintf(stderr,
@@ -185,7 +205,7 @@ static double pause_of(const struct progress *progress, double now) {
 void progress_update(struct progress *progress, uint32_t done, uint32_t count, const struct outlook *outlook) {
     double now = progress_clock();
     bool first = progress->mode == PROGRESS_JSON && !progress->known && outlook_share(outlook) >= 0;
-    if (!progress->name || (now - progress->shown < pause_of(progress, now) && !first))
+    if (!progress->name || (now - progress->shown < pause_of(progress, now) && !first) || !text_error_is_taken())
         return;
     progress->known = progress->known || first;
     struct state state = state_of(progress, now, done, count, outlook);
@@ -210,7 +230,8 @@ void progress_end(struct progress *progress, enum progress_end how) {
         char line[4096 + 64];
         (void)snprintf(line, sizeof line, "%s  %u x %u  %.1f s", progress->name, progress->width, progress->height,
                        elapsed);
-        text_print_line(stderr, line);
+        begin_line(progress);
+        text_print_scene_line(stderr, line);
     }
     progress->name = NULL;
 }

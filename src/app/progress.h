@@ -3,6 +3,7 @@
 #ifndef GRAY_APP_PROGRESS_H
 #define GRAY_APP_PROGRESS_H
 
+#include "app/error_stream.h"
 #include "app/options.h"
 #include "render/outlook.h"
 
@@ -10,6 +11,7 @@
 #include <stdint.h>
 
 struct progress {
+    struct error_stream *stream; /* standard error, where scenes write to it, too; not owned */
     enum progress_mode mode; /* never PROGRESS_AUTO */
     const char *name;        /* of the picture; NULL while there is none */
     uint32_t width, height;

@@ -1,7 +1,7 @@
 /* Nothing that is there is ever overwritten. */
 #include "app/souvenir.h"
 
-#include "base/file.h"
+#include "base/file_output.h"
 #include "image/png_write.h"
 
 #include <stdio.h>
@@ -14,7 +14,7 @@ static bool free_name(const char *picture, const char *what, const char *extensi
     size_t stem = dot && (!slash || dot > slash + 1) && dot != picture ? (size_t)(dot - picture) : strlen(picture);
     for (int i = 1; i < NUMBERS; i++) {
         int length = snprintf(name, NAME, "%.*s%s%d.%s", (int)stem, picture, what, i, extension);
-        if (length < NAME && !file_is_regular(name) && !file_is_folder(name))
+        if (length < NAME && !file_exists(name))
             return true;
     }
     return error_set(error, ERROR_SCENE, "%.400s: there is no free name for what is shown", picture);
@@ -26,9 +26,10 @@ static void row(void *context, uint32_t y, uint8_t *line) {
     memcpy(line, live->canvas + y * bytes, bytes);
 }
 
-bool souvenir_picture(const struct live *live, const char *picture_name, char *name, struct error *error) {
-    return free_name(picture_name, "-view", "png", name, error) &&
-           png_write(name, live->request.width, live->request.height, row, (void *)(uintptr_t)live, error);
+bool souvenir_picture(const struct live *live, const struct file_target *picture, char *name, struct error *error) {
+    const struct file_target target = {.path = name, .rules = picture->rules};
+    return free_name(picture->path, "-view", "png", name, error) &&
+           png_write(&target, live->request.width, live->request.height, row, (void *)(uintptr_t)live, error);
 }
 
 struct written {
@@ -48,26 +49,27 @@ static bool end_file(struct written *written, bool ok) {
     return false;
 }
 
-bool souvenir_camera(const struct live *live, const char *picture_name, char *name, struct error *error) {
+bool souvenir_camera(const struct live *live, const struct file_target *picture, char *name, struct error *error) {
     static const char head[] =
         "-- A camera found by walking. With require and the name of this file without .lua, before gr.render, the\n"
         "-- picture is made with it; it is given back as a table, too.\n";
     static const struct change_list none;
     struct camera c = live->flown ? walk_camera(&live->walk) : live->request.camera;
     struct written written = {.error = error};
+    const struct file_target target = {.path = name, .rules = picture->rules};
     char text[1024];
     (void)snprintf(text, sizeof text,
                    "return {\n  eye = {%.17g, %.17g, %.17g},\n  view = {%.17g, %.17g, %.17g},\n"
                    "  up = {%.17g, %.17g, %.17g},\n  fov = %.17g,\n}\n",
                    c.eye.x, c.eye.y, c.eye.z, c.view.x, c.view.y, c.view.z, c.up.x, c.up.y, c.up.z, c.fov);
-    if (!free_name(picture_name, "-view", "lua", name, error) || !file_output_open(&written.file, name, error))
+    if (!free_name(picture->path, "-view", "lua", name, error) || !file_output_open(&written.file, &target, error))
         return false;
     return end_file(&written, put_line(&written, head) &&
                                   edits_tell(&none, live->request.file, &c, NULL, put_line, &written) &&
                                   put_line(&written, text));
 }
 
-bool souvenir_changes(const struct live *live, const char *picture_name, char *name, struct error *error) {
+bool souvenir_changes(const struct live *live, const struct file_target *picture, char *name, struct error *error) {
     static const char head[] =
         "-- What was changed in the window. The scene shows the same when it says, before gr.render, require and the\n"
         "-- name of this file without .lua.\n";
@@ -75,7 +77,8 @@ bool souvenir_changes(const struct live *live, const char *picture_name, char *n
     double exposure = live->request.exposure;
     bool exposed = exposure < live->script_exposure || exposure > live->script_exposure;
     struct written written = {.error = error};
-    if (!free_name(picture_name, "-changes", "lua", name, error) || !file_output_open(&written.file, name, error))
+    const struct file_target target = {.path = name, .rules = picture->rules};
+    if (!free_name(picture->path, "-changes", "lua", name, error) || !file_output_open(&written.file, &target, error))
         return false;
     return end_file(&written, put_line(&written, head) &&
                                   edits_tell(&live->edits.now, live->request.file, live->flown ? &camera : NULL,

@@ -82,7 +82,7 @@ void statistics_print_text(FILE *stream, const char *name, const struct picture_
                            const struct picture_report *report) {
     struct figure figures[FIGURES];
     int count = list_figures(figures, report);
-    text_print_line(stream, name);
+    text_print_scene_line(stream, name);
     (void)fprintf(stream, "  %-20s %14" PRIu32 " x %" PRIu32 "\n", "size", request->width, request->height);
     for (int i = 0; i < count; i++) {
         const struct figure *figure = &figures[i];

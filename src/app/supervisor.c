@@ -13,11 +13,14 @@
 #include "app/desk.h"
 #include "app/live.h"
 #include "app/souvenir.h"
+#include "app/standard_streams.h"
+#include "app/text.h"
 #include "app/watch.h"
 #include "base/fault.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/pool.h"
+#include "base/process.h"
 
 #include <errno.h>
 #include <poll.h>
@@ -39,6 +42,8 @@ static const double patience_quit = 0.01;
 static const double patience_again = 0.3;
 /* Seconds from the end of the channel to the end of the process. */
 static const double farewell = 10;
+/* How often in a farm a script is begun anew after its renderer was killed. */
+enum { TRIES_MAX = 3 };
 
 struct supervisor {
     const struct options *options;
@@ -49,8 +54,10 @@ struct supervisor {
     struct control *control;            /* shared with the child */
     struct channel channel;             /* to the child */
     pid_t child;
-    int signals; /* descriptor, or -1 */
+    bool had_child; /* a rendering process was started before */
+    int signals;    /* descriptor, or -1 */
     sigset_t signals_before;
+    struct standard_streams streams;
     int status;      /* worst so far */
     int next_script; /* the one that runs, or comes next */
     bool stop;       /* no further script */
@@ -66,6 +73,18 @@ struct supervisor {
     double script_since; /* the child's clock when this stretch began */
     bool script_runs;
     bool out_of_time; /* the child was killed for that */
+    bool all_written; /* in a farm: only other ranks are waited for */
+    /* In a farm: whether the child stands still. */
+    double stall_clock;   /* its clock when it was seen to move last */
+    double stalled_for;   /* seconds since then in which it might have moved */
+    double stall_checked; /* on progress_clock */
+    bool stalled;         /* the child was killed for that */
+    /* In a farm: the script that is begun anew. */
+    int tries;
+    uint32_t pictures_before; /* of desk.pictures, when the script began */
+    uint32_t kept;            /* number of the picture that is open since an earlier try, or 0 */
+    uint8_t *settled;         /* by number of the picture: 1: nothing is left to do for it */
+    uint32_t settled_count;
 };
 
 static void note_status(struct supervisor *supervisor, int status) {
@@ -133,25 +152,31 @@ static void cancel(struct supervisor *supervisor) {
             (void)kill(supervisor->child, SIGKILL);
         return;
     }
-    supervisor->stop = supervisor->ended = true;
+    supervisor->stop = supervisor->ended = supervisor->streams.ended = true;
     supervisor->restarts = false;
-    if (supervisor->waits) /* nothing is interrupted: it is how watching ends */
+    if (supervisor->all_written)
+        atomic_store(&supervisor->control->cancel, 1);
+    if (supervisor->waits || supervisor->all_written) /* nothing is interrupted: it is how watching ends */
         return;
     supervisor->deadline = progress_clock() + patience;
     note_status(supervisor, ERROR_CANCELLED);
     atomic_store(&supervisor->control->cancel, 1);
-    if (!supervisor->desk.current.open) {
+    const struct desk *desk = &supervisor->desk;
+    const struct picture *picture = desk->current.open ? &desk->current : desk->held.open ? &desk->held : NULL;
+    if (!picture) {
         desk_line(&supervisor->desk, LINE_ERROR, "gray: interrupted");
         return;
     }
     char line[NAME_LIMIT + 64];
-    (void)snprintf(line, sizeof line, "gray: interrupted, %s is not written", supervisor->desk.current.name);
+    (void)snprintf(line, sizeof line, "gray: interrupted, %s is not written", picture->name);
     desk_line(&supervisor->desk, LINE_ERROR, line);
 }
 
 static void read_signals(struct supervisor *supervisor) {
     struct signalfd_siginfo info;
     while (read(supervisor->signals, &info, sizeof info) == (ssize_t)sizeof info) {
+        if (info.ssi_signo == SIGUSR1 && supervisor->all_written)
+            continue;
         if (info.ssi_signo == SIGUSR1)
             desk_checkpoint(&supervisor->desk);
         else if (info.ssi_signo != SIGINT || !finish_tiles(supervisor))
@@ -159,14 +184,32 @@ static void read_signals(struct supervisor *supervisor) {
     }
 }
 
+/* While a picture waits for the reader of a pipe. */
+static bool is_stopped(void *context) {
+    struct supervisor *supervisor = context;
+    read_signals(supervisor);
+    return supervisor->ended || supervisor->finishing;
+}
+
+/* Waits until standard error takes text, for a signal meanwhile: a reader that has stopped must not keep the run from
+ * ending. */
+static bool wait_for_reader(void *context) {
+    struct supervisor *supervisor = context;
+    while (!text_error_is_taken()) {
+        struct pollfd watched[2] = {{.fd = STDERR_FILENO, .events = POLLOUT},
+                                    {.fd = supervisor->signals, .events = POLLIN}};
+        if (supervisor->deadline > 0 || supervisor->ended)
+            return false;
+        if (poll(watched, 2, -1) >= 0 && watched[1].revents)
+            read_signals(supervisor);
+    }
+    return true;
+}
+
 /* The processor time of the child: all of it is the script's while no picture is being made, since then the threads of
  * the pool sleep. */
 static double child_clock(const struct supervisor *supervisor) {
-    clockid_t clock;
-    struct timespec now;
-    if (clock_getcpuclockid(supervisor->child, &clock) != 0 || clock_gettime(clock, &now) != 0)
-        return 0;
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+    return process_time(supervisor->child);
 }
 
 static double script_time(const struct supervisor *supervisor) {
@@ -194,9 +237,82 @@ static int script_patience(const struct supervisor *supervisor) {
     return left <= 0 ? 0 : left > 1000 ? 1000000 : (int)(left * 1000) + 1;
 }
 
+/* What is in force is a detail; what is missing is a warning, once in a run, without the list of folders. */
+static void report_confinement(const struct supervisor *supervisor, const struct child_services *services,
+                               char *report) {
+    static const char warning[] = "gray: warning: ";
+    enum line_kind kind = LINE_DETAIL;
+    if (strncmp(report, warning, strlen(warning)) == 0 && !supervisor->had_child) {
+        kind = LINE_WARNING;
+        if (!supervisor->options->verbose)
+            report[strcspn(report, ";")] = '\0';
+    }
+    services->line(services->context, kind, report);
+}
+
+/* What runs in the child once it is confined. */
+struct child_work {
+    const struct options *options;
+    const struct child_services *services;
+    int first;
+};
+
+static void work_in_child(void *context) {
+    const struct child_work *work = context;
+    child_run(work->options, work->services, work->first);
+}
+
+/* No script can run: one line, and all of them have ended. */
+static _Noreturn void give_up(const struct child_work *work, const struct error *error) {
+    const struct child_services *services = work->services;
+    services->line(services->context, LINE_ERROR, error->text);
+    for (int i = work->first; i < work->options->script_count; i++)
+        services->script_ended(services->context, i, (int)error->kind);
+    _exit(0);
+}
+
+/* Whether the child of a farm has stood still for too long: it has used no processor time though it was not short of
+ * one. While a picture is open there is always something that it does; a script may wait for whoever reads what it
+ * prints, but it does not stop. Time in which this process did not look, since it was stopped itself, does not count.
+ */
+static bool is_stalled(struct supervisor *supervisor) {
+    double limit = supervisor->options->farm_stall, now = progress_clock(), pause = limit / 32;
+    double passed = now - supervisor->stall_checked;
+    if (!supervisor->desk.farm || limit <= 0 || passed < pause)
+        return false;
+    double used = child_clock(supervisor);
+    enum process_state state = process_state(supervisor->child);
+    const struct picture *picture = &supervisor->desk.current;
+    bool renders = picture->open && !picture->request.check && !supervisor->kept;
+    bool might = state == PROCESS_STOPPED || (state == PROCESS_WAITS && renders);
+    supervisor->stall_checked = now;
+    supervisor->stalled_for += passed < 2 * pause ? passed : pause;
+    if (used > supervisor->stall_clock || !might)
+        supervisor->stalled_for = 0;
+    supervisor->stall_clock = used;
+    return supervisor->stalled_for >= limit;
+}
+
+/* What happened to ranks. */
+static void show_notes(struct supervisor *supervisor) {
+    char line[2048];
+    while (supervisor->desk.farm && farm_next_note(supervisor->desk.farm, line, sizeof line))
+        desk_line(&supervisor->desk, LINE_WARNING, line);
+}
+
+/* Another rank ends with the first one. */
+static void leave_abandoned(struct supervisor *supervisor) {
+    if (!supervisor->desk.farm || supervisor->ended || !farm_is_abandoned(supervisor->desk.farm))
+        return;
+    text_print_line(stderr, "gray: the first rank of the farm has been silent for too long, this one ends");
+    cancel(supervisor);
+    note_status(supervisor, ERROR_CANCELLED);
+}
+
 /* In the child, after the fork: never returns. From child_run on this process needs the channel, the memory it gets,
  * and the files that scenes may read: confine_process takes the rest away. */
 static _Noreturn void be_child(struct supervisor *supervisor, struct channel channel, pid_t parent) {
+    standard_streams_end(&supervisor->streams);
     (void)close(supervisor->signals);
     watch_close(&supervisor->watch);
     channel_close(&supervisor->channel);
@@ -211,24 +327,21 @@ static _Noreturn void be_child(struct supervisor *supervisor, struct channel cha
     if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != parent)
         _exit(ERROR_MACHINE);
     (void)setvbuf(stdout, NULL, _IOLBF, BUFSIZ);
-    pool_raise_stack();
     struct child_link link = {.channel = channel};
     struct child_services services = child_link_services(&link, supervisor->control);
-    const char *output = supervisor->options->output;
-    if (output && strcmp(output, "-") == 0) /* standard output is the picture's: what scripts print goes beside it */
+    struct child_work work = {supervisor->options, &services, supervisor->next_script};
+    struct error error;
+    if (options_output_is_stream(supervisor->options)) /* what scripts print goes beside the picture */
         (void)dup2(STDERR_FILENO, STDOUT_FILENO);
     if (!supervisor->options->script.no_sandbox) {
-        struct error error;
         char report[4096];
         (void)file_null_input();
-        if (!confine_process(supervisor->options, channel.descriptor, report, sizeof report, &error)) {
-            services.line(services.context, LINE_ERROR, error.text);
-            services.script_ended(services.context, supervisor->next_script, (int)error.kind);
-            _exit(0);
-        }
-        services.line(services.context, LINE_DETAIL, report);
+        if (!confine_process(supervisor->options, channel.descriptor, report, sizeof report, &error))
+            give_up(&work, &error);
+        report_confinement(supervisor, &services, report);
     }
-    child_run(supervisor->options, &services, supervisor->next_script);
+    if (!pool_call_with_stack(work_in_child, &work, &error))
+        give_up(&work, &error);
     child_link_close(&link);
     exit(link.broken ? ERROR_MACHINE : 0);
 }
@@ -244,8 +357,11 @@ static bool start_child(struct supervisor *supervisor, struct error *error) {
     if (supervisor->child == 0)
         be_child(supervisor, ends[1], parent);
     int saved = errno;
+    supervisor->had_child = true;
     supervisor->script_used = 0;
-    supervisor->out_of_time = false;
+    supervisor->out_of_time = supervisor->stalled = false;
+    supervisor->stall_checked = progress_clock();
+    supervisor->stall_clock = supervisor->stalled_for = 0;
     script_goes_on(supervisor);
     channel_close(&ends[1]);
     if (supervisor->child > 0)
@@ -254,14 +370,20 @@ static bool start_child(struct supervisor *supervisor, struct error *error) {
     return error_set(error, ERROR_MACHINE, "gray: the rendering process cannot be started: %s", strerror(saved));
 }
 
+/* Without its answer the child would wait for ever, unless it is gone: that is met at the end of the channel. */
+static void note_unsent(struct supervisor *supervisor) {
+    struct pollfd peer = {.fd = supervisor->channel.descriptor};
+    bool gone = poll(&peer, 1, 0) == 1 && (peer.revents & POLLHUP) != 0;
+    supervisor->broken = supervisor->broken || !gone;
+}
+
 static void send_answer(struct supervisor *supervisor, enum frame_kind kind, bool ok, bool already,
                         const struct error *error, int descriptor) {
     struct frame_answer answer = {.ok = ok, .already = already};
     if (!ok)
         answer.error = *error;
-    /* Without its answer the child would wait for ever. */
     if (!channel_send(&supervisor->channel, kind, &answer, sizeof answer, descriptor))
-        supervisor->broken = true;
+        note_unsent(supervisor);
 }
 
 /* The wish to stop a pass is used up; that to stop everything stays. To be called while the child waits for an answer:
@@ -271,12 +393,71 @@ static void forget_stop(const struct supervisor *supervisor) {
     (void)atomic_compare_exchange_strong(&supervisor->control->cancel, &stop, CANCEL_NOTHING);
 }
 
-static void answer_begin(struct supervisor *supervisor, const struct frame *frame) {
+/* For a script that is begun anew: nothing is left to do for this picture. Without memory it is made again. */
+static void settle(struct supervisor *supervisor, uint32_t number) {
+    uint32_t room = supervisor->settled_count;
+    if (!supervisor->desk.farm)
+        return;
+    if (number >= room) {
+        uint32_t larger = 2 * number + 64;
+        uint8_t *settled = mem_resize(supervisor->settled, larger);
+        if (!settled)
+            return;
+        memset(settled + room, 0, larger - room);
+        supervisor->settled = settled;
+        supervisor->settled_count = larger;
+    }
+    supervisor->settled[number] = 1;
+}
+
+static bool is_settled(const struct supervisor *supervisor, uint32_t number) {
+    return number < supervisor->settled_count && supervisor->settled[number];
+}
+
+static bool same_picture(const struct picture_request *a, const struct picture_request *b) {
+    return a->full_width == b->full_width && a->full_height == b->full_height && a->x0 == b->x0 && a->y0 == b->y0 &&
+           a->width == b->width && a->height == b->height && a->layers == b->layers && a->check == b->check &&
+           digest_equal(a->files, b->files) && strcmp(a->file, b->file) == 0;
+}
+
+/* A script that is begun anew comes to its pictures again; the one that is kept goes on with the tiles it has. False:
+ * the picture is made like any other. */
+static bool answer_retry(struct supervisor *supervisor, const struct picture_request *request) {
     struct desk *desk = &supervisor->desk;
     struct error error = {0};
-    bool already = live_skips(&supervisor->live, desk->pictures + 1);
+    uint32_t number = desk->pictures + 1;
+    bool settled = is_settled(supervisor, number);
+    if (!supervisor->kept)
+        return false;
+    desk->pictures = number;
+    if (number < supervisor->kept) {
+        error_set(&error, ERROR_SCENE, "this picture could not be made before, either");
+        send_answer(supervisor, FRAME_FILM, settled, settled, &error, -1);
+        return true;
+    }
+    bool same = same_picture(request, &desk->current.request);
+    supervisor->kept = 0;
+    if (!same) {
+        desk_abandon(desk);
+        error_set(&error, ERROR_SCENE,
+                  "begun anew after its rendering process was killed, the script makes another picture than before");
+    } else {
+        outlook_reset(&supervisor->control->outlook, progress_wants_outlook(&desk->progress));
+    }
+    send_answer(supervisor, FRAME_FILM, same, false, &error, same ? desk->current.memory.descriptor : -1);
+    return true;
+}
+
+static void answer_begin(struct supervisor *supervisor, const struct frame *frame) {
+    struct desk *desk = &supervisor->desk;
+    if (answer_retry(supervisor, &frame->body.request))
+        return;
+    struct error error = {0};
+    bool already = live_skips(&supervisor->live, desk->pictures + 1) || is_settled(supervisor, desk->pictures + 1);
     bool ok = desk_begin(desk, &frame->body.request, &already, &error);
     bool film = ok && !already && !frame->body.request.check;
+    if (ok && already)
+        settle(supervisor, desk->pictures);
     supervisor->live.number = film ? desk->pictures : supervisor->live.number;
     if (film && supervisor->window &&
         !live_begin(&supervisor->live, supervisor->window, &desk->current.request, desk->current.memory.block,
@@ -292,7 +473,7 @@ static void send_order(struct supervisor *supervisor, const struct studio_order 
     supervisor->live.waiting = false;
     forget_stop(supervisor);
     if (!channel_send(&supervisor->channel, FRAME_ORDER, order, sizeof *order, -1))
-        supervisor->broken = true;
+        note_unsent(supervisor);
 }
 
 static void end_picture(struct supervisor *supervisor, bool quit) {
@@ -327,11 +508,13 @@ static void restart(struct supervisor *supervisor) {
         end_picture(supervisor, true);
 }
 
-static void take_home(struct supervisor *supervisor, bool (*take)(const struct live *live, const char *picture_name,
-                                                                  char *name, struct error *error)) {
+static void take_home(struct supervisor *supervisor,
+                      bool (*take)(const struct live *live, const struct file_target *picture, char *name,
+                                   struct error *error)) {
     struct error error;
     char name[NAME_LIMIT], line[NAME_LIMIT + 64];
-    bool ok = take(&supervisor->live, supervisor->live.name, name, &error);
+    const struct file_target picture = {.path = supervisor->live.name, .rules = &supervisor->desk.files.saved};
+    bool ok = take(&supervisor->live, &picture, name, &error);
     (void)snprintf(line, sizeof line, ok ? "gray: notice: %s is written" : "%s", ok ? name : error.text);
     desk_line(&supervisor->desk, ok ? LINE_NOTICE : LINE_ERROR, line);
 }
@@ -381,11 +564,25 @@ static void answer_done(struct supervisor *supervisor, const struct frame *frame
     struct error error = {0};
     live_detach(&supervisor->live);
     bool ok = desk_done(&supervisor->desk, &frame->body.report, &error);
+    if (ok)
+        settle(supervisor, supervisor->desk.pictures);
     if (supervisor->finishing) { /* the tiles under way were the last ones: the picture is whole, and the end is here */
         supervisor->deadline = progress_clock() + patience;
         atomic_store(&supervisor->control->cancel, CANCEL_ALL);
     }
     send_answer(supervisor, FRAME_ANSWER, ok, false, &error, -1);
+}
+
+/* A script that was begun anew has ended before it came to its picture again. */
+static void drop_kept(struct supervisor *supervisor, const struct frame_script *script) {
+    struct error error;
+    error_set(&error, ERROR_SCENE,
+              "%.400s: begun anew after its rendering process was killed, the script did not come to %.400s again, "
+              "which is not written",
+              supervisor->options->scripts[script->index], supervisor->desk.current.name);
+    desk_abandon(&supervisor->desk);
+    supervisor->kept = 0;
+    note_error(supervisor, &error);
 }
 
 static void note_script(struct supervisor *supervisor, const struct frame_script *script) {
@@ -400,6 +597,10 @@ static void note_script(struct supervisor *supervisor, const struct frame_script
     }
     supervisor->next_script++;
     supervisor->script_used = 0;
+    supervisor->tries = 0;
+    supervisor->pictures_before = supervisor->desk.pictures;
+    if (supervisor->kept)
+        drop_kept(supervisor, script);
     script_goes_on(supervisor);
     supervisor->stop = supervisor->stop || script->status == ERROR_USAGE || script->status == ERROR_CANCELLED;
     /* What a wish to stop means was noted when it came. */
@@ -409,6 +610,9 @@ static void note_script(struct supervisor *supervisor, const struct frame_script
 
 static void note_read(struct supervisor *supervisor, const struct frame_read *read) {
     struct error error;
+    picture_files_keep(&supervisor->desk.files, read->version.identity, read->written);
+    if (read->written)
+        return;
     if (supervisor->watch.open && !watch_add(&supervisor->watch, read->path, &read->version, progress_clock())) {
         (void)error_no_memory(&error, "the list of files that are watched");
         note_error(supervisor, &error);
@@ -421,17 +625,18 @@ static void take_frame(struct supervisor *supervisor, const struct frame *frame)
     switch (frame->kind) {
     case FRAME_LINE:
         tell(supervisor, frame->body.line.kind, frame->body.line.text);
+        error_stream_note_handled(&supervisor->control->error_stream);
         return;
     case FRAME_BEGIN:
-        if (current->open)
+        if (current->open && !supervisor->kept)
             break;
         script_stops(supervisor);
         answer_begin(supervisor, frame);
-        if (!current->open)
+        if (!current->open || supervisor->kept)
             script_goes_on(supervisor);
         return;
     case FRAME_DONE:
-        if (!current->open || current->request.check || supervisor->deadline > 0)
+        if (!current->open || supervisor->kept || current->request.check || supervisor->deadline > 0)
             break;
         script_goes_on(supervisor);
         answer_done(supervisor, frame);
@@ -444,7 +649,7 @@ static void take_frame(struct supervisor *supervisor, const struct frame *frame)
             end_picture(supervisor, true);
         return;
     case FRAME_ABANDON:
-        if (!current->open)
+        if (!current->open || supervisor->kept)
             break;
         live_detach(&supervisor->live);
         desk_abandon(&supervisor->desk);
@@ -500,11 +705,17 @@ static void talk_to_child(struct supervisor *supervisor) {
             supervisor->out_of_time = supervisor->deadline == 0;
             break;
         }
+        if (is_stalled(supervisor)) {
+            supervisor->stalled = supervisor->deadline == 0;
+            break;
+        }
         if (watched[1].revents)
             read_signals(supervisor);
+        leave_abandoned(supervisor);
         if (supervisor->deadline > 0 && progress_clock() > supervisor->deadline)
             break;
         desk_show_progress(&supervisor->desk);
+        show_notes(supervisor);
         step_window(supervisor);
         if (files_changed(supervisor))
             restart(supervisor);
@@ -531,11 +742,13 @@ static int reap_child(struct supervisor *supervisor) {
     for (;;) {
         pid_t got = waitpid(supervisor->child, &how, WNOHANG);
         if (got == supervisor->child || (got < 0 && errno != EINTR))
-            return how;
+            break;
         if (progress_clock() > limit || supervisor->deadline > 0)
             (void)kill(supervisor->child, SIGKILL);
         (void)nanosleep(&pause, NULL);
     }
+    error_stream_free(&supervisor->control->error_stream);
+    return how;
 }
 
 /* The child is gone in the middle of a script. (os.exit in a script ends the script, not the process.) */
@@ -553,6 +766,9 @@ static void tell_death(struct supervisor *supervisor, int how) {
     else if (supervisor->broken)
         error_set(&error, ERROR_MACHINE, "%.400s: the rendering process did not keep to its protocol%s", script,
                   making);
+    else if (supervisor->stalled)
+        error_set(&error, ERROR_MACHINE, "%.400s: the rendering process stood still for %g s%s", script,
+                  supervisor->options->farm_stall, making);
     else if (WIFSIGNALED(how) && WTERMSIG(how) == SIGKILL)
         error_set(&error, ERROR_MACHINE, "%.400s: the rendering process was killed%s (out of memory?)", script, making);
     else if (WIFSIGNALED(how))
@@ -564,14 +780,47 @@ static void tell_death(struct supervisor *supervisor, int how) {
     note_error(supervisor, &error);
 }
 
+/* In a farm a script whose renderer was killed, by this process or by another one, is begun anew: its pictures that are
+ * finished are passed over. The first rank keeps the tiles of the picture that was being made, the others give theirs
+ * back. */
+static bool tries_again(struct supervisor *supervisor, int how) {
+    struct desk *desk = &supervisor->desk;
+    char text[512];
+    bool killed = WIFSIGNALED(how) && WTERMSIG(how) == SIGKILL;
+    if (!desk->farm || !killed || supervisor->out_of_time || supervisor->broken || supervisor->tries >= TRIES_MAX)
+        return false;
+    if (supervisor->stalled)
+        (void)snprintf(
+            text, sizeof text,
+            "has killed its rendering process, which stood still for %g s (--farm-stall); %.200s begins anew",
+            supervisor->options->farm_stall, supervisor->options->scripts[supervisor->next_script]);
+    else
+        (void)snprintf(text, sizeof text, "has lost its rendering process, which was killed; %.200s begins anew",
+                       supervisor->options->scripts[supervisor->next_script]);
+    farm_note(desk->farm, text);
+    supervisor->tries++;
+    if (farm_is_first(desk->farm) && desk->current.open && !desk->current.request.check) {
+        farm_take_back_own(desk->farm);
+        supervisor->kept = supervisor->kept ? supervisor->kept : desk->pictures;
+    } else {
+        desk_abandon(desk);
+    }
+    desk->pictures = supervisor->pictures_before;
+    return true;
+}
+
 /* What the end of the child means for the scripts that are left. */
 static void judge_end(struct supervisor *supervisor, int how) {
     bool all_ended = supervisor->next_script >= supervisor->options->script_count;
     if (supervisor->deadline > 0) {
         /* It was told to stop; how it did does not matter. */
+    } else if (!all_ended && !supervisor->stop && tries_again(supervisor, how)) {
+        return;
     } else if (!all_ended && !supervisor->stop) {
         tell_death(supervisor, how);
         supervisor->next_script++;
+        supervisor->tries = 0;
+        supervisor->pictures_before = supervisor->desk.pictures;
     } else if (how != 0) {
         struct error error;
         error_set(&error, ERROR_MACHINE, "gray: the rendering process failed after its work (%s %d)",
@@ -580,6 +829,7 @@ static void judge_end(struct supervisor *supervisor, int how) {
     }
     live_detach(&supervisor->live);
     desk_abandon(&supervisor->desk);
+    supervisor->kept = 0;
 }
 
 /* A child that is there goes on; another one is started where there is none. */
@@ -590,6 +840,8 @@ static void run_children(struct supervisor *supervisor) {
         supervisor->broken = false;
         if (!there && !start_child(supervisor, &error)) {
             note_error(supervisor, &error);
+            desk_abandon(&supervisor->desk);
+            supervisor->kept = 0;
             return;
         }
         talk_to_child(supervisor);
@@ -674,6 +926,13 @@ static void run_and_watch(struct supervisor *supervisor) {
     answer_again(supervisor, false);
 }
 
+/* Where the farm waits for other ranks. */
+static void poll_in_farm(void *context) {
+    struct supervisor *supervisor = context;
+    read_signals(supervisor);
+    show_notes(supervisor);
+}
+
 static void tell_foreign_line(void *context, const char *line) {
     struct supervisor *supervisor = context;
     desk_line(&supervisor->desk, LINE_WARNING, line);
@@ -684,49 +943,85 @@ static bool start_farm(struct supervisor *supervisor, const struct farm_transpor
     uint32_t threads = (uint32_t)(supervisor->options->threads ? supervisor->options->threads : processors);
     if (!transport)
         return true;
-    supervisor->desk.farm = farm_create(transport, 2 * threads, supervisor->control);
-    return supervisor->desk.farm || error_no_memory(error, "the farm");
+    supervisor->desk.farm = farm_create(transport, 2 * threads, supervisor->options->farm_silence, supervisor->control);
+    if (!supervisor->desk.farm)
+        return error_no_memory(error, "the farm");
+    atomic_store(&supervisor->control->error_stream.mute, transport->rank > 0);
+    farm_set_poll(supervisor->desk.farm, poll_in_farm, supervisor);
+    return true;
 }
 
-/* The first rank stays until the others have ended. */
+/* The first rank stays until the others have ended; all is written before. It also says what became of the pictures:
+ * what went wrong on another rank alone is a line, not a status. */
 static void end_farm(struct supervisor *supervisor) {
-    if (supervisor->desk.farm)
-        farm_finish(supervisor->desk.farm, supervisor->status == 0, tell_foreign_line, supervisor);
-    farm_destroy(supervisor->desk.farm);
+    struct farm *farm = supervisor->desk.farm;
+    if (!farm)
+        return;
+    bool interrupted = supervisor->ended && supervisor->status == ERROR_CANCELLED;
+    supervisor->all_written = true;
+    if (!farm_is_first(farm) && !interrupted)
+        supervisor->status = 0;
+    farm_finish(farm, supervisor->status == 0, tell_foreign_line, supervisor);
+    leave_abandoned(supervisor);
+    show_notes(supervisor);
+    farm_destroy(farm);
     supervisor->desk.farm = NULL;
+    mem_free(supervisor->settled);
+    supervisor->settled = NULL;
 }
 
-int supervisor_run(const struct options *options, const struct program_parts *parts) {
-    const struct farm_transport *transport = parts->transport;
-    struct supervisor supervisor = {
-        .options = options, .window = parts->window, .signals = -1, .channel = {.descriptor = -1}};
+static int run(struct supervisor *supervisor, const struct farm_transport *transport) {
+    const struct options *options = supervisor->options;
     struct error error;
-    supervisor.control = mem_share(sizeof *supervisor.control);
-    supervisor.live.control = supervisor.control;
-    supervisor.live.tells = options->verbose;
-    desk_init(&supervisor.desk, options, supervisor.control);
-    bool ready = supervisor.control
-                     ? listen_to_signals(&supervisor, &error) && start_farm(&supervisor, transport, &error) &&
-                           (!options->watch || watch_scripts(&supervisor, &error))
+    supervisor->control = mem_share(sizeof *supervisor->control);
+    supervisor->live.control = supervisor->control;
+    supervisor->live.tells = options->verbose;
+    desk_init(&supervisor->desk, options, supervisor->control);
+    supervisor->desk.takes_text = wait_for_reader;
+    supervisor->desk.takes_context = supervisor;
+    bool ready = supervisor->control
+                     ? listen_to_signals(supervisor, &error) && start_farm(supervisor, transport, &error) &&
+                           (!options->watch || watch_scripts(supervisor, &error))
                      : error_no_memory(&error, "the rendering process");
-    desk_tell_trust(&supervisor.desk);
     if (ready)
-        run_and_watch(&supervisor);
+        standard_streams_begin(&supervisor->streams);
+    desk_set_interrupt(&supervisor->desk, &(struct file_interrupt){supervisor->signals, is_stopped, supervisor});
+    desk_tell_trust(&supervisor->desk);
+    if (ready)
+        run_and_watch(supervisor);
     else
-        note_error(&supervisor, &error);
-    end_farm(&supervisor);
-    live_end(&supervisor.live);
-    if (supervisor.quit_at > 0) {
+        note_error(supervisor, &error);
+    live_end(&supervisor->live);
+    if (supervisor->quit_at > 0) {
         char line[80];
         (void)snprintf(line, sizeof line, "gray: the window closed in %.1f ms",
-                       1000 * (progress_clock() - supervisor.quit_at));
-        desk_line(&supervisor.desk, LINE_DETAIL, line);
+                       1000 * (progress_clock() - supervisor->quit_at));
+        desk_line(&supervisor->desk, LINE_DETAIL, line);
     }
-    watch_close(&supervisor.watch);
-    if (!desk_finish(&supervisor.desk, supervisor.status == 0, &error))
-        note_error(&supervisor, &error);
-    if (supervisor.signals >= 0)
-        (void)close(supervisor.signals);
-    mem_unshare(supervisor.control, sizeof *supervisor.control);
-    return supervisor.status;
+    watch_close(&supervisor->watch);
+    if (!desk_finish(&supervisor->desk, supervisor->status == 0, &error) && error.kind != ERROR_CANCELLED)
+        note_error(supervisor, &error);
+    if (!desk_finish_output(&supervisor->desk, &error))
+        note_error(supervisor, &error);
+    end_farm(supervisor);
+    standard_streams_end(&supervisor->streams);
+    if (supervisor->signals >= 0)
+        (void)close(supervisor->signals);
+    mem_unshare(supervisor->control, sizeof *supervisor->control);
+    return supervisor->status;
+}
+
+/* Not on the stack: that may be a small one. */
+int supervisor_run(const struct options *options, const struct program_parts *parts) {
+    struct supervisor *supervisor = mem_alloc_zero(1, sizeof *supervisor);
+    if (!supervisor) {
+        (void)fputs("gray: out of memory\n", stderr);
+        return ERROR_MACHINE;
+    }
+    supervisor->options = options;
+    supervisor->window = parts->window;
+    supervisor->signals = supervisor->channel.descriptor = -1;
+    int status = run(supervisor, parts->transport);
+    mem_free(supervisor);
+    return status;
 }

@@ -1,37 +1,23 @@
 /* All functions go character by character and write at once, so they need no memory and have no limit. */
 #include "app/text.h"
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "base/terminal_text.h"
+
+#include <poll.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
-/* Length of the well-formed UTF-8 sequence at `at`, or 0 (RFC 3629: no overlong forms, no surrogates, up to U+10FFFF).
- */
-static size_t utf8_length(const unsigned char *at) {
-    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
-    size_t length = at[0] < 0x80 ? 1 : at[0] >> 5 == 6 ? 2 : at[0] >> 4 == 14 ? 3 : at[0] >> 3 == 30 ? 4 : 0;
-    if (length < 2)
-        return length;
-    uint32_t code = at[0] & (0xffu >> (length + 1));
-    for (size_t i = 1; i < length; i++) {
-        if ((at[i] & 0xc0) != 0x80)
-            return 0;
-        code = code << 6 | (at[i] & 0x3fu);
-    }
-    return code < least[length] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000) ? 0 : length;
-}
-
-static bool is_control(const unsigned char *at, size_t length) {
-    bool upper = at[0] >= 0x80 && at[0] < 0xa0; /* a lone byte */
-    return length < 2 ? (at[0] < 32 && at[0] != '\t') || at[0] == 127 || upper : at[0] == 0xc2 && at[1] < 0xa0;
+static bool is_control(const unsigned char *at) {
+    enum character_class class = character_class_of(at);
+    return class == CHARACTER_CONTROL || class == CHARACTER_BREAK || class == CHARACTER_LINE_END;
 }
 
 static void print_cleaned(FILE *stream, const char *text, bool continued) {
     for (const unsigned char *at = (const unsigned char *)text; *at;) {
         size_t length = utf8_length(at), whole = length > 0 ? length : 1;
         bool next_line = continued && at[0] == '\n' && at[1] == ' ' && at[2] == ' ';
-        if (is_control(at, length) && !next_line)
+        if (is_control(at) && !next_line)
             (void)fputc('?', stream);
         else
             (void)fwrite(at, 1, whole, stream);
@@ -44,7 +30,7 @@ size_t text_clean_piece(const char *text, char piece[8], size_t *taken) {
     const unsigned char *at = (const unsigned char *)text;
     size_t length = utf8_length(at);
     *taken = length ? length : 1;
-    if (is_control(at, length)) {
+    if (is_control(at)) {
         piece[0] = '?';
         return 1;
     }
@@ -64,6 +50,11 @@ void text_print_line(FILE *stream, const char *text) {
     print_cleaned(stream, text, false);
 }
 
+void text_print_scene_line(FILE *stream, const char *text) {
+    (void)fputs(scene_mark(text), stream);
+    print_cleaned(stream, text, false);
+}
+
 void text_print_lines(FILE *stream, const char *text) {
     print_cleaned(stream, text, true);
 }
@@ -76,8 +67,8 @@ size_t text_json_piece(const char *text, char piece[8], size_t *taken) {
         return (size_t)snprintf(piece, 8, "\\ufffd");
     if (*at == '"' || *at == '\\')
         return (size_t)snprintf(piece, 8, "\\%c", *at);
-    if (*at < 32 || *at == 127)
-        return (size_t)snprintf(piece, 8, "\\u%04x", *at);
+    if (*at == '\t' || is_control(at))
+        return (size_t)snprintf(piece, 8, "\\u%04x", (unsigned)utf8_code(at, length) & 0xffff);
     memcpy(piece, at, length);
     return length;
 }
@@ -100,4 +91,13 @@ void text_time(double seconds, char *out, size_t size) {
         (void)snprintf(out, size, "%lu min %lu s", whole / 60, whole % 60);
     else
         (void)snprintf(out, size, "%lu h %lu min", whole / 3600, whole / 60 % 60);
+}
+
+/* Of other kinds of descriptors poll may know nothing; writing to them does not wait. */
+bool text_error_is_taken(void) {
+    struct stat status;
+    struct pollfd watched = {.fd = STDERR_FILENO, .events = POLLOUT};
+    bool waits = fstat(STDERR_FILENO, &status) == 0 &&
+                 (S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode) || S_ISSOCK(status.st_mode));
+    return !waits || poll(&watched, 1, 0) != 0;
 }
