@@ -1,5 +1,6 @@
 /* Farms without machines: ranks in one process, messages in queues, tiles painted by the test. Whatever the order of
- * steps, whatever nonsense travels between true messages and whoever falls out, the first rank ends with every tile. */
+ * steps, whatever nonsense travels between true messages and whoever falls out or is silent, the first rank ends with
+ * every tile. Time passes when the test says so. */
 #include "app/farm.h"
 #include "tests/harness.h"
 
@@ -9,7 +10,8 @@
 
 enum { RANKS = 4, WIDTH = 130, HEIGHT = 70, QUEUE = 4096 };
 /* As in farm.c. */
-enum { BEGIN = 1, TILE, LEAVE, LINE, BYE, ANSWER, ASSIGN, CLOSE, NO_KIND = 99 };
+enum { BEGIN = 1, TILE, LEAVE, LINE, BYE, ANSWER, ASSIGN, CLOSE, ALIVE, NOTE, END, NO_KIND = 99 };
+#define SILENCE 8.0
 
 struct letter {
     int from, kind;
@@ -54,6 +56,18 @@ static bool receive(void *context, int *from, int *kind, void *data, size_t *siz
     return true;
 }
 
+static double time_now;
+static double read_clock(void *context) {
+    (void)context;
+    return time_now;
+}
+
+static int silent_at_end[RANKS];
+static void note_end(void *context, int silent, double patience) {
+    silent_at_end[*(const int *)context] = silent;
+    CHECK_NEAR(patience, SILENCE, 0);
+}
+
 static struct film films[RANKS];
 static struct control controls[RANKS];
 static int ranks[RANKS] = {0, 1, 2, 3};
@@ -65,9 +79,14 @@ static void begin_farm(int count) {
         struct error error;
         size_t bytes;
         controls[rank] = (struct control){0};
-        transports[rank] = (struct farm_transport){
-            .context = &ranks[rank], .rank = rank, .size = count, .send = send, .receive = receive};
-        farms[rank] = farm_create(&transports[rank], 2, &controls[rank]);
+        transports[rank] = (struct farm_transport){.context = &ranks[rank],
+                                                   .rank = rank,
+                                                   .size = count,
+                                                   .send = send,
+                                                   .receive = receive,
+                                                   .clock = read_clock,
+                                                   .ended = note_end};
+        farms[rank] = farm_create(&transports[rank], 2, SILENCE, &controls[rank]);
         CHECK(farms[rank] != NULL && farm_is_first(farms[rank]) == (rank == 0));
         films[rank] = (struct film){.full_width = WIDTH, .full_height = HEIGHT};
         CHECK(film_size(WIDTH, HEIGHT, &bytes, &error));
@@ -137,10 +156,10 @@ static void disturb(struct test_random *random) {
     uint32_t pairs[][2] = {{1, 9999}, {7, 0}, {1, (uint32_t)test_uniform(random, 0, 15)}};
     uint8_t bytes[64] = {0};
     memcpy(bytes, pairs[(int)test_uniform(random, 0, 3)], 8);
-    static const int to_first[] = {BEGIN, TILE, ANSWER, ASSIGN, CLOSE, NO_KIND};
-    post(from, 0, to_first[(int)test_uniform(random, 0, 6)], bytes, (size_t)test_uniform(random, 0, 40));
-    static const int to_others[] = {BEGIN, TILE, LEAVE, LINE, NO_KIND, ANSWER};
-    post(0, from, to_others[(int)test_uniform(random, 0, 6)], bytes, test_uniform(random, 0, 1) < 0.5 ? 8 : 5);
+    static const int to_first[] = {BEGIN, TILE, ANSWER, ASSIGN, CLOSE, ALIVE, NOTE, END, NO_KIND};
+    post(from, 0, to_first[(int)test_uniform(random, 0, 9)], bytes, (size_t)test_uniform(random, 0, 40));
+    static const int to_others[] = {BEGIN, TILE, LEAVE, LINE, NO_KIND, ANSWER, ALIVE, NOTE};
+    post(0, from, to_others[(int)test_uniform(random, 0, 8)], bytes, test_uniform(random, 0, 1) < 0.5 ? 8 : 5);
     memcpy(bytes, pairs[(int)test_uniform(random, 0, 2)], 8); /* neither a tile nor a picture that there is */
     post(0, from, test_uniform(random, 0, 1) < 0.5 ? ASSIGN : CLOSE, bytes, bytes[0] == 1 && bytes[4] == 15 ? 5 : 8);
 }
@@ -196,6 +215,199 @@ TEST(ranks_in_any_order_with_nonsense_between_make_every_tile_once) {
         farm_end(farms[0], false);
         end_farm(RANKS);
     }
+}
+
+/* Begins a picture on all ranks. */
+static void begin_picture(int count) {
+    struct error error;
+    struct tile_picture picture = picture_of(1, "a.png");
+    for (int rank = 0; rank < count; rank++) {
+        bool already = false;
+        CHECK(farm_begin(farms[rank], &picture, &films[rank], &already, &error) && !already);
+    }
+}
+
+/* Time passes in small steps, in which these ranks are there. */
+static void pass(double seconds, const char *there) {
+    for (double end = time_now + seconds; time_now < end; time_now += 0.25) {
+        if (strchr(there, '0') && !is_open(0))
+            return;
+        for (int rank = RANKS - 1; rank >= 0; rank--) {
+            if (strchr(there, '0' + rank))
+                farm_step(farms[rank]);
+        }
+    }
+}
+
+static uint32_t tiles_in(int rank, enum film_tile state) {
+    return film_tiles_in(&films[rank], state);
+}
+
+static void expect_note(const char *part) {
+    char line[256] = "";
+    if (!farm_next_note(farms[0], line, sizeof line) || strncmp(line, "gray: warning: rank ", 20) != 0 ||
+        !strstr(line, part))
+        test_fail(__FILE__, __LINE__, "\"%s\" does not say \"%s\"", line, part);
+}
+
+/* Makes and sends tiles until the picture is whole. */
+static void make_all(const char *makers) {
+    for (int step = 0; step < 1000 && is_open(0); step++) {
+        for (int rank = 0; rank < RANKS; rank++) {
+            if (!strchr(makers, '0' + rank))
+                continue;
+            paint(&films[rank]);
+            farm_step(farms[rank]);
+        }
+    }
+    CHECK(!is_open(0));
+    check_film(&films[0]);
+}
+
+TEST(tiles_of_a_silent_rank_are_made_by_others) {
+    char line[256];
+    begin_farm(3);
+    begin_picture(3);
+    pass(SILENCE * 0.9, "012");
+    CHECK_EQ_INT(tiles_in(0, FILM_TILE_TAKEN), 4); /* of ranks 1 and 2 */
+    pass(SILENCE * 3, "012");
+    CHECK(!farm_next_note(farms[0], line, sizeof line)); /* all of them send heartbeats */
+    pass(SILENCE * 1.2, "01");
+    expect_note("rank 2 has been silent for 8 s");
+    CHECK_EQ_INT(tiles_in(0, FILM_TILE_TAKEN), 2);
+    make_all("01");
+    end_farm(3);
+}
+
+TEST(a_rank_that_is_heard_again_makes_tiles_again_and_what_it_sends_is_harmless) {
+    begin_farm(3);
+    begin_picture(3);
+    pass(1, "012");
+    paint(&films[2]); /* finished, but not sent before the silence */
+    paint(&films[2]);
+    pass(SILENCE * 1.2, "01");
+    expect_note("rank 2 has been silent");
+    for (int i = 0; i < 5; i++) { /* one of its tiles is made by another rank */
+        paint(&films[1]);
+        pass(0.25, "01");
+    }
+    uint32_t done = tiles_in(0, FILM_TILE_DONE);
+    pass(1, "012");
+    expect_note("rank 2 is heard again");
+    CHECK(tiles_in(0, FILM_TILE_DONE) >= done && is_open(0));
+    CHECK(tiles_in(2, FILM_TILE_WANTED) > 0);
+    make_all("012");
+    end_farm(3);
+}
+
+TEST(a_tile_that_is_given_again_is_not_made_by_two_at_once) {
+    begin_farm(2);
+    begin_picture(2);
+    pass(1, "01");
+    uint32_t tile = 0;
+    while (films[1].tiles[tile] != FILM_TILE_WANTED)
+        tile++;
+    films[1].tiles[tile] = FILM_TILE_TAKEN; /* a worker has it */
+    pass(SILENCE * 1.2, "0");
+    uint32_t again[2] = {1, tile};
+    post(0, 1, ASSIGN, again, sizeof again);
+    pass(1, "01");
+    CHECK_EQ_INT(films[1].tiles[tile], FILM_TILE_TAKEN);
+    films[1].tiles[tile] = FILM_TILE_WANTED;
+    make_all("01");
+    end_farm(2);
+}
+
+TEST(time_in_which_the_first_rank_did_not_run_is_nobody_s_silence) {
+    char line[256];
+    begin_farm(2);
+    begin_picture(2);
+    pass(1, "01");
+    time_now += 1000 * SILENCE; /* it wrote a picture, was stopped, or the machine slept */
+    pass(SILENCE / 2, "0");
+    CHECK(!farm_next_note(farms[0], line, sizeof line));
+    pass(SILENCE, "0");
+    expect_note("rank 1 has been silent");
+    end_farm(2);
+}
+
+TEST(tiles_of_a_renderer_that_is_gone_are_handed_out_again_on_the_first_rank) {
+    begin_farm(2);
+    begin_picture(2);
+    pass(1, "01");
+    for (uint32_t tile = 0; tile < film_tile_count(&films[0]); tile++) {
+        if (films[0].tiles[tile] == FILM_TILE_WANTED)
+            films[0].tiles[tile] = FILM_TILE_TAKEN;
+    }
+    CHECK_EQ_INT(tiles_in(0, FILM_TILE_TAKEN), 4);
+    farm_take_back_own(farms[0]);
+    CHECK_EQ_INT(tiles_in(0, FILM_TILE_TAKEN), 2);
+    pass(0.25, "0");
+    CHECK_EQ_INT(tiles_in(0, FILM_TILE_WANTED), 2);
+    make_all("01");
+    end_farm(2);
+}
+
+static void ignore_line(void *context, const char *line) {
+    (void)context;
+    (void)line;
+}
+
+static void let_time_pass(void *context) {
+    (void)context;
+    time_now += 0.25;
+}
+
+TEST(the_end_of_a_farm_waits_for_no_silent_rank) {
+    begin_farm(3);
+    post(1, 0, BYE, "", 1);
+    farm_set_poll(farms[0], let_time_pass, NULL);
+    farm_finish(farms[0], true, ignore_line, NULL);
+    expect_note("rank 2 has been silent");
+    CHECK_EQ_INT(silent_at_end[0], 2); /* rank 1 has said goodbye, and nothing since then */
+    /* Both read that it is over, the silent one when it goes on; it asks for a picture that comes too late. */
+    struct error error;
+    struct tile_picture later = picture_of(2, "b.png");
+    bool already = false;
+    struct farm *first = farms[0];
+    farms[0] = NULL; /* it is gone */
+    CHECK(!farm_begin(farms[2], &later, &films[2], &already, &error) && error.kind == ERROR_CANCELLED);
+    farm_finish(farms[2], true, ignore_line, NULL);
+    farm_finish(farms[1], true, ignore_line, NULL);
+    CHECK_EQ_INT(silent_at_end[1], 2);
+    CHECK_EQ_INT(silent_at_end[2], 2);
+    farms[0] = first;
+    end_farm(3);
+}
+
+TEST(a_rank_that_missed_the_end_of_the_farm_gives_up_its_picture) {
+    begin_farm(2);
+    begin_picture(2);
+    pass(1, "01");
+    pass(SILENCE * 1.2, "0");
+    make_all("0");
+    farm_end(farms[0], false);
+    farm_finish(farms[0], true, ignore_line, NULL); /* does not wait for it */
+    CHECK_EQ_INT(controls[1].cancel, 0);
+    pass(0.25, "1");
+    CHECK_EQ_INT(controls[1].cancel, CANCEL_ALL);
+    end_farm(2);
+}
+
+TEST(other_ranks_end_when_the_first_one_is_silent_for_very_long) {
+    struct error error;
+    struct tile_picture picture = picture_of(1, "a.png");
+    bool already = false;
+    begin_farm(2);
+    struct farm *first = farms[0];
+    farms[0] = NULL; /* it does nothing */
+    farm_set_poll(farms[1], let_time_pass, NULL);
+    double begun = time_now;
+    CHECK(!farm_begin(farms[1], &picture, &films[1], &already, &error) && error.kind == ERROR_CANCELLED);
+    CHECK(time_now - begun > 9 * SILENCE && farm_is_abandoned(farms[1]));
+    farm_finish(farms[1], true, ignore_line, NULL); /* does not wait */
+    farms[0] = first;
+    end_farm(2);
 }
 
 static int told;
