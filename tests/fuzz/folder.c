@@ -13,7 +13,7 @@
 /* There with sanitizers only. */
 void __sanitizer_set_report_fd(void *descriptor) __attribute__((weak));
 
-static char folder[64];
+static char folder[256];
 static pid_t owner;
 
 static int remove_entry(const char *path, const struct stat *status, int kind, struct FTW *place) {
@@ -37,7 +37,10 @@ static void remove_folder(void) {
 const char *fuzz_folder(void) {
     if (folder[0])
         return folder;
-    (void)snprintf(folder, sizeof folder, "%s/gray-fuzz-XXXXXX", access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp");
+    const char *base = getenv("TMPDIR");
+    if (!base)
+        base = access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp";
+    (void)snprintf(folder, sizeof folder, "%.200s/gray-fuzz-XXXXXX", base);
     if (!mkdtemp(folder) || chdir(folder) != 0)
         abort();
     owner = getpid();
@@ -46,7 +49,7 @@ const char *fuzz_folder(void) {
 }
 
 void fuzz_write(const char *name, const void *bytes, size_t size) {
-    char path[256];
+    char path[512];
     (void)snprintf(path, sizeof path, "%s/%s", fuzz_folder(), name);
     int file = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (file < 0 || write(file, bytes, size) != (ssize_t)size)

@@ -1,6 +1,6 @@
-/* A folder of its own for targets that need files, in memory where the system has such a place; the whole program works
- * in it from then on, and it goes at the end. And a way to keep what the code under test says from the terminal, but
- * not what a sanitizer says. */
+/* A folder of its own for targets that need files, below TMPDIR, else in memory where the system has such a place; the
+ * whole program works in it from then on, and it goes at the end. And a way to keep what the code under test says from
+ * the terminal, but not what a sanitizer says. */
 #ifndef GRAY_TESTS_FUZZ_FOLDER_H
 #define GRAY_TESTS_FUZZ_FOLDER_H
 

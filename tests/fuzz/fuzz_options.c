@@ -28,7 +28,8 @@ static void check_ranges(const struct options *options) {
     demand(options->threads >= 0 && options->threads <= 1024);
     demand(options->shard <= options->shards && (options->shard > 0) == (options->shards > 0));
     demand(options->shard_of_pictures <= options->shards_of_pictures);
-    demand(options->checkpoint_every >= 0 && options->script.memory_limit >= 0 && options->script.time_limit >= 0);
+    demand(options->checkpoint_every >= 0 && options->picture_count >= 0 && options->script.time_limit >= 0);
+    demand(options->farm_stall >= 0 && options->farm_silence >= 0);
     demand(options->script_count >= 0 && options->script_count < WORDS && options_isa_name(options) != NULL);
     for (int i = 0; i < options->script_count; i++)
         demand(options->scripts[i] != NULL);

@@ -61,7 +61,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         tile_bytes_repair(bytes, size);
     fuzz_write("c.tiles", bytes, size);
     free(bytes);
-    keeper_init(&keeper, &options);
+    const struct picture_files files = {.options = &options};
+    keeper_init(&keeper, &options, &files);
     if (keeper_open(&keeper, "out.png", notice, &error)) {
         struct tile_picture picture = keeper.old.picture;
         if (!keeper.old.has_picture)

@@ -70,8 +70,8 @@ static void fill_folder(void) {
     fuzz_write("flag.gltf", flag_gltf, sizeof flag_gltf - 1);
     copy_font(start);
     (void)close(start);
-    if (!png_write("cross.png", SIDE, SIDE * 3 / 4, pattern_row, NULL, &error) ||
-        !png_write("square.png", SIDE, SIDE, pattern_row, NULL, &error))
+    if (!png_write(FILE_AT("cross.png"), SIDE, SIDE * 3 / 4, pattern_row, NULL, &error) ||
+        !png_write(FILE_AT("square.png"), SIDE, SIDE, pattern_row, NULL, &error))
         abort();
 }
 
@@ -176,7 +176,7 @@ static bool render_small(void *context, const struct render_request *request, st
 static void run(struct stage *stage) {
     char path[128];
     const struct script_options options = {
-        .transform_order = SCRIPT_ORDER_NEW, .memory_limit = 64, .time_limit = 1, .output_limit = 1};
+        .transform_order = SCRIPT_ORDER_NEW, .memory_limit = 64 << 20, .time_limit = 1, .output_limit = 1 << 20};
     const struct script_host host = {.context = stage,
                                      .settings = settings_default(),
                                      .render = render_small,

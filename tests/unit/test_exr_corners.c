@@ -117,8 +117,8 @@ static bool write_read(const char *path, struct error *error) {
     const struct exr_channel channels[] = {{"Y", values, 2}, {"Z", values + 1, 2}};
     char rows[600];
     (void)snprintf(rows, sizeof rows, "%s.exr", path);
-    if (!exr_write(rows, WIDTH, HEIGHT, ramp_row, NULL, error) ||
-        !exr_write_channels(path, WIDTH, HEIGHT, channels, 2, error))
+    if (!exr_write(FILE_AT(rows), WIDTH, HEIGHT, ramp_row, NULL, error) ||
+        !exr_write_channels(FILE_AT(path), WIDTH, HEIGHT, channels, 2, error))
         return false;
     struct image *image = image_read(rows, error);
     bool ok = image && fabs(image_texel(image, 3, 5).g - 15.0 / 64) < 1e-6;

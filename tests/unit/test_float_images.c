@@ -45,7 +45,7 @@ TEST(radiance_and_pfm_pictures_are_read_as_they_were_written) {
         uint32_t width = widths[i / 2];
         struct error error = {0};
         (void)snprintf(path, sizeof path, "%s/a.%s", test_folder(), i % 2 ? "pfm" : "hdr");
-        CHECK((i % 2 ? pfm_write : hdr_write)(path, width, H, light_row, &width, &error));
+        CHECK((i % 2 ? pfm_write : hdr_write)(FILE_AT(path), width, H, light_row, &width, &error));
         struct image *image = image_read(path, &error);
         if (!image) {
             test_fail(__FILE__, __LINE__, "%s", error.text);
@@ -161,7 +161,7 @@ TEST(pictures_of_light_cut_anywhere_are_one_line) {
         uint32_t width = 40;
         struct error error = {0};
         (void)snprintf(path, sizeof path, "%s/a", test_folder());
-        CHECK((i ? pfm_write : hdr_write)(path, width, H, light_row, &width, &error));
+        CHECK((i ? pfm_write : hdr_write)(FILE_AT(path), width, H, light_row, &width, &error));
         size_t size;
         char *file = test_read_file(path, &size);
         no_cut_is_a_picture(file, size);
@@ -226,7 +226,7 @@ TEST(exr_pictures_are_read_as_they_were_written) {
         uint32_t width = widths[i], height = i == 2 ? 50 : H; /* several chunks */
         struct error error = {0};
         (void)snprintf(path, sizeof path, "%s/a.exr", test_folder());
-        CHECK(exr_write(path, width, height, light_row, &width, &error));
+        CHECK(exr_write(FILE_AT(path), width, height, light_row, &width, &error));
         struct image *image = image_read(path, &error);
         if (!image) {
             test_fail(__FILE__, __LINE__, "%s", error.text);
@@ -255,7 +255,7 @@ TEST(exr_pictures_cut_or_changed_anywhere_are_one_line) {
     uint32_t width = 24;
     struct error error = {0};
     (void)snprintf(path, sizeof path, "%s/a.exr", test_folder());
-    CHECK(exr_write(path, width, H, light_row, &width, &error));
+    CHECK(exr_write(FILE_AT(path), width, H, light_row, &width, &error));
     size_t size;
     char *file = test_read_file(path, &size);
     no_cut_is_a_picture(file, size);

@@ -99,7 +99,7 @@ static char *some_exr(size_t *size) {
     if (!exr_can_write())
         test_skip("this build has no OpenEXR");
     (void)snprintf(path, sizeof path, "%s/a.exr", test_folder());
-    CHECK(exr_write(path, WIDTH, HEIGHT, light_row, NULL, &error));
+    CHECK(exr_write(FILE_AT(path), WIDTH, HEIGHT, light_row, NULL, &error));
     return test_read_file(path, size);
 }
 
@@ -150,8 +150,8 @@ TEST(any_allocation_or_call_may_fail_while_light_is_written_and_read) {
 #ifndef GRAY_FAULTS
     test_skip("failures on demand are only in builds with GRAY_FAULTS");
 #endif
-    typedef bool write_light(const char *path, uint32_t width, uint32_t height, float_rows *rows, void *context,
-                             struct error *error);
+    typedef bool write_light(const struct file_target *target, uint32_t width, uint32_t height, float_rows *rows,
+                             void *context, struct error *error);
     static write_light *const writers[] = {pfm_write, hdr_write, exr_write};
     for (int w = 0; w < (exr_can_write() ? 3 : 2); w++)
         for (int kind = 0; kind < 2; kind++)
@@ -161,7 +161,7 @@ TEST(any_allocation_or_call_may_fail_while_light_is_written_and_read) {
                 (void)snprintf(path, sizeof path, "%s/a.%d", test_folder(), w);
                 uint64_t before = fault_count((enum fault_kind)kind);
                 fault_at((enum fault_kind)kind, k);
-                bool ok = writers[w](path, WIDTH, HEIGHT, light_row, NULL, &error);
+                bool ok = writers[w](FILE_AT(path), WIDTH, HEIGHT, light_row, NULL, &error);
                 struct image *image = ok ? image_read(path, &error) : NULL;
                 fault_at((enum fault_kind)kind, 0);
                 over = fault_count((enum fault_kind)kind) - before < k;

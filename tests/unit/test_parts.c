@@ -378,11 +378,12 @@ TEST(an_interrupted_run_keeps_what_is_finished) {
  * has its children ignore SIGINT: env sets it right.) */
 TEST(control_c_finishes_tiles_and_writes_what_is_asked) {
     put("scene.lua", ONE);
-    gives("$gray scene.lua -full -ss 3 -o whole.png; echo old >out.png; for moment in " MOMENTS "; do "
+    gives("$gray scene.lua -full -ss 3 -o whole.png; printf 'PF\\n1 old' >out.png; for moment in " MOMENTS "; do "
           "env --default-signal=INT $gray scene.lua -full -ss 3 --checkpoint auto --checkpoint-every 1000 --partial "
           "2>said.txt & pid=$!; sleep $moment; kill -INT $pid 2>kill.txt; wait $pid; status=$?; "
-          "test -s out.partial.png && break; rm -f out.png.checkpoint; echo old >out.png; done; cat said.txt >&2; "
-          "test -s out.png.checkpoint && test $(cat out.png) = old && exit $status",
+          "test -s out.partial.png && break; rm -f out.png.checkpoint; printf 'PF\\n1 old' >out.png; done; cat "
+          "said.txt >&2; "
+          "test -s out.png.checkpoint && grep -q old out.png && exit $status",
           130, "tiles under way are finished");
     gives("cat said.txt >&2; rm out.png", 0, "gray: notice: out.partial.png holds ");
     gives("$gray scene.lua -q -full -ss 3 --resume && cmp out.png whole.png", 0, NULL);
@@ -401,11 +402,25 @@ TEST(a_second_control_c_stops_at_once) {
 
 TEST(a_checkpoint_that_cannot_be_written_is_a_warning) {
     put("scene.lua", SCENE "picture('out.png', 100, 70)\n");
-    gives("mkdir d; $gray scene.lua --checkpoint d --checkpoint-every 0", 0, "");
-    CHECK(exists("out.png"));
-    gives("$gray scene.lua -full -ss 9 -o b.png --checkpoint /dev/full/x --checkpoint-every 0", 0,
-          "gray: warning: the checkpoint: /dev/full/x");
+    gives("$gray scene.lua -full -ss 16 -o b.png --checkpoint d/c --checkpoint-every 0 & "
+          "for i in 1 2 3 4 5 6 7 8 9 10; do sleep 0.1; test -e d/c && break; done; "
+          "until { rm -r d; echo >d; } 2>/dev/null; do :; done; wait $!",
+          0, "gray: warning: the checkpoint: d/c: ");
     CHECK(exists("b.png"));
+}
+
+TEST(a_run_that_ends_before_its_first_checkpoint_leaves_none) {
+    put("scene.lua", SCENE "picture('out.png', 20, 14)\n");
+    gives("$gray scene.lua --checkpoint auto", 0, "");
+    CHECK(exists("out.png") && !exists("out.png.checkpoint"));
+}
+
+TEST(a_checkpoint_with_a_name_that_cannot_be_written_ends_the_run_before_it_renders) {
+    put("scene.lua", SCENE "picture('out.png', 4000, 4000)\n");
+    gives("mkdir d; timeout 20 $gray scene.lua -full -ss 16 --checkpoint d", 1, "d: is a folder");
+    gives("timeout 20 $gray scene.lua -full -ss 16 --checkpoint /dev/full/x", 1,
+          "/dev/full/x: cannot be written: Not a directory");
+    CHECK(!exists("out.png"));
 }
 
 TEST(a_part_that_is_there_is_not_made_again) {
@@ -424,7 +439,8 @@ static void need_mpi(void) {
     if (shell("test -x $(dirname $gray)/gray-mpi && command -v mpirun >out.txt") != 0)
         test_skip("there is no gray-mpi beside the program, or no mpirun");
     put("farm.sh", "ranks=$1; shift\n"
-                   "exec env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 TMPDIR=/tmp "
+                   "exec env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+                   "OMPI_MCA_btl_vader_backing_directory=${TMPDIR:-/tmp} "
                    "mpirun --oversubscribe -n $ranks $gray --mpi -q -j 1 \"$@\"\n");
 }
 
@@ -527,7 +543,7 @@ TEST(a_file_of_tiles_gives_back_what_was_put_in) {
             atomic_store(&film.tiles[i], keep ? FILM_TILE_DONE : i % 2 ? FILM_TILE_WANTED : FILM_TILE_ELSEWHERE);
             kept += keep;
         }
-        CHECK(tile_file_write(path, &done, 1, &picture, &film, &error));
+        CHECK(tile_file_write(FILE_AT(path), &done, 1, &picture, &film, &error));
         CHECK(tile_file_read(path, &file, &error));
         CHECK_EQ_INT(file.done_count, 1);
         CHECK_TEXT(file.done[0].name, "first.png");
@@ -569,7 +585,7 @@ TEST(a_file_of_tiles_that_is_cut_or_changed_anywhere_is_refused) {
     for (uint32_t i = 0; i < film_tile_count(&film); i++)
         atomic_store(&film.tiles[i], FILM_TILE_DONE);
     char *path = path_in("x.tiles");
-    CHECK(tile_file_write(path, NULL, 0, &picture, &film, &error));
+    CHECK(tile_file_write(FILE_AT(path), NULL, 0, &picture, &film, &error));
     char *bytes = test_read_file(path, &size);
     int accepted = 0;
     for (size_t cut = 0; cut < size; cut += cut < 2000 ? 1 : 97)

@@ -320,7 +320,7 @@ TEST(png_write_and_read_give_the_same_pixels) {
         struct error error = {0};
         uint32_t width = sizes[i][0];
         (void)snprintf(path, sizeof path, "%s/new/folder/%d.png", test_folder(), i);
-        CHECK(png_write(path, width, sizes[i][1], noise_rows, &width, &error));
+        CHECK(png_write(FILE_AT(path), width, sizes[i][1], noise_rows, &width, &error));
         struct test_picture picture = test_read_picture(path);
         CHECK_EQ_INT(picture.width, width);
         CHECK_EQ_INT(picture.height, sizes[i][1]);
@@ -347,7 +347,7 @@ TEST(png_bytes_depend_on_the_pixels_alone) {
     struct error error = {0};
     for (int i = 0; i < 2; i++) {
         (void)snprintf(path[i], sizeof path[i], "%s/%d.png", test_folder(), i);
-        CHECK(png_write(path[i], width, 80, noise_rows, &width, &error));
+        CHECK(png_write(FILE_AT(path[i]), width, 80, noise_rows, &width, &error));
     }
     size_t size_a = 0, size_b = 0;
     char *a = test_read_file(path[0], &size_a), *b = test_read_file(path[1], &size_b);
@@ -381,7 +381,7 @@ TEST(png_bytes_are_the_same_by_any_number_of_threads) {
         for (int threads = 0; threads < 4; threads++) {
             struct pool *pool = threads ? pool_create(threads, warning) : NULL;
             (void)snprintf(path, sizeof path, "%s/%d-%d.png", test_folder(), kind, threads);
-            CHECK(png_write_from(path, &kinds[kind], pool, &error));
+            CHECK(png_write_from(FILE_AT(path), &kinds[kind], pool, &error));
             pool_destroy(pool);
             char *bytes = test_read_file(path, &size);
             first = first ? first : bytes;
@@ -412,7 +412,8 @@ TEST(png_bytes_are_the_same_by_any_number_of_threads) {
 TEST(png_write_tells_of_a_full_disk) {
     struct error error = {0};
     uint32_t width = 2000;
-    CHECK(!png_write("/dev/full", width, 100, noise_rows, &width, &error));
+    const struct file_rules in_place = {.in_place = true};
+    CHECK(!png_write(&(struct file_target){.path = "/dev/full", .rules = &in_place}, width, 100, noise_rows, &width, &error));
     CHECK_EQ_INT(error.kind, ERROR_MACHINE);
     CHECK(strncmp(error.text, "/dev/full: ", 11) == 0 && !strchr(error.text, '\n'));
 }
@@ -420,10 +421,10 @@ TEST(png_write_tells_of_a_full_disk) {
 TEST(png_write_refuses_sizes_a_png_cannot_have) {
     struct error error = {0};
     uint32_t width = 0;
-    CHECK(!png_write("x.png", 0, 1, noise_rows, &width, &error));
+    CHECK(!png_write(FILE_AT("x.png"), 0, 1, noise_rows, &width, &error));
     CHECK_TEXT(error.text, "x.png: a PNG file cannot have 0 x 1 pixels");
-    CHECK(!png_write("x.png", 4000000000u, 1, noise_rows, &width, &error));
-    CHECK(!png_write("x.png", 1, 4000000000u, noise_rows, &width, &error));
+    CHECK(!png_write(FILE_AT("x.png"), 4000000000u, 1, noise_rows, &width, &error));
+    CHECK(!png_write(FILE_AT("x.png"), 1, 4000000000u, noise_rows, &width, &error));
 }
 
 TEST(png_writing_survives_every_failed_allocation) {
@@ -432,13 +433,13 @@ TEST(png_writing_survives_every_failed_allocation) {
     struct error error = {0};
     (void)snprintf(path, sizeof path, "%s/a.png", test_folder());
     uint64_t before = mem_allocations();
-    CHECK(png_write(path, width, 20, noise_rows, &width, &error));
+    CHECK(png_write(FILE_AT(path), width, 20, noise_rows, &width, &error));
     uint64_t count = mem_allocations() - before;
     size_t size = 0, size_after = 0;
     char *old = test_read_file(path, &size);
     for (uint64_t k = 1; k <= count; k++) {
         mem_fail_at(k);
-        bool ok = png_write(path, width, 10, noise_rows, &width, &error);
+        bool ok = png_write(FILE_AT(path), width, 10, noise_rows, &width, &error);
         mem_fail_at(0);
         CHECK(ok || error.kind == ERROR_MACHINE);
         char *now = test_read_file(path, &size_after); /* the old picture is still there, whole */

@@ -13,6 +13,9 @@
 #include <string.h>
 #include <sys/wait.h>
 
+/* It begins as a picture does: nothing else is replaced. */
+#define OLD_PICTURE "PF\n1 an old picture"
+
 /* %s is the file, then its width and height. */
 #define SCENE                                                                                                          \
     "local r = gr.node('root')\n"                                                                                      \
@@ -57,7 +60,7 @@ static const char with_quota[] =
     "truncate -s 120M image && mkfs.btrfs -q image && mkdir disk || exit 77\n"
     "mount -o loop image disk && btrfs quota enable disk || exit 77\n"
     "btrfs subvolume create disk/own >/dev/null && btrfs qgroup limit 400K disk/own || exit 77\n"
-    "printf 'an old picture' >disk/own/out.pfm && sync -f disk/own\n"
+    "printf 'PF\\n1 an old picture' >disk/own/out.pfm && sync -f disk/own\n"
     "$gray -q scene.lua >err.txt 2>&1; echo $? >status.txt\n"
     "ls -A disk/own >names.txt; cp disk/own/out.pfm kept.txt\n"
     "$gray -q scene.lua -o disk/own/b.pfm --shard 1/1 >part.txt 2>&1; echo $? >>status.txt; ls -A disk/own "
@@ -73,7 +76,7 @@ TEST(a_quota_that_is_used_up_leaves_the_old_picture_and_no_temporary_file) {
         test_skip("this user, kernel or machine has no file system with a quota to mount (btrfs-progs, loop devices)");
     CHECK_EQ_INT(status, 0);
     expect_text("err.txt", "scene.lua: disk/own/out.pfm: cannot be written: Disk quota exceeded\n");
-    expect_text("kept.txt", "an old picture");
+    expect_text("kept.txt", OLD_PICTURE);
     expect_text("names.txt", "out.pfm\nout.pfm\n");
     expect_text("status.txt", "3\n3\n0\n0\n");
     char *part = test_read_file(path_in("part.txt"), NULL);
@@ -114,7 +117,7 @@ TEST(a_quota_may_be_met_by_any_call_to_the_system) {
 
 /* 77: not possible here. Root gives up its rights over files first. */
 static const char without_rights[] =
-    "mkdir shut && printf 'an old picture' >shut/out.png && chmod 555 shut\n"
+    "mkdir shut && printf 'PF\\n1 an old picture' >shut/out.png && chmod 555 shut\n"
     "rights=; [ $(id -u) != 0 ] || rights='setpriv --bounding-set=-all --inh-caps=-all'\n"
     "$rights true || exit 77\n"
     "$rights $gray -q scene.lua >err.txt 2>&1; echo $? >status.txt\n"
@@ -122,7 +125,7 @@ static const char without_rights[] =
     "ls -A shut >names.txt; cp shut/out.png kept.txt; chmod 755 shut\n";
 static const char without_writing[] =
     "[ -n \"$inside\" ] || { unshare -m true || exit 77; inside=1 exec unshare -m sh \"$0\"; }\n"
-    "mkdir -p shut && printf 'an old picture' >shut/out.png && mount --bind shut shut || exit 77\n"
+    "mkdir -p shut && printf 'PF\\n1 an old picture' >shut/out.png && mount --bind shut shut || exit 77\n"
     "mount -o remount,ro,bind shut || exit 77\n"
     "$gray -q scene.lua >err.txt 2>&1; echo $? >status.txt\n"
     "$gray -q scene.lua -o shut/new/b.png >>err.txt 2>&1; echo $? >>status.txt\n"
@@ -144,7 +147,7 @@ static void expect_shut(const char *script, const char *why) {
     expect_text("err.txt", lines);
     expect_text("status.txt", "1\n1\n");
     expect_text("names.txt", "out.png\n");
-    expect_text("kept.txt", "an old picture");
+    expect_text("kept.txt", OLD_PICTURE);
 }
 
 TEST(a_folder_whose_mode_forbids_writing_keeps_the_old_picture) {

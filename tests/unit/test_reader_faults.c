@@ -160,7 +160,7 @@ static void prepare(void) {
     char path[512];
     struct error error = {0};
     (void)snprintf(path, sizeof path, "%s/pic.png", test_folder());
-    CHECK(png_write(path, 4, 4, write_picture_row, NULL, &error));
+    CHECK(png_write(FILE_AT(path), 4, 4, write_picture_row, NULL, &error));
     put("t.mtl", mtl_text, strlen(mtl_text));
 }
 

@@ -245,7 +245,7 @@ TEST(a_path_that_is_too_long_is_told) {
     CHECK(!listen_to(&listener, path, &automatic, &error, NULL));
     struct order_finding finding;
     path[5900] = '/';
-    CHECK(order_detect(path, NULL, &finding, &error));
+    CHECK(order_detect(path, NULL, NULL, &finding, &error));
     free(path);
 }
 
@@ -294,15 +294,15 @@ TEST(files_that_a_script_names_are_looked_at_for_the_order_wherever_they_are) {
                    "dofile('') dofile('lua/inner.lua')",
                    test_folder(), 7);
     test_write_text(path, text);
-    CHECK(order_detect(path, "lua", &finding, &error));
-    CHECK(order_detect(path, "/nothing/there", &finding, &error));
-    CHECK(order_detect(path, NULL, &finding, &error));
+    CHECK(order_detect(path, "lua", NULL, &finding, &error));
+    CHECK(order_detect(path, "/nothing/there", NULL, &finding, &error));
+    CHECK(order_detect(path, NULL, NULL, &finding, &error));
 #ifdef GRAY_FAULTS
     for (int kind = 0; kind < 2; kind++)
         for (uint64_t k = 1, over = 0; !over; k++) {
             uint64_t before = fault_count((enum fault_kind)kind);
             fault_at((enum fault_kind)kind, k);
-            bool ok = order_detect(path, "lua", &finding, &error);
+            bool ok = order_detect(path, "lua", NULL, &finding, &error);
             fault_at((enum fault_kind)kind, 0);
             over = fault_count((enum fault_kind)kind) - before < k;
             CHECK(ok || error.kind == ERROR_MACHINE);

@@ -76,7 +76,7 @@ static void expect_file(const char *name, const char *library, enum transform_or
     struct order_finding finding;
     struct error error;
     (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    CHECK(order_detect(path, library, &finding, &error));
+    CHECK(order_detect(path, library, NULL, &finding, &error));
     CHECK_EQ_INT(finding.order, order);
     CHECK_TEXT(finding.reason, reason);
 }

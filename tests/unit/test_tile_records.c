@@ -323,7 +323,7 @@ TEST(any_allocation_or_call_may_fail_while_tiles_are_written_and_read) {
             struct tile_file file = {0};
             uint64_t before = fault_count((enum fault_kind)kind);
             fault_at((enum fault_kind)kind, k);
-            bool ok = tile_file_write(path, &done, 1, &picture, &film, &error);
+            bool ok = tile_file_write(FILE_AT(path), &done, 1, &picture, &film, &error);
             ok = ok && tile_file_read(path, &file, &error);
             fault_at((enum fault_kind)kind, 0);
             over = fault_count((enum fault_kind)kind) - before < k;
@@ -339,6 +339,13 @@ static struct options options_for(const char *path, bool resume) {
     return (struct options){.checkpoint = path, .resume = resume, .checkpoint_every = 0};
 }
 
+/* One at a time; the names of these tests are anywhere. */
+static const struct picture_files *files_for(const struct options *options) {
+    static struct picture_files files;
+    files = (struct picture_files){.options = options};
+    return &files;
+}
+
 TEST(a_keeper_without_a_checkpoint_or_with_check_does_nothing) {
     struct options options = options_for("auto", false);
     struct keeper keeper;
@@ -350,7 +357,7 @@ TEST(a_keeper_without_a_checkpoint_or_with_check_does_nothing) {
     for (int i = 0; i < 2; i++) {
         options.checkpoint = i ? "auto" : NULL;
         options.check = i;
-        keeper_init(&keeper, &options);
+        keeper_init(&keeper, &options, files_for(&options));
         CHECK(keeper_open(&keeper, "a.png", notice, &error) && !keeper.opened && notice[0] == '\0');
         CHECK(keeper_has_written(&keeper, 1, &picture.key, "a.png", &written, &error) && !written);
         CHECK(keeper_tick(&keeper, &picture, NULL, true, &tiles, &error));
@@ -366,14 +373,14 @@ TEST(a_keeper_tells_names_that_are_too_long_and_files_that_are_damaged) {
     char notice[256], *name = malloc(4096);
     memset(name, 'x', 4095);
     name[4095] = '\0';
-    keeper_init(&keeper, &options);
+    keeper_init(&keeper, &options, files_for(&options));
     CHECK(!keeper_open(&keeper, name, notice, &error));
     CHECK(strstr(error.text, "the name of its checkpoint is longer than 4095 bytes") != NULL);
     free(name);
     const char *path = test_path("broken.tiles");
     test_write_text(path, "GRAYTILE and no more");
     options = options_for(path, true);
-    keeper_init(&keeper, &options);
+    keeper_init(&keeper, &options, files_for(&options));
     for (int i = 0; i < 2; i++) { /* said again for every picture */
         error = (struct error){0};
         CHECK(!keeper_open(&keeper, "a.png", notice, &error));
@@ -394,7 +401,7 @@ static void leave_checkpoint(const char *path, const char *first, struct film *f
     uint32_t tiles = 0;
     bool written;
     (void)remove(path);
-    keeper_init(&keeper, &options);
+    keeper_init(&keeper, &options, files_for(&options));
     second.number = 2;
     CHECK(keeper_open(&keeper, first, notice, &error));
     CHECK(keeper_has_written(&keeper, 1, &picture.key, first, &written, &error) && !written);
@@ -430,7 +437,7 @@ TEST(a_keeper_goes_on_only_with_what_is_the_same) {
         test_write_text(first, what == 2 ? "another picture" : "a picture");
         if (what == 3)
             CHECK(remove(first) == 0);
-        keeper_init(&keeper, &options);
+        keeper_init(&keeper, &options, files_for(&options));
         CHECK(keeper_open(&keeper, first, notice, &error) && keeper.has_old && keeper.old_number == 2);
         CHECK(keeper_open(&keeper, first, notice, &error)); /* it is open */
         bool ok = keeper_has_written(&keeper, 1, &key, what == 4 ? "other.png" : first, &written, &error);
@@ -471,11 +478,11 @@ TEST(a_keeper_refuses_the_checkpoint_of_somebody_else) {
     struct error error;
     char notice[256];
     leave_checkpoint(path, first, &film);
-    keeper_init(&keeper, &options);
+    keeper_init(&keeper, &options, files_for(&options));
     CHECK(!keeper_open(&keeper, first, notice, &error));
     CHECK(error.kind == ERROR_USAGE && strstr(error.text, "--resume goes on with it, or remove it"));
     options = options_for(test_path("none.tiles"), true);
-    keeper_init(&keeper, &options);
+    keeper_init(&keeper, &options, files_for(&options));
     CHECK(keeper_open(&keeper, first, notice, &error) && strstr(notice, "the run starts from its beginning"));
     free(film.pixels);
 }
@@ -491,7 +498,7 @@ TEST(a_checkpoint_that_cannot_be_written_is_told_once_and_again_when_asked_for) 
     uint32_t tiles = 77;
     bool written;
     test_write_text(file, "a file where a folder must be");
-    keeper_init(&keeper, &options);
+    keeper_init(&keeper, &options, files_for(&options));
     CHECK(keeper_open(&keeper, "a.png", notice, &error));
     CHECK(keeper_has_written(&keeper, 1, &picture.key, "a.png", &written, &error));
     CHECK(!keeper_tick(&keeper, &picture, &film, false, &tiles, &error));
@@ -522,7 +529,7 @@ TEST(any_allocation_or_call_may_fail_in_a_keeper) {
             leave_checkpoint(path, first, &film);
             uint64_t before = fault_count((enum fault_kind)kind);
             fault_at((enum fault_kind)kind, k);
-            keeper_init(&keeper, &options);
+            keeper_init(&keeper, &options, files_for(&options));
             bool ok = keeper_open(&keeper, first, notice, &error) &&
                       keeper_has_written(&keeper, 1, &picture.key, first, &written, &error) &&
                       keeper_has_written(&keeper, 2, &picture.key, "b.png", &written, &error) &&

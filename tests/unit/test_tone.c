@@ -65,7 +65,7 @@ TEST(pfm_holds_the_very_floats_from_the_bottom_up) {
     uint32_t width = W;
     struct error error = {0};
     (void)snprintf(path, sizeof path, "%s/a.pfm", test_folder());
-    CHECK(pfm_write(path, W, H, light_row, &width, &error));
+    CHECK(pfm_write(FILE_AT(path), W, H, light_row, &width, &error));
     size_t size, start = (size_t)snprintf(header, sizeof header, "PF\n%d %d\n-1.0\n", W, H);
     char *file = test_read_file(path, &size);
     CHECK_EQ_INT(size, start + W * H * 12);
@@ -115,7 +115,7 @@ TEST(radiance_pictures_read_back_within_their_mantissa) {
         uint32_t width = widths[i];
         struct error error = {0};
         (void)snprintf(path, sizeof path, "%s/a.hdr", test_folder());
-        CHECK(hdr_write(path, width, H, light_row, &width, &error));
+        CHECK(hdr_write(FILE_AT(path), width, H, light_row, &width, &error));
         size_t size, start = (size_t)snprintf(header, sizeof header,
                                               "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %u\n", H, width);
         char *file = test_read_file(path, &size);
@@ -158,7 +158,7 @@ TEST(deep_png_holds_sixteen_bits) {
     char path[512];
     struct error error = {0};
     (void)snprintf(path, sizeof path, "%s/a.png", test_folder());
-    CHECK(png_write_16(path, 64, 5, word_row, NULL, &error));
+    CHECK(png_write_16(FILE_AT(path), 64, 5, word_row, NULL, &error));
     struct image *image = image_read_png(path, &error);
     CHECK(image != NULL);
     for (uint32_t y = 0; y < 5 && image; y++) {
