@@ -11,7 +11,7 @@ DESTDIR ?=
 BUILD ?= build/$(config)
 PKG_CONFIG ?= pkg-config
 
-ROOMS = base math expr image accel geom look scene formats world render script app
+ROOMS = base math expr image accel geom material light scene formats world render script app
 
 WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wconversion
 # The same bits everywhere: no contraction to fused operations, no reordering.

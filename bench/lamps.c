@@ -1,7 +1,7 @@
 /* How far a few shadow rays are off: lamps of each kind over a floor, with nothing, an edge or a ball in the way, by
  * the places of the samples (independent, in cells, in cells with stratified rows and columns) and, for a rectangle, by
  * area or by solid angle. Prints a table for docs/light.md: root mean square of the relative error over many keys. */
-#include "look/light.h"
+#include "light/light.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 # Prints every include that points against the order of rooms (docs/design.md) and every use of files or memory outside
 # the one room that owns them; fails when there is any.
 cd "$(dirname "$0")/.." || exit 1
-rooms="base math expr image accel geom look scene formats world render script app"
+rooms="base math expr image accel geom material light scene formats world render script app"
 bad=$(mktemp) || exit 1
 trap 'rm -f "$bad"' EXIT
 

@@ -13,7 +13,7 @@ void sphere_describe(struct vec3 centre, double radius, const struct ray *ray, c
                      struct surface *out);
 
 /* Adds the parameters of the classic image mapping to a surface that sphere_describe has filled: apart, because they
- * cost more than all the rest and few materials ask (those that do work from the normal: look/material.c). */
+ * cost more than all the rest and few materials ask (those that do work from the normal: material/material.c). */
 void sphere_uv(double radius, struct surface *surface);
 /* How the point with this unit normal moves with u and with v. */
 void sphere_tangents(double radius, struct vec3 normal, struct vec3 *dpdu, struct vec3 *dpdv);

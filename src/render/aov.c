@@ -4,8 +4,8 @@
 #include "render/aov.h"
 
 #include "base/random.h"
-#include "look/light.h"
-#include "look/material.h"
+#include "light/light.h"
+#include "material/material.h"
 #include "math/elementary.h"
 
 #include <string.h>

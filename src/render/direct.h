@@ -2,7 +2,7 @@
 #ifndef GRAY_RENDER_DIRECT_H
 #define GRAY_RENDER_DIRECT_H
 
-#include "look/shading.h"
+#include "material/shading.h"
 #include "render/whitted.h"
 
 /* What the surface sends to hit->view of it, with the ambient light. `normal`: unit, the side that is lit; dark_side:

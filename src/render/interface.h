@@ -2,7 +2,7 @@
 #ifndef GRAY_RENDER_INTERFACE_H
 #define GRAY_RENDER_INTERFACE_H
 
-#include "look/material.h"
+#include "material/material.h"
 #include "render/media.h"
 
 struct interface {

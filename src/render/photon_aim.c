@@ -17,7 +17,7 @@
 #include "render/photon_aim.h"
 
 #include "base/random.h"
-#include "look/sky_light.h"
+#include "light/sky_light.h"
 #include "math/elementary.h"
 #include "math/frame.h"
 

@@ -5,7 +5,7 @@
 #define GRAY_RENDER_PHOTON_MAP_H
 
 #include "base/pool.h"
-#include "look/shading.h"
+#include "material/shading.h"
 #include "world/world.h"
 
 #define PHOTON_NOWHERE UINT32_MAX

@@ -10,7 +10,7 @@
 
 #include "base/mem.h"
 #include "base/random.h"
-#include "look/microfacet.h"
+#include "material/microfacet.h"
 #include "render/interface.h"
 #include "render/photon_aim.h"
 

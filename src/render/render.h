@@ -5,7 +5,7 @@
 #define GRAY_RENDER_RENDER_H
 
 #include "base/pool.h"
-#include "look/fog.h"
+#include "material/fog.h"
 #include "render/film.h"
 #include "render/outlook.h"
 #include "render/settings.h"

@@ -5,7 +5,7 @@
 
 #include "geom/mesh.h"
 #include "image/tone.h"
-#include "look/shading.h"
+#include "material/shading.h"
 #include "math/motion.h"
 #include "math/vec3.h"
 

@@ -7,8 +7,8 @@
 #define GRAY_RENDER_STORY_H
 
 #include "base/arena.h"
-#include "look/light.h"
-#include "look/material.h"
+#include "light/light.h"
+#include "material/material.h"
 #include "render/interface.h"
 #include "world/world.h"
 

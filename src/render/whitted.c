@@ -3,7 +3,7 @@
 #include "render/whitted.h"
 
 #include "base/random.h"
-#include "look/microfacet.h"
+#include "material/microfacet.h"
 #include "math/range.h"
 #include "math/sampling.h"
 #include "render/direct.h"

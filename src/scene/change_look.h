@@ -2,8 +2,8 @@
 #ifndef GRAY_SCENE_CHANGE_LOOK_H
 #define GRAY_SCENE_CHANGE_LOOK_H
 
-#include "look/light.h"
-#include "look/material.h"
+#include "light/light.h"
+#include "material/material.h"
 
 /* A turn and a size that a light can be given: 3 rows of 3, the linear part of a map about its place. */
 enum { TURN_NUMBERS = 9 };

@@ -7,9 +7,9 @@
 #include "base/arena.h"
 #include "geom/mesh.h"
 #include "geom/shape.h"
-#include "look/light.h"
-#include "look/material.h"
-#include "look/sky.h"
+#include "light/light.h"
+#include "light/sky.h"
+#include "material/material.h"
 #include "math/affine.h"
 #include "scene/placements.h"
 

@@ -4,7 +4,7 @@
 #define GRAY_SCRIPT_SCRIPT_H
 
 #include "base/error.h"
-#include "look/fog.h"
+#include "material/fog.h"
 #include "render/settings.h"
 #include "scene/node.h"
 

@@ -6,10 +6,10 @@
 
 #include "base/error.h"
 #include "geom/mesh.h"
-#include "look/fog.h"
-#include "look/light.h"
-#include "look/material.h"
-#include "look/sky.h"
+#include "light/light.h"
+#include "light/sky.h"
+#include "material/fog.h"
+#include "material/material.h"
 #include "scene/node.h"
 
 #include <stdbool.h>

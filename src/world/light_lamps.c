@@ -4,7 +4,7 @@
 #include "world/light_lamps.h"
 
 #include "base/mem.h"
-#include "look/sky_light.h"
+#include "light/sky_light.h"
 #include "world/light_lists.h"
 
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #include "geom/shape_cylinder.h"
 #include "geom/shape_disc.h"
 #include "geom/shape_plane.h"
-#include "look/sky.h"
+#include "light/sky.h"
 #include "math/elementary.h"
 #include "render/photon_trace.h"
 #include "tests/harness.h"

@@ -1,6 +1,6 @@
 /* The film at its borders: sizes that cannot be, parts outside of the picture, what each view of it shows, tiles whose
  * bytes do not fit; and the layer of lights for a light of every kind. */
-#include "look/light.h"
+#include "light/light.h"
 #include "render/aov.h"
 #include "tests/harness.h"
 #include "tests/stage.h"

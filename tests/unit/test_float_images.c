@@ -5,7 +5,7 @@
 #include "image/float_write.h"
 #include "image/image_file.h"
 #include "image/levels.h"
-#include "look/sky.h"
+#include "light/sky.h"
 #include "tests/harness.h"
 
 #include <math.h>

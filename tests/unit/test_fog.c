@@ -1,5 +1,5 @@
 /* Fog against its integrals, and the cut-off of rays that no longer count. */
-#include "look/fog.h"
+#include "material/fog.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 

@@ -1,6 +1,6 @@
 /* Lamps met by rays and asked from places where their formulas end: inside of them, on them, level with them,
  * infinitely far away. The claims are geometry, written anew. */
-#include "look/light.h"
+#include "light/light.h"
 #include "tests/harness.h"
 #include "tests/unit/random_makers.h"
 

@@ -1,5 +1,5 @@
 /* Lamps that are rectangles seen large, meshes, and skies: against view factors, solid angles and integrals. */
-#include "look/sky_light.h"
+#include "light/sky_light.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "tests/unit/mesh_makers.h"

@@ -3,7 +3,7 @@
 
 #include "formats/model_node.h"
 #include "image/png_write.h"
-#include "look/image_place.h"
+#include "material/image_place.h"
 
 static void even_row(void *context, uint32_t y, uint8_t *line) {
     const uint8_t *colour = context;

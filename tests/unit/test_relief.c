@@ -1,6 +1,6 @@
 /* Bump maps and normal maps: normals by closed forms, on the same ways that pictures take. */
-#include "look/image_place.h"
-#include "look/relief.h"
+#include "material/image_place.h"
+#include "material/relief.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "tests/unit/mesh_makers.h"

@@ -1,6 +1,6 @@
 /* Skies beyond the cross: six pictures, a map of the sphere, stops, the clear sky and its sun. */
 #include "image/image.h"
-#include "look/sky.h"
+#include "light/sky.h"
 #include "tests/harness.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* The sky: letters on every face, edges without seams, corners that do not bleed. */
 #include "image/image.h"
-#include "look/sky.h"
+#include "light/sky.h"
 #include "tests/harness.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* Surfaces beyond Phong: roughness, absorption, emission, by closed forms. */
-#include "look/microfacet.h"
+#include "material/microfacet.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 

@@ -1,12 +1,12 @@
 /* Materials: a base (Phong) plus decorators that hold the material below them as `base`. Evaluated once per hit into a
  * struct shading. Immutable, in the arena of the script; images are shared assets. A chain is at most MATERIAL_DEPTH
  * long. */
-#ifndef GRAY_LOOK_MATERIAL_H
-#define GRAY_LOOK_MATERIAL_H
+#ifndef GRAY_MATERIAL_MATERIAL_H
+#define GRAY_MATERIAL_MATERIAL_H
 
 #include "geom/hit.h"
 #include "image/image.h"
-#include "look/shading.h"
+#include "material/shading.h"
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,10 +1,10 @@
 /* A sky as a light: directions in proportion to what comes from them. */
-#ifndef GRAY_LOOK_SKY_LIGHT_H
-#define GRAY_LOOK_SKY_LIGHT_H
+#ifndef GRAY_LIGHT_SKY_LIGHT_H
+#define GRAY_LIGHT_SKY_LIGHT_H
 
 #include "base/arena.h"
 #include "base/pool.h"
-#include "look/sky.h"
+#include "light/sky.h"
 #include "math/sampling.h"
 
 /* Cells of height y and longitude; in the arena it was built in. */

@@ -1,8 +1,8 @@
 /* Relief without geometry: normals turned by pictures. */
-#ifndef GRAY_LOOK_RELIEF_H
-#define GRAY_LOOK_RELIEF_H
+#ifndef GRAY_MATERIAL_RELIEF_H
+#define GRAY_MATERIAL_RELIEF_H
 
-#include "look/material.h"
+#include "material/material.h"
 
 /* Turn look->normal, a unit vector; leave it bit by bit where the picture is flat. Need hit->raise and the tangents of
  * the mapping (material_has_relief); do nothing where a shape has none. */

@@ -1,5 +1,5 @@
 /* The lobes of SPEC 1.2 and the two laws of specular directions. */
-#include "look/shading.h"
+#include "material/shading.h"
 
 #include "math/elementary.h"
 

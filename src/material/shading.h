@@ -1,7 +1,7 @@
 /* Shading: what a surface does with light at one hit, as a short list of lobes. Materials become shadings, integrators
  * read shadings; no material kinds after this point. Directions are unit vectors in world space. */
-#ifndef GRAY_LOOK_SHADING_H
-#define GRAY_LOOK_SHADING_H
+#ifndef GRAY_MATERIAL_SHADING_H
+#define GRAY_MATERIAL_SHADING_H
 
 #include "math/vec3.h"
 

@@ -1,6 +1,6 @@
 /* Rough surfaces as many small mirrors. */
-#ifndef GRAY_LOOK_MICROFACET_H
-#define GRAY_LOOK_MICROFACET_H
+#ifndef GRAY_MATERIAL_MICROFACET_H
+#define GRAY_MATERIAL_MICROFACET_H
 
 #include "math/sampling.h"
 #include "math/vec3.h"

@@ -4,8 +4,8 @@
  * its shadow rays that reach it (SPEC 1.4). With `emits` it is a lamp of uniform radiance `colour`: every shadow ray
  * carries its own direction, distance and cosine at the lamp. The sum is normalised so that a white diffuse surface
  * that sees nothing but the lamp has the lamp's radiance: what arrives is radiance times view factor. */
-#ifndef GRAY_LOOK_LIGHT_H
-#define GRAY_LOOK_LIGHT_H
+#ifndef GRAY_LIGHT_LIGHT_H
+#define GRAY_LIGHT_LIGHT_H
 
 #include "math/ray.h"
 #include "math/sampling.h"

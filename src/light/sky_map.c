@@ -3,7 +3,7 @@
  * pole. So a way over the pole or round the back meets no seam. The mip level follows the rows, whose width on the
  * sphere is the same everywhere. */
 #include "image/levels.h"
-#include "look/sky_parts.h"
+#include "light/sky_parts.h"
 #include "math/elementary.h"
 
 /* One row at x texels from the left, linear between its texels. */

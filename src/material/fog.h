@@ -1,7 +1,7 @@
 /* Fog: what is seen fades with the way to it, and the fog's colour takes its place. It fills the open air, not the
  * inside of transparent solids, and dims sight only, not the light of lamps. */
-#ifndef GRAY_LOOK_FOG_H
-#define GRAY_LOOK_FOG_H
+#ifndef GRAY_MATERIAL_FOG_H
+#define GRAY_MATERIAL_FOG_H
 
 #include "math/vec3.h"
 

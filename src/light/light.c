@@ -4,9 +4,9 @@
  * emitter's cosine is in it already; so is a rectangle (light_rectangle.c), and a disc seen large by way of its square.
  * Other discs and parallelograms and meshes are sampled by area with weight cos / (pi d^2) each, triangles of a mesh in
  * proportion to the light they send. */
-#include "look/light.h"
+#include "light/light.h"
 
-#include "look/sky_light.h"
+#include "light/sky_light.h"
 #include "math/elementary.h"
 #include "math/frame.h"
 #include "math/range.h"

@@ -10,9 +10,9 @@
  * Normal maps: red, green and blue are the new normal along the picture's right, its top and the old normal, as glTF
  * 2.0 (section 3.9.3) has them, made orthogonal to the normal. The colour that says "no slope" is 128 of 255, as
  * programs write it. */
-#include "look/relief.h"
+#include "material/relief.h"
 
-#include "look/image_place.h"
+#include "material/image_place.h"
 
 static double height_at(const struct material *material, struct image_place place, double du, double dv) {
     place.u += du;

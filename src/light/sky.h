@@ -1,6 +1,6 @@
 /* What a ray sees that meets nothing: a function of its unit direction alone (SPEC 1.5). */
-#ifndef GRAY_LOOK_SKY_H
-#define GRAY_LOOK_SKY_H
+#ifndef GRAY_LIGHT_SKY_H
+#define GRAY_LIGHT_SKY_H
 
 #include "base/error.h"
 #include "image/image.h"

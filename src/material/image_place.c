@@ -1,6 +1,6 @@
 /* The mappings of the language (SPEC 1.2 and 2.1) and those by a shape's own parameters. Lookups are as wide as the
  * ray's cone: the footprint over the speed at which the place moves. */
-#include "look/image_place.h"
+#include "material/image_place.h"
 
 #include "math/elementary.h"
 

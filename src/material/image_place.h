@@ -1,8 +1,8 @@
 /* From a hit to a place on a picture. */
-#ifndef GRAY_LOOK_IMAGE_PLACE_H
-#define GRAY_LOOK_IMAGE_PLACE_H
+#ifndef GRAY_MATERIAL_IMAGE_PLACE_H
+#define GRAY_MATERIAL_IMAGE_PLACE_H
 
-#include "look/material.h"
+#include "material/material.h"
 
 /* u from the left, v from the top, both in pictures; the size of the ray's footprint in the same units. */
 struct image_place {

@@ -1,6 +1,6 @@
 /* Beer's law along a straight way with densities that can be integrated exactly: no steps, no noise. The grid is walked
  * cell by cell (Amanatides and Woo, "A Fast Voxel Traversal Algorithm", Eurographics 1987). */
-#include "look/fog.h"
+#include "material/fog.h"
 
 #include "math/elementary.h"
 

@@ -1,8 +1,8 @@
 /* The kinds of sky that fill a file of their own, for sky.c. */
-#ifndef GRAY_LOOK_SKY_PARTS_H
-#define GRAY_LOOK_SKY_PARTS_H
+#ifndef GRAY_LIGHT_SKY_PARTS_H
+#define GRAY_LIGHT_SKY_PARTS_H
 
-#include "look/sky.h"
+#include "light/sky.h"
 
 /* sky_map.c: an image of longitude by latitude. */
 struct vec3 sky_map_colour(const struct image *image, struct vec3 direction, double spread);

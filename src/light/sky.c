@@ -10,10 +10,10 @@
  * of the cube, where three texels meet and the fourth is missing, their mean stands for it. Both faces at an edge then
  * mix the same texels with the same weights. The black corners of the cross are never read: no mip level mixes two
  * cells of the cross (see image.c). */
-#include "look/sky.h"
+#include "light/sky.h"
 
 #include "image/levels.h"
-#include "look/sky_parts.h"
+#include "light/sky_parts.h"
 
 #include <math.h>
 #include <string.h>

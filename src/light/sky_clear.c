@@ -2,7 +2,7 @@
  * chromaticity each as Perez' function of the angles to the zenith and to the sun, with the coefficients of the paper's
  * appendix A.2; position of the sun by its appendix A.6. xyY becomes linear sRGB by the matrix of IEC 61966-2-1.
  * Luminance in kcd/m^2 is divided by 20, so that a bright blue sky comes out near 1. */
-#include "look/sky_parts.h"
+#include "light/sky_parts.h"
 #include "math/elementary.h"
 
 static const double pi = 3.14159265358979323846;

@@ -1,9 +1,9 @@
 /* Evaluating a chain of decorators from the base outwards: each link changes what the links below left. Patterns use
  * the point in the object space of the operand that made the surface, so they stick to the object. */
-#include "look/material.h"
+#include "material/material.h"
 
-#include "look/image_place.h"
-#include "look/relief.h"
+#include "material/image_place.h"
+#include "material/relief.h"
 #include "math/noise.h"
 
 static struct vec3 mix_colours(double ratio, struct vec3 kd, struct vec3 mix) {
