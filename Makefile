@@ -1,6 +1,7 @@
-# gray: make [config=release|debug|asan|tsan|fuzz|afl|coverage] [CC=gcc|clang]
+# gray: make [config=release|debug|asan|tsan|fuzz|afl|coverage] [CC=gcc|clang] [WERROR=1]
 #   all (default)  ./gray and the link ./rt       test        the tests, at most 8 minutes
 #   test-long      the rest, restartable by name   layers      includes against the order of rooms
+#   check-clang    clang reads all sources; its warnings are errors
 #   bench          benchmarks                      install     PREFIX, DESTDIR
 #   coverage       lines and branches that the tests reach, in build/coverage (clang; COVERAGE="word ..." runs some tests)
 #   fuzz           every tests/fuzz/fuzz_*.c for FUZZ_SECONDS each (clang's libFuzzer; FUZZ="name ..." for some)
@@ -13,7 +14,8 @@ PKG_CONFIG ?= pkg-config
 
 ROOMS = base math expr image accel geom material light scene formats world render script app
 
-WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+# -Wswitch-enum: a switch over a closed set names every member, also where it has a default.
+WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wswitch-enum
 # The same bits everywhere: no contraction to fused operations, no reordering.
 # Nothing asks for errno of arithmetic; without it sqrt needs no call.
 EXACT = -ffp-contract=off -fno-fast-math -fno-math-errno
@@ -28,10 +30,11 @@ CFLAGS.afl = -O1 -g -DGRAY_FAULTS -fsanitize=address,undefined -fno-sanitize-rec
 COUNTERS = -fprofile-instr-generate=$(CURDIR)/$(BUILD)/raw/%m%c.profraw -fcoverage-mapping -fprofile-update=atomic \
     -mllvm -runtime-counter-relocation -Wno-unused-command-line-argument
 CFLAGS.coverage = -O1 -g -DGRAY_FAULTS $(COUNTERS)
+CFLAGS.clang = -DGRAY_FAULTS -fsyntax-only
 ifeq ($(CFLAGS.$(config)),)
-$(error config=$(config) is none of release, debug, asan, tsan, fuzz, afl, coverage)
+$(error config=$(config) is none of release, debug, asan, tsan, fuzz, afl, coverage, clang)
 endif
-ifneq ($(filter $(config),fuzz coverage),)
+ifneq ($(filter $(config),fuzz coverage clang),)
 CC = clang
 endif
 ifeq ($(config),afl)
@@ -130,16 +133,40 @@ $(BUILD)/src/script/libm_override.o: override CFLAGS += -fno-builtin
 # Kernels in plain C are so long that gcc gives up telling a debugger where variables are, and says so.
 $(BUILD)/tests/unit/test_portable_kernel.o: override CFLAGS += -g0
 
-# A change of compiler or flags rebuilds everything.
+# A change of compiler or flags rebuilds everything. WERROR=1 (the tests) makes warnings errors; it is not one of the
+# flags, so that make and make test share their objects. Without it a warning is shown and kept in a file beside the
+# object, and WERROR=1 compiles those objects again.
 FLAGS_STAMP := $(BUILD)/flags
+COMPILE = $(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -MT $@ -c
+ifeq ($(config),clang)
+# Only read: the object is an empty file that says when.
 $(BUILD)/%.o: %.c $(FLAGS_STAMP)
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+	$(COMPILE) $(if $(WERROR),-Werror) -MF $(@:.o=.d) $< && touch $@
+else ifneq ($(WERROR),)
+$(foreach warned,$(shell find $(BUILD) -name '*.warned' 2>/dev/null),$(shell rm -f $(warned) $(warned:.warned=.o)))
+$(BUILD)/%.o: %.c $(FLAGS_STAMP)
+	@mkdir -p $(@D)
+	$(COMPILE) -Werror -o $@ $<
+else
+$(BUILD)/%.o: %.c $(FLAGS_STAMP)
+	@mkdir -p $(@D)
+	$(COMPILE) -o $@ $< 2>$(@:.o=.warned); status=$$?; cat $(@:.o=.warned) >&2; \
+	    [ -s $(@:.o=.warned) ] || rm -f $(@:.o=.warned); exit $$status
+endif
 $(FLAGS_STAMP): force
 	@mkdir -p $(@D)
 	@echo '$(CC) $(CPPFLAGS) $(CFLAGS)' | cmp -s - $@ || echo '$(CC) $(CPPFLAGS) $(CFLAGS)' > $@
 
 build-tests: $(BUILD)/gray $(BUILD)/tests/run
+
+# Nothing is built; what clang has read without a complaint is read again when it, a header or a flag has changed.
+ifeq ($(config),clang)
+read-sources: $(ALL_OBJECTS)
+	@echo "clang: $(words $(ALL_OBJECTS)) files"
+endif
+check-clang:
+	@$(MAKE) -s $(JOBS) config=clang WERROR=1 read-sources
 
 test:
 	@tools/test.sh
@@ -194,5 +221,5 @@ clean:
 	rm -rf build gray rt
 
 force:
-.PHONY: all check-libraries build-tests test test-long coverage layers bench format install clean force build-fuzz fuzz fuzz-afl
+.PHONY: all check-libraries build-tests check-clang read-sources test test-long coverage layers bench format install clean force build-fuzz fuzz fuzz-afl
 -include $(ALL_OBJECTS:.o=.d)

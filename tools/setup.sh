@@ -1,7 +1,9 @@
 #!/bin/sh
 # Installs what the build needs and what is missing, from the Debian archive the machine is set up with; says so first.
 # Nothing is done when everything is there. Elsewhere than on Debian and its relatives: names what to install by hand.
-# Usage: tools/setup.sh [--check]    --check only tells what is missing (exit status 1)
+# Usage: tools/setup.sh [--check | --tests]
+#   --check   only prints what is missing (exit status 1)
+#   --tests   also installs what some tests need and others do without (clang); where that fails, those are skipped
 set -u
 missing=""
 need() { # need PACKAGE COMMAND...: the command tells whether it is there
@@ -29,7 +31,30 @@ need pkg-config command -v pkg-config
 need liblua5.4-dev have_lua
 need libpng-dev pkg-config --exists libpng
 need zlib1g-dev pkg-config --exists zlib
-[ -z "$missing" ] && exit 0
+
+# Optional packages: never a question for a password, no long wait for a network, no failure.
+install_optional() { # install_optional PACKAGE
+    without="tests that need it are skipped"
+    as_root=
+    [ "$(id -u)" -eq 0 ] || as_root="sudo -n"
+    if ! command -v apt-get >/dev/null 2>&1 || ! $as_root true 2>/dev/null; then
+        echo "$1 is not installed, and this user cannot install it: $without" >&2
+        return
+    fi
+    echo "installing with apt-get: $1 (optional)" >&2
+    quick="-o Acquire::Retries=0 -o Acquire::http::Timeout=10 -o Acquire::https::Timeout=10"
+    # shellcheck disable=SC2086
+    {
+        $as_root env DEBIAN_FRONTEND=noninteractive timeout 240 apt-get $quick install -y --no-install-recommends "$1" ||
+            { $as_root timeout 60 apt-get $quick update &&
+                $as_root env DEBIAN_FRONTEND=noninteractive timeout 240 \
+                    apt-get $quick install -y --no-install-recommends "$1"; }
+    } >&2 || echo "$1 could not be installed: $without" >&2
+}
+if [ -z "$missing" ]; then
+    [ "${1:-}" != --tests ] || command -v clang >/dev/null 2>&1 || install_optional clang
+    exit 0
+fi
 
 echo "missing:$missing" >&2
 [ "${1:-}" = --check ] && exit 1
@@ -52,3 +77,4 @@ export DEBIAN_FRONTEND=noninteractive
 $as_root apt-get install -y --no-install-recommends $missing >&2 ||
     { $as_root apt-get update >&2 && $as_root apt-get install -y --no-install-recommends $missing >&2; } ||
     { echo "the packages could not be installed:$missing" >&2; exit 1; }
+[ "${1:-}" != --tests ] || command -v clang >/dev/null 2>&1 || install_optional clang

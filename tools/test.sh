@@ -4,7 +4,7 @@
 # session ends by itself.
 cd "$(dirname "$0")/.." || exit 1
 . tools/test_session.sh
-tools/setup.sh || exit 1
+tools/setup.sh --tests || exit 1
 
 end_by() {
     trap '' INT TERM HUP

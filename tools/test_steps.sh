@@ -1,6 +1,7 @@
 #!/bin/sh
-# tools/test_steps.sh PID PARENT [--long [NAME ...]]: what make test does. Builds and runs the tests of the release build,
-# then a smoke of the same tests under the address and undefined sanitizers. --long: everything else. Ends with one line
+# tools/test_steps.sh PID PARENT [--long [NAME ...]]: what make test does. Checks the layers, reads all sources with clang,
+# builds and runs the tests of the release build, then a smoke of the same tests under the address and undefined
+# sanitizers. Warnings are errors, unless WERROR is set and empty. --long: everything else. Ends with one line
 # "N passed, N failed, N skipped". A line at least every GRAY_TEST_PROGRESS seconds (15) says what is under way.
 # Leads a session, which ends when process PID (tools/test.sh) is gone, or has lost its parent PARENT (unless empty).
 interval=${GRAY_TEST_PROGRESS:-15}
@@ -59,7 +60,7 @@ jobs=$(nproc 2>/dev/null || echo 2)
 passed=0 failed=0 skipped=0
 
 build() {
-    step "building $1" make -s -j"$jobs" config="$1" build-tests all || { echo "the $1 build failed" >&2; finish 1; }
+    step "building $1" make -s -j"$jobs" config="$1" WERROR="${WERROR-1}" build-tests all || { echo "the $1 build failed" >&2; finish 1; }
 }
 
 # Runs a test binary, which shows what did not pass and how far it is; adds its closing counts up.
@@ -87,7 +88,18 @@ run() {
     esac
 }
 
-if step "checking layers" tools/layers.sh; then passed=$((passed + 1)); else failed=$((failed + 1)); fi
+# check WHAT COMMAND ...: a step that passes or fails.
+check() {
+    if step "$@"; then passed=$((passed + 1)); else failed=$((failed + 1)); fi
+}
+
+check "checking layers" tools/layers.sh
+if command -v clang >/dev/null; then
+    check "reading the sources with clang" make -s -j"$jobs" config=clang WERROR="${WERROR-1}" read-sources
+else
+    echo "skipped: reading the sources with clang, which is not installed"
+    skipped=$((skipped + 1))
+fi
 build release
 build asan
 if [ $long = no ]; then
@@ -103,7 +115,7 @@ else
         run asan
         run tsan
         if command -v clang >/dev/null; then # four hours for all targets together
-            if step fuzzing make -s fuzz FUZZ_SECONDS="${FUZZ_SECONDS:-850}"; then passed=$((passed + 1)); else failed=$((failed + 1)); fi
+            check fuzzing make -s fuzz FUZZ_SECONDS="${FUZZ_SECONDS:-850}"
         else
             echo "fuzzing needs clang"
             skipped=$((skipped + 1))

@@ -295,9 +295,18 @@ static long double implicit(const struct shape *s, struct point p) {
     }
     case SHAPE_SPHERE:
         return p.x * p.x + p.y * p.y + p.z * p.z - 1;
-    default:
-        return 0;
+    case SHAPE_BOX: /* tested elsewhere, without an equation */
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_HEIGHT_FIELD:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE:
+    case SHAPE_MESH:
+    case SHAPE_CSG:
+        break;
     }
+    return 0;
 }
 
 static struct point gradient(const struct shape *s, struct point p) {
@@ -349,7 +358,7 @@ static bool is_flat(const struct shape *s) {
 /* A flat shape's membership, told in another way: by distances and areas in space, a polygon by its winding numbers. */
 static bool flat_has(const struct shape *s, enum form form, struct vec3 p, double *clearance) {
     const struct flat *f = &s->flat;
-    switch (form) {
+    switch ((int)form) { /* the flat ones */
     case DISC:
     case ANNULUS: {
         double far = vec3_length(vec3_sub(p, f->origin)) / vec3_length(f->u);

@@ -327,15 +327,19 @@ TEST(a_runner_says_how_far_it_is) {
 /* make test, with a makefile and a runner that do as the test wants. */
 
 static void make_tree(void) {
-    CHECK(wait_for(start("d=$GRAY_EXAMPLE_RUN/tree; mkdir -p $d/tools $d/build/release/tests $d/build/asan/tests && "
-                         "cp tools/test.sh tools/test_steps.sh tools/test_session.sh $d/tools && "
-                         "printf '#!/bin/sh\\n' >$d/tools/setup.sh && cp $d/tools/setup.sh $d/tools/layers.sh && "
-                         "printf '#!/bin/sh\\nexec $run --examples $example $1 $2 $3 $4\\n' "
-                         ">$d/build/release/tests/run && cp $d/build/release/tests/run $d/build/asan/tests/run && "
-                         "printf 'test:\\n\\t@tools/test.sh\\nall:\\nbuild-tests:\\n\\t@$(build)\\n' >$d/Makefile && "
-                         "chmod +x $d/tools/setup.sh $d/tools/layers.sh $d/build/*/tests/run && "
-                         "ln -s $(realpath ${GRAY_TEST_BINARY:-build/release/gray}) $d/build/release/gray && "
-                         "ln -s ../release/gray $d/build/asan/gray")) == 0);
+    CHECK(
+        wait_for(start(
+            "d=$GRAY_EXAMPLE_RUN/tree; mkdir -p $d/tools $d/build/release/tests $d/build/asan/tests && "
+            "cp tools/test.sh tools/test_steps.sh tools/test_session.sh $d/tools && "
+            "printf '#!/bin/sh\\n' >$d/tools/setup.sh && cp $d/tools/setup.sh $d/tools/layers.sh && "
+            "printf '#!/bin/sh\\nexec $run --examples $example $1 $2 $3 $4\\n' "
+            ">$d/build/release/tests/run && cp $d/build/release/tests/run $d/build/asan/tests/run && "
+            "printf 'test:\\n\\t@tools/test.sh\\nall:\\nread-sources:\\n\\t@$(clang)\\nbuild-tests:\\n\\t@$(build)\\n' "
+            ">$d/Makefile && mkdir $d/bin && ln -sf /bin/* /usr/bin/* $d/bin && "
+            "printf '#!/bin/sh\\n' >$d/clang && chmod +x $d/clang && ln -sf ../clang $d/bin/clang && "
+            "chmod +x $d/tools/setup.sh $d/tools/layers.sh $d/build/*/tests/run && "
+            "ln -s $(realpath ${GRAY_TEST_BINARY:-build/release/gray}) $d/build/release/gray && "
+            "ln -s ../release/gray $d/build/asan/gray")) == 0);
 }
 
 TEST(make_test_says_how_far_it_is_while_building_and_testing) {
@@ -346,7 +350,7 @@ TEST(make_test_says_how_far_it_is_while_building_and_testing) {
     const char *text = said();
     const char *building = strstr(text, "   building release, "), *testing = strstr(text, "   0 of 1 tests, ");
     expect(building && testing && building < testing, "no lines of progress", "make test");
-    expect(strstr(text, "\n   1 passed, 0 failed, 0 skipped\n") && ends_with(text, "\n3 passed, 0 failed, 0 skipped\n"),
+    expect(strstr(text, "\n   1 passed, 0 failed, 0 skipped\n") && ends_with(text, "\n4 passed, 0 failed, 0 skipped\n"),
            "another last line", "make test");
     expect_nothing_left(0, "make test");
 }
@@ -355,8 +359,50 @@ TEST(make_test_passes_under_nohup_and_in_the_background) {
     make_tree();
     int status = wait_for(start("cd $GRAY_EXAMPLE_RUN/tree; export build=: example=example_finds_signals; "
                                 "nohup make -s test >nohup.txt 2>&1 & wait $!; s=$?; cat nohup.txt; exit $s"));
-    expect(status == 0 && ends_with(said(), "\n3 passed, 0 failed, 0 skipped\n"), "not passed", "nohup make test");
+    expect(status == 0 && ends_with(said(), "\n4 passed, 0 failed, 0 skipped\n"), "not passed", "nohup make test");
     expect_nothing_left(0, "nohup make test");
+}
+
+TEST(make_test_counts_what_clang_refuses_and_says_what_it_leaves_out_without_clang) {
+    make_tree();
+    CHECK(wait_for(start("cd $GRAY_EXAMPLE_RUN/tree; export build=: example=example_passes clang=false PATH=$PWD/bin; "
+                         "exec make -s test")) != 0);
+    expect(strstr(said(), "\n3 passed, 1 failed, 0 skipped\n") != NULL, "not one failure", "make test, clang fails");
+    CHECK_EQ_INT(wait_for(start("cd $GRAY_EXAMPLE_RUN/tree; export build=: example=example_passes clang=false "
+                                "PATH=$PWD/bin; rm bin/clang; exec make -s test")),
+                 0);
+    expect(strstr(said(), "clang, which is not installed\n") && ends_with(said(), "\n3 passed, 0 failed, 1 skipped\n"),
+           "not skipped", "make test without clang");
+}
+
+/* Compiles a source of a tree of its own by the project's makefile. */
+static int compile(const char *words) {
+    char line[300];
+    (void)snprintf(line, sizeof line, "cd $GRAY_EXAMPLE_RUN/warned && exec make -s BUILD=out %s out/src/base/it.o",
+                   words);
+    return wait_for(start(line));
+}
+
+TEST(a_switch_that_forgets_a_kind_compiles_in_make_and_not_in_make_test) {
+    const char *source = "enum kind { ONE, TWO };\nint it(enum kind kind);\n"
+                         "int it(enum kind kind) {\n    switch (kind) {\n    case ONE:\n        return 1;\n%s"
+                         "    default:\n        return 0;\n    }\n}\n";
+    char forgets[400], whole[400];
+    (void)snprintf(forgets, sizeof forgets, source, "");
+    (void)snprintf(whole, sizeof whole, source, "    case TWO:\n");
+    CHECK(wait_for(start("mkdir -p $GRAY_EXAMPLE_RUN/warned/src/base; cp Makefile $GRAY_EXAMPLE_RUN/warned")) == 0);
+    test_write_text(test_path("warned/src/base/it.c"), forgets);
+    CHECK_EQ_INT(compile(""), 0);
+    expect(strstr(said(), "TWO") != NULL, "not named", "make");
+    CHECK(compile("WERROR=1") != 0); /* though the object is there */
+    expect(strstr(said(), "TWO") != NULL, "not named", "make WERROR=1");
+    test_write_text(test_path("warned/src/base/it.c"), whole);
+    CHECK_EQ_INT(compile("WERROR=1"), 0);
+    /* Nothing is compiled anew by the one make after the other. */
+    CHECK(wait_for(start("touch $GRAY_EXAMPLE_RUN/warned/mark")) == 0);
+    CHECK_EQ_INT(compile(""), 0);
+    CHECK_EQ_INT(compile("WERROR=1"), 0);
+    CHECK(wait_for(start("cd $GRAY_EXAMPLE_RUN/warned && test mark -nt out/src/base/it.o")) == 0);
 }
 
 /* Ends make, or the script it runs, while it builds or tests. */
