@@ -5,7 +5,7 @@
 #include "world/packet.h"
 
 #include "accel/beam.h"
-#include "world/world_parts.h"
+#include "world/world_internal.h"
 
 #include <string.h>
 

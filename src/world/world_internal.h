@@ -1,6 +1,6 @@
-/* What the files of the world's searches share; nobody else includes this. */
-#ifndef GRAY_WORLD_WORLD_PARTS_H
-#define GRAY_WORLD_WORLD_PARTS_H
+/* Shared by the files of the world; private to this module. */
+#ifndef GRAY_WORLD_WORLD_INTERNAL_H
+#define GRAY_WORLD_WORLD_INTERNAL_H
 
 #include "world/world.h"
 
@@ -9,5 +9,9 @@ bool world_ask_nearest(const struct world *world, uint32_t index, const struct r
                        struct world_scratch *scratch, struct crossing *out);
 /* Whether one placed primitive stands in the way. */
 bool world_ask_any(const struct world *world, uint32_t index, const struct ray *ray, struct world_scratch *scratch);
+
+/* The boxes of all placed primitives in the world, cut by `limits` where there are any (NULL: none), and what is
+ * counted on the way: triangles, scratch, hulls. Errors: cancelled. */
+bool world_place_boxes(struct world *world, const struct box *limits, struct pool *pool, struct error *error);
 
 #endif

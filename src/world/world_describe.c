@@ -1,0 +1,159 @@
+/* The complete description of the one crossing that a search has found. */
+#include "geom/shape_sphere.h"
+#include "math/frame.h"
+#include "world/world.h"
+
+#include <string.h>
+
+static double row_sum(const struct affine *a, struct vec3 p) {
+    double largest = 0;
+    for (int i = 0; i < 3; i++) {
+        double sum = fabs(a->m[i][0] * p.x) + fabs(a->m[i][1] * p.y) + fabs(a->m[i][2] * p.z) + fabs(a->m[i][3]);
+        largest = sum > largest ? sum : largest;
+    }
+    return largest;
+}
+
+/* How far a secondary ray must start off the surface. The point is known up to the surface's own error and the rounding
+ * of both transforms; everything scales with the numbers involved, so no length is wired in. map NULL: as it is. */
+static double offset_of(const struct transform *map, double scale, const struct surface *surface, struct vec3 point) {
+    double mapped = map ? row_sum(&map->forward, surface->point) : vec3_max_abs(surface->point);
+    double back = map ? row_sum(&map->inverse, point) * scale : vec3_max_abs(point);
+    return 16 * surface->error * scale + (mapped + back) * 0x1p-42;
+}
+
+/* What the identity makes of a vector, down to the signs of zeros. */
+static struct vec3 as_it_is(struct vec3 v) {
+    return vec3_make(v.x + 0 * v.y + 0 * v.z, 0 * v.x + v.y + 0 * v.z, 0 * v.x + 0 * v.y + v.z);
+}
+
+/* Normals of most shapes are the same for shading. */
+static bool same_vector(const struct vec3 *a, const struct vec3 *b) {
+    return memcmp(a, b, sizeof *a) == 0;
+}
+
+/* What bumps need: the world's vector of one unit along the operand's normal, and on spheres the tangents that other
+ * materials do not ask for. */
+static void describe_relief(const struct thing *thing, const struct affine *map, const struct csg_leaf *leaf,
+                            struct hit *hit) {
+    const struct shape *shape = leaf ? &leaf->shape : &thing->shape;
+    struct vec3 normal = vec3_normalize(hit->pattern_normal), raise = normal, u = {0}, v = {0};
+    if (hit->on_sphere)
+        sphere_tangents(shape->sphere.radius, normal, &u, &v);
+    if (leaf) {
+        const struct affine *csg_from_leaf = &leaf->csg_from_leaf.forward;
+        raise = affine_vector(csg_from_leaf, raise);
+        u = affine_vector(csg_from_leaf, u);
+        v = affine_vector(csg_from_leaf, v);
+    }
+    raise = affine_vector(map, raise);
+    /* The hollow that an operand leaves has its outside in the operand. */
+    hit->raise = vec3_dot(raise, hit->normal_geometric) < 0 ? vec3_negate(raise) : raise;
+    if (hit->on_sphere) {
+        hit->dpdu = affine_vector(map, u);
+        hit->dpdv = affine_vector(map, v);
+    }
+}
+
+static double stretch_of(const struct world *world, uint32_t index, const struct transform *map) {
+    uint32_t linear = world->placed[index].linear;
+    return linear & LINEAR_MOVING ? transform_stretch(map) : world->linear_maps[linear].stretch;
+}
+
+static enum hit_hull hull_of(const struct thing *thing, const struct csg_leaf *leaf, const struct crossing *crossing) {
+    if (!leaf)
+        return thing->hull;
+    return thing->shape.csg->hull[crossing->leaf] && !crossing->flip ? HULL_BEHIND : HULL_NONE;
+}
+
+/* The surface of an object in the world; map NULL: the object's space is the world. Every field of the hit is written
+ * once: clearing it as a whole would take longer than all the rest. */
+static void place_surface(const struct surface *surface, const struct transform *map, struct hit *hit) {
+    const struct vec3 zero = {0, 0, 0};
+    if (map) {
+        hit->point = affine_point(&map->forward, surface->point);
+        hit->normal_geometric = vec3_normalize(transform_normal(map, surface->normal));
+    } else {
+        hit->point = vec3_add(as_it_is(surface->point), zero);
+        hit->normal_geometric = vec3_normalize(as_it_is(surface->normal));
+    }
+    if (same_vector(&surface->normal, &surface->shading_normal))
+        hit->normal = hit->normal_geometric;
+    else
+        hit->normal =
+            vec3_normalize(map ? transform_normal(map, surface->shading_normal) : as_it_is(surface->shading_normal));
+    hit->pattern_point = surface->pattern_point;
+    hit->pattern_normal = surface->pattern_normal;
+    hit->has_uv = surface->has_uv;
+    hit->u = surface->u;
+    hit->v = surface->v;
+    hit->dpdu = hit->dpdv = hit->raise = zero;
+    if (surface->has_uv) {
+        hit->dpdu = map ? affine_vector(&map->forward, surface->dpdu) : as_it_is(surface->dpdu);
+        hit->dpdv = map ? affine_vector(&map->forward, surface->dpdv) : as_it_is(surface->dpdv);
+    }
+    hit->has_colour = surface->has_colour;
+    hit->colour = surface->colour;
+    hit->leaf = surface->leaf;
+}
+
+/* How the ray's cone falls on patterns, where a picture asks. */
+static double pattern_scale(const struct transform *map, const struct csg_leaf *leaf, struct vec3 normal) {
+    struct vec3 a, b;
+    frame_tangents(normal, &a, &b);
+    if (map) {
+        a = affine_vector(&map->inverse, a);
+        b = affine_vector(&map->inverse, b);
+    }
+    if (leaf) {
+        a = affine_vector(&leaf->csg_from_leaf.inverse, a);
+        b = affine_vector(&leaf->csg_from_leaf.inverse, b);
+    }
+    return fmax(vec3_length(a), vec3_length(b));
+}
+
+void world_describe(const struct world *world, const struct ray *ray, uint32_t index, const struct crossing *crossing,
+                    struct hit *hit) {
+    const struct thing *thing = placed_thing(world, index);
+    struct transform world_from_object;
+    struct ray ray_object;
+    const struct transform *map = NULL;
+    const struct ray *own_ray = ray;
+    if (world->placed[index].linear != LINEAR_NONE) {
+        world_from_object = world_placement(world, index, ray->time);
+        ray_object = ray_transform(&world_from_object.inverse, ray);
+        map = &world_from_object;
+        own_ray = &ray_object;
+    }
+    struct surface surface;
+    shape_describe(&thing->shape, own_ray, crossing, &surface);
+    double length = vec3_length(ray->direction);
+    bool in_csg = thing->shape.kind == SHAPE_CSG;
+    const struct csg_leaf *leaf = in_csg ? &thing->shape.csg->leaves[surface.leaf] : NULL;
+    uint32_t material = in_csg ? leaf->material : thing->material;
+    uint32_t slot_count = in_csg ? leaf->slot_count : thing->slot_count;
+    if (surface.material_slot < slot_count)
+        material += surface.material_slot;
+    enum shape_kind kind = in_csg ? leaf->shape.kind : thing->shape.kind;
+    place_surface(&surface, map, hit);
+    hit->t = crossing->t;
+    hit->view = vec3_scale(ray->direction, -1 / length);
+    hit->placed = index;
+    hit->part = crossing->part;
+    hit->material = material;
+    hit->hull = hull_of(thing, leaf, crossing);
+    hit->on_sphere = kind == SHAPE_SPHERE;
+    hit->on_box = kind == SHAPE_BOX;
+    hit->time = ray->time;
+    if (world->material_has_relief[material]) {
+        if (!map)
+            world_from_object = transform_identity();
+        describe_relief(thing, &world_from_object.forward, leaf, hit);
+    }
+    hit->front = vec3_dot(hit->view, hit->normal_geometric) >= 0;
+    hit->offset = offset_of(map, map ? stretch_of(world, index, map) : 1, &surface, hit->point);
+    hit->footprint = ray->footprint.width + ray->footprint.spread * crossing->t * length;
+    hit->pattern_scale = 0;
+    if (hit->footprint > 0 && world->material_has_image[material])
+        hit->pattern_scale = pattern_scale(map, leaf, hit->normal_geometric);
+}

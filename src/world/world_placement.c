@@ -1,0 +1,90 @@
+/* Where placed primitives stand: their maps, at a time where they move, and their boxes in the world. */
+#include "world/world_internal.h"
+
+static struct transform moved(const struct moving *moving, struct shutter shutter, double ray_time) {
+    double time = shutter_time(shutter, ray_time);
+    struct transform out = moving->link_from_object;
+    for (const struct moving_link *link = moving->link; link; link = link->above) {
+        struct transform by = motion_at(&link->motion, time);
+        out = transform_compose(&by, &out);
+        out = transform_compose(&link->above_from_node, &out);
+    }
+    return out;
+}
+
+struct transform world_placement(const struct world *world, uint32_t placed, double ray_time) {
+    const struct placed *p = &world->placed[placed];
+    if (p->linear == LINEAR_NONE)
+        return transform_identity();
+    if (p->linear & LINEAR_MOVING)
+        return moved(&world->moving[p->linear & ~LINEAR_MOVING], world->shutter, ray_time);
+    const struct linear_map *map = &world->linear_maps[p->linear];
+    struct transform out;
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            out.forward.m[i][j] = map->forward[i][j];
+            out.inverse.m[i][j] = map->inverse[i][j];
+        }
+        out.forward.m[i][3] = vec3_get(p->shift, i);
+        out.inverse.m[i][3] = vec3_get(p->shift_back, i);
+    }
+    return out;
+}
+
+struct ray world_ray_of_moving(const struct world *world, uint32_t placed, const struct ray *ray) {
+    struct transform world_from_object = world_placement(world, placed, ray->time);
+    return ray_transform(&world_from_object.inverse, ray);
+}
+
+/* Everything that a moving primitive covers while the shutter is open: link by link, so that what the moves of two
+ * links have to do with each other is forgotten and the box may be too large, never too small. */
+static struct box moving_bounds(const struct shape *shape, const struct moving *moving, struct shutter shutter) {
+    struct box box = box_pad(shape_bounds_under(shape, &moving->link_from_object.forward));
+    for (const struct moving_link *link = moving->link; link; link = link->above) {
+        box = box_pad(motion_bounds(&link->motion, &box, shutter));
+        box = box_pad(box_transform(&link->above_from_node.forward, &box));
+    }
+    return box;
+}
+
+/* The tightest box of a mesh looks at all its corners: done for the first placements, until so many triangles have been
+ * looked at; the others take the box of the mapped box. Between two of them it is asked whether to stop. */
+enum { EXACT_AT_ONCE = 1 << 20, EXACT_IN_ALL = 1 << 22 };
+
+static struct box placed_bounds(const struct world *world, uint32_t placed, uint32_t *exact) {
+    const struct shape *shape = placed_shape(world, placed);
+    uint32_t linear = world->placed[placed].linear;
+    if (linear != LINEAR_NONE && (linear & LINEAR_MOVING))
+        return moving_bounds(shape, &world->moving[linear & ~LINEAR_MOVING], world->shutter);
+    struct transform world_from_object = world_placement(world, placed, 0);
+    uint32_t triangles = shape->kind == SHAPE_MESH ? mesh_triangle_count(shape->mesh) : UINT32_MAX;
+    if (linear != LINEAR_NONE && triangles <= EXACT_AT_ONCE && triangles <= *exact) {
+        *exact -= triangles;
+        return box_pad(mesh_bounds_under(shape->mesh, &world_from_object.forward));
+    }
+    return box_pad(shape_bounds_under(shape, &world_from_object.forward));
+}
+
+bool world_place_boxes(struct world *world, const struct box *limits, struct pool *pool, struct error *error) {
+    uint32_t exact = EXACT_IN_ALL;
+    world->moves = world->moving_count > 0;
+    for (uint32_t i = 0; i < world->placed_count; i++) {
+        const struct shape *shape = placed_shape(world, i);
+        uint32_t before = exact;
+        world->boxes[i] = placed_bounds(world, i, &exact);
+        if (limits)
+            world->boxes[i] = box_meet(world->boxes[i], box_pad(limits[i]));
+        if (box_is_empty(&world->boxes[i]))
+            world->boxes[i] = box_empty();
+        if (before != exact && pool_cancelled(pool))
+            return error_set(error, ERROR_CANCELLED, "stopped while the scene was measured");
+        if (shape->kind == SHAPE_MESH)
+            world->triangles += mesh_triangle_count(shape->mesh);
+    }
+    for (uint32_t i = 0; i < world->thing_count; i++) {
+        uint32_t need = shape_scratch_need(&world->things[i].shape);
+        world->scratch_need = need > world->scratch_need ? need : world->scratch_need;
+        world->things[i].hull = shape_hull(&world->things[i].shape);
+    }
+    return true;
+}

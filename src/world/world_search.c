@@ -1,0 +1,318 @@
+/* What a ray meets first, and whether it meets anything. Every traversal of the accelerator ends in the same tests of
+ * one primitive. A primitive that stands in several cells is tried once per ray: a small mailbox remembers it. */
+#include "world/world_internal.h"
+
+#include <string.h>
+
+enum { MAILBOX = 32, SCRATCH_START = 256 };
+
+bool world_scratch_init(struct world_scratch *scratch, const struct world *world) {
+    *scratch = (struct world_scratch){0};
+    for (int i = 0; i < WORLD_BLOCKERS; i++)
+        scratch->blockers[i] = UINT32_MAX;
+    uint32_t need = world->scratch_need > SCRATCH_START ? world->scratch_need : SCRATCH_START;
+    return geom_scratch_init(&scratch->geom, need);
+}
+
+void world_scratch_destroy(struct world_scratch *scratch) {
+    geom_scratch_destroy(&scratch->geom);
+}
+
+/* --- nearest --- */
+
+struct search {
+    const struct world *world;
+    const struct ray *ray;
+    struct world_scratch *scratch;
+    struct box_probe probe;
+    struct ray limited; /* the ray with t_max just behind the best answer, so that an equal t is still found */
+    /* The best answer, if there is one, and where the next goes: what was just written in pieces is slow to copy. */
+    struct crossing *best, *next;
+    uint32_t placed;
+    bool found;
+};
+
+/* Faces that are not seen are passed: the search goes on behind them. */
+static bool nearest_of_mesh(const struct world *world, uint32_t index, const struct ray *ray_object,
+                            struct geom_scratch *geom, struct crossing *out) {
+    const struct thing *thing = placed_thing(world, index);
+    bool found = mesh_nearest(thing->shape.mesh, ray_object, world->accel, geom, out);
+    if (thing->cull == CULL_NONE)
+        return found;
+    struct ray rest = *ray_object;
+    while (found && out->enter == (thing->cull == CULL_FRONT)) {
+        rest.t_min = out->t;
+        found = mesh_nearest(thing->shape.mesh, &rest, world->accel, geom, out);
+    }
+    return found;
+}
+
+/* Runs one question about one placed primitive again with more scratch until it fits. */
+bool world_ask_nearest(const struct world *world, uint32_t index, const struct ray *ray_object,
+                       struct world_scratch *scratch, struct crossing *out) {
+    const struct shape *shape = placed_shape(world, index);
+    struct geom_scratch *geom = &scratch->geom;
+    for (;;) {
+        bool found = shape->kind == SHAPE_MESH ? nearest_of_mesh(world, index, ray_object, geom, out)
+                                               : shape_nearest(shape, ray_object, geom, out);
+        if (!geom->overflow)
+            return found;
+        if (!geom_scratch_grow(geom)) {
+            scratch->failed = true;
+            return false;
+        }
+    }
+}
+
+static void try_placed(struct search *s, uint32_t index) {
+    if (index + 1 == s->ray->passes)
+        return;
+    bool as_it_is = s->world->placed[index].linear == LINEAR_NONE;
+    struct ray ray_object;
+    struct crossing *crossing = s->next;
+    if (!as_it_is)
+        ray_object = placed_ray(s->world, index, &s->limited);
+    if (!world_ask_nearest(s->world, index, as_it_is ? &s->limited : &ray_object, s->scratch, crossing))
+        return;
+    if (s->found && !(crossing->t < s->best->t || (crossing->t == s->best->t && index < s->placed)))
+        return;
+    s->next = s->best;
+    s->best = crossing;
+    s->placed = index;
+    s->found = true;
+    double just_behind = crossing->t + fabs(crossing->t) * 0x1p-52;
+    s->limited.t_max = just_behind < s->ray->t_max ? just_behind : s->ray->t_max;
+}
+
+static void try_boxed(struct search *s, uint32_t index) {
+    s->scratch->geom.box_tests++;
+    if (box_probe_meets(&s->probe, &s->world->boxes[index], s->limited.t_min, s->limited.t_max))
+        try_placed(s, index);
+}
+
+struct mailbox {
+    uint32_t seen[MAILBOX];
+};
+
+static bool mailbox_first(struct mailbox *box, uint32_t index) {
+    uint32_t *slot = &box->seen[index % MAILBOX];
+    if (*slot == index)
+        return false;
+    *slot = index;
+    return true;
+}
+
+static void search_grid(struct search *s) {
+    struct mailbox mailbox;
+    memset(&mailbox, 0xff, sizeof mailbox);
+    struct grid_walk walk = {0};
+    for (bool go_on = grid_walk_begin(&walk, &s->world->grid, s->ray); go_on; go_on = grid_walk_next(&walk)) {
+        for (uint32_t i = 0; i < walk.count; i++) {
+            if (mailbox_first(&mailbox, walk.items[i]))
+                try_boxed(s, walk.items[i]);
+        }
+        /* Strictly before the end of the voxel: an equal t may still wait in the next one. */
+        if (s->found && s->best->t < walk.t_exit)
+            break;
+    }
+    s->scratch->geom.cost.voxels += walk.voxels;
+}
+
+static void search_tree(struct search *s) {
+    struct box_tree_walk walk;
+    uint32_t index;
+    box_tree_walk_begin(&walk, &s->world->tree, s->ray);
+    while (box_tree_walk_next(&walk, s->limited.t_max, &index))
+        try_placed(s, index);
+    s->scratch->geom.cost.hierarchy_steps += walk.steps;
+}
+
+/* Boxes are padded, so that the points of their primitives as they are computed lie inside: no slack is needed. */
+static void search_kd_tree(struct search *s) {
+    struct mailbox mailbox;
+    memset(&mailbox, 0xff, sizeof mailbox);
+    struct kd_walk walk;
+    kd_walk_begin(&walk, &s->world->kd_tree, s->ray, 0);
+    while (kd_walk_next(&walk, s->limited.t_max)) {
+        for (uint32_t i = 0; i < walk.count; i++) {
+            if (mailbox_first(&mailbox, walk.items[i]))
+                try_boxed(s, walk.items[i]);
+        }
+    }
+    s->scratch->geom.cost.hierarchy_steps += walk.steps;
+    s->scratch->geom.cost.voxels += walk.leaves;
+}
+
+bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
+                            uint32_t *placed, struct crossing *crossing) {
+    struct search s;
+    struct crossing other;
+    s.world = world;
+    s.ray = ray;
+    s.scratch = scratch;
+    s.limited = *ray;
+    s.found = false;
+    s.placed = 0;
+    s.next = crossing;
+    s.best = &other;
+    if (world->frame != ACCEL_BVH)
+        s.probe = box_probe_make(ray); /* the hierarchy has one of its own */
+    scratch->rays++;
+    switch (world->frame) {
+    case ACCEL_AUTO:
+    case ACCEL_BVH:
+        search_tree(&s);
+        break;
+    case ACCEL_GRID:
+        search_grid(&s);
+        break;
+    case ACCEL_KDTREE:
+        search_kd_tree(&s);
+        break;
+    case ACCEL_NONE:
+        for (uint32_t i = 0; i < world->placed_count; i++)
+            try_boxed(&s, i);
+        break;
+    }
+    *placed = s.placed;
+    if (s.found && s.best != crossing)
+        *crossing = *s.best;
+    return s.found;
+}
+
+bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit) {
+    uint32_t placed;
+    struct crossing crossing;
+    if (!world_nearest_crossing(world, ray, scratch, &placed, &crossing))
+        return false;
+    world_describe(world, ray, placed, &crossing, hit);
+    return true;
+}
+
+/* --- anything in the way --- */
+
+/* A surface with holes stands in the way where at least half of it is there: shadows have two values. */
+static bool any_with_holes(const struct world *world, uint32_t index, const struct ray *ray,
+                           struct world_scratch *scratch) {
+    struct ray rest = *ray;
+    for (;;) {
+        struct ray ray_object = placed_ray(world, index, &rest);
+        struct crossing crossing;
+        struct hit hit;
+        struct surface_look look;
+        if (!world_ask_nearest(world, index, &ray_object, scratch, &crossing))
+            return false;
+        world_describe(world, ray, index, &crossing, &hit);
+        material_look(world->materials[hit.material], &hit, &look);
+        if (look.opacity >= 0.5)
+            return true;
+        rest.t_min = crossing.t;
+    }
+}
+
+bool world_ask_any(const struct world *world, uint32_t index, const struct ray *ray, struct world_scratch *scratch) {
+    const struct thing *thing = placed_thing(world, index);
+    if (index + 1 == ray->passes)
+        return false;
+    if (thing->holes)
+        return any_with_holes(world, index, ray, scratch);
+    struct ray ray_object = placed_ray(world, index, ray);
+    for (;;) {
+        struct crossing ignored;
+        bool found = thing->shape.kind == SHAPE_MESH && thing->cull != CULL_NONE
+                         ? nearest_of_mesh(world, index, &ray_object, &scratch->geom, &ignored)
+                     : thing->shape.kind == SHAPE_MESH
+                         ? mesh_any(thing->shape.mesh, &ray_object, world->accel, &scratch->geom)
+                         : shape_any(&thing->shape, &ray_object, &scratch->geom);
+        if (!scratch->geom.overflow)
+            return found;
+        if (!geom_scratch_grow(&scratch->geom)) {
+            scratch->failed = true;
+            return false;
+        }
+    }
+}
+
+static bool any_boxed(const struct world *world, uint32_t index, const struct ray *ray, const struct box_probe *probe,
+                      struct world_scratch *scratch) {
+    scratch->geom.box_tests++;
+    return box_probe_meets(probe, &world->boxes[index], ray->t_min, ray->t_max) &&
+           world_ask_any(world, index, ray, scratch);
+}
+
+static bool any_in_grid(const struct world *world, const struct ray *ray, const struct box_probe *probe,
+                        struct world_scratch *scratch) {
+    struct mailbox mailbox;
+    memset(&mailbox, 0xff, sizeof mailbox);
+    (void)mailbox_first(&mailbox, scratch->blockers[scratch->light]);
+    struct grid_walk walk = {0};
+    bool found = false;
+    for (bool go_on = grid_walk_begin(&walk, &world->grid, ray); go_on && !found; go_on = grid_walk_next(&walk)) {
+        for (uint32_t i = 0; i < walk.count && !found; i++) {
+            uint32_t index = walk.items[i];
+            found = mailbox_first(&mailbox, index) && any_boxed(world, index, ray, probe, scratch);
+            if (found)
+                scratch->blockers[scratch->light] = index;
+        }
+        if (found)
+            break;
+    }
+    scratch->geom.cost.voxels += walk.voxels;
+    return found;
+}
+
+static bool any_in_tree(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
+    struct box_tree_walk walk;
+    uint32_t index, asked = scratch->blockers[scratch->light];
+    bool found = false;
+    box_tree_walk_begin(&walk, &world->tree, ray);
+    while (!found && box_tree_walk_any(&walk, ray->t_max, &index)) {
+        found = index != asked && world_ask_any(world, index, ray, scratch);
+        if (found)
+            scratch->blockers[scratch->light] = index;
+    }
+    scratch->geom.cost.hierarchy_steps += walk.steps;
+    return found;
+}
+
+static bool any_in_kd_tree(const struct world *world, const struct ray *ray, const struct box_probe *probe,
+                           struct world_scratch *scratch) {
+    struct mailbox mailbox;
+    memset(&mailbox, 0xff, sizeof mailbox);
+    (void)mailbox_first(&mailbox, scratch->blockers[scratch->light]);
+    struct kd_walk walk;
+    bool found = false;
+    kd_walk_begin(&walk, &world->kd_tree, ray, 0);
+    while (!found && kd_walk_next(&walk, ray->t_max)) {
+        for (uint32_t i = 0; i < walk.count && !found; i++) {
+            uint32_t index = walk.items[i];
+            found = mailbox_first(&mailbox, index) && any_boxed(world, index, ray, probe, scratch);
+            if (found)
+                scratch->blockers[scratch->light] = index;
+        }
+    }
+    scratch->geom.cost.hierarchy_steps += walk.steps;
+    scratch->geom.cost.voxels += walk.leaves;
+    return found;
+}
+
+bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
+    scratch->any_rays++;
+    struct box_probe probe = box_probe_make(ray);
+    if (world->frame == ACCEL_NONE) {
+        for (uint32_t i = 0; i < world->placed_count; i++) {
+            if (any_boxed(world, i, ray, &probe, scratch))
+                return true;
+        }
+        return false;
+    }
+    /* Neighbouring shadow rays mostly end at the same thing: it is asked first. The answer cannot depend on it. */
+    uint32_t *blocker = &scratch->blockers[scratch->light];
+    if (*blocker < world->placed_count && any_boxed(world, *blocker, ray, &probe, scratch))
+        return true;
+    bool found = world->frame == ACCEL_KDTREE ? any_in_kd_tree(world, ray, &probe, scratch)
+                 : world->frame == ACCEL_GRID ? any_in_grid(world, ray, &probe, scratch)
+                                              : any_in_tree(world, ray, scratch);
+    *blocker = found ? *blocker : UINT32_MAX;
+    return found;
+}
