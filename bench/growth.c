@@ -271,7 +271,7 @@ static void grow_instances(struct bench *bench) {
         if (!node_add_child(&stand.scene, stand.root, many, &stand.error))
             exit(3);
         row.build_seconds = stand_build(&stand, bench->pool);
-        row.bytes_each = (double)(world_placed_memory(&stand.world) + world_search_memory(&stand.world)) / count;
+        row.bytes_each = (double)(world_placed_memory(&stand.world) + scene_accel_memory(&stand.world.accel)) / count;
         finish_row(bench, &stand, &view, &row);
         stand_end(&stand);
         free(at);

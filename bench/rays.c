@@ -110,7 +110,7 @@ static struct mesh *gray_build(const struct bench_scene *scene, int threads, dou
     struct mesh *mesh = mesh_create(&input, &error);
     size_t bare = mesh ? mesh_memory(mesh) : 0;
     double start = build_seconds(threads);
-    if (!mesh || !mesh_build_index(mesh, pool, &error)) {
+    if (!mesh || !mesh_build_accel(mesh, ACCEL_AUTO, pool, &error)) {
         fprintf(stderr, "rays: %s\n", error.text);
         exit(3);
     }

@@ -147,11 +147,11 @@ static void fill_report(const struct child *child, const struct world *world, co
     report->triangles = world->triangles;
     report->mesh_bytes = world->mesh_memory;
     report->placed_bytes = world_placed_memory(world);
-    report->search_bytes = world_search_memory(world);
+    report->search_bytes = scene_accel_memory(&world->accel);
     report->image_bytes = 0;
     for (const struct asset_image *entry = child->assets.images; entry; entry = entry->next)
         report->image_bytes += image_memory(entry->image);
-    memcpy(report->grid_cells, world->grid.cells, sizeof report->grid_cells);
+    memcpy(report->grid_cells, world->accel.grid.cells, sizeof report->grid_cells);
     report->node_bytes = scene->arena.total;
     (void)film_size_layered(film->width, film->height, aov_layers(film->layer_mask), &film_bytes, &ignored);
     report->film_bytes = film_bytes;

@@ -15,9 +15,12 @@ struct mesh *mesh_share(struct mesh *mesh) {
 void mesh_release(struct mesh *mesh) {
     if (!mesh || --mesh->references > 0)
         return;
-    triangle_index_destroy(mesh->index);
-    triangle_index_destroy(mesh->grid);
-    kd_triangles_destroy(mesh->kd_tree);
+    if (mesh->accel) {
+        triangle_index_destroy(mesh->accel->index);
+        triangle_index_destroy(mesh->accel->grid);
+        kd_triangles_destroy(mesh->accel->kd_tree);
+    }
+    mem_free(mesh->accel);
     mem_free(mesh->file);
     mem_free(mesh->vertices);
     mem_free(mesh->corners);
@@ -32,21 +35,25 @@ void mesh_release(struct mesh *mesh) {
     mem_free(mesh);
 }
 
-bool mesh_build_index(struct mesh *mesh, struct pool *pool, struct error *error) {
-    if (mesh->index)
-        return true;
-    return triangle_index_build(&mesh->index, &mesh->set, 0, pool, error);
-}
-
-bool mesh_build_grid(struct mesh *mesh, struct pool *pool, struct error *error) {
+static uint32_t grid_voxels(const struct mesh *mesh) {
     enum { TRIANGLES_PER_VOXEL = 8, MOST_VOXELS = 1 << 18 };
     uint32_t voxels = mesh->set.count / TRIANGLES_PER_VOXEL;
-    voxels = voxels < 1 ? 1 : voxels > MOST_VOXELS ? MOST_VOXELS : voxels;
-    return mesh->grid || triangle_index_build(&mesh->grid, &mesh->set, voxels, pool, error);
+    return voxels < 1 ? 1 : voxels > MOST_VOXELS ? MOST_VOXELS : voxels;
 }
 
-bool mesh_build_kd_tree(struct mesh *mesh, struct pool *pool, struct error *error) {
-    return mesh->kd_tree || kd_triangles_build(&mesh->kd_tree, &mesh->set, pool, error);
+bool mesh_build_accel(const struct mesh *mesh, enum accel_kind kind, struct pool *pool, struct error *error) {
+    struct mesh_accel *accel = mesh->accel;
+    switch (kind) {
+    case ACCEL_GRID:
+        return accel->grid || triangle_index_build(&accel->grid, &mesh->set, grid_voxels(mesh), pool, error);
+    case ACCEL_KDTREE:
+        return accel->kd_tree || kd_triangles_build(&accel->kd_tree, &mesh->set, pool, error);
+    case ACCEL_AUTO:
+    case ACCEL_BVH:
+    case ACCEL_NONE: /* insides of solids are asked for all the same */
+        return accel->index || triangle_index_build(&accel->index, &mesh->set, 0, pool, error);
+    }
+    return true;
 }
 
 struct box mesh_bounds(const struct mesh *mesh) {
@@ -138,9 +145,9 @@ size_t mesh_memory(const struct mesh *mesh) {
         bytes += triangles * sizeof *mesh->materials;
     if (mesh->face_start)
         bytes += ((size_t)mesh->face_count + 1 + mesh->face_start[mesh->face_count]) * sizeof(uint32_t);
-    bytes += mesh->grid ? triangle_index_memory(mesh->grid) : 0;
-    bytes += mesh->kd_tree ? kd_triangles_memory(mesh->kd_tree) : 0;
-    return bytes + (mesh->index ? triangle_index_memory(mesh->index) : 0);
+    bytes += mesh->accel->grid ? triangle_index_memory(mesh->accel->grid) : 0;
+    bytes += mesh->accel->kd_tree ? kd_triangles_memory(mesh->accel->kd_tree) : 0;
+    return bytes + (mesh->accel->index ? triangle_index_memory(mesh->accel->index) : 0);
 }
 
 /* The counters of the search are the scratch's own. */
@@ -159,17 +166,18 @@ struct way {
     const struct kd_triangles *kd_tree;
 };
 
-static inline struct way way_for(const struct mesh *mesh, enum accel_kind accel) {
-    if (accel == ACCEL_AUTO && mesh->index) /* nearly always */
-        return (struct way){.index = mesh->index};
-    switch (accel) {
+static inline struct way way_for(const struct mesh *mesh, enum accel_kind kind) {
+    const struct mesh_accel *accel = mesh->accel;
+    if (kind == ACCEL_AUTO && accel->index) /* nearly always */
+        return (struct way){.index = accel->index};
+    switch (kind) {
     case ACCEL_GRID:
-        return (struct way){.index = mesh->grid ? mesh->grid : mesh->index};
+        return (struct way){.index = accel->grid ? accel->grid : accel->index};
     case ACCEL_AUTO:
     case ACCEL_BVH:
-        return (struct way){.index = mesh->index ? mesh->index : mesh->grid, .kd_tree = mesh->kd_tree};
+        return (struct way){.index = accel->index ? accel->index : accel->grid, .kd_tree = accel->kd_tree};
     case ACCEL_KDTREE:
-        return (struct way){.index = mesh->kd_tree ? NULL : mesh->index, .kd_tree = mesh->kd_tree};
+        return (struct way){.index = accel->kd_tree ? NULL : accel->index, .kd_tree = accel->kd_tree};
     case ACCEL_NONE:
         return (struct way){0};
     }

@@ -1,7 +1,7 @@
 /* A triangle mesh with its own acceleration structure, an immutable asset once built: mesh_create copies and
- * triangulates, mesh_build_index (lazily, before the first render, in parallel on the pool) makes the grid. A mesh
- * answers nearest, any and all crossings with one and the same watertight triangle test. Owner: the asset store, by
- * reference count. */
+ * triangulates, mesh_build_accel (lazily, before the first render, in parallel on the pool) what searches go through. A
+ * mesh answers nearest, any and all crossings with one and the same watertight triangle test. Owner: the asset store,
+ * by reference count. */
 #ifndef GRAY_GEOM_MESH_H
 #define GRAY_GEOM_MESH_H
 
@@ -50,13 +50,11 @@ enum accel_kind { ACCEL_AUTO, ACCEL_GRID, ACCEL_BVH, ACCEL_KDTREE, ACCEL_NONE };
 struct mesh *mesh_create(const struct mesh_input *input, struct error *error);
 struct mesh *mesh_share(struct mesh *mesh); /* one more owner */
 void mesh_release(struct mesh *mesh);
-/* Thread-compatible: call from one thread; returns at once when the index exists. False: no memory or cancelled. */
-bool mesh_build_index(struct mesh *mesh, struct pool *pool, struct error *error);
-
-/* The same for ACCEL_GRID: a frame of many voxels that Amanatides and Woo's steps walk through, for teaching and for
- * doubt. The index that mesh_build_index makes has the resolution that measured best, which is mostly one voxel. */
-bool mesh_build_grid(struct mesh *mesh, struct pool *pool, struct error *error);
-bool mesh_build_kd_tree(struct mesh *mesh, struct pool *pool, struct error *error); /* for ACCEL_KDTREE */
+/* Builds what searches of this kind go through, unless it is there already. The mesh itself does not change. Call from
+ * one thread while nobody searches. ACCEL_AUTO: the index whose resolution measured best, which is mostly one voxel;
+ * ACCEL_GRID: a grid of many voxels that Amanatides and Woo's steps walk through, for teaching and for doubt. Errors:
+ * no memory, cancelled. */
+bool mesh_build_accel(const struct mesh *mesh, enum accel_kind kind, struct pool *pool, struct error *error);
 
 struct box mesh_bounds(const struct mesh *mesh);
 /* The tightest box of the mesh as `map` places it; looks at every corner. */

@@ -290,13 +290,15 @@ struct mesh *mesh_create(const struct mesh_input *input, struct error *error) {
         return NULL;
     }
     struct mesh *mesh = mem_alloc_zero(1, sizeof *mesh);
+    if (mesh)
+        mesh->accel = mem_alloc_zero(1, sizeof *mesh->accel);
     uint32_t *face_of = mem_alloc(triangles * sizeof *face_of);
     if (mesh) {
         mesh->references = 1;
         mesh->vertex_count = input->vertex_count;
         mesh->face_count = input->face_count;
     }
-    if (!mesh || !face_of || !keep_file(mesh, input) || !fill(mesh, input, triangles, face_of)) {
+    if (!mesh || !mesh->accel || !face_of || !keep_file(mesh, input) || !fill(mesh, input, triangles, face_of)) {
         error_no_memory(error, name);
         mesh_release(mesh);
         mesh = NULL;

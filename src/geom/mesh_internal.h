@@ -6,6 +6,12 @@
 #include "accel/triangle_index.h"
 #include "geom/mesh.h"
 
+/* What searches go through, built when the first of them asks: it stands beside the tables, which never change. */
+struct mesh_accel {
+    struct triangle_index *index, *grid; /* grid: only once ACCEL_GRID was asked for */
+    struct kd_triangles *kd_tree;        /* the same for ACCEL_KDTREE */
+};
+
 /* Triangles as flat arrays. A triangle whose first normal or uv corner is MESH_NONE has none. */
 struct mesh {
     uint32_t references;
@@ -25,9 +31,8 @@ struct mesh {
     struct box bounds;
     bool closed, outward; /* outward: of a closed mesh, the volume it encloses is positive */
     struct vec3 open_edge[2];
-    struct triangle_set set;             /* the triangles as searches see them: borrows from the tables above */
-    struct triangle_index *index, *grid; /* grid: only once somebody asked for ACCEL_GRID */
-    struct kd_triangles *kd_tree;        /* the same for ACCEL_KDTREE */
+    struct triangle_set set; /* the triangles as searches see them: borrows from the tables above */
+    struct mesh_accel *accel;
 };
 
 #define MESH_NONE UINT32_MAX

@@ -39,7 +39,7 @@ static bool is_free(struct tracer *tracer, const struct hit *hit, struct vec3 fr
     struct story_light *light = story_light_of(tracer->story);
     if (light) {
         tell_shadow(tracer, 1, free);
-        light->has_blocker = light->asked == 1 && !free && tracer->job->world->accel != ACCEL_NONE;
+        light->has_blocker = light->asked == 1 && !free && tracer->job->world->accel.kind != ACCEL_NONE;
         light->blocker = tracer->scratch->blockers[tracer->scratch->light];
     }
     return free;

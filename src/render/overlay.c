@@ -253,7 +253,7 @@ static void share_colour(struct pen *pen, double share) {
 
 /* Voxels that hold something. */
 static void draw_voxels(struct pen *pen) {
-    const struct grid *grid = &pen->job->world->grid;
+    const struct grid *grid = &pen->job->world->accel.grid;
     uint64_t count = (uint64_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
     uint32_t step = step_for(pen, count);
     pen->colour = vec3_all(1);
@@ -272,7 +272,7 @@ static void draw_voxels(struct pen *pen) {
 
 /* Inner nodes of the hierarchy: those near the root are red. */
 static void draw_tree(struct pen *pen) {
-    const struct box_tree *tree = &pen->job->world->tree;
+    const struct box_tree *tree = &pen->job->world->accel.tree;
     uint32_t step = step_for(pen, (uint64_t)tree->node_count * BOX_TREE_WIDTH);
     pen->colour = vec3_all(1);
     draw_box(pen, &tree->bounds);
@@ -291,7 +291,7 @@ static void draw_tree(struct pen *pen) {
 
 /* Leaves that hold something; the cell of a node is that of its parent, cut. */
 static void draw_halves(struct pen *pen) {
-    const struct kd_tree *tree = &pen->job->world->kd_tree;
+    const struct kd_tree *tree = &pen->job->world->accel.kd_tree;
     struct {
         struct box cell;
         uint32_t node;
@@ -322,7 +322,7 @@ static void draw_halves(struct pen *pen) {
 }
 
 static void draw_cells(struct pen *pen) {
-    switch (pen->job->world->frame) {
+    switch (pen->job->world->accel.kind) {
     case ACCEL_GRID:
         draw_voxels(pen);
         return;

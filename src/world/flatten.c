@@ -232,22 +232,8 @@ static bool place(struct flattening *f, const struct stand *stand, const struct 
     return stand->above ? place_moving(f, stand, placed) : flatten_map(f, &stand->from_node, placed);
 }
 
-bool flatten_mesh_index(struct flattening *f, const struct shape *shape) {
-    if (shape->kind != SHAPE_MESH)
-        return true;
-    /* The mesh is an asset: immutable but for its index, which is made at its first render. */
-    struct mesh *mesh = (struct mesh *)(uintptr_t)shape->mesh;
-    switch (f->world->accel) {
-    case ACCEL_GRID:
-        return mesh_build_grid(mesh, f->pool, f->error);
-    case ACCEL_KDTREE:
-        return mesh_build_kd_tree(mesh, f->pool, f->error);
-    case ACCEL_AUTO:
-    case ACCEL_BVH:
-    case ACCEL_NONE:
-        return mesh_build_index(mesh, f->pool, f->error);
-    }
-    return true;
+bool flatten_mesh_accel(struct flattening *f, const struct shape *shape) {
+    return shape->kind != SHAPE_MESH || mesh_build_accel(shape->mesh, f->world->mesh_accel, f->pool, f->error);
 }
 
 /* node->thing: 0 where it is not known yet, else its number and 1, or nothing to draw. */
@@ -294,7 +280,7 @@ static bool make_thing(struct flattening *f, struct node *node, const struct sta
     } else {
         struct thing thing = {.node = node, .shape = node->shape, .cull = node->cull, .parts = 1};
         const struct material *inherited = around ? around->inherited : NULL;
-        if (!flatten_mesh_index(f, &node->shape) ||
+        if (!flatten_mesh_accel(f, &node->shape) ||
             !flatten_material(f, node, inherited, &thing.material, &thing.slot_count) || !add_thing(f, &thing))
             return false;
     }

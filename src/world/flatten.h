@@ -62,7 +62,7 @@ bool flatten_material(struct flattening *f, struct node *node, const struct mate
                       uint32_t *count);
 /* False: the map of a node into the world, or into its solid, has left the range of numbers. */
 bool flatten_check_transform(struct flattening *f, const struct node *node, const struct transform *t);
-bool flatten_mesh_index(struct flattening *f, const struct shape *shape);
+bool flatten_mesh_accel(struct flattening *f, const struct shape *shape);
 /* Sets shifts and linear map of a placement. Maps that are equal to the bit are kept once. */
 bool flatten_map(struct flattening *f, const struct transform *world_from_object, struct placed *out);
 void flatten_map_end(struct flattening *f); /* gives back what only flattening needs */

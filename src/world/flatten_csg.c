@@ -68,7 +68,7 @@ static bool add_leaf(struct flattening *f, struct csg_draft *draft, struct node 
     }
     struct csg_leaf leaf = {
         .shape = node->shape, .csg_from_leaf = *csg_from_node, .limit = above->limit, .origin = draft->met++};
-    if (!flatten_mesh_index(f, &node->shape))
+    if (!flatten_mesh_accel(f, &node->shape))
         return false;
     if (!draft->unseen && !flatten_material(f, node, above->inherited, &leaf.material, &leaf.slot_count))
         return false;

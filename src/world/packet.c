@@ -128,8 +128,8 @@ static void try_mesh(struct packet_search *s, uint32_t index, uint64_t active) {
     struct ray_packet object;
     struct packet_hits hits;
     const struct mesh *mesh = placed_shape(s->world, index)->mesh;
-    uint64_t met =
-        mesh_nearest_packet(mesh, placed_rays(s, index, &object), active, s->world->accel, &s->scratch->geom, &hits);
+    uint64_t met = mesh_nearest_packet(mesh, placed_rays(s, index, &object), active, s->world->mesh_accel,
+                                       &s->scratch->geom, &hits);
     for (; met; met &= met - 1) {
         unsigned i = (unsigned)__builtin_ctzll(met);
         struct crossing crossing = {
@@ -162,7 +162,7 @@ uint64_t world_nearest_packet(const struct world *world, const struct ray_packet
                               struct packet_answer *out) {
     enum { FEWEST = 4 };
     struct beam beam;
-    bool tree = world->frame == ACCEL_BVH;
+    const struct box_tree *tree = scene_accel_hierarchy(&world->accel);
     if (!tree || rays->count < FEWEST || !beam_make(&beam, rays)) {
         uint64_t found = 0;
         for (uint32_t i = 0; i < rays->count; i++) {
@@ -186,7 +186,7 @@ uint64_t world_nearest_packet(const struct world *world, const struct ray_packet
     struct beam_walk walk;
     uint32_t index;
     double limit = farthest(&s);
-    beam_walk_begin(&walk, &world->tree, &beam);
+    beam_walk_begin(&walk, tree, &beam);
     while (beam_walk_next(&walk, limit, &index)) {
         uint64_t active = meet_box(&s, &world->boxes[index]);
         if (!active)
@@ -208,7 +208,7 @@ static uint64_t stopped_by(const struct packet_search *s, uint32_t index, uint64
     const struct thing *thing = placed_thing(s->world, index);
     if (is_plain_mesh(s->world, index) && !thing->holes) {
         struct ray_packet object;
-        return mesh_any_packet(thing->shape.mesh, placed_rays(s, index, &object), active, s->world->accel,
+        return mesh_any_packet(thing->shape.mesh, placed_rays(s, index, &object), active, s->world->mesh_accel,
                                &s->scratch->geom);
     }
     uint64_t stopped = 0;
@@ -245,11 +245,12 @@ struct between world_between(const struct world *world, struct vec3 from, struct
     struct between between;
     between.count = 0;
     between.passes = passes;
-    between.known = world->frame == ACCEL_BVH;
+    const struct box_tree *tree = scene_accel_hierarchy(&world->accel);
+    between.known = tree != NULL;
     if (!between.known)
         return between;
     struct shaft shaft = shaft_make(from, corner, edge1, edge2);
-    between.count = box_tree_in_shaft(&world->tree, &shaft, between.items, BETWEEN_LIMIT);
+    between.count = box_tree_in_shaft(tree, &shaft, between.items, BETWEEN_LIMIT);
     between.known = between.count <= BETWEEN_LIMIT;
     for (uint32_t i = 0; between.known && i < between.count; i++) {
         if (between.items[i] + 1 == passes) {

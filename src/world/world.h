@@ -3,9 +3,6 @@
 #ifndef GRAY_WORLD_WORLD_H
 #define GRAY_WORLD_WORLD_H
 
-#include "accel/box_tree.h"
-#include "accel/grid.h"
-#include "accel/kd_tree.h"
 #include "base/arena.h"
 #include "base/pool.h"
 #include "geom/csg.h"
@@ -13,6 +10,7 @@
 #include "geom/shape.h"
 #include "math/motion.h"
 #include "scene/node.h"
+#include "world/scene_accel.h"
 
 /* The way from a moving node to the world: after its own motion a fixed transform, then the next moving node above. */
 struct moving_link {
@@ -70,11 +68,8 @@ struct world {
     const struct light *lights;
     uint32_t light_count;
     struct sky sky;
-    struct grid grid;     /* ACCEL_GRID */
-    struct box_tree tree; /* ACCEL_BVH */
-    struct kd_tree kd_tree;
-    enum accel_kind accel; /* as asked for; of the meshes too */
-    enum accel_kind frame; /* over the placed primitives: of ACCEL_AUTO what the cost model chose, GRID or BVH */
+    struct scene_accel accel;
+    enum accel_kind mesh_accel; /* of the meshes: as asked for */
     uint32_t scratch_need;
     uint64_t triangles; /* instances counted */
     size_t mesh_memory; /* bytes of the distinct meshes */
@@ -104,9 +99,8 @@ bool world_build(struct world *world, struct arena *arena, struct scene *scene, 
                  enum accel_kind accel, struct pool *pool, world_warning *warn, void *warn_context,
                  struct error *error);
 void world_destroy(struct world *world); /* what is not in the arena */
-/* Bytes of placements with what they share and their boxes; of what searches go through. */
+/* Bytes of placements with what they share and their boxes. */
 size_t world_placed_memory(const struct world *world);
-size_t world_search_memory(const struct world *world);
 
 static inline const struct thing *placed_thing(const struct world *world, uint32_t placed) {
     return &world->things[world->placed[placed].thing];

@@ -24,8 +24,8 @@ struct search {
     const struct world *world;
     const struct ray *ray;
     struct world_scratch *scratch;
-    struct box_probe probe;
-    struct ray limited; /* the ray with t_max just behind the best answer, so that an equal t is still found */
+    struct box_probe probe; /* not for the hierarchy, which has one of its own */
+    struct ray limited;     /* the ray with t_max just behind the best answer, so that an equal t is still found */
     /* The best answer, if there is one, and where the next goes: what was just written in pieces is slow to copy. */
     struct crossing *best, *next;
     uint32_t placed;
@@ -36,13 +36,13 @@ struct search {
 static bool nearest_of_mesh(const struct world *world, uint32_t index, const struct ray *ray_object,
                             struct geom_scratch *geom, struct crossing *out) {
     const struct thing *thing = placed_thing(world, index);
-    bool found = mesh_nearest(thing->shape.mesh, ray_object, world->accel, geom, out);
+    bool found = mesh_nearest(thing->shape.mesh, ray_object, world->mesh_accel, geom, out);
     if (thing->cull == CULL_NONE)
         return found;
     struct ray rest = *ray_object;
     while (found && out->enter == (thing->cull == CULL_FRONT)) {
         rest.t_min = out->t;
-        found = mesh_nearest(thing->shape.mesh, &rest, world->accel, geom, out);
+        found = mesh_nearest(thing->shape.mesh, &rest, world->mesh_accel, geom, out);
     }
     return found;
 }
@@ -105,8 +105,9 @@ static bool mailbox_first(struct mailbox *box, uint32_t index) {
 static void search_grid(struct search *s) {
     struct mailbox mailbox;
     memset(&mailbox, 0xff, sizeof mailbox);
+    s->probe = box_probe_make(s->ray);
     struct grid_walk walk = {0};
-    for (bool go_on = grid_walk_begin(&walk, &s->world->grid, s->ray); go_on; go_on = grid_walk_next(&walk)) {
+    for (bool go_on = grid_walk_begin(&walk, &s->world->accel.grid, s->ray); go_on; go_on = grid_walk_next(&walk)) {
         for (uint32_t i = 0; i < walk.count; i++) {
             if (mailbox_first(&mailbox, walk.items[i]))
                 try_boxed(s, walk.items[i]);
@@ -121,7 +122,7 @@ static void search_grid(struct search *s) {
 static void search_tree(struct search *s) {
     struct box_tree_walk walk;
     uint32_t index;
-    box_tree_walk_begin(&walk, &s->world->tree, s->ray);
+    box_tree_walk_begin(&walk, &s->world->accel.tree, s->ray);
     while (box_tree_walk_next(&walk, s->limited.t_max, &index))
         try_placed(s, index);
     s->scratch->geom.cost.hierarchy_steps += walk.steps;
@@ -131,8 +132,9 @@ static void search_tree(struct search *s) {
 static void search_kd_tree(struct search *s) {
     struct mailbox mailbox;
     memset(&mailbox, 0xff, sizeof mailbox);
+    s->probe = box_probe_make(s->ray);
     struct kd_walk walk;
-    kd_walk_begin(&walk, &s->world->kd_tree, s->ray, 0);
+    kd_walk_begin(&walk, &s->world->accel.kd_tree, s->ray, 0);
     while (kd_walk_next(&walk, s->limited.t_max)) {
         for (uint32_t i = 0; i < walk.count; i++) {
             if (mailbox_first(&mailbox, walk.items[i]))
@@ -141,6 +143,12 @@ static void search_kd_tree(struct search *s) {
     }
     s->scratch->geom.cost.hierarchy_steps += walk.steps;
     s->scratch->geom.cost.voxels += walk.leaves;
+}
+
+static void search_all(struct search *s) {
+    s->probe = box_probe_make(s->ray);
+    for (uint32_t i = 0; i < s->world->placed_count; i++)
+        try_boxed(s, i);
 }
 
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
@@ -155,10 +163,8 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
     s.placed = 0;
     s.next = crossing;
     s.best = &other;
-    if (world->frame != ACCEL_BVH)
-        s.probe = box_probe_make(ray); /* the hierarchy has one of its own */
     scratch->rays++;
-    switch (world->frame) {
+    switch (world->accel.kind) {
     case ACCEL_AUTO:
     case ACCEL_BVH:
         search_tree(&s);
@@ -170,8 +176,7 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
         search_kd_tree(&s);
         break;
     case ACCEL_NONE:
-        for (uint32_t i = 0; i < world->placed_count; i++)
-            try_boxed(&s, i);
+        search_all(&s);
         break;
     }
     *placed = s.placed;
@@ -222,7 +227,7 @@ bool world_ask_any(const struct world *world, uint32_t index, const struct ray *
         bool found = thing->shape.kind == SHAPE_MESH && thing->cull != CULL_NONE
                          ? nearest_of_mesh(world, index, &ray_object, &scratch->geom, &ignored)
                      : thing->shape.kind == SHAPE_MESH
-                         ? mesh_any(thing->shape.mesh, &ray_object, world->accel, &scratch->geom)
+                         ? mesh_any(thing->shape.mesh, &ray_object, world->mesh_accel, &scratch->geom)
                          : shape_any(&thing->shape, &ray_object, &scratch->geom);
         if (!scratch->geom.overflow)
             return found;
@@ -247,7 +252,7 @@ static bool any_in_grid(const struct world *world, const struct ray *ray, const 
     (void)mailbox_first(&mailbox, scratch->blockers[scratch->light]);
     struct grid_walk walk = {0};
     bool found = false;
-    for (bool go_on = grid_walk_begin(&walk, &world->grid, ray); go_on && !found; go_on = grid_walk_next(&walk)) {
+    for (bool go_on = grid_walk_begin(&walk, &world->accel.grid, ray); go_on && !found; go_on = grid_walk_next(&walk)) {
         for (uint32_t i = 0; i < walk.count && !found; i++) {
             uint32_t index = walk.items[i];
             found = mailbox_first(&mailbox, index) && any_boxed(world, index, ray, probe, scratch);
@@ -265,7 +270,7 @@ static bool any_in_tree(const struct world *world, const struct ray *ray, struct
     struct box_tree_walk walk;
     uint32_t index, asked = scratch->blockers[scratch->light];
     bool found = false;
-    box_tree_walk_begin(&walk, &world->tree, ray);
+    box_tree_walk_begin(&walk, &world->accel.tree, ray);
     while (!found && box_tree_walk_any(&walk, ray->t_max, &index)) {
         found = index != asked && world_ask_any(world, index, ray, scratch);
         if (found)
@@ -282,7 +287,7 @@ static bool any_in_kd_tree(const struct world *world, const struct ray *ray, con
     (void)mailbox_first(&mailbox, scratch->blockers[scratch->light]);
     struct kd_walk walk;
     bool found = false;
-    kd_walk_begin(&walk, &world->kd_tree, ray, 0);
+    kd_walk_begin(&walk, &world->accel.kd_tree, ray, 0);
     while (!found && kd_walk_next(&walk, ray->t_max)) {
         for (uint32_t i = 0; i < walk.count && !found; i++) {
             uint32_t index = walk.items[i];
@@ -296,23 +301,39 @@ static bool any_in_kd_tree(const struct world *world, const struct ray *ray, con
     return found;
 }
 
+static bool any_of_all(const struct world *world, const struct ray *ray, const struct box_probe *probe,
+                       struct world_scratch *scratch) {
+    for (uint32_t i = 0; i < world->placed_count; i++) {
+        if (any_boxed(world, i, ray, probe, scratch))
+            return true;
+    }
+    return false;
+}
+
+static bool any_in_accel(const struct world *world, const struct ray *ray, const struct box_probe *probe,
+                         struct world_scratch *scratch) {
+    switch (world->accel.kind) {
+    case ACCEL_GRID:
+        return any_in_grid(world, ray, probe, scratch);
+    case ACCEL_AUTO:
+    case ACCEL_BVH:
+        return any_in_tree(world, ray, scratch);
+    case ACCEL_KDTREE:
+        return any_in_kd_tree(world, ray, probe, scratch);
+    case ACCEL_NONE:
+        return any_of_all(world, ray, probe, scratch);
+    }
+    return false;
+}
+
 bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
     scratch->any_rays++;
     struct box_probe probe = box_probe_make(ray);
-    if (world->frame == ACCEL_NONE) {
-        for (uint32_t i = 0; i < world->placed_count; i++) {
-            if (any_boxed(world, i, ray, &probe, scratch))
-                return true;
-        }
-        return false;
-    }
-    /* Neighbouring shadow rays mostly end at the same thing: it is asked first. The answer cannot depend on it. */
+    /* Neighbouring shadow rays mostly end at the same primitive: it is tested first. The answer cannot depend on it. */
     uint32_t *blocker = &scratch->blockers[scratch->light];
     if (*blocker < world->placed_count && any_boxed(world, *blocker, ray, &probe, scratch))
         return true;
-    bool found = world->frame == ACCEL_KDTREE ? any_in_kd_tree(world, ray, &probe, scratch)
-                 : world->frame == ACCEL_GRID ? any_in_grid(world, ray, &probe, scratch)
-                                              : any_in_tree(world, ray, scratch);
+    bool found = any_in_accel(world, ray, &probe, scratch);
     *blocker = found ? *blocker : UINT32_MAX;
     return found;
 }

@@ -78,7 +78,7 @@ static inline struct mesh *maker_mesh(const struct maker *m) {
     struct mesh_input input = maker_input(m);
     struct error error = {0};
     struct mesh *mesh = mesh_create(&input, &error);
-    if (!mesh || !mesh_build_index(mesh, NULL, &error)) {
+    if (!mesh || !mesh_build_accel(mesh, ACCEL_AUTO, NULL, &error)) {
         test_fail(__FILE__, __LINE__, "no mesh: %s", error.text);
         exit(1);
     }

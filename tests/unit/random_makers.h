@@ -45,7 +45,7 @@ static inline uint32_t random_program(struct test_random *random, uint32_t first
 static inline struct mesh *indexed_mesh(const struct mesh_input *input) {
     struct error error = {0};
     struct mesh *mesh = mesh_create(input, &error);
-    if (!mesh || !mesh_build_index(mesh, NULL, &error))
+    if (!mesh || !mesh_build_accel(mesh, ACCEL_AUTO, NULL, &error))
         test_fail(__FILE__, __LINE__, "%s", error.text);
     return mesh;
 }

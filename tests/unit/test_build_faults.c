@@ -32,8 +32,6 @@ static struct mesh *bumpy_ball(uint32_t rings) {
     return mesh;
 }
 
-typedef bool builder(struct mesh *mesh, struct pool *pool, struct error *error);
-static builder *const builders[] = {mesh_build_index, mesh_build_grid, mesh_build_kd_tree};
 static const enum accel_kind kinds[] = {ACCEL_AUTO, ACCEL_GRID, ACCEL_KDTREE};
 
 /* Rays find the same by any search. */
@@ -65,12 +63,12 @@ TEST(indices_of_meshes_survive_any_allocation_that_fails) {
     struct pool *pool = pool_create(2, warning);
     struct mesh *mesh = bumpy_ball(RINGS);
     int failed = 0;
-    for (size_t b = 0; b < sizeof builders / sizeof builders[0]; b++) {
+    for (size_t b = 0; b < sizeof kinds / sizeof kinds[0]; b++) {
         bool done = false;
         for (uint64_t k = 1; !done; k += 1 + k / 6) { /* a tree asks often */
             struct error error = {0};
             fault_at(FAULT_OF_ALLOCATION, k);
-            done = builders[b](mesh, pool, &error);
+            done = mesh_build_accel(mesh, kinds[b], pool, &error);
             fault_at(FAULT_OF_ALLOCATION, 0);
             CHECK(done || error.kind == ERROR_MACHINE);
             failed += !done;
@@ -129,7 +127,7 @@ TEST(building_may_be_stopped_at_any_moment) {
     char warning[256];
     struct pool *pool = pool_create(2, warning);
     struct mesh *mesh = bumpy_ball(RINGS);
-    for (size_t b = 0; b < sizeof builders / sizeof builders[0]; b++) {
+    for (size_t b = 0; b < sizeof kinds / sizeof kinds[0]; b++) {
         bool done = false;
         for (useconds_t after = 0; !done && after < 20000; after += 1 + after) {
             struct error error = {0};
@@ -138,13 +136,13 @@ TEST(building_may_be_stopped_at_any_moment) {
             if (after == 0)
                 pool_cancel(pool);
             CHECK(pthread_create(&thread, NULL, stop_soon, &stopper) == 0);
-            done = builders[b](mesh, pool, &error);
+            done = mesh_build_accel(mesh, kinds[b], pool, &error);
             CHECK(pthread_join(thread, NULL) == 0);
             CHECK(done || error.kind == ERROR_CANCELLED);
             pool_reset_cancel(pool);
         }
         struct error error = {0};
-        CHECK(builders[b](mesh, pool, &error));
+        CHECK(mesh_build_accel(mesh, kinds[b], pool, &error));
     }
     check_searches(mesh);
     mesh_release(mesh);

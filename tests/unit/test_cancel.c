@@ -78,7 +78,7 @@ struct index_build {
 static bool build_index(void *context) {
     struct index_build *work = context;
     struct error error = {0};
-    return mesh_build_index(work->mesh, work->build.pool, &error);
+    return mesh_build_accel(work->mesh, ACCEL_AUTO, work->build.pool, &error);
 }
 
 TEST(the_index_of_a_mesh_stops_soon) {

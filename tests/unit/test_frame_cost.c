@@ -231,7 +231,7 @@ TEST(frames_over_placed_primitives_cost_little_more_than_the_better_of_cells_and
             stage_begin(&s, 1);
             make_world(&s, form, 4000, &random);
             CHECK(stage_build(&s, s.root, (enum accel_kind[]){ACCEL_AUTO, ACCEL_GRID, ACCEL_BVH}[i]));
-            frame = i == 0 ? s.world.frame : frame;
+            frame = i == 0 ? s.world.accel.kind : frame;
             cost[i] = counted_world(&s);
             stage_end(&s);
         }

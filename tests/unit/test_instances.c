@@ -133,7 +133,7 @@ TEST(a_placement_costs_less_than_two_hundred_bytes_of_the_world) {
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
     CHECK_EQ_INT(s.world.placed_count, SIDE * SIDE);
     CHECK(s.world.linear_count <= 1);
-    size_t bytes = s.arena.total + box_tree_memory(&s.world.tree);
+    size_t bytes = s.arena.total + box_tree_memory(&s.world.accel.tree);
     CHECK(bytes < (size_t)200 * SIDE * SIDE);
     stage_end(&s);
     free(at);

@@ -256,7 +256,7 @@ static uint64_t check_against_brute(const struct maker *m, enum accel_kind accel
                                     struct test_random *random) {
     struct mesh *mesh = maker_mesh(m);
     struct error error;
-    CHECK(accel != ACCEL_KDTREE || mesh_build_kd_tree(mesh, NULL, &error));
+    CHECK(accel != ACCEL_KDTREE || mesh_build_accel(mesh, ACCEL_KDTREE, NULL, &error));
     struct geom_scratch scratch = scratch_make();
     uint64_t hits = 0;
     for (int i = 0; i < rays; i++) {

@@ -113,7 +113,7 @@ static void compare_with_brute_force(enum accel_kind accel, int worlds, int rays
             return;
         }
         struct world brute = s.world;
-        brute.accel = brute.frame = ACCEL_NONE;
+        brute.accel.kind = brute.mesh_accel = ACCEL_NONE;
         struct world_scratch scratch;
         CHECK(world_scratch_init(&scratch, &s.world));
         int wrong = 0;

@@ -1,0 +1,31 @@
+/* The accelerator over the primitives of a world: one value of one kind. It knows boxes and numbers of primitives only;
+ * the traversals that test primitives are in world_search.c and packet.c. */
+#ifndef GRAY_WORLD_SCENE_ACCEL_H
+#define GRAY_WORLD_SCENE_ACCEL_H
+
+#include "accel/box_tree.h"
+#include "accel/grid.h"
+#include "accel/kd_tree.h"
+#include "geom/mesh.h"
+
+/* Zero-initialised: nothing to destroy. Owns what it holds; the structures of other kinds stay zero. */
+struct scene_accel {
+    enum accel_kind kind; /* once built never ACCEL_AUTO */
+    struct grid grid;
+    struct box_tree tree; /* ACCEL_BVH */
+    struct kd_tree kd_tree;
+};
+
+/* Of ACCEL_AUTO becomes what the cost model chooses, ACCEL_GRID or ACCEL_BVH. `boxes` in the world, by primitive; they
+ * are not kept. Errors: no memory, cancelled; what there is then is the caller's to destroy. */
+bool scene_accel_build(struct scene_accel *accel, enum accel_kind wanted, const struct box *boxes, uint32_t count,
+                       struct pool *pool, struct error *error);
+void scene_accel_destroy(struct scene_accel *accel);
+size_t scene_accel_memory(const struct scene_accel *accel); /* bytes */
+
+/* The hierarchy that beams and shafts go through; NULL: there is none. */
+static inline const struct box_tree *scene_accel_hierarchy(const struct scene_accel *accel) {
+    return accel->kind == ACCEL_BVH ? &accel->tree : NULL;
+}
+
+#endif
