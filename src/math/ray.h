@@ -8,7 +8,7 @@
 
 #include <stdint.h>
 
-struct media; /* the stack of solids the ray is inside of; render/media.h */
+struct medium_stack; /* of the solids the ray is inside of; material/medium_stack.h */
 
 /* A cone round the ray: its diameter at t is width + spread * t * |direction| (world units). */
 struct footprint {
@@ -20,7 +20,7 @@ struct ray {
     double t_min, t_max;
     double time; /* 0 at shutter open, 1 at shutter close */
     struct footprint footprint;
-    const struct media *media;
+    const struct medium_stack *media;
     uint32_t passes; /* 1 + the number of a placed primitive that the ray is known not to meet; 0: none */
 };
 

@@ -3,25 +3,7 @@
  * surface as a whole does not gives way to the surface. */
 #include "render/interface.h"
 
-/* The two sides of the surface for a ray that crosses it here: the relative index of refraction, and the stack behind.
- */
-static double cross_surface(const struct hit *hit, double ior, struct vec3 absorption, const struct media *media,
-                            struct media *behind) {
-    media_copy(behind, media);
-    double here = media_ior(media);
-    if (hit->front) {
-        media_enter_absorbing(behind, hit->placed, ior, absorption);
-        return here / ior;
-    }
-    bool known = false;
-    for (uint32_t i = 0; i < media->count; i++)
-        known = known || media->entries[i].placed == hit->placed;
-    media_leave(behind, hit->placed);
-    /* An open surface seen from behind: the ray was in this material although nobody saw it enter. */
-    return (known ? here : ior) / media_ior(behind);
-}
-
-void interface_make(const struct hit *hit, const struct media *media, struct surface_look *look,
+void interface_make(const struct hit *hit, const struct medium_stack *media, struct surface_look *look,
                     struct interface *out) {
     /* The ray's side of the surface; interpolated normals follow the geometric one. */
     out->geometric_side = hit->front ? hit->normal_geometric : vec3_negate(hit->normal_geometric);
@@ -31,7 +13,11 @@ void interface_make(const struct hit *hit, const struct media *media, struct sur
     out->passes = false;
     if (!look->fresnel && look->refract == 0)
         return;
-    out->eta = cross_surface(hit, look->has_ior ? look->ior : 1, look->absorption, media, &out->behind);
+    struct medium medium = {hit->placed, look->has_ior ? look->ior : 1, look->absorption};
+    struct medium_boundary boundary = {medium, hit->front};
+    out->eta = medium_stack_eta(media, &boundary);
+    medium_stack_copy(&out->behind, media);
+    medium_stack_cross(&out->behind, &boundary);
     out->passes = shading_refract(out->side, hit->view, out->eta, &out->through);
     /* About an interpolated normal the ray may not leave its side of the surface: the geometric one takes over. */
     if (out->passes && vec3_dot(out->through, out->geometric_side) >= 0)
@@ -66,7 +52,7 @@ struct vec3 interface_facet_through(const struct interface *interface, struct ve
 }
 
 struct ray interface_ray(const struct hit *hit, const struct ray *from, struct vec3 direction,
-                         const struct media *media) {
+                         const struct medium_stack *media) {
     double side = vec3_dot(direction, hit->normal_geometric) < 0 ? -hit->offset : hit->offset;
     return (struct ray){.origin = vec3_add_scaled(hit->point, hit->normal_geometric, side),
                         .direction = direction,

@@ -3,22 +3,24 @@
 
 #include "math/elementary.h"
 
-struct vec3 media_left(const struct media *media, double distance) {
+struct vec3 media_left(const struct medium_stack *media, double distance) {
     struct vec3 a = media->entries[media->count - 1].absorption;
     return (struct vec3){a.x > 0 ? el_exp(-a.x * distance) : 1, a.y > 0 ? el_exp(-a.y * distance) : 1,
                          a.z > 0 ? el_exp(-a.z * distance) : 1};
 }
 
 void media_around(const struct world *world, struct vec3 point, double ray_time, const uint32_t *closed,
-                  uint32_t closed_count, struct world_scratch *scratch, struct media *out) {
+                  uint32_t closed_count, struct world_scratch *scratch, struct medium_stack *out) {
     uint32_t inside[MEDIA_LIMIT];
     uint32_t count = world_containing(world, point, ray_time, closed, closed_count, scratch, inside, MEDIA_LIMIT);
     out->count = 0;
     for (uint32_t i = 0; i < count; i++) {
         const struct thing *thing = placed_thing(world, inside[i]);
         uint32_t material = thing->shape.kind == SHAPE_CSG ? thing->shape.csg->leaves[0].material : thing->material;
-        double ior;
-        if (material_is_transparent(world->materials[material], &ior))
-            media_enter_absorbing(out, inside[i], ior, material_absorption(world->materials[material]));
+        struct medium medium = {.placed = inside[i]};
+        if (!material_is_transparent(world->materials[material], &medium.ior))
+            continue;
+        medium.absorption = material_absorption(world->materials[material]);
+        medium_stack_enter(out, &medium);
     }
 }

@@ -26,10 +26,10 @@ struct photon_aim {
     struct box across, scene;       /* a sky: what photons are to meet, and before what they start */
     uint32_t level, cell_count;     /* 2^level cells along the side of a face */
     struct photon_cell *cells;
-    double total;          /* importance of all cells */
-    double flux;           /* what they send, as far as it can be told before */
-    uint32_t first, count; /* photons of the whole map that are its own */
-    struct media media;    /* round the centre */
+    double total;              /* importance of all cells */
+    double flux;               /* what they send, as far as it can be told before */
+    uint32_t first, count;     /* photons of the whole map that are its own */
+    struct medium_stack media; /* round the centre */
 };
 
 struct photon_aims {

@@ -32,7 +32,7 @@ struct sending {
 /* A photon under way. */
 struct flight {
     struct ray ray;
-    struct media media;
+    struct medium_stack media;
     struct vec3 left; /* of its power, per draw; the mean over all draws is what the surfaces leave */
     double length, strength;
     uint64_t key;
@@ -103,7 +103,7 @@ static bool fly_on(struct flight *flight, const struct hit *hit, const struct in
     } else {
         flight->left = vec3_scale(refracted, both / (to_behind * survival));
         direction = alpha > 0 ? interface_facet_through(interface, side, hit->view) : interface->through;
-        media_copy(&flight->media, &interface->behind);
+        medium_stack_copy(&flight->media, &interface->behind);
     }
     flight->ray = interface_ray(hit, &flight->ray, direction, &flight->media);
     flight->specular = true;
@@ -126,7 +126,7 @@ static void send(struct sending *s, const struct photon_aim *aim, uint32_t index
                             .left = {1, 1, 1},
                             .strength = start.strength,
                             .key = start.key};
-    media_copy(&flight.media, &aim->media);
+    medium_stack_copy(&flight.media, &aim->media);
     flight.ray.time = draw(&flight);
     if (start.power.x == 0 && start.power.y == 0 && start.power.z == 0)
         return;

@@ -33,7 +33,7 @@ struct worker {
     struct tracer tracer;
     uint64_t camera_rays, marked, samples;
     bool clamped; /* a colour or a layer was not finite or beyond the largest float */
-    struct media ray_media;
+    struct medium_stack ray_media;
     struct camera_frame camera; /* of the sample's moment, when the camera moves */
     struct batch batch;
     int index;
@@ -46,7 +46,7 @@ struct run {
     const struct render_job *job;
     struct pool *pool;
     struct camera_frame camera;
-    struct media eye_media;
+    struct medium_stack eye_media;
     /* -full, or a lens or moving things: what is blurred differs from sample to sample, not from its neighbours */
     bool full;
     bool timed;        /* something moves while the shutter is open */

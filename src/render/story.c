@@ -2,7 +2,7 @@
  * limit is reached, rays go on untold: `mute` counts how deep we are below the last one told. */
 #include "render/story.h"
 
-#include "render/media.h"
+#include "material/medium_stack.h"
 
 void story_init(struct story *story, uint32_t x, uint32_t y) {
     *story = (struct story){.x = x, .y = y, .part = 1};
@@ -105,7 +105,7 @@ void story_ray_begin(struct story *story, const struct ray *ray, const struct hi
     told->time = ray->time;
     told->share = share;
     told->media_count = ray->media ? ray->media->count : 0;
-    told->media_ior = ray->media ? media_ior(ray->media) : 1;
+    told->media_ior = ray->media ? medium_stack_ior(ray->media) : 1;
     told->lamp = lamp;
     told->met = hit && !lamp;
     if (told->met)

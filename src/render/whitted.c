@@ -82,7 +82,7 @@ static struct vec3 follow_mirror(struct tracer *tracer, const struct hit *hit, c
 }
 
 static struct vec3 follow_refraction(struct tracer *tracer, const struct hit *hit, const struct ray *ray,
-                                     struct vec3 direction, const struct media *behind, struct vec3 filter,
+                                     struct vec3 direction, const struct medium_stack *behind, struct vec3 filter,
                                      const struct path *from) {
     const struct settings *settings = &tracer->job->settings;
     struct path path = path_on(from, vec3_max_abs(filter));

@@ -13,11 +13,11 @@ struct tracer {
     const struct render_job *job;
     const struct pool *pool; /* asked whether to stop; NULL: never */
     struct world_scratch *scratch;
-    const struct media *eye_media;     /* what the camera stands in */
-    struct strata strata;              /* of the pixel sample that is traced */
-    const struct photon_map *caustics; /* or NULL */
-    double cutoff;                     /* cutoff_weight of the job */
-    struct story *story;               /* who writes down what happens, or NULL */
+    const struct medium_stack *eye_media; /* what the camera stands in */
+    struct strata strata;                 /* of the pixel sample that is traced */
+    const struct photon_map *caustics;    /* or NULL */
+    double cutoff;                        /* cutoff_weight of the job */
+    struct story *story;                  /* who writes down what happens, or NULL */
     uint64_t reflected_rays, refracted_rays, shadow_rays, hits;
     bool clamped; /* set where a colour was not finite or too large */
 };

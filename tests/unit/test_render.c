@@ -3,8 +3,8 @@
 #include "tests/stage.h"
 
 #include "base/mem.h"
+#include "material/medium_stack.h"
 #include "render/camera.h"
-#include "render/media.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -567,19 +567,38 @@ TEST(camera_replaces_an_up_parallel_to_view_with_one_warning) {
 }
 
 TEST(media_stack_removes_the_solid_that_is_left) {
-    struct media media = {.count = 0};
-    CHECK_NEAR(media_ior(&media), 1, 0);
-    media_enter(&media, 3, 1.5);
-    media_enter(&media, 7, 1.3);
-    media_enter(&media, 3, 1.6);
-    media_leave(&media, 7);
-    CHECK_NEAR(media_ior(&media), 1.6, 0);
-    media_leave(&media, 3);
-    CHECK_NEAR(media_ior(&media), 1.5, 0);
-    media_leave(&media, 9);
+    struct medium_stack media = {.count = 0};
+    CHECK_NEAR(medium_stack_ior(&media), 1, 0);
+    medium_stack_enter(&media, &(struct medium){.placed = 3, .ior = 1.5});
+    medium_stack_enter(&media, &(struct medium){.placed = 7, .ior = 1.3});
+    medium_stack_enter(&media, &(struct medium){.placed = 3, .ior = 1.6});
+    medium_stack_leave(&media, 7);
+    CHECK_NEAR(medium_stack_ior(&media), 1.6, 0);
+    medium_stack_leave(&media, 3);
+    CHECK_NEAR(medium_stack_ior(&media), 1.5, 0);
+    medium_stack_leave(&media, 9);
     CHECK_EQ_INT(media.count, 1);
     for (uint32_t i = 0; i < 100; i++)
-        media_enter(&media, i, 1 + i);
+        medium_stack_enter(&media, &(struct medium){.placed = i, .ior = 1 + i});
     CHECK_EQ_INT(media.count, MEDIA_LIMIT);
-    CHECK_NEAR(media_ior(&media), 100, 0);
+    CHECK_NEAR(medium_stack_ior(&media), 100, 0);
+}
+
+TEST(the_relative_index_is_that_of_the_stacks_before_and_behind) {
+    struct test_random random = {3};
+    for (int run = 0; run < 2000; run++) {
+        struct medium_stack before = {.count = 0}, behind;
+        for (int i = (int)test_uniform(&random, 0, 6); i > 0; i--) {
+            struct medium medium = {.placed = (uint32_t)test_uniform(&random, 0, 4),
+                                    .ior = test_uniform(&random, 1, 2)};
+            medium_stack_enter(&before, &medium);
+        }
+        struct medium_boundary boundary = {.medium = {.placed = (uint32_t)test_uniform(&random, 0, 4), .ior = 1.7},
+                                           .entering = run % 2 == 0};
+        medium_stack_copy(&behind, &before);
+        medium_stack_cross(&behind, &boundary);
+        bool stays = !boundary.entering && behind.count == before.count; /* it was in a solid it never entered */
+        double here = stays ? 1.7 : medium_stack_ior(&before);
+        CHECK_NEAR(medium_stack_eta(&before, &boundary), here / medium_stack_ior(&behind), 0);
+    }
 }
