@@ -13,6 +13,10 @@ command -v valgrind >/dev/null 2>&1 || { echo "valgrind is not installed: left o
     tests/pictures/glass.lua tests/pictures/materials.lua tests/pictures/caustics.lua
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
+# Beside this tree's library of Lua files, wherever the programs come from.
+mkdir -p build/old build/new && cp "$old" build/old/gray && cp "$new" build/new/gray || exit 1
+old=build/old/gray
+new=build/new/gray
 
 count() { # count PROGRAM SCENE: millions of instructions
     valgrind --tool=callgrind --callgrind-out-file=/dev/null --log-file="$work/log" "$1" -q --no-fork -j 1 --isa avx2 \
