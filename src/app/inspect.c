@@ -115,15 +115,15 @@ const char *inspect_sky(enum sky_kind kind) {
     return "?";
 }
 
-const char *inspect_ray(enum story_kind kind) {
+const char *inspect_ray(enum ray_kind kind) {
     switch (kind) {
-    case STORY_CAMERA:
+    case RAY_CAMERA:
         return "camera";
-    case STORY_REFLECTED:
+    case RAY_REFLECTED:
         return "reflected";
-    case STORY_REFRACTED:
+    case RAY_REFRACTED:
         return "refracted";
-    case STORY_HOLE:
+    case RAY_HOLE:
         return "hole";
     }
     return "?";

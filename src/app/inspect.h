@@ -41,6 +41,6 @@ const char *inspect_shape(enum shape_kind kind);
 const char *inspect_light(enum light_kind kind);
 const char *inspect_material(const struct material *link);
 const char *inspect_sky(enum sky_kind kind);
-const char *inspect_ray(enum story_kind kind);
+const char *inspect_ray(enum ray_kind kind);
 
 #endif

@@ -138,7 +138,7 @@ static void json_hit(const struct told_story *told, struct sheet *sheet, const s
 static void json_rays(const struct told_story *told, struct sheet *sheet, const struct story_ray *ray);
 
 static void json_ray(const struct told_story *told, struct sheet *sheet, const struct story_ray *ray) {
-    static const char *const cut[] = {[STORY_FOLLOWED] = "no", [STORY_LIMIT] = "limit", [STORY_TOO_LITTLE] = "cutoff"};
+    static const char *const cut[] = {[RAY_FOLLOWED] = "no", [RAY_OVER_LIMIT] = "limit", [RAY_TOO_WEAK] = "cutoff"};
     sheet_print(sheet, "{\"ray\":%u,\"kind\":\"%s\",\"cut\":\"%s\"", ray->number, inspect_ray(ray->kind),
                 cut[ray->cut]);
     vector(sheet, "weight", ray->weight);

@@ -216,7 +216,7 @@ static void tell_surface(struct teller *t, const struct story_ray *ray) {
 }
 
 static void tell_met(struct teller *t, const struct story_ray *ray) {
-    if (ray->cut == STORY_TOO_LITTLE) {
+    if (ray->cut == RAY_TOO_WEAK) {
         indent(t, 1);
         sheet_print(t->sheet, "what it meets at distance %.6g could not change the pixel any more (--cutoff)\n",
                     ray->distance);
@@ -235,13 +235,13 @@ static void tell_met(struct teller *t, const struct story_ray *ray) {
 static void tell_ray(struct teller *t, const struct story_ray *ray) {
     indent(t, 0);
     sheet_print(t->sheet, "ray %u, %s", ray->number,
-                ray->kind == STORY_HOLE ? "through the hole" : inspect_ray(ray->kind));
+                ray->kind == RAY_HOLE ? "through the hole" : inspect_ray(ray->kind));
     if (ray->parent)
         triple(t, ", weight ", ray->weight);
     if (!ray->begun) {
         sheet_print(t->sheet, ": not followed, %s\n",
-                    ray->cut == STORY_LIMIT ? "the limit is reached (-reflect-limit, -refract-limit)"
-                                            : "it could not change the pixel any more (--cutoff)");
+                    ray->cut == RAY_OVER_LIMIT ? "the limit is reached (-reflect-limit, -refract-limit)"
+                                               : "it could not change the pixel any more (--cutoff)");
         return;
     }
     triple(t, ": from ", ray->origin);

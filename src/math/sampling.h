@@ -1,4 +1,4 @@
-/* Points in squares and discs, and orders in which strata are visited. */
+/* Points in squares and discs, and random orders. */
 #ifndef GRAY_MATH_SAMPLING_H
 #define GRAY_MATH_SAMPLING_H
 
@@ -18,14 +18,7 @@ static inline struct sample2 sample_cell(uint64_t key, uint32_t i, uint32_t j, u
     return (struct sample2){((double)i + x) / (double)n, ((double)j + y) / (double)n};
 }
 
-/* Which of `strata` x `strata` parts of every cell the samples of one pixel sample lie in: over all samples of a pixel
- * each part is visited once, in an order of its own for every key. */
-struct strata {
-    uint32_t index, side; /* side 0 or 1: not parted */
-    uint64_t key;         /* of the pixel */
-};
-
-/* The same inside the part of the cell that is the turn of this pixel sample. */
+/* The same inside part (part % side, part / side) of side x side parts of the cell. */
 static inline struct sample2 sample_cell_part(uint64_t key, uint32_t i, uint32_t j, uint32_t n, uint32_t part,
                                               uint32_t side) {
     struct sample2 inner = sample_cell(random_combine(key, (uint64_t)j * n + i), part % side, part / side, side);
@@ -39,11 +32,6 @@ struct sample2 sample_multi(uint64_t set, uint64_t key, uint32_t i, uint32_t j, 
                             uint32_t side);
 /* Element `index` of a random order of 0 .. count-1 (a bijection for every key). */
 uint32_t sample_permute(uint32_t index, uint32_t count, uint64_t key);
-static inline uint32_t sample_turn(const struct strata *strata, uint64_t dimension) {
-    if (strata->side <= 1)
-        return 0;
-    return sample_permute(strata->index, strata->side * strata->side, random_combine(strata->key, dimension));
-}
 /* The unit square onto the unit disc, areas kept in proportion, neighbours kept neighbours. */
 struct sample2 sample_disc(struct sample2 square);
 

@@ -38,8 +38,8 @@ static void look_item(void *context, uint32_t tile, int index) {
         return;
     uint64_t begun = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID);
     for (uint32_t i = 0; i < RAYS; i++) {
-        struct place place = run_first_place(run, r.x0 + (r.x1 - r.x0) * (2 * (i % SIDE) + 1) / (2 * SIDE),
-                                             r.y0 + (r.y1 - r.y0) * (2 * (i / SIDE) + 1) / (2 * SIDE));
+        struct pixel_sample place = run_first_place(run, r.x0 + (r.x1 - r.x0) * (2 * (i % SIDE) + 1) / (2 * SIDE),
+                                                    r.y0 + (r.y1 - r.y0) * (2 * (i / SIDE) + 1) / (2 * SIDE));
         if (run_stopped(run, worker) || run_is_enough(run))
             return;
         colours[i] = run_sample(run, worker, &place);
@@ -55,9 +55,9 @@ static void forget_counts(struct run *run) {
         struct worker *worker = &run->workers[i];
         struct geom_scratch *geom = &worker->scratch.geom;
         worker->camera_rays = 0;
-        worker->clamped = worker->tracer.clamped = false;
-        worker->tracer.hits = worker->tracer.shadow_rays = 0;
-        worker->tracer.reflected_rays = worker->tracer.refracted_rays = 0;
+        worker->clamped = worker->state.clamped = false;
+        worker->state.hits = worker->state.shadow_rays = 0;
+        worker->state.reflected_rays = worker->state.refracted_rays = 0;
         geom->shape_tests = geom->box_tests = 0;
         memset(&geom->cost, 0, sizeof geom->cost);
     }

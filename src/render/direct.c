@@ -4,10 +4,6 @@
  * among the samples of a pixel. */
 #include "render/direct.h"
 
-#include "base/random.h"
-#include "math/sampling.h"
-#include "render/photon_map.h"
-#include "render/story.h"
 #include "world/packet.h"
 
 enum { AREA_BATCH = 256 }; /* shadow rays of one hit that are asked together */
@@ -18,16 +14,7 @@ static struct vec3 off_surface(const struct hit *hit, struct vec3 towards) {
     return vec3_add_scaled(hit->point, hit->normal_geometric, side);
 }
 
-static void tell_shadow(const struct tracer *tracer, uint32_t asked, uint32_t arrived) {
-    struct story_light *light = story_light_of(tracer->story);
-    if (!light)
-        return;
-    light->asked += asked;
-    light->arrived += arrived;
-    light->has_blocker = false;
-}
-
-static bool is_free(struct tracer *tracer, const struct hit *hit, struct vec3 from, struct vec3 direction,
+static bool is_free(struct integrator_state *tracer, const struct hit *hit, struct vec3 from, struct vec3 direction,
                     double t_max) {
     struct ray shadow = {.origin = from,
                          .direction = direction,
@@ -36,12 +23,9 @@ static bool is_free(struct tracer *tracer, const struct hit *hit, struct vec3 fr
                          .passes = hit_passes(hit, direction)};
     tracer->shadow_rays++;
     bool free = !world_any(tracer->job->world, &shadow, tracer->scratch);
-    struct story_light *light = story_light_of(tracer->story);
-    if (light) {
-        tell_shadow(tracer, 1, free);
-        light->has_blocker = light->asked == 1 && !free && tracer->job->world->accel.kind != ACCEL_NONE;
-        light->blocker = tracer->scratch->blockers[tracer->scratch->light];
-    }
+    bool known = !free && tracer->job->world->accel.kind != ACCEL_NONE;
+    observe_shadow_rays(tracer->observer, 1, free,
+                        known ? tracer->scratch->blockers[tracer->scratch->light] : OBSERVER_NO_BLOCKER);
     return free;
 }
 
@@ -50,30 +34,18 @@ struct fan {
     const struct light *light;
     struct light_frame frame;
     struct vec3 from;
-    uint32_t side; /* side x side rays */
-    uint64_t key, set;
-    uint32_t turn, turns;
-    bool parted;
+    struct sample_set places;
 };
 
-static struct fan fan_make(const struct tracer *tracer, const struct light *light, uint32_t number, uint64_t key) {
-    struct fan fan = {.light = light, .key = key};
+static struct fan fan_make(const struct integrator_state *tracer, const struct light *light, uint32_t number,
+                           uint64_t key) {
     const struct settings *settings = &tracer->job->settings;
-    fan.side = (uint32_t)(light->samples ? light->samples : settings->area_samples);
-    if (settings->coarse && fan.side > (uint32_t)settings->area_samples)
-        fan.side = (uint32_t)settings->area_samples;
+    uint32_t side = (uint32_t)(light->samples ? light->samples : settings->area_samples);
+    if (settings->coarse && side > (uint32_t)settings->area_samples)
+        side = (uint32_t)settings->area_samples;
     /* Lights of SPEC 1.4 keep their jitter; the others share the cells among the samples of a pixel. */
-    fan.parted = light->emits || light->kind != LIGHT_PARALLELOGRAM;
-    fan.turns = fan.parted && tracer->strata.side > 1 ? tracer->strata.side : 1;
-    fan.turn = fan.parted ? sample_turn(&tracer->strata, number) : 0;
-    fan.set = random_combine(tracer->strata.key, UINT64_MAX - 2 - number);
-    return fan;
-}
-
-static struct sample2 fan_place(const struct fan *fan, uint32_t cell) {
-    uint32_t i = cell % fan->side, j = cell / fan->side;
-    return fan->parted ? sample_multi(fan->set, fan->key, i, j, fan->side, fan->turn, fan->turns)
-                       : sample_cell(fan->key, i, j, fan->side);
+    bool shared = light->emits || light->kind != LIGHT_PARALLELOGRAM;
+    return (struct fan){.light = light, .places = sampler_on_light(&tracer->sampler, key, number, side, shared)};
 }
 
 /* What stands between: not the hit's own primitive where all of it is behind the surface and all of the light before.
@@ -89,8 +61,8 @@ static struct between fan_between(const struct world *world, const struct fan *f
 }
 
 /* The share of a light that reaches the hit: 0 or 1 for a point, of jittered shadow rays for an extent. */
-static double visible_share(struct tracer *tracer, const struct light *light, uint32_t number, const struct hit *hit,
-                            uint64_t key) {
+static double visible_share(struct integrator_state *tracer, const struct light *light, uint32_t number,
+                            const struct hit *hit, uint64_t key) {
     const struct world *world = tracer->job->world;
     if (light->kind == LIGHT_DIRECTIONAL) {
         struct vec3 to_light = vec3_negate(light->direction);
@@ -103,39 +75,36 @@ static double visible_share(struct tracer *tracer, const struct light *light, ui
     fan.from = from;
     if (!light_frame_make(light, fan.from, &fan.frame))
         return is_free(tracer, hit, fan.from, vec3_sub(light->position, fan.from), 1);
-    uint32_t all = fan.side * fan.side, seen = 0, have = 0;
+    uint32_t all = fan.places.side * fan.places.side, seen = 0, have = 0;
     struct between between = fan_between(world, &fan, hit);
     tracer->shadow_rays += all;
     if (between.known && between.count == 0) {
-        if (tracer->story)
-            tell_shadow(tracer, all, all);
+        observe_shadow_rays(tracer->observer, all, all, OBSERVER_NO_BLOCKER);
         return 1;
     }
     struct vec3 targets[AREA_BATCH];
     for (uint32_t cell = 0; cell < all; cell++) {
-        targets[have++] = light_target(light, &fan.frame, fan.from, fan_place(&fan, cell));
+        targets[have++] = light_target(light, &fan.frame, fan.from, sample_set_point(&fan.places, cell));
         if (have < AREA_BATCH && cell + 1 < all)
             continue;
         seen += world_visible(world, &between, fan.from, hit->time, targets, have, tracer->scratch, NULL);
         have = 0;
-        if (tracer->pool && pool_cancelled(tracer->pool))
+        if (integrator_cancelled(tracer))
             return 0;
     }
-    if (tracer->story)
-        tell_shadow(tracer, all, seen);
+    observe_shadow_rays(tracer->observer, all, seen, OBSERVER_NO_BLOCKER);
     return (double)seen / (double)all;
 }
 
 /* Which of the targets of a fan arrive. Skies and lamps all around have no shaft: each ray looks for itself. */
-static void ask_targets(struct tracer *tracer, const struct fan *fan, const struct hit *hit, const struct vec3 *targets,
-                        uint32_t count, bool *visible) {
+static void ask_targets(struct integrator_state *tracer, const struct fan *fan, const struct hit *hit,
+                        const struct vec3 *targets, uint32_t count, bool *visible) {
     if (fan->frame.bounded) {
         const struct world *world = tracer->job->world;
         struct between between = fan_between(world, fan, hit);
         uint32_t seen = world_visible(world, &between, fan->from, hit->time, targets, count, tracer->scratch, visible);
         tracer->shadow_rays += count;
-        if (tracer->story)
-            tell_shadow(tracer, count, seen);
+        observe_shadow_rays(tracer->observer, count, seen, OBSERVER_NO_BLOCKER);
         return;
     }
     bool sky = fan->light->kind == LIGHT_SKY;
@@ -146,19 +115,20 @@ static void ask_targets(struct tracer *tracer, const struct fan *fan, const stru
 
 /* A lamp: every shadow ray shades by itself, with the cosine at the lamp. Rays that cannot bring light are not asked.
  */
-static struct vec3 lamp_light(struct tracer *tracer, const struct light *light, uint32_t number, const struct hit *hit,
-                              const struct shading *shading, struct vec3 normal, uint64_t key) {
+static struct vec3 lamp_light(struct integrator_state *tracer, const struct light *light, uint32_t number,
+                              const struct hit *hit, const struct shading *shading, struct vec3 normal, uint64_t key) {
     struct vec3 sum = {0, 0, 0};
     struct fan fan = fan_make(tracer, light, number, key);
     /* What is lit is the ray's side, wherever the middle of the lamp may be. */
     fan.from = off_surface(hit, hit->front ? hit->normal_geometric : vec3_negate(hit->normal_geometric));
     if (!light_frame_make(light, fan.from, &fan.frame))
         return sum;
-    uint32_t all = fan.side * fan.side, have = 0;
+    uint32_t all = fan.places.side * fan.places.side, have = 0;
     struct vec3 targets[AREA_BATCH], carried[AREA_BATCH];
     bool visible[AREA_BATCH];
     for (uint32_t cell = 0; cell < all; cell++) {
-        struct light_sample sample = light_sample_lamp(light, &fan.frame, fan.from, fan_place(&fan, cell));
+        struct light_sample sample =
+            light_sample_lamp(light, &fan.frame, fan.from, sample_set_point(&fan.places, cell));
         struct vec3 to_light = sample.target;
         if (light->kind != LIGHT_SKY)
             to_light = vec3_normalize(vec3_sub(sample.target, hit->point));
@@ -173,14 +143,14 @@ static struct vec3 lamp_light(struct tracer *tracer, const struct light *light, 
         for (uint32_t i = 0; i < have; i++)
             sum = visible[i] ? vec3_add(sum, carried[i]) : sum;
         have = 0;
-        if (tracer->pool && pool_cancelled(tracer->pool))
+        if (integrator_cancelled(tracer))
             return vec3_all(0);
     }
     return vec3_scale(sum, 1 / (double)all);
 }
 
 /* One light shaded as from one place. */
-static struct vec3 light_from_place(struct tracer *tracer, const struct light *light, uint32_t number,
+static struct vec3 light_from_place(struct integrator_state *tracer, const struct light *light, uint32_t number,
                                     const struct hit *hit, const struct shading *shading, struct vec3 normal,
                                     uint64_t key) {
     bool distant = light->kind == LIGHT_DIRECTIONAL;
@@ -193,13 +163,7 @@ static struct vec3 light_from_place(struct tracer *tracer, const struct light *l
         strength = light_attenuation(light, distance) * light_cone(light, vec3_negate(to_light));
     }
     struct vec3 reflected = shading_evaluate(shading, normal, hit->view, to_light);
-    struct story_light *told = story_light_of(tracer->story);
-    if (told) {
-        told->distance = distance;
-        told->strength = strength;
-        told->to_light = to_light;
-        told->reflected = reflected;
-    }
+    observe_light_place(tracer->observer, distance, strength, to_light, reflected);
     if (strength == 0 || (reflected.x == 0 && reflected.y == 0 && reflected.z == 0))
         return vec3_all(0);
     double share = visible_share(tracer, light, number, hit, key);
@@ -219,8 +183,8 @@ static struct shading without_highlight(const struct shading *shading) {
     return mirrors ? out : *shading;
 }
 
-static struct vec3 one_light(struct tracer *tracer, const struct light *light, uint32_t number, const struct hit *hit,
-                             const struct shading *shading, struct vec3 normal, uint64_t key) {
+static struct vec3 one_light(struct integrator_state *tracer, const struct light *light, uint32_t number,
+                             const struct hit *hit, const struct shading *shading, struct vec3 normal, uint64_t key) {
     if (light->kind == LIGHT_SKY) {
         struct shading matt = without_highlight(shading);
         return lamp_light(tracer, light, number, hit, &matt, normal, key);
@@ -229,24 +193,21 @@ static struct vec3 one_light(struct tracer *tracer, const struct light *light, u
                         : light_from_place(tracer, light, number, hit, shading, normal, key);
 }
 
-struct vec3 direct_light(struct tracer *tracer, const struct hit *hit, const struct shading *shading,
+struct vec3 direct_light(struct integrator_state *tracer, const struct hit *hit, const struct shading *shading,
                          struct vec3 normal, bool dark_side, uint64_t key) {
     const struct world *world = tracer->job->world;
     struct vec3 sum = vec3_mul(tracer->job->ambient, shading->ambient);
     for (uint32_t i = 0; i < world->light_count && !dark_side; i++) {
         const struct light *light = &world->lights[i];
         if (light->lit && !light->lit[hit->placed]) {
-            if (tracer->story)
-                story_light_excluded(tracer->story, i, light);
+            observe_light_skipped(tracer->observer, i, light);
             continue;
         }
         tracer->scratch->light = i % WORLD_BLOCKERS;
-        if (tracer->story)
-            story_light_begin(tracer->story, i, light);
-        struct vec3 own = one_light(tracer, light, i, hit, shading, normal, random_combine(key, i));
+        observe_light_begin(tracer->observer, i, light);
+        struct vec3 own = one_light(tracer, light, i, hit, shading, normal, sampler_light(key, i));
         sum = vec3_add(sum, own);
-        if (tracer->story)
-            story_light_end(tracer->story, own);
+        observe_light_end(tracer->observer, i, light, own);
     }
     struct vec3 photons = {0, 0, 0};
     bool asked = tracer->caustics && !dark_side;
@@ -254,8 +215,8 @@ struct vec3 direct_light(struct tracer *tracer, const struct hit *hit, const str
         photons = photon_map_light(tracer->caustics, world, hit, shading, normal);
         sum = vec3_add(sum, photons);
     }
-    if (tracer->story)
-        story_direct(tracer->story, tracer->job->ambient, vec3_mul(tracer->job->ambient, shading->ambient), asked,
-                     photons, sum);
+    observe_direct(tracer->observer,
+                   &(struct observed_direct){tracer->job->ambient, vec3_mul(tracer->job->ambient, shading->ambient),
+                                             photons, sum, asked});
     return sum;
 }

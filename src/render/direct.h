@@ -3,11 +3,11 @@
 #define GRAY_RENDER_DIRECT_H
 
 #include "material/shading.h"
-#include "render/whitted.h"
+#include "render/integrator_state.h"
 
 /* What the surface sends to hit->view of it, with the ambient light. `normal`: unit, the side that is lit; dark_side:
  * no light reaches that side; key: the random key of the path so far. */
-struct vec3 direct_light(struct tracer *tracer, const struct hit *hit, const struct shading *shading,
+struct vec3 direct_light(struct integrator_state *tracer, const struct hit *hit, const struct shading *shading,
                          struct vec3 normal, bool dark_side, uint64_t key);
 
 #endif

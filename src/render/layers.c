@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Through the middle of the lens, when the shutter opens. */
-static bool middle_ray(const struct run *run, const struct place *place, struct ray *out) {
+static bool middle_ray(const struct run *run, const struct pixel_sample *place, struct ray *out) {
     double x = (double)place->x + place->dx, y = (double)place->y + place->dy;
     if (camera_is_plain(&run->camera)) {
         *out = camera_ray(&run->camera, x, y);
@@ -29,13 +29,13 @@ static void measure_pixel(struct run *run, struct worker *worker, int64_t x, int
     int n = run->job->settings.samples;
     bool have_first = !run->full || run->job->settings.keep_first;
     bool reuse = run_first_counts(run);
-    struct place place = run_first_place(run, x, y);
+    struct pixel_sample place = run_first_place(run, x, y);
     if (have_first || reuse)
         (void)run_sample(run, worker, &place);
     for (int k = 0; marked && k < n * n && !run_stopped(run, worker); k++) {
         if (reuse && k == n / 2 * n + n / 2)
             continue;
-        place = (struct place){x, y, (k % n + 0.5) / n, (k / n + 0.5) / n, (uint64_t)(k + 1)};
+        place = (struct pixel_sample){x, y, (k % n + 0.5) / n, (k / n + 0.5) / n, (uint64_t)(k + 1)};
         (void)run_sample(run, worker, &place);
     }
     for (int c = 0; c < 3; c++) {
@@ -67,7 +67,7 @@ void run_layer_item(void *context, uint32_t item, int index) {
         for (int64_t x = r.x0; x < r.x1 && !run_stopped(run, worker); x++) {
             size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
             float values[AOV_COUNT][3] = {{0}};
-            struct place place = run_first_place(run, x, y);
+            struct pixel_sample place = run_first_place(run, x, y);
             struct ray ray;
             if (middle_ray(run, &place, &ray))
                 aov_surface(run->job->world, &ray, mask, &worker->scratch, values);

@@ -4,7 +4,6 @@
 #include "render/run.h"
 
 #include "base/mem.h"
-#include "render/cutoff.h"
 #include "render/order.h"
 #include "render/photon_trace.h"
 #include "render/shard.h"
@@ -48,13 +47,6 @@ static const struct vec3 *first_at(const struct worker *worker, const struct rec
     return &worker->first[(size_t)(y - area->y0) * (FILM_TILE + 2) + (size_t)(x - area->x0)];
 }
 
-static void tell_mark(struct story *story, int dx, int dy, double distance, double tolerance) {
-    story->mark_x = dx;
-    story->mark_y = dy;
-    story->mark_distance = distance;
-    story->mark_tolerance = tolerance;
-}
-
 static bool is_marked(const struct run *run, const struct worker *worker, const struct rectangle *area, int64_t x,
                       int64_t y) {
     const struct settings *settings = &run->job->settings;
@@ -67,8 +59,7 @@ static bool is_marked(const struct run *run, const struct worker *worker, const 
             double tolerance = dx == 0 || dy == 0 ? settings->side_tolerance : settings->corner_tolerance;
             double distance = squared_distance(own, toned(&settings->tone, *first_at(worker, area, nx, ny)));
             if (distance > tolerance) {
-                if (run->story)
-                    tell_mark(run->story, dx, dy, distance, tolerance);
+                observe_mark(worker->state.observer, dx, dy, distance, tolerance);
                 return true;
             }
         }
@@ -108,7 +99,7 @@ static void sample_patch(struct run *run, struct worker *worker, const struct re
     }
     run_sample_batch(run, worker);
     for (uint32_t i = 0; i < batch->count; i++) {
-        const struct place *place = &batch->places[i];
+        const struct pixel_sample *place = &batch->places[i];
         worker->first[(size_t)(place->y - area->y0) * (FILM_TILE + 2) + (size_t)(place->x - area->x0)] =
             batch->colours[i];
     }
@@ -165,17 +156,17 @@ static void cost_item(void *context, uint32_t item, int index) {
     struct run *run = context;
     struct worker *worker = &run->workers[index];
     struct film_rectangle r = film_tile_rectangle(run->job->film, item);
-    struct tracer *tracer = &worker->tracer;
-    uint64_t before = tracer->hits + tracer->reflected_rays + tracer->refracted_rays;
+    struct integrator_state *state = &worker->state;
+    uint64_t before = state->hits + state->reflected_rays + state->refracted_rays;
     /* Many shards look at fewer rays: each of them looks at all tiles. */
     uint32_t count = run->job->shards <= 16 ? COST_SAMPLES : 1;
     for (uint32_t i = 0; i < count && !run_stopped(run, worker); i++) {
         uint32_t x = r.x0 + (r.x1 - r.x0) * (2 * i + 1) / (2 * count);
         uint32_t y = r.y0 + (r.y1 - r.y0) * ((2 * i + 1) * 3 % (2 * count)) / (2 * count);
-        struct place place = run_first_place(run, x, y);
+        struct pixel_sample place = run_first_place(run, x, y);
         (void)run_sample(run, worker, &place);
     }
-    run->cost[item] = 1 + tracer->hits + tracer->reflected_rays + tracer->refracted_rays - before;
+    run->cost[item] = 1 + state->hits + state->reflected_rays + state->refracted_rays - before;
 }
 
 /* Marks what other shards make. */
@@ -340,9 +331,9 @@ static void add_statistics(const struct run *run, int workers, struct render_sta
         const struct worker *worker = &run->workers[i];
         out->camera_rays += worker->camera_rays;
         out->marked_pixels += worker->marked;
-        out->reflected_rays += worker->tracer.reflected_rays;
-        out->refracted_rays += worker->tracer.refracted_rays;
-        out->shadow_rays += worker->tracer.shadow_rays;
+        out->reflected_rays += worker->state.reflected_rays;
+        out->refracted_rays += worker->state.refracted_rays;
+        out->shadow_rays += worker->state.shadow_rays;
         out->shape_tests += worker->scratch.geom.shape_tests;
         out->triangle_tests += worker->scratch.geom.cost.triangle_tests;
         out->voxels += worker->scratch.geom.cost.voxels;
@@ -357,17 +348,14 @@ static bool start_workers(struct run *run, int workers) {
     run->workers = mem_alloc_zero((size_t)workers, sizeof *run->workers);
     if (!run->workers)
         return false;
-    double cutoff = cutoff_weight(run->job);
+    run->whitted = whitted_make(run->job);
     for (int i = 0; i < workers; i++) {
         struct worker *worker = &run->workers[i];
         if (!world_scratch_init(&worker->scratch, run->job->world))
             return false;
         worker->index = i;
-        worker->tracer = (struct tracer){.job = run->job,
-                                         .pool = run->pool,
-                                         .scratch = &worker->scratch,
-                                         .eye_media = &run->eye_media,
-                                         .cutoff = cutoff};
+        worker->state = (struct integrator_state){
+            .job = run->job, .pool = run->pool, .scratch = &worker->scratch, .eye_media = &run->eye_media};
     }
     return true;
 }
@@ -424,7 +412,7 @@ static bool send_photons(struct run *run, int workers, struct render_statistics 
     out->photon_seconds += photons.seconds;
     out->photon_map_seconds += photons.map_seconds;
     for (int i = 0; i < workers; i++)
-        run->workers[i].tracer.caustics = &run->caustics;
+        run->workers[i].state.caustics = &run->caustics;
     return ok;
 }
 
@@ -457,7 +445,7 @@ static bool tell_pixel(struct run *run, struct film *film, struct story *story, 
     struct rectangle tile = {story->x, story->y, (int64_t)story->x + 1, (int64_t)story->y + 1};
     film->x0 = story->x;
     film->y0 = story->y;
-    run->story = story;
+    worker->state.observer = &story->observer;
     if (!render_tile(run, worker, tile) || run_stopped(run, worker))
         return worker->scratch.failed ? error_no_memory(error, "the crossings of a ray")
                                       : error_set(error, ERROR_CANCELLED, "stopped while rendering");
@@ -545,7 +533,7 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
     if (ok && job->film->layers && !pool_run(pool, film_tile_count(job->film), run_layer_item, &run))
         ok = error_set(error, ERROR_CANCELLED, "stopped while rendering");
     for (int i = 0; run.workers && i < workers; i++)
-        statistics->clamped += run.workers[i].clamped || run.workers[i].tracer.clamped;
+        statistics->clamped += run.workers[i].clamped || run.workers[i].state.clamped;
     end_run(&run, workers);
     statistics->render_seconds += seconds_now() - begin;
     return ok;

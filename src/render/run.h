@@ -13,15 +13,9 @@
 
 #include <stdatomic.h>
 
-/* Samples that are traced together: places in the picture, in the order in which they are wanted. */
-struct place {
-    int64_t x, y;
-    double dx, dy; /* within the pixel */
-    uint64_t number;
-};
-
+/* Samples that are traced together, in the order in which they are wanted. */
 struct batch {
-    struct place places[PACKET_RAYS];
+    struct pixel_sample places[PACKET_RAYS];
     struct vec3 colours[PACKET_RAYS];
     uint32_t count;
     struct ray_packet packet;
@@ -30,7 +24,7 @@ struct batch {
 
 struct worker {
     struct world_scratch scratch;
-    struct tracer tracer;
+    struct integrator_state state;
     uint64_t camera_rays, marked, samples;
     bool clamped; /* a colour or a layer was not finite or beyond the largest float */
     struct medium_stack ray_media;
@@ -55,8 +49,8 @@ struct run {
     uint32_t *closed;  /* the solids that the eye can stand in */
     uint32_t closed_count;
     struct photon_map caustics;
+    struct whitted whitted;
     struct worker *workers;
-    struct story *story;       /* of one pixel, or NULL */
     uint32_t tiles_wanted;     /* of this process, those that were there before too */
     uint64_t *cost;            /* of each tile while shards are chosen */
     uint32_t *order;           /* of the tiles; NULL: as they are numbered */
@@ -79,10 +73,10 @@ struct rectangle {
 bool run_prepare_at(const struct render_job *job, double ray_time, struct camera_frame *out, char warning[256],
                     struct error *error);
 /* The first sample has number 0, at the centre or the corner of the pixel. */
-struct place run_first_place(const struct run *run, int64_t x, int64_t y);
+struct pixel_sample run_first_place(const struct run *run, int64_t x, int64_t y);
 /* Whether the first sample is the one in the middle of N x N. */
 bool run_first_counts(const struct run *run);
-struct vec3 run_sample(struct run *run, struct worker *worker, const struct place *place);
+struct vec3 run_sample(struct run *run, struct worker *worker, const struct pixel_sample *place);
 /* The samples of a batch, as run_sample would bring them. What the camera rays meet is looked for together. */
 void run_sample_batch(struct run *run, struct worker *worker);
 /* Mean of the N x N samples; where one of them is the first sample again it is not traced twice. */

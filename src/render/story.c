@@ -4,14 +4,6 @@
 
 #include "material/medium_stack.h"
 
-void story_init(struct story *story, uint32_t x, uint32_t y) {
-    *story = (struct story){.x = x, .y = y, .part = 1};
-}
-
-void story_destroy(struct story *story) {
-    arena_destroy(&story->arena);
-}
-
 static void *take(struct story *story, size_t size) {
     void *block = arena_alloc(&story->arena, size);
     if (!block)
@@ -19,7 +11,18 @@ static void *take(struct story *story, size_t size) {
     return block;
 }
 
-void story_sample_begin(struct story *story, const struct story_place *place) {
+/* The ray that is under way, or NULL where nothing is told. */
+static struct story_ray *ray_of(const struct story *story) {
+    return story->on && story->mute == 0 ? story->ray : NULL;
+}
+
+/* The same for the light under way. */
+static struct story_light *light_of(const struct story *story) {
+    return ray_of(story) ? story->light : NULL;
+}
+
+/* A sample of any pixel; of others than the story's only the first colour is kept. */
+static void begin_sample(struct story *story, const struct pixel_sample *place) {
     story->on = place->x == (int64_t)story->x && place->y == (int64_t)story->y;
     if (!story->on)
         return;
@@ -37,12 +40,11 @@ void story_sample_begin(struct story *story, const struct story_place *place) {
     story->ray = NULL;
     story->light = NULL;
     story->mute = 0;
-    story->kind = STORY_CAMERA;
+    story->kind = RAY_CAMERA;
     story->weight = vec3_all(1);
-    story->part = 1;
 }
 
-void story_sample_end(struct story *story, const struct story_place *place, struct vec3 colour) {
+static void end_sample(struct story *story, const struct pixel_sample *place, struct vec3 colour) {
     int64_t dx = place->x - (int64_t)story->x, dy = place->y - (int64_t)story->y;
     if (story->on)
         story->last_sample->colour = colour;
@@ -51,11 +53,6 @@ void story_sample_end(struct story *story, const struct story_place *place, stru
         story->first[1 + dy][1 + dx] = colour;
         story->known[1 + dy][1 + dx] = true;
     }
-}
-
-void story_next_ray(struct story *story, enum story_kind kind, struct vec3 weight) {
-    story->kind = kind;
-    story->weight = vec3_scale(weight, story->part);
 }
 
 /* A new ray below the one under way, or NULL. */
@@ -68,8 +65,12 @@ static struct story_ray *add_ray(struct story *story) {
     struct story_ray *ray = take(story, sizeof *ray);
     if (!ray)
         return NULL;
-    *ray = (struct story_ray){
-        .kind = story->kind, .weight = story->weight, .number = ++story->rays, .parent = parent, .fresnel = -1};
+    *ray = (struct story_ray){.kind = story->kind,
+                              .weight = story->weight,
+                              .number = ++story->rays,
+                              .parent = parent,
+                              .part = 1,
+                              .fresnel = -1};
     struct story_ray **first = parent ? &parent->first : &story->last_sample->first;
     struct story_ray **last = parent ? &parent->last : &story->last_sample->last;
     if (*last)
@@ -80,20 +81,26 @@ static struct story_ray *add_ray(struct story *story) {
     return ray;
 }
 
-void story_not_followed(struct story *story, enum story_kind kind, struct vec3 weight, enum story_cut cut) {
-    story_next_ray(story, kind, weight);
-    story->part = 1;
-    struct story_ray *ray = story_ray_of(story) ? add_ray(story) : NULL;
+static void split_rays(struct story *story, double part) {
+    struct story_ray *ray = ray_of(story);
+    if (ray)
+        ray->part = part;
+}
+
+static void send_ray(struct story *story, enum ray_kind kind, struct vec3 weight, enum ray_cut cut) {
+    struct story_ray *from = ray_of(story);
+    story->kind = kind;
+    story->weight = vec3_scale(weight, from ? from->part : 1);
+    struct story_ray *ray = from && cut != RAY_FOLLOWED ? add_ray(story) : NULL;
     if (ray)
         ray->cut = cut;
 }
 
-void story_ray_begin(struct story *story, const struct ray *ray, const struct hit *hit, const struct light *lamp,
-                     double distance, double share) {
+static void begin_ray(struct story *story, const struct observed_begin *seen) {
+    const struct ray *ray = seen->ray;
     if (!story->on)
         return;
     struct story_ray *told = story->mute == 0 ? add_ray(story) : NULL;
-    story->part = 1;
     if (!told) {
         story->untold += story->mute > 0;
         story->mute++;
@@ -103,20 +110,19 @@ void story_ray_begin(struct story *story, const struct ray *ray, const struct hi
     told->origin = ray->origin;
     told->direction = ray->direction;
     told->time = ray->time;
-    told->share = share;
+    told->share = seen->share;
     told->media_count = ray->media ? ray->media->count : 0;
     told->media_ior = ray->media ? medium_stack_ior(ray->media) : 1;
-    told->lamp = lamp;
-    told->met = hit && !lamp;
+    told->lamp = seen->light;
+    told->met = seen->hit && !seen->light;
     if (told->met)
-        told->hit = *hit;
-    told->distance = distance;
+        told->hit = *seen->hit;
+    told->distance = seen->distance;
     told->opacity = 1;
     story->ray = told;
 }
 
-void story_ray_end(struct story *story, bool looked, struct vec3 seen, struct vec3 left, struct vec3 veil,
-                   struct vec3 brings) {
+static void end_ray(struct story *story, const struct observed_end *end) {
     if (!story->on)
         return;
     if (story->mute > 0) {
@@ -124,17 +130,16 @@ void story_ray_end(struct story *story, bool looked, struct vec3 seen, struct ve
         return;
     }
     struct story_ray *ray = story->ray;
-    ray->cut = looked ? STORY_FOLLOWED : STORY_TOO_LITTLE;
-    ray->seen = seen;
-    ray->left = left;
-    ray->veil = veil;
-    ray->brings = brings;
+    ray->cut = end->evaluated ? RAY_FOLLOWED : RAY_TOO_WEAK;
+    ray->seen = end->seen;
+    ray->left = end->left;
+    ray->veil = end->veil;
+    ray->brings = end->brings;
     story->ray = ray->parent;
 }
 
-void story_tell_link(void *context, const struct material *material, const struct surface_look *look) {
-    struct story *story = context;
-    struct story_ray *ray = story_ray_of(story);
+static void add_link(struct story *story, const struct material *material, const struct surface_look *look) {
+    struct story_ray *ray = ray_of(story);
     struct story_link *link = ray ? take(story, sizeof *link) : NULL;
     if (!link)
         return;
@@ -146,22 +151,22 @@ void story_tell_link(void *context, const struct material *material, const struc
     ray->opacity = look->opacity;
 }
 
-void story_surface(struct story *story, const struct surface_look *look, const struct interface *interface,
-                   const struct shading *shading, struct vec3 normal, bool dark_side) {
-    struct story_ray *ray = story_ray_of(story);
+static void tell_surface(struct story *story, const struct observed_surface *surface) {
+    const struct surface_look *look = surface->look;
+    struct story_ray *ray = ray_of(story);
     if (!ray)
         return;
     ray->shaded = true;
-    ray->dark_side = dark_side;
-    ray->normal = normal;
-    ray->passes = interface->passes;
-    ray->eta = look->fresnel || look->refract != 0 ? interface->eta : 1;
+    ray->dark_side = surface->dark_side;
+    ray->normal = surface->normal;
+    ray->passes = surface->interface->passes;
+    ray->eta = look->fresnel || look->refract != 0 ? surface->interface->eta : 1;
     ray->fresnel = look->fresnel ? look->reflect : -1;
-    ray->shading = *shading;
+    ray->shading = *surface->shading;
 }
 
-void story_light_begin(struct story *story, uint32_t number, const struct light *light) {
-    struct story_ray *ray = story_ray_of(story);
+static void begin_light(struct story *story, uint32_t number, const struct light *light) {
+    struct story_ray *ray = ray_of(story);
     struct story_light *told = ray ? take(story, sizeof *told) : NULL;
     story->light = told;
     if (!told)
@@ -174,8 +179,28 @@ void story_light_begin(struct story *story, uint32_t number, const struct light 
     ray->last_light = told;
 }
 
-void story_light_end(struct story *story, struct vec3 colour) {
-    struct story_light *light = story_light_of(story);
+static void place_light(struct story *story, const struct observed_place *place) {
+    struct story_light *light = light_of(story);
+    if (!light)
+        return;
+    light->distance = place->distance;
+    light->strength = place->strength;
+    light->to_light = place->to_light;
+    light->reflected = place->reflected;
+}
+
+static void count_shadow_rays(struct story *story, const struct observed_shadow *shadow) {
+    struct story_light *light = light_of(story);
+    if (!light)
+        return;
+    light->asked += shadow->asked;
+    light->arrived += shadow->arrived;
+    light->has_blocker = light->asked == 1 && shadow->blocker != OBSERVER_NO_BLOCKER;
+    light->blocker = shadow->blocker;
+}
+
+static void end_light(struct story *story, struct vec3 colour) {
+    struct story_light *light = light_of(story);
     if (light) {
         light->colour = colour;
         if (light->asked > 0)
@@ -184,22 +209,87 @@ void story_light_end(struct story *story, struct vec3 colour) {
     story->light = NULL;
 }
 
-void story_light_excluded(struct story *story, uint32_t number, const struct light *light) {
-    story_light_begin(story, number, light);
-    struct story_light *told = story_light_of(story);
+static void skip_light(struct story *story, uint32_t number, const struct light *light) {
+    begin_light(story, number, light);
+    struct story_light *told = light_of(story);
     if (told)
         told->lit = STORY_LIGHT_NOT_OURS;
     story->light = NULL;
 }
 
-void story_direct(struct story *story, struct vec3 ambient_light, struct vec3 ambient, bool has_photons,
-                  struct vec3 photons, struct vec3 direct) {
-    struct story_ray *ray = story_ray_of(story);
+static void tell_direct(struct story *story, const struct observed_direct *direct) {
+    struct story_ray *ray = ray_of(story);
     if (!ray)
         return;
-    ray->ambient_light = ambient_light;
-    ray->ambient = ambient;
-    ray->has_photons = has_photons;
-    ray->photons = photons;
-    ray->direct = direct;
+    ray->ambient_light = direct->ambient_light;
+    ray->ambient = direct->ambient;
+    ray->has_photons = direct->has_photons;
+    ray->photons = direct->photons;
+    ray->direct = direct->direct;
+}
+
+static void tell_mark(struct story *story, const struct observed_mark *mark) {
+    story->mark_x = mark->x;
+    story->mark_y = mark->y;
+    story->mark_distance = mark->distance;
+    story->mark_tolerance = mark->tolerance;
+}
+
+static void notice(void *context, const struct observation *what) {
+    struct story *story = context;
+    switch (what->kind) {
+    case OBSERVED_SAMPLE_BEGIN:
+        begin_sample(story, what->sample.place);
+        break;
+    case OBSERVED_SAMPLE_END:
+        end_sample(story, what->sample.place, what->sample.colour);
+        break;
+    case OBSERVED_SPLIT:
+        split_rays(story, what->part);
+        break;
+    case OBSERVED_RAY_SENT:
+        send_ray(story, what->sent.kind, what->sent.weight, what->sent.cut);
+        break;
+    case OBSERVED_RAY_BEGIN:
+        begin_ray(story, &what->begin);
+        break;
+    case OBSERVED_MATERIAL:
+        add_link(story, what->material.link, what->material.look);
+        break;
+    case OBSERVED_SURFACE:
+        tell_surface(story, &what->surface);
+        break;
+    case OBSERVED_LIGHT_BEGIN:
+        begin_light(story, what->light.number, what->light.light);
+        break;
+    case OBSERVED_LIGHT_PLACE:
+        place_light(story, &what->place);
+        break;
+    case OBSERVED_SHADOW_RAYS:
+        count_shadow_rays(story, &what->shadow);
+        break;
+    case OBSERVED_LIGHT_END:
+        end_light(story, what->light.colour);
+        break;
+    case OBSERVED_LIGHT_SKIPPED:
+        skip_light(story, what->light.number, what->light.light);
+        break;
+    case OBSERVED_DIRECT:
+        tell_direct(story, &what->direct);
+        break;
+    case OBSERVED_RAY_END:
+        end_ray(story, &what->end);
+        break;
+    case OBSERVED_MARK:
+        tell_mark(story, &what->mark);
+        break;
+    }
+}
+
+void story_init(struct story *story, uint32_t x, uint32_t y) {
+    *story = (struct story){.x = x, .y = y, .observer = {notice, story}};
+}
+
+void story_destroy(struct story *story) {
+    arena_destroy(&story->arena);
 }

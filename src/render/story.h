@@ -1,22 +1,17 @@
-/* The story of a pixel: what happened on the way to its colour, written down by the integrator itself while it works
- * (whitted.c, direct.c, render.c). Nothing is worked out a second time: a number in a story is the number that went
- * into the picture. Without a story the integrator has one pointer to look at.
+/* The story of a pixel: what happened on the way to its colour, written down by an observer (render/observer.h) of the
+ * integrator while that works. Nothing is worked out a second time: a number in a story is the number that went into
+ * the picture.
  *
  * Everything lives in the arena of the story. It holds pointers into the world and dies before it. */
 #ifndef GRAY_RENDER_STORY_H
 #define GRAY_RENDER_STORY_H
 
 #include "base/arena.h"
-#include "light/light.h"
-#include "material/material.h"
-#include "render/interface.h"
+#include "render/observer.h"
 #include "world/world.h"
 
 #include <stdint.h>
 
-enum story_kind { STORY_CAMERA, STORY_REFLECTED, STORY_REFRACTED, STORY_HOLE };
-/* Why a ray was not followed, or why what it met was not looked at. */
-enum story_cut { STORY_FOLLOWED, STORY_LIMIT, STORY_TOO_LITTLE };
 enum { STORY_RAYS = 100000 }; /* further ones are counted and not told */
 
 /* One link of a material: the look as it is with it and what is below it. */
@@ -51,8 +46,8 @@ struct story_light {
 };
 
 struct story_ray {
-    enum story_kind kind;
-    enum story_cut cut;
+    enum ray_kind kind;
+    enum ray_cut cut;
     bool begun;      /* it was sent; else only kind and weight are set */
     uint32_t number; /* in the order in which they were begun, from 1 */
     struct vec3 origin, direction;
@@ -78,6 +73,7 @@ struct story_ray {
     bool has_photons;
     struct story_light *lights, *last_light;
     struct story_ray *first, *last; /* those that it sent on */
+    double part;                    /* of their weight, where several share one */
     /* What it brings: left * seen + veil. */
     struct vec3 seen, left, veil, brings;
     struct story_ray *parent, *next;
@@ -93,6 +89,7 @@ struct story_sample {
 };
 
 struct story {
+    struct observer observer; /* of the integrator that makes the pixel */
     struct arena arena;
     uint32_t x, y; /* the pixel of the whole picture */
     /* What render_pixel found out. first[1 + dy][1 + dx]: first samples of the pixel and its neighbours, where known.
@@ -113,50 +110,13 @@ struct story {
     bool on; /* a sample of the pixel itself is under way */
     struct story_ray *ray;
     struct story_light *light;
-    uint32_t mute;        /* how many rays that are not told are under way */
-    enum story_kind kind; /* of the next ray */
-    struct vec3 weight;   /* of the next ray */
-    double part;          /* of that, where several rays share one weight */
+    uint32_t mute;      /* how many rays that are not told are under way */
+    enum ray_kind kind; /* of the next ray */
+    struct vec3 weight; /* of the next ray */
 };
 
-/* A sample: dx, dy within the pixel. */
-struct story_place {
-    int64_t x, y;
-    double dx, dy;
-    uint64_t number;
-};
-
+/* The story stays where it is until it is destroyed: its observer points to it. */
 void story_init(struct story *story, uint32_t x, uint32_t y);
 void story_destroy(struct story *story);
-
-/* A sample of any pixel; of others than the story's only the first colour is kept. */
-void story_sample_begin(struct story *story, const struct story_place *place);
-void story_sample_end(struct story *story, const struct story_place *place, struct vec3 colour);
-
-/* What the next ray will be; part: see struct story. */
-void story_next_ray(struct story *story, enum story_kind kind, struct vec3 weight);
-void story_not_followed(struct story *story, enum story_kind kind, struct vec3 weight, enum story_cut cut);
-void story_ray_begin(struct story *story, const struct ray *ray, const struct hit *hit, const struct light *lamp,
-                     double distance, double share);
-void story_ray_end(struct story *story, bool looked, struct vec3 seen, struct vec3 left, struct vec3 veil,
-                   struct vec3 brings);
-
-/* The ray that is under way, or NULL where nothing is told. */
-static inline struct story_ray *story_ray_of(const struct story *story) {
-    return story && story->on && story->mute == 0 ? story->ray : NULL;
-}
-/* The same for the light under way. */
-static inline struct story_light *story_light_of(const struct story *story) {
-    return story_ray_of(story) ? story->light : NULL;
-}
-
-void story_tell_link(void *story, const struct material *link, const struct surface_look *look); /* material_told */
-void story_surface(struct story *story, const struct surface_look *look, const struct interface *interface,
-                   const struct shading *shading, struct vec3 normal, bool dark_side);
-void story_light_begin(struct story *story, uint32_t number, const struct light *light);
-void story_light_end(struct story *story, struct vec3 colour);
-void story_light_excluded(struct story *story, uint32_t number, const struct light *light);
-void story_direct(struct story *story, struct vec3 ambient_light, struct vec3 ambient, bool has_photons,
-                  struct vec3 photons, struct vec3 direct);
 
 #endif

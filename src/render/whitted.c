@@ -2,13 +2,11 @@
  * way through the tree of rays. */
 #include "render/whitted.h"
 
-#include "base/random.h"
 #include "material/microfacet.h"
 #include "math/range.h"
-#include "math/sampling.h"
+#include "render/cutoff.h"
 #include "render/direct.h"
 #include "render/interface.h"
-#include "render/story.h"
 
 /* Of the colour that a secondary ray brings: no filter makes an infinity of it, so infinity times 0 cannot arise. */
 static const double light_limit = 1e200;
@@ -18,10 +16,11 @@ struct path {
     int reflections, refractions; /* so far, from the camera */
     bool rough;                   /* after a rough surface: the next ones get one ray each */
     double weight;                /* how much of what this ray brings can arrive in the pixel */
+    double cutoff;                /* a ray of less weight is not followed */
     int holes;                    /* went through so far */
 };
 
-static struct vec3 trace(struct tracer *tracer, const struct ray *ray, const struct path *path);
+static struct vec3 trace(struct integrator_state *tracer, const struct ray *ray, const struct path *path);
 
 /* The nearest light that shows itself before t_max, or NULL. */
 static const struct light *visible_light(const struct world *world, const struct ray *ray, double t_max, double *t) {
@@ -51,61 +50,57 @@ static struct path path_on(const struct path *path, double share) {
                          .refractions = path->refractions,
                          .rough = path->rough,
                          .weight = path->weight * share,
+                         .cutoff = path->cutoff,
                          .holes = path->holes};
 }
 
-/* Whether what a ray brings cannot count any more; the story hears of it. */
-static bool is_given_up(struct tracer *tracer, enum story_kind kind, bool limit, struct vec3 filter,
+/* Whether what a ray brings cannot count any more. */
+static bool is_given_up(const struct integrator_state *tracer, enum ray_kind kind, bool limit, struct vec3 filter,
                         const struct path *path) {
-    if (!limit && !(path->weight < tracer->cutoff)) {
-        if (tracer->story)
-            story_next_ray(tracer->story, kind, filter);
-        return false;
-    }
-    if (tracer->story)
-        story_not_followed(tracer->story, kind, filter, limit ? STORY_LIMIT : STORY_TOO_LITTLE);
-    return true;
+    enum ray_cut cut = limit ? RAY_OVER_LIMIT : path->weight < path->cutoff ? RAY_TOO_WEAK : RAY_FOLLOWED;
+    observe_ray_sent(tracer->observer, kind, filter, cut);
+    return cut != RAY_FOLLOWED;
 }
 
 /* Times the filter. What cannot change the pixel by the cut-off is not followed. */
-static struct vec3 follow_mirror(struct tracer *tracer, const struct hit *hit, const struct ray *ray,
+static struct vec3 follow_mirror(struct integrator_state *tracer, const struct hit *hit, const struct ray *ray,
                                  struct vec3 direction, struct vec3 filter, const struct path *from) {
     const struct settings *settings = &tracer->job->settings;
     struct path path = path_on(from, vec3_max_abs(filter));
-    if (is_given_up(tracer, STORY_REFLECTED, path.reflections >= settings->reflect_limit, filter, &path))
+    if (is_given_up(tracer, RAY_REFLECTED, path.reflections >= settings->reflect_limit, filter, &path))
         return vec3_all(0);
     struct ray reflected = interface_ray(hit, ray, direction, ray->media);
     tracer->reflected_rays++;
-    path.key = random_combine(path.key, UINT32_MAX);
+    path.key = sampler_branch(path.key, SAMPLER_REFLECTED);
     path.reflections++;
     return vec3_mul(filter, trace(tracer, &reflected, &path));
 }
 
-static struct vec3 follow_refraction(struct tracer *tracer, const struct hit *hit, const struct ray *ray,
+static struct vec3 follow_refraction(struct integrator_state *tracer, const struct hit *hit, const struct ray *ray,
                                      struct vec3 direction, const struct medium_stack *behind, struct vec3 filter,
                                      const struct path *from) {
     const struct settings *settings = &tracer->job->settings;
     struct path path = path_on(from, vec3_max_abs(filter));
-    if (is_given_up(tracer, STORY_REFRACTED, path.refractions >= settings->refract_limit, filter, &path))
+    if (is_given_up(tracer, RAY_REFRACTED, path.refractions >= settings->refract_limit, filter, &path))
         return vec3_all(0);
     struct ray refracted = interface_ray(hit, ray, direction, behind);
     tracer->refracted_rays++;
-    path.key = random_combine(path.key, (uint64_t)UINT32_MAX + 1);
+    path.key = sampler_branch(path.key, SAMPLER_REFRACTED);
     path.refractions++;
     return vec3_mul(filter, trace(tracer, &refracted, &path));
 }
 
 /* What is seen through the holes of a surface that is only partly there (a picture of leaves): the ray goes on as it
  * was. Bounded, since every hole is a deeper call. */
-static struct vec3 follow_hole(struct tracer *tracer, const struct hit *hit, const struct ray *ray, double share,
-                               const struct path *from) {
+static struct vec3 follow_hole(struct integrator_state *tracer, const struct hit *hit, const struct ray *ray,
+                               double share, const struct path *from) {
     enum { HOLE_LIMIT = 200 };
     struct path path = path_on(from, share);
-    if (is_given_up(tracer, STORY_HOLE, path.holes >= HOLE_LIMIT, vec3_all(share), &path))
+    if (is_given_up(tracer, RAY_HOLE, path.holes >= HOLE_LIMIT, vec3_all(share), &path))
         return vec3_all(0);
     struct ray onward = interface_ray(hit, ray, vec3_negate(hit->view), ray->media);
     tracer->refracted_rays++;
-    path.key = random_combine(path.key, (uint64_t)UINT32_MAX + 3);
+    path.key = sampler_branch(path.key, SAMPLER_HOLE);
     path.holes++;
     return vec3_scale(trace(tracer, &onward, &path), share);
 }
@@ -121,31 +116,27 @@ struct rough {
 
 enum { GLOSSY_SAMPLES = 4 };
 
-static struct vec3 follow_rough(struct tracer *tracer, const struct rough *rough, struct vec3 mirror,
+static struct vec3 follow_rough(struct integrator_state *tracer, const struct rough *rough, struct vec3 mirror,
                                 struct vec3 refraction, const struct path *path) {
     const struct hit *hit = rough->hit;
     bool coarse = path->rough || tracer->job->settings.coarse;
     uint32_t n = coarse ? 1 : rough->samples ? (uint32_t)rough->samples : GLOSSY_SAMPLES;
-    uint32_t turns = tracer->strata.side, turn = turns > 1 ? sample_turn(&tracer->strata, path->key) : 0;
-    uint64_t key = random_combine(path->key, (uint64_t)UINT32_MAX + 2);
+    uint64_t key = sampler_branch(path->key, SAMPLER_ROUGH);
+    struct sample_set facets = sampler_facets(&tracer->sampler, path->key, key, n);
     struct vec3 sum = {0, 0, 0};
+    observe_split(tracer->observer, 1 / ((double)n * (double)n));
     for (uint32_t cell = 0; cell < n * n; cell++) {
-        struct sample2 place = turns > 1 ? sample_cell_part(key, cell % n, cell / n, n, turn, turns)
-                                         : sample_cell(key, cell % n, cell / n, n);
-        struct vec3 facet = microfacet_normal(rough->interface->side, hit->view, rough->alpha, place);
+        struct vec3 facet =
+            microfacet_normal(rough->interface->side, hit->view, rough->alpha, sample_set_point(&facets, cell));
         struct path branch = path_on(path, 1);
-        branch.key = random_combine(key, cell);
+        branch.key = sampler_facet(key, cell);
         branch.rough = true;
-        if (tracer->story)
-            tracer->story->part = 1 / ((double)n * (double)n);
         if (!is_black(mirror)) {
             struct vec3 direction = interface_facet_mirror(rough->interface, facet, hit->view);
             sum = vec3_add(sum, follow_mirror(tracer, hit, rough->ray, direction, mirror, &branch));
         }
         if (!is_black(refraction)) {
             struct vec3 direction = interface_facet_through(rough->interface, facet, hit->view);
-            if (tracer->story)
-                tracer->story->part = 1 / ((double)n * (double)n);
             struct vec3 light =
                 follow_refraction(tracer, hit, rough->ray, direction, &rough->interface->behind, refraction, &branch);
             sum = vec3_add(sum, light);
@@ -157,8 +148,8 @@ static struct vec3 follow_rough(struct tracer *tracer, const struct rough *rough
 /* --- one hit --- */
 
 /* The look's shares of reflection and refraction become final. */
-static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const struct hit *hit, struct surface_look *look,
-                         const struct path *path) {
+static struct vec3 shade(struct integrator_state *tracer, const struct ray *ray, const struct hit *hit,
+                         struct surface_look *look, const struct path *path) {
     const struct settings *settings = &tracer->job->settings;
     struct interface interface;
     interface_make(hit, ray->media, look, &interface);
@@ -166,8 +157,7 @@ static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const str
     struct vec3 normal = look->two_sided && !hit->front ? vec3_negate(look->normal) : look->normal;
     struct shading shading;
     material_shading(look, settings->specular, settings->ambient_plain, &shading);
-    if (tracer->story)
-        story_surface(tracer->story, look, &interface, &shading, normal, dark_side);
+    observe_surface(tracer->observer, look, &interface, &shading, normal, dark_side);
     struct vec3 colour = direct_light(tracer, hit, &shading, normal, dark_side, path->key);
     colour = vec3_add(colour, shading.emission);
 
@@ -199,12 +189,12 @@ static struct vec3 shade(struct tracer *tracer, const struct ray *ray, const str
     return colour;
 }
 
-static struct vec3 shade_hit(struct tracer *tracer, const struct ray *ray, const struct hit *hit,
+static struct vec3 shade_hit(struct integrator_state *tracer, const struct ray *ray, const struct hit *hit,
                              const struct path *path) {
     struct surface_look look;
     tracer->hits++;
-    material_look_told(tracer->job->world->materials[hit->material], hit, &look, tracer->story ? story_tell_link : NULL,
-                       tracer->story);
+    material_look_told(tracer->job->world->materials[hit->material], hit, &look,
+                       tracer->observer ? observe_material : NULL, tracer->observer);
     double hole = 1 - look.opacity;
     if (!(hole > 0))
         return shade(tracer, ray, hit, &look, path);
@@ -215,7 +205,7 @@ static struct vec3 shade_hit(struct tracer *tracer, const struct ray *ray, const
     return vec3_add_scaled(behind, shade(tracer, ray, hit, &look, &covered), look.opacity);
 }
 
-static struct vec3 clamp_light(struct tracer *tracer, struct vec3 colour, double limit) {
+static struct vec3 clamp_light(struct integrator_state *tracer, struct vec3 colour, double limit) {
     if (vec3_within(colour, limit))
         return colour;
     tracer->clamped = true;
@@ -223,7 +213,8 @@ static struct vec3 clamp_light(struct tracer *tracer, struct vec3 colour, double
 }
 
 /* What a ray brings that has met `hit`, or nothing: NULL. */
-static struct vec3 bring(struct tracer *tracer, const struct ray *ray, const struct hit *hit, const struct path *path) {
+static struct vec3 bring(struct integrator_state *tracer, const struct ray *ray, const struct hit *hit,
+                         const struct path *path) {
     const struct world *world = tracer->job->world;
     const struct fog *fog = tracer->job->fog;
     bool met = hit != NULL;
@@ -242,15 +233,14 @@ static struct vec3 bring(struct tracer *tracer, const struct ray *ray, const str
         left = vec3_all(fog_transmittance(fog, ray->origin, vec3_scale(ray->direction, 1 / length), distance));
         clear = false;
     }
-    if (tracer->story)
-        story_ray_begin(tracer->story, ray, hit, lamp, distance, path->weight);
+    observe_ray_begin(tracer->observer, ray, hit, lamp, distance, path->weight);
     if (!clear) {
         dimmed = path_on(path, vec3_max_abs(left));
         path = &dimmed;
     }
 
     struct vec3 colour = {0, 0, 0}, seen, veil = {0, 0, 0};
-    bool looked = !(path->weight < tracer->cutoff);
+    bool looked = !(path->weight < path->cutoff);
     if (!looked)
         left = vec3_all(0);
     else if (lamp)
@@ -267,35 +257,39 @@ static struct vec3 bring(struct tracer *tracer, const struct ray *ray, const str
         colour = vec3_add(colour, veil);
     }
     colour = clamp_light(tracer, colour, light_limit);
-    if (tracer->story)
-        story_ray_end(tracer->story, looked, seen, left, veil, colour);
+    observe_ray_end(tracer->observer, &(struct observed_end){looked, seen, left, veil, colour});
     return colour;
 }
 
-static struct vec3 trace(struct tracer *tracer, const struct ray *ray, const struct path *path) {
+static struct vec3 trace(struct integrator_state *tracer, const struct ray *ray, const struct path *path) {
     struct hit hit;
-    if (tracer->pool && pool_cancelled(tracer->pool))
+    if (integrator_cancelled(tracer))
         return vec3_all(0); /* deep paths through glass grow exponentially */
     bool met = world_nearest(tracer->job->world, ray, tracer->scratch, &hit);
     return bring(tracer, ray, met ? &hit : NULL, path);
 }
 
-struct vec3 whitted_trace(struct tracer *tracer, const struct ray *ray, uint64_t key) {
+struct whitted whitted_make(const struct render_job *job) {
+    return (struct whitted){.cutoff = cutoff_weight(job)};
+}
+
+struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *tracer, const struct ray *ray,
+                          uint64_t key) {
     struct ray from_eye = *ray;
     from_eye.media = tracer->eye_media;
-    const struct path path = {.key = key, .weight = 1};
+    const struct path path = {.key = key, .weight = 1, .cutoff = whitted->cutoff};
     return clamp_light(tracer, trace(tracer, &from_eye, &path), (double)FLT_MAX);
 }
 
-struct vec3 whitted_trace_met(struct tracer *tracer, const struct ray *ray, const struct packet_answer *met,
-                              uint64_t key) {
+struct vec3 whitted_trace_met(const struct whitted *whitted, struct integrator_state *tracer, const struct ray *ray,
+                              const struct packet_answer *met, uint64_t key) {
     struct ray from_eye = *ray;
     struct hit hit;
     from_eye.media = tracer->eye_media;
-    if (tracer->pool && pool_cancelled(tracer->pool))
+    if (integrator_cancelled(tracer))
         return vec3_all(0);
     if (met)
         world_describe(tracer->job->world, &from_eye, met->placed, &met->crossing, &hit);
-    const struct path path = {.key = key, .weight = 1};
+    const struct path path = {.key = key, .weight = 1, .cutoff = whitted->cutoff};
     return clamp_light(tracer, bring(tracer, &from_eye, met ? &hit : NULL, &path), (double)FLT_MAX);
 }

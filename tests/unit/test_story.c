@@ -26,7 +26,7 @@ struct tally {
 static void check_ray(struct tally *tally, const struct story_ray *ray) {
     tally->rays++;
     tally->kinds[ray->kind]++;
-    tally->limits += ray->cut == STORY_LIMIT;
+    tally->limits += ray->cut == RAY_OVER_LIMIT;
     if (!ray->begun)
         return;
     struct vec3 whole = vec3_add(vec3_mul(ray->seen, ray->left), ray->veil);
@@ -49,13 +49,13 @@ static void check_ray(struct tally *tally, const struct story_ray *ray) {
         tally->links++;
     for (const struct story_ray *child = ray->first; child; child = child->next) {
         struct vec3 part = vec3_mul(child->weight, child->brings);
-        if (child->kind == STORY_HOLE)
+        if (child->kind == RAY_HOLE)
             holes = vec3_add(holes, part);
         else
             surface = vec3_add(surface, part);
         check_ray(tally, child);
     }
-    if (!ray->met || ray->cut != STORY_FOLLOWED)
+    if (!ray->met || ray->cut != RAY_FOLLOWED)
         return;
     tally->holes += ray->opacity < 1;
     tally->worst = fmax(tally->worst, difference(vec3_add(lights, ray->photons), ray->direct));
@@ -163,7 +163,7 @@ TEST(the_parts_of_every_told_ray_are_what_it_brings) {
     stage_begin(&s, 2);
     fill_stage(&s);
     struct tally t = tell_picture(&s, 60, 44).tally;
-    CHECK(t.rays > 2000 && t.kinds[STORY_REFLECTED] > 100 && t.kinds[STORY_REFRACTED] > 100);
+    CHECK(t.rays > 2000 && t.kinds[RAY_REFLECTED] > 100 && t.kinds[RAY_REFRACTED] > 100);
     CHECK(t.excluded > 0 && t.limits > 0 && t.blocked > 0 && t.reached > 0 && t.absorbed > 0);
     stage_end(&s);
 }
@@ -198,18 +198,18 @@ TEST(a_story_that_is_too_long_counts_what_it_leaves_out) {
     stage_begin(&s, 1);
     stage_sphere(&s, s.root, stage_glass(&s, 0.5, 0.5, 1.5));
     story_init(&story, 0, 0);
-    struct story_place place = {0, 0, 0.5, 0.5, 0};
+    struct pixel_sample place = {0, 0, 0.5, 0.5, 0};
     struct ray ray = {.direction = {0, 0, -1}};
-    story_sample_begin(&story, &place);
+    struct observed_end end = {true, vec3_all(1), vec3_all(1), vec3_all(0), vec3_all(1)};
+    observe_sample_begin(&story.observer, &place);
     for (int i = 0; i < STORY_RAYS + 10; i++) {
-        story_next_ray(&story, STORY_CAMERA, vec3_all(1));
-        story_ray_begin(&story, &ray, NULL, NULL, INFINITY, 1);
-        story_next_ray(&story, STORY_REFLECTED, vec3_all(1));
-        if (i >= STORY_RAYS)
-            CHECK(!story_ray_of(&story));
-        story_ray_end(&story, true, vec3_all(1), vec3_all(1), vec3_all(0), vec3_all(1));
+        observe_ray_sent(&story.observer, RAY_CAMERA, vec3_all(1), RAY_FOLLOWED);
+        observe_ray_begin(&story.observer, &ray, NULL, NULL, INFINITY, 1);
+        observe_ray_sent(&story.observer, RAY_REFLECTED, vec3_all(1), RAY_FOLLOWED);
+        CHECK_EQ_INT(story.mute, i >= STORY_RAYS);
+        observe_ray_end(&story.observer, &end);
     }
-    story_sample_end(&story, &place, vec3_all(1));
+    observe_sample_end(&story.observer, &place, vec3_all(1));
     CHECK_EQ_INT(story.rays, STORY_RAYS);
     CHECK_EQ_INT(story.untold, 10);
     CHECK(!story.failed);

@@ -1,0 +1,192 @@
+/* What an integrator shows of its work: events at its stages, in the order in which they happen. The stages call the
+ * functions below whether anything listens or not; without an observer a call is one test of a pointer. An observer
+ * keeps its own state and cannot change what it sees: a number in an event is the number that goes into the picture.
+ * The pixel trace (render/story.h) is an observer. */
+#ifndef GRAY_RENDER_OBSERVER_H
+#define GRAY_RENDER_OBSERVER_H
+
+#include "light/light.h"
+#include "material/material.h"
+#include "render/interface.h"
+#include "render/sampler.h"
+
+#include <stdint.h>
+
+enum ray_kind { RAY_CAMERA, RAY_REFLECTED, RAY_REFRACTED, RAY_HOLE };
+/* Why a ray was not followed, or why what it met was not evaluated. */
+enum ray_cut { RAY_FOLLOWED, RAY_OVER_LIMIT, RAY_TOO_WEAK };
+#define OBSERVER_NO_BLOCKER UINT32_MAX
+
+enum observation_kind {
+    OBSERVED_SAMPLE_BEGIN,  /* sample.place */
+    OBSERVED_SAMPLE_END,    /* sample.place, sample.colour */
+    OBSERVED_SPLIT,         /* part: the rays that the ray under way sends from now on have this part of their weight */
+    OBSERVED_RAY_SENT,      /* sent: a ray is sent on from the hit of the one under way, or would be without the cut */
+    OBSERVED_RAY_BEGIN,     /* begin: it is under way, and what it has met */
+    OBSERVED_MATERIAL,      /* material: one link of the material of the hit is evaluated */
+    OBSERVED_SURFACE,       /* surface: all of it is */
+    OBSERVED_LIGHT_BEGIN,   /* light.number, light.light */
+    OBSERVED_LIGHT_PLACE,   /* place: the light is shaded as from one place */
+    OBSERVED_SHADOW_RAYS,   /* shadow: of the light under way */
+    OBSERVED_LIGHT_END,     /* light.colour */
+    OBSERVED_LIGHT_SKIPPED, /* light.number, light.light: its lists leave the surface out */
+    OBSERVED_DIRECT,        /* direct: after the lights of a hit */
+    OBSERVED_RAY_END,       /* end */
+    OBSERVED_MARK           /* mark: the pixel is marked, for it differs from a neighbour */
+};
+
+struct observation {
+    enum observation_kind kind;
+    union {
+        struct {
+            const struct pixel_sample *place;
+            struct vec3 colour;
+        } sample;
+        double part;
+        struct {
+            enum ray_kind kind;
+            struct vec3 weight; /* of what it brings, in the surface it starts from */
+            enum ray_cut cut;   /* other than RAY_FOLLOWED: it does not begin */
+        } sent;
+        struct observed_begin {
+            const struct ray *ray;
+            const struct hit *hit;     /* or NULL */
+            const struct light *light; /* that shows itself before the hit, or NULL; neither: the sky */
+            double distance;           /* world units; infinite */
+            double share;              /* how much of what the ray brings can arrive in the pixel, at most */
+        } begin;
+        struct {
+            const struct material *link;
+            const struct surface_look *look; /* as the link leaves it */
+        } material;
+        struct observed_surface {
+            const struct surface_look *look;
+            const struct interface *interface;
+            const struct shading *shading;
+            struct vec3 normal; /* unit, of the side that is lit */
+            bool dark_side;     /* no light reaches it */
+        } surface;
+        struct {
+            uint32_t number; /* in the world */
+            const struct light *light;
+            struct vec3 colour; /* of the light in what the surface shows */
+        } light;
+        struct observed_place {
+            double distance, strength; /* attenuation times the cone of a spot */
+            struct vec3 to_light;      /* unit */
+            struct vec3 reflected;     /* of unit light */
+        } place;
+        struct observed_shadow {
+            uint32_t asked, arrived;
+            uint32_t blocker; /* the primitive that stopped a single ray, where known */
+        } shadow;
+        struct observed_direct {
+            struct vec3 ambient_light, ambient, photons, direct; /* direct: ambient, photons and lights together */
+            bool has_photons;
+        } direct;
+        struct observed_end {
+            bool evaluated;                       /* what it met was; else it was too weak */
+            struct vec3 seen, left, veil, brings; /* brings: left * seen + veil */
+        } end;
+        struct observed_mark {
+            int x, y;                   /* the neighbour from the pixel, -1..1 */
+            double distance, tolerance; /* squared, of colours */
+        } mark;
+    };
+};
+
+struct observer {
+    void (*notice)(void *context, const struct observation *what);
+    void *context;
+};
+
+static inline void observe(const struct observer *observer, const struct observation *what) {
+    observer->notice(observer->context, what);
+}
+
+static inline void observe_sample_begin(const struct observer *observer, const struct pixel_sample *place) {
+    if (observer)
+        observe(observer, &(struct observation){OBSERVED_SAMPLE_BEGIN, .sample.place = place});
+}
+
+static inline void observe_sample_end(const struct observer *observer, const struct pixel_sample *place,
+                                      struct vec3 colour) {
+    if (observer)
+        observe(observer, &(struct observation){OBSERVED_SAMPLE_END, .sample = {place, colour}});
+}
+
+static inline void observe_split(const struct observer *observer, double part) {
+    if (observer)
+        observe(observer, &(struct observation){OBSERVED_SPLIT, .part = part});
+}
+
+static inline void observe_ray_sent(const struct observer *observer, enum ray_kind kind, struct vec3 weight,
+                                    enum ray_cut cut) {
+    if (observer)
+        observe(observer, &(struct observation){OBSERVED_RAY_SENT, .sent = {kind, weight, cut}});
+}
+
+static inline void observe_ray_begin(const struct observer *observer, const struct ray *ray, const struct hit *hit,
+                                     const struct light *light, double distance, double share) {
+    if (observer)
+        observe(observer, &(struct observation){OBSERVED_RAY_BEGIN, .begin = {ray, hit, light, distance, share}});
+}
+
+/* For material_look_told. */
+static inline void observe_material(void *context, const struct material *link, const struct surface_look *look) {
+    observe(context, &(struct observation){OBSERVED_MATERIAL, .material = {link, look}});
+}
+
+static inline void observe_surface(const struct observer *observer, const struct surface_look *look,
+                                   const struct interface *interface, const struct shading *shading, struct vec3 normal,
+                                   bool dark_side) {
+    if (observer)
+        observe(observer,
+                &(struct observation){OBSERVED_SURFACE, .surface = {look, interface, shading, normal, dark_side}});
+}
+
+static inline void observe_light_begin(const struct observer *observer, uint32_t number, const struct light *light) {
+    if (observer)
+        observe(observer, &(struct observation){OBSERVED_LIGHT_BEGIN, .light = {number, light, {0, 0, 0}}});
+}
+
+static inline void observe_light_place(const struct observer *observer, double distance, double strength,
+                                       struct vec3 to_light, struct vec3 reflected) {
+    if (observer)
+        observe(observer,
+                &(struct observation){OBSERVED_LIGHT_PLACE, .place = {distance, strength, to_light, reflected}});
+}
+
+static inline void observe_shadow_rays(const struct observer *observer, uint32_t asked, uint32_t arrived,
+                                       uint32_t blocker) {
+    if (observer)
+        observe(observer, &(struct observation){OBSERVED_SHADOW_RAYS, .shadow = {asked, arrived, blocker}});
+}
+
+static inline void observe_light_end(const struct observer *observer, uint32_t number, const struct light *light,
+                                     struct vec3 colour) {
+    if (observer)
+        observe(observer, &(struct observation){OBSERVED_LIGHT_END, .light = {number, light, colour}});
+}
+
+static inline void observe_light_skipped(const struct observer *observer, uint32_t number, const struct light *light) {
+    if (observer)
+        observe(observer, &(struct observation){OBSERVED_LIGHT_SKIPPED, .light = {number, light, {0, 0, 0}}});
+}
+
+static inline void observe_direct(const struct observer *observer, const struct observed_direct *direct) {
+    if (observer)
+        observe(observer, &(struct observation){OBSERVED_DIRECT, .direct = *direct});
+}
+
+static inline void observe_ray_end(const struct observer *observer, const struct observed_end *end) {
+    if (observer)
+        observe(observer, &(struct observation){OBSERVED_RAY_END, .end = *end});
+}
+
+static inline void observe_mark(const struct observer *observer, int x, int y, double distance, double tolerance) {
+    if (observer)
+        observe(observer, &(struct observation){OBSERVED_MARK, .mark = {x, y, distance, tolerance}});
+}
+
+#endif

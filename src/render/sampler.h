@@ -1,0 +1,83 @@
+/* The random numbers of a picture. Each is a function of the seed, the pixel, the number of the sample within the pixel
+ * and the place in the tree of rays where it is used (the dimension), never of thread, order or time.
+ *
+ * Keys form a tree (base/random.h): seed, pixel, sample, ray, and below a ray its lights and the rays that it sends. A
+ * key makes jitter. The strata make the samples of one pixel cover a light, a lens, the shutter or the facets of a
+ * rough surface together: what one sample asks for in n x n cells, the N x N samples of a pixel ask for in parts of
+ * these cells, each sample in another part. */
+#ifndef GRAY_RENDER_SAMPLER_H
+#define GRAY_RENDER_SAMPLER_H
+
+#include "math/sampling.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* A sample of a pixel of the whole picture. */
+struct pixel_sample {
+    int64_t x, y;
+    double dx, dy;   /* within the pixel */
+    uint64_t number; /* 0: the first sample, which stands alone; 1 + k: cell k of N x N */
+};
+
+/* The numbers of one sample. */
+struct sampler {
+    uint64_t key;       /* of the sample: the root of the keys of its rays */
+    uint64_t pixel_key; /* of the strata */
+    uint32_t cell;      /* of `side` x `side` samples of the pixel */
+    uint32_t side;      /* 1: the sample stands alone */
+};
+
+/* Sample `number` of a pixel (counted row by row over the whole picture) of side x side. */
+static inline struct sampler sampler_make(uint64_t seed, uint64_t pixel, uint64_t number, uint32_t side) {
+    uint64_t key = random_combine(random_combine(seed, 0), pixel);
+    return (struct sampler){.key = random_combine(key, number),
+                            .pixel_key = random_combine(key, 1),
+                            .cell = number > 0 ? (uint32_t)number - 1 : 0,
+                            .side = number > 0 ? side : 1};
+}
+
+/* A place of the unit square on the lens, and a moment of the shutter from 0 to 1: one of as many cells as the pixel
+ * has samples, in an order of the pixel's own. */
+struct sample2 sampler_lens(const struct sampler *sampler);
+double sampler_time(const struct sampler *sampler);
+/* The key of the same sample for the right eye of a stereo pair; sampler->key is that of the left one. */
+static inline uint64_t sampler_right_eye(const struct sampler *sampler) {
+    return random_combine(sampler->key, UINT64_MAX);
+}
+
+/* Keys below that of a ray: what it sends on, and the lights that it is lit by. The facets of a rough surface have keys
+ * below SAMPLER_ROUGH. */
+enum sampler_branch { SAMPLER_REFLECTED, SAMPLER_REFRACTED, SAMPLER_ROUGH, SAMPLER_HOLE };
+static inline uint64_t sampler_branch(uint64_t ray_key, enum sampler_branch branch) {
+    return random_combine(ray_key, (uint64_t)UINT32_MAX + (uint64_t)branch);
+}
+static inline uint64_t sampler_light(uint64_t ray_key, uint32_t light) {
+    return random_combine(ray_key, light);
+}
+static inline uint64_t sampler_facet(uint64_t rough_key, uint32_t facet) {
+    return random_combine(rough_key, facet);
+}
+
+/* Points of the unit square, one in each of side x side cells. */
+enum sample_set_kind {
+    SAMPLE_SET_JITTERED, /* anywhere in the cell */
+    SAMPLE_SET_PARTS,    /* in the part of the cell that is the sample's own among those of the pixel */
+    SAMPLE_SET_MULTI     /* the same, and with the other samples of the pixel one multi-jittered set */
+};
+struct sample_set {
+    enum sample_set_kind kind;
+    uint64_t key, set_key;
+    uint32_t side, part, parts; /* part of parts x parts */
+};
+
+/* For the facets of a rough surface; rough_key: sampler_branch(ray_key, SAMPLER_ROUGH). */
+struct sample_set sampler_facets(const struct sampler *sampler, uint64_t ray_key, uint64_t rough_key, uint32_t side);
+/* For the shadow rays to light number `light`; light_key: sampler_light(ray_key, light). Not `shared`: the samples of a
+ * pixel do not share the cells among each other (lights of SPEC 1.4). */
+struct sample_set sampler_on_light(const struct sampler *sampler, uint64_t light_key, uint32_t light, uint32_t side,
+                                   bool shared);
+/* The point in cell (cell % side, cell / side). */
+struct sample2 sample_set_point(const struct sample_set *set, uint32_t cell);
+
+#endif
