@@ -20,7 +20,7 @@ new=build/new/gray
 
 count() { # count PROGRAM SCENE: millions of instructions
     valgrind --tool=callgrind --callgrind-out-file=/dev/null --log-file="$work/log" "$1" -q --no-fork -j 1 --isa avx2 \
-        -D quick=true --allow-read . --script-time 600 --size 64x48 -ss 2 -al-samples 2 --force -o "$work/p-%d.png" -- "$2" \
+        -D quick=true --allow-read . --script-time 600 --size 64x48 -ss 2 -al-samples 2 -o "$work/p-%d.png" -- "$2" \
         >"$work/out" 2>&1 || { cat "$work/out" >&2; return 1; }
     awk '/Collected/ { printf "%.3f\n", $4 / 1e6 }' "$work/log"
 }
