@@ -90,6 +90,11 @@ static void check_script(const char *folder, const char *name) {
     char *line = result.err, first[2048];
     line += strspn(line, "x"); /* of those that write to standard error */
     (void)snprintf(first, sizeof first, "%.*s", (int)strcspn(line, "\n"), line);
+    /* A run that takes longer than ten seconds reports its progress first. */
+    while (strstr(first, ": building the scene, ") && strchr(line, '\n')) {
+        line = strchr(line, '\n') + 1;
+        (void)snprintf(first, sizeof first, "%.*s", (int)strcspn(line, "\n"), line);
+    }
     char pattern[1024];
     size_t length = expect ? strlen(expect) : 0;
     (void)snprintf(pattern, sizeof pattern, "%s%s", expect ? expect : "?", length > 0 && expect[0] == '*' ? "*" : "");
