@@ -42,6 +42,6 @@ bool accel_select_isa(const char *name) {
 }
 
 const char *accel_isa_name(void) {
-    static const char *const names[] = {"base", "avx2", "avx512"};
+    static const char *const names[] = {ACCEL_ISAS(LIST_WORD)};
     return names[accel_isa_chosen];
 }

@@ -2,9 +2,15 @@
 #ifndef GRAY_ACCEL_ISA_H
 #define GRAY_ACCEL_ISA_H
 
+#include "base/list.h"
+
 #include <stdbool.h>
 
-enum accel_isa { ACCEL_ISA_BASE, ACCEL_ISA_AVX2, ACCEL_ISA_AVX512 };
+#define ACCEL_ISAS(X)                                                                                                  \
+    X(ACCEL_ISA_BASE, "base")                                                                                          \
+    X(ACCEL_ISA_AVX2, "avx2")                                                                                          \
+    X(ACCEL_ISA_AVX512, "avx512")
+enum accel_isa { ACCEL_ISAS(LIST_MEMBER) };
 
 /* "auto", "base", "avx2" or "avx512"; false when the name is unknown or the processor lacks it (nothing changes then).
  * Call before the first search and from one thread. */

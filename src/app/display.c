@@ -28,7 +28,7 @@ static bool take_word(const char **text, char *out, size_t size) {
 }
 
 bool display_parse(const char *text, struct display_choice *out) {
-    static const char *const graphics[] = {"auto", "kitty", "sixel", "blocks"};
+    static const char *const graphics[] = {TERMINAL_GRAPHICS(LIST_WORD)};
     *out = (struct display_choice){.host = "127.0.0.1"};
     memcpy(out->port, tev_port, sizeof tev_port);
     if (strncmp(text, "tev", 3) == 0 && (text[3] == '\0' || text[3] == ':')) {
@@ -46,7 +46,7 @@ bool display_parse(const char *text, struct display_choice *out) {
     if (strncmp(text, "term", 4) != 0 || (text[4] != '\0' && text[4] != ':'))
         return false;
     out->kind = DISPLAY_TERMINAL;
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < LIST_COUNT(TERMINAL_GRAPHICS); i++) {
         if (text[4] == '\0' || strcmp(text + 5, graphics[i]) == 0) {
             out->graphics = text[4] ? (enum terminal_graphics)i : TERMINAL_AUTO;
             return true;

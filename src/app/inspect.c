@@ -3,44 +3,6 @@
 
 #include "base/sort.h"
 
-const char *inspect_shape(enum shape_kind kind) {
-    switch (kind) {
-    case SHAPE_SPHERE:
-        return "sphere";
-    case SHAPE_BOX:
-        return "box";
-    case SHAPE_CONIC:
-        return "conic";
-    case SHAPE_ELLIPSOID:
-        return "ellipsoid";
-    case SHAPE_QUADRIC:
-        return "quadric";
-    case SHAPE_TORUS:
-        return "torus";
-    case SHAPE_SUPERELLIPSOID:
-        return "superellipsoid";
-    case SHAPE_FLAT:
-        return "flat";
-    case SHAPE_LATHE:
-        return "lathe";
-    case SHAPE_PRISM:
-        return "prism";
-    case SHAPE_SWEEP:
-        return "sweep";
-    case SHAPE_HEIGHT_FIELD:
-        return "height field";
-    case SHAPE_BLOB:
-        return "blob";
-    case SHAPE_CURVE:
-        return "curve";
-    case SHAPE_MESH:
-        return "mesh";
-    case SHAPE_CSG:
-        return "csg";
-    }
-    return "?";
-}
-
 const char *inspect_light(enum light_kind kind) {
     switch (kind) {
     case LIGHT_POINT:

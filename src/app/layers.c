@@ -56,21 +56,10 @@ static void layer_row_linear(void *context, uint32_t y, float *line) {
     memcpy(line, rows->values + (size_t)y * rows->width, rows->width * sizeof *rows->values);
 }
 
-static const char *const channel_names[AOV_COUNT][3] = {
-    [AOV_DEPTH] = {"depth.Z"},
-    [AOV_NORMAL] = {"normal.X", "normal.Y", "normal.Z"},
-    [AOV_ALBEDO] = {"albedo.R", "albedo.G", "albedo.B"},
-    [AOV_UV] = {"uv.U", "uv.V"},
-    [AOV_NODE] = {"node.N"},
-    [AOV_MATERIAL] = {"material.N"},
-    [AOV_COST] = {"cost.N"},
-    [AOV_SAMPLES] = {"samples.N"},
-    [AOV_LIGHTS] = {"lights.N"},
-};
-
 bool layers_write_exr(const struct file_target *target, const struct film *film, struct error *error) {
     static const char *const light[3] = {"R", "G", "B"};
     struct exr_channel channels[3 + 3 * AOV_COUNT];
+    char names[AOV_COUNT][3][16]; /* "normal.X" */
     uint32_t count = 0, floats = sizeof *film->pixels / sizeof(float);
     size_t pixels = (size_t)film->width * film->height;
     for (int c = 0; c < 3; c++)
@@ -79,8 +68,11 @@ bool layers_write_exr(const struct file_target *target, const struct film *film,
         if (!(film->layer_mask >> i & 1))
             continue;
         const float(*values)[3] = (const float(*)[3])(film->layers + aov_layer(film->layer_mask, (enum aov)i) * pixels);
-        for (int c = 0; c < 3 && channel_names[i][c]; c++)
-            channels[count++] = (struct exr_channel){channel_names[i][c], &values[0][c], 3};
+        const char *letters = aov_channels((enum aov)i);
+        for (int c = 0; letters[c]; c++) {
+            (void)snprintf(names[i][c], sizeof names[i][c], "%s.%c", aov_name((enum aov)i), letters[c]);
+            channels[count++] = (struct exr_channel){names[i][c], &values[0][c], 3};
+        }
     }
     return exr_write_channels(target, film->width, film->height, channels, count, error);
 }

@@ -2,6 +2,7 @@
  * of an option takes one dash or two, and '_' counts as '-'; `--name value` and `--name=value` are the same. Words that
  * are no options are scripts; after "--" everything is. */
 #include "app/options.h"
+#include "accel/isa.h"
 
 #include "app/display.h"
 
@@ -62,6 +63,10 @@ struct option {
 #define FIELD(name) offsetof(struct options, name), sizeof(((struct options *)NULL)->name)
 #define NO_FIELD 0, 0
 #define NO_RANGE 0, 0
+/* The first choice is the best set that the processor has. */
+#define ISA_CHOICES "auto" ACCEL_ISAS(LIST_BAR_WORD)
+#define WORD_AFTER_AUTO(member, word) [(member) + 1] = (word),
+#define LAYER_NAME(aov, name, channels) " " name ","
 #define SIZES 0x1p10, 0x1p50 /* 1 KiB to 1 PiB */
 
 static const char *const group_titles[GROUP_COUNT] = {
@@ -104,14 +109,14 @@ static const struct option table[] = {
     {GROUP_LOOK, "--size", OPTION_SIZE, "WxH", NO_RANGE, NO_FIELD, "the script's", "size of the pictures in pixels"},
     {GROUP_LOOK, "--crop", OPTION_CROP, "X,Y,W,H", NO_RANGE, NO_FIELD, "all",
      "write a W x H picture, exactly that part of the whole; X,Y is its upper left pixel"},
-    {GROUP_LOOK, "--accel", OPTION_CHOICE, "auto|grid|bvh|kdtree|none", NO_RANGE, FIELD(settings.accel), "auto",
+    {GROUP_LOOK, "--accel", OPTION_CHOICE, LIST_BARS(ACCEL_KINDS), NO_RANGE, FIELD(settings.accel), "auto",
      "how rays find what they hit; the picture is the same"},
-    {GROUP_LOOK, "--isa", OPTION_CHOICE, "auto|base|avx2|avx512", NO_RANGE, FIELD(isa), "auto",
+    {GROUP_LOOK, "--isa", OPTION_CHOICE, ISA_CHOICES, NO_RANGE, FIELD(isa), "auto",
      "instruction set of the kernels; the picture is the same"},
 
     {GROUP_LOOK, "--exposure", OPTION_NUMBER, "STOPS", -100, 100, FIELD(settings.tone.exposure), "0",
      "light is multiplied by 2^STOPS on its way into a PNG file"},
-    {GROUP_LOOK, "--tone", OPTION_CHOICE, "none|reinhard|filmic", NO_RANGE, FIELD(settings.tone.curve), "none",
+    {GROUP_LOOK, "--tone", OPTION_CHOICE, LIST_BARS(TONE_CURVES), NO_RANGE, FIELD(settings.tone.curve), "none",
      "the curve that brings bright light into the range of a PNG file"},
     {GROUP_LOOK, "--srgb", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.tone.srgb), NULL,
      "values of a PNG file follow the sRGB transfer function instead of light itself"},
@@ -130,13 +135,12 @@ static const struct option table[] = {
      "for dir/foo.png also write dir/Xfoo.png: the first pass, one sample for each pixel"},
 
     {GROUP_FILES, "--aov", OPTION_LAYERS, "LIST", NO_RANGE, NO_FIELD, NULL,
-     "for dir/foo.png also write dir/foo.NAME.png for each NAME of LIST, parted by commas: depth, normal, albedo, uv, "
-     "node, material, cost, samples, lights, or all"},
+     "for dir/foo.png also write dir/foo.NAME.png for each NAME of LIST, parted by commas:" AOVS(LAYER_NAME) " or all"},
 
-    {GROUP_FILES, "--overlay", OPTION_CHOICE, "none|boxes|grid", NO_RANGE, FIELD(settings.overlay), "none",
+    {GROUP_FILES, "--overlay", OPTION_CHOICE, LIST_BARS(OVERLAYS), NO_RANGE, FIELD(settings.overlay), "none",
      "lines over the picture: the boxes of all that is placed, or the cells of what rays search (see --accel)"},
 
-    {GROUP_OLD, "--transform-order", OPTION_CHOICE, "auto|new|old|separate", NO_RANGE, FIELD(script.transform_order),
+    {GROUP_OLD, "--transform-order", OPTION_CHOICE, LIST_BARS(SCRIPT_ORDERS), NO_RANGE, FIELD(script.transform_order),
      "auto",
      "new: transforms act in the order they are written; old: the last one acts first; separate: scale, rotate, "
      "translate are kept apart; auto: decided from the text of the script"},
@@ -144,7 +148,7 @@ static const struct option table[] = {
      "whether the view argument is a direction or a point to look at"},
     {GROUP_OLD, "--pixel-sample", OPTION_CHOICE, "centre|corner", NO_RANGE, FIELD(settings.pixel_corner), "centre",
      "where the first sample of a pixel lies"},
-    {GROUP_OLD, "--specular", OPTION_CHOICE, "phong|blinn", NO_RANGE, FIELD(settings.specular), "phong",
+    {GROUP_OLD, "--specular", OPTION_CHOICE, LIST_BARS(SPECULAR_KINDS), NO_RANGE, FIELD(settings.specular), "phong",
      "formula of the highlight"},
     {GROUP_OLD, "--ambient", OPTION_CHOICE, "kd|plain", NO_RANGE, FIELD(settings.ambient_plain), "kd",
      "ambient light is multiplied with kd, or added as it is"},
@@ -153,7 +157,7 @@ static const struct option table[] = {
 
     {GROUP_RUN, "-j", OPTION_INTEGER, "N", 1, 1024, FIELD(threads), "one for each processor",
      "number of threads; the picture is the same for any number"},
-    {GROUP_RUN, "--tile-order", OPTION_CHOICE, "spread|centre|rows", NO_RANGE, FIELD(settings.order), "spread",
+    {GROUP_RUN, "--tile-order", OPTION_CHOICE, LIST_BARS(TILE_ORDERS), NO_RANGE, FIELD(settings.order), "spread",
      "in which order tiles are made (in a window always from the centre); the picture is the same"},
     {GROUP_RUN, "-D", OPTION_DEFINE, "name=value", NO_RANGE, NO_FIELD, NULL,
      "set the Lua global `name` before the script runs: a Lua literal, else a string; may be repeated"},
@@ -213,7 +217,7 @@ static const struct option table[] = {
     {GROUP_TALK, "--verbose", OPTION_FLAG, NULL, NO_RANGE, FIELD(verbose), NULL, "say what is done and why"},
     {GROUP_TALK, "--stats", OPTION_STATS, "=text|json", NO_RANGE, NO_FIELD, NULL,
      "what each picture cost: a table on standard error, or one JSON line a picture on standard output"},
-    {GROUP_TALK, "--progress", OPTION_CHOICE, "auto|bar|lines|json|none", NO_RANGE, FIELD(progress), "auto",
+    {GROUP_TALK, "--progress", OPTION_CHOICE, LIST_BARS(PROGRESS_MODES), NO_RANGE, FIELD(progress), "auto",
      "how far the picture is and how long it will take, on standard error; auto: a bar on a terminal, else a line now "
      "and then when it takes long"},
     {GROUP_TALK, "--display", OPTION_TEXT, "WHERE", NO_RANGE, FIELD(display), NULL,
@@ -944,6 +948,6 @@ bool output_name(const char *pattern, unsigned number, char *out, size_t size) {
 }
 
 const char *options_isa_name(const struct options *options) {
-    static const char *const names[] = {"auto", "base", "avx2", "avx512"};
+    static const char *const names[] = {"auto", ACCEL_ISAS(WORD_AFTER_AUTO)};
     return names[options->isa];
 }

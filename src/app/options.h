@@ -6,6 +6,7 @@
 #include "base/arena.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/list.h"
 #include "render/settings.h"
 #include "script/script.h"
 
@@ -20,7 +21,13 @@ enum options_action {
     ACTION_VERSION,
     ACTION_ANNOTATIONS
 };
-enum progress_mode { PROGRESS_AUTO, PROGRESS_BAR, PROGRESS_LINES, PROGRESS_JSON, PROGRESS_NONE };
+#define PROGRESS_MODES(X)                                                                                              \
+    X(PROGRESS_AUTO, "auto")                                                                                           \
+    X(PROGRESS_BAR, "bar")                                                                                             \
+    X(PROGRESS_LINES, "lines")                                                                                         \
+    X(PROGRESS_JSON, "json")                                                                                           \
+    X(PROGRESS_NONE, "none")
+enum progress_mode { PROGRESS_MODES(LIST_MEMBER) };
 enum statistics_mode { STATISTICS_NONE, STATISTICS_TEXT, STATISTICS_JSON };
 
 /* Texts point into argv or into the arena given to options_parse. */

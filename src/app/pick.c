@@ -148,9 +148,9 @@ static bool box_node(struct picking *p, const struct node *root, struct error *e
 
 static const char *shape_words(const struct picking *p, const struct node *node) {
     if (p->depth == p->way)
-        return inspect_shape(placed_shape(p->world, p->placed)->kind);
+        return shape_kind_name(placed_shape(p->world, p->placed)->kind);
     bool solid = p->depth > p->way && node->kind != NODE_GROUP && node->kind != NODE_JOINT;
-    return solid ? inspect_shape(node->kind == NODE_CSG ? SHAPE_CSG : node->shape.kind) : "group";
+    return solid ? shape_kind_name(node->kind == NODE_CSG ? SHAPE_CSG : node->shape.kind) : "group";
 }
 
 /* "marble over phong", and the base. */

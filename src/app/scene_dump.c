@@ -27,7 +27,7 @@ static void dump_line(const struct dump *d, uint32_t placed, const char *path) {
     if (thing->shape.kind == SHAPE_MESH)
         (void)snprintf(triangles, sizeof triangles, "%u", triangles_of(&thing->shape));
     sheet_print(d->sheet, "%8u  %-14s %9s %9s  %-5s (%.6g, %.6g, %.6g) to (%.6g, %.6g, %.6g)  ", placed + 1,
-                inspect_shape(thing->shape.kind), triangles, material, moves ? "moves" : "", box->min.x, box->min.y,
+                shape_kind_name(thing->shape.kind), triangles, material, moves ? "moves" : "", box->min.x, box->min.y,
                 box->min.z, box->max.x, box->max.y, box->max.z);
     sheet_name(d->sheet, path);
     sheet_print(d->sheet, "\n");
@@ -35,7 +35,7 @@ static void dump_line(const struct dump *d, uint32_t placed, const char *path) {
         return;
     for (uint32_t i = 0; i < thing->shape.csg->leaf_count; i++) {
         const struct csg_leaf *leaf = &thing->shape.csg->leaves[i];
-        sheet_print(d->sheet, "          . operand %u: %s, material %u\n", i + 1, inspect_shape(leaf->shape.kind),
+        sheet_print(d->sheet, "          . operand %u: %s, material %u\n", i + 1, shape_kind_name(leaf->shape.kind),
                     leaf->material + 1);
     }
 }
@@ -45,14 +45,14 @@ static void dump_json(const struct dump *d, uint32_t placed, const char *path) {
     struct sheet *sheet = d->sheet;
     sheet_print(sheet, "%s{\"number\":%u,\"node\":", placed > 0 ? "," : "", placed + 1);
     sheet_json(sheet, path);
-    sheet_print(sheet, ",\"node_number\":%u,\"shape\":\"%s\"", thing->node->serial, inspect_shape(thing->shape.kind));
+    sheet_print(sheet, ",\"node_number\":%u,\"shape\":\"%s\"", thing->node->serial, shape_kind_name(thing->shape.kind));
     if (thing->shape.kind == SHAPE_MESH)
         sheet_print(sheet, ",\"triangles\":%u", triangles_of(&thing->shape));
     if (thing->shape.kind == SHAPE_CSG) {
         sheet_print(sheet, ",\"operands\":[");
         for (uint32_t i = 0; i < thing->shape.csg->leaf_count; i++)
             sheet_print(sheet, "%s{\"shape\":\"%s\",\"material\":%u}", i > 0 ? "," : "",
-                        inspect_shape(thing->shape.csg->leaves[i].shape.kind),
+                        shape_kind_name(thing->shape.csg->leaves[i].shape.kind),
                         thing->shape.csg->leaves[i].material + 1);
         sheet_print(sheet, "]");
     } else {

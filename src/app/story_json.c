@@ -86,10 +86,10 @@ static void json_hit(const struct told_story *told, struct sheet *sheet, const s
     const struct shape *shape = placed_shape(world, hit->placed);
     text(sheet, "node", story_path(told, hit->placed));
     sheet_print(sheet, ",\"node_number\":%u,\"placed\":%u,\"shape\":\"%s\"", placed_node(world, hit->placed)->serial,
-                hit->placed, inspect_shape(shape->kind));
+                hit->placed, shape_kind_name(shape->kind));
     if (shape->kind == SHAPE_CSG)
         sheet_print(sheet, ",\"operand\":%u,\"operand_shape\":\"%s\"", hit->leaf + 1,
-                    inspect_shape(shape->csg->leaves[hit->leaf].shape.kind));
+                    shape_kind_name(shape->csg->leaves[hit->leaf].shape.kind));
     sheet_print(sheet, ",\"part\":%u", hit->part);
     number(sheet, "t", hit->t);
     flag(sheet, "front", hit->front);

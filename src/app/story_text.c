@@ -158,10 +158,10 @@ static void tell_hit(const struct teller *t, const struct story_ray *ray) {
     indent(t, 1);
     sheet_print(t->sheet, "meets ");
     sheet_name(t->sheet, story_path(t->told, hit->placed));
-    sheet_print(t->sheet, ", %s", inspect_shape(shape->kind));
+    sheet_print(t->sheet, ", %s", shape_kind_name(shape->kind));
     if (shape->kind == SHAPE_CSG)
         sheet_print(t->sheet, ", operand %u of %u, %s", hit->leaf + 1, shape->csg->leaf_count,
-                    inspect_shape(shape->csg->leaves[hit->leaf].shape.kind));
+                    shape_kind_name(shape->csg->leaves[hit->leaf].shape.kind));
     sheet_print(t->sheet, ", part %u, from %s, at distance %.6g\n", hit->part, hit->front ? "outside" : "inside",
                 ray->distance);
     indent(t, 1);
@@ -299,7 +299,7 @@ static void tell_sum(struct teller *t) {
     const struct story *story = t->told->story;
     const struct settings *settings = &t->told->picture->job->settings;
     const struct tone *tone = &settings->tone;
-    static const char *const curves[] = {"none", "reinhard", "filmic"};
+    static const char *const curves[] = {TONE_CURVES(LIST_WORD)};
     unsigned count = 0;
     double toned[3];
     for (const struct story_sample *sample = story->sample; sample; sample = sample->next)

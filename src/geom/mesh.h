@@ -7,6 +7,7 @@
 
 #include "accel/triangle_packet.h"
 #include "base/error.h"
+#include "base/list.h"
 #include "base/pool.h"
 #include "geom/crossing.h"
 #include "geom/hit.h"
@@ -42,7 +43,13 @@ struct mesh_input {
 
 /* How searches go, over placed primitives and inside of meshes; the answers are the same. AUTO: what is fastest; GRID:
  * the uniform grid of Amanatides and Woo; BVH: a hierarchy; KDTREE: a kd-tree; NONE: everything is tried. */
-enum accel_kind { ACCEL_AUTO, ACCEL_GRID, ACCEL_BVH, ACCEL_KDTREE, ACCEL_NONE };
+#define ACCEL_KINDS(X)                                                                                                 \
+    X(ACCEL_AUTO, "auto")                                                                                              \
+    X(ACCEL_GRID, "grid")                                                                                              \
+    X(ACCEL_BVH, "bvh")                                                                                                \
+    X(ACCEL_KDTREE, "kdtree")                                                                                          \
+    X(ACCEL_NONE, "none")
+enum accel_kind { ACCEL_KINDS(LIST_MEMBER) };
 
 /* Triangulates n-gons (concave ones by ear clipping in their best plane, convex ones fast; thousands of corners fine),
  * drops degenerate faces quietly (counted). NULL and error on no memory. Deterministic. Not more than 2^31 triangles.

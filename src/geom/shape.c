@@ -17,6 +17,11 @@
 /* The most crossings that the shapes answered by analytic_crossings can have. */
 enum { ANALYTIC_MOST = SUPERELLIPSOID_MOST };
 
+const char *shape_kind_name(enum shape_kind kind) {
+    static const char *const names[] = {SHAPE_KINDS(LIST_WORD)};
+    return names[kind];
+}
+
 /* The least and the greatest dot(g, p) over a shape that knows it in closed form; false for the others. */
 static bool shape_extent(const struct shape *shape, struct vec3 g, double *lo, double *hi) {
     switch (shape->kind) {

@@ -5,6 +5,7 @@
 #ifndef GRAY_GEOM_SHAPE_H
 #define GRAY_GEOM_SHAPE_H
 
+#include "base/list.h"
 #include "geom/conic.h"
 #include "geom/crossing.h"
 #include "geom/flat.h"
@@ -25,24 +26,26 @@ struct height_field;
 struct blob;
 struct curve;
 
-enum shape_kind {
-    SHAPE_SPHERE,
-    SHAPE_BOX,
-    SHAPE_CONIC,
-    SHAPE_ELLIPSOID,
-    SHAPE_QUADRIC,
-    SHAPE_TORUS,
-    SHAPE_SUPERELLIPSOID,
-    SHAPE_FLAT,
-    SHAPE_LATHE,
-    SHAPE_PRISM,
-    SHAPE_SWEEP,
-    SHAPE_HEIGHT_FIELD,
-    SHAPE_BLOB,
-    SHAPE_CURVE,
-    SHAPE_MESH,
-    SHAPE_CSG,
-};
+/* Every kind, with its name in answers about a scene. */
+#define SHAPE_KINDS(X)                                                                                                 \
+    X(SHAPE_SPHERE, "sphere")                                                                                          \
+    X(SHAPE_BOX, "box")                                                                                                \
+    X(SHAPE_CONIC, "conic")                                                                                            \
+    X(SHAPE_ELLIPSOID, "ellipsoid")                                                                                    \
+    X(SHAPE_QUADRIC, "quadric")                                                                                        \
+    X(SHAPE_TORUS, "torus")                                                                                            \
+    X(SHAPE_SUPERELLIPSOID, "superellipsoid")                                                                          \
+    X(SHAPE_FLAT, "flat")                                                                                              \
+    X(SHAPE_LATHE, "lathe")                                                                                            \
+    X(SHAPE_PRISM, "prism")                                                                                            \
+    X(SHAPE_SWEEP, "sweep")                                                                                            \
+    X(SHAPE_HEIGHT_FIELD, "height field")                                                                              \
+    X(SHAPE_BLOB, "blob")                                                                                              \
+    X(SHAPE_CURVE, "curve")                                                                                            \
+    X(SHAPE_MESH, "mesh")                                                                                              \
+    X(SHAPE_CSG, "csg")
+enum shape_kind { SHAPE_KINDS(LIST_MEMBER) };
+enum { SHAPE_KIND_COUNT = LIST_COUNT(SHAPE_KINDS) };
 
 struct shape {
     enum shape_kind kind;
@@ -69,6 +72,7 @@ struct shape {
     };
 };
 
+const char *shape_kind_name(enum shape_kind kind);
 /* Sides without an end are infinite. */
 struct box shape_bounds(const struct shape *shape);
 /* The box of the shape as `map` places it: the tightest one for analytic shapes whose reach has a closed form, else the

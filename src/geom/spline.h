@@ -4,15 +4,16 @@
 
 #include "base/arena.h"
 #include "base/error.h"
+#include "base/list.h"
 
 #include <stdint.h>
 
-enum spline_kind {
-    SPLINE_LINEAR,      /* straight from point to point */
-    SPLINE_CATMULL_ROM, /* through all points; the ends' neighbours are mirrored unless given */
-    SPLINE_B_SPLINE,    /* uniform cubic, near the points; begins and ends at the first and the last one */
-    SPLINE_BEZIER,      /* 3 n + 1 points (closed: 3 n), every third is passed */
-};
+#define SPLINE_KINDS(X)                                                                                                \
+    X(SPLINE_LINEAR, "linear")           /* straight from point to point */                                            \
+    X(SPLINE_CATMULL_ROM, "catmull-rom") /* through all points; the ends' neighbours are mirrored unless given */      \
+    X(SPLINE_B_SPLINE, "b-spline") /* uniform cubic, near the points; begins and ends at the first and the last one */ \
+    X(SPLINE_BEZIER, "bezier")     /* 3 n + 1 points (closed: 3 n), every third is passed */
+enum spline_kind { SPLINE_KINDS(LIST_MEMBER) };
 
 /* Straight segments have their inner points at the thirds. */
 struct spline_segment {

@@ -6,13 +6,22 @@
 #define GRAY_IMAGE_IMAGE_H
 
 #include "base/error.h"
+#include "base/list.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-enum image_filter { IMAGE_NEAREST, IMAGE_BILINEAR, IMAGE_MIPMAP }; /* MIPMAP: trilinear where the footprint is known */
-enum image_wrap { IMAGE_CLAMP, IMAGE_REPEAT, IMAGE_MIRROR };
+#define IMAGE_FILTERS(X)                                                                                               \
+    X(IMAGE_NEAREST, "nearest")                                                                                        \
+    X(IMAGE_BILINEAR, "bilinear")                                                                                      \
+    X(IMAGE_MIPMAP, "mipmap") /* trilinear where the footprint is known */
+enum image_filter { IMAGE_FILTERS(LIST_MEMBER) };
+#define IMAGE_WRAPS(X)                                                                                                 \
+    X(IMAGE_CLAMP, "clamp")                                                                                            \
+    X(IMAGE_REPEAT, "repeat")                                                                                          \
+    X(IMAGE_MIRROR, "mirror")
+enum image_wrap { IMAGE_WRAPS(LIST_MEMBER) };
 
 struct rgba {
     double r, g, b, a; /* premultiplied where a function says so */

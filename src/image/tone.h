@@ -3,10 +3,16 @@
 #ifndef GRAY_IMAGE_TONE_H
 #define GRAY_IMAGE_TONE_H
 
+#include "base/list.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 
-enum tone_curve { TONE_NONE, TONE_REINHARD, TONE_FILMIC };
+#define TONE_CURVES(X)                                                                                                 \
+    X(TONE_NONE, "none")                                                                                               \
+    X(TONE_REINHARD, "reinhard")                                                                                       \
+    X(TONE_FILMIC, "filmic")
+enum tone_curve { TONE_CURVES(LIST_MEMBER) };
 
 struct tone {
     double exposure; /* stops: light is multiplied by 2^exposure */

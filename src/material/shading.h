@@ -3,11 +3,15 @@
 #ifndef GRAY_MATERIAL_SHADING_H
 #define GRAY_MATERIAL_SHADING_H
 
+#include "base/list.h"
 #include "math/vec3.h"
 
 #include <stdbool.h>
 
-enum specular_kind { SPECULAR_PHONG, SPECULAR_BLINN };
+#define SPECULAR_KINDS(X)                                                                                              \
+    X(SPECULAR_PHONG, "phong")                                                                                         \
+    X(SPECULAR_BLINN, "blinn")
+enum specular_kind { SPECULAR_KINDS(LIST_MEMBER) };
 
 enum lobe_kind {
     LOBE_DIFFUSE, /* weight * max(0, n.l) */

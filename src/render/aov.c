@@ -10,11 +10,17 @@
 
 #include <string.h>
 
-static const char *const names[AOV_COUNT] = {"depth",    "normal", "albedo",  "uv",    "node",
-                                             "material", "cost",   "samples", "lights"};
+#define AOV_NAME(aov, name, channels) [aov] = (name),
+#define AOV_CHANNELS(aov, name, channels) [aov] = (channels),
+static const char *const names[] = {AOVS(AOV_NAME)};
 
 const char *aov_name(enum aov aov) {
     return names[aov];
+}
+
+const char *aov_channels(enum aov aov) {
+    static const char *const all[] = {AOVS(AOV_CHANNELS)};
+    return all[aov];
 }
 
 bool aov_parse(const char *text, uint32_t *mask) {
@@ -165,7 +171,6 @@ void aov_colour(enum aov aov, const struct aov_scale *scale, const float value[3
         break;
     case AOV_ALBEDO:
     case AOV_LIGHTS:
-    case AOV_COUNT:
         break;
     }
 }

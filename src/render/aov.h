@@ -3,26 +3,29 @@
 #ifndef GRAY_RENDER_AOV_H
 #define GRAY_RENDER_AOV_H
 
+#include "base/list.h"
 #include "world/world.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
-enum aov {
-    AOV_DEPTH,    /* distance from the eye along the ray, world units; 0: nothing met */
-    AOV_NORMAL,   /* unit, world, on the outward side, as shading has it; {0, 0, 0}: nothing met */
-    AOV_ALBEDO,   /* kd of the surface */
-    AOV_UV,       /* u, v, 1; {0, 0, 0}: nothing met or no image coordinates */
-    AOV_NODE,     /* the node's number by order of creation, from 1; 0: nothing met */
-    AOV_MATERIAL, /* the material's number in the scene, from 1 */
-    AOV_COST,     /* nodes, voxels, boxes, shapes and triangles that all samples of the pixel looked at */
-    AOV_SAMPLES,  /* camera rays of the pixel */
-    AOV_LIGHTS,   /* share of the lights with a place or a direction whose middle the point sees */
-    AOV_COUNT
-};
+/* Each layer, with its name for --aov and in names of files, and the letters of its channels in an EXR file. */
+#define AOVS(X)                                                                                                        \
+    X(AOV_DEPTH, "depth", "Z")       /* distance from the eye along the ray, world units; 0: nothing met */            \
+    X(AOV_NORMAL, "normal", "XYZ")   /* unit, world, on the outward side, as shading has it; {0, 0, 0}: nothing met */ \
+    X(AOV_ALBEDO, "albedo", "RGB")   /* kd of the surface */                                                           \
+    X(AOV_UV, "uv", "UV")            /* u, v, 1; {0, 0, 0}: nothing met or no image coordinates */                     \
+    X(AOV_NODE, "node", "N")         /* the node's number by order of creation, from 1; 0: nothing met */              \
+    X(AOV_MATERIAL, "material", "N") /* the material's number in the scene, from 1 */                                  \
+    X(AOV_COST, "cost", "N") /* nodes, voxels, boxes, shapes and triangles that all samples of the pixel looked at */  \
+    X(AOV_SAMPLES, "samples", "N") /* camera rays of the pixel */                                                      \
+    X(AOV_LIGHTS, "lights", "N")   /* share of the lights with a place or a direction whose middle the point sees */
+enum aov { AOVS(LIST_MEMBER) };
+enum { AOV_COUNT = LIST_COUNT(AOVS) };
 #define AOV_ALL ((UINT32_C(1) << AOV_COUNT) - 1)
 
 const char *aov_name(enum aov aov);
+const char *aov_channels(enum aov aov); /* one to three letters, one for each number that means something */
 /* Names parted by commas, or "all", as a mask. */
 bool aov_parse(const char *text, uint32_t *mask);
 /* How many layers a mask has, and which one a layer is. */

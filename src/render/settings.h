@@ -3,6 +3,7 @@
 #ifndef GRAY_RENDER_SETTINGS_H
 #define GRAY_RENDER_SETTINGS_H
 
+#include "base/list.h"
 #include "geom/mesh.h"
 #include "image/tone.h"
 #include "material/shading.h"
@@ -14,8 +15,17 @@
 
 enum { COARSE_SIDE = 2 };
 
-enum projection { PROJECTION_PERSPECTIVE, PROJECTION_ORTHOGRAPHIC, PROJECTION_FISHEYE, PROJECTION_PANORAMA };
-enum stereo { STEREO_NONE, STEREO_SIDE, STEREO_ANAGLYPH };
+#define PROJECTIONS(X)                                                                                                 \
+    X(PROJECTION_PERSPECTIVE, "perspective")                                                                           \
+    X(PROJECTION_ORTHOGRAPHIC, "orthographic")                                                                         \
+    X(PROJECTION_FISHEYE, "fisheye")                                                                                   \
+    X(PROJECTION_PANORAMA, "panorama")
+enum projection { PROJECTIONS(LIST_MEMBER) };
+#define STEREOS(X)                                                                                                     \
+    X(STEREO_NONE, "none")                                                                                             \
+    X(STEREO_SIDE, "side")                                                                                             \
+    X(STEREO_ANAGLYPH, "anaglyph")
+enum stereo { STEREOS(LIST_MEMBER) };
 
 /* What is in front of the film. The zero value is a pinhole in the middle of the window. */
 struct lens {
@@ -47,8 +57,16 @@ struct caustics {
 };
 enum { PHOTONS_MOST = 100000000, PHOTONS_USUAL = 200000 };
 
-enum overlay { OVERLAY_NONE, OVERLAY_OF_BOXES, OVERLAY_OF_GRID };
-enum order { ORDER_SPREAD, ORDER_CENTRE, ORDER_ROWS };
+#define OVERLAYS(X)                                                                                                    \
+    X(OVERLAY_NONE, "none")                                                                                            \
+    X(OVERLAY_OF_BOXES, "boxes")                                                                                       \
+    X(OVERLAY_OF_GRID, "grid")
+enum overlay { OVERLAYS(LIST_MEMBER) };
+#define TILE_ORDERS(X)                                                                                                 \
+    X(ORDER_SPREAD, "spread")                                                                                          \
+    X(ORDER_CENTRE, "centre")                                                                                          \
+    X(ORDER_ROWS, "rows")
+enum order { TILE_ORDERS(LIST_MEMBER) };
 
 struct settings {
     struct caustics caustics;

@@ -11,7 +11,7 @@
 #include <string.h>
 
 const char *added_kind_name(enum added_kind kind) {
-    static const char *const names[ADDED_KINDS] = {"sphere", "cube", "cylinder", "cone", "torus", "copy"};
+    static const char *const names[] = {ADDED(LIST_WORD)};
     return names[kind];
 }
 
@@ -228,7 +228,6 @@ static struct shape shape_of(enum added_kind kind) {
         return (struct shape){.kind = SHAPE_TORUS, .torus = {0.75, 0.25}};
     case ADDED_SPHERE:
     case ADDED_COPY:
-    case ADDED_KINDS:
         break;
     }
     return (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}};

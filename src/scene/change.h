@@ -5,6 +5,7 @@
 #ifndef GRAY_SCENE_CHANGE_H
 #define GRAY_SCENE_CHANGE_H
 
+#include "base/list.h"
 #include "scene/change_look.h"
 #include "scene/node.h"
 
@@ -22,7 +23,15 @@ enum change_kind {
 };
 enum { TURN_AT = 6, COLOUR_AT = 15 };
 #define OWN_SERIAL (UINT32_MAX / 2)
-enum added_kind { ADDED_SPHERE, ADDED_CUBE, ADDED_CYLINDER, ADDED_CONE, ADDED_TORUS, ADDED_COPY, ADDED_KINDS };
+#define ADDED(X)                                                                                                       \
+    X(ADDED_SPHERE, "sphere")                                                                                          \
+    X(ADDED_CUBE, "cube")                                                                                              \
+    X(ADDED_CYLINDER, "cylinder")                                                                                      \
+    X(ADDED_CONE, "cone")                                                                                              \
+    X(ADDED_TORUS, "torus")                                                                                            \
+    X(ADDED_COPY, "copy")
+enum added_kind { ADDED(LIST_MEMBER) };
+enum { ADDED_KINDS = LIST_COUNT(ADDED) };
 const char *added_kind_name(enum added_kind kind);
 /* What new shapes are made of; its serial is 0. */
 struct material added_material(struct vec3 colour);

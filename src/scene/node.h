@@ -5,6 +5,7 @@
 #define GRAY_SCENE_NODE_H
 
 #include "base/arena.h"
+#include "base/list.h"
 #include "geom/mesh.h"
 #include "geom/shape.h"
 #include "light/light.h"
@@ -15,13 +16,21 @@
 
 enum node_kind { NODE_GROUP, NODE_JOINT, NODE_GEOMETRY, NODE_CSG };
 /* Which faces of a mesh no ray sees, by the order of their corners. Operands of CSG are always whole. */
-enum node_cull { CULL_NONE, CULL_BACK, CULL_FRONT };
+#define NODE_CULLS(X)                                                                                                  \
+    X(CULL_NONE, "none")                                                                                               \
+    X(CULL_BACK, "back")                                                                                               \
+    X(CULL_FRONT, "front")
+enum node_cull { NODE_CULLS(LIST_MEMBER) };
 /* A difference is the first operand less the others, an inverse has one; of NODE_CLIPPED and NODE_BOUNDED the first
  * operand is what is seen, of any kind, and the second the solid that cuts it open, or that it is known to lie in. */
 enum node_csg { NODE_UNION, NODE_INTERSECTION, NODE_DIFFERENCE, NODE_INVERSE, NODE_CLIPPED, NODE_BOUNDED };
 
 /* SPEC 2.4: which way later calls compose. NEW: M = T * M; OLD: M = M * T; SEPARATE: T * R * S kept apart. */
-enum transform_order { ORDER_NEW, ORDER_OLD, ORDER_SEPARATE };
+#define TRANSFORM_ORDERS(X)                                                                                            \
+    X(ORDER_NEW, "new")                                                                                                \
+    X(ORDER_OLD, "old")                                                                                                \
+    X(ORDER_SEPARATE, "separate")
+enum transform_order { TRANSFORM_ORDERS(LIST_MEMBER) };
 
 struct node;
 struct node_child {

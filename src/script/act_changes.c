@@ -64,7 +64,7 @@ bool act_change_add(struct context *context, const struct value *args, struct re
     struct change *change = note(context, CHANGE_ADD, args[CHANGEADD_NAME].text, args[CHANGEADD_SERIAL].number, error);
     if (!change)
         return false;
-    change->added = (enum added_kind)args[CHANGEADD_SHAPE].choice; /* listed in the order of the enum */
+    change->added = (enum added_kind)args[CHANGEADD_SHAPE].choice;
     change->number = context->added++;
     change->source = (uint32_t)args[CHANGEADD_SOURCE].number;
     put(change->numbers, args[CHANGEADD_COLOUR].given ? args[CHANGEADD_COLOUR].vector : vec3_all(0.7));

@@ -269,9 +269,8 @@ bool act_bounded_by(struct context *context, const struct value *args, struct re
 
 bool act_transform_order(struct context *context, const struct value *args, struct result *result,
                          struct error *error) {
-    static const enum transform_order orders[] = {ORDER_NEW, ORDER_OLD, ORDER_SEPARATE};
     (void)result;
     (void)error;
-    context->scene.order = orders[args[0].choice];
+    context->scene.order = (enum transform_order)args[0].choice;
     return true;
 }

@@ -206,17 +206,17 @@ static void apply_settings(const struct value *args, struct settings *settings) 
     if (args[RENDER_USE_TIR].given)
         settings->use_tir = args[RENDER_USE_TIR].boolean;
     if (args[RENDER_SPECULAR].given)
-        settings->specular = args[RENDER_SPECULAR].choice == 0 ? SPECULAR_PHONG : SPECULAR_BLINN;
+        settings->specular = (enum specular_kind)args[RENDER_SPECULAR].choice;
     if (args[RENDER_SEED].given)
         settings->seed = (uint64_t)args[RENDER_SEED].number;
     if (args[RENDER_ACCEL].given)
-        settings->accel = (enum accel_kind)args[RENDER_ACCEL].choice; /* listed in the order of the enum */
+        settings->accel = (enum accel_kind)args[RENDER_ACCEL].choice;
     if (args[RENDER_TARGET].given)
         settings->view_is_target = true;
     if (args[RENDER_EXPOSURE].given)
         settings->tone.exposure = args[RENDER_EXPOSURE].number;
     if (args[RENDER_TONE].given)
-        settings->tone.curve = (enum tone_curve)args[RENDER_TONE].choice; /* listed in the order of the enum */
+        settings->tone.curve = (enum tone_curve)args[RENDER_TONE].choice;
     if (args[RENDER_SRGB].given)
         settings->tone.srgb = args[RENDER_SRGB].boolean;
     if (args[RENDER_DEEP].given)
@@ -231,7 +231,7 @@ static bool apply_lens(const struct value *args, struct lens *lens, const struct
     if (args[RENDER_FOCUS].given && args[RENDER_FOCUS_POINT].given)
         return error_set(error, ERROR_SCENE, "focus and focus_point exclude each other");
     if (args[RENDER_PROJECTION].given)
-        lens->projection = (enum projection)args[RENDER_PROJECTION].choice; /* listed in the order of the enum */
+        lens->projection = (enum projection)args[RENDER_PROJECTION].choice;
     if (args[RENDER_VIEW_HEIGHT].given)
         lens->view_height = args[RENDER_VIEW_HEIGHT].number;
     if (args[RENDER_ANGLE].given)

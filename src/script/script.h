@@ -4,6 +4,7 @@
 #define GRAY_SCRIPT_SCRIPT_H
 
 #include "base/error.h"
+#include "base/list.h"
 #include "material/fog.h"
 #include "render/settings.h"
 #include "scene/node.h"
@@ -12,7 +13,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum script_order { SCRIPT_ORDER_AUTO, SCRIPT_ORDER_NEW, SCRIPT_ORDER_OLD, SCRIPT_ORDER_SEPARATE };
+#define SCRIPT_ORDERS(X)                                                                                               \
+    X(SCRIPT_ORDER_AUTO, "auto")                                                                                       \
+    X(SCRIPT_ORDER_NEW, "new")                                                                                         \
+    X(SCRIPT_ORDER_OLD, "old")                                                                                         \
+    X(SCRIPT_ORDER_SEPARATE, "separate")
+enum script_order { SCRIPT_ORDERS(LIST_MEMBER) };
 
 struct script_define {
     const char *name, *value; /* -D name=value */

@@ -1,0 +1,24 @@
+/* Enums and the words for their members from one list, so that the two cannot disagree:
+ *
+ *     #define TONE_CURVES(X) X(TONE_NONE, "none") X(TONE_REINHARD, "reinhard") X(TONE_FILMIC, "filmic")
+ *     enum tone_curve { TONE_CURVES(LIST_MEMBER) };
+ *     static const char *const words[] = {TONE_CURVES(LIST_WORD)};
+ *
+ * The members are counted from 0 and written in full, so that a search finds them. A list with more columns
+ * brings macros of its own for them. */
+#ifndef GRAY_BASE_LIST_H
+#define GRAY_BASE_LIST_H
+
+#define LIST_MEMBER(member, ...) member,
+#define LIST_WORD(member, word) [member] = (word),
+#define LIST_ONE(...) +1
+/* How many members a list has: a constant. */
+#define LIST_COUNT(list) (0 list(LIST_ONE))
+
+/* All words as one literal: parted by blanks, as parameters of gr functions have them, and by '|', as options have. */
+#define LIST_BLANK_WORD(member, word) " " word
+#define LIST_BAR_WORD(member, word) "|" word
+#define LIST_BLANKS(list) (&(list(LIST_BLANK_WORD))[1])
+#define LIST_BARS(list) (&(list(LIST_BAR_WORD))[1])
+
+#endif
