@@ -10,8 +10,18 @@
 #include "geom/shape_rectangle.h"
 #include "geom/shape_triangle.h"
 #include "math/range.h"
-#include "script/actions.h"
 #include "script/context.h"
+#include "script/table_rows.h"
+
+#define LENGTH(name, fallback, help)                                                                                   \
+    { name, KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, fallback, help }
+#define PLACE(name, fallback, help)                                                                                    \
+    { name, KIND_POINT, OPTIONAL, ANY, NULL, fallback, help }
+#define OPEN_ENDS                                                                                                      \
+    {                                                                                                                  \
+        "open", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",                                                            \
+            "Whether it is a mere surface without caps; then it is no solid for CSG."                                  \
+    }
 
 static struct node *shape_node(struct context *context, const struct value *args, const char *otherwise,
                                struct error *error) {
@@ -53,7 +63,17 @@ static bool ends_are_fine(struct vec3 from, struct vec3 to, struct error *error)
     return length_is_fine(length, "the way from from to to", error);
 }
 
-bool act_cylinder(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum { CYLINDER_FROM = SHAPE_FIRST, CYLINDER_TO, CYLINDER_RADIUS, CYLINDER_OPEN };
+static const struct parameter cylinder_parameters[] = {
+    SHAPE("cylinder"),
+    [CYLINDER_FROM] = PLACE("from", "{0, -1, 0}", "The middle of one end."),
+    [CYLINDER_TO] = PLACE("to", "{0, 1, 0}", "The middle of the other end."),
+    [CYLINDER_RADIUS] = LENGTH("radius", "1", "Radius."),
+    [CYLINDER_OPEN] = OPEN_ENDS,
+};
+
+static bool act_cylinder(struct context *context, const struct value *args, struct result *result,
+                         struct error *error) {
     struct vec3 from = vector_or(&args[CYLINDER_FROM], 0, -1, 0), to = vector_or(&args[CYLINDER_TO], 0, 1, 0);
     double radius = number_or(&args[CYLINDER_RADIUS], 1);
     if (!ends_are_fine(from, to, error) || !length_is_fine(radius, "radius", error))
@@ -63,7 +83,17 @@ bool act_cylinder(struct context *context, const struct value *args, struct resu
     return give_shape(node, &shape, result);
 }
 
-bool act_cone(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum { CONE_FROM = SHAPE_FIRST, CONE_TO, CONE_FROM_RADIUS, CONE_RADIUS, CONE_OPEN };
+static const struct parameter cone_parameters[] = {
+    SHAPE("cone"),
+    [CONE_FROM] = PLACE("from", "{0, 0, 0}", "The apex, or the middle of the end with from_radius."),
+    [CONE_TO] = PLACE("to", "{0, 1, 0}", "The middle of the end with radius."),
+    [CONE_FROM_RADIUS] = {"from_radius", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0", "Radius at from: a frustum."},
+    [CONE_RADIUS] = {"radius", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1", "Radius at to."},
+    [CONE_OPEN] = OPEN_ENDS,
+};
+
+static bool act_cone(struct context *context, const struct value *args, struct result *result, struct error *error) {
     struct vec3 from = vector_or(&args[CONE_FROM], 0, 0, 0), to = vector_or(&args[CONE_TO], 0, 1, 0);
     double first = number_or(&args[CONE_FROM_RADIUS], 0), second = number_or(&args[CONE_RADIUS], 1);
     if (!ends_are_fine(from, to, error) || !length_is_fine(fmax(first, second), "the larger radius", error))
@@ -74,7 +104,16 @@ bool act_cone(struct context *context, const struct value *args, struct result *
     return give_shape(node, &shape, result);
 }
 
-bool act_paraboloid(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum { PARABOLOID_RADIUS = SHAPE_FIRST, PARABOLOID_HEIGHT, PARABOLOID_OPEN };
+static const struct parameter paraboloid_parameters[] = {
+    SHAPE("paraboloid"),
+    [PARABOLOID_RADIUS] = LENGTH("radius", "1", "Radius of the rim."),
+    [PARABOLOID_HEIGHT] = LENGTH("height", "1", "The tip is at the origin, the rim at this y."),
+    [PARABOLOID_OPEN] = OPEN_ENDS,
+};
+
+static bool act_paraboloid(struct context *context, const struct value *args, struct result *result,
+                           struct error *error) {
     double radius = number_or(&args[PARABOLOID_RADIUS], 1), height = number_or(&args[PARABOLOID_HEIGHT], 1);
     if (!length_is_fine(radius, "radius", error) || !length_is_fine(height, "height", error))
         return false;
@@ -84,7 +123,27 @@ bool act_paraboloid(struct context *context, const struct value *args, struct re
     return give_shape(node, &shape, result);
 }
 
-bool act_hyperboloid(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum {
+    HYPERBOLOID_SHEETS = SHAPE_FIRST,
+    HYPERBOLOID_RADIUS,
+    HYPERBOLOID_HEIGHT,
+    HYPERBOLOID_WAIST,
+    HYPERBOLOID_GAP,
+    HYPERBOLOID_OPEN
+};
+static const struct parameter hyperboloid_parameters[] = {
+    SHAPE("hyperboloid"),
+    [HYPERBOLOID_SHEETS] = {"sheets", KIND_WHOLE, OPTIONAL, BETWEEN(1, 2), NULL, "1, with gap 2",
+                            "One sheet with a waist, or two bowls."},
+    [HYPERBOLOID_RADIUS] = LENGTH("radius", "twice waist, or 1", "Radius of both rims."),
+    [HYPERBOLOID_HEIGHT] = LENGTH("height", "twice gap, or 1", "The rims are at this y and at minus this y."),
+    [HYPERBOLOID_WAIST] = LENGTH("waist", "radius/2", "One sheet: radius at y = 0."),
+    [HYPERBOLOID_GAP] = LENGTH("gap", "height/2", "Two sheets: the tips are at this y and at minus this y."),
+    [HYPERBOLOID_OPEN] = OPEN_ENDS,
+};
+
+static bool act_hyperboloid(struct context *context, const struct value *args, struct result *result,
+                            struct error *error) {
     double waist = number_or(&args[HYPERBOLOID_WAIST], 0.5), gap = number_or(&args[HYPERBOLOID_GAP], 0.5);
     double radius = number_or(&args[HYPERBOLOID_RADIUS], 2 * waist),
            height = number_or(&args[HYPERBOLOID_HEIGHT], 2 * gap);
@@ -111,7 +170,15 @@ bool act_hyperboloid(struct context *context, const struct value *args, struct r
     return give_shape(node, &shape, result);
 }
 
-bool act_ellipsoid(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum { ELLIPSOID_CENTRE = SHAPE_FIRST, ELLIPSOID_RADII };
+static const struct parameter ellipsoid_parameters[] = {
+    SHAPE("ellipsoid"),
+    [ELLIPSOID_CENTRE] = PLACE("centre", "{0, 0, 0}", "Centre."),
+    [ELLIPSOID_RADII] = {"radii", KIND_SIZE, OPTIONAL, ANY, NULL, "1", "Radii along x, y and z, one number or three."},
+};
+
+static bool act_ellipsoid(struct context *context, const struct value *args, struct result *result,
+                          struct error *error) {
     struct vec3 centre = args[ELLIPSOID_CENTRE].vector, radii = vector_or(&args[ELLIPSOID_RADII], 1, 1, 1);
     if (!(radii.x > 0 && radii.y > 0 && radii.z > 0))
         return error_set(error, ERROR_SCENE, "radii must all be positive: %g, %g, %g", radii.x, radii.y, radii.z);
@@ -123,7 +190,43 @@ bool act_ellipsoid(struct context *context, const struct value *args, struct res
     return give_shape(node, &shape, result);
 }
 
-bool act_quadric(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum {
+    QUADRIC_XX = SHAPE_FIRST,
+    QUADRIC_YY,
+    QUADRIC_ZZ,
+    QUADRIC_XY,
+    QUADRIC_XZ,
+    QUADRIC_YZ,
+    QUADRIC_X,
+    QUADRIC_Y,
+    QUADRIC_Z,
+    QUADRIC_CONSTANT,
+    QUADRIC_MIN,
+    QUADRIC_MAX,
+    QUADRIC_OPEN
+};
+#define COEFFICIENT(name)                                                                                              \
+    { name, KIND_NUMBER, OPTIONAL, ANY, NULL, "0", "Coefficient." }
+
+static const struct parameter quadric_parameters[] = {
+    SHAPE("quadric"), /* without any coefficient the unit ball */
+    [QUADRIC_XX] = COEFFICIENT("xx"),
+    [QUADRIC_YY] = COEFFICIENT("yy"),
+    [QUADRIC_ZZ] = COEFFICIENT("zz"),
+    [QUADRIC_XY] = COEFFICIENT("xy"),
+    [QUADRIC_XZ] = COEFFICIENT("xz"),
+    [QUADRIC_YZ] = COEFFICIENT("yz"),
+    [QUADRIC_X] = COEFFICIENT("x"),
+    [QUADRIC_Y] = COEFFICIENT("y"),
+    [QUADRIC_Z] = COEFFICIENT("z"),
+    [QUADRIC_CONSTANT] = {"constant", KIND_NUMBER, OPTIONAL, ANY, NULL, "0",
+                          "The solid is where the sum of all is negative."},
+    [QUADRIC_MIN] = PLACE("min", "without end", "Corner of the box that limits it."),
+    [QUADRIC_MAX] = PLACE("max", "without end", "The opposite corner."),
+    [QUADRIC_OPEN] = OPEN_ENDS,
+};
+
+static bool act_quadric(struct context *context, const struct value *args, struct result *result, struct error *error) {
     struct quadric *quadric = arena_alloc(&context->scene.arena, sizeof *quadric);
     if (!quadric)
         return error_no_memory(error, "a quadric");
@@ -153,7 +256,14 @@ bool act_quadric(struct context *context, const struct value *args, struct resul
     return give_shape(node, &shape, result);
 }
 
-bool act_torus(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum { TORUS_MAJOR = SHAPE_FIRST, TORUS_MINOR };
+static const struct parameter torus_parameters[] = {
+    SHAPE("torus"),
+    [TORUS_MAJOR] = {"major", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1", "Radius of the circle in y = 0."},
+    [TORUS_MINOR] = LENGTH("minor", "0.25", "Radius of the tube around it."),
+};
+
+static bool act_torus(struct context *context, const struct value *args, struct result *result, struct error *error) {
     double major = number_or(&args[TORUS_MAJOR], 1), minor = number_or(&args[TORUS_MINOR], 0.25);
     if (!length_is_fine(minor, "minor", error) || !length_is_fine(fmax(major, minor), "major", error))
         return false;
@@ -164,14 +274,30 @@ bool act_torus(struct context *context, const struct value *args, struct result 
     return give_shape(node, &shape, result);
 }
 
-bool act_superellipsoid(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum { SUPER_E = SHAPE_FIRST, SUPER_N };
+static const struct parameter superellipsoid_parameters[] = {
+    SHAPE("superellipsoid"),
+    [SUPER_E] = {"e", KIND_NUMBER, OPTIONAL, BETWEEN(0.02, 20), NULL, "1",
+                 "Roundness seen along y: near 0 a square, 1 a circle, 2 a diamond."},
+    [SUPER_N] = {"n", KIND_NUMBER, OPTIONAL, BETWEEN(0.02, 20), NULL, "1", "Roundness of the profile, likewise."},
+};
+
+static bool act_superellipsoid(struct context *context, const struct value *args, struct result *result,
+                               struct error *error) {
     struct node *node = shape_node(context, args, "superellipsoid", error);
     struct shape shape = {.kind = SHAPE_SUPERELLIPSOID,
                           .superellipsoid = {number_or(&args[SUPER_E], 1), number_or(&args[SUPER_N], 1)}};
     return give_shape(node, &shape, result);
 }
 
-bool act_box(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum { BOX_MIN = SHAPE_FIRST, BOX_MAX };
+static const struct parameter box_parameters[] = {
+    SHAPE("box"),
+    [BOX_MIN] = {"min", KIND_POINT, 0, ANY, NULL, NULL, "A corner."},
+    [BOX_MAX] = {"max", KIND_POINT, 0, ANY, NULL, NULL, "The opposite corner."},
+};
+
+static bool act_box(struct context *context, const struct value *args, struct result *result, struct error *error) {
     struct vec3 a = args[BOX_MIN].vector, b = args[BOX_MAX].vector;
     struct box box = {vec3_min(a, b), vec3_max(a, b)};
     if (!(box.min.x < box.max.x && box.min.y < box.max.y && box.min.z < box.max.z))
@@ -189,14 +315,25 @@ static bool give_flat(struct context *context, const struct value *args, const c
 }
 
 /* The classic square, or with a normal or a distance the plane without end. */
-bool act_plane(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum { PLANE_NORMAL = SHAPE_FIRST, PLANE_DISTANCE };
+static const struct parameter plane_parameters[] = {
+    SHAPE("plane"),
+    [PLANE_NORMAL] = {"normal", KIND_DIRECTION, OPTIONAL, ANY, NULL, "none: the square",
+                      "A plane without end that faces there; a half-space in CSG."},
+    [PLANE_DISTANCE] = {"distance", KIND_NUMBER, OPTIONAL, ANY, NULL, "0",
+                        "How far from the origin it is, along the normal."},
+};
+
+static bool act_plane(struct context *context, const struct value *args, struct result *result, struct error *error) {
     bool infinite = args[PLANE_NORMAL].given || args[PLANE_DISTANCE].given;
     struct vec3 normal = vector_or(&args[PLANE_NORMAL], 0, 1, 0);
     struct flat flat = infinite ? flat_plane(normal, args[PLANE_DISTANCE].number) : flat_square();
     return give_flat(context, args, "plane", &flat, result, error);
 }
 
-bool act_square(struct context *context, const struct value *args, struct result *result, struct error *error) {
+static const struct parameter square_parameters[] = {SHAPE("square")};
+
+static bool act_square(struct context *context, const struct value *args, struct result *result, struct error *error) {
     struct flat flat = flat_square();
     return give_flat(context, args, "square", &flat, result, error);
 }
@@ -209,7 +346,17 @@ static bool span_is_fine(struct vec3 u, struct vec3 v, const char *what, struct 
     return length_is_fine(along, "the length of an edge", error) && length_is_fine(up, "the length of an edge", error);
 }
 
-bool act_rectangle(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum { RECTANGLE_CORNER = SHAPE_FIRST, RECTANGLE_ALONG, RECTANGLE_UP };
+static const struct parameter rectangle_parameters[] = {
+    SHAPE("rectangle"),
+    [RECTANGLE_CORNER] = PLACE("corner", "{-0.5, 0, 0.5}", "The lower left corner of an image on it."),
+    [RECTANGLE_ALONG] = {"along", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{1, 0, 0}", "The edge to the right."},
+    [RECTANGLE_UP] = {"up", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 0, -1}",
+                      "The edge upwards; not parallel, or else any."},
+};
+
+static bool act_rectangle(struct context *context, const struct value *args, struct result *result,
+                          struct error *error) {
     struct vec3 corner = vector_or(&args[RECTANGLE_CORNER], -0.5, 0, 0.5);
     struct vec3 along = vector_or(&args[RECTANGLE_ALONG], 1, 0, 0), up = vector_or(&args[RECTANGLE_UP], 0, 0, -1);
     if (!span_is_fine(along, up, "along and up are parallel", error))
@@ -218,7 +365,16 @@ bool act_rectangle(struct context *context, const struct value *args, struct res
     return give_flat(context, args, "rectangle", &flat, result, error);
 }
 
-bool act_disc(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum { DISC_CENTRE = SHAPE_FIRST, DISC_NORMAL, DISC_RADIUS, DISC_INNER };
+static const struct parameter disc_parameters[] = {
+    SHAPE("disc"),
+    [DISC_CENTRE] = PLACE("centre", "{0, 0, 0}", "Centre."),
+    [DISC_NORMAL] = {"normal", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 1, 0}", "Where its front looks."},
+    [DISC_RADIUS] = LENGTH("radius", "1, or twice inner", "Radius."),
+    [DISC_INNER] = {"inner", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0", "Radius of the hole."},
+};
+
+static bool act_disc(struct context *context, const struct value *args, struct result *result, struct error *error) {
     double inner = number_or(&args[DISC_INNER], 0);
     double radius = number_or(&args[DISC_RADIUS], inner > 0 ? 2 * inner : 1);
     struct vec3 centre = args[DISC_CENTRE].vector;
@@ -230,7 +386,16 @@ bool act_disc(struct context *context, const struct value *args, struct result *
     return give_flat(context, args, "disc", &flat, result, error);
 }
 
-bool act_triangle(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum { TRIANGLE_A = SHAPE_FIRST, TRIANGLE_B, TRIANGLE_C };
+static const struct parameter triangle_parameters[] = {
+    SHAPE("triangle"),
+    [TRIANGLE_A] = {"a", KIND_POINT, 0, ANY, NULL, NULL, "A corner; the front sees a, b, c counter-clockwise."},
+    [TRIANGLE_B] = {"b", KIND_POINT, 0, ANY, NULL, NULL, "The next corner."},
+    [TRIANGLE_C] = {"c", KIND_POINT, 0, ANY, NULL, NULL, "The last corner."},
+};
+
+static bool act_triangle(struct context *context, const struct value *args, struct result *result,
+                         struct error *error) {
     struct vec3 a = args[TRIANGLE_A].vector, b = args[TRIANGLE_B].vector, c = args[TRIANGLE_C].vector;
     if (!span_is_fine(vec3_sub(b, a), vec3_sub(c, a), "a, b and c lie on one line", error))
         return false;
@@ -238,7 +403,16 @@ bool act_triangle(struct context *context, const struct value *args, struct resu
     return give_flat(context, args, "triangle", &flat, result, error);
 }
 
-bool act_polygon(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum { POLYGON_POINTS = SHAPE_FIRST, POLYGON_OUTLINES };
+static const struct parameter polygon_parameters[] = {
+    SHAPE("polygon"),
+    [POLYGON_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL,
+                        "Corners in one plane; the front sees the first outline counter-clockwise."},
+    [POLYGON_OUTLINES] = {"outlines", KIND_FACES, OPTIONAL, ANY, NULL, "all points in turn",
+                          "Tuples of 0-based indices into points; what an odd number of them surrounds is filled."},
+};
+
+static bool act_polygon(struct context *context, const struct value *args, struct result *result, struct error *error) {
     const struct value *points = &args[POLYGON_POINTS], *outlines = &args[POLYGON_OUTLINES];
     uint32_t count = outlines->given ? outlines->starts[outlines->count] : points->count;
     uint32_t outline_count = outlines->given ? outlines->count : 1;
@@ -267,3 +441,37 @@ bool act_polygon(struct context *context, const struct value *args, struct resul
         return why ? error_set(error, ERROR_SCENE, "this is no polygon: %s", why) : error_no_memory(error, "a polygon");
     return give_flat(context, args, "polygon", &flat, result, error);
 }
+
+/* The rows of the table. */
+static const struct function rows[] = {
+    GR("cylinder", cylinder_parameters, RESULT_NODE, act_cylinder,
+       "A capped cylinder; about y, of radius 1, from y = -1 to 1 if nothing else is said.", "material", "name"),
+    GR("cone", cone_parameters, RESULT_NODE, act_cone,
+       "A capped cone or frustum; apex at the origin, radius 1 at y = 1 if nothing else is said.", "material", "name"),
+    GR("torus", torus_parameters, RESULT_NODE, act_torus, "A torus about the y axis.", "name major? minor?",
+       "material major? minor?"),
+    GR("plane", plane_parameters, RESULT_NODE, act_plane,
+       "The square from -0.5 to 0.5 in x and z at y = 0; with a normal a plane without end.", "material", "name"),
+    GR("square", square_parameters, RESULT_NODE, act_square, "The square from -0.5 to 0.5 in x and z at y = 0.",
+       "material", "name"),
+    GR("box", box_parameters, RESULT_NODE, act_box, "A box between two corners.", "material min max", "name min max"),
+    GR("ellipsoid", ellipsoid_parameters, RESULT_NODE, act_ellipsoid, "An ellipsoid along the axes.", "material radii?",
+       "name radii?"),
+    GR("paraboloid", paraboloid_parameters, RESULT_NODE, act_paraboloid, "A capped paraboloid that opens along y.",
+       "material", "name"),
+    GR("hyperboloid", hyperboloid_parameters, RESULT_NODE, act_hyperboloid,
+       "A capped hyperboloid about y, of one sheet or of two.", "material", "name"),
+    GR("quadric", quadric_parameters, RESULT_NODE, act_quadric,
+       "Where xx x^2 + yy y^2 + zz z^2 + xy x y + xz x z + yz y z + x x + y y + z z + constant is negative.",
+       "material xx yy zz constant", "name xx yy zz constant"),
+    GR("superellipsoid", superellipsoid_parameters, RESULT_NODE, act_superellipsoid,
+       "A rounded cube, cylinder, double cone or star: (|x|^(2/e) + |z|^(2/e))^(e/n) + |y|^(2/n) = 1.",
+       "material e? n?", "name e? n?"),
+    GR("rectangle", rectangle_parameters, RESULT_NODE, act_rectangle, "A rectangle or parallelogram.",
+       "material corner? along? up?", "name corner? along? up?"),
+    GR("disc", disc_parameters, RESULT_NODE, act_disc, "A disc, or a ring.", "material", "name"),
+    GR("triangle", triangle_parameters, RESULT_NODE, act_triangle, "A triangle.", "material a b c", "name a b c"),
+    GR("polygon", polygon_parameters, RESULT_NODE, act_polygon, "A polygon of any outline, with holes.",
+       "material points outlines?", "name points outlines?"),
+};
+const struct function_rows shape_functions = {rows, COUNT(rows)};

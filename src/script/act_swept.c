@@ -1,7 +1,7 @@
 /* Shapes that are made of many parts: lathe, prism, sweep, height field, blob, curve and patches. The parameters of a
  * shape live in the arena of the scene; what is wrong with them is told by the shape's own builder. */
-#include "script/actions.h"
 #include "script/context.h"
+#include "script/table_rows.h"
 
 #include "geom/patch.h"
 #include "geom/shape_blob.h"
@@ -43,7 +43,22 @@ static bool one_each(struct context *context, const struct value *value, const c
     return true;
 }
 
-bool act_lathe(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum { LATHE_POINTS = SHAPE_FIRST, LATHE_SPLINE, LATHE_LOOP, LATHE_OPEN };
+#define SPLINE(otherwise, help)                                                                                        \
+    { "spline", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(SPLINE_KINDS), NULL, "'" otherwise "'", help }
+#define SPLINE_HELP "How the points are joined; bezier takes 3 n + 1 of them."
+
+static const struct parameter lathe_parameters[] = {
+    SHAPE("lathe"),
+    [LATHE_POINTS] = {"points", KIND_PAIRS, 0, ANY, NULL, NULL, "The profile: pairs of radius and y."},
+    [LATHE_SPLINE] = SPLINE("linear", SPLINE_HELP),
+    [LATHE_LOOP] = {"loop", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
+                    "Whether the profile goes back to its first point."},
+    [LATHE_OPEN] = {"open", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
+                    "Whether ends off the axis stay open, not closed by discs."},
+};
+
+static bool act_lathe(struct context *context, const struct value *args, struct result *result, struct error *error) {
     struct lathe_input in = {.kind = spline_or(&args[LATHE_SPLINE], SPLINE_LINEAR),
                              .points = args[LATHE_POINTS].pairs,
                              .count = args[LATHE_POINTS].count,
@@ -55,7 +70,18 @@ bool act_lathe(struct context *context, const struct value *args, struct result 
     return shape.lathe && give_node(context, args, "lathe", &shape, result, error);
 }
 
-bool act_prism(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum { PRISM_OUTLINE = SHAPE_FIRST, PRISM_HOLES, PRISM_FROM, PRISM_TO, PRISM_SPLINE };
+static const struct parameter prism_parameters[] = {
+    SHAPE("prism"),
+    [PRISM_OUTLINE] = {"outline", KIND_PAIRS, 0, ANY, NULL, NULL, "A closed curve: pairs of x and z."},
+    [PRISM_HOLES] = {"holes", KIND_CURVES, OPTIONAL, ANY, NULL, "none",
+                     "More closed curves; what an odd number of all surrounds is solid."},
+    [PRISM_FROM] = {"from", KIND_NUMBER, OPTIONAL, ANY, NULL, "0", "Height of the bottom."},
+    [PRISM_TO] = {"to", KIND_NUMBER, OPTIONAL, ANY, NULL, "from + 1", "Height of the top."},
+    [PRISM_SPLINE] = SPLINE("linear", "How the points are joined; bezier takes 3 n of them."),
+};
+
+static bool act_prism(struct context *context, const struct value *args, struct result *result, struct error *error) {
     const struct value *outline = &args[PRISM_OUTLINE], *holes = &args[PRISM_HOLES];
     uint32_t hole_points = holes->given ? holes->starts[holes->count] : 0,
              curves = 1 + (holes->given ? holes->count : 0);
@@ -78,7 +104,16 @@ bool act_prism(struct context *context, const struct value *args, struct result 
     return shape.prism && give_node(context, args, "prism", &shape, result, error);
 }
 
-bool act_sweep(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum { SWEEP_POINTS = SHAPE_FIRST, SWEEP_RADII, SWEEP_SPLINE, SWEEP_LOOP };
+static const struct parameter sweep_parameters[] = {
+    SHAPE("sweep"),
+    [SWEEP_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL, "Where the centre of the ball goes."},
+    [SWEEP_RADII] = {"radii", KIND_NUMBERS, 0, ABOVE(0), NULL, NULL, "Its radius at each point, or one for all."},
+    [SWEEP_SPLINE] = SPLINE("catmull-rom", SPLINE_HELP),
+    [SWEEP_LOOP] = {"loop", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether it goes back to the first point."},
+};
+
+static bool act_sweep(struct context *context, const struct value *args, struct result *result, struct error *error) {
     struct sweep_input in = {.kind = spline_or(&args[SWEEP_SPLINE], SPLINE_CATMULL_ROM),
                              .points = args[SWEEP_POINTS].points,
                              .count = args[SWEEP_POINTS].count,
@@ -91,7 +126,17 @@ bool act_sweep(struct context *context, const struct value *args, struct result 
     return shape.sweep && give_node(context, args, "sweep", &shape, result, error);
 }
 
-bool act_curve(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum { CURVE_POINTS = SHAPE_FIRST, CURVE_WIDTHS, CURVE_SPLINE, CURVE_FLAT };
+static const struct parameter curve_parameters[] = {
+    SHAPE("curve"),
+    [CURVE_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL, "Where it goes."},
+    [CURVE_WIDTHS] = {"widths", KIND_NUMBERS, 0, ABOVE(0), NULL, NULL, "Its width at each point, or one for all."},
+    [CURVE_SPLINE] = SPLINE("catmull-rom", SPLINE_HELP),
+    [CURVE_FLAT] = {"flat", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
+                    "Whether it is shaded as a ribbon, not as a round hair."},
+};
+
+static bool act_curve(struct context *context, const struct value *args, struct result *result, struct error *error) {
     struct curve_input in = {.kind = spline_or(&args[CURVE_SPLINE], SPLINE_CATMULL_ROM),
                              .points = args[CURVE_POINTS].points,
                              .count = args[CURVE_POINTS].count,
@@ -140,7 +185,23 @@ static bool heights_of_image(struct context *context, const struct value *value,
     return true;
 }
 
-bool act_height_field(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum { FIELD_HEIGHTS = SHAPE_FIRST, FIELD_IMAGE, FIELD_FLOOR, FIELD_OPEN, FIELD_SMOOTH };
+static const struct parameter field_parameters[] = {
+    SHAPE("height field"),
+    [FIELD_HEIGHTS] = {"heights", KIND_ROWS, OPTIONAL, ANY, NULL, NULL,
+                       "Rows of equally many heights; x runs within a row, z from row to row."},
+    [FIELD_IMAGE] = {"image", KIND_IMAGE, OPTIONAL, ANY, NULL, NULL,
+                     "A picture instead: black is 0, white is 1, its upper edge is z = 0."},
+    [FIELD_FLOOR] = {"floor", KIND_NUMBER, OPTIONAL, ANY, NULL, "a tenth of the relief below it",
+                     "Height of the solid's floor."},
+    [FIELD_OPEN] = {"open", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
+                    "Whether it is a sheet without walls and floor."},
+    [FIELD_SMOOTH] = {"smooth", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
+                      "Whether it is shaded with interpolated normals."},
+};
+
+static bool act_height_field(struct context *context, const struct value *args, struct result *result,
+                             struct error *error) {
     const struct value *rows = &args[FIELD_HEIGHTS], *image = &args[FIELD_IMAGE];
     struct height_field_input in = {.open = args[FIELD_OPEN].boolean, .smooth = args[FIELD_SMOOTH].boolean};
     if (rows->given && image->given)
@@ -181,7 +242,18 @@ static bool blob_rows(const struct value *rows, const char *name, uint32_t width
     return true;
 }
 
-bool act_blob(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum { BLOB_SPHERES = SHAPE_FIRST, BLOB_CYLINDERS, BLOB_THRESHOLD };
+static const struct parameter blob_parameters[] = {
+    SHAPE("blob"),
+    [BLOB_SPHERES] = {"spheres", KIND_ROWS, OPTIONAL, ANY, NULL, "{}",
+                      "Balls {x, y, z, radius, strength}; strength 1 may be left out."},
+    [BLOB_CYLINDERS] = {"cylinders", KIND_ROWS, OPTIONAL, ANY, NULL, "{}",
+                        "Rods {x1, y1, z1, x2, y2, z2, radius, strength}."},
+    [BLOB_THRESHOLD] = {"threshold", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "0.5",
+                        "The surface is where the fields, strength (1 - (distance/radius)^2)^2, add up to this."},
+};
+
+static bool act_blob(struct context *context, const struct value *args, struct result *result, struct error *error) {
     const struct value *balls = &args[BLOB_SPHERES], *rods = &args[BLOB_CYLINDERS];
     struct blob_input in = {.count = balls->count + rods->count, .threshold = 0.5};
     struct blob_element *elements = arena_alloc_array(&context->call, (size_t)in.count + 1, sizeof *elements);
@@ -199,7 +271,18 @@ bool act_blob(struct context *context, const struct value *args, struct result *
     return shape.blob && give_node(context, args, "blob", &shape, result, error);
 }
 
-bool act_patch(struct context *context, const struct value *args, struct result *result, struct error *error) {
+enum { PATCH_POINTS = SHAPE_FIRST, PATCH_PATCHES, PATCH_TOLERANCE, PATCH_FLIP };
+static const struct parameter patch_parameters[] = {
+    SHAPE("patch"),
+    [PATCH_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL, "Control points, 16 for each patch in 4 rows of 4."},
+    [PATCH_PATCHES] = {"patches", KIND_FACES, OPTIONAL, ANY, NULL, "points in turn",
+                       "Tuples of 16 0-based indices into points."},
+    [PATCH_TOLERANCE] = {"tolerance", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "a thousandth of the size",
+                         "The largest distance of the triangles from the true surface."},
+    [PATCH_FLIP] = {"flip", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the front is the other side."},
+};
+
+static bool act_patch(struct context *context, const struct value *args, struct result *result, struct error *error) {
     const struct value *points = &args[PATCH_POINTS], *patches = &args[PATCH_PATCHES];
     const char *name = args[SHAPE_NAME].given ? args[SHAPE_NAME].text : "patch";
     struct patch_input in = {.name = name, .points = points->points, .flip = args[PATCH_FLIP].boolean};
@@ -234,3 +317,22 @@ bool act_patch(struct context *context, const struct value *args, struct result 
     struct shape shape = {.kind = SHAPE_MESH, .mesh = assets_mesh(context->scene.assets, &input, error)};
     return shape.mesh && give_node(context, args, "patch", &shape, result, error);
 }
+
+/* The rows of the table. */
+static const struct function rows[] = {
+    GR("lathe", lathe_parameters, RESULT_NODE, act_lathe, "A profile turned about the y axis.",
+       "material points spline?", "name points spline?"),
+    GR("prism", prism_parameters, RESULT_NODE, act_prism, "An outline drawn out along y, with holes.",
+       "material outline", "name outline"),
+    GR("sweep", sweep_parameters, RESULT_NODE, act_sweep, "What a ball covers that moves along a spline.",
+       "material points radii spline?", "name points radii spline?"),
+    GR("height_field", field_parameters, RESULT_NODE, act_height_field,
+       "Land over the square from 0 to 1 in x and z, a solid down to its floor.", "material heights", "name heights"),
+    GR("blob", blob_parameters, RESULT_NODE, act_blob, "Balls and rods that flow into each other.",
+       "material spheres cylinders? threshold?", "name spheres cylinders? threshold?"),
+    GR("curve", curve_parameters, RESULT_NODE, act_curve, "A hair: a ribbon along a spline that faces every ray.",
+       "material points widths spline?", "name points widths spline?"),
+    GR("patch", patch_parameters, RESULT_NODE, act_patch, "Bicubic Bezier patches, as a mesh.",
+       "material points patches?", "name points patches?"),
+};
+const struct function_rows swept_functions = {rows, COUNT(rows)};

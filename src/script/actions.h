@@ -1,4 +1,5 @@
-/* The middle paragraphs of the gr functions: plain C that cannot raise. The enums number the parameters in table.c. */
+/* The middle paragraphs of the gr functions: plain C that cannot raise. The enums number the parameters in table.c;
+ * a shape is in act_shapes.c or act_swept.c whole, with its parameters and its row. */
 #ifndef GRAY_SCRIPT_ACTIONS_H
 #define GRAY_SCRIPT_ACTIONS_H
 
@@ -43,58 +44,6 @@ enum { CHANGEEXPOSURE_PICTURE, CHANGEEXPOSURE_STOPS, CHANGEEXPOSURE_COUNT };
 action act_change_node, act_change_delete, act_change_add, act_change_material, act_change_look, act_change_own,
     act_change_copy_light, act_change_light, act_change_delete_light, act_change_add_light, act_change_view,
     act_change_exposure;
-
-/* act_shapes.c: each begins with name and material */
-enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_FIRST };
-enum { CYLINDER_FROM = SHAPE_FIRST, CYLINDER_TO, CYLINDER_RADIUS, CYLINDER_OPEN, CYLINDER_COUNT };
-enum { CONE_FROM = SHAPE_FIRST, CONE_TO, CONE_FROM_RADIUS, CONE_RADIUS, CONE_OPEN, CONE_COUNT };
-enum { PARABOLOID_RADIUS = SHAPE_FIRST, PARABOLOID_HEIGHT, PARABOLOID_OPEN, PARABOLOID_COUNT };
-enum {
-    HYPERBOLOID_SHEETS = SHAPE_FIRST,
-    HYPERBOLOID_RADIUS,
-    HYPERBOLOID_HEIGHT,
-    HYPERBOLOID_WAIST,
-    HYPERBOLOID_GAP,
-    HYPERBOLOID_OPEN,
-    HYPERBOLOID_COUNT
-};
-enum { ELLIPSOID_CENTRE = SHAPE_FIRST, ELLIPSOID_RADII, ELLIPSOID_COUNT };
-enum {
-    QUADRIC_XX = SHAPE_FIRST,
-    QUADRIC_YY,
-    QUADRIC_ZZ,
-    QUADRIC_XY,
-    QUADRIC_XZ,
-    QUADRIC_YZ,
-    QUADRIC_X,
-    QUADRIC_Y,
-    QUADRIC_Z,
-    QUADRIC_CONSTANT,
-    QUADRIC_MIN,
-    QUADRIC_MAX,
-    QUADRIC_OPEN,
-    QUADRIC_COUNT
-};
-enum { TORUS_MAJOR = SHAPE_FIRST, TORUS_MINOR, TORUS_COUNT };
-enum { SUPER_E = SHAPE_FIRST, SUPER_N, SUPER_COUNT };
-enum { BOX_MIN = SHAPE_FIRST, BOX_MAX, BOX_COUNT };
-enum { PLANE_NORMAL = SHAPE_FIRST, PLANE_DISTANCE, PLANE_COUNT };
-enum { RECTANGLE_CORNER = SHAPE_FIRST, RECTANGLE_ALONG, RECTANGLE_UP, RECTANGLE_COUNT };
-enum { DISC_CENTRE = SHAPE_FIRST, DISC_NORMAL, DISC_RADIUS, DISC_INNER, DISC_COUNT };
-enum { TRIANGLE_A = SHAPE_FIRST, TRIANGLE_B, TRIANGLE_C, TRIANGLE_COUNT };
-enum { POLYGON_POINTS = SHAPE_FIRST, POLYGON_OUTLINES, POLYGON_COUNT };
-action act_cylinder, act_cone, act_paraboloid, act_hyperboloid, act_ellipsoid, act_quadric, act_torus;
-action act_superellipsoid, act_box, act_plane, act_square, act_rectangle, act_disc, act_triangle, act_polygon;
-
-/* act_swept.c: each begins with name and material */
-enum { LATHE_POINTS = SHAPE_FIRST, LATHE_SPLINE, LATHE_LOOP, LATHE_OPEN, LATHE_COUNT };
-enum { PRISM_OUTLINE = SHAPE_FIRST, PRISM_HOLES, PRISM_FROM, PRISM_TO, PRISM_SPLINE, PRISM_COUNT };
-enum { SWEEP_POINTS = SHAPE_FIRST, SWEEP_RADII, SWEEP_SPLINE, SWEEP_LOOP, SWEEP_COUNT };
-enum { FIELD_HEIGHTS = SHAPE_FIRST, FIELD_IMAGE, FIELD_FLOOR, FIELD_OPEN, FIELD_SMOOTH, FIELD_COUNT };
-enum { BLOB_SPHERES = SHAPE_FIRST, BLOB_CYLINDERS, BLOB_THRESHOLD, BLOB_COUNT };
-enum { CURVE_POINTS = SHAPE_FIRST, CURVE_WIDTHS, CURVE_SPLINE, CURVE_FLAT, CURVE_COUNT };
-enum { PATCH_POINTS = SHAPE_FIRST, PATCH_PATCHES, PATCH_TOLERANCE, PATCH_FLIP, PATCH_COUNT };
-action act_lathe, act_prism, act_sweep, act_height_field, act_blob, act_curve, act_patch;
 
 /* act_methods.c: args[0] is the node itself */
 enum { SELF };

@@ -61,7 +61,7 @@ void context_warn(struct context *context, const char *format, ...) {
 }
 
 void context_warn_once(struct context *context, unsigned bit, const char *format, ...) {
-    uint8_t *bits = &context->warned[context->function - function_table];
+    uint8_t *bits = &context->warned[function_index(context->function)];
     if (*bits & bit)
         return;
     *bits = (uint8_t)(*bits | bit);

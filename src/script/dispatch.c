@@ -199,9 +199,9 @@ static void no_such_name(struct context *c, enum owner owner, const char *name) 
     }
     struct suggestion suggestion;
     suggest_begin(&suggestion, name);
-    for (int k = 0; k < function_count; k++)
-        if (function_table[k].owner == owner)
-            suggest_offer(&suggestion, function_table[k].name);
+    for (int k = 0; k < function_count(); k++)
+        if (function_at(k)->owner == owner)
+            suggest_offer(&suggestion, function_at(k)->name);
     if (suggestion.best)
         context_raise(c, "%s%.100s does not exist; did you mean %s%s?", before, name, before, suggestion.best);
     context_raise(c, "%s%.100s does not exist", before, name);
@@ -256,13 +256,13 @@ static int ghost_index(lua_State *L) {
 }
 
 static void push_functions(lua_State *L, enum owner owner) {
-    lua_createtable(L, 0, function_count);
-    for (int k = 0; k < function_count; k++) {
-        if (function_table[k].owner != owner)
+    lua_createtable(L, 0, function_count());
+    for (int k = 0; k < function_count(); k++) {
+        if (function_at(k)->owner != owner)
             continue;
-        lua_pushlightuserdata(L, (void *)(uintptr_t)&function_table[k]);
+        lua_pushlightuserdata(L, (void *)(uintptr_t)function_at(k));
         lua_pushcclosure(L, dispatch, 1);
-        lua_setfield(L, -2, function_table[k].name);
+        lua_setfield(L, -2, function_at(k)->name);
     }
 }
 

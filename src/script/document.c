@@ -152,8 +152,8 @@ static void write_function(struct document *document, const struct function *fun
 
 const char *script_manual(struct arena *arena) {
     struct document document = {.arena = arena};
-    for (int k = 0; k < function_count; k++)
-        write_function(&document, &function_table[k]);
+    for (int k = 0; k < function_count(); k++)
+        write_function(&document, function_at(k));
     return document.failed ? NULL : document.text;
 }
 
@@ -333,8 +333,8 @@ const char *script_annotations(struct arena *arena) {
         "---@class gr.material\n---@class gr.light\n---@class gr.texture\n---@class gr.fog\n---@class "
         "gr.sky\n---@class gr.node\n"
         "local node = {}\n\ngr = {}\n\n---The version of the renderer.\ngr.version = ''\n\n");
-    for (int k = 0; k < function_count; k++) {
-        const struct function *function = &function_table[k];
+    for (int k = 0; k < function_count(); k++) {
+        const struct function *function = function_at(k);
         if (function->owner == OWNER_GR)
             annotate_fields(&document, function);
         annotate_function(&document, function);

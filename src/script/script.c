@@ -163,7 +163,7 @@ static bool prepare(struct context *context, struct reach *reach, struct error *
     if (strlen(context->path) >= PATH_SIZE - 64)
         return error_set(error, ERROR_SCENE, "%.100s...: the path is too long", context->path);
     memcpy(context->folder, context->path, length);
-    context->warned = arena_alloc(&context->keep, (size_t)function_count);
+    context->warned = arena_alloc(&context->keep, (size_t)function_count());
     if (!context->warned)
         return error_no_memory(error, "the script");
     struct file_bytes bytes; /* whether it can be read at all is told before anything else, in one plain line */

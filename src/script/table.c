@@ -1,19 +1,15 @@
 /* The table of gr functions. One row a function; everything people read about it and every check of its arguments comes
- * from here. Facts: SPEC parts 1 and 2. */
+ * from here. The rows of shapes are in the files that make them. Facts: SPEC parts 1 and 2. */
 #include "script/table.h"
 #include "base/unreachable.h"
 
-#include "script/actions.h"
+#include "render/settings.h"
+#include "scene/change.h"
+#include "script/table_rows.h"
 
 #include <assert.h>
 #include <string.h>
 
-#define ANY 0, 0, NULL
-#define ABOVE(low) (low), (double)INFINITY, NULL
-#define BETWEEN(low, high) (low), (high), NULL
-
-#define NAME_HELP "Name of the node, for messages."
-#define MATERIAL_HELP "What its surface looks like."
 #define CHILDREN                                                                                                       \
     { "children", KIND_NODES, OPTIONAL, ANY, NULL, "{}", "Nodes placed under this one." }
 
@@ -75,7 +71,7 @@ static const struct parameter mesh_parameters[] = {
                      "Faces that meet at less than this angle are one smooth surface; 0: all are flat."},
     [MESH_WELD] = {"weld", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether vertices in one place become one."},
     [MESH_FLIP] = {"flip", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the faces are turned round."},
-    [MESH_CULL] = {"cull", KIND_CHOICE, OPTIONAL, 0, 0, "none back front", NULL, "'none'",
+    [MESH_CULL] = {"cull", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(NODE_CULLS), NULL, "'none'",
                    "Which faces no ray meets: those seen from behind, or from the front."},
     [MESH_MATERIALS] = {"materials", KIND_MATERIALS, OPTIONAL, ANY, NULL, "the file's",
                         "Materials by the names that the file gives its parts, or with face_materials a list."},
@@ -105,7 +101,7 @@ static const struct parameter change_delete_parameters[] = {
 static const struct parameter change_add_parameters[] = {
     [CHANGEADD_NAME] = {"name", KIND_TEXT, 0, ANY, NULL, NULL, "Name of the node that it goes under."},
     [CHANGEADD_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL, SERIAL_HELP},
-    [CHANGEADD_SHAPE] = {"shape", KIND_CHOICE, 0, 0, 0, "sphere cube cylinder cone torus copy", NULL, NULL,
+    [CHANGEADD_SHAPE] = {"shape", KIND_CHOICE, 0, 0, 0, LIST_BLANKS(ADDED), NULL, NULL,
                          "What is added, of about the size of a ball of radius 1, or a copy of a node."},
     [CHANGEADD_COLOUR] = {"colour", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0.7, 0.7, 0.7}", "Its colour."},
     [CHANGEADD_SOURCE] = {"source", KIND_WHOLE, OPTIONAL, SERIALS, NULL, "0",
@@ -219,218 +215,8 @@ static const struct parameter bounded_parameters[] = {
                     "A closed solid that nothing of it sticks out of; what does may be seen or not."},
 };
 
-#define SHAPE(otherwise)                                                                                               \
-    [SHAPE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'" otherwise "'", NAME_HELP},                             \
-    [SHAPE_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP}
-#define LENGTH(name, fallback, help)                                                                                   \
-    { name, KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, fallback, help }
-#define PLACE(name, fallback, help)                                                                                    \
-    { name, KIND_POINT, OPTIONAL, ANY, NULL, fallback, help }
-#define OPEN_ENDS                                                                                                      \
-    {                                                                                                                  \
-        "open", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",                                                            \
-            "Whether it is a mere surface without caps; then it is no solid for CSG."                                  \
-    }
-
-static const struct parameter cylinder_parameters[] = {
-    SHAPE("cylinder"),
-    [CYLINDER_FROM] = PLACE("from", "{0, -1, 0}", "The middle of one end."),
-    [CYLINDER_TO] = PLACE("to", "{0, 1, 0}", "The middle of the other end."),
-    [CYLINDER_RADIUS] = LENGTH("radius", "1", "Radius."),
-    [CYLINDER_OPEN] = OPEN_ENDS,
-};
-
-static const struct parameter cone_parameters[] = {
-    SHAPE("cone"),
-    [CONE_FROM] = PLACE("from", "{0, 0, 0}", "The apex, or the middle of the end with from_radius."),
-    [CONE_TO] = PLACE("to", "{0, 1, 0}", "The middle of the end with radius."),
-    [CONE_FROM_RADIUS] = {"from_radius", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0", "Radius at from: a frustum."},
-    [CONE_RADIUS] = {"radius", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1", "Radius at to."},
-    [CONE_OPEN] = OPEN_ENDS,
-};
-
-static const struct parameter paraboloid_parameters[] = {
-    SHAPE("paraboloid"),
-    [PARABOLOID_RADIUS] = LENGTH("radius", "1", "Radius of the rim."),
-    [PARABOLOID_HEIGHT] = LENGTH("height", "1", "The tip is at the origin, the rim at this y."),
-    [PARABOLOID_OPEN] = OPEN_ENDS,
-};
-
-static const struct parameter hyperboloid_parameters[] = {
-    SHAPE("hyperboloid"),
-    [HYPERBOLOID_SHEETS] = {"sheets", KIND_WHOLE, OPTIONAL, BETWEEN(1, 2), NULL, "1, with gap 2",
-                            "One sheet with a waist, or two bowls."},
-    [HYPERBOLOID_RADIUS] = LENGTH("radius", "twice waist, or 1", "Radius of both rims."),
-    [HYPERBOLOID_HEIGHT] = LENGTH("height", "twice gap, or 1", "The rims are at this y and at minus this y."),
-    [HYPERBOLOID_WAIST] = LENGTH("waist", "radius/2", "One sheet: radius at y = 0."),
-    [HYPERBOLOID_GAP] = LENGTH("gap", "height/2", "Two sheets: the tips are at this y and at minus this y."),
-    [HYPERBOLOID_OPEN] = OPEN_ENDS,
-};
-
-static const struct parameter ellipsoid_parameters[] = {
-    SHAPE("ellipsoid"),
-    [ELLIPSOID_CENTRE] = PLACE("centre", "{0, 0, 0}", "Centre."),
-    [ELLIPSOID_RADII] = {"radii", KIND_SIZE, OPTIONAL, ANY, NULL, "1", "Radii along x, y and z, one number or three."},
-};
-
-#define COEFFICIENT(name)                                                                                              \
-    { name, KIND_NUMBER, OPTIONAL, ANY, NULL, "0", "Coefficient." }
-
-static const struct parameter quadric_parameters[] = {
-    SHAPE("quadric"), /* without any coefficient the unit ball */
-    [QUADRIC_XX] = COEFFICIENT("xx"),
-    [QUADRIC_YY] = COEFFICIENT("yy"),
-    [QUADRIC_ZZ] = COEFFICIENT("zz"),
-    [QUADRIC_XY] = COEFFICIENT("xy"),
-    [QUADRIC_XZ] = COEFFICIENT("xz"),
-    [QUADRIC_YZ] = COEFFICIENT("yz"),
-    [QUADRIC_X] = COEFFICIENT("x"),
-    [QUADRIC_Y] = COEFFICIENT("y"),
-    [QUADRIC_Z] = COEFFICIENT("z"),
-    [QUADRIC_CONSTANT] = {"constant", KIND_NUMBER, OPTIONAL, ANY, NULL, "0",
-                          "The solid is where the sum of all is negative."},
-    [QUADRIC_MIN] = PLACE("min", "without end", "Corner of the box that limits it."),
-    [QUADRIC_MAX] = PLACE("max", "without end", "The opposite corner."),
-    [QUADRIC_OPEN] = OPEN_ENDS,
-};
-
-static const struct parameter torus_parameters[] = {
-    SHAPE("torus"),
-    [TORUS_MAJOR] = {"major", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1", "Radius of the circle in y = 0."},
-    [TORUS_MINOR] = LENGTH("minor", "0.25", "Radius of the tube around it."),
-};
-
-static const struct parameter superellipsoid_parameters[] = {
-    SHAPE("superellipsoid"),
-    [SUPER_E] = {"e", KIND_NUMBER, OPTIONAL, BETWEEN(0.02, 20), NULL, "1",
-                 "Roundness seen along y: near 0 a square, 1 a circle, 2 a diamond."},
-    [SUPER_N] = {"n", KIND_NUMBER, OPTIONAL, BETWEEN(0.02, 20), NULL, "1", "Roundness of the profile, likewise."},
-};
-
-static const struct parameter box_parameters[] = {
-    SHAPE("box"),
-    [BOX_MIN] = {"min", KIND_POINT, 0, ANY, NULL, NULL, "A corner."},
-    [BOX_MAX] = {"max", KIND_POINT, 0, ANY, NULL, NULL, "The opposite corner."},
-};
-
-static const struct parameter plane_parameters[] = {
-    SHAPE("plane"),
-    [PLANE_NORMAL] = {"normal", KIND_DIRECTION, OPTIONAL, ANY, NULL, "none: the square",
-                      "A plane without end that faces there; a half-space in CSG."},
-    [PLANE_DISTANCE] = {"distance", KIND_NUMBER, OPTIONAL, ANY, NULL, "0",
-                        "How far from the origin it is, along the normal."},
-};
-
-static const struct parameter square_parameters[] = {SHAPE("square")};
-
-static const struct parameter rectangle_parameters[] = {
-    SHAPE("rectangle"),
-    [RECTANGLE_CORNER] = PLACE("corner", "{-0.5, 0, 0.5}", "The lower left corner of an image on it."),
-    [RECTANGLE_ALONG] = {"along", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{1, 0, 0}", "The edge to the right."},
-    [RECTANGLE_UP] = {"up", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 0, -1}",
-                      "The edge upwards; not parallel, or else any."},
-};
-
-static const struct parameter disc_parameters[] = {
-    SHAPE("disc"),
-    [DISC_CENTRE] = PLACE("centre", "{0, 0, 0}", "Centre."),
-    [DISC_NORMAL] = {"normal", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 1, 0}", "Where its front looks."},
-    [DISC_RADIUS] = LENGTH("radius", "1, or twice inner", "Radius."),
-    [DISC_INNER] = {"inner", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0", "Radius of the hole."},
-};
-
-static const struct parameter triangle_parameters[] = {
-    SHAPE("triangle"),
-    [TRIANGLE_A] = {"a", KIND_POINT, 0, ANY, NULL, NULL, "A corner; the front sees a, b, c counter-clockwise."},
-    [TRIANGLE_B] = {"b", KIND_POINT, 0, ANY, NULL, NULL, "The next corner."},
-    [TRIANGLE_C] = {"c", KIND_POINT, 0, ANY, NULL, NULL, "The last corner."},
-};
-
-static const struct parameter polygon_parameters[] = {
-    SHAPE("polygon"),
-    [POLYGON_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL,
-                        "Corners in one plane; the front sees the first outline counter-clockwise."},
-    [POLYGON_OUTLINES] = {"outlines", KIND_FACES, OPTIONAL, ANY, NULL, "all points in turn",
-                          "Tuples of 0-based indices into points; what an odd number of them surrounds is filled."},
-};
-
-#define SPLINE(otherwise, help)                                                                                        \
-    { "spline", KIND_CHOICE, OPTIONAL, 0, 0, "linear catmull-rom b-spline bezier", NULL, "'" otherwise "'", help }
-#define SPLINE_HELP "How the points are joined; bezier takes 3 n + 1 of them."
-
-static const struct parameter lathe_parameters[] = {
-    SHAPE("lathe"),
-    [LATHE_POINTS] = {"points", KIND_PAIRS, 0, ANY, NULL, NULL, "The profile: pairs of radius and y."},
-    [LATHE_SPLINE] = SPLINE("linear", SPLINE_HELP),
-    [LATHE_LOOP] = {"loop", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
-                    "Whether the profile goes back to its first point."},
-    [LATHE_OPEN] = {"open", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
-                    "Whether ends off the axis stay open, not closed by discs."},
-};
-
-static const struct parameter prism_parameters[] = {
-    SHAPE("prism"),
-    [PRISM_OUTLINE] = {"outline", KIND_PAIRS, 0, ANY, NULL, NULL, "A closed curve: pairs of x and z."},
-    [PRISM_HOLES] = {"holes", KIND_CURVES, OPTIONAL, ANY, NULL, "none",
-                     "More closed curves; what an odd number of all surrounds is solid."},
-    [PRISM_FROM] = {"from", KIND_NUMBER, OPTIONAL, ANY, NULL, "0", "Height of the bottom."},
-    [PRISM_TO] = {"to", KIND_NUMBER, OPTIONAL, ANY, NULL, "from + 1", "Height of the top."},
-    [PRISM_SPLINE] = SPLINE("linear", "How the points are joined; bezier takes 3 n of them."),
-};
-
-static const struct parameter sweep_parameters[] = {
-    SHAPE("sweep"),
-    [SWEEP_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL, "Where the centre of the ball goes."},
-    [SWEEP_RADII] = {"radii", KIND_NUMBERS, 0, ABOVE(0), NULL, NULL, "Its radius at each point, or one for all."},
-    [SWEEP_SPLINE] = SPLINE("catmull-rom", SPLINE_HELP),
-    [SWEEP_LOOP] = {"loop", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether it goes back to the first point."},
-};
-
-static const struct parameter field_parameters[] = {
-    SHAPE("height field"),
-    [FIELD_HEIGHTS] = {"heights", KIND_ROWS, OPTIONAL, ANY, NULL, NULL,
-                       "Rows of equally many heights; x runs within a row, z from row to row."},
-    [FIELD_IMAGE] = {"image", KIND_IMAGE, OPTIONAL, ANY, NULL, NULL,
-                     "A picture instead: black is 0, white is 1, its upper edge is z = 0."},
-    [FIELD_FLOOR] = {"floor", KIND_NUMBER, OPTIONAL, ANY, NULL, "a tenth of the relief below it",
-                     "Height of the solid's floor."},
-    [FIELD_OPEN] = {"open", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
-                    "Whether it is a sheet without walls and floor."},
-    [FIELD_SMOOTH] = {"smooth", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
-                      "Whether it is shaded with interpolated normals."},
-};
-
-static const struct parameter blob_parameters[] = {
-    SHAPE("blob"),
-    [BLOB_SPHERES] = {"spheres", KIND_ROWS, OPTIONAL, ANY, NULL, "{}",
-                      "Balls {x, y, z, radius, strength}; strength 1 may be left out."},
-    [BLOB_CYLINDERS] = {"cylinders", KIND_ROWS, OPTIONAL, ANY, NULL, "{}",
-                        "Rods {x1, y1, z1, x2, y2, z2, radius, strength}."},
-    [BLOB_THRESHOLD] = {"threshold", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "0.5",
-                        "The surface is where the fields, strength (1 - (distance/radius)^2)^2, add up to this."},
-};
-
-static const struct parameter curve_parameters[] = {
-    SHAPE("curve"),
-    [CURVE_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL, "Where it goes."},
-    [CURVE_WIDTHS] = {"widths", KIND_NUMBERS, 0, ABOVE(0), NULL, NULL, "Its width at each point, or one for all."},
-    [CURVE_SPLINE] = SPLINE("catmull-rom", SPLINE_HELP),
-    [CURVE_FLAT] = {"flat", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
-                    "Whether it is shaded as a ribbon, not as a round hair."},
-};
-
-static const struct parameter patch_parameters[] = {
-    SHAPE("patch"),
-    [PATCH_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL, "Control points, 16 for each patch in 4 rows of 4."},
-    [PATCH_PATCHES] = {"patches", KIND_FACES, OPTIONAL, ANY, NULL, "points in turn",
-                       "Tuples of 16 0-based indices into points."},
-    [PATCH_TOLERANCE] = {"tolerance", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "a thousandth of the size",
-                         "The largest distance of the triangles from the true surface."},
-    [PATCH_FLIP] = {"flip", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the front is the other side."},
-};
-
 static const struct parameter order_parameters[] = {
-    {"order", KIND_CHOICE, 0, 0, 0, "new old separate", NULL, NULL,
+    {"order", KIND_CHOICE, 0, 0, 0, LIST_BLANKS(TRANSFORM_ORDERS), NULL, NULL,
      "new: calls act as they are written; old: the last call acts first; separate: scale, then rotate, then "
      "translate."},
 };
@@ -608,11 +394,11 @@ static const struct parameter wood_parameters[] = {
 
 #define FILTER                                                                                                         \
     {                                                                                                                  \
-        "filter", KIND_CHOICE, OPTIONAL, 0, 0, "nearest bilinear mipmap", NULL, "'mipmap'",                            \
+        "filter", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(IMAGE_FILTERS), NULL, "'mipmap'",                           \
             "How the image is looked up."                                                                              \
     }
 #define WRAP                                                                                                           \
-    { "wrap", KIND_CHOICE, OPTIONAL, 0, 0, "clamp repeat mirror", NULL, "'repeat'", "What is beyond its edges." }
+    { "wrap", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(IMAGE_WRAPS), NULL, "'repeat'", "What is beyond its edges." }
 #define FLIP_U                                                                                                         \
     { "flip_u", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether left and right are exchanged." }
 
@@ -943,10 +729,10 @@ static const struct parameter render_parameters[] = {
                                  "The same between corner neighbours."},
     [RENDER_USE_TIR] = {"use_tir", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "-use-tir",
                         "Whether light beyond the critical angle is reflected."},
-    [RENDER_SPECULAR] = {"specular", KIND_CHOICE, OPTIONAL, 0, 0, "phong blinn", NULL, "--specular",
+    [RENDER_SPECULAR] = {"specular", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(SPECULAR_KINDS), NULL, "--specular",
                          "The form of highlights."},
     [RENDER_SEED] = {"seed", KIND_WHOLE, OPTIONAL, BETWEEN(0, 0x1p53 - 1), NULL, "--seed", "Start of random numbers."},
-    [RENDER_ACCEL] = {"accel", KIND_CHOICE, OPTIONAL, 0, 0, "auto grid bvh kdtree none", NULL, "'auto'",
+    [RENDER_ACCEL] = {"accel", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(ACCEL_KINDS), NULL, "'auto'",
                       "How hits are searched; the picture is the same."},
     [RENDER_FOG] = {"fog", KIND_FOG, OPTIONAL, ANY, NULL, "none", "A fog."},
     [RENDER_CAUSTICS] = {"caustics", KIND_CAUSTICS, OPTIONAL, ANY, NULL, "--caustics",
@@ -956,13 +742,12 @@ static const struct parameter render_parameters[] = {
                        "Rays that can change a pixel by less than this are not followed."},
     [RENDER_EXPOSURE] = {"exposure", KIND_NUMBER, OPTIONAL, BETWEEN(-100, 100), "stops", "--exposure",
                          "Light is multiplied by 2^exposure on its way into a PNG file."},
-    [RENDER_TONE] = {"tone", KIND_CHOICE, OPTIONAL, 0, 0, "none reinhard filmic", NULL, "--tone",
+    [RENDER_TONE] = {"tone", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(TONE_CURVES), NULL, "--tone",
                      "The curve that brings bright light into the range of a PNG file."},
     [RENDER_SRGB] = {"srgb", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--srgb",
                      "Whether values of a PNG file follow the sRGB transfer function."},
     [RENDER_DEEP] = {"deep", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--deep", "Whether a PNG file has 16 bits a channel."},
-    [RENDER_PROJECTION] = {"projection", KIND_CHOICE, OPTIONAL, 0, 0, "perspective orthographic fisheye panorama", NULL,
-                           "'perspective'",
+    [RENDER_PROJECTION] = {"projection", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(PROJECTIONS), NULL, "'perspective'",
                            "Fisheye is equidistant inside a circle; panorama is all around, longitude by latitude."},
     [RENDER_VIEW_HEIGHT] = {"view_height", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "2",
                             "Height of an orthographic picture in the scene."},
@@ -981,7 +766,7 @@ static const struct parameter render_parameters[] = {
                        "Number of blades: the aperture is a polygon."},
     [RENDER_BLADE_ANGLE] = {"blade_angle", KIND_NUMBER, OPTIONAL, ANY, "degrees", "0",
                             "How far that polygon is turned."},
-    [RENDER_STEREO] = {"stereo", KIND_CHOICE, OPTIONAL, 0, 0, "none side anaglyph", NULL, "'none'",
+    [RENDER_STEREO] = {"stereo", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(STEREOS), NULL, "'none'",
                        "Two eyes: pictures side by side, left one left, or red and cyan."},
     [RENDER_EYE_DISTANCE] = {"eye_distance", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "screen / 30",
                              "How far the eyes are apart."},
@@ -1000,15 +785,10 @@ static const struct parameter glyphs_parameters[] = {
     [GLYPHS_TEXT] = {"text", KIND_TEXT, 0, ANY, NULL, NULL, "One line of text, in UTF-8."},
 };
 
-#define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
-#define GR(name, parameters, result, run, help, ...)                                                                   \
-    { name, OWNER_GR, parameters, COUNT(parameters), {__VA_ARGS__}, result, run, help }
-#define NODE(name, parameters, result, run, help, ...)                                                                 \
-    { name, OWNER_NODE, parameters, COUNT(parameters), {__VA_ARGS__}, result, run, help }
 #define VN_FORM(first) first " verts normals faces face_normals"
 #define RENDER_TAIL " width height eye view up fov ambient lights"
 
-const struct function function_table[] = {
+static const struct function node_rows[] = {
     GR("node", group_parameters, RESULT_NODE, act_node, "A node that holds others and carries a transform.", "name?"),
     GR("instances", instances_parameters, RESULT_NODE, act_instances,
        "A node that stands in many places, which cost a tenth of a node for each.", "of at"),
@@ -1056,50 +836,9 @@ const struct function function_table[] = {
     GR("bounded_by", bounded_parameters, RESULT_NODE, act_bounded_by,
        "The object, with the hint that it lies in a solid, which makes it faster where its own box is large.",
        "name object by", "object by"),
-    GR("cylinder", cylinder_parameters, RESULT_NODE, act_cylinder,
-       "A capped cylinder; about y, of radius 1, from y = -1 to 1 if nothing else is said.", "material", "name"),
-    GR("cone", cone_parameters, RESULT_NODE, act_cone,
-       "A capped cone or frustum; apex at the origin, radius 1 at y = 1 if nothing else is said.", "material", "name"),
-    GR("torus", torus_parameters, RESULT_NODE, act_torus, "A torus about the y axis.", "name major? minor?",
-       "material major? minor?"),
-    GR("plane", plane_parameters, RESULT_NODE, act_plane,
-       "The square from -0.5 to 0.5 in x and z at y = 0; with a normal a plane without end.", "material", "name"),
-    GR("square", square_parameters, RESULT_NODE, act_square, "The square from -0.5 to 0.5 in x and z at y = 0.",
-       "material", "name"),
-    GR("box", box_parameters, RESULT_NODE, act_box, "A box between two corners.", "material min max", "name min max"),
-    GR("ellipsoid", ellipsoid_parameters, RESULT_NODE, act_ellipsoid, "An ellipsoid along the axes.", "material radii?",
-       "name radii?"),
-    GR("paraboloid", paraboloid_parameters, RESULT_NODE, act_paraboloid, "A capped paraboloid that opens along y.",
-       "material", "name"),
-    GR("hyperboloid", hyperboloid_parameters, RESULT_NODE, act_hyperboloid,
-       "A capped hyperboloid about y, of one sheet or of two.", "material", "name"),
-    GR("quadric", quadric_parameters, RESULT_NODE, act_quadric,
-       "Where xx x^2 + yy y^2 + zz z^2 + xy x y + xz x z + yz y z + x x + y y + z z + constant is negative.",
-       "material xx yy zz constant", "name xx yy zz constant"),
-    GR("superellipsoid", superellipsoid_parameters, RESULT_NODE, act_superellipsoid,
-       "A rounded cube, cylinder, double cone or star: (|x|^(2/e) + |z|^(2/e))^(e/n) + |y|^(2/n) = 1.",
-       "material e? n?", "name e? n?"),
-    GR("rectangle", rectangle_parameters, RESULT_NODE, act_rectangle, "A rectangle or parallelogram.",
-       "material corner? along? up?", "name corner? along? up?"),
-    GR("disc", disc_parameters, RESULT_NODE, act_disc, "A disc, or a ring.", "material", "name"),
-    GR("triangle", triangle_parameters, RESULT_NODE, act_triangle, "A triangle.", "material a b c", "name a b c"),
-    GR("polygon", polygon_parameters, RESULT_NODE, act_polygon, "A polygon of any outline, with holes.",
-       "material points outlines?", "name points outlines?"),
-    GR("lathe", lathe_parameters, RESULT_NODE, act_lathe, "A profile turned about the y axis.",
-       "material points spline?", "name points spline?"),
-    GR("prism", prism_parameters, RESULT_NODE, act_prism, "An outline drawn out along y, with holes.",
-       "material outline", "name outline"),
-    GR("sweep", sweep_parameters, RESULT_NODE, act_sweep, "What a ball covers that moves along a spline.",
-       "material points radii spline?", "name points radii spline?"),
-    GR("height_field", field_parameters, RESULT_NODE, act_height_field,
-       "Land over the square from 0 to 1 in x and z, a solid down to its floor.", "material heights", "name heights"),
-    GR("blob", blob_parameters, RESULT_NODE, act_blob, "Balls and rods that flow into each other.",
-       "material spheres cylinders? threshold?", "name spheres cylinders? threshold?"),
-    GR("curve", curve_parameters, RESULT_NODE, act_curve, "A hair: a ribbon along a spline that faces every ray.",
-       "material points widths spline?", "name points widths spline?"),
-    GR("patch", patch_parameters, RESULT_NODE, act_patch, "Bicubic Bezier patches, as a mesh.",
-       "material points patches?", "name points patches?"),
+};
 
+static const struct function other_rows[] = {
     GR("material", material_parameters, RESULT_MATERIAL, act_material, "A Phong material.", "kd ks shininess"),
     GR("rr_material", rr_parameters, RESULT_MATERIAL, act_rr_material, "A Phong material that reflects and refracts.",
        "kd ks shininess reflect refract ior"),
@@ -1231,12 +970,39 @@ const struct function function_table[] = {
          "file" RENDER_TAIL),
 };
 
-const int function_count = COUNT(function_table);
+static const struct function_rows node_functions = {node_rows, COUNT(node_rows)};
+static const struct function_rows other_functions = {other_rows, COUNT(other_rows)};
+/* In the order of the manual. */
+static const struct function_rows *const parts[] = {&node_functions, &shape_functions, &swept_functions,
+                                                    &other_functions};
+
+int function_count(void) {
+    int count = 0;
+    for (int part = 0; part < COUNT(parts); part++)
+        count += parts[part]->count;
+    return count;
+}
+
+const struct function *function_at(int index) {
+    int part = 0;
+    for (; index >= parts[part]->count; part++)
+        index -= parts[part]->count;
+    return &parts[part]->rows[index];
+}
+
+int function_index(const struct function *function) {
+    int index = 0;
+    while (function_at(index) != function)
+        index++;
+    return index;
+}
 
 const struct function *function_find(enum owner owner, const char *name) {
-    for (int i = 0; i < function_count; i++)
-        if (function_table[i].owner == owner && strcmp(function_table[i].name, name) == 0)
-            return &function_table[i];
+    for (int i = 0; i < function_count(); i++) {
+        const struct function *function = function_at(i);
+        if (function->owner == owner && strcmp(function->name, name) == 0)
+            return function;
+    }
     return NULL;
 }
 

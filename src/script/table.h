@@ -136,8 +136,17 @@ struct function {
     const char *help;
 };
 
-extern const struct function function_table[];
-extern const int function_count;
+/* The rows of one file. The table is these one after the other. */
+struct function_rows {
+    const struct function *rows;
+    int count;
+};
+extern const struct function_rows shape_functions, swept_functions;
+
+int function_count(void);
+/* index: 0 to function_count() - 1. */
+const struct function *function_at(int index);
+int function_index(const struct function *function);
 
 /* The row of that name, or NULL. */
 const struct function *function_find(enum owner owner, const char *name);

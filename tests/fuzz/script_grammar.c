@@ -284,7 +284,7 @@ static const char *list_of(enum result_kind result) {
 }
 
 static void say_statement(struct grammar *g) {
-    const struct function *function = &function_table[next(g) % (unsigned)function_count];
+    const struct function *function = function_at((int)(next(g) % (unsigned)function_count()));
     bool method = function->owner == OWNER_NODE, coroutine = next(g) < 8;
     unsigned how = next(g), self = method ? next(g) : 0;
     say(g, "k(%s, pcall(%s", list_of(function->result), coroutine ? "coroutine.wrap(" : "");

@@ -152,8 +152,8 @@ static void expect_named(const struct function *function, const struct parameter
 
 TEST(every_form_of_every_function_runs_with_right_arguments) {
     write_files();
-    for (int f = 0; f < function_count; f++) {
-        const struct function *function = &function_table[f];
+    for (int f = 0; f < function_count(); f++) {
+        const struct function *function = function_at(f);
         if (!can_run(function))
             continue;
         for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
@@ -201,8 +201,8 @@ TEST(memory_may_end_in_every_form_of_every_function) {
     test_skip("allocations fail on demand only in builds with GRAY_FAULTS");
 #endif
     write_files();
-    for (int f = 0; f < function_count; f++) {
-        const struct function *function = &function_table[f];
+    for (int f = 0; f < function_count(); f++) {
+        const struct function *function = function_at(f);
         char call[CALL_SIZE], text[256];
         if (!can_run(function))
             continue;
@@ -222,8 +222,8 @@ TEST(memory_may_end_in_every_form_of_every_function) {
 
 TEST(every_missing_argument_is_named) {
     write_files();
-    for (int f = 0; f < function_count; f++) {
-        const struct function *function = &function_table[f];
+    for (int f = 0; f < function_count(); f++) {
+        const struct function *function = function_at(f);
         for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
             const char *form = function->forms[k];
             int index;
@@ -246,8 +246,8 @@ TEST(every_missing_argument_is_named) {
 
 TEST(every_wrong_positional_argument_is_named) {
     write_files();
-    for (int f = 0; f < function_count; f++) {
-        const struct function *function = &function_table[f];
+    for (int f = 0; f < function_count(); f++) {
+        const struct function *function = function_at(f);
         for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
             const char *form = function->forms[k], *with;
             int index;
@@ -265,8 +265,8 @@ TEST(every_wrong_positional_argument_is_named) {
 
 TEST(every_wrong_named_field_is_named) {
     write_files();
-    for (int f = 0; f < function_count; f++) {
-        const struct function *function = &function_table[f];
+    for (int f = 0; f < function_count(); f++) {
+        const struct function *function = function_at(f);
         const char *with;
         for (int p = function->owner == OWNER_NODE; p < function->parameter_count && has_table_form(function); p++) {
             char call[CALL_SIZE], buffer[64];
@@ -279,8 +279,8 @@ TEST(every_wrong_named_field_is_named) {
 }
 
 TEST(names_in_the_forms_are_parameters) {
-    for (int f = 0; f < function_count; f++) {
-        const struct function *function = &function_table[f];
+    for (int f = 0; f < function_count(); f++) {
+        const struct function *function = function_at(f);
         CHECK(function->parameter_count <= PARAMETER_LIMIT);
         CHECK(function_find(function->owner, function->name) == function);
         for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
@@ -320,10 +320,10 @@ TEST(manual_has_at_most_100_columns_and_every_function) {
             test_fail(__FILE__, __LINE__, "%.*s", (int)length, line);
         line += length + (line[length] == '\n');
     }
-    for (int f = 0; f < function_count && manual; f++) {
+    for (int f = 0; f < function_count() && manual; f++) {
         char title[96];
         (void)snprintf(title, sizeof title, "%s%s(",
-                       function_table[f].owner == OWNER_GR ? "gr." : "node:", function_table[f].name);
+                       function_at(f)->owner == OWNER_GR ? "gr." : "node:", function_at(f)->name);
         if (!strstr(manual, title))
             test_fail(__FILE__, __LINE__, "%s is not in the manual", title);
     }

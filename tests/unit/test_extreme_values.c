@@ -483,8 +483,8 @@ static void try_call(struct gallery *gallery, const struct function *function, c
 
 /* In every numeric argument of every function: in all numbers of it, and in each of the first ones. */
 static void try_everywhere(struct gallery *gallery, const char *value, bool must_refuse) {
-    for (int f = 0; f < function_count; f++) {
-        const struct function *function = &function_table[f];
+    for (int f = 0; f < function_count(); f++) {
+        const struct function *function = function_at(f);
         for (int p = function->owner == OWNER_NODE; p < function->parameter_count; p++) {
             char call[CALL_SIZE], right[256], with[512];
             if (!is_numeric(function->parameters[p].kind) || !goes_with_the_others(function, p))
@@ -568,8 +568,8 @@ TEST_LONG(extreme_numbers_of_every_size_give_one_line_or_a_finite_picture) {
 TEST(every_colour_may_be_as_large_as_1e30_in_either_direction) {
     struct gallery gallery;
     open_gallery(&gallery);
-    for (int f = 0; f < function_count; f++) {
-        const struct function *function = &function_table[f];
+    for (int f = 0; f < function_count(); f++) {
+        const struct function *function = function_at(f);
         for (int p = 0; p < function->parameter_count && has_table_form(function); p++) {
             char call[CALL_SIZE];
             struct error error;

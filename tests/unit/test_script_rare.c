@@ -125,9 +125,9 @@ TEST(ghosts_stand_in_lists_of_materials_and_behind_forms) {
 
 /* Otherwise the name would be told in messages instead of the node's own. */
 TEST(no_method_takes_a_text) {
-    for (int f = 0; f < function_count; f++)
-        for (int p = 0; p < function_table[f].parameter_count; p++)
-            CHECK(function_table[f].owner == OWNER_GR || function_table[f].parameters[p].kind != KIND_TEXT);
+    for (int f = 0; f < function_count(); f++)
+        for (int p = 0; p < function_at(f)->parameter_count; p++)
+            CHECK(function_at(f)->owner == OWNER_GR || function_at(f)->parameters[p].kind != KIND_TEXT);
 }
 
 TEST(the_newest_change_of_a_view_and_of_the_exposure_counts) {
