@@ -1,7 +1,7 @@
 /* Looking ahead, where somebody asks how long a picture will take: SIDE x SIDE rays through each tile before the first
  * one, about 1 % of the work, and from then on the forecast (render/forecast.h) a hundred times a second, told by
  * whichever worker comes by. Processor time, so that what else the machine does counts for nothing. */
-#include "render/run.h"
+#include "render/integrator.h"
 
 #include <string.h>
 #include <time.h>
@@ -20,8 +20,8 @@ static uint64_t nanoseconds_of(clockid_t clock) {
 static uint32_t edges_between(const struct run *run, const struct vec3 *colours) {
     uint32_t edges = 0;
     for (uint32_t i = 0; i < RAYS; i++) {
-        edges += i % SIDE + 1 < SIDE && run_differs(run, colours[i], colours[i + 1]);
-        edges += i / SIDE + 1 < SIDE && run_differs(run, colours[i], colours[i + SIDE]);
+        edges += i % SIDE + 1 < SIDE && integrator_refines(run, colours[i], colours[i + 1]);
+        edges += i / SIDE + 1 < SIDE && integrator_refines(run, colours[i], colours[i + SIDE]);
     }
     return edges;
 }

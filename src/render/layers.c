@@ -1,5 +1,5 @@
 /* Pictures beside the picture, tile by tile after the picture is done. */
-#include "render/run.h"
+#include "render/integrator.h"
 
 #include "math/range.h"
 #include "render/aov.h"
@@ -22,22 +22,11 @@ static uint64_t work_of(const struct worker *worker) {
            done->shape_tests;
 }
 
-/* Traces the samples of a pixel once more, one by one: what they cost, and how many there are. */
-static void measure_pixel(struct run *run, struct worker *worker, int64_t x, int64_t y, bool marked, float cost[3],
+/* What the samples of a pixel cost, and how many there are. */
+static void measure_pixel(struct run *run, struct worker *worker, int64_t x, int64_t y, float cost[3],
                           float samples[3]) {
     uint64_t work = work_of(worker), rays = worker->camera_rays;
-    int n = run->job->settings.samples;
-    bool have_first = !run->full || run->job->settings.keep_first;
-    bool reuse = run_first_counts(run);
-    struct pixel_sample place = run_first_place(run, x, y);
-    if (have_first || reuse)
-        (void)run_sample(run, worker, &place);
-    for (int k = 0; marked && k < n * n && !run_stopped(run, worker); k++) {
-        if (reuse && k == n / 2 * n + n / 2)
-            continue;
-        place = (struct pixel_sample){x, y, (k % n + 0.5) / n, (k / n + 0.5) / n, (uint64_t)(k + 1)};
-        (void)run_sample(run, worker, &place);
-    }
+    integrator_repeat(run, worker, x, y);
     for (int c = 0; c < 3; c++) {
         cost[c] = (float)(work_of(worker) - work);
         samples[c] = (float)(worker->camera_rays - rays);
@@ -72,7 +61,7 @@ void run_layer_item(void *context, uint32_t item, int index) {
             if (middle_ray(run, &place, &ray))
                 aov_surface(run->job->world, &ray, mask, &worker->scratch, values);
             if (mask & (UINT32_C(1) << AOV_COST | UINT32_C(1) << AOV_SAMPLES))
-                measure_pixel(run, worker, x, y, film->marked[at], values[AOV_COST], values[AOV_SAMPLES]);
+                measure_pixel(run, worker, x, y, values[AOV_COST], values[AOV_SAMPLES]);
             worker->clamped |= clamp_layers(values);
             for (int i = 0; i < AOV_COUNT; i++) {
                 size_t plane = aov_layer(mask, (enum aov)i) * (size_t)film->width * film->height;

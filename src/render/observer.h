@@ -32,6 +32,7 @@ enum observation_kind {
     OBSERVED_LIGHT_SKIPPED, /* light.number, light.light: its lists leave the surface out */
     OBSERVED_DIRECT,        /* direct: after the lights of a hit */
     OBSERVED_RAY_END,       /* end */
+    OBSERVED_PIXEL,         /* pixel: it is final */
     OBSERVED_MARK           /* mark: the pixel is marked, for it differs from a neighbour */
 };
 
@@ -92,6 +93,12 @@ struct observation {
             int x, y;                   /* the neighbour from the pixel, -1..1 */
             double distance, tolerance; /* squared, of colours */
         } mark;
+        struct observed_pixel {
+            struct vec3 colour;
+            int samples;       /* N of N x N samples that the pixel has got; 0: the first one only */
+            bool full;         /* every pixel gets them */
+            bool first_counts; /* the first sample is part of the mean */
+        } pixel;
     };
 };
 
@@ -187,6 +194,11 @@ static inline void observe_ray_end(const struct observer *observer, const struct
 static inline void observe_mark(const struct observer *observer, int x, int y, double distance, double tolerance) {
     if (observer)
         observe(observer, &(struct observation){OBSERVED_MARK, .mark = {x, y, distance, tolerance}});
+}
+
+static inline void observe_pixel(const struct observer *observer, const struct observed_pixel *pixel) {
+    if (observer)
+        observe(observer, &(struct observation){OBSERVED_PIXEL, .pixel = *pixel});
 }
 
 #endif

@@ -1,11 +1,9 @@
-/* Tiles. A tile samples its pixels and the rim of one pixel round them once (a pixel's first sample is a function of
- * the pixel alone, so two tiles that share a rim agree), marks by neighbours' differences, resamples what is marked,
- * and is final. No barrier, nothing shared but the film, of which every tile writes its own pixels. */
-#include "render/run.h"
+/* Tiles, handed out to the workers; within one works the integrator. A tile is self-contained and final when it is
+ * done. No barrier, nothing shared but the film, of which every tile writes its own pixels. */
+#include "render/integrator.h"
 
 #include "base/mem.h"
 #include "render/order.h"
-#include "render/photon_trace.h"
 #include "render/shard.h"
 #include "render/story.h"
 
@@ -18,134 +16,6 @@ static double seconds_now(void) {
     struct timespec now;
     (void)clock_gettime(CLOCK_MONOTONIC, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static double clamp01(double c) {
-    return c >= 1 ? 1 : c > 0 ? c : 0;
-}
-
-/* What counts is the difference in the picture file. */
-static struct vec3 toned(const struct tone *tone, struct vec3 c) {
-    if (tone_is_plain(tone))
-        return c;
-    return vec3_make(tone_apply(tone, c.x), tone_apply(tone, c.y), tone_apply(tone, c.z));
-}
-
-static double squared_distance(struct vec3 a, struct vec3 b) {
-    struct vec3 d = {clamp01(a.x) - clamp01(b.x), clamp01(a.y) - clamp01(b.y), clamp01(a.z) - clamp01(b.z)};
-    return vec3_dot(d, d);
-}
-
-bool run_differs(const struct run *run, struct vec3 a, struct vec3 b) {
-    const struct tone *tone = &run->job->settings.tone;
-    return squared_distance(toned(tone, a), toned(tone, b)) > run->job->settings.side_tolerance;
-}
-
-/* First-pass colours of the tile and its rim, as far as they are in the picture. `area` is the rectangle with the rim.
- */
-static const struct vec3 *first_at(const struct worker *worker, const struct rectangle *area, int64_t x, int64_t y) {
-    return &worker->first[(size_t)(y - area->y0) * (FILM_TILE + 2) + (size_t)(x - area->x0)];
-}
-
-static bool is_marked(const struct run *run, const struct worker *worker, const struct rectangle *area, int64_t x,
-                      int64_t y) {
-    const struct settings *settings = &run->job->settings;
-    struct vec3 own = toned(&settings->tone, *first_at(worker, area, x, y));
-    for (int dy = -1; dy <= 1; dy++) {
-        for (int dx = -1; dx <= 1; dx++) {
-            int64_t nx = x + dx, ny = y + dy;
-            if ((dx == 0 && dy == 0) || nx < area->x0 || nx >= area->x1 || ny < area->y0 || ny >= area->y1)
-                continue;
-            double tolerance = dx == 0 || dy == 0 ? settings->side_tolerance : settings->corner_tolerance;
-            double distance = squared_distance(own, toned(&settings->tone, *first_at(worker, area, nx, ny)));
-            if (distance > tolerance) {
-                observe_mark(worker->state.observer, dx, dy, distance, tolerance);
-                return true;
-            }
-        }
-    }
-    return false;
-}
-
-static void store(float out[3], struct vec3 colour) {
-    out[0] = (float)colour.x;
-    out[1] = (float)colour.y;
-    out[2] = (float)colour.z;
-}
-
-static void finish_pixel(struct run *run, struct worker *worker, const struct rectangle *area, int64_t x, int64_t y,
-                         bool have_first) {
-    struct film *film = run->job->film;
-    size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
-    const struct vec3 *first = have_first ? first_at(worker, area, x, y) : NULL;
-    bool marked = run->full || is_marked(run, worker, area, x, y);
-    struct vec3 colour = marked ? run_all_samples(run, worker, x, y, first) : *first;
-    store(film->pixels[at].rgb, colour);
-    store(film->pixels[at].first, first ? *first : colour);
-    film->marked[at] = marked;
-    worker->marked += marked;
-}
-
-/* The first samples of a small square go together. */
-enum { PATCH = 8 };
-_Static_assert((int)(PATCH *PATCH) == (int)PACKET_RAYS, "a patch is a packet");
-
-static void sample_patch(struct run *run, struct worker *worker, const struct rectangle *area, int64_t x0, int64_t y0) {
-    struct batch *batch = &worker->batch;
-    batch->count = 0;
-    for (int64_t y = y0; y < y0 + PATCH && y < area->y1; y++) {
-        for (int64_t x = x0; x < x0 + PATCH && x < area->x1; x++)
-            batch->places[batch->count++] = run_first_place(run, x, y);
-    }
-    run_sample_batch(run, worker);
-    for (uint32_t i = 0; i < batch->count; i++) {
-        const struct pixel_sample *place = &batch->places[i];
-        worker->first[(size_t)(place->y - area->y0) * (FILM_TILE + 2) + (size_t)(place->x - area->x0)] =
-            batch->colours[i];
-    }
-}
-
-/* For somebody who watches: the first pass as far as it is, and what will be sampled again. */
-static void show_marks(struct run *run, const struct worker *worker, const struct rectangle *area,
-                       const struct rectangle *tile) {
-    struct film *film = run->job->film;
-    for (int64_t y = tile->y0; y < tile->y1; y++) {
-        for (int64_t x = tile->x0; x < tile->x1; x++) {
-            size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
-            store(film->pixels[at].rgb, *first_at(worker, area, x, y));
-            film->marked[at] = run->full || is_marked(run, worker, area, x, y) ? FILM_MARK_WAITS : 0;
-        }
-    }
-}
-
-static bool render_tile(struct run *run, struct worker *worker, struct rectangle tile) {
-    const struct settings *settings = &run->job->settings;
-    bool have_first = !run->full || settings->keep_first;
-    int64_t rim = run->full ? 0 : 1;
-    struct rectangle area = {tile.x0 - rim, tile.y0 - rim, tile.x1 + rim, tile.y1 + rim};
-    area.x0 = area.x0 < 0 ? 0 : area.x0;
-    area.y0 = area.y0 < 0 ? 0 : area.y0;
-    area.x1 = area.x1 > run->job->width ? run->job->width : area.x1;
-    area.y1 = area.y1 > run->job->height ? run->job->height : area.y1;
-    for (int64_t y = area.y0; y < area.y1 && have_first; y += PATCH) {
-        for (int64_t x = area.x0; x < area.x1; x += PATCH) {
-            if (run_stopped(run, worker))
-                return false;
-            sample_patch(run, worker, &area, x, y);
-        }
-        run_tile_goes_on(run, worker, 0, fmin(1, (double)(y + PATCH - area.y0) / (double)(area.y1 - area.y0)));
-    }
-    if (settings->show_marks && have_first)
-        show_marks(run, worker, &area, &tile);
-    for (int64_t y = tile.y0; y < tile.y1; y++) {
-        for (int64_t x = tile.x0; x < tile.x1; x++) {
-            if (run_stopped(run, worker))
-                return false;
-            finish_pixel(run, worker, &area, x, y, have_first);
-        }
-        run_tile_goes_on(run, worker, 1, (double)(y + 1 - tile.y0) / (double)(tile.y1 - tile.y0));
-    }
-    return true;
 }
 
 /* What a tile costs, from few rays: surfaces met and rays sent on, which no way of searching and no instruction set
@@ -195,7 +65,7 @@ bool run_is_enough(const struct run *run) {
  * to stop counts as not done. */
 static bool make_part(struct run *run, struct worker *worker, uint32_t tile, struct rectangle part, double share) {
     run_tile_begins(run, worker, tile, share);
-    bool whole = render_tile(run, worker, part) && !run_stopped(run, worker);
+    bool whole = integrator_render(run, worker, &part) && !run_stopped(run, worker);
     if (worker->scratch.failed) {
         atomic_store(&run->failed, true);
         pool_cancel(run->pool);
@@ -330,7 +200,6 @@ static void add_statistics(const struct run *run, int workers, struct render_sta
     for (int i = 0; i < workers; i++) {
         const struct worker *worker = &run->workers[i];
         out->camera_rays += worker->camera_rays;
-        out->marked_pixels += worker->marked;
         out->reflected_rays += worker->state.reflected_rays;
         out->refracted_rays += worker->state.refracted_rays;
         out->shadow_rays += worker->state.shadow_rays;
@@ -340,6 +209,7 @@ static void add_statistics(const struct run *run, int workers, struct render_sta
         out->hierarchy_steps += worker->scratch.geom.cost.hierarchy_steps;
         out->box_tests += worker->scratch.geom.box_tests;
     }
+    integrator_add_statistics(run, out);
     out->samples = out->camera_rays;
     out->pixels += (uint64_t)run->job->film->width * run->job->film->height;
 }
@@ -348,7 +218,6 @@ static bool start_workers(struct run *run, int workers) {
     run->workers = mem_alloc_zero((size_t)workers, sizeof *run->workers);
     if (!run->workers)
         return false;
-    run->whitted = whitted_make(run->job);
     for (int i = 0; i < workers; i++) {
         struct worker *worker = &run->workers[i];
         if (!world_scratch_init(&worker->scratch, run->job->world))
@@ -395,25 +264,8 @@ static bool prepare_run(struct run *run, const struct camera_frame *at_close) {
     const struct render_job *job = run->job;
     const struct shutter *shutter = &job->settings.shutter;
     run->timed = shutter->close > shutter->open && (job->world->moves || job->settings.motion.moves);
-    run->full = job->settings.full || run->timed || run->camera.lens.aperture > 0;
     struct box origins = box_join(camera_origins(&run->camera), camera_origins(at_close));
     return find_eye_media(run, &origins, run->timed || camera_spreads(&run->camera));
-}
-
-/* Before the first tile; without photons there is no map. */
-static bool send_photons(struct run *run, int workers, struct render_statistics *out, struct error *error) {
-    struct photon_statistics photons = {0};
-    if (run->job->settings.caustics.photons == 0)
-        return true;
-    bool ok = photons_make(&run->caustics, run->job->world, &run->job->settings, run->pool, &photons, error);
-    out->photons += photons.sent;
-    out->photons_landed += photons.landed;
-    out->photon_rays += photons.rays;
-    out->photon_seconds += photons.seconds;
-    out->photon_map_seconds += photons.map_seconds;
-    for (int i = 0; i < workers; i++)
-        run->workers[i].state.caustics = &run->caustics;
-    return ok;
 }
 
 /* Everything before the first tile. */
@@ -425,13 +277,13 @@ static bool begin_run(struct run *run, int workers, struct render_statistics *st
         return false;
     if (!start_workers(run, workers) || !prepare_run(run, &at_close))
         return error_no_memory(error, "the workers of a render");
-    return send_photons(run, workers, statistics, error);
+    return integrator_create(run, workers, statistics, error);
 }
 
 static void end_run(struct run *run, int workers) {
     for (int i = 0; run->workers && i < workers; i++)
         world_scratch_destroy(&run->workers[i].scratch);
-    photon_map_destroy(&run->caustics);
+    integrator_destroy(run->integrator);
     mem_free(run->workers);
     mem_free(run->closed);
     mem_free(run->order);
@@ -439,22 +291,16 @@ static void end_run(struct run *run, int workers) {
     forecast_destroy(&run->forecast);
 }
 
-/* The tile is one pixel: its first sample, those of its neighbours, and the others if it is marked. */
+/* The part is one pixel. */
 static bool tell_pixel(struct run *run, struct film *film, struct story *story, struct error *error) {
     struct worker *worker = &run->workers[0];
     struct rectangle tile = {story->x, story->y, (int64_t)story->x + 1, (int64_t)story->y + 1};
     film->x0 = story->x;
     film->y0 = story->y;
     worker->state.observer = &story->observer;
-    if (!render_tile(run, worker, tile) || run_stopped(run, worker))
+    if (!integrator_render(run, worker, &tile) || run_stopped(run, worker))
         return worker->scratch.failed ? error_no_memory(error, "the crossings of a ray")
                                       : error_set(error, ERROR_CANCELLED, "stopped while rendering");
-    story->full = run->full;
-    story->marked = film->marked[0] != 0;
-    story->samples = run->job->settings.samples;
-    for (struct story_sample *sample = story->sample; sample; sample = sample->next)
-        sample->counts = !story->marked || sample->number > 0 || run_first_counts(run);
-    memcpy(story->rgb, film->pixels[0].rgb, sizeof story->rgb);
     return !story->failed || error_no_memory(error, "the story of a pixel");
 }
 
@@ -528,7 +374,7 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
     double begin = seconds_now();
     bool ok =
         begin_run(&run, workers, statistics, error) && choose_tiles(&run, error) && make_tiles(&run, statistics, error);
-    if (run.workers)
+    if (run.integrator)
         add_statistics(&run, workers, statistics);
     if (ok && job->film->layers && !pool_run(pool, film_tile_count(job->film), run_layer_item, &run))
         ok = error_set(error, ERROR_CANCELLED, "stopped while rendering");

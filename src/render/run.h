@@ -1,14 +1,13 @@
-/* What the files of a render share: tiles (render.c), samples (sample.c), how long it will take (ahead.c), pictures
- * beside the picture (layers.c).
+/* What the files of a render share: tiles (render.c), samples (sample.c), integrators (integrator.h), how long it will
+ * take (ahead.c), pictures beside the picture (layers.c).
  * Nobody else includes it. */
 #ifndef GRAY_RENDER_RUN_H
 #define GRAY_RENDER_RUN_H
 
 #include "render/camera.h"
 #include "render/forecast.h"
-#include "render/photon_map.h"
+#include "render/integrator_state.h"
 #include "render/render.h"
-#include "render/whitted.h"
 #include "world/packet.h"
 
 #include <stdatomic.h>
@@ -25,7 +24,7 @@ struct batch {
 struct worker {
     struct world_scratch scratch;
     struct integrator_state state;
-    uint64_t camera_rays, marked, samples;
+    uint64_t camera_rays;
     bool clamped; /* a colour or a layer was not finite or beyond the largest float */
     struct medium_stack ray_media;
     struct camera_frame camera; /* of the sample's moment, when the camera moves */
@@ -33,7 +32,6 @@ struct worker {
     int index;
     double tile_ended;                /* seconds, of the last one */
     uint64_t tile_begun, first_ended; /* processor time, while somebody asks how long it will take */
-    struct vec3 first[(FILM_TILE + 2) * (FILM_TILE + 2)];
 };
 
 struct run {
@@ -41,15 +39,12 @@ struct run {
     struct pool *pool;
     struct camera_frame camera;
     struct medium_stack eye_media;
-    /* -full, or a lens or moving things: what is blurred differs from sample to sample, not from its neighbours */
-    bool full;
     bool timed;        /* something moves while the shutter is open */
     bool together;     /* camera rays start in one place and at one moment */
     bool media_by_ray; /* rays start in different places or moments, and solids are near */
     uint32_t *closed;  /* the solids that the eye can stand in */
     uint32_t closed_count;
-    struct photon_map caustics;
-    struct whitted whitted;
+    struct integrator *integrator;
     struct worker *workers;
     uint32_t tiles_wanted;     /* of this process, those that were there before too */
     uint64_t *cost;            /* of each tile while shards are chosen */
@@ -74,20 +69,12 @@ bool run_prepare_at(const struct render_job *job, double ray_time, struct camera
                     struct error *error);
 /* The first sample has number 0, at the centre or the corner of the pixel. */
 struct pixel_sample run_first_place(const struct run *run, int64_t x, int64_t y);
-/* Whether the first sample is the one in the middle of N x N. */
-bool run_first_counts(const struct run *run);
 struct vec3 run_sample(struct run *run, struct worker *worker, const struct pixel_sample *place);
 /* The samples of a batch, as run_sample would bring them. What the camera rays meet is looked for together. */
 void run_sample_batch(struct run *run, struct worker *worker);
-/* Mean of the N x N samples; where one of them is the first sample again it is not traced twice. */
-struct vec3 run_all_samples(struct run *run, struct worker *worker, int64_t x, int64_t y, const struct vec3 *first);
-
 static inline bool run_stopped(const struct run *run, const struct worker *worker) {
     return pool_cancelled(run->pool) || worker->scratch.failed;
 }
-
-/* Whether two colours differ as much as marks a pixel beside another one. */
-bool run_differs(const struct run *run, struct vec3 a, struct vec3 b);
 
 /* Before the first tile; false: stopped. Nothing happens where nobody asks how long it will take. */
 bool run_look_ahead(struct run *run);

@@ -1,6 +1,6 @@
 /* One sample of a pixel, from the place in the picture to the colour; alone, or many whose camera rays go together. The
  * random key of a sample is a function of the pixel and of the sample's number. */
-#include "render/run.h"
+#include "render/integrator.h"
 
 /* The camera at a ray's time. */
 bool run_prepare_at(const struct render_job *job, double ray_time, struct camera_frame *out, char warning[256],
@@ -21,7 +21,7 @@ static struct vec3 trace_from_eye(struct run *run, struct worker *worker, struct
                      &worker->ray_media);
         worker->state.eye_media = &worker->ray_media;
     }
-    return whitted_trace(&run->whitted, &worker->state, ray, key);
+    return integrator_radiance(run, worker, ray, key);
 }
 
 /* Through a lens, in another projection, for two eyes. */
@@ -110,8 +110,8 @@ void run_sample_batch(struct run *run, struct worker *worker) {
         ray.footprint.spread *= share;
         ray.footprint.width *= share;
         begin_sample(run, worker, place);
-        batch->colours[i] = whitted_trace_met(&run->whitted, &worker->state, &ray,
-                                              met >> i & 1 ? &batch->answers[i] : NULL, worker->state.sampler.key);
+        batch->colours[i] = integrator_radiance_met(run, worker, &ray, met >> i & 1 ? &batch->answers[i] : NULL,
+                                                    worker->state.sampler.key);
     }
 }
 
@@ -119,35 +119,4 @@ void run_sample_batch(struct run *run, struct worker *worker) {
 struct pixel_sample run_first_place(const struct run *run, int64_t x, int64_t y) {
     double at = run->job->settings.pixel_corner ? 0 : 0.5;
     return (struct pixel_sample){x, y, at, at, 0};
-}
-
-/* Whether the first sample is the one in the middle of N x N. */
-bool run_first_counts(const struct run *run) {
-    const struct settings *settings = &run->job->settings;
-    return (settings->samples & 1) && !settings->pixel_corner && run->camera.lens.aperture == 0 && !run->timed;
-}
-
-/* Mean of the N x N samples; where one of them is the first sample again it is not traced twice. */
-struct vec3 run_all_samples(struct run *run, struct worker *worker, int64_t x, int64_t y, const struct vec3 *first) {
-    int n = run->job->settings.samples;
-    bool reuse = run_first_counts(run);
-    struct batch *batch = &worker->batch;
-    struct vec3 sum = {0, 0, 0};
-    int centre = reuse ? n / 2 * n + n / 2 : -1;
-    for (int begin = 0; begin < n * n; begin += PACKET_RAYS) {
-        int end = begin + PACKET_RAYS < n * n ? begin + PACKET_RAYS : n * n;
-        batch->count = 0;
-        for (int k = begin; k < end; k++) {
-            if (k == centre && !first)
-                batch->places[batch->count++] = run_first_place(run, x, y);
-            else if (k != centre)
-                batch->places[batch->count++] =
-                    (struct pixel_sample){x, y, (k % n + 0.5) / n, (k / n + 0.5) / n, (uint64_t)(k + 1)};
-        }
-        run_sample_batch(run, worker);
-        uint32_t next = 0;
-        for (int k = begin; k < end; k++)
-            sum = vec3_add(sum, k == centre && first ? *first : batch->colours[next++]);
-    }
-    return vec3_scale(sum, 1 / ((double)n * (double)n));
 }

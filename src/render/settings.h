@@ -57,6 +57,9 @@ struct caustics {
 };
 enum { PHOTONS_MOST = 100000000, PHOTONS_USUAL = 200000 };
 
+/* How light becomes a picture; render/integrator.c switches over them. */
+#define INTEGRATORS(X) X(INTEGRATOR_WHITTED, "whitted")
+enum integrator_kind { INTEGRATORS(LIST_MEMBER) };
 #define OVERLAYS(X)                                                                                                    \
     X(OVERLAY_NONE, "none")                                                                                            \
     X(OVERLAY_OF_BOXES, "boxes")                                                                                       \
@@ -69,6 +72,7 @@ enum overlay { OVERLAYS(LIST_MEMBER) };
 enum order { TILE_ORDERS(LIST_MEMBER) };
 
 struct settings {
+    enum integrator_kind integrator;
     struct caustics caustics;
     struct lens lens;
     struct shutter shutter;

@@ -235,6 +235,17 @@ static void tell_mark(struct story *story, const struct observed_mark *mark) {
     story->mark_tolerance = mark->tolerance;
 }
 
+static void tell_pixel(struct story *story, const struct observed_pixel *pixel) {
+    story->full = pixel->full;
+    story->marked = pixel->samples > 0;
+    story->samples = pixel->samples;
+    for (struct story_sample *sample = story->sample; sample; sample = sample->next)
+        sample->counts = sample->number > 0 || pixel->first_counts;
+    story->rgb[0] = (float)pixel->colour.x;
+    story->rgb[1] = (float)pixel->colour.y;
+    story->rgb[2] = (float)pixel->colour.z;
+}
+
 static void notice(void *context, const struct observation *what) {
     struct story *story = context;
     switch (what->kind) {
@@ -279,6 +290,9 @@ static void notice(void *context, const struct observation *what) {
         break;
     case OBSERVED_RAY_END:
         end_ray(story, &what->end);
+        break;
+    case OBSERVED_PIXEL:
+        tell_pixel(story, &what->pixel);
         break;
     case OBSERVED_MARK:
         tell_mark(story, &what->mark);

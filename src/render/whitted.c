@@ -4,7 +4,6 @@
 
 #include "material/microfacet.h"
 #include "math/range.h"
-#include "render/cutoff.h"
 #include "render/direct.h"
 #include "render/interface.h"
 
@@ -267,10 +266,6 @@ static struct vec3 trace(struct integrator_state *tracer, const struct ray *ray,
         return vec3_all(0); /* deep paths through glass grow exponentially */
     bool met = world_nearest(tracer->job->world, ray, tracer->scratch, &hit);
     return bring(tracer, ray, met ? &hit : NULL, path);
-}
-
-struct whitted whitted_make(const struct render_job *job) {
-    return (struct whitted){.cutoff = cutoff_weight(job)};
 }
 
 struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *tracer, const struct ray *ray,

@@ -1,17 +1,36 @@
 /* The recursive integrator of Whitted, "An Improved Illumination Model for Shaded Display", CACM 1980, with the rules
- * of SPEC 1.2: own light, reflected and refracted rays with independent counters, media stack, Fresnel. */
+ * of SPEC 1.2: own light, reflected and refracted rays with independent counters, media stack, Fresnel (whitted.c); and
+ * its adaptive anti-aliasing (whitted_pixels.c). */
 #ifndef GRAY_RENDER_WHITTED_H
 #define GRAY_RENDER_WHITTED_H
 
-#include "render/integrator_state.h"
-#include "world/packet.h"
+#include "render/run.h"
 
-/* What all rays of a job share. */
-struct whitted {
-    double cutoff; /* cutoff_weight */
+/* Of one worker. */
+struct whitted_worker {
+    uint64_t marked; /* pixels */
+    /* The first samples of a tile and its rim. */
+    struct vec3 first[(FILM_TILE + 2) * (FILM_TILE + 2)];
 };
 
-struct whitted whitted_make(const struct render_job *job);
+/* Of a run. Owns the photon map and the array of workers. */
+struct whitted {
+    double cutoff; /* cutoff_weight: rays of less weight are not followed */
+    /* -full, or a lens or moving things: what is blurred differs from sample to sample, not from its neighbours */
+    bool full;
+    struct photon_map caustics;
+    struct whitted_worker *workers;
+};
+
+/* See render/integrator.h. `whitted` is zero. */
+bool whitted_create(struct whitted *whitted, struct run *run, int workers, struct render_statistics *statistics,
+                    struct error *error);
+void whitted_destroy(struct whitted *whitted);
+bool whitted_render(struct whitted *whitted, struct run *run, struct worker *worker, const struct rectangle *part);
+bool whitted_refines(const struct run *run, struct vec3 a, struct vec3 b);
+void whitted_repeat(const struct whitted *whitted, struct run *run, struct worker *worker, int64_t x, int64_t y);
+void whitted_add_statistics(const struct whitted *whitted, const struct run *run, struct render_statistics *out);
+
 /* The colour a camera ray brings, clamped to the range of float; key: the random key of this pixel and sample. */
 struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *tracer, const struct ray *ray,
                           uint64_t key);

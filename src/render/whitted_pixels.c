@@ -1,0 +1,247 @@
+/* Adaptive anti-aliasing. A part of a tile samples its pixels and the rim of one pixel round them once (a pixel's first
+ * sample is a function of the pixel alone, so two parts that share a rim agree), marks by neighbours' differences,
+ * samples what is marked N x N times, and is final. */
+#include "render/whitted.h"
+
+#include "base/mem.h"
+#include "render/cutoff.h"
+#include "render/integrator.h"
+#include "render/photon_trace.h"
+
+#include <math.h>
+
+/* Before the first tile; without photons there is no map. */
+static bool send_photons(struct whitted *whitted, struct run *run, int workers, struct render_statistics *out,
+                         struct error *error) {
+    struct photon_statistics photons = {0};
+    if (run->job->settings.caustics.photons == 0)
+        return true;
+    bool ok = photons_make(&whitted->caustics, run->job->world, &run->job->settings, run->pool, &photons, error);
+    out->photons += photons.sent;
+    out->photons_landed += photons.landed;
+    out->photon_rays += photons.rays;
+    out->photon_seconds += photons.seconds;
+    out->photon_map_seconds += photons.map_seconds;
+    for (int i = 0; i < workers; i++)
+        run->workers[i].state.caustics = &whitted->caustics;
+    return ok;
+}
+
+bool whitted_create(struct whitted *whitted, struct run *run, int workers, struct render_statistics *statistics,
+                    struct error *error) {
+    whitted->cutoff = cutoff_weight(run->job);
+    whitted->full = run->job->settings.full || run->timed || run->camera.lens.aperture > 0;
+    whitted->workers = mem_alloc_zero((size_t)workers, sizeof *whitted->workers);
+    if (!whitted->workers)
+        return error_no_memory(error, "the workers of a render");
+    return send_photons(whitted, run, workers, statistics, error);
+}
+
+void whitted_destroy(struct whitted *whitted) {
+    photon_map_destroy(&whitted->caustics);
+    mem_free(whitted->workers);
+}
+
+void whitted_add_statistics(const struct whitted *whitted, const struct run *run, struct render_statistics *out) {
+    for (int i = 0; whitted->workers && i < pool_workers(run->pool); i++)
+        out->marked_pixels += whitted->workers[i].marked;
+}
+
+/* --- marks --- */
+
+static double clamp01(double c) {
+    return c >= 1 ? 1 : c > 0 ? c : 0;
+}
+
+/* What counts is the difference in the picture file. */
+static struct vec3 toned(const struct tone *tone, struct vec3 c) {
+    if (tone_is_plain(tone))
+        return c;
+    return vec3_make(tone_apply(tone, c.x), tone_apply(tone, c.y), tone_apply(tone, c.z));
+}
+
+static double squared_distance(struct vec3 a, struct vec3 b) {
+    struct vec3 d = {clamp01(a.x) - clamp01(b.x), clamp01(a.y) - clamp01(b.y), clamp01(a.z) - clamp01(b.z)};
+    return vec3_dot(d, d);
+}
+
+bool whitted_refines(const struct run *run, struct vec3 a, struct vec3 b) {
+    const struct tone *tone = &run->job->settings.tone;
+    return squared_distance(toned(tone, a), toned(tone, b)) > run->job->settings.side_tolerance;
+}
+
+/* A part of a tile at work. */
+struct part {
+    const struct whitted *whitted;
+    struct run *run;
+    struct worker *worker;
+    struct whitted_worker *own;
+    struct rectangle area; /* with the rim, as far as that is in the picture */
+    bool has_first;        /* the first pass is made */
+};
+
+static struct vec3 *first_at(const struct part *part, int64_t x, int64_t y) {
+    return &part->own->first[(size_t)(y - part->area.y0) * (FILM_TILE + 2) + (size_t)(x - part->area.x0)];
+}
+
+static bool is_marked(const struct part *part, int64_t x, int64_t y) {
+    const struct settings *settings = &part->run->job->settings;
+    const struct rectangle *area = &part->area;
+    struct vec3 own = toned(&settings->tone, *first_at(part, x, y));
+    for (int dy = -1; dy <= 1; dy++) {
+        for (int dx = -1; dx <= 1; dx++) {
+            int64_t nx = x + dx, ny = y + dy;
+            if ((dx == 0 && dy == 0) || nx < area->x0 || nx >= area->x1 || ny < area->y0 || ny >= area->y1)
+                continue;
+            double tolerance = dx == 0 || dy == 0 ? settings->side_tolerance : settings->corner_tolerance;
+            double distance = squared_distance(own, toned(&settings->tone, *first_at(part, nx, ny)));
+            if (distance > tolerance) {
+                observe_mark(part->worker->state.observer, dx, dy, distance, tolerance);
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/* --- samples of a pixel --- */
+
+/* Whether the first sample is the one in the middle of N x N. */
+static bool first_counts(const struct run *run) {
+    const struct settings *settings = &run->job->settings;
+    return (settings->samples & 1) && !settings->pixel_corner && run->camera.lens.aperture == 0 && !run->timed;
+}
+
+/* Sample k of N x N. */
+static struct pixel_sample sample_of_grid(int64_t x, int64_t y, int k, int n) {
+    return (struct pixel_sample){x, y, (k % n + 0.5) / n, (k / n + 0.5) / n, (uint64_t)(k + 1)};
+}
+
+/* Mean of the N x N samples; where one of them is the first sample again it is not traced twice. */
+static struct vec3 all_samples(const struct part *part, int64_t x, int64_t y, const struct vec3 *first) {
+    struct run *run = part->run;
+    int n = run->job->settings.samples;
+    bool reuse = first_counts(run);
+    struct batch *batch = &part->worker->batch;
+    struct vec3 sum = {0, 0, 0};
+    int centre = reuse ? n / 2 * n + n / 2 : -1;
+    for (int begin = 0; begin < n * n; begin += PACKET_RAYS) {
+        int end = begin + PACKET_RAYS < n * n ? begin + PACKET_RAYS : n * n;
+        batch->count = 0;
+        for (int k = begin; k < end; k++) {
+            if (k == centre && !first)
+                batch->places[batch->count++] = run_first_place(run, x, y);
+            else if (k != centre)
+                batch->places[batch->count++] = sample_of_grid(x, y, k, n);
+        }
+        run_sample_batch(run, part->worker);
+        uint32_t next = 0;
+        for (int k = begin; k < end; k++)
+            sum = vec3_add(sum, k == centre && first ? *first : batch->colours[next++]);
+    }
+    return vec3_scale(sum, 1 / ((double)n * (double)n));
+}
+
+void whitted_repeat(const struct whitted *whitted, struct run *run, struct worker *worker, int64_t x, int64_t y) {
+    const struct film *film = run->job->film;
+    int n = run->job->settings.samples;
+    bool marked = film->marked[(size_t)(y - film->y0) * film->width + (size_t)(x - film->x0)];
+    bool has_first = !whitted->full || run->job->settings.keep_first, reuse = first_counts(run);
+    struct pixel_sample place = run_first_place(run, x, y);
+    if (has_first || reuse)
+        (void)run_sample(run, worker, &place);
+    for (int k = 0; marked && k < n * n && !run_stopped(run, worker); k++) {
+        if (reuse && k == n / 2 * n + n / 2)
+            continue;
+        place = sample_of_grid(x, y, k, n);
+        (void)run_sample(run, worker, &place);
+    }
+}
+
+/* --- the two passes --- */
+
+static void store(float out[3], struct vec3 colour) {
+    out[0] = (float)colour.x;
+    out[1] = (float)colour.y;
+    out[2] = (float)colour.z;
+}
+
+static void finish_pixel(const struct part *part, int64_t x, int64_t y) {
+    struct film *film = part->run->job->film;
+    size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
+    const struct vec3 *first = part->has_first ? first_at(part, x, y) : NULL;
+    bool full = part->whitted->full, marked = full || is_marked(part, x, y);
+    struct vec3 colour = marked ? all_samples(part, x, y, first) : *first;
+    store(film->pixels[at].rgb, colour);
+    store(film->pixels[at].first, first ? *first : colour);
+    film->marked[at] = marked;
+    part->own->marked += marked;
+    observe_pixel(part->worker->state.observer,
+                  &(struct observed_pixel){.colour = colour,
+                                           .samples = marked ? part->run->job->settings.samples : 0,
+                                           .full = full,
+                                           .first_counts = !marked || first_counts(part->run)});
+}
+
+/* The first samples of a small square go together. */
+enum { PATCH = 8 };
+_Static_assert((int)(PATCH *PATCH) == (int)PACKET_RAYS, "a patch is a packet");
+
+static void sample_patch(const struct part *part, int64_t x0, int64_t y0) {
+    struct batch *batch = &part->worker->batch;
+    batch->count = 0;
+    for (int64_t y = y0; y < y0 + PATCH && y < part->area.y1; y++) {
+        for (int64_t x = x0; x < x0 + PATCH && x < part->area.x1; x++)
+            batch->places[batch->count++] = run_first_place(part->run, x, y);
+    }
+    run_sample_batch(part->run, part->worker);
+    for (uint32_t i = 0; i < batch->count; i++)
+        *first_at(part, batch->places[i].x, batch->places[i].y) = batch->colours[i];
+}
+
+/* For a viewer: the first pass as far as it is, and what will be sampled again. */
+static void show_marks(const struct part *part, const struct rectangle *tile) {
+    struct film *film = part->run->job->film;
+    for (int64_t y = tile->y0; y < tile->y1; y++) {
+        for (int64_t x = tile->x0; x < tile->x1; x++) {
+            size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
+            store(film->pixels[at].rgb, *first_at(part, x, y));
+            film->marked[at] = part->whitted->full || is_marked(part, x, y) ? FILM_MARK_WAITS : 0;
+        }
+    }
+}
+
+bool whitted_render(struct whitted *whitted, struct run *run, struct worker *worker, const struct rectangle *tile) {
+    const struct settings *settings = &run->job->settings;
+    struct part part = {.whitted = whitted,
+                        .run = run,
+                        .worker = worker,
+                        .own = &whitted->workers[worker->index],
+                        .has_first = !whitted->full || settings->keep_first};
+    int64_t rim = whitted->full ? 0 : 1;
+    struct rectangle area = {tile->x0 - rim, tile->y0 - rim, tile->x1 + rim, tile->y1 + rim};
+    area.x0 = area.x0 < 0 ? 0 : area.x0;
+    area.y0 = area.y0 < 0 ? 0 : area.y0;
+    area.x1 = area.x1 > run->job->width ? run->job->width : area.x1;
+    area.y1 = area.y1 > run->job->height ? run->job->height : area.y1;
+    part.area = area;
+    for (int64_t y = area.y0; y < area.y1 && part.has_first; y += PATCH) {
+        for (int64_t x = area.x0; x < area.x1; x += PATCH) {
+            if (run_stopped(run, worker))
+                return false;
+            sample_patch(&part, x, y);
+        }
+        run_tile_goes_on(run, worker, 0, fmin(1, (double)(y + PATCH - area.y0) / (double)(area.y1 - area.y0)));
+    }
+    if (settings->show_marks && part.has_first)
+        show_marks(&part, tile);
+    for (int64_t y = tile->y0; y < tile->y1; y++) {
+        for (int64_t x = tile->x0; x < tile->x1; x++) {
+            if (run_stopped(run, worker))
+                return false;
+            finish_pixel(&part, x, y);
+        }
+        run_tile_goes_on(run, worker, 1, (double)(y + 1 - tile->y0) / (double)(tile->y1 - tile->y0));
+    }
+    return true;
+}
