@@ -34,15 +34,25 @@ const char *inspect_material(const struct material *link) {
     case MATERIAL_WOOD:
         return "wood";
     case MATERIAL_IMAGE:
-        switch (link->image.target) {
-        case IMAGE_TO_KD:
+        switch (link->changed) {
+        case INPUT_KD:
             return "image";
-        case IMAGE_TO_KS:
+        case INPUT_KS:
             return "image on ks";
-        case IMAGE_TO_EMISSION:
+        case INPUT_SHININESS:
+            return "image on shininess";
+        case INPUT_REFLECT:
+            return "image on reflect";
+        case INPUT_REFRACT:
+            return "image on refract";
+        case INPUT_ROUGHNESS:
+            return "image on roughness";
+        case INPUT_EMISSION:
             return "image on emission";
-        case IMAGE_TO_OPACITY:
+        case INPUT_OPACITY:
             return "image on opacity";
+        case INPUT_COUNT:
+            break;
         }
         return "?";
     case MATERIAL_BUMP:

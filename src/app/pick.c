@@ -165,8 +165,6 @@ static void tell_material(const struct material *material, struct picked *out) {
         base = link;
     }
     pick_words(out->material, words);
-    if (base->kind != MATERIAL_PHONG)
-        return;
     out->material_serial = base->serial;
     for (int part = 0; part < LOOK_PARTS; part++)
         look_part_get(base, (enum look_part)part, out->look[part]);

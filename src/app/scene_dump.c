@@ -87,7 +87,7 @@ static void link_json(struct sheet *sheet, const struct material *link) {
         sheet_print(sheet, ",\"name\":");
         sheet_json(sheet, link->name);
     }
-    if (link->kind == MATERIAL_PHONG) {
+    if (!link->base) {
         sheet_print(sheet, ",\"kd\":");
         sheet_json_vector(sheet, link->phong.kd);
         sheet_print(sheet, ",\"ks\":");
@@ -103,7 +103,7 @@ static void link_words(struct sheet *sheet, const struct material *link) {
         sheet_name(sheet, link->name);
         sheet_print(sheet, "'");
     }
-    if (link->kind == MATERIAL_PHONG)
+    if (!link->base)
         sheet_print(sheet, " kd (%.6g, %.6g, %.6g) ks (%.6g, %.6g, %.6g)", link->phong.kd.x, link->phong.kd.y,
                     link->phong.kd.z, link->phong.ks.x, link->phong.ks.y, link->phong.ks.z);
     sheet_print(sheet, link->base ? " over " : "");

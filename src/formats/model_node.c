@@ -6,6 +6,8 @@
  * times a fiftieth of the picture's size on the surface; norm and glTF's normalTexture are normal maps. */
 #include "formats/model_node.h"
 
+#include "material/material_inputs.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -50,33 +52,26 @@ const struct model *model_asset(struct assets *assets, const char *path, const c
 
 /* --- materials --- */
 
-/* The picture of a map, over `base`; *out is `base` where there is none. */
-static bool over_with_map(struct scene *scene, enum material_kind kind, const struct model_texture *map,
-                          const struct material *base, struct material **out, struct error *error) {
+/* The image of a map; *there is false where there is none. */
+static bool find_map(struct scene *scene, const struct model_texture *map, struct texture_image *out, bool *there,
+                     struct error *error) {
     struct image *image = map->image;
-    *out = NULL;
-    if (!image && !map->path)
+    *there = image || map->path;
+    if (!*there)
         return true;
     if (!image)
         image = assets_image(scene->assets, map->path, error);
-    struct material *m = image ? scene_material(scene, kind, base, error) : NULL;
-    if (!m)
+    if (!image)
         return false;
-    m->image.image = image;
-    m->image.mapping = MAPPING_UV;
-    m->image.filter = map->filter;
-    m->image.wrap = map->wrap_u;
-    m->image.wrap_v = map->wrap_v;
-    m->image.apart = true;
-    for (int k = 0; k < 2; k++) {
-        m->image.scale[k] = map->scale[k];
-        m->image.offset[k] = map->offset[k];
-    }
-    m->image.tint = vec3_all(1);
-    m->image.without_alpha = map->without_alpha;
-    m->image.by_alpha = map->by_alpha;
-    m->image.cutoff = map->cutoff;
-    *out = m;
+    *out = (struct texture_image){.image = image,
+                                  .mapping = MAPPING_UV,
+                                  .filter = map->filter,
+                                  .wrap = map->wrap_u,
+                                  .wrap_v = map->wrap_v,
+                                  .apart = true,
+                                  .scale = {map->scale[0], map->scale[1]},
+                                  .offset = {map->offset[0], map->offset[1]},
+                                  .tint = vec3_all(1)};
     return true;
 }
 
@@ -84,55 +79,83 @@ static struct vec3 or_white(struct vec3 colour) {
     return vec3_max_abs(colour) == 0 ? vec3_all(1) : colour;
 }
 
+/* A map over an input of *top, which becomes what is above; nothing where there is no map. */
+static bool cover(struct scene *scene, const struct model_texture *map, enum material_input input, struct vec3 tint,
+                  const struct material **top, struct error *error) {
+    struct texture_image image;
+    bool there;
+    if (!find_map(scene, map, &image, &there, error) || !there)
+        return !there;
+    image.tint = tint;
+    image.alpha = map->without_alpha ? ALPHA_IGNORED : ALPHA_COVERS;
+    struct material *m = scene_material(scene, MATERIAL_IMAGE, *top, error);
+    if (!m || !material_cover(m, input, &image, &scene->arena, error))
+        return false;
+    *top = m;
+    return true;
+}
+
+/* Likewise. */
+static bool cut(struct scene *scene, const struct model_texture *map, const struct material **top,
+                struct error *error) {
+    struct texture_image image;
+    bool there;
+    if (!find_map(scene, map, &image, &there, error) || !there)
+        return !there;
+    image.alpha = map->by_alpha ? ALPHA_ALONE : ALPHA_DARKENS;
+    struct material *m = scene_material(scene, MATERIAL_IMAGE, *top, error);
+    if (!m || !material_cut(m, &image, map->cutoff, &scene->arena, error))
+        return false;
+    *top = m;
+    return true;
+}
+
+static bool raise_map(struct scene *scene, const struct model_texture *map, enum material_kind kind, double height,
+                      const struct material **top, struct error *error) {
+    struct relief relief = {.kind = kind, .height = height, .relative = kind == MATERIAL_BUMP};
+    bool there;
+    if (!find_map(scene, map, &relief.image, &there, error) || !there)
+        return !there;
+    struct material *m = scene_material(scene, kind, *top, error);
+    if (!m || !material_raise(m, &relief, &scene->arena, error))
+        return false;
+    *top = m;
+    return true;
+}
+
+static bool split_metal(struct scene *scene, const struct model_material *from, const struct material **top,
+                        struct error *error) {
+    struct texture_image image;
+    bool there;
+    if (!find_map(scene, &from->map_metal, &image, &there, error))
+        return false;
+    if (!there && !from->by_metal)
+        return true;
+    struct material *m = scene_material(scene, MATERIAL_METAL, *top, error);
+    if (!m || !material_split_metal(m, there ? &image : NULL, from->metallic, from->roughness, from->f0, &scene->arena,
+                                    error))
+        return false;
+    *top = m;
+    return true;
+}
+
 /* The maps of everything but kd, one above the other. */
 static const struct material *with_maps(struct scene *scene, const struct model_material *from,
                                         const struct material *top, struct error *error) {
     bool shiny = from->illum != 0 && from->illum != 1 && !from->by_metal;
-    struct material *m;
-    if (!over_with_map(scene, MATERIAL_METAL, &from->map_metal, top, &m, error))
-        return NULL;
-    if (from->by_metal && !m && !(m = scene_material(scene, MATERIAL_METAL, top, error)))
-        return NULL;
-    if (m) {
-        m->image.metallic = from->metallic;
-        m->image.roughness = from->roughness;
-        m->image.f0 = from->f0;
-        top = m;
-    }
-    if (shiny && !over_with_map(scene, MATERIAL_IMAGE, &from->map_ks, top, &m, error))
-        return NULL;
-    if (shiny && m) {
-        m->image.target = IMAGE_TO_KS;
-        m->image.tint = or_white(from->ks);
-        top = m;
-    }
-    if (!over_with_map(scene, MATERIAL_IMAGE, &from->map_ke, top, &m, error))
-        return NULL;
-    if (m) {
-        m->image.target = IMAGE_TO_EMISSION;
-        m->image.tint = or_white(from->ke);
-        top = m;
-    }
-    if (!over_with_map(scene, MATERIAL_IMAGE, &from->map_d, top, &m, error))
-        return NULL;
-    if (m) {
-        m->image.target = IMAGE_TO_OPACITY;
-        top = m;
-    }
-    if (!over_with_map(scene, MATERIAL_BUMP, &from->map_bump, top, &m, error))
-        return NULL;
-    if (m) {
-        m->image.height = RELIEF_HEIGHT * from->map_bump.strength;
-        m->image.relative = true;
-        top = m;
-    }
-    if (!over_with_map(scene, MATERIAL_NORMAL, &from->map_normal, top, &m, error))
-        return NULL;
-    if (m) {
-        m->image.height = from->map_normal.strength;
-        top = m;
-    }
-    return top;
+    bool ok = split_metal(scene, from, &top, error) &&
+              (!shiny || cover(scene, &from->map_ks, INPUT_KS, or_white(from->ks), &top, error)) &&
+              cover(scene, &from->map_ke, INPUT_EMISSION, or_white(from->ke), &top, error) &&
+              cut(scene, &from->map_d, &top, error) &&
+              raise_map(scene, &from->map_bump, MATERIAL_BUMP, RELIEF_HEIGHT * from->map_bump.strength, &top, error) &&
+              raise_map(scene, &from->map_normal, MATERIAL_NORMAL, from->map_normal.strength, &top, error);
+    return ok ? top : NULL;
+}
+
+/* kd times the colours of the mesh's vertices. */
+static bool by_vertex(struct scene *scene, struct material *m, struct error *error) {
+    const struct texture *colours = texture_keep(&scene->arena, texture_vertex_colour(), error);
+    return colours && material_multiply(m, INPUT_KD, colours, &scene->arena, error);
 }
 
 static const struct material *make_material(struct scene *scene, const struct model_material *from,
@@ -149,7 +172,6 @@ static const struct material *make_material(struct scene *scene, const struct mo
     m->phong.reflect = from->illum >= 3 && from->illum <= 9 ? 1 : from->reflect;
     m->phong.ior = bends && from->ior >= 1 ? from->ior : 1;
     m->phong.two_sided = from->two_sided;
-    m->phong.by_vertex = from->by_vertex;
     m->phong.emission = from->map_ke.image || from->map_ke.path ? vec3_all(0) : from->ke;
     m->phong.unlit = from->unlit;
     if (clear) {
@@ -164,12 +186,12 @@ static const struct material *make_material(struct scene *scene, const struct mo
     struct vec3 tint = m->phong.kd;
     if (vec3_max_abs(tint) == 0 && from->map_kd.name && from->illum >= 0)
         tint = vec3_all(from->dissolve); /* exporters that write a black Kd beside a picture mean the picture */
-    struct material *mapped;
-    if (!over_with_map(scene, MATERIAL_IMAGE, &from->map_kd, m, &mapped, error))
+    if (from->by_vertex && !by_vertex(scene, m, error))
         return NULL;
-    if (mapped)
-        mapped->image.tint = tint;
-    const struct material *top = with_maps(scene, from, mapped ? mapped : m, error);
+    const struct material *top = m;
+    if (!cover(scene, &from->map_kd, INPUT_KD, tint, &top, error))
+        return NULL;
+    top = with_maps(scene, from, top, error);
     if (!top || !clear || (from->illum != 7 && !from->fresnel))
         return top;
     return scene_material(scene, MATERIAL_FRESNEL, top, error);

@@ -10,6 +10,11 @@
 /* Where the whole primitive lies: anywhere; behind the tangent plane of the hit (convex shapes); in it (flat ones). */
 enum hit_hull { HULL_NONE, HULL_BEHIND, HULL_FLAT };
 
+/* What a shape supplies to place images on it: u and v with v from below (or nothing, has_uv); u and v on one of
+ * several upright faces, each an image of its own with v from above; a pattern_normal that points from the centre of a
+ * ball. */
+enum surface_layout { LAYOUT_UV, LAYOUT_FACES, LAYOUT_SPHERE };
+
 /* A surface point in the object space of the shape, filled by shape_describe. */
 struct surface {
     struct vec3 point;          /* in the shape's object space */
@@ -19,6 +24,7 @@ struct surface {
     struct vec3 pattern_normal; /* geometric, in that space, as the operand has it (not flipped) */
     bool has_uv;
     bool has_colour;
+    enum surface_layout layout;
     struct vec3 colour; /* of the vertices, interpolated */
     double u, v;
     struct vec3 dpdu, dpdv; /* object space; zero when has_uv is false */
@@ -34,6 +40,7 @@ static inline void surface_make(struct surface *out, struct vec3 point, struct v
     out->point = out->pattern_point = point;
     out->normal = out->shading_normal = out->pattern_normal = normal;
     out->has_uv = out->has_colour = false;
+    out->layout = LAYOUT_UV;
     out->colour = out->dpdu = out->dpdv = zero;
     out->u = out->v = 0;
     out->error = error;
@@ -60,7 +67,7 @@ struct hit {
     uint32_t leaf, part;
     uint32_t material; /* index into the world's materials */
     enum hit_hull hull;
-    bool on_sphere, on_box; /* what kind of shape (CSG: operand) made the surface; some mappings depend on it */
+    enum surface_layout layout;
     double time;
 };
 

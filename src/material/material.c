@@ -1,155 +1,86 @@
-/* Evaluating a chain of decorators from the base outwards: each link changes what the links below left. Patterns use
- * the point in the object space of the operand that made the surface, so they stick to the object. */
+/* Evaluating the inputs of a material. One without textures is a copy of its numbers, field by field: clearing the
+ * result as a whole would take longer than all the rest. Textures use the point in the object space of the operand that
+ * made the surface, so they stick to the object. */
 #include "material/material.h"
 
-#include "material/image_place.h"
 #include "material/relief.h"
-#include "math/noise.h"
 
-static struct vec3 mix_colours(double ratio, struct vec3 kd, struct vec3 mix) {
-    return vec3_add(vec3_scale(kd, ratio), vec3_scale(mix, 1 - ratio));
+static const struct phong *numbers_of(const struct material *material) {
+    return material->origin ? &material->origin->phong : &material->phong;
 }
 
-static void image_over(const struct material *material, const struct hit *hit, struct surface_look *look) {
-    struct image_place place;
-    if (!image_place(material, hit, &place))
-        return;
-    struct rgba texel = image_at(material, &place);
-    bool opaque = material->image.without_alpha && texel.a > 0;
-    double share = opaque ? 1 / texel.a : 1;
-    struct vec3 colour = vec3_scale(vec3_make(texel.r, texel.g, texel.b), share);
-    if (material->image.apart)
-        colour = vec3_mul(colour, material->image.tint);
-    double rest = opaque ? 0 : 1 - texel.a, cover;
-    switch (material->image.target) {
-    case IMAGE_TO_KD:
-        look->kd = vec3_add(colour, vec3_scale(look->kd, rest));
-        return;
-    case IMAGE_TO_KS:
-        look->ks = vec3_add(colour, vec3_scale(look->ks, rest));
-        return;
-    case IMAGE_TO_EMISSION:
-        look->emission = vec3_add(colour, vec3_scale(look->emission, rest));
-        return;
-    case IMAGE_TO_OPACITY:
-        cover = material->image.by_alpha ? texel.a : (colour.x + colour.y + colour.z) / 3;
-        if (material->image.cutoff > 0)
-            cover = cover >= material->image.cutoff ? 1 : 0;
-        look->opacity *= cover > 1 ? 1 : cover;
-        return;
-    }
+static void copy_numbers(const struct phong *numbers, struct surface_look *out) {
+    out->kd = numbers->kd;
+    out->ks = numbers->ks;
+    out->shininess = numbers->shininess;
+    out->reflect = numbers->reflect;
+    out->refract = numbers->refract;
+    out->ior = numbers->ior;
+    out->has_ior = numbers->has_ior;
+    out->two_sided = numbers->two_sided;
+    out->unlit = numbers->unlit;
+    out->opacity = 1;
+    out->highlight = numbers->highlight;
+    out->emission = numbers->emission;
+    out->absorption = numbers->absorption;
+    out->roughness = numbers->roughness;
+    out->glossy_samples = numbers->glossy_samples;
 }
 
-/* Metallic and roughness by a picture, after glTF 2.0: blue times metallic, green times roughness; the colour below is
- * that of both kinds of surface. The formulas of formats/gltf_look.c, point by point. */
-static void metal_over(const struct material *material, const struct hit *hit, struct surface_look *look) {
-    struct image_place place;
-    double metal = material->image.metallic, rough = material->image.roughness;
-    if (material->image.image && image_place(material, hit, &place)) {
-        struct rgba texel = image_at(material, &place);
-        double share = texel.a > 0 ? 1 / texel.a : 0;
-        metal *= texel.b * share;
-        rough *= texel.g * share;
-    }
-    struct vec3 colour = look->kd;
-    double r4 = rough * rough * rough * rough, n = 2 / fmax(r4, 1e-3) - 2;
-    look->kd = vec3_scale(colour, 1 - metal);
-    if (look->refract > 0) /* what shines through has the filter in ks */
-        return;
-    look->ks = vec3_add(vec3_all(material->image.f0 * (1 - metal)), vec3_scale(colour, metal));
-    look->shininess = n < 1 ? 1 : n > 2000 ? 2000 : n;
-    look->reflect = metal * (1 - rough) * (1 - rough);
+static void read_colour(const struct texture *texture, struct texture_reader *reader, struct vec3 *out) {
+    if (texture)
+        *out = texture_read_colour(texture, reader);
 }
 
-/* One link of the chain over what the links below left. */
-static void material_link(const struct material *material, const struct hit *hit, struct surface_look *look) {
-    struct vec3 p = hit->pattern_point;
-    switch (material->kind) {
-    case MATERIAL_PHONG:
-        look->kd = material->phong.kd;
-        look->ks = material->phong.ks;
-        look->shininess = material->phong.shininess;
-        look->reflect = material->phong.reflect;
-        look->refract = material->phong.refract;
-        look->ior = material->phong.ior;
-        look->has_ior = material->phong.has_ior;
-        look->two_sided = material->phong.two_sided;
-        look->unlit = material->phong.unlit;
-        look->normal = hit->normal;
-        look->opacity = 1;
-        look->highlight = material->phong.highlight;
-        look->emission = material->phong.emission;
-        look->absorption = material->phong.absorption;
-        look->roughness = material->phong.roughness;
-        look->glossy_samples = material->phong.glossy_samples;
-        look->fresnel = false;
-        if (material->phong.by_vertex && hit->has_colour)
-            look->kd = vec3_mul(look->kd, hit->colour);
-        break;
-    case MATERIAL_MARBLE: {
-        double ratio = noise_marble(p.x, p.y, p.z, material->marble.f, material->marble.multiplier,
-                                    material->marble.vein_frequency, material->marble.interpolation);
-        look->kd = mix_colours(ratio, look->kd, material->marble.mix);
-        break;
-    }
-    case MATERIAL_WOOD: {
-        double ratio =
-            noise_wood(p.x, p.y, p.z, material->wood.f, material->wood.density, material->wood.interpolation);
-        look->kd = mix_colours(ratio, look->kd, material->wood.mix);
-        break;
-    }
-    case MATERIAL_IMAGE:
-        image_over(material, hit, look);
-        break;
-    case MATERIAL_BUMP:
-        relief_bump(material, hit, look);
-        break;
-    case MATERIAL_NORMAL:
-        relief_normal(material, hit, look);
-        break;
-    case MATERIAL_METAL:
-        metal_over(material, hit, look);
-        break;
-    case MATERIAL_FRESNEL:
-        look->fresnel = true;
-        break;
-    }
+static void read_number(const struct texture *texture, struct texture_reader *reader, double *out) {
+    if (texture)
+        *out = texture_read_scalar(texture, reader);
 }
 
 void material_look(const struct material *material, const struct hit *hit, struct surface_look *out) {
-    material_look_told(material, hit, out, NULL, NULL);
+    const struct texture *const *inputs = material->inputs;
+    struct texture_reader reader;
+    copy_numbers(numbers_of(material), out);
+    out->normal = hit->normal;
+    out->fresnel = material->fresnel;
+    texture_reader_init(&reader, hit, numbers_of(material));
+    read_colour(inputs[INPUT_KD], &reader, &out->kd);
+    read_colour(inputs[INPUT_KS], &reader, &out->ks);
+    read_number(inputs[INPUT_SHININESS], &reader, &out->shininess);
+    read_number(inputs[INPUT_REFLECT], &reader, &out->reflect);
+    read_number(inputs[INPUT_REFRACT], &reader, &out->refract);
+    read_number(inputs[INPUT_ROUGHNESS], &reader, &out->roughness);
+    read_colour(inputs[INPUT_EMISSION], &reader, &out->emission);
+    read_number(inputs[INPUT_OPACITY], &reader, &out->opacity);
+    if (material->relief)
+        relief_turn(material->relief, hit, &out->normal);
 }
 
 void material_look_told(const struct material *material, const struct hit *hit, struct surface_look *out,
                         material_told *told, void *context) {
     const struct material *chain[MATERIAL_DEPTH];
     int depth = 0;
-    for (const struct material *link = material; link && depth < MATERIAL_DEPTH; link = link->base)
+    for (const struct material *link = told ? material : NULL; link && depth < MATERIAL_DEPTH; link = link->base)
         chain[depth++] = link;
     while (depth > 0) {
-        material_link(chain[--depth], hit, out);
-        if (told)
-            told(context, chain[depth], out);
+        material_look(chain[--depth], hit, out);
+        told(context, chain[depth], out);
     }
+    if (!told)
+        material_look(material, hit, out);
 }
 
 bool material_has_relief(const struct material *material) {
-    for (const struct material *link = material; link; link = link->base)
-        if (link->kind == MATERIAL_BUMP || link->kind == MATERIAL_NORMAL)
-            return true;
-    return false;
+    return material->relief != NULL;
 }
 
 bool material_has_holes(const struct material *material) {
-    for (const struct material *link = material; link; link = link->base)
-        if (link->kind == MATERIAL_IMAGE && link->image.target == IMAGE_TO_OPACITY)
-            return true;
-    return false;
+    return material->inputs[INPUT_OPACITY] != NULL;
 }
 
 bool material_has_image(const struct material *material) {
-    for (const struct material *link = material; link; link = link->base)
-        if (link->kind == MATERIAL_IMAGE || link->kind == MATERIAL_METAL)
+    for (int i = 0; i < INPUT_COUNT; i++)
+        if (material->inputs[i] && material->inputs[i]->has_image)
             return true;
     return material_has_relief(material);
 }
@@ -178,50 +109,31 @@ void material_shading(const struct surface_look *look, enum specular_kind specul
 }
 
 bool material_is_transparent(const struct material *material, double *ior) {
-    bool fresnel = false;
-    const struct material *link = material;
-    for (; link->base; link = link->base)
-        fresnel = fresnel || link->kind == MATERIAL_FRESNEL;
-    if (link->kind != MATERIAL_PHONG || !link->phong.has_ior)
+    const struct phong *numbers = numbers_of(material);
+    if (!numbers->has_ior)
         return false;
-    *ior = link->phong.ior;
-    return fresnel || link->phong.refract > 0;
+    *ior = numbers->ior;
+    return material->fresnel || numbers->refract > 0;
 }
 
 struct vec3 material_absorption(const struct material *material) {
-    const struct material *link = material;
-    while (link->base)
-        link = link->base;
-    return link->kind == MATERIAL_PHONG ? link->phong.absorption : vec3_all(0);
+    return numbers_of(material)->absorption;
 }
 
 struct vec3 material_emission(const struct material *material) {
-    const struct material *link = material;
-    while (link->base)
-        link = link->base;
-    return link->kind == MATERIAL_PHONG ? link->phong.emission : vec3_all(0);
+    return numbers_of(material)->emission;
 }
 
 bool material_has_ior(const struct material *material) {
-    const struct material *link = material;
-    while (link->base)
-        link = link->base;
-    return link->kind == MATERIAL_PHONG && link->phong.has_ior;
+    return numbers_of(material)->has_ior;
 }
 
+/* What textures make of the highlight's colour is not known here; it may be white. */
 double material_specular(const struct material *material) {
-    bool fresnel = false, filtered = false;
-    double metal = 0;
-    const struct material *link = material;
-    for (; link->base; link = link->base) {
-        fresnel = fresnel || link->kind == MATERIAL_FRESNEL;
-        filtered = filtered || (link->kind == MATERIAL_IMAGE && link->image.target == IMAGE_TO_KS);
-        if (link->kind == MATERIAL_METAL) /* what a picture makes of it is not known here */
-            metal = link->image.image ? 1 : link->image.metallic * (1 - link->image.roughness);
-    }
-    if (link->kind != MATERIAL_PHONG)
-        return 0;
-    double amount = fresnel ? 1 : link->phong.reflect + link->phong.refract;
-    double own = amount > 0 ? amount * (filtered ? 1 : vec3_max_abs(link->phong.ks)) : 0;
+    const struct phong *numbers = numbers_of(material);
+    bool filtered = material->inputs[INPUT_KS] && !material->metal;
+    double metal = material->metal ? material->metal->specular : 0;
+    double amount = material->fresnel ? 1 : numbers->reflect + numbers->refract;
+    double own = amount > 0 ? amount * (filtered ? 1 : vec3_max_abs(numbers->ks)) : 0;
     return own > metal ? own : metal;
 }

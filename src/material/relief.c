@@ -12,12 +12,12 @@
  * programs write it. */
 #include "material/relief.h"
 
-#include "material/image_place.h"
+#include "material/texture_mapping.h"
 
-static double height_at(const struct material *material, struct image_place place, double du, double dv) {
-    place.u += du;
-    place.v += dv;
-    struct rgba texel = image_at(material, &place);
+static double height_at(const struct texture_image *image, struct texcoord at, double du, double dv) {
+    at.u += du;
+    at.v += dv;
+    struct rgba texel = texture_texel(image, &at);
     return (texel.r + texel.g + texel.b) / 3;
 }
 
@@ -27,49 +27,59 @@ static double step_of(double width, uint32_t texels) {
     return width > texel ? fmin(width, 1) : texel;
 }
 
-void relief_bump(const struct material *material, const struct hit *hit, struct surface_look *look) {
-    struct image_place place;
-    if (!image_place(material, hit, &place))
+static void turn_by_heights(const struct relief *relief, const struct hit *hit, struct vec3 *normal) {
+    const struct texture_image *image = &relief->image;
+    struct texcoord at;
+    if (!texture_coordinates(image, hit, &at))
         return;
-    struct vec3 n = vec3_cross(place.dpdu, place.dpdv);
+    struct vec3 n = vec3_cross(at.dpdu, at.dpdv);
     double area = vec3_length(n);
     if (!(area > 0) || !isfinite(area))
         return;
-    double step_u = step_of(place.width_u, image_width(material->image.image));
-    double step_v = step_of(place.width_v, image_height(material->image.image));
-    double f_u = height_at(material, place, 0.5 * step_u, 0) - height_at(material, place, -0.5 * step_u, 0);
-    double f_v = height_at(material, place, 0, 0.5 * step_v) - height_at(material, place, 0, -0.5 * step_v);
-    double height = material->image.relative ? material->image.height * sqrt(area) : material->image.height;
-    struct vec3 up = material->image.relative ? hit->normal_geometric : hit->raise;
+    double step_u = step_of(at.width_u, image_width(image->image));
+    double step_v = step_of(at.width_v, image_height(image->image));
+    double f_u = height_at(image, at, 0.5 * step_u, 0) - height_at(image, at, -0.5 * step_u, 0);
+    double f_v = height_at(image, at, 0, 0.5 * step_v) - height_at(image, at, 0, -0.5 * step_v);
+    double height = relief->relative ? relief->height * sqrt(area) : relief->height;
+    struct vec3 up = relief->relative ? hit->normal_geometric : hit->raise;
     f_u *= height / step_u;
     f_v *= height / step_v;
     if (f_u == 0 && f_v == 0)
         return;
-    struct vec3 d = vec3_add(vec3_scale(vec3_cross(place.dpdu, up), f_v), vec3_scale(vec3_cross(up, place.dpdv), f_u));
+    struct vec3 d = vec3_add(vec3_scale(vec3_cross(at.dpdu, up), f_v), vec3_scale(vec3_cross(up, at.dpdv), f_u));
     double outward = vec3_dot(n, hit->normal_geometric) < 0 ? -1 / area : 1 / area;
-    struct vec3 turned = vec3_add_scaled(look->normal, d, outward);
+    struct vec3 turned = vec3_add_scaled(*normal, d, outward);
     if (vec3_length_squared(turned) > 0)
-        look->normal = vec3_normalize(turned);
+        *normal = vec3_normalize(turned);
 }
 
-void relief_normal(const struct material *material, const struct hit *hit, struct surface_look *look) {
-    struct image_place place;
-    if (!image_place(material, hit, &place))
+static void turn_to_colours(const struct relief *relief, const struct hit *hit, struct vec3 *normal) {
+    struct texcoord at;
+    if (!texture_coordinates(&relief->image, hit, &at))
         return;
-    struct rgba texel = image_at(material, &place);
-    double flat = image_bits(material->image.image) == 8 ? 128.0 / 255 : 32768.0 / 65535;
+    struct rgba texel = texture_texel(&relief->image, &at);
+    double flat = image_bits(relief->image.image) == 8 ? 128.0 / 255 : 32768.0 / 65535;
     if (!(texel.a > 0))
         return;
-    double x = 2 * material->image.height * (texel.r / texel.a - flat);
-    double y = 2 * material->image.height * (texel.g / texel.a - flat), z = 2 * texel.b / texel.a - 1;
-    struct vec3 n = look->normal, right = vec3_add_scaled(place.dpdu, n, -vec3_dot(place.dpdu, n));
+    double x = 2 * relief->height * (texel.r / texel.a - flat);
+    double y = 2 * relief->height * (texel.g / texel.a - flat), z = 2 * texel.b / texel.a - 1;
+    struct vec3 n = *normal, right = vec3_add_scaled(at.dpdu, n, -vec3_dot(at.dpdu, n));
     if ((x == 0 && y == 0) || !(vec3_length_squared(right) > 0))
         return;
     right = vec3_normalize(right);
     struct vec3 top = vec3_cross(n, right);
-    if (vec3_dot(top, place.dpdv) > 0)
+    if (vec3_dot(top, at.dpdv) > 0)
         top = vec3_negate(top);
     struct vec3 turned = vec3_add_scaled(vec3_add_scaled(vec3_scale(n, z), right, x), top, y);
     if (vec3_length_squared(turned) > 0)
-        look->normal = vec3_normalize(turned);
+        *normal = vec3_normalize(turned);
+}
+
+void relief_turn(const struct relief *relief, const struct hit *hit, struct vec3 *normal) {
+    if (relief->below)
+        relief_turn(relief->below, hit, normal);
+    if (relief->kind == MATERIAL_NORMAL)
+        turn_to_colours(relief, hit, normal);
+    else
+        turn_by_heights(relief, hit, normal);
 }

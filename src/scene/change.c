@@ -303,7 +303,7 @@ static struct material *material_of(const struct laying *l, uint32_t serial) {
 
 static void change_material(struct laying *l) {
     struct material *material = material_of(l, l->change->serial);
-    if (!material || material->kind != MATERIAL_PHONG) {
+    if (!material || material->base) {
         tell_missing(l, "the material");
         return;
     }
@@ -356,15 +356,20 @@ static const struct material *own_material(struct laying *l, const struct materi
     struct material *other = material_of(l, serial), *copy = own->first;
     if (other)
         other->serial = 0;
+    struct material *base = copy;
+    while (base->base)
+        base = (struct material *)(uintptr_t)base->base;
     for (const struct material *link = like;; link = link->base) {
-        struct material *base = (struct material *)(uintptr_t)copy->base, *older = copy->older;
+        struct material *below = (struct material *)(uintptr_t)copy->base, *older = copy->older;
         *copy = *link;
-        copy->base = base;
+        copy->base = below;
+        copy->origin = base;
         copy->older = older;
-        if (!base)
+        if (!below)
             break;
-        copy = base;
+        copy = below;
     }
+    copy->origin = NULL;
     copy->serial = serial;
     return own->first;
 }

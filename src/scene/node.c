@@ -2,6 +2,7 @@
 #include "scene/node.h"
 
 #include "base/hash.h"
+#include "material/material_inputs.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -132,9 +133,7 @@ struct material *scene_material(struct scene *scene, enum material_kind kind, co
         error_no_memory(error, "a material");
         return NULL;
     }
-    material->kind = kind;
-    material->base = base;
-    material->depth = depth;
+    material_derive(material, kind, base);
     material->serial = ++scene->material_count;
     material->older = scene->last_material;
     scene->last_material = material;

@@ -68,9 +68,9 @@ struct node {
     const char *const *slot_names; /* as many, or NULL */
     uint32_t slot_count;
     enum node_cull cull;
-    const struct material *texture; /* set_texture: a MATERIAL_IMAGE template whose base is filled in when flattened */
-    const struct material *relief;  /* set_bump: a MATERIAL_BUMP or MATERIAL_NORMAL template, likewise */
-    enum node_csg operation;        /* NODE_CSG */
+    const struct texture_image *texture; /* set_texture: over kd of the material; the mapping is that of the shape */
+    const struct relief *relief;         /* set_bump, likewise */
+    enum node_csg operation;             /* NODE_CSG */
     struct node *const *operands;
     uint32_t operand_count;
 };

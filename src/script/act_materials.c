@@ -3,6 +3,7 @@
 #include "script/context.h"
 
 #include "base/file.h"
+#include "material/material_inputs.h"
 
 #include <string.h>
 
@@ -46,27 +47,25 @@ bool act_rr_material(struct context *context, const struct value *args, struct r
     return give(result, m);
 }
 
+/* The pattern mixes kd with another colour. */
+static bool pattern_over(struct context *context, enum material_kind kind, const struct material *base,
+                         struct texture pattern, struct vec3 mix, struct result *result, struct error *error) {
+    struct material *m = scene_material(&context->scene, kind, base, error);
+    return m && material_mix_kd(m, pattern, mix, &context->scene.arena, error) && give(result, m);
+}
+
 bool act_marble(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    struct material *m = scene_material(&context->scene, MATERIAL_MARBLE, args[MARBLE_MATERIAL].material, error);
-    if (m) {
-        m->marble.f = args[MARBLE_F].number;
-        m->marble.multiplier = args[MARBLE_MULTIPLIER].number;
-        m->marble.vein_frequency = args[MARBLE_VEIN].number;
-        m->marble.interpolation = (int)args[MARBLE_INTERP].number;
-        m->marble.mix = args[MARBLE_MIX].vector;
-    }
-    return give(result, m);
+    struct texture pattern = texture_marble(args[MARBLE_F].number, args[MARBLE_MULTIPLIER].number,
+                                            args[MARBLE_VEIN].number, (int)args[MARBLE_INTERP].number);
+    return pattern_over(context, MATERIAL_MARBLE, args[MARBLE_MATERIAL].material, pattern, args[MARBLE_MIX].vector,
+                        result, error);
 }
 
 bool act_wood(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    struct material *m = scene_material(&context->scene, MATERIAL_WOOD, args[WOOD_MATERIAL].material, error);
-    if (m) {
-        m->wood.f = args[WOOD_F].number;
-        m->wood.density = args[WOOD_DENSITY].number;
-        m->wood.interpolation = (int)args[WOOD_INTERP].number;
-        m->wood.mix = args[WOOD_MIX].vector;
-    }
-    return give(result, m);
+    struct texture pattern =
+        texture_wood(args[WOOD_F].number, args[WOOD_DENSITY].number, (int)args[WOOD_INTERP].number);
+    return pattern_over(context, MATERIAL_WOOD, args[WOOD_MATERIAL].material, pattern, args[WOOD_MIX].vector, result,
+                        error);
 }
 
 bool act_fresnel(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -95,51 +94,60 @@ struct image *act_find_image(struct context *context, const struct value *value,
     return image;
 }
 
-void act_image_defaults(struct material *material, const struct value *value, struct image *image) {
-    if (value->material)
-        material->image = value->material->image;
-    else
-        material->image.filter = IMAGE_MIPMAP, material->image.wrap = IMAGE_REPEAT;
-    material->image.image = image;
+static void image_defaults(struct texture_image *out, const struct value *value, struct image *image) {
+    *out =
+        value->texture ? value->texture->image : (struct texture_image){.filter = IMAGE_MIPMAP, .wrap = IMAGE_REPEAT};
+    out->image = image;
 }
 
-/* A picture over `base`; `lookup` are the fields counted from LOOKUP_FILTER. */
-static struct material *image_over(struct context *context, enum material_kind kind, const struct value *image_value,
-                                   const struct value *lookup, const struct material *base, struct error *error) {
-    struct image *image = act_find_image(context, image_value, error);
-    struct material *m = image ? scene_material(&context->scene, kind, base, error) : NULL;
-    if (!m)
-        return NULL;
-    act_image_defaults(m, image_value, image);
-    m->image.mapping = MAPPING_BY_SHAPE;
+/* `lookup` are the fields counted from LOOKUP_FILTER. */
+static bool read_image(struct context *context, const struct value *value, const struct value *lookup,
+                       struct texture_image *out, struct error *error) {
+    struct image *image = act_find_image(context, value, error);
+    if (!image)
+        return false;
+    image_defaults(out, value, image);
+    out->mapping = MAPPING_BY_SHAPE;
     if (lookup[LOOKUP_FILTER].given)
-        m->image.filter = (enum image_filter)lookup[LOOKUP_FILTER].choice;
+        out->filter = (enum image_filter)lookup[LOOKUP_FILTER].choice;
     if (lookup[LOOKUP_WRAP].given)
-        m->image.wrap = m->image.wrap_v = (enum image_wrap)lookup[LOOKUP_WRAP].choice;
+        out->wrap = out->wrap_v = (enum image_wrap)lookup[LOOKUP_WRAP].choice;
     if (lookup[LOOKUP_FLIP_U].given)
-        m->image.flip_u = lookup[LOOKUP_FLIP_U].boolean;
+        out->flip_u = lookup[LOOKUP_FLIP_U].boolean;
     const struct value *tiles = &lookup[LOOKUP_TILES], *offset = &lookup[LOOKUP_OFFSET];
-    if ((tiles->given || offset->given) && !m->image.apart) {
-        m->image.apart = true;
-        m->image.scale[0] = m->image.scale[1] = 1;
-        m->image.tint = vec3_all(1);
-        m->image.wrap_v = m->image.wrap;
+    if ((tiles->given || offset->given) && !out->apart) {
+        out->apart = true;
+        out->scale[0] = out->scale[1] = 1;
+        out->tint = vec3_all(1);
+        out->wrap_v = out->wrap;
     }
     if (tiles->given)
-        m->image.scale[0] = tiles->vector.x, m->image.scale[1] = tiles->vector.y;
+        out->scale[0] = tiles->vector.x, out->scale[1] = tiles->vector.y;
     if (offset->given)
-        m->image.offset[0] = offset->vector.x, m->image.offset[1] = offset->vector.y;
-    return m;
+        out->offset[0] = offset->vector.x, out->offset[1] = offset->vector.y;
+    return true;
 }
 
-static bool td_material(struct context *context, const struct value *args, enum image_mapping mapping,
+/* The image over an input of the material below. */
+static bool image_over(struct context *context, const struct texture_image *image, enum material_input input,
+                       const struct material *base, struct result *result, struct error *error) {
+    struct arena *arena = &context->scene.arena;
+    struct material *m = scene_material(&context->scene, MATERIAL_IMAGE, base, error);
+    if (!m)
+        return false;
+    bool ok = input == INPUT_OPACITY ? material_cut(m, image, 0, arena, error)
+                                     : material_cover(m, input, image, arena, error);
+    return ok && give(result, m);
+}
+
+static bool td_material(struct context *context, const struct value *args, enum texture_mapping mapping,
                         struct result *result, struct error *error) {
     struct value lookup[LOOKUP_COUNT] = {[LOOKUP_FILTER] = args[IMAGE_FILTER], [LOOKUP_FLIP_U] = args[IMAGE_FLIP_U]};
-    struct material *m =
-        image_over(context, MATERIAL_IMAGE, &args[IMAGE_PNG], lookup, args[IMAGE_MATERIAL].material, error);
-    if (m)
-        m->image.mapping = mapping;
-    return give(result, m);
+    struct texture_image image;
+    if (!read_image(context, &args[IMAGE_PNG], lookup, &image, error))
+        return false;
+    image.mapping = mapping;
+    return image_over(context, &image, INPUT_KD, args[IMAGE_MATERIAL].material, result, error);
 }
 
 bool act_td_cube(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -150,53 +158,88 @@ bool act_td_sphere(struct context *context, const struct value *args, struct res
     return td_material(context, args, MAPPING_SPHERE, result, error);
 }
 
-/* A texture is an image material without a base; node:set_texture copies it. */
-bool act_texture(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    return give(result, image_over(context, MATERIAL_IMAGE, &args[TEXTURE_FILE], &args[TEXTURE_LOOKUP], NULL, error));
-}
-
 bool act_image_material(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    static const enum image_target targets[] = {IMAGE_TO_KD, IMAGE_TO_KS, IMAGE_TO_EMISSION, IMAGE_TO_OPACITY};
-    struct material *m =
-        image_over(context, MATERIAL_IMAGE, &args[OVER_IMAGE], &args[OVER_LOOKUP], args[OVER_MATERIAL].material, error);
-    if (m)
-        m->image.target = targets[args[OVER_CHANNEL].choice];
-    return give(result, m);
+    static const enum material_input channels[] = {INPUT_KD, INPUT_KS, INPUT_EMISSION, INPUT_OPACITY};
+    struct texture_image image;
+    return read_image(context, &args[OVER_IMAGE], &args[OVER_LOOKUP], &image, error) &&
+           image_over(context, &image, channels[args[OVER_CHANNEL].choice], args[OVER_MATERIAL].material, result,
+                      error);
 }
 
-/* The amount and the kind are args[0] and args[1]. A bump map keeps what its template says. m itself, or NULL. */
-static struct material *set_relief(struct material *m, const struct value *template, const struct value *args) {
-    const struct material *from = template->material;
-    bool known = from && (from->kind == MATERIAL_BUMP || from->kind == MATERIAL_NORMAL);
-    if (!m)
-        return NULL;
+/* The image with how it stands on a surface. The amount and the kind are args[0] and args[1]; a bump map keeps what its
+ * template says. */
+static struct relief relief_of(const struct texture_image *image, const struct value *template,
+                               const struct value *args) {
+    const struct relief *from = template->texture;
+    bool known = from && from->kind != MATERIAL_IMAGE;
+    struct relief out = {.kind = known ? from->kind : MATERIAL_BUMP, .image = *image};
     if (args[1].given)
-        m->kind = args[1].choice == 0 ? MATERIAL_BUMP : MATERIAL_NORMAL;
-    else if (known)
-        m->kind = from->kind;
+        out.kind = args[1].choice == 0 ? MATERIAL_BUMP : MATERIAL_NORMAL;
     if (args[0].given) {
-        m->image.height = args[0].number;
-        m->image.relative = false;
-    } else if (!known || from->kind != m->kind) {
-        m->image.relative = m->kind == MATERIAL_BUMP;
-        m->image.height = m->kind == MATERIAL_BUMP ? RELIEF_HEIGHT : 1;
+        out.height = args[0].number;
+    } else if (!known || from->kind != out.kind) {
+        out.relative = out.kind == MATERIAL_BUMP;
+        out.height = out.kind == MATERIAL_BUMP ? RELIEF_HEIGHT : 1;
+    } else {
+        out.relative = from->relative;
+        out.height = from->height;
     }
-    return m;
+    return out;
+}
+
+/* Saved edits count textures among the materials of a scene. */
+static struct relief *keep_texture(struct context *context, const struct relief *value, struct error *error) {
+    struct relief *out = arena_alloc(&context->scene.arena, sizeof *out);
+    if (!out) {
+        error_no_memory(error, "a texture");
+        return NULL;
+    }
+    *out = *value;
+    context->scene.material_count++;
+    return out;
+}
+
+bool act_texture(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct relief texture = {.kind = MATERIAL_IMAGE};
+    if (!read_image(context, &args[TEXTURE_FILE], &args[TEXTURE_LOOKUP], &texture.image, error))
+        return false;
+    result->pointer = keep_texture(context, &texture, error);
+    return result->pointer != NULL;
 }
 
 bool act_bump(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    struct material *m = image_over(context, MATERIAL_BUMP, &args[RELIEF_FILE], &args[RELIEF_LOOKUP], NULL, error);
-    return give(result, set_relief(m, &args[RELIEF_FILE], &args[RELIEF_AMOUNT]));
+    struct texture_image image;
+    if (!read_image(context, &args[RELIEF_FILE], &args[RELIEF_LOOKUP], &image, error))
+        return false;
+    struct relief relief = relief_of(&image, &args[RELIEF_FILE], &args[RELIEF_AMOUNT]);
+    result->pointer = keep_texture(context, &relief, error);
+    return result->pointer != NULL;
 }
 
 bool act_bump_material(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    struct material *m =
-        image_over(context, MATERIAL_BUMP, &args[OVER_IMAGE], &args[OVER_LOOKUP], args[OVER_MATERIAL].material, error);
-    return give(result, set_relief(m, &args[OVER_IMAGE], &args[RELIEF_OVER_AMOUNT]));
+    struct texture_image image;
+    if (!read_image(context, &args[OVER_IMAGE], &args[OVER_LOOKUP], &image, error))
+        return false;
+    struct relief relief = relief_of(&image, &args[OVER_IMAGE], &args[RELIEF_OVER_AMOUNT]);
+    struct material *m = scene_material(&context->scene, relief.kind, args[OVER_MATERIAL].material, error);
+    return m && material_raise(m, &relief, &context->scene.arena, error) && give(result, m);
 }
 
-struct material *act_relief(struct context *context, const struct value *value, struct error *error) {
+const struct relief *act_relief(struct context *context, const struct value *value, struct error *error) {
     static const struct value nothing[LOOKUP_COUNT];
-    struct material *m = image_over(context, MATERIAL_BUMP, value, nothing, NULL, error);
-    return set_relief(m, value, nothing);
+    struct texture_image image;
+    if (!read_image(context, value, nothing, &image, error))
+        return NULL;
+    struct relief relief = relief_of(&image, value, nothing);
+    return keep_texture(context, &relief, error);
+}
+
+const struct texture_image *act_image(struct context *context, const struct value *value, struct error *error) {
+    struct relief texture = {.kind = MATERIAL_IMAGE};
+    struct image *image = act_find_image(context, value, error);
+    if (!image)
+        return NULL;
+    image_defaults(&texture.image, value, image);
+    const struct relief *kept = keep_texture(context, &texture, error);
+    return kept ? &kept->image : NULL;
 }

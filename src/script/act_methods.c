@@ -41,13 +41,8 @@ bool act_set_texture(struct context *context, const struct value *args, struct r
         return unless_warned(error);
     if (node->kind == NODE_CSG)
         return error_set(error, ERROR_SCENE, "a combined solid has no texture; set those of its operands");
-    struct image *image = act_find_image(context, &args[SET_TEXTURE], error);
-    struct material *texture = image ? scene_material(&context->scene, MATERIAL_IMAGE, NULL, error) : NULL;
-    if (!texture)
-        return false;
-    act_image_defaults(texture, &args[SET_TEXTURE], image);
-    node->texture = texture;
-    return true;
+    node->texture = act_image(context, &args[SET_TEXTURE], error);
+    return node->texture != NULL;
 }
 
 /* Likewise. */

@@ -115,10 +115,10 @@ action act_bump, act_image_material, act_bump_material;
 /* What a script gave as an image, from the store or from its file; NULL and error. */
 struct image *act_find_image(struct context *context, const struct value *value, struct error *error);
 
-/* How an image is looked up when nothing is said: as its texture says, else mip-mapped and repeated. */
-void act_image_defaults(struct material *material, const struct value *value, struct image *image);
-/* The template that node:set_bump keeps: what gr.bump made, or any other picture with the height that is not told. */
-struct material *act_relief(struct context *context, const struct value *value, struct error *error);
+/* What node:set_texture keeps: an image as its texture says, else mip-mapped and repeated; NULL and error. */
+const struct texture_image *act_image(struct context *context, const struct value *value, struct error *error);
+/* What node:set_bump keeps: what gr.bump made, or any other picture with the height that is not told. */
+const struct relief *act_relief(struct context *context, const struct value *value, struct error *error);
 
 /* act_sky.c; the fields of the sun come together, counted from SUN_DIRECTION */
 enum { SUN_DIRECTION, SUN_HOUR, SUN_DAY, SUN_LATITUDE, SUN_LONGITUDE, SUN_ZONE, SUN_FIELDS };

@@ -506,9 +506,9 @@ static bool read_value(struct context *c, int index, const struct parameter *p, 
             value->text = read_file_name(c, index, &place);
             return true;
         }
-        value->material = read_handle(c, index, &place, HANDLE_TEXTURE);
-        value->image = value->material ? value->material->image.image : NULL;
-        return value->material != NULL;
+        value->texture = read_handle(c, index, &place, HANDLE_TEXTURE);
+        value->image = value->texture ? value->texture->image.image : NULL;
+        return value->texture != NULL;
     case KIND_BACKGROUND:
         if (handle_at(L, index)) {
             value->sky = read_handle(c, index, &place, HANDLE_SKY);

@@ -66,6 +66,7 @@ struct value {
     struct node *node;
     const struct material *material;
     const struct material **materials;
+    const struct relief *texture; /* what gr.texture or gr.bump made; its kind is MATERIAL_IMAGE without relief */
     const char **names;
     struct image *image;
     uint32_t count;

@@ -4,12 +4,14 @@
 #include "world/flatten.h"
 
 #include "base/random.h"
+#include "material/material_inputs.h"
 
 #include <stdio.h>
 
 struct material_entry {
     const void *material; /* a material, or the list of those of the slots */
-    const struct material *texture, *relief;
+    const struct texture_image *texture;
+    const struct relief *relief;
     enum shape_kind shape; /* a texture is mapped by the kind of its shape */
     uint32_t index;
     bool used;
@@ -78,26 +80,13 @@ static void warn_once(struct flattening *f, struct node *node, const char *what)
     f->warn(f->warn_context, text);
 }
 
-/* The image over the base, mapped as the shape wants it; the base itself without an image, NULL without memory. */
-static const struct material *covered(struct flattening *f, struct node *node, const struct material *image,
-                                      const struct material *base) {
-    if (!image || !base)
-        return base;
-    struct material *material = arena_alloc(f->arena, sizeof *material);
-    if (!material) {
-        error_no_memory(f->error, "the materials of the scene");
-        return NULL;
-    }
-    *material = *image;
-    material->base = base;
-    material->depth = base->depth + 1;
-    switch (node->shape.kind) {
+/* The mapping of an image that a node gives to its shape (SPEC 2.1). */
+static enum texture_mapping mapping_of(enum shape_kind kind) {
+    switch (kind) {
     case SHAPE_SPHERE:
-        material->image.mapping = MAPPING_SPHERE_CLASSIC;
-        break;
+        return MAPPING_SPHERE_CLASSIC;
     case SHAPE_BOX:
-        material->image.mapping = MAPPING_CUBE;
-        break;
+        return MAPPING_CUBE;
     case SHAPE_CONIC:
     case SHAPE_ELLIPSOID:
     case SHAPE_QUADRIC:
@@ -112,10 +101,41 @@ static const struct material *covered(struct flattening *f, struct node *node, c
     case SHAPE_CURVE:
     case SHAPE_MESH:
     case SHAPE_CSG:
-        material->image.mapping = MAPPING_UV;
         break;
     }
+    return MAPPING_UV;
+}
+
+static struct material *derived(struct flattening *f, enum material_kind kind, const struct material *base) {
+    struct material *material = arena_alloc(f->arena, sizeof *material);
+    if (!material) {
+        error_no_memory(f->error, "the materials of the scene");
+        return NULL;
+    }
+    material_derive(material, kind, base);
     return material;
+}
+
+/* The node's image over the base; the base itself without an image, NULL without memory. */
+static const struct material *covered(struct flattening *f, const struct node *node, const struct texture_image *image,
+                                      const struct material *base) {
+    if (!image)
+        return base;
+    struct material *material = derived(f, MATERIAL_IMAGE, base);
+    struct texture_image mapped = *image;
+    mapped.mapping = mapping_of(node->shape.kind);
+    return material && material_cover(material, INPUT_KD, &mapped, f->arena, f->error) ? material : NULL;
+}
+
+/* Likewise its bump or normal map. */
+static const struct material *raised(struct flattening *f, const struct node *node, const struct relief *relief,
+                                     const struct material *base) {
+    if (!relief || !base)
+        return base;
+    struct material *material = derived(f, relief->kind, base);
+    struct relief mapped = *relief;
+    mapped.image.mapping = mapping_of(node->shape.kind);
+    return material && material_raise(material, &mapped, f->arena, f->error) ? material : NULL;
 }
 
 /* Room for `count` more at the end of the list. */
@@ -142,7 +162,8 @@ bool flatten_material(struct flattening *f, struct node *node, const struct mate
     const struct material *only = node->material ? node->material : inherited;
     const struct material *const *bases = by_slot ? node->slots : &only;
     *count = by_slot ? node->slot_count : 1;
-    const struct material *texture = node->texture, *relief = node->relief;
+    const struct texture_image *texture = node->texture;
+    const struct relief *relief = node->relief;
     for (uint32_t i = 0; i < *count; i++) {
         if (!bases[i])
             warn_once(f, node,
@@ -156,7 +177,8 @@ bool flatten_material(struct flattening *f, struct node *node, const struct mate
         warn_once(f, node,
                   texture ? "has a texture, but its mesh has no texture coordinates (vt): the texture is not shown"
                           : "has a bump map, but its mesh has no texture coordinates (vt): it is not shown");
-        texture = relief = NULL;
+        texture = NULL;
+        relief = NULL;
     }
     if ((!f->materials || f->materials->count * 2 >= f->materials->capacity) && !grow(f))
         return false;
@@ -172,7 +194,7 @@ bool flatten_material(struct flattening *f, struct node *node, const struct mate
         table->count++;
         for (uint32_t i = 0; i < *count; i++) {
             const struct material *base = bases[i] ? bases[i] : &plain_gray;
-            const struct material *effective = covered(f, node, relief, covered(f, node, texture, base));
+            const struct material *effective = raised(f, node, relief, covered(f, node, texture, base));
             if (!effective)
                 return false;
             table->list[table->list_count++] = effective;

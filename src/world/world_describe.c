@@ -38,7 +38,7 @@ static void describe_relief(const struct thing *thing, const struct affine *map,
                             struct hit *hit) {
     const struct shape *shape = leaf ? &leaf->shape : &thing->shape;
     struct vec3 normal = vec3_normalize(hit->pattern_normal), raise = normal, u = {0}, v = {0};
-    if (hit->on_sphere)
+    if (hit->layout == LAYOUT_SPHERE)
         sphere_tangents(shape->sphere.radius, normal, &u, &v);
     if (leaf) {
         const struct affine *csg_from_leaf = &leaf->csg_from_leaf.forward;
@@ -49,7 +49,7 @@ static void describe_relief(const struct thing *thing, const struct affine *map,
     raise = affine_vector(map, raise);
     /* The hollow that an operand leaves has its outside in the operand. */
     hit->raise = vec3_dot(raise, hit->normal_geometric) < 0 ? vec3_negate(raise) : raise;
-    if (hit->on_sphere) {
+    if (hit->layout == LAYOUT_SPHERE) {
         hit->dpdu = affine_vector(map, u);
         hit->dpdv = affine_vector(map, v);
     }
@@ -92,6 +92,7 @@ static void place_surface(const struct surface *surface, const struct transform 
         hit->dpdu = map ? affine_vector(&map->forward, surface->dpdu) : as_it_is(surface->dpdu);
         hit->dpdv = map ? affine_vector(&map->forward, surface->dpdv) : as_it_is(surface->dpdv);
     }
+    hit->layout = surface->layout;
     hit->has_colour = surface->has_colour;
     hit->colour = surface->colour;
     hit->leaf = surface->leaf;
@@ -134,7 +135,6 @@ void world_describe(const struct world *world, const struct ray *ray, uint32_t i
     uint32_t slot_count = in_csg ? leaf->slot_count : thing->slot_count;
     if (surface.material_slot < slot_count)
         material += surface.material_slot;
-    enum shape_kind kind = in_csg ? leaf->shape.kind : thing->shape.kind;
     place_surface(&surface, map, hit);
     hit->t = crossing->t;
     hit->view = vec3_scale(ray->direction, -1 / length);
@@ -142,8 +142,6 @@ void world_describe(const struct world *world, const struct ray *ray, uint32_t i
     hit->part = crossing->part;
     hit->material = material;
     hit->hull = hull_of(thing, leaf, crossing);
-    hit->on_sphere = kind == SHAPE_SPHERE;
-    hit->on_box = kind == SHAPE_BOX;
     hit->time = ray->time;
     if (world->material_has_relief[material]) {
         if (!map)

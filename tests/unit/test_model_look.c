@@ -3,7 +3,7 @@
 
 #include "formats/model_node.h"
 #include "image/png_write.h"
-#include "material/image_place.h"
+#include "material/material_inputs.h"
 
 static void even_row(void *context, uint32_t y, uint8_t *line) {
     const uint8_t *colour = context;
@@ -175,20 +175,22 @@ TEST(opacity_by_alpha_is_cut_where_a_mask_says) {
         memcpy(texels + (ptrdiff_t)4 * i, (uint8_t[]){10, 20, 30, 102}, 4);
     struct image *image = image_create("t", 2, 2, 8, texels, &error);
     for (int i = 0; i < 3; i++) {
-        struct material base = {.kind = MATERIAL_PHONG}, over = {.kind = MATERIAL_IMAGE, .base = &base};
-        over.image.image = image;
-        over.image.mapping = MAPPING_UV;
-        over.image.target = IMAGE_TO_OPACITY;
-        over.image.by_alpha = true;
-        over.image.cutoff = cutoffs[i];
+        struct material base = {.kind = MATERIAL_PHONG}, cut, over;
+        struct texture_image picture = {.image = image, .mapping = MAPPING_UV, .alpha = ALPHA_ALONE};
+        struct arena arena = {0};
         struct surface_look look;
         struct hit hit = middle();
+        material_derive(&cut, MATERIAL_IMAGE, &base);
+        CHECK(material_cut(&cut, &picture, cutoffs[i], &arena, &error));
+        material_look(&cut, &hit, &look);
+        CHECK_NEAR(look.opacity, wanted[i], 1e-12);
+        picture.alpha = ALPHA_IGNORED;
+        material_derive(&over, MATERIAL_IMAGE, &cut);
+        CHECK(material_cover(&over, INPUT_KD, &picture, &arena, &error));
         material_look(&over, &hit, &look);
         CHECK_NEAR(look.opacity, wanted[i], 1e-12);
-        over.image.target = IMAGE_TO_KD;
-        over.image.without_alpha = true;
-        material_look(&over, &hit, &look);
         CHECK_NEAR(look.kd.y, 20 / 255.0, 1e-12);
+        arena_destroy(&arena);
     }
     image_release(image);
 }

@@ -1,6 +1,6 @@
 /* Bump maps and normal maps: normals by closed forms, on the same ways that pictures take. */
-#include "material/image_place.h"
-#include "material/relief.h"
+#include "material/material_inputs.h"
+#include "material/texture_mapping.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "tests/unit/mesh_makers.h"
@@ -75,14 +75,30 @@ static struct vec3 tilted_up(double x, double y) {
     return vec3_make(128.0 / 255, 204.0 / 255, 230.0 / 255);
 }
 
+static struct relief relief_of(enum material_kind kind, struct image *image, double height) {
+    return (struct relief){
+        .kind = kind,
+        .height = height,
+        .image = {.image = image, .mapping = MAPPING_BY_SHAPE, .filter = IMAGE_MIPMAP, .wrap = IMAGE_REPEAT}};
+}
+
+static struct material *raised_white(struct stage *s, const struct relief *relief) {
+    struct material *m =
+        scene_material(&s->scene, relief->kind, stage_phong(s, vec3_all(1), vec3_all(0), 1), &s->error);
+    CHECK(material_raise(m, relief, &s->scene.arena, &s->error));
+    return m;
+}
+
 static struct material *relief_over(struct stage *s, enum material_kind kind, struct image *image, double height) {
-    struct material *base = stage_phong(s, vec3_all(1), vec3_all(0), 1);
-    struct material *m = scene_material(&s->scene, kind, base, &s->error);
-    m->image.image = image;
-    m->image.mapping = MAPPING_BY_SHAPE;
-    m->image.filter = IMAGE_MIPMAP;
-    m->image.wrap = IMAGE_REPEAT;
-    m->image.height = height;
+    struct relief relief = relief_of(kind, image, height);
+    return raised_white(s, &relief);
+}
+
+/* Holes where the image is black. */
+static struct material *cut_out(struct stage *s, struct image *image, struct material *base) {
+    struct material *m = scene_material(&s->scene, MATERIAL_IMAGE, base, &s->error);
+    struct texture_image picture = {.image = image, .mapping = MAPPING_BY_SHAPE};
+    CHECK(material_cut(m, &picture, 0, &s->scene.arena, &s->error));
     return m;
 }
 
@@ -286,8 +302,9 @@ TEST(normal_maps_turn_to_where_their_colours_point) {
     for (int i = 0; i < 8; i++) {
         struct stage s;
         stage_begin(&s, 1);
-        struct material *m = relief_over(&s, MATERIAL_NORMAL, i & 1 ? up : right, 1);
-        m->image.flip_u = (i & 4) != 0;
+        struct relief map = relief_of(MATERIAL_NORMAL, i & 1 ? up : right, 1);
+        map.image.flip_u = (i & 4) != 0;
+        struct material *m = raised_white(&s, &map);
         (void)add_shape(&s, shapes[i >> 1 & 1], m);
         CHECK(stage_build(&s, s.root, ACCEL_AUTO));
         struct hit hit;
@@ -351,8 +368,9 @@ TEST(bumps_grow_with_the_object_bit_by_bit) {
         bool relative = turn % 2;
         struct stage s;
         stage_begin(&s, 1);
-        struct material *m = relief_over(&s, MATERIAL_BUMP, image, RELIEF_HEIGHT);
-        m->image.relative = relative;
+        struct relief map = relief_of(MATERIAL_BUMP, image, RELIEF_HEIGHT);
+        map.relative = relative;
+        struct material *m = raised_white(&s, &map);
         double size = ldexp(1, 3 * i);
         stage_scale(&s, stage_cube(&s, s.root, m), size, size, size);
         CHECK(stage_build(&s, s.root, ACCEL_AUTO));
@@ -381,10 +399,7 @@ TEST(pictures_of_opacity_cut_holes_that_show_what_is_behind) {
     stage_begin(&s, 1);
     struct material *red = stage_phong(&s, vec3_make(1, 0, 0), vec3_all(0), 1);
     red->phong.unlit = true;
-    struct material *cut = scene_material(&s.scene, MATERIAL_IMAGE, red, &s.error);
-    cut->image.image = image;
-    cut->image.mapping = MAPPING_BY_SHAPE;
-    cut->image.target = IMAGE_TO_OPACITY;
+    struct material *cut = cut_out(&s, image, red);
     struct mesh *mesh = square_mesh(false);
     struct node *card = add_shape(&s, (struct shape){.kind = SHAPE_MESH, .mesh = mesh}, cut);
     stage_scale(&s, card, 2, 2, 1);
@@ -409,11 +424,7 @@ TEST(light_falls_through_the_holes_of_pictures_of_opacity) {
     for (int i = 0; i < 3; i++) {
         struct stage s;
         stage_begin(&s, 1);
-        struct material *cut =
-            scene_material(&s.scene, MATERIAL_IMAGE, stage_phong(&s, vec3_all(1), vec3_all(0), 1), &s.error);
-        cut->image.image = image;
-        cut->image.mapping = MAPPING_BY_SHAPE;
-        cut->image.target = IMAGE_TO_OPACITY;
+        struct material *cut = cut_out(&s, image, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
         struct node *card = add_shape(&s, (struct shape){.kind = SHAPE_MESH, .mesh = mesh}, cut);
         stage_scale(&s, card, 4, 4, 1);
         stage_move(&s, card, -2, -2, 4);
@@ -455,22 +466,20 @@ TEST(tiles_and_offsets_place_pictures_by_the_formula_on_every_mapping) {
                           .dpdv = {0.2, test_uniform(&random, 0.5, 2), 0},
                           .footprint = 0.01,
                           .pattern_scale = 1,
-                          .on_sphere = i % 3 == 1,
-                          .on_box = i % 3 == 2};
+                          .layout = (enum surface_layout)(i % 3)};
         hit.pattern_normal = vec3_normalize(
             vec3_make(test_uniform(&random, -1, 1), test_uniform(&random, -0.9, 0.9), test_uniform(&random, -1, 1)));
         hit.pattern_point = hit.pattern_normal;
-        struct material plain = {.kind = MATERIAL_IMAGE}, tiled = plain;
-        plain.image.mapping = tiled.image.mapping = i % 2 ? MAPPING_UV : MAPPING_BY_SHAPE;
-        plain.image.wrap = tiled.image.wrap = IMAGE_MIRROR;
-        tiled.image.apart = true;
+        struct texture_image plain = {.mapping = i % 2 ? MAPPING_UV : MAPPING_BY_SHAPE, .wrap = IMAGE_MIRROR};
+        struct texture_image tiled = plain;
+        tiled.apart = true;
         double scale[2] = {test_uniform(&random, -3, 3), test_uniform(&random, -3, 3)};
         double offset[2] = {test_uniform(&random, -3, 3), test_uniform(&random, -3, 3)};
         for (int k = 0; k < 2; k++)
-            tiled.image.scale[k] = scale[k], tiled.image.offset[k] = offset[k];
-        tiled.image.wrap_v = IMAGE_CLAMP;
-        struct image_place a, b;
-        CHECK(image_place(&plain, &hit, &a) && image_place(&tiled, &hit, &b));
+            tiled.scale[k] = scale[k], tiled.offset[k] = offset[k];
+        tiled.wrap_v = IMAGE_CLAMP;
+        struct texcoord a, b;
+        CHECK(texture_coordinates(&plain, &hit, &a) && texture_coordinates(&tiled, &hit, &b));
         CHECK_NEAR(b.u, scale[0] * a.u + offset[0], 1e-12);
         CHECK_NEAR(1 - b.v, scale[1] * (1 - a.v) + offset[1], 1e-12);
         CHECK_NEAR(b.width_u, a.width_u * fabs(scale[0]), 1e-12);

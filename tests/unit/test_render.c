@@ -3,6 +3,7 @@
 #include "tests/stage.h"
 
 #include "base/mem.h"
+#include "material/material_inputs.h"
 #include "material/medium_stack.h"
 #include "render/camera.h"
 
@@ -179,10 +180,7 @@ static void busy_scene(struct stage *s, double unit, bool mirrored) {
     struct material *glass = stage_glass(s, 0.3, 0.8, 1.5);
     struct material *shiny = stage_phong(s, vec3_make(0.8, 0.3, 0.2), vec3_all(0.5), 20);
     struct material *marble = scene_material(&s->scene, MATERIAL_MARBLE, shiny, &s->error);
-    marble->marble.f = 2;
-    marble->marble.multiplier = 3;
-    marble->marble.vein_frequency = 4;
-    marble->marble.mix = vec3_make(0.1, 0.2, 0.9);
+    CHECK(material_mix_kd(marble, texture_marble(2, 3, 4, 0), vec3_make(0.1, 0.2, 0.9), &s->scene.arena, &s->error));
     struct material *chrome = stage_glass(s, 0.9, 0, 1);
     struct material *dielectric = scene_material(&s->scene, MATERIAL_FRESNEL, glass, &s->error);
     struct node *ball = stage_sphere(s, top, dielectric);

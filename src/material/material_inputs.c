@@ -1,0 +1,122 @@
+/* A decorator of the language is one function in here: it puts a texture in the place of an input, with the texture
+ * that was there inside of it. So a chain of decorators becomes one tree for each input, and only what has textures
+ * costs anything at a hit. */
+#include "material/material_inputs.h"
+
+void material_derive(struct material *material, enum material_kind kind, const struct material *base) {
+    *material = base ? *base : (struct material){0};
+    material->kind = kind;
+    material->base = base;
+    material->origin = base && base->origin ? base->origin : base;
+    material->depth = base ? base->depth + 1 : 1;
+    material->serial = 0;
+    material->older = NULL;
+    material->name = NULL;
+    material->fresnel = material->fresnel || kind == MATERIAL_FRESNEL;
+}
+
+const struct texture *material_input(const struct material *material, enum material_input input) {
+    return material->inputs[input] ? material->inputs[input] : texture_parameter(input);
+}
+
+static bool put(struct material *material, enum material_input input, struct texture texture, struct arena *arena,
+                struct error *error) {
+    const struct texture *kept = texture_keep(arena, texture, error);
+    if (!kept)
+        return false;
+    material->inputs[input] = kept;
+    return true;
+}
+
+bool material_multiply(struct material *material, enum material_input input, const struct texture *by,
+                       struct arena *arena, struct error *error) {
+    return put(material, input, texture_multiply(material_input(material, input), by), arena, error);
+}
+
+bool material_mix_kd(struct material *material, struct texture pattern, struct vec3 mix, struct arena *arena,
+                     struct error *error) {
+    const struct texture *ratio = texture_keep(arena, pattern, error);
+    const struct texture *other = ratio ? texture_keep(arena, texture_constant(mix), error) : NULL;
+    return other &&
+           put(material, INPUT_KD, texture_mix(material_input(material, INPUT_KD), other, ratio), arena, error);
+}
+
+bool material_cover(struct material *material, enum material_input input, const struct texture_image *image,
+                    struct arena *arena, struct error *error) {
+    material->changed = input;
+    return put(material, input, texture_image(image, material_input(material, input)), arena, error);
+}
+
+bool material_cut(struct material *material, const struct texture_image *image, double cutoff, struct arena *arena,
+                  struct error *error) {
+    struct texture_image own = *image;
+    own.alpha = image->alpha == ALPHA_ALONE ? ALPHA_ALONE : ALPHA_DARKENS;
+    material->changed = INPUT_OPACITY;
+    /* Whole where the surface has no coordinates for the image. */
+    const struct texture *whole = texture_keep(arena, texture_number(1), error);
+    const struct texture *picture = whole ? texture_keep(arena, texture_image(&own, whole), error) : NULL;
+    if (!picture)
+        return false;
+    enum texture_function function = cutoff > 0 ? FUNCTION_STEP : FUNCTION_SATURATE;
+    const struct texture *cover = texture_keep(arena, texture_map(picture, function, cutoff), error);
+    return cover && material_multiply(material, INPUT_OPACITY, cover, arena, error);
+}
+
+bool material_raise(struct material *material, const struct relief *relief, struct arena *arena, struct error *error) {
+    struct relief *own = arena_alloc(arena, sizeof *own);
+    if (!own)
+        return error_no_memory(error, "a bump map");
+    *own = *relief;
+    own->below = material->relief;
+    material->relief = own;
+    return true;
+}
+
+static const struct texture *keep_shared(struct arena *arena, struct texture value, struct error *error) {
+    value.shared = true;
+    return texture_keep(arena, value, error);
+}
+
+/* number * component of the picture, or the number alone. */
+static const struct texture *packed(const struct texture *picture, enum texture_function component, double number,
+                                    struct arena *arena, struct error *error) {
+    const struct texture *factor = texture_keep(arena, texture_number(number), error);
+    if (!factor || !picture)
+        return factor;
+    const struct texture *part = texture_keep(arena, texture_map(picture, component, 0), error);
+    return part ? keep_shared(arena, texture_multiply(factor, part), error) : NULL;
+}
+
+/* The formulas of formats/gltf_look.c, point by point. */
+bool material_split_metal(struct material *material, const struct texture_image *image, double metalness,
+                          double roughness, double f0, struct arena *arena, struct error *error) {
+    const struct texture *picture = NULL, *white = texture_keep(arena, texture_number(1), error);
+    struct metal *split = arena_alloc(arena, sizeof *split);
+    if (!white || !split)
+        return error_no_memory(error, "a material");
+    if (image) {
+        struct texture_image own = *image;
+        own.alpha = ALPHA_STRAIGHT;
+        if (!(picture = keep_shared(arena, texture_image(&own, white), error)))
+            return false;
+    }
+    const struct texture *metal = packed(picture, FUNCTION_BLUE, metalness, arena, error);
+    const struct texture *rough = packed(picture, FUNCTION_GREEN, roughness, arena, error);
+    const struct texture *colour = keep_shared(arena, *material_input(material, INPUT_KD), error);
+    if (!metal || !rough || !colour)
+        return false;
+    const struct texture *rest = texture_keep(arena, texture_map(metal, FUNCTION_COMPLEMENT, 0), error);
+    const struct texture *smooth = texture_keep(arena, texture_map(rough, FUNCTION_COMPLEMENT, 0), error);
+    const struct texture *plain = texture_keep(arena, texture_constant(vec3_all(f0)), error);
+    *split = (struct metal){metal, rough, image ? 1 : metalness * (1 - roughness)};
+    material->metal = split;
+    if (!rest || !smooth || !plain || !put(material, INPUT_KD, texture_multiply(colour, rest), arena, error))
+        return false;
+    const struct phong *numbers = material->origin ? &material->origin->phong : &material->phong;
+    if (numbers->refract > 0) /* what shines through has the filter in ks */
+        return true;
+    const struct texture *half = texture_keep(arena, texture_multiply(metal, smooth), error);
+    return half && put(material, INPUT_KS, texture_mix(colour, plain, metal), arena, error) &&
+           put(material, INPUT_SHININESS, texture_map(rough, FUNCTION_PHONG_EXPONENT, 0), arena, error) &&
+           put(material, INPUT_REFLECT, texture_multiply(half, smooth), arena, error);
+}

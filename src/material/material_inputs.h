@@ -1,0 +1,33 @@
+/* Deriving materials: a new one that has everything of its base, then one input replaced or mixed. What is made lies in
+ * the arena. False and error: no memory, or the tree of textures has become too large (texture.h). */
+#ifndef GRAY_MATERIAL_MATERIAL_INPUTS_H
+#define GRAY_MATERIAL_MATERIAL_INPUTS_H
+
+#include "material/material.h"
+
+/* All of the base, which may be NULL: then the material is a base with the numbers 0. Name, serial and `older` are the
+ * caller's. */
+void material_derive(struct material *material, enum material_kind kind, const struct material *base);
+/* The texture of an input; where it is a number, the texture of that number. */
+const struct texture *material_input(const struct material *material, enum material_input input);
+
+/* The input times the texture. */
+bool material_multiply(struct material *material, enum material_input input, const struct texture *by,
+                       struct arena *arena, struct error *error);
+/* kd * pattern + mix * (1 - pattern): what marble and wood are. */
+bool material_mix_kd(struct material *material, struct texture pattern, struct vec3 mix, struct arena *arena,
+                     struct error *error);
+/* The image over the input. Not for INPUT_OPACITY. */
+bool material_cover(struct material *material, enum material_input input, const struct texture_image *image,
+                    struct arena *arena, struct error *error);
+/* Holes where the image is black, or by its alpha (ALPHA_ALONE); cutoff > 0: all or nothing, from there on. */
+bool material_cut(struct material *material, const struct texture_image *image, double cutoff, struct arena *arena,
+                  struct error *error);
+/* `relief` over what turns the normal already; its `below` is set. */
+bool material_raise(struct material *material, const struct relief *relief, struct arena *arena, struct error *error);
+/* kd is split into metal and the rest after glTF 2.0. The image (or NULL) holds metalness in blue and roughness in
+ * green, the numbers are multiplied by it. f0: the reflectance of what is no metal. */
+bool material_split_metal(struct material *material, const struct texture_image *image, double metalness,
+                          double roughness, double f0, struct arena *arena, struct error *error);
+
+#endif

@@ -1,0 +1,183 @@
+/* Textures: a colour or a number as a function of the hit. A texture is a value: a constant, a picture with its
+ * mapping, filter and wrap, a pattern, or an operation on other textures, which are read through pointers and never
+ * change. So marble over wood over a picture is one tree. Source of the word and of the split into mappings and
+ * textures: M. Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering", 4th edition, chapter 10.
+ *
+ * Every texture can be read as a colour and as a number. The number of a colour is the mean of its three components;
+ * the number of a product is the product of the numbers, and likewise for mixes. Reading is recursive and allocates
+ * nothing; a tree has at most TEXTURE_SIZE textures, counted once for every path to them, which bounds its time. */
+#ifndef GRAY_MATERIAL_TEXTURE_H
+#define GRAY_MATERIAL_TEXTURE_H
+
+#include "base/arena.h"
+#include "base/error.h"
+#include "geom/hit.h"
+#include "image/image.h"
+#include "math/vec3.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { TEXTURE_SIZE = 16384 };
+
+enum texture_kind {
+    TEXTURE_CONSTANT,
+    TEXTURE_PARAMETER,     /* the number that a material has for one of its inputs; white outside of materials */
+    TEXTURE_VERTEX_COLOUR, /* the colours of a mesh's vertices, interpolated; white where there are none */
+    TEXTURE_IMAGE,
+    TEXTURE_MARBLE, /* patterns between 0 and 1 of the point in object space, so that they stick to the object */
+    TEXTURE_WOOD,
+    TEXTURE_MIX,      /* a * ratio + b * (1 - ratio) */
+    TEXTURE_MULTIPLY, /* a * b, by components */
+    TEXTURE_MAP,      /* a function of another texture, by components */
+    TEXTURE_KINDS
+};
+
+/* How a hit becomes a point of an image. SPHERE, CUBE: the decorators td_sphere_material and td_cube_material;
+ * SPHERE_CLASSIC: set_texture on a sphere (the formulas are in texture_mapping.c); UV: the coordinates that the shape
+ * supplies, on spheres those of SPHERE_CLASSIC; BY_SHAPE: the same, on spheres those of SPHERE. */
+enum texture_mapping { MAPPING_SPHERE, MAPPING_CUBE, MAPPING_SPHERE_CLASSIC, MAPPING_UV, MAPPING_BY_SHAPE };
+
+/* What the alpha of an image means. */
+enum texture_alpha {
+    ALPHA_COVERS,   /* what is below shows by 1 - alpha */
+    ALPHA_IGNORED,  /* the image covers everything where alpha is not 0 */
+    ALPHA_DARKENS,  /* the colour counts alpha times; nothing is below */
+    ALPHA_STRAIGHT, /* the colour as it was before it was multiplied by alpha; nothing is below */
+    ALPHA_ALONE     /* alpha is what is read */
+};
+
+/* Where an image lies and how it is looked up; zero: MAPPING_SPHERE, the nearest texel. */
+struct texture_image {
+    struct image *image;
+    enum texture_mapping mapping;
+    enum image_filter filter;
+    enum image_wrap wrap;   /* of coordinates that a shape supplies */
+    enum image_wrap wrap_v; /* where `apart` says so, else wrap is for both */
+    bool flip_u;
+    /* The point is scale * uv + offset (v from below), the colour is multiplied by tint. */
+    bool apart;
+    double scale[2], offset[2];
+    struct vec3 tint;
+    enum texture_alpha alpha;
+};
+
+enum texture_function {
+    FUNCTION_RED, /* one component, as a number */
+    FUNCTION_GREEN,
+    FUNCTION_BLUE,
+    FUNCTION_COMPLEMENT,     /* 1 - x */
+    FUNCTION_SATURATE,       /* at most 1 */
+    FUNCTION_STEP,           /* 1 from `amount` on, else 0 */
+    FUNCTION_PHONG_EXPONENT, /* of roughness r: 2 / r^4 - 2, 1 to 2000 (formats/gltf_look.c gives the source) */
+    FUNCTION_COUNT
+};
+
+/* AS_SET: what the settings of the picture say. */
+enum material_highlight { HIGHLIGHT_AS_SET, HIGHLIGHT_PHONG, HIGHLIGHT_BLINN };
+
+/* The numbers of a material without textures, whose inputs textures replace or change. */
+struct phong {
+    struct vec3 kd, ks;
+    double shininess, reflect, refract, ior;
+    bool has_ior, two_sided, unlit;
+    enum material_highlight highlight;
+    struct vec3 emission, absorption;
+    double roughness;
+    int glossy_samples;
+};
+
+/* What textures are for. */
+enum material_input {
+    INPUT_KD,
+    INPUT_KS,
+    INPUT_SHININESS,
+    INPUT_REFLECT,
+    INPUT_REFRACT,
+    INPUT_ROUGHNESS,
+    INPUT_EMISSION,
+    INPUT_OPACITY, /* of a surface with holes; 1 without a texture */
+    INPUT_COUNT
+};
+
+struct texture {
+    enum texture_kind kind;
+    bool shared;    /* several inputs of a material read it: once per hit is enough */
+    bool has_image; /* of the whole tree: it asks for the ray's footprint */
+    uint32_t size;  /* of the tree */
+    union {
+        struct {
+            struct vec3 colour;
+            double number;
+        } constant;
+        enum material_input parameter;
+        struct {
+            struct texture_image lookup;
+            const struct texture *below; /* also where the surface has no coordinates; NULL: black */
+        } image;
+        struct {
+            double f, multiplier, vein_frequency;
+            int interpolation;
+        } marble;
+        struct {
+            double f, density;
+            int interpolation;
+        } wood;
+        struct {
+            const struct texture *a, *b, *ratio;
+        } mix;
+        struct {
+            const struct texture *a, *b;
+        } multiply;
+        struct {
+            const struct texture *of;
+            enum texture_function function;
+            double amount;
+        } map;
+    };
+};
+
+struct texture texture_constant(struct vec3 colour);
+struct texture texture_number(double number);
+struct texture texture_vertex_colour(void);
+/* The arguments of noise_marble and noise_wood (math/noise.h). */
+struct texture texture_marble(double f, double multiplier, double vein_frequency, int interpolation);
+struct texture texture_wood(double f, double density, int interpolation);
+struct texture texture_image(const struct texture_image *image, const struct texture *below);
+struct texture texture_mix(const struct texture *a, const struct texture *b, const struct texture *ratio);
+struct texture texture_multiply(const struct texture *a, const struct texture *b);
+struct texture texture_map(const struct texture *of, enum texture_function function, double amount);
+/* The number of that input of whatever material is evaluated. */
+const struct texture *texture_parameter(enum material_input input);
+
+/* A copy in the arena. NULL and error: no memory, or the tree is larger than TEXTURE_SIZE. */
+const struct texture *texture_keep(struct arena *arena, struct texture value, struct error *error);
+
+struct vec3 texture_colour(const struct texture *texture, const struct hit *hit);
+double texture_scalar(const struct texture *texture, const struct hit *hit);
+
+/* Reads several textures at one hit; what is `shared` is evaluated once. */
+enum { TEXTURE_SHARED = 4 };
+struct texture_reader {
+    const struct hit *hit;
+    const struct phong *numbers; /* of the material, for TEXTURE_PARAMETER; NULL: white */
+    int count;                   /* of values that are known */
+    struct {
+        const struct texture *of;
+        bool is_number;
+        struct vec3 value;
+    } known[TEXTURE_SHARED];
+};
+
+static inline void texture_reader_init(struct texture_reader *reader, const struct hit *hit,
+                                       const struct phong *numbers) {
+    reader->hit = hit;
+    reader->numbers = numbers;
+    reader->count = 0;
+}
+struct vec3 texture_read_colour(const struct texture *texture, struct texture_reader *reader);
+double texture_read_scalar(const struct texture *texture, struct texture_reader *reader);
+/* The same of the image alone. False: the surface has no coordinates for it. */
+bool texture_image_colour(const struct texture_image *image, const struct hit *hit, struct vec3 *colour, double *rest);
+
+#endif

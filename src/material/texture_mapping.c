@@ -1,0 +1,122 @@
+/* The mappings of the language (SPEC 1.2 and 2.1) and those by the coordinates that a shape supplies. Lookups are as
+ * wide as the ray's cone: the footprint over the speed at which the point of the image moves. */
+#include "material/texture_mapping.h"
+
+#include "math/elementary.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* u grows with the angle about y, v from the north pole down (SPEC 1.2, and 2.1 for the classic variant). */
+static void on_sphere(const struct hit *hit, bool classic, struct texcoord *at) {
+    struct vec3 from_centre = hit->layout == LAYOUT_SPHERE ? hit->pattern_normal : hit->pattern_point;
+    struct vec3 p = vec3_normalize(from_centre);
+    double y = p.y < -1 ? -1 : p.y > 1 ? 1 : p.y;
+    *at = (struct texcoord){.wrap_u = IMAGE_REPEAT, .wrap_v = IMAGE_CLAMP};
+    if (classic) {
+        at->u = 0.5 + el_atan2(p.z, p.x) / (2 * pi);
+        at->v = 0.5 - el_asin(y) / pi;
+    } else {
+        at->u = (el_atan2(-p.z, -p.x) + pi) / (2 * pi);
+        at->v = el_acos(y) / pi;
+    }
+    double radius = hit->layout == LAYOUT_SPHERE ? vec3_length(from_centre) : vec3_length(hit->pattern_point);
+    double width = radius > 0 ? hit->footprint * hit->pattern_scale / radius : 0;
+    double ring = sqrt(1 - y * y);
+    at->width_v = width / pi;
+    at->width_u = width < 2 * pi * ring ? width / (2 * pi * ring) : width > 0 ? 1 : 0;
+    if (hit->layout == LAYOUT_SPHERE) {
+        at->dpdu = hit->dpdu;
+        at->dpdv = hit->dpdv;
+    }
+}
+
+/* The sides stand upright and alike; front, top and bottom meet at the edges (SPEC 1.2). A box brings these parameters
+ * itself; other shapes are seen from the direction of their normal. */
+static void on_cube(const struct hit *hit, struct texcoord *at) {
+    struct vec3 p = hit->pattern_point, n = hit->pattern_normal;
+    double width = hit->footprint * hit->pattern_scale;
+    *at = (struct texcoord){.wrap_u = IMAGE_CLAMP, .wrap_v = IMAGE_CLAMP, .width_u = width, .width_v = width};
+    if (hit->layout == LAYOUT_FACES) {
+        double du = vec3_length(hit->dpdu), dv = vec3_length(hit->dpdv);
+        at->u = hit->u;
+        at->v = hit->v;
+        at->width_u = du > 0 ? hit->footprint / du : 0;
+        at->width_v = dv > 0 ? hit->footprint / dv : 0;
+        at->dpdu = hit->dpdu;
+        at->dpdv = hit->dpdv;
+        return;
+    }
+    double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
+    if (z >= x && z >= y) {
+        at->u = n.z > 0 ? p.x : 1 - p.x;
+        at->v = 1 - p.y;
+    } else if (x >= y) {
+        at->u = n.x > 0 ? 1 - p.z : p.z;
+        at->v = 1 - p.y;
+    } else {
+        at->u = p.x;
+        at->v = n.y > 0 ? p.z : 1 - p.z;
+    }
+}
+
+/* vt counts v from the bottom of the image (OBJ), image rows from the top. */
+static void by_uv(const struct hit *hit, const struct texture_image *image, struct texcoord *at) {
+    double du = vec3_length(hit->dpdu), dv = vec3_length(hit->dpdv);
+    *at = (struct texcoord){.u = hit->u,
+                            .v = 1 - hit->v,
+                            .width_u = du > 0 ? hit->footprint / du : 0,
+                            .width_v = dv > 0 ? hit->footprint / dv : 0,
+                            .wrap_u = image->wrap,
+                            .wrap_v = image->wrap,
+                            .dpdu = hit->dpdu,
+                            .dpdv = vec3_negate(hit->dpdv)};
+}
+
+/* Several pictures side by side, or a part of one. */
+static void stretch(const struct texture_image *image, struct texcoord *at) {
+    const double *scale = image->scale, *offset = image->offset;
+    at->u = scale[0] * at->u + offset[0];
+    at->v = 1 - (scale[1] * (1 - at->v) + offset[1]);
+    at->width_u *= fabs(scale[0]);
+    at->width_v *= fabs(scale[1]);
+    at->dpdu = scale[0] != 0 ? vec3_scale(at->dpdu, 1 / scale[0]) : vec3_all(0);
+    at->dpdv = scale[1] != 0 ? vec3_scale(at->dpdv, 1 / scale[1]) : vec3_all(0);
+    at->wrap_u = image->wrap;
+    at->wrap_v = image->wrap_v;
+}
+
+bool texture_coordinates(const struct texture_image *image, const struct hit *hit, struct texcoord *out) {
+    switch (image->mapping) {
+    case MAPPING_SPHERE:
+        on_sphere(hit, false, out);
+        break;
+    case MAPPING_SPHERE_CLASSIC:
+        on_sphere(hit, true, out);
+        break;
+    case MAPPING_CUBE:
+        on_cube(hit, out);
+        break;
+    case MAPPING_UV:
+    case MAPPING_BY_SHAPE:
+        if (hit->layout == LAYOUT_SPHERE)
+            on_sphere(hit, image->mapping == MAPPING_UV, out);
+        else if (!hit->has_uv)
+            return false;
+        else if (hit->layout == LAYOUT_FACES)
+            on_cube(hit, out);
+        else
+            by_uv(hit, image, out);
+        break;
+    }
+    if (image->apart)
+        stretch(image, out);
+    if (image->flip_u) {
+        out->u = 1 - out->u;
+        out->dpdu = vec3_negate(out->dpdu);
+    }
+    return true;
+}
+
+struct rgba texture_texel(const struct texture_image *image, const struct texcoord *at) {
+    return image_lookup(image->image, at->u, at->v, at->width_u, at->width_v, image->filter, at->wrap_u, at->wrap_v);
+}
