@@ -29,10 +29,10 @@ void marks_place(const struct picture_request *request, void *block, struct mark
     place->shows = (uint8_t *)(behind + 4 * pixels);
 }
 
-uint64_t marks_way(const struct path_step *steps, uint32_t depth) {
+uint64_t marks_way(const struct scene_step *steps, uint32_t depth) {
     uint64_t way = depth;
     for (uint32_t i = 0; i < depth; i++) {
-        const uint32_t words[2] = {steps[i].node->serial, i + 1 < depth ? steps[i].place : 0};
+        const uint32_t words[2] = {steps[i].node->serial, i + 1 < depth ? steps[i].placement : 0};
         way = hash_bytes(words, sizeof words, way);
     }
     return way ? way : 1;
@@ -44,12 +44,12 @@ struct seeking {
     uint8_t *member; /* by primitive: part of the node, or of the solid that it is an operand of */
     struct box box;
     uint32_t first_leaf, end_leaf; /* of that solid, by origin: those of the operand */
-    const struct path_step *to_solid;
+    const struct scene_step *to_solid;
     uint32_t depth;
 };
 
-static bool note_leaves(void *context, uint32_t first, uint32_t end, const struct path_step *steps, uint32_t depth) {
-    struct path_step way[2 * OPERAND_DEPTH];
+static bool note_leaves(void *context, uint32_t first, uint32_t end, const struct scene_step *steps, uint32_t depth) {
+    struct scene_step way[2 * OPERAND_DEPTH];
     struct seeking *s = context;
     if (steps[depth - 1].node->serial != s->wish->serial || s->depth > OPERAND_DEPTH)
         return true;
@@ -62,7 +62,7 @@ static bool note_leaves(void *context, uint32_t first, uint32_t end, const struc
     return false;
 }
 
-static bool note_members(void *context, uint32_t first, uint32_t count, const struct path_step *steps, uint32_t depth) {
+static bool note_members(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
     struct seeking *s = context;
     bool below = s->wish->solid != 0 && marks_way(steps, depth) == s->wish->solid;
     if (below) {

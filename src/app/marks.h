@@ -35,7 +35,7 @@ uint32_t marks_layers(const struct picture_request *request);
 void marks_place(const struct picture_request *request, void *block, struct marks_place *place);
 
 /* A number for a way to a node, so that of a node under several parents one can be told. */
-uint64_t marks_way(const struct path_step *steps, uint32_t depth);
+uint64_t marks_way(const struct scene_step *steps, uint32_t depth);
 
 /* Makes what is wished for, as the camera of the job sees it. False: no memory, or no such camera, or cancelled. */
 bool marks_make(const struct render_job *job, const struct node *root, struct pool *pool, const struct marks_wish *wish,

@@ -19,20 +19,17 @@ struct picking {
     struct picked *out;
     uint32_t placed; /* what was hit */
     /* The way to it, and on to the operand; the node that is told is the last of `depth`. */
-    struct path_step steps[WAY_LIMIT];
+    struct scene_step steps[WAY_LIMIT];
     uint32_t way, whole, depth;
     struct box box; /* of everything under it */
 };
 
-static struct transform world_from_parent(const struct path_step *steps, uint32_t depth) {
+static struct transform world_from_parent(const struct scene_step *steps, uint32_t depth) {
     struct transform out = transform_identity();
     for (uint32_t i = 0; i + 1 < depth; i++) {
         struct transform parent_from_node = node_parent_from_node(steps[i].node);
         out = transform_compose(&out, &parent_from_node);
-        if (steps[i].place > 0) {
-            struct transform node_from_child = placement_transform(steps[i].node->placements, steps[i].place - 1);
-            out = transform_compose(&out, &node_from_child);
-        }
+        out = scene_step_map(&steps[i], &out);
     }
     return out;
 }
@@ -44,7 +41,7 @@ void pick_words(char out[PICK_WORDS], const char *text) {
 }
 
 /* The way to what was hit; the walk ends there. */
-static bool find_way(void *context, uint32_t first, uint32_t count, const struct path_step *steps, uint32_t depth) {
+static bool find_way(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
     struct picking *p = context;
     if (p->placed < first || p->placed >= first + count)
         return true;
@@ -69,12 +66,12 @@ static void choose_node(struct picking *p, const struct hit *hit, int32_t up) {
     (void)world_path_text(p->steps, p->depth, p->out->path, sizeof p->out->path);
 }
 
-static bool join_boxes(void *context, uint32_t first, uint32_t count, const struct path_step *steps, uint32_t depth) {
+static bool join_boxes(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
     struct picking *p = context;
     bool below = depth >= p->depth;
     for (uint32_t i = 0; below && i < p->depth; i++) {
         bool last = i + 1 == p->depth;
-        below = steps[i].node == p->steps[i].node && (last || steps[i].place == p->steps[i].place);
+        below = steps[i].node == p->steps[i].node && (last || steps[i].placement == p->steps[i].placement);
     }
     for (uint32_t i = first; below && i < first + count; i++)
         p->box = box_join(p->box, p->world->boxes[i]);
@@ -90,40 +87,50 @@ static void set_corners(struct picked *out, const struct box *box, const struct 
     }
 }
 
-/* Of all shapes under an operand. */
-static void join_operand(struct box *box, const struct node *node, const struct transform *world_from_above) {
-    struct transform above_from_node = node_parent_from_node(node);
-    struct transform map = transform_compose(world_from_above, &above_from_node);
-    if (node->singular)
-        return;
-    if (node->kind == NODE_GEOMETRY) {
-        struct box own = shape_bounds(&node->shape);
-        if (!box_is_empty(&own))
-            own = box_transform(&map.forward, &own);
-        *box = box_join(*box, own);
-    }
-    for (uint32_t i = 0; node->kind == NODE_CSG && i < node->operand_count; i++)
-        join_operand(box, node->operands[i], &map);
-    uint32_t rounds = node->placements ? node->placements->count : 1;
-    for (uint32_t i = 0; i < rounds && node->first_child; i++) {
-        struct transform of_children = map;
-        if (node->placements) {
-            struct transform node_from_child = placement_transform(node->placements, i);
-            of_children = transform_compose(&map, &node_from_child);
+struct box_frame {
+    struct transform world_from_node, of_children;
+};
+
+/* Of all shapes under an operand. False: no memory. */
+static bool join_operand(struct box *box, const struct node *operand, const struct transform *world_from_above) {
+    struct scene_traversal t = {.operands = OPERANDS_ALL, .frame_size = sizeof(struct box_frame)};
+    enum scene_event event;
+    scene_traversal_begin(&t, operand);
+    while ((event = scene_traversal_next(&t)) < SCENE_END) {
+        struct box_frame *frame = scene_traversal_frame(&t, 0);
+        const struct node *node = scene_traversal_node(&t);
+        if (event == SCENE_ENTER) {
+            const struct box_frame *above = t.depth > 1 ? scene_traversal_frame(&t, 1) : NULL;
+            const struct transform *map = !above                                       ? world_from_above
+                                          : scene_traversal_operand(&t) == SCENE_CHILD ? &above->of_children
+                                                                                       : &above->world_from_node;
+            struct transform above_from_node = node_parent_from_node(node);
+            frame->world_from_node = transform_compose(map, &above_from_node);
+            if (node->singular) {
+                scene_traversal_skip(&t);
+            } else if (node->kind == NODE_GEOMETRY) {
+                struct box own = shape_bounds(&node->shape);
+                if (!box_is_empty(&own))
+                    own = box_transform(&frame->world_from_node.forward, &own);
+                *box = box_join(*box, own);
+            }
+        } else if (event == SCENE_CHILDREN) {
+            frame->of_children = scene_step_map(&t.steps[t.depth - 1], &frame->world_from_node);
         }
-        for (const struct node_child *child = node->first_child; child; child = child->next)
-            join_operand(box, child->node, &of_children);
     }
+    scene_traversal_end(&t);
+    return event == SCENE_END;
 }
 
-static void box_operand(struct picking *p, const struct node *node, const struct transform *above) {
+static bool box_operand(struct picking *p, const struct node *node, const struct transform *above) {
     struct transform above_from_node = node_parent_from_node(node);
     struct transform map = transform_compose(above, &above_from_node);
     bool shape = node->kind == NODE_GEOMETRY && !node->first_child;
     p->box = shape ? shape_bounds(&node->shape) : box_empty();
-    if (!shape)
-        join_operand(&p->box, node, above);
+    if (!shape && !join_operand(&p->box, node, above))
+        return false;
     set_corners(p->out, &p->box, shape ? &map.forward : NULL);
+    return true;
 }
 
 static bool box_node(struct picking *p, const struct node *root, struct error *error) {
@@ -136,8 +143,7 @@ static bool box_node(struct picking *p, const struct node *root, struct error *e
     }
     if (p->depth > p->way) {
         struct transform above = world_from_parent(p->steps, p->depth);
-        box_operand(p, p->steps[p->depth - 1].node, &above);
-        return true;
+        return box_operand(p, p->steps[p->depth - 1].node, &above) || error_no_memory(error, "the box of a node");
     }
     p->box = box_empty();
     if (!world_walk_paths(p->world, root, join_boxes, p, error))

@@ -45,7 +45,8 @@ static void dump_json(const struct dump *d, uint32_t placed, const char *path) {
     struct sheet *sheet = d->sheet;
     sheet_print(sheet, "%s{\"number\":%u,\"node\":", placed > 0 ? "," : "", placed + 1);
     sheet_json(sheet, path);
-    sheet_print(sheet, ",\"node_number\":%u,\"shape\":\"%s\"", thing->node->serial, shape_kind_name(thing->shape.kind));
+    sheet_print(sheet, ",\"node_number\":%u,\"shape\":\"%s\"", placed_node(d->world, placed)->serial,
+                shape_kind_name(thing->shape.kind));
     if (thing->shape.kind == SHAPE_MESH)
         sheet_print(sheet, ",\"triangles\":%u", triangles_of(&thing->shape));
     if (thing->shape.kind == SHAPE_CSG) {
@@ -72,7 +73,7 @@ static void dump_json(const struct dump *d, uint32_t placed, const char *path) {
     sheet_print(sheet, "]}");
 }
 
-static bool dump_placed(void *context, uint32_t first, uint32_t count, const struct path_step *steps, uint32_t depth) {
+static bool dump_placed(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
     const struct dump *d = context;
     char path[4096];
     (void)world_path_text(steps, depth, path, sizeof path);

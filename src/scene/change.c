@@ -1,10 +1,11 @@
-/* Every change notes what it found before it; taking off goes backwards. Nodes are found by one walk over the distinct
- * nodes under the root, which marks where it has been and wipes its marks in a second one. */
+/* Every change notes what it found before it; taking off goes backwards. Nodes are found by one traversal of the
+ * distinct nodes under the root. */
 #include "scene/change.h"
 
 #include "base/mem.h"
 #include "geom/shape_cone.h"
 #include "geom/shape_cylinder.h"
+#include "scene/traversal.h"
 
 #include <stddef.h>
 #include <stdio.h>
@@ -85,62 +86,53 @@ void change_list_destroy(struct change_list *list) {
 
 /* Finding nodes. */
 
-struct finding {
-    struct node **stack;
-    size_t count, room;
-    bool no_memory;
-};
-
-static void push(struct finding *finding, struct node *node, int from, int to) {
-    if (node->mark != from || finding->no_memory)
-        return;
-    if (finding->count == finding->room) {
-        size_t room = finding->room ? 2 * finding->room : 256;
-        struct node **more = mem_resize_array(finding->stack, room, sizeof(struct node *));
-        if (!more) {
-            finding->no_memory = true;
-            return;
-        }
-        finding->stack = more;
-        finding->room = room;
-    }
-    node->mark = to;
-    finding->stack[finding->count++] = node;
-}
-
-static void push_below(struct finding *finding, const struct node *node, int from, int to) {
-    for (uint32_t i = 0; node->kind == NODE_CSG && i < node->operand_count; i++)
-        push(finding, node->operands[i], from, to);
-    for (const struct node_child *child = node->first_child; child; child = child->next)
-        push(finding, child->node, from, to);
-}
-
 static bool named(const struct node *node, const char *name) {
     return name[0] == '\0' || strncmp(node->name, name, CHANGE_NAME - 1) == 0;
 }
 
-/* The node of that number and name; where there is none, the only one of the name; else NULL. */
-static struct node *find_node(struct finding *finding, struct node *root, uint32_t serial, const char *name) {
-    enum { SEEN = 1 };
+/* The node of the last event as one that may be changed: what the node above it refers to. */
+static struct node *found_node(const struct scene_traversal *t, struct node *root) {
+    if (t->depth == 1)
+        return root;
+    const struct node *above = t->steps[t->depth - 2].node;
+    uint32_t operand = scene_traversal_operand(t);
+    if (operand != SCENE_CHILD)
+        return above->operands[operand];
+    const struct node_child *child = above->first_child;
+    while (child->node != scene_traversal_node(t))
+        child = child->next;
+    return child->node;
+}
+
+/* The node of that number and name; where there is none, the only one of the name; else NULL. False: no memory. */
+static bool find_node(const struct scene *scene, struct node *root, uint32_t serial, const char *name,
+                      struct node **out) {
+    struct scene_traversal t = {.operands = OPERANDS_ALL, .distinct = true};
+    uint8_t *seen = mem_alloc_zero(scene->node_total, 1);
     struct node *exact = NULL, *only = NULL;
     uint32_t namesakes = 0;
-    finding->count = 0;
-    push(finding, root, 0, SEEN);
-    while (finding->count > 0 && !finding->no_memory) {
-        struct node *node = finding->stack[--finding->count];
+    enum scene_event event = SCENE_NO_MEMORY;
+    scene_traversal_begin(&t, root);
+    while (seen && (event = scene_traversal_next(&t)) < SCENE_END) {
+        const struct node *node = scene_traversal_node(&t);
+        if (event != SCENE_ENTER)
+            continue;
+        if (seen[node->index]) {
+            scene_traversal_skip(&t);
+            continue;
+        }
+        seen[node->index] = 1;
         if (node->serial == serial && named(node, name))
-            exact = node;
+            exact = found_node(&t, root);
         if (name[0] != '\0' && named(node, name)) {
-            only = node;
+            only = found_node(&t, root);
             namesakes++;
         }
-        push_below(finding, node, 0, SEEN);
     }
-    finding->count = 0;
-    push(finding, root, SEEN, 0);
-    while (finding->count > 0)
-        push_below(finding, finding->stack[--finding->count], SEEN, 0);
-    return exact ? exact : namesakes == 1 ? only : NULL;
+    scene_traversal_end(&t);
+    mem_free(seen);
+    *out = exact ? exact : namesakes == 1 ? only : NULL;
+    return event == SCENE_END;
 }
 
 /* Laying over. */
@@ -150,7 +142,7 @@ struct laying {
     struct scene *scene;
     struct node *root;
     struct changed_scene *out;
-    struct finding finding;
+    bool no_memory;
     change_warning *warn;
     void *context;
     struct error *error;
@@ -173,7 +165,9 @@ static struct node *added_node(const struct laying *l, uint32_t serial) {
 
 static struct node *node_of(struct laying *l, uint32_t serial, const char *name) {
     struct node *node = added_node(l, serial);
-    return node ? node : find_node(&l->finding, l->root, serial, name);
+    if (!node && !find_node(l->scene, l->root, serial, name, &node))
+        l->no_memory = true;
+    return node;
 }
 
 enum { COMMON_PART = offsetof(struct node, joint_x) };
@@ -454,7 +448,7 @@ static bool lay(struct laying *l) {
     case CHANGE_KINDS:
         break;
     }
-    return !l->finding.no_memory || error_no_memory(l->error, "the changes of the scene");
+    return !l->no_memory || error_no_memory(l->error, "the changes of the scene");
 }
 
 bool changes_lay_over(const struct change *changes, uint32_t count, struct scene *scene, struct node *root,
@@ -475,7 +469,6 @@ bool changes_lay_over(const struct change *changes, uint32_t count, struct scene
         l.change = &changes[i];
         ok = lay(&l);
     }
-    mem_free(l.finding.stack);
     if (!ok)
         changes_take_off(out);
     return ok;

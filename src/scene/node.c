@@ -47,6 +47,7 @@ struct node *scene_node(struct scene *scene, enum node_kind kind, const char *na
     }
     node->kind = kind;
     node->serial = scene->node_count++;
+    node->index = scene->node_total++;
     node->parent_from_node = transform_identity();
     return node;
 }
@@ -119,6 +120,21 @@ struct transform node_parent_from_node(const struct node *node) {
     struct transform about_y = transform_rotate(1, node->joint_y.init);
     struct transform joint = transform_compose(&about_x, &about_y);
     return transform_compose(&node->parent_from_node, &joint);
+}
+
+bool scene_warns(struct scene *scene, const struct node *node) {
+    if (node->index >= scene->warned_room) {
+        uint8_t *warned = arena_alloc_array(&scene->arena, scene->node_total, sizeof *warned);
+        if (!warned)
+            return true;
+        if (scene->warned_room > 0)
+            memcpy(warned, scene->warned, scene->warned_room);
+        scene->warned = warned;
+        scene->warned_room = scene->node_total;
+    }
+    bool first = !scene->warned[node->index];
+    scene->warned[node->index] = 1;
+    return first;
 }
 
 struct material *scene_material(struct scene *scene, enum material_kind kind, const struct material *base,

@@ -41,13 +41,10 @@ struct node_child {
 struct node {
     const char *name; /* never NULL */
     enum node_kind kind;
-    uint32_t serial; /* order of creation, unique in a scene */
+    uint32_t serial; /* order of creation, unique in a scene; as users see it */
+    uint32_t index;  /* below the scene's node_total: for tables beside the nodes */
     bool singular;   /* some scale factor was 0: nothing under it is drawn */
-    bool warned;     /* this node's oddity has been told once */
-    int mark;        /* used by walks over the tree: 0 not seen, 1 on the path, 2 finished */
-    int thing;       /* used while the scene is flattened */
     uint32_t child_count;
-    uint64_t drawable; /* primitives under it, worked out by a walk over the tree; saturates */
     struct node_child *first_child, *last_child;
     const struct placements *placements; /* or NULL: the children are placed once for each of them */
     struct transform *separate;          /* ORDER_SEPARATE only: translation, rotation, scaling; else NULL */
@@ -135,6 +132,9 @@ struct scene {
     const char *names[SCENE_NAMES]; /* names of nodes made lately, by hash: most are used again */
     struct assets *assets;          /* not owned */
     uint32_t node_count, material_count;
+    uint32_t node_total; /* nodes made so far, those of changes too */
+    uint8_t *warned;     /* by index: the warning about the node is out; has room for warned_room */
+    uint32_t warned_room;
     struct added_node *added;
     struct own_material *own;
     struct material *last_material; /* they are linked from the newest to the oldest */
@@ -153,12 +153,16 @@ struct node *scene_combine(struct scene *scene, const char *name, enum node_csg 
 bool node_transform(struct scene *scene, struct node *node, enum node_step step, const struct transform *by);
 /* Everything from the node to its parent, joint angles included (y after x). */
 struct transform node_parent_from_node(const struct node *node);
-/* What a clipped or bounded node places, as if it were a child: its first operand, if there is anything to draw under
- * it. NULL of all other nodes. */
-static inline struct node *node_places_operand(const struct node *node) {
-    bool placing = node->kind == NODE_CSG && (node->operation == NODE_CLIPPED || node->operation == NODE_BOUNDED);
-    return placing && node->operands[0]->drawable > 0 ? node->operands[0] : NULL;
+/* Of geometry: a mesh without triangles has none. */
+static inline bool node_has_surface(const struct node *node) {
+    return node->kind == NODE_GEOMETRY && (node->shape.kind != SHAPE_MESH || mesh_triangle_count(node->shape.mesh) > 0);
 }
+/* Shows what is under its first operand, cut open or bounded by the second. */
+static inline bool node_is_placing(const struct node *node) {
+    return node->kind == NODE_CSG && (node->operation == NODE_CLIPPED || node->operation == NODE_BOUNDED);
+}
+/* True once for each node: a warning about it is due. */
+bool scene_warns(struct scene *scene, const struct node *node);
 static inline bool node_moves(const struct node *node) {
     return (node->moves_to && node->moves_to != node) || vec3_max_abs(node->velocity) > 0;
 }

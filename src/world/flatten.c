@@ -1,150 +1,97 @@
-/* Flattening of the node DAG. First a walk over the distinct nodes finds cycles and counts what each node will place
+/* Flattening of the node DAG. First a traversal of the distinct nodes finds cycles and counts what each node will place
  * (saturating), so that a tree that doubles at every level is refused, or skipped where it places nothing, before any
- * memory is taken. Then every path from the root to a primitive makes one placed primitive. Both walks keep their own
- * stack: depth is limited by memory alone. */
+ * memory is taken. Then every path from the root to a primitive makes one placed primitive. What is known of a node
+ * meanwhile stands in tables beside the nodes, which are only read. */
 #include "world/flatten.h"
 
 #include "base/mem.h"
+#include "world/path.h"
 
 #include <stdio.h>
 #include <string.h>
 
 enum { PLACED_LIMIT = 1 << 28 };
+/* In the table of things by node. */
+#define THING_UNKNOWN UINT32_MAX
+#define THING_NOTHING (UINT32_MAX - 1)
 
 /* --- counting and cycles --- */
 
-struct count_frame {
-    struct node *node;
-    struct node_child *next;
-    uint32_t operand; /* of a CSG node, to visit before the children */
-};
-
-struct stack {
-    void *items;
-    size_t count, capacity, size;
-};
-
-static void *stack_push(struct stack *stack) {
-    if (stack->count == stack->capacity) {
-        size_t capacity = stack->capacity ? stack->capacity * 2 : 64;
-        void *items = mem_resize_array(stack->items, capacity, stack->size);
-        if (!items)
-            return NULL;
-        stack->items = items;
-        stack->capacity = capacity;
-    }
-    return (char *)stack->items + stack->count++ * stack->size;
-}
-
-static void *stack_top(const struct stack *stack) {
-    return (char *)stack->items + (stack->count - 1) * stack->size;
-}
-
-static bool tell_cycle(struct flattening *f, const struct stack *stack, const struct node *again) {
+static bool report_cycle(struct flattening *f, const struct scene_step *steps, uint32_t depth) {
+    enum { NAMES = 6 };
     char names[512];
-    size_t used = 0, first = 0;
-    const struct count_frame *frames = stack->items;
-    while (frames[first].node != again)
+    size_t used = 0;
+    uint32_t first = 0, last = depth - 1;
+    while (steps[first].node != steps[last].node)
         first++;
-    for (size_t i = first; i <= stack->count && used < sizeof names - 120; i++) {
-        const struct node *node = i == stack->count ? again : frames[i].node;
-        if (i - first >= 6 && i != stack->count) {
-            if (i - first == 6)
+    for (uint32_t i = first; i <= last && used < sizeof names - 120; i++) {
+        if (i - first >= NAMES && i != last) {
+            if (i - first == NAMES)
                 used += (size_t)snprintf(names + used, sizeof names - used, " > ...");
             continue;
         }
-        used += (size_t)snprintf(names + used, sizeof names - used, "%s'%.60s'", i > first ? " > " : "", node->name);
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s'%.60s'", i > first ? " > " : "",
+                                 steps[i].node->name);
     }
     return error_set(f->error, ERROR_SCENE, "the nodes form a cycle: %s", names);
 }
 
-static struct node *next_below(struct count_frame *frame) {
-    struct node *node = frame->node;
-    if (node->kind == NODE_CSG && frame->operand < node->operand_count)
-        return node->operands[frame->operand++];
-    if (!frame->next)
-        return NULL;
-    struct node *child = frame->next->node;
-    frame->next = frame->next->next;
-    return child;
+static uint32_t add_saturating(uint32_t a, uint32_t b) {
+    return a > UINT32_MAX - b ? UINT32_MAX : a + b;
 }
 
-static uint64_t add_saturating(uint64_t a, uint64_t b) {
-    return a > UINT64_MAX - b ? UINT64_MAX : a + b;
+static uint32_t multiply_saturating(uint32_t a, uint32_t b) {
+    return b > 0 && a > UINT32_MAX / b ? UINT32_MAX : a * b;
 }
 
-static uint64_t multiply_saturating(uint64_t a, uint64_t b) {
-    return b > 0 && a > UINT64_MAX / b ? UINT64_MAX : a * b;
+/* What a node and everything below it places, where that is known of what is below it. */
+static uint32_t count_below(const uint32_t *drawable, const struct node *node) {
+    uint32_t own = node_is_placing(node) ? drawable[node->operands[0]->index]
+                                         : node->kind == NODE_GEOMETRY || node->kind == NODE_CSG;
+    uint32_t below = 0;
+    for (const struct node_child *child = node->first_child; child; child = child->next)
+        below = add_saturating(below, drawable[child->node->index]);
+    if (node->placements)
+        below = multiply_saturating(below, node->placements->count);
+    return node->singular ? 0 : add_saturating(own, below);
 }
 
-static void clear_marks(struct node *root, struct stack *stack) {
-    /* Marks are cleared by the same walk backwards: 2 becomes 0 where it is met first. */
-    stack->count = 0;
-    struct node **slot = stack_push(stack);
-    if (!slot)
-        return;
-    *slot = root;
-    while (stack->count > 0) {
-        struct node *node = *(struct node **)stack_top(stack);
-        stack->count--;
-        if (node->mark == 0)
-            continue;
-        node->mark = 0;
-        for (uint32_t i = 0; node->kind == NODE_CSG && i < node->operand_count; i++)
-            if (node->operands[i]->mark && (slot = stack_push(stack)))
-                *slot = node->operands[i];
-        for (struct node_child *child = node->first_child; child; child = child->next) {
-            if (child->node->mark && (slot = stack_push(stack)))
-                *slot = child->node;
+static bool count_nodes(struct flattening *f, const struct node *root, uint32_t *drawable, uint8_t *draws) {
+    enum { UNSEEN, ON_PATH, FINISHED };
+    struct scene_traversal t = {.operands = OPERANDS_ALL, .distinct = true};
+    uint8_t *state = mem_alloc_zero(f->scene->node_total, 1);
+    enum scene_event event = SCENE_NO_MEMORY;
+    bool cycle = false;
+    scene_traversal_begin(&t, root);
+    while (state && !cycle && (event = scene_traversal_next(&t)) < SCENE_END) {
+        const struct node *node = scene_traversal_node(&t);
+        if (event == SCENE_ENTER && state[node->index] != UNSEEN) {
+            cycle = state[node->index] == ON_PATH;
+            if (cycle)
+                report_cycle(f, t.steps, t.depth);
+            scene_traversal_skip(&t);
+        } else if (event == SCENE_ENTER) {
+            state[node->index] = ON_PATH;
+        } else if (event == SCENE_LEAVE) {
+            drawable[node->index] = count_below(drawable, node);
+            draws[node->index] = drawable[node->index] > 0;
+            state[node->index] = FINISHED;
         }
     }
+    scene_traversal_end(&t);
+    mem_free(state);
+    return !cycle && (event == SCENE_END || error_no_memory(f->error, "flattening the scene"));
 }
 
-/* What a node places itself, without its children. */
-static uint64_t own_drawable(const struct node *node) {
-    if (node->kind == NODE_CSG && (node->operation == NODE_CLIPPED || node->operation == NODE_BOUNDED))
-        return node->operands[0]->drawable;
-    return node->kind == NODE_GEOMETRY || node->kind == NODE_CSG ? 1 : 0;
-}
-
-static bool count_drawable(struct flattening *f, struct node *root) {
-    struct stack stack = {.size = sizeof(struct count_frame)};
-    bool ok = true;
-    struct count_frame *frame = stack_push(&stack);
-    if (!frame)
-        return error_no_memory(f->error, "flattening the scene");
-    *frame = (struct count_frame){.node = root, .next = root->first_child};
-    root->mark = 1;
-    root->thing = 0;
-    while (ok && stack.count > 0) {
-        frame = stack_top(&stack);
-        struct node *below = next_below(frame);
-        if (below && below->mark == 1) {
-            ok = tell_cycle(f, &stack, below);
-        } else if (below && below->mark == 0) {
-            below->mark = 1;
-            below->thing = 0;
-            frame = stack_push(&stack);
-            if (!frame)
-                ok = error_no_memory(f->error, "flattening the scene");
-            else
-                *frame = (struct count_frame){.node = below, .next = below->first_child};
-        } else if (!below) {
-            struct node *node = frame->node;
-            uint64_t own = own_drawable(node), below_it = 0;
-            for (struct node_child *child = node->first_child; child; child = child->next)
-                below_it = add_saturating(below_it, child->node->drawable);
-            if (node->placements)
-                below_it = multiply_saturating(below_it, node->placements->count);
-            node->drawable = node->singular ? 0 : add_saturating(own, below_it);
-            node->mark = 2;
-            stack.count--;
-        }
-    }
-    mem_free(stack.items);
-    struct stack marks = {.size = sizeof(struct node *)};
-    clear_marks(root, &marks);
-    mem_free(marks.items);
+/* How many primitives will be placed, as far as that is known before solids are split; and world->authored.draws. */
+static bool count_drawable(struct flattening *f, const struct node *root, uint32_t *count) {
+    uint32_t *drawable = mem_alloc_zero(f->scene->node_total, sizeof *drawable);
+    uint8_t *draws = arena_alloc_array(f->arena, f->scene->node_total, sizeof *draws);
+    bool ok = (drawable && draws) || error_no_memory(f->error, "flattening the scene");
+    ok = ok && count_nodes(f, root, drawable, draws);
+    *count = ok ? drawable[root->index] : 0;
+    f->world->authored.draws = draws;
+    mem_free(drawable);
     return ok;
 }
 
@@ -236,101 +183,98 @@ bool flatten_mesh_accel(struct flattening *f, const struct shape *shape) {
     return shape->kind != SHAPE_MESH || mesh_build_accel(shape->mesh, f->world->mesh_accel, f->pool, f->error);
 }
 
-/* node->thing: 0 where it is not known yet, else its number and 1, or nothing to draw. */
-enum { THING_NOTHING = -1 };
-
-static bool add_thing(struct flattening *f, struct thing *thing) {
+/* Of a thing, and of the node that it was made of. */
+static bool add_thing(struct flattening *f, const struct node *node, struct thing *thing) {
     struct world *world = f->world;
-    struct thing *things = room_for_one(world->things, world->thing_count, &f->thing_capacity, sizeof *world->things);
-    if (!things)
+    uint32_t capacity = f->thing_capacity;
+    struct thing *things = room_for_one(world->things, world->thing_count, &capacity, sizeof *world->things);
+    if (things)
+        world->things = things;
+    const struct node **nodes = things ? room_for_one(world->authored.nodes, world->thing_count, &f->thing_capacity,
+                                                      sizeof *world->authored.nodes)
+                                       : NULL;
+    if (!nodes)
         return error_no_memory(f->error, "the things of the scene");
-    world->things = things;
+    world->authored.nodes = nodes;
     thing->holes = any_holes(f, &thing->shape, thing->material, thing->slot_count);
-    things[world->thing_count++] = *thing;
+    things[world->thing_count] = *thing;
+    nodes[world->thing_count++] = node;
     return true;
 }
 
-static bool make_csg(struct flattening *f, struct node *node, const struct stand *stand,
+static bool make_csg(struct flattening *f, const struct node *node, const struct stand *stand,
                      const struct surroundings *around) {
     const struct csg **parts;
     uint32_t count;
     if (!flatten_csg(f, node, stand, around, &parts, &count))
         return false;
     for (uint32_t i = 0; i < count; i++) {
-        struct thing thing = {
-            .node = node, .shape = {.kind = SHAPE_CSG, .csg = parts[i]}, .slot_count = 1, .parts = count - i};
+        struct thing thing = {.shape = {.kind = SHAPE_CSG, .csg = parts[i]}, .slot_count = 1, .parts = count - i};
         thing.is_later_part = i > 0;
-        if (!add_thing(f, &thing))
+        if (!add_thing(f, node, &thing))
             return false;
     }
     return true;
 }
 
-/* The first time that a node is placed, or always where nodes above it have something to say: its shape, ready for
- * rays, and its materials. */
-static bool make_thing(struct flattening *f, struct node *node, const struct stand *stand,
-                       const struct surroundings *around) {
-    uint32_t first = f->world->thing_count;
-    node->thing = THING_NOTHING;
-    if (node->kind == NODE_GEOMETRY && node->shape.kind == SHAPE_MESH && mesh_triangle_count(node->shape.mesh) == 0)
+/* The shape of a node, ready for rays, and its materials: the things from `first` on, or none. */
+static bool make_thing(struct flattening *f, const struct node *node, const struct stand *stand,
+                       const struct surroundings *around, uint32_t *first, uint32_t *parts) {
+    *first = f->world->thing_count;
+    *parts = 0;
+    if (node->kind == NODE_GEOMETRY && !node_has_surface(node))
         return true;
     if (node->kind == NODE_CSG || (around && around->clips)) {
         if (!make_csg(f, node, stand, around))
             return false;
     } else {
-        struct thing thing = {.node = node, .shape = node->shape, .cull = node->cull, .parts = 1};
+        struct thing thing = {.shape = node->shape, .cull = node->cull, .parts = 1};
         const struct material *inherited = around ? around->inherited : NULL;
         if (!flatten_mesh_accel(f, &node->shape) ||
-            !flatten_material(f, node, inherited, &thing.material, &thing.slot_count) || !add_thing(f, &thing))
+            !flatten_material(f, node, inherited, &thing.material, &thing.slot_count) || !add_thing(f, node, &thing))
             return false;
     }
-    if (f->world->thing_count > first)
-        node->thing = (int)first + 1;
+    *parts = f->world->thing_count - *first;
     return true;
 }
 
-static bool place_node(struct flattening *f, struct node *node, const struct stand *stand,
-                       const struct surroundings *around) {
-    if (node->kind != NODE_GEOMETRY && node->kind != NODE_CSG)
-        return true;
-    if (node->kind == NODE_CSG && (node->operation == NODE_CLIPPED || node->operation == NODE_BOUNDED))
-        return true;
-    bool special = around && (around->clips || around->inherited);
-    if ((node->thing == 0 || special) && !make_thing(f, node, stand, around))
-        return false;
-    if (node->thing == THING_NOTHING) {
-        node->thing = special ? 0 : THING_NOTHING;
+/* Things are made when their node is placed for the first time, or always where nodes above it have something to say.
+ */
+static bool find_thing(struct flattening *f, const struct node *node, const struct stand *stand,
+                       const struct surroundings *around, uint32_t *first, uint32_t *parts) {
+    if (around && (around->clips || around->inherited))
+        return make_thing(f, node, stand, around, first, parts);
+    uint32_t *known = &f->thing_of[node->index];
+    if (*known == THING_UNKNOWN) {
+        if (!make_thing(f, node, stand, around, first, parts))
+            return false;
+        *known = *parts > 0 ? *first : THING_NOTHING;
         return true;
     }
-    uint32_t first = (uint32_t)node->thing - 1, parts = f->world->things[first].parts;
-    if (special)
-        node->thing = 0;
+    *first = *known;
+    *parts = *known == THING_NOTHING ? 0 : f->world->things[*known].parts;
+    return true;
+}
+
+static bool place_node(struct flattening *f, const struct node *node, const struct stand *stand,
+                       const struct surroundings *around) {
+    uint32_t first, parts;
+    if ((node->kind != NODE_GEOMETRY && node->kind != NODE_CSG) || node_is_placing(node))
+        return true;
+    if (!find_thing(f, node, stand, around, &first, &parts))
+        return false;
     for (uint32_t i = 0; i < parts; i++)
         if (!place(f, stand, around, first + i))
             return false;
     return true;
 }
 
+/* Of every node on the path. What is said about the operand of a clipped or bounded node is not said of its children.
+ */
 struct place_frame {
     struct stand stand, of_children;
-    struct node *node;
-    struct node *operand; /* to be placed before the children, in surroundings of its own */
     const struct surroundings *around_operand, *around; /* NULL: nothing above says anything */
-    struct node_child *next;
-    uint32_t at; /* of the node's placements */
 };
-
-/* Children are placed once, or once for each placement of their node. */
-static void begin_children(struct place_frame *frame, uint32_t at) {
-    const struct placements *placements = frame->node->placements;
-    frame->at = at;
-    frame->next = frame->node->first_child;
-    frame->of_children = frame->stand;
-    if (placements) {
-        struct transform node_from_child = placement_transform(placements, at);
-        frame->of_children.from_node = transform_compose(&frame->stand.from_node, &node_from_child);
-    }
-}
 
 /* A node that moves: a link of its own, on which what is under it stands. */
 static bool stand_moving(struct flattening *f, const struct node *node, const struct stand *parent, struct stand *out) {
@@ -383,83 +327,74 @@ bool flatten_check_transform(struct flattening *f, const struct node *node, cons
                      node->name);
 }
 
-static bool enter_node(struct flattening *f, struct stack *stack, const struct stand *parent,
-                       const struct surroundings *around, struct node *node) {
-    struct stand stand = {.above = parent->above};
+static bool enter_node(struct flattening *f, const struct node *node, const struct stand *parent,
+                       const struct surroundings *around, struct place_frame *frame) {
+    frame->stand.above = parent->above;
+    frame->around = around;
     if (node_moves(node)) {
-        if (!stand_moving(f, node, parent, &stand))
+        if (!stand_moving(f, node, parent, &frame->stand))
             return false;
     } else {
         struct transform parent_from_node = node_parent_from_node(node);
-        stand.from_node = transform_compose(&parent->from_node, &parent_from_node);
+        frame->stand.from_node = transform_compose(&parent->from_node, &parent_from_node);
     }
-    if (!flatten_check_transform(f, node, &stand.from_node))
+    if (!flatten_check_transform(f, node, &frame->stand.from_node) || !place_node(f, node, &frame->stand, around))
         return false;
-    struct node *operand = node_places_operand(node);
-    const struct surroundings *around_operand = NULL;
-    if (!place_node(f, node, &stand, around))
-        return false;
-    if (operand && !(around_operand = surround(f, node, &stand, around)))
-        return false;
-    bool childless = !node->first_child || (node->placements && node->placements->count == 0);
-    if (childless && !operand)
-        return true;
-    struct place_frame *frame = stack_push(stack);
-    if (!frame)
-        return error_no_memory(f->error, "flattening the scene");
-    *frame = (struct place_frame){
-        .stand = stand, .node = node, .operand = operand, .around_operand = around_operand, .around = around};
-    if (!childless)
-        begin_children(frame, 0);
-    return true;
+    bool operand = node_is_placing(node) && f->world->authored.draws[node->operands[0]->index];
+    frame->around_operand = operand ? surround(f, node, &frame->stand, around) : NULL;
+    return !operand || frame->around_operand;
 }
 
-static bool place_all(struct flattening *f, struct stack *stack) {
+static bool place_all(struct flattening *f, struct scene_traversal *t) {
+    const struct stand ground = {.from_node = transform_identity()};
+    enum scene_event event;
     uint32_t steps = 0;
-    while (stack->count > 0) {
-        struct place_frame *frame = stack_top(stack);
-        if (frame->operand) {
-            struct node *operand = frame->operand;
-            struct stand stand = frame->stand; /* the stack may move */
-            frame->operand = NULL;
-            if (!enter_node(f, stack, &stand, frame->around_operand, operand))
-                return false;
-            continue;
-        }
-        struct node_child *link = frame->next;
+    while ((event = scene_traversal_next(t)) < SCENE_END) {
+        struct place_frame *frame = scene_traversal_frame(t, 0);
         if ((++steps & 4095) == 0 && pool_cancelled(f->pool))
             return error_set(f->error, ERROR_CANCELLED, "stopped while the scene was flattened");
-        if (!link) {
-            const struct placements *placements = frame->node->placements;
-            if (placements && frame->at + 1 < placements->count)
-                begin_children(frame, frame->at + 1);
-            else
-                stack->count--;
+        if (event == SCENE_CHILDREN)
+            frame->of_children =
+                (struct stand){frame->stand.above, scene_step_map(&t->steps[t->depth - 1], &frame->stand.from_node)};
+        if (event != SCENE_ENTER)
             continue;
-        }
-        frame->next = link->next;
-        struct stand parent = frame->of_children; /* the stack may move */
-        if (link->node->drawable > 0 && !enter_node(f, stack, &parent, frame->around, link->node))
+        const struct place_frame *above = t->depth > 1 ? scene_traversal_frame(t, 1) : NULL;
+        bool operand = above && scene_traversal_operand(t) != SCENE_CHILD;
+        const struct stand *parent = !above ? &ground : operand ? &above->stand : &above->of_children;
+        const struct surroundings *around = !above ? NULL : operand ? above->around_operand : above->around;
+        if (!enter_node(f, scene_traversal_node(t), parent, around, frame))
             return false;
     }
-    return true;
+    return event == SCENE_END || error_no_memory(f->error, "flattening the scene");
 }
 
-bool flatten_scene(struct flattening *f, struct node *root) {
-    if (!count_drawable(f, root))
+static bool place_scene(struct flattening *f, const struct node *root) {
+    uint32_t total = f->scene->node_total;
+    f->thing_of = mem_alloc(total * sizeof *f->thing_of);
+    if (!f->thing_of)
+        return error_no_memory(f->error, "flattening the scene");
+    for (uint32_t i = 0; i < total; i++)
+        f->thing_of[i] = THING_UNKNOWN;
+    struct scene_traversal t = world_traversal(f->world, root, sizeof(struct place_frame));
+    bool ok = place_all(f, &t);
+    scene_traversal_end(&t);
+    mem_free(f->thing_of);
+    return ok;
+}
+
+bool flatten_scene(struct flattening *f, const struct node *root) {
+    uint32_t count;
+    if (!count_drawable(f, root, &count))
         return false;
-    if (root->drawable > PLACED_LIMIT)
+    if (count > PLACED_LIMIT)
         return error_set(f->error, ERROR_SCENE, "the scene places more than %d primitives (instances of instances?)",
                          PLACED_LIMIT);
-    f->placed_capacity = (uint32_t)root->drawable;
+    f->placed_capacity = count;
     f->placed = arena_alloc_array(f->arena, f->placed_capacity, sizeof *f->placed);
     if (!f->placed)
         return error_set(f->error, ERROR_MACHINE, "out of memory for %u placed primitives", f->placed_capacity);
     f->world->placed = f->placed;
-    struct stack stack = {.size = sizeof(struct place_frame)};
-    struct stand ground = {.from_node = transform_identity()};
-    bool ok = root->drawable == 0 || (enter_node(f, &stack, &ground, NULL, root) && place_all(f, &stack));
-    mem_free(stack.items);
+    bool ok = place_scene(f, root);
     flatten_map_end(f);
     return ok;
 }

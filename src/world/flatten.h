@@ -16,7 +16,7 @@ struct stand {
 
 /* A solid that cuts open what is placed; the stand of the node that it is an operand of. */
 struct clip {
-    struct node *solid;
+    const struct node *solid;
     struct stand stand;
     const struct clip *next;
 };
@@ -30,7 +30,7 @@ struct surroundings {
 
 struct flattening {
     struct arena *arena; /* of the job: everything made here lives there */
-    struct scene *scene;
+    struct scene *scene; /* its nodes are only read */
     struct world *world;
     struct pool *pool;
     world_warning *warn;
@@ -39,26 +39,27 @@ struct flattening {
     struct placed *placed;
     struct box *limits; /* of each placed primitive, when there are any; else NULL */
     uint32_t placed_capacity, thing_capacity, linear_capacity, moving_capacity;
+    uint32_t *thing_of;                /* by node->index: number of its first thing */
     struct linear_table *linear_table; /* the maps by their bits */
     struct material_table *materials;
 };
 
 /* Fills world->placed, things, linear_maps, materials. Errors: cycles, too many primitives, open operands of CSG, no
  * memory. */
-bool flatten_scene(struct flattening *f, struct node *root);
+bool flatten_scene(struct flattening *f, const struct node *root);
 
 /* The CSG primitives of a NODE_CSG, or of geometry that is clipped, in its own space: none when it is empty, several
  * when it is a union of solids that keep apart. around: may be NULL. */
-bool flatten_csg(struct flattening *f, struct node *node, const struct stand *stand, const struct surroundings *around,
-                 const struct csg ***parts, uint32_t *count);
+bool flatten_csg(struct flattening *f, const struct node *node, const struct stand *stand,
+                 const struct surroundings *around, const struct csg ***parts, uint32_t *count);
 /* Shrinks a box to what a solid that bounds things leaves of it. */
-bool flatten_limit(struct flattening *f, struct node *solid, const struct transform *world_from_parent,
+bool flatten_limit(struct flattening *f, const struct node *solid, const struct transform *world_from_parent,
                    struct box *limit);
 /* Index of a node's effective material: its texture over its material; without one that of the CSG solid it is a part
  * of
  * (`inherited`, may be NULL), else plain gray. A mesh with several material slots has *count of them in a row, from
  * *out on; everything else has 1. */
-bool flatten_material(struct flattening *f, struct node *node, const struct material *inherited, uint32_t *out,
+bool flatten_material(struct flattening *f, const struct node *node, const struct material *inherited, uint32_t *out,
                       uint32_t *count);
 /* False: the map of a node into the world, or into its solid, has left the range of numbers. */
 bool flatten_check_transform(struct flattening *f, const struct node *node, const struct transform *t);

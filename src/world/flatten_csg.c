@@ -8,6 +8,7 @@
 
 #include "base/mem.h"
 #include "geom/csg_split.h"
+#include "scene/traversal.h"
 
 enum { CSG_NESTING = 10000, CSG_LEAVES = 65535 };
 
@@ -26,7 +27,17 @@ struct above {
     struct transform csg_from_parent;
     const struct material *inherited;
     const struct box *limit; /* in CSG space, or NULL */
-    int nesting;
+    uint32_t nesting;
+};
+
+/* Of every node on the path: where it stands, what it says about its operands and its children, and what it and those
+ * of them that have been visited amount to so far. */
+struct operand_frame {
+    struct transform csg_from_node, of_children;
+    const struct material *inherited, *inherited_operands;
+    const struct box *limit, *limit_operands;
+    uint32_t start, leaves; /* of its program and its leaves in the draft */
+    enum content content;
 };
 
 static bool add_token(struct flattening *f, struct csg_draft *draft, struct csg_token token) {
@@ -42,7 +53,7 @@ static bool add_token(struct flattening *f, struct csg_draft *draft, struct csg_
     return true;
 }
 
-static bool tell_open(struct flattening *f, const struct node *node) {
+static bool report_open(struct flattening *f, const struct node *node) {
     struct vec3 a = {0}, b = {0};
     const char *file = node->shape.kind == SHAPE_MESH ? mesh_file(node->shape.mesh) : NULL;
     if (node->shape.kind == SHAPE_MESH && mesh_open_edge(node->shape.mesh, &a, &b))
@@ -54,7 +65,7 @@ static bool tell_open(struct flattening *f, const struct node *node) {
                      shape_why_open(&node->shape));
 }
 
-static bool add_leaf(struct flattening *f, struct csg_draft *draft, struct node *node,
+static bool add_leaf(struct flattening *f, struct csg_draft *draft, const struct node *node,
                      const struct transform *csg_from_node, const struct above *above) {
     if (draft->leaf_count == CSG_LEAVES)
         return error_set(f->error, ERROR_SCENE, "a CSG solid has more than %d operands", CSG_LEAVES);
@@ -75,9 +86,6 @@ static bool add_leaf(struct flattening *f, struct csg_draft *draft, struct node 
     draft->leaves[draft->leaf_count] = leaf;
     return add_token(f, draft, (struct csg_token){.operation = CSG_LEAF, .leaf = (uint16_t)draft->leaf_count++});
 }
-
-static bool add_operand(struct flattening *f, struct csg_draft *draft, struct node *node, const struct above *above,
-                        enum content *content);
 
 static bool add_inverse(struct flattening *f, struct csg_draft *draft) {
     if (draft->program[draft->length - 1].operation == CSG_INVERSE) { /* twice is not at all */
@@ -105,34 +113,15 @@ static bool join(struct flattening *f, struct csg_draft *draft, enum csg_operati
     return operation != CSG_DIFFERENCE || add_inverse(f, draft);
 }
 
-/* Union, intersection or difference of all operands of a node. */
-static bool add_combination(struct flattening *f, struct csg_draft *draft, struct node *node,
-                            enum csg_operation operation, const struct above *above, enum content *content) {
-    uint32_t start = draft->length, leaves = draft->leaf_count;
-    *content = operation == CSG_INTERSECTION ? EVERYTHING : NOTHING;
-    for (uint32_t i = 0; i < node->operand_count; i++) {
-        enum content operand;
-        if (!add_operand(f, draft, node->operands[i], above, &operand))
-            return false;
-        bool first_of_difference = operation == CSG_DIFFERENCE && i == 0;
-        if (first_of_difference)
-            *content = operand;
-        else if (!join(f, draft, operation, operand, content))
-            return false;
-        if (*content != SOMETHING) {
-            draft->length = start;
-            draft->leaf_count = leaves;
-        }
-    }
-    return true;
-}
+static bool add_solid(struct flattening *f, struct csg_draft *draft, const struct node *solid,
+                      const struct above *above, bool inside, enum content *content);
 
 /* The box round a solid whose place is given by what is above it; without end where nothing is known. */
-static bool box_of_solid(struct flattening *f, struct node *solid, const struct above *above, struct box *out) {
+static bool box_of_solid(struct flattening *f, const struct node *solid, const struct above *above, struct box *out) {
     struct csg_draft draft = {.unseen = true};
     enum content content = NOTHING;
     *out = (struct box){vec3_all(-INFINITY), vec3_all(INFINITY)};
-    bool ok = add_operand(f, &draft, solid, above, &content);
+    bool ok = add_solid(f, &draft, solid, above, false, &content);
     if (ok && content == SOMETHING) {
         const struct csg *csg =
             csg_build(f->arena, draft.leaves, draft.leaf_count, draft.program, draft.length, f->error);
@@ -145,7 +134,7 @@ static bool box_of_solid(struct flattening *f, struct node *solid, const struct 
     return ok;
 }
 
-bool flatten_limit(struct flattening *f, struct node *solid, const struct transform *world_from_parent,
+bool flatten_limit(struct flattening *f, const struct node *solid, const struct transform *world_from_parent,
                    struct box *limit) {
     struct above above = {.csg_from_parent = transform_identity()};
     struct box own;
@@ -156,110 +145,179 @@ bool flatten_limit(struct flattening *f, struct node *solid, const struct transf
     return true;
 }
 
-/* A solid that is known to lie in another one. */
-static bool add_bounded(struct flattening *f, struct csg_draft *draft, struct node *node, const struct above *above,
-                        enum content *content) {
+/* The box that the operand of a bounded node is known to lie in; NULL without memory or for an error. */
+static const struct box *bound_of(struct flattening *f, const struct node *node, const struct operand_frame *frame,
+                                  uint32_t nesting) {
+    struct above above = {frame->csg_from_node, frame->inherited_operands, frame->limit, nesting};
     struct box *limit = arena_alloc(f->arena, sizeof *limit);
-    if (!limit)
-        return error_no_memory(f->error, "the operands of a CSG solid");
-    if (!box_of_solid(f, node->operands[1], above, limit))
-        return false;
-    struct above below = *above;
-    if (above->limit)
-        *limit = box_meet(*limit, *above->limit);
-    below.limit = limit;
-    return add_operand(f, draft, node->operands[0], &below, content);
+    if (!limit) {
+        error_no_memory(f->error, "the operands of a CSG solid");
+        return NULL;
+    }
+    if (!box_of_solid(f, node->operands[1], &above, limit))
+        return NULL;
+    if (frame->limit)
+        *limit = box_meet(*limit, *frame->limit);
+    return limit;
 }
 
-/* What a CSG node makes of its operands, in csg space. Its material goes to what has none under it. */
-static bool add_operation(struct flattening *f, struct csg_draft *draft, struct node *node,
-                          const struct transform *csg_from_node, const struct above *above, enum content *content) {
-    struct above below = *above;
-    below.csg_from_parent = *csg_from_node;
-    below.inherited = node->material ? node->material : above->inherited;
-    below.nesting++;
-    switch (node->operation) {
-    case NODE_UNION:
-        return add_combination(f, draft, node, CSG_UNION, &below, content);
-    case NODE_INTERSECTION:
-        return add_combination(f, draft, node, CSG_INTERSECTION, &below, content);
-    case NODE_DIFFERENCE:
-        return add_combination(f, draft, node, CSG_DIFFERENCE, &below, content);
-    case NODE_INVERSE:
-        if (!add_operand(f, draft, node->operands[0], &below, content))
-            return false;
-        if (*content == SOMETHING)
-            return add_inverse(f, draft);
-        *content = *content == NOTHING ? EVERYTHING : NOTHING;
-        return true;
-    case NODE_CLIPPED:
+/* What a CSG node says about its operands, before the first of them. Its material goes to what has none under it. */
+static bool begin_operation(struct flattening *f, const struct node *node, struct operand_frame *frame,
+                            uint32_t nesting) {
+    frame->inherited_operands = node->material ? node->material : frame->inherited;
+    frame->limit_operands = frame->limit;
+    frame->content = node->operation == NODE_INTERSECTION ? EVERYTHING : NOTHING;
+    if (node->operation == NODE_CLIPPED)
         return error_set(
             f->error, ERROR_SCENE,
             "node '%.100s' is an operand of CSG but is clipped, cut open without caps, so it has no inside; "
             "intersect it instead",
             node->name);
-    case NODE_BOUNDED:
-        return add_bounded(f, draft, node, &below, content);
-    }
-    return true;
+    if (node->operation == NODE_BOUNDED)
+        frame->limit_operands = bound_of(f, node, frame, nesting + 1);
+    return node->operation != NODE_BOUNDED || frame->limit_operands;
 }
 
-/* United with what is there already. */
-static bool add_children(struct flattening *f, struct csg_draft *draft, struct node *node, const struct above *above,
-                         enum content *content) {
-    for (struct node_child *child = node->first_child; child; child = child->next) {
-        enum content one;
-        if (!add_operand(f, draft, child->node, above, &one) || !join(f, draft, CSG_UNION, one, content))
-            return false;
-    }
-    return true;
-}
-
-/* Everything under a node as one operand: its own surface and its children, united. */
-static bool add_operand(struct flattening *f, struct csg_draft *draft, struct node *node, const struct above *above,
-                        enum content *content) {
-    *content = NOTHING;
+/* A node that was just entered: its own surface. `skip`: nothing is under it. */
+static bool enter_operand(struct flattening *f, struct csg_draft *draft, const struct node *node,
+                          const struct above *above, struct operand_frame *frame, bool *skip) {
+    frame->content = NOTHING;
+    frame->start = draft->length;
+    frame->leaves = draft->leaf_count;
+    frame->inherited = above->inherited;
+    frame->limit = above->limit;
     if (above->nesting > CSG_NESTING)
         return error_set(f->error, ERROR_SCENE, "CSG solids are nested more than %d deep", CSG_NESTING);
-    if (node->singular)
+    *skip = node->singular;
+    if (*skip)
         return true;
     if (node_moves(node))
         return error_set(f->error, ERROR_SCENE,
                          "node '%.100s' moves inside of a combined solid; only the solid as a whole can move",
                          node->name);
-    uint32_t start = draft->length, leaves = draft->leaf_count;
     struct transform parent_from_node = node_parent_from_node(node);
-    struct above below = *above;
-    below.csg_from_parent = transform_compose(&above->csg_from_parent, &parent_from_node);
-    below.nesting++;
-    if (!flatten_check_transform(f, node, &below.csg_from_parent))
+    frame->csg_from_node = transform_compose(&above->csg_from_parent, &parent_from_node);
+    if (!flatten_check_transform(f, node, &frame->csg_from_node))
         return false;
-    if (node->kind == NODE_GEOMETRY) {
-        bool nothing = node->shape.kind == SHAPE_MESH && mesh_triangle_count(node->shape.mesh) == 0;
-        if (!nothing && !shape_is_closed(&node->shape))
-            return tell_open(f, node);
-        if (!nothing && !add_leaf(f, draft, node, &below.csg_from_parent, above))
-            return false;
-        *content = nothing ? NOTHING : SOMETHING;
-    } else if (node->kind == NODE_CSG) {
-        if (!add_operation(f, draft, node, &below.csg_from_parent, above, content))
-            return false;
+    if (node->kind == NODE_CSG)
+        return begin_operation(f, node, frame, above->nesting);
+    if (!node_has_surface(node))
+        return true;
+    if (!shape_is_closed(&node->shape))
+        return report_open(f, node);
+    frame->content = SOMETHING;
+    return add_leaf(f, draft, node, &frame->csg_from_node, above);
+}
+
+/* What decides alone needs no program. */
+static void forget_decided(struct csg_draft *draft, const struct operand_frame *frame) {
+    if (frame->content == SOMETHING)
+        return;
+    draft->length = frame->start;
+    draft->leaf_count = frame->leaves;
+}
+
+/* Adds what operand `number` amounts to. */
+static bool add_operand(struct flattening *f, struct csg_draft *draft, const struct node *node, uint32_t number,
+                        enum content operand, struct operand_frame *frame) {
+    bool ok = true;
+    switch (node->operation) {
+    case NODE_UNION:
+        ok = join(f, draft, CSG_UNION, operand, &frame->content);
+        break;
+    case NODE_INTERSECTION:
+        ok = join(f, draft, CSG_INTERSECTION, operand, &frame->content);
+        break;
+    case NODE_DIFFERENCE:
+        if (number > 0)
+            ok = join(f, draft, CSG_DIFFERENCE, operand, &frame->content);
+        else
+            frame->content = operand;
+        break;
+    case NODE_INVERSE:
+        frame->content = operand == NOTHING ? EVERYTHING : operand == EVERYTHING ? NOTHING : SOMETHING;
+        ok = operand != SOMETHING || add_inverse(f, draft);
+        break;
+    case NODE_CLIPPED:
+    case NODE_BOUNDED:
+        frame->content = operand;
+        break;
     }
-    uint32_t rounds = node->placements ? node->placements->count : 1;
-    for (uint32_t i = 0; i < rounds && node->first_child; i++) {
-        struct above of_children = below;
-        if (node->placements) {
-            struct transform node_from_child = placement_transform(node->placements, i);
-            of_children.csg_from_parent = transform_compose(&below.csg_from_parent, &node_from_child);
-        }
-        if (!add_children(f, draft, node, &of_children, content))
+    forget_decided(draft, frame);
+    return ok;
+}
+
+/* A node is finished: the one above it takes it up; of the root it is the result. */
+static bool leave_operand(struct flattening *f, struct csg_draft *draft, const struct scene_traversal *t,
+                          enum content *content) {
+    struct operand_frame *frame = scene_traversal_frame(t, 0);
+    *content = frame->content;
+    if (t->depth == 1)
+        return true;
+    uint32_t number = scene_traversal_operand(t);
+    struct operand_frame *above = scene_traversal_frame(t, 1);
+    if (number != SCENE_CHILD)
+        return add_operand(f, draft, t->steps[t->depth - 2].node, number, frame->content, above);
+    return join(f, draft, CSG_UNION, frame->content, &above->content);
+}
+
+/* What the node above the one that was just entered says about it. */
+static struct above above_of(const struct scene_traversal *t, uint32_t nesting) {
+    const struct operand_frame *frame = scene_traversal_frame(t, 1);
+    nesting += t->depth - 1;
+    if (scene_traversal_operand(t) == SCENE_CHILD)
+        return (struct above){frame->of_children, frame->inherited, frame->limit, nesting};
+    return (struct above){frame->csg_from_node, frame->inherited_operands, frame->limit_operands, nesting};
+}
+
+static bool enter_solid(struct flattening *f, struct csg_draft *draft, struct scene_traversal *t,
+                        const struct above *above) {
+    struct operand_frame *frame = scene_traversal_frame(t, 0);
+    const struct node *node = scene_traversal_node(t);
+    bool skip = false;
+    if (t->inside && t->depth == 1) { /* where it stands is no matter of the solid's own space */
+        *frame = (struct operand_frame){
+            .csg_from_node = above->csg_from_parent, .inherited = above->inherited, .limit = above->limit};
+        return begin_operation(f, node, frame, above->nesting);
+    }
+    struct above own = t->depth > 1 ? above_of(t, above->nesting) : *above;
+    if (!enter_operand(f, draft, node, &own, frame, &skip))
+        return false;
+    enum content nothing;
+    if (skip) {
+        if (!leave_operand(f, draft, t, &nothing))
             return false;
-        if (*content != SOMETHING) {
-            draft->length = start;
-            draft->leaf_count = leaves;
-        }
+        scene_traversal_skip(t);
     }
     return true;
+}
+
+/* Everything under a node as one operand: its own surface, and what its children are, united. inside: only its
+ * operands, as if the node stood where its parent does. */
+static bool add_solid(struct flattening *f, struct csg_draft *draft, const struct node *solid,
+                      const struct above *above, bool inside, enum content *content) {
+    struct scene_traversal t = {
+        .operands = OPERANDS_OF_SOLIDS, .inside = inside, .frame_size = sizeof(struct operand_frame)};
+    enum scene_event event;
+    bool ok = true;
+    *content = NOTHING;
+    scene_traversal_begin(&t, solid);
+    while (ok && (event = scene_traversal_next(&t)) != SCENE_END) {
+        if (event == SCENE_NO_MEMORY) {
+            ok = error_no_memory(f->error, "a CSG program");
+        } else if (event == SCENE_ENTER) {
+            ok = enter_solid(f, draft, &t, above);
+        } else {
+            struct operand_frame *frame = scene_traversal_frame(&t, 0);
+            forget_decided(draft, frame); /* of the placement before */
+            if (event == SCENE_CHILDREN)
+                frame->of_children = scene_step_map(&t.steps[t.depth - 1], &frame->csg_from_node);
+            else
+                ok = leave_operand(f, draft, &t, content);
+        }
+    }
+    scene_traversal_end(&t);
+    return ok;
 }
 
 /* The clips behind the solid, all of them at once. */
@@ -278,7 +336,7 @@ static bool add_clips(struct flattening *f, struct csg_draft *draft, const struc
                 "node '%.100s' moves, or a node above it, while what clips it does not; only both together "
                 "can move",
                 node->name);
-        if (!add_operand(f, draft, clip->solid, &above, &one) || !join(f, draft, CSG_INTERSECTION, one, content))
+        if (!add_solid(f, draft, clip->solid, &above, false, &one) || !join(f, draft, CSG_INTERSECTION, one, content))
             return false;
         if (*content != SOMETHING) {
             draft->length = start;
@@ -327,15 +385,15 @@ static enum csg_cull cull_of(const struct node *node) {
     return CSG_CULL_NONE;
 }
 
-bool flatten_csg(struct flattening *f, struct node *node, const struct stand *stand, const struct surroundings *around,
-                 const struct csg ***parts, uint32_t *count) {
+bool flatten_csg(struct flattening *f, const struct node *node, const struct stand *stand,
+                 const struct surroundings *around, const struct csg ***parts, uint32_t *count) {
     struct csg_draft draft = {0};
     enum content content = SOMETHING, clip = EVERYTHING;
     struct transform identity = transform_identity();
     struct above above = {.csg_from_parent = identity, .inherited = around ? around->inherited : NULL};
     *parts = NULL;
     *count = 0;
-    bool ok = node->kind == NODE_CSG ? add_operation(f, &draft, node, &identity, &above, &content)
+    bool ok = node->kind == NODE_CSG ? add_solid(f, &draft, node, &above, true, &content)
                                      : add_leaf(f, &draft, node, &identity, &above);
     if (ok && node->kind != NODE_CSG) /* a surface of its own that is clipped */
         draft.leaves[0].cull = cull_of(node);

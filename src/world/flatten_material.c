@@ -71,10 +71,9 @@ static bool grow(struct flattening *f) {
     return true;
 }
 
-static void warn_once(struct flattening *f, struct node *node, const char *what) {
-    if (node->warned)
+static void warn_once(struct flattening *f, const struct node *node, const char *what) {
+    if (!scene_warns(f->scene, node))
         return;
-    node->warned = true;
     char text[512];
     (void)snprintf(text, sizeof text, "warning: node '%.100s' %s", node->name, what);
     f->warn(f->warn_context, text);
@@ -156,7 +155,7 @@ static bool grow_list(struct flattening *f, uint32_t count) {
     return true;
 }
 
-bool flatten_material(struct flattening *f, struct node *node, const struct material *inherited, uint32_t *out,
+bool flatten_material(struct flattening *f, const struct node *node, const struct material *inherited, uint32_t *out,
                       uint32_t *count) {
     bool by_slot = !node->material && node->slot_count > 0;
     const struct material *only = node->material ? node->material : inherited;

@@ -106,7 +106,7 @@ static bool gather(struct gathering *g, struct arena *arena, const uint8_t *mark
     return true;
 }
 
-static bool resolve_mesh(const struct world *world, struct light *light, struct arena *arena, struct node *root,
+static bool resolve_mesh(const struct world *world, struct light *light, struct arena *arena, const struct node *root,
                          world_warning *warn, void *warn_context, struct error *error) {
     struct gathering g = {.world = world, .light = light, .one_sided = true, .bounds = box_empty()};
     struct light_mesh *mesh = arena_alloc(arena, sizeof *mesh);
@@ -149,7 +149,7 @@ static bool turn_sky(struct world *world, const struct sky *behind, struct light
     return true;
 }
 
-bool light_lamps_resolve(struct world *world, struct light *lights, struct arena *arena, struct node *root,
+bool light_lamps_resolve(struct world *world, struct light *lights, struct arena *arena, const struct node *root,
                          struct pool *pool, world_warning *warn, void *warn_context, struct error *error) {
     const struct sky behind = world->sky;
     for (uint32_t i = 0; i < world->light_count; i++) {

@@ -1,83 +1,39 @@
-/* The same walk as flattening's, in the same order, with a running count of placed primitives in the place of the
- * transforms: a node places its primitive before its children, always or never, so the next placed primitive is of
- * this node exactly when it was placed. One walk a list; scenes without lists pay nothing. */
+/* One traversal for each list; scenes without lists pay nothing. */
 #include "world/light_lists.h"
 
-#include "base/mem.h"
+#include "world/path.h"
 
 #include <string.h>
 
-struct walk {
-    const struct world *world;
-    const struct node *const *list;
-    uint32_t list_count, placed;
-    uint8_t *lit, value; /* what a listed primitive gets */
-    struct walk_frame {
-        const struct node *node;
-        const struct node *operand; /* that is placed before the children */
-        const struct node_child *next;
-        uint32_t rounds; /* of the children that are still to come */
-        bool listed;
-    } * frames;
-    size_t count, capacity;
-};
-
-static bool enter(struct walk *walk, const struct node *node, bool listed) {
-    for (uint32_t i = 0; i < walk->list_count && !listed; i++)
-        listed = walk->list[i] == node;
-    const struct world *world = walk->world;
-    uint32_t end = walk->placed;
-    if (end < world->placed_count && placed_node(world, end) == node)
-        end += world->things[world->placed[end].thing].parts;
-    while (walk->placed < end) {
-        if (listed)
-            walk->lit[walk->placed] = walk->value;
-        walk->placed++;
-    }
-    if (walk->count == walk->capacity) {
-        size_t capacity = walk->capacity ? walk->capacity * 2 : 64;
-        struct walk_frame *frames = mem_resize_array(walk->frames, capacity, sizeof *frames);
-        if (!frames)
-            return false;
-        walk->frames = frames;
-        walk->capacity = capacity;
-    }
-    uint32_t rounds = node->placements ? node->placements->count : 1;
-    walk->frames[walk->count++] = (struct walk_frame){node, node_places_operand(node), NULL, rounds, listed};
-    return true;
+static bool is_listed(const struct node *const *list, uint32_t count, const struct node *node) {
+    for (uint32_t i = 0; i < count; i++)
+        if (list[i] == node)
+            return true;
+    return false;
 }
 
 bool light_lists_mark(const struct world *world, const struct node *const *list, uint32_t list_count, uint8_t *lit,
                       uint8_t value, const struct node *root) {
-    struct walk walk = {.world = world, .list = list, .list_count = list_count, .lit = lit, .value = value};
-    bool ok = root->drawable == 0 || enter(&walk, root, false);
-    while (ok && walk.count > 0) {
-        struct walk_frame *frame = &walk.frames[walk.count - 1];
-        const struct node *operand = frame->operand;
-        if (operand) {
-            frame->operand = NULL;
-            ok = enter(&walk, operand, frame->listed);
+    struct scene_traversal t = world_traversal(world, root, sizeof(bool));
+    enum scene_event event;
+    uint32_t next = 0;
+    while ((event = scene_traversal_next(&t)) < SCENE_END) {
+        if (event != SCENE_ENTER)
             continue;
-        }
-        const struct node_child *link = frame->next;
-        if (!link && frame->rounds > 0) {
-            frame->rounds--;
-            frame->next = frame->node->first_child;
-            continue;
-        }
-        if (!link) {
-            walk.count--;
-            continue;
-        }
-        frame->next = link->next;
-        if (link->node->drawable > 0)
-            ok = enter(&walk, link->node, frame->listed);
+        const struct node *node = scene_traversal_node(&t);
+        const bool *above = t.depth > 1 ? scene_traversal_frame(&t, 1) : NULL;
+        bool *listed = scene_traversal_frame(&t, 0);
+        *listed = (above && *above) || is_listed(list, list_count, node);
+        uint32_t count = world_placed_by(world, node, next);
+        if (*listed && count > 0)
+            memset(lit + next, value, count);
+        next += count;
     }
-    mem_free(walk.frames);
-    return ok;
+    scene_traversal_end(&t);
+    return event == SCENE_END;
 }
 
-bool light_lists_resolve(const struct world *world, struct light *lights, struct arena *arena, struct node *root,
+bool light_lists_resolve(const struct world *world, struct light *lights, struct arena *arena, const struct node *root,
                          struct error *error) {
     for (uint32_t i = 0; i < world->light_count; i++) {
         struct light *light = &lights[i];

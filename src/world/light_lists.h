@@ -6,7 +6,7 @@
 
 /* Fills `lit` of every light that has a list: a primitive counts as listed when its node or any node on the way to it
  * from the root is. After flattening. lights: the world's own copy. Errors: no memory. */
-bool light_lists_resolve(const struct world *world, struct light *lights, struct arena *arena, struct node *root,
+bool light_lists_resolve(const struct world *world, struct light *lights, struct arena *arena, const struct node *root,
                          struct error *error);
 
 /* Sets lit[i] to `value` for every placed primitive i that comes from a listed node or one below it. False: no memory.

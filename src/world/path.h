@@ -1,18 +1,20 @@
 /* The way from the root to what is placed. A placed primitive knows its node, but a node may hang under several others
- * and in many places: the way is found by walking the tree again as flattening did. */
+ * and in many places: the way is found by the same traversal as flattening's. */
 #ifndef GRAY_WORLD_PATH_H
 #define GRAY_WORLD_PATH_H
 
+#include "scene/traversal.h"
 #include "world/world.h"
 
-struct path_step {
-    const struct node *node;
-    uint32_t place; /* the one of its placements that leads on; counts from 1, 0: it has none */
-};
+/* The traversal that flattening has made, of a tree that has not changed since; the caller sets frame_size and ends it.
+ */
+struct scene_traversal world_traversal(const struct world *world, const struct node *root, size_t frame_size);
+/* How many primitives, from number `next` on, this node has placed when it is entered for the next time. */
+uint32_t world_placed_by(const struct world *world, const struct node *node, uint32_t next);
 
 /* Told in flattening order: primitives first .. first + count - 1 are those of the last node of the way. False: the
  * walk may end. */
-typedef bool world_path_visit(void *context, uint32_t first, uint32_t count, const struct path_step *steps,
+typedef bool world_path_visit(void *context, uint32_t first, uint32_t count, const struct scene_step *steps,
                               uint32_t depth);
 
 /* The tree must be the one the world was built of, unchanged. A node that is cut away entirely by one clip and not by
@@ -22,7 +24,7 @@ bool world_walk_paths(const struct world *world, const struct node *root, world_
 
 /* "root#0 / tree#7 [3] / leaf#9": names with their order of creation, and which placement. Control characters become
  * '?'. Cut at `size`; returns the length it would have. */
-size_t world_path_text(const struct path_step *steps, uint32_t depth, char *out, size_t size);
+size_t world_path_text(const struct scene_step *steps, uint32_t depth, char *out, size_t size);
 
 /* As texts in the arena: out[i] is the way to wanted[i]; wanted[0 .. count-1] ascend. NULL where there is none. */
 bool world_find_paths(const struct world *world, const struct node *root, const uint32_t *wanted, uint32_t count,
@@ -32,11 +34,11 @@ bool world_find_paths(const struct world *world, const struct node *root, const 
  * without the solid; its leaves, and those of what is below it, are the ones of origin first .. end - 1
  * (csg_leaf.origin). Ways of more than OPERAND_DEPTH nodes are not told. False: the walk may end. */
 enum { OPERAND_DEPTH = 256 };
-typedef bool world_operand_visit(void *context, uint32_t first, uint32_t end, const struct path_step *steps,
+typedef bool world_operand_visit(void *context, uint32_t first, uint32_t end, const struct scene_step *steps,
                                  uint32_t depth);
 void world_walk_operands(const struct node *solid, world_operand_visit *visit, void *context);
 /* The way down to the shape that a leaf was made of; steps has room for `capacity`. Returns its length; 0: there is
  * none, or it is longer. */
-uint32_t world_operand_way(const struct node *solid, uint32_t origin, struct path_step *steps, uint32_t capacity);
+uint32_t world_operand_way(const struct node *solid, uint32_t origin, struct scene_step *steps, uint32_t capacity);
 
 #endif

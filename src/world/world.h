@@ -27,7 +27,6 @@ struct moving {
 /* What all placements of one node share. */
 struct thing {
     struct shape shape;
-    const struct node *node;
     uint32_t material;   /* unused for CSG: the leaves have their own */
     uint32_t slot_count; /* of a mesh: face slot k has material + k; below 2 all have `material` */
     enum node_cull cull; /* of a mesh */
@@ -35,6 +34,12 @@ struct thing {
     bool is_later_part;  /* not the first of them */
     enum hit_hull hull;  /* unused for CSG, like material */
     bool holes;          /* some of its materials let rays through by a picture */
+};
+
+/* What was flattened, for inspection: searches and shading never look here. Borrows from the scene. */
+struct authored {
+    const struct node **nodes; /* of each thing; owned */
+    const uint8_t *draws;      /* by node->index: whether the node, or something below it, placed anything */
 };
 
 /* The linear part of a placement's map and of its inverse; most placements share theirs with others. */
@@ -61,6 +66,7 @@ struct world {
     uint32_t placed_count, thing_count, linear_count, moving_count;
     struct shutter shutter;
     bool moves; /* something does */
+    struct authored authored;
     const struct material **materials;
     bool *material_has_image;  /* such materials need to know the footprint on the surface */
     bool *material_has_relief; /* and such ones where it rises */
@@ -94,7 +100,7 @@ typedef void world_warning(void *context, const char *text);
 /* Flattens the tree under root as it stands now; mesh indices are built where they are missing. The world points into
  * the scene's arena (materials, names), so it must not outlive the script. Errors: cycles (naming the nodes), no
  * memory, cancelled; nothing is left to destroy then. lights and sky are copied. */
-bool world_build(struct world *world, struct arena *arena, struct scene *scene, struct node *root,
+bool world_build(struct world *world, struct arena *arena, struct scene *scene, const struct node *root,
                  const struct light *lights, uint32_t light_count, const struct sky *sky, struct shutter shutter,
                  enum accel_kind accel, struct pool *pool, world_warning *warn, void *warn_context,
                  struct error *error);
@@ -110,7 +116,7 @@ static inline const struct shape *placed_shape(const struct world *world, uint32
 }
 /* The node that a placed primitive came from. */
 static inline const struct node *placed_node(const struct world *world, uint32_t placed) {
-    return placed_thing(world, placed)->node;
+    return world->authored.nodes[world->placed[placed].thing];
 }
 /* world_from_object at a ray's time; of what stands still the bits are those of the nodes' transforms, composed. */
 struct transform world_placement(const struct world *world, uint32_t placed, double ray_time);
@@ -142,6 +148,16 @@ bool world_nearest(const struct world *world, const struct ray *ray, struct worl
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
                             uint32_t *placed, struct crossing *crossing);
 bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch);
+/* The same of many rays: of any origin, interval, time and primitive to skip; they may be in any order. hits[i] is what
+ * world_nearest says of rays[i], to the bit; where it says no, hits[i].placed is WORLD_NOTHING and the rest is
+ * anything.
+ */
+#define WORLD_NOTHING UINT32_MAX
+void world_nearest_batch(const struct world *world, const struct ray *rays, uint32_t count,
+                         struct world_scratch *scratch, struct hit *hits);
+/* met[i] is what world_any says of rays[i]. */
+void world_any_batch(const struct world *world, const struct ray *rays, uint32_t count, struct world_scratch *scratch,
+                     bool *met);
 /* Only what world_nearest_crossing has found, described. */
 void world_describe(const struct world *world, const struct ray *ray, uint32_t placed, const struct crossing *crossing,
                     struct hit *hit);

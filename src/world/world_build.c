@@ -13,7 +13,7 @@ static void add_up_meshes(struct world *world, const struct assets *assets) {
 }
 
 /* Leaves it to the caller to destroy what there is when it fails. */
-static bool build(struct world *world, struct arena *arena, struct scene *scene, struct node *root,
+static bool build(struct world *world, struct arena *arena, struct scene *scene, const struct node *root,
                   const struct light *lights, struct pool *pool, world_warning *warn, void *warn_context,
                   struct error *error) {
     uint32_t light_count = world->light_count;
@@ -50,7 +50,7 @@ static bool build(struct world *world, struct arena *arena, struct scene *scene,
     return scene_accel_build(&world->accel, world->mesh_accel, world->boxes, world->placed_count, pool, error);
 }
 
-bool world_build(struct world *world, struct arena *arena, struct scene *scene, struct node *root,
+bool world_build(struct world *world, struct arena *arena, struct scene *scene, const struct node *root,
                  const struct light *lights, uint32_t light_count, const struct sky *sky, struct shutter shutter,
                  enum accel_kind accel, struct pool *pool, world_warning *warn, void *warn_context,
                  struct error *error) {
@@ -63,9 +63,11 @@ bool world_build(struct world *world, struct arena *arena, struct scene *scene, 
 
 void world_destroy(struct world *world) {
     mem_free(world->things);
+    mem_free(world->authored.nodes);
     mem_free(world->linear_maps);
     mem_free(world->moving);
     world->things = NULL;
+    world->authored.nodes = NULL;
     world->linear_maps = NULL;
     world->moving = NULL;
     scene_accel_destroy(&world->accel);
@@ -73,6 +75,6 @@ void world_destroy(struct world *world) {
 
 size_t world_placed_memory(const struct world *world) {
     return world->placed_count * (sizeof *world->placed + sizeof *world->boxes) +
-           world->thing_count * sizeof *world->things + world->linear_count * sizeof *world->linear_maps +
-           world->moving_count * sizeof *world->moving;
+           world->thing_count * (sizeof *world->things + sizeof *world->authored.nodes) +
+           world->linear_count * sizeof *world->linear_maps + world->moving_count * sizeof *world->moving;
 }

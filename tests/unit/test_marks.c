@@ -10,7 +10,7 @@
 
 enum { WIDTH = 80, HEIGHT = 60 };
 
-static bool way_of_second(void *context, uint32_t first, uint32_t count, const struct path_step *steps,
+static bool way_of_second(void *context, uint32_t first, uint32_t count, const struct scene_step *steps,
                           uint32_t depth) {
     (void)count;
     if (first == 1)

@@ -216,7 +216,7 @@ TEST(a_story_that_is_too_long_counts_what_it_leaves_out) {
 
 /* --- ways to nodes --- */
 
-static bool note_path(void *context, uint32_t first, uint32_t count, const struct path_step *steps, uint32_t depth) {
+static bool note_path(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
     char(*texts)[200] = context;
     for (uint32_t i = first; i < first + count; i++)
         (void)world_path_text(steps, depth, texts[i], sizeof texts[i]);
@@ -252,7 +252,7 @@ TEST(ways_to_instances_tell_every_node_and_place_on_them) {
     CHECK_TEXT(found[0], texts[1]);
     CHECK_TEXT(found[1], texts[11]);
     /* Too little room cuts the text and tells its length. */
-    struct path_step step = {s.root, 0};
+    struct scene_step step = {s.root, 0};
     char small[4];
     CHECK_EQ_INT(world_path_text(&step, 1, small, sizeof small), strlen(s.root->name) + 2);
     CHECK_EQ_INT(strlen(small), 3);
