@@ -82,6 +82,11 @@ void test_need_window(void) {
     (void)setenv("SDL_FRAMEBUFFER_ACCELERATION", "0", 1);
 }
 
+bool test_has_sanitizer(void) {
+    const char *binary = getenv("GRAY_TEST_BINARY");
+    return binary && (strstr(binary, "asan") || strstr(binary, "tsan"));
+}
+
 const char *test_folder(void) {
     if (!folder_made && mkdir(folder_path, 0700) != 0) {
         printf("    cannot make the folder %s: %s\n", folder_path, strerror(errno));

@@ -78,6 +78,8 @@ void test_need_window(void);
 const char *test_folder(void);
 /* The path of a name in it; the last eight answers stay as they are. */
 const char *test_path(const char *name);
+/* Whether the program under test was built with a sanitizer. */
+bool test_has_sanitizer(void);
 void test_write_file(const char *path, const void *data, size_t size);
 void test_write_text(const char *path, const char *text);
 /* Whole file, NUL-terminated, from malloc; NULL when it cannot be read. */

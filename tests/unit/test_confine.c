@@ -248,11 +248,6 @@ static void forbid(unsigned call, int value, unsigned number) {
         test_skip("no seccomp filter in this kernel");
 }
 
-static bool has_sanitizer(void) {
-    const char *binary = getenv("GRAY_TEST_BINARY");
-    return binary && (strstr(binary, "asan") || strstr(binary, "tsan"));
-}
-
 /* What the program says under these arguments begins like this and is one line; "": no word. */
 static void check_said(const char *arguments, const char *begin) {
     struct test_result result = test_gray_scene("x = 1", arguments, NULL);
@@ -267,9 +262,10 @@ static void check_said(const char *arguments, const char *begin) {
 
 TEST(hostile_a_kernel_without_landlock_is_one_warning) {
     forbid(SYS_landlock_create_ruleset, -1, ENOSYS);
-    check_said("scene.lua", has_sanitizer() ? "gray: warning: no Landlock in this kernel (Function not implemented): "
-                                            : "gray: warning: no Landlock in this kernel (Function not implemented): "
-                                              "confined by checks of file names, seccomp\n");
+    check_said("scene.lua", test_has_sanitizer()
+                                ? "gray: warning: no Landlock in this kernel (Function not implemented): "
+                                : "gray: warning: no Landlock in this kernel (Function not implemented): "
+                                  "confined by checks of file names, seccomp\n");
     check_said("-q scene.lua", "");
     check_said("--verbose scene.lua", "gray: warning: no Landlock in this kernel (Function not implemented): ");
     check_said("--no-sandbox scene.lua", "gray: warning: --no-sandbox: ");
@@ -283,7 +279,7 @@ TEST(hostile_a_kernel_without_landlock_is_one_warning) {
 }
 
 TEST(hostile_a_kernel_without_a_filter_is_one_warning) {
-    if (has_sanitizer())
+    if (test_has_sanitizer())
         test_skip("builds with sanitizers run without the filter");
     struct test_result plain = test_gray_scene("x = 1", "--verbose scene.lua", NULL);
     bool landlock = strstr(plain.err, "Landlock (version ");
@@ -298,7 +294,7 @@ TEST(hostile_a_kernel_without_a_filter_is_one_warning) {
 }
 
 TEST(hostile_a_kernel_that_confines_nothing_is_one_warning) {
-    if (has_sanitizer())
+    if (test_has_sanitizer())
         test_skip("builds with sanitizers run without the filter");
     forbid(SYS_landlock_create_ruleset, -1, EOPNOTSUPP);
     forbid(SYS_prctl, PR_SET_SECCOMP, EINVAL);

@@ -29,11 +29,6 @@
 static const double time_limit = 0.1;
 static const long memory_limit = 64 << 10; /* KiB, as ru_maxrss counts */
 
-static bool has_sanitizer(void) {
-    const char *binary = getenv("GRAY_TEST_BINARY");
-    return binary && (strstr(binary, "asan") || strstr(binary, "tsan"));
-}
-
 /* The header line, from malloc; NULL when there is none. */
 static char *header(const char *text, const char *name) {
     char start[64];
@@ -105,7 +100,7 @@ static void check_script(const char *folder, const char *name) {
     if (result.status != (status ? atoi(status) : 1))
         test_fail(__FILE__, __LINE__, "%s ends with %d", name, result.status);
     /* A tenth more, and the start of two processes. */
-    if (!more && !has_sanitizer() && used > time_limit * 1.1 + 0.08)
+    if (!more && !test_has_sanitizer() && used > time_limit * 1.1 + 0.08)
         test_fail(__FILE__, __LINE__, "%s took %.3f s of processor time", name, used);
     free(result.out);
     free(result.err);
@@ -196,7 +191,7 @@ TEST(hostile_no_script_takes_more_than_its_memory_and_a_tenth) {
     free(plain.err);
     long without = most_memory();
     CHECK(run_scripts("memory_") >= 15);
-    if (!has_sanitizer() && most_memory() - without > memory_limit * 11 / 10)
+    if (!test_has_sanitizer() && most_memory() - without > memory_limit * 11 / 10)
         test_fail(__FILE__, __LINE__, "%ld KiB over the %ld of an empty script", most_memory() - without, without);
     free(path);
 }

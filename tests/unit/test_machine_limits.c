@@ -234,6 +234,8 @@ TEST_LONG(no_depth_of_a_scene_depends_on_any_limit_of_the_stack) {
 
 /* Everything the program does beside rendering, and rendering in one process. */
 TEST(every_action_works_with_a_stack_of_128_kilobytes) {
+    if (test_has_sanitizer())
+        test_skip("frames are several times as large under a sanitizer");
     static const char *const arguments[] = {
         "--version",
         "--help",

@@ -28,11 +28,6 @@
 
 enum { KIB_OF_LIMIT = 16 << 10 };
 
-static bool has_sanitizer(void) {
-    const char *binary = getenv("GRAY_TEST_BINARY");
-    return binary && (strstr(binary, "asan") || strstr(binary, "tsan"));
-}
-
 /* The most that any child has taken, in KiB. */
 static long most_memory(void) {
     struct rusage usage;
@@ -45,7 +40,7 @@ static void guard(void) {
     struct rlimit limit;
     CHECK(getrlimit(RLIMIT_AS, &limit) == 0);
     limit.rlim_cur = (rlim_t)2 << 30;
-    if (!has_sanitizer())
+    if (!test_has_sanitizer())
         CHECK(setrlimit(RLIMIT_AS, &limit) == 0);
 }
 
@@ -64,7 +59,7 @@ static long memory_of_nothing(void) {
 
 static void check_memory(const char *what, long without, long limit) {
     long more = most_memory() - without;
-    if (!has_sanitizer() && more > limit * 11 / 10)
+    if (!test_has_sanitizer() && more > limit * 11 / 10)
         test_fail(__FILE__, __LINE__, "%s: %ld KiB over an empty script for a limit of %ld", what, more, limit);
 }
 

@@ -21,11 +21,6 @@
 
 static char in[700];
 
-static bool has_sanitizer(void) {
-    const char *binary = getenv("GRAY_TEST_BINARY");
-    return binary && (strstr(binary, "asan") || strstr(binary, "tsan"));
-}
-
 /* A folder that every user may use, with files and a scene. */
 static void fresh_folder(const char *files, const char *scene) {
     static int number;
@@ -282,7 +277,8 @@ TEST(a_rendering_process_keeps_nothing_it_inherited_and_gains_no_privileges) {
     for (int i = 0; i < 200 && child > 0; i++) { /* until it is confined */
         (void)snprintf(path, sizeof path, "/proc/%d/status", (int)child);
         char *text = test_read_file(path, NULL);
-        bool ready = number_in(text, "\nNoNewPrivs:") == 1 && (has_sanitizer() || number_in(text, "\nSeccomp:") == 2);
+        bool ready =
+            number_in(text, "\nNoNewPrivs:") == 1 && (test_has_sanitizer() || number_in(text, "\nSeccomp:") == 2);
         free(text);
         if (ready)
             break;
@@ -291,7 +287,7 @@ TEST(a_rendering_process_keeps_nothing_it_inherited_and_gains_no_privileges) {
     (void)snprintf(path, sizeof path, "/proc/%d/status", (int)child);
     char *text = test_read_file(path, NULL);
     CHECK_EQ_INT(number_in(text, "\nNoNewPrivs:"), 1);
-    if (!has_sanitizer())
+    if (!test_has_sanitizer())
         CHECK_EQ_INT(number_in(text, "\nSeccomp:"), 2);
     free(text);
     (void)snprintf(path, sizeof path, "/proc/%d/fd", (int)child);
@@ -316,7 +312,7 @@ TEST(a_rendering_process_keeps_nothing_it_inherited_and_gains_no_privileges) {
 }
 
 TEST(a_build_with_sanitizers_says_that_it_has_no_filter) {
-    if (!has_sanitizer())
+    if (!test_has_sanitizer())
         test_skip("a build without sanitizers");
     struct test_result result = test_gray_scene("x = 1", "--verbose scene.lua", NULL);
     CHECK(strstr(result.err, ", no seccomp filter in a build with sanitizers"));
@@ -345,6 +341,8 @@ static int count_of(const char *text, const char *part) {
 }
 
 TEST(a_crash_of_the_rendering_process_leaves_the_terminal_as_it_was) {
+    if (test_has_sanitizer())
+        test_skip("a sanitizer reports the crash on the terminal");
     static char bytes[1 << 18];
     fresh_folder("", "p('x.png', 2500, 2500)");
     int master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
