@@ -30,15 +30,15 @@ static bool hidden(int blocker, struct vec3 from, struct vec3 target) {
 }
 
 static double estimate(const struct light *light, enum pattern pattern, int blocker, uint32_t n, uint64_t key) {
-    struct light_frame frame;
+    struct light_context context;
     struct vec3 from = {0, 0, 0};
     double sum = 0;
-    if (!light_frame_make(light, from, &frame))
+    if (!light_context_make(light, from, from, &context))
         return 0;
     for (uint32_t c = 0; c < n * n; c++) {
-        struct light_sample s = light_sample_lamp(light, &frame, from, place(pattern, key, c % n, c / n, n));
-        if (!hidden(blocker, from, s.target))
-            sum += s.light.x * fmax(vec3_normalize(s.target).y, 0);
+        struct light_sample s = light_sample(light, &context, place(pattern, key, c % n, c / n, n));
+        if (!hidden(blocker, from, s.target.at))
+            sum += s.intensity.x * fmax(s.direction.y, 0);
     }
     return sum / ((double)n * n);
 }

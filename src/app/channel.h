@@ -90,8 +90,9 @@ struct live_view {
 /* Lights of a scene are told so many at a time. */
 enum { TOLD_LIGHTS = 32 };
 struct told_light {
-    uint32_t kind; /* an enum light_kind */
-    bool placed;   /* it has a position */
+    uint32_t kind;       /* an enum light_kind, for its name */
+    uint32_t properties; /* of enum light_property */
+    bool placed;         /* its position is known */
     struct vec3 position, colour;
     struct vec3 direction, edge1, edge2; /* as in struct light, zero where it has none */
     double radius, cos_outer;

@@ -3,28 +3,6 @@
 
 #include "base/sort.h"
 
-const char *inspect_light(enum light_kind kind) {
-    switch (kind) {
-    case LIGHT_POINT:
-        return "point light";
-    case LIGHT_PARALLELOGRAM:
-        return "area light";
-    case LIGHT_DIRECTIONAL:
-        return "directional light";
-    case LIGHT_SPOT:
-        return "spot light";
-    case LIGHT_DISC:
-        return "disc light";
-    case LIGHT_SPHERE:
-        return "spherical light";
-    case LIGHT_MESH:
-        return "mesh light";
-    case LIGHT_SKY:
-        return "sky light";
-    }
-    return "?";
-}
-
 const char *inspect_material(const struct material *link) {
     switch (link->kind) {
     case MATERIAL_PHONG:

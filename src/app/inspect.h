@@ -37,7 +37,6 @@ void story_tell(const struct told_story *told, struct sheet *sheet);
 void story_tell_json(const struct told_story *told, struct sheet *sheet);
 
 /* Words for kinds. */
-const char *inspect_light(enum light_kind kind);
 const char *inspect_material(const struct material *link);
 const char *inspect_sky(enum sky_kind kind);
 const char *inspect_ray(enum ray_kind kind);

@@ -96,7 +96,7 @@ bool live_light_mark(const struct live *live, const struct camera_frame *frame, 
         return false;
     if (light->placed)
         return mark_point(live, frame, light->position, x, y, seen);
-    struct vec3 from = light->kind == LIGHT_DIRECTIONAL ? vec3_negate(light->direction) : vec3_make(0, 1, 0);
+    struct vec3 from = light->properties & LIGHT_HAS_DIRECTION ? vec3_negate(light->direction) : vec3_make(0, 1, 0);
     double far = 1e6 * (1 + vec3_max_abs(frame->eye));
     return mark_point(live, frame, vec3_add_scaled(frame->eye, from, far), x, y, seen);
 }
@@ -178,7 +178,7 @@ void live_light_turn(struct live *live, const struct transform *map, bool sizes)
     if (!light || !(sizes ? light->sizes : light->turns))
         return;
     struct affine turn = map->forward;
-    if (light->kind == LIGHT_SKY) { /* it is turned about the y axis alone */
+    if (light->properties & LIGHT_IS_ENVIRONMENT) { /* it is turned about the y axis alone */
         double linear[TURN_NUMBERS], sine, cosine;
         for (int i = 0; i < TURN_NUMBERS; i++)
             linear[i] = turn.m[i / 3][i % 3];
@@ -274,8 +274,11 @@ void live_add_light(struct live *live) {
     put(change.numbers, vec3_add_scaled(place, vec3_sub(eye, place), 0.5));
     put(change.numbers + 3, vec3_all(0.5));
     live_make(live, &change, true, false);
-    select_new(live, &(struct told_light){
-                         .placed = true, .position = three(change.numbers), .colour = vec3_all(0.5), .moves = true});
+    select_new(live, &(struct told_light){.properties = LIGHT_HAS_POSITION,
+                                          .placed = true,
+                                          .position = three(change.numbers),
+                                          .colour = vec3_all(0.5),
+                                          .moves = true});
 }
 
 /* What was changed of the light is changed of its copy, which stands a little to the right. */

@@ -52,20 +52,20 @@ static void draw_form(struct live *live, const struct camera_frame *frame, const
     double reach = 0.2 * vec3_length(vec3_sub(at, frame->eye));
     struct vec3 corners[4] = {vec3_add(at, vec3_add(a, b)), vec3_add(at, vec3_sub(a, b)), vec3_sub(at, vec3_add(a, b)),
                               vec3_sub(at, vec3_sub(a, b))};
-    bool flat = light->kind == LIGHT_PARALLELOGRAM;
-    for (int i = 0; flat && i < 4; i++)
+    uint32_t has = light->properties;
+    for (int i = 0; (has & LIGHT_HAS_EDGES) && i < 4; i++)
         live_draw_edge(live, frame, corners[i], corners[(i + 1) % 4], outline);
-    if (light->kind == LIGHT_SPHERE)
-        draw_circle(live, frame, at, vec3_normalize(vec3_sub(frame->eye, at)), light->radius);
-    if (light->kind == LIGHT_DISC)
-        draw_circle(live, frame, at, light->direction, light->radius);
-    if (light->kind == LIGHT_SPOT) {
+    if (has & LIGHT_HAS_RADIUS) {
+        struct vec3 to_eye = vec3_normalize(vec3_sub(frame->eye, at));
+        draw_circle(live, frame, at, has & LIGHT_HAS_DIRECTION ? light->direction : to_eye, light->radius);
+    }
+    if (has & LIGHT_HAS_CONE) {
         double along = light->cos_outer, aside = sqrt(fmax(0, 1 - along * along));
         draw_circle(live, frame, vec3_add_scaled(at, light->direction, reach * along), light->direction, reach * aside);
     }
     if (light->placed && vec3_max_abs(light->direction) > 0)
         live_draw_edge(live, frame, at, vec3_add_scaled(at, light->direction, reach), outline);
-    if (light->kind == LIGHT_DIRECTIONAL) { /* an arrow through the middle of what people look at */
+    if (!light->placed && (has & LIGHT_HAS_DIRECTION)) { /* an arrow through the middle of what people look at */
         struct vec3 middle = live->walk.centre;
         double half = 0.15 * vec3_length(vec3_sub(middle, frame->eye));
         struct vec3 tip = vec3_add_scaled(middle, light->direction, half), right, up;
@@ -88,9 +88,10 @@ void live_draw_lights(struct live *live, const struct camera_frame *frame) {
         struct ink ink = chosen ? outline : seen ? bulb : dim;
         paper_ring(paper, x, y, chosen ? 1.5 * r : r, ink);
         paper_line(paper, x - r / 2, y, x + r / 2, y, ink);
-        if (light->kind != LIGHT_SKY)
+        if (!(light->properties & LIGHT_IS_ENVIRONMENT))
             paper_line(paper, x, y - r / 2, x, y + r / 2, ink);
-        for (int ray = 0; light->kind == LIGHT_DIRECTIONAL && ray < 4; ray++) {
+        bool distant = !light->placed && (light->properties & LIGHT_HAS_DIRECTION);
+        for (int ray = 0; distant && ray < 4; ray++) {
             double u = ray < 2 ? 1 : -1, v = ray % 2 ? 1 : -1;
             paper_line(paper, x + u * r, y + v * r, x + 1.6 * u * r, y + 1.6 * v * r, ink);
         }
@@ -115,7 +116,7 @@ void live_tell_lights(struct live *live, int top) {
     for (uint32_t i = live->list_first; i < last; i++, y += step) {
         char row[64];
         bool chosen = live->selection.kind == SELECTED_LIGHT && live->selection.light == i + 1;
-        const char *words = inspect_light((enum light_kind)live->lights[i].kind);
+        const char *words = light_kind_name((enum light_kind)live->lights[i].kind);
         (void)snprintf(row, sizeof row, "%u %s", i + 1, words);
         if (panel_button(panel, 2 * scale, y, row, chosen))
             live_select_light(live, i + 1);
@@ -287,7 +288,7 @@ static void tell_light(struct live *live, struct column *column) {
     if (!light)
         return;
     (void)snprintf(row, sizeof row, "light %u of %u: %s", live->selection.light, live->light_count,
-                   inspect_light((enum light_kind)light->kind));
+                   light_kind_name((enum light_kind)light->kind));
     tell_text(live, column, row);
     if (light->placed)
         tell_point(live, column, "at", light->position);
@@ -322,7 +323,7 @@ static void tell_shortly(struct live *live) {
         (void)snprintf(row, sizeof row, "%.60s, %s, at %.4g", picked->name, picked->shape, picked->distance);
     else
         (void)snprintf(row, sizeof row, "light %u, %s", live->selection.light,
-                       light ? inspect_light((enum light_kind)light->kind) : "not known yet");
+                       light ? light_kind_name((enum light_kind)light->kind) : "not known yet");
     panel_ground(panel, 0, top, panel->paper.width, line + 2 * scale);
     panel_text(panel, 2 * scale, top + 2 * scale, row);
 }

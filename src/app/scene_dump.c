@@ -122,21 +122,20 @@ static void dump_material(const struct dump *d, uint32_t number) {
 
 static void dump_light(const struct dump *d, uint32_t number) {
     const struct light *light = &d->world->lights[number];
-    struct vec3 at = light->kind == LIGHT_DIRECTIONAL ? light->direction : light->position, colour = light->colour;
-    bool placed = light->kind != LIGHT_SKY && light->kind != LIGHT_MESH;
+    unsigned has = light_properties(light);
+    bool placed = has & LIGHT_HAS_POSITION, directed = has & LIGHT_HAS_DIRECTION, lamp = !light_is_delta(light);
+    struct vec3 at = placed ? light->position : light->direction, colour = light->colour;
     sheet_print(d->sheet, d->json ? "%s{\"number\":%u,\"kind\":\"%s\",\"lamp\":%s,\"colour\":" : "%.0s%8u  %s%.0s of ",
-                d->json && number > 0 ? "," : "", number + 1, inspect_light(light->kind),
-                light->emits ? "true" : "false");
+                d->json && number > 0 ? "," : "", number + 1, light_kind_name(light->kind), lamp ? "true" : "false");
     if (d->json)
         sheet_json_vector(d->sheet, colour);
     else
-        sheet_print(d->sheet, "(%.6g, %.6g, %.6g)%s", colour.x, colour.y, colour.z, light->emits ? ", a lamp" : "");
-    if (placed && d->json) {
-        sheet_print(d->sheet, light->kind == LIGHT_DIRECTIONAL ? ",\"direction\":" : ",\"position\":");
+        sheet_print(d->sheet, "(%.6g, %.6g, %.6g)%s", colour.x, colour.y, colour.z, lamp ? ", a lamp" : "");
+    if ((placed || directed) && d->json) {
+        sheet_print(d->sheet, placed ? ",\"position\":" : ",\"direction\":");
         sheet_json_vector(d->sheet, at);
-    } else if (placed) {
-        sheet_print(d->sheet, " %s (%.6g, %.6g, %.6g)", light->kind == LIGHT_DIRECTIONAL ? "along" : "at", at.x, at.y,
-                    at.z);
+    } else if (placed || directed) {
+        sheet_print(d->sheet, " %s (%.6g, %.6g, %.6g)", placed ? "at" : "along", at.x, at.y, at.z);
     }
     sheet_print(d->sheet, d->json ? "}" : "\n");
 }

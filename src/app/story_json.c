@@ -65,10 +65,10 @@ static void json_light(const struct told_story *told, struct sheet *sheet, const
         [STORY_LIGHT_NO_EFFECT] = "no effect",
     };
     sheet_print(sheet, "{\"light\":%u,\"kind\":\"%s\",\"lit\":\"%s\"", light->number + 1,
-                inspect_light(light->light->kind), lit[light->lit]);
+                light_kind_name(light->light->kind), lit[light->lit]);
     vector(sheet, "of", light->light->colour);
     if (!light->lamp && light->lit != STORY_LIGHT_NOT_OURS) {
-        number(sheet, "distance", light->light->kind == LIGHT_DIRECTIONAL ? INFINITY : light->distance);
+        number(sheet, "distance", light->distance);
         number(sheet, "strength", light->strength);
         vector(sheet, "to_light", light->to_light);
         vector(sheet, "reflected", light->reflected);

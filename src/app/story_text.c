@@ -118,11 +118,12 @@ static void tell_shading(const struct teller *t, const struct story_ray *ray) {
 
 static void tell_light(const struct teller *t, const struct story_light *light) {
     indent(t, 1);
-    sheet_print(t->sheet, "light %u, %s", light->number + 1, inspect_light(light->light->kind));
-    if (light->light->kind == LIGHT_DIRECTIONAL)
-        triple(t, " along ", light->light->direction);
-    else if (light->light->kind != LIGHT_SKY && light->light->kind != LIGHT_MESH)
+    sheet_print(t->sheet, "light %u, %s", light->number + 1, light_kind_name(light->light->kind));
+    unsigned has = light_properties(light->light);
+    if (has & LIGHT_HAS_POSITION)
         triple(t, " at ", light->light->position);
+    else if (has & LIGHT_HAS_DIRECTION)
+        triple(t, " along ", light->light->direction);
     triple(t, " of ", light->light->colour);
     switch (light->lit) {
     case STORY_LIGHT_NOT_OURS:
@@ -135,7 +136,7 @@ static void tell_light(const struct teller *t, const struct story_light *light) 
     case STORY_LIGHT_BLOCKED:
         break;
     }
-    if (!light->lamp && light->light->kind != LIGHT_DIRECTIONAL)
+    if (!light->lamp && light->distance < INFINITY)
         sheet_print(t->sheet, ": distance %.6g, fading %.6g", light->distance, light->strength);
     if (!light->lamp)
         triple(t, ", reflected by ", light->reflected);
@@ -222,7 +223,7 @@ static void tell_met(struct teller *t, const struct story_ray *ray) {
                     ray->distance);
     } else if (ray->lamp) {
         indent(t, 1);
-        sheet_print(t->sheet, "meets a %s that shows itself, at distance %.6g\n", inspect_light(ray->lamp->kind),
+        sheet_print(t->sheet, "meets a %s that shows itself, at distance %.6g\n", light_kind_name(ray->lamp->kind),
                     ray->distance);
     } else if (ray->met) {
         tell_surface(t, ray);

@@ -89,13 +89,16 @@ static bool make_pass(struct at_work *work, struct picture_report *report, struc
 
 /* The light as changed, which may not be built yet; of a mesh the world, if there is one, knows where it is. */
 static void tell_light(const struct world *world, const struct light *light, uint32_t number, struct told_light *out) {
-    const struct light_mesh *mesh = world && number < world->light_count ? world->lights[number].mesh : NULL;
-    bool pointed = light->kind == LIGHT_DIRECTIONAL || light->kind == LIGHT_SPOT || light->kind == LIGHT_DISC;
+    const struct light *built = world && number < world->light_count ? &world->lights[number] : light;
+    unsigned properties = light_properties(light);
+    struct vec3 position = light->position;
+    bool placed = light_can_move(light) || light_centre(built, &position);
     *out = (struct told_light){.kind = (uint32_t)light->kind,
-                               .placed = light_can_move(light) || (light->kind == LIGHT_MESH && mesh),
-                               .position = light->kind == LIGHT_MESH && mesh ? mesh->centre : light->position,
+                               .properties = properties,
+                               .placed = placed,
+                               .position = position,
                                .colour = light->colour,
-                               .direction = pointed ? light->direction : vec3_all(0),
+                               .direction = properties & LIGHT_HAS_DIRECTION ? light->direction : vec3_all(0),
                                .edge1 = light->edge1,
                                .edge2 = light->edge2,
                                .radius = light->radius,

@@ -1,11 +1,15 @@
-/* Places on lights. A disc is the square mapped concentrically (Shirley and Chiu, "A Low Distortion Map Between Disk
- * and Square", JGT 1997). A lamp that is a sphere is sampled by solid angle within its cone (Shirley, Wang, Zimmerman,
- * "Monte Carlo Techniques for Direct Lighting Calculations", TOG 1996), so every sample counts the same and the
- * emitter's cosine is in it already; so is a rectangle (light_rectangle.c), and a disc seen large by way of its square.
- * Other discs and parallelograms and meshes are sampled by area with weight cos / (pi d^2) each, triangles of a mesh in
- * proportion to the light they send. */
+/* The switches over the kinds of lights. Sampling: a disc is the square mapped concentrically (Shirley and Chiu, "A Low
+ * Distortion Map Between Disk and Square", JGT 1997). A lamp that is a sphere is sampled by solid angle within its cone
+ * (Shirley, Wang, Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations", TOG 1996), so every sample
+ * counts the same and the emitter's cosine is in it already; so is a rectangle (light_rectangle.c), and a disc seen
+ * large by way of its square. Other discs and parallelograms and meshes are sampled by area with weight cos / (pi d^2)
+ * each, triangles of a mesh in proportion to the light they send. */
 #include "light/light.h"
 
+#include "base/error.h"
+#include "light/light_internal.h"
+#include "light/light_mesh.h"
+#include "light/light_sphere.h"
 #include "light/sky_light.h"
 #include "math/elementary.h"
 #include "math/frame.h"
@@ -19,7 +23,26 @@ static const double disc_by_angle = 1.5;
 /* Where a falloff passes through zero, or a light is touched. A colour times it is finite. */
 static const double strongest = 1e200;
 
-double light_attenuation(const struct light *light, double distance) {
+bool light_prepare(struct light *light, struct arena *arena, struct pool *pool, struct error *error) {
+    switch (light->kind) {
+    case LIGHT_SKY:
+        light->table = sky_table_build(light->sky, arena, pool);
+        return light->table || error_no_memory(error, "the light of the sky");
+    case LIGHT_POINT:
+    case LIGHT_PARALLELOGRAM:
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_SPOT:
+    case LIGHT_DISC:
+    case LIGHT_SPHERE:
+    case LIGHT_MESH:
+        break;
+    }
+    return true;
+}
+
+/* --- delta lights --- */
+
+static double attenuation(const struct light *light, double distance) {
     const double *c = light->falloff;
     switch (light->fading) {
     case FADING_RANGE:
@@ -34,9 +57,9 @@ double light_attenuation(const struct light *light, double distance) {
     return number_clamped(1 / (c[0] + c[1] * distance + c[2] * distance * distance), strongest);
 }
 
-double light_cone(const struct light *light, struct vec3 from_light) {
-    if (light->kind != LIGHT_SPOT)
-        return 1;
+/* Share of a spot's light in the unit direction from the light: 1 inside the inner cone, 0 outside the outer, between
+ * them the cubic 3 s^2 - 2 s^3 of the cosine. */
+static double cone(const struct light *light, struct vec3 from_light) {
     double cosine = vec3_dot(light->direction, from_light);
     if (cosine >= light->cos_inner)
         return 1;
@@ -46,75 +69,96 @@ double light_cone(const struct light *light, struct vec3 from_light) {
     return s * s * (3 - 2 * s);
 }
 
-static bool behind(const struct light *light, struct vec3 normal, struct vec3 from) {
-    return light->emits && light->one_sided && !(vec3_dot(normal, vec3_sub(from, light->position)) > 0);
+bool light_middle(const struct light *light, struct light_target *out) {
+    switch (light->kind) {
+    case LIGHT_POINT:
+    case LIGHT_PARALLELOGRAM:
+    case LIGHT_SPOT:
+    case LIGHT_DISC:
+    case LIGHT_SPHERE:
+        *out = (struct light_target){light->position, false};
+        return true;
+    case LIGHT_DIRECTIONAL:
+        *out = (struct light_target){vec3_negate(light->direction), true};
+        return true;
+    case LIGHT_MESH:
+    case LIGHT_SKY:
+        break;
+    }
+    return false;
 }
 
-static void square_around(struct light_frame *out, struct vec3 centre, double half) {
-    out->edge1 = vec3_scale(out->right, 2 * half);
-    out->edge2 = vec3_scale(out->up, 2 * half);
-    out->corner = vec3_add_scaled(vec3_add_scaled(centre, out->right, -half), out->up, -half);
-}
-
-static bool sphere_frame(const struct light *light, struct vec3 from, struct light_frame *out) {
-    struct vec3 to_centre = vec3_sub(light->position, from);
-    double distance = vec3_length(to_centre);
-    if (!(distance > light->radius))
+bool light_arrive(const struct light *light, struct vec3 point, struct light_arrival *out) {
+    if (!light_middle(light, &out->middle))
         return false;
-    double sine = light->radius / distance;
-    out->distance = distance;
-    out->axis = vec3_scale(to_centre, 1 / distance);
-    frame_tangents(out->axis, &out->right, &out->up);
-    out->cos_cone = sqrt((1 - sine) * (1 + sine));
-    if (!(out->cos_cone > 0))
+    if (out->middle.distant) {
+        out->direction = out->middle.at;
+        out->distance = INFINITY;
+        out->strength = 1;
+        return true;
+    }
+    struct vec3 to_light = vec3_sub(out->middle.at, point);
+    out->distance = vec3_length(to_light);
+    if (!(out->distance > 0))
         return false;
-    /* 1 - cos without cancellation. The mean of weight * (n.l) is 2 (1 - cos) * mean(n.l): solid angle over pi. */
-    out->weight = 2 * sine * sine / (1 + out->cos_cone);
-    /* The cone's section through the centre, a little larger than the sphere; targets lie before it. */
-    square_around(out, light->position, light->radius / out->cos_cone);
+    out->direction = vec3_scale(to_light, 1 / out->distance);
+    out->strength = attenuation(light, out->distance);
+    switch (light->kind) {
+    case LIGHT_SPOT:
+        out->strength *= cone(light, vec3_negate(out->direction));
+        break;
+    case LIGHT_POINT:
+    case LIGHT_PARALLELOGRAM:
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_DISC:
+    case LIGHT_SPHERE:
+    case LIGHT_MESH:
+    case LIGHT_SKY:
+        break;
+    }
     return true;
 }
 
-/* A square behind all of the mesh, across the cone that its ball fills; none for a point in the ball. */
-static void mesh_frame(const struct light_mesh *mesh, struct vec3 from, struct light_frame *out) {
-    struct vec3 to_centre = vec3_sub(mesh->centre, from);
-    double distance = vec3_length(to_centre), sine = mesh->radius / distance;
-    out->bounded = sine < 0.999;
-    if (!out->bounded)
-        return;
-    out->axis = vec3_scale(to_centre, 1 / distance);
-    frame_tangents(out->axis, &out->right, &out->up);
-    double behind = (distance + mesh->radius) * 1.001;
-    square_around(out, vec3_add_scaled(from, out->axis, behind), behind * sine / sqrt((1 - sine) * (1 + sine)));
+/* --- samples --- */
+
+static bool is_behind(const struct light *light, struct vec3 normal, struct vec3 from) {
+    return light->emits && light->one_sided && !(vec3_dot(normal, vec3_sub(from, light->position)) > 0);
 }
 
-bool light_frame_make(const struct light *light, struct vec3 from, struct light_frame *out) {
-    *out = (struct light_frame){.weight = 1, .bounded = true};
+bool light_context_make(const struct light *light, struct vec3 point, struct vec3 from, struct light_context *out) {
+    out->point = point;
+    out->from = from;
+    out->single = out->by_angle = false;
+    out->shares_cells = out->bounded = true;
     switch (light->kind) {
     case LIGHT_PARALLELOGRAM: {
         struct vec3 normal = vec3_cross(light->edge1, light->edge2);
+        out->shares_cells = light->emits; /* old pictures keep the places of SPEC 1.4 */
         out->corner = light->corner;
         out->edge1 = light->edge1;
         out->edge2 = light->edge2;
-        out->weight = vec3_length(normal) / pi;
+        out->weight = intensity_of(vec3_length(normal));
         out->axis = vec3_normalize(normal);
         out->by_angle =
             light->emits && spherical_rectangle_make(light->corner, light->edge1, light->edge2, from, &out->seen);
-        return !behind(light, normal, from);
+        return !is_behind(light, normal, from);
     }
     case LIGHT_DISC:
         out->axis = light->direction;
         frame_tangents(out->axis, &out->right, &out->up);
-        square_around(out, light->position, light->radius);
-        out->weight = light->radius * light->radius;
+        light_context_square(out, light->position, light->radius);
+        out->weight = light->radius * light->radius; /* of the area pi r^2 */
         out->by_angle = light->emits &&
                         spherical_rectangle_make(out->corner, out->edge1, out->edge2, from, &out->seen) &&
                         out->seen.angle > disc_by_angle;
-        return !behind(light, light->direction, from);
+        return !is_behind(light, light->direction, from);
     case LIGHT_SPHERE:
-        return sphere_frame(light, from, out);
+        if (light_sphere_context(light, out))
+            return true;
+        out->single = !light->emits; /* from inside its middle is asked for */
+        return out->single;
     case LIGHT_MESH:
-        mesh_frame(light->mesh, from, out);
+        light_mesh_context(light->mesh, out);
         return light->mesh->count > 0;
     case LIGHT_SKY:
         out->bounded = false;
@@ -122,119 +166,509 @@ bool light_frame_make(const struct light *light, struct vec3 from, struct light_
     case LIGHT_POINT:
     case LIGHT_DIRECTIONAL:
     case LIGHT_SPOT:
+        out->bounded = false;
+        out->single = true;
         break;
     }
     return true;
 }
 
-struct vec3 light_target(const struct light *light, const struct light_frame *frame, struct vec3 from,
-                         struct sample2 place) {
-    if (frame->by_angle)
-        return spherical_rectangle_point(&frame->seen, place);
-    if (light->kind == LIGHT_PARALLELOGRAM)
-        return vec3_add_scaled(vec3_add_scaled(light->corner, light->edge1, place.x), light->edge2, place.y);
+static struct vec3 disc_target(const struct light *light, const struct light_context *context, struct sample2 place) {
     struct sample2 round = sample_disc(place);
-    if (light->kind == LIGHT_DISC) {
-        struct vec3 target = vec3_add_scaled(light->position, frame->right, light->radius * round.x);
-        return vec3_add_scaled(target, frame->up, light->radius * round.y);
+    struct vec3 target = vec3_add_scaled(light->position, context->right, light->radius * round.x);
+    return vec3_add_scaled(target, context->up, light->radius * round.y);
+}
+
+struct vec3 light_target_at(const struct light *light, const struct light_context *context, struct sample2 place) {
+    if (context->by_angle)
+        return spherical_rectangle_point(&context->seen, place);
+    switch (light->kind) {
+    case LIGHT_PARALLELOGRAM:
+        return vec3_add_scaled(vec3_add_scaled(light->corner, light->edge1, place.x), light->edge2, place.y);
+    case LIGHT_DISC:
+        return disc_target(light, context, place);
+    case LIGHT_SPHERE:
+        return context->single ? light->position : light_sphere_target(light, context, place);
+    case LIGHT_POINT:
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_SPOT:
+    case LIGHT_MESH:
+    case LIGHT_SKY:
+        break;
     }
-    /* Uniform in the cone: 1 - cos grows with the square of the place's distance from the middle. */
-    double squared = round.x * round.x + round.y * round.y;
-    double drop = squared * frame->weight / 2, cosine = 1 - drop; /* weight / 2 = 1 - cos of the cone */
-    double sine = sqrt(drop * (2 - drop)), radius = sqrt(squared);
-    double x = radius > 0 ? sine * round.x / radius : 0, y = radius > 0 ? sine * round.y / radius : 0;
-    struct vec3 direction = vec3_add_scaled(vec3_scale(frame->axis, cosine), frame->right, x);
-    direction = vec3_add_scaled(direction, frame->up, y);
-    /* The near crossing with the sphere. */
-    double along = frame->distance * cosine, off = frame->distance * sine;
-    double half = light->radius * light->radius - off * off;
-    return vec3_add_scaled(from, direction, along - (half > 0 ? sqrt(half) : 0));
+    return light->position;
 }
 
-/* Uniform on the triangle that the place's x falls on, whose share is spread over the unit interval again. */
-struct light_point light_mesh_point(const struct light_mesh *mesh, struct sample2 place) {
-    uint32_t low = 0, high = mesh->count - 1;
-    while (low < high) {
-        uint32_t middle = low + (high - low) / 2;
-        if (mesh->until[middle] > place.x)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    double begin = low > 0 ? mesh->until[low - 1] : 0, share = mesh->until[low] - begin;
-    double x = share > 0 ? (place.x - begin) / share : 0.5, root = sqrt(x < 1 ? x : 1);
-    const struct light_triangle *t = &mesh->triangles[low];
-    struct vec3 point = vec3_add_scaled(t->corner, t->edge1, root * (1 - place.y));
-    return (struct light_point){t, vec3_add_scaled(point, t->edge2, root * place.y)};
+/* From the intensity of radiance 1. */
+static double pdf_of(double weight) {
+    return weight > 0 ? 1 / radiance_of(weight) : 0;
 }
 
-static struct light_sample mesh_sample(const struct light_mesh *mesh, struct vec3 from, struct sample2 place) {
-    struct light_point at = light_mesh_point(mesh, place);
-    const struct light_triangle *t = at.triangle;
-    struct vec3 point = at.place;
-    struct vec3 away = vec3_sub(from, point);
-    double squared = vec3_length_squared(away), across = vec3_dot(t->normal, away);
-    double weight = squared > 0 && (across > 0 || !mesh->one_sided) ? fabs(across) / (squared * sqrt(squared)) : 0;
-    return (struct light_sample){vec3_add_scaled(point, t->normal, across > 0 ? t->offset : -t->offset),
-                                 vec3_scale(t->light, weight)};
+static bool is_beside_disc(const struct light *light, struct vec3 place) {
+    return vec3_length_squared(vec3_sub(place, light->position)) > light->radius * light->radius;
 }
 
-struct light_sample light_sample_lamp(const struct light *light, const struct light_frame *frame, struct vec3 from,
-                                      struct sample2 place) {
-    if (light->kind == LIGHT_MESH)
-        return mesh_sample(light->mesh, from, place);
-    struct light_sample sample;
-    if (light->kind == LIGHT_SKY) {
-        sample.light = vec3_mul(sky_table_sample(light->sky, light->table, place, &sample.target), light->colour);
+static struct light_sample delta_sample(const struct light *light, const struct light_context *context,
+                                        struct sample2 place) {
+    struct light_sample sample = {.pdf = 1, .is_delta = true};
+    struct light_arrival arrival;
+    if (!light_arrive(light, context->point, &arrival))
         return sample;
-    }
-    sample.target = light_target(light, frame, from, place);
-    double weight = frame->weight;
-    if (frame->by_angle) {
-        struct vec3 off = vec3_sub(sample.target, light->position);
-        bool beside = light->kind == LIGHT_DISC && vec3_length_squared(off) > light->radius * light->radius;
-        weight = beside ? 0 : frame->seen.angle / pi;
-    } else if (light->kind != LIGHT_SPHERE) {
-        struct vec3 away = vec3_sub(from, sample.target);
-        double squared = vec3_length_squared(away), cosine = fabs(vec3_dot(frame->axis, away));
-        weight = squared > 0 ? weight * cosine / (squared * sqrt(squared)) : 0;
-    }
-    sample.light = vec3_scale(light->colour, weight);
+    sample.direction = arrival.direction;
+    sample.target = arrival.middle;
+    if (!context->single)
+        sample.target.at = light_target_at(light, context, place);
+    sample.radiance = sample.intensity = vec3_scale(light->colour, arrival.strength);
     return sample;
 }
 
-bool light_meets_ray(const struct light *light, const struct ray *ray, double *t) {
-    struct vec3 d = ray->direction;
-    if (light->kind == LIGHT_MESH || light->kind == LIGHT_SKY)
-        return false; /* a mesh is seen where the scene shows it, a sky is the background */
-    if (light->kind == LIGHT_SPHERE) {
-        struct vec3 o = vec3_sub(ray->origin, light->position);
-        double a = vec3_dot(d, d), b = vec3_dot(o, d);
-        /* The squared distance of the line from the centre, without cancellation. */
-        struct vec3 nearest = vec3_add_scaled(o, d, -b / a);
-        double half = light->radius * light->radius - vec3_dot(nearest, nearest);
-        if (!(half > 0))
-            return false;
-        double root = sqrt(half / a);
-        *t = -b / a - root;
-        if (*t > ray->t_min && *t < ray->t_max)
-            return true;
-        *t = -b / a + root;
-        return *t > ray->t_min && *t < ray->t_max;
+/* A lamp with a surface of its own: `weight` is the intensity of radiance 1. */
+static struct light_sample surface_sample(const struct light *light, const struct light_context *context,
+                                          struct vec3 target, double weight) {
+    return (struct light_sample){.direction = vec3_normalize(vec3_sub(target, context->point)),
+                                 .target = {target, false},
+                                 .radiance = light->colour,
+                                 .pdf = pdf_of(weight),
+                                 .intensity = vec3_scale(light->colour, weight)};
+}
+
+static struct light_sample flat_sample(const struct light *light, const struct light_context *context,
+                                       struct sample2 place) {
+    struct vec3 target = light_target_at(light, context, place);
+    double weight = context->by_angle ? intensity_of(context->seen.angle)
+                                      : weight_of_area(context->weight, context->axis, vec3_sub(context->from, target));
+    return surface_sample(light, context, target, weight);
+}
+
+static struct light_sample sky_sample(const struct light *light, struct sample2 place) {
+    struct sky_sample sky = sky_table_sample(light->sky, light->table, place);
+    return (struct light_sample){.direction = sky.direction,
+                                 .target = {sky.direction, true},
+                                 .radiance = vec3_mul(sky.radiance, light->colour),
+                                 .pdf = sky.pdf,
+                                 .intensity = vec3_mul(sky.intensity, light->colour)};
+}
+
+struct light_sample light_sample(const struct light *light, const struct light_context *context, struct sample2 place) {
+    struct light_sample sample;
+    if (light_is_delta(light))
+        return delta_sample(light, context, place);
+    switch (light->kind) {
+    case LIGHT_PARALLELOGRAM:
+        return flat_sample(light, context, place);
+    case LIGHT_DISC:
+        sample = flat_sample(light, context, place);
+        if (context->by_angle && is_beside_disc(light, sample.target.at))
+            sample.radiance = sample.intensity = vec3_all(0);
+        return sample;
+    case LIGHT_SPHERE:
+        return surface_sample(light, context, light_sphere_target(light, context, place), context->weight);
+    case LIGHT_MESH:
+        return light_mesh_sample(light->mesh, context, place);
+    case LIGHT_SKY:
+        return sky_sample(light, place);
+    case LIGHT_POINT:
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_SPOT:
+        break;
     }
-    struct vec3 normal = light->kind == LIGHT_DISC ? light->direction : vec3_cross(light->edge1, light->edge2);
-    double across = vec3_dot(normal, d);
+    return delta_sample(light, context, place);
+}
+
+static double flat_pdf(const struct light_context *context, const struct light_hit *hit) {
+    if (context->by_angle)
+        return 1 / context->seen.angle;
+    return pdf_of(weight_of_area(context->weight, context->axis, vec3_sub(context->from, hit->point)));
+}
+
+double light_pdf(const struct light *light, const struct light_context *context, struct vec3 direction,
+                 const struct light_hit *hit) {
+    if (light_is_delta(light))
+        return 0;
+    switch (light->kind) {
+    case LIGHT_PARALLELOGRAM:
+    case LIGHT_DISC:
+        return flat_pdf(context, hit);
+    case LIGHT_SPHERE:
+        return pdf_of(context->weight);
+    case LIGHT_MESH:
+        return light_mesh_pdf(light->mesh, context, hit);
+    case LIGHT_SKY:
+        return sky_table_pdf(light->table, direction);
+    case LIGHT_POINT:
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_SPOT:
+        break;
+    }
+    return 0;
+}
+
+/* --- what a ray sees --- */
+
+/* The plane through a point, from the side that shines; p: from that point. */
+static bool plane_meets_ray(const struct light *light, struct vec3 normal, struct vec3 on_plane, const struct ray *ray,
+                            double *t, struct vec3 *p) {
+    double across = vec3_dot(normal, ray->direction);
     if (across == 0 || (light->one_sided && across > 0))
         return false;
-    struct vec3 on_plane = light->kind == LIGHT_DISC ? light->position : light->corner;
     *t = vec3_dot(normal, vec3_sub(on_plane, ray->origin)) / across;
     if (!(*t > ray->t_min && *t < ray->t_max))
         return false;
-    struct vec3 p = vec3_sub(ray_at(ray, *t), on_plane);
-    if (light->kind == LIGHT_DISC)
-        return vec3_dot(p, p) < light->radius * light->radius;
+    *p = vec3_sub(ray_at(ray, *t), on_plane);
+    return true;
+}
+
+static bool parallelogram_meets_ray(const struct light *light, const struct ray *ray, double *t) {
+    struct vec3 normal = vec3_cross(light->edge1, light->edge2), p;
+    if (!plane_meets_ray(light, normal, light->corner, ray, t, &p))
+        return false;
     double n2 = vec3_dot(normal, normal);
     double u = vec3_dot(vec3_cross(p, light->edge2), normal) / n2;
     double v = vec3_dot(vec3_cross(light->edge1, p), normal) / n2;
     return u >= 0 && u <= 1 && v >= 0 && v <= 1;
+}
+
+static bool surface_meets_ray(const struct light *light, const struct ray *ray, double *t) {
+    struct vec3 p;
+    switch (light->kind) {
+    case LIGHT_PARALLELOGRAM:
+        return parallelogram_meets_ray(light, ray, t);
+    case LIGHT_DISC:
+        return plane_meets_ray(light, light->direction, light->position, ray, t, &p) &&
+               vec3_dot(p, p) < light->radius * light->radius;
+    case LIGHT_SPHERE:
+        return light_sphere_meets_ray(light, ray, t);
+    case LIGHT_POINT:
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_SPOT:
+    case LIGHT_MESH:
+    case LIGHT_SKY:
+        break;
+    }
+    return false;
+}
+
+bool light_meets_ray(const struct light *light, const struct ray *ray, struct light_hit *hit) {
+    if (!surface_meets_ray(light, ray, &hit->t))
+        return false;
+    hit->point = ray_at(ray, hit->t);
+    hit->triangle = 0;
+    return true;
+}
+
+struct vec3 light_emitted(const struct light *light, const struct ray *ray, const struct light_hit *hit) {
+    const struct light_triangle *t;
+    switch (light->kind) {
+    case LIGHT_POINT:
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_SPOT:
+        break;
+    case LIGHT_PARALLELOGRAM:
+    case LIGHT_DISC:
+    case LIGHT_SPHERE:
+        return light->colour;
+    case LIGHT_MESH:
+        t = &light->mesh->triangles[hit->triangle];
+        if (light->mesh->one_sided && !(vec3_dot(t->normal, ray->direction) < 0))
+            break;
+        return light_triangle_radiance(t);
+    case LIGHT_SKY:
+        return vec3_mul(sky_colour(light->sky, vec3_normalize(ray->direction), ray->footprint.spread), light->colour);
+    }
+    return vec3_all(0);
+}
+
+double light_brightest(const struct light *light) {
+    struct vec3 c = light->colour;
+    double most = c.x > c.y ? c.x : c.y;
+    most = c.z > most ? c.z : most;
+    switch (light->kind) {
+    case LIGHT_SKY:
+        return most * sky_brightest(light->sky);
+    case LIGHT_POINT:
+    case LIGHT_PARALLELOGRAM:
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_SPOT:
+    case LIGHT_DISC:
+    case LIGHT_SPHERE:
+    case LIGHT_MESH:
+        break;
+    }
+    return most;
+}
+
+/* --- photons --- */
+
+double light_divided_extent(const struct light *light) {
+    switch (light->kind) {
+    case LIGHT_PARALLELOGRAM:
+        return vec3_length(light->edge1) + vec3_length(light->edge2);
+    case LIGHT_POINT:
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_SPOT:
+    case LIGHT_DISC:
+    case LIGHT_SPHERE:
+    case LIGHT_MESH:
+    case LIGHT_SKY:
+        break;
+    }
+    return 0;
+}
+
+/* The ball that holds the places of a part. */
+static void parallelogram_emitter(struct light_emitter *out) {
+    const struct light *light = out->light;
+    double u = out->low[0] + out->side / 2, v = out->low[1] + out->side / 2;
+    out->centre = vec3_add_scaled(vec3_add_scaled(light->corner, light->edge1, u), light->edge2, v);
+    double one = vec3_length(vec3_add(light->edge1, light->edge2)) / 2;
+    double other = vec3_length(vec3_sub(light->edge1, light->edge2)) / 2;
+    out->radius = (one > other ? one : other) * out->side;
+}
+
+bool light_emitter_make(const struct light *light, uint32_t i, uint32_t j, uint32_t parts, struct light_emitter *out) {
+    *out = (struct light_emitter){.light = light, .centre = light->position, .side = 1.0 / parts, .even = true};
+    out->low[0] = i * out->side;
+    out->low[1] = j * out->side;
+    switch (light->kind) {
+    case LIGHT_POINT:
+        return true;
+    case LIGHT_SPOT:
+        out->even = false;
+        return true;
+    case LIGHT_PARALLELOGRAM:
+        out->even = !light->emits;
+        parallelogram_emitter(out);
+        return true;
+    case LIGHT_DISC:
+        out->even = !light->emits;
+        out->radius = light->radius;
+        frame_tangents(light->direction, &out->right, &out->up);
+        return true;
+    case LIGHT_SPHERE:
+        out->radius = light->radius;
+        return true;
+    case LIGHT_MESH:
+        out->centre = light->mesh->centre;
+        out->radius = light->mesh->radius;
+        return light->mesh->count > 0;
+    case LIGHT_DIRECTIONAL:
+        out->domain = LIGHT_DOMAIN_PARALLEL;
+        frame_tangents(light->direction, &out->right, &out->up);
+        return true;
+    case LIGHT_SKY:
+        out->domain = LIGHT_DOMAIN_ENVIRONMENT;
+        return true;
+    }
+    return false;
+}
+
+/* The cosine at a flat lamp, of the side that shines. */
+static double flat_shine(const struct light *light, struct vec3 normal, struct vec3 direction) {
+    double cosine = vec3_dot(normal, direction);
+    return cosine > 0 ? cosine : light->one_sided ? 0 : -cosine;
+}
+
+double light_emitter_shine(const struct light_emitter *emitter, struct vec3 direction) {
+    const struct light *light = emitter->light;
+    if (emitter->even)
+        return 1;
+    switch (light->kind) {
+    case LIGHT_SPOT:
+        return cone(light, direction);
+    case LIGHT_PARALLELOGRAM:
+        return flat_shine(light, vec3_normalize(vec3_cross(light->edge1, light->edge2)), direction);
+    case LIGHT_DISC:
+        return flat_shine(light, light->direction, direction);
+    case LIGHT_POINT:
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_SPHERE:
+    case LIGHT_MESH:
+    case LIGHT_SKY:
+        break;
+    }
+    return 1;
+}
+
+bool light_emitter_shines_near(const struct light_emitter *emitter, struct vec3 axis, double cos_half) {
+    const struct light *light = emitter->light;
+    switch (light->kind) {
+    case LIGHT_SPOT: {
+        double angle = el_acos(fmax(-1, fmin(1, vec3_dot(axis, light->direction))));
+        double outer = el_acos(fmax(-1, fmin(1, light->cos_outer)));
+        return angle < outer + el_acos(cos_half);
+    }
+    case LIGHT_PARALLELOGRAM: /* behind its plane in some directions, behind it between them */
+    case LIGHT_DISC:
+        return false;
+    case LIGHT_POINT:
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_SPHERE:
+    case LIGHT_MESH:
+    case LIGHT_SKY:
+        break;
+    }
+    return true;
+}
+
+struct vec3 light_emitter_colour(const struct light_emitter *emitter) {
+    const struct light *light = emitter->light;
+    switch (light->kind) {
+    case LIGHT_MESH:
+        return light_mesh_colour(light->mesh);
+    case LIGHT_POINT:
+    case LIGHT_PARALLELOGRAM:
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_SPOT:
+    case LIGHT_DISC:
+    case LIGHT_SPHERE:
+    case LIGHT_SKY:
+        break;
+    }
+    return light->colour;
+}
+
+double light_emitter_unit(const struct light_emitter *emitter) {
+    const struct light *light = emitter->light;
+    double part = emitter->side * emitter->side;
+    if (light_is_delta(light))
+        return part;
+    switch (light->kind) {
+    case LIGHT_PARALLELOGRAM:
+        return intensity_of(vec3_length(vec3_cross(light->edge1, light->edge2))) * part;
+    case LIGHT_DISC:
+        return intensity_of(pi * light->radius * light->radius) * part;
+    case LIGHT_SPHERE:
+        return light->radius * light->radius; /* of the area pi r^2 across every direction */
+    case LIGHT_POINT:
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_SPOT:
+    case LIGHT_MESH:
+    case LIGHT_SKY:
+        break;
+    }
+    return part;
+}
+
+/* A place on a disc across; *height: of the ball over it, in radii. */
+static struct vec3 round_place(const struct light_emitter *emitter, struct vec3 right, struct vec3 up,
+                               struct sample2 place, double *height) {
+    struct sample2 round = sample_disc(place);
+    double radius = emitter->light->radius, squared = 1 - round.x * round.x - round.y * round.y;
+    *height = squared > 0 ? sqrt(squared) : 0;
+    return vec3_add_scaled(vec3_add_scaled(emitter->centre, right, radius * round.x), up, radius * round.y);
+}
+
+/* A place on a light that is not a mesh; the photon starts there. */
+static struct vec3 emitter_place(const struct light_emitter *emitter, struct vec3 direction, struct sample2 place) {
+    const struct light *light = emitter->light;
+    struct sample2 part = {emitter->low[0] + emitter->side * place.x, emitter->low[1] + emitter->side * place.y};
+    struct vec3 right, up, at;
+    double height;
+    switch (light->kind) {
+    case LIGHT_PARALLELOGRAM:
+        return vec3_add_scaled(vec3_add_scaled(light->corner, light->edge1, part.x), light->edge2, part.y);
+    case LIGHT_DISC:
+        return round_place(emitter, emitter->right, emitter->up, part, &height);
+    case LIGHT_SPHERE: /* as it is seen along the direction */
+        frame_tangents(direction, &right, &up);
+        at = round_place(emitter, right, up, part, &height);
+        return light->emits && height > 0 ? vec3_add_scaled(at, direction, light->radius * height) : at;
+    case LIGHT_POINT:
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_SPOT:
+    case LIGHT_MESH:
+    case LIGHT_SKY:
+        break;
+    }
+    return emitter->centre;
+}
+
+struct light_photon light_photon(const struct light_emitter *emitter, struct vec3 direction, struct sample2 place) {
+    const struct light *light = emitter->light;
+    struct light_photon photon = {.direction = direction};
+    struct light_sample sample;
+    switch (light->kind) {
+    case LIGHT_POINT:
+    case LIGHT_PARALLELOGRAM:
+    case LIGHT_SPOT:
+    case LIGHT_DISC:
+    case LIGHT_SPHERE:
+        photon.origin = emitter_place(emitter, direction, place);
+        photon.power = vec3_scale(light->colour, light_emitter_shine(emitter, direction) * light_emitter_unit(emitter));
+        break;
+    case LIGHT_MESH:
+        return light_mesh_photon(light->mesh, direction, place);
+    case LIGHT_DIRECTIONAL:
+        photon.direction = light->direction;
+        photon.power = light->colour;
+        break;
+    case LIGHT_SKY:
+        sample = sky_sample(light, place);
+        photon.direction = vec3_negate(sample.direction);
+        photon.power = sample.intensity;
+        break;
+    }
+    return photon;
+}
+
+double light_photon_fading(const struct light *light, double length) {
+    if (!light_is_delta(light))
+        return 1;
+    switch (light->kind) {
+    case LIGHT_POINT:
+    case LIGHT_PARALLELOGRAM:
+    case LIGHT_SPOT:
+    case LIGHT_DISC:
+    case LIGHT_SPHERE:
+        return length * length * attenuation(light, length);
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_MESH:
+    case LIGHT_SKY:
+        break;
+    }
+    return 1;
+}
+
+/* --- listings and editors --- */
+
+#define KIND_NAME(kind, name)                                                                                          \
+    case kind:                                                                                                         \
+        return name;
+
+const char *light_kind_name(enum light_kind kind) {
+    switch (kind) { LIGHT_KINDS(KIND_NAME) }
+    return "?";
+}
+
+unsigned light_properties(const struct light *light) {
+    switch (light->kind) {
+    case LIGHT_POINT:
+        return LIGHT_HAS_POSITION | (light->fading == FADING_RANGE ? LIGHT_HAS_RANGE : 0U);
+    case LIGHT_PARALLELOGRAM:
+        return LIGHT_HAS_POSITION | LIGHT_HAS_EDGES;
+    case LIGHT_DIRECTIONAL:
+        return LIGHT_HAS_DIRECTION;
+    case LIGHT_SPOT:
+        return LIGHT_HAS_POSITION | LIGHT_HAS_DIRECTION | LIGHT_HAS_CONE;
+    case LIGHT_DISC:
+        return LIGHT_HAS_POSITION | LIGHT_HAS_DIRECTION | LIGHT_HAS_RADIUS;
+    case LIGHT_SPHERE:
+        return LIGHT_HAS_POSITION | LIGHT_HAS_RADIUS;
+    case LIGHT_SKY:
+        return LIGHT_IS_ENVIRONMENT;
+    case LIGHT_MESH:
+        break;
+    }
+    return 0;
+}
+
+bool light_centre(const struct light *light, struct vec3 *out) {
+    struct light_target middle;
+    if (light->mesh)
+        *out = light->mesh->centre;
+    else if (light_middle(light, &middle) && !middle.distant)
+        *out = middle.at;
+    else
+        return false;
+    return true;
 }

@@ -1,12 +1,20 @@
-/* Lights. Positions are world coordinates; falloff {0,0,0} counts as {1,0,0}.
+/* Lights. Everything that depends on the kind of a light happens in this module: what a point gets of it (light_sample,
+ * light_pdf, light_arrive), what a ray that meets it sees (light_meets_ray, light_emitted), the photons that it sends
+ * (light_photon), and what it has for listings and editors (light_properties). Positions are world coordinates; falloff
+ * {0,0,0} counts as {1,0,0}.
  *
  * Two ways of shading. Without `emits` a light with an extent is shaded as from its centre, once, times the share of
- * its shadow rays that reach it (SPEC 1.4). With `emits` it is a lamp of uniform radiance `colour`: every shadow ray
- * carries its own direction, distance and cosine at the lamp. The sum is normalised so that a white diffuse surface
- * that sees nothing but the lamp has the lamp's radiance: what arrives is radiance times view factor. */
+ * its shadow rays that reach it (SPEC 1.4): a delta light whose shadow rays differ. With `emits` it is an area light of
+ * uniform radiance `colour`: every shadow ray carries its own direction, distance and cosine at the light.
+ *
+ * Classic light and radiance. A diffuse surface of the scene language answers light of intensity I from the direction l
+ * with kd I (n.l); a Lambertian surface of albedo kd answers radiance L from the solid angle w with kd / pi L w (n.l).
+ * So radiance L from the solid angle w is intensity L w / pi, and a white surface that sees nothing but a light of
+ * radiance L has the radiance L. This pi stands in intensity_of (light_internal.h) and nowhere else. */
 #ifndef GRAY_LIGHT_LIGHT_H
 #define GRAY_LIGHT_LIGHT_H
 
+#include "base/list.h"
 #include "math/ray.h"
 #include "math/sampling.h"
 #include "math/vec3.h"
@@ -14,36 +22,29 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum light_kind {
-    LIGHT_POINT,
-    LIGHT_PARALLELOGRAM,
-    LIGHT_DIRECTIONAL,
-    LIGHT_SPOT,
-    LIGHT_DISC,
-    LIGHT_SPHERE,
-    LIGHT_MESH, /* this and the next are lamps always: `emits` is set */
-    LIGHT_SKY
-};
+/* Every kind with its name. Those of a mesh and of a sky are lamps always: `emits` is set. */
+#define LIGHT_KINDS(X)                                                                                                 \
+    X(LIGHT_POINT, "point light")                                                                                      \
+    X(LIGHT_PARALLELOGRAM, "area light")                                                                               \
+    X(LIGHT_DIRECTIONAL, "directional light")                                                                          \
+    X(LIGHT_SPOT, "spot light")                                                                                        \
+    X(LIGHT_DISC, "disc light")                                                                                        \
+    X(LIGHT_SPHERE, "spherical light")                                                                                 \
+    X(LIGHT_MESH, "mesh light")                                                                                        \
+    X(LIGHT_SKY, "sky light")
+enum light_kind { LIGHT_KINDS(LIST_MEMBER) };
+enum { LIGHT_KIND_COUNT = LIST_COUNT(LIGHT_KINDS) };
+
 /* COEFFICIENTS: 1 / (c0 + c1 d + c2 d^2); RANGE: 1 - d / range, 0 beyond; INVERSE_SQUARE: intensity / d^2. */
 enum light_fading { FADING_COEFFICIENTS, FADING_RANGE, FADING_INVERSE_SQUARE };
 
+struct arena;
+struct error;
+struct light_mesh;
 struct node;
+struct pool;
 struct sky;
-
-/* The triangles of a lamp that is a mesh, in world space; made by world_build. */
-struct light_triangle {
-    struct vec3 corner, edge1, edge2, normal; /* normal: unit */
-    struct vec3 light;                        /* radiance over the density of samples on the surface, over pi */
-    double offset;                            /* shadow rays end this far from it */
-};
-struct light_mesh {
-    const struct light_triangle *triangles;
-    const double *until; /* until[i]: share of the unit interval up to and with triangle i */
-    uint32_t count;
-    bool one_sided; /* normals point outwards, and light comes from that side only */
-    struct vec3 centre;
-    double radius; /* of a ball round all of it */
-};
+struct sky_table;
 
 struct light {
     enum light_kind kind;
@@ -61,33 +62,52 @@ struct light {
     const struct node *node;        /* of a mesh: all meshes there and below; its colour multiplies their emission */
     bool has_emission;              /* of a mesh: `emission` takes the place of the materials' */
     struct vec3 emission;
-    const struct light_mesh *mesh;
-    const struct sky *sky; /* its colour multiplies it */
+    const struct light_mesh *mesh; /* made by world_build (light_mesh.h) */
+    const struct sky *sky;         /* its colour multiplies it */
     bool sky_turned; /* the sky is to be turned further, by the angle of this sine and cosine (world_build does) */
     double turn_sine, turn_cosine;
-    const struct sky_table *table;
+    const struct sky_table *table; /* made by light_prepare */
     /* The nodes (with everything under them) that it lights, or does not; NULL: no such list. Arrays of the script. */
     const struct node *const *include, *const *exclude;
     uint32_t include_count, exclude_count;
     const uint8_t *lit; /* by placed primitive, made by world_build from the lists; NULL: everything */
 };
 
-/* A place on a lamp that is a mesh, for one in the unit square. */
-struct light_point {
-    const struct light_triangle *triangle;
-    struct vec3 place;
-};
-struct light_point light_mesh_point(const struct light_mesh *mesh, struct sample2 place);
+/* Makes what a light needs before it is asked (the table of a sky), in the arena. Errors: no memory. */
+bool light_prepare(struct light *light, struct arena *arena, struct pool *pool, struct error *error);
 
-/* Of the distance, as `fading` says. */
-double light_attenuation(const struct light *light, double distance);
-/* Share of a spot's light in the unit direction from the light: 1 inside the inner cone, 0 outside the outer, between
- * them the cubic 3 s^2 - 2 s^3 of the cosine. 1 for other kinds. */
-double light_cone(const struct light *light, struct vec3 from_light);
+/* --- what a point gets --- */
 
-static inline bool light_has_extent(const struct light *light) {
-    return light->kind == LIGHT_PARALLELOGRAM || light->kind == LIGHT_DISC || light->kind == LIGHT_SPHERE;
+/* A surface is shaded for it from one direction, whatever is sampled; that direction has no density. */
+static inline bool light_is_delta(const struct light *light) {
+    return !light->emits;
 }
+
+/* Where shadow rays end: a point, or the direction of one that is infinitely far. */
+struct light_target {
+    struct vec3 at;
+    bool distant;
+};
+/* From a point to the target, not unit. */
+static inline struct vec3 light_target_from(const struct light_target *target, struct vec3 from) {
+    return target->distant ? target->at : vec3_sub(target->at, from);
+}
+/* The largest t of a shadow ray along light_target_from. */
+static inline double light_target_end(const struct light_target *target) {
+    return target->distant ? INFINITY : 1;
+}
+/* The middle of a light that has one place or one direction; false: meshes and skies have none. */
+bool light_middle(const struct light *light, struct light_target *out);
+
+/* A delta light as a point sees it. */
+struct light_arrival {
+    struct light_target middle;
+    struct vec3 direction; /* unit, to the light */
+    double distance;       /* of its middle; infinite */
+    double strength;       /* colour * strength arrives: the fading times the cone of a spot */
+};
+/* False: the point is the light's own. */
+bool light_arrive(const struct light *light, struct vec3 point, struct light_arrival *out);
 
 /* A rectangle as a point sees it (light_rectangle.c). */
 struct spherical_rectangle {
@@ -96,37 +116,116 @@ struct spherical_rectangle {
 };
 
 /* What samples of a light need to know about the point that they are for. */
-struct light_frame {
-    bool bounded; /* a parallelogram holds every target: */
+struct light_context {
+    struct vec3 point, from; /* what is shaded; where shadow rays start, next to it */
+    bool single;             /* all samples of a delta light have its middle as their target */
+    bool shares_cells;       /* the cells of the unit square are parted once more among the samples of a pixel */
+    bool bounded;            /* a parallelogram holds every target: */
     struct vec3 corner, edge1, edge2;
-    double weight;               /* of one target for a lamp, its cosines and distance aside */
+    double weight;               /* of one target of a lamp, its cosines and distance aside */
     struct vec3 axis, right, up; /* sphere: unit vectors, axis from the point to the centre */
-    double cos_cone;             /* sphere: half angle under which it is seen */
     double distance;             /* sphere: of its centre */
-    bool by_angle;               /* of a lamp that is a rectangle */
+    bool by_angle;               /* a lamp that is sampled by the solid angle of a rectangle: */
     struct spherical_rectangle seen;
 };
-/* False: nothing of the light can reach the point (inside of a sphere, a lamp's back). */
-bool light_frame_make(const struct light *light, struct vec3 from, struct light_frame *out);
-/* A point of the light for a place in the unit square; equal areas of the square are equal areas of a parallelogram or
- * disc, equal solid angles of a lamp that is a sphere or a rectangle. */
-struct vec3 light_target(const struct light *light, const struct light_frame *frame, struct vec3 from,
-                         struct sample2 place);
+/* False: nothing of the light can reach the point (inside of a ball, behind a lamp that shines to one side). */
+bool light_context_make(const struct light *light, struct vec3 point, struct vec3 from, struct light_context *out);
 
 struct light_sample {
-    struct vec3 target; /* where the shadow ray ends; of a sky its direction */
-    struct vec3 light;  /* the mean over all places of light * (n.l) is radiance times view factor */
+    struct vec3 direction;      /* unit, from the point: the surface is shaded for light from there */
+    struct light_target target; /* what the shadow ray has to reach */
+    struct vec3 radiance;       /* of a lamp, where the target lies; of a delta light what arrives: colour * strength */
+    double pdf;                 /* of the target, by solid angle at the point; of a delta light 1 */
+    struct vec3 intensity;      /* the classic one: the mean over all samples of intensity * (n.l) is what arrives */
+    bool is_delta;
 };
-/* One sample of a lamp (`emits`). */
-struct light_sample light_sample_lamp(const struct light *light, const struct light_frame *frame, struct vec3 from,
-                                      struct sample2 place);
+/* The sample for a place in the unit square: equal areas of the square are equal areas of a parallelogram or disc,
+ * equal solid angles of a lamp that is a sphere or a rectangle, equal light of a mesh or a sky. A target that the light
+ * does not reach has intensity 0 and pdf as it was drawn. Only where light_context_make was true. */
+struct light_sample light_sample(const struct light *light, const struct light_context *context, struct sample2 place);
+/* The target of that sample alone, of a light with an extent (not a mesh). */
+struct vec3 light_target_at(const struct light *light, const struct light_context *context, struct sample2 place);
+
+/* Where a ray meets a light. */
+struct light_hit {
+    double t; /* infinite: a sky */
+    struct vec3 point;
+    uint32_t triangle; /* of a mesh */
+};
+/* The density of light_sample by solid angle at the point for the direction (unit) in which the light is met at `hit`;
+ * 0 of delta lights, and where the light does not shine to. */
+double light_pdf(const struct light *light, const struct light_context *context, struct vec3 direction,
+                 const struct light_hit *hit);
+
+/* --- what a ray sees --- */
+
+/* Where a ray meets the surface of a light that has one of its own; t in the ray's interval. Never a mesh, which the
+ * scene shows, nor a sky, which is behind everything. */
+bool light_meets_ray(const struct light *light, const struct ray *ray, struct light_hit *hit);
+/* The radiance that it sends back along a ray that meets it. */
+struct vec3 light_emitted(const struct light *light, const struct ray *ray, const struct light_hit *hit);
+/* At least the largest component of what comes from it. */
+double light_brightest(const struct light *light);
+
+/* --- what it sends --- */
+
+/* LOCAL: it stands somewhere and sends in many directions. PARALLEL: all of it goes in one direction, from infinitely
+ * far. ENVIRONMENT: from infinitely far, from all sides. */
+enum light_domain { LIGHT_DOMAIN_LOCAL, LIGHT_DOMAIN_PARALLEL, LIGHT_DOMAIN_ENVIRONMENT };
+
+/* A light, or part of one, that photons leave. */
+struct light_emitter {
+    const struct light *light;
+    enum light_domain domain;
+    struct vec3 centre; /* LOCAL: the places where photons start lie in this ball */
+    double radius;
+    double low[2], side;   /* part of the unit square whose places are meant: low to low + side */
+    struct vec3 right, up; /* PARALLEL: across its direction; else of a disc */
+    bool even;             /* it sends alike in all directions */
+};
+/* Into how large parts a light is best divided: its size; 0: it cannot be divided. */
+double light_divided_extent(const struct light *light);
+/* Part (i, j) of parts x parts. False: it sends nothing. */
+bool light_emitter_make(const struct light *light, uint32_t i, uint32_t j, uint32_t parts, struct light_emitter *out);
+/* LOCAL: its brightness in the unit direction, of its brightest. */
+double light_emitter_shine(const struct light_emitter *emitter, struct vec3 direction);
+/* LOCAL: whether it shines within the cone about `axis`, when it does not along its axis and some directions round it.
+ */
+bool light_emitter_shines_near(const struct light_emitter *emitter, struct vec3 axis, double cos_half);
+/* Colour times unit is the power of a photon before shine: an estimate, to share photons by. */
+struct vec3 light_emitter_colour(const struct light_emitter *emitter);
+double light_emitter_unit(const struct light_emitter *emitter);
+
+struct light_photon {
+    struct vec3 origin, direction; /* direction: unit */
+    struct vec3 power;
+};
+/* LOCAL: a photon in the unit direction that is given, from the place on the light; its power is flux by solid angle,
+ * the mean over places. Others: the direction follows from the place, the origin is not set, and the power is flux by
+ * area across the direction, the mean over places. Fluxes are those of classic intensities (docs/light.md). */
+struct light_photon light_photon(const struct light_emitter *emitter, struct vec3 direction, struct sample2 place);
+/* Times this is the power of a photon after a path of `length`. */
+double light_photon_fading(const struct light *light, double length);
+
+/* --- listings and editors --- */
+
+const char *light_kind_name(enum light_kind kind);
+enum light_property {
+    LIGHT_HAS_POSITION = 1,  /* that of its own */
+    LIGHT_HAS_DIRECTION = 2, /* where it shines to, or the normal of a disc */
+    LIGHT_HAS_EDGES = 4,
+    LIGHT_HAS_RADIUS = 8,     /* about its direction, where it has one */
+    LIGHT_HAS_CONE = 16,      /* about its direction */
+    LIGHT_HAS_RANGE = 32,     /* its range grows with it */
+    LIGHT_IS_ENVIRONMENT = 64 /* it comes from all sides, mirrors show it, and it is turned about the y axis alone */
+};
+unsigned light_properties(const struct light *light);
+/* The middle of one that stands somewhere, and of a mesh once the world is built. False: there is none. */
+bool light_centre(const struct light *light, struct vec3 *out);
 
 /* light_rectangle.c. False: its edges are not at right angles, or it is seen too small for it to matter. */
 bool spherical_rectangle_make(struct vec3 corner, struct vec3 edge1, struct vec3 edge2, struct vec3 from,
                               struct spherical_rectangle *out);
 struct vec3 spherical_rectangle_point(const struct spherical_rectangle *seen, struct sample2 place);
-
-/* Where a ray meets a light that shows itself; t in the ray's interval. */
-bool light_meets_ray(const struct light *light, const struct ray *ray, double *t);
 
 #endif

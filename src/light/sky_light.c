@@ -6,16 +6,13 @@
  * missed is found and no sample counts for very much. */
 #include "light/sky_light.h"
 
+#include "light/light_internal.h"
 #include "math/elementary.h"
 
 static const double pi = 3.14159265358979323846;
 
 enum { LEAST_COLUMNS = 128, MOST_COLUMNS = 512, PROBES = 2 };
 static const double everywhere = 1.0 / 16; /* the part that goes everywhere */
-
-static double luminance(struct vec3 c) {
-    return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
-}
 
 static uint32_t columns_for(const struct sky *sky) {
     uint32_t columns = sky->kind == SKY_MAP     ? image_width(sky->image)
@@ -37,7 +34,7 @@ static double cell_luminance(const struct sky *sky, uint32_t column, uint32_t ro
     for (int j = 0; j < PROBES; j++) {
         for (int i = 0; i < PROBES; i++) {
             double x = (column + (i + 0.5) / PROBES) / columns, y = (row + (j + 0.5) / PROBES) / rows;
-            double value = luminance(sky_colour(sky, direction_at(x, y), 0));
+            double value = light_luminance(sky_colour(sky, direction_at(x, y), 0));
             sum += value > 0 && isfinite(value) ? value : 0;
         }
     }
@@ -110,13 +107,35 @@ static uint32_t find_share(const double *until, uint32_t count, double share, do
     return low;
 }
 
-struct vec3 sky_table_sample(const struct sky *sky, const struct sky_table *table, struct sample2 place,
-                             struct vec3 *direction) {
+/* Of directions by solid angle, from the shares of a row and of a cell in it. */
+static double density_of(const struct sky_table *table, double row_share, double cell_share) {
+    return row_share * cell_share * ((double)table->rows * table->columns / (4 * pi));
+}
+
+struct sky_sample sky_table_sample(const struct sky *sky, const struct sky_table *table, struct sample2 place) {
     double x, y, row_share, cell_share;
     uint32_t row = find_share(table->row_until, table->rows, place.y, &y, &row_share);
     const double *cells = &table->until[(size_t)row * table->columns];
     uint32_t column = find_share(cells, table->columns, place.x, &x, &cell_share);
-    *direction = direction_at((column + x) / table->columns, (row + y) / table->rows);
-    double density = row_share * cell_share * ((double)table->rows * table->columns / (4 * pi));
-    return density > 0 ? vec3_scale(sky_colour(sky, *direction, 0), 1 / (density * pi)) : vec3_all(0);
+    struct sky_sample sample = {.direction = direction_at((column + x) / table->columns, (row + y) / table->rows)};
+    sample.pdf = density_of(table, row_share, cell_share);
+    if (!(sample.pdf > 0))
+        return sample;
+    sample.radiance = sky_colour(sky, sample.direction, 0);
+    sample.intensity = vec3_scale(sample.radiance, 1 / radiance_of(sample.pdf));
+    return sample;
+}
+
+static uint32_t cell_index(double x, uint32_t count) {
+    double cell = floor(x * count);
+    return cell > 0 ? (cell < count ? (uint32_t)cell : count - 1) : 0;
+}
+
+double sky_table_pdf(const struct sky_table *table, struct vec3 direction) {
+    double turn = el_atan2(direction.z, direction.x) / (2 * pi);
+    uint32_t row = cell_index((1 - direction.y) / 2, table->rows);
+    uint32_t column = cell_index(turn < 0 ? turn + 1 : turn, table->columns);
+    const double *cells = &table->until[(size_t)row * table->columns];
+    double row_share = table->row_until[row] - (row > 0 ? table->row_until[row - 1] : 0);
+    return density_of(table, row_share, cells[column] - (column > 0 ? cells[column - 1] : 0));
 }

@@ -16,9 +16,15 @@ struct sky_table {
 
 /* NULL: no memory. A sky that is black everywhere gives a table of equal cells. */
 const struct sky_table *sky_table_build(const struct sky *sky, struct arena *arena, struct pool *pool);
-/* The unit direction for a place of the unit square. Returns the sky's colour there over the density of such directions
- * by solid angle, over pi: its mean times (n.l) is what a white diffuse surface shows. */
-struct vec3 sky_table_sample(const struct sky *sky, const struct sky_table *table, struct sample2 place,
-                             struct vec3 *direction);
+struct sky_sample {
+    struct vec3 direction; /* unit */
+    struct vec3 radiance;
+    double pdf;            /* of the direction, by solid angle */
+    struct vec3 intensity; /* radiance over pdf as classic light: its mean times (n.l) is what a white surface shows */
+};
+/* The sample for a place of the unit square. */
+struct sky_sample sky_table_sample(const struct sky *sky, const struct sky_table *table, struct sample2 place);
+/* Its density for a unit direction. */
+double sky_table_pdf(const struct sky_table *table, struct vec3 direction);
 
 #endif

@@ -56,26 +56,13 @@ static void set(float out[3], double x, double y, double z) {
 
 /* The middle of a light that has one, as a ray from the hit; false for meshes and skies. */
 static bool ray_to_light(const struct light *light, const struct hit *hit, struct ray *out) {
-    switch (light->kind) {
-    case LIGHT_DIRECTIONAL:
-        *out = (struct ray){.direction = vec3_negate(light->direction), .t_max = INFINITY};
-        break;
-    case LIGHT_POINT:
-    case LIGHT_PARALLELOGRAM:
-    case LIGHT_SPOT:
-    case LIGHT_DISC:
-    case LIGHT_SPHERE:
-        *out = (struct ray){.direction = vec3_sub(light->position, hit->point), .t_max = 1};
-        break;
-    case LIGHT_MESH:
-    case LIGHT_SKY:
+    struct light_target middle;
+    if (!light_middle(light, &middle))
         return false;
-    }
-    double side = vec3_dot(out->direction, hit->normal_geometric) < 0 ? -hit->offset : hit->offset;
-    out->origin = vec3_add_scaled(hit->point, hit->normal_geometric, side);
-    if (light->kind != LIGHT_DIRECTIONAL)
-        out->direction = vec3_sub(light->position, out->origin);
-    out->time = hit->time;
+    double across = vec3_dot(light_target_from(&middle, hit->point), hit->normal_geometric);
+    *out = (struct ray){.t_max = light_target_end(&middle), .time = hit->time};
+    out->origin = vec3_add_scaled(hit->point, hit->normal_geometric, across < 0 ? -hit->offset : hit->offset);
+    out->direction = light_target_from(&middle, out->origin);
     return true;
 }
 

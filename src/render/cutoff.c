@@ -15,9 +15,7 @@ static double brightest_of_scene(const struct render_job *job) {
     double most = sky_brightest(&world->sky), lit = largest(job->ambient), emission = 0;
     for (uint32_t i = 0; i < world->light_count; i++) {
         const struct light *light = &world->lights[i];
-        double own = largest(light->colour);
-        if (light->kind == LIGHT_SKY)
-            own *= sky_brightest(light->sky);
+        double own = light_brightest(light);
         lit += own;
         if (light->visible && own > most)
             most = own;

@@ -1,7 +1,6 @@
-/* Light that comes straight from the lights of the scene, and that of the photon map. A light at a place, or one that
- * is shaded as from its centre, is one evaluation times the share of its shadow rays that arrive; of a lamp every
- * shadow ray is evaluated by itself. The places of a light's samples are cells of the unit square, parted once more
- * among the samples of a pixel. */
+/* Light that comes straight from the lights of the scene, and that of the photon map. A delta light is one evaluation
+ * times the share of its shadow rays that arrive; of a lamp every shadow ray is evaluated by itself. The places of a
+ * light's samples are cells of the unit square, parted once more among the samples of a pixel. */
 #include "render/direct.h"
 
 #include "world/packet.h"
@@ -29,54 +28,47 @@ static bool is_free(struct integrator_state *tracer, const struct hit *hit, stru
     return free;
 }
 
-/* The shadow rays of one hit to a light with an extent, asked batch by batch. */
-struct fan {
-    const struct light *light;
-    struct light_frame frame;
-    struct vec3 from;
-    struct sample_set places;
-};
+static bool target_is_free(struct integrator_state *tracer, const struct hit *hit, struct vec3 from,
+                           const struct light_target *target) {
+    return is_free(tracer, hit, from, light_target_from(target, from), light_target_end(target));
+}
 
-static struct fan fan_make(const struct integrator_state *tracer, const struct light *light, uint32_t number,
-                           uint64_t key) {
+/* The places of the shadow rays of one hit to a light with an extent, asked batch by batch. */
+static struct sample_set places_on_light(const struct integrator_state *tracer, const struct light *light,
+                                         const struct light_context *context, uint32_t number, uint64_t key) {
     const struct settings *settings = &tracer->job->settings;
     uint32_t side = (uint32_t)(light->samples ? light->samples : settings->area_samples);
     if (settings->coarse && side > (uint32_t)settings->area_samples)
         side = (uint32_t)settings->area_samples;
-    /* Lights of SPEC 1.4 keep their jitter; the others share the cells among the samples of a pixel. */
-    bool shared = light->emits || light->kind != LIGHT_PARALLELOGRAM;
-    return (struct fan){.light = light, .places = sampler_on_light(&tracer->sampler, key, number, side, shared)};
+    return sampler_on_light(&tracer->sampler, key, number, side, context->shares_cells);
 }
 
 /* What stands between: not the hit's own primitive where all of it is behind the surface and all of the light before.
  */
-static struct between fan_between(const struct world *world, const struct fan *fan, const struct hit *hit) {
-    struct vec3 corner = fan->frame.corner, edge1 = fan->frame.edge1, edge2 = fan->frame.edge2;
-    uint32_t passes = hit_passes(hit, vec3_sub(corner, fan->from));
+static struct between light_between(const struct world *world, const struct light_context *context,
+                                    const struct hit *hit) {
+    struct vec3 corner = context->corner, edge1 = context->edge1, edge2 = context->edge2;
+    uint32_t passes = hit_passes(hit, vec3_sub(corner, context->from));
     for (int i = 1; i < 4 && passes != 0; i++) {
         struct vec3 other = vec3_add(i & 1 ? vec3_add(corner, edge1) : corner, i & 2 ? edge2 : vec3_all(0));
-        passes = hit_passes(hit, vec3_sub(other, fan->from));
+        passes = hit_passes(hit, vec3_sub(other, context->from));
     }
-    return world_between(world, fan->from, corner, edge1, edge2, passes);
+    return world_between(world, context->from, corner, edge1, edge2, passes);
 }
 
-/* The share of a light that reaches the hit: 0 or 1 for a point, of jittered shadow rays for an extent. */
+/* The share of a delta light that reaches the hit: 0 or 1 for a point, of jittered shadow rays for an extent. */
 static double visible_share(struct integrator_state *tracer, const struct light *light, uint32_t number,
-                            const struct hit *hit, uint64_t key) {
+                            const struct light_target *middle, const struct hit *hit, uint64_t key) {
     const struct world *world = tracer->job->world;
-    if (light->kind == LIGHT_DIRECTIONAL) {
-        struct vec3 to_light = vec3_negate(light->direction);
-        return is_free(tracer, hit, off_surface(hit, to_light), to_light, INFINITY);
-    }
-    struct vec3 from = off_surface(hit, vec3_sub(light->position, hit->point));
-    if (!light_has_extent(light))
-        return is_free(tracer, hit, from, vec3_sub(light->position, from), 1);
-    struct fan fan = fan_make(tracer, light, number, key);
-    fan.from = from;
-    if (!light_frame_make(light, fan.from, &fan.frame))
-        return is_free(tracer, hit, fan.from, vec3_sub(light->position, fan.from), 1);
-    uint32_t all = fan.places.side * fan.places.side, seen = 0, have = 0;
-    struct between between = fan_between(world, &fan, hit);
+    struct light_context context;
+    struct vec3 from = off_surface(hit, light_target_from(middle, hit->point));
+    if (!light_context_make(light, hit->point, from, &context))
+        return 0;
+    if (context.single)
+        return target_is_free(tracer, hit, from, middle);
+    struct sample_set places = places_on_light(tracer, light, &context, number, key);
+    uint32_t all = places.side * places.side, seen = 0, have = 0;
+    struct between between = light_between(world, &context, hit);
     tracer->shadow_rays += all;
     if (between.known && between.count == 0) {
         observe_shadow_rays(tracer->observer, all, all, OBSERVER_NO_BLOCKER);
@@ -84,10 +76,10 @@ static double visible_share(struct integrator_state *tracer, const struct light 
     }
     struct vec3 targets[AREA_BATCH];
     for (uint32_t cell = 0; cell < all; cell++) {
-        targets[have++] = light_target(light, &fan.frame, fan.from, sample_set_point(&fan.places, cell));
+        targets[have++] = light_target_at(light, &context, sample_set_point(&places, cell));
         if (have < AREA_BATCH && cell + 1 < all)
             continue;
-        seen += world_visible(world, &between, fan.from, hit->time, targets, have, tracer->scratch, NULL);
+        seen += world_visible(world, &between, from, hit->time, targets, have, tracer->scratch, NULL);
         have = 0;
         if (integrator_cancelled(tracer))
             return 0;
@@ -96,50 +88,51 @@ static double visible_share(struct integrator_state *tracer, const struct light 
     return (double)seen / (double)all;
 }
 
-/* Which of the targets of a fan arrive. Skies and lamps all around have no shaft: each ray looks for itself. */
-static void ask_targets(struct integrator_state *tracer, const struct fan *fan, const struct hit *hit,
-                        const struct vec3 *targets, uint32_t count, bool *visible) {
-    if (fan->frame.bounded) {
+/* Which of the targets arrive, all of them distant or none. Lights all around have no shaft: each ray looks for itself.
+ */
+static void ask_targets(struct integrator_state *tracer, const struct light_context *context, const struct hit *hit,
+                        const struct vec3 *targets, uint32_t count, bool distant, bool *visible) {
+    if (context->bounded) {
         const struct world *world = tracer->job->world;
-        struct between between = fan_between(world, fan, hit);
-        uint32_t seen = world_visible(world, &between, fan->from, hit->time, targets, count, tracer->scratch, visible);
+        struct between between = light_between(world, context, hit);
+        uint32_t seen =
+            world_visible(world, &between, context->from, hit->time, targets, count, tracer->scratch, visible);
         tracer->shadow_rays += count;
         observe_shadow_rays(tracer->observer, count, seen, OBSERVER_NO_BLOCKER);
         return;
     }
-    bool sky = fan->light->kind == LIGHT_SKY;
-    for (uint32_t i = 0; i < count; i++)
-        visible[i] =
-            is_free(tracer, hit, fan->from, sky ? targets[i] : vec3_sub(targets[i], fan->from), sky ? INFINITY : 1);
+    for (uint32_t i = 0; i < count; i++) {
+        struct light_target target = {targets[i], distant};
+        visible[i] = target_is_free(tracer, hit, context->from, &target);
+    }
 }
 
 /* A lamp: every shadow ray shades by itself, with the cosine at the lamp. Rays that cannot bring light are not asked.
  */
-static struct vec3 lamp_light(struct integrator_state *tracer, const struct light *light, uint32_t number,
-                              const struct hit *hit, const struct shading *shading, struct vec3 normal, uint64_t key) {
+static struct vec3 light_of_samples(struct integrator_state *tracer, const struct light *light, uint32_t number,
+                                    const struct hit *hit, const struct shading *shading, struct vec3 normal,
+                                    uint64_t key) {
     struct vec3 sum = {0, 0, 0};
-    struct fan fan = fan_make(tracer, light, number, key);
     /* What is lit is the ray's side, wherever the middle of the lamp may be. */
-    fan.from = off_surface(hit, hit->front ? hit->normal_geometric : vec3_negate(hit->normal_geometric));
-    if (!light_frame_make(light, fan.from, &fan.frame))
+    struct vec3 from = off_surface(hit, hit->front ? hit->normal_geometric : vec3_negate(hit->normal_geometric));
+    struct light_context context;
+    if (!light_context_make(light, hit->point, from, &context))
         return sum;
-    uint32_t all = fan.places.side * fan.places.side, have = 0;
+    struct sample_set places = places_on_light(tracer, light, &context, number, key);
+    uint32_t all = places.side * places.side, have = 0;
     struct vec3 targets[AREA_BATCH], carried[AREA_BATCH];
     bool visible[AREA_BATCH];
     for (uint32_t cell = 0; cell < all; cell++) {
-        struct light_sample sample =
-            light_sample_lamp(light, &fan.frame, fan.from, sample_set_point(&fan.places, cell));
-        struct vec3 to_light = sample.target;
-        if (light->kind != LIGHT_SKY)
-            to_light = vec3_normalize(vec3_sub(sample.target, hit->point));
-        struct vec3 arriving = vec3_mul(shading_evaluate(shading, normal, hit->view, to_light), sample.light);
+        struct light_sample sample = light_sample(light, &context, sample_set_point(&places, cell));
+        struct vec3 arriving =
+            vec3_mul(shading_evaluate(shading, normal, hit->view, sample.direction), sample.intensity);
         if (arriving.x != 0 || arriving.y != 0 || arriving.z != 0) {
-            targets[have] = sample.target;
+            targets[have] = sample.target.at;
             carried[have++] = arriving;
         }
         if (have == 0 || (have < AREA_BATCH && cell + 1 < all))
             continue;
-        ask_targets(tracer, &fan, hit, targets, have, visible);
+        ask_targets(tracer, &context, hit, targets, have, sample.target.distant, visible);
         for (uint32_t i = 0; i < have; i++)
             sum = visible[i] ? vec3_add(sum, carried[i]) : sum;
         have = 0;
@@ -149,28 +142,23 @@ static struct vec3 lamp_light(struct integrator_state *tracer, const struct ligh
     return vec3_scale(sum, 1 / (double)all);
 }
 
-/* One light shaded as from one place. */
-static struct vec3 light_from_place(struct integrator_state *tracer, const struct light *light, uint32_t number,
-                                    const struct hit *hit, const struct shading *shading, struct vec3 normal,
-                                    uint64_t key) {
-    bool distant = light->kind == LIGHT_DIRECTIONAL;
-    struct vec3 to_light = distant ? vec3_negate(light->direction) : vec3_sub(light->position, hit->point);
-    double distance = distant ? 1 : vec3_length(to_light), strength = 1;
-    if (!(distance > 0))
+/* A delta light: shaded once. */
+static struct vec3 light_of_delta(struct integrator_state *tracer, const struct light *light, uint32_t number,
+                                  const struct hit *hit, const struct shading *shading, struct vec3 normal,
+                                  uint64_t key) {
+    struct light_arrival arrival;
+    if (!light_arrive(light, hit->point, &arrival))
         return vec3_all(0);
-    if (!distant) {
-        to_light = vec3_scale(to_light, 1 / distance);
-        strength = light_attenuation(light, distance) * light_cone(light, vec3_negate(to_light));
-    }
-    struct vec3 reflected = shading_evaluate(shading, normal, hit->view, to_light);
-    observe_light_place(tracer->observer, distance, strength, to_light, reflected);
-    if (strength == 0 || (reflected.x == 0 && reflected.y == 0 && reflected.z == 0))
+    struct vec3 reflected = shading_evaluate(shading, normal, hit->view, arrival.direction);
+    observe_light_place(tracer->observer, arrival.distance, arrival.strength, arrival.direction, reflected);
+    if (arrival.strength == 0 || (reflected.x == 0 && reflected.y == 0 && reflected.z == 0))
         return vec3_all(0);
-    double share = visible_share(tracer, light, number, hit, key);
-    return share == 0 ? vec3_all(0) : vec3_mul(vec3_scale(light->colour, share * strength), reflected);
+    double share = visible_share(tracer, light, number, &arrival.middle, hit, key);
+    return share == 0 ? vec3_all(0) : vec3_mul(vec3_scale(light->colour, share * arrival.strength), reflected);
 }
 
-/* What a surface shows of a sky: mirrored it sees the background itself, so a highlight would count that twice. */
+/* What a surface shows of an environment: mirrored it sees the background itself, so a highlight would count that
+ * twice. */
 static struct shading without_highlight(const struct shading *shading) {
     struct shading out = *shading;
     bool mirrors = false;
@@ -185,12 +173,12 @@ static struct shading without_highlight(const struct shading *shading) {
 
 static struct vec3 one_light(struct integrator_state *tracer, const struct light *light, uint32_t number,
                              const struct hit *hit, const struct shading *shading, struct vec3 normal, uint64_t key) {
-    if (light->kind == LIGHT_SKY) {
-        struct shading matt = without_highlight(shading);
-        return lamp_light(tracer, light, number, hit, &matt, normal, key);
-    }
-    return light->emits ? lamp_light(tracer, light, number, hit, shading, normal, key)
-                        : light_from_place(tracer, light, number, hit, shading, normal, key);
+    if (light_is_delta(light))
+        return light_of_delta(tracer, light, number, hit, shading, normal, key);
+    if (!(light_properties(light) & LIGHT_IS_ENVIRONMENT))
+        return light_of_samples(tracer, light, number, hit, shading, normal, key);
+    struct shading matt = without_highlight(shading);
+    return light_of_samples(tracer, light, number, hit, &matt, normal, key);
 }
 
 struct vec3 direct_light(struct integrator_state *tracer, const struct hit *hit, const struct shading *shading,

@@ -9,7 +9,7 @@
  * Sequences", 2018), moved by an offset of the cell. The weight of a photon is exactly the light's intensity over the
  * density of photons: no cell that light can pass may be missing, which is the invariant.
  *
- * A sky sends from all sides: its directions come from its own table, and each has its rectangle across.
+ * An environment sends from all sides: it chooses directions itself, and each has its rectangle across.
  *
  * Units (docs/light.md): a light without body sends its colour per steradian, times d^2 fading(d) after the way d, so
  * that free light arrives as colour * fading(d) * cosine; a lamp sends radiance / pi per area and projected solid
@@ -17,7 +17,6 @@
 #include "render/photon_aim.h"
 
 #include "base/random.h"
-#include "light/sky_light.h"
 #include "math/elementary.h"
 #include "math/frame.h"
 
@@ -146,7 +145,7 @@ static void sort_casters(struct casters *casters) {
 /* --- cells --- */
 
 static bool is_distant(const struct photon_aim *aim) {
-    return aim->light->kind == LIGHT_DIRECTIONAL || aim->light->kind == LIGHT_SKY;
+    return aim->emitter.domain != LIGHT_DOMAIN_LOCAL;
 }
 
 /* The coordinate on a face of the cube from one that runs evenly over the angle. */
@@ -193,8 +192,8 @@ static void pyramid_fence(const struct photon_aim *aim, uint32_t face, uint32_t 
         double low = on_face(-1 + width * place[k]), high = on_face(-1 + width * (place[k] + 1));
         struct vec3 below = vec3_normalize(vec3_sub(vec3_scale(major, low), axes[k]));
         struct vec3 above = vec3_normalize(vec3_sub(axes[k], vec3_scale(major, high)));
-        fence_add(fence, below, vec3_dot(below, aim->centre) + aim->radius);
-        fence_add(fence, above, vec3_dot(above, aim->centre) + aim->radius);
+        fence_add(fence, below, vec3_dot(below, aim->emitter.centre) + aim->emitter.radius);
+        fence_add(fence, above, vec3_dot(above, aim->emitter.centre) + aim->emitter.radius);
     }
 }
 
@@ -217,12 +216,12 @@ static bool fence_meets(const struct fence *fence, const struct caster *caster) 
 /* Across a distant light: a square against the shadow of a ball, and of a box by the axes of both (separating axes). */
 static bool square_meets(const struct photon_aim *aim, double x, double y, double half, const struct caster *caster) {
     struct vec3 middle = caster->middle, reach = vec3_sub(caster->box.max, middle);
-    double off_x = fabs(vec3_dot(aim->right, middle) - x) - half, off_y = fabs(vec3_dot(aim->up, middle) - y) - half;
+    const struct vec3 r = aim->emitter.right, u = aim->emitter.up;
+    double off_x = fabs(vec3_dot(r, middle) - x) - half, off_y = fabs(vec3_dot(u, middle) - y) - half;
     off_x = off_x > 0 ? off_x : 0;
     off_y = off_y > 0 ? off_y : 0;
     if (off_x * off_x + off_y * off_y > caster->radius * caster->radius * (1 + 0x1p-30))
         return false;
-    const struct vec3 r = aim->right, u = aim->up;
     const double axes[5][2] = {{1, 0}, {0, 1}, {-u.x, r.x}, {-u.y, r.y}, {-u.z, r.z}};
     for (int k = 0; k < 5; k++) {
         struct vec3 n = vec3_add_scaled(vec3_scale(r, axes[k][0]), u, axes[k][1]);
@@ -234,39 +233,22 @@ static bool square_meets(const struct photon_aim *aim, double x, double y, doubl
     return true;
 }
 
-/* The light's brightness in a direction, of its brightest. */
-static double shine(const struct photon_aim *aim, struct vec3 direction) {
-    const struct light *light = aim->light;
-    if (light->kind == LIGHT_SPOT)
-        return light_cone(light, direction);
-    if (!light->emits || light->kind == LIGHT_SPHERE || light->kind == LIGHT_DIRECTIONAL || light->kind == LIGHT_MESH)
-        return 1;
-    struct vec3 normal =
-        light->kind == LIGHT_DISC ? light->direction : vec3_normalize(vec3_cross(light->edge1, light->edge2));
-    double cosine = vec3_dot(normal, direction);
-    return cosine > 0 ? cosine : light->one_sided ? 0 : -cosine;
-}
-
 /* The brightness in the middle of a cell, or a little where only another part of it is lit; 0 where none is. */
 static double cell_shine(const struct photon_aim *aim, uint32_t face, uint32_t i, uint32_t j, double *solid_angle) {
     double width = ldexp(2, -(int)aim->level), a = -1 + width * (i + 0.5), b = -1 + width * (j + 0.5), density;
     struct vec3 middle = vec3_normalize(face_direction(face, a, b, solid_angle));
     *solid_angle *= width * width;
-    double own = shine(aim, middle), most = own, cos_half = 1;
+    double own = light_emitter_shine(&aim->emitter, middle), most = own, cos_half = 1;
     for (int k = 0; k < 4; k++) {
         struct vec3 corner =
             face_direction(face, a + width * (k & 1 ? 0.5 : -0.5), b + width * (k & 2 ? 0.5 : -0.5), &density);
         corner = vec3_normalize(corner);
-        double at_corner = shine(aim, corner), cosine = vec3_dot(corner, middle);
+        double at_corner = light_emitter_shine(&aim->emitter, corner), cosine = vec3_dot(corner, middle);
         most = at_corner > most ? at_corner : most;
         cos_half = cosine < cos_half ? cosine : cos_half;
     }
-    if (aim->light->kind == LIGHT_SPOT && most == 0) {
-        /* The cone may still touch the cell between its corners. */
-        double angle = el_acos(fmax(-1, fmin(1, vec3_dot(middle, aim->light->direction))));
-        double outer = el_acos(fmax(-1, fmin(1, aim->light->cos_outer)));
-        most = angle < outer + el_acos(cos_half) ? 1 : 0;
-    }
+    if (most == 0)
+        most = light_emitter_shines_near(&aim->emitter, middle, cos_half) ? 1 : 0;
     return most > 0 && own < 0.05 ? 0.05 : own;
 }
 
@@ -284,7 +266,7 @@ struct search {
 static void meet_cell(struct search *s, uint32_t face, uint32_t i, uint32_t j, uint32_t strongest) {
     struct photon_aim *aim = s->aim;
     double area = 1, bright = 1;
-    if (!is_distant(aim) && (s->keep || aim->light->emits || aim->light->kind == LIGHT_SPOT))
+    if (!is_distant(aim) && (s->keep || !aim->emitter.even))
         bright = cell_shine(aim, face, i, j, &area);
     if (!(bright > 0))
         return;
@@ -366,13 +348,12 @@ static bool find_cells(struct search *s, uint32_t budget, struct arena *arena) {
 
 /* The square across a distant light that holds the shadows of all casters, and a plane before the whole scene. */
 static void place_distant(struct photon_aim *aim, const struct casters *casters) {
-    const struct light *light = aim->light;
+    struct vec3 direction = light_photon(&aim->emitter, vec3_all(0), (struct sample2){0, 0}).direction;
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    frame_tangents(light->direction, &aim->right, &aim->up);
     for (uint32_t i = 0; i < casters->count; i++) {
         const struct box *box = &casters->list[i].box;
         for (int k = 0; k < 2; k++) {
-            struct vec3 axis = k == 0 ? aim->right : aim->up;
+            struct vec3 axis = k == 0 ? aim->emitter.right : aim->emitter.up;
             double least = box_least(box, axis), most = -box_least(box, vec3_negate(axis));
             low[k] = least < low[k] ? least : low[k];
             high[k] = most > high[k] ? most : high[k];
@@ -382,70 +363,21 @@ static void place_distant(struct photon_aim *aim, const struct casters *casters)
     aim->corner[0] = low[0];
     aim->corner[1] = low[1];
     double depth = vec3_length(vec3_sub(casters->scene.max, casters->scene.min));
-    aim->behind = box_least(&casters->scene, light->direction) - depth * 0x1p-6;
+    aim->behind = box_least(&casters->scene, direction) - depth * 0x1p-6;
     for (uint32_t i = 0; i < casters->count; i++)
-        aim->behind = fmin(aim->behind, box_least(&casters->list[i].box, light->direction) - depth * 0x1p-6);
-}
-
-/* Part (i, j) of `parts` x `parts` of a flat light: the ball that holds its places. */
-static void place_part(struct photon_aim *aim, uint32_t i, uint32_t j, uint32_t parts) {
-    const struct light *light = aim->light;
-    aim->side = 1.0 / parts;
-    aim->low[0] = i * aim->side;
-    aim->low[1] = j * aim->side;
-    if (light->kind == LIGHT_PARALLELOGRAM) {
-        double u = aim->low[0] + aim->side / 2, v = aim->low[1] + aim->side / 2;
-        aim->centre = vec3_add_scaled(vec3_add_scaled(light->corner, light->edge1, u), light->edge2, v);
-        double one = vec3_length(vec3_add(light->edge1, light->edge2)) / 2;
-        double other = vec3_length(vec3_sub(light->edge1, light->edge2)) / 2;
-        aim->radius = (one > other ? one : other) * aim->side;
-        return;
-    }
-    frame_tangents(light->direction, &aim->right, &aim->up);
-    aim->centre = light->position;
-    aim->radius = light->radius;
-}
-
-static void place_mesh(struct photon_aim *aim) {
-    aim->centre = aim->light->mesh->centre;
-    aim->radius = aim->light->mesh->radius;
-}
-
-/* Per unit of importance: what turns a solid angle into flux. */
-static double unit_flux(const struct photon_aim *aim) {
-    const struct light *light = aim->light;
-    if (!light->emits || light->kind == LIGHT_DIRECTIONAL || light->kind == LIGHT_MESH)
-        return aim->side * aim->side;
-    if (light->kind == LIGHT_SPHERE)
-        return light->radius * light->radius;
-    double area = light->kind == LIGHT_DISC ? pi * light->radius * light->radius
-                                            : vec3_length(vec3_cross(light->edge1, light->edge2));
-    return area / pi * (aim->side * aim->side);
-}
-
-double photon_fading(const struct light *light, double length) {
-    if (light->emits || light->kind == LIGHT_DIRECTIONAL || light->kind == LIGHT_SKY)
-        return 1;
-    return length * length * light_attenuation(light, length);
-}
-
-/* The mean over places and directions, about. */
-static struct vec3 mesh_light(const struct light_mesh *mesh) {
-    struct vec3 sum = {0, 0, 0};
-    for (uint32_t i = 0; i < mesh->count; i++)
-        sum = vec3_add_scaled(sum, mesh->triangles[i].light, mesh->until[i] - (i > 0 ? mesh->until[i - 1] : 0));
-    return vec3_scale(sum, mesh->one_sided ? 0.25 : 0.5);
+        aim->behind = fmin(aim->behind, box_least(&casters->list[i].box, direction) - depth * 0x1p-6);
 }
 
 static void estimate_flux(struct photon_aim *aim, const struct casters *casters) {
-    struct vec3 colour = aim->light->kind == LIGHT_MESH ? mesh_light(aim->light->mesh) : aim->light->colour;
-    double way = vec3_length(vec3_sub(casters->middle, aim->centre));
-    double fading = photon_fading(aim->light, way > aim->radius ? way : aim->radius);
+    const struct light_emitter *emitter = &aim->emitter;
+    struct vec3 colour = light_emitter_colour(emitter);
+    double way = vec3_length(vec3_sub(casters->middle, emitter->centre));
+    double fading = light_photon_fading(emitter->light, way > emitter->radius ? way : emitter->radius);
     if (!(fading > 0)) /* beyond its range at the middle, but maybe not everywhere */
         fading = way * way * 0x1p-6;
     double cell_area = is_distant(aim) ? ldexp(aim->size * aim->size, -2 * (int)aim->level) : 1;
     double mean = (fabs(colour.x) + fabs(colour.y) + fabs(colour.z)) / 3;
-    aim->flux = mean * fading * unit_flux(aim) * aim->total * cell_area;
+    aim->flux = mean * fading * light_emitter_unit(emitter) * aim->total * cell_area;
     if (!isfinite(aim->flux))
         aim->flux = 0;
 }
@@ -460,9 +392,9 @@ static bool make_aim(struct photon_aim *aim, struct search *search, uint32_t bud
 }
 
 static uint32_t light_parts(const struct light *light, const struct casters *casters) {
-    if (light->kind != LIGHT_PARALLELOGRAM)
+    double extent = light_divided_extent(light), nearest = INFINITY;
+    if (!(extent > 0))
         return 1;
-    double extent = vec3_length(light->edge1) + vec3_length(light->edge2), nearest = INFINITY;
     for (uint32_t i = 0; i < casters->count; i++) {
         const struct box *box = &casters->list[i].box;
         struct vec3 inside = vec3_min(vec3_max(light->position, box->min), box->max);
@@ -471,28 +403,26 @@ static uint32_t light_parts(const struct light *light, const struct casters *cas
     return extent > 0.1 * nearest ? PARTS : 1;
 }
 
-/* Light of a sky: a direction by its own table, then a place of the rectangle across it that holds the shadow of the
- * box of all casters, before the whole scene. Returns the power of a photon that stands for all. */
-static struct vec3 start_in_sky(const struct photon_aim *aim, struct sample2 turn, struct sample2 place,
-                                struct vec3 *origin, struct vec3 *direction) {
-    const struct light *light = aim->light;
-    struct vec3 target, axes[2];
-    struct vec3 power = vec3_mul(sky_table_sample(light->sky, light->table, turn, &target), light->colour);
-    *direction = vec3_negate(target);
-    frame_tangents(*direction, &axes[0], &axes[1]);
+/* Light of an environment: a direction by its own choice, then a place of the rectangle across it that holds the shadow
+ * of the box of all casters, before the whole scene. Its power is that of a photon that stands for all. */
+static struct light_photon start_around(const struct photon_aim *aim, struct sample2 turn, struct sample2 place) {
+    struct light_photon photon = light_photon(&aim->emitter, vec3_all(0), turn);
+    struct vec3 axes[2], direction = photon.direction;
+    frame_tangents(direction, &axes[0], &axes[1]);
     const double at[2] = {place.x, place.y};
-    double area = 1, before = fmin(box_least(&aim->across, *direction), box_least(&aim->scene, *direction));
-    *origin = vec3_scale(*direction, before - aim->size * 0x1p-6);
+    double area = 1, before = fmin(box_least(&aim->across, direction), box_least(&aim->scene, direction));
+    photon.origin = vec3_scale(direction, before - aim->size * 0x1p-6);
     for (int k = 0; k < 2; k++) {
         double low = box_least(&aim->across, axes[k]), width = -box_least(&aim->across, vec3_negate(axes[k])) - low;
         area *= width;
-        *origin = vec3_add_scaled(*origin, axes[k], low + width * at[k]);
+        photon.origin = vec3_add_scaled(photon.origin, axes[k], low + width * at[k]);
     }
-    return vec3_scale(power, area);
+    photon.power = vec3_scale(photon.power, area);
+    return photon;
 }
 
 /* One cell that is everything; its flux from a few hundred starts. */
-static bool aim_sky(struct photon_aim *aim, const struct casters *casters, struct arena *arena) {
+static bool aim_around(struct photon_aim *aim, const struct casters *casters, struct arena *arena) {
     enum { PROBES = 16 };
     aim->across = casters->all;
     aim->scene = casters->scene;
@@ -506,7 +436,7 @@ static bool aim_sky(struct photon_aim *aim, const struct casters *casters, struc
     aim->cell_count = 1;
     for (int i = 0; i < PROBES * PROBES; i++) {
         struct sample2 turn = {(i % PROBES + 0.5) / PROBES, (i / PROBES + 0.5) / PROBES};
-        struct vec3 origin, direction, power = start_in_sky(aim, turn, (struct sample2){0, 0}, &origin, &direction);
+        struct vec3 power = start_around(aim, turn, (struct sample2){0, 0}).power;
         aim->flux += (fabs(power.x) + fabs(power.y) + fabs(power.z)) / (3 * PROBES * PROBES) * aim->total;
     }
     if (!isfinite(aim->flux))
@@ -514,30 +444,28 @@ static bool aim_sky(struct photon_aim *aim, const struct casters *casters, struc
     return true;
 }
 
-static bool sends_photons(const struct light *light) {
-    return light->kind != LIGHT_MESH || light->mesh->count > 0;
+static bool aim_part(struct photon_aim *aim, struct search *search, uint32_t budget, struct arena *arena) {
+    switch (aim->emitter.domain) {
+    case LIGHT_DOMAIN_ENVIRONMENT:
+        return aim_around(aim, search->casters, arena);
+    case LIGHT_DOMAIN_PARALLEL:
+        place_distant(aim, search->casters);
+        break;
+    case LIGHT_DOMAIN_LOCAL:
+        break;
+    }
+    return make_aim(aim, search, budget, arena);
 }
 
 static bool aim_light(struct photon_aims *out, struct search *search, const struct light *light, uint32_t number,
                       struct arena *arena) {
     uint32_t parts = light_parts(light, search->casters), budget = search->budget;
-    if (!sends_photons(light))
-        return true;
     for (uint32_t part = 0; part < parts * parts && !search->stopped; part++) {
         struct photon_aim *aim = &out->aims[out->count];
-        *aim = (struct photon_aim){
-            .light = light, .number = number, .centre = light->position, .radius = light->radius, .side = 1};
-        if (light->kind == LIGHT_DIRECTIONAL)
-            place_distant(aim, search->casters);
-        else if (light->kind == LIGHT_PARALLELOGRAM || light->kind == LIGHT_DISC)
-            place_part(aim, part % parts, part / parts, parts);
-        else if (light->kind == LIGHT_MESH)
-            place_mesh(aim);
-        else if (light->kind != LIGHT_SPHERE)
-            aim->radius = 0;
-        bool made = light->kind == LIGHT_SKY ? aim_sky(aim, search->casters, arena)
-                                             : make_aim(aim, search, budget / (parts * parts), arena);
-        if (!made)
+        *aim = (struct photon_aim){.number = number};
+        if (!light_emitter_make(light, part % parts, part / parts, parts, &aim->emitter))
+            continue;
+        if (!aim_part(aim, search, budget / (parts * parts), arena))
             return false;
         out->count += aim->cell_count > 0 && aim->flux > 0;
     }
@@ -567,7 +495,8 @@ static bool find_media(struct photon_aims *aims, const struct world *world, stru
                        struct world_scratch *scratch) {
     for (uint32_t i = 0; i < aims->count; i++) {
         struct photon_aim *aim = &aims->aims[i];
-        struct box here = {aim->centre, aim->centre};
+        struct vec3 centre = aim->emitter.centre;
+        struct box here = {centre, centre};
         uint32_t count = is_distant(aim) ? 0 : world_closed_in(world, &here, NULL, 0);
         if (count == 0)
             continue;
@@ -575,7 +504,7 @@ static bool find_media(struct photon_aims *aims, const struct world *world, stru
         if (!closed)
             return false;
         (void)world_closed_in(world, &here, closed, count);
-        media_around(world, aim->centre, 0, closed, count, scratch, &aim->media);
+        media_around(world, centre, 0, closed, count, scratch, &aim->media);
     }
     return !scratch->failed;
 }
@@ -615,37 +544,6 @@ static double fraction(double x) {
     return x - floor(x);
 }
 
-/* A place on the light seen along the direction, for a light with an extent; the photon starts there. */
-static struct vec3 start_on_light(const struct photon_aim *aim, struct vec3 direction, struct sample2 place) {
-    const struct light *light = aim->light;
-    struct sample2 part = {aim->low[0] + aim->side * place.x, aim->low[1] + aim->side * place.y};
-    if (light->kind == LIGHT_PARALLELOGRAM)
-        return vec3_add_scaled(vec3_add_scaled(light->corner, light->edge1, part.x), light->edge2, part.y);
-    if (light->kind != LIGHT_DISC && light->kind != LIGHT_SPHERE)
-        return aim->centre;
-    struct sample2 round = sample_disc(part);
-    struct vec3 right = aim->right, up = aim->up;
-    if (light->kind == LIGHT_SPHERE)
-        frame_tangents(direction, &right, &up);
-    struct vec3 start =
-        vec3_add_scaled(vec3_add_scaled(aim->centre, right, light->radius * round.x), up, light->radius * round.y);
-    double height = 1 - round.x * round.x - round.y * round.y;
-    if (light->kind == LIGHT_SPHERE && light->emits && height > 0)
-        start = vec3_add_scaled(start, direction, light->radius * sqrt(height));
-    return start;
-}
-
-/* A lamp that is a mesh: a place on one of its triangles, and what that sends in the direction. */
-static void start_on_mesh(const struct light_mesh *mesh, struct sample2 place, double weight,
-                          struct photon_start *start) {
-    struct light_point point = light_mesh_point(mesh, place);
-    const struct light_triangle *t = point.triangle;
-    double cosine = vec3_dot(t->normal, start->direction), side = cosine > 0 ? t->offset : -t->offset;
-    double shines = cosine > 0 || !mesh->one_sided ? fabs(cosine) : 0;
-    start->origin = vec3_add_scaled(point.place, t->normal, side);
-    start->power = vec3_scale(t->light, weight * shines);
-}
-
 static const struct photon_cell *cell_at(const struct photon_aim *aim, double at) {
     uint32_t low = 0, high = aim->cell_count - 1;
     while (low < high) {
@@ -656,6 +554,29 @@ static const struct photon_cell *cell_at(const struct photon_aim *aim, double at
             low = middle + 1;
     }
     return &aim->cells[low];
+}
+
+/* In the part of a square that a cell is. */
+static struct light_photon start_across(const struct photon_aim *aim, const struct photon_cell *cell,
+                                        struct sample2 place, double *weight) {
+    struct light_photon photon = light_photon(&aim->emitter, vec3_all(0), place);
+    double size = ldexp(aim->size, -(int)aim->level);
+    double x = aim->corner[0] + (cell->i + place.x) * size, y = aim->corner[1] + (cell->j + place.y) * size;
+    photon.origin = vec3_add_scaled(vec3_scale(aim->emitter.right, x), aim->emitter.up, y);
+    photon.origin = vec3_add_scaled(photon.origin, photon.direction, aim->behind);
+    *weight = *weight * size * size;
+    return photon;
+}
+
+/* A unit direction within a cell; *share: the solid angle there for that in the cell's middle. */
+static struct vec3 cell_direction(const struct photon_aim *aim, const struct photon_cell *cell, struct sample2 place,
+                                  double *share) {
+    double width = ldexp(2, -(int)aim->level), density, middle_density;
+    (void)face_direction(cell->face, -1 + width * (cell->i + 0.5), -1 + width * (cell->j + 0.5), &middle_density);
+    struct vec3 direction =
+        face_direction(cell->face, -1 + width * (cell->i + place.x), -1 + width * (cell->j + place.y), &density);
+    *share = density / middle_density;
+    return vec3_normalize(direction);
 }
 
 struct photon_start photon_aim_start(const struct photon_aim *aim, uint32_t index, uint64_t seed) {
@@ -673,35 +594,28 @@ struct photon_start photon_aim_start(const struct photon_aim *aim, uint32_t inde
     for (uint64_t k = 0; k < 4; k++)
         place[k] = fraction(random_unit(random_combine(key_of_cell, k)) + turn * steps[k]);
 
+    const struct light_emitter *emitter = &aim->emitter;
     struct photon_start start = {.strength = (double)cell->strength, .key = key};
-    if (aim->light->kind == LIGHT_SKY) {
-        struct vec3 power = start_in_sky(aim, (struct sample2){place[0], place[1]},
-                                         (struct sample2){place[2], place[3]}, &start.origin, &start.direction);
-        start.power = vec3_scale(power, spacing / (double)cell->strength);
-        return start;
+    double weight = spacing / ((double)cell->strength * (double)cell->shine);
+    struct light_photon photon;
+    switch (emitter->domain) {
+    case LIGHT_DOMAIN_ENVIRONMENT:
+        photon = start_around(aim, (struct sample2){place[0], place[1]}, (struct sample2){place[2], place[3]});
+        start.from_afar = true;
+        break;
+    case LIGHT_DOMAIN_PARALLEL:
+        photon = start_across(aim, cell, (struct sample2){place[0], place[1]}, &weight);
+        break;
+    case LIGHT_DOMAIN_LOCAL: {
+        double share;
+        struct vec3 direction = cell_direction(aim, cell, (struct sample2){place[0], place[1]}, &share);
+        photon = light_photon(emitter, direction, (struct sample2){place[2], place[3]});
+        weight *= share;
+        break;
     }
-    double width = ldexp(2, -(int)aim->level), weight = spacing / ((double)cell->strength * (double)cell->shine);
-    if (is_distant(aim)) {
-        double size = ldexp(aim->size, -(int)aim->level);
-        double x = aim->corner[0] + (cell->i + place[0]) * size, y = aim->corner[1] + (cell->j + place[1]) * size;
-        start.direction = aim->light->direction;
-        start.origin = vec3_add_scaled(vec3_scale(aim->right, x), aim->up, y);
-        start.origin = vec3_add_scaled(start.origin, start.direction, aim->behind);
-        start.power = vec3_scale(aim->light->colour, weight * size * size);
-        return start;
     }
-    double density, middle_density;
-    (void)face_direction(cell->face, -1 + width * (cell->i + 0.5), -1 + width * (cell->j + 0.5), &middle_density);
-    start.direction =
-        face_direction(cell->face, -1 + width * (cell->i + place[0]), -1 + width * (cell->j + place[1]), &density);
-    start.direction = vec3_normalize(start.direction);
-    if (aim->light->kind == LIGHT_MESH) {
-        start_on_mesh(aim->light->mesh, (struct sample2){place[2], place[3]}, weight * density / middle_density,
-                      &start);
-        return start;
-    }
-    start.origin = start_on_light(aim, start.direction, (struct sample2){place[2], place[3]});
-    weight *= density / middle_density * shine(aim, start.direction) * unit_flux(aim);
-    start.power = vec3_scale(aim->light->colour, weight);
+    start.origin = photon.origin;
+    start.direction = photon.direction;
+    start.power = vec3_scale(photon.power, weight);
     return start;
 }

@@ -5,6 +5,7 @@
 
 #include "base/arena.h"
 #include "base/pool.h"
+#include "light/light.h"
 #include "render/media.h"
 
 struct photon_cell {
@@ -15,15 +16,11 @@ struct photon_cell {
 
 /* One light, or one part of a light with an extent. */
 struct photon_aim {
-    const struct light *light;
-    uint32_t number;    /* of the light */
-    struct vec3 centre; /* the places where photons start lie in this ball */
-    double radius;
-    double low[2], side;            /* part of the unit square whose places are meant: low to low + side */
-    struct vec3 right, up;          /* of a distant light, a disc, a parallelogram's edges */
-    double corner[2], size, behind; /* distant: the square across, and where photons start along the direction; of a sky
-                                       size is that of the scene */
-    struct box across, scene;       /* a sky: what photons are to meet, and before what they start */
+    struct light_emitter emitter;
+    uint32_t number;                /* of the light */
+    double corner[2], size, behind; /* PARALLEL: the square across, and where photons start along the direction; of an
+                                       ENVIRONMENT size is that of the scene */
+    struct box across, scene;       /* ENVIRONMENT: what photons are to meet, and before what they start */
     uint32_t level, cell_count;     /* 2^level cells along the side of a face */
     struct photon_cell *cells;
     double total;              /* importance of all cells */
@@ -47,11 +44,10 @@ struct photon_start {
     struct vec3 power;             /* before fading */
     double strength;               /* of its cell: power is divided by it, and what is left after a thing as strong as
                                       this is what all photons are to have */
+    bool from_afar;                /* something without end may lie behind its origin */
     uint64_t key;
 };
 /* Photon `index` (0 .. count-1) of the aim; a function of its arguments. */
 struct photon_start photon_aim_start(const struct photon_aim *aim, uint32_t index, uint64_t seed);
-/* Times this is its power after a way of `length`. */
-double photon_fading(const struct light *light, double length);
 
 #endif

@@ -113,7 +113,7 @@ static bool fly_on(struct flight *flight, const struct hit *hit, const struct in
 static void land(const struct photon_start *start, const struct photon_aim *aim, const struct flight *flight,
                  const struct hit *hit, struct photon *photon) {
     struct vec3 power = vec3_mul(start->power, flight->left);
-    power = vec3_scale(power, photon_fading(aim->light, flight->length));
+    power = vec3_scale(power, light_photon_fading(aim->emitter.light, flight->length));
     if (!vec3_finite(power) || !vec3_finite(hit->point) || !(vec3_max_abs(power) > 0))
         return;
     *photon = (struct photon){hit->point, power, photon_pack(hit->view), aim->number};
@@ -130,7 +130,7 @@ static void send(struct sending *s, const struct photon_aim *aim, uint32_t index
     flight.ray.time = draw(&flight);
     if (start.power.x == 0 && start.power.y == 0 && start.power.z == 0)
         return;
-    if (aim->light->kind == LIGHT_SKY) {
+    if (start.from_afar) {
         /* It comes from beyond what is finite: a ground without end may be in its way. */
         struct ray back = flight.ray;
         struct hit ground;
@@ -138,7 +138,7 @@ static void send(struct sending *s, const struct photon_aim *aim, uint32_t index
         if (world_nearest(s->world, &back, scratch, &ground))
             return;
     }
-    const uint8_t *lit = aim->light->lit;
+    const uint8_t *lit = aim->emitter.light->lit;
     for (int bounce = 0; bounce < PHOTON_BOUNCES && !scratch->failed; bounce++) {
         struct hit hit;
         struct surface_look look;

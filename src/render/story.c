@@ -171,7 +171,7 @@ static void begin_light(struct story *story, uint32_t number, const struct light
     story->light = told;
     if (!told)
         return;
-    *told = (struct story_light){.number = number, .light = light, .lamp = light->emits, .lit = STORY_LIGHT_NO_EFFECT};
+    *told = (struct story_light){.number = number, .light = light, .lamp = !light_is_delta(light), .lit = STORY_LIGHT_NO_EFFECT};
     if (ray->last_light)
         ray->last_light->next = told;
     else

@@ -22,17 +22,19 @@ struct path {
 static struct vec3 trace(struct integrator_state *tracer, const struct ray *ray, const struct path *path);
 
 /* The nearest light that shows itself before t_max, or NULL. */
-static const struct light *visible_light(const struct world *world, const struct ray *ray, double t_max, double *t) {
+static const struct light *visible_light(const struct world *world, const struct ray *ray, double t_max,
+                                         struct light_hit *hit) {
     const struct light *best = NULL;
     struct ray limited = *ray;
+    struct light_hit met;
     limited.t_max = t_max;
     for (uint32_t i = 0; i < world->light_count; i++) {
-        if (world->lights[i].visible && light_meets_ray(&world->lights[i], &limited, t)) {
+        if (world->lights[i].visible && light_meets_ray(&world->lights[i], &limited, &met)) {
             best = &world->lights[i];
-            limited.t_max = *t;
+            limited.t_max = met.t;
+            *hit = met;
         }
     }
-    *t = limited.t_max;
     return best;
 }
 
@@ -217,8 +219,9 @@ static struct vec3 bring(struct integrator_state *tracer, const struct ray *ray,
     const struct world *world = tracer->job->world;
     const struct fog *fog = tracer->job->fog;
     bool met = hit != NULL;
-    double end;
-    const struct light *lamp = visible_light(world, ray, met ? hit->t : ray->t_max, &end);
+    struct light_hit lamp_hit;
+    const struct light *lamp = visible_light(world, ray, met ? hit->t : ray->t_max, &lamp_hit);
+    double end = lamp ? lamp_hit.t : met ? hit->t : ray->t_max;
 
     /* What is between here and there. */
     bool inside = ray->media && ray->media->count > 0, endless = !met && !lamp, clear = true;
@@ -243,7 +246,7 @@ static struct vec3 bring(struct integrator_state *tracer, const struct ray *ray,
     if (!looked)
         left = vec3_all(0);
     else if (lamp)
-        colour = lamp->colour;
+        colour = light_emitted(lamp, ray, &lamp_hit);
     else if (met)
         colour = shade_hit(tracer, ray, hit, path);
     else

@@ -6,6 +6,7 @@
 #define GRAY_SCENE_CHANGE_H
 
 #include "base/list.h"
+#include "light/light_edit.h"
 #include "scene/change_look.h"
 #include "scene/node.h"
 

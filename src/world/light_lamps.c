@@ -1,36 +1,21 @@
-/* The triangles of a mesh lamp, gathered from every place where the scene shows one of its meshes. A triangle is drawn
- * in proportion to its area times the luminance of its emission, so the light of a sample is radiance over that
- * density. */
+/* What lamps need to know about the scene: the triangles of a lamp that is a mesh are gathered from every place where
+ * the scene shows one of its meshes. */
 #include "world/light_lamps.h"
 
 #include "base/mem.h"
-#include "light/sky_light.h"
+#include "light/light_mesh.h"
+#include "light/sky.h"
 #include "world/light_lists.h"
 
 #include <stdio.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
 struct gathering {
     const struct world *world;
     const struct light *light;
-    struct light_triangle *triangles;
-    double *until;
-    uint32_t count;
-    bool one_sided;
-    struct box bounds;
-    double sum; /* of areas times luminances */
+    struct light_mesh_builder mesh;
 };
 
-static double luminance(struct vec3 c) {
-    return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
-}
-
-/* Below it a reciprocal is not finite. */
-static const double dark = 1e-300;
-
-/* Triangles without area or light are left out. */
 static void add_triangle(struct gathering *g, const struct mesh *mesh, uint32_t number, const struct transform *map,
                          double sign, const struct thing *thing) {
     struct vec3 corners[3], emission = g->light->emission;
@@ -44,28 +29,14 @@ static void add_triangle(struct gathering *g, const struct mesh *mesh, uint32_t 
     }
     if (!g->light->has_emission && thing)
         emission = material_emission(g->world->materials[thing->material + (slot < thing->slot_count ? slot : 0)]);
-    struct light_triangle *t = &g->triangles[g->count];
-    t->corner = corners[0];
-    t->edge1 = vec3_sub(corners[1], corners[0]);
-    t->edge2 = vec3_sub(corners[2], corners[0]);
-    struct vec3 across = vec3_cross(t->edge1, t->edge2);
-    double area = vec3_length(across) / 2, weight = area * luminance(emission);
-    if (!(weight > 0) || area < dark || luminance(emission) < dark)
-        return;
-    t->normal = vec3_scale(across, sign / (2 * area));
-    t->light = vec3_scale(emission, 1 / (luminance(emission) * pi)); /* times the sum, once it is known */
-    t->offset = size * 0x1p-40;
-    for (int i = 0; i < 3; i++)
-        g->bounds = box_add_point(g->bounds, corners[i]);
-    g->sum += weight;
-    g->until[g->count++] = g->sum;
+    light_mesh_add(&g->mesh, corners, sign, size, emission);
 }
 
 static void add_mesh(struct gathering *g, const struct mesh *mesh, const struct transform *map,
                      const struct thing *thing) {
     bool mirrored = affine_determinant(&map->forward) < 0;
     double sign = mesh_is_closed(mesh) && mesh_is_outward(mesh) == mirrored ? -1 : 1;
-    g->one_sided = g->one_sided && mesh_is_closed(mesh);
+    g->mesh.one_sided = g->mesh.one_sided && mesh_is_closed(mesh);
     for (uint32_t i = 0; i < mesh_triangle_count(mesh); i++)
         add_triangle(g, mesh, i, map, sign, thing);
 }
@@ -88,9 +59,7 @@ static bool gather(struct gathering *g, struct arena *arena, const uint8_t *mark
                          node->name);
     if (total > UINT32_MAX / 2)
         return error_set(error, ERROR_SCENE, "the mesh light '%.100s' has too many triangles", node->name);
-    g->triangles = arena_alloc_array(arena, total, sizeof *g->triangles);
-    g->until = arena_alloc_array(arena, total, sizeof *g->until);
-    if (!g->triangles || !g->until)
+    if (!light_mesh_begin(&g->mesh, total, arena))
         return error_no_memory(error, "a mesh light");
     for (uint32_t i = 0; i < g->world->placed_count && !alone; i++) {
         if (!is_lamp(g->world, marked, i))
@@ -108,27 +77,19 @@ static bool gather(struct gathering *g, struct arena *arena, const uint8_t *mark
 
 static bool resolve_mesh(const struct world *world, struct light *light, struct arena *arena, const struct node *root,
                          world_warning *warn, void *warn_context, struct error *error) {
-    struct gathering g = {.world = world, .light = light, .one_sided = true, .bounds = box_empty()};
+    struct gathering g = {.world = world, .light = light};
     struct light_mesh *mesh = arena_alloc(arena, sizeof *mesh);
     uint8_t *marked = arena_alloc_array(arena, (size_t)world->placed_count + 1, 1);
     if (!mesh || !marked || !light_lists_mark(world, &light->node, 1, marked, 1, root))
         return error_no_memory(error, "a mesh light");
     if (!gather(&g, arena, marked, error))
         return false;
-    for (uint32_t i = 0; i < g.count; i++) {
-        g.until[i] = i + 1 < g.count ? g.until[i] / g.sum : 1;
-        g.triangles[i].light = vec3_mul(vec3_scale(g.triangles[i].light, g.sum), light->colour);
-    }
-    if (g.count == 0 && warn) {
+    light_mesh_end(&g.mesh, light->colour, mesh);
+    if (mesh->count == 0 && warn) {
         char text[256];
         (void)snprintf(text, sizeof text, "node '%.100s' is a mesh light, but its materials have no emission",
                        light->node->name);
         warn(warn_context, text);
-    }
-    *mesh = (struct light_mesh){g.triangles, g.until, g.count, g.one_sided, vec3_all(0), 0};
-    if (g.count > 0) {
-        mesh->centre = vec3_scale(vec3_add(g.bounds.min, g.bounds.max), 0.5);
-        mesh->radius = vec3_length(vec3_sub(g.bounds.max, mesh->centre)) * (1 + 0x1p-40);
     }
     light->mesh = mesh;
     return true;
@@ -154,15 +115,12 @@ bool light_lamps_resolve(struct world *world, struct light *lights, struct arena
     const struct sky behind = world->sky;
     for (uint32_t i = 0; i < world->light_count; i++) {
         struct light *light = &lights[i];
-        if (light->kind == LIGHT_SKY && light->sky_turned && !turn_sky(world, &behind, light, arena, error))
+        if (light->sky_turned && !turn_sky(world, &behind, light, arena, error))
             return false;
-        if (light->kind == LIGHT_MESH && !resolve_mesh(world, light, arena, root, warn, warn_context, error))
+        if (light->node && !resolve_mesh(world, light, arena, root, warn, warn_context, error))
             return false;
-        if (light->kind == LIGHT_SKY) {
-            light->table = sky_table_build(light->sky, arena, pool);
-            if (!light->table)
-                return error_no_memory(error, "the light of the sky");
-        }
+        if (!light_prepare(light, arena, pool, error))
+            return false;
     }
     return true;
 }

@@ -1,6 +1,6 @@
 /* Lamps met by rays and asked from places where their formulas end: inside of them, on them, level with them,
  * infinitely far away. The claims are geometry, written anew. */
-#include "light/light.h"
+#include "light/light_mesh.h"
 #include "tests/harness.h"
 #include "tests/unit/random_makers.h"
 
@@ -12,72 +12,72 @@ static struct ray part_of(struct vec3 origin, struct vec3 direction, double t_mi
 
 TEST(a_lamp_that_is_a_ball_is_met_where_the_ray_goes_in_else_where_it_comes_out) {
     struct light ball = {.kind = LIGHT_SPHERE, .position = {1, 2, 3}, .radius = 2};
-    double t;
+    struct light_hit met;
     struct ray ray = part_of(vec3_make(1, 2, 13), vec3_make(0, 0, -2), 0, INFINITY);
-    CHECK(light_meets_ray(&ball, &ray, &t));
-    CHECK_NEAR(t, 4, 1e-14);
+    CHECK(light_meets_ray(&ball, &ray, &met));
+    CHECK_NEAR(met.t, 4, 1e-14);
     ray.t_min = 5; /* from inside */
-    CHECK(light_meets_ray(&ball, &ray, &t));
-    CHECK_NEAR(t, 6, 1e-14);
+    CHECK(light_meets_ray(&ball, &ray, &met));
+    CHECK_NEAR(met.t, 6, 1e-14);
     ray.t_max = 5.5; /* it ends inside, too */
-    CHECK(!light_meets_ray(&ball, &ray, &t));
+    CHECK(!light_meets_ray(&ball, &ray, &met));
     ray = part_of(vec3_make(1, 2, 13), vec3_make(0, 0, -2), 0, 3.5);
-    CHECK(!light_meets_ray(&ball, &ray, &t));
+    CHECK(!light_meets_ray(&ball, &ray, &met));
     ray = part_of(vec3_make(1, 2, 13), vec3_make(0, 0, -2), 7, INFINITY);
-    CHECK(!light_meets_ray(&ball, &ray, &t));
+    CHECK(!light_meets_ray(&ball, &ray, &met));
     ray = part_of(vec3_make(3.5, 2, 13), vec3_make(0, 0, -2), 0, INFINITY);
-    CHECK(!light_meets_ray(&ball, &ray, &t));
+    CHECK(!light_meets_ray(&ball, &ray, &met));
 }
 
 TEST(flat_lamps_are_met_in_their_outline_from_the_side_that_shines) {
     struct light disc = {.kind = LIGHT_DISC, .position = {0, 4, 0}, .direction = {0, -1, 0}, .radius = 1};
     struct light sheet = {.kind = LIGHT_PARALLELOGRAM, .corner = {-1, 4, -1}, .edge1 = {2, 0, 0}, .edge2 = {1, 0, 2}};
     struct light *const lamps[] = {&disc, &sheet};
-    double t;
+    struct light_hit met;
     for (int k = 0; k < 2; k++) {
         struct ray below = part_of(vec3_make(0.2, 0, 0.2), vec3_make(0, 2, 0), 0, INFINITY);
         struct ray above = part_of(vec3_make(0.2, 9, 0.2), vec3_make(0, -1, 0), 0, INFINITY);
-        CHECK(light_meets_ray(lamps[k], &below, &t) && t == 2);
-        CHECK(light_meets_ray(lamps[k], &above, &t) && t == 5);
+        CHECK(light_meets_ray(lamps[k], &below, &met) && met.t == 2);
+        CHECK(light_meets_ray(lamps[k], &above, &met) && met.t == 5);
         lamps[k]->one_sided = true; /* they shine down: the normal of the disc, edge1 x edge2 of the sheet */
-        CHECK(light_meets_ray(lamps[k], &below, &t) && !light_meets_ray(lamps[k], &above, &t));
+        CHECK(light_meets_ray(lamps[k], &below, &met) && !light_meets_ray(lamps[k], &above, &met));
         below.t_max = 1.5;
-        CHECK(!light_meets_ray(lamps[k], &below, &t));
+        CHECK(!light_meets_ray(lamps[k], &below, &met));
         below.t_min = 2.5, below.t_max = INFINITY;
-        CHECK(!light_meets_ray(lamps[k], &below, &t));
+        CHECK(!light_meets_ray(lamps[k], &below, &met));
         struct ray level = part_of(vec3_make(-9, 4, 0), vec3_make(1, 0, 0), 0, INFINITY);
-        CHECK(!light_meets_ray(lamps[k], &level, &t));
+        CHECK(!light_meets_ray(lamps[k], &level, &met));
     }
     /* In the outline or not, at random. */
     struct test_random random = {9};
     for (int i = 0; i < 2000; i++) {
         double x = test_uniform(&random, -2.5, 2.5), z = test_uniform(&random, -2.5, 2.5), v = (z + 1) / 2;
         struct ray ray = part_of(vec3_make(x, 0, z), vec3_make(0, 1, 0), 0, INFINITY);
-        CHECK(light_meets_ray(&disc, &ray, &t) == (x * x + z * z < 1));
-        CHECK(light_meets_ray(&sheet, &ray, &t) == (v >= 0 && v <= 1 && x + 1 - v >= 0 && x + 1 - v <= 2));
+        CHECK(light_meets_ray(&disc, &ray, &met) == (x * x + z * z < 1));
+        CHECK(light_meets_ray(&sheet, &ray, &met) == (v >= 0 && v <= 1 && x + 1 - v >= 0 && x + 1 - v <= 2));
     }
     struct light mesh = {.kind = LIGHT_MESH}, sky = {.kind = LIGHT_SKY};
     struct ray ray = part_of(vec3_all(0), vec3_make(0, 1, 0), 0, INFINITY);
-    CHECK(!light_meets_ray(&mesh, &ray, &t) && !light_meets_ray(&sky, &ray, &t));
+    CHECK(!light_meets_ray(&mesh, &ray, &met) && !light_meets_ray(&sky, &ray, &met));
 }
 
 /* Every target lies on the ball, on its near side; from inside there is none. */
 TEST(a_ball_is_aimed_at_from_any_distance_but_not_from_inside) {
     struct light ball = {.kind = LIGHT_SPHERE, .position = {0, 0, 0}, .radius = 1, .emits = true};
-    struct light_frame frame;
-    CHECK(!light_frame_make(&ball, vec3_make(0.5, 0, 0), &frame));
-    CHECK(!light_frame_make(&ball, vec3_make(1, 0, 0), &frame));
+    struct light_context context;
+    CHECK(!light_context_make(&ball, vec3_make(0.5, 0, 0), vec3_make(0.5, 0, 0), &context));
+    CHECK(!light_context_make(&ball, vec3_make(1, 0, 0), vec3_make(1, 0, 0), &context));
     for (double distance = 1 + 1e-9; distance < 1e12; distance = 1 + 10 * (distance - 1)) {
         struct vec3 from = {0, 0, distance};
-        if (!light_frame_make(&ball, from, &frame))
+        if (!light_context_make(&ball, from, from, &context))
             continue;
         for (int i = 0; i <= 4; i++)
             for (int j = 0; j <= 4; j++) {
-                struct vec3 target = light_target(&ball, &frame, from, (struct sample2){i / 4.0, j / 4.0});
+                struct vec3 target = light_target_at(&ball, &context, (struct sample2){i / 4.0, j / 4.0});
                 CHECK_NEAR(vec3_length(target), 1, 1e-7 + 1e-15 * distance);
                 CHECK(target.z > -1e-6 * distance);
             }
-        struct vec3 middle = light_target(&ball, &frame, from, (struct sample2){0.5, 0.5});
+        struct vec3 middle = light_target_at(&ball, &context, (struct sample2){0.5, 0.5});
         CHECK_NEAR(middle.z, 1, 1e-15 * distance + 1e-7);
     }
 }
@@ -91,32 +91,32 @@ TEST(a_lamp_gives_nothing_to_points_in_its_own_plane) {
                           .colour = {1, 1, 1},
                           .emits = true};
     struct light_triangle triangle = {.corner = {0, 0, 0}, .edge1 = {1, 0, 0}, .edge2 = {0, 1, 0}, .normal = {0, 0, 1}};
-    triangle.light = vec3_all(1);
+    triangle.intensity = vec3_all(1);
     const double until[] = {1};
     struct light_mesh mesh = {.count = 1, .triangles = &triangle, .until = until, .one_sided = true};
     struct light lamp = {.kind = LIGHT_MESH, .mesh = &mesh, .colour = {1, 1, 1}, .emits = true};
-    struct light_frame frame;
+    struct light_context context;
     const struct vec3 places[] = {{0.75, 0.5, 0}, {5, 0, 0}, {0, 0, 0}};
     for (size_t i = 0; i < sizeof places / sizeof places[0]; i++)
         for (int k = 0; k < 9; k++) {
             struct sample2 place = {k / 8.0, (8 - k) / 8.0};
-            (void)light_frame_make(&sheet, places[i], &frame);
-            struct light_sample sample = light_sample_lamp(&sheet, &frame, places[i], place);
-            CHECK(sample.light.x == 0 && vec3_finite(sample.target));
-            (void)light_frame_make(&lamp, places[i], &frame);
-            sample = light_sample_lamp(&lamp, &frame, places[i], place);
-            CHECK(sample.light.x == 0 && vec3_finite(sample.target));
+            (void)light_context_make(&sheet, places[i], places[i], &context);
+            struct light_sample sample = light_sample(&sheet, &context, place);
+            CHECK(sample.intensity.x == 0 && vec3_finite(sample.target.at));
+            (void)light_context_make(&lamp, places[i], places[i], &context);
+            sample = light_sample(&lamp, &context, place);
+            CHECK(sample.intensity.x == 0 && vec3_finite(sample.target.at));
         }
     /* Behind a lamp that shines to one side, and before it. */
     struct light_sample sample;
     struct vec3 behind = {0.2, 0.2, -1}, before = {0.2, 0.2, 1};
-    (void)light_frame_make(&lamp, behind, &frame);
-    sample = light_sample_lamp(&lamp, &frame, behind, (struct sample2){0.3, 0.3});
-    CHECK(sample.light.x == 0);
+    (void)light_context_make(&lamp, behind, behind, &context);
+    sample = light_sample(&lamp, &context, (struct sample2){0.3, 0.3});
+    CHECK(sample.intensity.x == 0);
     mesh.one_sided = false;
-    sample = light_sample_lamp(&lamp, &frame, behind, (struct sample2){0.3, 0.3});
-    CHECK(sample.light.x > 0);
-    (void)light_frame_make(&lamp, before, &frame);
-    sample = light_sample_lamp(&lamp, &frame, before, (struct sample2){0.3, 0.3});
-    CHECK(sample.light.x > 0);
+    sample = light_sample(&lamp, &context, (struct sample2){0.3, 0.3});
+    CHECK(sample.intensity.x > 0);
+    (void)light_context_make(&lamp, before, before, &context);
+    sample = light_sample(&lamp, &context, (struct sample2){0.3, 0.3});
+    CHECK(sample.intensity.x > 0);
 }

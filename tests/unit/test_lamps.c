@@ -1,4 +1,6 @@
 /* Lamps that are rectangles seen large, meshes, and skies: against view factors, solid angles and integrals. */
+#include "light/light.h"
+#include "light/light_mesh.h"
 #include "light/sky_light.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
@@ -306,7 +308,8 @@ TEST(samples_of_every_sky_have_the_mean_of_its_integral) {
         double sum = 0, most = 0;
         for (int k = 0; k < N * N; k++) {
             struct sample2 place = {(k % N + 0.5) / N, ((k - k % N) / N + 0.5) / N};
-            struct vec3 d, light = sky_table_sample(&skies[i], table, place, &d);
+            struct sky_sample sample = sky_table_sample(&skies[i], table, place);
+            struct vec3 d = sample.direction, light = sample.intensity;
             CHECK_NEAR(vec3_length(d), 1, 1e-12);
             double cosine = vec3_dot(d, normal);
             sum += cosine > 0 ? cosine * light.y : 0;

@@ -1,0 +1,82 @@
+/* Changes of lights go by what they have (light_properties), whatever their kind. Plain arithmetic on the numbers that
+ * scripts give, so that a change of the window and the same change by a script are the same bits. */
+#include "light/light_edit.h"
+
+#include "math/elementary.h"
+
+#include <math.h>
+
+static bool has(const struct light *light, unsigned properties) {
+    return (light_properties(light) & properties) != 0;
+}
+
+bool light_can_move(const struct light *light) {
+    return has(light, LIGHT_HAS_POSITION);
+}
+
+bool light_can_turn(const struct light *light) {
+    return has(light, LIGHT_HAS_DIRECTION | LIGHT_HAS_EDGES | LIGHT_IS_ENVIRONMENT);
+}
+
+bool light_can_size(const struct light *light) {
+    return has(light, LIGHT_HAS_EDGES | LIGHT_HAS_RADIUS | LIGHT_HAS_CONE | LIGHT_HAS_RANGE);
+}
+
+void light_move(struct light *light, struct vec3 way) {
+    light->position = vec3_add(light->position, way);
+    light->corner = vec3_add(light->corner, way);
+}
+
+static struct vec3 row_times(const double turn[TURN_NUMBERS], struct vec3 v) {
+    return vec3_make(turn[0] * v.x + turn[1] * v.y + turn[2] * v.z, turn[3] * v.x + turn[4] * v.y + turn[5] * v.z,
+                     turn[6] * v.x + turn[7] * v.y + turn[8] * v.z);
+}
+
+double light_turn_volume(const double turn[TURN_NUMBERS]) {
+    const double *t = turn;
+    return t[0] * (t[4] * t[8] - t[5] * t[7]) - t[1] * (t[3] * t[8] - t[5] * t[6]) + t[2] * (t[3] * t[7] - t[4] * t[6]);
+}
+
+/* With t = tan(h/2): t^2 = (1 - cos h) / (1 + cos h). */
+static double cone_sized(double cosine, double size) {
+    double near = 1 + cosine, far = size * size * (1 - cosine);
+    return near + far > 0 ? (near - far) / (near + far) : cosine;
+}
+
+/* The trace of its product with the map is largest. */
+bool turn_about_y(const double turn[TURN_NUMBERS], double *sine, double *cosine) {
+    double s = turn[2] - turn[6], c = turn[0] + turn[8], length = sqrt(s * s + c * c);
+    *sine = s / length;
+    *cosine = c / length;
+    return length > 0 && length < INFINITY;
+}
+
+static void turn_sky(struct light *light, const double turn[TURN_NUMBERS]) {
+    double sine, cosine;
+    if (!turn_about_y(turn, &sine, &cosine))
+        return;
+    double s = light->sky_turned ? light->turn_sine : 0, c = light->sky_turned ? light->turn_cosine : 1;
+    light->sky_turned = true;
+    light->turn_sine = s * cosine + c * sine;
+    light->turn_cosine = c * cosine - s * sine;
+}
+
+void light_turn(struct light *light, const double turn[TURN_NUMBERS]) {
+    double size = el_cbrt(fabs(light_turn_volume(turn)));
+    if (has(light, LIGHT_HAS_DIRECTION))
+        light->direction = vec3_normalize(row_times(turn, light->direction));
+    if (has(light, LIGHT_HAS_EDGES)) {
+        light->corner = vec3_add(light->position, row_times(turn, vec3_sub(light->corner, light->position)));
+        light->edge1 = row_times(turn, light->edge1);
+        light->edge2 = row_times(turn, light->edge2);
+    }
+    if (has(light, LIGHT_HAS_CONE)) {
+        light->cos_inner = cone_sized(light->cos_inner, size);
+        light->cos_outer = cone_sized(light->cos_outer, size);
+    }
+    if (has(light, LIGHT_IS_ENVIRONMENT))
+        turn_sky(light, turn);
+    if (has(light, LIGHT_HAS_RANGE))
+        light->range *= size;
+    light->radius *= size;
+}

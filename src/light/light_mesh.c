@@ -1,0 +1,126 @@
+/* See light_mesh.h. The light of a sample is its radiance over the density of samples by area. */
+#include "light/light_mesh.h"
+
+#include "base/arena.h"
+#include "light/light_internal.h"
+#include "math/frame.h"
+
+#include <math.h>
+
+/* Below it a reciprocal is not finite. */
+static const double dark = 1e-300;
+
+bool light_mesh_begin(struct light_mesh_builder *builder, uint64_t count, struct arena *arena) {
+    *builder = (struct light_mesh_builder){.one_sided = true, .bounds = box_empty()};
+    builder->triangles = arena_alloc_array(arena, count, sizeof *builder->triangles);
+    builder->until = arena_alloc_array(arena, count, sizeof *builder->until);
+    return builder->triangles && builder->until;
+}
+
+void light_mesh_add(struct light_mesh_builder *builder, const struct vec3 corners[3], double sign, double size,
+                    struct vec3 emission) {
+    struct light_triangle *t = &builder->triangles[builder->count];
+    t->corner = corners[0];
+    t->edge1 = vec3_sub(corners[1], corners[0]);
+    t->edge2 = vec3_sub(corners[2], corners[0]);
+    struct vec3 across = vec3_cross(t->edge1, t->edge2);
+    double luminance = light_luminance(emission), area = vec3_length(across) / 2, weight = area * luminance;
+    if (!(weight > 0) || area < dark || luminance < dark)
+        return;
+    t->normal = vec3_scale(across, sign / (2 * area));
+    t->intensity = vec3_scale(emission, 1 / radiance_of(luminance)); /* times the sum, once it is known */
+    t->density = luminance;                                          /* over the sum */
+    t->offset = size * 0x1p-40;
+    for (int i = 0; i < 3; i++)
+        builder->bounds = box_add_point(builder->bounds, corners[i]);
+    builder->sum += weight;
+    builder->until[builder->count++] = builder->sum;
+}
+
+void light_mesh_end(struct light_mesh_builder *builder, struct vec3 colour, struct light_mesh *out) {
+    for (uint32_t i = 0; i < builder->count; i++) {
+        struct light_triangle *t = &builder->triangles[i];
+        builder->until[i] = i + 1 < builder->count ? builder->until[i] / builder->sum : 1;
+        t->intensity = vec3_mul(vec3_scale(t->intensity, builder->sum), colour);
+        t->density /= builder->sum;
+    }
+    *out = (struct light_mesh){builder->triangles, builder->until, builder->count, builder->one_sided, vec3_all(0), 0};
+    if (builder->count > 0) {
+        out->centre = vec3_scale(vec3_add(builder->bounds.min, builder->bounds.max), 0.5);
+        out->radius = vec3_length(vec3_sub(builder->bounds.max, out->centre)) * (1 + 0x1p-40);
+    }
+}
+
+/* The place's x, spread over the unit interval again within the share of its triangle. */
+struct light_point light_mesh_point(const struct light_mesh *mesh, struct sample2 place) {
+    uint32_t low = 0, high = mesh->count - 1;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        if (mesh->until[middle] > place.x)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    double begin = low > 0 ? mesh->until[low - 1] : 0, share = mesh->until[low] - begin;
+    double x = share > 0 ? (place.x - begin) / share : 0.5, root = sqrt(x < 1 ? x : 1);
+    const struct light_triangle *t = &mesh->triangles[low];
+    struct vec3 point = vec3_add_scaled(t->corner, t->edge1, root * (1 - place.y));
+    return (struct light_point){t, vec3_add_scaled(point, t->edge2, root * place.y)};
+}
+
+struct vec3 light_triangle_radiance(const struct light_triangle *triangle) {
+    return vec3_scale(triangle->intensity, radiance_of(triangle->density));
+}
+
+/* A square behind all of the mesh, across the cone that its ball fills; none for a point in the ball. */
+void light_mesh_context(const struct light_mesh *mesh, struct light_context *out) {
+    struct vec3 to_centre = vec3_sub(mesh->centre, out->from);
+    double distance = vec3_length(to_centre), sine = mesh->radius / distance;
+    out->bounded = sine < 0.999;
+    if (!out->bounded)
+        return;
+    out->axis = vec3_scale(to_centre, 1 / distance);
+    frame_tangents(out->axis, &out->right, &out->up);
+    double behind = (distance + mesh->radius) * 1.001;
+    light_context_square(out, vec3_add_scaled(out->from, out->axis, behind),
+                         behind * sine / sqrt((1 - sine) * (1 + sine)));
+}
+
+struct light_sample light_mesh_sample(const struct light_mesh *mesh, const struct light_context *context,
+                                      struct sample2 place) {
+    struct light_point at = light_mesh_point(mesh, place);
+    const struct light_triangle *t = at.triangle;
+    struct vec3 away = vec3_sub(context->from, at.place);
+    double squared = vec3_length_squared(away), across = vec3_dot(t->normal, away);
+    double weight = squared > 0 && (across > 0 || !mesh->one_sided) ? fabs(across) / (squared * sqrt(squared)) : 0;
+    struct vec3 target = vec3_add_scaled(at.place, t->normal, across > 0 ? t->offset : -t->offset);
+    return (struct light_sample){.direction = vec3_normalize(vec3_sub(target, context->point)),
+                                 .target = {target, false},
+                                 .radiance = light_triangle_radiance(t),
+                                 .pdf = weight > 0 ? t->density / weight : 0,
+                                 .intensity = vec3_scale(t->intensity, weight)};
+}
+
+double light_mesh_pdf(const struct light_mesh *mesh, const struct light_context *context, const struct light_hit *hit) {
+    const struct light_triangle *t = &mesh->triangles[hit->triangle];
+    struct vec3 away = vec3_sub(context->from, hit->point);
+    bool back = mesh->one_sided && !(vec3_dot(t->normal, away) > 0);
+    double weight = back ? 0 : weight_of_area(1, t->normal, away);
+    return weight > 0 ? t->density / weight : 0;
+}
+
+struct vec3 light_mesh_colour(const struct light_mesh *mesh) {
+    struct vec3 sum = {0, 0, 0};
+    for (uint32_t i = 0; i < mesh->count; i++)
+        sum = vec3_add_scaled(sum, mesh->triangles[i].intensity, mesh->until[i] - (i > 0 ? mesh->until[i - 1] : 0));
+    return vec3_scale(sum, mesh->one_sided ? 0.25 : 0.5);
+}
+
+struct light_photon light_mesh_photon(const struct light_mesh *mesh, struct vec3 direction, struct sample2 place) {
+    struct light_point point = light_mesh_point(mesh, place);
+    const struct light_triangle *t = point.triangle;
+    double cosine = vec3_dot(t->normal, direction), side = cosine > 0 ? t->offset : -t->offset;
+    double shines = cosine > 0 || !mesh->one_sided ? fabs(cosine) : 0;
+    return (struct light_photon){vec3_add_scaled(point.place, t->normal, side), direction,
+                                 vec3_scale(t->intensity, shines)};
+}

@@ -1,0 +1,464 @@
+/* What every kind of light has to keep: samples have the density that light_pdf states, show what a ray sees, and
+ * photons carry the same light. The examples are made by a switch over all kinds, so that a new one is tested, too. */
+#include "base/random.h"
+#include "light/light_edit.h"
+#include "light/light_mesh.h"
+#include "light/sky_light.h"
+#include "math/frame.h"
+#include "tests/harness.h"
+#include "tests/unit/call_makers.h"
+#include "tests/unit/script_host.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* --- an example of every kind --- */
+
+struct example {
+    struct arena arena;
+    struct pool *pool;
+    struct light light;
+    struct light_mesh mesh;
+    struct sky sky;
+};
+
+/* A closed tetrahedron of edge 2 `size` / sqrt(2) with faces of different light. */
+static void make_mesh(struct example *e, struct vec3 middle, double size) {
+    static const double corners[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+    static const int faces[4][3] = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
+    struct light_mesh_builder builder;
+    CHECK(light_mesh_begin(&builder, 4, &e->arena));
+    for (int f = 0; f < 4; f++) {
+        struct vec3 at[3];
+        for (int k = 0; k < 3; k++) {
+            const double *c = corners[faces[f][k]];
+            at[k] = vec3_add_scaled(middle, vec3_make(c[0], c[1], c[2]), size / 2);
+        }
+        light_mesh_add(&builder, at, 1, 3, vec3_make(1 + f, 2, 3));
+    }
+    light_mesh_end(&builder, e->light.colour, &e->mesh);
+    e->light.mesh = &e->mesh;
+}
+
+/* Above the origin, about `size` large, to be seen from below; `lamp`: with a radiance where the kind can do without.
+ */
+static void example_begin(struct example *e, enum light_kind kind, bool lamp, double size) {
+    char warning[256];
+    struct error error;
+    const double s = size;
+    *e = (struct example){.pool = pool_create(1, warning)};
+    e->light = (struct light){.kind = kind, .colour = {3, 2, 1}, .falloff = {0.5, 0.25, 0.125}};
+    e->light.position = vec3_make(0.3, 2, 0.2);
+    switch (kind) {
+    case LIGHT_POINT:
+        break;
+    case LIGHT_PARALLELOGRAM:
+        e->light.emits = lamp;
+        e->light.edge1 = vec3_make(s, 0, 0.2 * s);
+        e->light.edge2 = vec3_make(0, 0.1 * s, s); /* not at right angles */
+        e->light.corner =
+            vec3_add_scaled(vec3_add_scaled(e->light.position, e->light.edge1, -0.5), e->light.edge2, -0.5);
+        break;
+    case LIGHT_DIRECTIONAL:
+        e->light.direction = vec3_normalize(vec3_make(0.3, -1, 0.2));
+        break;
+    case LIGHT_SPOT:
+        e->light.direction = vec3_normalize(vec3_make(0.1, -1, 0.1));
+        e->light.cos_inner = 0.9;
+        e->light.cos_outer = 0.7;
+        break;
+    case LIGHT_DISC:
+        e->light.emits = lamp;
+        e->light.direction = vec3_normalize(vec3_make(0.2, -1, 0));
+        e->light.radius = s / 2;
+        e->light.one_sided = true;
+        break;
+    case LIGHT_SPHERE:
+        e->light.emits = lamp;
+        e->light.radius = s / 2;
+        break;
+    case LIGHT_MESH:
+        e->light.emits = true;
+        make_mesh(e, e->light.position, s / 2);
+        break;
+    case LIGHT_SKY:
+        e->light.emits = true;
+        sky_make_clear(vec3_normalize(vec3_make(1, 1, -1)), 3, vec3_all(0.15), &e->sky);
+        e->light.sky = &e->sky;
+        break;
+    }
+    CHECK(light_prepare(&e->light, &e->arena, e->pool, &error));
+}
+
+static void example_end(struct example *e) {
+    arena_destroy(&e->arena);
+    pool_destroy(e->pool);
+}
+
+static struct sample2 place_of(uint64_t seed, uint64_t index) {
+    return (struct sample2){random_unit(random_combine(seed, 2 * index)),
+                            random_unit(random_combine(seed, 2 * index + 1))};
+}
+
+/* Where a ray meets a triangle of a mesh (Moeller and Trumbore 1997). */
+static bool triangle_meets_ray(const struct light_triangle *t, const struct ray *ray, struct light_hit *hit) {
+    struct vec3 p = vec3_cross(ray->direction, t->edge2), off = vec3_sub(ray->origin, t->corner);
+    double det = vec3_dot(t->edge1, p), u = vec3_dot(off, p) / det;
+    struct vec3 q = vec3_cross(off, t->edge1);
+    double v = vec3_dot(ray->direction, q) / det;
+    hit->t = vec3_dot(t->edge2, q) / det;
+    hit->point = ray_at(ray, hit->t);
+    return u >= 0 && v >= 0 && u + v <= 1 && hit->t > 0;
+}
+
+/* Every place in which a ray meets the light: once, but of a mesh. */
+static int meet(const struct light *light, const struct ray *ray, struct light_hit hits[8]) {
+    int count = 0;
+    for (uint32_t i = 0; light->mesh && i < light->mesh->count; i++) {
+        hits[count].triangle = i;
+        count += triangle_meets_ray(&light->mesh->triangles[i], ray, &hits[count]);
+    }
+    if (light->mesh)
+        return count;
+    hits[0].t = INFINITY;
+    return light_properties(light) & LIGHT_IS_ENVIRONMENT || light_meets_ray(light, ray, &hits[0]);
+}
+
+static double density(const struct light *light, const struct light_context *context, struct vec3 direction) {
+    struct ray ray = {.origin = context->from, .direction = direction, .t_max = INFINITY};
+    struct light_hit hits[8];
+    double sum = 0;
+    int count = meet(light, &ray, hits);
+    for (int i = 0; i < count; i++)
+        sum += light_pdf(light, context, direction, &hits[i]);
+    return sum;
+}
+
+/* The hit nearest to the target of a sample. */
+static bool hit_of_sample(const struct light *light, const struct light_context *context,
+                          const struct light_sample *sample, struct ray *ray, struct light_hit *hit) {
+    struct light_hit hits[8];
+    *ray = (struct ray){.origin = context->from, .t_max = INFINITY};
+    ray->direction = light_target_from(&sample->target, context->from);
+    int count = meet(light, ray, hits);
+    for (int i = 0; i < count; i++)
+        if (i == 0 || fabs(hits[i].t - 1) < fabs(hit->t - 1))
+            *hit = hits[i];
+    return count > 0;
+}
+
+/* Near lamps are sampled by solid angle where they can be, far ones by area. */
+#define FOR_EVERY_LAMP(e, context)                                                                                     \
+    for (int kind_ = 0; kind_ < LIGHT_KIND_COUNT; kind_++)                                                             \
+        for (int far_ = 0; far_ < 2; far_++)                                                                           \
+            for (bool once_ = lamp_begin(&(e), (enum light_kind)kind_, far_, &(context)); once_;                       \
+                 once_ = (example_end(&(e)), false))
+
+static bool lamp_begin(struct example *e, enum light_kind kind, bool far, struct light_context *context) {
+    const struct vec3 from = {0, far ? -1 : 0.4, 0.1};
+    example_begin(e, kind, true, 1.5);
+    e->light.edge1.z = far ? e->light.edge1.z : 0; /* at right angles: by solid angle */
+    e->light.edge2.y = far ? e->light.edge2.y : 0;
+    struct light_sample sample;
+    bool made = light_context_make(&e->light, from, from, context);
+    if (made)
+        sample = light_sample(&e->light, context, (struct sample2){0.5, 0.5});
+    if (made && !sample.is_delta)
+        return true;
+    CHECK(made);
+    example_end(e);
+    return false;
+}
+
+/* --- densities --- */
+
+/* Cells of equal solid angles (Archimedes), the poles beside the lamps; a fine grid within each gives its share by
+ * light_pdf. */
+enum { ROWS = 12, COLUMNS = 24, FINE = 40, CELLS = ROWS * COLUMNS };
+
+static struct vec3 grid_direction(double row, double column) {
+    double x = 1 - 2 * row / ROWS, turn = 2 * pi * column / COLUMNS, level = sqrt(1 - x * x);
+    return vec3_make(x, level * cos(turn), level * sin(turn));
+}
+
+static int cell_of(struct vec3 d) {
+    double turn = atan2(d.z, d.y) / (2 * pi);
+    int row = (int)((1 - d.x) / 2 * ROWS), column = (int)((turn < 0 ? turn + 1 : turn) * COLUMNS);
+    return (row < ROWS ? row : ROWS - 1) * COLUMNS + (column < COLUMNS ? column : COLUMNS - 1);
+}
+
+static double share_of_cell(const struct light *light, const struct light_context *context, int cell) {
+    double sum = 0;
+    for (int k = 0; k < FINE * FINE; k++) {
+        double row = cell / COLUMNS + (k / FINE + 0.5) / FINE, column = cell % COLUMNS + (k % FINE + 0.5) / FINE;
+        sum += density(light, context, grid_direction(row, column));
+    }
+    return sum * 4 * pi / ((double)CELLS * FINE * FINE);
+}
+
+TEST(samples_of_every_lamp_have_the_density_that_pdf_states) {
+    enum { N = 40000 };
+    struct example e;
+    struct light_context context;
+    FOR_EVERY_LAMP(e, context) {
+        static int counted[CELLS];
+        int lost = 0, used = 0;
+        double chi = 0, all = 0, rest = 0, rest_counted = 0;
+        memset(counted, 0, sizeof counted);
+        for (uint64_t i = 0; i < N; i++) {
+            struct light_sample sample = light_sample(&e.light, &context, place_of(77, i));
+            bool on = vec3_max_abs(sample.intensity) > 0;
+            lost += !on;
+            counted[cell_of(sample.direction)] += on;
+        }
+        for (int cell = 0; cell < CELLS; cell++) {
+            double share = share_of_cell(&e.light, &context, cell), expected = share * N;
+            all += share;
+            if (expected < 20) { /* too few for the normal approximation: one cell of them all */
+                rest += expected;
+                rest_counted += counted[cell];
+                continue;
+            }
+            chi += (counted[cell] - expected) * (counted[cell] - expected) / expected;
+            used++;
+        }
+        if (rest > 20)
+            chi += (rest_counted - rest) * (rest_counted - rest) / rest;
+        /* Samples that are not of the light are missing in the integral. */
+        CHECK_NEAR(all, 1 - (double)lost / N, 0.01);
+        if (chi > used + 1 + 5 * sqrt(2.0 * (used + 1)))
+            test_fail(__FILE__, __LINE__, "%s: chi-square %g in %d cells", light_kind_name(e.light.kind), chi, used);
+    }
+}
+
+TEST(the_mean_of_one_over_pdf_is_the_solid_angle_of_a_lamp) {
+    enum { N = 40000, SIDE = 400 };
+    struct example e;
+    struct light_context context;
+    FOR_EVERY_LAMP(e, context) {
+        double mean = 0, angle = 0;
+        for (uint64_t i = 0; i < N; i++) {
+            struct light_sample sample = light_sample(&e.light, &context, place_of(5, i));
+            mean += vec3_max_abs(sample.intensity) > 0 ? 1 / sample.pdf / N : 0;
+        }
+        for (int i = 0; i < SIDE * SIDE; i++) {
+            struct vec3 d = grid_direction((i / SIDE + 0.5) / SIDE * ROWS, (i % SIDE + 0.5) / SIDE * COLUMNS);
+            struct ray ray = {.origin = context.from, .direction = d, .t_max = INFINITY};
+            struct light_hit hits[8];
+            int count = meet(&e.light, &ray, hits);
+            for (int k = 0; k < count; k++) /* the triangles of a mesh each by itself, those that face the point */
+                angle += light_pdf(&e.light, &context, d, &hits[k]) > 0 ? 4 * pi / (SIDE * SIDE) : 0;
+        }
+        CHECK_NEAR(mean / angle, 1, 0.03);
+    }
+}
+
+/* --- radiance --- */
+
+TEST(a_sample_of_every_lamp_shows_what_a_ray_to_it_sees) {
+    struct example e;
+    struct light_context context;
+    FOR_EVERY_LAMP(e, context) {
+        int on = 0;
+        for (uint64_t i = 0; i < 500; i++) {
+            struct light_sample sample = light_sample(&e.light, &context, place_of(9, i));
+            struct ray ray;
+            struct light_hit hit;
+            CHECK(!sample.is_delta);
+            CHECK_NEAR(vec3_length(sample.direction), 1, 1e-12);
+            if (!(vec3_max_abs(sample.intensity) > 0))
+                continue;
+            on++;
+            if (!hit_of_sample(&e.light, &context, &sample, &ray, &hit))
+                continue; /* on its rim */
+            struct vec3 seen = light_emitted(&e.light, &ray, &hit);
+            CHECK_NEAR(light_pdf(&e.light, &context, sample.direction, &hit) / sample.pdf, 1, 1e-6);
+            CHECK_NEAR(vec3_length(vec3_sub(seen, sample.radiance)), 0, 1e-6);
+            CHECK(vec3_max_abs(seen) <= light_brightest(&e.light) * (1 + 1e-9) || e.light.mesh);
+            /* The pi between radiance and classic intensity (docs/light.md). */
+            struct vec3 unit = vec3_scale(sample.intensity, pi * sample.pdf);
+            CHECK_NEAR(vec3_length(vec3_sub(unit, sample.radiance)), 0, 1e-9);
+        }
+        CHECK(on > 200);
+    }
+}
+
+TEST(a_light_without_emission_shades_from_one_direction_and_has_no_density) {
+    int delta = 0;
+    for (int kind = 0; kind < LIGHT_KIND_COUNT; kind++) {
+        struct example e;
+        struct light_context context;
+        struct vec3 from = {0.1, 0, 0.2};
+        example_begin(&e, (enum light_kind)kind, false, 1);
+        struct light_arrival arrival;
+        CHECK(light_context_make(&e.light, from, from, &context));
+        for (uint64_t i = 0; i < 20 && light_is_delta(&e.light); i++) {
+            struct light_sample sample = light_sample(&e.light, &context, place_of(3, i));
+            struct light_hit hit = {.t = 1, .point = sample.target.at};
+            CHECK(light_arrive(&e.light, from, &arrival));
+            CHECK(sample.is_delta && sample.pdf == 1);
+            CHECK(light_pdf(&e.light, &context, sample.direction, &hit) == 0);
+            CHECK(vec3_length(vec3_sub(sample.direction, arrival.direction)) == 0);
+            CHECK_NEAR(sample.intensity.x, e.light.colour.x * arrival.strength, 1e-15);
+            CHECK(sample.intensity.x > 0);
+            CHECK(context.single == (vec3_length(vec3_sub(sample.target.at, arrival.middle.at)) == 0));
+            delta += i == 0;
+        }
+        CHECK(light_is_delta(&e.light) || !light_arrive(&e.light, from, &arrival));
+        example_end(&e);
+    }
+    CHECK_EQ_INT(delta, 6);
+}
+
+/* --- photons --- */
+
+enum { GRID = 24, PLACES = 16, PHOTONS = 100000 };
+static const double floor_radius = 2;
+
+/* What arrives on a disc in the plane y = 0 by samples. */
+static struct vec3 flux_by_samples(const struct light *light) {
+    struct vec3 sum = {0, 0, 0};
+    for (uint64_t k = 0; k < GRID * GRID; k++) {
+        struct sample2 at = {((double)(k / GRID) + 0.5) / GRID, ((double)(k % GRID) + 0.5) / GRID};
+        struct sample2 round = sample_disc(at);
+        struct vec3 from = {floor_radius * round.x, 0, floor_radius * round.y};
+        struct light_context context;
+        for (uint64_t i = 0; i < PLACES && light_context_make(light, from, from, &context); i++) {
+            struct light_sample sample = light_sample(light, &context, place_of(k, i));
+            if (sample.direction.y > 0)
+                sum = vec3_add_scaled(sum, sample.intensity, sample.direction.y);
+        }
+    }
+    return vec3_scale(sum, pi * floor_radius * floor_radius / (GRID * GRID * PLACES));
+}
+
+/* A photon drawn alike everywhere, and what stands for its density: LOCAL over all directions, others over a square
+ * across that holds the disc. */
+static struct light_photon photon_at(const struct light_emitter *emitter, uint64_t index) {
+    struct sample2 a = place_of(11, index), b = place_of(12, index);
+    struct vec3 direction = grid_direction(a.x * ROWS, a.y * COLUMNS);
+    if (emitter->domain == LIGHT_DOMAIN_LOCAL) {
+        struct light_photon photon = light_photon(emitter, direction, b);
+        photon.power = vec3_scale(photon.power, 4 * pi);
+        return photon;
+    }
+    struct light_photon photon = light_photon(emitter, direction, b);
+    struct vec3 right, up;
+    frame_tangents(photon.direction, &right, &up);
+    photon.origin = vec3_add_scaled(vec3_scale(right, floor_radius * (2 * a.x - 1)), up, floor_radius * (2 * a.y - 1));
+    photon.origin = vec3_add_scaled(photon.origin, photon.direction, -10);
+    photon.power = vec3_scale(photon.power, 4 * floor_radius * floor_radius);
+    return photon;
+}
+
+static struct vec3 flux_by_photons(const struct light *light) {
+    struct light_emitter emitter;
+    struct vec3 sum = {0, 0, 0};
+    if (!light_emitter_make(light, 0, 0, 1, &emitter))
+        return sum;
+    for (uint64_t i = 0; i < PHOTONS; i++) {
+        struct light_photon photon = photon_at(&emitter, i);
+        if (!(photon.direction.y < 0) || !(photon.origin.y > 0))
+            continue;
+        double length = -photon.origin.y / photon.direction.y;
+        struct vec3 landed = vec3_add_scaled(photon.origin, photon.direction, length);
+        if (landed.x * landed.x + landed.z * landed.z < floor_radius * floor_radius)
+            sum = vec3_add_scaled(sum, photon.power, light_photon_fading(light, length) / PHOTONS);
+    }
+    return sum;
+}
+
+TEST(photons_of_every_light_carry_what_its_samples_bring) {
+    for (int kind = 0; kind < LIGHT_KIND_COUNT; kind++) {
+        for (int lamp = 0; lamp < 2; lamp++) {
+            struct example e;
+            /* Without emission it is sampled as from its centre: small, so that the places do not matter. */
+            example_begin(&e, (enum light_kind)kind, lamp, lamp ? 1.2 : 0.2);
+            struct vec3 sampled = flux_by_samples(&e.light), sent = flux_by_photons(&e.light);
+            CHECK(sampled.x > 0);
+            CHECK_NEAR(sent.x / sampled.x, 1, 0.03);
+            CHECK_NEAR(sent.z / sampled.z, 1, 0.03);
+            example_end(&e);
+        }
+    }
+}
+
+TEST(photons_of_the_parts_of_a_light_are_those_of_the_whole) {
+    for (int kind = 0; kind < LIGHT_KIND_COUNT; kind++) {
+        struct example e;
+        double units[2] = {0, 0};
+        example_begin(&e, (enum light_kind)kind, true, 1);
+        uint32_t most = light_divided_extent(&e.light) > 0 ? 2 : 1;
+        for (uint32_t parts = 1; parts <= most; parts++) {
+            for (uint32_t part = 0; part < parts * parts; part++) {
+                struct light_emitter emitter;
+                CHECK(light_emitter_make(&e.light, part % parts, part / parts, parts, &emitter));
+                units[parts - 1] += light_emitter_unit(&emitter);
+                for (uint64_t i = 0; i < 100 && emitter.domain == LIGHT_DOMAIN_LOCAL; i++) {
+                    struct light_photon photon = photon_at(&emitter, i);
+                    CHECK(vec3_length(vec3_sub(photon.origin, emitter.centre)) <= emitter.radius * (1 + 1e-9));
+                }
+            }
+        }
+        CHECK(most == 1 || fabs(units[1] / units[0] - 1) < 1e-12);
+        example_end(&e);
+    }
+}
+
+/* --- listings and the language --- */
+
+TEST(every_kind_of_light_has_a_name_of_its_own_and_edits_by_what_it_has) {
+    for (int kind = 0; kind < LIGHT_KIND_COUNT; kind++) {
+        const char *name = light_kind_name((enum light_kind)kind);
+        struct example e;
+        struct vec3 before, after;
+        for (int other = 0; other < kind; other++)
+            CHECK(strcmp(name, light_kind_name((enum light_kind)other)) != 0);
+        CHECK(strlen(name) > 1);
+        example_begin(&e, (enum light_kind)kind, true, 1);
+        unsigned has = light_properties(&e.light);
+        if (light_centre(&e.light, &before) && light_can_move(&e.light)) {
+            light_move(&e.light, vec3_make(1, 2, 3));
+            CHECK(light_centre(&e.light, &after) && vec3_length(vec3_sub(after, before)) > 3);
+        }
+        CHECK(light_can_move(&e.light) == ((has & LIGHT_HAS_POSITION) != 0));
+        CHECK(!(has & LIGHT_HAS_DIRECTION) || vec3_max_abs(e.light.direction) > 0);
+        CHECK(!(has & LIGHT_HAS_RADIUS) || e.light.radius > 0);
+        CHECK(!(has & LIGHT_HAS_EDGES) || vec3_max_abs(e.light.edge1) > 0);
+        CHECK(!(has & LIGHT_HAS_CONE) || e.light.cos_outer < 1);
+        example_end(&e);
+    }
+}
+
+static unsigned kinds_made;
+
+static void note_kinds(struct listener *listener, const struct render_request *request) {
+    (void)listener;
+    for (uint32_t i = 0; i < request->light_count; i++)
+        kinds_made |= 1U << request->lights[i].kind;
+}
+
+TEST(every_kind_of_light_has_a_function_of_the_language) {
+    write_files();
+    kinds_made = 0;
+    for (int f = 0; f < function_count(); f++) {
+        const struct function *function = function_at(f);
+        char call[CALL_SIZE], text[CALL_SIZE + 512];
+        struct listener listener = {.seen = note_kinds};
+        struct error error;
+        if (function->result != RESULT_LIGHT)
+            continue;
+        table_call(function, -1, "", call);
+        (void)snprintf(text, sizeof text,
+                       "sheet = gr.mesh(gr.material({1, 1, 1}, {0, 0, 0}, 1), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, "
+                       "{{0, 1, 2}})\nball = gr.sphere('ball')\nlight = %s\n"
+                       "gr.render{node = sheet, file = 'x.png', width = 4, height = 4, eye = {0, 0, 9}, "
+                       "lights = {light}}\n",
+                       call);
+        if (!listen_to_text(&listener, text, NULL, &error))
+            test_fail(__FILE__, __LINE__, "%s: %s", call, error.text);
+    }
+    CHECK(kinds_made == (1U << LIGHT_KIND_COUNT) - 1);
+}
