@@ -161,28 +161,6 @@ static struct box box_less(struct box a, struct box b) {
     return (struct box){{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
 }
 
-/* A box that is wholly inside the leaf, of solids that are boxes in CSG space as well: a box placed along the axes, a
- * half-space with an end. */
-static bool inner_box(const struct csg_leaf *leaf, struct box *out) {
-    const struct affine *map = &leaf->csg_from_leaf.forward;
-    struct box b = shape_bounds_under(&leaf->shape, map);
-    if (leaf->shape.kind == SHAPE_BOX) {
-        for (int i = 0; i < 3; i++)
-            if ((map->m[i][0] != 0) + (map->m[i][1] != 0) + (map->m[i][2] != 0) != 1)
-                return false;
-    } else if (leaf->shape.kind != SHAPE_FLAT || leaf->shape.flat.kind != FLAT_PLANE ||
-               (b.min.x == -b.max.x && b.min.y == -b.max.y && b.min.z == -b.max.z)) {
-        return false;
-    }
-    const double all[6] = {b.min.x, b.min.y, b.min.z, b.max.x, b.max.y, b.max.z};
-    double largest = 0;
-    for (int i = 0; i < 6; i++)
-        largest = isfinite(all[i]) && fabs(all[i]) > largest ? fabs(all[i]) : largest;
-    struct vec3 margin = vec3_all(largest * 0x1p-40);
-    *out = (struct box){vec3_add(b.min, margin), vec3_sub(b.max, margin)};
-    return true;
-}
-
 /* The box of a node while it is worked out. */
 struct live {
     struct box decided;  /* the common part of the children whose start truth decides the node's */
@@ -218,7 +196,8 @@ static void live_boxes(struct csg *csg, struct csg_plan *plan, const bool *is_al
         struct live *own = &live[i];
         struct box box = own->decides ? own->decided : own->joined, inner;
         for (uint32_t leaf = own->first_trim; own->decides && leaf != CSG_NONE; leaf = trims[leaf])
-            if (inner_box(&csg->leaves[leaf], &inner) && !box_is_empty(&box))
+            if (shape_inner_box(&csg->leaves[leaf].shape, &csg->leaves[leaf].csg_from_leaf.forward, &inner) &&
+                !box_is_empty(&box))
                 box = box_less(box, inner);
         own->decided = box = box_tidy(box);
         uint32_t parent = plan->nodes[i].parent;
@@ -324,7 +303,7 @@ static void choose_probes(struct csg_plan *plan) {
 /* Leaves that a ray is asked for first: the solid is a part of each of them. Cheap ones before lists, small ones before
  * large ones. */
 static bool needed_before(const struct csg *csg, const struct csg_plan *plan, uint32_t a, uint32_t b) {
-    bool a_listed = csg->leaves[a].shape.kind >= SHAPE_LATHE, b_listed = csg->leaves[b].shape.kind >= SHAPE_LATHE;
+    bool a_listed = shape_is_listed(&csg->leaves[a].shape), b_listed = shape_is_listed(&csg->leaves[b].shape);
     if (a_listed != b_listed)
         return b_listed;
     return half_surface(&plan->own_boxes[a]) < half_surface(&plan->own_boxes[b]);

@@ -126,6 +126,49 @@ struct box shape_bounds(const struct shape *shape) {
     return box_empty();
 }
 
+/* Whether the box of the shape under the map is the shape itself there. */
+static bool is_box_under(const struct shape *shape, const struct affine *map, const struct box *box) {
+    switch (shape->kind) {
+    case SHAPE_BOX: /* placed along the axes */
+        for (int i = 0; i < 3; i++)
+            if ((map->m[i][0] != 0) + (map->m[i][1] != 0) + (map->m[i][2] != 0) != 1)
+                return false;
+        return true;
+    case SHAPE_FLAT: /* a half-space with an end */
+        return shape->flat.kind == FLAT_PLANE &&
+               !(box->min.x == -box->max.x && box->min.y == -box->max.y && box->min.z == -box->max.z);
+    case SHAPE_SPHERE:
+    case SHAPE_CONIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_HEIGHT_FIELD:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE:
+    case SHAPE_MESH:
+    case SHAPE_CSG:
+        break;
+    }
+    return false;
+}
+
+bool shape_inner_box(const struct shape *shape, const struct affine *map, struct box *out) {
+    struct box b = shape_bounds_under(shape, map);
+    if (!is_box_under(shape, map, &b))
+        return false;
+    const double all[6] = {b.min.x, b.min.y, b.min.z, b.max.x, b.max.y, b.max.z};
+    double largest = 0;
+    for (int i = 0; i < 6; i++)
+        largest = isfinite(all[i]) && fabs(all[i]) > largest ? fabs(all[i]) : largest;
+    struct vec3 margin = vec3_all(largest * 0x1p-40);
+    *out = (struct box){vec3_add(b.min, margin), vec3_sub(b.max, margin)};
+    return true;
+}
+
 bool shape_is_closed(const struct shape *shape) {
     switch (shape->kind) {
     case SHAPE_SPHERE:
@@ -265,6 +308,30 @@ static bool analytic_nearest(const struct shape *shape, const struct ray *ray, s
     return false;
 }
 
+bool shape_is_listed(const struct shape *shape) {
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+    case SHAPE_BOX:
+    case SHAPE_CONIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_FLAT:
+        return false;
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_HEIGHT_FIELD:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE:
+    case SHAPE_MESH:
+    case SHAPE_CSG:
+        break;
+    }
+    return true;
+}
+
 /* The lists of the shapes that may have many crossings. */
 static bool listed_crossings(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch,
                              struct crossing_list *out) {
@@ -299,8 +366,6 @@ static bool listed_crossings(const struct shape *shape, const struct ray *ray, s
 
 static bool listed_nearest(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch,
                            struct crossing *out) {
-    if (shape->kind == SHAPE_HEIGHT_FIELD) /* the same crossings, without those that come later */
-        return height_field_nearest(shape->height_field, ray, scratch, out);
     struct crossing_list list;
     if (!listed_crossings(shape, ray, scratch, &list))
         return false;
@@ -331,11 +396,13 @@ bool shape_nearest(const struct shape *shape, const struct ray *ray, struct geom
     case SHAPE_LATHE:
     case SHAPE_PRISM:
     case SHAPE_SWEEP:
-    case SHAPE_HEIGHT_FIELD:
     case SHAPE_BLOB:
     case SHAPE_CURVE:
         scratch->shape_tests++;
         return listed_nearest(shape, ray, scratch, out);
+    case SHAPE_HEIGHT_FIELD: /* the same crossings, without those that come later */
+        scratch->shape_tests++;
+        return height_field_nearest(shape->height_field, ray, scratch, out);
     case SHAPE_MESH:
         return mesh_nearest(shape->mesh, ray, ACCEL_AUTO, scratch, out);
     case SHAPE_CSG:
@@ -361,12 +428,16 @@ bool shape_any(const struct shape *shape, const struct ray *ray, struct geom_scr
     case SHAPE_LATHE:
     case SHAPE_PRISM:
     case SHAPE_SWEEP:
-    case SHAPE_HEIGHT_FIELD:
     case SHAPE_BLOB:
     case SHAPE_CURVE: {
         struct crossing ignored;
         scratch->shape_tests++;
         return listed_nearest(shape, ray, scratch, &ignored);
+    }
+    case SHAPE_HEIGHT_FIELD: {
+        struct crossing ignored;
+        scratch->shape_tests++;
+        return height_field_nearest(shape->height_field, ray, scratch, &ignored);
     }
     case SHAPE_MESH:
         return mesh_any(shape->mesh, ray, ACCEL_AUTO, scratch);

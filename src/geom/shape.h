@@ -78,6 +78,11 @@ struct box shape_bounds(const struct shape *shape);
 /* The box of the shape as `map` places it: the tightest one for analytic shapes whose reach has a closed form, else the
  * box of the mapped bounds. */
 struct box shape_bounds_under(const struct shape *shape, const struct affine *map);
+/* A box that is wholly inside the shape as `map` places it, of solids that are boxes there too: a box placed along the
+ * axes, a half-space with an end. */
+bool shape_inner_box(const struct shape *shape, const struct affine *map, struct box *out);
+/* Whether it may have many crossings, so that asking it costs more than a formula. */
+bool shape_is_listed(const struct shape *shape);
 /* Closed: every line crosses it an even number of times, so it has an inside (CSG operand, media). A solid without end
  * (a half-space) is closed too: a line that begins or ends inside crosses it at t = -INFINITY or INFINITY. */
 bool shape_is_closed(const struct shape *shape);
