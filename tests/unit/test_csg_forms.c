@@ -1,65 +1,18 @@
 /* Solids of every closed shape against point-by-point evaluation; inverses, clips, hints and unions in parts against
  * what they are by definition. */
 #include "geom/csg_split.h"
-#include "geom/shape_cone.h"
-#include "geom/shape_cylinder.h"
-#include "geom/shape_disc.h"
-#include "geom/shape_hyperboloid.h"
-#include "geom/shape_paraboloid.h"
 #include "geom/shape_plane.h"
-#include "geom/shape_triangle.h"
+#include "tests/unit/shape_makers.h"
 #include "tests/unit/swept_makers.h"
 
-enum { MOST = 10, ANALYTIC = 13 };
+enum { MOST = 10 };
 
 /* ---- makers ---- */
 
-static struct mesh *octahedron(void) {
-    static const double vertices[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-    static const uint32_t start[9] = {0, 3, 6, 9, 12, 15, 18, 21, 24};
-    static const uint32_t corners[24] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
-    struct mesh_input input = {.name = "octahedron",
-                               .vertex_count = 6,
-                               .face_count = 8,
-                               .vertices = vertices,
-                               .face_start = start,
-                               .vertex_index = corners};
-    return indexed_mesh(&input);
-}
-
-static struct shape analytic(int form, struct test_random *random) {
-    static const struct quadric ball = {.c = {1, 1.5, 1, 0.3, 0, 0.2, 0, 0.1, 0, -0.5},
-                                        .limits = {{-1, -1, -1}, {1, 1, 1}}};
-    double a = test_uniform(random, 0.3, 1), b = test_uniform(random, 0.3, 1);
-    struct vec3 low = {0, -1, 0}, up = {0, 1, 0}, zero = {0, 0, 0};
-    switch (form) {
-    case 0:
-        return (struct shape){.kind = SHAPE_SPHERE, .sphere = {zero, 1}};
-    case 1:
-        return (struct shape){.kind = SHAPE_BOX, .box = {{-a, -b, -1}, {1, a, b}}};
-    case 2:
-        return (struct shape){.kind = SHAPE_CONIC, .conic = conic_cylinder(low, up, a, false)};
-    case 3:
-        return (struct shape){.kind = SHAPE_CONIC, .conic = conic_frustum(low, a, up, b, false)};
-    case 4:
-        return (struct shape){.kind = SHAPE_CONIC, .conic = conic_paraboloid(1, 1, false)};
-    case 5:
-        return (struct shape){.kind = SHAPE_CONIC, .conic = conic_one_sheet(0.5, 1, -1, 1, false)};
-    case 6:
-        return (struct shape){.kind = SHAPE_CONIC, .conic = conic_two_sheets(0.3, 1, 1, false)};
-    case 7:
-        return (struct shape){.kind = SHAPE_ELLIPSOID, .ellipsoid = {zero, {1, a, b}}};
-    case 8:
-        return (struct shape){.kind = SHAPE_QUADRIC, .quadric = &ball};
-    case 9:
-        return (struct shape){.kind = SHAPE_TORUS, .torus = {0.7, 0.3 * a}};
-    case 10:
-        return (struct shape){.kind = SHAPE_SUPERELLIPSOID, .superellipsoid = {2 * a, 2 * b}};
-    case 11:
-        return (struct shape){.kind = SHAPE_FLAT, .flat = flat_plane(random_vec3(random, 1), 0.3 * a)};
-    default:
-        return (struct shape){.kind = SHAPE_SPHERE, .sphere = {random_vec3(random, 0.3), b}};
-    }
+static struct shape ball_or_box(uint32_t which) {
+    if (which % 2 == 0)
+        return (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}};
+    return (struct shape){.kind = SHAPE_BOX, .box = {{-0.6, -0.8, -1}, {1, 0.6, 0.8}}};
 }
 
 static struct transform small_transform(struct test_random *random) {
@@ -74,16 +27,18 @@ static struct transform small_transform(struct test_random *random) {
     return transform_compose(&move, &t);
 }
 
-static struct csg_leaf random_leaf(struct test_random *random, struct arena *arena, const struct mesh *mesh) {
-    int pick = (int)test_uniform(random, 0, ANALYTIC + MAKERS + 2 - 0.001);
+static struct csg_leaf random_leaf(struct test_random *random, struct shape_makers *makers) {
     struct csg_leaf leaf = {.csg_from_leaf = small_transform(random)};
-    if (pick < ANALYTIC)
-        leaf.shape = analytic(pick, random);
-    else if (pick < ANALYTIC + MAKERS)
-        leaf.shape = make((enum maker)(pick - ANALYTIC), arena, random);
-    else
-        leaf.shape = (struct shape){.kind = SHAPE_MESH, .mesh = mesh};
+    leaf.shape = make_solid(makers, true, random);
     return leaf;
+}
+
+static struct shape random_open(struct shape_makers *makers, struct test_random *random) {
+    for (;;) {
+        struct shape shape = make_shape(makers, (enum shape_kind)(int)test_uniform(random, 0, SHAPE_CSG), random).shape;
+        if (!shape_is_closed(&shape))
+            return shape;
+    }
 }
 
 static const struct csg *build(struct arena *arena, const struct csg_leaf *leaves, uint32_t count,
@@ -165,7 +120,7 @@ static void check_line(const struct csg *csg, const struct ray *ray, struct geom
 static struct counts check_trees(uint64_t seed, int trees, int rays) {
     struct test_random random = {seed};
     struct geom_scratch scratch;
-    struct mesh *mesh = octahedron();
+    struct shape_makers makers = {0};
     struct counts tally = {0};
     CHECK(geom_scratch_init(&scratch, 4000));
     for (int tree = 0; tree < trees; tree++) {
@@ -174,7 +129,7 @@ static struct counts check_trees(uint64_t seed, int trees, int rays) {
         struct csg_token program[4 * MOST];
         uint32_t count = 1 + (uint32_t)test_uniform(&random, 0, MOST - 0.001);
         for (uint32_t i = 0; i < count; i++)
-            leaves[i] = random_leaf(&random, &arena, mesh);
+            leaves[i] = random_leaf(&random, &makers);
         const struct csg *csg = build(&arena, leaves, count, program, random_program(&random, 0, count, 0.12, program));
         for (int i = 0; csg && i < rays; i++) {
             struct ray ray = random_line(&random);
@@ -185,7 +140,7 @@ static struct counts check_trees(uint64_t seed, int trees, int rays) {
         }
         arena_destroy(&arena);
     }
-    mesh_release(mesh);
+    shape_makers_destroy(&makers);
     geom_scratch_destroy(&scratch);
     return tally;
 }
@@ -251,11 +206,11 @@ TEST(csg_inverses_obey_de_morgan) {
     };
     static const uint32_t lengths[][2] = {{4, 5}, {4, 5}, {3, 5}, {5, 3}, {5, 3}};
     struct test_random random = {3};
-    struct mesh *mesh = octahedron();
+    struct shape_makers makers = {0};
     uint32_t crossings[5] = {0};
     for (int turn = 0; turn < 60; turn++) {
         struct arena arena = {0};
-        struct csg_leaf leaves[2] = {random_leaf(&random, &arena, mesh), random_leaf(&random, &arena, mesh)};
+        struct csg_leaf leaves[2] = {random_leaf(&random, &makers), random_leaf(&random, &makers)};
         for (int law = 0; law < 5; law++) {
             const struct csg *a = build(&arena, leaves, 2, left[law], lengths[law][0]);
             const struct csg *b = build(&arena, leaves, 2, right[law], lengths[law][1]);
@@ -265,19 +220,19 @@ TEST(csg_inverses_obey_de_morgan) {
     }
     for (int law = 0; law < 5; law++)
         CHECK(crossings[law] > 1000);
-    mesh_release(mesh);
+    shape_makers_destroy(&makers);
 }
 
 TEST(csg_inverse_has_the_same_surface_turned_inside_out) {
     struct test_random random = {4};
-    struct mesh *mesh = octahedron();
+    struct shape_makers makers = {0};
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 2000));
     static const struct csg_token program[] = {{CSG_LEAF, 0}, {CSG_INVERSE, 0}};
     int crossings = 0;
     for (int turn = 0; turn < 200; turn++) {
         struct arena arena = {0};
-        struct csg_leaf leaf = random_leaf(&random, &arena, mesh);
+        struct csg_leaf leaf = random_leaf(&random, &makers);
         const struct csg *own = build(&arena, &leaf, 1, program, 1), *inverse = build(&arena, &leaf, 1, program, 2);
         CHECK(inverse->inside_out && !own->inside_out);
         for (int i = 0; i < 100; i++) {
@@ -299,7 +254,7 @@ TEST(csg_inverse_has_the_same_surface_turned_inside_out) {
         arena_destroy(&arena);
     }
     CHECK(crossings > 5000);
-    mesh_release(mesh);
+    shape_makers_destroy(&makers);
     geom_scratch_destroy(&scratch);
 }
 
@@ -346,10 +301,10 @@ static void check_clipped(const struct csg *clipped, const struct csg *clip, con
 TEST(csg_clipped_solids_are_their_surface_inside_of_the_clip) {
     struct test_random random = {5};
     struct geom_scratch scratch;
-    struct mesh *mesh = octahedron();
+    struct shape_makers makers = {0};
     uint64_t wrong = 0, shown = 0;
     CHECK(geom_scratch_init(&scratch, 4000));
-    for (int tree = 0; tree < 400; tree++) {
+    for (int tree = 0; tree < 700; tree++) {
         struct arena arena = {0};
         struct csg_leaf leaves[2 * MOST];
         struct csg_token program[8 * MOST], own[8 * MOST];
@@ -357,7 +312,7 @@ TEST(csg_clipped_solids_are_their_surface_inside_of_the_clip) {
         uint32_t count = 1 + (uint32_t)test_uniform(&random, 0, 3.999);
         uint32_t behind = 1 + (uint32_t)test_uniform(&random, 0, 2.999);
         for (uint32_t i = 0; i < count + behind; i++)
-            leaves[i] = random_leaf(&random, &arena, mesh);
+            leaves[i] = random_leaf(&random, &makers);
         uint32_t length = random_program(&random, 0, count, 0.12, program);
         uint32_t more = random_program(&random, count, behind, 0.12, &program[length]);
         for (uint32_t i = 0; i < more; i++) {
@@ -381,28 +336,23 @@ TEST(csg_clipped_solids_are_their_surface_inside_of_the_clip) {
     }
     CHECK_EQ_INT(wrong, 0);
     CHECK(shown > 10000);
-    mesh_release(mesh);
+    shape_makers_destroy(&makers);
     geom_scratch_destroy(&scratch);
 }
 
 TEST(csg_clipped_open_shapes_are_their_surface_inside_of_the_clip) {
     struct test_random random = {6};
     struct geom_scratch scratch;
+    struct shape_makers makers = {0};
     uint64_t wrong = 0, shown = 0;
     CHECK(geom_scratch_init(&scratch, 4000));
-    struct vec3 low = {0, -1, 0}, up = {0, 1, 0};
-    const struct shape shapes[] = {
-        {.kind = SHAPE_CONIC, .conic = conic_cylinder(low, up, 0.8, true)},
-        {.kind = SHAPE_CONIC, .conic = conic_paraboloid(1, 1, true)},
-        {.kind = SHAPE_FLAT, .flat = flat_disc(vec3_all(0), up, 1, 0.2)},
-        {.kind = SHAPE_FLAT, .flat = flat_triangle(vec3_make(1, 0, 0), vec3_make(-1, 0, 1), vec3_make(0, 1, -1))},
-    };
     const struct csg_token program[] = {{CSG_LEAF, 0}, {CSG_LEAF, 1}, {CSG_INVERSE, 0}};
     for (int turn = 0; turn < 400; turn++) {
         struct arena arena = {0};
         struct error error = {0};
-        struct csg_leaf leaves[2] = {{.shape = shapes[turn % 4], .csg_from_leaf = small_transform(&random)},
-                                     {.shape = analytic(turn % 2, &random), .csg_from_leaf = small_transform(&random)}};
+        struct csg_leaf leaves[2] = {
+            {.shape = random_open(&makers, &random), .csg_from_leaf = small_transform(&random)},
+            {.shape = ball_or_box((uint32_t)turn), .csg_from_leaf = small_transform(&random)}};
         uint32_t length = turn % 3 ? 2 : 3;
         const struct csg *clipped = csg_build_clipped(&arena, leaves, 2, program, 1, length, &error);
         const struct csg_token own[] = {{CSG_LEAF, 0}, {CSG_INVERSE, 0}};
@@ -421,6 +371,7 @@ TEST(csg_clipped_open_shapes_are_their_surface_inside_of_the_clip) {
     }
     CHECK_EQ_INT(wrong, 0);
     CHECK(shown > 3000);
+    shape_makers_destroy(&makers);
     geom_scratch_destroy(&scratch);
 }
 
@@ -592,7 +543,7 @@ TEST(csg_parts_answer_together_as_the_whole) {
         for (uint32_t i = 0; i < count; i++) {
             struct transform size = transform_scale(vec3_all(test_uniform(&random, 0.02, 0.25)));
             struct transform move = transform_translate(random_vec3(&random, 1));
-            leaves[i] = (struct csg_leaf){.shape = analytic((int)i % 2, &random)};
+            leaves[i] = (struct csg_leaf){.shape = ball_or_box(i)};
             leaves[i].csg_from_leaf = transform_compose(&move, &size);
             program[length++] = (struct csg_token){CSG_LEAF, (uint16_t)i};
             if (i > 0)

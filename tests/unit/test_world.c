@@ -3,26 +3,12 @@
 
 #include "geom/shape_disc.h"
 #include "tests/stage.h"
+#include "tests/unit/shape_makers.h"
 #include "world/packet.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
-
-static struct mesh *small_mesh(struct stage *s, struct test_random *random, bool closed) {
-    static const uint32_t faces[] = {0, 1, 2, 0, 3, 1, 1, 3, 2, 2, 3, 0};
-    static const uint32_t starts[] = {0, 3, 6, 9, 12};
-    double vertices[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0, 1, 0}};
-    for (int i = 0; i < 12; i++)
-        vertices[i / 3][i % 3] += test_uniform(random, -0.1, 0.1);
-    struct mesh_input input = {.name = "small",
-                               .vertex_count = 4,
-                               .face_count = closed ? 4 : 3,
-                               .vertices = (const double(*)[3])vertices,
-                               .face_start = starts,
-                               .vertex_index = faces};
-    return assets_mesh(&s->assets, &input, &s->error);
-}
 
 static void random_place(struct stage *s, struct test_random *random, struct node *node, double spread) {
     struct transform t =
@@ -36,30 +22,39 @@ static void random_place(struct stage *s, struct test_random *random, struct nod
     node_transform(&s->scene, node, NODE_TRANSLATE, &t);
 }
 
-static struct node *random_solid(struct stage *s, struct test_random *random, int depth) {
-    double kind = test_uniform(random, 0, 1);
-    struct node *node;
-    if (kind < 0.25 && depth > 0) {
-        enum node_csg operation = (enum node_csg)(int)test_uniform(random, 0, 3);
-        struct node *first = random_solid(s, random, depth - 1), *second = random_solid(s, random, depth - 1);
-        node = scene_combine(&s->scene, "csg", operation, (struct node *[]){first, second}, 2, &s->error);
-        random_place(s, random, node, 0.3);
-        return node;
-    }
-    node = scene_node(&s->scene, NODE_GEOMETRY, "solid", &s->error);
-    if (kind < 0.5) {
-        node->shape = (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}};
-    } else if (kind < 0.75) {
-        node->shape = (struct shape){.kind = SHAPE_BOX, .box = {{0, 0, 0}, {1, 1, 1}}};
-    } else {
-        node->shape = (struct shape){.kind = SHAPE_MESH, .mesh = small_mesh(s, random, true)};
-    }
+static struct node *shape_node(struct stage *s, struct test_random *random, const struct shape *shape) {
+    struct node *node = scene_node(&s->scene, NODE_GEOMETRY, "shape", &s->error);
+    node->shape = *shape;
     random_place(s, random, node, 0.3);
     return node;
 }
 
-/* A mixed world: shapes, instances of groups, CSG; sometimes flat, sometimes empty. */
-static struct node *random_world(struct stage *s, struct test_random *random, int count, double spread, bool flat) {
+/* A closed shape of any kind, or a tree of them. */
+static struct node *random_solid(struct stage *s, struct shape_makers *makers, struct test_random *random, int depth) {
+    if (depth == 0 || test_uniform(random, 0, 1) < 0.75) {
+        struct shape shape = make_solid(makers, true, random);
+        return shape_node(s, random, &shape);
+    }
+    enum node_csg operation = (enum node_csg)(int)test_uniform(random, 0, 3);
+    struct node *first = random_solid(s, makers, random, depth - 1);
+    struct node *second = random_solid(s, makers, random, depth - 1);
+    struct node *node = scene_combine(&s->scene, "csg", operation, (struct node *[]){first, second}, 2, &s->error);
+    random_place(s, random, node, 0.3);
+    return node;
+}
+
+/* A shape of any kind, closed or not; as many of one kind as of another. */
+static struct node *random_shape(struct stage *s, struct shape_makers *makers, struct test_random *random) {
+    enum shape_kind kind = (enum shape_kind)(int)test_uniform(random, 0, SHAPE_KIND_COUNT - 0.001);
+    if (kind == SHAPE_CSG)
+        return random_solid(s, makers, random, 2);
+    struct shape shape = make_shape(makers, kind, random).shape;
+    return shape_node(s, random, &shape);
+}
+
+/* A mixed world: shapes of all kinds, instances of groups, CSG; sometimes flat, sometimes empty. */
+static struct node *random_world(struct stage *s, struct shape_makers *makers, struct test_random *random, int count,
+                                 double spread, bool flat) {
     struct node *root = scene_node(&s->scene, NODE_GROUP, "root", &s->error), *last = NULL;
     for (int i = 0; i < count; i++) {
         struct node *node;
@@ -68,7 +63,7 @@ static struct node *random_world(struct stage *s, struct test_random *random, in
             CHECK(node_add_child(&s->scene, node, last, &s->error));
             random_place(s, random, node, spread);
         } else {
-            node = random_solid(s, random, 2);
+            node = random_shape(s, makers, random);
             random_place(s, random, node, spread);
             last = node;
         }
@@ -101,15 +96,17 @@ static void compare_with_brute_force(enum accel_kind accel, int worlds, int rays
     struct test_random random = {seed};
     for (int w = 0; w < worlds; w++) {
         struct stage s;
+        struct shape_makers makers = {0};
         stage_begin(&s, 1);
         static const int counts[] = {0, 1, 2, 5, 20, 80, 300};
         int count = counts[w % 7];
         double spread = w % 3 == 0 ? 2 : w % 3 == 1 ? 10 : 60;
-        struct node *root = random_world(&s, &random, count, spread, w % 11 == 10);
+        struct node *root = random_world(&s, &makers, &random, count, spread, w % 11 == 10);
         struct stage *stage = &s;
         if (!stage_build(stage, root, accel)) {
             test_fail(__FILE__, __LINE__, "%s", s.error.text);
             stage_end(&s);
+            shape_makers_destroy(&makers);
             return;
         }
         struct world brute = s.world;
@@ -127,46 +124,34 @@ static void compare_with_brute_force(enum accel_kind accel, int worlds, int rays
             same = same && world_any(&s.world, &ray, &scratch) == hit_b;
             wrong += !same;
             if (!same && wrong < 3)
-                test_fail(__FILE__, __LINE__, "world %d ray %d: grid %d #%u t=%.17g, brute force %d #%u t=%.17g", w, i,
+                test_fail(__FILE__, __LINE__, "world %d ray %d: %d #%u t=%.17g, brute force %d #%u t=%.17g", w, i,
                           hit_a, a, x.t, hit_b, b, y.t);
         }
         CHECK_EQ_INT(wrong, 0);
         world_scratch_destroy(&scratch);
         stage_end(&s);
+        shape_makers_destroy(&makers);
     }
 }
 
-TEST(world_grid_equals_brute_force_on_random_rays) {
-    compare_with_brute_force(ACCEL_GRID, 42, 12000, 1);
-}
-
-TEST(world_hierarchy_equals_brute_force_on_random_rays) {
-    compare_with_brute_force(ACCEL_AUTO, 42, 12000, 3);
-}
-
-TEST(world_kd_tree_equals_brute_force_on_random_rays) {
-    compare_with_brute_force(ACCEL_KDTREE, 42, 12000, 6);
-}
-
-TEST_LONG(world_kd_tree_equals_brute_force_on_ten_million_rays) {
-    compare_with_brute_force(ACCEL_KDTREE, 420, 24000, 7);
-}
-
-TEST_LONG(world_grid_equals_brute_force_on_ten_million_rays) {
-    compare_with_brute_force(ACCEL_GRID, 420, 24000, 2);
-}
-
-TEST_LONG(world_hierarchy_equals_brute_force_on_ten_million_rays) {
-    compare_with_brute_force(ACCEL_AUTO, 420, 24000, 4);
-}
+/* With every accelerator, by construction. */
+#define TESTS_WITH(accel, word)                                                                                        \
+    TEST(world_equals_brute_force_on_random_rays_with_##accel) {                                                       \
+        compare_with_brute_force(accel, 42, 5000, 1 + accel);                                                          \
+    }                                                                                                                  \
+    TEST_LONG(world_equals_brute_force_on_ten_million_rays_with_##accel) {                                             \
+        compare_with_brute_force(accel, 420, 24000, 11 + accel);                                                       \
+    }
+ACCEL_KINDS(TESTS_WITH)
 
 TEST(points_of_a_parallelogram_seen_through_a_shaft_are_those_that_single_rays_see) {
     struct test_random random = {5};
     int partly = 0;
     for (int w = 0; w < 24; w++) {
         struct stage s;
+        struct shape_makers makers = {0};
         stage_begin(&s, 1);
-        struct node *root = random_world(&s, &random, w % 4 == 0 ? 200 : 12, 6, false);
+        struct node *root = random_world(&s, &makers, &random, w % 4 == 0 ? 200 : 12, 6, false);
         CHECK(stage_build(&s, root, ACCEL_AUTO));
         struct world_scratch scratch;
         CHECK(world_scratch_init(&scratch, &s.world));
@@ -194,6 +179,7 @@ TEST(points_of_a_parallelogram_seen_through_a_shaft_are_those_that_single_rays_s
         }
         world_scratch_destroy(&scratch);
         stage_end(&s);
+        shape_makers_destroy(&makers);
     }
     CHECK(partly > 1000);
 }
@@ -222,8 +208,9 @@ TEST(what_a_ray_is_told_to_pass_by_it_would_not_have_met) {
     int told = 0, met_others = 0;
     for (int w = 0; w < 40; w++) {
         struct stage s;
+        struct shape_makers makers = {0};
         stage_begin(&s, 1);
-        struct node *root = random_world(&s, &random, 12, 2, false);
+        struct node *root = random_world(&s, &makers, &random, 12, 2, false);
         for (int i = 0; i < 12; i++) {
             struct node *node = random_convex_or_not(&s, &random);
             random_place(&s, &random, node, 2);
@@ -267,6 +254,7 @@ TEST(what_a_ray_is_told_to_pass_by_it_would_not_have_met) {
         }
         world_scratch_destroy(&scratch);
         stage_end(&s);
+        shape_makers_destroy(&makers);
     }
     CHECK(told > 10000 && met_others > 2000);
 }
@@ -299,10 +287,11 @@ TEST(packets_of_rays_meet_in_a_world_what_single_rays_meet) {
     uint64_t hits = 0;
     for (int w = 0; w < 28; w++) {
         struct stage s;
+        struct shape_makers makers = {0};
         stage_begin(&s, 1);
         static const int counts[] = {0, 1, 2, 5, 20, 80, 300};
         double spread = w % 3 == 0 ? 2 : w % 3 == 1 ? 10 : 60;
-        struct node *root = random_world(&s, &random, counts[w % 7], spread, w % 11 == 10);
+        struct node *root = random_world(&s, &makers, &random, counts[w % 7], spread, w % 11 == 10);
         CHECK(stage_build(&s, root, w % 9 == 8 ? ACCEL_GRID : ACCEL_AUTO));
         struct world_scratch scratch;
         CHECK(world_scratch_init(&scratch, &s.world));
@@ -329,6 +318,7 @@ TEST(packets_of_rays_meet_in_a_world_what_single_rays_meet) {
         }
         world_scratch_destroy(&scratch);
         stage_end(&s);
+        shape_makers_destroy(&makers);
     }
     CHECK(hits > 10000);
 }
@@ -337,13 +327,13 @@ TEST(packets_of_rays_meet_in_a_world_what_single_rays_meet) {
  */
 TEST(rays_that_are_not_finite_meet_only_what_is_there) {
     static const double odd[] = {NAN, INFINITY, -INFINITY, DBL_MAX, -DBL_MAX, 0, 1, DBL_MIN};
-    static const enum accel_kind kinds[] = {ACCEL_AUTO, ACCEL_BVH, ACCEL_GRID, ACCEL_KDTREE, ACCEL_NONE};
     struct test_random random = {81};
-    for (int w = 0; w < 15; w++) {
+    for (int w = 0; w < 3 * LIST_COUNT(ACCEL_KINDS); w++) {
         struct stage s;
+        struct shape_makers makers = {0};
         stage_begin(&s, 1);
         static const int counts[] = {2, 5, 30};
-        CHECK(stage_build(&s, random_world(&s, &random, counts[w % 3], 10, false), kinds[w / 3]));
+        CHECK(stage_build(&s, random_world(&s, &makers, &random, counts[w % 3], 10, false), (enum accel_kind)(w / 3)));
         struct world_scratch scratch;
         CHECK(world_scratch_init(&scratch, &s.world));
         for (int i = 0; i < 3000; i++) {
@@ -359,6 +349,7 @@ TEST(rays_that_are_not_finite_meet_only_what_is_there) {
         }
         world_scratch_destroy(&scratch);
         stage_end(&s);
+        shape_makers_destroy(&makers);
     }
 }
 
@@ -414,16 +405,20 @@ TEST(world_flattens_a_chain_of_a_million_nodes) {
 
 TEST(csg_operand_that_is_open_is_an_error_that_names_node_and_edge) {
     struct stage s;
+    struct shape_makers makers = {0};
     struct test_random random = {7};
     stage_begin(&s, 1);
     struct node *open = scene_node(&s.scene, NODE_GEOMETRY, "bowl", &s.error);
-    open->shape = (struct shape){.kind = SHAPE_MESH, .mesh = small_mesh(&s, &random, false)};
+    do {
+        open->shape = make_shape(&makers, SHAPE_MESH, &random).shape;
+    } while (shape_is_closed(&open->shape));
     struct node *ball = scene_node(&s.scene, NODE_GEOMETRY, "ball", &s.error);
     ball->shape = (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}};
     struct node *cut = scene_combine(&s.scene, "cut", NODE_DIFFERENCE, (struct node *[]){ball, open}, 2, &s.error);
     CHECK(!stage_build(&s, cut, ACCEL_GRID));
     CHECK(strstr(s.error.text, "node 'bowl'") != NULL && strstr(s.error.text, "edge from") != NULL);
     stage_end(&s);
+    shape_makers_destroy(&makers);
 }
 
 TEST(an_empty_operand_follows_the_algebra_of_sets) {
