@@ -95,8 +95,8 @@ static bool frame_is_sound(const struct frame *frame) {
                request->full_height <= 1u << 20 && request->width <= request->full_width &&
                request->height <= request->full_height && request->x0 <= request->full_width - request->width &&
                request->y0 <= request->full_height - request->height && request->exposure >= -100 &&
-               request->exposure <= 100 && request->curve <= TONE_FILMIC && request->overlay <= OVERLAY_OF_GRID &&
-               (unsigned)request->lens.projection <= PROJECTION_PANORAMA &&
+               request->exposure <= 100 && request->curve <= TONE_FILMIC && film_record_valid(request->record) &&
+               request->overlay <= OVERLAY_OF_GRID && (unsigned)request->lens.projection <= PROJECTION_PANORAMA &&
                (unsigned)request->lens.stereo <= STEREO_ANAGLYPH;
     case FRAME_DONE:
         return frame->size == sizeof frame->body.report;

@@ -55,6 +55,7 @@ struct picture_request {
     double exposure;                  /* of its file, as in struct tone */
     uint32_t curve, srgb;             /* the same; an enum tone_curve, and not 0 for sRGB */
     uint32_t deep;                    /* not 0: 16 bits a channel in a PNG file */
+    struct film_record record;        /* of its film */
     uint32_t layers;                  /* mask of the layers beside the picture */
     uint32_t live;                    /* not 0: in a window */
     uint32_t overlay;                 /* in a window: an enum overlay, the lines that are asked for */

@@ -153,7 +153,8 @@ static void fill_report(const struct child *child, const struct world *world, co
         report->image_bytes += image_memory(entry->image);
     memcpy(report->grid_cells, world->accel.grid.cells, sizeof report->grid_cells);
     report->node_bytes = scene->arena.total;
-    (void)film_size_layered(film->width, film->height, aov_layers(film->layer_mask), &film_bytes, &ignored);
+    (void)film_size_layered(film->width, film->height, film->record, aov_layers(film->layer_mask), &film_bytes,
+                            &ignored);
     report->film_bytes = film_bytes;
     report->threads = pool_workers(child->pool);
     if (getrusage(RUSAGE_SELF, &usage) == 0)
@@ -312,7 +313,7 @@ static bool reserve_memory(struct child *child, const struct picture_request *as
     size_t film = 0;
     if (asked->check)
         return true;
-    if (!film_size_layered(asked->width, asked->height, marks_layers(asked), &film, error))
+    if (!film_size_layered(asked->width, asked->height, asked->record, marks_layers(asked), &film, error))
         return false;
     uint64_t levels = (uint64_t)settings->reflect_limit + (uint64_t)settings->refract_limit;
     uint64_t bytes = (uint64_t)pool_workers(child->pool) * levels * STACK_OF_A_LEVEL;
@@ -332,6 +333,7 @@ static bool begin_picture(struct child *child, const struct render_request *requ
                                     .curve = (uint32_t)job->settings.tone.curve,
                                     .srgb = job->settings.tone.srgb,
                                     .deep = job->settings.deep,
+                                    .record = integrator_record(job->settings.integrator),
                                     .layers = job->settings.aov,
                                     .live = child->options->window,
                                     .overlay = (uint32_t)job->settings.overlay,

@@ -19,7 +19,7 @@ static bool link_begin(void *context, const struct picture_request *request, str
     struct child_link *link = context;
     struct frame frame;
     size_t bytes;
-    if (!film_size_layered(request->width, request->height, marks_layers(request), &bytes, error))
+    if (!film_size_layered(request->width, request->height, request->record, marks_layers(request), &bytes, error))
         return false;
     if (!channel_send(&link->channel, FRAME_BEGIN, request, sizeof *request, -1) ||
         channel_receive(&link->channel, &frame) != CHANNEL_FRAME || frame.kind != FRAME_FILM)
@@ -39,7 +39,7 @@ static bool link_begin(void *context, const struct picture_request *request, str
         note(link, channel_send(&link->channel, FRAME_ABANDON, NULL, 0, -1));
         return false;
     }
-    film_place(film, link->memory.block, request->width, request->height);
+    film_place(film, link->memory.block, request->width, request->height, request->record);
     film_place_layers(film, link->memory.block, request->layers);
     return true;
 }

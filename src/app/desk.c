@@ -125,6 +125,7 @@ static void describe_tiles(const struct desk *desk, struct picture *picture) {
                                    .height = request->height,
                                    .tone = {request->exposure, (enum tone_curve)request->curve, request->srgb != 0},
                                    .deep = request->deep != 0,
+                                   .record = request->record,
                                    .shard = options->shards ? options->shard : 1,
                                    .shards = options->shards ? options->shards : 1};
     memcpy(tiles->name, picture->name, sizeof tiles->name);
@@ -144,12 +145,12 @@ static bool make_film(struct desk *desk, struct picture *picture, struct error *
     const struct picture_request *request = &picture->request;
     size_t bytes;
     char notice[256];
-    if (!film_size_layered(request->width, request->height, marks_layers(request), &bytes, error) ||
+    if (!film_size_layered(request->width, request->height, request->record, marks_layers(request), &bytes, error) ||
         !allow_film(desk, bytes, error))
         return false;
     if (!share_create(&picture->memory, bytes, error))
         return error_prefix(error, "%s", picture->name);
-    film_place(&picture->film, picture->memory.block, request->width, request->height);
+    film_place(&picture->film, picture->memory.block, request->width, request->height, request->record);
     film_place_layers(&picture->film, picture->memory.block, request->layers & AOV_ALL);
     picture->film.x0 = request->x0;
     picture->film.y0 = request->y0;

@@ -20,7 +20,7 @@ struct film live_film(const struct picture_request *request, void *block, uint32
     uint32_t bottom = film.y0 + (request->height + divide - 1) / divide;
     right = right > film.full_width ? film.full_width : right;
     bottom = bottom > film.full_height ? film.full_height : bottom;
-    film_place(&film, block, right - film.x0, bottom - film.y0);
+    film_place(&film, block, right - film.x0, bottom - film.y0, request->record);
     return film;
 }
 
@@ -248,7 +248,8 @@ static void begin_pass(struct live *live, uint32_t divide, bool plain, bool resu
         live->film = live_film(&live->request, live->block, divide);
         live->edited = live->edits.now.count > 0 || differ(live->request.exposure, live->script_exposure);
         memset(live->drawn, 0, live->tiles);
-        memset(live->film.marked, 0, (size_t)live->film.width * live->film.height);
+        if (live->film.marked)
+            memset(live->film.marked, 0, (size_t)live->film.width * live->film.height);
     }
     for (uint32_t tile = 0; tile < film_tile_count(&live->film); tile++) {
         if (!resume || atomic_load(&live->film.tiles[tile]) != FILM_TILE_DONE)

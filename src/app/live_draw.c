@@ -109,7 +109,7 @@ void live_draw_tiles(struct live *live) {
         struct film_rectangle r = film_tile_rectangle(film, tile);
         for (uint32_t y = r.y0 - film->y0; y < r.y1 - film->y0; y++) {
             for (uint32_t x = r.x0 - film->x0; x < r.x1 - film->x0; x++) {
-                bool red = film->marked[(size_t)y * film->width + x] == FILM_MARK_WAITS;
+                bool red = film->marked && film->marked[(size_t)y * film->width + x] == FILM_MARK_WAITS;
                 if (done || red)
                     draw_pixel(live, &tone, x, y, red && !done);
             }

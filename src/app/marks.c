@@ -21,7 +21,7 @@ uint32_t marks_layers(const struct picture_request *request) {
 }
 
 void marks_place(const struct picture_request *request, void *block, struct marks_place *place) {
-    struct film film = {.width = request->width, .height = request->height};
+    struct film film = {.width = request->width, .height = request->height, .record = request->record};
     size_t pixels = (size_t)request->width * request->height;
     film_place_layers(&film, block, AOV_ALL); /* any mask gives the place where layers begin */
     float *behind = film.layers[0] + pixels * aov_layers(request->layers & AOV_ALL) * 3;

@@ -124,7 +124,8 @@ static bool merge_picture(struct desk *desk, const struct part *parts, size_t co
                                       .exposure = first->tone.exposure,
                                       .curve = (uint32_t)first->tone.curve,
                                       .srgb = first->tone.srgb,
-                                      .deep = first->deep};
+                                      .deep = first->deep,
+                                      .record = first->record};
     memcpy(request.file, first->name, sizeof request.file);
     bool already = false;
     if (!check_parts(parts, count, error) || !desk_begin(desk, &request, &already, error))

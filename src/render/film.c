@@ -14,29 +14,34 @@ static size_t tiles_at_most(uint32_t width, uint32_t height) {
     return ((size_t)width / FILM_TILE + 2) * ((size_t)height / FILM_TILE + 2);
 }
 
-bool film_size(uint32_t width, uint32_t height, size_t *bytes, struct error *error) {
+bool film_size(uint32_t width, uint32_t height, struct film_record record, size_t *bytes, struct error *error) {
     size_t pixels, size;
     if (width == 0 || height == 0 || !checked_mul(width, height, &pixels) || pixels > (size_t)1 << 31)
         return error_set(error, ERROR_SCENE, "a picture of %u x %u pixels is more than gray can hold (2^31 pixels)",
                          width, height);
-    if (!checked_mul(pixels, sizeof(struct film_pixel) + 1, &size) ||
+    if (!checked_mul(pixels, film_record_size(record), &size) ||
         !checked_add(size, tiles_at_most(width, height), &size))
         return error_no_memory(error, "the picture");
     *bytes = size;
     return true;
 }
 
-void film_place(struct film *film, void *block, uint32_t width, uint32_t height) {
+void film_place(struct film *film, void *block, uint32_t width, uint32_t height, struct film_record record) {
+    size_t pixels = (size_t)width * height;
     film->width = width;
     film->height = height;
+    film->record = record;
     film->pixels = block;
-    film->marked = (uint8_t *)(film->pixels + (size_t)width * height);
-    film->tiles = (_Atomic uint8_t *)(film->marked + (size_t)width * height);
+    film->floats = (float *)(void *)(film->pixels + pixels);
+    uint8_t *behind = (uint8_t *)(film->floats + record.floats * pixels);
+    film->marked = record.marks ? behind : NULL;
+    film->tiles = (_Atomic uint8_t *)(behind + record.marks * pixels);
 }
 
-bool film_size_layered(uint32_t width, uint32_t height, uint32_t layers, size_t *bytes, struct error *error) {
+bool film_size_layered(uint32_t width, uint32_t height, struct film_record record, uint32_t layers, size_t *bytes,
+                       struct error *error) {
     size_t size = 0, more = 0;
-    if (!film_size(width, height, &size, error))
+    if (!film_size(width, height, record, &size, error))
         return false;
     if (!checked_mul((size_t)width * height, layers * sizeof(float[3]), &more) ||
         !checked_add(size, more + sizeof(float), bytes))
@@ -47,7 +52,7 @@ bool film_size_layered(uint32_t width, uint32_t height, uint32_t layers, size_t 
 void film_place_layers(struct film *film, void *block, uint32_t mask) {
     size_t size = 0;
     struct error ignored;
-    (void)film_size(film->width, film->height, &size, &ignored);
+    (void)film_size(film->width, film->height, film->record, &size, &ignored);
     size = (size + sizeof(float) - 1) / sizeof(float) * sizeof(float);
     film->layer_mask = mask;
     film->layers = mask ? (float(*)[3])(void *)((char *)block + size) : NULL;
@@ -87,8 +92,11 @@ void film_clear_unfinished(struct film *film) {
         if (atomic_load_explicit(&film->tiles[tile], memory_order_acquire) == FILM_TILE_DONE)
             continue;
         struct film_rectangle r = film_tile_rectangle(film, tile);
-        for (uint32_t y = r.y0; y < r.y1; y++)
-            memset(&film->pixels[pixel_at(film, r.x0, y)], 0, (size_t)(r.x1 - r.x0) * sizeof *film->pixels);
+        for (uint32_t y = r.y0; y < r.y1; y++) {
+            size_t at = pixel_at(film, r.x0, y), width = r.x1 - r.x0;
+            memset(&film->pixels[at], 0, width * sizeof *film->pixels);
+            memset(&film->floats[at * film->record.floats], 0, width * film->record.floats * sizeof *film->floats);
+        }
     }
 }
 
@@ -100,32 +108,34 @@ bool film_holds_largest(const struct film *film) {
     return false;
 }
 
-static uint8_t *put_floats(uint8_t *out, const float *values) {
-    memcpy(out, values, 3 * sizeof *values);
-    return out + 3 * sizeof *values;
+static uint8_t *put_floats(uint8_t *out, const float *values, uint32_t count) {
+    memcpy(out, values, count * sizeof *values);
+    return out + count * sizeof *values;
 }
 
-static const uint8_t *get_floats(const uint8_t *bytes, float *values) {
-    memcpy(values, bytes, 3 * sizeof *values);
-    return bytes + 3 * sizeof *values;
+static const uint8_t *get_floats(const uint8_t *bytes, float *values, uint32_t count) {
+    memcpy(values, bytes, count * sizeof *values);
+    return bytes + count * sizeof *values;
 }
 
-static size_t mask_size(struct film_rectangle r) {
-    return ((size_t)(r.x1 - r.x0) * (r.y1 - r.y0) + 7) / 8;
+static size_t mask_size(const struct film *film, struct film_rectangle r) {
+    return film->record.marks ? ((size_t)(r.x1 - r.x0) * (r.y1 - r.y0) + 7) / 8 : 0;
 }
 
 size_t film_tile_pack(const struct film *film, uint32_t tile, uint8_t *out) {
     struct film_rectangle r = film_tile_rectangle(film, tile);
-    uint8_t *mask = out, *end = out + mask_size(r);
-    uint32_t bit = 0;
-    memset(mask, 0, mask_size(r));
+    uint32_t bit = 0, floats = film->record.floats;
+    uint8_t *mask = out, *end = out + mask_size(film, r);
+    memset(mask, 0, mask_size(film, r));
     for (uint32_t y = r.y0; y < r.y1; y++) {
         for (uint32_t x = r.x0; x < r.x1; x++, bit++) {
             size_t at = pixel_at(film, x, y);
-            mask[bit / 8] |= (uint8_t)((film->marked[at] != 0) << (bit % 8));
-            end = put_floats(end, film->pixels[at].rgb);
-            if (film->marked[at])
-                end = put_floats(end, film->pixels[at].first);
+            bool marked = film->marked && film->marked[at] != 0;
+            if (marked)
+                mask[bit / 8] |= (uint8_t)(1 << (bit % 8));
+            end = put_floats(end, film->pixels[at].rgb, 3);
+            if (marked || !film->record.marks)
+                end = put_floats(end, &film->floats[at * floats], floats);
         }
     }
     return (size_t)(end - out);
@@ -134,17 +144,17 @@ size_t film_tile_pack(const struct film *film, uint32_t tile, uint8_t *out) {
 bool film_tile_fits(const struct film *film, uint32_t tile, const uint8_t *bytes, size_t size) {
     struct film_rectangle r = film_tile_rectangle(film, tile);
     uint32_t pixels = (r.x1 - r.x0) * (r.y1 - r.y0);
-    size_t colours = pixels;
-    if (size < mask_size(r))
+    size_t head = mask_size(film, r), with_floats = film->record.marks ? 0 : pixels;
+    if (size < head)
         return false;
-    for (uint32_t i = 0; i < pixels; i++)
-        colours += bytes[i / 8] >> (i % 8) & 1;
-    if (size != mask_size(r) + colours * 12)
+    for (uint32_t i = 0; i < pixels && film->record.marks; i++)
+        with_floats += bytes[i / 8] >> (i % 8) & 1;
+    if (size != head + (3 * (size_t)pixels + film->record.floats * with_floats) * sizeof(float))
         return false;
-    for (const uint8_t *at = bytes + mask_size(r); at < bytes + size;) {
-        float rgb[3];
-        at = get_floats(at, rgb);
-        if (!isfinite(rgb[0]) || !isfinite(rgb[1]) || !isfinite(rgb[2]))
+    for (const uint8_t *at = bytes + head; at < bytes + size;) {
+        float value;
+        at = get_floats(at, &value, 1);
+        if (!isfinite(value))
             return false;
     }
     return true;
@@ -152,26 +162,35 @@ bool film_tile_fits(const struct film *film, uint32_t tile, const uint8_t *bytes
 
 bool film_tile_unpack(struct film *film, uint32_t tile, const uint8_t *bytes, size_t size) {
     struct film_rectangle r = film_tile_rectangle(film, tile);
-    uint32_t bit = 0;
+    uint32_t bit = 0, floats = film->record.floats;
     if (!film_tile_fits(film, tile, bytes, size))
         return false;
-    const uint8_t *next = bytes + mask_size(r);
+    const uint8_t *next = bytes + mask_size(film, r);
     for (uint32_t y = r.y0; y < r.y1; y++) {
         for (uint32_t x = r.x0; x < r.x1; x++, bit++) {
             size_t at = pixel_at(film, x, y);
-            film->marked[at] = bytes[bit / 8] >> (bit % 8) & 1;
-            next = get_floats(next, film->pixels[at].rgb);
-            memcpy(film->pixels[at].first, film->pixels[at].rgb, sizeof film->pixels[at].first);
-            if (film->marked[at])
-                next = get_floats(next, film->pixels[at].first);
+            const float *rgb = film->pixels[at].rgb;
+            if (film->record.marks)
+                film->marked[at] = bytes[bit / 8] >> (bit % 8) & 1;
+            next = get_floats(next, film->pixels[at].rgb, 3);
+            for (uint32_t i = 0; i < floats; i++)
+                film->floats[at * floats + i] = rgb[i % 3];
+            if (!film->record.marks || film->marked[at])
+                next = get_floats(next, &film->floats[at * floats], floats);
         }
     }
     atomic_store_explicit(&film->tiles[tile], FILM_TILE_DONE, memory_order_release);
     return true;
 }
 
+/* The floats begin with the first pass where pixels are marked. */
 static const float *colour_at(const struct film *film, enum film_view view, size_t at) {
-    return view == FILM_FINAL ? film->pixels[at].rgb : film->pixels[at].first;
+    bool first = view != FILM_FINAL && film->record.marks && film->record.floats >= 3;
+    return first ? &film->floats[at * film->record.floats] : film->pixels[at].rgb;
+}
+
+static bool is_red(const struct film *film, enum film_view view, size_t at) {
+    return view == FILM_TARGETS && film->marked && film->marked[at];
 }
 
 void film_row_toned(const struct film *film, enum film_view view, const struct tone *tone, uint32_t y, uint8_t *line) {
@@ -180,7 +199,7 @@ void film_row_toned(const struct film *film, enum film_view view, const struct t
         const float *rgb = colour_at(film, view, at);
         for (int c = 0; c < 3; c++)
             line[3 * x + (uint32_t)c] = png_write_byte(tone_apply(tone, (double)rgb[c]));
-        if (view == FILM_TARGETS && film->marked[at]) {
+        if (is_red(film, view, at)) {
             line[3 * x] = 255;
             line[3 * x + 1] = line[3 * x + 2] = 0;
         }
@@ -195,7 +214,7 @@ void film_row_16(const struct film *film, enum film_view view, const struct tone
     for (uint32_t x = 0; x < film->width; x++) {
         size_t at = (size_t)y * film->width + x;
         const float *rgb = colour_at(film, view, at);
-        bool red = view == FILM_TARGETS && film->marked[at];
+        bool red = is_red(film, view, at);
         for (int c = 0; c < 3; c++)
             line[3 * x + (uint32_t)c] = tone_word(red ? c == 0 : tone_apply(tone, (double)rgb[c]));
     }
@@ -205,7 +224,7 @@ void film_row_linear(const struct film *film, enum film_view view, uint32_t y, f
     for (uint32_t x = 0; x < film->width; x++) {
         size_t at = (size_t)y * film->width + x;
         const float *rgb = colour_at(film, view, at);
-        bool red = view == FILM_TARGETS && film->marked[at];
+        bool red = is_red(film, view, at);
         for (int c = 0; c < 3; c++)
             line[3 * x + (uint32_t)c] = red ? (float)(c == 0) : rgb[c];
     }

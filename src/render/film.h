@@ -20,14 +20,23 @@ enum { FILM_TILE = GRAY_TILE, FILM_MARK_WAITS = 2 };
 /* Header at the start of the shared block; arrays follow. Width and height are those of the part that is rendered (the
  * crop), x0, y0 its place in the whole picture. */
 struct film_pixel {
-    float rgb[3];   /* final */
-    float first[3]; /* first pass, one sample */
+    float rgb[3]; /* final, or as far as it is */
 };
+
+/* What the film records of a pixel beside its colour: the integrator of the picture states it (integrator_record). */
+struct film_record {
+    uint32_t floats; /* at most FILM_RECORD_FLOATS; the integrator knows what they are, and they are finite */
+    uint32_t marks;  /* 1: pixels may be marked, and those that are not repeat their colour in the floats; else 0 */
+};
+enum { FILM_RECORD_FLOATS = 16 };
+
 struct film {
     uint32_t width, height;
     uint32_t x0, y0, full_width, full_height;
+    struct film_record record;
     struct film_pixel *pixels; /* width * height, row-major, top row first */
-    uint8_t *marked;           /* 1 = resampled; FILM_MARK_WAITS while it is to be */
+    float *floats;             /* record.floats of each pixel; Whitted: the first pass, one sample */
+    uint8_t *marked;           /* 1 = resampled; FILM_MARK_WAITS while it is to be; NULL without marks */
     _Atomic uint8_t *tiles;    /* an enum film_tile each; set after the pixels of the tile */
     /* Pictures beside the picture (render/aov.h): the layers of the mask one after the other, width * height each; NULL
      * without any. Filled after the tiles are done. */
@@ -49,13 +58,26 @@ struct film_rectangle {
     uint32_t x0, y0, x1, y1;
 };
 
-/* Bytes for the arrays of a film; false when the numbers are too large (over 2^31 pixels). */
-bool film_size(uint32_t width, uint32_t height, size_t *bytes, struct error *error);
-/* Lays the arrays into a zeroed block of film_size bytes. */
-void film_place(struct film *film, void *block, uint32_t width, uint32_t height);
+static inline bool film_record_equal(struct film_record a, struct film_record b) {
+    return a.floats == b.floats && a.marks == b.marks;
+}
+/* Whether there can be such a record. */
+static inline bool film_record_valid(struct film_record record) {
+    return record.floats <= FILM_RECORD_FLOATS && record.marks <= 1;
+}
+/* Bytes of a pixel: colour, floats and mark. */
+static inline size_t film_record_size(struct film_record record) {
+    return sizeof(struct film_pixel) + record.floats * sizeof(float) + record.marks;
+}
+
+/* Bytes for the arrays of a film; false when the numbers are too large (over 2^31 pixels). The record is valid. */
+bool film_size(uint32_t width, uint32_t height, struct film_record record, size_t *bytes, struct error *error);
+/* Lays the arrays into a zeroed block of film_size bytes: all colours, all floats, all marks, the tiles. */
+void film_place(struct film *film, void *block, uint32_t width, uint32_t height, struct film_record record);
 
 /* The same with `layers` more of three floats a pixel, laid behind by film_place_layers after film_place. */
-bool film_size_layered(uint32_t width, uint32_t height, uint32_t layers, size_t *bytes, struct error *error);
+bool film_size_layered(uint32_t width, uint32_t height, struct film_record record, uint32_t layers, size_t *bytes,
+                       struct error *error);
 void film_place_layers(struct film *film, void *block, uint32_t mask);
 
 /* How the rendered part is cut into tiles, numbered row by row; x0 and y0 must be set. */
@@ -70,17 +92,22 @@ void film_clear_unfinished(struct film *film);
 /* Whether a final colour is as large as a float can be, which is what clamped light is. */
 bool film_holds_largest(const struct film *film);
 
-/* A tile as bytes: which pixels were resampled (a bit each), the final colours, and the first pass of the resampled
- * ones; elsewhere it is the final colour. At most FILM_PACKED_LIMIT bytes, little-endian. */
-enum { FILM_PACKED_LIMIT = FILM_TILE * FILM_TILE * (6 * 4) + FILM_TILE * FILM_TILE / 8 };
+/* A tile as bytes: with marks a bit for each pixel that is marked; then of each pixel the colour and, if it is marked
+ * or there are no marks, the floats. At most FILM_PACKED_LIMIT bytes, little-endian. */
+enum { FILM_PACKED_LIMIT = FILM_TILE * FILM_TILE * ((3 + FILM_RECORD_FLOATS) * 4) + FILM_TILE * FILM_TILE / 8 };
 size_t film_tile_pack(const struct film *film, uint32_t tile, uint8_t *out);
 /* Whether the bytes have the size that their own mask asks for, and all colours are finite; needs no more of the film
- * than its rectangle. */
+ * than its rectangle and record. */
 bool film_tile_fits(const struct film *film, uint32_t tile, const uint8_t *bytes, size_t size);
 /* Puts it back and marks the tile as done; false: not the bytes of such a tile, nothing is changed. */
 bool film_tile_unpack(struct film *film, uint32_t tile, const uint8_t *bytes, size_t size);
 
-enum film_view { FILM_FINAL, FILM_FIRST, FILM_TARGETS }; /* TARGETS: first pass with marked pixels in pure red */
+enum film_view {
+    FILM_FINAL,
+    FILM_FIRST,
+    FILM_TARGETS
+}; /* TARGETS: first pass with marked pixels in pure red. Without a first pass
+    * (no marks) it is the picture. */
 /* 3 * width bytes of row y. */
 void film_row(const struct film *film, enum film_view view, uint32_t y, uint8_t *line);
 /* The same through a tone, with 8 or 16 bits; and as the film has it. */

@@ -14,6 +14,14 @@ struct integrator {
 
 static const char *const no_kind = "an integrator of no kind";
 
+struct film_record integrator_record(enum integrator_kind integrator) {
+    switch (integrator) {
+    case INTEGRATOR_WHITTED:
+        return whitted_record();
+    }
+    UNREACHABLE(no_kind);
+}
+
 bool integrator_create(struct run *run, int workers, struct render_statistics *statistics, struct error *error) {
     struct integrator *integrator = run->integrator = mem_alloc_zero(1, sizeof *integrator);
     if (!integrator)

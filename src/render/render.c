@@ -307,12 +307,15 @@ static bool tell_pixel(struct run *run, struct film *film, struct story *story, 
 bool render_pixels(const struct render_job *job, struct pool *pool, const uint32_t (*pixels)[2], uint32_t count,
                    story_listener *listen, void *context, struct error *error) {
     struct film_pixel pixel = {0};
+    float floats[FILM_RECORD_FLOATS] = {0};
     uint8_t marked = 0;
     struct film film = {.width = 1,
                         .height = 1,
                         .full_width = job->width,
                         .full_height = job->height,
+                        .record = integrator_record(job->settings.integrator),
                         .pixels = &pixel,
+                        .floats = floats,
                         .marked = &marked};
     struct render_job own = *job;
     struct render_statistics statistics = {0};

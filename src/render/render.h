@@ -43,6 +43,8 @@ struct render_job {
         *enough; /* or NULL; while it is not 0 no further tile is begun, and the render counts as stopped */
 };
 
+/* What films for pictures of an integrator record. */
+struct film_record integrator_record(enum integrator_kind integrator);
 /* False: cancelled or out of memory (error says which). The film then holds what was finished. */
 bool render_run(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
                 struct error *error);

@@ -1,9 +1,11 @@
-/* The file is a magic word, a format number and a row of records: kind, size, payload, check. The check covers kind,
- * size, place in the row and payload, so that records cannot be swapped or left out unnoticed; the last record counts
- * them. All numbers are little-endian. Reading first walks over everything (every check, every size, every tile number)
- * and only then returns anything. It holds one record at a time: what a file claims, or how large it is, costs no
- * memory.
- */
+/* The file is a magic word, a format number, the side of a tile and a row of records: kind, size, payload, check. The
+ * check covers kind, size, place in the row and payload, so that records cannot be swapped or left out unnoticed; the
+ * last record counts them. All numbers are little-endian. Reading first walks over everything (every check, every size,
+ * every tile number) and only then returns anything. It holds one record at a time: what a file claims, or how large it
+ * is, costs no memory.
+ *
+ * Format 1 is of pictures that record format_1 of a pixel, and of files without a picture; format 2 states the record
+ * of its picture. */
 #include "render/tile_file.h"
 
 #include "base/mem.h"
@@ -16,6 +18,7 @@ static const char magic[8] = "GRAYTILE";
 
 enum {
     FORMAT = 1,
+    FORMAT_RECORD = 2,
     RECORD_DONE = 1,
     RECORD_PICTURE = 2,
     RECORD_TILE = 3,
@@ -25,9 +28,16 @@ enum {
     KEY_SIZE = TILE_FILE_VERSION_TEXT + 32,
     DONE_FIXED = 4 + KEY_SIZE + 16,
     PICTURE_FIXED = 4 + KEY_SIZE + 24 + 8 + 12 + 12,
-    PAYLOAD_LIMIT = 4 + FILM_PACKED_LIMIT + TILE_FILE_NAME + PICTURE_FIXED,
+    RECORD_FIELDS = 8, /* behind PICTURE_FIXED in FORMAT_RECORD */
+    PAYLOAD_LIMIT = 4 + FILM_PACKED_LIMIT + TILE_FILE_NAME + PICTURE_FIXED + RECORD_FIELDS,
     DONE_LIMIT = 1 << 18, /* finished pictures are kept in memory, 4 KiB each */
 };
+
+static const struct film_record format_1 = {.floats = 3, .marks = 1};
+
+static uint32_t format_of(const struct tile_picture *picture) {
+    return !picture || film_record_equal(picture->record, format_1) ? FORMAT : FORMAT_RECORD;
+}
 
 /* Numbers as bytes. */
 
@@ -96,6 +106,11 @@ static struct tile_key get_key(struct eye *eye) {
     return key;
 }
 
+static struct film_record get_film_record(struct eye *eye) {
+    uint32_t floats = get_u32(eye);
+    return (struct film_record){floats, get_u32(eye)};
+}
+
 static uint64_t check_of(uint64_t place, uint32_t kind, const uint8_t *payload, size_t size) {
     return hash_bytes(payload, size, place * 64 + kind);
 }
@@ -146,6 +161,10 @@ static bool write_picture(struct writer *writer, const struct tile_picture *pict
     put_u32(&pen, picture->shard);
     put_u32(&pen, picture->shards);
     put_u32(&pen, picture->whole);
+    if (format_of(picture) == FORMAT_RECORD) {
+        put_u32(&pen, picture->record.floats);
+        put_u32(&pen, picture->record.marks);
+    }
     put(&pen, picture->name, strlen(picture->name));
     return write_record(writer, RECORD_PICTURE, (size_t)(pen.at - writer->buffer) - RECORD_HEAD, error);
 }
@@ -167,7 +186,7 @@ static bool write_all(struct writer *writer, const struct tile_done *done, size_
                       const struct tile_picture *picture, const struct film *film, struct error *error) {
     struct pen pen = {writer->buffer};
     put(&pen, magic, sizeof magic);
-    put_u32(&pen, FORMAT);
+    put_u32(&pen, format_of(picture));
     put_u32(&pen, FILM_TILE);
     bool ok = file_output_write(&writer->file, writer->buffer, sizeof magic + 8, error);
     for (size_t i = 0; ok && i < done_count; i++)
@@ -274,7 +293,8 @@ static bool read_done(const struct reader *reader, const struct record *record, 
 static bool read_picture(const struct reader *reader, const struct record *record, struct tile_picture *out,
                          struct error *error) {
     struct eye eye = {record->payload};
-    if (record->size < PICTURE_FIXED)
+    bool stated = reader->file->format == FORMAT_RECORD;
+    if (record->size < PICTURE_FIXED + (stated ? RECORD_FIELDS : 0))
         return wrong(reader, error, "the description of the picture is too short");
     out->number = get_u32(&eye);
     out->key = get_key(&eye);
@@ -293,11 +313,13 @@ static bool read_picture(const struct reader *reader, const struct record *recor
     out->shard = get_u32(&eye);
     out->shards = get_u32(&eye);
     out->whole = get_u32(&eye) != 0;
+    out->record = stated ? get_film_record(&eye) : format_1;
     size_t bytes;
     struct error size_error;
     bool fits = out->full_width <= 1U << 20 && out->full_height <= 1U << 20 && out->x0 < out->full_width &&
                 out->y0 < out->full_height && out->width <= out->full_width - out->x0 &&
-                out->height <= out->full_height - out->y0 && film_size(out->width, out->height, &bytes, &size_error);
+                out->height <= out->full_height - out->y0 && film_record_valid(out->record) &&
+                film_size(out->width, out->height, out->record, &bytes, &size_error);
     if (!fits || curve > TONE_FILMIC || !isfinite(out->tone.exposure) || out->number == 0 || out->shard == 0 ||
         out->shard > out->shards)
         return wrong(reader, error, "the description of the picture is none");
@@ -312,7 +334,8 @@ static struct film outline(const struct tile_picture *picture) {
                          .x0 = picture->x0,
                          .y0 = picture->y0,
                          .full_width = picture->full_width,
-                         .full_height = picture->full_height};
+                         .full_height = picture->full_height,
+                         .record = picture->record};
 }
 
 static bool check_tile(const struct reader *reader, const struct tile_file *file, const struct record *record,
@@ -394,7 +417,8 @@ static bool read_file(const char *path, uint64_t size, struct tile_file *out, st
     if (!eye.at || memcmp(eye.at, magic, sizeof magic) != 0)
         return error_set(error, ERROR_SCENE, "%s: is no file of tiles", path);
     eye.at += sizeof magic;
-    if (get_u32(&eye) != FORMAT || get_u32(&eye) != FILM_TILE)
+    out->format = get_u32(&eye);
+    if ((out->format != FORMAT && out->format != FORMAT_RECORD) || get_u32(&eye) != FILM_TILE)
         return error_set(error, ERROR_SCENE, "%s: is a file of tiles in another format, of another version of gray",
                          path);
     reader.at = sizeof magic + 8;
@@ -466,6 +490,8 @@ const char *tile_picture_difference(const struct tile_picture *have, const struc
     if (have->full_width != want->full_width || have->full_height != want->full_height || have->x0 != want->x0 ||
         have->y0 != want->y0 || have->width != want->width || have->height != want->height)
         return "it is of a picture of another size";
+    if (!film_record_equal(have->record, want->record))
+        return "its pixels have records of another size";
     if (have->shards != want->shards)
         return "the picture was parted otherwise";
     if (have->tone.exposure != want->tone.exposure || have->tone.curve != want->tone.curve ||

@@ -26,6 +26,7 @@ struct tile_picture {
     uint32_t full_width, full_height, x0, y0, width, height;
     struct tone tone;
     bool deep;
+    struct film_record record;
     uint32_t shard, shards; /* 1 of 1: all tiles; both from 1 */
     bool whole;             /* all tiles of the shard are there */
     char name[TILE_FILE_NAME];
@@ -54,6 +55,7 @@ struct tile_file {
     size_t done_count;
     bool has_picture;
     struct tile_picture picture;
+    uint32_t format;                   /* its first number */
     uint64_t first_tile, first_record; /* where the records of tiles begin, and the number of the first one */
     size_t tiles;
 };

@@ -23,6 +23,7 @@ struct whitted {
 };
 
 /* See render/integrator.h. `whitted` is zero. */
+struct film_record whitted_record(void);
 bool whitted_create(struct whitted *whitted, struct run *run, int workers, struct render_statistics *statistics,
                     struct error *error);
 void whitted_destroy(struct whitted *whitted);

@@ -47,6 +47,11 @@ void whitted_add_statistics(const struct whitted *whitted, const struct run *run
         out->marked_pixels += whitted->workers[i].marked;
 }
 
+/* The first pass is kept: a viewer may show it, and which pixels were sampled again. */
+struct film_record whitted_record(void) {
+    return (struct film_record){.floats = 3, .marks = 1};
+}
+
 /* --- marks --- */
 
 static double clamp01(double c) {
@@ -173,7 +178,7 @@ static void finish_pixel(const struct part *part, int64_t x, int64_t y) {
     bool full = part->whitted->full, marked = full || is_marked(part, x, y);
     struct vec3 colour = marked ? all_samples(part, x, y, first) : *first;
     store(film->pixels[at].rgb, colour);
-    store(film->pixels[at].first, first ? *first : colour);
+    store(&film->floats[at * film->record.floats], first ? *first : colour);
     film->marked[at] = marked;
     part->own->marked += marked;
     observe_pixel(part->worker->state.observer,

@@ -29,11 +29,11 @@ static void go_on(struct keeper *keeper, const struct tile_picture *picture) {
     size_t bytes;
     struct film film = {
         .x0 = picture->x0, .y0 = picture->y0, .full_width = picture->full_width, .full_height = picture->full_height};
-    demand(film_size(picture->width, picture->height, &bytes, &error));
+    demand(film_size(picture->width, picture->height, picture->record, &bytes, &error));
     void *block = mem_alloc_zero(1, bytes);
     if (!block)
         return;
-    film_place(&film, block, picture->width, picture->height);
+    film_place(&film, block, picture->width, picture->height, picture->record);
     if (!keeper_has_written(keeper, picture->number, &picture->key, picture->name, &written, &error) ||
         !keeper_restore(keeper, picture, &film, notice, &error)) {
         check_error(&error);
@@ -71,6 +71,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
                                             .full_height = 9,
                                             .width = 9,
                                             .height = 9,
+                                            .record = {3, 1},
                                             .shard = 1,
                                             .shards = 1,
                                             .name = "out.png"};

@@ -14,14 +14,14 @@ static void restore(const struct tile_file *file) {
     struct error error;
     size_t bytes;
     if ((uint64_t)picture->width * picture->height > 1 << 16 ||
-        !film_size(picture->width, picture->height, &bytes, &error))
+        !film_size(picture->width, picture->height, picture->record, &bytes, &error))
         return;
     void *block = mem_alloc_zero(1, bytes);
     if (!block)
         return;
     struct film film = {.x0 = picture->x0, .y0 = picture->y0};
     uint32_t restored, twice;
-    film_place(&film, block, picture->width, picture->height);
+    film_place(&film, block, picture->width, picture->height, picture->record);
     tile_file_restore(file, &film, &restored, &twice);
     if (twice != 0 || restored != file->tiles)
         abort();

@@ -217,8 +217,9 @@ TEST(lenses_give_the_same_bits_for_any_threads_crop_and_power_of_two) {
         }
         CHECK(stage_render(&s, 70, 50));
         if (!reference)
-            reference = memcpy(malloc(70 * 50 * sizeof *reference), s.film.pixels, 70 * 50 * sizeof *reference);
-        CHECK(memcmp(reference, s.film.pixels, (size_t)70 * (i == 2 ? 40 : 50) * sizeof *reference) == 0);
+            reference = memcpy(malloc(2 * 70 * 50 * sizeof *reference), s.film.pixels, 2 * 70 * 50 * sizeof *reference);
+        size_t size = (size_t)70 * (i == 2 ? 40 : 50) * sizeof *reference;
+        CHECK(memcmp(reference, s.film.pixels, size) == 0 && memcmp(reference + 70 * 50, s.film.floats, size) == 0);
         stage_end(&s);
     }
     free(reference);

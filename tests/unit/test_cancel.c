@@ -162,9 +162,9 @@ static bool render(void *context) {
     struct render_statistics statistics = {0};
     struct error error = {0};
     size_t bytes;
-    CHECK(film_size(64, 64, &bytes, &error));
+    CHECK(film_size(64, 64, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
     void *block = calloc(1, bytes);
-    film_place(&film, block, 64, 64);
+    film_place(&film, block, 64, 64, integrator_record(INTEGRATOR_WHITTED));
     film.full_width = film.full_height = 64;
     struct render_job job = {.world = &s->world,
                              .camera = s->camera,

@@ -57,8 +57,8 @@ static void look_at(struct gallery *gallery, const struct film *film) {
         uint32_t x = (uint32_t)i % film->width, y = (uint32_t)i / film->width;
         if (!all_finite(film->pixels[i].rgb))
             note(gallery, "the picture", x, y, film->pixels[i].rgb);
-        if (!all_finite(film->pixels[i].first))
-            note(gallery, "the first pass", x, y, film->pixels[i].first);
+        if (!all_finite(&film->floats[3 * i]))
+            note(gallery, "the first pass", x, y, &film->floats[3 * i]);
         for (int aov = 0; aov < AOV_COUNT; aov++) {
             if (film->layer_mask >> aov & 1 &&
                 !all_finite(film->layers[aov_layer(film->layer_mask, (enum aov)aov) * count + i]))
@@ -107,10 +107,10 @@ static bool render_small(void *context, const struct render_request *request, st
         job.settings.caustics.photons = 200;
     gallery->pictures++;
     if (!render_prepare(&job, &x0, &y0, &width, &height, warning, error) ||
-        !film_size_layered(SIDE, SIDE, aov_layers(AOV_ALL), &bytes, error))
+        !film_size_layered(SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED), aov_layers(AOV_ALL), &bytes, error))
         return false;
     void *block = mem_alloc_zero(1, bytes);
-    film_place(&film, block, SIDE, SIDE);
+    film_place(&film, block, SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED));
     film_place_layers(&film, block, AOV_ALL);
     film.full_width = film.full_height = SIDE;
     bool ok =
@@ -922,17 +922,16 @@ TEST(tiles_with_colours_that_are_not_finite_are_refused) {
             }
             size_t bytes;
             uint32_t restored, twice;
-            CHECK(film_size(file.picture.width, file.picture.height, &bytes, &error));
+            CHECK(film_size(file.picture.width, file.picture.height, file.picture.record, &bytes, &error));
             void *block = mem_alloc_zero(1, bytes);
             struct film film = {0};
-            film_place(&film, block, file.picture.width, file.picture.height);
+            film_place(&film, block, file.picture.width, file.picture.height, file.picture.record);
             film.full_width = film.width;
             film.full_height = film.height;
             tile_file_restore(&file, &film, &restored, &twice);
             CHECK(restored == 1);
-            struct film_pixel *pixel = &film.pixels[17];
             film.marked[17] = 1;
-            (first ? pixel->first : pixel->rgb)[1] = strange[i];
+            (first ? &film.floats[3 * 17] : film.pixels[17].rgb)[1] = strange[i];
             CHECK(tile_file_write(FILE_AT(name), NULL, 0, &file.picture, &film, &error));
             tile_file_close(&file);
             mem_free(block);

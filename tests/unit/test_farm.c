@@ -2,6 +2,7 @@
  * steps, whatever nonsense travels between true messages and whoever falls out or is silent, the first rank ends with
  * every tile. Time passes when the test says so. */
 #include "app/farm.h"
+#include "render/render.h"
 #include "tests/harness.h"
 
 #include <stdio.h>
@@ -89,8 +90,8 @@ static void begin_farm(int count) {
         farms[rank] = farm_create(&transports[rank], 2, SILENCE, &controls[rank]);
         CHECK(farms[rank] != NULL && farm_is_first(farms[rank]) == (rank == 0));
         films[rank] = (struct film){.full_width = WIDTH, .full_height = HEIGHT};
-        CHECK(film_size(WIDTH, HEIGHT, &bytes, &error));
-        film_place(&films[rank], calloc(1, bytes), WIDTH, HEIGHT);
+        CHECK(film_size(WIDTH, HEIGHT, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
+        film_place(&films[rank], calloc(1, bytes), WIDTH, HEIGHT, integrator_record(INTEGRATOR_WHITTED));
     }
 }
 
@@ -109,6 +110,7 @@ static struct tile_picture picture_of(uint32_t number, const char *name) {
                                    .full_width = WIDTH,
                                    .full_height = HEIGHT,
                                    .width = WIDTH,
+                                   .record = integrator_record(INTEGRATOR_WHITTED),
                                    .height = HEIGHT,
                                    .shard = 1,
                                    .shards = 1};
@@ -128,7 +130,7 @@ static void paint(struct film *film) {
                 film->marked[y * WIDTH + x] = (x + y) % 3 == 0;
                 for (int c = 0; c < 3; c++) {
                     pixel->rgb[c] = (float)(x + 1000 * y + (uint32_t)c);
-                    pixel->first[c] = (x + y) % 3 == 0 ? -pixel->rgb[c] : pixel->rgb[c];
+                    film->floats[3 * (y * WIDTH + x) + (uint32_t)c] = (x + y) % 3 == 0 ? -pixel->rgb[c] : pixel->rgb[c];
                 }
             }
         film->tiles[tile] = FILM_TILE_DONE;
@@ -145,7 +147,7 @@ static void check_film(const struct film *film) {
             float value = (float)(x + 1000 * y + (uint32_t)c);
             wrong += film->pixels[i].rgb[c] < value || film->pixels[i].rgb[c] > value;
             value = (x + y) % 3 == 0 ? -value : value;
-            wrong += film->pixels[i].first[c] < value || film->pixels[i].first[c] > value;
+            wrong += film->floats[3 * i + (uint32_t)c] < value || film->floats[3 * i + (uint32_t)c] > value;
         }
     }
     CHECK_EQ_INT(wrong, 0);

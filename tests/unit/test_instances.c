@@ -70,7 +70,7 @@ TEST(instances_in_many_places_give_the_bits_of_a_node_for_each) {
         stage_begin(&s, 2);
         build(&s, &all, kind, &placements);
         CHECK(stage_render(&s, 100, 80));
-        size_t size = (size_t)100 * 80 * sizeof(struct film_pixel);
+        size_t size = (size_t)100 * 80 * film_record_size(s.film.record);
         CHECK_EQ_INT(s.world.placed_count, 2 * PLACES);
         CHECK_EQ_INT(s.world.thing_count, 2);
         if (reference)

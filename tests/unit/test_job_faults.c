@@ -83,16 +83,17 @@ static bool make(const struct render_request *request, enum accel_kind accel, st
     *error = (struct error){0};
     job.settings.accel = accel;
     size_t bytes;
-    bool ok = render_prepare(&job, &x0, &y0, &width, &height, warning, error) && film_size(SIDE, SIDE, &bytes, error);
+    bool ok = render_prepare(&job, &x0, &y0, &width, &height, warning, error) &&
+              film_size(SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED), &bytes, error);
     if (ok) {
         void *block = calloc(1, bytes);
-        film_place(&film, block, SIDE, SIDE);
+        film_place(&film, block, SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED));
         film.full_width = film.full_height = SIDE;
         ok = world_build(&world, &arena, request->scene, request->root, request->lights, request->light_count,
                          &request->sky, request->settings.shutter, accel, pool, no_warning, NULL, error) &&
              render_run(&job, pool, &statistics, error);
         if (ok && pixels)
-            memcpy(pixels, film.pixels, sizeof *pixels * SIDE * SIDE);
+            memcpy(pixels, film.pixels, 2 * sizeof *pixels * SIDE * SIDE);
         free(block);
     }
     world_destroy(&world);
@@ -108,7 +109,8 @@ static void fail_each(struct listener *listener, const struct render_request *re
     (void)listener;
     pictures++;
     for (size_t a = 0; a < sizeof kinds / sizeof kinds[0]; a++) {
-        static struct film_pixel wanted[SIDE * SIDE], after[SIDE * SIDE];
+        /* The colours, and the first pass behind them. */
+        static struct film_pixel wanted[2 * SIDE * SIDE], after[2 * SIDE * SIDE];
         if (!make(request, kinds[a], pool, wanted, &error)) {
             test_fail(__FILE__, __LINE__, "picture %d: %s", pictures, error.text);
             break;
@@ -176,7 +178,7 @@ static bool answer(enum question question, const struct render_request *request,
     case ASK_CELLS:
         job->settings.overlay = question == ASK_BOXES ? OVERLAY_OF_BOXES : OVERLAY_OF_GRID;
         ok = overlay_draw(job, pool, error);
-        add_bytes(sum, job->film->pixels, sizeof(struct film_pixel) * SIDE * SIDE);
+        add_bytes(sum, job->film->pixels, film_record_size(job->film->record) * SIDE * SIDE);
         return ok;
     case ASK_LAYERS:
         ok = render_run(job, pool, &statistics, error);
@@ -193,7 +195,7 @@ static bool answer(enum question question, const struct render_request *request,
         job->shard = 1;
         job->shards = 2;
         ok = render_run(job, pool, &statistics, error);
-        add_bytes(sum, job->film->pixels, sizeof(struct film_pixel) * SIDE * SIDE);
+        add_bytes(sum, job->film->pixels, film_record_size(job->film->record) * SIDE * SIDE);
         return ok;
     case QUESTIONS:
         break;
@@ -210,9 +212,10 @@ static bool ask(enum question question, const struct render_request *request, co
     *error = (struct error){0};
     *sum = 0;
     job.settings.aov = question == ASK_LAYERS ? AOV_ALL : 0;
-    CHECK(film_size_layered(SIDE, SIDE, aov_layers(job.settings.aov), &bytes, error));
+    CHECK(film_size_layered(SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED), aov_layers(job.settings.aov), &bytes,
+                            error));
     void *block = calloc(1, bytes);
-    film_place(&film, block, SIDE, SIDE);
+    film_place(&film, block, SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED));
     film_place_layers(&film, block, job.settings.aov);
     film.full_width = film.full_height = SIDE;
     uint64_t before = fault_count(FAULT_OF_ALLOCATION);

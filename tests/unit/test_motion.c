@@ -296,10 +296,11 @@ TEST(motion_gives_the_same_bits_for_any_threads_search_crop_and_power_of_two) {
         s.settings.accel = i == 3 ? ACCEL_NONE : i == 4 ? ACCEL_GRID : i == 6 ? ACCEL_KDTREE : ACCEL_AUTO;
         CHECK(stage_render(&s, 70, 50));
         if (!reference)
-            reference = memcpy(malloc(70 * 50 * sizeof *reference), s.film.pixels, 70 * 50 * sizeof *reference);
+            reference = memcpy(malloc(2 * 70 * 50 * sizeof *reference), s.film.pixels, 2 * 70 * 50 * sizeof *reference);
         int different = 0;
         for (size_t k = 0; k < (size_t)70 * (i == 2 ? 40 : 50); k++)
-            different += memcmp(&reference[k], &s.film.pixels[k], sizeof *reference) != 0;
+            different += memcmp(&reference[k], &s.film.pixels[k], sizeof *reference) != 0 ||
+                         memcmp(&reference[70 * 50 + k], &s.film.floats[3 * k], sizeof *reference) != 0;
         CHECK_EQ_INT(different, 0);
         stage_end(&s);
     }

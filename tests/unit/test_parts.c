@@ -1,6 +1,7 @@
 /* Pictures made in several goes: checkpoints, --resume, --shard and gray merge. However the work was interrupted or
  * parted, the bytes are those of one undisturbed run; what does not belong together is refused. */
 #define _GNU_SOURCE
+#include "render/render.h"
 #include "render/tile_file.h"
 #include "tests/harness.h"
 
@@ -498,13 +499,14 @@ static struct film some_film(uint32_t x0, uint32_t y0, uint32_t width, uint32_t 
     struct film film = {.x0 = x0, .y0 = y0, .full_width = x0 + width + 5, .full_height = y0 + height + 3};
     struct error error;
     size_t bytes;
-    CHECK(film_size(width, height, &bytes, &error));
-    film_place(&film, calloc(1, bytes), width, height);
+    CHECK(film_size(width, height, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
+    film_place(&film, calloc(1, bytes), width, height, integrator_record(INTEGRATOR_WHITTED));
     for (size_t i = 0; i < (size_t)width * height; i++) {
         film.marked[i] = test_uniform(random, 0, 1) < 0.3;
         for (int c = 0; c < 3; c++) {
             film.pixels[i].rgb[c] = (float)test_uniform(random, -1, 2);
-            film.pixels[i].first[c] = film.marked[i] ? (float)test_uniform(random, -1, 2) : film.pixels[i].rgb[c];
+            film.floats[3 * i + (size_t)c] =
+                film.marked[i] ? (float)test_uniform(random, -1, 2) : film.pixels[i].rgb[c];
         }
     }
     return film;
@@ -519,6 +521,7 @@ static struct tile_picture picture_of(const struct film *film) {
                                  .y0 = film->y0,
                                  .width = film->width,
                                  .height = film->height,
+                                 .record = film->record,
                                  .tone = {-1.5, TONE_FILMIC, true},
                                  .deep = true,
                                  .shard = 2,
@@ -551,8 +554,8 @@ TEST(a_file_of_tiles_gives_back_what_was_put_in) {
         CHECK(!tile_picture_difference(&file.picture, &picture) && file.picture.shard == 2);
         CHECK_TEXT(file.picture.name, picture.name);
         size_t bytes;
-        CHECK(film_size(width, height, &bytes, &error));
-        film_place(&back, calloc(1, bytes), width, height);
+        CHECK(film_size(width, height, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
+        film_place(&back, calloc(1, bytes), width, height, integrator_record(INTEGRATOR_WHITTED));
         tile_file_restore(&file, &back, &restored, &twice);
         CHECK_EQ_INT(restored, kept);
         CHECK_EQ_INT(twice, 0);
@@ -563,6 +566,7 @@ TEST(a_file_of_tiles_gives_back_what_was_put_in) {
             for (uint32_t y = r.y0; is && y < r.y1; y++) {
                 size_t at = (size_t)(y - y0) * width + (r.x0 - x0), count = r.x1 - r.x0;
                 CHECK(memcmp(film.pixels + at, back.pixels + at, count * sizeof *film.pixels) == 0);
+                CHECK(memcmp(film.floats + 3 * at, back.floats + 3 * at, count * 3 * sizeof *film.floats) == 0);
                 CHECK(memcmp(film.marked + at, back.marked + at, count) == 0);
             }
         }

@@ -104,17 +104,17 @@ TEST(what_is_foretold_is_done_in_the_end_and_counts_for_nothing) {
     stage_sphere(&s, s.root, stage_glass(&s, 0.3, 0.6, 1.4));
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
     size_t bytes;
-    CHECK(film_size(200, 150, &bytes, &s.error));
+    CHECK(film_size(200, 150, integrator_record(INTEGRATOR_WHITTED), &bytes, &s.error));
     void *blocks[2] = {calloc(1, bytes), calloc(1, bytes)};
     struct film films[2] = {film_of(200, 150), film_of(200, 150)};
     for (int i = 0; i < 2; i++)
-        film_place(&films[i], blocks[i], 200, 150);
+        film_place(&films[i], blocks[i], 200, 150, integrator_record(INTEGRATOR_WHITTED));
     CHECK(outlook_share(&outlook) < 0 && outlook_left(&outlook, 1) < 0);
     CHECK(run_job(&s, &films[0], NULL, NULL, &plain));
     CHECK(run_job(&s, &films[1], &outlook, NULL, &asked));
     CHECK(outlook_share(&outlook) == 1);
     CHECK(outlook_left(&outlook, 1e9) == 0);
-    CHECK(memcmp(films[0].pixels, films[1].pixels, (size_t)200 * 150 * sizeof(struct film_pixel)) == 0);
+    CHECK(memcmp(films[0].pixels, films[1].pixels, (size_t)200 * 150 * film_record_size(films[0].record)) == 0);
     CHECK_EQ_INT(plain.camera_rays, asked.camera_rays);
     CHECK_EQ_INT(plain.refracted_rays, asked.refracted_rays);
     CHECK_EQ_INT(plain.shape_tests, asked.shape_tests);
@@ -244,9 +244,9 @@ TEST(forecast_counts_tiles_under_way_and_those_of_others) {
     size_t bytes;
     struct error error;
     struct forecast forecast;
-    CHECK(film_size(128, 32, &bytes, &error));
+    CHECK(film_size(128, 32, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
     void *block = calloc(1, bytes);
-    film_place(&film, block, 128, 32);
+    film_place(&film, block, 128, 32, integrator_record(INTEGRATOR_WHITTED));
     CHECK(forecast_create(&forecast, 4, 4, 1));
     for (uint32_t tile = 0; tile < 4; tile++)
         forecast_look(&forecast, tile, 1024, 10, 0);
@@ -285,10 +285,10 @@ TEST(enough_tiles_end_a_render_with_whole_tiles) {
     stage_sphere(&s, s.root, stage_glass(&s, 0.3, 0.6, 1.4));
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
     size_t bytes;
-    CHECK(film_size(200, 150, &bytes, &s.error));
+    CHECK(film_size(200, 150, integrator_record(INTEGRATOR_WHITTED), &bytes, &s.error));
     void *block = calloc(1, bytes);
     struct film film = film_of(200, 150);
-    film_place(&film, block, 200, 150);
+    film_place(&film, block, 200, 150, integrator_record(INTEGRATOR_WHITTED));
     struct render_job job = {.world = &s.world,
                              .camera = s.camera,
                              .settings = s.settings,

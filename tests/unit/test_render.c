@@ -214,7 +214,7 @@ static void busy_scene(struct stage *s, double unit, bool mirrored) {
 }
 
 static unsigned char *copy_film(const struct stage *s, size_t *size) {
-    *size = (size_t)s->film.width * s->film.height * (sizeof(struct film_pixel) + 1);
+    *size = (size_t)s->film.width * s->film.height * film_record_size(s->film.record);
     unsigned char *copy = malloc(*size);
     memcpy(copy, s->film.pixels, *size);
     return copy;
@@ -342,9 +342,11 @@ TEST(crop_is_exactly_that_part_of_the_whole) {
     CHECK_EQ_INT(part.film.width, 65);
     int wrong = 0;
     for (uint32_t y = 0; y < 60; y++) {
-        for (uint32_t x = 0; x < 65; x++)
-            wrong += memcmp(&part.film.pixels[y * 65 + x], &whole.film.pixels[(y + 11) * 150 + x + 37],
-                            sizeof(struct film_pixel)) != 0;
+        for (uint32_t x = 0; x < 65; x++) {
+            size_t at = y * 65 + x, in_whole = (y + 11) * 150 + x + 37;
+            wrong += memcmp(&part.film.pixels[at], &whole.film.pixels[in_whole], sizeof(struct film_pixel)) != 0;
+            wrong += memcmp(&part.film.floats[3 * at], &whole.film.floats[3 * in_whole], 3 * sizeof(float)) != 0;
+        }
     }
     CHECK_EQ_INT(wrong, 0);
     stage_end(&part);

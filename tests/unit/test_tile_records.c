@@ -4,6 +4,7 @@
 #include "app/options.h"
 #include "base/fault.h"
 #include "base/hash.h"
+#include "render/render.h"
 #include "render/tile_file.h"
 #include "tests/harness.h"
 
@@ -247,7 +248,7 @@ TEST(a_file_of_tiles_with_a_wrong_end_is_refused) {
     m.bytes[24] = 9;
     refused(&m, "it ends too early");
     begin(&m);
-    m.bytes[8] = 2;
+    m.bytes[8] = 3;
     refused(&m, "is a file of tiles in another format");
     begin(&m);
     m.bytes[12] = 1;
@@ -265,6 +266,7 @@ static struct tile_picture some_picture(void) {
                                  .full_height = SIDE,
                                  .width = SIDE,
                                  .height = SIDE,
+                                 .record = integrator_record(INTEGRATOR_WHITTED),
                                  .shard = 1,
                                  .shards = 1,
                                  .name = "a.png"};
@@ -289,6 +291,8 @@ TEST(pictures_that_do_not_belong_together_are_told_apart_by_everything) {
     DIFFERS(y0 = 9, "it is of a picture of another size");
     DIFFERS(width = 9, "it is of a picture of another size");
     DIFFERS(height = 9, "it is of a picture of another size");
+    DIFFERS(record.floats = 4, "its pixels have records of another size");
+    DIFFERS(record.marks = 0, "its pixels have records of another size");
     DIFFERS(shards = 9, "the picture was parted otherwise");
     DIFFERS(tone.exposure = 9, "its tones are others");
     DIFFERS(tone.curve = TONE_FILMIC, "its tones are others");
@@ -301,8 +305,8 @@ static struct film half_film(void) {
     struct film film = {.full_width = SIDE, .full_height = SIDE};
     struct error error;
     size_t bytes;
-    CHECK(film_size(SIDE, SIDE, &bytes, &error));
-    film_place(&film, calloc(1, bytes), SIDE, SIDE);
+    CHECK(film_size(SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
+    film_place(&film, calloc(1, bytes), SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED));
     atomic_store(&film.tiles[1], FILM_TILE_DONE);
     atomic_store(&film.tiles[2], FILM_TILE_DONE);
     return film;

@@ -3,6 +3,7 @@
 #define _GNU_SOURCE
 #include "app/live_parts.h"
 #include "base/mem.h"
+#include "render/render.h"
 #include "tests/harness.h"
 
 #include <math.h>
@@ -190,7 +191,7 @@ static void begin(struct table *t) {
                                     .camera = {{0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 40}}};
     t->driver = (struct window_driver){&t->fake,   fake_open, fake_show,    fake_poll,
                                        fake_title, fake_grab, fake_nothing, fake_nothing};
-    CHECK(film_size(100, 70, &bytes, &error));
+    CHECK(film_size(100, 70, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
     t->block = mem_alloc_zero(1, bytes);
     CHECK(live_begin(&t->live, &t->driver, &t->request, t->block, "x.png", t->now, &error));
     t->fake.queue[t->fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 400, .y = 280, .density = 1};
