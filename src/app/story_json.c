@@ -43,16 +43,13 @@ static void json_link(struct sheet *sheet, const struct story_link *link) {
     sheet_print(sheet, "}");
 }
 
-static void json_lobes(struct sheet *sheet, const struct shading *shading) {
-    static const char *const names[] = {
-        [LOBE_DIFFUSE] = "diffuse", [LOBE_PHONG] = "phong",     [LOBE_BLINN] = "blinn",
-        [LOBE_MIRROR] = "mirror",   [LOBE_REFRACT] = "refract",
-    };
-    for (int i = 0; i < shading->count; i++) {
-        sheet_print(sheet, "%s{\"kind\":\"%s\"", i > 0 ? "," : "", names[shading->lobes[i].kind]);
-        vector(sheet, "weight", shading->lobes[i].weight);
-        if (shading->lobes[i].kind == LOBE_PHONG || shading->lobes[i].kind == LOBE_BLINN)
-            number(sheet, "exponent", shading->lobes[i].exponent);
+static void json_lobes(struct sheet *sheet, const struct bsdf *bsdf) {
+    for (int i = 0; i < bsdf->count; i++) {
+        const struct lobe *lobe = &bsdf->lobes[i];
+        sheet_print(sheet, "%s{\"kind\":\"%s\"", i > 0 ? "," : "", lobe_name(lobe->kind));
+        vector(sheet, "weight", lobe->weight);
+        if (lobe_flags(lobe->kind) & BSDF_EXPONENT)
+            number(sheet, "exponent", lobe->exponent);
         sheet_print(sheet, "}");
     }
 }
@@ -113,16 +110,16 @@ static void json_hit(const struct told_story *told, struct sheet *sheet, const s
     flag(sheet, "shaded", ray->shaded);
     if (!ray->shaded)
         return;
-    vector(sheet, "lit_normal", ray->normal);
-    flag(sheet, "dark_side", ray->dark_side);
-    flag(sheet, "passes", ray->passes);
-    number(sheet, "index", ray->eta);
-    if (ray->fresnel >= 0)
-        number(sheet, "fresnel", ray->fresnel);
+    vector(sheet, "lit_normal", ray->bsdf.lit);
+    flag(sheet, "dark_side", ray->bsdf.dark);
+    flag(sheet, "passes", ray->bsdf.passes);
+    number(sheet, "index", ray->bsdf.eta);
+    if (ray->bsdf.fresnel >= 0)
+        number(sheet, "fresnel", ray->bsdf.fresnel);
     sheet_print(sheet, ",\"lobes\":[");
-    json_lobes(sheet, &ray->shading);
+    json_lobes(sheet, &ray->bsdf);
     sheet_print(sheet, "]");
-    number(sheet, "alpha", ray->shading.alpha);
+    number(sheet, "alpha", ray->bsdf.alpha);
     vector(sheet, "ambient", ray->ambient);
     sheet_print(sheet, ",\"lights\":[");
     for (const struct story_light *light = ray->lights; light; light = light->next) {
@@ -132,7 +129,7 @@ static void json_hit(const struct told_story *told, struct sheet *sheet, const s
     sheet_print(sheet, "]");
     vector(sheet, "caustics", ray->photons);
     vector(sheet, "direct", ray->direct);
-    vector(sheet, "emission", ray->shading.emission);
+    vector(sheet, "emission", ray->bsdf.emission);
 }
 
 static void json_rays(const struct told_story *told, struct sheet *sheet, const struct story_ray *ray);

@@ -74,43 +74,28 @@ static void tell_link(struct teller *t, const struct story_link *link, const str
     sheet_print(t->sheet, !t->changed ? " changes nothing here\n" : "\n");
 }
 
-static const char *lobe_name(enum lobe_kind kind) {
-    switch (kind) {
-    case LOBE_DIFFUSE:
-        return "diffuse";
-    case LOBE_PHONG:
-        return "phong";
-    case LOBE_BLINN:
-        return "blinn";
-    case LOBE_MIRROR:
-        return "mirror";
-    case LOBE_REFRACT:
-        return "refract";
-    }
-    return "?";
-}
-
 static void tell_shading(const struct teller *t, const struct story_ray *ray) {
     indent(t, 1);
     sheet_print(t->sheet, "shading:");
-    for (int i = 0; i < ray->shading.count; i++) {
-        const struct lobe *lobe = &ray->shading.lobes[i];
+    for (int i = 0; i < ray->bsdf.count; i++) {
+        const struct lobe *lobe = &ray->bsdf.lobes[i];
         sheet_print(t->sheet, "%s %s", i > 0 ? "," : "", lobe_name(lobe->kind));
         triple(t, " ", lobe->weight);
-        if (lobe->kind == LOBE_PHONG || lobe->kind == LOBE_BLINN)
+        if (lobe_flags(lobe->kind) & BSDF_EXPONENT)
             sheet_print(t->sheet, "^%.6g", lobe->exponent);
     }
-    if (ray->shading.count == 0)
+    if (ray->bsdf.count == 0)
         sheet_print(t->sheet, " none");
-    if (ray->shading.alpha > 0)
-        sheet_print(t->sheet, ", rough (alpha %.6g)", ray->shading.alpha);
-    triple(t, "; normal ", ray->normal);
-    sheet_print(t->sheet, "%s\n", ray->dark_side ? "; seen from behind, where no light counts" : "");
-    if (ray->fresnel >= 0) {
+    if (ray->bsdf.alpha > 0)
+        sheet_print(t->sheet, ", rough (alpha %.6g)", ray->bsdf.alpha);
+    triple(t, "; normal ", ray->bsdf.lit);
+    sheet_print(t->sheet, "%s\n", ray->bsdf.dark ? "; seen from behind, where no light counts" : "");
+    if (ray->bsdf.fresnel >= 0) {
         indent(t, 1);
         sheet_print(t->sheet, "fresnel: %.6g is reflected, %.6g refracted, index before / behind %.6g%s\n",
-                    ray->fresnel, 1 - ray->fresnel, ray->eta, ray->passes ? "" : ": total reflection");
-    } else if (!ray->passes && ray->eta != 1) {
+                    ray->bsdf.fresnel, 1 - ray->bsdf.fresnel, ray->bsdf.eta,
+                    ray->bsdf.passes ? "" : ": total reflection");
+    } else if (!ray->bsdf.passes && ray->bsdf.eta != 1) {
         indent(t, 1);
         sheet_print(t->sheet, "total internal reflection: nothing is refracted\n");
     }
@@ -190,7 +175,7 @@ static void tell_surface(struct teller *t, const struct story_ray *ray) {
         tell_shading(t, ray);
         indent(t, 1);
         triple(t, "ambient ", ray->ambient_light);
-        triple(t, " times ", ray->shading.ambient);
+        triple(t, " times ", ray->bsdf.ambient);
         triple(t, ": ", ray->ambient);
         sheet_print(t->sheet, "\n");
         for (const struct story_light *light = ray->lights; light; light = light->next)
@@ -200,9 +185,9 @@ static void tell_surface(struct teller *t, const struct story_ray *ray) {
             triple(t, "caustics: ", ray->photons);
             sheet_print(t->sheet, "\n");
         }
-        if (!same(ray->shading.emission, vec3_all(0))) {
+        if (!same(ray->bsdf.emission, vec3_all(0))) {
             indent(t, 1);
-            triple(t, "own light: ", ray->shading.emission);
+            triple(t, "own light: ", ray->bsdf.emission);
             sheet_print(t->sheet, "\n");
         }
     }

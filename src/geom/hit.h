@@ -2,6 +2,7 @@
 #ifndef GRAY_GEOM_HIT_H
 #define GRAY_GEOM_HIT_H
 
+#include "math/ray.h"
 #include "math/vec3.h"
 
 #include <stdbool.h>
@@ -77,6 +78,20 @@ static inline uint32_t hit_passes(const struct hit *hit, struct vec3 direction) 
     double rise = vec3_dot(direction, hit->normal_geometric), least = 0x1p-20 * vec3_max_abs(direction);
     bool apart = hit->hull == HULL_BEHIND ? rise > least : hit->hull == HULL_FLAT && fabs(rise) > least;
     return apart ? hit->placed + 1 : 0;
+}
+
+/* The ray that goes on from the hit of `from` in a direction, off the surface by the hit's own offset. */
+static inline struct ray hit_ray(const struct hit *hit, const struct ray *from, struct vec3 direction,
+                                 const struct medium_stack *media) {
+    double side = vec3_dot(direction, hit->normal_geometric) < 0 ? -hit->offset : hit->offset;
+    return (struct ray){.origin = vec3_add_scaled(hit->point, hit->normal_geometric, side),
+                        .direction = direction,
+                        .t_min = 0,
+                        .t_max = INFINITY,
+                        .time = from->time,
+                        .footprint = {hit->footprint, from->footprint.spread},
+                        .media = media,
+                        .passes = hit_passes(hit, direction)};
 }
 
 #endif

@@ -85,29 +85,6 @@ bool material_has_image(const struct material *material) {
     return material_has_relief(material);
 }
 
-void material_shading(const struct surface_look *look, enum specular_kind specular, bool ambient_plain,
-                      struct shading *out) {
-    out->count = 0;
-    out->emission = look->emission;
-    /* The square spreads the useful values over 0..1 (Burley, "Physically-Based Shading at Disney", 2012). */
-    out->alpha = look->roughness * look->roughness;
-    bool blinn = look->highlight == HIGHLIGHT_AS_SET ? specular == SPECULAR_BLINN : look->highlight == HIGHLIGHT_BLINN;
-    if (look->unlit) {
-        out->emission = vec3_add(out->emission, look->kd);
-        out->ambient = vec3_all(0);
-    } else {
-        out->ambient = ambient_plain ? vec3_all(1) : look->kd;
-        out->lobes[out->count++] = (struct lobe){.kind = LOBE_DIFFUSE, .weight = look->kd};
-        out->lobes[out->count++] = (struct lobe){.kind = blinn ? LOBE_BLINN : LOBE_PHONG,
-                                                 .weight = vec3_scale(look->ks, 1 - look->refract),
-                                                 .exponent = look->shininess};
-    }
-    if (look->reflect != 0)
-        out->lobes[out->count++] = (struct lobe){.kind = LOBE_MIRROR, .weight = vec3_scale(look->ks, look->reflect)};
-    if (look->refract != 0)
-        out->lobes[out->count++] = (struct lobe){.kind = LOBE_REFRACT, .weight = vec3_scale(look->ks, look->refract)};
-}
-
 bool material_is_transparent(const struct material *material, double *ior) {
     const struct phong *numbers = numbers_of(material);
     if (!numbers->has_ior)

@@ -5,8 +5,8 @@
 #ifndef GRAY_MATERIAL_MATERIAL_H
 #define GRAY_MATERIAL_MATERIAL_H
 
+#include "base/list.h"
 #include "geom/hit.h"
-#include "material/shading.h"
 #include "material/texture.h"
 
 #include <stdbool.h>
@@ -25,6 +25,12 @@ enum material_kind {
     MATERIAL_METAL,  /* glTF: splits the colour below by metalness and roughness */
     MATERIAL_FRESNEL
 };
+
+/* The highlight of the picture. */
+#define SPECULAR_KINDS(X)                                                                                              \
+    X(SPECULAR_PHONG, "phong")                                                                                         \
+    X(SPECULAR_BLINN, "blinn")
+enum specular_kind { SPECULAR_KINDS(LIST_MEMBER) };
 
 /* A height that is not told: white stands this much of the picture's own size on the surface above black. */
 #define RELIEF_HEIGHT 0.02
@@ -62,7 +68,7 @@ struct material {
     struct phong phong; /* of a base */
 };
 
-/* The inputs at a hit; turned into lobes at the end. */
+/* The inputs at a hit; material_eval turns them into a BSDF. */
 struct surface_look {
     struct vec3 kd, ks;
     double shininess, reflect, refract, ior;
@@ -75,7 +81,7 @@ struct surface_look {
     struct vec3 absorption; /* inside: the logarithm of light falls by this per unit */
     double roughness;       /* of reflection and refraction; 0: a mirror */
     int glossy_samples;     /* N x N rays where it is rough; 0: the default */
-    bool fresnel;           /* the integrator, which knows the media, replaces reflect and refract by F and 1 - F */
+    bool fresnel;           /* material_eval, which knows the media, replaces reflect and refract by F and 1 - F */
 };
 
 void material_look(const struct material *material, const struct hit *hit, struct surface_look *out);
@@ -87,10 +93,6 @@ void material_look_told(const struct material *material, const struct hit *hit, 
 bool material_has_image(const struct material *material);
 bool material_has_relief(const struct material *material);
 bool material_has_holes(const struct material *material); /* its opacity may be below 1 */
-/* The lobes of a look whose reflect and refract are final. ambient_plain: the ambient colour is not multiplied by kd.
- */
-void material_shading(const struct surface_look *look, enum specular_kind specular, bool ambient_plain,
-                      struct shading *out);
 /* Whether light passes into the solid (refract may be above 0, or Fresnel), and its index. */
 bool material_is_transparent(const struct material *material, double *ior);
 /* Of the base: how the inside absorbs light, per unit of length. */

@@ -6,6 +6,8 @@
 
 #include "math/frame.h"
 
+static const double pi = 3.14159265358979323846;
+
 struct vec3 microfacet_normal(struct vec3 normal, struct vec3 view, double alpha, struct sample2 place) {
     struct vec3 a, b;
     frame_tangents(normal, &a, &b);
@@ -26,4 +28,15 @@ struct vec3 microfacet_normal(struct vec3 normal, struct vec3 view, double alpha
     struct vec3 local = vec3_normalize(vec3_make(alpha * h.x, alpha * h.y, h.z > 0 ? h.z : 0));
     struct vec3 out = vec3_add_scaled(vec3_add_scaled(vec3_scale(normal, local.z), a, local.x), b, local.y);
     return vec3_normalize(out);
+}
+
+/* G1(v) D(h) (v.h) / (n.v), Heitz 2018, equations 1 to 3. */
+double microfacet_pdf(struct vec3 normal, struct vec3 view, double alpha, struct vec3 facet) {
+    double n_h = vec3_dot(normal, facet), n_v = vec3_dot(normal, view), v_h = vec3_dot(view, facet);
+    if (!(n_h > 0 && v_h > 0))
+        return 0;
+    double a2 = alpha * alpha, c2 = n_h * n_h, slope = c2 * a2 + (c2 < 1 ? 1 - c2 : 0);
+    double facets = a2 / (pi * slope * slope);
+    double masking = 2 / (n_v + sqrt(n_v * n_v + a2 * (n_v < 1 ? 1 - n_v * n_v : 0))); /* G1 / n.v */
+    return masking * facets * v_h;
 }

@@ -9,4 +9,7 @@
  * width of the distribution of slopes, in (0, 1]. Unit, on the side of the normal and of the view. */
 struct vec3 microfacet_normal(struct vec3 normal, struct vec3 view, double alpha, struct sample2 place);
 
+/* The density of microfacet_normal per solid angle. */
+double microfacet_pdf(struct vec3 normal, struct vec3 view, double alpha, struct vec3 facet);
+
 #endif

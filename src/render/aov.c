@@ -5,7 +5,7 @@
 
 #include "base/random.h"
 #include "light/light.h"
-#include "material/material.h"
+#include "material/material_eval.h"
 #include "math/elementary.h"
 
 #include <string.h>
@@ -83,15 +83,15 @@ static double lights_seen(const struct world *world, const struct hit *hit, stru
 void aov_surface(const struct world *world, const struct ray *ray, uint32_t mask, struct world_scratch *scratch,
                  float out[AOV_COUNT][3]) {
     struct hit hit;
-    struct surface_look look;
+    struct bsdf bsdf;
     memset(out, 0, AOV_COUNT * sizeof *out);
     if (!world_nearest(world, ray, scratch, &hit))
         return;
-    material_look(world->materials[hit.material], &hit, &look);
+    material_eval(world->materials[hit.material], &hit, NULL, NULL, &bsdf);
     double depth = hit.t * vec3_length(ray->direction), node = placed_node(world, hit.placed)->serial + 1.0;
     set(out[AOV_DEPTH], depth, depth, depth);
-    set(out[AOV_NORMAL], look.normal.x, look.normal.y, look.normal.z);
-    set(out[AOV_ALBEDO], look.kd.x, look.kd.y, look.kd.z);
+    set(out[AOV_NORMAL], bsdf.normal.x, bsdf.normal.y, bsdf.normal.z);
+    set(out[AOV_ALBEDO], bsdf.albedo.x, bsdf.albedo.y, bsdf.albedo.z);
     if (hit.has_uv)
         set(out[AOV_UV], hit.u, hit.v, 1);
     set(out[AOV_NODE], node, node, node);

@@ -110,8 +110,7 @@ static void ask_targets(struct integrator_state *tracer, const struct light_cont
 /* A lamp: every shadow ray shades by itself, with the cosine at the lamp. Rays that cannot bring light are not asked.
  */
 static struct vec3 light_of_samples(struct integrator_state *tracer, const struct light *light, uint32_t number,
-                                    const struct hit *hit, const struct shading *shading, struct vec3 normal,
-                                    uint64_t key) {
+                                    const struct hit *hit, const struct bsdf *bsdf, uint32_t lobes, uint64_t key) {
     struct vec3 sum = {0, 0, 0};
     /* What is lit is the ray's side, wherever the middle of the lamp may be. */
     struct vec3 from = off_surface(hit, hit->front ? hit->normal_geometric : vec3_negate(hit->normal_geometric));
@@ -124,8 +123,7 @@ static struct vec3 light_of_samples(struct integrator_state *tracer, const struc
     bool visible[AREA_BATCH];
     for (uint32_t cell = 0; cell < all; cell++) {
         struct light_sample sample = light_sample(light, &context, sample_set_point(&places, cell));
-        struct vec3 arriving =
-            vec3_mul(shading_evaluate(shading, normal, hit->view, sample.direction), sample.intensity);
+        struct vec3 arriving = vec3_mul(bsdf_classic(bsdf, lobes, hit->view, sample.direction), sample.intensity);
         if (arriving.x != 0 || arriving.y != 0 || arriving.z != 0) {
             targets[have] = sample.target.at;
             carried[have++] = arriving;
@@ -144,12 +142,11 @@ static struct vec3 light_of_samples(struct integrator_state *tracer, const struc
 
 /* A delta light: shaded once. */
 static struct vec3 light_of_delta(struct integrator_state *tracer, const struct light *light, uint32_t number,
-                                  const struct hit *hit, const struct shading *shading, struct vec3 normal,
-                                  uint64_t key) {
+                                  const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {
     struct light_arrival arrival;
     if (!light_arrive(light, hit->point, &arrival))
         return vec3_all(0);
-    struct vec3 reflected = shading_evaluate(shading, normal, hit->view, arrival.direction);
+    struct vec3 reflected = bsdf_classic(bsdf, BSDF_ALL, hit->view, arrival.direction);
     observe_light_place(tracer->observer, arrival.distance, arrival.strength, arrival.direction, reflected);
     if (arrival.strength == 0 || (reflected.x == 0 && reflected.y == 0 && reflected.z == 0))
         return vec3_all(0);
@@ -159,33 +156,24 @@ static struct vec3 light_of_delta(struct integrator_state *tracer, const struct 
 
 /* What a surface shows of an environment: mirrored it sees the background itself, so a highlight would count that
  * twice. */
-static struct shading without_highlight(const struct shading *shading) {
-    struct shading out = *shading;
-    bool mirrors = false;
-    out.count = 0;
-    for (int i = 0; i < shading->count; i++) {
-        mirrors = mirrors || shading->lobes[i].kind == LOBE_MIRROR || shading->lobes[i].kind == LOBE_REFRACT;
-        if (shading->lobes[i].kind == LOBE_DIFFUSE)
-            out.lobes[out.count++] = shading->lobes[i];
-    }
-    return mirrors ? out : *shading;
+static uint32_t without_highlight(const struct bsdf *bsdf) {
+    return bsdf_lobes_with(bsdf, BSDF_TRACED) ? bsdf_lobes_with(bsdf, BSDF_LAMBERT) : BSDF_ALL;
 }
 
 static struct vec3 one_light(struct integrator_state *tracer, const struct light *light, uint32_t number,
-                             const struct hit *hit, const struct shading *shading, struct vec3 normal, uint64_t key) {
+                             const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {
     if (light_is_delta(light))
-        return light_of_delta(tracer, light, number, hit, shading, normal, key);
+        return light_of_delta(tracer, light, number, hit, bsdf, key);
     if (!(light_properties(light) & LIGHT_IS_ENVIRONMENT))
-        return light_of_samples(tracer, light, number, hit, shading, normal, key);
-    struct shading matt = without_highlight(shading);
-    return light_of_samples(tracer, light, number, hit, &matt, normal, key);
+        return light_of_samples(tracer, light, number, hit, bsdf, BSDF_ALL, key);
+    return light_of_samples(tracer, light, number, hit, bsdf, without_highlight(bsdf), key);
 }
 
-struct vec3 direct_light(struct integrator_state *tracer, const struct hit *hit, const struct shading *shading,
-                         struct vec3 normal, bool dark_side, uint64_t key) {
+struct vec3 direct_light(struct integrator_state *tracer, const struct hit *hit, const struct bsdf *bsdf,
+                         uint64_t key) {
     const struct world *world = tracer->job->world;
-    struct vec3 sum = vec3_mul(tracer->job->ambient, shading->ambient);
-    for (uint32_t i = 0; i < world->light_count && !dark_side; i++) {
+    struct vec3 sum = vec3_mul(tracer->job->ambient, bsdf->ambient);
+    for (uint32_t i = 0; i < world->light_count && !bsdf->dark; i++) {
         const struct light *light = &world->lights[i];
         if (light->lit && !light->lit[hit->placed]) {
             observe_light_skipped(tracer->observer, i, light);
@@ -193,18 +181,18 @@ struct vec3 direct_light(struct integrator_state *tracer, const struct hit *hit,
         }
         tracer->scratch->light = i % WORLD_BLOCKERS;
         observe_light_begin(tracer->observer, i, light);
-        struct vec3 own = one_light(tracer, light, i, hit, shading, normal, sampler_light(key, i));
+        struct vec3 own = one_light(tracer, light, i, hit, bsdf, sampler_light(key, i));
         sum = vec3_add(sum, own);
         observe_light_end(tracer->observer, i, light, own);
     }
     struct vec3 photons = {0, 0, 0};
-    bool asked = tracer->caustics && !dark_side;
+    bool asked = tracer->caustics && !bsdf->dark;
     if (asked) {
-        photons = photon_map_light(tracer->caustics, world, hit, shading, normal);
+        photons = photon_map_light(tracer->caustics, world, hit, bsdf);
         sum = vec3_add(sum, photons);
     }
     observe_direct(tracer->observer,
-                   &(struct observed_direct){tracer->job->ambient, vec3_mul(tracer->job->ambient, shading->ambient),
+                   &(struct observed_direct){tracer->job->ambient, vec3_mul(tracer->job->ambient, bsdf->ambient),
                                              photons, sum, asked});
     return sum;
 }

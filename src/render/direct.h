@@ -2,12 +2,10 @@
 #ifndef GRAY_RENDER_DIRECT_H
 #define GRAY_RENDER_DIRECT_H
 
-#include "material/shading.h"
+#include "material/bsdf.h"
 #include "render/integrator_state.h"
 
-/* What the surface sends to hit->view of it, with the ambient light. `normal`: unit, the side that is lit; dark_side:
- * no light reaches that side; key: the random key of the path so far. */
-struct vec3 direct_light(struct integrator_state *tracer, const struct hit *hit, const struct shading *shading,
-                         struct vec3 normal, bool dark_side, uint64_t key);
+/* What the surface sends to hit->view of it, with the ambient light. key: the random key of the path so far. */
+struct vec3 direct_light(struct integrator_state *tracer, const struct hit *hit, const struct bsdf *bsdf, uint64_t key);
 
 #endif

@@ -6,8 +6,7 @@
 #define GRAY_RENDER_OBSERVER_H
 
 #include "light/light.h"
-#include "material/material.h"
-#include "render/interface.h"
+#include "material/material_eval.h"
 #include "render/sampler.h"
 
 #include <stdint.h>
@@ -60,13 +59,7 @@ struct observation {
             const struct material *link;
             const struct surface_look *look; /* as the link leaves it */
         } material;
-        struct observed_surface {
-            const struct surface_look *look;
-            const struct interface *interface;
-            const struct shading *shading;
-            struct vec3 normal; /* unit, of the side that is lit */
-            bool dark_side;     /* no light reaches it */
-        } surface;
+        const struct bsdf *surface;
         struct {
             uint32_t number; /* in the world */
             const struct light *light;
@@ -139,17 +132,14 @@ static inline void observe_ray_begin(const struct observer *observer, const stru
         observe(observer, &(struct observation){OBSERVED_RAY_BEGIN, .begin = {ray, hit, light, distance, share}});
 }
 
-/* For material_look_told. */
+/* For struct material_context. */
 static inline void observe_material(void *context, const struct material *link, const struct surface_look *look) {
     observe(context, &(struct observation){OBSERVED_MATERIAL, .material = {link, look}});
 }
 
-static inline void observe_surface(const struct observer *observer, const struct surface_look *look,
-                                   const struct interface *interface, const struct shading *shading, struct vec3 normal,
-                                   bool dark_side) {
+static inline void observe_surface(const struct observer *observer, const struct bsdf *surface) {
     if (observer)
-        observe(observer,
-                &(struct observation){OBSERVED_SURFACE, .surface = {look, interface, shading, normal, dark_side}});
+        observe(observer, &(struct observation){OBSERVED_SURFACE, .surface = surface});
 }
 
 static inline void observe_light_begin(const struct observer *observer, uint32_t number, const struct light *light) {

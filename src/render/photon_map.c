@@ -493,18 +493,13 @@ struct gathering {
     const struct photon_map *map;
     const struct world *world;
     const struct hit *hit;
-    struct shading shading; /* the lobes that answer light from one direction */
-    struct vec3 normal, side;
-    bool plain; /* diffuse alone, and the geometric normal is the normal */
+    const struct bsdf *bsdf;
+    uint32_t lobes; /* the classic ones that are not black */
+    struct vec3 side;
+    bool plain; /* Lambertian lobes alone, and the geometric normal is the normal */
     float at[3], up[3];
     struct vec3 sum;
 };
-
-/* Lobes of finite width, not black. */
-static bool answers(const struct lobe *lobe) {
-    return (lobe->kind == LOBE_DIFFUSE || lobe->kind == LOBE_PHONG || lobe->kind == LOBE_BLINN) &&
-           (lobe->weight.x != 0 || lobe->weight.y != 0 || lobe->weight.z != 0);
-}
 
 /* Photons fall on the geometric surface, so each brings its power over n.l of that; the lobes hold their own cosine. At
  * grazing light the quotient is bounded. */
@@ -524,7 +519,7 @@ static void add_photon(struct gathering *g, uint32_t i, double weight) {
     if (!g->plain) {
         double scale = 1 / sqrt(vec3_dot(from, from));
         cosine *= scale;
-        struct vec3 reflected = shading_evaluate(&g->shading, g->normal, g->hit->view, vec3_scale(from, scale));
+        struct vec3 reflected = bsdf_classic(g->bsdf, g->lobes, g->hit->view, vec3_scale(from, scale));
         power = vec3_scale(vec3_mul(power, reflected), 1 / (cosine > 0.0625 ? cosine : 0.0625));
     }
     g->sum = vec3_add(g->sum, power);
@@ -569,26 +564,30 @@ static void gather(struct gathering *g) {
 }
 
 struct vec3 photon_map_light(const struct photon_map *map, const struct world *world, const struct hit *hit,
-                             const struct shading *shading, struct vec3 normal) {
-    struct gathering g = {.map = map, .world = world, .hit = hit, .normal = normal};
+                             const struct bsdf *bsdf) {
+    struct gathering g = {.map = map, .world = world, .hit = hit, .bsdf = bsdf};
+    struct vec3 normal = bsdf->lit, albedo = {0, 0, 0};
     if (map->count == 0)
         return vec3_all(0);
     bool turned = vec3_dot(normal, hit->normal) < 0;
     g.side = turned ? vec3_negate(hit->normal_geometric) : hit->normal_geometric;
     g.plain = normal.x == g.side.x && normal.y == g.side.y && normal.z == g.side.z;
-    for (int i = 0; i < shading->count; i++) {
-        if (!answers(&shading->lobes[i]))
+    for (int i = 0; i < bsdf->count; i++) {
+        const struct lobe *lobe = &bsdf->lobes[i];
+        unsigned flags = lobe_flags(lobe->kind);
+        if (!(flags & BSDF_CLASSIC) || (lobe->weight.x == 0 && lobe->weight.y == 0 && lobe->weight.z == 0))
             continue;
-        g.plain = g.plain && shading->lobes[i].kind == LOBE_DIFFUSE;
-        g.shading.lobes[g.shading.count++] = shading->lobes[i];
+        g.plain = g.plain && (flags & BSDF_LAMBERT);
+        albedo = vec3_add(albedo, lobe->weight);
+        g.lobes |= UINT32_C(1) << i;
     }
-    if (g.shading.count == 0)
+    if (g.lobes == 0)
         return vec3_all(0);
     struct vec3 at = vec3_scale(vec3_sub(hit->point, map->origin), 1 / map->unit);
     g.at[0] = (float)at.x, g.at[1] = (float)at.y, g.at[2] = (float)at.z;
     g.up[0] = (float)g.side.x, g.up[1] = (float)g.side.y, g.up[2] = (float)g.side.z;
     gather(&g);
     if (g.plain)
-        g.sum = vec3_mul(g.sum, g.shading.lobes[0].weight);
+        g.sum = vec3_mul(g.sum, albedo);
     return vec3_scale(g.sum, 2 * map->power_unit / (pi * map->unit * map->unit));
 }

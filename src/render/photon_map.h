@@ -5,7 +5,7 @@
 #define GRAY_RENDER_PHOTON_MAP_H
 
 #include "base/pool.h"
-#include "material/shading.h"
+#include "material/bsdf.h"
 #include "world/world.h"
 
 #define PHOTON_NOWHERE UINT32_MAX
@@ -43,10 +43,9 @@ bool photon_map_build(struct photon_map *map, const struct world *world, const s
                       double radius, struct pool *pool, struct error *error);
 void photon_map_destroy(struct photon_map *map);
 
-/* What the surface sends to hit->view of the light of all photons round the hit, which lit its side on which `normal`
- * (the shading normal, unit) lies. */
+/* What the surface sends to hit->view of the light of all photons around the hit, which fell on its lit side. */
 struct vec3 photon_map_light(const struct photon_map *map, const struct world *world, const struct hit *hit,
-                             const struct shading *shading, struct vec3 normal);
+                             const struct bsdf *bsdf);
 
 /* A unit vector in 32 bits, wrong by at most 1e-4. */
 uint32_t photon_pack(struct vec3 direction);

@@ -10,8 +10,7 @@
 
 #include "base/mem.h"
 #include "base/random.h"
-#include "material/microfacet.h"
-#include "render/interface.h"
+#include "material/material_eval.h"
 #include "render/photon_aim.h"
 
 #include <time.h>
@@ -50,62 +49,48 @@ static double mean(struct vec3 c) {
 
 /* What a surface does with a photon. */
 struct choice {
-    struct vec3 mirror, refraction;
+    struct bsdf_branch branches[BSDF_LOBES];
+    int count;
     double diffuse; /* the largest component of what answers light from one direction */
 };
 
-static struct choice choice_make(const struct shading *shading, const struct interface *interface) {
+static struct choice choice_make(const struct bsdf *bsdf) {
     struct choice choice = {.diffuse = 0};
-    for (int i = 0; i < shading->count; i++) {
-        struct vec3 weight = shading->lobes[i].weight;
-        switch (shading->lobes[i].kind) {
-        case LOBE_DIFFUSE:
-            choice.diffuse = vec3_max_abs(weight);
-            break;
-        case LOBE_PHONG:
-        case LOBE_BLINN:
-            break;
-        case LOBE_MIRROR:
-            choice.mirror = vec3_add(choice.mirror, weight);
-            break;
-        case LOBE_REFRACT:
-            choice.refraction = vec3_add(choice.refraction, weight);
-            break;
-        }
+    for (int i = 0; i < bsdf->count; i++) {
+        if (lobe_flags(bsdf->lobes[i].kind) & BSDF_LAMBERT)
+            choice.diffuse = vec3_max_abs(bsdf->lobes[i].weight);
     }
-    if (!interface->passes) {
-        choice.mirror = vec3_add(choice.mirror, choice.refraction);
-        choice.refraction = vec3_all(0);
-    }
+    choice.count = bsdf_branches(bsdf, choice.branches);
     return choice;
 }
 
-/* On to where the mirror or the refraction sends it. False: absorbed. */
-static bool fly_on(struct flight *flight, const struct hit *hit, const struct interface *interface,
-                   const struct choice *choice, double alpha) {
-    struct vec3 mirrored = vec3_mul(flight->left, choice->mirror);
-    struct vec3 refracted = vec3_mul(flight->left, choice->refraction);
-    double to_mirror = fmax(mean(mirrored), 0), to_behind = fmax(mean(refracted), 0), both = to_mirror + to_behind;
+/* On to where one of the branches sends it. False: absorbed. */
+static bool fly_on(struct flight *flight, const struct hit *hit, const struct bsdf *bsdf, const struct choice *choice) {
+    double to[BSDF_LOBES], all = 0;
+    for (int i = 0; i < choice->count; i++) {
+        to[i] = fmax(mean(vec3_mul(flight->left, choice->branches[i].weight)), 0);
+        all += to[i];
+    }
     /* All photons are to have the same power: what is left of one that met the strongest thing of its cell. */
-    double survival = both < flight->strength ? both / flight->strength : 1, x = draw(flight);
-    if (!(x < survival))
+    double survival = all < flight->strength ? all / flight->strength : 1, x = draw(flight);
+    if (!(x < survival) || choice->count == 0)
         return false;
-    bool mirror = x / survival * both < to_mirror;
-    struct vec3 side = interface->side, direction;
-    if (alpha > 0) {
-        double u = draw(flight), v = draw(flight);
-        side = microfacet_normal(interface->side, hit->view, alpha, (struct sample2){u, v});
+    double until = x / survival * all;
+    int chosen = 0;
+    while (chosen + 1 < choice->count && !(until < to[chosen]))
+        until -= to[chosen++];
+    const struct bsdf_branch *branch = &choice->branches[chosen];
+    struct sample2 u = {0, 0};
+    if (branch->rough) {
+        u.x = draw(flight);
+        u.y = draw(flight);
     }
-    if (mirror) {
-        flight->left = vec3_scale(mirrored, both / (to_mirror * survival));
-        direction =
-            alpha > 0 ? interface_facet_mirror(interface, side, hit->view) : interface_mirror(interface, hit->view);
-    } else {
-        flight->left = vec3_scale(refracted, both / (to_behind * survival));
-        direction = alpha > 0 ? interface_facet_through(interface, side, hit->view) : interface->through;
-        medium_stack_copy(&flight->media, &interface->behind);
-    }
-    flight->ray = interface_ray(hit, &flight->ray, direction, &flight->media);
+    struct vec3 direction, weight;
+    bsdf_branch_sample(bsdf, branch, hit->view, u, &direction, &weight);
+    flight->left = vec3_scale(vec3_mul(flight->left, weight), all / (to[chosen] * survival));
+    if (branch->transmits)
+        medium_stack_cross(&flight->media, &bsdf->boundary);
+    flight->ray = hit_ray(hit, &flight->ray, direction, &flight->media);
     flight->specular = true;
     return true;
 }
@@ -138,29 +123,30 @@ static void send(struct sending *s, const struct photon_aim *aim, uint32_t index
         if (world_nearest(s->world, &back, scratch, &ground))
             return;
     }
+    const struct material_context context = {
+        .specular = s->settings->specular, .ambient_plain = s->settings->ambient_plain, .total_reflection = true};
     const uint8_t *lit = aim->emitter.light->lit;
     for (int bounce = 0; bounce < PHOTON_BOUNCES && !scratch->failed; bounce++) {
         struct hit hit;
-        struct surface_look look;
-        struct interface interface;
-        struct shading shading;
+        struct bsdf bsdf;
         if (!world_nearest(s->world, &flight.ray, scratch, &hit))
             return;
         flight.length += hit.t;
         if (flight.media.count > 0)
             flight.left = vec3_mul(flight.left, media_left(&flight.media, hit.t));
-        material_look(s->world->materials[hit.material], &hit, &look);
-        if (look.opacity < 1 && draw(&flight) >= look.opacity) {
+        material_eval(s->world->materials[hit.material], &hit, &flight.media, &context, &bsdf);
+        if (bsdf.opacity < 1 && draw(&flight) >= bsdf.opacity) {
             /* Through a hole, as if nothing were there. */
-            flight.ray = interface_ray(&hit, &flight.ray, vec3_negate(hit.view), &flight.media);
+            flight.ray = hit_ray(&hit, &flight.ray, vec3_negate(hit.view), &flight.media);
             continue;
         }
-        interface_make(&hit, &flight.media, &look, &interface);
-        material_shading(&look, s->settings->specular, s->settings->ambient_plain, &shading);
-        struct choice choice = choice_make(&shading, &interface);
-        bool receives = flight.specular && choice.diffuse > 0 && (hit.front || look.two_sided);
+        struct choice choice = choice_make(&bsdf);
+        bool receives = flight.specular && choice.diffuse > 0 && !bsdf.dark;
         if (receives && (!lit || lit[hit.placed])) {
-            double on = fmax(mean(choice.mirror) + mean(choice.refraction), 0);
+            double on = 0;
+            for (int i = 0; i < choice.count; i++)
+                on += mean(choice.branches[i].weight);
+            on = fmax(on, 0);
             double share = choice.diffuse / (choice.diffuse + on);
             if (draw(&flight) < share) {
                 flight.left = vec3_scale(flight.left, 1 / share);
@@ -169,7 +155,7 @@ static void send(struct sending *s, const struct photon_aim *aim, uint32_t index
             }
             flight.left = vec3_scale(flight.left, 1 / (1 - share));
         }
-        if (!fly_on(&flight, &hit, &interface, &choice, shading.alpha))
+        if (!fly_on(&flight, &hit, &bsdf, &choice))
             return;
     }
 }

@@ -7,6 +7,7 @@
 #include "render/camera.h"
 #include "render/forecast.h"
 #include "render/integrator_state.h"
+#include "render/media.h"
 #include "render/render.h"
 #include "world/packet.h"
 

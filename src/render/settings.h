@@ -6,7 +6,7 @@
 #include "base/list.h"
 #include "geom/mesh.h"
 #include "image/tone.h"
-#include "material/shading.h"
+#include "material/material.h"
 #include "math/motion.h"
 #include "math/vec3.h"
 

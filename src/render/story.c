@@ -65,12 +65,8 @@ static struct story_ray *add_ray(struct story *story) {
     struct story_ray *ray = take(story, sizeof *ray);
     if (!ray)
         return NULL;
-    *ray = (struct story_ray){.kind = story->kind,
-                              .weight = story->weight,
-                              .number = ++story->rays,
-                              .parent = parent,
-                              .part = 1,
-                              .fresnel = -1};
+    *ray = (struct story_ray){
+        .kind = story->kind, .weight = story->weight, .number = ++story->rays, .parent = parent, .part = 1};
     struct story_ray **first = parent ? &parent->first : &story->last_sample->first;
     struct story_ray **last = parent ? &parent->last : &story->last_sample->last;
     if (*last)
@@ -151,18 +147,12 @@ static void add_link(struct story *story, const struct material *material, const
     ray->opacity = look->opacity;
 }
 
-static void tell_surface(struct story *story, const struct observed_surface *surface) {
-    const struct surface_look *look = surface->look;
+static void tell_surface(struct story *story, const struct bsdf *surface) {
     struct story_ray *ray = ray_of(story);
     if (!ray)
         return;
     ray->shaded = true;
-    ray->dark_side = surface->dark_side;
-    ray->normal = surface->normal;
-    ray->passes = surface->interface->passes;
-    ray->eta = look->fresnel || look->refract != 0 ? surface->interface->eta : 1;
-    ray->fresnel = look->fresnel ? look->reflect : -1;
-    ray->shading = *surface->shading;
+    ray->bsdf = *surface;
 }
 
 static void begin_light(struct story *story, uint32_t number, const struct light *light) {
@@ -268,7 +258,7 @@ static void notice(void *context, const struct observation *what) {
         add_link(story, what->material.link, what->material.look);
         break;
     case OBSERVED_SURFACE:
-        tell_surface(story, &what->surface);
+        tell_surface(story, what->surface);
         break;
     case OBSERVED_LIGHT_BEGIN:
         begin_light(story, what->light.number, what->light.light);

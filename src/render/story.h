@@ -64,11 +64,8 @@ struct story_ray {
     /* The surface. */
     struct story_link *links;
     double opacity;
-    bool shaded, dark_side, passes;
-    struct vec3 normal; /* of the side that is lit */
-    double eta;         /* where it may pass */
-    double fresnel;     /* or negative */
-    struct shading shading;
+    bool shaded; /* bsdf is set */
+    struct bsdf bsdf;
     struct vec3 ambient_light, ambient, photons, direct; /* direct: ambient, photons and lights together */
     bool has_photons;
     struct story_light *lights, *last_light;

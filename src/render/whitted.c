@@ -2,10 +2,9 @@
  * way through the tree of rays. */
 #include "render/whitted.h"
 
-#include "material/microfacet.h"
 #include "math/range.h"
 #include "render/direct.h"
-#include "render/interface.h"
+#include "render/media.h"
 
 /* Of the colour that a secondary ray brings: no filter makes an infinity of it, so infinity times 0 cannot arise. */
 static const double light_limit = 1e200;
@@ -40,10 +39,6 @@ static const struct light *visible_light(const struct world *world, const struct
 
 /* --- secondary rays --- */
 
-static bool is_black(struct vec3 c) {
-    return c.x == 0 && c.y == 0 && c.z == 0;
-}
-
 /* Number by number: a copy of the whole would wait for what has just been written of it. */
 static struct path path_on(const struct path *path, double share) {
     return (struct path){.key = path->key,
@@ -63,32 +58,40 @@ static bool is_given_up(const struct integrator_state *tracer, enum ray_kind kin
     return cut != RAY_FOLLOWED;
 }
 
-/* Times the filter. What cannot change the pixel by the cut-off is not followed. */
-static struct vec3 follow_mirror(struct integrator_state *tracer, const struct hit *hit, const struct ray *ray,
-                                 struct vec3 direction, struct vec3 filter, const struct path *from) {
-    const struct settings *settings = &tracer->job->settings;
-    struct path path = path_on(from, vec3_max_abs(filter));
-    if (is_given_up(tracer, RAY_REFLECTED, path.reflections >= settings->reflect_limit, filter, &path))
-        return vec3_all(0);
-    struct ray reflected = interface_ray(hit, ray, direction, ray->media);
-    tracer->reflected_rays++;
-    path.key = sampler_branch(path.key, SAMPLER_REFLECTED);
-    path.reflections++;
-    return vec3_mul(filter, trace(tracer, &reflected, &path));
-}
+/* A hit with its surface and the ray that met it. */
+struct surface_point {
+    const struct ray *ray;
+    const struct hit *hit;
+    const struct bsdf *bsdf;
+};
 
-static struct vec3 follow_refraction(struct integrator_state *tracer, const struct hit *hit, const struct ray *ray,
-                                     struct vec3 direction, const struct medium_stack *behind, struct vec3 filter,
-                                     const struct path *from) {
+/* What comes from where one branch goes on, times its weight. What cannot change the pixel by the cut-off is not
+ * followed. */
+static struct vec3 follow_branch(struct integrator_state *tracer, const struct surface_point *at,
+                                 const struct bsdf_branch *branch, struct sample2 u, const struct path *from) {
     const struct settings *settings = &tracer->job->settings;
+    bool transmits = branch->transmits;
+    struct vec3 direction, filter;
+    bsdf_branch_sample(at->bsdf, branch, at->hit->view, u, &direction, &filter);
     struct path path = path_on(from, vec3_max_abs(filter));
-    if (is_given_up(tracer, RAY_REFRACTED, path.refractions >= settings->refract_limit, filter, &path))
+    bool limit = transmits ? path.refractions >= settings->refract_limit : path.reflections >= settings->reflect_limit;
+    if (is_given_up(tracer, transmits ? RAY_REFRACTED : RAY_REFLECTED, limit, filter, &path))
         return vec3_all(0);
-    struct ray refracted = interface_ray(hit, ray, direction, behind);
-    tracer->refracted_rays++;
-    path.key = sampler_branch(path.key, SAMPLER_REFRACTED);
-    path.refractions++;
-    return vec3_mul(filter, trace(tracer, &refracted, &path));
+    struct ray onward = hit_ray(at->hit, at->ray, direction, at->ray->media);
+    struct medium_stack behind;
+    if (transmits) {
+        medium_stack_copy(&behind, at->ray->media);
+        medium_stack_cross(&behind, &at->bsdf->boundary);
+        onward.media = &behind;
+        tracer->refracted_rays++;
+        path.key = sampler_branch(path.key, SAMPLER_REFRACTED);
+        path.refractions++;
+    } else {
+        tracer->reflected_rays++;
+        path.key = sampler_branch(path.key, SAMPLER_REFLECTED);
+        path.reflections++;
+    }
+    return vec3_mul(filter, trace(tracer, &onward, &path));
 }
 
 /* What is seen through the holes of a surface that is only partly there (a picture of leaves): the ray goes on as it
@@ -99,48 +102,32 @@ static struct vec3 follow_hole(struct integrator_state *tracer, const struct hit
     struct path path = path_on(from, share);
     if (is_given_up(tracer, RAY_HOLE, path.holes >= HOLE_LIMIT, vec3_all(share), &path))
         return vec3_all(0);
-    struct ray onward = interface_ray(hit, ray, vec3_negate(hit->view), ray->media);
+    struct ray onward = hit_ray(hit, ray, vec3_negate(hit->view), ray->media);
     tracer->refracted_rays++;
     path.key = sampler_branch(path.key, SAMPLER_HOLE);
     path.holes++;
     return vec3_scale(trace(tracer, &onward, &path), share);
 }
 
-/* A rough surface: the mean over facets of what each reflects and refracts. */
-struct rough {
-    const struct hit *hit;
-    const struct ray *ray;
-    const struct interface *interface;
-    double alpha;
-    int samples;
-};
-
 enum { GLOSSY_SAMPLES = 4 };
 
-static struct vec3 follow_rough(struct integrator_state *tracer, const struct rough *rough, struct vec3 mirror,
-                                struct vec3 refraction, const struct path *path) {
-    const struct hit *hit = rough->hit;
+/* A rough surface: the mean over facets of what each reflects and refracts. */
+static struct vec3 follow_rough(struct integrator_state *tracer, const struct surface_point *at,
+                                const struct bsdf_branch *branches, int count, const struct path *path) {
     bool coarse = path->rough || tracer->job->settings.coarse;
-    uint32_t n = coarse ? 1 : rough->samples ? (uint32_t)rough->samples : GLOSSY_SAMPLES;
+    uint32_t n = coarse ? 1 : at->bsdf->glossy_samples ? (uint32_t)at->bsdf->glossy_samples : GLOSSY_SAMPLES;
     uint64_t key = sampler_branch(path->key, SAMPLER_ROUGH);
     struct sample_set facets = sampler_facets(&tracer->sampler, path->key, key, n);
     struct vec3 sum = {0, 0, 0};
     observe_split(tracer->observer, 1 / ((double)n * (double)n));
     for (uint32_t cell = 0; cell < n * n; cell++) {
-        struct vec3 facet =
-            microfacet_normal(rough->interface->side, hit->view, rough->alpha, sample_set_point(&facets, cell));
+        struct sample2 u = sample_set_point(&facets, cell);
         struct path branch = path_on(path, 1);
         branch.key = sampler_facet(key, cell);
         branch.rough = true;
-        if (!is_black(mirror)) {
-            struct vec3 direction = interface_facet_mirror(rough->interface, facet, hit->view);
-            sum = vec3_add(sum, follow_mirror(tracer, hit, rough->ray, direction, mirror, &branch));
-        }
-        if (!is_black(refraction)) {
-            struct vec3 direction = interface_facet_through(rough->interface, facet, hit->view);
-            struct vec3 light =
-                follow_refraction(tracer, hit, rough->ray, direction, &rough->interface->behind, refraction, &branch);
-            sum = vec3_add(sum, light);
+        for (int i = 0; i < count; i++) {
+            if (branches[i].rough)
+                sum = vec3_add(sum, follow_branch(tracer, at, &branches[i], u, &branch));
         }
     }
     return vec3_scale(sum, 1 / ((double)n * (double)n));
@@ -148,62 +135,42 @@ static struct vec3 follow_rough(struct integrator_state *tracer, const struct ro
 
 /* --- one hit --- */
 
-/* The look's shares of reflection and refraction become final. */
-static struct vec3 shade(struct integrator_state *tracer, const struct ray *ray, const struct hit *hit,
-                         struct surface_look *look, const struct path *path) {
-    const struct settings *settings = &tracer->job->settings;
-    struct interface interface;
-    interface_make(hit, ray->media, look, &interface);
-    bool dark_side = !hit->front && !look->two_sided;
-    struct vec3 normal = look->two_sided && !hit->front ? vec3_negate(look->normal) : look->normal;
-    struct shading shading;
-    material_shading(look, settings->specular, settings->ambient_plain, &shading);
-    observe_surface(tracer->observer, look, &interface, &shading, normal, dark_side);
-    struct vec3 colour = direct_light(tracer, hit, &shading, normal, dark_side, path->key);
-    colour = vec3_add(colour, shading.emission);
-
-    struct vec3 mirror = {0, 0, 0}, refraction = {0, 0, 0};
-    for (int i = 0; i < shading.count; i++) {
-        if (shading.lobes[i].kind == LOBE_MIRROR)
-            mirror = vec3_add(mirror, shading.lobes[i].weight);
-        if (shading.lobes[i].kind == LOBE_REFRACT)
-            refraction = vec3_add(refraction, shading.lobes[i].weight);
+static struct vec3 shade(struct integrator_state *tracer, const struct surface_point *at, const struct path *path) {
+    observe_surface(tracer->observer, at->bsdf);
+    struct vec3 colour = direct_light(tracer, at->hit, at->bsdf, path->key);
+    colour = vec3_add(colour, at->bsdf->emission);
+    struct bsdf_branch branches[BSDF_LOBES];
+    int count = bsdf_branches(at->bsdf, branches);
+    bool rough = false;
+    for (int i = 0; i < count; i++) {
+        if (branches[i].rough)
+            rough = true;
+        else
+            colour = vec3_add(colour, follow_branch(tracer, at, &branches[i], (struct sample2){0, 0}, path));
     }
-    /* Total internal reflection: the refracted share turns back, or is lost. Fresnel's has none left by itself. */
-    if (!interface.passes) {
-        if (settings->use_tir)
-            mirror = vec3_add(mirror, refraction);
-        refraction = vec3_all(0);
-    }
-    if (shading.alpha > 0) {
-        struct rough rough = {hit, ray, &interface, shading.alpha, look->glossy_samples};
-        return vec3_add(colour, follow_rough(tracer, &rough, mirror, refraction, path));
-    }
-    if (!is_black(mirror)) {
-        struct vec3 direction = interface_mirror(&interface, hit->view);
-        colour = vec3_add(colour, follow_mirror(tracer, hit, ray, direction, mirror, path));
-    }
-    if (!is_black(refraction)) {
-        colour = vec3_add(colour,
-                          follow_refraction(tracer, hit, ray, interface.through, &interface.behind, refraction, path));
-    }
-    return colour;
+    return rough ? vec3_add(colour, follow_rough(tracer, at, branches, count, path)) : colour;
 }
 
 static struct vec3 shade_hit(struct integrator_state *tracer, const struct ray *ray, const struct hit *hit,
                              const struct path *path) {
-    struct surface_look look;
+    const struct settings *settings = &tracer->job->settings;
+    const struct material_context context = {.specular = settings->specular,
+                                             .ambient_plain = settings->ambient_plain,
+                                             .total_reflection = settings->use_tir,
+                                             .told = tracer->observer ? observe_material : NULL,
+                                             .told_to = tracer->observer};
+    struct bsdf bsdf;
+    struct surface_point at = {ray, hit, &bsdf};
     tracer->hits++;
-    material_look_told(tracer->job->world->materials[hit->material], hit, &look,
-                       tracer->observer ? observe_material : NULL, tracer->observer);
-    double hole = 1 - look.opacity;
+    material_eval(tracer->job->world->materials[hit->material], hit, ray->media, &context, &bsdf);
+    double hole = 1 - bsdf.opacity;
     if (!(hole > 0))
-        return shade(tracer, ray, hit, &look, path);
+        return shade(tracer, &at, path);
     struct vec3 behind = follow_hole(tracer, hit, ray, hole, path);
     if (hole >= 1)
         return behind;
-    struct path covered = path_on(path, look.opacity);
-    return vec3_add_scaled(behind, shade(tracer, ray, hit, &look, &covered), look.opacity);
+    struct path covered = path_on(path, bsdf.opacity);
+    return vec3_add_scaled(behind, shade(tracer, &at, &covered), bsdf.opacity);
 }
 
 static struct vec3 clamp_light(struct integrator_state *tracer, struct vec3 colour, double limit) {

@@ -2,6 +2,8 @@
  * one primitive. A primitive that stands in several cells is tried once per ray: a small mailbox remembers it. */
 #include "world/world_internal.h"
 
+#include "material/material_eval.h"
+
 #include <string.h>
 
 enum { MAILBOX = 32, SCRATCH_START = 256 };
@@ -204,12 +206,12 @@ static bool any_with_holes(const struct world *world, uint32_t index, const stru
         struct ray ray_object = placed_ray(world, index, &rest);
         struct crossing crossing;
         struct hit hit;
-        struct surface_look look;
+        struct bsdf bsdf;
         if (!world_ask_nearest(world, index, &ray_object, scratch, &crossing))
             return false;
         world_describe(world, ray, index, &crossing, &hit);
-        material_look(world->materials[hit.material], &hit, &look);
-        if (look.opacity >= 0.5)
+        material_eval(world->materials[hit.material], &hit, NULL, NULL, &bsdf);
+        if (bsdf.opacity >= 0.5)
             return true;
         rest.t_min = crossing.t;
     }

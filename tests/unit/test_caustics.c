@@ -530,13 +530,14 @@ TEST(the_map_gives_the_sum_over_all_discs) {
     struct photon_map map;
     busy_scene(&s, 2);
     (void)send(&s, 20000, &map);
-    struct shading shading = {.count = 1, .lobes = {{.kind = LOBE_DIFFUSE, .weight = {1, 1, 1}}}};
+    struct bsdf bsdf = {
+        .count = 1, .lobes = {{.kind = LOBE_DIFFUSE, .weight = {1, 1, 1}}}, .normal = {0, 1, 0}, .lit = {0, 1, 0}};
     struct test_random random = {5};
     int lit = 0;
     for (int i = 0; i < 300; i++) {
         struct hit hit = {.normal = {0, 1, 0}, .normal_geometric = {0, 1, 0}, .front = true, .view = {0, 1, 0}};
         hit.point = vec3_make(test_uniform(&random, -3, 3), 0, test_uniform(&random, -3, 3));
-        struct vec3 light = photon_map_light(&map, &s.world, &hit, &shading, hit.normal);
+        struct vec3 light = photon_map_light(&map, &s.world, &hit, &bsdf);
         double sum = 0;
         for (uint32_t k = 0; k < map.count; k++) {
             struct vec3 d = vec3_sub(photon_place(&map, k), hit.point);

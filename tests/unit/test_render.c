@@ -3,6 +3,7 @@
 #include "tests/stage.h"
 
 #include "base/mem.h"
+#include "material/dielectric.h"
 #include "material/material_inputs.h"
 #include "material/medium_stack.h"
 #include "render/camera.h"
@@ -490,14 +491,14 @@ TEST(overlapping_solids_are_left_wherever_they_stand_in_the_stack) {
 TEST(fresnel_reflectance_at_tabulated_angles) {
     /* Unpolarised reflectance of glass 1.5 in air: Hecht, "Optics", normal 0.04, 45 degrees 0.0502, 60 degrees 0.0892.
      */
-    CHECK_NEAR(shading_fresnel(1, 1 / 1.5), 0.04, 1e-12);
-    CHECK_NEAR(shading_fresnel(cos(pi / 4), 1 / 1.5), 0.050240, 2e-6);
-    CHECK_NEAR(shading_fresnel(0.5, 1 / 1.5), 0.089186, 2e-5);
-    CHECK_NEAR(shading_fresnel(1e-9, 1 / 1.5), 1, 1e-7);
-    CHECK_NEAR(shading_fresnel(cos(50 * pi / 180), 1.5), 1, 0); /* beyond the critical angle of 41.8 degrees */
+    CHECK_NEAR(dielectric_fresnel(1, 1 / 1.5), 0.04, 1e-12);
+    CHECK_NEAR(dielectric_fresnel(cos(pi / 4), 1 / 1.5), 0.050240, 2e-6);
+    CHECK_NEAR(dielectric_fresnel(0.5, 1 / 1.5), 0.089186, 2e-5);
+    CHECK_NEAR(dielectric_fresnel(1e-9, 1 / 1.5), 1, 1e-7);
+    CHECK_NEAR(dielectric_fresnel(cos(50 * pi / 180), 1.5), 1, 0); /* beyond the critical angle of 41.8 degrees */
     /* Brewster's angle: the p part vanishes, what is left is half of the s part. */
     double brewster = atan(1.5), s = (1 - 2.25) / (1 + 2.25);
-    CHECK_NEAR(shading_fresnel(cos(brewster), 1 / 1.5), 0.5 * s * s, 1e-12);
+    CHECK_NEAR(dielectric_fresnel(cos(brewster), 1 / 1.5), 0.5 * s * s, 1e-12);
 }
 
 TEST(total_internal_reflection_is_lost_without_use_tir_and_kept_with_it) {

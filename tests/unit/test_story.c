@@ -34,7 +34,7 @@ static void check_ray(struct tally *tally, const struct story_ray *ray) {
     tally->worst = fmax(tally->worst, difference(whole, ray->brings));
     tally->fogged += ray->veil.x != 0;
     tally->absorbed += ray->left.x < 1 && ray->veil.x == 0;
-    struct vec3 holes = {0, 0, 0}, surface = vec3_add(ray->direct, ray->shading.emission), lights = ray->ambient;
+    struct vec3 holes = {0, 0, 0}, surface = vec3_add(ray->direct, ray->bsdf.emission), lights = ray->ambient;
     for (const struct story_light *light = ray->lights; light; light = light->next) {
         lights = vec3_add(lights, light->colour);
         tally->blocked += light->lit == STORY_LIGHT_BLOCKED;

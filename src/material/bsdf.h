@@ -1,0 +1,124 @@
+/* BSDF: what a surface does with light at one hit, as a short list of lobes. material_eval fills it, integrators read
+ * nothing else of a surface. Directions are unit vectors in world space that point away from the surface. wo is where a
+ * path comes from, on the side of `geometric_side`; wi is where it goes on.
+ *
+ * Lobes are of two sorts. Classic lobes (SPEC 1.2) answer the lights of the scene by a formula, bsdf_classic; traced
+ * lobes show what a ray in their direction meets, and lights are nothing to them. docs/light.md says what f is for
+ * both. */
+#ifndef GRAY_MATERIAL_BSDF_H
+#define GRAY_MATERIAL_BSDF_H
+
+#include "base/list.h"
+#include "material/medium_stack.h"
+#include "math/sampling.h"
+#include "math/vec3.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum bsdf_flags {
+    BSDF_CLASSIC = 1,
+    BSDF_TRACED = 2,
+    BSDF_REFLECTS = 4,
+    BSDF_TRANSMITS = 8,
+    BSDF_DELTA = 16,    /* one direction only: f and pdf are 0 everywhere else */
+    BSDF_LAMBERT = 32,  /* f is the same for all directions */
+    BSDF_EXPONENT = 64, /* it has one */
+};
+
+/* Kind, name in pixel traces, flags. f is weight times: */
+#define LOBES(X)                                                                                                       \
+    X(LOBE_DIFFUSE, "diffuse", BSDF_CLASSIC | BSDF_REFLECTS | BSDF_LAMBERT) /* 1 / pi */                               \
+    X(LOBE_PHONG, "phong", BSDF_CLASSIC | BSDF_REFLECTS | BSDF_EXPONENT)    /* max(0, r.v)^exponent / (pi n.l) */      \
+    X(LOBE_BLINN, "blinn", BSDF_CLASSIC | BSDF_REFLECTS | BSDF_EXPONENT)    /* max(0, n.h)^exponent / (pi n.l) */      \
+    X(LOBE_MIRROR, "mirror", BSDF_TRACED | BSDF_REFLECTS | BSDF_DELTA)                                                 \
+    X(LOBE_REFRACTION, "refract", BSDF_TRACED | BSDF_TRANSMITS | BSDF_DELTA)                                           \
+    X(LOBE_GGX_REFLECTION, "mirror", BSDF_TRACED | BSDF_REFLECTS) /* pdf / |cos|: no energy is lost */                 \
+    X(LOBE_GGX_TRANSMISSION, "refract", BSDF_TRACED | BSDF_TRANSMITS)
+
+enum lobe_kind { LOBES(LIST_MEMBER) };
+enum { LOBE_KINDS = LIST_COUNT(LOBES) };
+
+struct lobe {
+    enum lobe_kind kind;
+    struct vec3 weight;
+    double exponent;
+};
+
+enum { BSDF_LOBES = 4, BSDF_ALL = (1 << BSDF_LOBES) - 1 };
+
+struct bsdf {
+    int count;
+    struct lobe lobes[BSDF_LOBES];
+    /* The shading frame, unit vectors. */
+    struct vec3 normal;               /* on the outer side of the surface */
+    struct vec3 lit;                  /* the same, turned to the viewer where the surface has two sides */
+    struct vec3 side, geometric_side; /* on the ray's side; `side` has an angle below 90 degrees to the view */
+    bool dark;                        /* seen from behind: classic lobes answer no light */
+    struct vec3 albedo;               /* kd, whatever the lobes are */
+    struct vec3 ambient;              /* multiplied with the scene's ambient colour */
+    struct vec3 emission;             /* added as it is */
+    double opacity;                   /* the rest is a hole, through which the ray goes on as it was */
+    /* Traced lobes. */
+    double alpha;       /* width of the facets' slopes; 0: smooth */
+    int glossy_samples; /* N x N rays where it is rough; 0: the default */
+    double eta;         /* index on the ray's side / index behind; 1 where nothing is refracted */
+    double fresnel;     /* the share that is reflected, or negative */
+    bool passes;        /* refracted light gets through the smooth surface; `boundary` holds if anything refracts */
+    bool turns_back;    /* where it does not, its share is reflected; else lost */
+    struct medium_boundary boundary;
+};
+
+/* What travels in the direction that is sampled. RADIANCE: light comes from there, and refraction changes it by the
+ * square of eta (Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, section 5.2). IMPORTANCE:
+ * the power of a photon goes there, which refraction leaves alone; so it does with radiance over n^2, which is what
+ * Whitted's colours are. */
+enum bsdf_mode { BSDF_RADIANCE, BSDF_IMPORTANCE };
+
+const char *lobe_name(enum lobe_kind kind);
+static inline unsigned lobe_flags(enum lobe_kind kind) {
+#define LOBE_FLAGS(kind, name, flags) [kind] = (flags),
+    static const uint8_t flags_of[] = {LOBES(LOBE_FLAGS)};
+#undef LOBE_FLAGS
+    return flags_of[kind];
+}
+
+/* Sets of lobes: bit i is lobes[i]. Here those that have one of the flags. */
+uint32_t bsdf_lobes_with(const struct bsdf *bsdf, unsigned flags);
+
+/* What the classic lobes among `lobes` send to wo of unit light from wi, as SPEC 1.2 has it: pi f |cos|. */
+struct vec3 bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo, struct vec3 wi);
+
+/* f |cos wi| of the lobes that are not delta. */
+struct vec3 bsdf_eval(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, struct vec3 wo, struct vec3 wi);
+/* The density of bsdf_sample's directions per solid angle, delta lobes aside. */
+double bsdf_pdf(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo, struct vec3 wi);
+
+struct bsdf_sample {
+    struct vec3 direction;
+    struct vec3 weight; /* f |cos| / pdf; of delta lobes the limit of that */
+    double pdf;         /* with BSDF_DELTA: the probability of the lobe */
+    unsigned flags;     /* BSDF_REFLECTS or BSDF_TRANSMITS, BSDF_DELTA */
+};
+/* A direction for a place in the unit square, of one of the lobes, drawn in proportion to their weights. False: no
+ * direction, which counts as black (a sample below the surface, a lobe that gives nothing). */
+bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, struct vec3 wo, struct sample2 u,
+                 struct bsdf_sample *out);
+
+/* For integrators that follow traced lobes one by one. A lobe that refracts and cannot joins the mirror. */
+struct bsdf_branch {
+    struct vec3 weight; /* not black */
+    int lobe;
+    bool transmits;
+    bool rough;
+};
+/* The number of branches. */
+int bsdf_branches(const struct bsdf *bsdf, struct bsdf_branch out[BSDF_LOBES]);
+/* A direction of a branch and its weight, mode IMPORTANCE; u matters where it is rough. */
+void bsdf_branch_sample(const struct bsdf *bsdf, const struct bsdf_branch *branch, struct vec3 wo, struct sample2 u,
+                        struct vec3 *direction, struct vec3 *weight);
+
+/* The refracted direction of the smooth surface. False: total reflection. */
+bool bsdf_refract(const struct bsdf *bsdf, struct vec3 wo, struct vec3 *out);
+
+#endif

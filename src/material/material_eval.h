@@ -1,0 +1,22 @@
+/* From a hit to its surface: the inputs of the material (material_look), the side it is seen from, the boundary between
+ * two media with Fresnel's shares, and the lobes of all this. */
+#ifndef GRAY_MATERIAL_MATERIAL_EVAL_H
+#define GRAY_MATERIAL_MATERIAL_EVAL_H
+
+#include "material/bsdf.h"
+#include "material/material.h"
+
+/* What the picture says about all surfaces, and who listens. All zero: the defaults. */
+struct material_context {
+    enum specular_kind specular;
+    bool ambient_plain;    /* the ambient colour is not multiplied by kd */
+    bool total_reflection; /* what cannot be refracted is reflected; else it is lost */
+    material_told *told;   /* hears of every link of the material, or NULL */
+    void *told_to;
+};
+
+/* media: those that the ray is in; NULL: none. A surface that is all hole (opacity 0) has no lobes. */
+void material_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media,
+                   const struct material_context *context, struct bsdf *out);
+
+#endif
