@@ -1,0 +1,383 @@
+/* BSDFs: every lobe by itself, several together, and which material makes which lobes. Directions are binned on the
+ * sphere in cells of equal solid angle about the geometric normal, so that the surface is a border of cells. */
+#include "tests/harness.h"
+
+#include "material/dielectric.h"
+#include "material/material_eval.h"
+#include "material/material_inputs.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* One surface from which light goes to wo. */
+struct view {
+    struct bsdf bsdf;
+    struct vec3 wo;
+};
+
+static struct vec3 direction_at(double degrees, double turn) {
+    double angle = degrees * pi / 180;
+    return vec3_make(sin(angle) * cos(turn), sin(angle) * sin(turn), cos(angle));
+}
+
+/* A surface with normal +z; its shading normal leans by an angle, and wo stands at another one. */
+static struct view view_make(double lean, double degrees, double alpha, double eta) {
+    struct view view = {.wo = direction_at(degrees, 0.7)};
+    struct bsdf *bsdf = &view.bsdf;
+    bsdf->geometric_side = vec3_make(0, 0, 1);
+    bsdf->normal = bsdf->lit = bsdf->side = direction_at(lean, 2);
+    if (!(vec3_dot(bsdf->side, view.wo) > 0))
+        bsdf->side = bsdf->geometric_side;
+    bsdf->opacity = 1;
+    bsdf->alpha = alpha;
+    bsdf->eta = eta;
+    bsdf->fresnel = -1;
+    bsdf->turns_back = true;
+    struct vec3 through;
+    bsdf->passes = bsdf_refract(bsdf, view.wo, &through);
+    return view;
+}
+
+static void add(struct view *view, enum lobe_kind kind, struct vec3 weight, double exponent) {
+    view->bsdf.lobes[view->bsdf.count++] = (struct lobe){kind, weight, exponent};
+}
+
+static struct sample2 place_of(uint64_t key, uint32_t i) {
+    uint64_t bits = random_combine(key, i);
+    return (struct sample2){random_unit(bits), random_unit(random_combine(bits, 1))};
+}
+
+/* --- sampling against density --- */
+
+enum { ROWS = 16, COLUMNS = 24, CELLS = ROWS * COLUMNS, SAMPLES = 1000000 };
+
+static int cell_of(struct vec3 direction) {
+    double row = (direction.z + 1) / 2 * ROWS, column = (atan2(direction.y, direction.x) / (2 * pi) + 0.5) * COLUMNS;
+    int r = row >= ROWS ? ROWS - 1 : row > 0 ? (int)row : 0;
+    int c = column >= COLUMNS ? COLUMNS - 1 : column > 0 ? (int)column : 0;
+    return r * COLUMNS + c;
+}
+
+/* Of part (i, j) of n x n parts of the cell. */
+static struct vec3 direction_in(int cell, int i, int j, int n) {
+    double z = -1 + 2 * (cell / COLUMNS + (i + 0.5) / n) / ROWS;
+    double turn = 2 * pi * ((cell % COLUMNS + (j + 0.5) / n) / COLUMNS - 0.5), across = sqrt(1 - z * z);
+    return vec3_make(across * cos(turn), across * sin(turn), z);
+}
+
+/* The integral of the density over the cell: finer until two steps agree. */
+static double integral_over(const struct view *view, int cell) {
+    double before = -1, solid_angle = 4 * pi / CELLS;
+    for (int n = 4;; n *= 2) {
+        double sum = 0;
+        for (int k = 0; k < n * n; k++)
+            sum += bsdf_pdf(&view->bsdf, BSDF_ALL, view->wo, direction_in(cell, k / n, k % n, n));
+        sum *= solid_angle / (n * n);
+        if (fabs(sum - before) <= 2e-4 * sum + 1e-8 || n == 128)
+            return sum;
+        before = sum;
+    }
+}
+
+struct tally {
+    double counts[CELLS], expected[CELLS];
+    double lost, delta; /* shares */
+};
+
+/* Chi-square of the counts against the integrals; cells with few expected samples are joined. */
+static void check_distribution(const char *what, const struct view *view) {
+    struct tally t = {.lost = 0};
+    for (uint32_t i = 0; i < SAMPLES; i++) {
+        struct bsdf_sample sample;
+        if (!bsdf_sample(&view->bsdf, BSDF_ALL, BSDF_IMPORTANCE, view->wo, place_of(17, i), &sample))
+            t.lost += 1;
+        else if (sample.flags & BSDF_DELTA)
+            t.delta += 1;
+        else
+            t.counts[cell_of(sample.direction)] += 1;
+    }
+    double integral = 0, chi2 = 0, few = 0, few_expected = 0;
+    int degrees = -1;
+    for (int cell = 0; cell < CELLS; cell++) {
+        double share = integral_over(view, cell), expected = share * SAMPLES;
+        integral += share;
+        if (expected < 20) {
+            few += t.counts[cell];
+            few_expected += expected;
+            continue;
+        }
+        chi2 += (t.counts[cell] - expected) * (t.counts[cell] - expected) / expected;
+        degrees++;
+    }
+    if (few_expected >= 5) {
+        chi2 += (few - few_expected) * (few - few_expected) / few_expected;
+        degrees++;
+    } else if (few > 30)
+        test_fail(__FILE__, __LINE__, "%s: %g samples where none are expected", what, few);
+    double sum = integral + (t.lost + t.delta) / SAMPLES;
+    if (!(fabs(sum - 1) < 4e-3))
+        test_fail(__FILE__, __LINE__, "%s: density, lost and single directions are %.5f together", what, sum);
+    /* A normal approximation (Wilson and Hilferty): a right density is refused once in 10^5. */
+    double n = degrees > 0 ? degrees : 1, z = (cbrt(chi2 / n) - (1 - 2 / (9 * n))) / sqrt(2 / (9 * n));
+    if (!(z < 4.3))
+        test_fail(__FILE__, __LINE__, "%s: chi-square %.1f for %d degrees of freedom", what, chi2, degrees);
+}
+
+/* Views that differ in what makes sampling hard. */
+struct situation {
+    double lean, degrees, alpha, eta, exponent;
+};
+static const struct situation situations[] = {
+    {0, 0, 0.5, 1 / 1.5, 1},  {0, 50, 0.3, 1 / 1.5, 20}, {25, 60, 0.6, 1.5, 5},
+    {0, 82, 0.8, 1 / 1.3, 0}, {40, 30, 1, 1.5, 40},
+};
+enum { SITUATIONS = sizeof situations / sizeof *situations };
+
+static void check_kind(enum lobe_kind kind, int k) {
+    const struct situation *s = &situations[k];
+    struct view view = view_make(s->lean, s->degrees, s->alpha, s->eta);
+    char what[64];
+    (void)snprintf(what, sizeof what, "%s, situation %d", lobe_name(kind), k);
+    add(&view, kind, vec3_make(0.7, 0.5, 0.2), s->exponent);
+    check_distribution(what, &view);
+}
+
+static void check_all_kinds(int k) {
+    for (int kind = 0; kind < LOBE_KINDS; kind++)
+        if (!(lobe_flags((enum lobe_kind)kind) & BSDF_DELTA))
+            check_kind((enum lobe_kind)kind, k);
+}
+
+TEST(every_lobe_is_sampled_by_its_density_head_on) {
+    check_all_kinds(0);
+}
+TEST(every_lobe_is_sampled_by_its_density_at_an_angle) {
+    check_all_kinds(1);
+}
+TEST(every_lobe_is_sampled_by_its_density_with_a_leaning_normal_in_a_dense_medium) {
+    check_all_kinds(2);
+}
+TEST(every_lobe_is_sampled_by_its_density_at_grazing_angles) {
+    check_all_kinds(3);
+}
+TEST(every_lobe_is_sampled_by_its_density_about_a_normal_that_leans_far) {
+    check_all_kinds(4);
+}
+
+TEST(several_lobes_are_sampled_by_the_sum_of_their_densities) {
+    struct view view = view_make(10, 40, 0.5, 1 / 1.5);
+    add(&view, LOBE_DIFFUSE, vec3_make(0.5, 0.1, 0.2), 0);
+    add(&view, LOBE_PHONG, vec3_all(0.3), 12);
+    add(&view, LOBE_GGX_REFLECTION, vec3_all(0.1), 0);
+    add(&view, LOBE_GGX_TRANSMISSION, vec3_all(0.6), 0);
+    check_distribution("four lobes", &view);
+    view.bsdf.lobes[3].kind = LOBE_REFRACTION;
+    view.bsdf.lobes[2].kind = LOBE_MIRROR;
+    check_distribution("two of four lobes with one direction", &view);
+}
+
+/* --- weights --- */
+
+TEST(the_weight_of_a_sample_is_f_times_cosine_over_density) {
+    for (int kind = 0; kind < LOBE_KINDS; kind++) {
+        for (int k = 0; k < SITUATIONS; k++) {
+            const struct situation *s = &situations[k];
+            struct view view = view_make(s->lean, s->degrees, s->alpha, s->eta);
+            struct vec3 weight = vec3_make(0.7, 0.5, 0.2);
+            add(&view, (enum lobe_kind)kind, weight, s->exponent);
+            for (int mode = 0; mode < 2; mode++) {
+                for (uint32_t i = 0; i < 2000; i++) {
+                    struct bsdf_sample sample;
+                    if (!bsdf_sample(&view.bsdf, BSDF_ALL, (enum bsdf_mode)mode, view.wo, place_of(3, i), &sample))
+                        continue;
+                    CHECK_NEAR(vec3_length(sample.direction), 1, 1e-9);
+                    bool through = vec3_dot(sample.direction, view.bsdf.geometric_side) < 0;
+                    if (lobe_flags((enum lobe_kind)kind) & BSDF_TRACED)
+                        CHECK(through == ((sample.flags & BSDF_TRANSMITS) != 0));
+                    double n2 = mode == BSDF_RADIANCE && (sample.flags & BSDF_TRANSMITS) ? s->eta * s->eta : 1;
+                    if (sample.flags & BSDF_DELTA) {
+                        CHECK_NEAR(sample.pdf, 1, 0);
+                        CHECK_NEAR(sample.weight.x, weight.x * n2, 1e-12);
+                        continue;
+                    }
+                    struct vec3 f = bsdf_eval(&view.bsdf, BSDF_ALL, (enum bsdf_mode)mode, view.wo, sample.direction);
+                    double pdf = bsdf_pdf(&view.bsdf, BSDF_ALL, view.wo, sample.direction);
+                    CHECK_NEAR(sample.pdf, pdf, 1e-12 * pdf);
+                    CHECK_NEAR(sample.weight.x * pdf, f.x, 1e-9 * f.x);
+                    CHECK_NEAR(sample.weight.z * pdf, f.z, 1e-9 * f.z);
+                    /* What rays are followed for has the weight of the lobe itself. */
+                    if (lobe_flags((enum lobe_kind)kind) & (BSDF_TRACED | BSDF_LAMBERT))
+                        CHECK_NEAR(sample.weight.y, weight.y * n2, 1e-9);
+                }
+            }
+        }
+    }
+}
+
+TEST(classic_lobes_answer_lights_by_pi_times_f_times_cosine) {
+    struct view view = view_make(20, 35, 0, 1);
+    add(&view, LOBE_DIFFUSE, vec3_make(0.5, 0.1, 0.2), 0);
+    add(&view, LOBE_PHONG, vec3_make(0.2, 0.3, 0.4), 7);
+    add(&view, LOBE_MIRROR, vec3_all(0.5), 0);
+    struct vec3 n = view.bsdf.lit;
+    for (uint32_t i = 0; i < 1000; i++) {
+        struct vec3 l = direction_in((int)(i % CELLS), 0, (int)(i % 3), 3), r = dielectric_mirror(n, l);
+        double n_l = vec3_dot(n, l), r_v = vec3_dot(r, view.wo), highlight = r_v > 0 ? pow(r_v, 7) : 0;
+        double red = n_l > 0 ? 0.5 * n_l + 0.2 * highlight : 0, blue = n_l > 0 ? 0.2 * n_l + 0.4 * highlight : 0;
+        struct vec3 light = bsdf_classic(&view.bsdf, BSDF_ALL, view.wo, l);
+        CHECK_NEAR(light.x, red, 1e-14);
+        CHECK_NEAR(light.z, blue, 1e-14);
+        struct vec3 f = bsdf_eval(&view.bsdf, BSDF_ALL, BSDF_RADIANCE, view.wo, l);
+        CHECK_NEAR(f.x * pi, red, 1e-14);
+        CHECK_NEAR(bsdf_classic(&view.bsdf, 1, view.wo, l).z, n_l > 0 ? 0.2 * n_l : 0, 1e-15);
+    }
+    view.bsdf.dark = true;
+    CHECK_NEAR(bsdf_eval(&view.bsdf, BSDF_ALL, BSDF_RADIANCE, view.wo, n).x, 0, 0);
+}
+
+/* --- reciprocity --- */
+
+TEST(the_diffuse_lobe_is_reciprocal) {
+    struct view view = view_make(0, 50, 0, 1);
+    add(&view, LOBE_DIFFUSE, vec3_make(0.5, 0.1, 0.2), 0);
+    for (uint32_t i = 0; i < 200; i++) {
+        struct vec3 a = direction_at(89 * place_of(1, i).x, 6 * place_of(1, i).y);
+        struct vec3 b = direction_at(89 * place_of(2, i).x, 6 * place_of(2, i).y);
+        double ab = bsdf_eval(&view.bsdf, BSDF_ALL, BSDF_RADIANCE, a, b).x / b.z;
+        double ba = bsdf_eval(&view.bsdf, BSDF_ALL, BSDF_RADIANCE, b, a).x / a.z;
+        CHECK_NEAR(ab, ba, 1e-14);
+        CHECK_NEAR(ab, 0.5 / pi, 1e-14);
+    }
+}
+
+/* --- materials --- */
+
+/* Seen from outside (or inside) at an angle to the normal +z. */
+static struct hit hit_at(double degrees, bool front) {
+    struct hit hit = {.view = direction_at(degrees, 0.3), .front = front, .placed = 4};
+    hit.normal = hit.normal_geometric = vec3_make(0, 0, 1);
+    if (!front)
+        hit.view.z = -hit.view.z;
+    return hit;
+}
+
+static struct material glass_of(double ior) {
+    struct material base;
+    material_derive(&base, MATERIAL_PHONG, NULL);
+    base.phong.ks = vec3_all(1);
+    base.phong.ior = ior;
+    base.phong.has_ior = true;
+    base.phong.reflect = 0.25;
+    base.phong.refract = 0.75;
+    return base;
+}
+
+TEST(smooth_boundaries_send_light_where_snell_says_with_the_square_of_the_index) {
+    const struct material_context tir = {.total_reflection = true};
+    struct material glass = glass_of(1.5);
+    struct medium_stack inside = {.count = 0};
+    medium_stack_enter(&inside, &(struct medium){.placed = 4, .ior = 1.5});
+    for (double degrees = 1; degrees < 90; degrees += 4) {
+        for (int front = 0; front < 2; front++) {
+            struct hit hit = hit_at(degrees, front);
+            struct bsdf bsdf;
+            struct bsdf_sample sample;
+            struct bsdf_branch branches[BSDF_LOBES];
+            material_eval(&glass, &hit, front ? NULL : &inside, &tir, &bsdf);
+            double eta = front ? 1 / 1.5 : 1.5, sine = eta * sin(degrees * pi / 180), up = front ? 1 : -1;
+            CHECK_NEAR(bsdf.eta, eta, 1e-15);
+            CHECK_EQ_INT(bsdf.passes, sine < 1);
+            CHECK_EQ_INT(bsdf_branches(&bsdf, branches), sine < 1 ? 2 : 1);
+            CHECK_NEAR(branches[0].weight.x, sine < 1 ? 0.25 : 1, 0);
+            uint32_t mirror = bsdf_lobes_with(&bsdf, BSDF_REFLECTS) & bsdf_lobes_with(&bsdf, BSDF_TRACED);
+            CHECK(bsdf_sample(&bsdf, mirror, BSDF_RADIANCE, hit.view, (struct sample2){0, 0}, &sample));
+            CHECK(sample.flags == (BSDF_REFLECTS | BSDF_DELTA));
+            CHECK_NEAR(sample.direction.z, hit.view.z, 1e-15);
+            CHECK_NEAR(sample.direction.x, -hit.view.x, 1e-15);
+            CHECK_NEAR(sample.weight.x, 0.25, 0);
+            uint32_t refraction = bsdf_lobes_with(&bsdf, BSDF_TRANSMITS);
+            CHECK(bsdf_sample(&bsdf, refraction, BSDF_RADIANCE, hit.view, (struct sample2){0, 0}, &sample));
+            CHECK_NEAR(sample.direction.z * up, sine < 1 ? -sqrt(1 - sine * sine) : hit.view.z * up, 1e-15);
+            CHECK_NEAR(sample.weight.x, sine < 1 ? 0.75 * eta * eta : 0.75, 1e-15);
+            CHECK(bsdf_sample(&bsdf, refraction, BSDF_IMPORTANCE, hit.view, (struct sample2){0, 0}, &sample));
+            CHECK_NEAR(sample.weight.x, 0.75, 0);
+        }
+    }
+}
+
+/* There and back: the direction and Fresnel's share are the same. The weights are eta^2 times that share, with eta of
+ * either way: f / n^2 is the same (Veach 1997, equation 5.14), and a beam is wider in the thin medium by n^2. */
+TEST(smooth_refraction_is_reciprocal_with_the_square_of_the_index) {
+    struct material base = glass_of(1.5), glass;
+    material_derive(&glass, MATERIAL_FRESNEL, &base);
+    struct medium_stack inside = {.count = 0};
+    medium_stack_enter(&inside, &(struct medium){.placed = 4, .ior = 1.5});
+    for (double degrees = 2; degrees < 88; degrees += 5) {
+        struct hit there = hit_at(degrees, true), back = there;
+        struct bsdf bsdf;
+        struct bsdf_sample in, out;
+        struct sample2 u = {0, 0};
+        material_eval(&glass, &there, NULL, NULL, &bsdf);
+        CHECK(bsdf_sample(&bsdf, bsdf_lobes_with(&bsdf, BSDF_TRANSMITS), BSDF_RADIANCE, there.view, u, &in));
+        double reflected = bsdf.fresnel;
+        back.view = in.direction;
+        back.front = false;
+        material_eval(&glass, &back, &inside, NULL, &bsdf);
+        CHECK(bsdf_sample(&bsdf, bsdf_lobes_with(&bsdf, BSDF_TRANSMITS), BSDF_RADIANCE, back.view, u, &out));
+        CHECK_NEAR(vec3_length(vec3_sub(out.direction, there.view)), 0, 1e-12);
+        CHECK_NEAR(bsdf.fresnel, reflected, 1e-12);
+        CHECK_NEAR(in.weight.x * 1.5 * 1.5, 1 - reflected, 1e-12);
+        CHECK_NEAR(out.weight.x / (1.5 * 1.5), 1 - reflected, 1e-12);
+    }
+}
+
+TEST(what_is_reflected_totally_joins_the_mirror_or_is_lost) {
+    struct material glass = glass_of(1.5);
+    struct medium_stack inside = {.count = 0};
+    medium_stack_enter(&inside, &(struct medium){.placed = 4, .ior = 1.5});
+    struct hit hit = hit_at(60, false);
+    for (int rough = 0; rough < 2; rough++) {
+        for (int total = 0; total < 2; total++) {
+            const struct material_context context = {.total_reflection = total};
+            struct bsdf bsdf;
+            struct bsdf_branch branches[BSDF_LOBES];
+            struct bsdf_sample sample;
+            glass.phong.roughness = rough * 0.5;
+            material_eval(&glass, &hit, &inside, &context, &bsdf);
+            CHECK(!bsdf.passes);
+            CHECK_EQ_INT(bsdf_branches(&bsdf, branches), 1);
+            CHECK(!branches[0].transmits && branches[0].rough == rough);
+            CHECK_NEAR(branches[0].weight.y, total ? 1 : 0.25, 0);
+            bool sampled = bsdf_sample(&bsdf, bsdf_lobes_with(&bsdf, BSDF_TRANSMITS), BSDF_RADIANCE, hit.view,
+                                       (struct sample2){0.3, 0.6}, &sample);
+            CHECK(sampled == (total == 1));
+            if (sampled)
+                CHECK(sample.direction.z < 0 && (sample.flags & BSDF_REFLECTS));
+        }
+    }
+}
+
+TEST(every_kind_of_lobe_is_made_by_some_material) {
+    int made[LOBE_KINDS] = {0};
+    for (int i = 0; i < 64; i++) {
+        struct material base = glass_of(1.5), over;
+        struct hit hit = hit_at(30, true);
+        struct bsdf bsdf;
+        base.phong.kd = vec3_all(0.5);
+        base.phong.shininess = 10;
+        base.phong.reflect = i & 1 ? 0.5 : 0;
+        base.phong.refract = i & 2 ? 0.5 : 0;
+        base.phong.roughness = i & 4 ? 0.5 : 0;
+        base.phong.highlight = i & 8 ? HIGHLIGHT_BLINN : HIGHLIGHT_PHONG;
+        base.phong.unlit = i & 16;
+        material_derive(&over, MATERIAL_FRESNEL, &base);
+        material_eval(i & 32 ? &over : &base, &hit, NULL, NULL, &bsdf);
+        for (int k = 0; k < bsdf.count; k++)
+            made[bsdf.lobes[k].kind]++;
+    }
+    for (int kind = 0; kind < LOBE_KINDS; kind++)
+        if (made[kind] == 0)
+            test_fail(__FILE__, __LINE__, "no material makes lobe %d (%s)", kind, lobe_name((enum lobe_kind)kind));
+}
