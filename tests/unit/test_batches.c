@@ -1,0 +1,159 @@
+/* Batches of rays beside single ones, to the bit: over a scene with every kind of shape at rest, moving, in instances,
+ * combined, clipped and with holes, through every accelerator. */
+#include "tests/harness.h"
+#include "tests/stage.h"
+#include "tests/unit/script_host.h"
+#include "world/path.h"
+
+#include <string.h>
+
+static const char scene[] =
+    "local paint = gr.material({0.5, 0.5, 0.5}, {0, 0, 0}, 1)\n"
+    "local lace = gr.image_material{material = paint, image = 'holes.pfm', channel = 'opacity'}\n"
+    "local tetra = {verts = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},\n"
+    "  faces = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}, uvs = {{0, 0}, {1, 0}, {0, 1}, {1, 1}}}\n"
+    "local function all(paint)\n"
+    "  return {gr.sphere(paint), gr.cube(paint), gr.cylinder(paint), gr.cone(paint), gr.torus(paint, 0.8, 0.2),\n"
+    "    gr.ellipsoid{material = paint, radii = {1, 0.5, 0.7}}, gr.paraboloid(paint), gr.hyperboloid(paint),\n"
+    "    gr.quadric{material = paint, xx = 1, yy = 2, zz = 1, constant = -1}, gr.superellipsoid(paint),\n"
+    "    gr.rectangle(paint, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}), gr.disc(paint),\n"
+    "    gr.lathe(paint, {{0, 0}, {1, 0}, {1, 1}, {0, 2}}, 'catmull-rom'),\n"
+    "    gr.prism{material = paint, outline = {{0, 0}, {3, 0}, {0, 3}}, holes = {{{1, 1}, {1.5, 1}, {1, 1.5}}}, to = "
+    "2},\n"
+    "    gr.sweep(paint, {{0, 0, 0}, {1, 1, 0}, {2, 0, 1}}, {0.1, 0.2, 0.1}), gr.height_field(paint, {{0, 1, 0}, {1, "
+    "0, 1}}),\n"
+    "    gr.blob(paint, {{0, 0, 0, 1}}, {{0, 0, 0, 1, 0, 0, 0.5, 2}}, 0.4),\n"
+    "    gr.curve(paint, {{0, 0, 0}, {1, 1, 0}, {2, 0, 1}, {1, 0, 0}}, 0.1, 'b-spline'),\n"
+    "    gr.mesh{material = paint, verts = tetra.verts, faces = tetra.faces, uvs = tetra.uvs},\n"
+    "    gr.mesh{material = paint, verts = tetra.verts, faces = {tetra.faces[1], tetra.faces[4]}, uvs = tetra.uvs, "
+    "cull = "
+    "'back'},\n"
+    "    gr.difference('solid', gr.sphere(paint), gr.cube(paint)),\n"
+    "    gr.clipped_by(gr.sphere(paint), gr.cube(paint))}\n"
+    "end\n"
+    "local root, number = gr.node('root'), 0\n"
+    "local function put(node)\n"
+    "  number = number + 1\n"
+    "  node:rotate('x', 37 * number):rotate('y', 61 * number)\n"
+    "  node:translate((number * 7) % 11 - 5, (number * 5) % 13 - 6, (number * 3) % 7 - 3)\n"
+    "  root:add_child(node)\n"
+    "end\n"
+    "for k = 1, 3 do for _, shape in ipairs(all(paint)) do\n"
+    "  local node = gr.node('at rest') node:add_child(shape) put(node)\n"
+    "end end\n"
+    "for _, shape in ipairs(all(lace)) do put(shape) end\n"
+    "for _, shape in ipairs(all(paint)) do local node = gr.node('moves') node:add_child(shape) put(node) "
+    "node:velocity(1, 2, 0) "
+    "end\n"
+    "for _, shape in ipairs(all(paint)) do\n"
+    "  put(gr.instances{of = shape, at = {{0, 1, 2}, {2, 0, 1}}, turn = {10, 80}, axis = 'z', size = 0.6})\n"
+    "end\n"
+    "gr.render{node = root, file = 'x.png', width = 8, height = 8, eye = {0, 0, 20}, shutter = {0, 1}}\n";
+
+enum { RAYS = 3000 };
+static const enum accel_kind accels[] = {ACCEL_AUTO, ACCEL_GRID, ACCEL_BVH, ACCEL_KDTREE, ACCEL_NONE};
+
+/* Rays as bounces make them, mixed with fans of one origin and rays in odd places. */
+static void make_rays(struct test_random *random, const struct world *world, struct ray *rays) {
+    uint32_t fan = 0;
+    for (uint32_t i = 0; i < RAYS; i++) {
+        struct ray *ray = &rays[i];
+        if (fan == 0) {
+            struct vec3 at = {test_uniform(random, -9, 9), test_uniform(random, -9, 9), test_uniform(random, -9, 9)};
+            double kind = test_uniform(random, 0, 1);
+            *ray = (struct ray){.origin = at, .t_max = INFINITY};
+            ray->time = test_uniform(random, 0, 1);
+            ray->t_min = kind < 0.2 ? test_uniform(random, 0, 2) : 0;
+            fan = kind < 0.85 ? 1 : 1 + (uint32_t)test_uniform(random, 0, 90);
+        } else {
+            *ray = rays[i - 1];
+        }
+        fan--;
+        ray->direction =
+            vec3_make(test_uniform(random, -1, 1), test_uniform(random, -1, 1), test_uniform(random, -1, 1));
+        if (test_uniform(random, 0, 1) < 0.1)
+            ray->direction.y = 0;
+        ray->t_max = test_uniform(random, 0, 1) < 0.3 ? test_uniform(random, 0, 12) : INFINITY;
+        ray->passes = test_uniform(random, 0, 1) < 0.1 ? 1 + (uint32_t)test_uniform(random, 0, world->placed_count) : 0;
+        ray->footprint = (struct footprint){test_uniform(random, 0, 0.1), 0.01};
+    }
+}
+
+/* In batches of any length, none among them, so that they begin and end anywhere. */
+static void check_batches(const struct world *world, const char *what) {
+    static struct ray rays[RAYS];
+    static struct hit hits[RAYS], alone;
+    static bool met[RAYS];
+    struct test_random random = {world->accel.kind + UINT64_C(1)};
+    struct world_scratch scratch;
+    uint32_t wrong = 0, found = 0, blocked = 0;
+    make_rays(&random, world, rays);
+    CHECK(world_scratch_init(&scratch, world));
+    memset(hits, 0, sizeof hits);
+    for (uint32_t first = 0, count; first < RAYS; first += count) {
+        count = (uint32_t)test_uniform(&random, 0, first % 3 ? 40 : 900);
+        count = count > RAYS - first ? RAYS - first : count;
+        world_nearest_batch(world, rays + first, count, &scratch, hits + first);
+        world_any_batch(world, rays + first, count, &scratch, met + first);
+    }
+    for (uint32_t i = 0; i < RAYS; i++) {
+        memset(&alone, 0, sizeof alone);
+        bool hit = world_nearest(world, &rays[i], &scratch, &alone);
+        bool same = hit == (hits[i].placed != WORLD_NOTHING) && world_any(world, &rays[i], &scratch) == met[i];
+        found += hit;
+        blocked += met[i];
+        wrong += !same || (hit && memcmp(&alone, &hits[i], sizeof alone) != 0);
+    }
+    if (wrong > 0)
+        test_fail(__FILE__, __LINE__, "%s: %u of %d rays differ from the same rays alone", what, wrong, RAYS);
+    if (found < RAYS / 10 || blocked < RAYS / 10 || found == RAYS)
+        test_fail(__FILE__, __LINE__, "%s: %u rays meet something, %u are stopped", what, found, blocked);
+    world_scratch_destroy(&scratch);
+}
+
+static void hear_of_scene(void *context, const char *text) {
+    (void)context, (void)text;
+}
+
+static void check_scene(struct listener *listener, const struct render_request *request) {
+    bool seen[SHAPE_KIND_COUNT] = {false};
+    char warning[256];
+    struct pool *pool = pool_create(1, warning);
+    (void)listener;
+    CHECK(pool != NULL);
+    for (size_t k = 0; k < sizeof accels / sizeof accels[0]; k++) {
+        struct world world = {0};
+        struct arena arena = {0};
+        struct error error = {0};
+        char what[32];
+        if (world_build(&world, &arena, request->scene, request->root, request->lights, request->light_count,
+                        &request->sky, request->settings.shutter, accels[k], pool, hear_of_scene, NULL, &error)) {
+            for (uint32_t i = 0; i < world.placed_count; i++)
+                seen[placed_shape(&world, i)->kind] = true;
+            (void)snprintf(what, sizeof what, "accelerator %d", (int)accels[k]);
+            check_batches(&world, what);
+            world_destroy(&world);
+        } else {
+            test_fail(__FILE__, __LINE__, "%s", error.text);
+        }
+        arena_destroy(&arena);
+    }
+    pool_destroy(pool);
+    for (int kind = 0; kind < SHAPE_KIND_COUNT; kind++)
+        if (!seen[kind])
+            test_fail(__FILE__, __LINE__, "the scene of this test has no %s", shape_kind_name((enum shape_kind)kind));
+}
+
+TEST(batches_of_rays_meet_what_single_rays_meet_with_every_shape_and_accelerator) {
+    static struct listener listener = {.seen = check_scene};
+    static const float holes[12] = {0, 0, 0, 1, 1, 1, 0.7F, 0.7F, 0.7F, 0.25F, 0.25F, 0.25F};
+    char path[600], bytes[64];
+    struct error error = {0};
+    int head = snprintf(bytes, sizeof bytes, "PF\n2 2\n-1.0\n");
+    memcpy(bytes + head, holes, 48);
+    (void)snprintf(path, sizeof path, "%s/holes.pfm", test_folder());
+    test_write_file(path, bytes, (size_t)head + 48);
+    if (!listen_to_text(&listener, scene, NULL, &error))
+        test_fail(__FILE__, __LINE__, "%s", error.text);
+    CHECK_EQ_INT(listener.renders, 1);
+}
