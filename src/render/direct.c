@@ -22,9 +22,8 @@ static bool is_free(struct integrator_state *tracer, const struct hit *hit, stru
                          .passes = hit_passes(hit, direction)};
     tracer->shadow_rays++;
     bool free = !world_any(tracer->job->world, &shadow, tracer->scratch);
-    bool known = !free && tracer->job->world->accel.kind != ACCEL_NONE;
-    observe_shadow_rays(tracer->observer, 1, free,
-                        known ? tracer->scratch->blockers[tracer->scratch->light] : OBSERVER_NO_BLOCKER);
+    uint32_t blocker = world_blocker(tracer->scratch);
+    observe_shadow_rays(tracer->observer, 1, free, blocker == WORLD_NOTHING ? OBSERVER_NO_BLOCKER : blocker);
     return free;
 }
 

@@ -228,7 +228,7 @@ static struct shape shape_of(enum added_kind kind) {
 }
 
 /* The scene's own numbers are not used up, so that later nodes keep theirs. */
-static struct node *make_node(struct laying *l, struct node *source) {
+static bool make_node(struct laying *l, struct node *source, struct added_node *made) {
     const struct change *change = l->change;
     uint32_t node_count = l->scene->node_count, material_count = l->scene->material_count;
     enum node_kind kind = source ? NODE_GROUP : NODE_GEOMETRY;
@@ -237,15 +237,17 @@ static struct node *make_node(struct laying *l, struct node *source) {
     l->scene->node_count = node_count;
     l->scene->material_count = material_count;
     if (!node || (!source && !material))
-        return NULL;
+        return false;
     node->serial = UINT32_MAX - change->number;
+    made->node = node;
+    made->material = material;
     if (source)
-        return node_add_child(l->scene, node, source, l->error) ? node : NULL;
+        return node_add_child(l->scene, node, source, l->error);
     material->phong = added_material(three(change->numbers)).phong;
     material->serial = UINT32_MAX - change->number;
     node->material = material;
     node->shape = shape_of(change->added);
-    return node;
+    return true;
 }
 
 /* One that was made before is used again: somebody who drags things about lays changes over many times a second. */
@@ -262,13 +264,12 @@ static struct node *new_node(struct laying *l, struct node *source) {
         }
         *made = (struct added_node){
             .number = change->number, .kind = (int)change->added, .source = source, .next = l->scene->added};
-        made->node = make_node(l, source);
-        if (!made->node)
+        if (!make_node(l, source, made))
             return NULL;
         l->scene->added = made;
     }
-    if (!source)
-        ((struct material *)(uintptr_t)made->node->material)->phong.kd = three(change->numbers);
+    if (made->material)
+        made->material->phong.kd = three(change->numbers);
     return made->node;
 }
 
@@ -312,23 +313,22 @@ static const struct material plain = {
     .kind = MATERIAL_PHONG, .depth = 1, .phong = {.kd = {0.5, 0.5, 0.5}, .shininess = 1, .ior = 1}};
 
 /* A chain of as many links, the base a material of the scene. */
-static struct material *copy_links(struct laying *l, const struct material *like) {
-    uint32_t material_count = l->scene->material_count;
-    struct material *first = NULL, *above = NULL;
-    for (const struct material *link = like; link; link = link->base) {
+static bool copy_links(struct laying *l, const struct material *like, struct own_material *own) {
+    uint32_t material_count = l->scene->material_count, count = 0;
+    for (const struct material *link = like; link; link = link->base)
+        count++;
+    own->links = arena_alloc_array(&l->scene->arena, count, sizeof(struct material *));
+    for (const struct material *link = like; own->links && link; link = link->base) {
         struct material *copy = link->base ? arena_alloc(&l->scene->arena, sizeof *copy)
                                            : scene_material(l->scene, MATERIAL_PHONG, NULL, l->error);
         l->scene->material_count = material_count;
-        if (!copy) {
-            error_no_memory(l->error, "a material");
-            return NULL;
-        }
-        if (above)
-            above->base = copy;
-        first = first ? first : copy;
-        above = copy;
+        if (!copy)
+            return false;
+        if (own->count > 0)
+            own->links[own->count - 1]->base = copy;
+        own->links[own->count++] = copy;
     }
-    return first;
+    return own->links != NULL;
 }
 
 /* As `like` is now, link by link. The copy that was made before is used again. */
@@ -339,33 +339,28 @@ static const struct material *own_material(struct laying *l, const struct materi
         own = own->next;
     if (!own) {
         own = arena_alloc(&l->scene->arena, sizeof *own);
-        struct material *first = own ? copy_links(l, like) : NULL;
-        if (!first) {
+        if (!own || !copy_links(l, like, own)) {
             error_no_memory(l->error, "a material");
             return NULL;
         }
-        *own = (struct own_material){.number = l->change->number, .like = like, .first = first, .next = l->scene->own};
+        own->number = l->change->number;
+        own->like = like;
+        own->next = l->scene->own;
         l->scene->own = own;
     }
-    struct material *other = material_of(l, serial), *copy = own->first;
+    struct material *other = material_of(l, serial), *base = own->links[own->count - 1];
     if (other)
         other->serial = 0;
-    struct material *base = copy;
-    while (base->base)
-        base = (struct material *)(uintptr_t)base->base;
-    for (const struct material *link = like;; link = link->base) {
-        struct material *below = (struct material *)(uintptr_t)copy->base, *older = copy->older;
+    const struct material *link = like;
+    for (uint32_t i = 0; i < own->count; i++, link = link->base) {
+        struct material *copy = own->links[i], *older = copy->older;
         *copy = *link;
-        copy->base = below;
-        copy->origin = base;
+        copy->base = i + 1 < own->count ? own->links[i + 1] : NULL;
+        copy->origin = i + 1 < own->count ? base : NULL;
         copy->older = older;
-        if (!below)
-            break;
-        copy = below;
     }
-    copy->origin = NULL;
-    copy->serial = serial;
-    return own->first;
+    base->serial = serial;
+    return own->links[0];
 }
 
 static bool give_own(struct laying *l) {

@@ -115,6 +115,7 @@ struct added_node {
     int kind;
     const struct node *source; /* of a copy */
     struct node *node;
+    struct material *material; /* its own; NULL of a copy */
     struct added_node *next;
 };
 
@@ -122,7 +123,8 @@ struct added_node {
 struct own_material {
     uint32_t number;
     const struct material *like;
-    struct material *first;
+    struct material **links; /* from the first to the base */
+    uint32_t count;
     struct own_material *next;
 };
 

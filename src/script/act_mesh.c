@@ -217,6 +217,6 @@ bool act_faces(struct context *context, const struct value *args, struct result 
     const struct node *node = args[SELF].node;
     if (node->kind != NODE_GEOMETRY || node->shape.kind != SHAPE_MESH)
         return error_set(error, ERROR_SCENE, "the node is no mesh");
-    result->pointer = (void *)(uintptr_t)node->shape.mesh; /* only read from */
+    result->mesh = node->shape.mesh;
     return true;
 }

@@ -111,7 +111,7 @@ static int answer(lua_State *L, const struct function *function, const struct re
     case RESULT_BOUNDS:
         return answer_bounds(L, result->pointer);
     case RESULT_FACES:
-        return answer_faces(L, result->pointer);
+        return answer_faces(L, result->mesh);
     case RESULT_FOG:
         handle_push(L, HANDLE_FOG, result->pointer);
         return 1;

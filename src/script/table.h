@@ -118,7 +118,8 @@ enum result_kind {
 };
 
 struct result {
-    void *pointer; /* what the result kind says; owned by the scene or the assets */
+    void *pointer;           /* what the result kind says; owned by the scene or the assets */
+    const struct mesh *mesh; /* RESULT_FACES, in its place */
 };
 
 enum { FORM_LIMIT = 4, PARAMETER_LIMIT = 64 };

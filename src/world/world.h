@@ -81,6 +81,7 @@ struct world {
     size_t mesh_memory; /* bytes of the distinct meshes */
 };
 
+#define WORLD_NOTHING UINT32_MAX /* in the place of a primitive's number */
 enum { WORLD_BLOCKERS = 8 };
 
 /* One worker's mutable memory while it asks the world. */
@@ -88,7 +89,7 @@ struct world_scratch {
     struct geom_scratch geom;
     bool failed; /* no memory to grow: the frame is abandoned with ERROR_MACHINE */
     uint64_t rays, any_rays;
-    /* What stopped the last shadow ray to the light in question (its number, modulo); UINT32_MAX: nothing. */
+    /* What stopped the last shadow ray to the light in question (its number, modulo), or WORLD_NOTHING. */
     uint32_t blockers[WORLD_BLOCKERS], light;
 };
 bool world_scratch_init(struct world_scratch *scratch, const struct world *world);
@@ -148,11 +149,14 @@ bool world_nearest(const struct world *world, const struct ray *ray, struct worl
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
                             uint32_t *placed, struct crossing *crossing);
 bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch);
+/* What stopped the last ray of world_any; WORLD_NOTHING: nothing, or every primitive was tried (ACCEL_NONE). */
+static inline uint32_t world_blocker(const struct world_scratch *scratch) {
+    return scratch->blockers[scratch->light];
+}
 /* The same of many rays: of any origin, interval, time and primitive to skip; they may be in any order. hits[i] is what
  * world_nearest says of rays[i], to the bit; where it says no, hits[i].placed is WORLD_NOTHING and the rest is
  * anything.
  */
-#define WORLD_NOTHING UINT32_MAX
 void world_nearest_batch(const struct world *world, const struct ray *rays, uint32_t count,
                          struct world_scratch *scratch, struct hit *hits);
 /* met[i] is what world_any says of rays[i]. */

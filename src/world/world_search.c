@@ -11,7 +11,7 @@ enum { MAILBOX = 32, SCRATCH_START = 256 };
 bool world_scratch_init(struct world_scratch *scratch, const struct world *world) {
     *scratch = (struct world_scratch){0};
     for (int i = 0; i < WORLD_BLOCKERS; i++)
-        scratch->blockers[i] = UINT32_MAX;
+        scratch->blockers[i] = WORLD_NOTHING;
     uint32_t need = world->scratch_need > SCRATCH_START ? world->scratch_need : SCRATCH_START;
     return geom_scratch_init(&scratch->geom, need);
 }
@@ -336,6 +336,6 @@ bool world_any(const struct world *world, const struct ray *ray, struct world_sc
     if (*blocker < world->placed_count && any_boxed(world, *blocker, ray, &probe, scratch))
         return true;
     bool found = any_in_accel(world, ray, &probe, scratch);
-    *blocker = found ? *blocker : UINT32_MAX;
+    *blocker = found ? *blocker : WORLD_NOTHING;
     return found;
 }
