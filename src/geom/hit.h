@@ -59,12 +59,14 @@ struct hit {
     struct vec3 colour; /* of the vertices, interpolated */
     double u, v;
     struct vec3 dpdu, dpdv; /* world */
-    struct vec3 raise;      /* what one unit along the operand's outward normal is in the world; where relief asks */
-    double offset;          /* a secondary ray starts this far (world units) from point along the normal */
-    double footprint;       /* diameter of the ray's cone here, world units; 0 = unknown */
-    double pattern_scale;   /* pattern-space units per world unit (largest stretch); for filtering */
-    bool front;             /* the ray came from outside: dot(view, normal_geometric) >= 0 */
-    uint32_t placed;        /* index of the placed primitive */
+    /* Where relief asks: what one unit along the operand's outward normal is in the world, and along its tangents by
+     * frame_tangents. */
+    struct vec3 raise, along_a, along_b;
+    double offset;        /* a secondary ray starts this far (world units) from point along the normal */
+    double footprint;     /* diameter of the ray's cone here, world units; 0 = unknown */
+    double pattern_scale; /* pattern-space units per world unit (largest stretch); for filtering */
+    bool front;           /* the ray came from outside: dot(view, normal_geometric) >= 0 */
+    uint32_t placed;      /* index of the placed primitive */
     uint32_t leaf, part;
     uint32_t material; /* index into the world's materials */
     enum hit_hull hull;

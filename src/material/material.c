@@ -97,8 +97,18 @@ struct vec3 material_absorption(const struct material *material) {
     return numbers_of(material)->absorption;
 }
 
+static struct vec3 emission_of(const struct material *material, enum texture_estimate which) {
+    const struct material *base = material->origin ? material->origin : material;
+    const struct texture *texture = base->inputs[INPUT_EMISSION];
+    return texture ? texture_estimate(texture, &base->phong, which) : base->phong.emission;
+}
+
 struct vec3 material_emission(const struct material *material) {
-    return numbers_of(material)->emission;
+    return emission_of(material, TEXTURE_AVERAGE);
+}
+
+struct vec3 material_emission_bound(const struct material *material) {
+    return emission_of(material, TEXTURE_LARGEST);
 }
 
 bool material_has_ior(const struct material *material) {
@@ -108,9 +118,8 @@ bool material_has_ior(const struct material *material) {
 /* What textures make of the highlight's colour is not known here; it may be white. */
 double material_specular(const struct material *material) {
     const struct phong *numbers = numbers_of(material);
-    bool filtered = material->inputs[INPUT_KS] && !material->metal;
-    double metal = material->metal ? material->metal->specular : 0;
+    bool filtered = material->inputs[INPUT_KS] && !material->is_metal;
     double amount = material->fresnel ? 1 : numbers->reflect + numbers->refract;
     double own = amount > 0 ? amount * (filtered ? 1 : vec3_max_abs(numbers->ks)) : 0;
-    return own > metal ? own : metal;
+    return own > material->metal ? own : material->metal;
 }

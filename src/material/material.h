@@ -42,14 +42,9 @@ struct relief {
      * normal map: factor of the slopes. */
     double height;
     bool relative;
-    struct texture_image image;
+    struct texture_image image;    /* where `texture` is NULL; a normal map always is an image */
+    const struct texture *texture; /* of any kind: its number is the height, in units of the object */
     const struct relief *below;
-};
-
-/* The split into metal and the rest, for what must be known without a hit. */
-struct metal {
-    const struct texture *metalness, *roughness;
-    double specular; /* what it mirrors at most */
 };
 
 struct material {
@@ -62,9 +57,9 @@ struct material {
     const char *name;                          /* for messages; may be NULL */
     const struct texture *inputs[INPUT_COUNT]; /* NULL: the number of the origin */
     const struct relief *relief;               /* or NULL */
-    const struct metal *metal;                 /* or NULL */
+    double metal;                              /* of MATERIAL_METAL: what it mirrors at most */
     enum material_input changed;               /* of MATERIAL_IMAGE */
-    bool fresnel;
+    bool is_metal, fresnel;
     struct phong phong; /* of a base */
 };
 
@@ -97,8 +92,9 @@ bool material_has_holes(const struct material *material); /* its opacity may be 
 bool material_is_transparent(const struct material *material, double *ior);
 /* Of the base: how the inside absorbs light, per unit of length. */
 struct vec3 material_absorption(const struct material *material);
-/* Of the base: its own light. */
+/* Of the base: its own light on average, and at most (texture_estimate). */
 struct vec3 material_emission(const struct material *material);
+struct vec3 material_emission_bound(const struct material *material);
 /* The share of light that its mirror and its refraction give back together, at most; 0: neither. */
 double material_specular(const struct material *material);
 bool material_has_ior(const struct material *material);

@@ -87,36 +87,46 @@ static const struct texture *packed(const struct texture *picture, enum texture_
     return part ? keep_shared(arena, texture_multiply(factor, part), error) : NULL;
 }
 
+/* kd * (1 - metalness), and kd * metalness + ks * (1 - metalness). */
+static bool put_metal(struct material *material, const struct texture *colour, const struct texture *ks,
+                      const struct texture *metalness, struct arena *arena, struct error *error) {
+    const struct texture *rest = texture_keep(arena, texture_map(metalness, FUNCTION_COMPLEMENT, 0), error);
+    return rest && put(material, INPUT_KD, texture_multiply(colour, rest), arena, error) &&
+           (!ks || put(material, INPUT_KS, texture_mix(colour, ks, metalness), arena, error));
+}
+
+bool material_mix_metal(struct material *material, const struct texture *metalness, struct arena *arena,
+                        struct error *error) {
+    const struct texture *colour = keep_shared(arena, *material_input(material, INPUT_KD), error);
+    const struct texture *share = keep_shared(arena, *metalness, error);
+    return colour && share && put_metal(material, colour, material_input(material, INPUT_KS), share, arena, error);
+}
+
 /* The formulas of formats/gltf_look.c, point by point. */
 bool material_split_metal(struct material *material, const struct texture_image *image, double metalness,
                           double roughness, double f0, struct arena *arena, struct error *error) {
     const struct texture *picture = NULL, *white = texture_keep(arena, texture_number(1), error);
-    struct metal *split = arena_alloc(arena, sizeof *split);
-    if (!white || !split)
-        return error_no_memory(error, "a material");
-    if (image) {
+    if (image && white) {
         struct texture_image own = *image;
         own.alpha = ALPHA_STRAIGHT;
-        if (!(picture = keep_shared(arena, texture_image(&own, white), error)))
-            return false;
+        picture = keep_shared(arena, texture_image(&own, white), error);
     }
+    if (!white || (image && !picture))
+        return false;
     const struct texture *metal = packed(picture, FUNCTION_BLUE, metalness, arena, error);
     const struct texture *rough = packed(picture, FUNCTION_GREEN, roughness, arena, error);
     const struct texture *colour = keep_shared(arena, *material_input(material, INPUT_KD), error);
-    if (!metal || !rough || !colour)
-        return false;
-    const struct texture *rest = texture_keep(arena, texture_map(metal, FUNCTION_COMPLEMENT, 0), error);
-    const struct texture *smooth = texture_keep(arena, texture_map(rough, FUNCTION_COMPLEMENT, 0), error);
     const struct texture *plain = texture_keep(arena, texture_constant(vec3_all(f0)), error);
-    *split = (struct metal){metal, rough, image ? 1 : metalness * (1 - roughness)};
-    material->metal = split;
-    if (!rest || !smooth || !plain || !put(material, INPUT_KD, texture_multiply(colour, rest), arena, error))
+    if (!metal || !rough || !colour || !plain)
         return false;
+    material->is_metal = true;
+    material->metal = image ? 1 : metalness * (1 - roughness);
     const struct phong *numbers = material->origin ? &material->origin->phong : &material->phong;
     if (numbers->refract > 0) /* what shines through has the filter in ks */
-        return true;
-    const struct texture *half = texture_keep(arena, texture_multiply(metal, smooth), error);
-    return half && put(material, INPUT_KS, texture_mix(colour, plain, metal), arena, error) &&
+        return put_metal(material, colour, NULL, metal, arena, error);
+    const struct texture *smooth = texture_keep(arena, texture_map(rough, FUNCTION_COMPLEMENT, 0), error);
+    const struct texture *half = smooth ? texture_keep(arena, texture_multiply(metal, smooth), error) : NULL;
+    return half && put_metal(material, colour, plain, metal, arena, error) &&
            put(material, INPUT_SHININESS, texture_map(rough, FUNCTION_PHONG_EXPONENT, 0), arena, error) &&
            put(material, INPUT_REFLECT, texture_multiply(half, smooth), arena, error);
 }

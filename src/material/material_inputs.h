@@ -25,6 +25,9 @@ bool material_cut(struct material *material, const struct texture_image *image, 
                   struct error *error);
 /* `relief` over what turns the normal already; its `below` is set. */
 bool material_raise(struct material *material, const struct relief *relief, struct arena *arena, struct error *error);
+/* The share `metalness` of kd colours the highlight and the mirror instead, in the place of that share of ks. */
+bool material_mix_metal(struct material *material, const struct texture *metalness, struct arena *arena,
+                        struct error *error);
 /* kd is split into metal and the rest after glTF 2.0. The image (or NULL) holds metalness in blue and roughness in
  * green, the numbers are multiplied by it. f0: the reflectance of what is no metal. */
 bool material_split_metal(struct material *material, const struct texture_image *image, double metalness,

@@ -12,7 +12,9 @@
  * programs write it. */
 #include "material/relief.h"
 
+#include "geom/shape_sphere.h"
 #include "material/texture_mapping.h"
+#include "math/frame.h"
 
 static double height_at(const struct texture_image *image, struct texcoord at, double du, double dv) {
     at.u += du;
@@ -53,6 +55,53 @@ static void turn_by_heights(const struct relief *relief, const struct hit *hit, 
         *normal = vec3_normalize(turned);
 }
 
+/* The hit moved in its tangent plane, by s along a and t along b in the space of patterns; coordinates on images go
+ * along as far as the shape supplies their tangents. */
+static struct hit moved(const struct hit *hit, struct vec3 a, struct vec3 b, double s, double t) {
+    struct hit out = *hit;
+    struct vec3 way = vec3_add(vec3_scale(hit->along_a, s), vec3_scale(hit->along_b, t));
+    out.pattern_point = vec3_add_scaled(vec3_add_scaled(hit->pattern_point, a, s), b, t);
+    double uu = vec3_length_squared(hit->dpdu), vv = vec3_length_squared(hit->dpdv);
+    double uv = vec3_dot(hit->dpdu, hit->dpdv), determinant = uu * vv - uv * uv;
+    if (!(determinant > 0) || !isfinite(determinant))
+        return out;
+    double wu = vec3_dot(way, hit->dpdu), wv = vec3_dot(way, hit->dpdv);
+    double du = (vv * wu - uv * wv) / determinant, dv = (uu * wv - uv * wu) / determinant;
+    out.u += du;
+    out.v += dv;
+    if (hit->layout == LAYOUT_SPHERE) {
+        struct vec3 along_u, along_v;
+        sphere_tangents(1, vec3_normalize(hit->pattern_normal), &along_u, &along_v);
+        out.pattern_normal = vec3_add_scaled(vec3_add_scaled(hit->pattern_normal, along_u, du), along_v, dv);
+    }
+    return out;
+}
+
+/* The same formula with the tangents of the object's space. The differences are as wide as the footprint, at least
+ * 2^-17 of the coordinates (the cube root of the rounding error, where central differences are best). */
+static void turn_by_texture(const struct relief *relief, const struct hit *hit, struct vec3 *normal) {
+    struct vec3 n = vec3_cross(hit->along_a, hit->along_b), a, b;
+    double area = vec3_length(n);
+    double step = fmax(0.5 * hit->footprint * hit->pattern_scale, 0x1p-17 * vec3_max_abs(hit->pattern_point));
+    if (!(area > 0) || !isfinite(area) || !(step > 0))
+        return;
+    frame_tangents(vec3_normalize(hit->pattern_normal), &a, &b);
+    const struct hit at[4] = {moved(hit, a, b, step, 0), moved(hit, a, b, -step, 0), moved(hit, a, b, 0, step),
+                              moved(hit, a, b, 0, -step)};
+    double scale = relief->height / (2 * step);
+    double f_a = scale * (texture_scalar(relief->texture, &at[0]) - texture_scalar(relief->texture, &at[1]));
+    double f_b = scale * (texture_scalar(relief->texture, &at[2]) - texture_scalar(relief->texture, &at[3]));
+    if (f_a == 0 && f_b == 0)
+        return;
+    struct vec3 up = hit->raise;
+    struct vec3 d =
+        vec3_add(vec3_scale(vec3_cross(hit->along_a, up), f_b), vec3_scale(vec3_cross(up, hit->along_b), f_a));
+    double outward = vec3_dot(n, hit->normal_geometric) < 0 ? -1 / area : 1 / area;
+    struct vec3 turned = vec3_add_scaled(*normal, d, outward);
+    if (vec3_length_squared(turned) > 0)
+        *normal = vec3_normalize(turned);
+}
+
 static void turn_to_colours(const struct relief *relief, const struct hit *hit, struct vec3 *normal) {
     struct texcoord at;
     if (!texture_coordinates(&relief->image, hit, &at))
@@ -78,7 +127,9 @@ static void turn_to_colours(const struct relief *relief, const struct hit *hit, 
 void relief_turn(const struct relief *relief, const struct hit *hit, struct vec3 *normal) {
     if (relief->below)
         relief_turn(relief->below, hit, normal);
-    if (relief->kind == MATERIAL_NORMAL)
+    if (relief->texture)
+        turn_by_texture(relief, hit, normal);
+    else if (relief->kind == MATERIAL_NORMAL)
         turn_to_colours(relief, hit, normal);
     else
         turn_by_heights(relief, hit, normal);

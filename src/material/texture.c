@@ -183,7 +183,7 @@ static double function_of(enum texture_function function, double amount, double 
     case FUNCTION_COMPLEMENT:
         return 1 - x;
     case FUNCTION_SATURATE:
-        return x > 1 ? 1 : x;
+        return x > 1 ? 1 : x > 0 ? x : 0;
     case FUNCTION_STEP:
         return x >= amount ? 1 : 0;
     case FUNCTION_PHONG_EXPONENT: {
@@ -340,4 +340,63 @@ double texture_scalar(const struct texture *texture, const struct hit *hit) {
     struct texture_reader reader;
     texture_reader_init(&reader, hit, NULL);
     return texture_read_scalar(texture, &reader);
+}
+
+/* --- without a hit --- */
+
+static struct vec3 larger(struct vec3 a, struct vec3 b) {
+    return vec3_make(fmax(a.x, b.x), fmax(a.y, b.y), fmax(a.z, b.z));
+}
+
+static struct vec3 estimate_image(const struct texture *texture, const struct phong *numbers,
+                                  enum texture_estimate which) {
+    const struct texture_image *image = &texture->image.lookup;
+    const struct texture *below = texture->image.below;
+    struct vec3 tint = image->apart ? image->tint : vec3_all(1);
+    struct vec3 under = below ? texture_estimate(below, numbers, which) : vec3_all(0);
+    if (which == TEXTURE_LARGEST)
+        return larger(tint, under);
+    struct rgba mean_texel = image_lookup(image->image, 0.5, 0.5, 1, 1, IMAGE_MIPMAP, IMAGE_CLAMP, IMAGE_CLAMP);
+    struct vec3 colour = vec3_mul(vec3_make(mean_texel.r, mean_texel.g, mean_texel.b), tint);
+    return vec3_add(colour, vec3_scale(under, image->alpha == ALPHA_COVERS ? 1 - mean_texel.a : 0));
+}
+
+struct vec3 texture_estimate(const struct texture *texture, const struct phong *numbers, enum texture_estimate which) {
+    bool largest = which == TEXTURE_LARGEST;
+    switch (texture->kind) {
+    case TEXTURE_CONSTANT:
+        return texture->constant.colour;
+    case TEXTURE_PARAMETER:
+        return parameter_colour(texture->parameter, numbers);
+    case TEXTURE_VERTEX_COLOUR:
+        return vec3_all(1);
+    case TEXTURE_IMAGE:
+        return estimate_image(texture, numbers, which);
+    case TEXTURE_MARBLE:
+    case TEXTURE_WOOD:
+        return vec3_all(largest ? 1 : 0.5);
+    case TEXTURE_MIX: {
+        struct vec3 a = texture_estimate(texture->mix.a, numbers, which);
+        struct vec3 b = texture_estimate(texture->mix.b, numbers, which);
+        double ratio = mean(texture_estimate(texture->mix.ratio, numbers, which));
+        return largest ? larger(a, b) : vec3_add(vec3_scale(a, ratio), vec3_scale(b, 1 - ratio));
+    }
+    case TEXTURE_MULTIPLY:
+        return vec3_mul(texture_estimate(texture->multiply.a, numbers, which),
+                        texture_estimate(texture->multiply.b, numbers, which));
+    case TEXTURE_MAP: {
+        struct vec3 of = texture_estimate(texture->map.of, numbers, which);
+        enum texture_function function = texture->map.function;
+        double component, amount = texture->map.amount;
+        if (takes_component(function, of, &component))
+            return vec3_all(component);
+        if (largest)
+            return vec3_all(function == FUNCTION_PHONG_EXPONENT ? 2000 : 1);
+        return vec3_make(function_of(function, amount, of.x), function_of(function, amount, of.y),
+                         function_of(function, amount, of.z));
+    }
+    case TEXTURE_KINDS:
+        break;
+    }
+    return vec3_all(0);
 }

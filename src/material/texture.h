@@ -67,7 +67,7 @@ enum texture_function {
     FUNCTION_GREEN,
     FUNCTION_BLUE,
     FUNCTION_COMPLEMENT,     /* 1 - x */
-    FUNCTION_SATURATE,       /* at most 1 */
+    FUNCTION_SATURATE,       /* between 0 and 1 */
     FUNCTION_STEP,           /* 1 from `amount` on, else 0 */
     FUNCTION_PHONG_EXPONENT, /* of roughness r: 2 / r^4 - 2, 1 to 2000 (formats/gltf_look.c gives the source) */
     FUNCTION_COUNT
@@ -152,6 +152,13 @@ const struct texture *texture_parameter(enum material_input input);
 
 /* A copy in the arena. NULL and error: no memory, or the tree is larger than TEXTURE_SIZE. */
 const struct texture *texture_keep(struct arena *arena, struct texture value, struct error *error);
+
+/* What is known of a texture without a hit, of a material with these numbers. */
+enum texture_estimate {
+    TEXTURE_AVERAGE, /* of images: of all texels; of patterns: one half */
+    TEXTURE_LARGEST  /* a bound of each component as long as none is negative and no texel above 1 */
+};
+struct vec3 texture_estimate(const struct texture *texture, const struct phong *numbers, enum texture_estimate which);
 
 struct vec3 texture_colour(const struct texture *texture, const struct hit *hit);
 double texture_scalar(const struct texture *texture, const struct hit *hit);

@@ -21,7 +21,7 @@ static double brightest_of_scene(const struct render_job *job) {
             most = own;
     }
     for (uint32_t i = 0; i < world->material_count; i++)
-        emission = fmax(emission, largest(material_emission(world->materials[i])));
+        emission = fmax(emission, largest(material_emission_bound(world->materials[i])));
     most = fmax(most, lit + emission);
     return job->fog ? fmax(most, largest(job->fog->colour)) : most;
 }

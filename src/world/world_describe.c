@@ -32,12 +32,13 @@ static bool same_vector(const struct vec3 *a, const struct vec3 *b) {
     return memcmp(a, b, sizeof *a) == 0;
 }
 
-/* What bumps need: the world's vector of one unit along the operand's normal, and on spheres the tangents that other
- * materials do not ask for. */
+/* What bumps need: the world's vectors of one unit along the operand's normal and along its tangents, and on spheres
+ * the tangents of their coordinates, which other materials do not ask for. */
 static void describe_relief(const struct thing *thing, const struct affine *map, const struct csg_leaf *leaf,
                             struct hit *hit) {
     const struct shape *shape = leaf ? &leaf->shape : &thing->shape;
-    struct vec3 normal = vec3_normalize(hit->pattern_normal), raise = normal, u = {0}, v = {0};
+    struct vec3 normal = vec3_normalize(hit->pattern_normal), raise = normal, u = {0}, v = {0}, a, b;
+    frame_tangents(normal, &a, &b);
     if (hit->layout == LAYOUT_SPHERE)
         sphere_tangents(shape->sphere.radius, normal, &u, &v);
     if (leaf) {
@@ -45,8 +46,12 @@ static void describe_relief(const struct thing *thing, const struct affine *map,
         raise = affine_vector(csg_from_leaf, raise);
         u = affine_vector(csg_from_leaf, u);
         v = affine_vector(csg_from_leaf, v);
+        a = affine_vector(csg_from_leaf, a);
+        b = affine_vector(csg_from_leaf, b);
     }
     raise = affine_vector(map, raise);
+    hit->along_a = affine_vector(map, a);
+    hit->along_b = affine_vector(map, b);
     /* The hollow that an operand leaves has its outside in the operand. */
     hit->raise = vec3_dot(raise, hit->normal_geometric) < 0 ? vec3_negate(raise) : raise;
     if (hit->layout == LAYOUT_SPHERE) {
@@ -87,7 +92,7 @@ static void place_surface(const struct surface *surface, const struct transform 
     hit->has_uv = surface->has_uv;
     hit->u = surface->u;
     hit->v = surface->v;
-    hit->dpdu = hit->dpdv = hit->raise = zero;
+    hit->dpdu = hit->dpdv = hit->raise = hit->along_a = hit->along_b = zero;
     if (surface->has_uv) {
         hit->dpdu = map ? affine_vector(&map->forward, surface->dpdu) : as_it_is(surface->dpdu);
         hit->dpdv = map ? affine_vector(&map->forward, surface->dpdv) : as_it_is(surface->dpdv);
