@@ -772,50 +772,108 @@ function gr.curve(material, points, widths, spline) end
 ---@overload fun(fields: gr.patch.fields): gr.node
 function gr.patch(material, points, patches) end
 
+---@class gr.marble_texture.fields
+---@field f number f (a number): Factor of the place before the noise.
+---@field multiplier number multiplier (a number): How much the noise bends the veins.
+---@field vein_frequency number vein_frequency (a number): How close the veins are along y.
+---@field interp? integer interp (a whole number, 0 to 1; default 0): How the noise is interpolated: 0 linear, 1 cosine.
+
+---Veins between 0 and 1, for inputs of gr.material.
+---@param f number f (a number): Factor of the place before the noise.
+---@param multiplier number multiplier (a number): How much the noise bends the veins.
+---@param vein_frequency number vein_frequency (a number): How close the veins are along y.
+---@param interp? integer interp (a whole number, 0 to 1; default 0): How the noise is interpolated: 0 linear, 1 cosine.
+---@return gr.texture
+---@overload fun(fields: gr.marble_texture.fields): gr.texture
+function gr.marble_texture(f, multiplier, vein_frequency, interp) end
+
+---@class gr.wood_texture.fields
+---@field f number f (a number): Factor of the place before the noise.
+---@field density number density (a number): How close the grain is.
+---@field interp? integer interp (a whole number, 0 to 1; default 0): How the noise is interpolated: 0 linear, 1 cosine.
+
+---Grain between 0 and 1, for inputs of gr.material.
+---@param f number f (a number): Factor of the place before the noise.
+---@param density number density (a number): How close the grain is.
+---@param interp? integer interp (a whole number, 0 to 1; default 0): How the noise is interpolated: 0 linear, 1 cosine.
+---@return gr.texture
+---@overload fun(fields: gr.wood_texture.fields): gr.texture
+function gr.wood_texture(f, density, interp) end
+
+---@class gr.mix_texture.fields
+---@field a number|gr.triple|gr.texture a (a number or a table of 3 numbers or a texture): What is there where ratio is 1: a number, a colour or a texture.
+---@field b number|gr.triple|gr.texture b (a number or a table of 3 numbers or a texture): What is there where ratio is 0.
+---@field ratio? number|gr.texture ratio (a number or a texture; default 0.5): a * ratio + b * (1 - ratio).
+
+---Two textures or colours mixed by a third.
+---@param a number|gr.triple|gr.texture a (a number or a table of 3 numbers or a texture): What is there where ratio is 1: a number, a colour or a texture.
+---@param b number|gr.triple|gr.texture b (a number or a table of 3 numbers or a texture): What is there where ratio is 0.
+---@param ratio? number|gr.texture ratio (a number or a texture; default 0.5): a * ratio + b * (1 - ratio).
+---@return gr.texture
+---@overload fun(fields: gr.mix_texture.fields): gr.texture
+function gr.mix_texture(a, b, ratio) end
+
+---@class gr.multiply_texture.fields
+---@field a number|gr.triple|gr.texture a (a number or a table of 3 numbers or a texture): One factor: a number, a colour or a texture.
+---@field b number|gr.triple|gr.texture b (a number or a table of 3 numbers or a texture): The other.
+
+---The product of two textures or colours.
+---@param a number|gr.triple|gr.texture a (a number or a table of 3 numbers or a texture): One factor: a number, a colour or a texture.
+---@param b number|gr.triple|gr.texture b (a number or a table of 3 numbers or a texture): The other.
+---@return gr.texture
+---@overload fun(fields: gr.multiply_texture.fields): gr.texture
+function gr.multiply_texture(a, b) end
+
 ---@class gr.material.fields
----@field kd gr.triple kd (a colour {r, g, b}): Colour of diffuse and ambient light.
----@field ks? gr.triple ks (a colour {r, g, b}; default {0, 0, 0}): Colour of highlights, filter of secondary rays.
----@field shininess? number shininess (a number, >= 0; default 1): Exponent of the highlight.
----@field reflect? number reflect (a number, 0 to 1; default 0): Amount of reflected light.
----@field refract? number refract (a number, 0 to 1; default 0): Amount of refracted light.
+---@field kd gr.triple|gr.texture kd (a colour {r, g, b} or a texture): Colour of diffuse and ambient light.
+---@field ks? gr.triple|gr.texture ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights, filter of secondary rays.
+---@field shininess? number|gr.texture shininess (a number or a texture, >= 0; default 1): Exponent of the highlight.
+---@field reflect? number|gr.texture reflect (a number or a texture, 0 to 1; default 0): Amount of reflected light.
+---@field refract? number|gr.texture refract (a number or a texture, 0 to 1; default 0): Amount of refracted light.
 ---@field ior? number ior (a number, >= 1; default none): Index of refraction of the inside.
 ---@field two_sided? boolean two_sided (true or false; default false): Whether faces seen from behind are lit as well.
 ---@field highlight? 'phong'|'blinn' highlight ('phong'|'blinn'; default specular of the render): The form of its highlight.
 ---@field lit? boolean lit (true or false; default true): Whether light is looked for; false: kd is shown as it is.
----@field emission? gr.triple emission (a colour {r, g, b}; default {0, 0, 0}): Light of its own, added to what it reflects.
----@field roughness? number roughness (a number, 0 to 1; default 0): Of reflection and refraction: 0 is polished.
+---@field emission? gr.triple|gr.texture emission (a colour {r, g, b} or a texture; default {0, 0, 0}): Light of its own, added to what it reflects.
+---@field roughness? number|gr.texture roughness (a number or a texture, 0 to 1; default 0): Of reflection and refraction: 0 is polished.
 ---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): N x N rays where it is rough; one ray after another rough surface.
 ---@field absorption? gr.triple absorption (a colour {r, g, b}, >= 0; default {0, 0, 0}): Inside, light fades by exp(-absorption * distance).
+---@field opacity? number|gr.texture opacity (a number or a texture, 0 to 1; default 1): How much of the surface is there; the rest is a hole.
+---@field metalness? number|gr.texture metalness (a number or a texture, 0 to 1; default 0): The share of kd that colours highlights and mirrored light instead.
+---@field bump? string|gr.texture bump (the name of a picture file or a texture; default none): Heights: what gr.bump made, a file or a texture.
 
 ---A Phong material.
----@param kd gr.triple kd (a colour {r, g, b}): Colour of diffuse and ambient light.
----@param ks gr.triple ks (a colour {r, g, b}; default {0, 0, 0}): Colour of highlights, filter of secondary rays.
----@param shininess number shininess (a number, >= 0; default 1): Exponent of the highlight.
+---@param kd gr.triple|gr.texture kd (a colour {r, g, b} or a texture): Colour of diffuse and ambient light.
+---@param ks gr.triple|gr.texture ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights, filter of secondary rays.
+---@param shininess number|gr.texture shininess (a number or a texture, >= 0; default 1): Exponent of the highlight.
 ---@return gr.material
 ---@overload fun(fields: gr.material.fields): gr.material
 function gr.material(kd, ks, shininess) end
 
 ---@class gr.rr_material.fields
----@field kd gr.triple kd (a colour {r, g, b}): Colour of diffuse and ambient light.
----@field ks? gr.triple ks (a colour {r, g, b}; default {0, 0, 0}): Colour of highlights, filter of secondary rays.
----@field shininess? number shininess (a number, >= 0; default 1): Exponent of the highlight.
----@field reflect? number reflect (a number, 0 to 1; default 0): Amount of reflected light.
----@field refract? number refract (a number, 0 to 1; default 0): Amount of refracted light.
+---@field kd gr.triple|gr.texture kd (a colour {r, g, b} or a texture): Colour of diffuse and ambient light.
+---@field ks? gr.triple|gr.texture ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights, filter of secondary rays.
+---@field shininess? number|gr.texture shininess (a number or a texture, >= 0; default 1): Exponent of the highlight.
+---@field reflect? number|gr.texture reflect (a number or a texture, 0 to 1; default 0): Amount of reflected light.
+---@field refract? number|gr.texture refract (a number or a texture, 0 to 1; default 0): Amount of refracted light.
 ---@field ior? number ior (a number, >= 1; default 1): Index of refraction of the inside.
 ---@field two_sided? boolean two_sided (true or false; default false): Whether faces seen from behind are lit as well.
 ---@field highlight? 'phong'|'blinn' highlight ('phong'|'blinn'; default specular of the render): The form of its highlight.
 ---@field lit? boolean lit (true or false; default true): Whether light is looked for; false: kd is shown as it is.
----@field emission? gr.triple emission (a colour {r, g, b}; default {0, 0, 0}): Light of its own, added to what it reflects.
----@field roughness? number roughness (a number, 0 to 1; default 0): Of reflection and refraction: 0 is polished.
+---@field emission? gr.triple|gr.texture emission (a colour {r, g, b} or a texture; default {0, 0, 0}): Light of its own, added to what it reflects.
+---@field roughness? number|gr.texture roughness (a number or a texture, 0 to 1; default 0): Of reflection and refraction: 0 is polished.
 ---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): N x N rays where it is rough; one ray after another rough surface.
 ---@field absorption? gr.triple absorption (a colour {r, g, b}, >= 0; default {0, 0, 0}): Inside, light fades by exp(-absorption * distance).
+---@field opacity? number|gr.texture opacity (a number or a texture, 0 to 1; default 1): How much of the surface is there; the rest is a hole.
+---@field metalness? number|gr.texture metalness (a number or a texture, 0 to 1; default 0): The share of kd that colours highlights and mirrored light instead.
+---@field bump? string|gr.texture bump (the name of a picture file or a texture; default none): Heights: what gr.bump made, a file or a texture.
 
 ---A Phong material that reflects and refracts.
----@param kd gr.triple kd (a colour {r, g, b}): Colour of diffuse and ambient light.
----@param ks gr.triple ks (a colour {r, g, b}; default {0, 0, 0}): Colour of highlights, filter of secondary rays.
----@param shininess number shininess (a number, >= 0; default 1): Exponent of the highlight.
----@param reflect number reflect (a number, 0 to 1; default 0): Amount of reflected light.
----@param refract number refract (a number, 0 to 1; default 0): Amount of refracted light.
+---@param kd gr.triple|gr.texture kd (a colour {r, g, b} or a texture): Colour of diffuse and ambient light.
+---@param ks gr.triple|gr.texture ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights, filter of secondary rays.
+---@param shininess number|gr.texture shininess (a number or a texture, >= 0; default 1): Exponent of the highlight.
+---@param reflect number|gr.texture reflect (a number or a texture, 0 to 1; default 0): Amount of reflected light.
+---@param refract number|gr.texture refract (a number or a texture, 0 to 1; default 0): Amount of refracted light.
 ---@param ior number ior (a number, >= 1; default 1): Index of refraction of the inside.
 ---@return gr.material
 ---@overload fun(fields: gr.rr_material.fields): gr.material
@@ -909,14 +967,14 @@ function gr.difresneld_material(material) end
 ---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): How many lie side by side: one number, or {across, up}.
 ---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): How far it is moved, in pictures: {across, up}.
 
----An image for node:set_texture.
+---An image for node:set_texture, or for inputs of gr.material.
 ---@param file string|gr.texture file (the name of a picture file or a texture): A PNG or JPEG file.
 ---@return gr.texture
 ---@overload fun(fields: gr.texture.fields): gr.texture
 function gr.texture(file) end
 
 ---@class gr.bump.fields
----@field file string|gr.texture file (the name of a picture file or a texture): A PNG or JPEG file.
+---@field file string|gr.texture file (the name of a picture file or a texture): A PNG or JPEG file, or any texture.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): How the image is looked up.
 ---@field wrap? 'clamp'|'repeat'|'mirror' wrap ('clamp'|'repeat'|'mirror'; default 'repeat'): What is beyond its edges.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether left and right are exchanged.
@@ -926,7 +984,7 @@ function gr.texture(file) end
 ---@field kind? 'bump'|'normal' kind ('bump'|'normal'; default 'bump'): Whether it holds heights, or normals as colours: x right, y up, z out.
 
 ---A bump map or normal map for node:set_bump.
----@param file string|gr.texture file (the name of a picture file or a texture): A PNG or JPEG file.
+---@param file string|gr.texture file (the name of a picture file or a texture): A PNG or JPEG file, or any texture.
 ---@param height? number height (a number; default 1/50 of the picture's size; 1 for normals): White over black in units of the object; of normals, a factor of their slopes.
 ---@return gr.texture
 ---@overload fun(fields: gr.bump.fields): gr.texture

@@ -12,6 +12,52 @@ static bool give(struct result *result, struct material *material) {
     return material != NULL;
 }
 
+static const struct texture *number_or_texture(struct context *context, const struct value *value,
+                                               struct error *error) {
+    struct value own = *value;
+    own.vector = vec3_all(value->number);
+    return act_texture_of(context, &own, error);
+}
+
+/* The inputs that a script gave textures for: the texture times the number, which is 1. */
+static bool with_textures(struct context *context, struct material *m, const struct value *args, struct error *error) {
+    static const struct {
+        int field;
+        enum material_input input;
+        bool is_share; /* between 0 and 1, whatever the texture says */
+    } inputs[] = {{PHONG_KD, INPUT_KD, false},
+                  {PHONG_KS, INPUT_KS, false},
+                  {PHONG_SHININESS, INPUT_SHININESS, false},
+                  {PHONG_REFLECT, INPUT_REFLECT, true},
+                  {PHONG_REFRACT, INPUT_REFRACT, true},
+                  {PHONG_ROUGHNESS, INPUT_ROUGHNESS, true},
+                  {PHONG_EMISSION, INPUT_EMISSION, false},
+                  {PHONG_OPACITY, INPUT_OPACITY, true}};
+    struct arena *arena = &context->scene.arena;
+    for (size_t i = 0; i < sizeof inputs / sizeof inputs[0]; i++) {
+        const struct value *value = &args[inputs[i].field];
+        bool is_hole = inputs[i].input == INPUT_OPACITY && value->given && value->number < 1;
+        if (!value->texture && !is_hole)
+            continue;
+        const struct texture *texture = number_or_texture(context, value, error);
+        if (texture && inputs[i].is_share)
+            texture = texture_keep(arena, texture_map(texture, FUNCTION_SATURATE, 0), error);
+        if (!texture || !material_multiply(m, inputs[i].input, texture, arena, error))
+            return false;
+    }
+    const struct value *metalness = &args[PHONG_METALNESS];
+    if (metalness->texture || metalness->number > 0) {
+        const struct texture *texture = number_or_texture(context, metalness, error);
+        texture = texture ? texture_keep(arena, texture_map(texture, FUNCTION_SATURATE, 0), error) : NULL;
+        if (!texture || !material_mix_metal(m, texture, arena, error))
+            return false;
+    }
+    if (!args[PHONG_BUMP].given)
+        return true;
+    const struct relief *relief = act_relief(context, &args[PHONG_BUMP], error);
+    return relief && material_raise(m, relief, arena, error);
+}
+
 static struct material *phong(struct context *context, const struct value *args, struct error *error) {
     struct material *m = scene_material(&context->scene, MATERIAL_PHONG, NULL, error);
     if (!m)
@@ -31,7 +77,7 @@ static struct material *phong(struct context *context, const struct value *args,
     m->phong.absorption = args[PHONG_ABSORPTION].vector;
     m->phong.roughness = args[PHONG_ROUGHNESS].number;
     m->phong.glossy_samples = (int)args[PHONG_GLOSSY_SAMPLES].number;
-    return m;
+    return with_textures(context, m, args, error) ? m : NULL;
 }
 
 bool act_material(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -166,72 +212,60 @@ bool act_image_material(struct context *context, const struct value *args, struc
                       error);
 }
 
-/* The image with how it stands on a surface. The amount and the kind are args[0] and args[1]; a bump map keeps what its
- * template says. */
-static struct relief relief_of(const struct texture_image *image, const struct value *template,
-                               const struct value *args) {
-    const struct relief *from = template->texture;
+/* How an image or another texture stands on a surface. The amount and the kind are args[0] and args[1]; a bump map
+ * keeps what its template says. */
+static bool read_relief(struct context *context, const struct value *value, const struct value *lookup,
+                        const struct value *args, struct relief *out, struct error *error) {
+    const struct relief *from = value->texture;
     bool known = from && from->kind != MATERIAL_IMAGE;
-    struct relief out = {.kind = known ? from->kind : MATERIAL_BUMP, .image = *image};
+    *out = (struct relief){.kind = known ? from->kind : MATERIAL_BUMP, .texture = from ? from->texture : NULL};
     if (args[1].given)
-        out.kind = args[1].choice == 0 ? MATERIAL_BUMP : MATERIAL_NORMAL;
+        out->kind = args[1].choice == 0 ? MATERIAL_BUMP : MATERIAL_NORMAL;
+    if (!out->texture && !read_image(context, value, lookup, &out->image, error))
+        return false;
+    if (out->texture && out->kind == MATERIAL_NORMAL)
+        return error_set(error, ERROR_SCENE, "a normal map must be an image, not another texture");
     if (args[0].given) {
-        out.height = args[0].number;
-    } else if (!known || from->kind != out.kind) {
-        out.relative = out.kind == MATERIAL_BUMP;
-        out.height = out.kind == MATERIAL_BUMP ? RELIEF_HEIGHT : 1;
+        out->height = args[0].number;
+    } else if (!known || from->kind != out->kind) {
+        out->relative = out->kind == MATERIAL_BUMP && !out->texture;
+        out->height = out->kind == MATERIAL_BUMP ? RELIEF_HEIGHT : 1;
     } else {
-        out.relative = from->relative;
-        out.height = from->height;
+        out->relative = from->relative;
+        out->height = from->height;
     }
-    return out;
-}
-
-/* Saved edits count textures among the materials of a scene. */
-static struct relief *keep_texture(struct context *context, const struct relief *value, struct error *error) {
-    struct relief *out = arena_alloc(&context->scene.arena, sizeof *out);
-    if (!out) {
-        error_no_memory(error, "a texture");
-        return NULL;
-    }
-    *out = *value;
-    context->scene.material_count++;
-    return out;
+    return true;
 }
 
 bool act_texture(struct context *context, const struct value *args, struct result *result, struct error *error) {
     struct relief texture = {.kind = MATERIAL_IMAGE};
     if (!read_image(context, &args[TEXTURE_FILE], &args[TEXTURE_LOOKUP], &texture.image, error))
         return false;
-    result->pointer = keep_texture(context, &texture, error);
+    result->pointer = act_keep_texture(context, &texture, error);
     return result->pointer != NULL;
 }
 
 bool act_bump(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    struct texture_image image;
-    if (!read_image(context, &args[RELIEF_FILE], &args[RELIEF_LOOKUP], &image, error))
+    struct relief relief;
+    if (!read_relief(context, &args[RELIEF_FILE], &args[RELIEF_LOOKUP], &args[RELIEF_AMOUNT], &relief, error))
         return false;
-    struct relief relief = relief_of(&image, &args[RELIEF_FILE], &args[RELIEF_AMOUNT]);
-    result->pointer = keep_texture(context, &relief, error);
+    result->pointer = act_keep_texture(context, &relief, error);
     return result->pointer != NULL;
 }
 
 bool act_bump_material(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    struct texture_image image;
-    if (!read_image(context, &args[OVER_IMAGE], &args[OVER_LOOKUP], &image, error))
+    struct relief relief;
+    if (!read_relief(context, &args[OVER_IMAGE], &args[OVER_LOOKUP], &args[RELIEF_OVER_AMOUNT], &relief, error))
         return false;
-    struct relief relief = relief_of(&image, &args[OVER_IMAGE], &args[RELIEF_OVER_AMOUNT]);
     struct material *m = scene_material(&context->scene, relief.kind, args[OVER_MATERIAL].material, error);
     return m && material_raise(m, &relief, &context->scene.arena, error) && give(result, m);
 }
 
 const struct relief *act_relief(struct context *context, const struct value *value, struct error *error) {
     static const struct value nothing[LOOKUP_COUNT];
-    struct texture_image image;
-    if (!read_image(context, value, nothing, &image, error))
-        return NULL;
-    struct relief relief = relief_of(&image, value, nothing);
-    return keep_texture(context, &relief, error);
+    struct relief relief;
+    return read_relief(context, value, nothing, nothing, &relief, error) ? act_keep_texture(context, &relief, error)
+                                                                         : NULL;
 }
 
 const struct texture_image *act_image(struct context *context, const struct value *value, struct error *error) {
@@ -240,6 +274,6 @@ const struct texture_image *act_image(struct context *context, const struct valu
     if (!image)
         return NULL;
     image_defaults(&texture.image, value, image);
-    const struct relief *kept = keep_texture(context, &texture, error);
+    const struct relief *kept = act_keep_texture(context, &texture, error);
     return kept ? &kept->image : NULL;
 }

@@ -98,6 +98,9 @@ enum {
     PHONG_ROUGHNESS,
     PHONG_GLOSSY_SAMPLES,
     PHONG_ABSORPTION,
+    PHONG_OPACITY,
+    PHONG_METALNESS,
+    PHONG_BUMP,
     PHONG_COUNT
 };
 enum { MARBLE_MATERIAL, MARBLE_F, MARBLE_MULTIPLIER, MARBLE_VEIN, MARBLE_INTERP, MARBLE_MIX, MARBLE_COUNT };
@@ -119,6 +122,12 @@ struct image *act_find_image(struct context *context, const struct value *value,
 const struct texture_image *act_image(struct context *context, const struct value *value, struct error *error);
 /* What node:set_bump keeps: what gr.bump made, or any other picture with the height that is not told. */
 const struct relief *act_relief(struct context *context, const struct value *value, struct error *error);
+
+/* act_textures.c */
+/* What a script holds of a texture; NULL and error. */
+struct relief *act_keep_texture(struct context *context, const struct relief *value, struct error *error);
+/* The texture that a script gave for an input, or that of its number or colour; NULL and error. */
+const struct texture *act_texture_of(struct context *context, const struct value *value, struct error *error);
 
 /* act_sky.c; the fields of the sun come together, counted from SUN_DIRECTION */
 enum { SUN_DIRECTION, SUN_HOUR, SUN_DAY, SUN_LATITUDE, SUN_LONGITUDE, SUN_ZONE, SUN_FIELDS };

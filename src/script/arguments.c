@@ -437,6 +437,14 @@ static bool read_value(struct context *c, int index, const struct parameter *p, 
     lua_State *L = c->lua;
     char words[128];
     value->given = true;
+    const struct handle *handle = p->flags & OR_TEXTURE ? handle_at(L, index) : NULL;
+    if (handle && handle->type == HANDLE_TEXTURE) {
+        value->texture = handle->pointer;
+        value->image = value->texture->image.image;
+        value->number = 1;
+        value->vector = vec3_all(1);
+        return true;
+    }
     switch (p->kind) {
     case KIND_NUMBER:
         value->number = read_number(c, index, &place);
@@ -508,6 +516,8 @@ static bool read_value(struct context *c, int index, const struct parameter *p, 
         }
         value->texture = read_handle(c, index, &place, HANDLE_TEXTURE);
         value->image = value->texture ? value->texture->image.image : NULL;
+        if (value->texture && !value->image)
+            context_raise(c, "%s must be an image, not another texture", place_words(&place, words));
         return value->texture != NULL;
     case KIND_BACKGROUND:
         if (handle_at(L, index)) {
@@ -604,7 +614,7 @@ static int looks_of(lua_State *L, int index) {
            (lua_isstring(L, index) ? LIKE_TEXT : 0) | (lua_istable(L, index) ? LIKE_TABLE : 0);
 }
 
-static bool looks_like(lua_State *L, int index, enum kind kind) {
+static bool looks_like(lua_State *L, int index, enum kind kind, unsigned flags) {
     static const int wanted[KIND_COUNT] = {
         [KIND_NUMBER] = LIKE_NUMBER,
         [KIND_WHOLE] = LIKE_NUMBER,
@@ -640,7 +650,8 @@ static bool looks_like(lua_State *L, int index, enum kind kind) {
         [KIND_CURVES] = LIKE_TABLE,
     };
     assert(wanted[kind]); /* every kind has its line */
-    return (looks_of(L, index) & wanted[kind]) != 0;
+    int accepted = wanted[kind] | (flags & OR_TEXTURE ? 1 << HANDLE_TEXTURE : 0);
+    return (looks_of(L, index) & accepted) != 0;
 }
 
 /* How well the arguments fit a form: how many of the first ones do, then how near their number is to the form's. */
@@ -653,7 +664,8 @@ static struct fit form_fit(lua_State *L, const struct function *function, const 
     int count = 0, given = lua_gettop(L) - first + 1, index;
     bool optional;
     for (; form_next(function, &form, &index, &optional); count++) {
-        if (fit.leading == count && looks_like(L, first + count, function->parameters[index].kind))
+        if (fit.leading == count &&
+            looks_like(L, first + count, function->parameters[index].kind, function->parameters[index].flags))
             fit.leading++;
     }
     fit.difference = given < count ? count - given : given - count;
@@ -702,7 +714,7 @@ static const struct parameter *rest_of(const struct function *function, int *ind
 static int read_rest(struct context *c, const struct parameter *p, int place, struct value *value) {
     lua_State *L = c->lua;
     int end = place;
-    while (end <= lua_gettop(L) && (lua_isnil(L, end) || looks_like(L, end, KIND_NODE)))
+    while (end <= lua_gettop(L) && (lua_isnil(L, end) || looks_like(L, end, KIND_NODE, 0)))
         end++;
     if (end == place)
         return end;

@@ -98,8 +98,10 @@ static void describe_parameter(const struct parameter *p, char out[LINE_SIZE]) {
     char range[96], choices[200];
     range_words(p, range, sizeof range);
     choices_words(p, '|', choices, sizeof choices);
+    bool or_texture = p->flags & OR_TEXTURE && p->kind != KIND_IMAGE;
     size_t used =
-        (size_t)snprintf(out, LINE_SIZE, "%s (%s", p->name, p->kind == KIND_CHOICE ? choices : kind_words(p->kind));
+        (size_t)snprintf(out, LINE_SIZE, "%s (%s%s", p->name, p->kind == KIND_CHOICE ? choices : kind_words(p->kind),
+                         or_texture ? " or a texture" : "");
     if (range[0])
         used += (size_t)snprintf(out + used, LINE_SIZE - used, ", %s", range);
     if (p->unit)
@@ -157,7 +159,7 @@ const char *script_manual(struct arena *arena) {
     return document.failed ? NULL : document.text;
 }
 
-static const char *annotation_type(const struct parameter *p, char out[200]) {
+static const char *annotation_kind(const struct parameter *p, char out[200]) {
     switch (p->kind) {
     case KIND_NUMBER:
         return "number";
@@ -222,6 +224,14 @@ static const char *annotation_type(const struct parameter *p, char out[200]) {
         break;
     }
     UNREACHABLE("a parameter of no kind");
+}
+
+static const char *annotation_type(const struct parameter *p, char out[200]) {
+    const char *type = annotation_kind(p, out);
+    if (!(p->flags & OR_TEXTURE) || p->kind == KIND_IMAGE)
+        return type;
+    snprintf(out, 200, "%s|gr.texture", type);
+    return out;
 }
 
 static const char *annotation_result(const struct function *function) {

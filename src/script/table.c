@@ -240,7 +240,8 @@ static const struct parameter set_texture_parameters[] = {
 
 static const struct parameter set_bump_parameters[] = {
     SELF_PARAMETER,
-    [SET_BUMP] = {"bump", KIND_IMAGE, 0, ANY, NULL, NULL, "What gr.bump made, or the name of a PNG or JPEG file."},
+    [SET_BUMP] = {"bump", KIND_IMAGE, OR_TEXTURE, ANY, NULL, NULL,
+                  "What gr.bump made, or the name of a PNG or JPEG file."},
 };
 
 static const struct parameter translate_parameters[] = {
@@ -297,11 +298,14 @@ static const struct parameter rotate_quat_parameters[] = {
 };
 
 #define KD                                                                                                             \
-    { "kd", KIND_COLOUR, 0, ANY, NULL, NULL, "Colour of diffuse and ambient light." }
+    { "kd", KIND_COLOUR, OR_TEXTURE, ANY, NULL, NULL, "Colour of diffuse and ambient light." }
 #define KS                                                                                                             \
-    { "ks", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0, 0, 0}", "Colour of highlights, filter of secondary rays." }
+    {                                                                                                                  \
+        "ks", KIND_COLOUR, OPTIONAL | OR_TEXTURE, ANY, NULL, "{0, 0, 0}",                                              \
+            "Colour of highlights, filter of secondary rays."                                                          \
+    }
 #define SHININESS                                                                                                      \
-    { "shininess", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1", "Exponent of the highlight." }
+    { "shininess", KIND_NUMBER, OPTIONAL | OR_TEXTURE, ABOVE(0), NULL, "1", "Exponent of the highlight." }
 #define TWO_SIDED                                                                                                      \
     { "two_sided", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether faces seen from behind are lit as well." }
 
@@ -322,11 +326,16 @@ static const struct parameter rotate_quat_parameters[] = {
                    NULL,                                                                                               \
                    "true",                                                                                             \
                    "Whether light is looked for; false: kd is shown as it is."},                                       \
-    [PHONG_EMISSION] =                                                                                                 \
-        {"emission", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0, 0, 0}", "Light of its own, added to what it reflects."},   \
+    [PHONG_EMISSION] = {"emission",                                                                                    \
+                        KIND_COLOUR,                                                                                   \
+                        OPTIONAL | OR_TEXTURE,                                                                         \
+                        ANY,                                                                                           \
+                        NULL,                                                                                          \
+                        "{0, 0, 0}",                                                                                   \
+                        "Light of its own, added to what it reflects."},                                               \
     [PHONG_ROUGHNESS] = {"roughness",                                                                                  \
                          KIND_NUMBER,                                                                                  \
-                         OPTIONAL,                                                                                     \
+                         OPTIONAL | OR_TEXTURE,                                                                        \
                          BETWEEN(0, 1),                                                                                \
                          NULL,                                                                                         \
                          "0",                                                                                          \
@@ -344,14 +353,37 @@ static const struct parameter rotate_quat_parameters[] = {
                           ABOVE(0),                                                                                    \
                           NULL,                                                                                        \
                           "{0, 0, 0}",                                                                                 \
-                          "Inside, light fades by exp(-absorption * distance)."}
+                          "Inside, light fades by exp(-absorption * distance)."},                                      \
+    [PHONG_OPACITY] = {"opacity",                                                                                      \
+                       KIND_NUMBER,                                                                                    \
+                       OPTIONAL | OR_TEXTURE,                                                                          \
+                       BETWEEN(0, 1),                                                                                  \
+                       NULL,                                                                                           \
+                       "1",                                                                                            \
+                       "How much of the surface is there; the rest is a hole."},                                       \
+    [PHONG_METALNESS] = {"metalness",                                                                                  \
+                         KIND_NUMBER,                                                                                  \
+                         OPTIONAL | OR_TEXTURE,                                                                        \
+                         BETWEEN(0, 1),                                                                                \
+                         NULL,                                                                                         \
+                         "0",                                                                                          \
+                         "The share of kd that colours highlights and mirrored light instead."},                       \
+    [PHONG_BUMP] = {"bump",                                                                                            \
+                    KIND_IMAGE,                                                                                        \
+                    OPTIONAL | OR_TEXTURE,                                                                             \
+                    ANY,                                                                                               \
+                    NULL,                                                                                              \
+                    "none",                                                                                            \
+                    "Heights: what gr.bump made, a file or a texture."}
 
 static const struct parameter material_parameters[] = {
     [PHONG_KD] = KD,
     [PHONG_KS] = KS,
     [PHONG_SHININESS] = SHININESS,
-    [PHONG_REFLECT] = {"reflect", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "0", "Amount of reflected light."},
-    [PHONG_REFRACT] = {"refract", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "0", "Amount of refracted light."},
+    [PHONG_REFLECT] = {"reflect", KIND_NUMBER, OPTIONAL | OR_TEXTURE, BETWEEN(0, 1), NULL, "0",
+                       "Amount of reflected light."},
+    [PHONG_REFRACT] = {"refract", KIND_NUMBER, OPTIONAL | OR_TEXTURE, BETWEEN(0, 1), NULL, "0",
+                       "Amount of refracted light."},
     [PHONG_IOR] = {"ior", KIND_NUMBER, OPTIONAL, ABOVE(1), NULL, "none", "Index of refraction of the inside."},
     [PHONG_TWO_SIDED] = TWO_SIDED,
     SURFACE_FIELDS,
@@ -361,8 +393,10 @@ static const struct parameter rr_parameters[] = {
     [PHONG_KD] = KD,
     [PHONG_KS] = KS,
     [PHONG_SHININESS] = SHININESS,
-    [PHONG_REFLECT] = {"reflect", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "0", "Amount of reflected light."},
-    [PHONG_REFRACT] = {"refract", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "0", "Amount of refracted light."},
+    [PHONG_REFLECT] = {"reflect", KIND_NUMBER, OPTIONAL | OR_TEXTURE, BETWEEN(0, 1), NULL, "0",
+                       "Amount of reflected light."},
+    [PHONG_REFRACT] = {"refract", KIND_NUMBER, OPTIONAL | OR_TEXTURE, BETWEEN(0, 1), NULL, "0",
+                       "Amount of refracted light."},
     [PHONG_IOR] = {"ior", KIND_NUMBER, OPTIONAL, ABOVE(1), NULL, "1", "Index of refraction of the inside."},
     [PHONG_TWO_SIDED] = TWO_SIDED,
     SURFACE_FIELDS,
@@ -434,7 +468,7 @@ static const struct parameter texture_parameters[] = {
     }
 
 static const struct parameter bump_parameters[] = {
-    [RELIEF_FILE] = {"file", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file."},
+    [RELIEF_FILE] = {"file", KIND_IMAGE, OR_TEXTURE, ANY, NULL, NULL, "A PNG or JPEG file, or any texture."},
     LOOKUP_FIELDS(RELIEF_LOOKUP),
     [RELIEF_AMOUNT] = RELIEF_AMOUNT_FIELD,
     [RELIEF_KIND] = RELIEF_KIND_FIELD,
@@ -450,7 +484,7 @@ static const struct parameter image_over_parameters[] = {
 
 static const struct parameter bump_over_parameters[] = {
     [OVER_MATERIAL] = BASE,
-    [OVER_IMAGE] = {"image", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file, or what gr.bump made."},
+    [OVER_IMAGE] = {"image", KIND_IMAGE, OR_TEXTURE, ANY, NULL, NULL, "A PNG or JPEG file, or what gr.bump made."},
     LOOKUP_FIELDS(OVER_LOOKUP),
     [RELIEF_OVER_AMOUNT] = RELIEF_AMOUNT_FIELD,
     [RELIEF_OVER_KIND] = RELIEF_KIND_FIELD,
@@ -854,7 +888,8 @@ static const struct function other_rows[] = {
        "A dielectric: reflects and refracts by Fresnel's equations.", "material"),
     GR("difresneld_material", fresnel_parameters, RESULT_MATERIAL, act_fresnel, "The same as gr.difresnel_material.",
        "material"),
-    GR("texture", texture_parameters, RESULT_TEXTURE, act_texture, "An image for node:set_texture.", "file"),
+    GR("texture", texture_parameters, RESULT_TEXTURE, act_texture,
+       "An image for node:set_texture, or for inputs of gr.material.", "file"),
     GR("bump", bump_parameters, RESULT_TEXTURE, act_bump, "A bump map or normal map for node:set_bump.",
        "file height?"),
     GR("image_material", image_over_parameters, RESULT_MATERIAL, act_image_material,
@@ -974,7 +1009,7 @@ static const struct function_rows node_functions = {node_rows, COUNT(node_rows)}
 static const struct function_rows other_functions = {other_rows, COUNT(other_rows)};
 /* In the order of the manual. */
 static const struct function_rows *const parts[] = {&node_functions, &shape_functions, &swept_functions,
-                                                    &other_functions};
+                                                    &texture_functions, &other_functions};
 
 int function_count(void) {
     int count = 0;

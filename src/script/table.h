@@ -66,7 +66,7 @@ struct value {
     struct node *node;
     const struct material *material;
     const struct material **materials;
-    const struct relief *texture; /* what gr.texture or gr.bump made; its kind is MATERIAL_IMAGE without relief */
+    const struct relief *texture; /* what gr.texture, gr.bump and their like made; without relief a MATERIAL_IMAGE */
     const char **names;
     struct image *image;
     uint32_t count;
@@ -87,6 +87,7 @@ enum {
     LOW_OPEN = 2, /* value > low, not >= */
     HIGH_OPEN = 4,
     NOT_ZERO = 8,
+    OR_TEXTURE = 64,   /* a texture does as well: `texture` is set, numbers are 1; of KIND_IMAGE: one without image */
     REST = 32,         /* takes the arguments behind a positional form, and entries without names of the table form */
     GHOST_IS_NONE = 16 /* with --lenient: something that does not exist yet counts as left out, the call goes on */
 };
@@ -143,7 +144,7 @@ struct function_rows {
     const struct function *rows;
     int count;
 };
-extern const struct function_rows shape_functions, swept_functions;
+extern const struct function_rows shape_functions, swept_functions, texture_functions;
 
 int function_count(void);
 /* index: 0 to function_count() - 1. */

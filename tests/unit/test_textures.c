@@ -1,0 +1,534 @@
+/* Textures as values, and the inputs of materials that take them. Every kind is made by a switch without `default`, so
+ * that a new kind is named here by the compiler. */
+#include "material/material_inputs.h"
+#include "math/frame.h"
+#include "math/noise.h"
+#include "tests/harness.h"
+#include "tests/stage.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct palette {
+    struct arena arena;
+    struct error error;
+    struct image *image; /* 2 x 2, one colour with alpha 0.4: (10, 20, 30) of 255 where it counts */
+};
+
+static void palette_init(struct palette *p) {
+    static const uint8_t texel[4] = {10, 20, 30, 102};
+    uint8_t texels[16];
+    *p = (struct palette){0};
+    for (size_t i = 0; i < 4; i++)
+        memcpy(texels + 4 * i, texel, 4);
+    p->image = image_create("even", 2, 2, 8, texels, &p->error);
+    CHECK(p->image != NULL);
+}
+
+static void palette_destroy(struct palette *p) {
+    image_release(p->image);
+    arena_destroy(&p->arena);
+}
+
+static const struct texture *keep(struct palette *p, struct texture texture) {
+    const struct texture *kept = texture_keep(&p->arena, texture, &p->error);
+    CHECK(kept != NULL);
+    return kept;
+}
+
+static const struct texture *number(struct palette *p, double x) {
+    return keep(p, texture_number(x));
+}
+
+static const struct texture *colour(struct palette *p, double r, double g, double b) {
+    return keep(p, texture_constant(vec3_make(r, g, b)));
+}
+
+static struct texture_image picture(const struct palette *p, enum texture_alpha alpha) {
+    return (struct texture_image){.image = p->image, .mapping = MAPPING_UV, .alpha = alpha};
+}
+
+/* A point of a square that supplies coordinates, with vertex colours. */
+static struct hit hit_at(double x, double y, double z) {
+    return (struct hit){.pattern_point = {x, y, z},
+                        .pattern_normal = {0, 0, 1},
+                        .normal = {0, 0, 1},
+                        .normal_geometric = {0, 0, 1},
+                        .view = {0, 0, 1},
+                        .raise = {0, 0, 1},
+                        .has_uv = true,
+                        .u = 0.5,
+                        .v = 0.5,
+                        .dpdu = {1, 0, 0},
+                        .dpdv = {0, 1, 0},
+                        .has_colour = true,
+                        .colour = {0.25, 0.5, 1}};
+}
+
+static struct hit random_hit(struct test_random *random) {
+    double x = test_uniform(random, -3, 3), y = test_uniform(random, -3, 3);
+    return hit_at(x, y, test_uniform(random, -3, 3));
+}
+
+static bool same(struct vec3 a, struct vec3 b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+/* --- every kind --- */
+
+/* One texture of the kind, and what it is at the hit by its definition. */
+static const struct texture *make(struct palette *p, enum texture_kind kind, const struct hit *hit,
+                                  struct vec3 *wanted) {
+    struct vec3 at = hit->pattern_point;
+    struct texture_image image = picture(p, ALPHA_COVERS);
+    double ratio = noise_wood(at.x, at.y, at.z, 3, 5, 1);
+    switch (kind) {
+    case TEXTURE_CONSTANT:
+        *wanted = vec3_make(0.1, 0.2, 0.7);
+        return colour(p, 0.1, 0.2, 0.7);
+    case TEXTURE_PARAMETER: /* no material is there */
+        *wanted = vec3_all(1);
+        return texture_parameter(INPUT_KD);
+    case TEXTURE_VERTEX_COLOUR:
+        *wanted = hit->colour;
+        return keep(p, texture_vertex_colour());
+    case TEXTURE_IMAGE:
+        /* premultiplied by alpha, over white */
+        *wanted = vec3_make(0.4 * 10 / 255 + 0.6, 0.4 * 20 / 255 + 0.6, 0.4 * 30 / 255 + 0.6);
+        return keep(p, texture_image(&image, number(p, 1)));
+    case TEXTURE_MARBLE:
+        *wanted = vec3_all(noise_marble(at.x, at.y, at.z, 2, 3, 4, 0));
+        return keep(p, texture_marble(2, 3, 4, 0));
+    case TEXTURE_WOOD:
+        *wanted = vec3_all(ratio);
+        return keep(p, texture_wood(3, 5, 1));
+    case TEXTURE_MIX:
+        *wanted = vec3_make(ratio * 0.5, ratio * 0.25 + (1 - ratio), ratio);
+        return keep(p, texture_mix(colour(p, 0.5, 0.25, 1), colour(p, 0, 1, 0), keep(p, texture_wood(3, 5, 1))));
+    case TEXTURE_MULTIPLY:
+        *wanted = vec3_make(0.5 * ratio, 0.25 * ratio, ratio);
+        return keep(p, texture_multiply(colour(p, 0.5, 0.25, 1), keep(p, texture_wood(3, 5, 1))));
+    case TEXTURE_MAP:
+        *wanted = vec3_make(0.9, 0.8, 0.3);
+        return keep(p, texture_map(colour(p, 0.1, 0.2, 0.7), FUNCTION_COMPLEMENT, 0));
+    case TEXTURE_KINDS:
+        break;
+    }
+    return NULL;
+}
+
+TEST(every_kind_of_texture_is_what_its_definition_says) {
+    struct palette p;
+    struct test_random random = {3};
+    palette_init(&p);
+    for (int kind = 0; kind < TEXTURE_KINDS; kind++)
+        for (int i = 0; i < 50; i++) {
+            struct hit hit = random_hit(&random);
+            struct vec3 wanted;
+            const struct texture *texture = make(&p, (enum texture_kind)kind, &hit, &wanted);
+            CHECK(texture && texture->kind == (enum texture_kind)kind);
+            CHECK_NEAR(vec3_length(vec3_sub(texture_colour(texture, &hit), wanted)), 0, 1e-14);
+            CHECK_NEAR(texture_scalar(texture, &hit), (wanted.x + wanted.y + wanted.z) / 3, 1e-14);
+        }
+    palette_destroy(&p);
+}
+
+TEST(a_mix_of_any_two_kinds_lies_where_its_ratio_says_and_products_commute) {
+    struct palette p;
+    struct test_random random = {5};
+    palette_init(&p);
+    for (int a = 0; a < TEXTURE_KINDS; a++)
+        for (int b = 0; b < TEXTURE_KINDS; b++) {
+            struct hit hit = random_hit(&random);
+            struct vec3 va, vb;
+            const struct texture *ta = make(&p, (enum texture_kind)a, &hit, &va);
+            const struct texture *tb = make(&p, (enum texture_kind)b, &hit, &vb);
+            struct texture only_a = texture_mix(ta, tb, number(&p, 1)), only_b = texture_mix(ta, tb, number(&p, 0));
+            struct texture middle = texture_mix(ta, tb, number(&p, 0.5));
+            struct vec3 half = vec3_scale(vec3_add(va, vb), 0.5);
+            CHECK(same(texture_colour(&only_a, &hit), texture_colour(ta, &hit)));
+            CHECK(same(texture_colour(&only_b, &hit), texture_colour(tb, &hit)));
+            CHECK_NEAR(vec3_length(vec3_sub(texture_colour(&middle, &hit), half)), 0, 1e-14);
+            struct texture ab = texture_multiply(ta, tb), ba = texture_multiply(tb, ta);
+            CHECK(same(texture_colour(&ab, &hit), texture_colour(&ba, &hit)));
+            CHECK_NEAR(texture_scalar(&ab, &hit), texture_scalar(ta, &hit) * texture_scalar(tb, &hit), 1e-15);
+        }
+    palette_destroy(&p);
+}
+
+TEST(a_shared_texture_is_what_it_is_alone) {
+    struct palette p;
+    struct test_random random = {7};
+    palette_init(&p);
+    for (int kind = 0; kind < TEXTURE_KINDS; kind++) {
+        struct hit hit = random_hit(&random);
+        struct vec3 ignored;
+        struct texture shared = *make(&p, (enum texture_kind)kind, &hit, &ignored);
+        shared.shared = true;
+        struct texture_reader reader;
+        texture_reader_init(&reader, &hit, NULL);
+        for (int i = 0; i < 2; i++) {
+            CHECK(same(texture_read_colour(&shared, &reader), texture_colour(&shared, &hit)));
+            CHECK(texture_read_scalar(&shared, &reader) == texture_scalar(&shared, &hit));
+        }
+        CHECK_EQ_INT(reader.count, 2); /* the colour and the number */
+    }
+    palette_destroy(&p);
+}
+
+TEST(every_kind_stays_below_its_bound_and_constants_are_their_average) {
+    struct palette p;
+    struct test_random random = {9};
+    palette_init(&p);
+    for (int kind = 0; kind < TEXTURE_KINDS; kind++)
+        for (int i = 0; i < 100; i++) {
+            struct hit hit = random_hit(&random);
+            struct vec3 ignored;
+            const struct texture *texture = make(&p, (enum texture_kind)kind, &hit, &ignored);
+            struct vec3 value = texture_colour(texture, &hit);
+            struct vec3 bound = texture_estimate(texture, NULL, TEXTURE_LARGEST);
+            struct vec3 average = texture_estimate(texture, NULL, TEXTURE_AVERAGE);
+            CHECK(value.x <= bound.x + 1e-15 && value.y <= bound.y + 1e-15 && value.z <= bound.z + 1e-15);
+            CHECK(average.x <= bound.x + 1e-15 && average.y <= bound.y + 1e-15 && average.z <= bound.z + 1e-15);
+            if (texture->kind == TEXTURE_CONSTANT || texture->kind == TEXTURE_IMAGE) /* the image is even */
+                CHECK_NEAR(vec3_length(vec3_sub(average, value)), 0, 1e-14);
+        }
+    palette_destroy(&p);
+}
+
+/* --- the parts of kinds --- */
+
+TEST(the_number_of_a_colour_is_its_mean_and_that_of_a_number_is_exact) {
+    struct hit hit = hit_at(0, 0, 0);
+    struct test_random random = {11};
+    for (int i = 0; i < 1000; i++) {
+        double x = test_uniform(&random, -5, 5), y = test_uniform(&random, -5, 5), z = test_uniform(&random, -5, 5);
+        struct texture exact = texture_number(x), mixed = texture_constant(vec3_make(x, y, z));
+        CHECK(texture_scalar(&exact, &hit) == x && same(texture_colour(&exact, &hit), vec3_all(x)));
+        CHECK(texture_scalar(&mixed, &hit) == (x + y + z) / 3);
+    }
+}
+
+TEST(alpha_of_an_image_covers_is_ignored_darkens_is_undone_or_is_read_alone) {
+    struct palette p;
+    struct hit hit = hit_at(0, 0, 0);
+    palette_init(&p);
+    const struct texture *white = number(&p, 1);
+    const double red = 10 / 255.0, wanted[] = {0.4 * red + 0.6, red, 0.4 * red, red, 0.4};
+    for (int alpha = ALPHA_COVERS; alpha <= ALPHA_ALONE; alpha++) {
+        struct texture_image image = picture(&p, (enum texture_alpha)alpha);
+        struct texture over = texture_image(&image, white);
+        CHECK_NEAR(texture_colour(&over, &hit).x, wanted[alpha], 1e-15);
+        struct hit bare = hit;
+        bare.has_uv = false; /* the surface has no coordinates: what is below */
+        CHECK(same(texture_colour(&over, &bare), vec3_all(1)));
+    }
+    palette_destroy(&p);
+}
+
+TEST(functions_of_textures_follow_their_formulas) {
+    struct palette p;
+    struct hit hit = hit_at(0, 0, 0);
+    struct test_random random = {13};
+    palette_init(&p);
+    for (int function = 0; function < FUNCTION_COUNT; function++)
+        for (int i = 0; i < 100; i++) {
+            double x = test_uniform(&random, -0.5, 1.5), amount = test_uniform(&random, 0, 1), wanted = NAN;
+            const struct texture *of = colour(&p, x, 2 * x, 3 * x);
+            struct texture map = texture_map(of, (enum texture_function)function, amount);
+            double r4 = x * x * x * x, exponent = r4 < 1e-3 ? 1998 : 2 / r4 - 2;
+            switch ((enum texture_function)function) {
+            case FUNCTION_RED:
+                wanted = x;
+                break;
+            case FUNCTION_GREEN:
+                wanted = 2 * x;
+                break;
+            case FUNCTION_BLUE:
+                wanted = 3 * x;
+                break;
+            case FUNCTION_COMPLEMENT:
+                wanted = 1 - x;
+                break;
+            case FUNCTION_SATURATE:
+                wanted = fmin(fmax(x, 0), 1);
+                break;
+            case FUNCTION_STEP:
+                wanted = x >= amount;
+                break;
+            case FUNCTION_PHONG_EXPONENT:
+                wanted = fmax(exponent, 1);
+                break;
+            case FUNCTION_COUNT:
+                break;
+            }
+            CHECK_NEAR(texture_colour(&map, &hit).x, wanted, 1e-9);
+        }
+    palette_destroy(&p);
+}
+
+TEST(a_tree_that_doubles_with_each_level_is_refused_before_it_is_too_large) {
+    struct palette p;
+    palette_init(&p);
+    const struct texture *tree = number(&p, 1);
+    int levels = 0;
+    while (levels < 100) {
+        const struct texture *next = texture_keep(&p.arena, texture_multiply(tree, tree), &p.error);
+        if (!next)
+            break;
+        tree = next;
+        levels++;
+    }
+    CHECK_EQ_INT(levels, 13); /* 2^(n + 1) - 1 textures */
+    CHECK_TEXT(p.error.text, "more than 16384 textures are in one");
+    palette_destroy(&p);
+}
+
+/* --- inputs --- */
+
+static void *field_of(struct surface_look *look, enum material_input input, bool *is_colour) {
+    *is_colour = input == INPUT_KD || input == INPUT_KS || input == INPUT_EMISSION;
+    switch (input) {
+    case INPUT_KD:
+        return &look->kd;
+    case INPUT_KS:
+        return &look->ks;
+    case INPUT_SHININESS:
+        return &look->shininess;
+    case INPUT_REFLECT:
+        return &look->reflect;
+    case INPUT_REFRACT:
+        return &look->refract;
+    case INPUT_ROUGHNESS:
+        return &look->roughness;
+    case INPUT_EMISSION:
+        return &look->emission;
+    case INPUT_OPACITY:
+        return &look->opacity;
+    case INPUT_COUNT:
+        break;
+    }
+    return NULL;
+}
+
+static struct material base_material(void) {
+    struct material base;
+    material_derive(&base, MATERIAL_PHONG, NULL);
+    base.phong = (struct phong){.kd = {0.1, 0.2, 0.3},
+                                .ks = {0.4, 0.5, 0.6},
+                                .shininess = 7,
+                                .reflect = 0.8,
+                                .refract = 0.9,
+                                .roughness = 0.25,
+                                .ior = 1.5,
+                                .emission = {3, 4, 5}};
+    return base;
+}
+
+TEST(a_texture_multiplies_the_number_of_every_input_and_no_other) {
+    struct palette p;
+    struct hit hit = hit_at(1, 2, 3);
+    palette_init(&p);
+    const struct texture *half = number(&p, 0.5);
+    struct material base = base_material();
+    struct surface_look plain;
+    material_look(&base, &hit, &plain);
+    for (int input = 0; input < INPUT_COUNT; input++) {
+        struct material over;
+        struct surface_look look;
+        material_derive(&over, MATERIAL_IMAGE, &base);
+        CHECK(material_multiply(&over, (enum material_input)input, half, &p.arena, &p.error));
+        material_look(&over, &hit, &look);
+        for (int other = 0; other < INPUT_COUNT; other++) {
+            bool is_colour;
+            const double *before = field_of(&plain, (enum material_input)other, &is_colour);
+            const double *after = field_of(&look, (enum material_input)other, &is_colour);
+            for (int i = 0; i < (is_colour ? 3 : 1); i++)
+                CHECK(after[i] == (other == input ? 0.5 : 1) * before[i]);
+        }
+        base.phong.shininess += 1; /* numbers of the base go on to count */
+        material_look(&over, &hit, &look);
+        CHECK(look.shininess == base.phong.shininess * (input == INPUT_SHININESS ? 0.5 : 1));
+        material_look(&base, &hit, &plain);
+    }
+    palette_destroy(&p);
+}
+
+/* What the chain of decorators did, link after link. */
+TEST(marble_over_wood_over_an_image_is_what_the_decorators_made_bit_by_bit) {
+    struct palette p;
+    struct test_random random = {17};
+    palette_init(&p);
+    struct material base = base_material(), image, wood, marble;
+    struct texture_image even = picture(&p, ALPHA_COVERS);
+    struct vec3 brown = {0.3, 0.2, 0.1}, blue = {0, 0.1, 0.9};
+    material_derive(&image, MATERIAL_IMAGE, &base);
+    CHECK(material_cover(&image, INPUT_KD, &even, &p.arena, &p.error));
+    material_derive(&wood, MATERIAL_WOOD, &image);
+    CHECK(material_mix_kd(&wood, texture_wood(3, 5, 1), brown, &p.arena, &p.error));
+    material_derive(&marble, MATERIAL_MARBLE, &wood);
+    CHECK(material_mix_kd(&marble, texture_marble(2, 3, 4, 1), blue, &p.arena, &p.error));
+    for (int i = 0; i < 1000; i++) {
+        struct hit hit = random_hit(&random);
+        struct vec3 at = hit.pattern_point, kd = base.phong.kd;
+        struct surface_look look;
+        struct rgba texel = image_lookup(p.image, 0.5, 0.5, 0, 0, IMAGE_NEAREST, IMAGE_CLAMP, IMAGE_CLAMP);
+        kd = vec3_add(vec3_make(texel.r, texel.g, texel.b), vec3_scale(kd, 1 - texel.a));
+        double ratio = noise_wood(at.x, at.y, at.z, 3, 5, 1);
+        kd = vec3_add(vec3_scale(kd, ratio), vec3_scale(brown, 1 - ratio));
+        ratio = noise_marble(at.x, at.y, at.z, 2, 3, 4, 1);
+        kd = vec3_add(vec3_scale(kd, ratio), vec3_scale(blue, 1 - ratio));
+        material_look(&marble, &hit, &look);
+        CHECK(same(look.kd, kd));
+        CHECK(same(look.ks, base.phong.ks) && look.shininess == 7 && look.opacity == 1);
+    }
+    palette_destroy(&p);
+}
+
+TEST(a_thousand_decorators_are_evaluated_in_order) {
+    struct palette p;
+    struct hit hit = hit_at(0.3, 0.7, -0.2);
+    palette_init(&p);
+    static struct material chain[MATERIAL_DEPTH];
+    double ratio = noise_wood(0.3, 0.7, -0.2, 3, 5, 1), kd = 0.1;
+    chain[0] = base_material();
+    for (int i = 1; i < MATERIAL_DEPTH; i++) {
+        material_derive(&chain[i], MATERIAL_WOOD, &chain[i - 1]);
+        CHECK(material_mix_kd(&chain[i], texture_wood(3, 5, 1), vec3_all(i % 2), &p.arena, &p.error));
+        kd = kd * ratio + (i % 2) * (1 - ratio);
+    }
+    struct surface_look look;
+    material_look(&chain[MATERIAL_DEPTH - 1], &hit, &look);
+    CHECK(look.kd.x == kd);
+    CHECK_EQ_INT(chain[MATERIAL_DEPTH - 1].depth, MATERIAL_DEPTH);
+    palette_destroy(&p);
+}
+
+TEST(metalness_moves_kd_to_ks_and_loses_nothing) {
+    struct palette p;
+    struct hit hit = hit_at(1, 2, 3);
+    palette_init(&p);
+    for (int i = 0; i <= 10; i++) {
+        struct material base = base_material(), metal;
+        struct surface_look look;
+        double m = i / 10.0;
+        material_derive(&metal, MATERIAL_METAL, &base);
+        CHECK(material_mix_metal(&metal, number(&p, m), &p.arena, &p.error));
+        material_look(&metal, &hit, &look);
+        CHECK_NEAR(look.kd.x, 0.1 * (1 - m), 1e-16);
+        CHECK_NEAR(look.ks.x, 0.1 * m + 0.4 * (1 - m), 1e-16);
+        CHECK(look.shininess == 7 && look.reflect == 0.8);
+    }
+    palette_destroy(&p);
+}
+
+/* --- relief --- */
+
+/* Rises by 1/255 a texel along u. */
+static struct image *ramp(struct error *error) {
+    static uint8_t texels[256 * 4];
+    for (int i = 0; i < 256; i++) {
+        memset(texels + (ptrdiff_t)4 * i, i, 3);
+        texels[4 * i + 3] = 255;
+    }
+    return image_create("ramp", 256, 1, 8, texels, error);
+}
+
+TEST(bumps_of_any_texture_tilt_the_normal_by_the_slope_of_their_height) {
+    struct palette p;
+    palette_init(&p);
+    struct image *image = ramp(&p.error);
+    struct texture_image look = {.image = image, .mapping = MAPPING_UV, .filter = IMAGE_BILINEAR, .wrap = IMAGE_CLAMP};
+    const struct texture *height = keep(&p, texture_image(&look, NULL));
+    for (int i = 0; i < 20; i++) {
+        double size = ldexp(1, i - 10), factor = 0.1 * (i % 5);
+        struct hit hit = hit_at(0.5 * size, 0.5 * size, 0);
+        hit.dpdu.x = hit.dpdv.y = size;
+        frame_tangents(hit.pattern_normal, &hit.along_a, &hit.along_b);
+        struct material base = base_material(), bumped;
+        struct relief relief = {.kind = MATERIAL_BUMP, .height = factor * size, .texture = height};
+        struct surface_look flat;
+        material_derive(&bumped, MATERIAL_BUMP, &base);
+        CHECK(material_raise(&bumped, &relief, &p.arena, &p.error));
+        material_look(&bumped, &hit, &flat);
+        double slope = factor * 256 / 255; /* of height over x, 256 texels wide */
+        struct vec3 wanted = vec3_normalize(vec3_make(-slope, 0, 1));
+        CHECK_NEAR(vec3_length(vec3_sub(flat.normal, wanted)), 0, 1e-6);
+        CHECK(material_has_relief(&bumped) && material_has_image(&bumped));
+    }
+    image_release(image);
+    palette_destroy(&p);
+}
+
+TEST(bumps_of_patterns_grow_with_the_object_and_leave_flat_heights_bit_by_bit) {
+    struct palette p;
+    palette_init(&p);
+    struct hit hit = hit_at(0.3, 0.7, 0.1);
+    frame_tangents(hit.pattern_normal, &hit.along_a, &hit.along_b);
+    struct material base = base_material(), flat, bumped;
+    struct surface_look look, scaled;
+    struct relief even = {.kind = MATERIAL_BUMP, .height = 3, .texture = number(&p, 0.7)};
+    struct relief wood = {.kind = MATERIAL_BUMP, .height = 0.05, .texture = keep(&p, texture_wood(3, 5, 1))};
+    material_derive(&flat, MATERIAL_BUMP, &base);
+    CHECK(material_raise(&flat, &even, &p.arena, &p.error));
+    material_look(&flat, &hit, &look);
+    CHECK(same(look.normal, hit.normal));
+    material_derive(&bumped, MATERIAL_BUMP, &base);
+    CHECK(material_raise(&bumped, &wood, &p.arena, &p.error));
+    material_look(&bumped, &hit, &look);
+    CHECK(!same(look.normal, hit.normal));
+    CHECK_NEAR(vec3_length(look.normal), 1, 1e-15);
+    /* The object, with its bumps, is eight times as large in the world: the normals are the same. */
+    hit.along_a = vec3_scale(hit.along_a, 8);
+    hit.along_b = vec3_scale(hit.along_b, 8);
+    hit.raise = vec3_scale(hit.raise, 8);
+    hit.dpdu = vec3_scale(hit.dpdu, 8);
+    hit.dpdv = vec3_scale(hit.dpdv, 8);
+    material_look(&bumped, &hit, &scaled);
+    CHECK(same(look.normal, scaled.normal));
+    palette_destroy(&p);
+}
+
+/* --- the language --- */
+
+static const char *const two_pictures =
+    "local function picture(file, material)\n"
+    "  local root = gr.node('root')\n"
+    "  root:add_child(gr.sphere{material = material})\n"
+    "  gr.render{node = root, file = file, width = 24, height = 24, eye = {0, 0, 4}, view = {0, 0, -1},\n"
+    "            up = {0, 1, 0}, fov = 40, ambient = {.3, .3, .3}, lights = {gr.light({3, 3, 5}, {1, 1, 1}, {1, 0, "
+    "0})}}\n"
+    "end\n";
+
+static void check_equal(const char *first, const char *second) {
+    char scene[4096];
+    (void)snprintf(scene, sizeof scene, "%spicture('a.png', %s)\npicture('b.png', %s)\n", two_pictures, first, second);
+    struct test_result result = test_gray_scene(scene, "-q scene.lua", NULL);
+    CHECK_TEXT(result.err, "");
+    CHECK_EQ_INT(result.status, 0);
+    size_t size_a, size_b;
+    char path[2][512];
+    for (int i = 0; i < 2; i++)
+        (void)snprintf(path[i], sizeof path[i], "%s/%s", test_folder(), i ? "b.png" : "a.png");
+    char *a = test_read_file(path[0], &size_a), *b = test_read_file(path[1], &size_b);
+    CHECK(a && b && size_a == size_b && memcmp(a, b, size_a) == 0);
+    free(a);
+    free(b);
+}
+
+TEST(a_marble_decorator_is_a_mix_of_a_marble_texture) {
+    check_equal("gr.marble_pnd_material(gr.material({.8, .7, .6}, {.2, .2, .2}, 10), 2, 3, 4, 1, {.1, .2, .3})",
+                "gr.material{kd = gr.mix_texture({.8, .7, .6}, {.1, .2, .3}, gr.marble_texture(2, 3, 4, 1)),"
+                " ks = {.2, .2, .2}, shininess = 10}");
+}
+
+TEST(textures_of_one_number_are_that_number_in_every_input) {
+    check_equal("gr.material{kd = {.5, .25, 1}, ks = {.5, .5, .5}, shininess = 8, reflect = .5, roughness = .25,"
+                " emission = {.125, .25, 0}, opacity = .5}",
+                "gr.material{kd = gr.multiply_texture({.5, .25, 1}, 1), ks = gr.multiply_texture(.5, 1),"
+                " shininess = gr.multiply_texture(2, 4), reflect = gr.multiply_texture(.5, 1),"
+                " roughness = gr.multiply_texture(.5, .5), emission = gr.multiply_texture({.125, .25, 0}, 1),"
+                " opacity = gr.multiply_texture(1, .5)}");
+}
