@@ -81,12 +81,13 @@ bool stage_render(struct stage *s, uint32_t width, uint32_t height) {
     char warning[256];
     size_t bytes;
     uint32_t x0, y0, w, h;
-    bool ok =
-        stage_build(s, s->root, s->settings.accel) && render_prepare(&job, &x0, &y0, &w, &h, warning, &s->error) &&
-        film_size_layered(w, h, integrator_record(INTEGRATOR_WHITTED), aov_layers(s->settings.aov), &bytes, &s->error);
+    bool ok = stage_build(s, s->root, s->settings.accel) &&
+              render_prepare(&job, &x0, &y0, &w, &h, warning, &s->error) &&
+              film_size_layered(w, h, integrator_record(s->settings.integrator), aov_layers(s->settings.aov), &bytes,
+                                &s->error);
     if (ok) {
         free(s->film.pixels);
-        film_place(&s->film, calloc(1, bytes), w, h, integrator_record(INTEGRATOR_WHITTED));
+        film_place(&s->film, calloc(1, bytes), w, h, integrator_record(s->settings.integrator));
         film_place_layers(&s->film, s->film.pixels, s->settings.aov);
         s->film.x0 = x0;
         s->film.y0 = y0;

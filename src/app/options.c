@@ -76,6 +76,8 @@ static const char *const group_titles[GROUP_COUNT] = {
 };
 
 static const struct option table[] = {
+    {GROUP_PICTURE, "--integrator", OPTION_CHOICE, LIST_BARS(INTEGRATORS), NO_RANGE, FIELD(settings.integrator),
+     "whitted", "how light becomes a picture"},
     {GROUP_PICTURE, "-ss", OPTION_INTEGER, "N", 1, 64, FIELD(settings.samples), "3",
      "N x N samples for a marked pixel"},
     {GROUP_PICTURE, "-full", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.full), NULL,
@@ -250,7 +252,7 @@ _Static_assert(offsetof(struct options, shards) == offsetof(struct options, shar
 _Static_assert(sizeof(enum specular_kind) == sizeof(int) && sizeof(enum accel_kind) == sizeof(int) &&
                    sizeof(enum script_order) == sizeof(int) && sizeof(enum tone_curve) == sizeof(int) &&
                    sizeof(enum progress_mode) == sizeof(int) && sizeof(enum order) == sizeof(int) &&
-                   sizeof(enum overlay) == sizeof(int),
+                   sizeof(enum overlay) == sizeof(int) && sizeof(enum integrator_kind) == sizeof(int),
                "choices are stored as int");
 
 /* The next piece of a text parted by '|'; *rest moves behind it. Empty at the end. */
@@ -750,10 +752,14 @@ struct digest options_digest(const struct options *options) {
         bool picture = option->group == GROUP_PICTURE || option->group == GROUP_LOOK || option->group == GROUP_OLD;
         bool search = option->offset == offsetof(struct options, settings.accel) ||
                       option->offset == offsetof(struct options, isa);
-        if (picture && option->size > 0 && !search)
+        bool integrator = option->offset == offsetof(struct options, settings.integrator);
+        if (picture && option->size > 0 && !search && !integrator)
             digest = digest_option(option, options, digest);
     }
     const struct settings *settings = &options->settings;
+    /* Files from before there was a choice have the key of the first. */
+    if (settings->integrator != INTEGRATOR_WHITTED)
+        digest = digest_bytes(&settings->integrator, sizeof settings->integrator, digest);
     const int64_t numbers[] = {options->width,          options->height,
                                (int64_t)settings->seed, settings->cropped,
                                settings->crop_x,        settings->crop_y,

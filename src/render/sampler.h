@@ -78,6 +78,17 @@ struct sample_set sampler_facets(const struct sampler *sampler, uint64_t ray_key
 struct sample_set sampler_on_light(const struct sampler *sampler, uint64_t light_key, uint32_t light, uint32_t side,
                                    bool shared);
 /* The point in cell (cell % side, cell / side). */
-struct sample2 sample_set_point(const struct sample_set *set, uint32_t cell);
+static inline struct sample2 sample_set_point(const struct sample_set *set, uint32_t cell) {
+    uint32_t i = cell % set->side, j = cell / set->side;
+    switch (set->kind) {
+    case SAMPLE_SET_MULTI:
+        return sample_multi(set->set_key, set->key, i, j, set->side, set->part, set->parts);
+    case SAMPLE_SET_PARTS:
+        return sample_cell_part(set->key, i, j, set->side, set->part, set->parts);
+    case SAMPLE_SET_JITTERED:
+        break;
+    }
+    return sample_cell(set->key, i, j, set->side);
+}
 
 #endif

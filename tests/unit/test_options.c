@@ -56,6 +56,7 @@ TEST(options_have_the_defaults_of_the_manual) {
     CHECK_EQ_INT(o->script_count, 1);
     CHECK_TEXT(o->scripts[0], "scene.lua");
     CHECK_EQ_INT(o->settings.samples, 3);
+    CHECK_EQ_INT(o->settings.integrator, INTEGRATOR_WHITTED);
     CHECK(!o->settings.full);
     CHECK_EQ_INT(o->settings.reflect_limit, 2);
     CHECK_EQ_INT(o->settings.refract_limit, 4);
@@ -92,7 +93,8 @@ TEST(long_options_take_one_dash_or_two_and_either_joint) {
 
 TEST(every_option_sets_what_it_says) {
     struct parsed *parsed = parse(
-        "-ss 5 -full -side-tolerance .25 -corner-tolerance 1e-3 -reflect-limit 0 -refract-limit 1000 -use-tir "
+        "--integrator whitted -ss 5 -full -side-tolerance .25 -corner-tolerance 1e-3 -reflect-limit 0 -refract-limit "
+        "1000 -use-tir "
         "-al-samples 8 "
         "--seed 18446744073709551615 --size 640x480 --crop 1,2,3,4 --accel none -o a.png -write-aa-targets T "
         "-write-pre-aa P --transform-order separate --view target --pixel-sample corner --specular blinn --ambient "

@@ -1,0 +1,111 @@
+/* What holds for every integrator, by construction: these tests go over the list of them. */
+#include "base/list.h"
+#include "render/story.h"
+#include "tests/harness.h"
+#include "tests/stage.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH = 70, HEIGHT = 50 };
+
+/* A highlight, glass and edges: more than one tile, and pixels that are not alike. */
+static void begin(struct stage *s, int threads, enum integrator_kind integrator) {
+    stage_begin(s, threads);
+    s->settings.integrator = integrator;
+    s->camera = (struct camera){{0, 1, 6}, {0, -0.1, -1}, {0, 1, 0}, 40};
+    stage_sphere(s, s->root, stage_glass(s, 0.5, 0.5, 1.5));
+    struct node *ball = stage_sphere(s, s->root, stage_phong(s, vec3_make(0.8, 0.3, 0.2), vec3_all(0.4), 20));
+    stage_move(s, ball, 1.6, 0, -1);
+    stage_point_light(s, vec3_make(2, 5, 4), vec3_all(0.9));
+    s->ambient = vec3_all(0.2);
+}
+
+static size_t film_bytes(const struct film *film) {
+    return (size_t)film->width * film->height * film_record_size(film->record);
+}
+
+TEST(every_integrator_fills_the_film_with_the_same_bytes_for_any_number_of_threads) {
+    for (int kind = 0; kind < LIST_COUNT(INTEGRATORS); kind++) {
+        struct stage one, four;
+        begin(&one, 1, (enum integrator_kind)kind);
+        begin(&four, 4, (enum integrator_kind)kind);
+        CHECK(stage_render(&one, WIDTH, HEIGHT) && stage_render(&four, WIDTH, HEIGHT));
+        CHECK(memcmp(one.film.pixels, four.film.pixels, film_bytes(&one.film)) == 0);
+        CHECK_EQ_INT(film_tiles_in(&one.film, FILM_TILE_DONE), film_tile_count(&one.film));
+        CHECK(one.statistics.camera_rays >= WIDTH * HEIGHT && one.statistics.samples >= WIDTH * HEIGHT);
+        double least = INFINITY, most = 0;
+        for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
+            least = fmin(least, (double)one.film.pixels[i].rgb[0]);
+            most = fmax(most, (double)one.film.pixels[i].rgb[0]);
+        }
+        CHECK(isfinite(least) && isfinite(most) && most > least + 0.1);
+        stage_end(&one);
+        stage_end(&four);
+    }
+}
+
+TEST(every_integrator_records_what_tiles_can_carry) {
+    static uint8_t bytes[FILM_PACKED_LIMIT];
+    for (int kind = 0; kind < LIST_COUNT(INTEGRATORS); kind++) {
+        struct stage s;
+        begin(&s, 2, (enum integrator_kind)kind);
+        CHECK(stage_render(&s, WIDTH, HEIGHT));
+        CHECK(film_record_valid(s.film.record));
+        CHECK(film_record_equal(s.film.record, integrator_record((enum integrator_kind)kind)));
+        void *before = memcpy(malloc(film_bytes(&s.film)), s.film.pixels, film_bytes(&s.film));
+        for (uint32_t tile = 0; tile < film_tile_count(&s.film); tile++) {
+            size_t size = film_tile_pack(&s.film, tile, bytes);
+            atomic_store(&s.film.tiles[tile], FILM_TILE_WANTED);
+            film_clear_unfinished(&s.film);
+            CHECK(film_tile_unpack(&s.film, tile, bytes, size));
+        }
+        CHECK(memcmp(before, s.film.pixels, film_bytes(&s.film)) == 0);
+        free(before);
+        stage_end(&s);
+    }
+}
+
+/* The rest of a picture whose first tiles came from a checkpoint is that of one straight run. */
+TEST(every_integrator_goes_on_where_a_film_has_stopped) {
+    for (int kind = 0; kind < LIST_COUNT(INTEGRATORS); kind++) {
+        struct stage s;
+        begin(&s, 2, (enum integrator_kind)kind);
+        CHECK(stage_render(&s, WIDTH, HEIGHT));
+        void *whole = memcpy(malloc(film_bytes(&s.film)), s.film.pixels, film_bytes(&s.film));
+        atomic_store(&s.film.tiles[0], FILM_TILE_WANTED);
+        atomic_store(&s.film.tiles[4], FILM_TILE_WANTED);
+        film_clear_unfinished(&s.film);
+        struct render_job job = stage_job(&s, WIDTH, HEIGHT);
+        CHECK(render_run(&job, s.pool, &s.statistics, &s.error));
+        CHECK(memcmp(whole, s.film.pixels, film_bytes(&s.film)) == 0);
+        free(whole);
+        stage_end(&s);
+    }
+}
+
+/* Observers see the final colour of the pixel, and its samples with a ray each. */
+static bool check_story(void *context, struct story *story, struct error *error) {
+    const struct stage *s = context;
+    struct vec3 want = stage_pixel(s, story->x, story->y);
+    int samples = 0;
+    (void)error;
+    CHECK(story->rgb[0] == (float)want.x && story->rgb[1] == (float)want.y && story->rgb[2] == (float)want.z);
+    for (const struct story_sample *sample = story->sample; sample; sample = sample->next, samples++)
+        CHECK(sample->first && sample->first->begun && sample->first->kind == RAY_CAMERA);
+    CHECK(samples > 0);
+    return true;
+}
+
+TEST(every_integrator_shows_observers_the_pixels_that_it_makes) {
+    static const uint32_t pixels[][2] = {{20, 25}, {35, 25}, {50, 30}, {0, 0}, {69, 49}};
+    for (int kind = 0; kind < LIST_COUNT(INTEGRATORS); kind++) {
+        struct stage s;
+        begin(&s, 1, (enum integrator_kind)kind);
+        CHECK(stage_render(&s, WIDTH, HEIGHT));
+        struct render_job job = stage_job(&s, WIDTH, HEIGHT);
+        CHECK(render_pixels(&job, s.pool, pixels, 5, check_story, &s, &s.error));
+        stage_end(&s);
+    }
+}
