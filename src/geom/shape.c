@@ -207,6 +207,31 @@ bool shape_is_closed(const struct shape *shape) {
     return false;
 }
 
+enum surface_layout shape_layout(const struct shape *shape) {
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+        return LAYOUT_SPHERE;
+    case SHAPE_BOX:
+        return LAYOUT_FACES;
+    case SHAPE_CONIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_FLAT:
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_HEIGHT_FIELD:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE:
+    case SHAPE_MESH:
+    case SHAPE_CSG:
+        break;
+    }
+    return LAYOUT_UV;
+}
+
 enum hit_hull shape_hull(const struct shape *shape) {
     switch (shape->kind) {
     case SHAPE_SPHERE:

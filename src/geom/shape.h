@@ -83,6 +83,8 @@ struct box shape_bounds_under(const struct shape *shape, const struct affine *ma
 bool shape_inner_box(const struct shape *shape, const struct affine *map, struct box *out);
 /* Whether it may have many crossings, so that asking it costs more than a formula. */
 bool shape_is_listed(const struct shape *shape);
+/* How an image lies on it, as shape_describe fills it in; of CSG that of its operands is not known: LAYOUT_UV. */
+enum surface_layout shape_layout(const struct shape *shape);
 /* Closed: every line crosses it an even number of times, so it has an inside (CSG operand, media). A solid without end
  * (a half-space) is closed too: a line that begins or ends inside crosses it at t = -INFINITY or INFINITY. */
 bool shape_is_closed(const struct shape *shape);

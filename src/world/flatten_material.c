@@ -80,26 +80,13 @@ static void warn_once(struct flattening *f, const struct node *node, const char 
 }
 
 /* The mapping of an image that a node gives to its shape (SPEC 2.1). */
-static enum texture_mapping mapping_of(enum shape_kind kind) {
-    switch (kind) {
-    case SHAPE_SPHERE:
+static enum texture_mapping mapping_of(enum surface_layout layout) {
+    switch (layout) {
+    case LAYOUT_SPHERE:
         return MAPPING_SPHERE_CLASSIC;
-    case SHAPE_BOX:
+    case LAYOUT_FACES:
         return MAPPING_CUBE;
-    case SHAPE_CONIC:
-    case SHAPE_ELLIPSOID:
-    case SHAPE_QUADRIC:
-    case SHAPE_TORUS:
-    case SHAPE_SUPERELLIPSOID:
-    case SHAPE_FLAT:
-    case SHAPE_LATHE:
-    case SHAPE_PRISM:
-    case SHAPE_SWEEP:
-    case SHAPE_HEIGHT_FIELD:
-    case SHAPE_BLOB:
-    case SHAPE_CURVE:
-    case SHAPE_MESH:
-    case SHAPE_CSG:
+    case LAYOUT_UV:
         break;
     }
     return MAPPING_UV;
@@ -122,7 +109,7 @@ static const struct material *covered(struct flattening *f, const struct node *n
         return base;
     struct material *material = derived(f, MATERIAL_IMAGE, base);
     struct texture_image mapped = *image;
-    mapped.mapping = mapping_of(node->shape.kind);
+    mapped.mapping = mapping_of(shape_layout(&node->shape));
     return material && material_cover(material, INPUT_KD, &mapped, f->arena, f->error) ? material : NULL;
 }
 
@@ -133,7 +120,7 @@ static const struct material *raised(struct flattening *f, const struct node *no
         return base;
     struct material *material = derived(f, relief->kind, base);
     struct relief mapped = *relief;
-    mapped.image.mapping = mapping_of(node->shape.kind);
+    mapped.image.mapping = mapping_of(shape_layout(&node->shape));
     return material && material_raise(material, &mapped, f->arena, f->error) ? material : NULL;
 }
 

@@ -261,7 +261,7 @@ static long double dot_of(struct vec3 a, struct point p) {
 
 /* Negative inside, of the curved surface (flat: of the plane). */
 static long double implicit(const struct shape *s, struct point p) {
-    switch (s->kind) {
+    switch ((int)s->kind) { /* the analytic ones */
     case SHAPE_CONIC: {
         const struct conic *c = &s->conic;
         struct point f = {p.x - c->base.x, p.y - c->base.y, p.z - c->base.z};
@@ -295,16 +295,6 @@ static long double implicit(const struct shape *s, struct point p) {
     }
     case SHAPE_SPHERE:
         return p.x * p.x + p.y * p.y + p.z * p.z - 1;
-    case SHAPE_BOX: /* tested elsewhere, without an equation */
-    case SHAPE_LATHE:
-    case SHAPE_PRISM:
-    case SHAPE_SWEEP:
-    case SHAPE_HEIGHT_FIELD:
-    case SHAPE_BLOB:
-    case SHAPE_CURVE:
-    case SHAPE_MESH:
-    case SHAPE_CSG:
-        break;
     }
     return 0;
 }

@@ -360,7 +360,7 @@ struct transform make_transform(struct test_random *random, double spread) {
 #define THIN 1e-5
 
 struct failures {
-    long crossings, order, nearest, any, box, placed_box, points, normals;
+    long crossings, order, nearest, any, box, placed_box, points, normals, layout;
 };
 
 static void check_line_of(const struct shape *shape, struct test_random *random, struct geom_scratch *scratch,
@@ -400,6 +400,7 @@ static void check_line_of(const struct shape *shape, struct test_random *random,
         double cosine = vec3_dot(vec3_normalize(surface.normal), vec3_normalize(ray.direction));
         n->normals += fabs(cosine) > 1e-4 && closed && c.enter != (cosine < 0);
         n->box += !box_contains(&box, surface.point);
+        n->layout += shape->kind != SHAPE_CSG && surface.layout != shape_layout(shape);
     }
     for (uint32_t k = 0; closed && k <= list.count; k++) {
         double before = k > 0 ? scratch->items[k - 1].t : -INFINITY;
@@ -426,12 +427,12 @@ TEST(every_shape_is_crossed_where_its_points_and_its_box_say_and_met_at_the_firs
                 check_line_of(&shape, &random, &scratch, &n);
         }
         shape_makers_destroy(&makers);
-        if (n.order || n.nearest || n.any || n.box || n.points || n.normals || n.crossings < 1000)
+        if (n.order || n.nearest || n.any || n.box || n.points || n.normals || n.layout || n.crossings < 1000)
             test_fail(__FILE__, __LINE__,
                       "%s, %ld crossings: %ld out of order, %ld nearest, %ld any, %ld beyond the box, %ld points, %ld "
-                      "normals",
+                      "normals, %ld layouts",
                       shape_kind_name((enum shape_kind)kind), n.crossings, n.order, n.nearest, n.any, n.box, n.points,
-                      n.normals);
+                      n.normals, n.layout);
     }
     geom_scratch_destroy(&scratch);
 }
