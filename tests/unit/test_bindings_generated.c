@@ -176,6 +176,45 @@ TEST(every_form_of_every_function_runs_with_right_arguments) {
     }
 }
 
+/* Which kinds of shape are under a node. */
+struct kinds {
+    struct listener listener;
+    bool made[SHAPE_KIND_COUNT];
+};
+
+static void note_kinds(struct listener *listener, const struct render_request *request) {
+    struct kinds *kinds = (struct kinds *)(void *)listener;
+    for (const struct node_child *child = request->root->first_child; child; child = child->next) {
+        if (child->node->kind == NODE_GEOMETRY)
+            kinds->made[child->node->shape.kind] = true;
+        else if (child->node->kind == NODE_CSG)
+            kinds->made[SHAPE_CSG] = true;
+    }
+}
+
+TEST(every_kind_of_shape_is_made_by_a_function) {
+    write_files();
+    struct kinds kinds = {.listener = {.seen = note_kinds}};
+    for (int f = 0; f < function_count(); f++) {
+        const struct function *function = function_at(f);
+        if (function->owner != OWNER_GR || function->result != RESULT_NODE)
+            continue;
+        char call[CALL_SIZE], text[CALL_SIZE + 512];
+        struct error error;
+        positional_call(function, function->forms[0], -1, "", call);
+        (void)snprintf(text, sizeof text,
+                       PREPARATION "root = gr.node('root')\nroot:add_child(%s)\n"
+                                   "gr.render{node = root, file = 'x.png', width = 4, height = 4, eye = {0, 0, 9}}\n",
+                       call);
+        if (!listen_to_text(&kinds.listener, text, NULL, &error))
+            test_fail(__FILE__, __LINE__, "%s: %s", call, error.text);
+    }
+    for (int kind = 0; kind < SHAPE_KIND_COUNT; kind++)
+        if (!kinds.made[kind])
+            test_fail(__FILE__, __LINE__, "no gr function makes the shape '%s'",
+                      shape_kind_name((enum shape_kind)kind));
+}
+
 /* Whichever allocation fails once the call has begun. Most failures inside Lua are survived by its collector. */
 static void fail_in_call(const char *call) {
     for (uint64_t k = 1;; k++) {
