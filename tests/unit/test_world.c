@@ -137,7 +137,7 @@ static void compare_with_brute_force(enum accel_kind accel, int worlds, int rays
 /* With every accelerator, by construction. */
 #define TESTS_WITH(accel, word)                                                                                        \
     TEST(world_equals_brute_force_on_random_rays_with_##accel) {                                                       \
-        compare_with_brute_force(accel, 42, 5000, 1 + accel);                                                          \
+        compare_with_brute_force(accel, 42, 12000, 1 + accel);                                                         \
     }                                                                                                                  \
     TEST_LONG(world_equals_brute_force_on_ten_million_rays_with_##accel) {                                             \
         compare_with_brute_force(accel, 420, 24000, 11 + accel);                                                       \
