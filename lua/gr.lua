@@ -1163,6 +1163,34 @@ function gr.directional_light(direction, colour) end
 ---@overload fun(fields: gr.spot_light.fields): gr.light
 function gr.spot_light(position, direction, colour, inner, outer, falloff) end
 
+---@class gr.mesh_light.fields
+---@field colour? gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Its colour and strength.
+---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
+---@field exclude? gr.node[] exclude (a table of nodes; default none): The nodes that it does not light.
+---@field emission? gr.triple emission (a colour {r, g, b}; default its materials'): Radiance of its surface, times colour.
+---@field samples? integer samples (a whole number, 1 to 64; default area_samples): N x N shadow rays for this light.
+---@field mesh gr.node mesh (a node): A mesh, or a node with meshes below; it shines wherever the scene shows it, and unseen where its own transforms put it when the scene does not.
+
+---Light from the triangles of a mesh, as bright as they look.
+---@param mesh gr.node mesh (a node): A mesh, or a node with meshes below; it shines wherever the scene shows it, and unseen where its own transforms put it when the scene does not.
+---@param emission? gr.triple emission (a colour {r, g, b}; default its materials'): Radiance of its surface, times colour.
+---@return gr.light
+---@overload fun(fields: gr.mesh_light.fields): gr.light
+function gr.mesh_light(mesh, emission) end
+
+---@class gr.sky_light.fields
+---@field colour? gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Its colour and strength.
+---@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
+---@field exclude? gr.node[] exclude (a table of nodes; default none): The nodes that it does not light.
+---@field sky gr.triple|gr.sky|'gradient' sky (a colour {r, g, b}, a sky or 'gradient'): A sky, one colour all around, or 'gradient'.
+---@field samples? integer samples (a whole number, 1 to 64; default area_samples): N x N shadow rays for this light.
+
+---Light from all of a sky; more shadow rays go where it is bright.
+---@param sky gr.triple|gr.sky|'gradient' sky (a colour {r, g, b}, a sky or 'gradient'): A sky, one colour all around, or 'gradient'.
+---@return gr.light
+---@overload fun(fields: gr.sky_light.fields): gr.light
+function gr.sky_light(sky) end
+
 ---@class gr.change_node.fields
 ---@field name string name (a string): Name of the node; a node of another name is not meant.
 ---@field serial integer serial (a whole number, 0 to 4294967295): Which one, by order of creation: the first is 0, what was added in a window counts down from 4294967295.
@@ -1306,34 +1334,6 @@ function gr.change_view(picture, eye, view, up, fov) end
 ---@param stops number stops (a number, >= -100 and <= 100, in stops): Its exposure in the place of what the script says.
 ---@overload fun(fields: gr.change_exposure.fields)
 function gr.change_exposure(picture, stops) end
-
----@class gr.mesh_light.fields
----@field colour? gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Its colour and strength.
----@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
----@field exclude? gr.node[] exclude (a table of nodes; default none): The nodes that it does not light.
----@field emission? gr.triple emission (a colour {r, g, b}; default its materials'): Radiance of its surface, times colour.
----@field samples? integer samples (a whole number, 1 to 64; default area_samples): N x N shadow rays for this light.
----@field mesh gr.node mesh (a node): A mesh, or a node with meshes below; it shines wherever the scene shows it, and unseen where its own transforms put it when the scene does not.
-
----Light from the triangles of a mesh, as bright as they look.
----@param mesh gr.node mesh (a node): A mesh, or a node with meshes below; it shines wherever the scene shows it, and unseen where its own transforms put it when the scene does not.
----@param emission? gr.triple emission (a colour {r, g, b}; default its materials'): Radiance of its surface, times colour.
----@return gr.light
----@overload fun(fields: gr.mesh_light.fields): gr.light
-function gr.mesh_light(mesh, emission) end
-
----@class gr.sky_light.fields
----@field colour? gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Its colour and strength.
----@field include? gr.node[] include (a table of nodes; default all): The nodes that it lights, with everything under them.
----@field exclude? gr.node[] exclude (a table of nodes; default none): The nodes that it does not light.
----@field sky gr.triple|gr.sky|'gradient' sky (a colour {r, g, b}, a sky or 'gradient'): A sky, one colour all around, or 'gradient'.
----@field samples? integer samples (a whole number, 1 to 64; default area_samples): N x N shadow rays for this light.
-
----Light from all of a sky; more shadow rays go where it is bright.
----@param sky gr.triple|gr.sky|'gradient' sky (a colour {r, g, b}, a sky or 'gradient'): A sky, one colour all around, or 'gradient'.
----@return gr.light
----@overload fun(fields: gr.sky_light.fields): gr.light
-function gr.sky_light(sky) end
 
 ---@class gr.sun_light.fields
 ---@field colour gr.triple colour (a colour {r, g, b}): Its colour and strength.

@@ -1,5 +1,5 @@
 /* The middle paragraphs of the gr functions: plain C that cannot raise. The enums number the parameters in table.c;
- * a shape is in act_shapes.c or act_swept.c whole, with its parameters and its row. */
+ * shapes and lights are whole, with their parameters and their rows, in act_shapes.c, act_swept.c and act_lights.c. */
 #ifndef GRAY_SCRIPT_ACTIONS_H
 #define GRAY_SCRIPT_ACTIONS_H
 
@@ -148,8 +148,7 @@ enum { FOG_PROFILE_TABLE = FOG_OWN };
 enum { FOG_CORNER = FOG_OWN, FOG_SIZE, FOG_CELLS, FOG_DENSITIES };
 action act_fog, act_linear_fog, act_height_fog, act_fog_profile, act_fog_grid;
 
-/* act_render.c */
-/* Every light begins with these; LAMP_ and FADING_ fields only where the kind has them. */
+/* Every light begins with these; fields of fading and of lamps only where the kind has them. */
 enum {
     LIGHT_COLOUR,
     LIGHT_INCLUDE,
@@ -162,13 +161,12 @@ enum {
     LIGHT_VISIBLE,
     LIGHT_OWN /* the first field of the kind's own */
 };
+/* act_lights.c; the other lights are there whole, with their parameters and their rows. */
 enum { DISTANT_DIRECTION = LIGHT_EXCLUDE + 1, DISTANT_COUNT };
 enum { SUNLIGHT_SUN = LIGHT_EXCLUDE + 1 };
-enum { POINT_POSITION = LIGHT_INTENSITY + 1, POINT_COUNT };
-enum { SPOT_POSITION = LIGHT_INTENSITY + 1, SPOT_DIRECTION, SPOT_TARGET, SPOT_INNER, SPOT_OUTER, SPOT_COUNT };
-enum { AREA_CORNER = LIGHT_OWN, AREA_V1, AREA_V2, AREA_ONE_SIDED, AREA_COUNT };
-enum { BALL_POSITION = LIGHT_OWN, BALL_RADIUS, BALL_COUNT };
-enum { PANEL_POSITION = LIGHT_OWN, PANEL_NORMAL, PANEL_RADIUS, PANEL_ONE_SIDED, PANEL_COUNT };
+action act_directional_light;
+
+/* act_render.c */
 enum {
     RENDER_NODE,
     RENDER_FILE,
@@ -222,10 +220,6 @@ enum {
     RENDER_UP_TO,
     RENDER_COUNT
 };
-enum { MESHLIGHT_EMISSION = LIGHT_EXCLUDE + 1, MESHLIGHT_SAMPLES, MESHLIGHT_MESH, MESHLIGHT_COUNT };
-enum { SKYLIGHT_SKY = LIGHT_EXCLUDE + 1, SKYLIGHT_SAMPLES, SKYLIGHT_COUNT };
-action act_mesh_light, act_sky_light;
-action act_light, act_directional_light, act_spot_light, act_area_light, act_spherical_light, act_disc_light,
-    act_render;
+action act_render;
 
 #endif

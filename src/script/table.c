@@ -1,5 +1,5 @@
 /* The table of gr functions. One row a function; everything people read about it and every check of its arguments comes
- * from here. The rows of shapes are in the files that make them. Facts: SPEC parts 1 and 2. */
+ * from here. The rows of shapes and lights are in the files that make them. Facts: SPEC parts 1 and 2. */
 #include "script/table.h"
 #include "base/unreachable.h"
 
@@ -492,129 +492,6 @@ static const struct parameter bump_over_parameters[] = {
 
 static const struct parameter fresnel_parameters[] = {[FRESNEL_MATERIAL] = BASE};
 
-#define LIGHT_LISTS                                                                                                    \
-    [LIGHT_INCLUDE] =                                                                                                  \
-        {"include", KIND_NODES, OPTIONAL, ANY, NULL, "all", "The nodes that it lights, with everything under them."},  \
-    [LIGHT_EXCLUDE] = {"exclude", KIND_NODES, OPTIONAL, ANY, NULL, "none", "The nodes that it does not light."}
-#define LIGHT_FIELDS(colour_flags)                                                                                     \
-    [LIGHT_COLOUR] = {"colour",                                                                                        \
-                      KIND_COLOUR,                                                                                     \
-                      colour_flags,                                                                                    \
-                      ANY,                                                                                             \
-                      NULL,                                                                                            \
-                      colour_flags ? "{1, 1, 1} with emission" : NULL,                                                 \
-                      "Its colour and strength."},                                                                     \
-    LIGHT_LISTS
-#define FADING_FIELDS                                                                                                  \
-    [LIGHT_FALLOFF] = {"falloff",                                                                                      \
-                       KIND_TRIPLE,                                                                                    \
-                       OPTIONAL,                                                                                       \
-                       ANY,                                                                                            \
-                       NULL,                                                                                           \
-                       "{1, 0, 0}",                                                                                    \
-                       "Coefficients: light is divided by c0 + c1 d + c2 d^2."},                                       \
-    [LIGHT_RANGE] = {"range",                                                                                          \
-                     KIND_NUMBER,                                                                                      \
-                     OPTIONAL | LOW_OPEN,                                                                              \
-                     ABOVE(0),                                                                                         \
-                     NULL,                                                                                             \
-                     NULL,                                                                                             \
-                     "How far it reaches, instead of falloff: light is multiplied by 1 - d / range."},                 \
-    [LIGHT_INTENSITY] = {"intensity",                                                                                  \
-                         KIND_NUMBER,                                                                                  \
-                         OPTIONAL,                                                                                     \
-                         ABOVE(0),                                                                                     \
-                         NULL,                                                                                         \
-                         NULL,                                                                                         \
-                         "Physical fading, instead of falloff: light is multiplied by intensity / d^2."}
-#define LAMP_FIELDS                                                                                                    \
-    [LIGHT_EMISSION] = {"emission",                                                                                    \
-                        KIND_COLOUR,                                                                                   \
-                        OPTIONAL,                                                                                      \
-                        ANY,                                                                                           \
-                        NULL,                                                                                          \
-                        NULL,                                                                                          \
-                        "Radiance of its surface, times colour: what it lights follows its true shape, without "       \
-                        "falloff."},                                                                                   \
-    [LIGHT_SAMPLES] =                                                                                                  \
-        {"samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "area_samples", "N x N shadow rays for this light."},  \
-    [LIGHT_VISIBLE] = {"visible", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the light itself is seen."}
-#define ONE_SIDED(text)                                                                                                \
-    {                                                                                                                  \
-        "one_sided", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",                                                       \
-            "Whether it is seen, and emits, only on the side of " text "."                                             \
-    }
-
-static const struct parameter light_parameters[] = {
-    LIGHT_FIELDS(0),
-    FADING_FIELDS,
-    [POINT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Where it stands."},
-};
-
-#define SAMPLES_FIELD                                                                                                  \
-    { "samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "area_samples", "N x N shadow rays for this light." }
-
-static const struct parameter mesh_light_parameters[] = {
-    LIGHT_FIELDS(OPTIONAL),
-    [MESHLIGHT_EMISSION] = {"emission", KIND_COLOUR, OPTIONAL, ANY, NULL, "its materials'",
-                            "Radiance of its surface, times colour."},
-    [MESHLIGHT_SAMPLES] = SAMPLES_FIELD,
-    [MESHLIGHT_MESH] = {"mesh", KIND_NODE, 0, ANY, NULL, NULL,
-                        "A mesh, or a node with meshes below; it shines wherever the scene shows it, and unseen where "
-                        "its own transforms put it when the scene does not."},
-};
-
-static const struct parameter sky_light_parameters[] = {
-    LIGHT_FIELDS(OPTIONAL),
-    [SKYLIGHT_SKY] = {"sky", KIND_BACKGROUND, 0, ANY, NULL, NULL, "A sky, one colour all around, or 'gradient'."},
-    [SKYLIGHT_SAMPLES] = SAMPLES_FIELD,
-};
-
-static const struct parameter directional_parameters[] = {
-    LIGHT_FIELDS(0),
-    [DISTANT_DIRECTION] = {"direction", KIND_DIRECTION, 0, ANY, NULL, NULL, "The direction its light goes in."},
-};
-
-static const struct parameter spot_parameters[] = {
-    LIGHT_FIELDS(0),
-    FADING_FIELDS,
-    [SPOT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Where it stands."},
-    [SPOT_DIRECTION] = {"direction", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, -1, 0}", "The axis of its cone."},
-    [SPOT_TARGET] = {"target", KIND_POINT, OPTIONAL, ANY, NULL, NULL, "A point on the axis, instead of direction."},
-    [SPOT_INNER] = {"inner", KIND_NUMBER, OPTIONAL, BETWEEN(0, 180), "degrees", "three quarters of outer",
-                    "Angle from the axis up to which its light is full."},
-    [SPOT_OUTER] = {"outer", KIND_NUMBER, OPTIONAL | LOW_OPEN, BETWEEN(0, 180), "degrees",
-                    "30, or inner if that is more", "Angle from the axis where its light ends."},
-};
-
-static const struct parameter area_parameters[] = {
-    LIGHT_FIELDS(OPTIONAL),
-    FADING_FIELDS,
-    LAMP_FIELDS,
-    [AREA_CORNER] = {"corner", KIND_POINT, 0, ANY, NULL, NULL, "One corner of the parallelogram."},
-    [AREA_V1] = {"v1", KIND_DIRECTION, 0, ANY, NULL, NULL, "The edge to the next corner."},
-    [AREA_V2] = {"v2", KIND_DIRECTION, 0, ANY, NULL, NULL, "The edge to the corner on the other side."},
-    [AREA_ONE_SIDED] = ONE_SIDED("v1 x v2"),
-};
-
-static const struct parameter ball_light_parameters[] = {
-    LIGHT_FIELDS(OPTIONAL),
-    FADING_FIELDS,
-    LAMP_FIELDS,
-    [BALL_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Its centre."},
-    [BALL_RADIUS] = {"radius", KIND_NUMBER, LOW_OPEN, ABOVE(0), NULL, NULL, "Its radius."},
-};
-
-static const struct parameter disc_light_parameters[] = {
-    LIGHT_FIELDS(OPTIONAL),
-    FADING_FIELDS,
-    LAMP_FIELDS,
-    [PANEL_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Its centre."},
-    [PANEL_NORMAL] = {"normal", KIND_DIRECTION, 0, ANY, NULL, NULL, "The direction it faces."},
-    [PANEL_RADIUS] = {"radius", KIND_NUMBER, LOW_OPEN, ABOVE(0), NULL, NULL, "Its radius."},
-    [PANEL_ONE_SIDED] = ONE_SIDED("its normal"),
-};
-
 #define SKY_FIELDS                                                                                                     \
     [SKY_INTENSITY] = {"intensity", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1", "Factor of its brightness."},          \
     [SKY_ROTATION] = {"rotation",                                                                                      \
@@ -872,7 +749,7 @@ static const struct function node_rows[] = {
        "name object by", "object by"),
 };
 
-static const struct function other_rows[] = {
+static const struct function material_rows[] = {
     GR("material", material_parameters, RESULT_MATERIAL, act_material, "A Phong material.", "kd ks shininess"),
     GR("rr_material", rr_parameters, RESULT_MATERIAL, act_rr_material, "A Phong material that reflects and refracts.",
        "kd ks shininess reflect refract ior"),
@@ -901,18 +778,9 @@ static const struct function other_rows[] = {
        "them); width, ascender, descender, line.",
        "font text"),
 
-    GR("light", light_parameters, RESULT_LIGHT, act_light, "A light at a point.", "position colour falloff?"),
-    GR("area_light", area_parameters, RESULT_LIGHT, act_area_light, "A light that is a parallelogram; soft shadows.",
-       "corner v1 v2 colour falloff?"),
-    GR("spherical_light", ball_light_parameters, RESULT_LIGHT, act_spherical_light,
-       "A light that is a sphere; soft shadows.", "position colour falloff radius"),
-    GR("disc_light", disc_light_parameters, RESULT_LIGHT, act_disc_light, "A light that is a disc; soft shadows.",
-       "position normal radius colour falloff?"),
-    GR("directional_light", directional_parameters, RESULT_LIGHT, act_directional_light,
-       "Light of one direction from infinitely far away.", "direction colour"),
-    GR("spot_light", spot_parameters, RESULT_LIGHT, act_spot_light, "A light at a point that shines into a cone.",
-       "position direction colour inner outer falloff?"),
+};
 
+static const struct function other_rows[] = {
     GR("change_node", change_node_parameters, RESULT_NOTHING, act_change_node,
        "Moves, turns or scales a node in every picture from here on, as somebody did in a window; the window writes "
        "such "
@@ -945,10 +813,6 @@ static const struct function other_rows[] = {
     GR("change_exposure", change_exposure_parameters, RESULT_NOTHING, act_change_exposure,
        "Gives a picture another exposure.", "picture stops"),
 
-    GR("mesh_light", mesh_light_parameters, RESULT_LIGHT, act_mesh_light,
-       "Light from the triangles of a mesh, as bright as they look.", "mesh emission?"),
-    GR("sky_light", sky_light_parameters, RESULT_LIGHT, act_sky_light,
-       "Light from all of a sky; more shadow rays go where it is bright.", "sky"),
     GR("sun_light", sun_light_parameters, RESULT_LIGHT, act_sun_light, "Directional light from where the sun stands.",
        "sun colour"),
     GR("sky_faces", sky_faces_parameters, RESULT_SKY, act_sky_faces,
@@ -1006,10 +870,12 @@ static const struct function other_rows[] = {
 };
 
 static const struct function_rows node_functions = {node_rows, COUNT(node_rows)};
+static const struct function_rows material_functions = {material_rows, COUNT(material_rows)};
 static const struct function_rows other_functions = {other_rows, COUNT(other_rows)};
 /* In the order of the manual. */
-static const struct function_rows *const parts[] = {&node_functions, &shape_functions, &swept_functions,
-                                                    &texture_functions, &other_functions};
+static const struct function_rows *const parts[] = {&node_functions,    &shape_functions,    &swept_functions,
+                                                    &texture_functions, &material_functions, &light_functions,
+                                                    &other_functions};
 
 int function_count(void) {
     int count = 0;

@@ -144,7 +144,7 @@ struct function_rows {
     const struct function *rows;
     int count;
 };
-extern const struct function_rows shape_functions, swept_functions, texture_functions;
+extern const struct function_rows shape_functions, swept_functions, texture_functions, light_functions;
 
 int function_count(void);
 /* index: 0 to function_count() - 1. */

@@ -26,4 +26,19 @@ enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_FIRST };
     [SHAPE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'" otherwise "'", NAME_HELP},                             \
     [SHAPE_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP}
 
+/* What every light begins with. */
+#define LIGHT_LISTS                                                                                                    \
+    [LIGHT_INCLUDE] =                                                                                                  \
+        {"include", KIND_NODES, OPTIONAL, ANY, NULL, "all", "The nodes that it lights, with everything under them."},  \
+    [LIGHT_EXCLUDE] = {"exclude", KIND_NODES, OPTIONAL, ANY, NULL, "none", "The nodes that it does not light."}
+#define LIGHT_FIELDS(colour_flags)                                                                                     \
+    [LIGHT_COLOUR] = {"colour",                                                                                        \
+                      KIND_COLOUR,                                                                                     \
+                      colour_flags,                                                                                    \
+                      ANY,                                                                                             \
+                      NULL,                                                                                            \
+                      colour_flags ? "{1, 1, 1} with emission" : NULL,                                                 \
+                      "Its colour and strength."},                                                                     \
+    LIGHT_LISTS
+
 #endif

@@ -1,0 +1,315 @@
+/* Lights of the language: what each takes, what it makes of it, and its row of the table. */
+#include "math/elementary.h"
+#include "script/context.h"
+#include "script/table_rows.h"
+
+enum { POINT_POSITION = LIGHT_INTENSITY + 1, POINT_COUNT };
+enum { SPOT_POSITION = LIGHT_INTENSITY + 1, SPOT_DIRECTION, SPOT_TARGET, SPOT_INNER, SPOT_OUTER, SPOT_COUNT };
+enum { AREA_CORNER = LIGHT_OWN, AREA_V1, AREA_V2, AREA_ONE_SIDED, AREA_COUNT };
+enum { BALL_POSITION = LIGHT_OWN, BALL_RADIUS, BALL_COUNT };
+enum { PANEL_POSITION = LIGHT_OWN, PANEL_NORMAL, PANEL_RADIUS, PANEL_ONE_SIDED, PANEL_COUNT };
+enum { MESHLIGHT_EMISSION = LIGHT_EXCLUDE + 1, MESHLIGHT_SAMPLES, MESHLIGHT_MESH, MESHLIGHT_COUNT };
+enum { SKYLIGHT_SKY = LIGHT_EXCLUDE + 1, SKYLIGHT_SAMPLES, SKYLIGHT_COUNT };
+
+#define FADING_FIELDS                                                                                                  \
+    [LIGHT_FALLOFF] = {"falloff",                                                                                      \
+                       KIND_TRIPLE,                                                                                    \
+                       OPTIONAL,                                                                                       \
+                       ANY,                                                                                            \
+                       NULL,                                                                                           \
+                       "{1, 0, 0}",                                                                                    \
+                       "Coefficients: light is divided by c0 + c1 d + c2 d^2."},                                       \
+    [LIGHT_RANGE] = {"range",                                                                                          \
+                     KIND_NUMBER,                                                                                      \
+                     OPTIONAL | LOW_OPEN,                                                                              \
+                     ABOVE(0),                                                                                         \
+                     NULL,                                                                                             \
+                     NULL,                                                                                             \
+                     "How far it reaches, instead of falloff: light is multiplied by 1 - d / range."},                 \
+    [LIGHT_INTENSITY] = {"intensity",                                                                                  \
+                         KIND_NUMBER,                                                                                  \
+                         OPTIONAL,                                                                                     \
+                         ABOVE(0),                                                                                     \
+                         NULL,                                                                                         \
+                         NULL,                                                                                         \
+                         "Physical fading, instead of falloff: light is multiplied by intensity / d^2."}
+#define LAMP_FIELDS                                                                                                    \
+    [LIGHT_EMISSION] = {"emission",                                                                                    \
+                        KIND_COLOUR,                                                                                   \
+                        OPTIONAL,                                                                                      \
+                        ANY,                                                                                           \
+                        NULL,                                                                                          \
+                        NULL,                                                                                          \
+                        "Radiance of its surface, times colour: what it lights follows its true shape, without "       \
+                        "falloff."},                                                                                   \
+    [LIGHT_SAMPLES] =                                                                                                  \
+        {"samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "area_samples", "N x N shadow rays for this light."},  \
+    [LIGHT_VISIBLE] = {"visible", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the light itself is seen."}
+#define ONE_SIDED(text)                                                                                                \
+    {                                                                                                                  \
+        "one_sided", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",                                                       \
+            "Whether it is seen, and emits, only on the side of " text "."                                             \
+    }
+
+static const struct parameter light_parameters[] = {
+    LIGHT_FIELDS(0),
+    FADING_FIELDS,
+    [POINT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Where it stands."},
+};
+
+#define SAMPLES_FIELD                                                                                                  \
+    { "samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "area_samples", "N x N shadow rays for this light." }
+
+static const struct parameter mesh_light_parameters[] = {
+    LIGHT_FIELDS(OPTIONAL),
+    [MESHLIGHT_EMISSION] = {"emission", KIND_COLOUR, OPTIONAL, ANY, NULL, "its materials'",
+                            "Radiance of its surface, times colour."},
+    [MESHLIGHT_SAMPLES] = SAMPLES_FIELD,
+    [MESHLIGHT_MESH] = {"mesh", KIND_NODE, 0, ANY, NULL, NULL,
+                        "A mesh, or a node with meshes below; it shines wherever the scene shows it, and unseen where "
+                        "its own transforms put it when the scene does not."},
+};
+
+static const struct parameter sky_light_parameters[] = {
+    LIGHT_FIELDS(OPTIONAL),
+    [SKYLIGHT_SKY] = {"sky", KIND_BACKGROUND, 0, ANY, NULL, NULL, "A sky, one colour all around, or 'gradient'."},
+    [SKYLIGHT_SAMPLES] = SAMPLES_FIELD,
+};
+
+static const struct parameter directional_parameters[] = {
+    LIGHT_FIELDS(0),
+    [DISTANT_DIRECTION] = {"direction", KIND_DIRECTION, 0, ANY, NULL, NULL, "The direction its light goes in."},
+};
+
+static const struct parameter spot_parameters[] = {
+    LIGHT_FIELDS(0),
+    FADING_FIELDS,
+    [SPOT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Where it stands."},
+    [SPOT_DIRECTION] = {"direction", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, -1, 0}", "The axis of its cone."},
+    [SPOT_TARGET] = {"target", KIND_POINT, OPTIONAL, ANY, NULL, NULL, "A point on the axis, instead of direction."},
+    [SPOT_INNER] = {"inner", KIND_NUMBER, OPTIONAL, BETWEEN(0, 180), "degrees", "three quarters of outer",
+                    "Angle from the axis up to which its light is full."},
+    [SPOT_OUTER] = {"outer", KIND_NUMBER, OPTIONAL | LOW_OPEN, BETWEEN(0, 180), "degrees",
+                    "30, or inner if that is more", "Angle from the axis where its light ends."},
+};
+
+static const struct parameter area_parameters[] = {
+    LIGHT_FIELDS(OPTIONAL),
+    FADING_FIELDS,
+    LAMP_FIELDS,
+    [AREA_CORNER] = {"corner", KIND_POINT, 0, ANY, NULL, NULL, "One corner of the parallelogram."},
+    [AREA_V1] = {"v1", KIND_DIRECTION, 0, ANY, NULL, NULL, "The edge to the next corner."},
+    [AREA_V2] = {"v2", KIND_DIRECTION, 0, ANY, NULL, NULL, "The edge to the corner on the other side."},
+    [AREA_ONE_SIDED] = ONE_SIDED("v1 x v2"),
+};
+
+static const struct parameter ball_light_parameters[] = {
+    LIGHT_FIELDS(OPTIONAL),
+    FADING_FIELDS,
+    LAMP_FIELDS,
+    [BALL_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Its centre."},
+    [BALL_RADIUS] = {"radius", KIND_NUMBER, LOW_OPEN, ABOVE(0), NULL, NULL, "Its radius."},
+};
+
+static const struct parameter disc_light_parameters[] = {
+    LIGHT_FIELDS(OPTIONAL),
+    FADING_FIELDS,
+    LAMP_FIELDS,
+    [PANEL_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Its centre."},
+    [PANEL_NORMAL] = {"normal", KIND_DIRECTION, 0, ANY, NULL, NULL, "The direction it faces."},
+    [PANEL_RADIUS] = {"radius", KIND_NUMBER, LOW_OPEN, ABOVE(0), NULL, NULL, "Its radius."},
+    [PANEL_ONE_SIDED] = ONE_SIDED("its normal"),
+};
+
+/* The nodes of a list, kept as long as the scene. */
+static bool keep_nodes(struct context *context, const struct value *value, const struct node *const **nodes,
+                       uint32_t *count) {
+    *nodes = NULL;
+    *count = value->count;
+    if (!value->given)
+        return true;
+    const struct node **kept = arena_alloc_array(&context->scene.arena, value->count + 1, sizeof *kept);
+    for (uint32_t i = 0; kept && i < value->count; i++)
+        kept[i] = value->nodes[i];
+    *nodes = kept;
+    return kept != NULL;
+}
+
+/* What every light has, and the light itself into the arena of the scene. */
+static bool give_light(struct context *context, struct light *light, const struct value *args, struct result *result,
+                       struct error *error) {
+    struct light *kept = arena_alloc(&context->scene.arena, sizeof *kept);
+    light->colour = args[LIGHT_COLOUR].vector;
+    if (!kept || !keep_nodes(context, &args[LIGHT_INCLUDE], &light->include, &light->include_count) ||
+        !keep_nodes(context, &args[LIGHT_EXCLUDE], &light->exclude, &light->exclude_count))
+        return error_no_memory(error, "a light");
+    *kept = *light;
+    result->pointer = kept;
+    return true;
+}
+
+static bool set_fading(struct light *light, const struct value *args, struct error *error) {
+    struct vec3 c = args[LIGHT_FALLOFF].given ? args[LIGHT_FALLOFF].vector : (struct vec3){1, 0, 0};
+    if (args[LIGHT_FALLOFF].given + args[LIGHT_RANGE].given + args[LIGHT_INTENSITY].given > 1)
+        return error_set(error, ERROR_SCENE, "falloff, range and intensity exclude each other");
+    light->falloff[0] = c.x;
+    light->falloff[1] = c.y;
+    light->falloff[2] = c.z;
+    light->range = args[LIGHT_RANGE].number;
+    light->intensity = args[LIGHT_INTENSITY].number;
+    light->fading = args[LIGHT_RANGE].given       ? FADING_RANGE
+                    : args[LIGHT_INTENSITY].given ? FADING_INVERSE_SQUARE
+                                                  : FADING_COEFFICIENTS;
+    return true;
+}
+
+/* A light with an extent: fading as from its centre, or a lamp whose surface emits. */
+static bool give_lamp(struct context *context, struct light *light, const struct value *args, struct result *result,
+                      struct error *error) {
+    struct value lamp[LIGHT_OWN];
+    for (int i = 0; i < LIGHT_OWN; i++)
+        lamp[i] = args[i];
+    light->emits = args[LIGHT_EMISSION].given;
+    light->samples = (int)args[LIGHT_SAMPLES].number;
+    light->visible = args[LIGHT_VISIBLE].boolean;
+    if (!args[LIGHT_COLOUR].given && !light->emits)
+        return error_set(error, ERROR_SCENE, "colour is missing");
+    if (light->emits && (args[LIGHT_FALLOFF].given || args[LIGHT_RANGE].given || args[LIGHT_INTENSITY].given))
+        return error_set(error, ERROR_SCENE,
+                         "a light with emission fades by its shape alone, without falloff, range "
+                         "or intensity");
+    if (light->emits && !args[LIGHT_COLOUR].given)
+        lamp[LIGHT_COLOUR].vector = vec3_all(1);
+    if (light->emits)
+        lamp[LIGHT_COLOUR].vector = vec3_mul(lamp[LIGHT_COLOUR].vector, args[LIGHT_EMISSION].vector);
+    return set_fading(light, args, error) && give_light(context, light, lamp, result, error);
+}
+
+static bool set_direction(struct light *light, struct vec3 direction, const char *name, struct error *error) {
+    if (!(vec3_length(direction) > 0))
+        return error_set(error, ERROR_SCENE, "%s must not be zero", name);
+    light->direction = vec3_normalize(direction);
+    return true;
+}
+
+static bool act_light(struct context *context, const struct value *args, struct result *result, struct error *error) {
+    struct light light = {.kind = LIGHT_POINT, .position = args[POINT_POSITION].vector};
+    return set_fading(&light, args, error) && give_light(context, &light, args, result, error);
+}
+
+bool act_directional_light(struct context *context, const struct value *args, struct result *result,
+                           struct error *error) {
+    struct light light = {.kind = LIGHT_DIRECTIONAL};
+    return set_direction(&light, args[DISTANT_DIRECTION].vector, "direction", error) &&
+           give_light(context, &light, args, result, error);
+}
+
+static bool act_spot_light(struct context *context, const struct value *args, struct result *result,
+                           struct error *error) {
+    struct light light = {.kind = LIGHT_SPOT, .position = args[SPOT_POSITION].vector};
+    const struct value *inner = &args[SPOT_INNER], *outer = &args[SPOT_OUTER];
+    if (args[SPOT_DIRECTION].given && args[SPOT_TARGET].given)
+        return error_set(error, ERROR_SCENE, "direction and target exclude each other");
+    double outer_angle = outer->given ? outer->number : inner->given && inner->number > 30 ? inner->number : 30;
+    double inner_angle = inner->given ? inner->number : 0.75 * outer_angle;
+    if (inner_angle > outer_angle)
+        return error_set(error, ERROR_SCENE, "inner must be at most outer, the angle where the light ends");
+    const double degree = 3.14159265358979323846 / 180;
+    light.cos_inner = el_cos(inner_angle * degree);
+    light.cos_outer = el_cos(outer_angle * degree);
+    struct vec3 axis = args[SPOT_TARGET].given      ? vec3_sub(args[SPOT_TARGET].vector, light.position)
+                       : args[SPOT_DIRECTION].given ? args[SPOT_DIRECTION].vector
+                                                    : (struct vec3){0, -1, 0};
+    return set_direction(&light, axis, args[SPOT_TARGET].given ? "the way to target" : "direction", error) &&
+           set_fading(&light, args, error) && give_light(context, &light, args, result, error);
+}
+
+static bool act_area_light(struct context *context, const struct value *args, struct result *result,
+                           struct error *error) {
+    struct light light = {.kind = LIGHT_PARALLELOGRAM,
+                          .corner = args[AREA_CORNER].vector,
+                          .edge1 = args[AREA_V1].vector,
+                          .edge2 = args[AREA_V2].vector,
+                          .one_sided = args[AREA_ONE_SIDED].boolean};
+    light.position = vec3_add_scaled(vec3_add_scaled(light.corner, light.edge1, 0.5), light.edge2, 0.5);
+    double area = vec3_length(vec3_cross(light.edge1, light.edge2));
+    if (!(area > 0x1p-40 * vec3_length(light.edge1) * vec3_length(light.edge2)))
+        context_warn_once(context, WARNED_OTHER, "v1 and v2 are parallel or zero: the light has no area%s",
+                          args[LIGHT_EMISSION].given ? " and gives no light" : "");
+    return give_lamp(context, &light, args, result, error);
+}
+
+static bool act_spherical_light(struct context *context, const struct value *args, struct result *result,
+                                struct error *error) {
+    struct light light = {
+        .kind = LIGHT_SPHERE, .position = args[BALL_POSITION].vector, .radius = args[BALL_RADIUS].number};
+    return give_lamp(context, &light, args, result, error);
+}
+
+static bool act_disc_light(struct context *context, const struct value *args, struct result *result,
+                           struct error *error) {
+    struct light light = {.kind = LIGHT_DISC,
+                          .position = args[PANEL_POSITION].vector,
+                          .radius = args[PANEL_RADIUS].number,
+                          .one_sided = args[PANEL_ONE_SIDED].boolean};
+    return set_direction(&light, args[PANEL_NORMAL].vector, "normal", error) &&
+           give_lamp(context, &light, args, result, error);
+}
+
+static bool act_mesh_light(struct context *context, const struct value *args, struct result *result,
+                           struct error *error) {
+    struct light light = {.kind = LIGHT_MESH,
+                          .emits = true,
+                          .node = args[MESHLIGHT_MESH].node,
+                          .samples = (int)args[MESHLIGHT_SAMPLES].number,
+                          .has_emission = args[MESHLIGHT_EMISSION].given,
+                          .emission = args[MESHLIGHT_EMISSION].vector};
+    struct value lamp[MESHLIGHT_COUNT];
+    for (int i = 0; i < MESHLIGHT_COUNT; i++)
+        lamp[i] = args[i];
+    if (!args[LIGHT_COLOUR].given)
+        lamp[LIGHT_COLOUR].vector = vec3_all(1);
+    return give_light(context, &light, lamp, result, error);
+}
+
+static bool act_sky_light(struct context *context, const struct value *args, struct result *result,
+                          struct error *error) {
+    struct light light = {.kind = LIGHT_SKY, .emits = true, .samples = (int)args[SKYLIGHT_SAMPLES].number};
+    struct sky *sky = arena_alloc(&context->scene.arena, sizeof *sky);
+    struct value lamp[SKYLIGHT_COUNT];
+    if (!sky)
+        return error_no_memory(error, "a sky");
+    *sky = (struct sky){.kind = SKY_GRADIENT};
+    if (args[SKYLIGHT_SKY].sky)
+        *sky = *args[SKYLIGHT_SKY].sky;
+    else if (!args[SKYLIGHT_SKY].text)
+        *sky = (struct sky){.kind = SKY_CONSTANT, .colour = args[SKYLIGHT_SKY].vector};
+    light.sky = sky;
+    for (int i = 0; i < SKYLIGHT_COUNT; i++)
+        lamp[i] = args[i];
+    if (!args[LIGHT_COLOUR].given)
+        lamp[LIGHT_COLOUR].vector = vec3_all(1);
+    return give_light(context, &light, lamp, result, error);
+}
+
+/* The rows of the table. */
+static const struct function rows[] = {
+    GR("light", light_parameters, RESULT_LIGHT, act_light, "A light at a point.", "position colour falloff?"),
+    GR("area_light", area_parameters, RESULT_LIGHT, act_area_light, "A light that is a parallelogram; soft shadows.",
+       "corner v1 v2 colour falloff?"),
+    GR("spherical_light", ball_light_parameters, RESULT_LIGHT, act_spherical_light,
+       "A light that is a sphere; soft shadows.", "position colour falloff radius"),
+    GR("disc_light", disc_light_parameters, RESULT_LIGHT, act_disc_light, "A light that is a disc; soft shadows.",
+       "position normal radius colour falloff?"),
+    GR("directional_light", directional_parameters, RESULT_LIGHT, act_directional_light,
+       "Light of one direction from infinitely far away.", "direction colour"),
+    GR("spot_light", spot_parameters, RESULT_LIGHT, act_spot_light, "A light at a point that shines into a cone.",
+       "position direction colour inner outer falloff?"),
+
+    GR("mesh_light", mesh_light_parameters, RESULT_LIGHT, act_mesh_light,
+       "Light from the triangles of a mesh, as bright as they look.", "mesh emission?"),
+    GR("sky_light", sky_light_parameters, RESULT_LIGHT, act_sky_light,
+       "Light from all of a sky; more shadow rays go where it is bright.", "sky"),
+};
+
+const struct function_rows light_functions = {rows, COUNT(rows)};
