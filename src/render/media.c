@@ -1,14 +1,6 @@
 /* See media.h. */
 #include "render/media.h"
 
-#include "math/elementary.h"
-
-struct vec3 media_left(const struct medium_stack *media, double distance) {
-    struct vec3 a = media->entries[media->count - 1].absorption;
-    return (struct vec3){a.x > 0 ? el_exp(-a.x * distance) : 1, a.y > 0 ? el_exp(-a.y * distance) : 1,
-                         a.z > 0 ? el_exp(-a.z * distance) : 1};
-}
-
 void media_around(const struct world *world, struct vec3 point, double ray_time, const uint32_t *closed,
                   uint32_t closed_count, struct world_scratch *scratch, struct medium_stack *out) {
     uint32_t inside[MEDIA_LIMIT];

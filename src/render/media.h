@@ -5,9 +5,6 @@
 #include "material/medium_stack.h"
 #include "world/world.h"
 
-/* The law of Beer, Lambert and Bouguer over a way inside the current medium: what is left of white light. The stack is
- * not empty. */
-struct vec3 media_left(const struct medium_stack *media, double distance);
 /* The transparent solids that hold the point at a ray's time, found by counting crossings; closed[0 .. closed_count-1]
  * are the solids in question (world_closed_in). */
 void media_around(const struct world *world, struct vec3 point, double ray_time, const uint32_t *closed,

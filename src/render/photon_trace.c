@@ -11,6 +11,7 @@
 #include "base/mem.h"
 #include "base/random.h"
 #include "material/material_eval.h"
+#include "material/medium.h"
 #include "render/photon_aim.h"
 
 #include <time.h>
@@ -19,6 +20,7 @@ enum { BATCH = 1024 };
 
 struct sending {
     const struct world *world;
+    const struct fog *fog; /* or NULL */
     const struct settings *settings;
     const struct photon_aims *aims;
     struct pool *pool;
@@ -112,6 +114,7 @@ static void send(struct sending *s, const struct photon_aim *aim, uint32_t index
                             .strength = start.strength,
                             .key = start.key};
     medium_stack_copy(&flight.media, &aim->media);
+    flight.ray.media = &flight.media;
     flight.ray.time = draw(&flight);
     if (start.power.x == 0 && start.power.y == 0 && start.power.z == 0)
         return;
@@ -132,8 +135,9 @@ static void send(struct sending *s, const struct photon_aim *aim, uint32_t index
         if (!world_nearest(s->world, &flight.ray, scratch, &hit))
             return;
         flight.length += hit.t;
-        if (flight.media.count > 0)
-            flight.left = vec3_mul(flight.left, media_left(&flight.media, hit.t));
+        struct medium_effect effect;
+        if (medium_transmittance(MEDIUM_RAY_PHOTON, s->fog, &flight.ray, hit.t, &effect))
+            flight.left = vec3_mul(flight.left, effect.transmittance);
         material_eval(s->world->materials[hit.material], &hit, &flight.media, &context, &bsdf);
         if (bsdf.opacity < 1 && draw(&flight) >= bsdf.opacity) {
             /* Through a hole, as if nothing were there. */
@@ -205,12 +209,14 @@ static bool aim_all(struct sending *s, struct photon_aims *aims, struct arena *a
     return ok;
 }
 
-bool photons_make(struct photon_map *map, const struct world *world, const struct settings *settings, struct pool *pool,
+bool photons_make(struct photon_map *map, const struct render_job *job, struct pool *pool,
                   struct photon_statistics *statistics, struct error *error) {
     struct arena arena = {0};
     struct photon_aims aims = {0};
     double begin = seconds_now();
-    struct sending s = {.world = world,
+    const struct settings *settings = &job->settings;
+    struct sending s = {.world = job->world,
+                        .fog = job->fog,
                         .settings = settings,
                         .pool = pool,
                         .seed = random_combine(settings->seed, UINT64_C(0x70686f746f6e73))};
@@ -225,7 +231,7 @@ bool photons_make(struct photon_map *map, const struct world *world, const struc
         else
             ok = send_all(&s, statistics, error);
         double sent = seconds_now();
-        ok = ok && photon_map_build(map, world, s.photons, s.count, settings->caustics.radius, pool, error);
+        ok = ok && photon_map_build(map, job->world, s.photons, s.count, settings->caustics.radius, pool, error);
         statistics->map_seconds += seconds_now() - sent;
     }
     statistics->sent += s.count;

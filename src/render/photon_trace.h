@@ -4,7 +4,7 @@
 #define GRAY_RENDER_PHOTON_TRACE_H
 
 #include "render/photon_map.h"
-#include "render/settings.h"
+#include "render/render.h"
 
 /* More bounces than this end a photon's way; in lossless glass next to nothing is left by then. */
 enum { PHOTON_BOUNCES = 100 };
@@ -14,9 +14,9 @@ struct photon_statistics {
     double seconds, map_seconds; /* in all; of these: making the map */
 };
 
-/* Sends settings->photons photons through the world and builds the map of them; the same for any number of threads.
- * Errors: no memory, cancelled. */
-bool photons_make(struct photon_map *map, const struct world *world, const struct settings *settings, struct pool *pool,
+/* Sends the photons of the job's settings through its world and builds the map of them; the same for any number of
+ * threads. Errors: no memory, cancelled. */
+bool photons_make(struct photon_map *map, const struct render_job *job, struct pool *pool,
                   struct photon_statistics *statistics, struct error *error);
 
 #endif

@@ -2,9 +2,9 @@
  * way through the tree of rays. */
 #include "render/whitted.h"
 
+#include "material/medium.h"
 #include "math/range.h"
 #include "render/direct.h"
-#include "render/media.h"
 
 /* Of the colour that a secondary ray brings: no filter makes an infinity of it, so infinity times 0 cannot arise. */
 static const double light_limit = 1e200;
@@ -184,26 +184,19 @@ static struct vec3 clamp_light(struct integrator_state *tracer, struct vec3 colo
 static struct vec3 bring(struct integrator_state *tracer, const struct ray *ray, const struct hit *hit,
                          const struct path *path) {
     const struct world *world = tracer->job->world;
-    const struct fog *fog = tracer->job->fog;
     bool met = hit != NULL;
     struct light_hit lamp_hit;
     const struct light *lamp = visible_light(world, ray, met ? hit->t : ray->t_max, &lamp_hit);
     double end = lamp ? lamp_hit.t : met ? hit->t : ray->t_max;
 
     /* What is between here and there. */
-    bool inside = ray->media && ray->media->count > 0, endless = !met && !lamp, clear = true;
-    double length = vec3_length(ray->direction), distance = endless ? INFINITY : end * length;
-    struct vec3 left = {1, 1, 1};
+    double distance = met || lamp ? end * vec3_length(ray->direction) : INFINITY;
+    struct medium_effect air;
     struct path dimmed;
-    if (inside) {
-        left = media_left(ray->media, distance);
-        clear = false;
-    } else if (fog && !(endless && fog->clear_sky)) {
-        left = vec3_all(fog_transmittance(fog, ray->origin, vec3_scale(ray->direction, 1 / length), distance));
-        clear = false;
-    }
+    bool affected = medium_transmittance(MEDIUM_RAY_SIGHT, tracer->job->fog, ray, distance, &air);
+    struct vec3 left = air.transmittance;
     observe_ray_begin(tracer->observer, ray, hit, lamp, distance, path->weight);
-    if (!clear) {
+    if (affected) {
         dimmed = path_on(path, vec3_max_abs(left));
         path = &dimmed;
     }
@@ -219,11 +212,9 @@ static struct vec3 bring(struct integrator_state *tracer, const struct ray *ray,
     else
         colour = sky_colour(&world->sky, vec3_normalize(ray->direction), ray->footprint.spread);
     seen = colour;
-    if (!clear)
-        colour = vec3_mul(colour, left);
-    if (!clear && !inside) {
-        veil = vec3_scale(fog->colour, 1 - left.x);
-        colour = vec3_add(colour, veil);
+    if (affected) {
+        veil = vec3_mul(air.source, vec3_sub(vec3_all(1), left));
+        colour = vec3_add(vec3_mul(colour, left), veil);
     }
     colour = clamp_light(tracer, colour, light_limit);
     observe_ray_end(tracer->observer, &(struct observed_end){looked, seen, left, veil, colour});

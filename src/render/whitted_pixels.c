@@ -16,7 +16,7 @@ static bool send_photons(struct whitted *whitted, struct run *run, int workers, 
     struct photon_statistics photons = {0};
     if (run->job->settings.caustics.photons == 0)
         return true;
-    bool ok = photons_make(&whitted->caustics, run->job->world, &run->job->settings, run->pool, &photons, error);
+    bool ok = photons_make(&whitted->caustics, run->job, run->pool, &photons, error);
     out->photons += photons.sent;
     out->photons_landed += photons.landed;
     out->photon_rays += photons.rays;

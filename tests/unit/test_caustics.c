@@ -64,7 +64,8 @@ static struct photon_statistics send(struct stage *s, int photons, struct photon
     struct photon_statistics statistics = {0};
     s->settings.caustics.photons = photons;
     CHECK(stage_build(s, s->root, ACCEL_AUTO));
-    if (!photons_make(map, &s->world, &s->settings, s->pool, &statistics, &s->error))
+    const struct render_job job = {.world = &s->world, .settings = s->settings, .fog = s->fog};
+    if (!photons_make(map, &job, s->pool, &statistics, &s->error))
         test_fail(__FILE__, __LINE__, "%s", s->error.text);
     return statistics;
 }

@@ -1,0 +1,69 @@
+/* What media do to the rays that they affect, and to no others. */
+#include "tests/harness.h"
+
+#include "material/medium.h"
+
+#include <math.h>
+
+static const struct fog fogs[] = {
+    {.kind = FOG_EXPONENTIAL, .density = 0.3, .colour = {0.5, 0.6, 0.7}},
+    {.kind = FOG_LINEAR, .near = 1, .far = 6, .colour = {1, 0, 0.25}, .clear_sky = true},
+    {.kind = FOG_HEIGHT, .density = 0.4, .base = 0, .scale = 2, .colour = {0.1, 0.1, 0.1}},
+};
+enum { FOGS = sizeof fogs / sizeof *fogs };
+
+/* The direction is not a unit vector: distances are in world units all the same. */
+static const struct ray ray_in_the_open = {.origin = {1, 2, 3}, .direction = {0, 0.6, -3.2}, .t_max = INFINITY};
+
+static bool is_nothing(const struct medium_effect *effect) {
+    struct vec3 t = effect->transmittance, s = effect->source;
+    return t.x == 1 && t.y == 1 && t.z == 1 && s.x == 0 && s.y == 0 && s.z == 0;
+}
+
+TEST(fog_affects_lines_of_sight_in_the_open_and_nothing_else) {
+    struct medium_stack glass = {.count = 0};
+    medium_stack_enter(&glass, &(struct medium){.placed = 1, .ior = 1.5});
+    for (int i = 0; i < FOGS; i++) {
+        struct ray ray = ray_in_the_open;
+        struct medium_effect effect;
+        CHECK(medium_transmittance(MEDIUM_RAY_SIGHT, &fogs[i], &ray, 4, &effect));
+        double seen = fog_transmittance(&fogs[i], ray.origin, vec3_normalize(ray.direction), 4);
+        CHECK(seen > 0 && seen < 1);
+        CHECK_NEAR(effect.transmittance.x, seen, 1e-15);
+        CHECK_NEAR(effect.transmittance.z, seen, 1e-15);
+        CHECK_NEAR(effect.source.y, fogs[i].colour.y, 0);
+        CHECK(!medium_transmittance(MEDIUM_RAY_PHOTON, &fogs[i], &ray, 4, &effect) && is_nothing(&effect));
+        CHECK(medium_transmittance(MEDIUM_RAY_SIGHT, &fogs[i], &ray, INFINITY, &effect) == !fogs[i].clear_sky);
+        ray.media = &glass;
+        (void)medium_transmittance(MEDIUM_RAY_SIGHT, &fogs[i], &ray, 4, &effect);
+        CHECK(is_nothing(&effect));
+    }
+}
+
+TEST(absorption_is_beers_law_for_sight_and_for_photons) {
+    struct medium_stack stack = {.count = 0};
+    medium_stack_enter(&stack, &(struct medium){.placed = 1, .ior = 1.3, .absorption = {9, 9, 9}});
+    medium_stack_enter(&stack, &(struct medium){.placed = 2, .ior = 1.5, .absorption = {0.1, 0, 2}});
+    struct ray ray = ray_in_the_open;
+    ray.media = &stack;
+    for (int kind = MEDIUM_RAY_SIGHT; kind <= MEDIUM_RAY_PHOTON; kind *= 2) {
+        struct medium_effect effect;
+        CHECK(medium_transmittance((enum medium_ray)kind, &fogs[0], &ray, 1.75, &effect));
+        CHECK_NEAR(effect.transmittance.x, exp(-0.175), 1e-15);
+        CHECK_NEAR(effect.transmittance.y, 1, 0);
+        CHECK_NEAR(effect.transmittance.z, exp(-3.5), 1e-15);
+        CHECK_NEAR(effect.source.x, 0, 0);
+        CHECK(medium_transmittance((enum medium_ray)kind, NULL, &ray, INFINITY, &effect));
+        CHECK_NEAR(effect.transmittance.x, 0, 0);
+        CHECK_NEAR(effect.transmittance.y, 1, 0);
+    }
+}
+
+TEST(without_media_no_ray_is_affected) {
+    struct medium_effect effect;
+    struct medium_stack empty = {.count = 0};
+    struct ray ray = ray_in_the_open;
+    CHECK(!medium_transmittance(MEDIUM_RAY_SIGHT, NULL, &ray, 4, &effect) && is_nothing(&effect));
+    ray.media = &empty;
+    CHECK(!medium_transmittance(MEDIUM_RAY_PHOTON, NULL, &ray, INFINITY, &effect) && is_nothing(&effect));
+}
