@@ -13,33 +13,33 @@ static struct vec3 off_surface(const struct hit *hit, struct vec3 towards) {
     return vec3_add_scaled(hit->point, hit->normal_geometric, side);
 }
 
-static bool is_free(struct integrator_state *tracer, const struct hit *hit, struct vec3 from, struct vec3 direction,
+static bool is_free(struct integrator_state *state, const struct hit *hit, struct vec3 from, struct vec3 direction,
                     double t_max) {
     struct ray shadow = {.origin = from,
                          .direction = direction,
                          .t_max = t_max,
                          .time = hit->time,
                          .passes = hit_passes(hit, direction)};
-    tracer->shadow_rays++;
-    bool free = !world_any(tracer->job->world, &shadow, tracer->scratch);
-    uint32_t blocker = world_blocker(tracer->scratch);
-    observe_shadow_rays(tracer->observer, 1, free, blocker == WORLD_NOTHING ? OBSERVER_NO_BLOCKER : blocker);
+    state->shadow_rays++;
+    bool free = !world_any(state->job->world, &shadow, state->scratch);
+    uint32_t blocker = world_blocker(state->scratch);
+    observe_shadow_rays(state->observer, 1, free, blocker == WORLD_NOTHING ? OBSERVER_NO_BLOCKER : blocker);
     return free;
 }
 
-static bool target_is_free(struct integrator_state *tracer, const struct hit *hit, struct vec3 from,
+static bool target_is_free(struct integrator_state *state, const struct hit *hit, struct vec3 from,
                            const struct light_target *target) {
-    return is_free(tracer, hit, from, light_target_from(target, from), light_target_end(target));
+    return is_free(state, hit, from, light_target_from(target, from), light_target_end(target));
 }
 
 /* The places of the shadow rays of one hit to a light with an extent, asked batch by batch. */
-static struct sample_set places_on_light(const struct integrator_state *tracer, const struct light *light,
+static struct sample_set places_on_light(const struct integrator_state *state, const struct light *light,
                                          const struct light_context *context, uint32_t number, uint64_t key) {
-    const struct settings *settings = &tracer->job->settings;
+    const struct settings *settings = &state->job->settings;
     uint32_t side = (uint32_t)(light->samples ? light->samples : settings->area_samples);
     if (settings->coarse && side > (uint32_t)settings->area_samples)
         side = (uint32_t)settings->area_samples;
-    return sampler_on_light(&tracer->sampler, key, number, side, context->shares_cells);
+    return sampler_on_light(&state->sampler, key, number, side, context->shares_cells);
 }
 
 /* What stands between: not the hit's own primitive where all of it is behind the surface and all of the light before.
@@ -56,21 +56,21 @@ static struct between light_between(const struct world *world, const struct ligh
 }
 
 /* The share of a delta light that reaches the hit: 0 or 1 for a point, of jittered shadow rays for an extent. */
-static double visible_share(struct integrator_state *tracer, const struct light *light, uint32_t number,
+static double visible_share(struct integrator_state *state, const struct light *light, uint32_t number,
                             const struct light_target *middle, const struct hit *hit, uint64_t key) {
-    const struct world *world = tracer->job->world;
+    const struct world *world = state->job->world;
     struct light_context context;
     struct vec3 from = off_surface(hit, light_target_from(middle, hit->point));
     if (!light_context_make(light, hit->point, from, &context))
         return 0;
     if (context.single)
-        return target_is_free(tracer, hit, from, middle);
-    struct sample_set places = places_on_light(tracer, light, &context, number, key);
+        return target_is_free(state, hit, from, middle);
+    struct sample_set places = places_on_light(state, light, &context, number, key);
     uint32_t all = places.side * places.side, seen = 0, have = 0;
     struct between between = light_between(world, &context, hit);
-    tracer->shadow_rays += all;
+    state->shadow_rays += all;
     if (between.known && between.count == 0) {
-        observe_shadow_rays(tracer->observer, all, all, OBSERVER_NO_BLOCKER);
+        observe_shadow_rays(state->observer, all, all, OBSERVER_NO_BLOCKER);
         return 1;
     }
     struct vec3 targets[AREA_BATCH];
@@ -78,37 +78,37 @@ static double visible_share(struct integrator_state *tracer, const struct light 
         targets[have++] = light_target_at(light, &context, sample_set_point(&places, cell));
         if (have < AREA_BATCH && cell + 1 < all)
             continue;
-        seen += world_visible(world, &between, from, hit->time, targets, have, tracer->scratch, NULL);
+        seen += world_visible(world, &between, from, hit->time, targets, have, state->scratch, NULL);
         have = 0;
-        if (integrator_cancelled(tracer))
+        if (integrator_cancelled(state))
             return 0;
     }
-    observe_shadow_rays(tracer->observer, all, seen, OBSERVER_NO_BLOCKER);
+    observe_shadow_rays(state->observer, all, seen, OBSERVER_NO_BLOCKER);
     return (double)seen / (double)all;
 }
 
 /* Which of the targets arrive, all of them distant or none. Lights all around have no shaft: each ray looks for itself.
  */
-static void ask_targets(struct integrator_state *tracer, const struct light_context *context, const struct hit *hit,
+static void ask_targets(struct integrator_state *state, const struct light_context *context, const struct hit *hit,
                         const struct vec3 *targets, uint32_t count, bool distant, bool *visible) {
     if (context->bounded) {
-        const struct world *world = tracer->job->world;
+        const struct world *world = state->job->world;
         struct between between = light_between(world, context, hit);
         uint32_t seen =
-            world_visible(world, &between, context->from, hit->time, targets, count, tracer->scratch, visible);
-        tracer->shadow_rays += count;
-        observe_shadow_rays(tracer->observer, count, seen, OBSERVER_NO_BLOCKER);
+            world_visible(world, &between, context->from, hit->time, targets, count, state->scratch, visible);
+        state->shadow_rays += count;
+        observe_shadow_rays(state->observer, count, seen, OBSERVER_NO_BLOCKER);
         return;
     }
     for (uint32_t i = 0; i < count; i++) {
         struct light_target target = {targets[i], distant};
-        visible[i] = target_is_free(tracer, hit, context->from, &target);
+        visible[i] = target_is_free(state, hit, context->from, &target);
     }
 }
 
 /* A lamp: every shadow ray shades by itself, with the cosine at the lamp. Rays that cannot bring light are not asked.
  */
-static struct vec3 light_of_samples(struct integrator_state *tracer, const struct light *light, uint32_t number,
+static struct vec3 light_of_samples(struct integrator_state *state, const struct light *light, uint32_t number,
                                     const struct hit *hit, const struct bsdf *bsdf, uint32_t lobes, uint64_t key) {
     struct vec3 sum = {0, 0, 0};
     /* What is lit is the ray's side, wherever the middle of the lamp may be. */
@@ -116,7 +116,7 @@ static struct vec3 light_of_samples(struct integrator_state *tracer, const struc
     struct light_context context;
     if (!light_context_make(light, hit->point, from, &context))
         return sum;
-    struct sample_set places = places_on_light(tracer, light, &context, number, key);
+    struct sample_set places = places_on_light(state, light, &context, number, key);
     uint32_t all = places.side * places.side, have = 0;
     struct vec3 targets[AREA_BATCH], carried[AREA_BATCH];
     bool visible[AREA_BATCH];
@@ -129,27 +129,27 @@ static struct vec3 light_of_samples(struct integrator_state *tracer, const struc
         }
         if (have == 0 || (have < AREA_BATCH && cell + 1 < all))
             continue;
-        ask_targets(tracer, &context, hit, targets, have, sample.target.distant, visible);
+        ask_targets(state, &context, hit, targets, have, sample.target.distant, visible);
         for (uint32_t i = 0; i < have; i++)
             sum = visible[i] ? vec3_add(sum, carried[i]) : sum;
         have = 0;
-        if (integrator_cancelled(tracer))
+        if (integrator_cancelled(state))
             return vec3_all(0);
     }
     return vec3_scale(sum, 1 / (double)all);
 }
 
 /* A delta light: shaded once. */
-static struct vec3 light_of_delta(struct integrator_state *tracer, const struct light *light, uint32_t number,
+static struct vec3 light_of_delta(struct integrator_state *state, const struct light *light, uint32_t number,
                                   const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {
     struct light_arrival arrival;
     if (!light_arrive(light, hit->point, &arrival))
         return vec3_all(0);
     struct vec3 reflected = bsdf_classic(bsdf, BSDF_ALL, hit->view, arrival.direction);
-    observe_light_place(tracer->observer, arrival.distance, arrival.strength, arrival.direction, reflected);
+    observe_light_place(state->observer, arrival.distance, arrival.strength, arrival.direction, reflected);
     if (arrival.strength == 0 || (reflected.x == 0 && reflected.y == 0 && reflected.z == 0))
         return vec3_all(0);
-    double share = visible_share(tracer, light, number, &arrival.middle, hit, key);
+    double share = visible_share(state, light, number, &arrival.middle, hit, key);
     return share == 0 ? vec3_all(0) : vec3_mul(vec3_scale(light->colour, share * arrival.strength), reflected);
 }
 
@@ -159,39 +159,38 @@ static uint32_t without_highlight(const struct bsdf *bsdf) {
     return bsdf_lobes_with(bsdf, BSDF_TRACED) ? bsdf_lobes_with(bsdf, BSDF_LAMBERT) : BSDF_ALL;
 }
 
-static struct vec3 one_light(struct integrator_state *tracer, const struct light *light, uint32_t number,
+static struct vec3 one_light(struct integrator_state *state, const struct light *light, uint32_t number,
                              const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {
     if (light_is_delta(light))
-        return light_of_delta(tracer, light, number, hit, bsdf, key);
+        return light_of_delta(state, light, number, hit, bsdf, key);
     if (!(light_properties(light) & LIGHT_IS_ENVIRONMENT))
-        return light_of_samples(tracer, light, number, hit, bsdf, BSDF_ALL, key);
-    return light_of_samples(tracer, light, number, hit, bsdf, without_highlight(bsdf), key);
+        return light_of_samples(state, light, number, hit, bsdf, BSDF_ALL, key);
+    return light_of_samples(state, light, number, hit, bsdf, without_highlight(bsdf), key);
 }
 
-struct vec3 direct_light(struct integrator_state *tracer, const struct hit *hit, const struct bsdf *bsdf,
-                         uint64_t key) {
-    const struct world *world = tracer->job->world;
-    struct vec3 sum = vec3_mul(tracer->job->ambient, bsdf->ambient);
+struct vec3 direct_light(struct integrator_state *state, const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {
+    const struct world *world = state->job->world;
+    struct vec3 sum = vec3_mul(state->job->ambient, bsdf->ambient);
     for (uint32_t i = 0; i < world->light_count && !bsdf->dark; i++) {
         const struct light *light = &world->lights[i];
         if (light->lit && !light->lit[hit->placed]) {
-            observe_light_skipped(tracer->observer, i, light);
+            observe_light_skipped(state->observer, i, light);
             continue;
         }
-        tracer->scratch->light = i % WORLD_BLOCKERS;
-        observe_light_begin(tracer->observer, i, light);
-        struct vec3 own = one_light(tracer, light, i, hit, bsdf, sampler_light(key, i));
+        state->scratch->light = i % WORLD_BLOCKERS;
+        observe_light_begin(state->observer, i, light);
+        struct vec3 own = one_light(state, light, i, hit, bsdf, sampler_light(key, i));
         sum = vec3_add(sum, own);
-        observe_light_end(tracer->observer, i, light, own);
+        observe_light_end(state->observer, i, light, own);
     }
     struct vec3 photons = {0, 0, 0};
-    bool asked = tracer->caustics && !bsdf->dark;
+    bool asked = state->caustics && !bsdf->dark;
     if (asked) {
-        photons = photon_map_light(tracer->caustics, world, hit, bsdf);
+        photons = photon_map_light(state->caustics, world, hit, bsdf);
         sum = vec3_add(sum, photons);
     }
-    observe_direct(tracer->observer,
-                   &(struct observed_direct){tracer->job->ambient, vec3_mul(tracer->job->ambient, bsdf->ambient),
-                                             photons, sum, asked});
+    observe_direct(state->observer,
+                   &(struct observed_direct){state->job->ambient, vec3_mul(state->job->ambient, bsdf->ambient), photons,
+                                             sum, asked});
     return sum;
 }

@@ -6,6 +6,6 @@
 #include "render/integrator_state.h"
 
 /* What the surface sends to hit->view of it, with the ambient light. key: the random key of the path so far. */
-struct vec3 direct_light(struct integrator_state *tracer, const struct hit *hit, const struct bsdf *bsdf, uint64_t key);
+struct vec3 direct_light(struct integrator_state *state, const struct hit *hit, const struct bsdf *bsdf, uint64_t key);
 
 #endif

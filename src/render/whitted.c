@@ -18,7 +18,7 @@ struct path {
     int holes;                    /* went through so far */
 };
 
-static struct vec3 trace(struct integrator_state *tracer, const struct ray *ray, const struct path *path);
+static struct vec3 trace(struct integrator_state *state, const struct ray *ray, const struct path *path);
 
 /* The nearest light that shows itself before t_max, or NULL. */
 static const struct light *visible_light(const struct world *world, const struct ray *ray, double t_max,
@@ -51,10 +51,10 @@ static struct path path_on(const struct path *path, double share) {
 }
 
 /* Whether what a ray brings cannot count any more. */
-static bool is_given_up(const struct integrator_state *tracer, enum ray_kind kind, bool limit, struct vec3 filter,
+static bool is_given_up(const struct integrator_state *state, enum ray_kind kind, bool limit, struct vec3 filter,
                         const struct path *path) {
     enum ray_cut cut = limit ? RAY_OVER_LIMIT : path->weight < path->cutoff ? RAY_TOO_WEAK : RAY_FOLLOWED;
-    observe_ray_sent(tracer->observer, kind, filter, cut);
+    observe_ray_sent(state->observer, kind, filter, cut);
     return cut != RAY_FOLLOWED;
 }
 
@@ -67,15 +67,15 @@ struct surface_point {
 
 /* What comes from where one branch goes on, times its weight. What cannot change the pixel by the cut-off is not
  * followed. */
-static struct vec3 follow_branch(struct integrator_state *tracer, const struct surface_point *at,
+static struct vec3 follow_branch(struct integrator_state *state, const struct surface_point *at,
                                  const struct bsdf_branch *branch, struct sample2 u, const struct path *from) {
-    const struct settings *settings = &tracer->job->settings;
+    const struct settings *settings = &state->job->settings;
     bool transmits = branch->transmits;
     struct vec3 direction, filter;
     bsdf_branch_sample(at->bsdf, branch, at->hit->view, u, &direction, &filter);
     struct path path = path_on(from, vec3_max_abs(filter));
     bool limit = transmits ? path.refractions >= settings->refract_limit : path.reflections >= settings->reflect_limit;
-    if (is_given_up(tracer, transmits ? RAY_REFRACTED : RAY_REFLECTED, limit, filter, &path))
+    if (is_given_up(state, transmits ? RAY_REFRACTED : RAY_REFLECTED, limit, filter, &path))
         return vec3_all(0);
     struct ray onward = hit_ray(at->hit, at->ray, direction, at->ray->media);
     struct medium_stack behind;
@@ -83,43 +83,43 @@ static struct vec3 follow_branch(struct integrator_state *tracer, const struct s
         medium_stack_copy(&behind, at->ray->media);
         medium_stack_cross(&behind, &at->bsdf->boundary);
         onward.media = &behind;
-        tracer->refracted_rays++;
+        state->refracted_rays++;
         path.key = sampler_branch(path.key, SAMPLER_REFRACTED);
         path.refractions++;
     } else {
-        tracer->reflected_rays++;
+        state->reflected_rays++;
         path.key = sampler_branch(path.key, SAMPLER_REFLECTED);
         path.reflections++;
     }
-    return vec3_mul(filter, trace(tracer, &onward, &path));
+    return vec3_mul(filter, trace(state, &onward, &path));
 }
 
 /* What is seen through the holes of a surface that is only partly there (a picture of leaves): the ray goes on as it
  * was. Bounded, since every hole is a deeper call. */
-static struct vec3 follow_hole(struct integrator_state *tracer, const struct hit *hit, const struct ray *ray,
+static struct vec3 follow_hole(struct integrator_state *state, const struct hit *hit, const struct ray *ray,
                                double share, const struct path *from) {
     enum { HOLE_LIMIT = 200 };
     struct path path = path_on(from, share);
-    if (is_given_up(tracer, RAY_HOLE, path.holes >= HOLE_LIMIT, vec3_all(share), &path))
+    if (is_given_up(state, RAY_HOLE, path.holes >= HOLE_LIMIT, vec3_all(share), &path))
         return vec3_all(0);
     struct ray onward = hit_ray(hit, ray, vec3_negate(hit->view), ray->media);
-    tracer->refracted_rays++;
+    state->refracted_rays++;
     path.key = sampler_branch(path.key, SAMPLER_HOLE);
     path.holes++;
-    return vec3_scale(trace(tracer, &onward, &path), share);
+    return vec3_scale(trace(state, &onward, &path), share);
 }
 
 enum { GLOSSY_SAMPLES = 4 };
 
 /* A rough surface: the mean over facets of what each reflects and refracts. */
-static struct vec3 follow_rough(struct integrator_state *tracer, const struct surface_point *at,
+static struct vec3 follow_rough(struct integrator_state *state, const struct surface_point *at,
                                 const struct bsdf_branch *branches, int count, const struct path *path) {
-    bool coarse = path->rough || tracer->job->settings.coarse;
+    bool coarse = path->rough || state->job->settings.coarse;
     uint32_t n = coarse ? 1 : at->bsdf->glossy_samples ? (uint32_t)at->bsdf->glossy_samples : GLOSSY_SAMPLES;
     uint64_t key = sampler_branch(path->key, SAMPLER_ROUGH);
-    struct sample_set facets = sampler_facets(&tracer->sampler, path->key, key, n);
+    struct sample_set facets = sampler_facets(&state->sampler, path->key, key, n);
     struct vec3 sum = {0, 0, 0};
-    observe_split(tracer->observer, 1 / ((double)n * (double)n));
+    observe_split(state->observer, 1 / ((double)n * (double)n));
     for (uint32_t cell = 0; cell < n * n; cell++) {
         struct sample2 u = sample_set_point(&facets, cell);
         struct path branch = path_on(path, 1);
@@ -127,7 +127,7 @@ static struct vec3 follow_rough(struct integrator_state *tracer, const struct su
         branch.rough = true;
         for (int i = 0; i < count; i++) {
             if (branches[i].rough)
-                sum = vec3_add(sum, follow_branch(tracer, at, &branches[i], u, &branch));
+                sum = vec3_add(sum, follow_branch(state, at, &branches[i], u, &branch));
         }
     }
     return vec3_scale(sum, 1 / ((double)n * (double)n));
@@ -135,9 +135,9 @@ static struct vec3 follow_rough(struct integrator_state *tracer, const struct su
 
 /* --- one hit --- */
 
-static struct vec3 shade(struct integrator_state *tracer, const struct surface_point *at, const struct path *path) {
-    observe_surface(tracer->observer, at->bsdf);
-    struct vec3 colour = direct_light(tracer, at->hit, at->bsdf, path->key);
+static struct vec3 shade(struct integrator_state *state, const struct surface_point *at, const struct path *path) {
+    observe_surface(state->observer, at->bsdf);
+    struct vec3 colour = direct_light(state, at->hit, at->bsdf, path->key);
     colour = vec3_add(colour, at->bsdf->emission);
     struct bsdf_branch branches[BSDF_LOBES];
     int count = bsdf_branches(at->bsdf, branches);
@@ -146,44 +146,44 @@ static struct vec3 shade(struct integrator_state *tracer, const struct surface_p
         if (branches[i].rough)
             rough = true;
         else
-            colour = vec3_add(colour, follow_branch(tracer, at, &branches[i], (struct sample2){0, 0}, path));
+            colour = vec3_add(colour, follow_branch(state, at, &branches[i], (struct sample2){0, 0}, path));
     }
-    return rough ? vec3_add(colour, follow_rough(tracer, at, branches, count, path)) : colour;
+    return rough ? vec3_add(colour, follow_rough(state, at, branches, count, path)) : colour;
 }
 
-static struct vec3 shade_hit(struct integrator_state *tracer, const struct ray *ray, const struct hit *hit,
+static struct vec3 shade_hit(struct integrator_state *state, const struct ray *ray, const struct hit *hit,
                              const struct path *path) {
-    const struct settings *settings = &tracer->job->settings;
+    const struct settings *settings = &state->job->settings;
     const struct material_context context = {.specular = settings->specular,
                                              .ambient_plain = settings->ambient_plain,
                                              .total_reflection = settings->use_tir,
-                                             .told = tracer->observer ? observe_material : NULL,
-                                             .told_to = tracer->observer};
+                                             .told = state->observer ? observe_material : NULL,
+                                             .told_to = state->observer};
     struct bsdf bsdf;
     struct surface_point at = {ray, hit, &bsdf};
-    tracer->hits++;
-    material_eval(tracer->job->world->materials[hit->material], hit, ray->media, &context, &bsdf);
+    state->hits++;
+    material_eval(state->job->world->materials[hit->material], hit, ray->media, &context, &bsdf);
     double hole = 1 - bsdf.opacity;
     if (!(hole > 0))
-        return shade(tracer, &at, path);
-    struct vec3 behind = follow_hole(tracer, hit, ray, hole, path);
+        return shade(state, &at, path);
+    struct vec3 behind = follow_hole(state, hit, ray, hole, path);
     if (hole >= 1)
         return behind;
     struct path covered = path_on(path, bsdf.opacity);
-    return vec3_add_scaled(behind, shade(tracer, &at, &covered), bsdf.opacity);
+    return vec3_add_scaled(behind, shade(state, &at, &covered), bsdf.opacity);
 }
 
-static struct vec3 clamp_light(struct integrator_state *tracer, struct vec3 colour, double limit) {
+static struct vec3 clamp_light(struct integrator_state *state, struct vec3 colour, double limit) {
     if (vec3_within(colour, limit))
         return colour;
-    tracer->clamped = true;
+    state->clamped = true;
     return vec3_clamped(colour, limit);
 }
 
 /* What a ray brings that has met `hit`, or nothing: NULL. */
-static struct vec3 bring(struct integrator_state *tracer, const struct ray *ray, const struct hit *hit,
+static struct vec3 bring(struct integrator_state *state, const struct ray *ray, const struct hit *hit,
                          const struct path *path) {
-    const struct world *world = tracer->job->world;
+    const struct world *world = state->job->world;
     bool met = hit != NULL;
     struct light_hit lamp_hit;
     const struct light *lamp = visible_light(world, ray, met ? hit->t : ray->t_max, &lamp_hit);
@@ -193,9 +193,9 @@ static struct vec3 bring(struct integrator_state *tracer, const struct ray *ray,
     double distance = met || lamp ? end * vec3_length(ray->direction) : INFINITY;
     struct medium_effect air;
     struct path dimmed;
-    bool affected = medium_transmittance(MEDIUM_RAY_SIGHT, tracer->job->fog, ray, distance, &air);
+    bool affected = medium_transmittance(MEDIUM_RAY_SIGHT, state->job->fog, ray, distance, &air);
     struct vec3 left = air.transmittance;
-    observe_ray_begin(tracer->observer, ray, hit, lamp, distance, path->weight);
+    observe_ray_begin(state->observer, ray, hit, lamp, distance, path->weight);
     if (affected) {
         dimmed = path_on(path, vec3_max_abs(left));
         path = &dimmed;
@@ -208,7 +208,7 @@ static struct vec3 bring(struct integrator_state *tracer, const struct ray *ray,
     else if (lamp)
         colour = light_emitted(lamp, ray, &lamp_hit);
     else if (met)
-        colour = shade_hit(tracer, ray, hit, path);
+        colour = shade_hit(state, ray, hit, path);
     else
         colour = sky_colour(&world->sky, vec3_normalize(ray->direction), ray->footprint.spread);
     seen = colour;
@@ -216,36 +216,36 @@ static struct vec3 bring(struct integrator_state *tracer, const struct ray *ray,
         veil = vec3_mul(air.source, vec3_sub(vec3_all(1), left));
         colour = vec3_add(vec3_mul(colour, left), veil);
     }
-    colour = clamp_light(tracer, colour, light_limit);
-    observe_ray_end(tracer->observer, &(struct observed_end){looked, seen, left, veil, colour});
+    colour = clamp_light(state, colour, light_limit);
+    observe_ray_end(state->observer, &(struct observed_end){looked, seen, left, veil, colour});
     return colour;
 }
 
-static struct vec3 trace(struct integrator_state *tracer, const struct ray *ray, const struct path *path) {
+static struct vec3 trace(struct integrator_state *state, const struct ray *ray, const struct path *path) {
     struct hit hit;
-    if (integrator_cancelled(tracer))
+    if (integrator_cancelled(state))
         return vec3_all(0); /* deep paths through glass grow exponentially */
-    bool met = world_nearest(tracer->job->world, ray, tracer->scratch, &hit);
-    return bring(tracer, ray, met ? &hit : NULL, path);
+    bool met = world_nearest(state->job->world, ray, state->scratch, &hit);
+    return bring(state, ray, met ? &hit : NULL, path);
 }
 
-struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *tracer, const struct ray *ray,
+struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
                           uint64_t key) {
     struct ray from_eye = *ray;
-    from_eye.media = tracer->eye_media;
+    from_eye.media = state->eye_media;
     const struct path path = {.key = key, .weight = 1, .cutoff = whitted->cutoff};
-    return clamp_light(tracer, trace(tracer, &from_eye, &path), (double)FLT_MAX);
+    return clamp_light(state, trace(state, &from_eye, &path), (double)FLT_MAX);
 }
 
-struct vec3 whitted_trace_met(const struct whitted *whitted, struct integrator_state *tracer, const struct ray *ray,
+struct vec3 whitted_trace_met(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
                               const struct packet_answer *met, uint64_t key) {
     struct ray from_eye = *ray;
     struct hit hit;
-    from_eye.media = tracer->eye_media;
-    if (integrator_cancelled(tracer))
+    from_eye.media = state->eye_media;
+    if (integrator_cancelled(state))
         return vec3_all(0);
     if (met)
-        world_describe(tracer->job->world, &from_eye, met->placed, &met->crossing, &hit);
+        world_describe(state->job->world, &from_eye, met->placed, &met->crossing, &hit);
     const struct path path = {.key = key, .weight = 1, .cutoff = whitted->cutoff};
-    return clamp_light(tracer, bring(tracer, &from_eye, met ? &hit : NULL, &path), (double)FLT_MAX);
+    return clamp_light(state, bring(state, &from_eye, met ? &hit : NULL, &path), (double)FLT_MAX);
 }

@@ -33,10 +33,10 @@ void whitted_repeat(const struct whitted *whitted, struct run *run, struct worke
 void whitted_add_statistics(const struct whitted *whitted, const struct run *run, struct render_statistics *out);
 
 /* The colour a camera ray brings, clamped to the range of float; key: the random key of this pixel and sample. */
-struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *tracer, const struct ray *ray,
+struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
                           uint64_t key);
 /* The same for a ray that went with a packet: what it has met, or NULL. */
-struct vec3 whitted_trace_met(const struct whitted *whitted, struct integrator_state *tracer, const struct ray *ray,
+struct vec3 whitted_trace_met(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
                               const struct packet_answer *met, uint64_t key);
 
 #endif
