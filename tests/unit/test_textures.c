@@ -518,6 +518,48 @@ static void check_equal(const char *first, const char *second) {
     free(b);
 }
 
+/* What a script writes for a texture of the kind; NULL: scripts make none. */
+static const char *in_words(enum texture_kind kind) {
+    switch (kind) {
+    case TEXTURE_CONSTANT:
+        return "{.2, .4, .6}";
+    case TEXTURE_PARAMETER:
+    case TEXTURE_VERTEX_COLOUR:
+    case TEXTURE_MAP: /* of inputs that are shares */
+        return NULL;
+    case TEXTURE_IMAGE:
+        return "gr.texture('a.png')";
+    case TEXTURE_MARBLE:
+        return "gr.marble_texture(2, 3, 4)";
+    case TEXTURE_WOOD:
+        return "gr.wood_texture(3, 5)";
+    case TEXTURE_MIX:
+        return "gr.mix_texture(1, {0, 1, 0}, .25)";
+    case TEXTURE_MULTIPLY:
+        return "gr.multiply_texture(.5, {0, 1, 0})";
+    case TEXTURE_KINDS:
+        break;
+    }
+    return NULL;
+}
+
+TEST(every_kind_that_scripts_can_make_is_taken_as_colour_number_and_height) {
+    char scene[8192];
+    int length = snprintf(scene, sizeof scene, "%spicture('a.png', gr.material({1, 1, 1}, {0, 0, 0}, 1))\n", two_pictures);
+    for (int kind = 0; kind < TEXTURE_KINDS; kind++) {
+        const char *words = in_words((enum texture_kind)kind);
+        if (!words)
+            continue;
+        bool is_handle = kind != TEXTURE_CONSTANT;
+        length += snprintf(scene + length, sizeof scene - (size_t)length,
+                           "picture('b.png', gr.material{kd = %s, ks = %s, emission = %s, reflect = %s, bump = %s})\n",
+                           words, words, words, is_handle ? words : "0", is_handle ? words : "'a.png'");
+    }
+    struct test_result result = test_gray_scene(scene, "-q scene.lua", NULL);
+    CHECK_TEXT(result.err, "");
+    CHECK_EQ_INT(result.status, 0);
+}
+
 TEST(a_marble_decorator_is_a_mix_of_a_marble_texture) {
     check_equal("gr.marble_pnd_material(gr.material({.8, .7, .6}, {.2, .2, .2}, 10), 2, 3, 4, 1, {.1, .2, .3})",
                 "gr.material{kd = gr.mix_texture({.8, .7, .6}, {.1, .2, .3}, gr.marble_texture(2, 3, 4, 1)),"
