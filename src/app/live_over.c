@@ -48,48 +48,76 @@ static int tell_buttons(struct live *live, int y, const char *const *words, int 
     return x;
 }
 
+#define MENU(X)                                                                                                        \
+    X(MENU_RENDER, "Render")                                                                                           \
+    X(MENU_QUIT, "Quit")                                                                                               \
+    X(MENU_STOP, "Stop")                                                                                               \
+    X(MENU_SAVE_PICTURE, "Save picture")                                                                               \
+    X(MENU_SAVE_VIEW, "Save view")                                                                                     \
+    X(MENU_SAVE_CHANGES, "Save changes")                                                                               \
+    X(MENU_HIDE, "Hide")                                                                                               \
+    X(MENU_LIGHTS, "Lights")                                                                                           \
+    X(MENU_BOXES, "Boxes")                                                                                             \
+    X(MENU_GRID, "Grid")
+enum { MENU(LIST_MEMBER) };
+
 static void tell_menu(struct live *live) {
-    static const char *const words[] = {"Render",       "Quit", "Stop",   "Save picture", "Save view",
-                                        "Save changes", "Hide", "Lights", "Boxes",        "Grid"};
+    static const char *const words[] = {MENU(LIST_WORD)};
     struct panel *panel = &live->panel;
-    bool used[10] = {false};
-    unsigned on = (live->halted ? 1u << 2 : 0) | (live->overlay == OVERLAY_OF_BOXES ? 1u << 8 : 0) |
-                  (live->overlay == OVERLAY_OF_GRID ? 1u << 9 : 0);
+    bool used[LIST_COUNT(MENU)] = {false};
+    unsigned on = (live->halted ? 1u << MENU_STOP : 0) | (live->overlay == OVERLAY_OF_BOXES ? 1u << MENU_BOXES : 0) |
+                  (live->overlay == OVERLAY_OF_GRID ? 1u << MENU_GRID : 0);
     panel_ground(panel, 0, 0, panel->paper.width, 15 * panel->paper.scale);
-    (void)tell_buttons(live, 2 * panel->paper.scale, words, 10, on, used);
-    if (used[0])
+    (void)tell_buttons(live, 2 * panel->paper.scale, words, LIST_COUNT(MENU), on, used);
+    if (used[MENU_RENDER])
         live_render(live);
-    live->quit = live->quit || used[1];
-    if (used[2])
+    live->quit = live->quit || used[MENU_QUIT];
+    if (used[MENU_STOP])
         live_halt(live, !live->halted);
-    if (used[3])
+    if (used[MENU_SAVE_PICTURE])
         live->wish = LIVE_SAVE;
-    else if (used[4] && live->block)
+    else if (used[MENU_SAVE_VIEW] && live->block)
         live->wish = LIVE_RECORD;
-    else if (used[5])
+    else if (used[MENU_SAVE_CHANGES])
         live->wish = LIVE_CHANGES;
-    live->bare = live->bare || used[6];
-    if (used[8] || used[9])
-        live_choose_overlay(live, used[8] ? OVERLAY_OF_BOXES : OVERLAY_OF_GRID);
-    live->lists_lights = live->lists_lights != used[7];
+    live->bare = live->bare || used[MENU_HIDE];
+    if (used[MENU_BOXES] || used[MENU_GRID])
+        live_choose_overlay(live, used[MENU_BOXES] ? OVERLAY_OF_BOXES : OVERLAY_OF_GRID);
+    live->lists_lights = live->lists_lights != used[MENU_LIGHTS];
 }
 
 /* Undoing, adding, exposure: a second row. */
+#define WORK(X)                                                                                                        \
+    X(WORK_UNDO, "Undo")                                                                                               \
+    X(WORK_REDO, "Redo")                                                                                               \
+    X(WORK_SPHERE, "Sphere")                                                                                           \
+    X(WORK_CUBE, "Cube")                                                                                               \
+    X(WORK_CYLINDER, "Cylinder")                                                                                       \
+    X(WORK_CONE, "Cone")                                                                                               \
+    X(WORK_TORUS, "Torus")                                                                                             \
+    X(WORK_LIGHT, "Light")
+enum { WORK(LIST_MEMBER) };
+
 static void tell_work(struct live *live) {
-    static const char *const words[] = {"Undo", "Redo", "Sphere", "Cube", "Cylinder", "Cone", "Torus", "Light"};
-    static const enum added_kind kinds[] = {ADDED_SPHERE, ADDED_CUBE, ADDED_CYLINDER, ADDED_CONE, ADDED_TORUS};
+    static const char *const words[] = {WORK(LIST_WORD)};
     struct panel *panel = &live->panel;
     int scale = panel->paper.scale, y = 17 * scale, wide = 10 * PAPER_CELL * scale;
-    bool used[8] = {false};
+    bool used[LIST_COUNT(WORK)] = {false};
     panel_ground(panel, 0, 15 * scale, panel->paper.width, 15 * scale);
-    int x = tell_buttons(live, y, words, 8, 0, used);
-    if (used[0] || used[1])
-        live_undo(live, used[1]);
-    for (int i = 0; i < 5; i++) {
-        if (used[2 + i])
-            live_add(live, kinds[i]);
-    }
-    if (used[7])
+    int x = tell_buttons(live, y, words, LIST_COUNT(WORK), 0, used);
+    if (used[WORK_UNDO] || used[WORK_REDO])
+        live_undo(live, used[WORK_REDO]);
+    if (used[WORK_SPHERE])
+        live_add(live, ADDED_SPHERE);
+    if (used[WORK_CUBE])
+        live_add(live, ADDED_CUBE);
+    if (used[WORK_CYLINDER])
+        live_add(live, ADDED_CYLINDER);
+    if (used[WORK_CONE])
+        live_add(live, ADDED_CONE);
+    if (used[WORK_TORUS])
+        live_add(live, ADDED_TORUS);
+    if (used[WORK_LIGHT])
         live_add_light(live);
     char text[48];
     double stops = live->request.exposure;

@@ -152,40 +152,89 @@ static void tell_point(struct live *live, struct column *column, const char *wha
     tell_text(live, column, row);
 }
 
-enum { TOOL_BUTTONS = 7 };
+#define TOOL_BUTTONS(X)                                                                                                \
+    X(BUTTON_MOVE, "Move")                                                                                             \
+    X(BUTTON_TURN, "Turn")                                                                                             \
+    X(BUTTON_SIZE, "Size")                                                                                             \
+    X(BUTTON_UP, "Up")                                                                                                 \
+    X(BUTTON_DOWN, "Down")                                                                                             \
+    X(BUTTON_COPY, "Copy")                                                                                             \
+    X(BUTTON_DELETE, "Delete")
+enum tool_button { TOOL_BUTTONS(LIST_MEMBER) };
 
-/* What can be done with what is selected. */
-static bool can_use(const struct live *live, int button) {
+/* Whether it can be done with what is selected. */
+static bool can_use(const struct live *live, enum tool_button button) {
     const struct told_light *light = live_light(live, live->selection.light);
-    if (live->selection.kind == SELECTED_NODE)
-        return button != 4 || live->selection.picked.below > 0;
-    const bool can[TOOL_BUTTONS] = {
-        light && light->moves, light && light->turns, light && light->sizes, false, false, true, true};
-    return can[button];
+    bool node = live->selection.kind == SELECTED_NODE;
+    switch (button) {
+    case BUTTON_MOVE:
+        return node || (light && light->moves);
+    case BUTTON_TURN:
+        return node || (light && light->turns);
+    case BUTTON_SIZE:
+        return node || (light && light->sizes);
+    case BUTTON_UP:
+        return node;
+    case BUTTON_DOWN:
+        return node && live->selection.picked.below > 0;
+    case BUTTON_COPY:
+    case BUTTON_DELETE:
+        break;
+    }
+    return true;
+}
+
+static enum live_tool tool_of(enum tool_button button) {
+    switch (button) {
+    case BUTTON_MOVE:
+        return TOOL_MOVE;
+    case BUTTON_TURN:
+        return TOOL_TURN;
+    case BUTTON_SIZE:
+        return TOOL_SIZE;
+    case BUTTON_UP:
+    case BUTTON_DOWN:
+    case BUTTON_COPY:
+    case BUTTON_DELETE:
+        break;
+    }
+    return TOOL_NONE;
+}
+
+static void use_button(struct live *live, enum tool_button button) {
+    switch (button) {
+    case BUTTON_MOVE:
+    case BUTTON_TURN:
+    case BUTTON_SIZE:
+        live->tool = live->tool == tool_of(button) ? TOOL_NONE : tool_of(button);
+        live->joins = false;
+        return;
+    case BUTTON_UP:
+    case BUTTON_DOWN:
+        live_select_up(live, button == BUTTON_DOWN);
+        return;
+    case BUTTON_COPY:
+        live_add(live, ADDED_COPY);
+        return;
+    case BUTTON_DELETE:
+        live_delete(live);
+        return;
+    }
 }
 
 static void tell_tools(struct live *live, struct column *column) {
-    static const char *const words[TOOL_BUTTONS] = {"Move", "Turn", "Size", "Up", "Down", "Copy", "Delete"};
+    static const char *const words[] = {TOOL_BUTTONS(LIST_WORD)};
     struct panel *panel = &live->panel;
     int x = column->x;
-    for (int i = 0; i < TOOL_BUTTONS; i++) {
-        enum live_tool tool = i < 3 ? (enum live_tool)(i + 1) : TOOL_NONE;
-        if (!can_use(live, i))
+    for (int i = 0; i < LIST_COUNT(TOOL_BUTTONS); i++) {
+        enum tool_button button = (enum tool_button)i;
+        enum live_tool tool = tool_of(button);
+        if (!can_use(live, button))
             continue;
         bool used = panel_button(panel, x, column->y, words[i], tool != TOOL_NONE && live->tool == tool);
         x += panel_button_width(panel, words[i]) + 2 * panel->paper.scale;
-        if (!used)
-            continue;
-        if (tool != TOOL_NONE) {
-            live->tool = live->tool == tool ? TOOL_NONE : tool;
-            live->joins = false;
-        } else if (i < 5) {
-            live_select_up(live, i == 4);
-        } else if (i == 5) {
-            live_add(live, ADDED_COPY);
-        } else {
-            live_delete(live);
-        }
+        if (used)
+            use_button(live, button);
     }
     column->y += panel_line_height(panel) + 4 * panel->paper.scale;
 }

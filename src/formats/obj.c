@@ -14,6 +14,7 @@
 #include "formats/obj.h"
 
 #include "base/file.h"
+#include "base/list.h"
 #include "formats/decimal.h"
 #include "formats/model.h"
 #include "formats/names.h"
@@ -26,7 +27,9 @@
 #define UNNAMED (UINT32_MAX - 1) /* faces before the first usemtl or g */
 #define FILE_LIMIT ((size_t)1 << 36)
 
-enum { VERTEX, UV, NORMAL, KINDS };
+#define ELEMENT_KINDS(X) X(VERTEX, "vertex") X(UV, "vt") X(NORMAL, "vn")
+enum { ELEMENT_KINDS(LIST_MEMBER) };
+enum { KINDS = LIST_COUNT(ELEMENT_KINDS) };
 
 /* The material slots of the faces by some kind of name. The list is absent while all faces are of one slot. */
 struct slotting {
@@ -48,7 +51,7 @@ struct reader {
     struct slotting materials, groups;
 };
 
-static const char *const kind_names[KINDS] = {"vertex", "vt", "vn"};
+static const char *const kind_names[] = {ELEMENT_KINDS(LIST_WORD)};
 
 static bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\v' || c == '\f';

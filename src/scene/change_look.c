@@ -5,8 +5,7 @@
 #include <math.h>
 
 const char *look_part_name(enum look_part part) {
-    static const char *const names[LOOK_PARTS] = {"kd",      "ks",  "shininess", "reflect",   "roughness",
-                                                  "refract", "ior", "emission",  "absorption"};
+    static const char *const names[] = {LOOK_PART_LIST(LIST_WORD)};
     return names[part];
 }
 
@@ -65,8 +64,6 @@ void look_part_get(const struct material *base, enum look_part part, double numb
     case LOOK_ABSORPTION:
         put(numbers, base->phong.absorption);
         return;
-    case LOOK_PARTS:
-        return;
     }
 }
 
@@ -99,8 +96,6 @@ void look_part_set(struct material *base, enum look_part part, const double numb
         return;
     case LOOK_ABSORPTION:
         base->phong.absorption = three(numbers);
-        return;
-    case LOOK_PARTS:
         return;
     }
 }

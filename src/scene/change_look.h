@@ -2,21 +2,22 @@
 #ifndef GRAY_SCENE_CHANGE_LOOK_H
 #define GRAY_SCENE_CHANGE_LOOK_H
 
+#include "base/list.h"
 #include "material/material.h"
 
 /* Parts of a base (MATERIAL_PHONG), by the names that scripts use. */
-enum look_part {
-    LOOK_KD,
-    LOOK_KS,
-    LOOK_SHININESS,
-    LOOK_REFLECT,
-    LOOK_ROUGHNESS,
-    LOOK_REFRACT,
-    LOOK_IOR,
-    LOOK_EMISSION,
-    LOOK_ABSORPTION,
-    LOOK_PARTS
-};
+#define LOOK_PART_LIST(X)                                                                                              \
+    X(LOOK_KD, "kd")                                                                                                   \
+    X(LOOK_KS, "ks")                                                                                                   \
+    X(LOOK_SHININESS, "shininess")                                                                                     \
+    X(LOOK_REFLECT, "reflect")                                                                                         \
+    X(LOOK_ROUGHNESS, "roughness")                                                                                     \
+    X(LOOK_REFRACT, "refract")                                                                                         \
+    X(LOOK_IOR, "ior")                                                                                                 \
+    X(LOOK_EMISSION, "emission")                                                                                       \
+    X(LOOK_ABSORPTION, "absorption")
+enum look_part { LOOK_PART_LIST(LIST_MEMBER) };
+enum { LOOK_PARTS = LIST_COUNT(LOOK_PART_LIST) };
 const char *look_part_name(enum look_part part);
 /* 3 for a colour, else 1. */
 int look_part_count(enum look_part part);

@@ -82,7 +82,7 @@ bool act_change_material(struct context *context, const struct value *args, stru
 
 bool act_change_look(struct context *context, const struct value *args, struct result *result, struct error *error) {
     (void)result;
-    enum look_part part = (enum look_part)args[CHANGELOOK_PART].choice; /* listed in the order of the enum */
+    enum look_part part = (enum look_part)args[CHANGELOOK_PART].choice;
     const struct value *value = &args[CHANGELOOK_VALUE];
     uint32_t wanted = (uint32_t)look_part_count(part);
     double low, high;

@@ -70,8 +70,9 @@ static struct material *phong(struct context *context, const struct value *args,
     m->phong.has_ior = args[PHONG_IOR].given;
     m->phong.ior = args[PHONG_IOR].given ? args[PHONG_IOR].number : 1;
     m->phong.two_sided = args[PHONG_TWO_SIDED].boolean;
+    static const enum material_highlight highlights[] = {HIGHLIGHTS(LIST_MEMBER)};
     if (args[PHONG_HIGHLIGHT].given)
-        m->phong.highlight = args[PHONG_HIGHLIGHT].choice == 0 ? HIGHLIGHT_PHONG : HIGHLIGHT_BLINN;
+        m->phong.highlight = highlights[args[PHONG_HIGHLIGHT].choice];
     m->phong.unlit = args[PHONG_LIT].given && !args[PHONG_LIT].boolean;
     m->phong.emission = args[PHONG_EMISSION].vector;
     m->phong.absorption = args[PHONG_ABSORPTION].vector;
@@ -205,7 +206,7 @@ bool act_td_sphere(struct context *context, const struct value *args, struct res
 }
 
 bool act_image_material(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    static const enum material_input channels[] = {INPUT_KD, INPUT_KS, INPUT_EMISSION, INPUT_OPACITY};
+    static const enum material_input channels[] = {IMAGE_CHANNELS(LIST_MEMBER)};
     struct texture_image image;
     return read_image(context, &args[OVER_IMAGE], &args[OVER_LOOKUP], &image, error) &&
            image_over(context, &image, channels[args[OVER_CHANNEL].choice], args[OVER_MATERIAL].material, result,
@@ -219,8 +220,9 @@ static bool read_relief(struct context *context, const struct value *value, cons
     const struct relief *from = value->texture;
     bool known = from && from->kind != MATERIAL_IMAGE;
     *out = (struct relief){.kind = known ? from->kind : MATERIAL_BUMP, .texture = from ? from->texture : NULL};
+    static const enum material_kind kinds[] = {RELIEF_KINDS(LIST_MEMBER)};
     if (args[1].given)
-        out->kind = args[1].choice == 0 ? MATERIAL_BUMP : MATERIAL_NORMAL;
+        out->kind = kinds[args[1].choice];
     if (!out->texture && !read_image(context, value, lookup, &out->image, error))
         return false;
     if (out->texture && out->kind == MATERIAL_NORMAL)

@@ -111,6 +111,10 @@ enum { LOOKUP_FILTER, LOOKUP_WRAP, LOOKUP_FLIP_U, LOOKUP_TILES, LOOKUP_OFFSET, L
 enum { TEXTURE_FILE, TEXTURE_LOOKUP };
 enum { RELIEF_FILE, RELIEF_LOOKUP, RELIEF_AMOUNT = RELIEF_LOOKUP + LOOKUP_COUNT, RELIEF_KIND };
 enum { OVER_MATERIAL, OVER_IMAGE, OVER_LOOKUP, OVER_CHANNEL = OVER_LOOKUP + LOOKUP_COUNT };
+/* What these parameters may choose. */
+#define HIGHLIGHTS(X) X(HIGHLIGHT_PHONG, "phong") X(HIGHLIGHT_BLINN, "blinn")
+#define IMAGE_CHANNELS(X) X(INPUT_KD, "kd") X(INPUT_KS, "ks") X(INPUT_EMISSION, "emission") X(INPUT_OPACITY, "opacity")
+#define RELIEF_KINDS(X) X(MATERIAL_BUMP, "bump") X(MATERIAL_NORMAL, "normal")
 enum { RELIEF_OVER_AMOUNT = OVER_LOOKUP + LOOKUP_COUNT, RELIEF_OVER_KIND };
 enum { FRESNEL_MATERIAL, FRESNEL_COUNT };
 action act_material, act_rr_material, act_marble, act_wood, act_td_cube, act_td_sphere, act_fresnel, act_texture;

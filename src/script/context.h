@@ -7,6 +7,7 @@
 #ifndef GRAY_SCRIPT_CONTEXT_H
 #define GRAY_SCRIPT_CONTEXT_H
 
+#include "base/list.h"
 #include "base/mem.h"
 #include "base/reach.h"
 #include "scene/change.h"
@@ -18,16 +19,17 @@
 
 enum { PATH_SIZE = 4096, FILE_LIMIT = 1 << 28 };
 
-enum handle_type {
-    HANDLE_NODE,
-    HANDLE_MATERIAL,
-    HANDLE_LIGHT,
-    HANDLE_TEXTURE,
-    HANDLE_FOG,
-    HANDLE_SKY,
-    HANDLE_GHOST,
-    HANDLE_TYPES
-};
+/* Types, with their names in Lua and in messages. */
+#define HANDLE_LIST(X)                                                                                                 \
+    X(HANDLE_NODE, "node", "a node")                                                                                   \
+    X(HANDLE_MATERIAL, "material", "a material")                                                                       \
+    X(HANDLE_LIGHT, "light", "a light")                                                                                \
+    X(HANDLE_TEXTURE, "texture", "a texture")                                                                          \
+    X(HANDLE_FOG, "fog", "a fog")                                                                                      \
+    X(HANDLE_SKY, "sky", "a sky")                                                                                      \
+    X(HANDLE_GHOST, "ghost", "something this version does not have")
+enum handle_type { HANDLE_LIST(LIST_MEMBER) };
+enum { HANDLE_TYPES = LIST_COUNT(HANDLE_LIST) };
 
 /* What a userdata of ours holds; no finalizer. The serial gives tables with handles as keys a fixed order. */
 struct handle {
@@ -173,10 +175,10 @@ int files_load(lua_State *L, const char *path);
 const char *files_unshorten(struct context *context, const char *message); /* NULL without memory */
 
 /* Others that add to a fresh state. All run protected and may raise. */
-void sandbox_open(lua_State *L); /* sandbox.c: the libraries, less what a stranger's script must not have */
-void streams_open(lua_State *L); /* streams.c: files and printing within what the scene was given */
+void sandbox_open(lua_State *L);             /* sandbox.c: the libraries, less what a stranger's script must not have */
+void streams_open(lua_State *L);             /* streams.c: files and printing within what the scene was given */
 void streams_close(struct context *context); /* after the state */
-void protect_open(lua_State *L); /* protect.c */
+void protect_open(lua_State *L);             /* protect.c */
 /* Puts `function` in the place of library.name; its upvalue is what was there. */
 void wrap_function(lua_State *L, const char *library, const char *name, lua_CFunction function);
 void compat_open(lua_State *L);   /* compat.c: old Lua */

@@ -6,11 +6,12 @@
 #include <assert.h>
 #include <lauxlib.h>
 
-static const char *const type_names[HANDLE_TYPES] = {"node", "material", "light", "texture", "fog", "sky", "ghost"};
+#define HANDLE_NAME(type, name, words) [type] = (name),
+#define HANDLE_WORDS(type, name, words) [type] = (words),
+static const char *const type_names[] = {HANDLE_LIST(HANDLE_NAME)};
 
 const char *handle_words(enum handle_type type) {
-    static const char *const words[HANDLE_TYPES] = {
-        "a node", "a material", "a light", "a texture", "a fog", "a sky", "something this version does not have"};
+    static const char *const words[] = {HANDLE_LIST(HANDLE_WORDS)};
     return words[type];
 }
 

@@ -117,8 +117,7 @@ static const struct parameter change_material_parameters[] = {
 static const struct parameter change_look_parameters[] = {
     [CHANGELOOK_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL,
                            "Which material, by order of creation: the first is 1."},
-    [CHANGELOOK_PART] = {"part", KIND_CHOICE, 0, 0, 0,
-                         "kd ks shininess reflect roughness refract ior emission absorption", NULL, NULL,
+    [CHANGELOOK_PART] = {"part", KIND_CHOICE, 0, 0, 0, LIST_BLANKS(LOOK_PART_LIST), NULL, NULL,
                          "What of its base, by the name that gr.material has for it."},
     [CHANGELOOK_VALUE] = {"value", KIND_NUMBERS, 0, ANY, NULL, NULL, "Three numbers for a colour, else one."},
 };
@@ -315,7 +314,7 @@ static const struct parameter rotate_quat_parameters[] = {
                          OPTIONAL,                                                                                     \
                          0,                                                                                            \
                          0,                                                                                            \
-                         "phong blinn",                                                                                \
+                         LIST_BLANKS(HIGHLIGHTS),                                                                      \
                          NULL,                                                                                         \
                          "specular of the render",                                                                     \
                          "The form of its highlight."},                                                                \
@@ -463,7 +462,7 @@ static const struct parameter texture_parameters[] = {
     }
 #define RELIEF_KIND_FIELD                                                                                              \
     {                                                                                                                  \
-        "kind", KIND_CHOICE, OPTIONAL, 0, 0, "bump normal", NULL, "'bump'",                                            \
+        "kind", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(RELIEF_KINDS), NULL, "'bump'",                                \
             "Whether it holds heights, or normals as colours: x right, y up, z out."                                   \
     }
 
@@ -478,7 +477,7 @@ static const struct parameter image_over_parameters[] = {
     [OVER_MATERIAL] = BASE,
     [OVER_IMAGE] = {"image", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file, or a texture."},
     LOOKUP_FIELDS(OVER_LOOKUP),
-    [OVER_CHANNEL] = {"channel", KIND_CHOICE, OPTIONAL, 0, 0, "kd ks emission opacity", NULL, "'kd'",
+    [OVER_CHANNEL] = {"channel", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(IMAGE_CHANNELS), NULL, "'kd'",
                       "What the image says; where opacity is below 1 the surface has holes."},
 };
 
