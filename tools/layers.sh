@@ -1,6 +1,6 @@
 #!/bin/sh
-# Prints every include that points against the order of rooms (docs/design.md) and every use of files or memory outside
-# the one room that owns them; fails when there is any.
+# Prints every include that points against the order of rooms (docs/design.md), every circle of headers that include one
+# another, and every use of files or memory outside the one room that owns them; fails when there is any.
 cd "$(dirname "$0")/.." || exit 1
 rooms="base math expr image accel geom material light scene formats world render script app"
 bad=$(mktemp) || exit 1
@@ -31,6 +31,11 @@ grep -nE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' src/*/*.c src/*/*.h 2>
         echo "$line: $from must not use $to" >>"$bad"
     fi
 done
+
+# Headers in an order in which each stands before those that it includes; tsort names the circles.
+grep -HE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' src/*/*.h 2>/dev/null |
+    sed -E 's|^src/([^:]*):[^"]*"([^"]*)".*|\1 \2|' | tsort 2>&1 >/dev/null | grep -v 'contains a loop' |
+    sed 's|^tsort: \(.*\)|src/\1: includes itself by way of the other headers named here|' >>"$bad"
 
 # Calls by name, comments and strings aside.
 calls() {
