@@ -5,12 +5,7 @@
  *
  * Two ways of shading. Without `emits` a light with an extent is shaded as from its centre, once, times the share of
  * its shadow rays that reach it (SPEC 1.4): a delta light whose shadow rays differ. With `emits` it is an area light of
- * uniform radiance `colour`: every shadow ray carries its own direction, distance and cosine at the light.
- *
- * Classic light and radiance. A diffuse surface of the scene language answers light of intensity I from the direction l
- * with kd I (n.l); a Lambertian surface of albedo kd answers radiance L from the solid angle w with kd / pi L w (n.l).
- * So radiance L from the solid angle w is intensity L w / pi, and a white surface that sees nothing but a light of
- * radiance L has the radiance L. This pi stands in intensity_of (light_internal.h) and nowhere else. */
+ * uniform radiance `colour`: every shadow ray carries its own direction, distance and cosine at the light. */
 #ifndef GRAY_LIGHT_LIGHT_H
 #define GRAY_LIGHT_LIGHT_H
 

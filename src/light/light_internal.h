@@ -3,18 +3,9 @@
 #define GRAY_LIGHT_LIGHT_INTERNAL_H
 
 #include "light/light.h"
+#include "material/classic.h"
 
 #include <math.h>
-
-/* The pi between classic light and radiance (light.h): radiance L from the solid angle w has the intensity
- * intensity_of(L w), and intensity I is what radiance radiance_of(I) has from the unit solid angle. Where a solid angle
- * or an area is pi x by its formula, its intensity x is written down at once. */
-static inline double intensity_of(double radiance) {
-    return radiance / 3.14159265358979323846;
-}
-static inline double radiance_of(double intensity) {
-    return intensity * 3.14159265358979323846;
-}
 
 static inline double light_luminance(struct vec3 c) {
     return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;

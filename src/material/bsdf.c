@@ -6,6 +6,7 @@
  * surface would: a share of the samples of a GGX transmission has one direction, and is flagged so. */
 #include "material/bsdf.h"
 
+#include "material/classic.h"
 #include "material/dielectric.h"
 #include "material/microfacet.h"
 #include "math/elementary.h"
@@ -213,11 +214,11 @@ static double lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct
     double n_l = vec3_dot(bsdf->lit, wi);
     switch (lobe->kind) {
     case LOBE_DIFFUSE:
-        return n_l > 0 ? n_l / pi : 0;
+        return n_l > 0 ? intensity_of(n_l) : 0;
     case LOBE_PHONG:
-        return n_l > 0 ? phong_formula(lobe, bsdf->lit, n_l, wo, wi) / pi : 0;
+        return n_l > 0 ? intensity_of(phong_formula(lobe, bsdf->lit, n_l, wo, wi)) : 0;
     case LOBE_BLINN:
-        return n_l > 0 ? blinn_formula(lobe, bsdf->lit, wo, wi) / pi : 0;
+        return n_l > 0 ? intensity_of(blinn_formula(lobe, bsdf->lit, wo, wi)) : 0;
     case LOBE_MIRROR:
     case LOBE_REFRACTION:
         return 0;

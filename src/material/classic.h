@@ -1,0 +1,19 @@
+/* Classic light and radiance. A diffuse surface of the scene language answers light of intensity I from the direction l
+ * with kd I (n.l) (SPEC 1.2); a Lambertian surface of albedo kd answers radiance L from the solid angle w with
+ * kd / pi L w (n.l). So radiance L from the solid angle w is intensity L w / pi, a formula of SPEC 1.2 is pi f |cos| of
+ * a BSDF f, and a white surface that sees nothing but a light of radiance L has the radiance L. This is the only place
+ * where that pi stands (docs/light.md). */
+#ifndef GRAY_MATERIAL_CLASSIC_H
+#define GRAY_MATERIAL_CLASSIC_H
+
+/* Of radiance times solid angle; of a classic formula f |cos|. Where a solid angle or an area is pi x by its formula,
+ * its intensity x is written down at once. */
+static inline double intensity_of(double radiance) {
+    return radiance / 3.14159265358979323846;
+}
+/* The radiance that has that intensity from the unit solid angle. */
+static inline double radiance_of(double intensity) {
+    return intensity * 3.14159265358979323846;
+}
+
+#endif
