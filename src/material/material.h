@@ -42,8 +42,9 @@ struct relief {
      * normal map: factor of the slopes. */
     double height;
     bool relative;
-    struct texture_image image;    /* where `texture` is NULL; a normal map always is an image */
-    const struct texture *texture; /* of any kind: its number is the height, in units of the object */
+    struct texture_image image;    /* where `texture` is NULL */
+    const struct texture *texture; /* of any kind: its number is the height in units of the object, or its colour the
+                                    * normal along the coordinates that the shape supplies */
     const struct relief *below;
 };
 

@@ -102,6 +102,20 @@ static void turn_by_texture(const struct relief *relief, const struct hit *hit, 
         *normal = vec3_normalize(turned);
 }
 
+/* The new normal has x along the right of the image, y along its top and z along the old normal; dpdv goes down. */
+static void turn_along(double x, double y, double z, struct vec3 dpdu, struct vec3 dpdv, struct vec3 *normal) {
+    struct vec3 n = *normal, right = vec3_add_scaled(dpdu, n, -vec3_dot(dpdu, n));
+    if ((x == 0 && y == 0) || !(vec3_length_squared(right) > 0))
+        return;
+    right = vec3_normalize(right);
+    struct vec3 top = vec3_cross(n, right);
+    if (vec3_dot(top, dpdv) > 0)
+        top = vec3_negate(top);
+    struct vec3 turned = vec3_add_scaled(vec3_add_scaled(vec3_scale(n, z), right, x), top, y);
+    if (vec3_length_squared(turned) > 0)
+        *normal = vec3_normalize(turned);
+}
+
 static void turn_to_colours(const struct relief *relief, const struct hit *hit, struct vec3 *normal) {
     struct texcoord at;
     if (!texture_coordinates(&relief->image, hit, &at))
@@ -112,25 +126,23 @@ static void turn_to_colours(const struct relief *relief, const struct hit *hit, 
         return;
     double x = 2 * relief->height * (texel.r / texel.a - flat);
     double y = 2 * relief->height * (texel.g / texel.a - flat), z = 2 * texel.b / texel.a - 1;
-    struct vec3 n = *normal, right = vec3_add_scaled(at.dpdu, n, -vec3_dot(at.dpdu, n));
-    if ((x == 0 && y == 0) || !(vec3_length_squared(right) > 0))
-        return;
-    right = vec3_normalize(right);
-    struct vec3 top = vec3_cross(n, right);
-    if (vec3_dot(top, at.dpdv) > 0)
-        top = vec3_negate(top);
-    struct vec3 turned = vec3_add_scaled(vec3_add_scaled(vec3_scale(n, z), right, x), top, y);
-    if (vec3_length_squared(turned) > 0)
-        *normal = vec3_normalize(turned);
+    turn_along(x, y, z, at.dpdu, at.dpdv, normal);
+}
+
+/* The same with the coordinates that the shape supplies; no slope is 0.5, since no file has rounded it. */
+static void turn_to_texture(const struct relief *relief, const struct hit *hit, struct vec3 *normal) {
+    struct vec3 colour = texture_colour(relief->texture, hit);
+    double x = 2 * relief->height * (colour.x - 0.5), y = 2 * relief->height * (colour.y - 0.5);
+    bool from_below = hit->layout == LAYOUT_UV;
+    turn_along(x, y, 2 * colour.z - 1, hit->dpdu, from_below ? vec3_negate(hit->dpdv) : hit->dpdv, normal);
 }
 
 void relief_turn(const struct relief *relief, const struct hit *hit, struct vec3 *normal) {
     if (relief->below)
         relief_turn(relief->below, hit, normal);
+    bool by_colours = relief->kind == MATERIAL_NORMAL;
     if (relief->texture)
-        turn_by_texture(relief, hit, normal);
-    else if (relief->kind == MATERIAL_NORMAL)
-        turn_to_colours(relief, hit, normal);
+        (by_colours ? turn_to_texture : turn_by_texture)(relief, hit, normal);
     else
-        turn_by_heights(relief, hit, normal);
+        (by_colours ? turn_to_colours : turn_by_heights)(relief, hit, normal);
 }

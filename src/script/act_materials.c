@@ -225,8 +225,6 @@ static bool read_relief(struct context *context, const struct value *value, cons
         out->kind = kinds[args[1].choice];
     if (!out->texture && !read_image(context, value, lookup, &out->image, error))
         return false;
-    if (out->texture && out->kind == MATERIAL_NORMAL)
-        return error_set(error, ERROR_SCENE, "a normal map must be an image, not another texture");
     if (args[0].given) {
         out->height = args[0].number;
     } else if (!known || from->kind != out->kind) {

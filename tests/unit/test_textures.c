@@ -462,6 +462,24 @@ TEST(bumps_of_any_texture_tilt_the_normal_by_the_slope_of_their_height) {
     palette_destroy(&p);
 }
 
+TEST(normals_of_any_texture_point_where_its_colour_says) {
+    struct palette p;
+    palette_init(&p);
+    for (int i = 0; i < 3; i++) {
+        static const struct vec3 wanted[] = {{0.6, 0, 0.8}, {0, 0.6, 0.8}, {0, 0, 1}};
+        struct hit hit = hit_at(0.3, 0.7, 0.1);
+        struct material base = base_material(), turned;
+        struct surface_look look;
+        struct vec3 c = vec3_scale(vec3_add(wanted[i], vec3_all(1)), 0.5);
+        struct relief map = {.kind = MATERIAL_NORMAL, .height = 1, .texture = colour(&p, c.x, c.y, c.z)};
+        material_derive(&turned, MATERIAL_NORMAL, &base);
+        CHECK(material_raise(&turned, &map, &p.arena, &p.error));
+        material_look(&turned, &hit, &look);
+        CHECK_NEAR(vec3_length(vec3_sub(look.normal, wanted[i])), 0, 1e-15);
+    }
+    palette_destroy(&p);
+}
+
 TEST(bumps_of_patterns_grow_with_the_object_and_leave_flat_heights_bit_by_bit) {
     struct palette p;
     palette_init(&p);
@@ -545,7 +563,8 @@ static const char *in_words(enum texture_kind kind) {
 
 TEST(every_kind_that_scripts_can_make_is_taken_as_colour_number_and_height) {
     char scene[8192];
-    int length = snprintf(scene, sizeof scene, "%spicture('a.png', gr.material({1, 1, 1}, {0, 0, 0}, 1))\n", two_pictures);
+    int length =
+        snprintf(scene, sizeof scene, "%spicture('a.png', gr.material({1, 1, 1}, {0, 0, 0}, 1))\n", two_pictures);
     for (int kind = 0; kind < TEXTURE_KINDS; kind++) {
         const char *words = in_words((enum texture_kind)kind);
         if (!words)
