@@ -150,6 +150,10 @@ static bool facet_refract(const struct bsdf *bsdf, struct vec3 facet, struct vec
     return bsdf->eta != 1;
 }
 
+struct vec3 bsdf_facet(const struct bsdf *bsdf, struct vec3 wo, struct sample2 u) {
+    return microfacet_normal(bsdf->side, wo, bsdf->alpha, u);
+}
+
 /* Of directions that are not folded yet. The half vectors are those of Walter et al. 2007, sections 5.2 and 5.3. */
 static double facet_mirror_pdf(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi) {
     struct vec3 half = vec3_normalize(vec3_add(wo, wi));
@@ -235,6 +239,21 @@ struct lobe_direction {
     bool delta;
 };
 
+/* Of a traced lobe; facet: of a rough one. */
+static void traced_direction(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 facet,
+                             struct lobe_direction *out) {
+    bool transmits = lobe_transmits(bsdf, lobe);
+    out->delta = lobe_flags(lobe->kind) & BSDF_DELTA;
+    if (out->delta && transmits)
+        (void)bsdf_refract(bsdf, wo, &out->direction);
+    else if (out->delta)
+        out->direction = mirror_direction(bsdf, wo);
+    else if (transmits)
+        out->delta = !facet_refract(bsdf, facet, wo, &out->direction);
+    else
+        out->direction = facet_mirror(bsdf, facet, wo);
+}
+
 /* False: lost below the surface. */
 static bool lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct sample2 u,
                         struct lobe_direction *out) {
@@ -253,19 +272,11 @@ static bool lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct
         return vec3_dot(wo, facet) > 0 && vec3_dot(bsdf->lit, out->direction) > 0;
     case LOBE_MIRROR:
     case LOBE_REFRACTION:
-        out->delta = true;
-        if (!lobe_transmits(bsdf, lobe))
-            out->direction = mirror_direction(bsdf, wo);
-        else
-            (void)bsdf_refract(bsdf, wo, &out->direction);
+        traced_direction(bsdf, lobe, wo, bsdf->side, out);
         return true;
     case LOBE_GGX_REFLECTION:
     case LOBE_GGX_TRANSMISSION:
-        facet = microfacet_normal(bsdf->side, wo, bsdf->alpha, u);
-        if (!lobe_transmits(bsdf, lobe))
-            out->direction = facet_mirror(bsdf, facet, wo);
-        else
-            out->delta = !facet_refract(bsdf, facet, wo, &out->direction);
+        traced_direction(bsdf, lobe, wo, bsdf_facet(bsdf, wo, u), out);
         return true;
     }
     return false;
@@ -378,10 +389,14 @@ int bsdf_branches(const struct bsdf *bsdf, struct bsdf_branch out[BSDF_LOBES]) {
     return kept;
 }
 
-void bsdf_branch_sample(const struct bsdf *bsdf, const struct bsdf_branch *branch, struct vec3 wo, struct sample2 u,
+void bsdf_branch_sample(const struct bsdf *bsdf, const struct bsdf_branch *branch, struct vec3 wo, struct vec3 facet,
                         struct vec3 *direction, struct vec3 *weight) {
-    struct lobe_direction sampled;
-    (void)lobe_sample(bsdf, &bsdf->lobes[branch->lobe], wo, u, &sampled);
-    *direction = sampled.direction;
     *weight = branch->weight;
+    if (branch->transmits && !branch->rough) {
+        *direction = bsdf->through;
+        return;
+    }
+    struct lobe_direction sampled;
+    traced_direction(bsdf, &bsdf->lobes[branch->lobe], wo, facet, &sampled);
+    *direction = sampled.direction;
 }

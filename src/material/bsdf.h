@@ -60,12 +60,13 @@ struct bsdf {
     struct vec3 emission;             /* added as it is */
     double opacity;                   /* the rest is a hole, through which the ray goes on as it was */
     /* Traced lobes. */
-    double alpha;       /* width of the facets' slopes; 0: smooth */
-    int glossy_samples; /* N x N rays where it is rough; 0: the default */
-    double eta;         /* index on the ray's side / index behind; 1 where nothing is refracted */
-    double fresnel;     /* the share that is reflected, or negative */
-    bool passes;        /* refracted light gets through the smooth surface; `boundary` holds if anything refracts */
-    bool turns_back;    /* where it does not, its share is reflected; else lost */
+    double alpha;        /* width of the facets' slopes; 0: smooth */
+    int glossy_samples;  /* N x N rays where it is rough; 0: the default */
+    double eta;          /* index on the ray's side / index behind; 1 where nothing is refracted */
+    double fresnel;      /* the share that is reflected, or negative */
+    bool passes;         /* refracted light gets through the smooth surface; `boundary` holds if anything refracts */
+    struct vec3 through; /* where it passes: its direction for the view of the hit */
+    bool turns_back;     /* where it does not, its share is reflected; else lost */
     struct medium_boundary boundary;
 };
 
@@ -114,8 +115,11 @@ struct bsdf_branch {
 };
 /* The number of branches. */
 int bsdf_branches(const struct bsdf *bsdf, struct bsdf_branch out[BSDF_LOBES]);
-/* A direction of a branch and its weight, mode IMPORTANCE; u matters where it is rough. */
-void bsdf_branch_sample(const struct bsdf *bsdf, const struct bsdf_branch *branch, struct vec3 wo, struct sample2 u,
+/* The normal of one facet of a rough surface, for all its branches. */
+struct vec3 bsdf_facet(const struct bsdf *bsdf, struct vec3 wo, struct sample2 u);
+/* The direction in which a branch goes on and its weight, mode IMPORTANCE. wo: the view of the hit; facet: of rough
+ * branches, else ignored. */
+void bsdf_branch_sample(const struct bsdf *bsdf, const struct bsdf_branch *branch, struct vec3 wo, struct vec3 facet,
                         struct vec3 *direction, struct vec3 *weight);
 
 /* The refracted direction of the smooth surface. False: total reflection. */

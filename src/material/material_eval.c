@@ -25,7 +25,6 @@ static void set_frame(const struct hit *hit, const struct surface_look *look, st
 static void set_boundary(const struct hit *hit, const struct medium_stack *media, struct surface_look *look,
                          struct bsdf *bsdf) {
     static const struct medium_stack air = {.count = 0};
-    struct vec3 through;
     bsdf->eta = 1;
     bsdf->fresnel = -1;
     bsdf->passes = false;
@@ -36,7 +35,7 @@ static void set_boundary(const struct hit *hit, const struct medium_stack *media
     bsdf->boundary.medium.absorption = look->absorption;
     bsdf->boundary.entering = hit->front;
     bsdf->eta = medium_stack_eta(media ? media : &air, &bsdf->boundary);
-    bsdf->passes = bsdf_refract(bsdf, hit->view, &through);
+    bsdf->passes = bsdf_refract(bsdf, hit->view, &bsdf->through);
     if (look->fresnel) {
         look->reflect = dielectric_fresnel(vec3_dot(bsdf->side, hit->view), bsdf->eta);
         look->refract = 1 - look->reflect;

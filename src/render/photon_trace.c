@@ -82,13 +82,12 @@ static bool fly_on(struct flight *flight, const struct hit *hit, const struct bs
     while (chosen + 1 < choice->count && !(until < to[chosen]))
         until -= to[chosen++];
     const struct bsdf_branch *branch = &choice->branches[chosen];
-    struct sample2 u = {0, 0};
+    struct vec3 facet = bsdf->side, direction, weight;
     if (branch->rough) {
-        u.x = draw(flight);
-        u.y = draw(flight);
+        double u = draw(flight), v = draw(flight);
+        facet = bsdf_facet(bsdf, hit->view, (struct sample2){u, v});
     }
-    struct vec3 direction, weight;
-    bsdf_branch_sample(bsdf, branch, hit->view, u, &direction, &weight);
+    bsdf_branch_sample(bsdf, branch, hit->view, facet, &direction, &weight);
     flight->left = vec3_scale(vec3_mul(flight->left, weight), all / (to[chosen] * survival));
     if (branch->transmits)
         medium_stack_cross(&flight->media, &bsdf->boundary);

@@ -68,11 +68,11 @@ struct surface_point {
 /* What comes from where one branch goes on, times its weight. What cannot change the pixel by the cut-off is not
  * followed. */
 static struct vec3 follow_branch(struct integrator_state *state, const struct surface_point *at,
-                                 const struct bsdf_branch *branch, struct sample2 u, const struct path *from) {
+                                 const struct bsdf_branch *branch, struct vec3 facet, const struct path *from) {
     const struct settings *settings = &state->job->settings;
     bool transmits = branch->transmits;
     struct vec3 direction, filter;
-    bsdf_branch_sample(at->bsdf, branch, at->hit->view, u, &direction, &filter);
+    bsdf_branch_sample(at->bsdf, branch, at->hit->view, facet, &direction, &filter);
     struct path path = path_on(from, vec3_max_abs(filter));
     bool limit = transmits ? path.refractions >= settings->refract_limit : path.reflections >= settings->reflect_limit;
     if (is_given_up(state, transmits ? RAY_REFRACTED : RAY_REFLECTED, limit, filter, &path))
@@ -121,13 +121,13 @@ static struct vec3 follow_rough(struct integrator_state *state, const struct sur
     struct vec3 sum = {0, 0, 0};
     observe_split(state->observer, 1 / ((double)n * (double)n));
     for (uint32_t cell = 0; cell < n * n; cell++) {
-        struct sample2 u = sample_set_point(&facets, cell);
+        struct vec3 facet = bsdf_facet(at->bsdf, at->hit->view, sample_set_point(&facets, cell));
         struct path branch = path_on(path, 1);
         branch.key = sampler_facet(key, cell);
         branch.rough = true;
         for (int i = 0; i < count; i++) {
             if (branches[i].rough)
-                sum = vec3_add(sum, follow_branch(state, at, &branches[i], u, &branch));
+                sum = vec3_add(sum, follow_branch(state, at, &branches[i], facet, &branch));
         }
     }
     return vec3_scale(sum, 1 / ((double)n * (double)n));
@@ -146,7 +146,7 @@ static struct vec3 shade(struct integrator_state *state, const struct surface_po
         if (branches[i].rough)
             rough = true;
         else
-            colour = vec3_add(colour, follow_branch(state, at, &branches[i], (struct sample2){0, 0}, path));
+            colour = vec3_add(colour, follow_branch(state, at, &branches[i], at->bsdf->side, path));
     }
     return rough ? vec3_add(colour, follow_rough(state, at, branches, count, path)) : colour;
 }

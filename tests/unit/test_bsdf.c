@@ -235,6 +235,35 @@ TEST(classic_lobes_answer_lights_by_pi_times_f_times_cosine) {
     }
     view.bsdf.dark = true;
     CHECK_NEAR(bsdf_eval(&view.bsdf, BSDF_ALL, BSDF_RADIANCE, view.wo, n).x, 0, 0);
+    for (int kind = 0; kind < LOBE_KINDS; kind++) {
+        view = view_make(20, 35, 0.5, 1 / 1.5);
+        add(&view, (enum lobe_kind)kind, vec3_make(0.2, 0.3, 0.4), 7);
+        bool classic = lobe_flags((enum lobe_kind)kind) & BSDF_CLASSIC;
+        for (uint32_t i = 0; i < 1000; i++) {
+            struct vec3 l = direction_in((int)(i % CELLS), 0, (int)(i % 3), 3);
+            struct vec3 light = bsdf_classic(&view.bsdf, BSDF_ALL, view.wo, l);
+            struct vec3 f = bsdf_eval(&view.bsdf, BSDF_ALL, BSDF_RADIANCE, view.wo, l);
+            CHECK_NEAR(light.y, classic ? f.y * pi : 0, 1e-14);
+        }
+    }
+}
+
+/* The quotients of the formulas of SPEC 1.2 and the densities of power cosines about r and n. */
+TEST(weights_of_highlights_are_closed_forms) {
+    for (double exponent = 0; exponent < 100; exponent = 2 * exponent + 1) {
+        struct view phong = view_make(0, 35, 0, 1), blinn = phong;
+        add(&phong, LOBE_PHONG, vec3_all(0.5), exponent);
+        add(&blinn, LOBE_BLINN, vec3_all(0.5), exponent);
+        for (uint32_t i = 0; i < 1000; i++) {
+            struct bsdf_sample sample;
+            if (bsdf_sample(&phong.bsdf, BSDF_ALL, BSDF_RADIANCE, phong.wo, place_of(5, i), &sample))
+                CHECK_NEAR(sample.weight.x, 0.5 * 2 / (exponent + 1), 1e-12);
+            if (bsdf_sample(&blinn.bsdf, BSDF_ALL, BSDF_RADIANCE, blinn.wo, place_of(6, i), &sample)) {
+                double v_h = vec3_dot(blinn.wo, vec3_normalize(vec3_add(blinn.wo, sample.direction)));
+                CHECK_NEAR(sample.weight.x, 0.5 * 8 * v_h / (exponent + 1), 1e-12);
+            }
+        }
+    }
 }
 
 /* --- reciprocity --- */
