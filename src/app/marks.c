@@ -46,6 +46,7 @@ struct seeking {
     uint32_t first_leaf, end_leaf; /* of that solid, by origin: those of the operand */
     const struct scene_step *to_solid;
     uint32_t depth;
+    bool no_memory;
 };
 
 static bool note_leaves(void *context, uint32_t first, uint32_t end, const struct scene_step *steps, uint32_t depth) {
@@ -62,13 +63,14 @@ static bool note_leaves(void *context, uint32_t first, uint32_t end, const struc
     return false;
 }
 
-static bool note_members(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
+static bool note_members(void *context, uint32_t first, uint32_t count, const struct scene_step *steps,
+                         uint32_t depth) {
     struct seeking *s = context;
     bool below = s->wish->solid != 0 && marks_way(steps, depth) == s->wish->solid;
     if (below) {
         s->to_solid = steps;
         s->depth = depth;
-        world_walk_operands(steps[depth - 1].node, note_leaves, s);
+        s->no_memory = s->no_memory || !world_walk_operands(steps[depth - 1].node, note_leaves, s);
     }
     for (uint32_t i = 0; i < depth && !below && s->wish->solid == 0; i++)
         below =
@@ -175,7 +177,8 @@ static bool make_outline(const struct render_job *job, const struct node *root, 
     seeking.member = mem_alloc_zero((size_t)job->world->placed_count + 1, 1);
     if (!seeking.member)
         return error_no_memory(error, "the outline of a node");
-    bool ok = world_walk_paths(job->world, root, note_members, &seeking, error);
+    bool ok = world_walk_paths(job->world, root, note_members, &seeking, error) &&
+              (!seeking.no_memory || error_no_memory(error, "the outline of a node"));
     if (ok && !box_is_empty(&seeking.box)) {
         struct outlining o = {.job = job, .frame = &frame, .pool = pool, .seeking = &seeking, .shows = shows};
         o.area = rectangle_of(&frame, job->film, &seeking.box);

@@ -51,12 +51,13 @@ static bool find_way(void *context, uint32_t first, uint32_t count, const struct
 }
 
 /* The node that is so many above what was placed, or below. */
-static void choose_node(struct picking *p, const struct hit *hit, int32_t up) {
+static bool choose_node(struct picking *p, const struct hit *hit, int32_t up) {
     const struct shape *shape = &placed_thing(p->world, p->placed)->shape;
-    int32_t way = (int32_t)p->way, below = 0;
-    if (shape->kind == SHAPE_CSG)
-        below = (int32_t)world_operand_way(p->steps[way - 1].node, shape->csg->leaves[hit->leaf].origin, p->steps + way,
-                                           WAY_LIMIT - p->way);
+    uint32_t length = 0;
+    if (shape->kind == SHAPE_CSG && !world_operand_way(p->steps[p->way - 1].node, shape->csg->leaves[hit->leaf].origin,
+                                                       p->steps + p->way, WAY_LIMIT - p->way, &length))
+        return false;
+    int32_t way = (int32_t)p->way, below = (int32_t)length;
     up = up > way - 1 ? way - 1 : up < -below ? -below : up;
     p->whole = (uint32_t)(way + below);
     p->depth = (uint32_t)(way - up);
@@ -64,6 +65,7 @@ static void choose_node(struct picking *p, const struct hit *hit, int32_t up) {
     p->out->below = p->whole - p->depth;
     p->out->levels = p->depth - 1;
     (void)world_path_text(p->steps, p->depth, p->out->path, sizeof p->out->path);
+    return true;
 }
 
 static bool join_boxes(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
@@ -184,7 +186,8 @@ static bool describe(struct picking *p, const struct node *root, const struct hi
     out->hit = p->way > 0;
     if (!out->hit)
         return true;
-    choose_node(p, hit, up);
+    if (!choose_node(p, hit, up))
+        return error_no_memory(error, "the way to an operand");
     const struct node *node = p->steps[p->depth - 1].node;
     out->serial = node->serial;
     out->way = marks_way(p->steps, p->depth);

@@ -87,9 +87,9 @@ bool world_find_paths(const struct world *world, const struct node *root, const 
 
 /* --- inside of combined solids --- */
 
-void world_walk_operands(const struct node *solid, world_operand_visit *visit, void *context) {
+bool world_walk_operands(const struct node *solid, world_operand_visit *visit, void *context) {
     struct scene_traversal t = {.operands = OPERANDS_OF_SOLIDS, .inside = true, .frame_size = sizeof(uint32_t)};
-    enum scene_event event;
+    enum scene_event event = SCENE_END;
     uint32_t met = 0; /* shapes so far */
     bool go_on = solid->kind == NODE_CSG;
     scene_traversal_begin(&t, solid);
@@ -107,6 +107,7 @@ void world_walk_operands(const struct node *solid, world_operand_visit *visit, v
         }
     }
     scene_traversal_end(&t);
+    return event != SCENE_NO_MEMORY;
 }
 
 struct wanted_operand {
@@ -124,8 +125,10 @@ static bool keep_operand(void *context, uint32_t first, uint32_t end, const stru
     return false;
 }
 
-uint32_t world_operand_way(const struct node *solid, uint32_t origin, struct scene_step *steps, uint32_t capacity) {
+bool world_operand_way(const struct node *solid, uint32_t origin, struct scene_step *steps, uint32_t capacity,
+                       uint32_t *length) {
     struct wanted_operand wanted = {.steps = steps, .capacity = capacity, .origin = origin};
-    world_walk_operands(solid, keep_operand, &wanted);
-    return wanted.depth;
+    bool ok = world_walk_operands(solid, keep_operand, &wanted);
+    *length = wanted.depth;
+    return ok;
 }

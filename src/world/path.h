@@ -32,13 +32,15 @@ bool world_find_paths(const struct world *world, const struct node *root, const 
 
 /* Inside of combined solids (NODE_CSG): every node under one, told after what is below it. steps: the way to it,
  * without the solid; its leaves, and those of what is below it, are the ones of origin first .. end - 1
- * (csg_leaf.origin). Ways of more than OPERAND_DEPTH nodes are not told. False: the walk may end. */
+ * (csg_leaf.origin). Ways of more than OPERAND_DEPTH nodes are not told. The visit answers false: the walk may end.
+ * False: no memory. */
 enum { OPERAND_DEPTH = 256 };
 typedef bool world_operand_visit(void *context, uint32_t first, uint32_t end, const struct scene_step *steps,
                                  uint32_t depth);
-void world_walk_operands(const struct node *solid, world_operand_visit *visit, void *context);
-/* The way down to the shape that a leaf was made of; steps has room for `capacity`. Returns its length; 0: there is
- * none, or it is longer. */
-uint32_t world_operand_way(const struct node *solid, uint32_t origin, struct scene_step *steps, uint32_t capacity);
+bool world_walk_operands(const struct node *solid, world_operand_visit *visit, void *context);
+/* The way down to the shape that a leaf was made of; steps has room for `capacity`. length: 0: there is none, or
+ * it is longer. False: no memory. */
+bool world_operand_way(const struct node *solid, uint32_t origin, struct scene_step *steps, uint32_t capacity,
+                       uint32_t *length);
 
 #endif

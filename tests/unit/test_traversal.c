@@ -264,7 +264,8 @@ TEST(paths_inside_of_solids_lead_to_the_shapes_that_flattening_made_leaves_of) {
             for (uint32_t k = 0; whole->kind == SHAPE_CSG && node->kind == NODE_CSG && k < whole->csg->leaf_count;
                  k++) {
                 const struct csg_leaf *leaf = &whole->csg->leaves[k];
-                uint32_t depth = world_operand_way(node, leaf->origin, steps, DEEP);
+                uint32_t depth;
+                CHECK(world_operand_way(node, leaf->origin, steps, DEEP, &depth));
                 if (depth == 0) /* of a clip, which is no part of the node */
                     continue;
                 const struct node *last = steps[depth - 1].node;
