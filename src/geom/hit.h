@@ -74,12 +74,17 @@ struct hit {
     double time;
 };
 
-/* For ray->passes: a ray that leaves the surface in `direction` on the side where nothing more of its primitive is does
- * not meet it again. Directions within 2^-20 of the surface are left to the search, which knows what rounding does. */
-static inline uint32_t hit_passes(const struct hit *hit, struct vec3 direction) {
+/* For ray->passes: a ray that leaves the surface in `direction` from the side `side` (the sign of the distance of its
+ * origin along normal_geometric), where nothing more of its primitive is, does not meet it again. Directions within
+ * 2^-20 of the surface are left to the search, which knows what rounding does. */
+static inline uint32_t hit_passes_from(const struct hit *hit, double side, struct vec3 direction) {
     double rise = vec3_dot(direction, hit->normal_geometric), least = 0x1p-20 * vec3_max_abs(direction);
-    bool apart = hit->hull == HULL_BEHIND ? rise > least : hit->hull == HULL_FLAT && fabs(rise) > least;
+    bool apart = hit->hull == HULL_BEHIND ? rise > least : hit->hull == HULL_FLAT && (side < 0 ? -rise : rise) > least;
     return apart ? hit->placed + 1 : 0;
+}
+/* The same of a ray that starts on the side where it goes. */
+static inline uint32_t hit_passes(const struct hit *hit, struct vec3 direction) {
+    return hit_passes_from(hit, vec3_dot(direction, hit->normal_geometric), direction);
 }
 
 /* The ray that goes on from the hit of `from` in a direction, off the surface by the hit's own offset. */

@@ -13,13 +13,18 @@ static struct vec3 off_surface(const struct hit *hit, struct vec3 towards) {
     return vec3_add_scaled(hit->point, hit->normal_geometric, side);
 }
 
+/* On which side of the hit's surface a point lies that was moved off it: the sign. */
+static double side_of(const struct hit *hit, struct vec3 from) {
+    return vec3_dot(vec3_sub(from, hit->point), hit->normal_geometric);
+}
+
 static bool is_free(struct integrator_state *state, const struct hit *hit, struct vec3 from, struct vec3 direction,
                     double t_max) {
     struct ray shadow = {.origin = from,
                          .direction = direction,
                          .t_max = t_max,
                          .time = hit->time,
-                         .passes = hit_passes(hit, direction)};
+                         .passes = hit_passes_from(hit, side_of(hit, from), direction)};
     state->shadow_rays++;
     bool free = !world_any(state->job->world, &shadow, state->scratch);
     uint32_t blocker = world_blocker(state->scratch);
@@ -47,10 +52,11 @@ static struct sample_set places_on_light(const struct integrator_state *state, c
 static struct between light_between(const struct world *world, const struct light_context *context,
                                     const struct hit *hit) {
     struct vec3 corner = context->corner, edge1 = context->edge1, edge2 = context->edge2;
-    uint32_t passes = hit_passes(hit, vec3_sub(corner, context->from));
+    double side = side_of(hit, context->from);
+    uint32_t passes = hit_passes_from(hit, side, vec3_sub(corner, context->from));
     for (int i = 1; i < 4 && passes != 0; i++) {
         struct vec3 other = vec3_add(i & 1 ? vec3_add(corner, edge1) : corner, i & 2 ? edge2 : vec3_all(0));
-        passes = hit_passes(hit, vec3_sub(other, context->from));
+        passes = hit_passes_from(hit, side, vec3_sub(other, context->from));
     }
     return world_between(world, context->from, corner, edge1, edge2, passes);
 }

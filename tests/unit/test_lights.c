@@ -1,6 +1,7 @@
 /* Lights against closed forms. What a small patch of a white floor gets from a lamp of radiance 1 is the view factor of
  * the lamp; the formulas are those of Howell, "A Catalog of Radiation Heat Transfer Configuration Factors": B-12
  * (disc), B-3 (rectangle over its corner), B-38 (sphere). */
+#include "geom/shape_plane.h"
 #include "math/elementary.h"
 #include "math/sampling.h"
 #include "tests/harness.h"
@@ -80,6 +81,38 @@ TEST(sphere_lamp_gives_its_view_factor) {
     s.lights[0] = lamp(LIGHT_SPHERE, vec3_make(d, 0, 0), r);
     CHECK_NEAR(patch_at(&s, 0, 0), (atan(1 / root) - root * r * r / (d * d)) / pi, 1e-3);
     stage_end(&s);
+}
+
+static void plane_below(struct node *node) {
+    struct shape plane = {.kind = SHAPE_FLAT};
+    plane.flat = flat_plane(vec3_make(0, 1, 0), 1);
+    node->shape = plane;
+}
+
+/* A light that stands in the plane of a flat floor, .55 of it above: the floor hides the rest, as the ground of a solid
+ * does. */
+TEST(a_flat_shape_hides_what_is_below_it) {
+    for (int kind = 0; kind < 3; kind++) {
+        double seen[2];
+        for (int flat = 0; flat < 2; flat++) {
+            struct stage s;
+            stage_floor(&s);
+            if (flat)
+                plane_below(s.root->first_child->node);
+            struct vec3 middle = {2, 0.1, 0};
+            if (kind == 0)
+                s.lights[0] = rectangle(vec3_make(2, -0.9, -0.5), vec3_make(0, 2, 0), vec3_make(0, 0, 1));
+            else
+                s.lights[0] = lamp(kind == 1 ? LIGHT_DISC : LIGHT_SPHERE, middle, 1);
+            s.lights[0].direction = vec3_make(-1, 0, 0);
+            s.lights[0].emits = false;
+            seen[flat] = patch_at(&s, 0, 0) * sqrt(4.01) / 0.1; /* over the cosine of the middle */
+            stage_end(&s);
+        }
+        CHECK_NEAR(seen[1], seen[0], 1e-9);
+        CHECK_NEAR(seen[1], kind == 0 ? 0.55 : seen[0], 0.02);
+        CHECK(seen[1] < 0.7);
+    }
 }
 
 TEST(a_one_sided_lamp_lights_its_side_only) {
