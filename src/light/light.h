@@ -123,7 +123,7 @@ struct light_context {
     bool by_angle;               /* a lamp that is sampled by the solid angle of a rectangle: */
     struct spherical_rectangle seen;
 };
-/* False: nothing of the light can reach the point (inside of a ball, behind a lamp that shines to one side). */
+/* False: nothing of the light can reach the point (on a ball, behind a lamp that shines to one side). */
 bool light_context_make(const struct light *light, struct vec3 point, struct vec3 from, struct light_context *out);
 
 struct light_sample {

@@ -3,6 +3,7 @@
 #include "light/light_sphere.h"
 
 #include "light/light_internal.h"
+#include "math/elementary.h"
 #include "math/frame.h"
 
 /* 1 - cos of the cone, without cancellation. */
@@ -10,11 +11,19 @@ static double cone_drop(const struct light_context *context) {
     return context->weight / 2;
 }
 
+/* From inside every direction meets the lamp: the solid angle 4 pi. */
+static bool inside_context(const struct light *light, double distance, struct light_context *out) {
+    out->distance = distance;
+    out->bounded = false;
+    out->weight = 4;
+    return light->emits && distance < light->radius;
+}
+
 bool light_sphere_context(const struct light *light, struct light_context *out) {
     struct vec3 to_centre = vec3_sub(light->position, out->from);
     double distance = vec3_length(to_centre);
     if (!(distance > light->radius))
-        return false;
+        return inside_context(light, distance, out);
     double sine = light->radius / distance;
     out->distance = distance;
     out->axis = vec3_scale(to_centre, 1 / distance);
@@ -29,8 +38,19 @@ bool light_sphere_context(const struct light *light, struct light_context *out) 
     return true;
 }
 
+/* Uniform over all directions; where the ray comes out. */
+static struct vec3 inside_target(const struct light *light, const struct light_context *context, struct sample2 place) {
+    double y = 1 - 2 * place.y, level = 2 * sqrt(place.y * (1 - place.y)), sine, cosine;
+    el_sincos(2 * 3.14159265358979323846 * place.x, &sine, &cosine);
+    struct vec3 direction = {level * cosine, y, level * sine}, off = vec3_sub(context->from, light->position);
+    double along = vec3_dot(off, direction), room = light->radius * light->radius - vec3_length_squared(off);
+    return vec3_add_scaled(context->from, direction, sqrt(along * along + (room > 0 ? room : 0)) - along);
+}
+
 /* Uniform in the cone: 1 - cos grows with the square of the place's distance from the middle. */
 struct vec3 light_sphere_target(const struct light *light, const struct light_context *context, struct sample2 place) {
+    if (context->distance < light->radius)
+        return inside_target(light, context, place);
     struct sample2 round = sample_disc(place);
     double squared = round.x * round.x + round.y * round.y;
     double drop = squared * cone_drop(context), cosine = 1 - drop;

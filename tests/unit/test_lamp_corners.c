@@ -61,11 +61,19 @@ TEST(flat_lamps_are_met_in_their_outline_from_the_side_that_shines) {
     CHECK(!light_meets_ray(&mesh, &ray, &met) && !light_meets_ray(&sky, &ray, &met));
 }
 
-/* Every target lies on the ball, on its near side; from inside there is none. */
-TEST(a_ball_is_aimed_at_from_any_distance_but_not_from_inside) {
+/* Every target lies on the ball, on its near side from outside. From on it there is none. */
+TEST(a_ball_is_aimed_at_from_any_distance_and_from_inside) {
     struct light ball = {.kind = LIGHT_SPHERE, .position = {0, 0, 0}, .radius = 1, .emits = true};
     struct light_context context;
-    CHECK(!light_context_make(&ball, vec3_make(0.5, 0, 0), vec3_make(0.5, 0, 0), &context));
+    for (int i = 0; i < 25 && light_context_make(&ball, vec3_make(0.5, 0, 0), vec3_make(0.5, 0, 0), &context); i++) {
+        struct light_sample sample = light_sample(&ball, &context, (struct sample2){i % 5 / 4.0, (i - i % 5) / 20.0});
+        CHECK_NEAR(vec3_length(sample.target.at), 1, 1e-14);
+        CHECK_NEAR(sample.pdf, 1 / (4 * 3.14159265358979323846), 1e-15);
+    }
+    CHECK(context.weight > 0 && !context.single);
+    ball.emits = false; /* shaded as from its centre */
+    CHECK(light_context_make(&ball, vec3_make(0.5, 0, 0), vec3_make(0.5, 0, 0), &context) && context.single);
+    ball.emits = true;
     CHECK(!light_context_make(&ball, vec3_make(1, 0, 0), vec3_make(1, 0, 0), &context));
     for (double distance = 1 + 1e-9; distance < 1e12; distance = 1 + 10 * (distance - 1)) {
         struct vec3 from = {0, 0, distance};

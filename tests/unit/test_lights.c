@@ -83,6 +83,17 @@ TEST(sphere_lamp_gives_its_view_factor) {
     stage_end(&s);
 }
 
+/* A patch inside sees nothing but the lamp. */
+TEST(the_inside_of_a_ball_lamp_is_lit) {
+    struct stage s;
+    stage_floor(&s);
+    for (int i = 0; i < 3; i++) {
+        s.lights[0] = lamp(LIGHT_SPHERE, vec3_make(0.5 * i, 0.9 * i, 0), 3);
+        CHECK_NEAR(patch_at(&s, 0, 0), 1, 0.01);
+    }
+    stage_end(&s);
+}
+
 static void plane_below(struct node *node) {
     struct shape plane = {.kind = SHAPE_FLAT};
     plane.flat = flat_plane(vec3_make(0, 1, 0), 1);
