@@ -7,7 +7,10 @@
  * The quartic is (inner)(outer) with inner = (rho - R)^2 + y^2 - r^2; when r is small beside R it loses digits to R, so
  * each root is polished by Newton's steps on `inner`, which does not. Whether the line is inside between two roots is
  * asked of `inner` as well: crossings alternate by construction, and the lemon inside a spindle torus (r > R)
- * disappears. */
+ * disappears.
+ *
+ * As R goes to 0 the quartic's roots come together in pairs, and below R = 2^-23 r the search may lose both of a pair.
+ * The surface is then that of the ball of radius r + R but for R, so the roots are that ball's, polished. */
 #include "geom/shape_torus.h"
 
 #include "math/elementary.h"
@@ -46,6 +49,19 @@ static double polished(const struct torus *torus, struct vec3 o, struct vec3 d, 
     return last;
 }
 
+/* The roots of the quartic between lo and hi about o, the point of the line nearest to the centre, in order. */
+static int quartic_roots(const struct torus *torus, struct vec3 o, struct vec3 d, double lo, double hi,
+                         double roots[4]) {
+    /* (t^2 + 2 m t + k)^2 = 4 R^2 (x^2 + z^2); m is zero but for rounding. */
+    double oo = vec3_dot(o, o);
+    double m = vec3_dot(o, d), k = oo + (torus->major - torus->minor) * (torus->major + torus->minor);
+    double r4 = 4 * torus->major * torus->major;
+    double flat_dd = d.x * d.x + d.z * d.z, flat_od = o.x * d.x + o.z * d.z, flat_oo = o.x * o.x + o.z * o.z;
+    double quartic[5] = {k * k - r4 * flat_oo, 4 * m * k - 2 * r4 * flat_od, 2 * k + 4 * m * m - r4 * flat_dd, 4 * m,
+                         1};
+    return roots_polynomial(quartic, 4, lo, hi, roots);
+}
+
 int torus_crossings(const struct torus *torus, const struct ray *ray, struct crossing out[4]) {
     double length = vec3_length(ray->direction), reach = torus->major + torus->minor;
     if (!(length > 0) || !isfinite(length))
@@ -53,31 +69,27 @@ int torus_crossings(const struct torus *torus, const struct ray *ray, struct cro
     struct vec3 d = vec3_normalize(ray->direction);
     double shift = -vec3_dot(ray->origin, d);
     struct vec3 o = vec3_add_scaled(ray->origin, d, shift);
-    double oo = vec3_dot(o, o), room = reach * reach - oo;
+    double room = reach * reach - vec3_dot(o, o);
     if (!(room > 0))
         return 0;
     double hi = sqrt(room), lo = -hi;
-    if (d.y != 0) {
-        double bottom = (-torus->minor - o.y) / d.y, top = (torus->minor - o.y) / d.y;
-        lo = fmax(lo, fmin(bottom, top));
-        hi = fmin(hi, fmax(bottom, top));
-    } else if (!(fabs(o.y) < torus->minor)) {
-        return 0;
+    double roots[6] = {0, lo, hi};
+    int count = 2;
+    if (torus->major > 0x1p-23 * torus->minor) {
+        if (d.y != 0) {
+            double bottom = (-torus->minor - o.y) / d.y, top = (torus->minor - o.y) / d.y;
+            lo = fmax(lo, fmin(bottom, top));
+            hi = fmin(hi, fmax(bottom, top));
+        } else if (!(fabs(o.y) < torus->minor)) {
+            return 0;
+        }
+        double margin = reach * 0x1p-20;
+        if (!(lo <= hi + margin)) /* a line along the top may still touch it */
+            return 0;
+        lo -= margin;
+        hi += margin;
+        count = quartic_roots(torus, o, d, lo, hi, roots + 1);
     }
-    double margin = reach * 0x1p-20;
-    if (!(lo <= hi + margin)) /* a line along the top may still touch it */
-        return 0;
-    lo -= margin;
-    hi += margin;
-
-    /* (t^2 + 2 m t + k)^2 = 4 R^2 (x^2 + z^2); m is zero but for rounding. */
-    double m = vec3_dot(o, d), k = oo + (torus->major - torus->minor) * (torus->major + torus->minor);
-    double r4 = 4 * torus->major * torus->major;
-    double flat_dd = d.x * d.x + d.z * d.z, flat_od = o.x * d.x + o.z * d.z, flat_oo = o.x * o.x + o.z * o.z;
-    double quartic[5] = {k * k - r4 * flat_oo, 4 * m * k - 2 * r4 * flat_od, 2 * k + 4 * m * m - r4 * flat_dd, 4 * m,
-                         1};
-    double roots[6];
-    int count = roots_polynomial(quartic, 4, lo, hi, roots + 1);
     roots[0] = lo;
     roots[count + 1] = hi;
     for (int i = 1; i <= count; i++)

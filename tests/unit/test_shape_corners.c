@@ -1,6 +1,7 @@
 /* Shapes at their corners: numbers that are none in every place of what they are built from, solids with any room for
  * crossings, meshes that are nearly the same, quadrics of every axis. */
 #include "geom/shape_quadric.h"
+#include "geom/shape_torus.h"
 #include "tests/unit/swept_makers.h"
 
 /* --- numbers that are none --- */
@@ -305,4 +306,36 @@ TEST(tubes_along_every_axis_are_hit_on_their_surface_with_their_gradient) {
             }
         }
     geom_scratch_destroy(&scratch);
+}
+
+/* --- tori --- */
+
+/* The distance between the surface and the ball is at most `major`; a line that meets a ball of radius minor + major
+ * less often than twice may pass both. */
+TEST(a_torus_with_hardly_a_ring_is_a_ball) {
+    static const double majors[] = {0, 1e-300, 1e-15, 1e-12, 1e-10, 1e-9, 1e-8, 3e-8, 1e-7, 1e-6};
+    struct test_random random = {71};
+    for (size_t i = 0; i < sizeof majors / sizeof majors[0]; i++) {
+        struct torus torus = {.major = 0.7 * majors[i], .minor = 0.7};
+        for (int n = 0; n < 3000; n++) {
+            struct vec3 from = random_vec3(&random, 3);
+            struct ray ray = ray_from(from, vec3_sub(random_vec3(&random, 1), from));
+            double along = -vec3_dot(ray.origin, ray.direction) / vec3_dot(ray.direction, ray.direction);
+            struct vec3 nearest = vec3_add_scaled(ray.origin, ray.direction, along);
+            double half = 0.49 - vec3_dot(nearest, nearest);
+            struct crossing found[4];
+            int count = torus_crossings(&torus, &ray, found);
+            if (fabs(half) < 1e-4) /* it touches the ball */
+                continue;
+            CHECK(count == (half > 0 ? 2 : 0));
+            double reach = half > 0 ? sqrt(half) / vec3_length(ray.direction) : 0;
+            for (int k = 0; k < count; k++) {
+                CHECK_NEAR(found[k].t, along + (k ? reach : -reach), 200 * torus.major + 1e-12);
+                CHECK(found[k].enter == (k == 0));
+                struct surface surface;
+                torus_describe(&torus, &ray, &found[k], &surface);
+                CHECK_NEAR(vec3_length(surface.point), 0.7, torus.major + 1e-12);
+            }
+        }
+    }
 }
