@@ -1,6 +1,7 @@
 /* The story of a pixel as one JSON object on one line; docs/pixel.md tells its fields. All numbers are exact. */
 #include "app/inspect.h"
 #include "image/png_write.h"
+#include "material/texture_mapping.h"
 
 static void number(struct sheet *sheet, const char *name, double value) {
     sheet_print(sheet, ",\"%s\":", name);
@@ -93,11 +94,12 @@ static void json_hit(const struct told_story *told, struct sheet *sheet, const s
     vector(sheet, "point", hit->point);
     vector(sheet, "geometric_normal", hit->normal_geometric);
     vector(sheet, "normal", hit->normal);
-    if (hit->has_uv) {
+    double u, v;
+    if (texture_native_uv(hit, &u, &v)) {
         sheet_print(sheet, ",\"uv\":[");
-        sheet_json_number(sheet, hit->u);
+        sheet_json_number(sheet, u);
         sheet_print(sheet, ",");
-        sheet_json_number(sheet, hit->v);
+        sheet_json_number(sheet, v);
         sheet_print(sheet, "]");
     }
     sheet_print(sheet, ",\"material\":%u,\"links\":[", hit->material + 1);

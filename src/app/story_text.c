@@ -2,6 +2,7 @@
  * is what it brings. Numbers have six digits: enough to read; --json has them all. */
 #include "app/inspect.h"
 #include "image/png_write.h"
+#include "material/texture_mapping.h"
 
 struct teller {
     const struct told_story *told;
@@ -155,8 +156,9 @@ static void tell_hit(const struct teller *t, const struct story_ray *ray) {
     triple(t, ", normal ", hit->normal_geometric);
     if (!same(hit->normal, hit->normal_geometric))
         triple(t, ", interpolated ", hit->normal);
-    if (hit->has_uv)
-        sheet_print(t->sheet, ", uv (%.6g, %.6g)", hit->u, hit->v);
+    double u, v;
+    if (texture_native_uv(hit, &u, &v))
+        sheet_print(t->sheet, ", uv (%.6g, %.6g)", u, v);
     sheet_print(t->sheet, ", material %u of %u\n", hit->material + 1, world->material_count);
 }
 

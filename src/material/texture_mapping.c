@@ -117,6 +117,19 @@ bool texture_coordinates(const struct texture_image *image, const struct hit *hi
     return true;
 }
 
+bool texture_native_uv(const struct hit *hit, double *u, double *v) {
+    if (hit->layout == LAYOUT_SPHERE) {
+        struct texcoord at;
+        on_sphere(hit, true, &at);
+        *u = at.u;
+        *v = 1 - at.v;
+        return true;
+    }
+    *u = hit->u;
+    *v = hit->v;
+    return hit->has_uv;
+}
+
 struct rgba texture_texel(const struct texture_image *image, const struct texcoord *at) {
     return image_lookup(image->image, at->u, at->v, at->width_u, at->width_v, image->filter, at->wrap_u, at->wrap_v);
 }

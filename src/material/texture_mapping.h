@@ -14,6 +14,9 @@ struct texcoord {
 
 /* False: this surface has no coordinates for the mapping. */
 bool texture_coordinates(const struct texture_image *image, const struct hit *hit, struct texcoord *out);
+/* The coordinates that the shape itself supplies, v from below; false: none. Searches leave those of balls out, because
+ * few materials ask for them. */
+bool texture_native_uv(const struct hit *hit, double *u, double *v);
 /* The image there, premultiplied. */
 struct rgba texture_texel(const struct texture_image *image, const struct texcoord *at);
 

@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "light/light.h"
 #include "material/material_eval.h"
+#include "material/texture_mapping.h"
 #include "math/elementary.h"
 
 #include <string.h>
@@ -92,8 +93,9 @@ void aov_surface(const struct world *world, const struct ray *ray, uint32_t mask
     set(out[AOV_DEPTH], depth, depth, depth);
     set(out[AOV_NORMAL], bsdf.normal.x, bsdf.normal.y, bsdf.normal.z);
     set(out[AOV_ALBEDO], bsdf.albedo.x, bsdf.albedo.y, bsdf.albedo.z);
-    if (hit.has_uv)
-        set(out[AOV_UV], hit.u, hit.v, 1);
+    double u, v;
+    if (texture_native_uv(&hit, &u, &v))
+        set(out[AOV_UV], u, v, 1);
     set(out[AOV_NODE], node, node, node);
     set(out[AOV_MATERIAL], hit.material + 1.0, hit.material + 1.0, hit.material + 1.0);
     if (mask >> AOV_LIGHTS & 1) {

@@ -51,6 +51,12 @@ TEST(layers_of_a_ball_are_their_closed_forms) {
             CHECK(layer(&s, AOV_NODE, x, y)[0] == (depth > 0 ? 2.0f : 0.0f)); /* made after the root */
             CHECK(layer(&s, AOV_MATERIAL, x, y)[1] == (depth > 0 ? 1.0f : 0.0f));
             CHECK(layer(&s, AOV_LIGHTS, x, y)[0] == (depth > 0 ? 0.5f : 0.0f)); /* the other one is behind it */
+            const float *uv = layer(&s, AOV_UV, x, y);
+            if (depth > 0) { /* round the y axis, and from the south pole up */
+                worst = fmax(worst, fabs((double)uv[0] - (0.5 + atan2(n.z, n.x) / (2 * M_PI))));
+                worst = fmax(worst, fabs((double)uv[1] - (0.5 + asin(n.y) / M_PI)));
+            }
+            CHECK(uv[2] == (depth > 0 ? 1.0f : 0.0f));
             met += depth > 0;
         }
     CHECK(met > 20);
