@@ -640,6 +640,23 @@ const char *light_kind_name(enum light_kind kind) {
     return "?";
 }
 
+bool light_is_seen(const struct light *light) {
+    switch (light->kind) {
+    case LIGHT_SKY:
+        return true;
+    case LIGHT_MESH: /* the mesh shows the emission of its material */
+        return !light->has_emission;
+    case LIGHT_POINT:
+    case LIGHT_PARALLELOGRAM:
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_SPOT:
+    case LIGHT_DISC:
+    case LIGHT_SPHERE:
+        break;
+    }
+    return light->visible;
+}
+
 unsigned light_properties(const struct light *light) {
     switch (light->kind) {
     case LIGHT_POINT:

@@ -157,6 +157,8 @@ double light_pdf(const struct light *light, const struct light_context *context,
 /* Where a ray meets the surface of a light that has one of its own; t in the ray's interval. Never a mesh, which the
  * scene shows, nor a sky, which is behind everything. */
 bool light_meets_ray(const struct light *light, const struct ray *ray, struct light_hit *hit);
+/* Whether a ray that leads to it sees its light, as part of the light or of what it is made of: a mirror shows it. */
+bool light_is_seen(const struct light *light);
 /* The radiance that it sends back along a ray that meets it. */
 struct vec3 light_emitted(const struct light *light, const struct ray *ray, const struct light_hit *hit);
 /* At least the largest component of what comes from it. */

@@ -159,8 +159,8 @@ static struct vec3 light_of_delta(struct integrator_state *state, const struct l
     return share == 0 ? vec3_all(0) : vec3_mul(vec3_scale(light->colour, share * arrival.strength), reflected);
 }
 
-/* What a surface shows of an environment: mirrored it sees the background itself, so a highlight would count that
- * twice. */
+/* What a surface shows of a light that rays see: a surface that mirrors shows its image, and a highlight would be the
+ * same light again. */
 static uint32_t without_highlight(const struct bsdf *bsdf) {
     return bsdf_lobes_with(bsdf, BSDF_TRACED) ? bsdf_lobes_with(bsdf, BSDF_LAMBERT) : BSDF_ALL;
 }
@@ -169,9 +169,8 @@ static struct vec3 one_light(struct integrator_state *state, const struct light 
                              const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {
     if (light_is_delta(light))
         return light_of_delta(state, light, number, hit, bsdf, key);
-    if (!(light_properties(light) & LIGHT_IS_ENVIRONMENT))
-        return light_of_samples(state, light, number, hit, bsdf, BSDF_ALL, key);
-    return light_of_samples(state, light, number, hit, bsdf, without_highlight(bsdf), key);
+    uint32_t lobes = light_is_seen(light) ? without_highlight(bsdf) : BSDF_ALL;
+    return light_of_samples(state, light, number, hit, bsdf, lobes, key);
 }
 
 struct vec3 direct_light(struct integrator_state *state, const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {

@@ -254,6 +254,31 @@ TEST(a_visible_lamp_shows_its_radiance_and_its_outline) {
     }
 }
 
+/* A mirror below a lamp that shows itself shows the lamp's radiance; its highlight is the same light again. A mirror
+ * below a lamp that does not shows the highlight alone. */
+TEST(a_visible_lamp_counts_once_in_a_mirror) {
+    for (int visible = 0; visible < 2; visible++)
+        for (int rough = 0; rough < 2; rough++) {
+            struct stage s;
+            stage_begin(&s, 1);
+            struct material *mirror = stage_glass(&s, 1, 0, 1);
+            mirror->phong.roughness = rough ? 0.1 : 0;
+            stage_sphere(&s, s.root, mirror);
+            s.lights[0] = lamp(LIGHT_SPHERE, vec3_make(0, 0, 40), 25);
+            s.lights[0].visible = visible == 1;
+            s.lights[0].colour = vec3_all(1);
+            s.light_count = 1;
+            s.camera = (struct camera){{0, 0, 3}, {0, 0, -1}, {0, 1, 0}, 1};
+            CHECK(stage_render(&s, 1, 1));
+            double seen = stage_pixel(&s, 0, 0).x;
+            if (visible)
+                CHECK_NEAR(seen, 1, 1e-6);
+            else
+                CHECK(seen > 0.01 && seen < 1);
+            stage_end(&s);
+        }
+}
+
 TEST(a_light_may_say_how_many_shadow_rays_it_wants) {
     struct stage s;
     stage_floor(&s);
