@@ -7,10 +7,17 @@
 
 enum { AREA_BATCH = 256 }; /* shadow rays of one hit that are asked together */
 
-/* A ray from the surface, on the side that `towards` lies on. */
-static struct vec3 off_surface(const struct hit *hit, struct vec3 towards) {
-    double side = vec3_dot(towards, hit->normal_geometric) < 0 ? -hit->offset : hit->offset;
-    return vec3_add_scaled(hit->point, hit->normal_geometric, side);
+/* Where shadow rays start: on the viewer's side of the surface, wherever the light is. */
+static struct vec3 off_surface(const struct hit *hit) {
+    return vec3_add_scaled(hit->point, hit->normal_geometric, hit->front ? hit->offset : -hit->offset);
+}
+
+/* What classic lobes reflect of unit light: nothing of light from behind the surface, however its shading normal leans.
+ */
+static struct vec3 reflected_light(const struct hit *hit, const struct bsdf *bsdf, uint32_t lobes, struct vec3 wi) {
+    if (!(vec3_dot(wi, bsdf->geometric_side) > 0))
+        return vec3_all(0);
+    return bsdf_classic(bsdf, lobes, hit->view, wi);
 }
 
 /* On which side of the hit's surface a point lies that was moved off it: the sign. */
@@ -66,7 +73,7 @@ static double visible_share(struct integrator_state *state, const struct light *
                             const struct light_target *middle, const struct hit *hit, uint64_t key) {
     const struct world *world = state->job->world;
     struct light_context context;
-    struct vec3 from = off_surface(hit, light_target_from(middle, hit->point));
+    struct vec3 from = off_surface(hit);
     if (!light_context_make(light, hit->point, from, &context))
         return 0;
     if (context.single)
@@ -117,8 +124,7 @@ static void ask_targets(struct integrator_state *state, const struct light_conte
 static struct vec3 light_of_samples(struct integrator_state *state, const struct light *light, uint32_t number,
                                     const struct hit *hit, const struct bsdf *bsdf, uint32_t lobes, uint64_t key) {
     struct vec3 sum = {0, 0, 0};
-    /* What is lit is the ray's side, wherever the middle of the lamp may be. */
-    struct vec3 from = off_surface(hit, hit->front ? hit->normal_geometric : vec3_negate(hit->normal_geometric));
+    struct vec3 from = off_surface(hit);
     struct light_context context;
     if (!light_context_make(light, hit->point, from, &context))
         return sum;
@@ -128,7 +134,7 @@ static struct vec3 light_of_samples(struct integrator_state *state, const struct
     bool visible[AREA_BATCH];
     for (uint32_t cell = 0; cell < all; cell++) {
         struct light_sample sample = light_sample(light, &context, sample_set_point(&places, cell));
-        struct vec3 arriving = vec3_mul(bsdf_classic(bsdf, lobes, hit->view, sample.direction), sample.intensity);
+        struct vec3 arriving = vec3_mul(reflected_light(hit, bsdf, lobes, sample.direction), sample.intensity);
         if (arriving.x != 0 || arriving.y != 0 || arriving.z != 0) {
             targets[have] = sample.target.at;
             carried[have++] = arriving;
@@ -151,7 +157,7 @@ static struct vec3 light_of_delta(struct integrator_state *state, const struct l
     struct light_arrival arrival;
     if (!light_arrive(light, hit->point, &arrival))
         return vec3_all(0);
-    struct vec3 reflected = bsdf_classic(bsdf, BSDF_ALL, hit->view, arrival.direction);
+    struct vec3 reflected = reflected_light(hit, bsdf, BSDF_ALL, arrival.direction);
     observe_light_place(state->observer, arrival.distance, arrival.strength, arrival.direction, reflected);
     if (arrival.strength == 0 || (reflected.x == 0 && reflected.y == 0 && reflected.z == 0))
         return vec3_all(0);

@@ -254,6 +254,65 @@ TEST(a_visible_lamp_shows_its_radiance_and_its_outline) {
     }
 }
 
+/* A square at y = 0 whose shading normal leans to +x by `degrees`. */
+static struct node *leaning_square(struct stage *s, double degrees, double half, const struct material *material) {
+    const double corners[4][3] = {{-half, 0, -half}, {-half, 0, half}, {half, 0, half}, {half, 0, -half}};
+    const double normal[1][3] = {{sin(degrees * pi / 180), cos(degrees * pi / 180), 0}};
+    static const uint32_t starts[] = {0, 4}, indices[] = {0, 1, 2, 3}, normals[] = {0, 0, 0, 0};
+    struct mesh_input input = {.name = "square",
+                               .vertex_count = 4,
+                               .vertices = corners,
+                               .face_count = 1,
+                               .face_start = starts,
+                               .vertex_index = indices,
+                               .normal_count = 1,
+                               .normals = normal,
+                               .normal_index = normals};
+    struct node *node = scene_node(&s->scene, NODE_GEOMETRY, "square", &s->error);
+    node->shape = (struct shape){.kind = SHAPE_MESH, .mesh = assets_mesh(&s->assets, &input, &s->error)};
+    node->material = material;
+    CHECK(node_add_child(&s->scene, s->root, node, &s->error));
+    return node;
+}
+
+/* All kinds that have a place, at one side of the square (y = 2 or -2), to where the shading normal leans. */
+static struct light light_at(int kind, bool emits, double y) {
+    struct light light = lamp((enum light_kind)kind, vec3_make(6, y, 0), 0.5);
+    if (kind == LIGHT_PARALLELOGRAM)
+        light = rectangle(vec3_make(6, y - 0.5, -0.5), vec3_make(0, 0, 1), vec3_make(0, 1, 0));
+    light.direction = vec3_normalize(vec3_make(-6, -y, 0));
+    light.cos_inner = 0.9;
+    light.cos_outer = 0.8;
+    light.emits = emits;
+    light.samples = 4;
+    return light;
+}
+
+TEST(no_light_from_behind_a_surface_is_reflected_however_its_shading_normal_leans) {
+    for (int kind = LIGHT_POINT; kind <= LIGHT_SPHERE; kind++)
+        for (int emits = 0; emits < 2; emits++)
+            for (int side = 0; side < 2; side++) {
+                if (emits && (kind == LIGHT_POINT || kind == LIGHT_DIRECTIONAL || kind == LIGHT_SPOT))
+                    continue;
+                struct stage s;
+                stage_begin(&s, 1);
+                struct material *material = stage_phong(&s, vec3_all(1), vec3_all(0.5), 3);
+                material->phong.two_sided = true;
+                (void)leaning_square(&s, 75, 4, material);
+                s.light_count = 1;
+                s.lights[0] = light_at(kind, emits, side ? 2 : -2);
+                double above = patch_at(&s, 0, 0);
+                s.camera = (struct camera){{3, -1000, 0}, {-3, 1000, 0}, {0, 0, -1}, 1e-4};
+                CHECK(stage_render(&s, 1, 1));
+                double below = stage_pixel(&s, 0, 0).x;
+                if (side)
+                    CHECK(above > 0.001 && below == 0);
+                else
+                    CHECK(above == 0);
+                stage_end(&s);
+            }
+}
+
 /* A mirror below a lamp that shows itself shows the lamp's radiance; its highlight is the same light again. A mirror
  * below a lamp that does not shows the highlight alone. */
 TEST(a_visible_lamp_counts_once_in_a_mirror) {
