@@ -1,12 +1,13 @@
 /* The lobes, each with its formula (classic ones), density and sampling, and sums over lists of them.
  *
- * A classic lobe is its formula of SPEC 1.2 over pi as f |cos|. A GGX lobe loses no energy: light that a facet sends to
- * the wrong side is turned back, as by one more facet, and its f |cos| is its weight times the density of its
- * directions. A facet that reflects totally where the surface as a whole does not sends its light where the smooth
- * surface would: a share of the samples of a GGX transmission has one direction, and is flagged so. */
+ * A classic lobe is its formula of SPEC 1.2 over pi as f |cos|. The GGX lobes are those of Walter, Marschner, Li,
+ * Torrance, "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007, with the masking of both directions
+ * together (Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", JCGT 2014, equation 99).
+ * Facets are drawn as they are seen from wo, so a sample weighs what the other direction leaves of it. Fresnel's shares
+ * and total reflection are those of the facet. Light that meets a second facet is lost.
+ */
 #include "material/bsdf.h"
 
-#include "material/classic.h"
 #include "material/dielectric.h"
 #include "material/microfacet.h"
 #include "math/elementary.h"
@@ -131,59 +132,65 @@ bool bsdf_refract(const struct bsdf *bsdf, struct vec3 wo, struct vec3 *out) {
 
 /* --- rough boundaries --- */
 
-static struct vec3 fold(struct vec3 direction, struct vec3 to_side) {
-    double height = vec3_dot(direction, to_side);
-    return height < 0 ? vec3_add_scaled(direction, to_side, -2 * height) : direction;
+/* The share of light that a GGX lobe takes of what meets a facet; `towards` is the cosine of wo to it. */
+static double facet_share(const struct bsdf *bsdf, bool transmits, double towards) {
+    if (!bsdf->fresnel_of_facets)
+        return 1;
+    double reflected = dielectric_fresnel(towards, bsdf->eta);
+    return transmits ? 1 - reflected : reflected;
 }
 
-static struct vec3 facet_mirror(const struct bsdf *bsdf, struct vec3 facet, struct vec3 wo) {
-    return fold(dielectric_mirror(facet, wo), bsdf->geometric_side);
+/* What masking leaves of light that a visible facet sends to wi; 0 on the wrong side, of the shading normal or the
+ * surface. */
+static double facet_escape(const struct bsdf *bsdf, bool transmits, struct vec3 wo, struct vec3 wi) {
+    double n_l = vec3_dot(bsdf->side, wi), height = vec3_dot(bsdf->geometric_side, wi);
+    if (transmits ? !(n_l < 0 && height < 0) : !(n_l > 0 && height > 0))
+        return 0;
+    return microfacet_escape(vec3_dot(bsdf->side, wo), fabs(n_l), bsdf->alpha);
 }
 
-/* True: the facet refracts it; false: it goes the way of the smooth surface. */
-static bool facet_refract(const struct bsdf *bsdf, struct vec3 facet, struct vec3 wo, struct vec3 *out) {
-    if (!dielectric_refract(facet, wo, bsdf->eta, out)) {
-        (void)bsdf_refract(bsdf, wo, out);
-        return false;
-    }
-    *out = fold(*out, vec3_negate(bsdf->geometric_side));
-    return bsdf->eta != 1;
-}
+/* A direction of a GGX lobe: its facet, its density before shares and masking, and what these leave. */
+struct facet_path {
+    double pdf, share;
+};
 
-struct vec3 bsdf_facet(const struct bsdf *bsdf, struct vec3 wo, struct sample2 u) {
-    return microfacet_normal(bsdf->side, wo, bsdf->alpha, u);
-}
-
-/* Of directions that are not folded yet. The half vectors are those of Walter et al. 2007, sections 5.2 and 5.3. */
-static double facet_mirror_pdf(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi) {
-    struct vec3 half = vec3_normalize(vec3_add(wo, wi));
+/* By way of a facet that mirrors. A lobe that refracts reaches wi so where the facet reflects totally. */
+static struct facet_path by_mirror(const struct bsdf *bsdf, bool refracts, struct vec3 wo, struct vec3 wi) {
+    struct vec3 half = vec3_normalize(vec3_add(wo, wi)), through;
     double v_h = vec3_dot(wo, half);
-    return v_h > 0 ? microfacet_pdf(bsdf->side, wo, bsdf->alpha, half) / (4 * v_h) : 0;
+    if (!(v_h > 0) || (refracts && (!bsdf->turns_back || dielectric_refract(half, wo, bsdf->eta, &through))))
+        return (struct facet_path){0, 0};
+    return (struct facet_path){microfacet_pdf(bsdf->side, wo, bsdf->alpha, half) / (4 * v_h),
+                               facet_share(bsdf, refracts, v_h) * facet_escape(bsdf, false, wo, wi)};
 }
-static double facet_refract_pdf(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi) {
+
+/* By way of a facet that refracts: Walter et al. 2007, sections 5.2 and 5.3. */
+static struct facet_path by_refraction(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi) {
     struct vec3 half = vec3_normalize(vec3_add_scaled(wi, wo, bsdf->eta));
     if (vec3_dot(wo, half) < 0)
         half = vec3_negate(half);
     double v_h = vec3_dot(wo, half), l_h = vec3_dot(wi, half), sum = bsdf->eta * v_h + l_h;
     if (!(v_h > 0 && l_h < 0 && sum != 0))
-        return 0;
-    return microfacet_pdf(bsdf->side, wo, bsdf->alpha, half) * -l_h / (sum * sum);
+        return (struct facet_path){0, 0};
+    return (struct facet_path){microfacet_pdf(bsdf->side, wo, bsdf->alpha, half) * -l_h / (sum * sum),
+                               facet_share(bsdf, true, v_h) * facet_escape(bsdf, true, wo, wi)};
 }
 
-/* Each direction on the right side has been reached by itself and by its mirror image on the wrong side. */
-static double rough_pdf(const struct bsdf *bsdf, bool transmits, struct vec3 wo, struct vec3 wi) {
-    double height = vec3_dot(wi, bsdf->geometric_side);
-    struct vec3 turned = vec3_add_scaled(wi, bsdf->geometric_side, -2 * height);
-    if (transmits)
-        return height < 0 ? facet_refract_pdf(bsdf, wo, wi) + facet_refract_pdf(bsdf, wo, turned) : 0;
-    return height > 0 ? facet_mirror_pdf(bsdf, wo, wi) + facet_mirror_pdf(bsdf, wo, turned) : 0;
+/* Samples that nothing is left of are lost and have no density. */
+static struct facet_path rough_path(const struct bsdf *bsdf, bool refracts, struct vec3 wo, struct vec3 wi) {
+    struct facet_path path = {0, 0};
+    if (vec3_dot(wi, bsdf->geometric_side) > 0)
+        path = by_mirror(bsdf, refracts, wo, wi);
+    else if (refracts && bsdf->eta != 1)
+        path = by_refraction(bsdf, wo, wi);
+    return path.share > 0 ? path : (struct facet_path){0, 0};
 }
 
 /* --- one lobe --- */
 
-/* A lobe that refracts reflects where the surface reflects totally. */
+/* A smooth lobe that refracts reflects where the surface reflects totally; of a rough one each facet decides. */
 static bool lobe_transmits(const struct bsdf *bsdf, const struct lobe *lobe) {
-    return (lobe_flags(lobe->kind) & BSDF_TRANSMITS) && bsdf->passes;
+    return (lobe_flags(lobe->kind) & BSDF_TRANSMITS) && (bsdf->passes || !(lobe_flags(lobe->kind) & BSDF_DELTA));
 }
 
 /* Whether it gives light at all. */
@@ -191,7 +198,7 @@ static bool lobe_counts(const struct bsdf *bsdf, const struct lobe *lobe) {
     unsigned flags = lobe_flags(lobe->kind);
     if (flags & BSDF_CLASSIC)
         return !bsdf->dark;
-    return !(flags & BSDF_TRANSMITS) || bsdf->passes || bsdf->turns_back;
+    return !(flags & BSDF_TRANSMITS) || lobe_transmits(bsdf, lobe) || bsdf->turns_back;
 }
 
 static double lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {
@@ -208,7 +215,7 @@ static double lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct 
         return 0;
     case LOBE_GGX_REFLECTION:
     case LOBE_GGX_TRANSMISSION:
-        return rough_pdf(bsdf, lobe_transmits(bsdf, lobe), wo, wi);
+        return rough_path(bsdf, lobe->kind == LOBE_GGX_TRANSMISSION, wo, wi).pdf;
     }
     return 0;
 }
@@ -218,47 +225,72 @@ static double lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct
     double n_l = vec3_dot(bsdf->lit, wi);
     switch (lobe->kind) {
     case LOBE_DIFFUSE:
-        return n_l > 0 ? intensity_of(n_l) : 0;
+        return n_l > 0 ? n_l / pi : 0;
     case LOBE_PHONG:
-        return n_l > 0 ? intensity_of(phong_formula(lobe, bsdf->lit, n_l, wo, wi)) : 0;
+        return n_l > 0 ? phong_formula(lobe, bsdf->lit, n_l, wo, wi) / pi : 0;
     case LOBE_BLINN:
-        return n_l > 0 ? intensity_of(blinn_formula(lobe, bsdf->lit, wo, wi)) : 0;
+        return n_l > 0 ? blinn_formula(lobe, bsdf->lit, wo, wi) / pi : 0;
     case LOBE_MIRROR:
     case LOBE_REFRACTION:
         return 0;
     case LOBE_GGX_REFLECTION:
-    case LOBE_GGX_TRANSMISSION:
-        return lobe_pdf(bsdf, lobe, wo, wi);
+    case LOBE_GGX_TRANSMISSION: {
+        struct facet_path path = rough_path(bsdf, lobe->kind == LOBE_GGX_TRANSMISSION, wo, wi);
+        return path.pdf * path.share;
+    }
     }
     return 0;
 }
 
-/* A direction, and whether it is the lobe's only one. */
+/* A direction, whether it is the lobe's only one, and f |cos| / pdf over the lobe's weight where it is traced. */
 struct lobe_direction {
     struct vec3 direction;
-    bool delta;
+    double share;
+    bool delta, transmits;
 };
 
-/* Of a traced lobe; facet: of a rough one. */
-static void traced_direction(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 facet,
-                             struct lobe_direction *out) {
-    bool transmits = lobe_transmits(bsdf, lobe);
-    out->delta = lobe_flags(lobe->kind) & BSDF_DELTA;
-    if (out->delta && transmits)
-        (void)bsdf_refract(bsdf, wo, &out->direction);
-    else if (out->delta)
-        out->direction = mirror_direction(bsdf, wo);
-    else if (transmits)
-        out->delta = !facet_refract(bsdf, facet, wo, &out->direction);
-    else
-        out->direction = facet_mirror(bsdf, facet, wo);
+struct vec3 bsdf_facet(const struct bsdf *bsdf, struct vec3 wo, struct sample2 u) {
+    return microfacet_normal(bsdf->side, wo, bsdf->alpha, u);
 }
 
-/* False: lost below the surface. */
+static bool rough_direction(const struct bsdf *bsdf, bool refracts, struct vec3 wo, struct vec3 facet,
+                            struct lobe_direction *out) {
+    double v_h = vec3_dot(wo, facet);
+    out->transmits = refracts && dielectric_refract(facet, wo, bsdf->eta, &out->direction);
+    if (out->transmits && bsdf->eta == 1) { /* there is no boundary */
+        out->delta = true;
+        return true;
+    }
+    if (!out->transmits) {
+        if (refracts && !bsdf->turns_back)
+            return false;
+        out->direction = dielectric_mirror(facet, wo);
+    }
+    out->share = facet_share(bsdf, refracts, v_h) * facet_escape(bsdf, out->transmits, wo, out->direction);
+    return out->share > 0;
+}
+
+/* Of a traced lobe; facet: of a rough one. False: lost, below the surface or in it. */
+static bool traced_direction(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 facet,
+                             struct lobe_direction *out) {
+    out->transmits = lobe_transmits(bsdf, lobe);
+    out->delta = lobe_flags(lobe->kind) & BSDF_DELTA;
+    out->share = 1;
+    if (!out->delta)
+        return rough_direction(bsdf, out->transmits, wo, facet, out);
+    if (out->transmits)
+        (void)bsdf_refract(bsdf, wo, &out->direction);
+    else
+        out->direction = mirror_direction(bsdf, wo);
+    return true;
+}
+
+/* False: lost, below the surface or in it. */
 static bool lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct sample2 u,
                         struct lobe_direction *out) {
     struct vec3 facet;
-    out->delta = false;
+    out->delta = out->transmits = false;
+    out->share = 1;
     switch (lobe->kind) {
     case LOBE_DIFFUSE:
         out->direction = diffuse_sample(bsdf->lit, u);
@@ -272,12 +304,10 @@ static bool lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct
         return vec3_dot(wo, facet) > 0 && vec3_dot(bsdf->lit, out->direction) > 0;
     case LOBE_MIRROR:
     case LOBE_REFRACTION:
-        traced_direction(bsdf, lobe, wo, bsdf->side, out);
-        return true;
+        return traced_direction(bsdf, lobe, wo, bsdf->side, out);
     case LOBE_GGX_REFLECTION:
     case LOBE_GGX_TRANSMISSION:
-        traced_direction(bsdf, lobe, wo, bsdf_facet(bsdf, wo, u), out);
-        return true;
+        return traced_direction(bsdf, lobe, wo, bsdf_facet(bsdf, wo, u), out);
     }
     return false;
 }
@@ -306,7 +336,8 @@ struct vec3 bsdf_eval(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mo
         const struct lobe *lobe = &bsdf->lobes[i];
         if (!(lobes >> i & 1) || !lobe_counts(bsdf, lobe))
             continue;
-        double factor = radiance_factor(bsdf, mode, lobe_transmits(bsdf, lobe));
+        bool transmits = (lobe_flags(lobe->kind) & BSDF_TRANSMITS) && vec3_dot(wi, bsdf->geometric_side) < 0;
+        double factor = radiance_factor(bsdf, mode, transmits);
         sum = vec3_add_scaled(sum, lobe->weight, factor * lobe_eval(bsdf, lobe, wo, wi));
     }
     return sum;
@@ -346,12 +377,11 @@ bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, s
     struct lobe_direction sampled;
     if (!lobe_sample(bsdf, lobe, wo, u, &sampled))
         return false;
-    bool transmits = lobe_transmits(bsdf, lobe);
     out->direction = sampled.direction;
-    out->flags = transmits ? BSDF_TRANSMITS : BSDF_REFLECTS;
+    out->flags = sampled.transmits ? BSDF_TRANSMITS : BSDF_REFLECTS;
     if (sampled.delta) {
         out->flags |= BSDF_DELTA;
-        out->weight = vec3_scale(lobe->weight, radiance_factor(bsdf, mode, transmits) / out->pdf);
+        out->weight = vec3_scale(lobe->weight, radiance_factor(bsdf, mode, sampled.transmits) / out->pdf);
         return true;
     }
     out->pdf = bsdf_pdf(bsdf, lobes, wo, out->direction);
@@ -363,6 +393,14 @@ bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, s
 
 /* --- branches --- */
 
+/* How much of the light of a rough boundary a branch may be expected to have, never none. */
+static double expected_share(const struct bsdf *bsdf, const struct lobe *lobe) {
+    if (!bsdf->fresnel_of_facets || (lobe_flags(lobe->kind) & BSDF_DELTA))
+        return 1;
+    double reflected = fmin(fmax(bsdf->fresnel, 1.0 / 16), 15.0 / 16);
+    return lobe_flags(lobe->kind) & BSDF_TRANSMITS ? 1 - reflected : reflected;
+}
+
 int bsdf_branches(const struct bsdf *bsdf, struct bsdf_branch out[BSDF_LOBES]) {
     int count = 0, kept = 0;
     for (int i = 0; i < bsdf->count; i++) {
@@ -370,16 +408,15 @@ int bsdf_branches(const struct bsdf *bsdf, struct bsdf_branch out[BSDF_LOBES]) {
         unsigned flags = lobe_flags(lobe->kind);
         if (!(flags & BSDF_TRACED) || !lobe_counts(bsdf, lobe))
             continue;
-        bool transmits = lobe_transmits(bsdf, lobe), rough = !(flags & BSDF_DELTA);
         /* Reflected totally, it goes where the mirror goes. */
-        if ((flags & BSDF_TRANSMITS) && !transmits && count > 0 && out[count - 1].rough == rough) {
+        if ((flags & BSDF_TRANSMITS) && !lobe_transmits(bsdf, lobe) && count > 0) {
             out[count - 1].weight = vec3_add(out[count - 1].weight, lobe->weight);
             continue;
         }
         out[count].weight = lobe->weight;
+        out[count].expected = expected_share(bsdf, lobe);
         out[count].lobe = i;
-        out[count].transmits = transmits;
-        out[count++].rough = rough;
+        out[count++].rough = !(flags & BSDF_DELTA);
     }
     for (int i = 0; i < count; i++) {
         struct vec3 weight = out[i].weight;
@@ -389,14 +426,18 @@ int bsdf_branches(const struct bsdf *bsdf, struct bsdf_branch out[BSDF_LOBES]) {
     return kept;
 }
 
-void bsdf_branch_sample(const struct bsdf *bsdf, const struct bsdf_branch *branch, struct vec3 wo, struct vec3 facet,
-                        struct vec3 *direction, struct vec3 *weight) {
-    *weight = branch->weight;
-    if (branch->transmits && !branch->rough) {
-        *direction = bsdf->through;
-        return;
+bool bsdf_branch_sample(const struct bsdf *bsdf, const struct bsdf_branch *branch, struct vec3 wo, struct vec3 facet,
+                        struct bsdf_branch_direction *out) {
+    const struct lobe *lobe = &bsdf->lobes[branch->lobe];
+    if (!branch->rough && lobe_transmits(bsdf, lobe)) {
+        *out = (struct bsdf_branch_direction){bsdf->through, branch->weight, true};
+        return true;
     }
     struct lobe_direction sampled;
-    traced_direction(bsdf, &bsdf->lobes[branch->lobe], wo, facet, &sampled);
-    *direction = sampled.direction;
+    if (!traced_direction(bsdf, lobe, wo, facet, &sampled))
+        return false;
+    out->direction = sampled.direction;
+    out->weight = sampled.share == 1 ? branch->weight : vec3_scale(branch->weight, sampled.share);
+    out->transmits = sampled.transmits;
+    return true;
 }

@@ -33,8 +33,8 @@ enum bsdf_flags {
     X(LOBE_BLINN, "blinn", BSDF_CLASSIC | BSDF_REFLECTS | BSDF_EXPONENT)    /* max(0, n.h)^exponent / (pi n.l) */      \
     X(LOBE_MIRROR, "mirror", BSDF_TRACED | BSDF_REFLECTS | BSDF_DELTA)                                                 \
     X(LOBE_REFRACTION, "refract", BSDF_TRACED | BSDF_TRANSMITS | BSDF_DELTA)                                           \
-    X(LOBE_GGX_REFLECTION, "mirror", BSDF_TRACED | BSDF_REFLECTS) /* pdf / |cos|: no energy is lost */                 \
-    X(LOBE_GGX_TRANSMISSION, "refract", BSDF_TRACED | BSDF_TRANSMITS)
+    X(LOBE_GGX_REFLECTION, "mirror", BSDF_TRACED | BSDF_REFLECTS)                                                      \
+    X(LOBE_GGX_TRANSMISSION, "refract", BSDF_TRACED | BSDF_TRANSMITS) /* facets that reflect totally turn it back */
 
 enum lobe_kind { LOBES(LIST_MEMBER) };
 enum { LOBE_KINDS = LIST_COUNT(LOBES) };
@@ -60,10 +60,12 @@ struct bsdf {
     struct vec3 emission;             /* added as it is */
     double opacity;                   /* the rest is a hole, through which the ray goes on as it was */
     /* Traced lobes. */
-    double alpha;        /* width of the facets' slopes; 0: smooth */
-    int glossy_samples;  /* N x N rays where it is rough; 0: the default */
-    double eta;          /* index on the ray's side / index behind; 1 where nothing is refracted */
-    double fresnel;      /* the share that is reflected, or negative */
+    double alpha;       /* width of the facets' slopes; 0: smooth */
+    int glossy_samples; /* N x N rays where it is rough; 0: the default */
+    double eta;         /* index on the ray's side / index behind; 1 where nothing is refracted */
+    double fresnel;     /* the share that a smooth surface reflects, or negative */
+    /* The GGX lobes have Fresnel's share of each facet beside their weights. */
+    bool fresnel_of_facets;
     bool passes;         /* refracted light gets through the smooth surface; `boundary` holds if anything refracts */
     struct vec3 through; /* where it passes: its direction for the view of the hit */
     bool turns_back;     /* where it does not, its share is reflected; else lost */
@@ -106,21 +108,26 @@ struct bsdf_sample {
 bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, struct vec3 wo, struct sample2 u,
                  struct bsdf_sample *out);
 
-/* For integrators that follow traced lobes one by one. A lobe that refracts and cannot joins the mirror. */
+/* For integrators that follow traced lobes one by one. A smooth lobe that refracts and cannot joins the mirror. */
 struct bsdf_branch {
     struct vec3 weight; /* not black */
+    double expected;    /* about the mean of a sample's weight over this one, above 0: a chance to choose it by */
     int lobe;
-    bool transmits;
     bool rough;
 };
 /* The number of branches. */
 int bsdf_branches(const struct bsdf *bsdf, struct bsdf_branch out[BSDF_LOBES]);
+
+struct bsdf_branch_direction {
+    struct vec3 direction, weight; /* mode IMPORTANCE */
+    bool transmits;
+};
 /* The normal of one facet of a rough surface, for all its branches. */
 struct vec3 bsdf_facet(const struct bsdf *bsdf, struct vec3 wo, struct sample2 u);
-/* The direction in which a branch goes on and its weight, mode IMPORTANCE. wo: the view of the hit; facet: of rough
- * branches, else ignored. */
-void bsdf_branch_sample(const struct bsdf *bsdf, const struct bsdf_branch *branch, struct vec3 wo, struct vec3 facet,
-                        struct vec3 *direction, struct vec3 *weight);
+/* A direction of a branch. wo: the view of the hit; facet: of rough branches, else ignored. False: none, which counts
+ * as black. */
+bool bsdf_branch_sample(const struct bsdf *bsdf, const struct bsdf_branch *branch, struct vec3 wo, struct vec3 facet,
+                        struct bsdf_branch_direction *out);
 
 /* The refracted direction of the smooth surface. False: total reflection. */
 bool bsdf_refract(const struct bsdf *bsdf, struct vec3 wo, struct vec3 *out);

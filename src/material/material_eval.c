@@ -27,6 +27,7 @@ static void set_boundary(const struct hit *hit, const struct medium_stack *media
     static const struct medium_stack air = {.count = 0};
     bsdf->eta = 1;
     bsdf->fresnel = -1;
+    bsdf->fresnel_of_facets = look->fresnel && look->roughness > 0;
     bsdf->passes = false;
     if (!look->fresnel && look->refract == 0)
         return;
@@ -59,10 +60,11 @@ static void set_lobes(const struct surface_look *look, const struct material_con
         add_lobe(bsdf, LOBE_DIFFUSE, look->kd, 0);
         add_lobe(bsdf, blinn ? LOBE_BLINN : LOBE_PHONG, vec3_scale(look->ks, 1 - look->refract), look->shininess);
     }
-    if (look->reflect != 0)
-        add_lobe(bsdf, rough ? LOBE_GGX_REFLECTION : LOBE_MIRROR, vec3_scale(look->ks, look->reflect), 0);
-    if (look->refract != 0)
-        add_lobe(bsdf, rough ? LOBE_GGX_TRANSMISSION : LOBE_REFRACTION, vec3_scale(look->ks, look->refract), 0);
+    double reflect = bsdf->fresnel_of_facets ? 1 : look->reflect, refract = bsdf->fresnel_of_facets ? 1 : look->refract;
+    if (reflect != 0)
+        add_lobe(bsdf, rough ? LOBE_GGX_REFLECTION : LOBE_MIRROR, vec3_scale(look->ks, reflect), 0);
+    if (refract != 0)
+        add_lobe(bsdf, rough ? LOBE_GGX_TRANSMISSION : LOBE_REFRACTION, vec3_scale(look->ks, refract), 0);
 }
 
 void material_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media,

@@ -40,3 +40,14 @@ double microfacet_pdf(struct vec3 normal, struct vec3 view, double alpha, struct
     double masking = 2 / (n_v + sqrt(n_v * n_v + a2 * (n_v < 1 ? 1 - n_v * n_v : 0))); /* G1 / n.v */
     return masking * facets * v_h;
 }
+
+/* Heitz 2014, equation 72: the mean of what masks a direction with this cosine to the normal. */
+static double lambda(double cosine, double alpha) {
+    double c2 = cosine * cosine, slope2 = c2 < 1 ? alpha * alpha * (1 - c2) / c2 : 0;
+    return (sqrt(1 + slope2) - 1) / 2;
+}
+
+double microfacet_escape(double cos_view, double cos_out, double alpha) {
+    double seen = 1 + lambda(cos_view, alpha);
+    return seen / (seen + lambda(cos_out, alpha));
+}

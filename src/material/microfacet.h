@@ -12,4 +12,8 @@ struct vec3 microfacet_normal(struct vec3 normal, struct vec3 view, double alpha
 /* The density of microfacet_normal per solid angle. */
 double microfacet_pdf(struct vec3 normal, struct vec3 view, double alpha, struct vec3 facet);
 
+/* Of light that visible facets send on, the share that leaves the surface at once: the masking of both directions over
+ * that of the view. Cosines to the normal, of either side, in (0, 1]. */
+double microfacet_escape(double cos_view, double cos_out, double alpha);
+
 #endif

@@ -70,7 +70,7 @@ static struct choice choice_make(const struct bsdf *bsdf) {
 static bool fly_on(struct flight *flight, const struct hit *hit, const struct bsdf *bsdf, const struct choice *choice) {
     double to[BSDF_LOBES], all = 0;
     for (int i = 0; i < choice->count; i++) {
-        to[i] = fmax(mean(vec3_mul(flight->left, choice->branches[i].weight)), 0);
+        to[i] = fmax(mean(vec3_mul(flight->left, choice->branches[i].weight)), 0) * choice->branches[i].expected;
         all += to[i];
     }
     /* All photons are to have the same power: what is left of one that met the strongest thing of its cell. */
@@ -82,16 +82,18 @@ static bool fly_on(struct flight *flight, const struct hit *hit, const struct bs
     while (chosen + 1 < choice->count && !(until < to[chosen]))
         until -= to[chosen++];
     const struct bsdf_branch *branch = &choice->branches[chosen];
-    struct vec3 facet = bsdf->side, direction, weight;
+    struct vec3 facet = bsdf->side;
     if (branch->rough) {
         double u = draw(flight), v = draw(flight);
         facet = bsdf_facet(bsdf, hit->view, (struct sample2){u, v});
     }
-    bsdf_branch_sample(bsdf, branch, hit->view, facet, &direction, &weight);
-    flight->left = vec3_scale(vec3_mul(flight->left, weight), all / (to[chosen] * survival));
-    if (branch->transmits)
+    struct bsdf_branch_direction sampled;
+    if (!bsdf_branch_sample(bsdf, branch, hit->view, facet, &sampled))
+        return false;
+    flight->left = vec3_scale(vec3_mul(flight->left, sampled.weight), all / (to[chosen] * survival));
+    if (sampled.transmits)
         medium_stack_cross(&flight->media, &bsdf->boundary);
-    flight->ray = hit_ray(hit, &flight->ray, direction, &flight->media);
+    flight->ray = hit_ray(hit, &flight->ray, sampled.direction, &flight->media);
     flight->specular = true;
     return true;
 }

@@ -70,14 +70,16 @@ struct surface_point {
 static struct vec3 follow_branch(struct integrator_state *state, const struct surface_point *at,
                                  const struct bsdf_branch *branch, struct vec3 facet, const struct path *from) {
     const struct settings *settings = &state->job->settings;
-    bool transmits = branch->transmits;
-    struct vec3 direction, filter;
-    bsdf_branch_sample(at->bsdf, branch, at->hit->view, facet, &direction, &filter);
+    struct bsdf_branch_direction sampled;
+    if (!bsdf_branch_sample(at->bsdf, branch, at->hit->view, facet, &sampled))
+        return vec3_all(0);
+    struct vec3 filter = sampled.weight;
+    bool transmits = sampled.transmits;
     struct path path = path_on(from, vec3_max_abs(filter));
     bool limit = transmits ? path.refractions >= settings->refract_limit : path.reflections >= settings->reflect_limit;
     if (is_given_up(state, transmits ? RAY_REFRACTED : RAY_REFLECTED, limit, filter, &path))
         return vec3_all(0);
-    struct ray onward = hit_ray(at->hit, at->ray, direction, at->ray->media);
+    struct ray onward = hit_ray(at->hit, at->ray, sampled.direction, at->ray->media);
     struct medium_stack behind;
     if (transmits) {
         medium_stack_copy(&behind, at->ray->media);

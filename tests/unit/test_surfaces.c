@@ -37,25 +37,61 @@ TEST(light_fades_exponentially_with_the_way_inside_glass) {
     }
 }
 
-TEST(a_rough_mirror_vanishes_in_uniform_light) {
+/* What a rough mirror reflects of uniform light: the mean over facets of what leaves the surface at once. */
+static double albedo_of(double cosine, double alpha) {
+    enum { N = 64 };
+    struct vec3 up = {0, 0, 1}, view = {sqrt(1 - cosine * cosine), 0, cosine};
+    double sum = 0;
+    for (int i = 0; i < N * N; i++) {
+        uint64_t key = random_combine(11, (uint64_t)i); /* the few steep facets lie in the corners of cells */
+        struct sample2 u = {(i % N + random_unit(key)) / N, (i / N + random_unit(random_combine(key, 1))) / N};
+        struct vec3 h = microfacet_normal(up, view, alpha, u);
+        double out = 2 * vec3_dot(view, h) * h.z - view.z;
+        sum += out > 0 ? microfacet_escape(cosine, out, alpha) : 0;
+    }
+    return sum / (N * N);
+}
+
+/* Light that meets a second facet is lost, nothing else. */
+TEST(a_rough_mirror_loses_in_uniform_light_what_its_facets_mask) {
     for (int i = 0; i <= 4; i++) {
         struct stage s;
         stage_begin(&s, 2);
         struct material *metal = stage_glass(&s, 1, 0, 1);
         metal->phong.roughness = 0.25 * i;
+        metal->phong.glossy_samples = 8;
         (void)stage_sphere(&s, s.root, metal);
+        enum { SIZE = 25 };
         s.camera.fov = 14;
+        s.settings.samples = 1;
         s.sky.colour = vec3_all(1);
-        CHECK(stage_render(&s, 24, 24));
-        double worst = 0;
-        for (uint32_t p = 0; p < 24 * 24; p++)
-            worst = fmax(worst, fabs(stage_pixel(&s, p % 24, p / 24).x - 1));
+        CHECK(stage_render(&s, SIZE, SIZE));
+        double alpha = 0.0625 * i * i, step = 2 * tan(7 * M_PI / 180) / SIZE, worst = 0, off = 0;
+        int met = 0;
+        for (int p = 0; p < SIZE * SIZE; p++) {
+            double x = (p % SIZE - SIZE / 2) * step, y = (p / SIZE - SIZE / 2) * step;
+            struct vec3 d = vec3_normalize(vec3_make(x, y, -1));
+            double b = -10 * d.z, discriminant = b * b - 99,
+                   seen = stage_pixel(&s, (uint32_t)p % SIZE, (uint32_t)p / SIZE).x;
+            double cosine = discriminant > 0 ? sqrt(discriminant) : 0; /* of a ball of radius 1 */
+            CHECK(seen < 1 + 1e-6);
+            if (i == 0 || discriminant <= 0)
+                worst = fmax(worst, fabs(seen - 1));
+            else if (cosine > 0.1) {
+                off += seen - albedo_of(cosine, alpha);
+                met++;
+            }
+        }
         CHECK(worst < 1e-6);
+        CHECK_NEAR(off / fmax(met, 1), 0, 2e-3);
         stage_end(&s);
     }
 }
 
-TEST(rough_glass_vanishes_in_uniform_light) {
+/* Polished glass cannot be seen in uniform light; rough glass is darker by what its facets mask, which is not put back
+ * (docs/limits.md). */
+TEST(glass_in_uniform_light_loses_what_its_facets_mask) {
+    static const double left[] = {1, 0.980, 0.833};
     for (int i = 0; i <= 2; i++) {
         struct stage s;
         stage_begin(&s, 2);
@@ -72,13 +108,13 @@ TEST(rough_glass_vanishes_in_uniform_light) {
         double sum = 0;
         for (uint32_t p = 0; p < 12 * 12; p++)
             sum += stage_pixel(&s, p % 12, p / 12).x / 144;
-        CHECK_NEAR(sum, 1, 1e-3); /* what is missing goes round inside more than 100 times */
+        CHECK_NEAR(sum, left[i], i ? 0.01 : 1e-3); /* what is missing of 1 goes round inside more than 100 times */
         stage_end(&s);
     }
 }
 
-/* A visible disc over a rough floor, both seen from the axis: the share of rays that meet the disc is the share of
- * facets flatter than half its angle. */
+/* A visible disc over a rough floor, both seen from the axis: the rays that meet the disc are those of facets flatter
+ * than half its angle, less what is masked of their light. */
 TEST(rough_reflection_spreads_as_its_distribution_says) {
     static const double roughness[] = {0.2, 0.4, 0.7};
     for (int i = 0; i < 3; i++) {
@@ -104,9 +140,13 @@ TEST(rough_reflection_spreads_as_its_distribution_says) {
         s.settings.area_samples = 1;
         s.settings.samples = 1;
         s.lights[0].include = (const struct node *const[]){NULL}; /* seen, but lights nothing */
-        /* Facets so steep that they send light downwards have it turned back up: the mirrored cone counts too. */
-        double turned = alpha * alpha / (alpha * alpha + 1 / (flat * flat));
-        CHECK_NEAR(centre_of(&s, 1), flat * flat / (alpha * alpha + flat * flat) + turned, 8e-3);
+        double expected = 0, before = 0;
+        for (int k = 1; k <= 1000; k++) {
+            double slope = flat * k / 1000, share = slope * slope / (alpha * alpha + slope * slope);
+            expected += (share - before) * microfacet_escape(1, cos(2 * atan(slope - flat / 2000)), alpha);
+            before = share;
+        }
+        CHECK_NEAR(centre_of(&s, 1), expected, 8e-3);
         stage_end(&s);
     }
 }
