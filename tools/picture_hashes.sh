@@ -72,7 +72,8 @@ done
 
 (cd "$folder" && ls | while read -r file; do
     case $file in
-    *.txt) sed -e "s#$folder#DIR#g" "$file" | sha256sum | sed "s#-\$#$file#" ;;
+    # Times that scripts print differ from run to run.
+    *.txt) sed -E -e "s#$folder#DIR#g" -e 's/[0-9]+\.[0-9]+ s( of processor time)?$/TIME/' "$file" | sha256sum | sed "s#-\$#$file#" ;;
     *) sha256sum "$file" ;;
     esac
 done) | sort -k 2 >"$folder/hashes"
