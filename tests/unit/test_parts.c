@@ -280,7 +280,10 @@ TEST_LONG(a_thousand_killed_runs_that_go_on_give_the_bytes_of_one_run) {
         (void)unlink(path);
         free(path);
     }
-    CHECK(shell("ls -A | grep -q part-") != 0);
+    /* What a kill has left is removed by the next run that finds it older than a minute. */
+    CHECK(shell("for f in .gray.part-*; do test -e $f && touch -d '2 minutes ago' $f; done; "
+                "$gray scene.lua -q -o last.png && ls -A | grep -q part-") != 0);
+    CHECK(exists("last.png"));
     fprintf(stderr, "    %d kills came before a checkpoint was there, %d among the tiles, %d after the picture\n",
             kills.before, kills.among, kills.after);
     CHECK(kills.among > 500);
