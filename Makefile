@@ -1,18 +1,28 @@
-# gray: make [config=release|debug|asan|tsan|fuzz|afl|coverage] [CC=gcc|clang] [WERROR=1]
-#   all (default)  ./gray and the link ./rt       test        the tests, at most 8 minutes
-#   test-long      the rest, restartable by name   layers      includes against the order of rooms
+# gray: make [TARGET] [config=release|debug|asan|tsan|fuzz|afl|coverage] [CC=gcc|clang] [WERROR=1] [V=1]
+#   all (default)  ./gray and the link ./rt        help        this list
+#   test           the tests, at most 8 minutes    test-long   the rest, restartable by name (ONLY="name ...")
 #   check-clang    clang reads all sources; its warnings are errors
-#   bench          benchmarks                      install     PREFIX, DESTDIR
-#   coverage       lines and branches that the tests reach, in build/coverage (clang; COVERAGE="word ..." runs some tests)
+#   layers         includes against the order of modules
+#   format         clang-format over all sources
+#   coverage       lines and branches that the tests reach, in build/coverage (clang; COVERAGE="word ..." for some tests)
 #   fuzz           every tests/fuzz/fuzz_*.c for FUZZ_SECONDS each (clang's libFuzzer; FUZZ="name ..." for some)
 #   fuzz-afl       the same with AFL++
+#   bench          the benchmarks                  install     into PREFIX, below DESTDIR
+#   clean          removes all that make has built
+# The build prints one line for each file; V=1 prints the commands.
 config ?= release
 PREFIX ?= /usr/local
 DESTDIR ?=
 BUILD ?= build/$(config)
 PKG_CONFIG ?= pkg-config
 
-ROOMS = base math expr image accel geom material light scene formats world render script app
+# A recipe that begins with $(call say,WORD,NAME) prints one line, and its command with V=1 only; make -s prints nothing.
+V ?=
+Q = $(if $(V),,@)
+SILENT := $(findstring s,$(firstword -$(MAKEFLAGS)))
+say = $(if $(V)$(SILENT),,@printf '  %-6s %s\n' '$(1)' '$(2)')
+
+MODULES = base math expr image accel geom material light scene formats world render script app
 
 # -Wswitch-enum: a switch over a closed set names every member, also where it has a default.
 WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wswitch-enum
@@ -40,7 +50,7 @@ endif
 ifeq ($(config),afl)
 CC = afl-clang-fast
 endif
-# How many jobs a make of ours takes that nobody told a number.
+# Jobs of a make that is started here, unless the caller gave a number.
 JOBS = $(if $(findstring -j,$(MAKEFLAGS)),,-j$(shell nproc 2>/dev/null || echo 2))
 
 LUA_NAME := $(firstword $(foreach name,lua5.4 lua-5.4 lua54,$(shell $(PKG_CONFIG) --exists $(name) 2>/dev/null && echo $(name))))
@@ -70,7 +80,7 @@ override CPPFLAGS += -Isrc -I. $(LUA_CFLAGS) $(PNG_CFLAGS) $(OPTIONAL_CFLAGS) -D
 override LDLIBS += $(LUA_LIBS) $(PNG_LIBS) $(JPEG_LIBS) $(JANSSON_LIBS) $(FREETYPE_LIBS) $(EXR_LIBS) -lm
 override LDFLAGS += -pthread
 
-SOURCES := $(sort $(foreach room,$(ROOMS),$(wildcard src/$(room)/*.c)))
+SOURCES := $(sort $(foreach module,$(MODULES),$(wildcard src/$(module)/*.c)))
 MAIN := src/app/main.c
 MPI_MAIN := src/app/main_mpi.c
 GUI_MAIN := src/app/main_gui.c
@@ -105,22 +115,27 @@ check-libraries:
 	@test -n "$(PNG_LIBS)" || { echo "gray needs libpng with headers (Debian: libpng-dev pkg-config); tools/setup.sh installs it" >&2; exit 1; }
 
 $(BUILD)/gray: $(OBJECTS) $(MAIN_OBJECT)
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+	$(call say,LINK,$@)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
 # The program for many machines, where there is MPI: one of its own, so that the other does not load the library.
 $(BUILD)/gray-mpi: $(OBJECTS) $(MPI_OBJECT)
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(MPI_LIBS)
+	$(call say,LINK,$@)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(MPI_LIBS)
 $(BUILD)/gray-gui: $(OBJECTS) $(GUI_OBJECT)
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(SDL_LIBS)
+	$(call say,LINK,$@)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(SDL_LIBS)
 $(BUILD)/$(GUI_MAIN:.c=.o): override CPPFLAGS += $(SDL_CFLAGS)
 $(BUILD)/$(MPI_MAIN:.c=.o): override CPPFLAGS += $(MPI_CFLAGS)
 
 $(BUILD)/tests/run: $(OBJECTS) $(TEST_OBJECTS)
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+	$(call say,LINK,$@)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
 # Benchmarks that are programs of their own.
 $(BUILD)/bench/formats $(BUILD)/bench/shapes $(BUILD)/bench/lamps: $(BUILD)/bench/%: $(BUILD)/bench/%.o $(OBJECTS)
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+	$(call say,LINK,$@)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
 # Kernels for one instruction set each live in files of their own; nothing is fused but what they fuse themselves, and
 # only where single precision proposes. Numbers that a search stores one by one are not to be joined into vectors: what is
@@ -142,16 +157,19 @@ ifeq ($(config),clang)
 # Only read: the object is an empty file that says when.
 $(BUILD)/%.o: %.c $(FLAGS_STAMP)
 	@mkdir -p $(@D)
-	$(COMPILE) $(if $(WERROR),-Werror) -MF $(@:.o=.d) $< && touch $@
+	$(call say,CHECK,$<)
+	$(Q)$(COMPILE) $(if $(WERROR),-Werror) -MF $(@:.o=.d) $< && touch $@
 else ifneq ($(WERROR),)
 $(foreach warned,$(shell find $(BUILD) -name '*.warned' 2>/dev/null),$(shell rm -f $(warned) $(warned:.warned=.o)))
 $(BUILD)/%.o: %.c $(FLAGS_STAMP)
 	@mkdir -p $(@D)
-	$(COMPILE) -Werror -o $@ $<
+	$(call say,CC,$<)
+	$(Q)$(COMPILE) -Werror -o $@ $<
 else
 $(BUILD)/%.o: %.c $(FLAGS_STAMP)
 	@mkdir -p $(@D)
-	$(COMPILE) -o $@ $< 2>$(@:.o=.warned); status=$$?; cat $(@:.o=.warned) >&2; \
+	$(call say,CC,$<)
+	$(Q)$(COMPILE) -o $@ $< 2>$(@:.o=.warned); status=$$?; cat $(@:.o=.warned) >&2; \
 	    [ -s $(@:.o=.warned) ] || rm -f $(@:.o=.warned); exit $$status
 endif
 $(FLAGS_STAMP): force
@@ -168,6 +186,9 @@ endif
 check-clang:
 	@$(MAKE) -s $(JOBS) config=clang WERROR=1 read-sources
 
+help:
+	@sed -n 's/^# \{0,1\}//p; /^$$/q; /^config/q' Makefile
+
 test:
 	@tools/test.sh
 test-long:
@@ -181,7 +202,8 @@ FUZZ ?= $(patsubst tests/fuzz/fuzz_%.c,%,$(FUZZ_SOURCES))
 ifneq ($(filter $(config),fuzz afl),)
 FUZZERS := $(patsubst %,$(BUILD)/fuzz_%,$(FUZZ))
 $(FUZZERS): $(BUILD)/fuzz_%: $(BUILD)/tests/fuzz/fuzz_%.o $(FUZZ_HELP) $(OBJECTS)
-	$(CC) $(CFLAGS) -fsanitize=fuzzer $(LDFLAGS) -o $@ $^ $(LDLIBS)
+	$(call say,LINK,$@)
+	$(Q)$(CC) $(CFLAGS) -fsanitize=fuzzer $(LDFLAGS) -o $@ $^ $(LDLIBS)
 build-fuzz: $(FUZZERS)
 # Kernels are loops over lanes, all inlined: AFL's counters triple the minutes that they take to compile and tell it
 # nothing that a fuzzer could use. The sanitizers stay.
@@ -196,13 +218,15 @@ fuzz-afl:
 	@$(MAKE) -s $(JOBS) config=afl FUZZ='$(FUZZ)' build-fuzz
 	@tools/fuzz.sh afl $(FUZZ_SECONDS) $(FUZZ)
 # Embree, where it is installed, is the peer of the ray benchmark; the program itself never uses it.
-HAVE_EMBREE := $(shell echo '\#include <embree3/rtcore.h>' | $(CC) -E -x c - >/dev/null 2>&1 && echo yes)
+HAVE_EMBREE := $(shell $(CC) -fsyntax-only -include embree3/rtcore.h -x c /dev/null >/dev/null 2>&1 && echo yes)
 $(BUILD)/bench/rays: $(BUILD)/bench/rays.o $(BUILD)/bench/rays_scenes.o $(OBJECTS)
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(if $(HAVE_EMBREE),-lembree3) $(LDLIBS)
+	$(call say,LINK,$@)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(if $(HAVE_EMBREE),-lembree3) $(LDLIBS)
 $(BUILD)/bench/rays.o: override CPPFLAGS += $(if $(HAVE_EMBREE),-DHAVE_EMBREE)
 
 $(BUILD)/bench/growth: $(BUILD)/bench/growth.o $(BUILD)/bench/rays_scenes.o $(OBJECTS)
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+	$(call say,LINK,$@)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
 bench: all
 	@bench/run.sh
@@ -221,5 +245,5 @@ clean:
 	rm -rf build gray rt
 
 force:
-.PHONY: all check-libraries build-tests check-clang read-sources test test-long coverage layers bench format install clean force build-fuzz fuzz fuzz-afl
+.PHONY: all help check-libraries build-tests check-clang read-sources test test-long coverage layers bench format install clean force build-fuzz fuzz fuzz-afl
 -include $(ALL_OBJECTS:.o=.d)

@@ -2,7 +2,7 @@
 """What the tests reach: lines, and the two outcomes of every condition as it stands in the source.
 
 coverage.py FOLDER reads FOLDER/export.json and FOLDER/export.lcov (both of llvm-cov) and writes, into the same folder,
-summary.md (rooms, marks, files below their mark) and missing.txt (every line and outcome that was not reached).
+summary.md (modules, marks, files below their mark) and missing.txt (every line and outcome that was not reached).
 
 Counted is what the source says: `a && b` has two conditions and so four outcomes, a case of a switch is one condition (that none of the cases of a closed
 kind fits is none).
@@ -15,7 +15,9 @@ import os
 import re
 import sys
 
-ROOMS = "base math expr image accel geom look scene formats world render script app".split()
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+with open(os.path.join(ROOT, "Makefile")) as makefile:
+    MODULES = re.search(r"^MODULES = (.*)$", makefile.read(), re.MULTILINE).group(1).split()
 # What must be reached whole; everything else counts for the totals only.
 MARKS = {
     "binding": r"src/script/",
@@ -190,12 +192,12 @@ def main():
     folder = sys.argv[1]
     files = read(folder, os.getcwd())
     head = "| lines, % | missing | branches, % | missing |\n| --- | ---: | ---: | ---: | ---: |"
-    out = [f"| room {head}"]
+    out = [f"| module {head}"]
     counts = {name: file.count() for name, file in files.items()}
-    for room in ROOMS:
-        inside = [c for name, c in counts.items() if name.startswith(f"src/{room}/")]
+    for module in MODULES:
+        inside = [c for name, c in counts.items() if name.startswith(f"src/{module}/")]
         if inside:
-            out.append(row(room, add(inside)))
+            out.append(row(module, add(inside)))
     total = add(counts.values())
     out += [row("**all**", total), "", f"| must be whole {head}"]
     for mark, pattern in MARKS.items():
@@ -211,7 +213,7 @@ def main():
     with open(os.path.join(folder, "missing.txt"), "w") as missing:
         for name in sorted(files):
             tell_missing(files[name], missing)
-    print("\n".join(out[:out.index("", len(ROOMS) + 4)]))
+    print("\n".join(out[:out.index("", len(MODULES) + 4)]))
 
 
 def tell_missing(file, out):

@@ -1,16 +1,16 @@
 #!/bin/sh
-# Prints every include that points against the order of rooms (docs/design.md), every circle of headers that include one
-# another, and every use of files or memory outside the one room that owns them; fails when there is any.
+# Prints every include that points against the order of modules (docs/design.md), every circle of headers that include one
+# another, and every use of files or memory outside the one module that owns them; fails when there is any.
 cd "$(dirname "$0")/.." || exit 1
-rooms="base math expr image accel geom material light scene formats world render script app"
+modules=$(sed -n 's/^MODULES = //p' Makefile) # in their order
 bad=$(mktemp) || exit 1
 trap 'rm -f "$bad"' EXIT
 
 rank() {
     n=0
-    for room in $rooms; do
+    for module in $modules; do
         n=$((n + 1))
-        [ "$room" = "$1" ] && { echo $n; return; }
+        [ "$module" = "$1" ] && { echo $n; return; }
     done
     echo 0
 }
@@ -21,12 +21,12 @@ grep -nE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' src/*/*.c src/*/*.h 2>
     from=$(printf '%s\n' "$file" | cut -d/ -f2)
     case $include in
     */*) to=${include%%/*} ;;
-    *) echo "$line: an include names its room: \"$from/$include\"" >>"$bad"; continue ;;
+    *) echo "$line: an include names its module: \"$from/$include\"" >>"$bad"; continue ;;
     esac
     from_rank=$(rank "$from")
     to_rank=$(rank "$to")
     if [ "$to_rank" -eq 0 ]; then
-        echo "$line: no such room" >>"$bad"
+        echo "$line: no such module" >>"$bad"
     elif [ "$to_rank" -gt "$from_rank" ]; then
         echo "$line: $from must not use $to" >>"$bad"
     fi
@@ -61,7 +61,7 @@ sources=$(ls src/*/*.c src/*/*.h 2>/dev/null)
 
 if [ -s "$bad" ]; then
     cat "$bad"
-    echo "layers: $(wc -l <"$bad") lines against the order of rooms" >&2
+    echo "layers: $(wc -l <"$bad") lines against the order of modules" >&2
     exit 1
 fi
-echo "layers: every include points the right way; memory, files and elementary functions stay in their rooms"
+echo "layers: every include points the right way; memory, files and elementary functions stay in their modules"
