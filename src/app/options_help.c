@@ -42,12 +42,11 @@ static void print_option(FILE *stream, const struct option *option) {
 }
 
 void options_print_help(FILE *stream) {
-    (void)fputs(
-        "gray renders scenes that are written as Lua scripts.\n"
-        "usage: gray [options] [--] scene.lua ...\n"
-        "       gray merge [-o FILE] [options] PART ...\n"
-        "Long options take one dash or two, and '_' or '-' between words; the value follows after a blank or '='.\n",
-        stream);
+    (void)fputs("gray renders scenes that are written as Lua scripts.\n"
+                "usage: gray [options] [--] scene.lua ...\n"
+                "       gray merge [-o FILE] [options] PART ...\n"
+                "Long options take one dash or two, and '_' or '-' between words; a space or '=' precedes the value.\n",
+                stream);
     for (int group = 0; group < GROUP_COUNT; group++) {
         (void)fprintf(stream, "\n%s\n", option_group_titles[group]);
         for (int i = 0; i < option_count; i++) {
@@ -55,10 +54,9 @@ void options_print_help(FILE *stream) {
                 print_option(stream, &option_table[i]);
         }
     }
-    (void)fputs(
-        "\nExit status: 0 all pictures were written; 1 a scene or a file was wrong; 2 wrong usage; 3 the machine\n"
-        "failed (disk full, out of memory, a crash); 130 interrupted. Of several scripts each is tried, and the\n"
-        "highest status counts. Wrong usage and an interruption end the run.\n"
-        "Environment: GRAY_LUA names the folder of the Lua library that is searched last by require.\n",
-        stream);
+    (void)fputs("\nExit status: 0 all pictures written; 1 error in a scene or a file; 2 wrong usage; 3 error of the\n"
+                "machine (disk full, out of memory, a crash); 130 interrupted. gray runs every script and returns the\n"
+                "highest status. Wrong usage and an interruption end the run at once.\n"
+                "Environment: GRAY_LUA is the folder of the Lua library, which require searches last.\n",
+                stream);
 }

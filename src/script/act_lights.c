@@ -18,43 +18,43 @@ enum { SKYLIGHT_SKY = LIGHT_EXCLUDE + 1, SKYLIGHT_SAMPLES, SKYLIGHT_COUNT };
                        ANY,                                                                                            \
                        NULL,                                                                                           \
                        "{1, 0, 0}",                                                                                    \
-                       "Coefficients: light is divided by c0 + c1 d + c2 d^2."},                                       \
+                       "Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2)."},                           \
     [LIGHT_RANGE] = {"range",                                                                                          \
                      KIND_NUMBER,                                                                                      \
                      OPTIONAL | LOW_OPEN,                                                                              \
                      ABOVE(0),                                                                                         \
                      NULL,                                                                                             \
                      NULL,                                                                                             \
-                     "How far it reaches, instead of falloff: light is multiplied by 1 - d / range."},                 \
+                     "Range, instead of falloff: the light is multiplied by 1 - d / range, and is 0 beyond."},         \
     [LIGHT_INTENSITY] = {"intensity",                                                                                  \
                          KIND_NUMBER,                                                                                  \
                          OPTIONAL,                                                                                     \
                          ABOVE(0),                                                                                     \
                          NULL,                                                                                         \
                          NULL,                                                                                         \
-                         "Physical fading, instead of falloff: light is multiplied by intensity / d^2."}
+                         "Inverse square falloff, instead of falloff: the light is multiplied by intensity / d^2."}
 #define LAMP_FIELDS                                                                                                    \
-    [LIGHT_EMISSION] = {"emission",                                                                                    \
-                        KIND_COLOUR,                                                                                   \
-                        OPTIONAL,                                                                                      \
-                        ANY,                                                                                           \
-                        NULL,                                                                                          \
-                        NULL,                                                                                          \
-                        "Radiance of its surface, times colour: what it lights follows its true shape, without "       \
-                        "falloff."},                                                                                   \
+    [LIGHT_EMISSION] =                                                                                                 \
+        {"emission",                                                                                                   \
+         KIND_COLOUR,                                                                                                  \
+         OPTIONAL,                                                                                                     \
+         ANY,                                                                                                          \
+         NULL,                                                                                                         \
+         NULL,                                                                                                         \
+         "Radiance of its surface, multiplied by colour; the light then depends on its true shape, without falloff."}, \
     [LIGHT_SAMPLES] =                                                                                                  \
         {"samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "area_samples", "N x N shadow rays for this light."},  \
-    [LIGHT_VISIBLE] = {"visible", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the light itself is seen."}
+    [LIGHT_VISIBLE] = {"visible", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the light itself is visible."}
 #define ONE_SIDED(text)                                                                                                \
     {                                                                                                                  \
         "one_sided", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",                                                       \
-            "Whether it is seen, and emits, only on the side of " text "."                                             \
+            "Whether it emits, and is visible, only on the side of " text "."                                          \
     }
 
 static const struct parameter light_parameters[] = {
     LIGHT_FIELDS(0),
     FADING_FIELDS,
-    [POINT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Where it stands."},
+    [POINT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Position."},
 };
 
 #define SAMPLES_FIELD                                                                                                  \
@@ -63,34 +63,34 @@ static const struct parameter light_parameters[] = {
 static const struct parameter mesh_light_parameters[] = {
     LIGHT_FIELDS(OPTIONAL),
     [MESHLIGHT_EMISSION] = {"emission", KIND_COLOUR, OPTIONAL, ANY, NULL, "its materials'",
-                            "Radiance of its surface, times colour."},
+                            "Radiance of its surface, multiplied by colour."},
     [MESHLIGHT_SAMPLES] = SAMPLES_FIELD,
     [MESHLIGHT_MESH] = {"mesh", KIND_NODE, 0, ANY, NULL, NULL,
-                        "A mesh, or a node with meshes below; it shines wherever the scene shows it, and unseen where "
-                        "its own transforms put it when the scene does not."},
+                        "A mesh, or a node with meshes below it. It emits at each of its positions in the scene; if it "
+                        "is not in the scene, it emits invisibly at its own transforms."},
 };
 
 static const struct parameter sky_light_parameters[] = {
     LIGHT_FIELDS(OPTIONAL),
-    [SKYLIGHT_SKY] = {"sky", KIND_BACKGROUND, 0, ANY, NULL, NULL, "A sky, one colour all around, or 'gradient'."},
+    [SKYLIGHT_SKY] = {"sky", KIND_BACKGROUND, 0, ANY, NULL, NULL, "A sky, a colour, or 'gradient'."},
     [SKYLIGHT_SAMPLES] = SAMPLES_FIELD,
 };
 
 static const struct parameter directional_parameters[] = {
     LIGHT_FIELDS(0),
-    [DISTANT_DIRECTION] = {"direction", KIND_DIRECTION, 0, ANY, NULL, NULL, "The direction its light goes in."},
+    [DISTANT_DIRECTION] = {"direction", KIND_DIRECTION, 0, ANY, NULL, NULL, "Direction in which the light travels."},
 };
 
 static const struct parameter spot_parameters[] = {
     LIGHT_FIELDS(0),
     FADING_FIELDS,
-    [SPOT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Where it stands."},
+    [SPOT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Position."},
     [SPOT_DIRECTION] = {"direction", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, -1, 0}", "The axis of its cone."},
     [SPOT_TARGET] = {"target", KIND_POINT, OPTIONAL, ANY, NULL, NULL, "A point on the axis, instead of direction."},
     [SPOT_INNER] = {"inner", KIND_NUMBER, OPTIONAL, BETWEEN(0, 180), "degrees", "three quarters of outer",
-                    "Angle from the axis up to which its light is full."},
+                    "Angle from the axis where the light begins to fall off."},
     [SPOT_OUTER] = {"outer", KIND_NUMBER, OPTIONAL | LOW_OPEN, BETWEEN(0, 180), "degrees",
-                    "30, or inner if that is more", "Angle from the axis where its light ends."},
+                    "30, or inner if that is more", "Angle from the axis where the light ends."},
 };
 
 static const struct parameter area_parameters[] = {
@@ -98,8 +98,8 @@ static const struct parameter area_parameters[] = {
     FADING_FIELDS,
     LAMP_FIELDS,
     [AREA_CORNER] = {"corner", KIND_POINT, 0, ANY, NULL, NULL, "One corner of the parallelogram."},
-    [AREA_V1] = {"v1", KIND_DIRECTION, 0, ANY, NULL, NULL, "The edge to the next corner."},
-    [AREA_V2] = {"v2", KIND_DIRECTION, 0, ANY, NULL, NULL, "The edge to the corner on the other side."},
+    [AREA_V1] = {"v1", KIND_DIRECTION, 0, ANY, NULL, NULL, "Edge from that corner."},
+    [AREA_V2] = {"v2", KIND_DIRECTION, 0, ANY, NULL, NULL, "The other edge from that corner."},
     [AREA_ONE_SIDED] = ONE_SIDED("v1 x v2"),
 };
 
@@ -294,22 +294,22 @@ static bool act_sky_light(struct context *context, const struct value *args, str
 
 /* The rows of the table. */
 static const struct function rows[] = {
-    GR("light", light_parameters, RESULT_LIGHT, act_light, "A light at a point.", "position colour falloff?"),
-    GR("area_light", area_parameters, RESULT_LIGHT, act_area_light, "A light that is a parallelogram; soft shadows.",
+    GR("light", light_parameters, RESULT_LIGHT, act_light, "A point light.", "position colour falloff?"),
+    GR("area_light", area_parameters, RESULT_LIGHT, act_area_light, "A parallelogram as a light, with soft shadows.",
        "corner v1 v2 colour falloff?"),
     GR("spherical_light", ball_light_parameters, RESULT_LIGHT, act_spherical_light,
-       "A light that is a sphere; soft shadows.", "position colour falloff radius"),
-    GR("disc_light", disc_light_parameters, RESULT_LIGHT, act_disc_light, "A light that is a disc; soft shadows.",
+       "A sphere as a light, with soft shadows.", "position colour falloff radius"),
+    GR("disc_light", disc_light_parameters, RESULT_LIGHT, act_disc_light, "A disc as a light, with soft shadows.",
        "position normal radius colour falloff?"),
     GR("directional_light", directional_parameters, RESULT_LIGHT, act_directional_light,
-       "Light of one direction from infinitely far away.", "direction colour"),
-    GR("spot_light", spot_parameters, RESULT_LIGHT, act_spot_light, "A light at a point that shines into a cone.",
+       "A light at infinity: all its rays are parallel.", "direction colour"),
+    GR("spot_light", spot_parameters, RESULT_LIGHT, act_spot_light, "A point light that shines into a cone.",
        "position direction colour inner outer falloff?"),
 
-    GR("mesh_light", mesh_light_parameters, RESULT_LIGHT, act_mesh_light,
-       "Light from the triangles of a mesh, as bright as they look.", "mesh emission?"),
+    GR("mesh_light", mesh_light_parameters, RESULT_LIGHT, act_mesh_light, "The triangles of a mesh as a light.",
+       "mesh emission?"),
     GR("sky_light", sky_light_parameters, RESULT_LIGHT, act_sky_light,
-       "Light from all of a sky; more shadow rays go where it is bright.", "sky"),
+       "A sky as a light; bright parts get more shadow rays.", "sky"),
 };
 
 const struct function_rows light_functions = {rows, COUNT(rows)};

@@ -20,7 +20,7 @@
 #define OPEN_ENDS                                                                                                      \
     {                                                                                                                  \
         "open", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",                                                            \
-            "Whether it is a mere surface without caps; then it is no solid for CSG."                                  \
+            "Whether it has no caps; without caps it is not a solid for CSG."                                          \
     }
 
 static struct node *shape_node(struct context *context, const struct value *args, const char *otherwise,
@@ -66,8 +66,8 @@ static bool ends_are_fine(struct vec3 from, struct vec3 to, struct error *error)
 enum { CYLINDER_FROM = SHAPE_FIRST, CYLINDER_TO, CYLINDER_RADIUS, CYLINDER_OPEN };
 static const struct parameter cylinder_parameters[] = {
     SHAPE("cylinder"),
-    [CYLINDER_FROM] = PLACE("from", "{0, -1, 0}", "The middle of one end."),
-    [CYLINDER_TO] = PLACE("to", "{0, 1, 0}", "The middle of the other end."),
+    [CYLINDER_FROM] = PLACE("from", "{0, -1, 0}", "Centre of one end."),
+    [CYLINDER_TO] = PLACE("to", "{0, 1, 0}", "Centre of the other end."),
     [CYLINDER_RADIUS] = LENGTH("radius", "1", "Radius."),
     [CYLINDER_OPEN] = OPEN_ENDS,
 };
@@ -86,9 +86,10 @@ static bool act_cylinder(struct context *context, const struct value *args, stru
 enum { CONE_FROM = SHAPE_FIRST, CONE_TO, CONE_FROM_RADIUS, CONE_RADIUS, CONE_OPEN };
 static const struct parameter cone_parameters[] = {
     SHAPE("cone"),
-    [CONE_FROM] = PLACE("from", "{0, 0, 0}", "The apex, or the middle of the end with from_radius."),
-    [CONE_TO] = PLACE("to", "{0, 1, 0}", "The middle of the end with radius."),
-    [CONE_FROM_RADIUS] = {"from_radius", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0", "Radius at from: a frustum."},
+    [CONE_FROM] = PLACE("from", "{0, 0, 0}", "The apex, or the centre of the end with from_radius."),
+    [CONE_TO] = PLACE("to", "{0, 1, 0}", "Centre of the end with radius."),
+    [CONE_FROM_RADIUS] = {"from_radius", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0",
+                          "Radius at from; above 0 it is a frustum."},
     [CONE_RADIUS] = {"radius", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1", "Radius at to."},
     [CONE_OPEN] = OPEN_ENDS,
 };
@@ -108,7 +109,7 @@ enum { PARABOLOID_RADIUS = SHAPE_FIRST, PARABOLOID_HEIGHT, PARABOLOID_OPEN };
 static const struct parameter paraboloid_parameters[] = {
     SHAPE("paraboloid"),
     [PARABOLOID_RADIUS] = LENGTH("radius", "1", "Radius of the rim."),
-    [PARABOLOID_HEIGHT] = LENGTH("height", "1", "The tip is at the origin, the rim at this y."),
+    [PARABOLOID_HEIGHT] = LENGTH("height", "1", "y of the rim; the apex is at the origin."),
     [PARABOLOID_OPEN] = OPEN_ENDS,
 };
 
@@ -134,11 +135,11 @@ enum {
 static const struct parameter hyperboloid_parameters[] = {
     SHAPE("hyperboloid"),
     [HYPERBOLOID_SHEETS] = {"sheets", KIND_WHOLE, OPTIONAL, BETWEEN(1, 2), NULL, "1, with gap 2",
-                            "One sheet with a waist, or two bowls."},
+                            "1: one sheet with a waist; 2: two bowls."},
     [HYPERBOLOID_RADIUS] = LENGTH("radius", "twice waist, or 1", "Radius of both rims."),
-    [HYPERBOLOID_HEIGHT] = LENGTH("height", "twice gap, or 1", "The rims are at this y and at minus this y."),
-    [HYPERBOLOID_WAIST] = LENGTH("waist", "radius/2", "One sheet: radius at y = 0."),
-    [HYPERBOLOID_GAP] = LENGTH("gap", "height/2", "Two sheets: the tips are at this y and at minus this y."),
+    [HYPERBOLOID_HEIGHT] = LENGTH("height", "twice gap, or 1", "y of one rim; the other is at -y."),
+    [HYPERBOLOID_WAIST] = LENGTH("waist", "radius/2", "Radius at y = 0, for one sheet."),
+    [HYPERBOLOID_GAP] = LENGTH("gap", "height/2", "y of one apex, for two sheets; the other is at -y."),
     [HYPERBOLOID_OPEN] = OPEN_ENDS,
 };
 
@@ -174,7 +175,7 @@ enum { ELLIPSOID_CENTRE = SHAPE_FIRST, ELLIPSOID_RADII };
 static const struct parameter ellipsoid_parameters[] = {
     SHAPE("ellipsoid"),
     [ELLIPSOID_CENTRE] = PLACE("centre", "{0, 0, 0}", "Centre."),
-    [ELLIPSOID_RADII] = {"radii", KIND_SIZE, OPTIONAL, ANY, NULL, "1", "Radii along x, y and z, one number or three."},
+    [ELLIPSOID_RADII] = {"radii", KIND_SIZE, OPTIONAL, ANY, NULL, "1", "Radii along x, y and z: one number or three."},
 };
 
 static bool act_ellipsoid(struct context *context, const struct value *args, struct result *result,
@@ -220,8 +221,8 @@ static const struct parameter quadric_parameters[] = {
     [QUADRIC_Y] = COEFFICIENT("y"),
     [QUADRIC_Z] = COEFFICIENT("z"),
     [QUADRIC_CONSTANT] = {"constant", KIND_NUMBER, OPTIONAL, ANY, NULL, "0",
-                          "The solid is where the sum of all is negative."},
-    [QUADRIC_MIN] = PLACE("min", "without end", "Corner of the box that limits it."),
+                          "Constant term; the solid is where the sum is negative."},
+    [QUADRIC_MIN] = PLACE("min", "without end", "Corner of a box that limits it."),
     [QUADRIC_MAX] = PLACE("max", "without end", "The opposite corner."),
     [QUADRIC_OPEN] = OPEN_ENDS,
 };
@@ -259,8 +260,9 @@ static bool act_quadric(struct context *context, const struct value *args, struc
 enum { TORUS_MAJOR = SHAPE_FIRST, TORUS_MINOR };
 static const struct parameter torus_parameters[] = {
     SHAPE("torus"),
-    [TORUS_MAJOR] = {"major", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1", "Radius of the circle in y = 0."},
-    [TORUS_MINOR] = LENGTH("minor", "0.25", "Radius of the tube around it."),
+    [TORUS_MAJOR] = {"major", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1",
+                     "Radius of the centre circle in the plane y = 0."},
+    [TORUS_MINOR] = LENGTH("minor", "0.25", "Radius of the tube."),
 };
 
 static bool act_torus(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -278,8 +280,8 @@ enum { SUPER_E = SHAPE_FIRST, SUPER_N };
 static const struct parameter superellipsoid_parameters[] = {
     SHAPE("superellipsoid"),
     [SUPER_E] = {"e", KIND_NUMBER, OPTIONAL, BETWEEN(0.02, 20), NULL, "1",
-                 "Roundness seen along y: near 0 a square, 1 a circle, 2 a diamond."},
-    [SUPER_N] = {"n", KIND_NUMBER, OPTIONAL, BETWEEN(0.02, 20), NULL, "1", "Roundness of the profile, likewise."},
+                 "Exponent of the cross-section: near 0 a square, 1 a circle, 2 a diamond."},
+    [SUPER_N] = {"n", KIND_NUMBER, OPTIONAL, BETWEEN(0.02, 20), NULL, "1", "Exponent of the profile, likewise."},
 };
 
 static bool act_superellipsoid(struct context *context, const struct value *args, struct result *result,
@@ -319,9 +321,9 @@ enum { PLANE_NORMAL = SHAPE_FIRST, PLANE_DISTANCE };
 static const struct parameter plane_parameters[] = {
     SHAPE("plane"),
     [PLANE_NORMAL] = {"normal", KIND_DIRECTION, OPTIONAL, ANY, NULL, "none: the square",
-                      "A plane without end that faces there; a half-space in CSG."},
+                      "Normal of an infinite plane; in CSG the plane is a half-space."},
     [PLANE_DISTANCE] = {"distance", KIND_NUMBER, OPTIONAL, ANY, NULL, "0",
-                        "How far from the origin it is, along the normal."},
+                        "Distance of the plane from the origin along the normal."},
 };
 
 static bool act_plane(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -349,10 +351,10 @@ static bool span_is_fine(struct vec3 u, struct vec3 v, const char *what, struct 
 enum { RECTANGLE_CORNER = SHAPE_FIRST, RECTANGLE_ALONG, RECTANGLE_UP };
 static const struct parameter rectangle_parameters[] = {
     SHAPE("rectangle"),
-    [RECTANGLE_CORNER] = PLACE("corner", "{-0.5, 0, 0.5}", "The lower left corner of an image on it."),
-    [RECTANGLE_ALONG] = {"along", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{1, 0, 0}", "The edge to the right."},
+    [RECTANGLE_CORNER] = PLACE("corner", "{-0.5, 0, 0.5}", "Corner where an image has its lower left."),
+    [RECTANGLE_ALONG] = {"along", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{1, 0, 0}", "Edge along u of an image."},
     [RECTANGLE_UP] = {"up", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 0, -1}",
-                      "The edge upwards; not parallel, or else any."},
+                      "Edge along v of an image; not parallel to along."},
 };
 
 static bool act_rectangle(struct context *context, const struct value *args, struct result *result,
@@ -369,7 +371,7 @@ enum { DISC_CENTRE = SHAPE_FIRST, DISC_NORMAL, DISC_RADIUS, DISC_INNER };
 static const struct parameter disc_parameters[] = {
     SHAPE("disc"),
     [DISC_CENTRE] = PLACE("centre", "{0, 0, 0}", "Centre."),
-    [DISC_NORMAL] = {"normal", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 1, 0}", "Where its front looks."},
+    [DISC_NORMAL] = {"normal", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 1, 0}", "Normal of the front."},
     [DISC_RADIUS] = LENGTH("radius", "1, or twice inner", "Radius."),
     [DISC_INNER] = {"inner", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0", "Radius of the hole."},
 };
@@ -389,7 +391,7 @@ static bool act_disc(struct context *context, const struct value *args, struct r
 enum { TRIANGLE_A = SHAPE_FIRST, TRIANGLE_B, TRIANGLE_C };
 static const struct parameter triangle_parameters[] = {
     SHAPE("triangle"),
-    [TRIANGLE_A] = {"a", KIND_POINT, 0, ANY, NULL, NULL, "A corner; the front sees a, b, c counter-clockwise."},
+    [TRIANGLE_A] = {"a", KIND_POINT, 0, ANY, NULL, NULL, "A corner; from the front, a, b, c run counterclockwise."},
     [TRIANGLE_B] = {"b", KIND_POINT, 0, ANY, NULL, NULL, "The next corner."},
     [TRIANGLE_C] = {"c", KIND_POINT, 0, ANY, NULL, NULL, "The last corner."},
 };
@@ -407,9 +409,9 @@ enum { POLYGON_POINTS = SHAPE_FIRST, POLYGON_OUTLINES };
 static const struct parameter polygon_parameters[] = {
     SHAPE("polygon"),
     [POLYGON_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL,
-                        "Corners in one plane; the front sees the first outline counter-clockwise."},
-    [POLYGON_OUTLINES] = {"outlines", KIND_FACES, OPTIONAL, ANY, NULL, "all points in turn",
-                          "Tuples of 0-based indices into points; what an odd number of them surrounds is filled."},
+                        "Corners in one plane; from the front, the first outline runs counterclockwise."},
+    [POLYGON_OUTLINES] = {"outlines", KIND_FACES, OPTIONAL, ANY, NULL, "all points in order",
+                          "Tuples of indices into points, from 0; the polygon is filled by the even-odd rule."},
 };
 
 static bool act_polygon(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -445,13 +447,13 @@ static bool act_polygon(struct context *context, const struct value *args, struc
 /* The rows of the table. */
 static const struct function rows[] = {
     GR("cylinder", cylinder_parameters, RESULT_NODE, act_cylinder,
-       "A capped cylinder; about y, of radius 1, from y = -1 to 1 if nothing else is said.", "material", "name"),
+       "A capped cylinder; by default about the y axis, of radius 1, from y = -1 to 1.", "material", "name"),
     GR("cone", cone_parameters, RESULT_NODE, act_cone,
-       "A capped cone or frustum; apex at the origin, radius 1 at y = 1 if nothing else is said.", "material", "name"),
+       "A capped cone or frustum; by default with apex at the origin and radius 1 at y = 1.", "material", "name"),
     GR("torus", torus_parameters, RESULT_NODE, act_torus, "A torus about the y axis.", "name major? minor?",
        "material major? minor?"),
     GR("plane", plane_parameters, RESULT_NODE, act_plane,
-       "The square from -0.5 to 0.5 in x and z at y = 0; with a normal a plane without end.", "material", "name"),
+       "The square from -0.5 to 0.5 in x and z at y = 0; with a normal, an infinite plane.", "material", "name"),
     GR("square", square_parameters, RESULT_NODE, act_square, "The square from -0.5 to 0.5 in x and z at y = 0.",
        "material", "name"),
     GR("box", box_parameters, RESULT_NODE, act_box, "A box between two corners.", "material min max", "name min max"),
@@ -462,7 +464,7 @@ static const struct function rows[] = {
     GR("hyperboloid", hyperboloid_parameters, RESULT_NODE, act_hyperboloid,
        "A capped hyperboloid about y, of one sheet or of two.", "material", "name"),
     GR("quadric", quadric_parameters, RESULT_NODE, act_quadric,
-       "Where xx x^2 + yy y^2 + zz z^2 + xy x y + xz x z + yz y z + x x + y y + z z + constant is negative.",
+       "The solid where xx x^2 + yy y^2 + zz z^2 + xy x y + xz x z + yz y z + x x + y y + z z + constant < 0.",
        "material xx yy zz constant", "name xx yy zz constant"),
     GR("superellipsoid", superellipsoid_parameters, RESULT_NODE, act_superellipsoid,
        "A rounded cube, cylinder, double cone or star: (|x|^(2/e) + |z|^(2/e))^(e/n) + |y|^(2/n) = 1.",
@@ -471,7 +473,7 @@ static const struct function rows[] = {
        "material corner? along? up?", "name corner? along? up?"),
     GR("disc", disc_parameters, RESULT_NODE, act_disc, "A disc, or a ring.", "material", "name"),
     GR("triangle", triangle_parameters, RESULT_NODE, act_triangle, "A triangle.", "material a b c", "name a b c"),
-    GR("polygon", polygon_parameters, RESULT_NODE, act_polygon, "A polygon of any outline, with holes.",
+    GR("polygon", polygon_parameters, RESULT_NODE, act_polygon, "A polygon of any shape, with holes.",
        "material points outlines?", "name points outlines?"),
 };
 const struct function_rows shape_functions = {rows, COUNT(rows)};

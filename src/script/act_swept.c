@@ -46,16 +46,14 @@ static bool one_each(struct context *context, const struct value *value, const c
 enum { LATHE_POINTS = SHAPE_FIRST, LATHE_SPLINE, LATHE_LOOP, LATHE_OPEN };
 #define SPLINE(otherwise, help)                                                                                        \
     { "spline", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(SPLINE_KINDS), NULL, "'" otherwise "'", help }
-#define SPLINE_HELP "How the points are joined; bezier takes 3 n + 1 of them."
+#define SPLINE_HELP "Kind of spline through the points; bezier needs 3 n + 1 points."
 
 static const struct parameter lathe_parameters[] = {
     SHAPE("lathe"),
     [LATHE_POINTS] = {"points", KIND_PAIRS, 0, ANY, NULL, NULL, "The profile: pairs of radius and y."},
     [LATHE_SPLINE] = SPLINE("linear", SPLINE_HELP),
-    [LATHE_LOOP] = {"loop", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
-                    "Whether the profile goes back to its first point."},
-    [LATHE_OPEN] = {"open", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
-                    "Whether ends off the axis stay open, not closed by discs."},
+    [LATHE_LOOP] = {"loop", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the profile is closed."},
+    [LATHE_OPEN] = {"open", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether ends off the axis have no discs."},
 };
 
 static bool act_lathe(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -75,10 +73,10 @@ static const struct parameter prism_parameters[] = {
     SHAPE("prism"),
     [PRISM_OUTLINE] = {"outline", KIND_PAIRS, 0, ANY, NULL, NULL, "A closed curve: pairs of x and z."},
     [PRISM_HOLES] = {"holes", KIND_CURVES, OPTIONAL, ANY, NULL, "none",
-                     "More closed curves; what an odd number of all surrounds is solid."},
+                     "More closed curves; the solid follows the even-odd rule."},
     [PRISM_FROM] = {"from", KIND_NUMBER, OPTIONAL, ANY, NULL, "0", "Height of the bottom."},
     [PRISM_TO] = {"to", KIND_NUMBER, OPTIONAL, ANY, NULL, "from + 1", "Height of the top."},
-    [PRISM_SPLINE] = SPLINE("linear", "How the points are joined; bezier takes 3 n of them."),
+    [PRISM_SPLINE] = SPLINE("linear", "Kind of spline through the points; bezier needs 3 n points."),
 };
 
 static bool act_prism(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -107,10 +105,10 @@ static bool act_prism(struct context *context, const struct value *args, struct 
 enum { SWEEP_POINTS = SHAPE_FIRST, SWEEP_RADII, SWEEP_SPLINE, SWEEP_LOOP };
 static const struct parameter sweep_parameters[] = {
     SHAPE("sweep"),
-    [SWEEP_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL, "Where the centre of the ball goes."},
-    [SWEEP_RADII] = {"radii", KIND_NUMBERS, 0, ABOVE(0), NULL, NULL, "Its radius at each point, or one for all."},
+    [SWEEP_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL, "Path of the centre of the ball."},
+    [SWEEP_RADII] = {"radii", KIND_NUMBERS, 0, ABOVE(0), NULL, NULL, "Radius at each point, or one for all."},
     [SWEEP_SPLINE] = SPLINE("catmull-rom", SPLINE_HELP),
-    [SWEEP_LOOP] = {"loop", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether it goes back to the first point."},
+    [SWEEP_LOOP] = {"loop", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the path is closed."},
 };
 
 static bool act_sweep(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -129,11 +127,11 @@ static bool act_sweep(struct context *context, const struct value *args, struct 
 enum { CURVE_POINTS = SHAPE_FIRST, CURVE_WIDTHS, CURVE_SPLINE, CURVE_FLAT };
 static const struct parameter curve_parameters[] = {
     SHAPE("curve"),
-    [CURVE_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL, "Where it goes."},
-    [CURVE_WIDTHS] = {"widths", KIND_NUMBERS, 0, ABOVE(0), NULL, NULL, "Its width at each point, or one for all."},
+    [CURVE_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL, "Path of the curve."},
+    [CURVE_WIDTHS] = {"widths", KIND_NUMBERS, 0, ABOVE(0), NULL, NULL, "Width at each point, or one for all."},
     [CURVE_SPLINE] = SPLINE("catmull-rom", SPLINE_HELP),
     [CURVE_FLAT] = {"flat", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
-                    "Whether it is shaded as a ribbon, not as a round hair."},
+                    "Whether it is shaded as a flat ribbon instead of a round hair."},
 };
 
 static bool act_curve(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -189,15 +187,13 @@ enum { FIELD_HEIGHTS = SHAPE_FIRST, FIELD_IMAGE, FIELD_FLOOR, FIELD_OPEN, FIELD_
 static const struct parameter field_parameters[] = {
     SHAPE("height field"),
     [FIELD_HEIGHTS] = {"heights", KIND_ROWS, OPTIONAL, ANY, NULL, NULL,
-                       "Rows of equally many heights; x runs within a row, z from row to row."},
+                       "Rows of heights, all of one length; x varies within a row, z from row to row."},
     [FIELD_IMAGE] = {"image", KIND_IMAGE, OPTIONAL, ANY, NULL, NULL,
-                     "A picture instead: black is 0, white is 1, its upper edge is z = 0."},
-    [FIELD_FLOOR] = {"floor", KIND_NUMBER, OPTIONAL, ANY, NULL, "a tenth of the relief below it",
-                     "Height of the solid's floor."},
-    [FIELD_OPEN] = {"open", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
-                    "Whether it is a sheet without walls and floor."},
-    [FIELD_SMOOTH] = {"smooth", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
-                      "Whether it is shaded with interpolated normals."},
+                     "A picture instead of heights: black is 0, white is 1, the upper edge is z = 0."},
+    [FIELD_FLOOR] = {"floor", KIND_NUMBER, OPTIONAL, ANY, NULL, "a tenth of the height range below the lowest point",
+                     "Height of the floor of the solid."},
+    [FIELD_OPEN] = {"open", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether it has no walls and no floor."},
+    [FIELD_SMOOTH] = {"smooth", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether normals are interpolated."},
 };
 
 static bool act_height_field(struct context *context, const struct value *args, struct result *result,
@@ -246,11 +242,12 @@ enum { BLOB_SPHERES = SHAPE_FIRST, BLOB_CYLINDERS, BLOB_THRESHOLD };
 static const struct parameter blob_parameters[] = {
     SHAPE("blob"),
     [BLOB_SPHERES] = {"spheres", KIND_ROWS, OPTIONAL, ANY, NULL, "{}",
-                      "Balls {x, y, z, radius, strength}; strength 1 may be left out."},
+                      "Balls {x, y, z, radius, strength}; the default strength is 1."},
     [BLOB_CYLINDERS] = {"cylinders", KIND_ROWS, OPTIONAL, ANY, NULL, "{}",
-                        "Rods {x1, y1, z1, x2, y2, z2, radius, strength}."},
-    [BLOB_THRESHOLD] = {"threshold", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "0.5",
-                        "The surface is where the fields, strength (1 - (distance/radius)^2)^2, add up to this."},
+                        "Rods {x1, y1, z1, x2, y2, z2, radius, strength}; the default strength is 1."},
+    [BLOB_THRESHOLD] =
+        {"threshold", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "0.5",
+         "The surface is where the sum of the fields strength (1 - (distance/radius)^2)^2 has this value."},
 };
 
 static bool act_blob(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -274,12 +271,12 @@ static bool act_blob(struct context *context, const struct value *args, struct r
 enum { PATCH_POINTS = SHAPE_FIRST, PATCH_PATCHES, PATCH_TOLERANCE, PATCH_FLIP };
 static const struct parameter patch_parameters[] = {
     SHAPE("patch"),
-    [PATCH_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL, "Control points, 16 for each patch in 4 rows of 4."},
-    [PATCH_PATCHES] = {"patches", KIND_FACES, OPTIONAL, ANY, NULL, "points in turn",
-                       "Tuples of 16 0-based indices into points."},
+    [PATCH_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL, "Control points, 16 for each patch, in 4 rows of 4."},
+    [PATCH_PATCHES] = {"patches", KIND_FACES, OPTIONAL, ANY, NULL, "16 points each, in order",
+                       "Tuples of 16 indices into points, from 0."},
     [PATCH_TOLERANCE] = {"tolerance", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "a thousandth of the size",
-                         "The largest distance of the triangles from the true surface."},
-    [PATCH_FLIP] = {"flip", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the front is the other side."},
+                         "Largest distance of the triangles from the exact surface."},
+    [PATCH_FLIP] = {"flip", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the front is reversed."},
 };
 
 static bool act_patch(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -320,17 +317,21 @@ static bool act_patch(struct context *context, const struct value *args, struct 
 
 /* The rows of the table. */
 static const struct function rows[] = {
-    GR("lathe", lathe_parameters, RESULT_NODE, act_lathe, "A profile turned about the y axis.",
-       "material points spline?", "name points spline?"),
-    GR("prism", prism_parameters, RESULT_NODE, act_prism, "An outline drawn out along y, with holes.",
+    GR("lathe", lathe_parameters, RESULT_NODE, act_lathe,
+       "A surface of revolution: a profile rotated about the y axis.", "material points spline?",
+       "name points spline?"),
+    GR("prism", prism_parameters, RESULT_NODE, act_prism, "An extrusion: an outline along y, with holes.",
        "material outline", "name outline"),
-    GR("sweep", sweep_parameters, RESULT_NODE, act_sweep, "What a ball covers that moves along a spline.",
-       "material points radii spline?", "name points radii spline?"),
+    GR("sweep", sweep_parameters, RESULT_NODE, act_sweep,
+       "A sphere sweep: the volume of a ball that moves along a spline.", "material points radii spline?",
+       "name points radii spline?"),
     GR("height_field", field_parameters, RESULT_NODE, act_height_field,
-       "Land over the square from 0 to 1 in x and z, a solid down to its floor.", "material heights", "name heights"),
-    GR("blob", blob_parameters, RESULT_NODE, act_blob, "Balls and rods that flow into each other.",
-       "material spheres cylinders? threshold?", "name spheres cylinders? threshold?"),
-    GR("curve", curve_parameters, RESULT_NODE, act_curve, "A hair: a ribbon along a spline that faces every ray.",
+       "A height field over the square from 0 to 1 in x and z, solid down to its floor.", "material heights",
+       "name heights"),
+    GR("blob", blob_parameters, RESULT_NODE, act_blob,
+       "A blob (metaballs): the isosurface of the fields of balls and rods.", "material spheres cylinders? threshold?",
+       "name spheres cylinders? threshold?"),
+    GR("curve", curve_parameters, RESULT_NODE, act_curve, "A hair: a ribbon along a spline that faces each ray.",
        "material points widths spline?", "name points widths spline?"),
     GR("patch", patch_parameters, RESULT_NODE, act_patch, "Bicubic Bezier patches, as a mesh.",
        "material points patches?", "name points patches?"),

@@ -36,16 +36,16 @@ static bool give(struct context *context, struct texture texture, struct result 
 }
 
 #define INTERP                                                                                                         \
-    { "interp", KIND_WHOLE, OPTIONAL, BETWEEN(0, 1), NULL, "0", "How the noise is interpolated: 0 linear, 1 cosine." }
+    { "interp", KIND_WHOLE, OPTIONAL, BETWEEN(0, 1), NULL, "0", "Interpolation of the noise: 0 linear, 1 cosine." }
 /* A colour, a number for all three components, or a texture. */
 #define PART(name, help)                                                                                               \
     { name, KIND_SIZE, OR_TEXTURE, ANY, NULL, NULL, help }
 
 enum { MARBLED_F, MARBLED_MULTIPLIER, MARBLED_VEIN, MARBLED_INTERP };
 static const struct parameter marble_parameters[] = {
-    [MARBLED_F] = {"f", KIND_NUMBER, 0, ANY, NULL, NULL, "Factor of the place before the noise."},
-    [MARBLED_MULTIPLIER] = {"multiplier", KIND_NUMBER, 0, ANY, NULL, NULL, "How much the noise bends the veins."},
-    [MARBLED_VEIN] = {"vein_frequency", KIND_NUMBER, 0, ANY, NULL, NULL, "How close the veins are along y."},
+    [MARBLED_F] = {"f", KIND_NUMBER, 0, ANY, NULL, NULL, "Factor of the point before the noise."},
+    [MARBLED_MULTIPLIER] = {"multiplier", KIND_NUMBER, 0, ANY, NULL, NULL, "Strength of the noise in the veins."},
+    [MARBLED_VEIN] = {"vein_frequency", KIND_NUMBER, 0, ANY, NULL, NULL, "Frequency of the veins along y."},
     [MARBLED_INTERP] = INTERP,
 };
 
@@ -58,8 +58,8 @@ static bool marble(struct context *context, const struct value *args, struct res
 
 enum { WOODEN_F, WOODEN_DENSITY, WOODEN_INTERP };
 static const struct parameter wood_parameters[] = {
-    [WOODEN_F] = {"f", KIND_NUMBER, 0, ANY, NULL, NULL, "Factor of the place before the noise."},
-    [WOODEN_DENSITY] = {"density", KIND_NUMBER, 0, ANY, NULL, NULL, "How close the grain is."},
+    [WOODEN_F] = {"f", KIND_NUMBER, 0, ANY, NULL, NULL, "Factor of the point before the noise."},
+    [WOODEN_DENSITY] = {"density", KIND_NUMBER, 0, ANY, NULL, NULL, "Density of the grain."},
     [WOODEN_INTERP] = INTERP,
 };
 
@@ -71,9 +71,10 @@ static bool wood(struct context *context, const struct value *args, struct resul
 
 enum { MIXED_A, MIXED_B, MIXED_RATIO };
 static const struct parameter mix_parameters[] = {
-    [MIXED_A] = PART("a", "What is there where ratio is 1: a number, a colour or a texture."),
-    [MIXED_B] = PART("b", "What is there where ratio is 0."),
-    [MIXED_RATIO] = {"ratio", KIND_NUMBER, OPTIONAL | OR_TEXTURE, ANY, NULL, "0.5", "a * ratio + b * (1 - ratio)."},
+    [MIXED_A] = PART("a", "Value where ratio is 1: a number, a colour or a texture."),
+    [MIXED_B] = PART("b", "Value where ratio is 0."),
+    [MIXED_RATIO] = {"ratio", KIND_NUMBER, OPTIONAL | OR_TEXTURE, ANY, NULL, "0.5",
+                     "Weight of a: the result is a * ratio + b * (1 - ratio)."},
 };
 
 static bool mix(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -88,7 +89,7 @@ static bool mix(struct context *context, const struct value *args, struct result
 enum { FACTOR_A, FACTOR_B };
 static const struct parameter multiply_parameters[] = {
     [FACTOR_A] = PART("a", "One factor: a number, a colour or a texture."),
-    [FACTOR_B] = PART("b", "The other."),
+    [FACTOR_B] = PART("b", "The other factor."),
 };
 
 static bool multiply(struct context *context, const struct value *args, struct result *result, struct error *error) {
@@ -98,11 +99,11 @@ static bool multiply(struct context *context, const struct value *args, struct r
 }
 
 static const struct function rows[] = {
-    GR("marble_texture", marble_parameters, RESULT_TEXTURE, marble, "Veins between 0 and 1, for inputs of gr.material.",
-       "f multiplier vein_frequency interp?"),
-    GR("wood_texture", wood_parameters, RESULT_TEXTURE, wood, "Grain between 0 and 1, for inputs of gr.material.",
-       "f density interp?"),
-    GR("mix_texture", mix_parameters, RESULT_TEXTURE, mix, "Two textures or colours mixed by a third.", "a b ratio?"),
+    GR("marble_texture", marble_parameters, RESULT_TEXTURE, marble,
+       "A marble pattern between 0 and 1, for inputs of gr.material.", "f multiplier vein_frequency interp?"),
+    GR("wood_texture", wood_parameters, RESULT_TEXTURE, wood,
+       "A wood pattern between 0 and 1, for inputs of gr.material.", "f density interp?"),
+    GR("mix_texture", mix_parameters, RESULT_TEXTURE, mix, "A mix of two textures or colours.", "a b ratio?"),
     GR("multiply_texture", multiply_parameters, RESULT_TEXTURE, multiply, "The product of two textures or colours.",
        "a b"),
 };

@@ -12,7 +12,7 @@
 #define BETWEEN(low, high) (low), (high), NULL
 
 #define NAME_HELP "Name of the node, for messages."
-#define MATERIAL_HELP "What its surface looks like."
+#define MATERIAL_HELP "Material of the surface."
 
 #define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
 #define GR(name, parameters, result, run, help, ...)                                                                   \
@@ -29,8 +29,9 @@ enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_FIRST };
 /* What every light begins with. */
 #define LIGHT_LISTS                                                                                                    \
     [LIGHT_INCLUDE] =                                                                                                  \
-        {"include", KIND_NODES, OPTIONAL, ANY, NULL, "all", "The nodes that it lights, with everything under them."},  \
-    [LIGHT_EXCLUDE] = {"exclude", KIND_NODES, OPTIONAL, ANY, NULL, "none", "The nodes that it does not light."}
+        {"include", KIND_NODES, OPTIONAL, ANY, NULL, "all", "Nodes that it lights, with their children."},             \
+    [LIGHT_EXCLUDE] = {                                                                                                \
+        "exclude", KIND_NODES, OPTIONAL, ANY, NULL, "none", "Nodes that it does not light, with their children."}
 #define LIGHT_FIELDS(colour_flags)                                                                                     \
     [LIGHT_COLOUR] = {"colour",                                                                                        \
                       KIND_COLOUR,                                                                                     \
@@ -38,7 +39,7 @@ enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_FIRST };
                       ANY,                                                                                             \
                       NULL,                                                                                            \
                       colour_flags ? "{1, 1, 1} with emission" : NULL,                                                 \
-                      "Its colour and strength."},                                                                     \
+                      "Colour and strength."},                                                                         \
     LIGHT_LISTS
 
 #endif
