@@ -66,60 +66,6 @@ bool channel_send_line(struct channel *channel, enum line_kind kind, const char 
     return channel_send(channel, FRAME_LINE, &line, offsetof(struct frame_line, text) + length + 1, -1);
 }
 
-static bool ends_with_zero(const char *text, size_t size) {
-    return memchr(text, '\0', size) != NULL;
-}
-
-static bool news_is_sound(const struct studio_news *news) {
-    const struct picked *picked = &news->picked;
-    const char *const words[] = {picked->name, picked->shape, picked->material, picked->parent_name, news->root_name};
-    bool sound = (unsigned)news->kind <= NEWS_MARKS && ends_with_zero(news->text, sizeof news->text) &&
-                 ends_with_zero(picked->path, sizeof picked->path);
-    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
-        sound = sound && ends_with_zero(words[i], PICK_WORDS);
-    return sound;
-}
-
-/* Sizes, texts and numbers that later code relies on. */
-static bool frame_is_sound(const struct frame *frame) {
-    size_t before_text = offsetof(struct frame_line, text);
-    const struct picture_request *request = &frame->body.request;
-    switch (frame->kind) {
-    case FRAME_LINE:
-        return frame->size > before_text && frame->size <= sizeof frame->body.line &&
-               (unsigned)frame->body.line.kind <= LINE_OUTPUT &&
-               ends_with_zero(frame->body.line.text, frame->size - before_text);
-    case FRAME_BEGIN:
-        return frame->size == sizeof *request && ends_with_zero(request->file, sizeof request->file) &&
-               request->width >= 1 && request->height >= 1 && request->full_width <= 1u << 20 &&
-               request->full_height <= 1u << 20 && request->width <= request->full_width &&
-               request->height <= request->full_height && request->x0 <= request->full_width - request->width &&
-               request->y0 <= request->full_height - request->height && request->exposure >= -100 &&
-               request->exposure <= 100 && request->curve <= TONE_FILMIC && film_record_valid(request->record) &&
-               request->overlay <= OVERLAY_OF_GRID && (unsigned)request->lens.projection <= PROJECTION_PANORAMA &&
-               (unsigned)request->lens.stereo <= STEREO_ANAGLYPH;
-    case FRAME_DONE:
-        return frame->size == sizeof frame->body.report;
-    case FRAME_NEWS:
-        return frame->size == sizeof frame->body.news && news_is_sound(&frame->body.news);
-    case FRAME_ORDER:
-        return frame->size == sizeof frame->body.order;
-    case FRAME_ABANDON:
-    case FRAME_AGAIN:
-        return frame->size == 0;
-    case FRAME_READ:
-        return frame->size == sizeof frame->body.read &&
-               ends_with_zero(frame->body.read.path, sizeof frame->body.read.path);
-    case FRAME_SCRIPT:
-        return frame->size == sizeof frame->body.script;
-    case FRAME_FILM:
-    case FRAME_ANSWER:
-        return frame->size == sizeof frame->body.answer &&
-               ends_with_zero(frame->body.answer.error.text, sizeof frame->body.answer.error.text);
-    }
-    return false;
-}
-
 enum channel_result channel_receive(struct channel *channel, struct frame *frame) {
     uint32_t word = 0;
     struct iovec parts[2] = {{&word, sizeof word}, {&frame->body, sizeof frame->body}};

@@ -3,15 +3,14 @@
 #define GRAY_APP_CHILD_LINK_H
 
 #include "app/channel.h"
-#include "app/child.h"
-#include "app/control.h"
+#include "app/services.h"
 #include "base/share.h"
 
 struct child_link {
     struct error_stream *stream; /* of the control that child_link_services got */
-    struct channel channel; /* to the supervisor */
-    struct share memory;    /* the film of the picture being made */
-    bool broken;            /* a message was not delivered: this process is of no use any more */
+    struct channel channel;      /* to the supervisor */
+    struct share memory;         /* the film of the picture being made */
+    bool broken;                 /* a message was not delivered: this process is of no use any more */
 };
 
 /* The services point to `link`, which must stay where it is. */

@@ -3,11 +3,11 @@
 #ifndef GRAY_APP_DESK_H
 #define GRAY_APP_DESK_H
 
-#include "app/channel.h"
 #include "app/control.h"
 #include "app/display.h"
 #include "app/farm.h"
 #include "app/keeper.h"
+#include "app/messages.h"
 #include "app/options.h"
 #include "app/picture_files.h"
 #include "app/progress.h"

@@ -15,46 +15,6 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-static const char tev_port[] = "14158";
-
-static bool take_word(const char **text, char *out, size_t size) {
-    size_t length = strcspn(*text, ":");
-    if (length == 0 || length >= size)
-        return false;
-    memcpy(out, *text, length);
-    out[length] = '\0';
-    *text += length;
-    return true;
-}
-
-bool display_parse(const char *text, struct display_choice *out) {
-    static const char *const graphics[] = {TERMINAL_GRAPHICS(LIST_WORD)};
-    *out = (struct display_choice){.host = "127.0.0.1"};
-    memcpy(out->port, tev_port, sizeof tev_port);
-    if (strncmp(text, "tev", 3) == 0 && (text[3] == '\0' || text[3] == ':')) {
-        out->kind = DISPLAY_TEV;
-        text += 3;
-        if (*text++ == '\0')
-            return true;
-        if (!take_word(&text, out->host, sizeof out->host))
-            return false;
-        if (*text++ == '\0')
-            return true;
-        return take_word(&text, out->port, sizeof out->port) && *text == '\0' &&
-               out->port[strspn(out->port, "0123456789")] == '\0';
-    }
-    if (strncmp(text, "term", 4) != 0 || (text[4] != '\0' && text[4] != ':'))
-        return false;
-    out->kind = DISPLAY_TERMINAL;
-    for (int i = 0; i < LIST_COUNT(TERMINAL_GRAPHICS); i++) {
-        if (text[4] == '\0' || strcmp(text + 5, graphics[i]) == 0) {
-            out->graphics = text[4] ? (enum terminal_graphics)i : TERMINAL_AUTO;
-            return true;
-        }
-    }
-    return false;
-}
-
 /* --- packets --- */
 
 static uint8_t *put(uint8_t *at, const void *bytes, size_t size) {

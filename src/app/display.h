@@ -7,21 +7,12 @@
 #ifndef GRAY_APP_DISPLAY_H
 #define GRAY_APP_DISPLAY_H
 
-#include "app/channel.h"
+#include "app/options.h"
 #include "app/terminal.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-
-enum display_kind { DISPLAY_NONE, DISPLAY_TEV, DISPLAY_TERMINAL };
-struct display_choice {
-    enum display_kind kind;
-    char host[256], port[8];
-    enum terminal_graphics graphics;
-};
-/* tev, tev:host, tev:host:port, term, term:kitty, term:sixel, term:blocks. */
-bool display_parse(const char *text, struct display_choice *out);
 
 enum { DISPLAY_PACKET = 4096 + 128 + FILM_TILE * FILM_TILE * 12 };
 struct display {

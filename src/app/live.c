@@ -11,19 +11,6 @@
 enum { FIRST_DIVIDE = 16, MIDDLE_DIVIDE = 4, DIVIDE_LIMIT = 32 };
 static const double pass_goal = 0.033;
 
-struct film live_film(const struct picture_request *request, void *block, uint32_t divide) {
-    struct film film = {.x0 = request->x0 / divide,
-                        .y0 = request->y0 / divide,
-                        .full_width = (request->full_width + divide - 1) / divide,
-                        .full_height = (request->full_height + divide - 1) / divide};
-    uint32_t right = film.x0 + (request->width + divide - 1) / divide;
-    uint32_t bottom = film.y0 + (request->height + divide - 1) / divide;
-    right = right > film.full_width ? film.full_width : right;
-    bottom = bottom > film.full_height ? film.full_height : bottom;
-    film_place(&film, block, right - film.x0, bottom - film.y0, request->record);
-    return film;
-}
-
 static bool differ(double a, double b) {
     return a < b || a > b;
 }

@@ -6,9 +6,9 @@
 #ifndef GRAY_APP_LIVE_H
 #define GRAY_APP_LIVE_H
 
-#include "app/channel.h"
 #include "app/control.h"
 #include "app/edits.h"
+#include "app/messages.h"
 #include "app/panel.h"
 #include "app/walk.h"
 #include "app/window.h"
@@ -140,8 +140,6 @@ bool live_skips(const struct live *live, unsigned number);
 void live_tell(struct live *live, const char *text);
 /* A piece of a story that was asked for. */
 void live_hear(struct live *live, const char *text);
-/* The film that a pass fills: the picture's rectangle divided, in the same block. */
-struct film live_film(const struct picture_request *request, void *block, uint32_t divide);
 /* Something is done; the child waits for the next order. */
 void live_take_news(struct live *live, const struct studio_news *news, double now);
 /* Takes events, draws, decides. To be called until it says LIVE_NOTHING, every few milliseconds. */

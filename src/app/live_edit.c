@@ -2,6 +2,7 @@
  * time; where it is now follows from the change that holds now, so undoing needs no word from the child. All maps are
  * made in the world and carried into the space that the node stands in. */
 #include "app/live_parts.h"
+#include "app/pick.h"
 #include "math/elementary.h"
 
 #include <math.h>

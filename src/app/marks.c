@@ -3,40 +3,15 @@
  * there. */
 #include "app/marks.h"
 
-#include "app/channel.h"
-#include "base/hash.h"
+#include "app/pick.h"
 #include "base/mem.h"
 #include "geom/csg.h"
-#include "render/aov.h"
 #include "render/camera.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Lines take four floats a pixel, the outline a byte: two layers have room for both. */
-enum { MARK_LAYERS = 2, ROWS = 8 };
-
-uint32_t marks_layers(const struct picture_request *request) {
-    return aov_layers(request->layers & AOV_ALL) + (request->live ? MARK_LAYERS : 0);
-}
-
-void marks_place(const struct picture_request *request, void *block, struct marks_place *place) {
-    struct film film = {.width = request->width, .height = request->height, .record = request->record};
-    size_t pixels = (size_t)request->width * request->height;
-    film_place_layers(&film, block, AOV_ALL); /* any mask gives the place where layers begin */
-    float *behind = film.layers[0] + pixels * aov_layers(request->layers & AOV_ALL) * 3;
-    place->lines = (float(*)[4])(void *)behind;
-    place->shows = (uint8_t *)(behind + 4 * pixels);
-}
-
-uint64_t marks_way(const struct scene_step *steps, uint32_t depth) {
-    uint64_t way = depth;
-    for (uint32_t i = 0; i < depth; i++) {
-        const uint32_t words[2] = {steps[i].node->serial, i + 1 < depth ? steps[i].placement : 0};
-        way = hash_bytes(words, sizeof words, way);
-    }
-    return way ? way : 1;
-}
+enum { ROWS = 8 }; /* of an item of work */
 
 struct seeking {
     const struct world *world;

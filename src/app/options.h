@@ -30,6 +30,19 @@ enum options_action {
 enum progress_mode { PROGRESS_MODES(LIST_MEMBER) };
 enum statistics_mode { STATISTICS_NONE, STATISTICS_TEXT, STATISTICS_JSON };
 
+#define TERMINAL_GRAPHICS(X)                                                                                           \
+    X(TERMINAL_AUTO, "auto")                                                                                           \
+    X(TERMINAL_KITTY, "kitty")                                                                                         \
+    X(TERMINAL_SIXEL, "sixel")                                                                                         \
+    X(TERMINAL_BLOCKS, "blocks")
+enum terminal_graphics { TERMINAL_GRAPHICS(LIST_MEMBER) };
+enum display_kind { DISPLAY_NONE, DISPLAY_TEV, DISPLAY_TERMINAL };
+struct display_choice {
+    enum display_kind kind;
+    char host[256], port[8];
+    enum terminal_graphics graphics;
+};
+
 /* Texts point into argv or into the arena given to options_parse. */
 struct options {
     enum options_action action;
@@ -80,6 +93,8 @@ bool options_allow_picture(const struct options *options, uint64_t number, struc
 uint64_t options_picture_bytes(const struct options *options);
 /* What accel_select_isa understands. */
 const char *options_isa_name(const struct options *options);
+/* --display: tev, tev:host, tev:host:port, term, term:kitty, term:sixel, term:blocks. False: none of these. */
+bool display_parse(const char *text, struct display_choice *out);
 /* The options with their defaults, in groups, 100 columns wide. */
 void options_print_help(FILE *stream);
 

@@ -4,7 +4,7 @@
 #include "app/pick.h"
 
 #include "app/inspect.h"
-#include "app/marks.h"
+#include "base/hash.h"
 #include "geom/csg.h"
 #include "render/camera.h"
 #include "world/path.h"
@@ -38,6 +38,15 @@ void pick_words(char out[PICK_WORDS], const char *text) {
     (void)snprintf(out, PICK_WORDS, "%s", text);
     for (char *c = out; *c; c++)
         *c = (unsigned char)*c < 32 || *c == 127 ? '?' : *c;
+}
+
+uint64_t marks_way(const struct scene_step *steps, uint32_t depth) {
+    uint64_t way = depth;
+    for (uint32_t i = 0; i < depth; i++) {
+        const uint32_t words[2] = {steps[i].node->serial, i + 1 < depth ? steps[i].placement : 0};
+        way = hash_bytes(words, sizeof words, way);
+    }
+    return way ? way : 1;
 }
 
 /* The way to what was hit; the walk ends there. */

@@ -2,36 +2,14 @@
 #ifndef GRAY_APP_PICK_H
 #define GRAY_APP_PICK_H
 
-#include "base/error.h"
-#include "math/affine.h"
-#include "render/render.h"
-#include "scene/change_look.h"
-
-enum { PICK_PATH = 512, PICK_WORDS = 64 };
-
-struct picked {
-    bool hit;
-    char path[PICK_PATH]; /* names with their order of creation, from the root to the node */
-    char name[PICK_WORDS], shape[PICK_WORDS], material[PICK_WORDS];
-    uint32_t serial, parent_serial; /* of the node, and of the one above it */
-    char parent_name[PICK_WORDS];
-    uint64_t way;               /* to it (app/marks.h); 0: not known */
-    uint64_t solid;             /* of an operand: the way to the solid that was placed; else 0 */
-    uint32_t levels;            /* nodes above it */
-    int32_t up;                 /* as it was asked for, but no farther than there are nodes */
-    uint32_t below;             /* operands below it on the way to the surface that was hit */
-    uint32_t material_serial;   /* of the base, which can be changed; 0: it is plain gray */
-    double look[LOOK_PARTS][3]; /* of that base */
-    bool can_own;               /* a shape was hit and is told: it can be given a material of its own */
-    double distance;            /* from the eye */
-    struct vec3 position, normal;
-    bool has_box;
-    struct vec3 corners[8];          /* of a box round the node: bit 0 of the number is its first axis, and so on */
-    struct affine world_from_parent; /* the space that the node stands in */
-};
+#include "app/messages.h"
+#include "world/path.h"
 
 /* A name cut to this size; control characters become '?'. */
 void pick_words(char out[PICK_WORDS], const char *text);
+
+/* A number for a way to a node, so that of a node under several parents one can be told. */
+uint64_t marks_way(const struct scene_step *steps, uint32_t depth);
 
 /* The ray through (x, y) of the whole picture, in pixels, with the camera of the job as it is at time 0. up: so many
  * nodes above the one that was hit; below 0: so many operands below it, if it is a combined solid. False: no memory, or

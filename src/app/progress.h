@@ -12,8 +12,8 @@
 
 struct progress {
     struct error_stream *stream; /* standard error, where scenes write to it, too; not owned */
-    enum progress_mode mode; /* never PROGRESS_AUTO */
-    const char *name;        /* of the picture; NULL while there is none */
+    enum progress_mode mode;     /* never PROGRESS_AUTO */
+    const char *name;            /* of the picture; NULL while there is none */
     uint32_t width, height;
     int threads;
     double begun, shown; /* seconds; when the picture began, when it was last told */

@@ -15,7 +15,7 @@ struct standard_stream {
 /* Zero value: not begun. */
 struct standard_streams {
     struct standard_stream out, err;
-    bool ended; /* set when the signal has been read: from then on a stream that takes nothing is given up soon */
+    bool ended;      /* set when the signal has been read: from then on a stream that takes nothing is given up soon */
     FILE *before[2]; /* stdout and stderr as they were */
 };
 

@@ -2,7 +2,7 @@
 #ifndef GRAY_APP_STATISTICS_H
 #define GRAY_APP_STATISTICS_H
 
-#include "app/channel.h"
+#include "app/messages.h"
 
 #include <stdio.h>
 

@@ -3,7 +3,8 @@
 #include "app/studio.h"
 
 #include "app/inspect.h"
-#include "app/live.h"
+#include "app/marks.h"
+#include "app/pick.h"
 #include "app/progress.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
 #ifndef GRAY_APP_STUDIO_H
 #define GRAY_APP_STUDIO_H
 
-#include "app/child.h"
+#include "app/services.h"
 #include "base/pool.h"
 #include "render/render.h"
 #include "scene/change.h"

@@ -3,19 +3,12 @@
 #ifndef GRAY_APP_TERMINAL_H
 #define GRAY_APP_TERMINAL_H
 
-#include "base/list.h"
+#include "app/options.h"
 #include "image/tone.h"
 #include "render/film.h"
 
 #include <stdbool.h>
 #include <stdio.h>
-
-#define TERMINAL_GRAPHICS(X)                                                                                           \
-    X(TERMINAL_AUTO, "auto")                                                                                           \
-    X(TERMINAL_KITTY, "kitty")                                                                                         \
-    X(TERMINAL_SIXEL, "sixel")                                                                                         \
-    X(TERMINAL_BLOCKS, "blocks")
-enum terminal_graphics { TERMINAL_GRAPHICS(LIST_MEMBER) };
 
 struct terminal {
     enum terminal_graphics graphics; /* never AUTO once it is open */

@@ -2,6 +2,7 @@
  * are refused, sound ones begin, finish and give up pictures in a folder of their own, and nothing outside of it. Each
  * frame is a length of two bytes, little-endian, and so many bytes, the rest being zero where the kind has a fixed
  * size. */
+#include "app/channel.h"
 #include "app/desk.h"
 #include "tests/fuzz/folder.h"
 
