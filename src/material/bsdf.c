@@ -47,8 +47,14 @@ static double blinn_formula(const struct lobe *lobe, struct vec3 normal, struct 
     return n_h > 0 ? lobe_power(n_h, lobe->exponent) : 0;
 }
 
-struct vec3 bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo, struct vec3 wi) {
+/* The cosine by which classic lobes see wi; 0 for light from behind the surface, however its shading normal leans. */
+static double classic_cosine(const struct bsdf *bsdf, struct vec3 wi) {
     double n_l = vec3_dot(bsdf->lit, wi);
+    return n_l > 0 && vec3_dot(bsdf->geometric_side, wi) > 0 ? n_l : 0;
+}
+
+struct vec3 bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo, struct vec3 wi) {
+    double n_l = classic_cosine(bsdf, wi);
     struct vec3 sum = {0, 0, 0};
     if (!(n_l > 0))
         return sum;
@@ -202,7 +208,7 @@ static bool lobe_counts(const struct bsdf *bsdf, const struct lobe *lobe) {
 }
 
 static double lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {
-    double n_l = vec3_dot(bsdf->lit, wi);
+    double n_l = classic_cosine(bsdf, wi);
     switch (lobe->kind) {
     case LOBE_DIFFUSE:
         return n_l > 0 ? n_l / pi : 0;
@@ -222,7 +228,7 @@ static double lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct 
 
 /* f |cos| over the weight, as light; transmission by the rules of IMPORTANCE. */
 static double lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {
-    double n_l = vec3_dot(bsdf->lit, wi);
+    double n_l = classic_cosine(bsdf, wi);
     switch (lobe->kind) {
     case LOBE_DIFFUSE:
         return n_l > 0 ? n_l / pi : 0;
@@ -294,14 +300,14 @@ static bool lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct
     switch (lobe->kind) {
     case LOBE_DIFFUSE:
         out->direction = diffuse_sample(bsdf->lit, u);
-        return vec3_dot(bsdf->lit, out->direction) > 0;
+        return classic_cosine(bsdf, out->direction) > 0;
     case LOBE_PHONG:
         out->direction = power_sample(dielectric_mirror(bsdf->lit, wo), lobe->exponent, u);
-        return vec3_dot(bsdf->lit, out->direction) > 0;
+        return classic_cosine(bsdf, out->direction) > 0;
     case LOBE_BLINN:
         facet = power_sample(bsdf->lit, lobe->exponent, u);
         out->direction = dielectric_mirror(facet, wo);
-        return vec3_dot(wo, facet) > 0 && vec3_dot(bsdf->lit, out->direction) > 0;
+        return vec3_dot(wo, facet) > 0 && classic_cosine(bsdf, out->direction) > 0;
     case LOBE_MIRROR:
     case LOBE_REFRACTION:
         return traced_direction(bsdf, lobe, wo, bsdf->side, out);
@@ -318,10 +324,19 @@ static double radiance_factor(const struct bsdf *bsdf, enum bsdf_mode mode, bool
     return transmits && mode == BSDF_RADIANCE ? bsdf->eta * bsdf->eta : 1;
 }
 
+/* How much of what it weighs a lobe may be expected to give, never nothing: facets take Fresnel's share of it. */
+static double expected_share(const struct bsdf *bsdf, const struct lobe *lobe) {
+    unsigned flags = lobe_flags(lobe->kind);
+    if (!bsdf->fresnel_of_facets || !(flags & BSDF_TRACED) || (flags & BSDF_DELTA))
+        return 1;
+    double reflected = fmin(fmax(bsdf->fresnel, 1.0 / 16), 15.0 / 16);
+    return flags & BSDF_TRANSMITS ? 1 - reflected : reflected;
+}
+
 /* In proportion to it a lobe is drawn. */
 static double lobe_chance(const struct bsdf *bsdf, uint32_t lobes, int i) {
     const struct lobe *lobe = &bsdf->lobes[i];
-    return lobes >> i & 1 && lobe_counts(bsdf, lobe) ? vec3_max_abs(lobe->weight) : 0;
+    return lobes >> i & 1 && lobe_counts(bsdf, lobe) ? vec3_max_abs(lobe->weight) * expected_share(bsdf, lobe) : 0;
 }
 static double all_chances(const struct bsdf *bsdf, uint32_t lobes) {
     double sum = 0;
@@ -392,14 +407,6 @@ bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, s
 }
 
 /* --- branches --- */
-
-/* How much of the light of a rough boundary a branch may be expected to have, never none. */
-static double expected_share(const struct bsdf *bsdf, const struct lobe *lobe) {
-    if (!bsdf->fresnel_of_facets || (lobe_flags(lobe->kind) & BSDF_DELTA))
-        return 1;
-    double reflected = fmin(fmax(bsdf->fresnel, 1.0 / 16), 15.0 / 16);
-    return lobe_flags(lobe->kind) & BSDF_TRANSMITS ? 1 - reflected : reflected;
-}
 
 int bsdf_branches(const struct bsdf *bsdf, struct bsdf_branch out[BSDF_LOBES]) {
     int count = 0, kept = 0;

@@ -89,7 +89,8 @@ static inline unsigned lobe_flags(enum lobe_kind kind) {
 /* Sets of lobes: bit i is lobes[i]. Here those that have one of the flags. */
 uint32_t bsdf_lobes_with(const struct bsdf *bsdf, unsigned flags);
 
-/* What the classic lobes among `lobes` send to wo of unit light from wi, as SPEC 1.2 has it: pi f |cos|. */
+/* What the classic lobes among `lobes` send to wo of unit light from wi, as SPEC 1.2 has it: pi f |cos|. Nothing of
+ * light from the far side of `geometric_side`. */
 struct vec3 bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo, struct vec3 wi);
 
 /* f |cos wi| of the lobes that are not delta. */
@@ -103,8 +104,8 @@ struct bsdf_sample {
     double pdf;         /* with BSDF_DELTA: the probability of the lobe */
     unsigned flags;     /* BSDF_REFLECTS or BSDF_TRANSMITS, BSDF_DELTA */
 };
-/* A direction for a place in the unit square, of one of the lobes, drawn in proportion to their weights. False: no
- * direction, which counts as black (a sample below the surface, a lobe that gives nothing). */
+/* A direction for a place in the unit square, of one of the lobes, drawn in proportion to about what they give. False:
+ * no direction, which counts as black (a sample below the surface, a lobe that gives nothing). */
 bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, struct vec3 wo, struct sample2 u,
                  struct bsdf_sample *out);
 

@@ -12,14 +12,6 @@ static struct vec3 off_surface(const struct hit *hit) {
     return vec3_add_scaled(hit->point, hit->normal_geometric, hit->front ? hit->offset : -hit->offset);
 }
 
-/* What classic lobes reflect of unit light: nothing of light from behind the surface, however its shading normal leans.
- */
-static struct vec3 reflected_light(const struct hit *hit, const struct bsdf *bsdf, uint32_t lobes, struct vec3 wi) {
-    if (!(vec3_dot(wi, bsdf->geometric_side) > 0))
-        return vec3_all(0);
-    return bsdf_classic(bsdf, lobes, hit->view, wi);
-}
-
 /* On which side of the hit's surface a point lies that was moved off it: the sign. */
 static double side_of(const struct hit *hit, struct vec3 from) {
     return vec3_dot(vec3_sub(from, hit->point), hit->normal_geometric);
@@ -134,7 +126,7 @@ static struct vec3 light_of_samples(struct integrator_state *state, const struct
     bool visible[AREA_BATCH];
     for (uint32_t cell = 0; cell < all; cell++) {
         struct light_sample sample = light_sample(light, &context, sample_set_point(&places, cell));
-        struct vec3 arriving = vec3_mul(reflected_light(hit, bsdf, lobes, sample.direction), sample.intensity);
+        struct vec3 arriving = vec3_mul(bsdf_classic(bsdf, lobes, hit->view, sample.direction), sample.intensity);
         if (arriving.x != 0 || arriving.y != 0 || arriving.z != 0) {
             targets[have] = sample.target.at;
             carried[have++] = arriving;
@@ -157,7 +149,7 @@ static struct vec3 light_of_delta(struct integrator_state *state, const struct l
     struct light_arrival arrival;
     if (!light_arrive(light, hit->point, &arrival))
         return vec3_all(0);
-    struct vec3 reflected = reflected_light(hit, bsdf, BSDF_ALL, arrival.direction);
+    struct vec3 reflected = bsdf_classic(bsdf, BSDF_ALL, hit->view, arrival.direction);
     observe_light_place(state->observer, arrival.distance, arrival.strength, arrival.direction, reflected);
     if (arrival.strength == 0 || (reflected.x == 0 && reflected.y == 0 && reflected.z == 0))
         return vec3_all(0);
