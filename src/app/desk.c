@@ -11,13 +11,9 @@
 #include "base/terminal_text.h"
 #include "base/version.h"
 #include "image/exr.h"
-#include "image/float_write.h"
-#include "image/png_write.h"
 #include "render/aov.h"
 
 #include <string.h>
-#include <strings.h>
-#include <unistd.h>
 
 /* A viewer that is gone is told of; the picture does not depend on it. */
 static void show_elsewhere(struct desk *desk, bool ok, const struct error *error) {
@@ -123,7 +119,7 @@ static void describe_tiles(const struct desk *desk, struct picture *picture) {
                                    .y0 = request->y0,
                                    .width = request->width,
                                    .height = request->height,
-                                   .tone = {request->exposure, (enum tone_curve)request->curve, request->srgb != 0},
+                                   .tone = picture_tone(request),
                                    .deep = request->deep != 0,
                                    .record = request->record,
                                    .shard = options->shards ? options->shard : 1,
@@ -190,11 +186,6 @@ static bool join_farm(struct desk *desk, bool *already, struct error *error) {
     return ok;
 }
 
-static bool ends_in(const char *name, const char *extension) {
-    size_t length = strlen(name), wanted = strlen(extension);
-    return length >= wanted && strcasecmp(name + length - wanted, extension) == 0;
-}
-
 bool desk_begin(struct desk *desk, const struct picture_request *request, bool *already, struct error *error) {
     struct picture *picture = &desk->current;
     const struct options *options = desk->options;
@@ -211,7 +202,7 @@ bool desk_begin(struct desk *desk, const struct picture_request *request, bool *
     if (!choose_name(desk, request->file, picture->name, error) ||
         !picture_files_written(&desk->files, picture->name, written, error))
         return false;
-    if (ends_in(written, ".exr") && !exr_can_write())
+    if (picture_name_ends_in(written, ".exr") && !exr_can_write())
         return error_set(error, ERROR_SCENE, "%s: EXR pictures need OpenEXR, without which this gray was made",
                          written);
     picture->request = *request;
@@ -244,7 +235,7 @@ bool desk_begin(struct desk *desk, const struct picture_request *request, bool *
     outlook_reset(&desk->control->outlook, progress_wants_outlook(&desk->progress) && !request->live && !helps);
     (void)takes_text(desk);
     progress_begin(&desk->progress, picture->name, request->width, request->height);
-    struct tone tone = {request->exposure, (enum tone_curve)request->curve, request->srgb != 0};
+    struct tone tone = picture_tone(request);
     if (!request->live)
         display_begin(&desk->display, picture->name, &picture->film, &tone);
     return true;
@@ -298,131 +289,10 @@ void desk_checkpoint(struct desk *desk) {
         tell_checkpoint(desk, tiles);
 }
 
-struct rows {
-    const struct film *film;
-    enum film_view view;
-    const struct tone *tone;
-};
-
-static void row(void *context, uint32_t y, uint8_t *line) {
-    const struct rows *rows = context;
-    film_row_toned(rows->film, rows->view, rows->tone, y, line);
-}
-
-static void row_16(void *context, uint32_t y, uint16_t *line) {
-    const struct rows *rows = context;
-    film_row_16(rows->film, rows->view, rows->tone, y, line);
-}
-
-static void row_linear(void *context, uint32_t y, float *line) {
-    const struct rows *rows = context;
-    film_row_linear(rows->film, rows->view, y, line);
-}
-
-/* Finished tiles one below the other: what packing the picture will take, before it is there. */
-enum { TRIAL_TILES = 16 };
-struct trial {
-    const struct film *film;
-    struct tone tone;
-    uint32_t tiles[TRIAL_TILES], count;
-};
-
-static void trial_row(void *context, uint32_t y, uint8_t *line) {
-    const struct trial *trial = context;
-    struct film_rectangle r = film_tile_rectangle(trial->film, trial->tiles[y / FILM_TILE]);
-    size_t at = (size_t)(r.y0 + y % FILM_TILE - trial->film->y0) * trial->film->width + (r.x0 - trial->film->x0);
-    for (uint32_t x = 0; x < FILM_TILE; x++) {
-        for (uint32_t c = 0; c < 3; c++)
-            line[3 * x + c] = png_write_byte(tone_apply(&trial->tone, (double)trial->film->pixels[at + x].rgb[c]));
-    }
-}
-
-static void try_writing(struct desk *desk) {
-    const struct picture *picture = &desk->current;
-    const struct picture_request *request = &picture->request;
-    const struct film *film = &picture->film;
-    struct trial trial = {film, {request->exposure, (enum tone_curve)request->curve, request->srgb != 0}, {0}, 0};
-    uint32_t count = film_tile_count(film), step = count / TRIAL_TILES / 4 + 1;
-    for (uint32_t tile = 0; tile < count && trial.count < TRIAL_TILES;) {
-        struct film_rectangle r = film_tile_rectangle(film, tile);
-        bool done = atomic_load_explicit(&film->tiles[tile], memory_order_acquire) == FILM_TILE_DONE &&
-                    r.x1 - r.x0 == FILM_TILE && r.y1 - r.y0 == FILM_TILE;
-        if (done)
-            trial.tiles[trial.count++] = tile;
-        tile += done ? count / TRIAL_TILES : step;
-    }
-    struct png_source source = {FILM_TILE, FILM_TILE * trial.count, trial_row, NULL, &trial};
-    double seconds = trial.count > 0 ? png_write_trial(&source) : -1;
-    progress_note_trial(&desk->progress, request->deep ? 2 * seconds : seconds, source.width * source.height);
-}
-
-/* The extension says the format; whatever is not .pfm, .hdr or .exr is PNG. Tone is for PNG alone: the others hold
- * light. */
-static bool write_view(const struct picture *picture, const struct file_target *target, enum film_view view,
-                       struct pool *pool, struct error *error) {
-    const struct picture_request *request = &picture->request;
-    struct tone tone = {request->exposure, (enum tone_curve)request->curve, request->srgb != 0};
-    struct rows rows = {&picture->film, view, &tone};
-    const char *name = target->path;
-    if (ends_in(name, ".pfm"))
-        return pfm_write(target, request->width, request->height, row_linear, &rows, error);
-    if (ends_in(name, ".hdr"))
-        return hdr_write(target, request->width, request->height, row_linear, &rows, error);
-    if (ends_in(name, ".exr") && view == FILM_FINAL && picture->film.layer_mask)
-        return layers_write_exr(target, &picture->film, error);
-    if (ends_in(name, ".exr"))
-        return exr_write(target, request->width, request->height, row_linear, &rows, error);
-    struct png_source source = {.width = request->width, .height = request->height, .context = &rows};
-    if (request->deep)
-        source.words = row_16;
-    else
-        source.bytes = row;
-    return png_write_from(target, &source, pool, error);
-}
-
-static bool write_prefixed(const struct desk *desk, const struct picture *picture, enum film_view view,
-                           struct pool *pool, struct error *error) {
-    const char *prefix = view == FILM_TARGETS ? desk->options->targets_prefix : desk->options->first_pass_prefix;
-    char name[NAME_LIMIT];
-    const struct file_target target = {.path = name, .rules = &desk->files.beside};
-    if (!prefix)
-        return true;
-    return picture_files_prefixed(picture->name, prefix, name, error) &&
-           write_view(picture, &target, view, pool, error);
-}
-
-/* Threads for the time of writing: there are none while a process is started. NULL: this one alone. */
-static struct pool *writing_pool(const struct desk *desk, const struct picture *picture) {
-    const struct picture_request *request = &picture->request;
-    uint32_t parts = png_write_stripes(request->width, request->height, request->deep ? 16 : 8);
-    int threads = desk->options->threads > 0 ? desk->options->threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
-    char warning[256];
-    if (parts < (uint32_t)threads)
-        threads = (int)parts;
-    return threads > 1 ? pool_create(threads, warning) : NULL;
-}
-
-static bool write_files(const struct desk *desk, const struct picture *picture, const char *name, struct error *error) {
-    if (desk->options->shards) {
-        struct tile_picture whole = picture->tiles;
-        whole.whole = true;
-        return tile_file_write(&(struct file_target){.path = name, .rules = &desk->files.part}, NULL, 0, &whole,
-                               &picture->film, error);
-    }
-    struct pool *pool = writing_pool(desk, picture);
-    const struct file_target target = {.path = name, .rules = &desk->files.picture};
-    const struct file_target beside = {.path = picture->name, .rules = &desk->files.beside};
-    bool ok = write_prefixed(desk, picture, FILM_TARGETS, pool, error) &&
-              write_prefixed(desk, picture, FILM_FIRST, pool, error) &&
-              layers_write(&beside, &picture->film, picture->request.deep != 0, error) &&
-              write_view(picture, &target, FILM_FINAL, pool, error);
-    pool_destroy(pool);
-    return ok;
-}
-
 static bool write_picture(struct desk *desk, const struct picture *picture, struct error *error) {
     char name[NAME_LIMIT];
-    return picture_files_written(&desk->files, picture->name, name, error) && write_files(desk, picture, name, error) &&
+    return picture_files_written(&desk->files, picture->name, name, error) &&
+           picture_write_files(&desk->files, picture, name, error) &&
            keeper_note_written(&desk->keeper, picture->tiles.number, &picture->tiles.key, name, error);
 }
 
@@ -437,7 +307,7 @@ static void write_partial(struct desk *desk) {
         return;
     film_clear_unfinished(&picture->film);
     if (!layers_name(picture->name, "partial", name, &error) ||
-        !write_view(picture, &target, FILM_FINAL, NULL, &error)) {
+        !picture_write_view(picture, &target, FILM_FINAL, NULL, &error)) {
         desk_line(desk, LINE_ERROR, error.text);
         return;
     }
@@ -556,8 +426,11 @@ void desk_show_progress(struct desk *desk) {
         progress_hide(&desk->progress);
     show_elsewhere(desk, display_step(&desk->display, progress_clock(), &error), &error);
     progress_update(&desk->progress, done, count, &desk->control->outlook);
-    if (desk->current.open && !desk->current.request.live && progress_wants_trial(&desk->progress))
-        try_writing(desk);
+    if (desk->current.open && !desk->current.request.live && progress_wants_trial(&desk->progress)) {
+        uint32_t pixels;
+        double seconds = picture_write_trial(&desk->current, &pixels);
+        progress_note_trial(&desk->progress, seconds, pixels);
+    }
 }
 
 void desk_line(struct desk *desk, enum line_kind kind, const char *text) {

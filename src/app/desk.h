@@ -10,22 +10,10 @@
 #include "app/messages.h"
 #include "app/options.h"
 #include "app/picture_files.h"
+#include "app/picture_write.h"
 #include "app/progress.h"
-#include "base/share.h"
-#include "render/film.h"
 
 #include <stdbool.h>
-
-/* One picture from its beginning until it is written or given up; the film is owned. */
-struct picture {
-    bool open;
-    char name[NAME_LIMIT];
-    struct picture_request request;
-    bool written;              /* by desk_write */
-    struct tile_picture tiles; /* how its tiles are kept */
-    struct share memory;
-    struct film film;
-};
 
 struct desk {
     const struct options *options;
