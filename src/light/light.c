@@ -133,7 +133,7 @@ bool light_context_make(const struct light *light, struct vec3 point, struct vec
     switch (light->kind) {
     case LIGHT_PARALLELOGRAM: {
         struct vec3 normal = vec3_cross(light->edge1, light->edge2);
-        out->shares_cells = light->emits; /* old pictures keep the places of SPEC 1.4 */
+        out->shares_cells = light->emits; /* old pictures keep the places of docs/language.md 7.1 */
         out->corner = light->corner;
         out->edge1 = light->edge1;
         out->edge2 = light->edge2;

@@ -4,8 +4,9 @@
  * {0,0,0} counts as {1,0,0}.
  *
  * Two ways of shading. Without `emits` a light with an extent is shaded as from its centre, once, times the share of
- * its shadow rays that reach it (SPEC 1.4): a delta light whose shadow rays differ. With `emits` it is an area light of
- * uniform radiance `colour`: every shadow ray carries its own direction, distance and cosine at the light. */
+ * its shadow rays that reach it (docs/language.md 7.1): a delta light whose shadow rays differ. With `emits` it is an
+ * area light of uniform radiance `colour`: every shadow ray carries its own direction, distance and cosine at the
+ * light. */
 #ifndef GRAY_LIGHT_LIGHT_H
 #define GRAY_LIGHT_LIGHT_H
 

@@ -1,4 +1,4 @@
-/* The sky: a constant, the gradient {0, 0, (1 + y)/2}, or six faces cut from a 4 x 3 cross (SPEC 1.5).
+/* The sky: a constant, the gradient {0, 0, (1 + y)/2}, or six faces cut from a 4 x 3 cross (docs/language.md 8).
  *
  * The viewer stands in the middle of a cube whose faces are printed on the inside. Looking along f with the picture's
  * upward direction u, the picture's right is r = f x u (right-handed). The sides L F R K stand upright (u = +y); going

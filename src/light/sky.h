@@ -1,4 +1,4 @@
-/* What a ray sees that meets nothing: a function of its unit direction alone (SPEC 1.5). */
+/* What a ray sees that meets nothing: a function of its unit direction alone (docs/language.md 8). */
 #ifndef GRAY_LIGHT_SKY_H
 #define GRAY_LIGHT_SKY_H
 

@@ -1,10 +1,10 @@
 /* The lobes, each with its formula (classic ones), density and sampling, and sums over lists of them.
  *
- * A classic lobe is its formula of SPEC 1.2 over pi as f |cos|. The GGX lobes are those of Walter, Marschner, Li,
- * Torrance, "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007, with the masking of both directions
- * together (Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", JCGT 2014, equation 99).
- * Facets are drawn as they are seen from wo, so a sample weighs what the other direction leaves of it. Fresnel's shares
- * and total reflection are those of the facet. Light that meets a second facet is lost.
+ * A classic lobe is its formula of docs/language.md 5.2 over pi as f |cos|. The GGX lobes are those of Walter,
+ * Marschner, Li, Torrance, "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007, with the masking of
+ * both directions together (Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", JCGT 2014,
+ * equation 99). Facets are drawn as they are seen from wo, so a sample weighs what the other direction leaves of it.
+ * Fresnel's shares and total reflection are those of the facet. Light that meets a second facet is lost.
  */
 #include "material/bsdf.h"
 

@@ -2,9 +2,9 @@
  * nothing else of a surface. Directions are unit vectors in world space that point away from the surface. wo is where a
  * path comes from, on the side of `geometric_side`; wi is where it goes on.
  *
- * Lobes are of two sorts. Classic lobes (SPEC 1.2) answer the lights of the scene by a formula, bsdf_classic; traced
- * lobes show what a ray in their direction meets, and lights are nothing to them. docs/light.md says what f is for
- * both. */
+ * Lobes are of two sorts. Classic lobes (docs/language.md 5.2) answer the lights of the scene by a formula,
+ * bsdf_classic; traced lobes show what a ray in their direction meets, and lights are nothing to them. docs/light.md
+ * says what f is for both. */
 #ifndef GRAY_MATERIAL_BSDF_H
 #define GRAY_MATERIAL_BSDF_H
 
@@ -89,8 +89,8 @@ static inline unsigned lobe_flags(enum lobe_kind kind) {
 /* Sets of lobes: bit i is lobes[i]. Here those that have one of the flags. */
 uint32_t bsdf_lobes_with(const struct bsdf *bsdf, unsigned flags);
 
-/* What the classic lobes among `lobes` send to wo of unit light from wi, as SPEC 1.2 has it: pi f |cos|. Nothing of
- * light from the far side of `geometric_side`. */
+/* What the classic lobes among `lobes` send to wo of unit light from wi, as docs/language.md 5.2 has it: pi f |cos|.
+ * Nothing of light from the far side of `geometric_side`. */
 struct vec3 bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo, struct vec3 wi);
 
 /* f |cos wi| of the lobes that are not delta. */

@@ -1,12 +1,12 @@
-/* The mappings of the language (SPEC 1.2 and 2.1) and those by the coordinates that a shape supplies. Lookups are as
- * wide as the ray's cone: the footprint over the speed at which the point of the image moves. */
+/* The mappings of the language (docs/language.md 6.2) and those by the coordinates that a shape supplies. Lookups are
+ * as wide as the ray's cone: the footprint over the speed at which the point of the image moves. */
 #include "material/texture_mapping.h"
 
 #include "math/elementary.h"
 
 static const double pi = 3.14159265358979323846;
 
-/* u grows with the angle about y, v from the north pole down (SPEC 1.2, and 2.1 for the classic variant). */
+/* u grows with the angle about y, v from the north pole down (docs/language.md 6.2). */
 static void on_sphere(const struct hit *hit, bool classic, struct texcoord *at) {
     struct vec3 from_centre = hit->layout == LAYOUT_SPHERE ? hit->pattern_normal : hit->pattern_point;
     struct vec3 p = vec3_normalize(from_centre);
@@ -30,8 +30,8 @@ static void on_sphere(const struct hit *hit, bool classic, struct texcoord *at) 
     }
 }
 
-/* The sides stand upright and alike; front, top and bottom meet at the edges (SPEC 1.2). A box brings these parameters
- * itself; other shapes are seen from the direction of their normal. */
+/* The sides stand upright and alike; front, top and bottom meet at the edges (docs/language.md 6.2). A box brings these
+ * parameters itself; other shapes are seen from the direction of their normal. */
 static void on_cube(const struct hit *hit, struct texcoord *at) {
     struct vec3 p = hit->pattern_point, n = hit->pattern_normal;
     double width = hit->footprint * hit->pattern_scale;

@@ -1,5 +1,5 @@
-/* The camera: an eye and a window one unit along the view (SPEC 1.5), and what a lens, another projection or a second
- * eye makes of it. */
+/* The camera: an eye and a window one unit along the view (docs/language.md 10.2), and what a lens, another projection
+ * or a second eye makes of it. */
 #ifndef GRAY_RENDER_CAMERA_H
 #define GRAY_RENDER_CAMERA_H
 

@@ -74,7 +74,7 @@ struct sample_set {
 /* For the facets of a rough surface; rough_key: sampler_branch(ray_key, SAMPLER_ROUGH). */
 struct sample_set sampler_facets(const struct sampler *sampler, uint64_t ray_key, uint64_t rough_key, uint32_t side);
 /* For the shadow rays to light number `light`; light_key: sampler_light(ray_key, light). Not `shared`: the samples of a
- * pixel do not share the cells among each other (lights of SPEC 1.4). */
+ * pixel do not share the cells among each other (lights of docs/language.md 7.1). */
 struct sample_set sampler_on_light(const struct sampler *sampler, uint64_t light_key, uint32_t light, uint32_t side,
                                    bool shared);
 /* The point in cell (cell % side, cell / side). */

@@ -1,4 +1,4 @@
-/* The defaults of SPEC part 3. */
+/* The defaults of docs/language.md 13. */
 #include "render/settings.h"
 
 #include <math.h>

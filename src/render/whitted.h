@@ -1,6 +1,6 @@
 /* The recursive integrator of Whitted, "An Improved Illumination Model for Shaded Display", CACM 1980, with the rules
- * of SPEC 1.2: own light, reflected and refracted rays with independent counters, media stack, Fresnel (whitted.c); and
- * its adaptive anti-aliasing (whitted_pixels.c). */
+ * of docs/language.md 5.2 and 5.3: own light, reflected and refracted rays with independent counters, media stack,
+ * Fresnel (whitted.c); and its adaptive anti-aliasing (whitted_pixels.c). */
 #ifndef GRAY_RENDER_WHITTED_H
 #define GRAY_RENDER_WHITTED_H
 

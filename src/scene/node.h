@@ -25,7 +25,8 @@ enum node_cull { NODE_CULLS(LIST_MEMBER) };
  * operand is what is seen, of any kind, and the second the solid that cuts it open, or that it is known to lie in. */
 enum node_csg { NODE_UNION, NODE_INTERSECTION, NODE_DIFFERENCE, NODE_INVERSE, NODE_CLIPPED, NODE_BOUNDED };
 
-/* SPEC 2.4: which way later calls compose. NEW: M = T * M; OLD: M = M * T; SEPARATE: T * R * S kept apart. */
+/* docs/language.md 12.4: which way later calls compose. NEW: M = T * M; OLD: M = M * T; SEPARATE: T * R * S kept apart.
+ */
 #define TRANSFORM_ORDERS(X)                                                                                            \
     X(ORDER_NEW, "new")                                                                                                \
     X(ORDER_OLD, "old")                                                                                                \

@@ -33,7 +33,7 @@ bool act_set_material(struct context *context, const struct value *args, struct 
     return true;
 }
 
-/* Where the image goes depends on the shape (SPEC 2.1); that is decided when the scene is flattened. */
+/* Where the image goes depends on the shape (docs/language.md 6.2); that is decided when the scene is flattened. */
 bool act_set_texture(struct context *context, const struct value *args, struct result *result, struct error *error) {
     (void)result;
     struct node *node = args[SELF].node;

@@ -161,7 +161,7 @@ void suggest_offer(struct suggestion *suggestion, const char *candidate);
 
 /* files.c */
 void files_open(lua_State *L);
-/* Looks for a file the scene names; SPEC 2.3. */
+/* Looks for a file the scene names; docs/language.md 12.3. */
 bool files_find(struct context *context, const char *name, char out[PATH_SIZE]);
 /* The same with the number in its name repaired, and with an error that tells where it was looked for. */
 bool files_require(struct context *context, const char *name, char out[PATH_SIZE], struct error *error);

@@ -1,7 +1,8 @@
-/* Evidence for the order of transforms. Facts (SPEC 2.4): the convention of the course changed in autumn 2015 together
- * with the stock scenes. Signs of the new one: names of the project dialect, tables with named fields, an explicit
- * call, a mesh by file name, table.unpack. Signs of the old one, which count when there is none of those: readobj, a
- * bare unpack, meshes given by vertex tables. A gr.mesh whose first argument is a material is project dialect.
+/* Evidence for the order of transforms. Facts (docs/language.md 12.4): the convention of the course changed in autumn
+ * 2015 together with the stock scenes. Signs of the new one: names of the project dialect, tables with named fields, an
+ * explicit call, a mesh by file name, table.unpack. Signs of the old one, which count when there is none of those:
+ * readobj, a bare unpack, meshes given by vertex tables. A gr.mesh whose first argument is a material is project
+ * dialect.
  *
  * The lexer follows the Lua 5.4 manual, section 3.1, as far as comments, strings and names go. */
 #include "script/order.h"

@@ -1,5 +1,5 @@
-/* Which way transforms compose, decided from the text of a scene before it runs (SPEC 2.4). No Lua state is involved: a
- * lexer skips comments and strings, a few patterns of words are evidence. */
+/* Which way transforms compose, decided from the text of a scene before it runs (docs/language.md 12.4). No Lua state
+ * is involved: a lexer skips comments and strings, a few patterns of words are evidence. */
 #ifndef GRAY_SCRIPT_ORDER_H
 #define GRAY_SCRIPT_ORDER_H
 

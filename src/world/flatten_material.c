@@ -79,7 +79,7 @@ static void warn_once(struct flattening *f, const struct node *node, const char 
     f->warn(f->warn_context, text);
 }
 
-/* The mapping of an image that a node gives to its shape (SPEC 2.1). */
+/* The mapping of an image that a node gives to its shape (docs/language.md 6.2). */
 static enum texture_mapping mapping_of(enum surface_layout layout) {
     switch (layout) {
     case LAYOUT_SPHERE:

@@ -251,7 +251,7 @@ TEST(classic_lobes_answer_lights_by_pi_times_f_times_cosine) {
     }
 }
 
-/* The quotients of the formulas of SPEC 1.2 and the densities of power cosines about r and n. */
+/* The quotients of the formulas of docs/language.md 5.2 and the densities of power cosines about r and n. */
 TEST(weights_of_highlights_are_closed_forms) {
     for (double exponent = 0; exponent < 100; exponent = 2 * exponent + 1) {
         struct view phong = view_make(0, 35, 0, 1), blinn = phong;
@@ -372,8 +372,8 @@ static double f_of(enum lobe_kind kind, bool fresnel, double alpha, double n, st
     return bsdf_eval(&view.bsdf, BSDF_ALL, BSDF_RADIANCE, wo, wi).x / fabs(wi.z);
 }
 
-/* Highlights of SPEC 1.2 have no cosine, so they are not (docs/light.md); lobes of one direction have tests of their
- * own. */
+/* Highlights of docs/language.md 5.2 have no cosine, so they are not (docs/light.md); lobes of one direction have tests
+ * of their own. */
 TEST(every_lobe_but_classic_highlights_is_reciprocal_with_the_square_of_the_index) {
     const double n = 1.5;
     for (int kind = 0; kind < LOBE_KINDS; kind++) {

@@ -1,4 +1,5 @@
-/* Noise and the patterns: the values SPEC promises, continuity, bounds, and coordinates that no conversion may trip on.
+/* Noise and the patterns: the values of docs/language.md 5.6, continuity, bounds, and coordinates that no conversion
+ * may trip on.
  */
 #include <math.h>
 

@@ -1,4 +1,5 @@
-/* Which order of transforms the text of a scene asks for (SPEC 2.4), and that the orders do what they say. */
+/* Which order of transforms the text of a scene asks for (docs/language.md 12.4), and that the orders do what they say.
+ */
 #include "script/order.h"
 #include "tests/unit/script_host.h"
 

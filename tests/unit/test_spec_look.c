@@ -1,6 +1,6 @@
 /* What a picture must show, pixel by pixel, recomputed here from the formulas of the language alone
- * (SPEC 1.2, 1.3, 2.1): a small tracer of its own for spheres with light, mirrors, glass and nested media; images on
- * spheres and cubes; the materials of combined solids. Nothing of src/ but the noise is used. */
+ * (docs/language.md 2 to 6): a small tracer of its own for spheres with light, mirrors, glass and nested media; images
+ * on spheres and cubes; the materials of combined solids. Nothing of src/ but the noise is used. */
 #include "math/noise.h"
 #include "tests/harness.h"
 

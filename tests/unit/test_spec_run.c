@@ -1,4 +1,5 @@
-/* What the command line and the renderer promise as a whole (SPEC 1.5, 2.3, 3), each recomputed or counted here. */
+/* What the command line and the renderer promise as a whole (docs/language.md 10, 12.3, 13), each recomputed or counted
+ * here. */
 #include "tests/harness.h"
 
 #include <math.h>
