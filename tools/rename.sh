@@ -1,0 +1,36 @@
+#!/bin/sh
+# Renames files and identifiers in the whole tree as maps say, and nothing else; with --commit it makes the commit, too.
+#   tools/rename.sh [-f] MAP...                              changes the working tree
+#   tools/rename.sh --commit "area: Sentence" MAP...         the tree is clean but for the maps
+# A commit that renames has only what this script does and its map, and a line "Renames: MAP" at the end of its message:
+# tools/carry.sh then carries branches over it. The same map on the same tree gives the same bytes, twice is as once.
+# -f accepts new names that exist already. RENAME_LIST=1 lists every identifier.
+#
+# Lines of a map (tools/renames/NN-subject.map); @GLOB,GLOB behind the first word limits a line to these paths:
+#   file OLD NEW          moves a file or a folder; includes, guards and mentions of it follow
+#   word OLD NEW [merge]  an identifier; one * stands for the rest of it: word reach_* path_policy_*
+#   part OLD NEW [merge]  a component of identifiers between underscores, names of tests aside; capitals stay capitals
+#   keep NAME             an identifier (or pattern) that the lines above leave alone
+#   comment OLD NEW       a word in comments of C code
+#   text "OLD" "NEW"      any text, strings included
+# Identifiers are renamed in C code, not in strings; in comments and documents where they have an underscore, a
+# parenthesis behind or struct before them. NEW must not exist yet unless the line says merge.
+here=$(cd "$(dirname "$0")" && pwd) || exit 1
+cd "$(git rev-parse --show-toplevel)" || exit 1
+if [ "$1" != --commit ]; then
+    [ $# -gt 0 ] || { sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0" >&2; exit 2; }
+    exec python3 "$here/rename.py" "$@"
+fi
+subject=$2
+shift 2
+[ -n "$subject" ] && [ $# -gt 0 ] || { echo "tools/rename.sh --commit SUBJECT MAP..." >&2; exit 2; }
+for map in "$@"; do
+    [ -f "$map" ] || { echo "$map: no such map" >&2; exit 2; }
+    git add -- "$map"
+    trailers="${trailers}Renames: $map
+"
+done
+other=$(git status --porcelain | grep -v '^A  tools/renames/')
+[ -z "$other" ] || { echo "the tree has other changes:" >&2; echo "$other" >&2; exit 1; }
+python3 "$here/rename.py" "$@" || { git reset -q -- "$@"; exit 1; }
+git add -A && printf '%s\n\n%s' "$subject" "$trailers" | git commit -q -F - && git show --stat --format='%h %s' HEAD | tail -1
