@@ -378,20 +378,31 @@ struct vec3 light_emitted(const struct light *light, const struct ray *ray, cons
     return vec3_all(0);
 }
 
-double light_brightest(const struct light *light) {
-    struct vec3 c = light->colour;
+static double largest(struct vec3 c) {
     double most = c.x > c.y ? c.x : c.y;
-    most = c.z > most ? c.z : most;
+    return c.z > most ? c.z : most;
+}
+
+static double mesh_brightest(const struct light_mesh *mesh) {
+    double most = 0;
+    for (uint32_t i = 0; i < mesh->count; i++)
+        most = fmax(most, largest(light_triangle_radiance(&mesh->triangles[i])));
+    return most;
+}
+
+double light_brightest(const struct light *light) {
+    double most = largest(light->colour);
     switch (light->kind) {
     case LIGHT_SKY:
         return most * sky_brightest(light->sky);
+    case LIGHT_MESH:
+        return mesh_brightest(light->mesh);
     case LIGHT_POINT:
     case LIGHT_PARALLELOGRAM:
     case LIGHT_DIRECTIONAL:
     case LIGHT_SPOT:
     case LIGHT_DISC:
     case LIGHT_SPHERE:
-    case LIGHT_MESH:
         break;
     }
     return most;
