@@ -656,7 +656,7 @@ bool light_is_seen(const struct light *light) {
     case LIGHT_SKY:
         return true;
     case LIGHT_MESH: /* the mesh shows the emission of its material */
-        return !light->has_emission;
+        return !light->has_emission && light->mesh->shown;
     case LIGHT_POINT:
     case LIGHT_PARALLELOGRAM:
     case LIGHT_DIRECTIONAL:

@@ -44,7 +44,10 @@ void light_mesh_end(struct light_mesh_builder *builder, struct vec3 colour, stru
         t->intensity = vec3_mul(vec3_scale(t->intensity, builder->sum), colour);
         t->density /= builder->sum;
     }
-    *out = (struct light_mesh){builder->triangles, builder->until, builder->count, builder->one_sided, vec3_all(0), 0};
+    *out = (struct light_mesh){.triangles = builder->triangles,
+                               .until = builder->until,
+                               .count = builder->count,
+                               .one_sided = builder->one_sided};
     if (builder->count > 0) {
         out->centre = vec3_scale(vec3_add(builder->bounds.min, builder->bounds.max), 0.5);
         out->radius = vec3_length(vec3_sub(builder->bounds.max, out->centre)) * (1 + 0x1p-40);

@@ -17,6 +17,7 @@ struct light_mesh {
     const double *until; /* until[i]: share of the unit interval up to and with triangle i */
     uint32_t count;
     bool one_sided; /* normals point outwards, and light comes from that side only */
+    bool shown;     /* rays meet the meshes that it was made of */
     struct vec3 centre;
     double radius; /* of a ball round all of it */
 };

@@ -230,7 +230,7 @@ static bool make_thing(struct flattening *f, const struct node *node, const stru
     } else {
         struct thing thing = {.shape = node->shape, .cull = node->cull, .parts = 1};
         const struct material *inherited = around ? around->inherited : NULL;
-        if (!flatten_mesh_accel(f, &node->shape) ||
+        if ((!f->unasked && !flatten_mesh_accel(f, &node->shape)) ||
             !flatten_material(f, node, inherited, &thing.material, &thing.slot_count) || !add_thing(f, node, &thing))
             return false;
     }

@@ -33,9 +33,10 @@ struct flattening {
     struct scene *scene; /* its nodes are only read */
     struct world *world;
     struct pool *pool;
-    world_warning *warn;
+    world_warning *warn; /* or NULL */
     void *warn_context;
     struct error *error;
+    bool unasked; /* no ray will ask this world: its meshes get no index */
     struct placed *placed;
     struct box *limits; /* of each placed primitive, when there are any; else NULL */
     uint32_t placed_capacity, thing_capacity, linear_capacity, moving_capacity;

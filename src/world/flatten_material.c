@@ -72,7 +72,7 @@ static bool grow(struct flattening *f) {
 }
 
 static void warn_once(struct flattening *f, const struct node *node, const char *what) {
-    if (!scene_warns(f->scene, node))
+    if (!f->warn || !scene_warns(f->scene, node))
         return;
     char text[512];
     (void)snprintf(text, sizeof text, "warning: node '%.100s' %s", node->name, what);

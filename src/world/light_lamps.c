@@ -1,8 +1,8 @@
 /* What lamps need to know about the scene: the triangles of a lamp that is a mesh are gathered from every place where
- * the scene shows one of its meshes. */
+ * the scene shows one of its meshes. What the scene does not show is flattened by itself, into a world that lasts as
+ * long as its triangles are gathered. */
 #include "world/light_lamps.h"
 
-#include "base/mem.h"
 #include "light/light_mesh.h"
 #include "light/sky.h"
 #include "world/light_lists.h"
@@ -11,8 +11,9 @@
 #include <string.h>
 
 struct gathering {
-    const struct world *world;
+    const struct world *world; /* the one that shows the meshes */
     const struct light *light;
+    const uint8_t *marked; /* by its primitives: which of them are the lamp's; NULL: all */
     struct light_mesh_builder mesh;
 };
 
@@ -27,69 +28,80 @@ static void add_triangle(struct gathering *g, const struct mesh *mesh, uint32_t 
         corners[i] = affine_point(&map->forward, corners[i]);
         size = fmax(size, vec3_max_abs(corners[i]));
     }
-    if (!g->light->has_emission && thing)
+    if (!g->light->has_emission)
         emission = material_emission(g->world->materials[thing->material + (slot < thing->slot_count ? slot : 0)]);
     light_mesh_add(&g->mesh, corners, sign, size, emission);
 }
 
-static void add_mesh(struct gathering *g, const struct mesh *mesh, const struct transform *map,
-                     const struct thing *thing) {
-    bool mirrored = affine_determinant(&map->forward) < 0;
+static void add_mesh(struct gathering *g, uint32_t index) {
+    const struct thing *thing = placed_thing(g->world, index);
+    const struct mesh *mesh = thing->shape.mesh;
+    struct transform map =
+        world_placement(g->world, index, 0.5); /* of what moves: in the middle of the shutter's time */
+    bool mirrored = affine_determinant(&map.forward) < 0;
     double sign = mesh_is_closed(mesh) && mesh_is_outward(mesh) == mirrored ? -1 : 1;
     g->mesh.one_sided = g->mesh.one_sided && mesh_is_closed(mesh);
     for (uint32_t i = 0; i < mesh_triangle_count(mesh); i++)
-        add_triangle(g, mesh, i, map, sign, thing);
+        add_triangle(g, mesh, i, &map, sign, thing);
 }
 
-static bool is_lamp(const struct world *world, const uint8_t *marked, uint32_t index) {
-    return marked[index] && placed_shape(world, index)->kind == SHAPE_MESH;
+static bool is_lamp(const struct gathering *g, uint32_t index) {
+    return (!g->marked || g->marked[index]) && placed_shape(g->world, index)->kind == SHAPE_MESH;
 }
 
-static bool gather(struct gathering *g, struct arena *arena, const uint8_t *marked, struct error *error) {
-    const struct node *node = g->light->node;
+static uint64_t count_triangles(const struct gathering *g) {
     uint64_t total = 0;
     for (uint32_t i = 0; i < g->world->placed_count; i++)
-        total += is_lamp(g->world, marked, i) ? mesh_triangle_count(placed_shape(g->world, i)->mesh) : 0;
-    bool alone = total == 0;
-    if (alone && node->kind == NODE_GEOMETRY && node->shape.kind == SHAPE_MESH)
-        total = mesh_triangle_count(node->shape.mesh);
-    if (total == 0)
-        return error_set(error, ERROR_SCENE,
-                         "node '%.100s' is a mesh light, but there is no mesh there or below it in the scene",
-                         node->name);
+        total += is_lamp(g, i) ? mesh_triangle_count(placed_shape(g->world, i)->mesh) : 0;
+    return total;
+}
+
+static bool gather(struct gathering *g, uint64_t total, struct arena *arena, struct error *error) {
     if (total > UINT32_MAX / 2)
-        return error_set(error, ERROR_SCENE, "the mesh light '%.100s' has too many triangles", node->name);
+        return error_set(error, ERROR_SCENE, "the mesh light '%.100s' has too many triangles", g->light->node->name);
     if (!light_mesh_begin(&g->mesh, total, arena))
         return error_no_memory(error, "a mesh light");
-    for (uint32_t i = 0; i < g->world->placed_count && !alone; i++) {
-        if (!is_lamp(g->world, marked, i))
-            continue;
-        struct transform map =
-            world_placement(g->world, i, 0.5); /* of what moves: in the middle of the shutter's time */
-        add_mesh(g, placed_shape(g->world, i)->mesh, &map, placed_thing(g->world, i));
-    }
-    if (alone) {
-        struct transform map = node_parent_from_node(node);
-        add_mesh(g, node->shape.mesh, &map, NULL);
-    }
+    for (uint32_t i = 0; i < g->world->placed_count; i++)
+        if (is_lamp(g, i))
+            add_mesh(g, i);
     return true;
 }
 
-static bool resolve_mesh(const struct world *world, struct light *light, struct arena *arena, const struct node *root,
-                         world_warning *warn, void *warn_context, struct error *error) {
-    struct gathering g = {.world = world, .light = light};
-    struct light_mesh *mesh = arena_alloc(arena, sizeof *mesh);
-    uint8_t *marked = arena_alloc_array(arena, (size_t)world->placed_count + 1, 1);
+/* Of a node that the scene does not show. */
+static bool gather_unseen(struct gathering *g, struct flattening *f, struct error *error) {
+    const struct node *node = g->light->node;
+    struct world own = {.mesh_accel = f->world->mesh_accel, .shutter = f->world->shutter};
+    struct flattening flattening = {
+        .arena = f->arena, .scene = f->scene, .world = &own, .unasked = true, .pool = f->pool, .error = error};
+    bool ok = flatten_scene(&flattening, node);
+    g->world = &own;
+    g->marked = NULL;
+    uint64_t total = ok ? count_triangles(g) : 0;
+    if (ok && total == 0 && !(node->kind == NODE_GEOMETRY && node->shape.kind == SHAPE_MESH))
+        ok = error_set(error, ERROR_SCENE, "node '%.100s' is a mesh light, but there is no mesh there or below it",
+                       node->name);
+    ok = ok && gather(g, total, f->arena, error);
+    world_destroy(&own);
+    return ok;
+}
+
+static bool resolve_mesh(struct flattening *f, struct light *light, const struct node *root) {
+    const struct world *world = f->world;
+    struct light_mesh *mesh = arena_alloc(f->arena, sizeof *mesh);
+    uint8_t *marked = arena_alloc_array(f->arena, (size_t)world->placed_count + 1, 1);
     if (!mesh || !marked || !light_lists_mark(world, &light->node, 1, marked, 1, root))
-        return error_no_memory(error, "a mesh light");
-    if (!gather(&g, arena, marked, error))
+        return error_no_memory(f->error, "a mesh light");
+    struct gathering g = {.world = world, .light = light, .marked = marked};
+    uint64_t total = count_triangles(&g);
+    if (!(total > 0 ? gather(&g, total, f->arena, f->error) : gather_unseen(&g, f, f->error)))
         return false;
     light_mesh_end(&g.mesh, light->colour, mesh);
-    if (mesh->count == 0 && warn) {
+    mesh->shown = total > 0;
+    if (mesh->count == 0 && f->warn) {
         char text[256];
         (void)snprintf(text, sizeof text, "node '%.100s' is a mesh light, but its materials have no emission",
                        light->node->name);
-        warn(warn_context, text);
+        f->warn(f->warn_context, text);
     }
     light->mesh = mesh;
     return true;
@@ -110,16 +122,15 @@ static bool turn_sky(struct world *world, const struct sky *behind, struct light
     return true;
 }
 
-bool light_lamps_resolve(struct world *world, struct light *lights, struct arena *arena, const struct node *root,
-                         struct pool *pool, world_warning *warn, void *warn_context, struct error *error) {
-    const struct sky behind = world->sky;
-    for (uint32_t i = 0; i < world->light_count; i++) {
+bool light_lamps_resolve(struct flattening *f, struct light *lights, const struct node *root) {
+    const struct sky behind = f->world->sky;
+    for (uint32_t i = 0; i < f->world->light_count; i++) {
         struct light *light = &lights[i];
-        if (light->sky_turned && !turn_sky(world, &behind, light, arena, error))
+        if (light->sky_turned && !turn_sky(f->world, &behind, light, f->arena, f->error))
             return false;
-        if (light->node && !resolve_mesh(world, light, arena, root, warn, warn_context, error))
+        if (light->node && !resolve_mesh(f, light, root))
             return false;
-        if (!light_prepare(light, arena, pool, error))
+        if (!light_prepare(light, f->arena, f->pool, f->error))
             return false;
     }
     return true;

@@ -31,7 +31,7 @@ static bool build(struct world *world, struct arena *arena, struct scene *scene,
                                     .warn_context = warn_context,
                                     .error = error};
     if (!flatten_scene(&flattening, root) || !light_lists_resolve(world, copied, arena, root, error) ||
-        !light_lamps_resolve(world, copied, arena, root, pool, warn, warn_context, error))
+        !light_lamps_resolve(&flattening, copied, root))
         return false;
     world->boxes = arena_alloc_array(arena, world->placed_count, sizeof *world->boxes);
     if (!world->boxes)

@@ -144,6 +144,61 @@ TEST(a_rectangle_of_two_triangles_gives_its_view_factor) {
     }
 }
 
+/* What the scene does not show lights it in the same way: by what the light says, by its material, as a group of two
+ * halves of which one hangs deeper and each has a material of its own. */
+TEST(a_mesh_that_is_not_shown_lights_as_if_it_were) {
+    enum { BY_LIGHT, BY_MATERIAL, BY_SLOTS, BY_GROUP, WAYS };
+    for (int way = 0; way < WAYS; way++) {
+        struct stage s;
+        stage_floor(&s);
+        double a = 2, b = 1.5, h = 1.25;
+        struct node *node = square_node(&s, way == BY_MATERIAL ? glowing(&s, 2) : NULL);
+        const struct material *const slots[] = {glowing(&s, 2), NULL};
+        if (way == BY_SLOTS) {
+            node->slots = slots;
+            node->slot_count = 2; /* faces without slots have the first */
+        }
+        s.lights[0] = mesh_lamp(node, 48);
+        if (way == BY_GROUP) {
+            struct node *group = scene_node(&s.scene, NODE_GROUP, "group", &s.error);
+            struct node *inner = scene_node(&s.scene, NODE_GROUP, "inner", &s.error);
+            struct node *left = square_node(&s, glowing(&s, 2)), *right = square_node(&s, glowing(&s, 2));
+            stage_scale(&s, left, 0.25, 1, 1);
+            stage_scale(&s, right, 0.75, 1, 1);
+            stage_move(&s, inner, 0.25, 0, 0);
+            CHECK(node_add_child(&s.scene, group, left, &s.error) && node_add_child(&s.scene, group, inner, &s.error) &&
+                  node_add_child(&s.scene, inner, right, &s.error));
+            s.lights[0] = mesh_lamp(node = group, 48);
+        }
+        stage_scale(&s, node, a, 1, b);
+        stage_move(&s, node, 0, h, 0);
+        s.lights[0].has_emission = way == BY_LIGHT;
+        s.lights[0].emission = vec3_all(2);
+        s.lights[0].colour = vec3_make(0.5, 1, 1);
+        CHECK_NEAR(patch_at(&s, 0, 0), corner_factor(a, b, h), 2.5e-3);
+        CHECK(s.warnings == 0);
+        stage_end(&s);
+    }
+}
+
+/* No ray meets it, so a mirror has no image of it: its light is the highlight. */
+TEST(a_mesh_that_is_not_shown_is_not_seen_in_mirrors) {
+    for (int shown = 0; shown < 2; shown++) {
+        struct stage s;
+        stage_floor(&s);
+        struct node *node = square_node(&s, glowing(&s, 2));
+        stage_move(&s, node, 0, 2, 0);
+        if (shown)
+            CHECK(node_add_child(&s.scene, s.root, node, &s.error));
+        s.lights[0] = mesh_lamp(node, 4);
+        s.light_count = 1;
+        CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+        CHECK(light_is_seen(&s.world.lights[0]) == (shown != 0));
+        CHECK_NEAR(light_brightest(&s.world.lights[0]), 2, 1e-12);
+        stage_end(&s);
+    }
+}
+
 /* A closed mesh: only what faces the patch is asked, and its own other side is in nobody's way. */
 TEST(a_ball_of_triangles_gives_the_view_factor_of_a_ball) {
     for (int i = 0; i < 3; i++) {
@@ -193,17 +248,36 @@ TEST(a_surface_below_its_own_lamp_is_not_shaded_by_it) {
 }
 
 TEST(a_mesh_light_needs_a_mesh_and_warns_without_light) {
+    for (int shown = 0; shown < 2; shown++) {
+        struct stage s;
+        stage_floor(&s);
+        struct node *group = scene_node(&s.scene, NODE_GROUP, "ceiling", &s.error);
+        if (shown)
+            CHECK(node_add_child(&s.scene, s.root, group, &s.error));
+        s.lights[0] = mesh_lamp(group, 4);
+        s.light_count = 1;
+        CHECK(!stage_build(&s, s.root, ACCEL_AUTO));
+        CHECK(strstr(s.error.text, "node 'ceiling' is a mesh light, but there is no mesh there or below it") != NULL);
+        CHECK(strchr(s.error.text, '\n') == NULL);
+        CHECK(node_add_child(&s.scene, group, square_node(&s, NULL), &s.error));
+        s.warnings = 0;
+        CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+        CHECK(s.warnings == 1 + shown); /* a mesh that is shown has no material, either */
+        stage_end(&s);
+    }
+}
+
+TEST(a_group_that_is_not_shown_and_holds_itself_is_no_mesh_light) {
     struct stage s;
     stage_floor(&s);
-    s.lights[0] = mesh_lamp(stage_group(&s, s.root), 4);
+    struct node *outer = scene_node(&s.scene, NODE_GROUP, "outer", &s.error);
+    struct node *inner = scene_node(&s.scene, NODE_GROUP, "inner", &s.error);
+    CHECK(node_add_child(&s.scene, outer, square_node(&s, NULL), &s.error));
+    CHECK(node_add_child(&s.scene, outer, inner, &s.error) && node_add_child(&s.scene, inner, outer, &s.error));
+    s.lights[0] = mesh_lamp(outer, 4);
+    s.light_count = 1;
     CHECK(!stage_build(&s, s.root, ACCEL_AUTO));
-    CHECK(strstr(s.error.text, "no mesh") != NULL);
-    struct node *node = square_node(&s, NULL);
-    CHECK(node_add_child(&s.scene, s.root, node, &s.error));
-    s.lights[0] = mesh_lamp(node, 4);
-    s.warnings = 0;
-    CHECK(stage_build(&s, s.root, ACCEL_AUTO));
-    CHECK(s.warnings >= 1);
+    CHECK(strstr(s.error.text, "cycle: 'outer' > 'inner' > 'outer'") != NULL);
     stage_end(&s);
 }
 
