@@ -81,9 +81,9 @@ override LDLIBS += $(LUA_LIBS) $(PNG_LIBS) $(JPEG_LIBS) $(JANSSON_LIBS) $(FREETY
 override LDFLAGS += -pthread
 
 SOURCES := $(sort $(foreach module,$(MODULES),$(wildcard src/$(module)/*.c)))
-MAIN := src/app/main.c
-MPI_MAIN := src/app/main_mpi.c
-GUI_MAIN := src/app/main_gui.c
+MAIN := src/host/main.c
+MPI_MAIN := src/host/main_mpi.c
+GUI_MAIN := src/host/main_gui.c
 OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(MAIN) $(MPI_MAIN) $(GUI_MAIN),$(SOURCES)))
 MAIN_OBJECT := $(patsubst %.c,$(BUILD)/%.o,$(MAIN))
 GUI_OBJECT := $(if $(SDL_LIBS),$(patsubst %.c,$(BUILD)/%.o,$(GUI_MAIN)))

@@ -1,7 +1,7 @@
 /* What a script may use up: memory, processor time, output. From limits_begin to limits_end an account of base/mem.h
  * counts every block of the process, as malloc rounds it: the Lua state, the scene, and whatever reads a file or makes
  * a mesh. A hook looks at the clock every few thousand steps. Lua's own C functions run without the hook, so the
- * supervisor watches the same clock from outside (app/supervisor.c): here the good message with its line, there the
+ * supervisor watches the same clock from outside (host/supervisor.c): here the good message with its line, there the
  * certain end.
  *
  * A used-up limit is a fatal error of the context, which no script can catch. Once there is one the hook raises it

@@ -2,8 +2,8 @@
  * are refused, sound ones begin, finish and give up pictures in a folder of their own, and nothing outside of it. Each
  * frame is a length of two bytes, little-endian, and so many bytes, the rest being zero where the kind has a fixed
  * size. */
-#include "app/channel.h"
-#include "app/desk.h"
+#include "output/output_session.h"
+#include "session/channel.h"
 #include "tests/fuzz/folder.h"
 
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* Any bytes as parts of pictures for `gray merge`: they are cut wherever a file of tiles could begin. What comes out
  * are pictures, or status 1. When the last byte is odd the checks of all records are made right first. */
 #define _GNU_SOURCE
-#include "app/merge.h"
+#include "output/merge.h"
 #include "tests/fuzz/folder.h"
 #include "tests/fuzz/tile_bytes.h"
 

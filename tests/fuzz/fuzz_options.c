@@ -1,6 +1,6 @@
 /* Any bytes as a command line, its words parted by line ends or NUL: options whose numbers are in range, or one line
  * and status 2; names of pictures made from -o stay inside of their buffer. */
-#include "app/options.h"
+#include "session/options.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* Any bytes as the checkpoint that --resume goes on with: tiles in the film of the picture, or one line that names the
  * file; and whatever it held, the checkpoint that is written next can be read again. When the last byte is odd the
  * checks of all records are made right first. */
-#include "app/keeper.h"
 #include "base/mem.h"
+#include "output/checkpoint.h"
 #include "tests/fuzz/folder.h"
 #include "tests/fuzz/tile_bytes.h"
 

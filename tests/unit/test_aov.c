@@ -1,5 +1,5 @@
 /* Pictures beside the picture against closed forms, and statistics that must agree with one another. */
-#include "app/layers.h"
+#include "output/layers.h"
 #include "render/aov.h"
 #include "tests/harness.h"
 #include "tests/stage.h"

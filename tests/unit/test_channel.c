@@ -1,6 +1,6 @@
 /* The channel between supervisor and child: frames arrive whole, and what is no sound frame is refused. */
-#include "app/channel.h"
 #include "base/share.h"
+#include "session/channel.h"
 #include "tests/harness.h"
 
 #include <stdlib.h>

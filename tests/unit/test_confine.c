@@ -2,7 +2,7 @@
  * which only one half passes a test, clocks and limits of other processes, threads with flags of their own. And the
  * warning where the kernel confines less. */
 #define _GNU_SOURCE
-#include "app/confine.h"
+#include "host/confine.h"
 #include "tests/harness.h"
 
 #include <errno.h>

@@ -1,7 +1,7 @@
 /* The picture shown elsewhere: every byte that the viewer tev gets, and what terminals are told. */
 #define _GNU_SOURCE
-#include "app/display.h"
-#include "app/terminal.h"
+#include "output/display.h"
+#include "output/terminal.h"
 #include "tests/harness.h"
 
 #include <arpa/inet.h>

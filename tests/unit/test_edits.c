@@ -1,10 +1,10 @@
 /* What somebody changes in a window: steps and their inverses, changes laid over a scene and taken off again, the same
  * changes as calls of a script, and what a click finds. */
-#include "app/edits.h"
-#include "app/pick.h"
+#include "inspect/pick.h"
 #include "render/camera.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
+#include "viewer/edits.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* Farms without machines: ranks in one process, messages in queues, tiles painted by the test. Whatever the order of
  * steps, whatever nonsense travels between true messages and whoever falls out or is silent, the first rank ends with
  * every tile. Time passes when the test says so. */
-#include "app/farm.h"
+#include "output/farm.h"
 #include "render/render.h"
 #include "tests/harness.h"
 

@@ -1,6 +1,6 @@
 /* What films record of a pixel has a size that the picture states: any record comes back from tiles and files, files of
  * the first format keep their bytes, and pixels of another record are never mixed. */
-#include "app/keeper.h"
+#include "output/checkpoint.h"
 #include "render/render.h"
 #include "render/tile_file.h"
 #include "tests/harness.h"

@@ -5,7 +5,7 @@
  * Beside the line and the status: no script takes more than its limits of time and memory and a tenth, none leaves
  * anything behind, and the rendering process is confined by the kernel as it says. */
 #define _GNU_SOURCE
-#include "app/confine.h"
+#include "host/confine.h"
 #include "tests/harness.h"
 
 #include <dirent.h>

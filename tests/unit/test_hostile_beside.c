@@ -1,8 +1,8 @@
 /* Files that are named after a picture: checkpoints, parts, layers, debug pictures, what an interruption leaves. The
  * rows are attacks: see attack.h. What a row does not name must be as it was. */
 #define _GNU_SOURCE
-#include "app/souvenir.h"
 #include "tests/attack.h"
+#include "viewer/saved_view.h"
 
 #include <stdio.h>
 #include <string.h>

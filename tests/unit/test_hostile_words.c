@@ -1,7 +1,7 @@
 /* What a scene could say in the name of the program, learn from the words of errors, or get to see of the program's own
  * values; and what is printed in vain. */
 #define _GNU_SOURCE
-#include "app/progress.h"
+#include "output/progress.h"
 #include "tests/harness.h"
 
 #include <fcntl.h>

@@ -1,9 +1,9 @@
 /* Bad luck while a picture is made: over scenes with every kind of thing in them, whichever allocation fails while the
  * world is built and the picture rendered, with every way to find hits, the job ends with one error of the machine or
  * with the picture, and the next one is as it should be. */
-#include "app/inspect.h"
-#include "app/pick.h"
 #include "base/fault.h"
+#include "inspect/inspect.h"
+#include "inspect/pick.h"
 #include "render/aov.h"
 #include "render/overlay.h"
 #include "render/render.h"

@@ -1,9 +1,9 @@
 /* Which pixels show a node. */
-#include "app/marks.h"
-#include "app/pick.h"
+#include "inspect/pick.h"
 #include "render/camera.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
+#include "viewer/view_overlay.h"
 
 #include <math.h>
 #include <string.h>

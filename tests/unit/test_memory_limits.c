@@ -1,7 +1,6 @@
 /* --script-memory holds for everything that a scene makes the program hold: while files are decoded, for what is built
  * for a picture, for the picture itself. Each attack is one line with status 1, and no process takes more than the
  * limit and a tenth over what an empty script takes; with a picture, three quarters of the limit more. */
-#include "app/options.h"
 #include "base/mem.h"
 #include "base/size.h"
 #include "formats/font.h"
@@ -10,6 +9,7 @@
 #include "image/jpeg_read.h"
 #include "render/render.h"
 #include "render/tile_file.h"
+#include "session/options.h"
 #include "tests/harness.h"
 
 #include <fcntl.h>

@@ -1,5 +1,5 @@
 /* The command line: every option in its spellings, every refusal with its sentence. */
-#include "app/options.h"
+#include "session/options.h"
 #include "tests/harness.h"
 
 #include <stdlib.h>

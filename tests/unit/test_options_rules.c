@@ -1,7 +1,7 @@
 /* What options ask of one another: every pair that does not go together is refused with the sentence of its rule, and
  * either of the two alone is taken. Words at the borders of what is read; memory that ends. */
-#include "app/options.h"
 #include "base/fault.h"
+#include "session/options.h"
 #include "tests/harness.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* --picture-count and --picture-bytes: how many pictures the scripts of a run may render, and how much is written for
  * them. A limit ends the script with one line that nothing catches, and pictures that were finished stay. */
-#include "app/options.h"
 #include "image/exr.h"
+#include "session/options.h"
 #include "tests/harness.h"
 
 #include <dirent.h>

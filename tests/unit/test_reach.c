@@ -3,8 +3,8 @@
 #define _GNU_SOURCE
 #include "base/reach.h"
 
-#include "app/confine.h"
 #include "base/fault.h"
+#include "host/confine.h"
 #include "tests/harness.h"
 
 #include <errno.h>

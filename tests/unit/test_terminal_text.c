@@ -2,8 +2,8 @@
  * characters and anything that moves a cursor, become lines that do not. */
 #include "base/terminal_text.h"
 
-#include "app/text.h"
 #include "base/error.h"
+#include "session/text.h"
 #include "tests/harness.h"
 
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* Texts of strangers on their way to a terminal and into JSON: well-formed UTF-8 stays, byte by byte (RFC 3629); what
  * could steer a terminal, and what is no UTF-8, does not. */
-#include "app/text.h"
+#include "session/text.h"
 #include "tests/harness.h"
 
 #include <stdlib.h>

@@ -1,11 +1,11 @@
 /* Files of tiles with right checks and wrong contents: each of them is refused with its reason. What tells two pictures
  * apart; the keeper of a checkpoint, and what it does when memory, the disc or somebody else is in the way. */
-#include "app/keeper.h"
-#include "app/options.h"
 #include "base/fault.h"
 #include "base/hash.h"
+#include "output/checkpoint.h"
 #include "render/render.h"
 #include "render/tile_file.h"
+#include "session/options.h"
 #include "tests/harness.h"
 
 #include <math.h>

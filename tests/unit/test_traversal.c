@@ -1,6 +1,6 @@
 /* Flattening, paths, lists of lights, picking and bounds beside a plain recursion over the same graph: random graphs
  * with placements, shared nodes, combined, clipped and bounded ones. */
-#include "app/pick.h"
+#include "inspect/pick.h"
 #include "scene/node_bounds.h"
 #include "scene/traversal.h"
 #include "tests/harness.h"

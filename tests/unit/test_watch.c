@@ -1,8 +1,8 @@
 /* Watching: which changes count, and the program that renders again. The program's signs are its files and what it
  * says; nothing depends on how fast it is. */
 #define _GNU_SOURCE
-#include "app/watch.h"
 #include "base/mem.h"
+#include "host/file_watch.h"
 #include "tests/harness.h"
 
 #include <signal.h>

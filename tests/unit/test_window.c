@@ -1,10 +1,10 @@
 /* The window: walking by quaternions, what is rendered next while people look, and, where there are a display without a
  * screen (Xvfb) and something that presses keys (xdotool), the program itself. */
 #define _GNU_SOURCE
-#include "app/live_parts.h"
 #include "base/mem.h"
 #include "render/render.h"
 #include "tests/harness.h"
+#include "viewer/viewer_internal.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,11 +1,11 @@
 /* The parts of the window that know no window, where they end: paper that is drawn over its edges, walks that look
  * anywhere, steps and watched files without memory. */
-#include "app/edits.h"
-#include "app/paper.h"
-#include "app/walk.h"
-#include "app/watch.h"
 #include "base/fault.h"
+#include "host/file_watch.h"
 #include "tests/harness.h"
+#include "viewer/canvas.h"
+#include "viewer/edits.h"
+#include "viewer/fly_camera.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
  * GRAY_RANDOM_SECONDS says how long the long test goes on (an hour); GRAY_RANDOM_SEED repeats one. Nothing may crash,
  * leak, hang or be told as a broken protocol. */
 #define _GNU_SOURCE
-#include "app/supervisor.h"
+#include "host/supervisor.h"
 #include "tests/harness.h"
 
 #include <stdio.h>

@@ -2,7 +2,7 @@
  * something: Stop (what is rendered or built ends, what is shown stays, and it goes on when somebody wants it; when
  * exactly a stop comes is not known, so several moments are tried), lines over the picture, outlines. */
 #define _GNU_SOURCE
-#include "app/supervisor.h"
+#include "host/supervisor.h"
 #include "tests/harness.h"
 
 #include <math.h>

@@ -1,0 +1,10 @@
+/* Everything in one process, for debuggers (--no-fork): a crash is a crash, Ctrl-C ends it at once. */
+#ifndef GRAY_HOST_IN_PROCESS_H
+#define GRAY_HOST_IN_PROCESS_H
+
+#include "session/options.h"
+
+/* Makes every picture of every script; returns the exit status of the program. */
+int alone_run(const struct options *options);
+
+#endif

@@ -1,0 +1,258 @@
+/* gray-gui: the same program with a window, by SDL 2. `gray -gui` becomes it. Two textures, the picture and what is
+ * drawn over it, are laid on each other; where the picture goes is told with every frame. The mouse is told in units of
+ * the desktop, of which a screen of high density has several pixels each: everything leaves here in pixels. */
+#define _GNU_SOURCE
+#include "host/program.h"
+
+#include <SDL.h>
+
+struct sdl {
+    SDL_Window *window;
+    SDL_Renderer *renderer;
+    SDL_Texture *picture, *overlay;
+    int overlay_width, overlay_height;
+    int width, height; /* of the window in pixels */
+    double unit;       /* pixels for a unit of the desktop, in which the mouse is told */
+    double density;    /* pixels for what people see as one: of letters */
+    bool full, size_told;
+};
+
+static void close_window(void *context) {
+    struct sdl *sdl = context;
+    if (sdl->overlay)
+        SDL_DestroyTexture(sdl->overlay);
+    if (sdl->picture)
+        SDL_DestroyTexture(sdl->picture);
+    if (sdl->renderer)
+        SDL_DestroyRenderer(sdl->renderer);
+    if (sdl->window)
+        SDL_DestroyWindow(sdl->window);
+    SDL_Quit();
+    *sdl = (struct sdl){0};
+}
+
+/* Where the desktop has the pixels of the screen as its units (X11), people say how small they are (GDK_SCALE, which
+ * desktops set), or the dots an inch tell it: 96 are seen as one. Below one and a half of that, and beyond ten, nothing
+ * is believed: many screens tell nonsense. */
+static double screen_density(SDL_Window *window) {
+    const char *said = SDL_getenv("GDK_SCALE");
+    float across = 0, dots = 0;
+    int screen = SDL_GetWindowDisplayIndex(window);
+    double density = said ? SDL_atof(said) : 0;
+    if (!(density > 0) && screen >= 0 && SDL_GetDisplayDPI(screen, NULL, &across, &dots) == 0)
+        density = (double)SDL_min(across, dots) / 96;
+    return density >= 1.5 && density <= 10 ? SDL_floor(2 * density + 0.5) / 2 : 1;
+}
+
+/* True: it is another size than before. */
+static bool measure(struct sdl *sdl) {
+    int width = 0, height = 0, units = 0, ignored = 0;
+    if (SDL_GetRendererOutputSize(sdl->renderer, &width, &height) != 0)
+        return false;
+    SDL_GetWindowSize(sdl->window, &units, &ignored);
+    bool other = width != sdl->width || height != sdl->height || !sdl->size_told;
+    sdl->width = width;
+    sdl->height = height;
+    sdl->unit = units > 0 && width > 0 ? (double)width / units : 1;
+    sdl->density = SDL_max(sdl->unit, screen_density(sdl->window));
+    return other;
+}
+
+static bool open_window(void *context, uint32_t width, uint32_t height, const char *title, struct error *error) {
+    struct sdl *sdl = context;
+    SDL_DisplayMode screen;
+    int w = (int)width, h = (int)height;
+    *sdl = (struct sdl){0};
+    (void)SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
+    (void)SDL_SetHint(SDL_HINT_RENDER_SCALE_QUALITY, "nearest");
+    if (SDL_Init(SDL_INIT_VIDEO) == 0) {
+        /* No larger than nine tenths of the screen, and no smaller than people can click into. */
+        if (SDL_GetDesktopDisplayMode(0, &screen) == 0) {
+            double fit = SDL_min(0.9 * screen.w / w, 0.9 * screen.h / h);
+            if (fit < 1) {
+                w = (int)SDL_max(1, w * fit);
+                h = (int)SDL_max(1, h * fit);
+            }
+        }
+        sdl->window = SDL_CreateWindow(title, SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, SDL_max(w, 160),
+                                       SDL_max(h, 120), SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI);
+    }
+    if (sdl->window)
+        sdl->renderer = SDL_CreateRenderer(sdl->window, -1, 0);
+    if (sdl->renderer)
+        sdl->picture = SDL_CreateTexture(sdl->renderer, SDL_PIXELFORMAT_RGB24, SDL_TEXTUREACCESS_STREAMING, (int)width,
+                                         (int)height);
+    if (sdl->picture && measure(sdl))
+        return true;
+    error_set(error, ERROR_MACHINE, "-gui: no window can be opened: %s", SDL_GetError());
+    close_window(sdl);
+    return false;
+}
+
+/* The texture has the window's size. False: there is none. */
+static bool fit_overlay(struct sdl *sdl, int width, int height) {
+    if (sdl->overlay && sdl->overlay_width == width && sdl->overlay_height == height)
+        return true;
+    if (sdl->overlay)
+        SDL_DestroyTexture(sdl->overlay);
+    sdl->overlay = SDL_CreateTexture(sdl->renderer, SDL_PIXELFORMAT_RGBA32, SDL_TEXTUREACCESS_STREAMING, width, height);
+    sdl->overlay_width = width;
+    sdl->overlay_height = height;
+    return sdl->overlay && SDL_SetTextureBlendMode(sdl->overlay, SDL_BLENDMODE_BLEND) == 0;
+}
+
+static void show_frame(void *context, const struct window_frame *frame) {
+    struct sdl *sdl = context;
+    SDL_Rect place = {frame->left, frame->top, frame->shown_width, frame->shown_height};
+    int width = (int)frame->window_width, height = (int)frame->window_height;
+    if (frame->picture_changed)
+        (void)SDL_UpdateTexture(sdl->picture, NULL, frame->picture, 3 * (int)frame->width);
+    bool other = sdl->overlay_width != width || sdl->overlay_height != height;
+    bool over = frame->overlay && fit_overlay(sdl, width, height);
+    if (over && (frame->overlay_changed || other))
+        (void)SDL_UpdateTexture(sdl->overlay, NULL, frame->overlay, 4 * width);
+    (void)SDL_RenderClear(sdl->renderer);
+    (void)SDL_RenderCopy(sdl->renderer, sdl->picture, NULL, &place);
+    if (over)
+        (void)SDL_RenderCopy(sdl->renderer, sdl->overlay, NULL, NULL);
+    SDL_RenderPresent(sdl->renderer);
+}
+
+static void set_title(void *context, const char *text) {
+    struct sdl *sdl = context;
+    SDL_SetWindowTitle(sdl->window, text);
+}
+
+static void set_grab(void *context, bool on) {
+    (void)context;
+    (void)SDL_SetRelativeMouseMode(on ? SDL_TRUE : SDL_FALSE);
+}
+
+static void turn_full_screen(void *context) {
+    struct sdl *sdl = context;
+    sdl->full = !sdl->full;
+    (void)SDL_SetWindowFullscreen(sdl->window, sdl->full ? SDL_WINDOW_FULLSCREEN_DESKTOP : 0);
+}
+
+static int key_of(SDL_Keycode code) {
+    switch (code) {
+    case SDLK_ESCAPE:
+        return WINDOW_ESCAPE;
+    case SDLK_SPACE:
+        return WINDOW_SPACE;
+    case SDLK_LSHIFT:
+    case SDLK_RSHIFT:
+        return WINDOW_SHIFT;
+    case SDLK_LCTRL:
+    case SDLK_RCTRL:
+        return WINDOW_CONTROL;
+    case SDLK_UP:
+        return WINDOW_ARROW_UP;
+    case SDLK_DOWN:
+        return WINDOW_ARROW_DOWN;
+    case SDLK_LEFT:
+        return WINDOW_ARROW_LEFT;
+    case SDLK_RIGHT:
+        return WINDOW_ARROW_RIGHT;
+    case SDLK_HOME:
+        return WINDOW_HOME;
+    case SDLK_DELETE:
+        return WINDOW_DELETE;
+    case SDLK_PAGEUP:
+        return WINDOW_PAGE_UP;
+    case SDLK_PAGEDOWN:
+        return WINDOW_PAGE_DOWN;
+    case SDLK_TAB:
+        return WINDOW_TAB;
+    case SDLK_F11:
+        return 'f';
+    default:
+        return code > 0 && code < 128 ? (int)code : 0;
+    }
+}
+
+static int button_of(int button) {
+    return button == SDL_BUTTON_LEFT ? WINDOW_LEFT : button == SDL_BUTTON_RIGHT ? WINDOW_RIGHT : WINDOW_MIDDLE;
+}
+
+static void tell_size(struct sdl *sdl, struct window_event *out) {
+    sdl->size_told = true;
+    *out = (struct window_event){.kind = WINDOW_SIZE, .x = sdl->width, .y = sdl->height, .density = sdl->density};
+}
+
+/* True: it is one that the program knows. */
+static bool translate(struct sdl *sdl, const SDL_Event *in, struct window_event *out) {
+    double density = sdl->unit;
+    *out = (struct window_event){0};
+    switch (in->type) {
+    case SDL_QUIT:
+        out->kind = WINDOW_CLOSE;
+        return true;
+    case SDL_KEYDOWN:
+    case SDL_KEYUP:
+        out->kind = WINDOW_KEY;
+        out->key = key_of(in->key.keysym.sym);
+        out->down = in->type == SDL_KEYDOWN;
+        out->control = (in->key.keysym.mod & KMOD_CTRL) != 0;
+        out->shift = (in->key.keysym.mod & KMOD_SHIFT) != 0;
+        return out->key != 0 && in->key.repeat == 0;
+    case SDL_MOUSEMOTION:
+        *out = (struct window_event){.kind = WINDOW_MOVE,
+                                     .x = density * in->motion.x,
+                                     .y = density * in->motion.y,
+                                     .dx = density * in->motion.xrel,
+                                     .dy = density * in->motion.yrel};
+        return true;
+    case SDL_MOUSEWHEEL:
+        out->kind = WINDOW_WHEEL;
+        out->y = in->wheel.y;
+        return true;
+    case SDL_MOUSEBUTTONDOWN:
+    case SDL_MOUSEBUTTONUP:
+        out->kind = in->type == SDL_MOUSEBUTTONDOWN ? WINDOW_PRESS : WINDOW_RELEASE;
+        out->button = button_of(in->button.button);
+        out->x = density * in->button.x;
+        out->y = density * in->button.y;
+        out->control = (SDL_GetModState() & KMOD_CTRL) != 0;
+        out->shift = (SDL_GetModState() & KMOD_SHIFT) != 0;
+        return true;
+    case SDL_WINDOWEVENT:
+        /* What was covered is drawn again by whoever is told the size. */
+        if (in->window.event == SDL_WINDOWEVENT_EXPOSED || in->window.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
+            (void)measure(sdl);
+            tell_size(sdl, out);
+            return true;
+        }
+        out->kind = WINDOW_LEAVE;
+        return in->window.event == SDL_WINDOWEVENT_FOCUS_LOST;
+    default:
+        return false;
+    }
+}
+
+static bool poll_event(void *context, struct window_event *event) {
+    struct sdl *sdl = context;
+    SDL_Event in;
+    if (!sdl->size_told) {
+        tell_size(sdl, event);
+        return true;
+    }
+    while (SDL_PollEvent(&in)) {
+        if (translate(sdl, &in, event))
+            return true;
+    }
+    return false;
+}
+
+int main(int argc, char **argv) {
+    struct sdl sdl = {0};
+    const struct window_driver driver = {.context = &sdl,
+                                         .open = open_window,
+                                         .show = show_frame,
+                                         .poll = poll_event,
+                                         .title = set_title,
+                                         .grab = set_grab,
+                                         .full_screen = turn_full_screen,
+                                         .close = close_window};
+    return program_run(argc, argv, &(struct program_parts){.window = &driver});
+}

@@ -1,0 +1,170 @@
+/* The command line is read, and each action is handed on to its room. */
+#define _GNU_SOURCE
+#include "host/program.h"
+
+#include "accel/isa.h"
+#include "base/arena.h"
+#include "base/file.h"
+#include "base/version.h"
+#include "formats/font.h"
+#include "formats/model.h"
+#include "host/in_process.h"
+#include "host/supervisor.h"
+#include "image/exr.h"
+#include "image/jpeg_read.h"
+#include "output/merge.h"
+#include "script/script.h"
+#include "session/options.h"
+#include "session/text.h"
+
+#include <lua.h>
+#include <png.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* The Lua library: $GRAY_LUA, else beside the program as it was installed (PREFIX/bin/gray and PREFIX/share/gray/lua),
+ * else above it in the source tree (build/release/gray and lua). NULL when there is none. */
+static const char *find_library(struct arena *arena) {
+    static const char *const places[] = {"../share/gray/lua", "lua", "../lua", "../../lua"};
+    char program[4096], folder[4096];
+    const char *given = getenv("GRAY_LUA");
+    if (given && given[0] != '\0')
+        return file_canonical(given, folder, sizeof folder) ? arena_format(arena, "%s", folder) : NULL;
+    if (!file_canonical("/proc/self/exe", program, sizeof program))
+        return NULL;
+    char *slash = strrchr(program, '/');
+    if (!slash)
+        return NULL;
+    *slash = '\0';
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        const char *probe = arena_format(arena, "%s/%s/readobj.lua", program, places[i]);
+        const char *candidate = arena_format(arena, "%s/%s", program, places[i]);
+        if (probe && candidate && file_is_regular(probe) && file_canonical(candidate, folder, sizeof folder))
+            return arena_format(arena, "%s", folder);
+    }
+    return NULL;
+}
+
+static void print_version(void) {
+#ifdef HAVE_SDL
+    static const char window[] = "SDL 2 (gray-gui)";
+#else
+    static const char window[] = "none";
+#endif
+#ifdef HAVE_MPI
+    static const char farm[] = "MPI (gray-mpi)";
+#else
+    static const char farm[] = "none";
+#endif
+    (void)printf(
+        "gray %s\n%s\nlibpng %s\noptional: JPEG pictures by %s, glTF by %s, fonts by %s, EXR pictures by %s, windows "
+        "by %s, farms by %s\n",
+        GRAY_VERSION, LUA_RELEASE, png_get_libpng_ver(NULL), jpeg_library(), gltf_library(), font_library(),
+        exr_library(), window, farm);
+}
+
+/* Text that the script layer makes of its table. */
+static int print_document(const char *text) {
+    if (!text) {
+        (void)fputs("gray: out of memory for the text\n", stderr);
+        return ERROR_MACHINE;
+    }
+    (void)fputs(text, stdout);
+    return 0;
+}
+
+/* Where more than one process makes a picture, only the first one talks and keeps. */
+static void help_only(struct options *options) {
+    options->checkpoint = NULL;
+    options->resume = false;
+    options->statistics = STATISTICS_NONE;
+    options->progress = PROGRESS_NONE;
+    options->display = NULL;
+}
+
+static int render(struct options *options, const struct program_parts *parts) {
+    if (options->no_fork)
+        return alone_run(options);
+    struct program_parts wanted = {.transport = options->mpi ? parts->transport : NULL,
+                                   .window = options->window ? parts->window : NULL};
+    if (wanted.transport && wanted.transport->rank > 0)
+        help_only(options);
+    return supervisor_run(options, &wanted);
+}
+
+static int act(struct options *options, const struct program_parts *parts, struct arena *arena) {
+    switch (options->action) {
+    case ACTION_HELP:
+        options_print_help(stdout);
+        return 0;
+    case ACTION_MANUAL:
+        options_print_help(stdout);
+        (void)fputc('\n', stdout);
+        return print_document(script_manual(arena));
+    case ACTION_ANNOTATIONS:
+        return print_document(script_annotations(arena));
+    case ACTION_VERSION:
+        print_version();
+        return 0;
+    case ACTION_MERGE:
+        return merge_run(options);
+    case ACTION_RENDER:
+        break;
+    }
+    if (!accel_select_isa(options_isa_name(options))) {
+        (void)fprintf(stderr, "gray: --isa %s: this processor does not have it\n", options_isa_name(options));
+        return ERROR_USAGE;
+    }
+    options->script.library_folder = find_library(arena);
+    return render(options, parts);
+}
+
+/* The programs with MPI and with a window are of their own beside this one, so that others do not load their libraries.
+ */
+static int become(const char *which, const char *missing, char **argv) {
+    char program[4096];
+    size_t length = 0;
+    if (file_canonical("/proc/self/exe", program, sizeof program - 8))
+        length = strlen(program);
+    (void)snprintf(program + length, sizeof program - length, "-%s", which);
+    (void)fflush(NULL);
+    (void)execv(program, argv);
+    (void)fprintf(stderr, "gray: %s: %s is not there; it is built where pkg-config finds %s\n",
+                  strcmp(which, "mpi") == 0 ? "--mpi" : "-gui", length ? program : "its program", missing);
+    return ERROR_USAGE;
+}
+
+int program_run(int argc, char **argv, const struct program_parts *parts) {
+    struct arena arena = {0};
+    struct options options;
+    struct error error;
+    int status;
+    file_fill_standard();
+    /* A reader that goes away and a limit on file sizes are errors of writing, not the end of the process. */
+    (void)signal(SIGPIPE, SIG_IGN);
+    (void)signal(SIGXFSZ, SIG_IGN);
+    if (!options_parse(&options, argc, argv, &arena, &error)) {
+        char line[sizeof error.text + 16];
+        (void)snprintf(line, sizeof line, "gray: %s", error.text);
+        text_print_line(stderr, line);
+        if (error.kind == ERROR_USAGE)
+            (void)fputs("usage: gray [options] [--] scene.lua ...; gray --help tells all options\n", stderr);
+        status = (int)error.kind;
+    } else if (options.mpi && options.action == ACTION_RENDER && !parts->transport) {
+        status = become("mpi", "ompi-c (Debian: libopenmpi-dev)", argv);
+    } else if (options.window && options.action == ACTION_RENDER && !parts->window) {
+        status = become("gui", "sdl2 (Debian: libsdl2-dev)", argv);
+    } else {
+        status = act(&options, parts, &arena);
+    }
+    /* A full disk shows here when text was asked for; rendering has looked at it already. */
+    if (options.action != ACTION_RENDER && (fflush(stdout) != 0 || ferror(stdout))) {
+        (void)fputs("gray: standard output cannot be written\n", stderr);
+        status = ERROR_MACHINE;
+    }
+    arena_destroy(&arena);
+    return status;
+}

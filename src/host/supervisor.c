@@ -1,0 +1,301 @@
+/* One child runs all scripts, so that what one script has read serves the next; when it dies, a new child goes on with
+ * the script after the one that was running. */
+#include "host/supervisor_internal.h"
+
+#include "base/mem.h"
+#include "session/text.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+void supervisor_note_status(struct supervisor *supervisor, int status) {
+    if (status > supervisor->status)
+        supervisor->status = status;
+}
+
+/* In the terminal, and what is wrong in the window, too. */
+void supervisor_report(struct supervisor *supervisor, enum line_kind kind, const char *text) {
+    desk_line(&supervisor->desk, kind, text);
+    if (kind == LINE_ERROR)
+        live_tell(&supervisor->live, text);
+    if (kind == LINE_OUTPUT)
+        live_hear(&supervisor->live, text);
+}
+
+void supervisor_note_error(struct supervisor *supervisor, const struct error *error) {
+    supervisor_report(supervisor, LINE_ERROR, error->text);
+    supervisor_note_status(supervisor, (int)error->kind);
+}
+
+/* What happened to ranks. */
+static void show_notes(struct supervisor *supervisor) {
+    char line[2048];
+    while (supervisor->desk.farm && farm_next_note(supervisor->desk.farm, line, sizeof line))
+        desk_line(&supervisor->desk, LINE_WARNING, line);
+}
+
+/* Another rank ends with the first one. */
+static void leave_abandoned(struct supervisor *supervisor) {
+    if (!supervisor->desk.farm || supervisor->ended || !farm_is_abandoned(supervisor->desk.farm))
+        return;
+    text_print_line(stderr, "gray: the first rank of the farm has been silent for too long, this one ends");
+    supervisor_interrupt(supervisor);
+    supervisor_note_status(supervisor, ERROR_CANCELLED);
+}
+
+/* Milliseconds to wait for the next frame at most; -1: until it comes. */
+static int poll_time(const struct supervisor *supervisor) {
+    if (supervisor->desk.farm)
+        return 2;
+    if (supervisor->window)
+        return 4;
+    if (supervisor->deadline > 0)
+        return 5;
+    return supervisor->desk.current.open || supervisor->watch.open ? 50 : supervisor_script_patience(supervisor);
+}
+
+static bool files_changed(struct supervisor *supervisor) {
+    if (!supervisor->watch.open)
+        return false;
+    watch_read(&supervisor->watch, progress_clock());
+    return watch_changed(&supervisor->watch, progress_clock());
+}
+
+/* Until the child closes its end, or has nothing more to do until something changes. */
+static void talk_to_child(struct supervisor *supervisor) {
+    struct frame frame;
+    while (!supervisor->broken) {
+        struct pollfd watched[2] = {{.fd = supervisor->channel.descriptor, .events = POLLIN},
+                                    {.fd = supervisor->signals, .events = POLLIN}};
+        if (poll(watched, 2, poll_time(supervisor)) < 0 && errno != EINTR)
+            break;
+        if (supervisor_script_patience(supervisor) == 0) {
+            supervisor->script.out_of_time = supervisor->deadline == 0;
+            break;
+        }
+        if (supervisor_child_is_stalled(supervisor)) {
+            supervisor->stall.found = supervisor->deadline == 0;
+            break;
+        }
+        if (watched[1].revents)
+            supervisor_read_signals(supervisor);
+        leave_abandoned(supervisor);
+        if (supervisor->deadline > 0 && progress_clock() > supervisor->deadline)
+            break;
+        desk_show_progress(&supervisor->desk);
+        show_notes(supervisor);
+        supervisor_step_window(supervisor);
+        if (files_changed(supervisor))
+            supervisor_restart(supervisor);
+        if (!watched[0].revents)
+            continue;
+        enum channel_result result = channel_receive(&supervisor->channel, &frame);
+        if (result == CHANNEL_END)
+            return;
+        if (result == CHANNEL_FRAME)
+            supervisor_take_message(supervisor, &frame);
+        else
+            supervisor->broken = true;
+        if (supervisor->waits)
+            return;
+    }
+    (void)kill(supervisor->child, SIGKILL);
+}
+
+/* A child that is there goes on; another one is started where there is none. */
+static void run_children(struct supervisor *supervisor) {
+    struct error error;
+    bool there = supervisor->child > 0;
+    while (supervisor->next_script < supervisor->options->script_count && !supervisor->stop) {
+        supervisor->broken = false;
+        if (!there && !supervisor_start_child(supervisor, &error)) {
+            supervisor_note_error(supervisor, &error);
+            desk_abandon(&supervisor->desk);
+            supervisor->retry.kept = 0;
+            return;
+        }
+        talk_to_child(supervisor);
+        if (supervisor->waits)
+            return;
+        int how = supervisor_reap_child(supervisor);
+        there = false;
+        supervisor->child = 0;
+        channel_close(&supervisor->channel);
+        supervisor_judge_end(supervisor, how);
+    }
+}
+
+/* Between two runs: nothing is rendered, the window shows the last good picture. True when something has changed. */
+static bool wait_for_change(struct supervisor *supervisor) {
+    supervisor->waits = true;
+    watch_settle(&supervisor->watch, supervisor->status != 0, progress_clock());
+    if (!supervisor->window && !supervisor->restarts)
+        desk_line(&supervisor->desk, LINE_NOTICE, "gray: notice: waiting for changes (Ctrl-C ends)");
+    supervisor->stop = false;
+    supervisor->deadline = 0;
+    while (!supervisor->ended && !supervisor->restarts) {
+        struct pollfd watched[2] = {{.fd = supervisor->watch.descriptor, .events = POLLIN},
+                                    {.fd = supervisor->signals, .events = POLLIN}};
+        /* Not at once: a file that was read while it was written is looked at a second time. */
+        (void)poll(watched, 2, supervisor->window ? 4 : supervisor->watch.last > 0 ? 20 : 500);
+        if (watched[1].revents)
+            supervisor_read_signals(supervisor);
+        supervisor_step_window(supervisor);
+        if (files_changed(supervisor))
+            break;
+    }
+    return !supervisor->ended;
+}
+
+/* The child ends, or runs the scripts again: only where no mesh or picture it may have kept has changed. */
+static void answer_again(struct supervisor *supervisor, bool again) {
+    const struct error none = {0};
+    if (supervisor->child <= 0)
+        return;
+    supervisor_send_answer(supervisor, FRAME_ANSWER, again, false, &none, -1);
+    if (again) {
+        supervisor_start_script_clock(supervisor);
+        return;
+    }
+    (void)supervisor_reap_child(supervisor);
+    supervisor->child = 0;
+    channel_close(&supervisor->channel);
+}
+
+static bool watch_scripts(struct supervisor *supervisor, struct error *error) {
+    if (!watch_open(&supervisor->watch, error))
+        return false;
+    for (int i = 0; i < supervisor->options->script_count; i++) {
+        if (!watch_add(&supervisor->watch, supervisor->options->scripts[i], NULL, progress_clock()))
+            return error_no_memory(error, "the list of files that are watched");
+    }
+    return true;
+}
+
+/* Every run is judged by itself; the last one's status is the program's. */
+static void run_and_watch(struct supervisor *supervisor) {
+    struct error error;
+    run_children(supervisor);
+    while (supervisor->watch.open && !supervisor->ended) {
+        if (!supervisor->restarts && !desk_settle(&supervisor->desk, &error))
+            supervisor_note_error(supervisor, &error);
+        if (!wait_for_change(supervisor))
+            break;
+        supervisor->watch.any = false;
+        live_keep(&supervisor->live);
+        desk_restart(&supervisor->desk);
+        supervisor->restarts = supervisor->waits = supervisor->stop = false;
+        supervisor->deadline = 0;
+        supervisor->status = supervisor->next_script = 0;
+        supervisor->script.used = 0;
+        atomic_store(&supervisor->control->cancel, CANCEL_NOTHING);
+        answer_again(supervisor, !supervisor->watch.assets_differ);
+        run_children(supervisor);
+    }
+    supervisor->waits = false;
+    answer_again(supervisor, false);
+}
+
+/* Where the farm waits for other ranks. */
+static void poll_in_farm(void *context) {
+    struct supervisor *supervisor = context;
+    supervisor_read_signals(supervisor);
+    show_notes(supervisor);
+}
+
+static void tell_foreign_line(void *context, const char *line) {
+    struct supervisor *supervisor = context;
+    desk_line(&supervisor->desk, LINE_WARNING, line);
+}
+
+static bool start_farm(struct supervisor *supervisor, const struct farm_transport *transport, struct error *error) {
+    long processors = sysconf(_SC_NPROCESSORS_ONLN);
+    uint32_t threads = (uint32_t)(supervisor->options->threads ? supervisor->options->threads : processors);
+    if (!transport)
+        return true;
+    supervisor->desk.farm = farm_create(transport, 2 * threads, supervisor->options->farm_silence, supervisor->control);
+    if (!supervisor->desk.farm)
+        return error_no_memory(error, "the farm");
+    atomic_store(&supervisor->control->error_stream.mute, transport->rank > 0);
+    farm_set_poll(supervisor->desk.farm, poll_in_farm, supervisor);
+    return true;
+}
+
+/* The first rank stays until the others have ended; all is written before. It also says what became of the pictures:
+ * what went wrong on another rank alone is a line, not a status. */
+static void end_farm(struct supervisor *supervisor) {
+    struct farm *farm = supervisor->desk.farm;
+    if (!farm)
+        return;
+    bool interrupted = supervisor->ended && supervisor->status == ERROR_CANCELLED;
+    supervisor->all_written = true;
+    if (!farm_is_first(farm) && !interrupted)
+        supervisor->status = 0;
+    farm_finish(farm, supervisor->status == 0, tell_foreign_line, supervisor);
+    leave_abandoned(supervisor);
+    show_notes(supervisor);
+    farm_destroy(farm);
+    supervisor->desk.farm = NULL;
+    mem_free(supervisor->retry.settled);
+    supervisor->retry.settled = NULL;
+}
+
+static int run(struct supervisor *supervisor, const struct farm_transport *transport) {
+    const struct options *options = supervisor->options;
+    struct error error;
+    supervisor->control = mem_share(sizeof *supervisor->control);
+    supervisor->live.control = supervisor->control;
+    supervisor->live.tells = options->verbose;
+    desk_init(&supervisor->desk, options, supervisor->control);
+    supervisor->desk.takes_text = supervisor_wait_for_reader;
+    supervisor->desk.takes_context = supervisor;
+    bool ready = supervisor->control
+                     ? supervisor_listen(supervisor, &error) && start_farm(supervisor, transport, &error) &&
+                           (!options->watch || watch_scripts(supervisor, &error))
+                     : error_no_memory(&error, "the rendering process");
+    if (ready)
+        standard_streams_begin(&supervisor->streams);
+    desk_set_interrupt(&supervisor->desk,
+                       &(struct file_interrupt){supervisor->signals, supervisor_is_stopped, supervisor});
+    desk_tell_trust(&supervisor->desk);
+    if (ready)
+        run_and_watch(supervisor);
+    else
+        supervisor_note_error(supervisor, &error);
+    live_end(&supervisor->live);
+    if (supervisor->quit_at > 0) {
+        char line[80];
+        (void)snprintf(line, sizeof line, "gray: the window closed in %.1f ms",
+                       1000 * (progress_clock() - supervisor->quit_at));
+        desk_line(&supervisor->desk, LINE_DETAIL, line);
+    }
+    watch_close(&supervisor->watch);
+    if (!desk_finish(&supervisor->desk, supervisor->status == 0, &error) && error.kind != ERROR_CANCELLED)
+        supervisor_note_error(supervisor, &error);
+    if (!desk_finish_output(&supervisor->desk, &error))
+        supervisor_note_error(supervisor, &error);
+    end_farm(supervisor);
+    standard_streams_end(&supervisor->streams);
+    if (supervisor->signals >= 0)
+        (void)close(supervisor->signals);
+    mem_unshare(supervisor->control, sizeof *supervisor->control);
+    return supervisor->status;
+}
+
+/* Not on the stack: that may be a small one. */
+int supervisor_run(const struct options *options, const struct program_parts *parts) {
+    struct supervisor *supervisor = mem_alloc_zero(1, sizeof *supervisor);
+    if (!supervisor) {
+        (void)fputs("gray: out of memory\n", stderr);
+        return ERROR_MACHINE;
+    }
+    supervisor->options = options;
+    supervisor->window = parts->window;
+    supervisor->signals = supervisor->channel.descriptor = -1;
+    int status = run(supervisor, parts->transport);
+    mem_free(supervisor);
+    return status;
+}

@@ -1,0 +1,271 @@
+/* The life of the render process: how it is started and confined, how long its script may take, and what its end means.
+ * The supervisor has no thread while it forks (only while it writes a picture). */
+#define _GNU_SOURCE
+#include "host/supervisor_internal.h"
+
+#include "base/fault.h"
+#include "base/pool.h"
+#include "base/process.h"
+#include "host/channel_services.h"
+#include "host/confine.h"
+#include "host/render_process.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+/* Seconds from the end of the channel to the end of the process. */
+static const double farewell = 10;
+/* How often in a farm a script is begun anew after its renderer was killed. */
+enum { TRIES_MAX = 3 };
+
+/* The processor time of the child: all of it is the script's while no picture is being made, since then the threads of
+ * the pool sleep. */
+static double child_clock(const struct supervisor *supervisor) {
+    return process_time(supervisor->child);
+}
+
+static double script_time(const struct supervisor *supervisor) {
+    double running = supervisor->script.runs ? child_clock(supervisor) - supervisor->script.since : 0;
+    return supervisor->script.used + (running > 0 ? running : 0);
+}
+
+void supervisor_stop_script_clock(struct supervisor *supervisor) {
+    supervisor->script.used = script_time(supervisor);
+    supervisor->script.runs = false;
+}
+
+void supervisor_start_script_clock(struct supervisor *supervisor) {
+    supervisor->script.since = child_clock(supervisor);
+    supervisor->script.runs = true;
+}
+
+/* Milliseconds until the script could have used up its time and did not notice; the process itself ends it a little
+ * earlier, with its line, unless it is inside one of Lua's own functions. -1: no limit. 0: it has. */
+int supervisor_script_patience(const struct supervisor *supervisor) {
+    double limit = script_time_limit(&supervisor->options->script);
+    if (limit <= 0 || !supervisor->script.runs)
+        return -1;
+    double left = limit * 1.03 + 0.005 - script_time(supervisor);
+    return left <= 0 ? 0 : left > 1000 ? 1000000 : (int)(left * 1000) + 1;
+}
+
+/* What is in force is a detail; what is missing is a warning, once in a run, without the list of folders. */
+static void report_confinement(const struct supervisor *supervisor, const struct child_services *services,
+                               char *report) {
+    static const char warning[] = "gray: warning: ";
+    enum line_kind kind = LINE_DETAIL;
+    if (strncmp(report, warning, strlen(warning)) == 0 && !supervisor->had_child) {
+        kind = LINE_WARNING;
+        if (!supervisor->options->verbose)
+            report[strcspn(report, ";")] = '\0';
+    }
+    services->line(services->context, kind, report);
+}
+
+/* What runs in the child once it is confined. */
+struct child_work {
+    const struct options *options;
+    const struct child_services *services;
+    int first;
+};
+
+static void work_in_child(void *context) {
+    const struct child_work *work = context;
+    child_run(work->options, work->services, work->first);
+}
+
+/* No script can run: one line, and all of them have ended. */
+static _Noreturn void give_up(const struct child_work *work, const struct error *error) {
+    const struct child_services *services = work->services;
+    services->line(services->context, LINE_ERROR, error->text);
+    for (int i = work->first; i < work->options->script_count; i++)
+        services->script_ended(services->context, i, (int)error->kind);
+    _exit(0);
+}
+
+/* Whether the child of a farm has stood still for too long: it has used no processor time though it was not short of
+ * one. While a picture is open there is always something that it does; a script may wait for whoever reads what it
+ * prints, but it does not stop. Time in which this process did not look, since it was stopped itself, does not count.
+ */
+bool supervisor_child_is_stalled(struct supervisor *supervisor) {
+    double limit = supervisor->options->farm_stall, now = progress_clock(), pause = limit / 32;
+    double passed = now - supervisor->stall.checked;
+    if (!supervisor->desk.farm || limit <= 0 || passed < pause)
+        return false;
+    double used = child_clock(supervisor);
+    enum process_state state = process_state(supervisor->child);
+    const struct picture *picture = &supervisor->desk.current;
+    bool renders = picture->open && !picture->request.check && !supervisor->retry.kept;
+    bool might = state == PROCESS_STOPPED || (state == PROCESS_WAITS && renders);
+    supervisor->stall.checked = now;
+    supervisor->stall.seconds += passed < 2 * pause ? passed : pause;
+    if (used > supervisor->stall.clock || !might)
+        supervisor->stall.seconds = 0;
+    supervisor->stall.clock = used;
+    return supervisor->stall.seconds >= limit;
+}
+
+/* In the child, after the fork: never returns. From child_run on this process needs the channel, the memory it gets,
+ * and the files that scenes may read: confine_process takes the rest away. */
+static _Noreturn void be_child(struct supervisor *supervisor, struct channel channel, pid_t parent) {
+    standard_streams_end(&supervisor->streams);
+    (void)close(supervisor->signals);
+    watch_close(&supervisor->watch);
+    channel_close(&supervisor->channel);
+    display_close(&supervisor->desk.display);
+    /* Ctrl-C reaches the whole group; the supervisor passes on what it means. */
+    (void)signal(SIGINT, SIG_IGN);
+    (void)signal(SIGTERM, SIG_IGN);
+    (void)signal(SIGHUP, SIG_IGN);
+    (void)signal(SIGUSR1, SIG_IGN);
+    (void)sigprocmask(SIG_SETMASK, &supervisor->signals_before, NULL);
+    /* Without its supervisor the child is of no use. */
+    if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != parent)
+        _exit(ERROR_MACHINE);
+    (void)setvbuf(stdout, NULL, _IOLBF, BUFSIZ);
+    struct child_link link = {.channel = channel};
+    struct child_services services = child_link_services(&link, supervisor->control);
+    struct child_work work = {supervisor->options, &services, supervisor->next_script};
+    struct error error;
+    if (options_output_is_stream(supervisor->options)) /* what scripts print goes beside the picture */
+        (void)dup2(STDERR_FILENO, STDOUT_FILENO);
+    if (!supervisor->options->script.no_sandbox) {
+        char report[4096];
+        (void)file_null_input();
+        if (!confine_process(supervisor->options, channel.descriptor, report, sizeof report, &error))
+            give_up(&work, &error);
+        report_confinement(supervisor, &services, report);
+    }
+    if (!pool_call_with_stack(work_in_child, &work, &error))
+        give_up(&work, &error);
+    child_link_close(&link);
+    exit(link.broken ? ERROR_MACHINE : 0);
+}
+
+bool supervisor_start_child(struct supervisor *supervisor, struct error *error) {
+    struct channel ends[2];
+    if (!channel_pair(ends, error))
+        return false;
+    (void)fflush(NULL);
+    pid_t parent = getpid();
+    supervisor->channel = ends[0];
+    supervisor->child = MAY_FAIL(fork());
+    if (supervisor->child == 0)
+        be_child(supervisor, ends[1], parent);
+    int saved = errno;
+    supervisor->had_child = true;
+    supervisor->script.used = 0;
+    supervisor->script.out_of_time = supervisor->stall.found = false;
+    supervisor->stall.checked = progress_clock();
+    supervisor->stall.clock = supervisor->stall.seconds = 0;
+    supervisor_start_script_clock(supervisor);
+    channel_close(&ends[1]);
+    if (supervisor->child > 0)
+        return true;
+    channel_close(&supervisor->channel);
+    return error_set(error, ERROR_MACHINE, "gray: the rendering process cannot be started: %s", strerror(saved));
+}
+
+/* The channel is closed before the process is gone: wait, but not for ever. */
+int supervisor_reap_child(struct supervisor *supervisor) {
+    const struct timespec pause = {0, 2000000};
+    double limit = progress_clock() + farewell;
+    int how = 0;
+    for (;;) {
+        pid_t got = waitpid(supervisor->child, &how, WNOHANG);
+        if (got == supervisor->child || (got < 0 && errno != EINTR))
+            break;
+        if (progress_clock() > limit || supervisor->deadline > 0)
+            (void)kill(supervisor->child, SIGKILL);
+        (void)nanosleep(&pause, NULL);
+    }
+    error_stream_free(&supervisor->control->error_stream);
+    return how;
+}
+
+/* The child is gone in the middle of a script. (os.exit in a script ends the script, not the process.) */
+static void tell_death(struct supervisor *supervisor, int how) {
+    struct error error;
+    const struct picture *picture = &supervisor->desk.current;
+    const char *script = supervisor->options->scripts[supervisor->next_script];
+    char making[NAME_LIMIT + 64] = "";
+    if (picture->open)
+        (void)snprintf(making, sizeof making, " while it made %.400s, which is not written", picture->name);
+    if (supervisor->script.out_of_time)
+        error_set(&error, ERROR_SCENE,
+                  "%.400s: the script used up its %g s of processor time (--script-time allows more)", script,
+                  script_time_limit(&supervisor->options->script));
+    else if (supervisor->broken)
+        error_set(&error, ERROR_MACHINE, "%.400s: the rendering process did not keep to its protocol%s", script,
+                  making);
+    else if (supervisor->stall.found)
+        error_set(&error, ERROR_MACHINE, "%.400s: the rendering process stood still for %g s%s", script,
+                  supervisor->options->farm_stall, making);
+    else if (WIFSIGNALED(how) && WTERMSIG(how) == SIGKILL)
+        error_set(&error, ERROR_MACHINE, "%.400s: the rendering process was killed%s (out of memory?)", script, making);
+    else if (WIFSIGNALED(how))
+        error_set(&error, ERROR_MACHINE, "%.400s: the rendering process crashed (signal %d, %s)%s", script,
+                  WTERMSIG(how), strsignal(WTERMSIG(how)), making);
+    else
+        error_set(&error, ERROR_MACHINE, "%.400s: the rendering process ended with status %d%s", script,
+                  WEXITSTATUS(how), making);
+    supervisor_note_error(supervisor, &error);
+}
+
+/* In a farm a script whose renderer was killed, by this process or by another one, is begun anew: its pictures that are
+ * finished are passed over. The first rank keeps the tiles of the picture that was being made, the others give theirs
+ * back. */
+static bool tries_again(struct supervisor *supervisor, int how) {
+    struct desk *desk = &supervisor->desk;
+    char text[512];
+    bool killed = WIFSIGNALED(how) && WTERMSIG(how) == SIGKILL;
+    if (!desk->farm || !killed || supervisor->script.out_of_time || supervisor->broken ||
+        supervisor->retry.count >= TRIES_MAX)
+        return false;
+    if (supervisor->stall.found)
+        (void)snprintf(
+            text, sizeof text,
+            "has killed its rendering process, which stood still for %g s (--farm-stall); %.200s begins anew",
+            supervisor->options->farm_stall, supervisor->options->scripts[supervisor->next_script]);
+    else
+        (void)snprintf(text, sizeof text, "has lost its rendering process, which was killed; %.200s begins anew",
+                       supervisor->options->scripts[supervisor->next_script]);
+    farm_note(desk->farm, text);
+    supervisor->retry.count++;
+    if (farm_is_first(desk->farm) && desk->current.open && !desk->current.request.check) {
+        farm_take_back_own(desk->farm);
+        supervisor->retry.kept = supervisor->retry.kept ? supervisor->retry.kept : desk->pictures;
+    } else {
+        desk_abandon(desk);
+    }
+    desk->pictures = supervisor->retry.pictures_before;
+    return true;
+}
+
+/* What the end of the child means for the scripts that are left. */
+void supervisor_judge_end(struct supervisor *supervisor, int how) {
+    bool all_ended = supervisor->next_script >= supervisor->options->script_count;
+    if (supervisor->deadline > 0) {
+        /* It was told to stop; how it did does not matter. */
+    } else if (!all_ended && !supervisor->stop && tries_again(supervisor, how)) {
+        return;
+    } else if (!all_ended && !supervisor->stop) {
+        tell_death(supervisor, how);
+        supervisor->next_script++;
+        supervisor->retry.count = 0;
+        supervisor->retry.pictures_before = supervisor->desk.pictures;
+    } else if (how != 0) {
+        struct error error;
+        error_set(&error, ERROR_MACHINE, "gray: the rendering process failed after its work (%s %d)",
+                  WIFSIGNALED(how) ? "signal" : "status", WIFSIGNALED(how) ? WTERMSIG(how) : WEXITSTATUS(how));
+        supervisor_note_error(supervisor, &error);
+    }
+    live_detach(&supervisor->live);
+    desk_abandon(&supervisor->desk);
+    supervisor->retry.kept = 0;
+}

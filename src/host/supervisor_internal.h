@@ -1,0 +1,111 @@
+/* What the files of the supervisor share. supervisor.c has the order of events, supervisor_child.c the life of the
+ * render process, supervisor_messages.c the answers to it, supervisor_signals.c the signals. */
+#ifndef GRAY_HOST_SUPERVISOR_INTERNAL_H
+#define GRAY_HOST_SUPERVISOR_INTERNAL_H
+
+#include "host/file_watch.h"
+#include "host/supervisor.h"
+#include "output/output_session.h"
+#include "session/channel.h"
+#include "session/standard_streams.h"
+#include "viewer/viewer.h"
+
+#include <signal.h>
+#include <sys/types.h>
+
+/* The processor time of the script that runs: the child's clock while no picture is being made. */
+struct script_clock {
+    double used;      /* seconds of earlier stretches of the script */
+    double since;     /* the child's clock when this stretch began */
+    bool runs;        /* a stretch is under way */
+    bool out_of_time; /* the child was killed for that */
+};
+
+/* In a farm: whether the child stands still. */
+struct stall_check {
+    double clock;   /* of the child, when it was seen to move last */
+    double seconds; /* since then, in which it might have moved */
+    double checked; /* on progress_clock */
+    bool found;     /* the child was killed for that */
+};
+
+/* In a farm: the script that is begun anew after its render process was killed. */
+struct script_retry {
+    int count;
+    uint32_t pictures_before; /* of desk.pictures, when the script began */
+    uint32_t kept;            /* number of the picture that is open since an earlier try, or 0 */
+    uint8_t *settled;         /* by number of the picture: 1: nothing is left to do for it */
+    uint32_t settled_count;
+};
+
+struct supervisor {
+    const struct options *options;
+    struct desk desk;
+    const struct window_driver *window; /* or NULL */
+    struct live live;                   /* the picture in the window */
+    struct watch watch;                 /* --watch */
+    struct control *control;            /* shared with the child */
+    struct channel channel;             /* to the child */
+    pid_t child;
+    bool had_child; /* a rendering process was started before */
+    int signals;    /* descriptor, or -1 */
+    sigset_t signals_before;
+    struct standard_streams streams;
+    int status;       /* worst so far */
+    int next_script;  /* the one that runs, or comes next */
+    bool stop;        /* no further script */
+    bool broken;      /* the child did not keep to the rules of the channel */
+    bool finishing;   /* tiles under way are awaited, no others are begun */
+    double deadline;  /* when the cancelled child is killed; 0: not cancelled */
+    bool waits;       /* the child has run all scripts and waits for a change */
+    bool restarts;    /* the scripts are cancelled because they will run again */
+    double quit_at;   /* when the window was closed, or 0 */
+    bool ended;       /* by Ctrl-C, or the window was closed */
+    bool all_written; /* in a farm: only other ranks are waited for */
+    struct script_clock script;
+    struct stall_check stall;
+    struct script_retry retry;
+};
+
+/* Seconds a cancelled child has to give up by itself before it is killed. It writes no files: nothing is lost with it,
+ * and giving back the memory of a large scene takes longer than a kill. */
+static const double supervisor_patience = 0.03;
+
+/* supervisor.c */
+void supervisor_note_status(struct supervisor *supervisor, int status); /* the worst stays */
+/* In the terminal, and what is wrong in the window, too. */
+void supervisor_report(struct supervisor *supervisor, enum line_kind kind, const char *text);
+void supervisor_note_error(struct supervisor *supervisor, const struct error *error);
+
+/* supervisor_signals.c */
+bool supervisor_listen(struct supervisor *supervisor, struct error *error);
+void supervisor_read_signals(struct supervisor *supervisor);
+/* Everything ends: the child is asked to, and killed soon; a second call kills it at once. */
+void supervisor_interrupt(struct supervisor *supervisor);
+/* While a picture waits for the reader of a pipe; context: the supervisor. */
+bool supervisor_is_stopped(void *context);
+/* Until standard error takes text; false: it does not, and the run is to end. context: the supervisor. */
+bool supervisor_wait_for_reader(void *context);
+
+/* supervisor_child.c */
+bool supervisor_start_child(struct supervisor *supervisor, struct error *error);
+/* Its status as of waitpid, when it is gone. */
+int supervisor_reap_child(struct supervisor *supervisor);
+/* What the end of the child means for the scripts that are left. */
+void supervisor_judge_end(struct supervisor *supervisor, int how);
+void supervisor_stop_script_clock(struct supervisor *supervisor);
+void supervisor_start_script_clock(struct supervisor *supervisor);
+/* Milliseconds until the script could have used up its time; -1: no limit; 0: it has. */
+int supervisor_script_patience(const struct supervisor *supervisor);
+/* Whether the child of a farm has stood still for too long. */
+bool supervisor_child_is_stalled(struct supervisor *supervisor);
+
+/* supervisor_messages.c */
+void supervisor_take_message(struct supervisor *supervisor, const struct frame *frame);
+void supervisor_send_answer(struct supervisor *supervisor, enum frame_kind kind, bool ok, bool already,
+                            const struct error *error, int descriptor);
+void supervisor_step_window(struct supervisor *supervisor);
+/* The scripts are ended, to run again. */
+void supervisor_restart(struct supervisor *supervisor);
+
+#endif

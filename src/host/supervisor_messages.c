@@ -1,0 +1,319 @@
+/* Answers to the render process. Invariant: files are written by this process alone, and only from a film that the
+ * render process has declared complete. */
+#include "host/supervisor_internal.h"
+
+#include "base/mem.h"
+#include "viewer/saved_view.h"
+
+#include <poll.h>
+#include <string.h>
+
+/* Seconds that a child has to give up when the window is closed, which is to be over within 50 milliseconds. */
+static const double patience_quit = 0.01;
+/* Seconds for the scripts to end before they run again; afterwards the process is started anew. */
+static const double patience_again = 0.3;
+
+/* Without its answer the child would wait for ever, unless it is gone: that is met at the end of the channel. */
+static void note_unsent(struct supervisor *supervisor) {
+    struct pollfd peer = {.fd = supervisor->channel.descriptor};
+    bool gone = poll(&peer, 1, 0) == 1 && (peer.revents & POLLHUP) != 0;
+    supervisor->broken = supervisor->broken || !gone;
+}
+
+void supervisor_send_answer(struct supervisor *supervisor, enum frame_kind kind, bool ok, bool already,
+                            const struct error *error, int descriptor) {
+    struct frame_answer answer = {.ok = ok, .already = already};
+    if (!ok)
+        answer.error = *error;
+    if (!channel_send(&supervisor->channel, kind, &answer, sizeof answer, descriptor))
+        note_unsent(supervisor);
+}
+
+/* The wish to stop a pass is used up; that to stop everything stays. To be called while the child waits for an answer:
+ * a wish that comes later is one to stop what it will do then. */
+static void forget_stop(const struct supervisor *supervisor) {
+    int stop = CANCEL_PASS;
+    (void)atomic_compare_exchange_strong(&supervisor->control->cancel, &stop, CANCEL_NOTHING);
+}
+
+/* For a script that is begun anew: nothing is left to do for this picture. Without memory it is made again. */
+static void settle(struct supervisor *supervisor, uint32_t number) {
+    uint32_t room = supervisor->retry.settled_count;
+    if (!supervisor->desk.farm)
+        return;
+    if (number >= room) {
+        uint32_t larger = 2 * number + 64;
+        uint8_t *settled = mem_resize(supervisor->retry.settled, larger);
+        if (!settled)
+            return;
+        memset(settled + room, 0, larger - room);
+        supervisor->retry.settled = settled;
+        supervisor->retry.settled_count = larger;
+    }
+    supervisor->retry.settled[number] = 1;
+}
+
+static bool is_settled(const struct supervisor *supervisor, uint32_t number) {
+    return number < supervisor->retry.settled_count && supervisor->retry.settled[number];
+}
+
+static bool same_picture(const struct picture_request *a, const struct picture_request *b) {
+    return a->full_width == b->full_width && a->full_height == b->full_height && a->x0 == b->x0 && a->y0 == b->y0 &&
+           a->width == b->width && a->height == b->height && a->layers == b->layers && a->check == b->check &&
+           digest_equal(a->files, b->files) && strcmp(a->file, b->file) == 0;
+}
+
+/* A script that is begun anew comes to its pictures again; the one that is kept goes on with the tiles it has. False:
+ * the picture is made like any other. */
+static bool answer_retry(struct supervisor *supervisor, const struct picture_request *request) {
+    struct desk *desk = &supervisor->desk;
+    struct error error = {0};
+    uint32_t number = desk->pictures + 1;
+    bool settled = is_settled(supervisor, number);
+    if (!supervisor->retry.kept)
+        return false;
+    desk->pictures = number;
+    if (number < supervisor->retry.kept) {
+        error_set(&error, ERROR_SCENE, "this picture could not be made before, either");
+        supervisor_send_answer(supervisor, FRAME_FILM, settled, settled, &error, -1);
+        return true;
+    }
+    bool same = same_picture(request, &desk->current.request);
+    supervisor->retry.kept = 0;
+    if (!same) {
+        desk_abandon(desk);
+        error_set(&error, ERROR_SCENE,
+                  "begun anew after its rendering process was killed, the script makes another picture than before");
+    } else {
+        outlook_reset(&supervisor->control->outlook, progress_wants_outlook(&desk->progress));
+    }
+    supervisor_send_answer(supervisor, FRAME_FILM, same, false, &error, same ? desk->current.memory.descriptor : -1);
+    return true;
+}
+
+static void answer_begin(struct supervisor *supervisor, const struct frame *frame) {
+    struct desk *desk = &supervisor->desk;
+    if (answer_retry(supervisor, &frame->body.request))
+        return;
+    struct error error = {0};
+    bool already = live_skips(&supervisor->live, desk->pictures + 1) || is_settled(supervisor, desk->pictures + 1);
+    bool ok = desk_begin(desk, &frame->body.request, &already, &error);
+    bool film = ok && !already && !frame->body.request.check;
+    if (ok && already)
+        settle(supervisor, desk->pictures);
+    supervisor->live.number = film ? desk->pictures : supervisor->live.number;
+    if (film && supervisor->window &&
+        !live_begin(&supervisor->live, supervisor->window, &desk->current.request, desk->current.memory.block,
+                    desk->current.name, progress_clock(), &error)) {
+        desk_abandon(desk);
+        film = ok = false;
+    }
+    forget_stop(supervisor);
+    supervisor_send_answer(supervisor, FRAME_FILM, ok, already, &error, film ? desk->current.memory.descriptor : -1);
+}
+
+static void send_order(struct supervisor *supervisor, const struct studio_order *order) {
+    supervisor->live.waiting = false;
+    forget_stop(supervisor);
+    if (!channel_send(&supervisor->channel, FRAME_ORDER, order, sizeof *order, -1))
+        note_unsent(supervisor);
+}
+
+static void end_picture(struct supervisor *supervisor, bool quit) {
+    const struct studio_order order = {.kind = ORDER_END, .quit = quit};
+    send_order(supervisor, &order);
+}
+
+/* No picture is lost by closing the window: it is there already, or people did not wait for it. */
+static void quit_window(struct supervisor *supervisor) {
+    supervisor->ended = true;
+    supervisor->quit_at = progress_clock();
+    if (supervisor->deadline > 0 || supervisor->waits)
+        return;
+    supervisor->stop = true;
+    supervisor->deadline = progress_clock() + patience_quit;
+    atomic_store(&supervisor->control->cancel, CANCEL_ALL);
+    if (!supervisor->live.written)
+        supervisor_note_status(supervisor, ERROR_CANCELLED);
+    if (supervisor->live.waiting)
+        end_picture(supervisor, true);
+}
+
+/* The scripts are ended, to run again: what they read has changed. */
+void supervisor_restart(struct supervisor *supervisor) {
+    if (supervisor->deadline > 0)
+        return;
+    supervisor->stop = supervisor->restarts = true;
+    supervisor->deadline = progress_clock() + patience_again;
+    atomic_store(&supervisor->control->cancel, CANCEL_ALL);
+    live_keep(&supervisor->live);
+    if (supervisor->live.waiting)
+        end_picture(supervisor, true);
+}
+
+static void take_home(struct supervisor *supervisor,
+                      bool (*take)(const struct live *live, const struct file_target *picture, char *name,
+                                   struct error *error)) {
+    struct error error;
+    char name[NAME_LIMIT], line[NAME_LIMIT + 64];
+    const struct file_target picture = {.path = supervisor->live.name, .rules = &supervisor->desk.files.saved};
+    bool ok = take(&supervisor->live, &picture, name, &error);
+    (void)snprintf(line, sizeof line, ok ? "gray: notice: %s is written" : "%s", ok ? name : error.text);
+    desk_line(&supervisor->desk, ok ? LINE_NOTICE : LINE_ERROR, line);
+}
+
+void supervisor_step_window(struct supervisor *supervisor) {
+    struct live *live = &supervisor->live;
+    struct error error;
+    int nothing = CANCEL_NOTHING;
+    while (live->open && supervisor->deadline <= 0) {
+        switch (live_step(live, progress_clock())) {
+        case LIVE_NOTHING:
+            return;
+        case LIVE_STOP:
+            (void)atomic_compare_exchange_strong(&supervisor->control->cancel, &nothing, CANCEL_PASS);
+            return;
+        case LIVE_ORDER:
+            send_order(supervisor, &live->order);
+            break;
+        case LIVE_WRITE:
+            if (!desk_write(&supervisor->desk, &error))
+                supervisor_note_error(supervisor, &error);
+            break;
+        case LIVE_SAVE:
+            take_home(supervisor, souvenir_picture);
+            break;
+        case LIVE_RECORD:
+            take_home(supervisor, souvenir_camera);
+            break;
+        case LIVE_CHANGES:
+            take_home(supervisor, souvenir_changes);
+            break;
+        case LIVE_NOTE:
+            desk_line(&supervisor->desk, LINE_DETAIL, live->note);
+            live->note[0] = '\0';
+            break;
+        case LIVE_NEXT:
+            end_picture(supervisor, false);
+            return;
+        case LIVE_QUIT:
+            quit_window(supervisor);
+            return;
+        }
+    }
+}
+
+static void answer_done(struct supervisor *supervisor, const struct frame *frame) {
+    struct error error = {0};
+    live_detach(&supervisor->live);
+    bool ok = desk_done(&supervisor->desk, &frame->body.report, &error);
+    if (ok)
+        settle(supervisor, supervisor->desk.pictures);
+    if (supervisor->finishing) { /* the tiles under way were the last ones: the picture is whole, and the end is here */
+        supervisor->deadline = progress_clock() + supervisor_patience;
+        atomic_store(&supervisor->control->cancel, CANCEL_ALL);
+    }
+    supervisor_send_answer(supervisor, FRAME_ANSWER, ok, false, &error, -1);
+}
+
+/* A script that was begun anew has ended before it came to its picture again. */
+static void drop_kept(struct supervisor *supervisor, const struct frame_script *script) {
+    struct error error;
+    error_set(&error, ERROR_SCENE,
+              "%.400s: begun anew after its rendering process was killed, the script did not come to %.400s again, "
+              "which is not written",
+              supervisor->options->scripts[script->index], supervisor->desk.current.name);
+    desk_abandon(&supervisor->desk);
+    supervisor->retry.kept = 0;
+    supervisor_note_error(supervisor, &error);
+}
+
+static void note_script(struct supervisor *supervisor, const struct frame_script *script) {
+    static const int known[] = {0, ERROR_SCENE, ERROR_USAGE, ERROR_MACHINE, ERROR_CANCELLED};
+    bool sound = script->index == supervisor->next_script && script->index < supervisor->options->script_count;
+    bool is_known = false;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        is_known = is_known || script->status == known[i];
+    if (!sound || !is_known) {
+        supervisor->broken = true;
+        return;
+    }
+    supervisor->next_script++;
+    supervisor->script.used = 0;
+    supervisor->retry.count = 0;
+    supervisor->retry.pictures_before = supervisor->desk.pictures;
+    if (supervisor->retry.kept)
+        drop_kept(supervisor, script);
+    supervisor_start_script_clock(supervisor);
+    supervisor->stop = supervisor->stop || script->status == ERROR_USAGE || script->status == ERROR_CANCELLED;
+    /* What a wish to stop means was noted when it came. */
+    if (supervisor->deadline <= 0)
+        supervisor_note_status(supervisor, script->status);
+}
+
+static void note_read(struct supervisor *supervisor, const struct frame_read *read) {
+    struct error error;
+    picture_files_keep(&supervisor->desk.files, read->version.identity, read->written);
+    if (read->written)
+        return;
+    if (supervisor->watch.open && !watch_add(&supervisor->watch, read->path, &read->version, progress_clock())) {
+        (void)error_no_memory(&error, "the list of files that are watched");
+        supervisor_note_error(supervisor, &error);
+    }
+}
+
+/* A frame out of turn (a second picture before the first is finished ...) is not answered: it breaks the rules. */
+void supervisor_take_message(struct supervisor *supervisor, const struct frame *frame) {
+    const struct picture *current = &supervisor->desk.current;
+    switch (frame->kind) {
+    case FRAME_LINE:
+        supervisor_report(supervisor, frame->body.line.kind, frame->body.line.text);
+        error_stream_note_handled(&supervisor->control->error_stream);
+        return;
+    case FRAME_BEGIN:
+        if (current->open && !supervisor->retry.kept)
+            break;
+        supervisor_stop_script_clock(supervisor);
+        answer_begin(supervisor, frame);
+        if (!current->open || supervisor->retry.kept)
+            supervisor_start_script_clock(supervisor);
+        return;
+    case FRAME_DONE:
+        if (!current->open || supervisor->retry.kept || current->request.check || supervisor->deadline > 0)
+            break;
+        supervisor_start_script_clock(supervisor);
+        answer_done(supervisor, frame);
+        return;
+    case FRAME_NEWS:
+        if (!current->open || !supervisor->window || supervisor->live.waiting)
+            break;
+        live_take_news(&supervisor->live, &frame->body.news, progress_clock());
+        if (supervisor->deadline > 0)
+            end_picture(supervisor, true);
+        return;
+    case FRAME_ABANDON:
+        if (!current->open || supervisor->retry.kept)
+            break;
+        live_detach(&supervisor->live);
+        desk_abandon(&supervisor->desk);
+        supervisor_start_script_clock(supervisor);
+        return;
+    case FRAME_SCRIPT:
+        note_script(supervisor, &frame->body.script);
+        return;
+    case FRAME_READ:
+        note_read(supervisor, &frame->body.read);
+        return;
+    case FRAME_AGAIN:
+        if (!supervisor->watch.open || current->open)
+            break;
+        supervisor_stop_script_clock(supervisor);
+        supervisor->waits = true;
+        return;
+    case FRAME_FILM:
+    case FRAME_ANSWER:
+    case FRAME_ORDER:
+        break;
+    }
+    supervisor->broken = true;
+}

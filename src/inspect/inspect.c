@@ -1,0 +1,165 @@
+/* Words for kinds, and the two questions put together from their parts. */
+#include "inspect/inspect.h"
+
+#include "base/sort.h"
+
+const char *inspect_material(const struct material *link) {
+    switch (link->kind) {
+    case MATERIAL_PHONG:
+        return "phong";
+    case MATERIAL_MARBLE:
+        return "marble";
+    case MATERIAL_WOOD:
+        return "wood";
+    case MATERIAL_IMAGE:
+        switch (link->changed) {
+        case INPUT_KD:
+            return "image";
+        case INPUT_KS:
+            return "image on ks";
+        case INPUT_SHININESS:
+            return "image on shininess";
+        case INPUT_REFLECT:
+            return "image on reflect";
+        case INPUT_REFRACT:
+            return "image on refract";
+        case INPUT_ROUGHNESS:
+            return "image on roughness";
+        case INPUT_EMISSION:
+            return "image on emission";
+        case INPUT_OPACITY:
+            return "image on opacity";
+        case INPUT_COUNT:
+            break;
+        }
+        return "?";
+    case MATERIAL_BUMP:
+        return "bump";
+    case MATERIAL_NORMAL:
+        return "normal map";
+    case MATERIAL_METAL:
+        return "metal";
+    case MATERIAL_FRESNEL:
+        return "fresnel";
+    }
+    return "?";
+}
+
+const char *inspect_sky(enum sky_kind kind) {
+    switch (kind) {
+    case SKY_GRADIENT:
+        return "the gradient";
+    case SKY_CONSTANT:
+        return "one colour";
+    case SKY_CROSS:
+        return "an image, a cross of cube faces";
+    case SKY_FACES:
+        return "six images";
+    case SKY_MAP:
+        return "an image of all directions";
+    case SKY_STOPS:
+        return "colours by height";
+    case SKY_CLEAR:
+        return "the clear sky";
+    }
+    return "?";
+}
+
+const char *inspect_ray(enum ray_kind kind) {
+    switch (kind) {
+    case RAY_CAMERA:
+        return "camera";
+    case RAY_REFLECTED:
+        return "reflected";
+    case RAY_REFRACTED:
+        return "refracted";
+    case RAY_HOLE:
+        return "hole";
+    }
+    return "?";
+}
+
+const char *story_path(const struct told_story *told, uint32_t placed) {
+    uint32_t low = 0, high = told->names.count;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        if (told->names.placed[middle] < placed)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    bool found = low < told->names.count && told->names.placed[low] == placed && told->names.paths[low];
+    return found ? told->names.paths[low] : placed_node(told->picture->job->world, placed)->name;
+}
+
+/* All placed primitives that the rays of a list and below tell of: counts them, or notes them too. */
+static size_t note_placed(const struct story_ray *ray, uint64_t *out, size_t count) {
+    for (; ray; ray = ray->next) {
+        if (ray->met) {
+            if (out)
+                out[count] = ray->hit.placed;
+            count++;
+        }
+        for (const struct story_light *light = ray->lights; light; light = light->next) {
+            if (!light->has_blocker)
+                continue;
+            if (out)
+                out[count] = light->blocker;
+            count++;
+        }
+        count = note_placed(ray->first, out, count);
+    }
+    return count;
+}
+
+static bool find_names(struct story *story, const struct inspected *picture, struct story_names *names,
+                       struct error *error) {
+    size_t count = 0, at = 0;
+    for (const struct story_sample *sample = story->sample; sample; sample = sample->next)
+        count += note_placed(sample->first, NULL, 0);
+    uint64_t *all = arena_alloc_array(&story->arena, count + 1, sizeof *all);
+    names->placed = arena_alloc_array(&story->arena, count + 1, sizeof *names->placed);
+    names->paths = arena_alloc_array(&story->arena, count + 1, sizeof *names->paths);
+    if (!all || !names->placed || !names->paths)
+        return error_no_memory(error, "the story of a pixel");
+    for (const struct story_sample *sample = story->sample; sample; sample = sample->next)
+        at = note_placed(sample->first, all, at);
+    sort_words(all, count);
+    for (size_t i = 0; i < count; i++)
+        if (i == 0 || all[i] != all[i - 1])
+            names->placed[names->count++] = (uint32_t)all[i];
+    return world_find_paths(picture->job->world, picture->root, names->placed, names->count, &story->arena,
+                            names->paths, error);
+}
+
+struct telling {
+    const struct inspected *picture;
+    bool json;
+    struct sheet *sheet;
+};
+
+static bool tell_pixel(void *context, struct story *story, struct error *error) {
+    const struct telling *telling = context;
+    struct told_story told = {telling->picture, story, {0}};
+    if (!find_names(story, telling->picture, &told.names, error))
+        return false;
+    if (telling->json)
+        story_tell_json(&told, telling->sheet);
+    else
+        story_tell(&told, telling->sheet);
+    return true;
+}
+
+bool inspect_pixels(const struct inspected *picture, const uint32_t (*pixels)[2], uint32_t count, bool json,
+                    struct pool *pool, struct sheet *sheet, struct error *error) {
+    const struct render_job *job = picture->job;
+    struct telling telling = {picture, json, sheet};
+    for (uint32_t i = 0; i < count; i++) {
+        if (pixels[i][0] >= job->width || pixels[i][1] >= job->height)
+            return error_set(error, ERROR_USAGE, "--pixel %u,%u is not in the picture of %u x %u", pixels[i][0],
+                             pixels[i][1], job->width, job->height);
+    }
+    bool ok = render_pixels(job, pool, pixels, count, tell_pixel, &telling, error);
+    sheet_flush(sheet);
+    return ok;
+}

@@ -1,0 +1,44 @@
+/* What people ask about a scene instead of rendering it: the story of a pixel, and the flattened world as a table. */
+#ifndef GRAY_INSPECT_INSPECT_H
+#define GRAY_INSPECT_INSPECT_H
+
+#include "render/render.h"
+#include "render/story.h"
+#include "session/text_writer.h"
+#include "world/path.h"
+
+/* A picture about to be made: its name, its world, the tree that the world was built of. */
+struct inspected {
+    const char *file;
+    const struct render_job *job; /* with its world */
+    const struct node *root;
+};
+
+/* --pixel: makes pixels {x, y} of the whole picture and tells their stories, in words or as one line of JSON each.
+ * Errors: a pixel is not in the picture (ERROR_USAGE), those of render_pixels. */
+bool inspect_pixels(const struct inspected *picture, const uint32_t (*pixels)[2], uint32_t count, bool json,
+                    struct pool *pool, struct sheet *sheet, struct error *error);
+/* --dump-scene: everything placed, in flattening order, then lights and materials. */
+bool inspect_world(const struct inspected *picture, bool json, struct sheet *sheet, struct error *error);
+
+/* A story with what it needs to be told: the ways to the nodes in it. */
+struct story_names {
+    uint32_t count;
+    uint32_t *placed; /* ascending */
+    const char **paths;
+};
+struct told_story {
+    const struct inspected *picture;
+    const struct story *story;
+    struct story_names names;
+};
+const char *story_path(const struct told_story *told, uint32_t placed); /* never NULL */
+void story_tell(const struct told_story *told, struct sheet *sheet);
+void story_tell_json(const struct told_story *told, struct sheet *sheet);
+
+/* Words for kinds. */
+const char *inspect_material(const struct material *link);
+const char *inspect_sky(enum sky_kind kind);
+const char *inspect_ray(enum ray_kind kind);
+
+#endif

@@ -1,0 +1,242 @@
+/* The node's box is that of its own shape, turned with it, where the node is one shape; of a group it is the box along
+ * the world's axes round everything under it. The way to a combined solid goes on to the operand whose surface was hit;
+ * which of its nodes is told is a matter of going up or down on it. */
+#include "inspect/pick.h"
+
+#include "base/hash.h"
+#include "geom/csg.h"
+#include "inspect/inspect.h"
+#include "render/camera.h"
+#include "world/path.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { WAY_LIMIT = 256 };
+
+struct picking {
+    const struct world *world;
+    struct picked *out;
+    uint32_t placed; /* what was hit */
+    /* The way to it, and on to the operand; the node that is told is the last of `depth`. */
+    struct scene_step steps[WAY_LIMIT];
+    uint32_t way, whole, depth;
+    struct box box; /* of everything under it */
+};
+
+static struct transform world_from_parent(const struct scene_step *steps, uint32_t depth) {
+    struct transform out = transform_identity();
+    for (uint32_t i = 0; i + 1 < depth; i++) {
+        struct transform parent_from_node = node_parent_from_node(steps[i].node);
+        out = transform_compose(&out, &parent_from_node);
+        out = scene_step_map(&steps[i], &out);
+    }
+    return out;
+}
+
+void pick_words(char out[PICK_WORDS], const char *text) {
+    (void)snprintf(out, PICK_WORDS, "%s", text);
+    for (char *c = out; *c; c++)
+        *c = (unsigned char)*c < 32 || *c == 127 ? '?' : *c;
+}
+
+uint64_t marks_way(const struct scene_step *steps, uint32_t depth) {
+    uint64_t way = depth;
+    for (uint32_t i = 0; i < depth; i++) {
+        const uint32_t words[2] = {steps[i].node->serial, i + 1 < depth ? steps[i].placement : 0};
+        way = hash_bytes(words, sizeof words, way);
+    }
+    return way ? way : 1;
+}
+
+/* The way to what was hit; the walk ends there. */
+static bool find_way(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
+    struct picking *p = context;
+    if (p->placed < first || p->placed >= first + count)
+        return true;
+    p->way = depth <= WAY_LIMIT ? depth : 0;
+    memcpy(p->steps, steps, p->way * sizeof *steps);
+    return false;
+}
+
+/* The node that is so many above what was placed, or below. */
+static bool choose_node(struct picking *p, const struct hit *hit, int32_t up) {
+    const struct shape *shape = &placed_thing(p->world, p->placed)->shape;
+    uint32_t length = 0;
+    if (shape->kind == SHAPE_CSG && !world_operand_way(p->steps[p->way - 1].node, shape->csg->leaves[hit->leaf].origin,
+                                                       p->steps + p->way, WAY_LIMIT - p->way, &length))
+        return false;
+    int32_t way = (int32_t)p->way, below = (int32_t)length;
+    up = up > way - 1 ? way - 1 : up < -below ? -below : up;
+    p->whole = (uint32_t)(way + below);
+    p->depth = (uint32_t)(way - up);
+    p->out->up = up;
+    p->out->below = p->whole - p->depth;
+    p->out->levels = p->depth - 1;
+    (void)world_path_text(p->steps, p->depth, p->out->path, sizeof p->out->path);
+    return true;
+}
+
+static bool join_boxes(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
+    struct picking *p = context;
+    bool below = depth >= p->depth;
+    for (uint32_t i = 0; below && i < p->depth; i++) {
+        bool last = i + 1 == p->depth;
+        below = steps[i].node == p->steps[i].node && (last || steps[i].placement == p->steps[i].placement);
+    }
+    for (uint32_t i = first; below && i < first + count; i++)
+        p->box = box_join(p->box, p->world->boxes[i]);
+    return true;
+}
+
+static void set_corners(struct picked *out, const struct box *box, const struct affine *map) {
+    out->has_box = !box_is_empty(box) && vec3_finite(box->min) && vec3_finite(box->max);
+    for (int i = 0; i < 8 && out->has_box; i++) {
+        struct vec3 p = {i & 1 ? box->max.x : box->min.x, i & 2 ? box->max.y : box->min.y,
+                         i & 4 ? box->max.z : box->min.z};
+        out->corners[i] = map ? affine_point(map, p) : p;
+    }
+}
+
+struct box_frame {
+    struct transform world_from_node, of_children;
+};
+
+/* Of all shapes under an operand. False: no memory. */
+static bool join_operand(struct box *box, const struct node *operand, const struct transform *world_from_above) {
+    struct scene_traversal t = {.operands = OPERANDS_ALL, .frame_size = sizeof(struct box_frame)};
+    enum scene_event event;
+    scene_traversal_begin(&t, operand);
+    while ((event = scene_traversal_next(&t)) < SCENE_END) {
+        struct box_frame *frame = scene_traversal_frame(&t, 0);
+        const struct node *node = scene_traversal_node(&t);
+        if (event == SCENE_ENTER) {
+            const struct box_frame *above = t.depth > 1 ? scene_traversal_frame(&t, 1) : NULL;
+            const struct transform *map = !above                                       ? world_from_above
+                                          : scene_traversal_operand(&t) == SCENE_CHILD ? &above->of_children
+                                                                                       : &above->world_from_node;
+            struct transform above_from_node = node_parent_from_node(node);
+            frame->world_from_node = transform_compose(map, &above_from_node);
+            if (node->singular) {
+                scene_traversal_skip(&t);
+            } else if (node->kind == NODE_GEOMETRY) {
+                struct box own = shape_bounds(&node->shape);
+                if (!box_is_empty(&own))
+                    own = box_transform(&frame->world_from_node.forward, &own);
+                *box = box_join(*box, own);
+            }
+        } else if (event == SCENE_CHILDREN) {
+            frame->of_children = scene_step_map(&t.steps[t.depth - 1], &frame->world_from_node);
+        }
+    }
+    scene_traversal_end(&t);
+    return event == SCENE_END;
+}
+
+static bool box_operand(struct picking *p, const struct node *node, const struct transform *above) {
+    struct transform above_from_node = node_parent_from_node(node);
+    struct transform map = transform_compose(above, &above_from_node);
+    bool shape = node->kind == NODE_GEOMETRY && !node->first_child;
+    p->box = shape ? shape_bounds(&node->shape) : box_empty();
+    if (!shape && !join_operand(&p->box, node, above))
+        return false;
+    set_corners(p->out, &p->box, shape ? &map.forward : NULL);
+    return true;
+}
+
+static bool box_node(struct picking *p, const struct node *root, struct error *error) {
+    const struct thing *thing = placed_thing(p->world, p->placed);
+    if (p->depth == p->way && thing->parts == 1 && !thing->is_later_part) {
+        struct transform map = world_placement(p->world, p->placed, 0);
+        struct box box = shape_bounds(&thing->shape);
+        set_corners(p->out, &box, &map.forward);
+        return true;
+    }
+    if (p->depth > p->way) {
+        struct transform above = world_from_parent(p->steps, p->depth);
+        return box_operand(p, p->steps[p->depth - 1].node, &above) || error_no_memory(error, "the box of a node");
+    }
+    p->box = box_empty();
+    if (!world_walk_paths(p->world, root, join_boxes, p, error))
+        return false;
+    set_corners(p->out, &p->box, NULL);
+    return true;
+}
+
+static const char *shape_words(const struct picking *p, const struct node *node) {
+    if (p->depth == p->way)
+        return shape_kind_name(placed_shape(p->world, p->placed)->kind);
+    bool solid = p->depth > p->way && node->kind != NODE_GROUP && node->kind != NODE_JOINT;
+    return solid ? shape_kind_name(node->kind == NODE_CSG ? SHAPE_CSG : node->shape.kind) : "group";
+}
+
+/* "marble over phong", and the base. */
+static void tell_material(const struct material *material, struct picked *out) {
+    char words[256] = "";
+    size_t used = 0;
+    const struct material *base = material;
+    for (const struct material *link = material; link; link = link->base) {
+        int length = snprintf(words + used, sizeof words - used, "%s%s", used > 0 ? " over " : "",
+                              link->name ? link->name : inspect_material(link));
+        used = length < 0 || used + (size_t)length >= sizeof words ? sizeof words - 1 : used + (size_t)length;
+        base = link;
+    }
+    pick_words(out->material, words);
+    out->material_serial = base->serial;
+    for (int part = 0; part < LOOK_PARTS; part++)
+        look_part_get(base, (enum look_part)part, out->look[part]);
+}
+
+static bool describe(struct picking *p, const struct node *root, const struct hit *hit, int32_t up,
+                     struct error *error) {
+    struct picked *out = p->out;
+    if (!world_walk_paths(p->world, root, find_way, p, error))
+        return false;
+    out->hit = p->way > 0;
+    if (!out->hit)
+        return true;
+    if (!choose_node(p, hit, up))
+        return error_no_memory(error, "the way to an operand");
+    const struct node *node = p->steps[p->depth - 1].node;
+    out->serial = node->serial;
+    out->way = marks_way(p->steps, p->depth);
+    out->solid = p->depth > p->way ? marks_way(p->steps, p->way) : 0;
+    pick_words(out->name, node->name);
+    if (p->depth > 1) {
+        out->parent_serial = p->steps[p->depth - 2].node->serial;
+        pick_words(out->parent_name, p->steps[p->depth - 2].node->name);
+    }
+    pick_words(out->shape, shape_words(p, node));
+    tell_material(p->world->materials[hit->material], out);
+    out->can_own = p->depth == p->whole && node->kind == NODE_GEOMETRY;
+    out->world_from_parent = world_from_parent(p->steps, p->depth).forward;
+    return box_node(p, root, error);
+}
+
+bool pick_at(const struct render_job *job, const struct node *root, double x, double y, int32_t up, struct picked *out,
+             struct error *error) {
+    struct settings settings = job->settings;
+    struct camera_frame frame;
+    struct world_scratch scratch;
+    struct ray ray;
+    struct hit hit;
+    char ignored[256];
+    *out = (struct picked){0};
+    settings.lens.aperture = 0;
+    if (!camera_prepare(&job->camera, &settings, job->width, job->height, &frame, ignored, error))
+        return false;
+    if (!camera_ray_through(&frame, x, y, (struct sample2){0.5, 0.5}, 0, &ray))
+        return true;
+    if (!world_scratch_init(&scratch, job->world))
+        return error_no_memory(error, "the ray of a click");
+    bool found = world_nearest(job->world, &ray, &scratch, &hit), ok = true;
+    if (found) {
+        struct picking p = {.world = job->world, .out = out, .placed = hit.placed};
+        out->distance = vec3_length(vec3_sub(hit.point, ray.origin));
+        out->position = hit.point;
+        out->normal = hit.normal;
+        ok = describe(&p, root, &hit, up, error);
+    }
+    world_scratch_destroy(&scratch);
+    return ok;
+}

@@ -1,0 +1,174 @@
+/* The flattened world as it was built: one line for everything placed, in flattening order, then materials and lights.
+ */
+#include "geom/mesh.h"
+#include "inspect/inspect.h"
+
+#include <stdio.h>
+
+struct dump {
+    const struct inspected *picture;
+    const struct world *world;
+    struct sheet *sheet;
+    bool json;
+};
+
+static uint32_t triangles_of(const struct shape *shape) {
+    return shape->kind == SHAPE_MESH ? mesh_triangle_count(shape->mesh) : 0;
+}
+
+static void dump_line(const struct dump *d, uint32_t placed, const char *path) {
+    const struct thing *thing = placed_thing(d->world, placed);
+    const struct box *box = &d->world->boxes[placed];
+    char material[24] = "-", triangles[24] = "-";
+    bool moves = d->world->placed[placed].linear != LINEAR_NONE && (d->world->placed[placed].linear & LINEAR_MOVING);
+    if (thing->shape.kind != SHAPE_CSG)
+        (void)snprintf(material, sizeof material, thing->slot_count > 1 ? "%u-%u" : "%u", thing->material + 1,
+                       thing->material + thing->slot_count);
+    if (thing->shape.kind == SHAPE_MESH)
+        (void)snprintf(triangles, sizeof triangles, "%u", triangles_of(&thing->shape));
+    sheet_print(d->sheet, "%8u  %-14s %9s %9s  %-5s (%.6g, %.6g, %.6g) to (%.6g, %.6g, %.6g)  ", placed + 1,
+                shape_kind_name(thing->shape.kind), triangles, material, moves ? "moves" : "", box->min.x, box->min.y,
+                box->min.z, box->max.x, box->max.y, box->max.z);
+    sheet_name(d->sheet, path);
+    sheet_print(d->sheet, "\n");
+    if (thing->shape.kind != SHAPE_CSG)
+        return;
+    for (uint32_t i = 0; i < thing->shape.csg->leaf_count; i++) {
+        const struct csg_leaf *leaf = &thing->shape.csg->leaves[i];
+        sheet_print(d->sheet, "          . operand %u: %s, material %u\n", i + 1, shape_kind_name(leaf->shape.kind),
+                    leaf->material + 1);
+    }
+}
+
+static void dump_json(const struct dump *d, uint32_t placed, const char *path) {
+    const struct thing *thing = placed_thing(d->world, placed);
+    struct sheet *sheet = d->sheet;
+    sheet_print(sheet, "%s{\"number\":%u,\"node\":", placed > 0 ? "," : "", placed + 1);
+    sheet_json(sheet, path);
+    sheet_print(sheet, ",\"node_number\":%u,\"shape\":\"%s\"", placed_node(d->world, placed)->serial,
+                shape_kind_name(thing->shape.kind));
+    if (thing->shape.kind == SHAPE_MESH)
+        sheet_print(sheet, ",\"triangles\":%u", triangles_of(&thing->shape));
+    if (thing->shape.kind == SHAPE_CSG) {
+        sheet_print(sheet, ",\"operands\":[");
+        for (uint32_t i = 0; i < thing->shape.csg->leaf_count; i++)
+            sheet_print(sheet, "%s{\"shape\":\"%s\",\"material\":%u}", i > 0 ? "," : "",
+                        shape_kind_name(thing->shape.csg->leaves[i].shape.kind),
+                        thing->shape.csg->leaves[i].material + 1);
+        sheet_print(sheet, "]");
+    } else {
+        sheet_print(sheet, ",\"material\":%u,\"slots\":%u", thing->material + 1,
+                    thing->slot_count > 1 ? thing->slot_count : 1);
+    }
+    struct transform map = world_placement(d->world, placed, 0);
+    sheet_print(sheet, ",\"min\":");
+    sheet_json_vector(sheet, d->world->boxes[placed].min);
+    sheet_print(sheet, ",\"max\":");
+    sheet_json_vector(sheet, d->world->boxes[placed].max);
+    sheet_print(sheet, ",\"world_from_object\":[");
+    for (int i = 0; i < 12; i++) {
+        sheet_print(sheet, i > 0 ? "," : "");
+        sheet_json_number(sheet, map.forward.m[i / 4][i % 4]);
+    }
+    sheet_print(sheet, "]}");
+}
+
+static bool dump_placed(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
+    const struct dump *d = context;
+    char path[4096];
+    (void)world_path_text(steps, depth, path, sizeof path);
+    for (uint32_t i = first; i < first + count; i++)
+        d->json ? dump_json(d, i, path) : dump_line(d, i, path);
+    return true;
+}
+
+static void link_json(struct sheet *sheet, const struct material *link) {
+    sheet_print(sheet, "{\"kind\":\"%s\"", inspect_material(link));
+    if (link->name && link->name[0]) {
+        sheet_print(sheet, ",\"name\":");
+        sheet_json(sheet, link->name);
+    }
+    if (!link->base) {
+        sheet_print(sheet, ",\"kd\":");
+        sheet_json_vector(sheet, link->phong.kd);
+        sheet_print(sheet, ",\"ks\":");
+        sheet_json_vector(sheet, link->phong.ks);
+    }
+    sheet_print(sheet, link->base ? "}," : "}");
+}
+
+static void link_words(struct sheet *sheet, const struct material *link) {
+    sheet_print(sheet, "%s", inspect_material(link));
+    if (link->name && link->name[0]) {
+        sheet_print(sheet, " '");
+        sheet_name(sheet, link->name);
+        sheet_print(sheet, "'");
+    }
+    if (!link->base)
+        sheet_print(sheet, " kd (%.6g, %.6g, %.6g) ks (%.6g, %.6g, %.6g)", link->phong.kd.x, link->phong.kd.y,
+                    link->phong.kd.z, link->phong.ks.x, link->phong.ks.y, link->phong.ks.z);
+    sheet_print(sheet, link->base ? " over " : "");
+}
+
+static void dump_material(const struct dump *d, uint32_t number) {
+    struct sheet *sheet = d->sheet;
+    const struct material *last = d->world->materials[number];
+    sheet_print(sheet, d->json ? "%s{\"number\":%u,\"links\":[" : "%.0s%8u  ", d->json && number > 0 ? "," : "",
+                number + 1);
+    for (const struct material *link = last; link; link = link->base)
+        d->json ? link_json(sheet, link) : link_words(sheet, link);
+    sheet_print(sheet, d->json ? "]}" : "\n");
+}
+
+static void dump_light(const struct dump *d, uint32_t number) {
+    const struct light *light = &d->world->lights[number];
+    unsigned has = light_properties(light);
+    bool placed = has & LIGHT_HAS_POSITION, directed = has & LIGHT_HAS_DIRECTION, lamp = !light_is_delta(light);
+    struct vec3 at = placed ? light->position : light->direction, colour = light->colour;
+    sheet_print(d->sheet, d->json ? "%s{\"number\":%u,\"kind\":\"%s\",\"lamp\":%s,\"colour\":" : "%.0s%8u  %s%.0s of ",
+                d->json && number > 0 ? "," : "", number + 1, light_kind_name(light->kind), lamp ? "true" : "false");
+    if (d->json)
+        sheet_json_vector(d->sheet, colour);
+    else
+        sheet_print(d->sheet, "(%.6g, %.6g, %.6g)%s", colour.x, colour.y, colour.z, lamp ? ", a lamp" : "");
+    if ((placed || directed) && d->json) {
+        sheet_print(d->sheet, placed ? ",\"position\":" : ",\"direction\":");
+        sheet_json_vector(d->sheet, at);
+    } else if (placed || directed) {
+        sheet_print(d->sheet, " %s (%.6g, %.6g, %.6g)", placed ? "at" : "along", at.x, at.y, at.z);
+    }
+    sheet_print(d->sheet, d->json ? "}" : "\n");
+}
+
+static void dump_rest(const struct dump *d) {
+    const struct world *world = d->world;
+    sheet_print(d->sheet, d->json ? "],\"materials\":[" : "\n  number  material\n");
+    for (uint32_t i = 0; i < world->material_count; i++)
+        dump_material(d, i);
+    sheet_print(d->sheet, d->json ? "],\"lights\":[" : "\n  number  light\n");
+    for (uint32_t i = 0; i < world->light_count; i++)
+        dump_light(d, i);
+    sheet_print(d->sheet, d->json ? "]}\n" : "");
+}
+
+bool inspect_world(const struct inspected *picture, bool json, struct sheet *sheet, struct error *error) {
+    const struct world *world = picture->job->world;
+    struct dump d = {picture, world, sheet, json};
+    if (json) {
+        sheet_print(sheet, "{\"picture\":");
+        sheet_json(sheet, picture->file);
+        sheet_print(sheet, ",\"primitives\":[");
+    } else {
+        sheet_name(sheet, picture->file);
+        sheet_print(sheet,
+                    ": %u primitives, %llu triangles, %u materials, %u lights; background: %s\n\n"
+                    "  number  shape          triangles  material        box  node\n",
+                    world->placed_count, (unsigned long long)world->triangles, world->material_count,
+                    world->light_count, inspect_sky(world->sky.kind));
+    }
+    bool ok = world_walk_paths(world, picture->root, dump_placed, &d, error);
+    if (ok)
+        dump_rest(&d);
+    sheet_flush(sheet);
+    return ok;
+}

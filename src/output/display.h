@@ -1,0 +1,51 @@
+/* --display: the picture shown elsewhere while it is made, by the supervisor: the rendering process has no sockets and
+ * no terminal. Neither waits: what cannot be sent at once is sent later, and a viewer that goes away is done without.
+ *
+ * tev (https://github.com/Tom94/tev) listens for packets over TCP: a length (of all of it, 4 bytes), a type, and
+ * fields, all little-endian, texts ended by a zero. Sent are "create image" (4) and, tile by tile, "update image" (6):
+ * linear light in three channels of floats. */
+#ifndef GRAY_OUTPUT_DISPLAY_H
+#define GRAY_OUTPUT_DISPLAY_H
+
+#include "output/terminal.h"
+#include "session/options.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { DISPLAY_PACKET = 4096 + 128 + FILM_TILE * FILM_TILE * 12 };
+struct display {
+    struct display_choice choice;
+    int socket; /* or -1 */
+    bool on;
+    const char *name; /* of the picture; NULL while there is none */
+    const struct film *film;
+    struct tone tone;
+    uint8_t *sent; /* a byte for each tile */
+    uint8_t packet[DISPLAY_PACKET];
+    size_t size, begun; /* of the packet, and how much of it is gone */
+    struct terminal terminal;
+    double shown;
+};
+
+/* Connects. False: nobody listens, and nothing will be shown; error says so. */
+bool display_open(struct display *display, const char *text, struct error *error);
+void display_close(struct display *display);
+/* `name` and `film` must stay until display_end. */
+void display_begin(struct display *display, const char *name, const struct film *film, const struct tone *tone);
+/* Whether the next step draws on the terminal. */
+bool display_draws(const struct display *display, double now);
+/* Shows what is new as far as that goes at once. False: the viewer is gone (told once). */
+bool display_step(struct display *display, double now, struct error *error);
+/* Shows the rest, waiting a little. */
+bool display_end(struct display *display, struct error *error);
+void display_forget(struct display *display); /* the picture will not be finished */
+/* Something else was written on the terminal. */
+void display_disturb(struct display *display);
+
+/* The packets, for tests: each returns its size. name is cut at 4096 bytes. */
+size_t display_create_packet(uint8_t *out, const char *name, uint32_t width, uint32_t height);
+size_t display_update_packet(uint8_t *out, const char *name, const struct film *film, uint32_t tile);
+
+#endif

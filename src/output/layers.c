@@ -1,0 +1,102 @@
+/* The name of a layer stands before the extension of the picture's, and the extension says the format for both. */
+#include "output/layers.h"
+
+#include "image/exr.h"
+#include "image/float_write.h"
+#include "image/png_write.h"
+#include "render/aov.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+static bool ends_in(const char *name, const char *extension) {
+    size_t length = strlen(name), wanted = strlen(extension);
+    return length >= wanted && strcasecmp(name + length - wanted, extension) == 0;
+}
+
+bool layers_name(const char *name, const char *layer, char out[LAYER_NAME_LIMIT], struct error *error) {
+    const char *slash = strrchr(name, '/'), *base = slash ? slash + 1 : name, *dot = strrchr(base, '.');
+    int stem = (int)(dot && dot > base ? dot - name : (ptrdiff_t)strlen(name));
+    if (snprintf(out, LAYER_NAME_LIMIT, "%.*s.%s%s", stem, name, layer, name + stem) >= LAYER_NAME_LIMIT)
+        return error_set(error, ERROR_SCENE, "%s: with %s in it the name is longer than %d bytes", name, layer,
+                         LAYER_NAME_LIMIT - 1);
+    return true;
+}
+
+struct layer_rows {
+    enum aov aov;
+    uint32_t width;
+    const float (*values)[3];
+    struct aov_scale scale;
+};
+
+static void layer_row(void *context, uint32_t y, uint8_t *line) {
+    const struct layer_rows *rows = context;
+    for (uint32_t x = 0; x < rows->width; x++) {
+        double rgb[3];
+        aov_colour(rows->aov, &rows->scale, rows->values[(size_t)y * rows->width + x], rgb);
+        for (uint32_t c = 0; c < 3; c++)
+            line[3 * x + c] = png_write_byte(rgb[c]);
+    }
+}
+
+static void layer_row_16(void *context, uint32_t y, uint16_t *line) {
+    const struct layer_rows *rows = context;
+    for (uint32_t x = 0; x < rows->width; x++) {
+        double rgb[3];
+        aov_colour(rows->aov, &rows->scale, rows->values[(size_t)y * rows->width + x], rgb);
+        for (uint32_t c = 0; c < 3; c++)
+            line[3 * x + c] = tone_word(rgb[c]);
+    }
+}
+
+static void layer_row_linear(void *context, uint32_t y, float *line) {
+    const struct layer_rows *rows = context;
+    memcpy(line, rows->values + (size_t)y * rows->width, rows->width * sizeof *rows->values);
+}
+
+bool layers_write_exr(const struct file_target *target, const struct film *film, struct error *error) {
+    static const char *const light[3] = {"R", "G", "B"};
+    struct exr_channel channels[3 + 3 * AOV_COUNT];
+    char names[AOV_COUNT][3][16]; /* "normal.X" */
+    uint32_t count = 0, floats = sizeof *film->pixels / sizeof(float);
+    size_t pixels = (size_t)film->width * film->height;
+    for (int c = 0; c < 3; c++)
+        channels[count++] = (struct exr_channel){light[c], &film->pixels[0].rgb[c], floats};
+    for (int i = 0; i < AOV_COUNT; i++) {
+        if (!(film->layer_mask >> i & 1))
+            continue;
+        const float(*values)[3] = (const float(*)[3])(film->layers + aov_layer(film->layer_mask, (enum aov)i) * pixels);
+        const char *letters = aov_channels((enum aov)i);
+        for (int c = 0; letters[c]; c++) {
+            (void)snprintf(names[i][c], sizeof names[i][c], "%s.%c", aov_name((enum aov)i), letters[c]);
+            channels[count++] = (struct exr_channel){names[i][c], &values[0][c], 3};
+        }
+    }
+    return exr_write_channels(target, film->width, film->height, channels, count, error);
+}
+
+bool layers_write(const struct file_target *picture, const struct film *film, bool deep_picture, struct error *error) {
+    size_t pixels = (size_t)film->width * film->height;
+    char name[LAYER_NAME_LIMIT];
+    const struct file_target target = {.path = name, .rules = picture->rules};
+    for (int i = 0; i < AOV_COUNT; i++) {
+        if (!(film->layer_mask >> i & 1) || ends_in(picture->path, ".exr"))
+            continue;
+        struct layer_rows rows = {.aov = (enum aov)i, .width = film->width};
+        rows.values = (const float(*)[3])(film->layers + aov_layer(film->layer_mask, rows.aov) * pixels);
+        rows.scale = aov_scale(rows.aov, rows.values, pixels);
+        if (!layers_name(picture->path, aov_name(rows.aov), name, error))
+            return false;
+        bool deep = deep_picture || rows.aov == AOV_DEPTH;
+        bool ok = ends_in(name, ".pfm") ? pfm_write(&target, film->width, film->height, layer_row_linear, &rows, error)
+                  : ends_in(name, ".hdr")
+                      ? hdr_write(&target, film->width, film->height, layer_row_linear, &rows, error)
+                  : deep ? png_write_16(&target, film->width, film->height, layer_row_16, &rows, error)
+                         : png_write(&target, film->width, film->height, layer_row, &rows, error);
+        if (!ok)
+            return false;
+    }
+    return true;
+}

@@ -1,0 +1,179 @@
+/* Parts are sorted by the picture they are of; each picture then goes over the desk like one that a scene made, so that
+ * names, formats and the care for old files are the same. A part is read twice, once to know it and once for its tiles,
+ * so that no more than one of them is in memory. */
+#include "output/merge.h"
+
+#include "base/mem.h"
+#include "output/output_session.h"
+
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct part {
+    const char *path;
+    struct tile_picture picture;
+    size_t tiles;
+};
+
+static int by_picture_and_shard(const void *a, const void *b) {
+    const struct part *x = a, *y = b;
+    if (x->picture.number != y->picture.number)
+        return x->picture.number < y->picture.number ? -1 : 1;
+    if (x->picture.shard != y->picture.shard)
+        return x->picture.shard < y->picture.shard ? -1 : 1;
+    return 0;
+}
+
+static bool read_part(const char *path, struct part *part, struct error *error) {
+    struct tile_file file;
+    if (!tile_file_read(path, &file, error))
+        return false;
+    bool ok = file.has_picture;
+    *part = (struct part){path, file.picture, file.tiles};
+    tile_file_close(&file);
+    return ok || error_set(error, ERROR_SCENE, "%.400s: holds no tiles of a picture", path);
+}
+
+/* "part 3", "parts 3 and 4", "parts 3, 4 and 9 more". */
+static void list_missing(const struct part *parts, size_t count, char out[256]) {
+    uint32_t shards = parts[0].picture.shards, missing = shards - (uint32_t)count, shown = 0;
+    size_t at = 0, length = 0;
+    for (uint32_t shard = 1; shard <= shards && shown < 8; shard++) {
+        if (at < count && parts[at].picture.shard == shard) {
+            at++;
+            continue;
+        }
+        const char *before = shown == 0 ? (missing > 1 ? "parts " : "part ") : shown + 1 == missing ? " and " : ", ";
+        length += (size_t)snprintf(out + length, 256 - length, "%s%u", before, shard);
+        shown++;
+    }
+    if (shown < missing)
+        (void)snprintf(out + length, 256 - length, " and %u more", missing - shown);
+}
+
+/* That there are as many tiles as the picture has: its size is what a part claims, its film what the tiles fill. */
+static bool check_tiles(const struct part *parts, size_t count, struct error *error) {
+    const struct tile_picture *picture = &parts[0].picture;
+    const struct film film = {.width = picture->width, .height = picture->height, .x0 = picture->x0, .y0 = picture->y0};
+    uint64_t tiles = 0, wanted = film_tile_count(&film);
+    for (size_t i = 0; i < count; i++)
+        tiles += parts[i].tiles;
+    return tiles >= wanted || error_set(error, ERROR_SCENE, "%.400s: %llu tiles are in no part", picture->name,
+                                        (unsigned long long)(wanted - tiles));
+}
+
+/* That the parts of one picture belong together and none is missing or there twice. */
+static bool check_parts(const struct part *parts, size_t count, struct error *error) {
+    const struct tile_picture *first = &parts[0].picture;
+    for (size_t i = 1; i < count; i++) {
+        const char *difference = tile_picture_difference(&parts[i].picture, first);
+        if (difference)
+            return error_set(error, ERROR_SCENE, "%.300s: does not belong to %.300s: %s", parts[i].path, parts[0].path,
+                             difference);
+        if (strcmp(parts[i].picture.name, first->name) != 0)
+            return error_set(error, ERROR_SCENE, "%.300s: does not belong to %.300s: it is of %.200s, not of %.200s",
+                             parts[i].path, parts[0].path, parts[i].picture.name, first->name);
+        if (parts[i].picture.shard == parts[i - 1].picture.shard)
+            return error_set(error, ERROR_SCENE, "%.300s: is part %u of %u, and so is %.300s", parts[i].path,
+                             parts[i].picture.shard, first->shards, parts[i - 1].path);
+    }
+    for (size_t i = 0; i < count; i++) {
+        if (!parts[i].picture.whole)
+            return error_set(error, ERROR_SCENE, "%.300s: part %u of %u is not finished (%zu tiles are)", parts[i].path,
+                             parts[i].picture.shard, first->shards, parts[i].tiles);
+    }
+    if (count == first->shards)
+        return check_tiles(parts, count, error);
+    char missing[256] = "";
+    list_missing(parts, count, missing);
+    return error_set(error, ERROR_SCENE, "%.400s: %s of %u %s missing", first->name, missing, first->shards,
+                     first->shards - count == 1 ? "is" : "are");
+}
+
+static bool fill_film(const struct part *parts, size_t count, struct film *film, struct error *error) {
+    for (size_t i = 0; i < count; i++) {
+        struct tile_file file;
+        uint32_t restored = 0, twice = 0;
+        if (!tile_file_read(parts[i].path, &file, error))
+            return false;
+        bool same = file.has_picture && !tile_picture_difference(&file.picture, &parts[i].picture);
+        if (same)
+            tile_file_restore(&file, film, &restored, &twice);
+        tile_file_close(&file);
+        if (!same)
+            return error_set(error, ERROR_SCENE, "%.400s: has changed while it was read", parts[i].path);
+        if (twice > 0)
+            return error_set(error, ERROR_SCENE, "%.400s: %u of its tiles are in other parts too", parts[i].path,
+                             twice);
+    }
+    uint32_t missing = film_tile_count(film) - film_tiles_in(film, FILM_TILE_DONE);
+    if (missing > 0)
+        return error_set(error, ERROR_SCENE, "%.400s: %u tiles are in no part", parts[0].picture.name, missing);
+    return true;
+}
+
+static bool merge_picture(struct desk *desk, const struct part *parts, size_t count, struct error *error) {
+    const struct tile_picture *first = &parts[0].picture;
+    struct picture_request request = {.full_width = first->full_width,
+                                      .full_height = first->full_height,
+                                      .x0 = first->x0,
+                                      .y0 = first->y0,
+                                      .width = first->width,
+                                      .height = first->height,
+                                      .exposure = first->tone.exposure,
+                                      .curve = (uint32_t)first->tone.curve,
+                                      .srgb = first->tone.srgb,
+                                      .deep = first->deep,
+                                      .record = first->record};
+    memcpy(request.file, first->name, sizeof request.file);
+    bool already = false;
+    if (!check_parts(parts, count, error) || !desk_begin(desk, &request, &already, error))
+        return false;
+    const struct picture_report report = {0};
+    if (fill_film(parts, count, &desk->current.film, error))
+        return desk_done(desk, &report, error);
+    desk_abandon(desk);
+    return false;
+}
+
+static int tell(struct desk *desk, const struct error *error, int status) {
+    desk_line(desk, LINE_ERROR, error->text);
+    return (int)error->kind > status ? (int)error->kind : status;
+}
+
+int merge_run(const struct options *options) {
+    struct control control = {0};
+    struct desk desk;
+    struct error error = {0};
+    size_t count = (size_t)options->script_count, first = 0;
+    int status = 0;
+    (void)signal(SIGPIPE, SIG_IGN);
+    (void)signal(SIGXFSZ, SIG_IGN);
+    desk_init(&desk, options, &control);
+    struct part *parts = mem_alloc_zero(count, sizeof *parts);
+    if (!parts) {
+        (void)error_no_memory(&error, "the parts");
+        status = tell(&desk, &error, status);
+        count = 0;
+    }
+    for (size_t i = 0; i < count; i++) {
+        if (!read_part(options->scripts[i], &parts[i], &error))
+            status = tell(&desk, &error, status);
+    }
+    /* A part that cannot be read may be of any picture: nothing is put together without it. */
+    if (status != 0)
+        count = 0;
+    if (count > 0)
+        qsort(parts, count, sizeof *parts, by_picture_and_shard);
+    for (size_t end; first < count; first = end) {
+        for (end = first + 1; end < count && parts[end].picture.number == parts[first].picture.number;)
+            end++;
+        if (!merge_picture(&desk, parts + first, end - first, &error))
+            status = tell(&desk, &error, status);
+    }
+    mem_free(parts);
+    if (!desk_finish(&desk, status == 0, &error))
+        status = tell(&desk, &error, status);
+    return status;
+}

@@ -1,0 +1,248 @@
+/* A name from a scene is a stranger's: it must end as a picture does, lie in a folder that scenes may have pictures
+ * written to, and may only replace a picture. A name from the command line is the user's. */
+#include "output/picture_files.h"
+
+#include "base/size.h"
+#include "image/image_file.h"
+#include "output/layers.h"
+#include "render/aov.h"
+#include "render/tile_file.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+/* Picture or part, two debug pictures, --partial, all layers. */
+enum { FILES_LIMIT = 4 + AOV_COUNT };
+
+void picture_files_init(struct picture_files *files, const struct options *options) {
+    static const char advice[] = " (-o FILE chooses another file)";
+    bool by_user = options->output != NULL;
+    memset(files, 0, sizeof *files);
+    files->options = options;
+    files->interrupt.descriptor = -1;
+    char size[SIZE_WORDS];
+    files->quota.limit = options_picture_bytes(options);
+    (void)snprintf(files->quota.words, sizeof files->quota.words,
+                   "the pictures of the run take more than %s (--picture-bytes allows more)",
+                   size_words(files->quota.limit, size));
+    bool ok = reach_add(&files->places, ".", REACH_WRITE, &files->places_error);
+    for (int i = 0; ok && i < options->script.allow_write_count; i++)
+        ok = reach_add(&files->places, options->script.allow_write[i], REACH_WRITE, &files->places_error);
+    const struct reach *places = options->script.no_sandbox ? NULL : &files->places;
+    files->picture = (struct file_rules){.may_replace = image_is_picture,
+                                         .expected = "a picture",
+                                         .advice = by_user ? NULL : advice,
+                                         .role = FILE_ROLE_PICTURE,
+                                         .in_place = by_user,
+                                         .named_by_user = by_user,
+                                         .force = by_user && options->force,
+                                         .places = by_user ? NULL : places,
+                                         .guard = &files->guard,
+                                         .quota = &files->quota,
+                                         .interrupt = &files->interrupt};
+    files->beside = files->picture;
+    files->beside.in_place = false;
+    files->beside.role = FILE_ROLE_BESIDE;
+    files->part = (struct file_rules){.may_replace = tile_file_is,
+                                      .expected = "a checkpoint or part",
+                                      .advice = advice,
+                                      .places = files->picture.places,
+                                      .guard = &files->guard,
+                                      .quota = &files->quota};
+    files->checkpoint = files->named_checkpoint = files->part;
+    files->checkpoint.advice = files->named_checkpoint.advice = " (--checkpoint FILE chooses another file)";
+    files->named_checkpoint.places = NULL;
+    files->checkpoint.quota = files->named_checkpoint.quota = NULL;
+    files->saved = (struct file_rules){
+        .never_replace = true, .role = FILE_ROLE_BESIDE, .places = files->picture.places, .guard = &files->guard};
+    for (int i = 0; i < options->script_count; i++) {
+        struct file_identity identity;
+        if (file_identity_of(options->scripts[i], &identity))
+            picture_files_keep(files, identity, false);
+    }
+}
+
+void picture_files_destroy(struct picture_files *files) {
+    reach_destroy(&files->places);
+    file_guard_destroy(&files->guard);
+}
+
+void picture_files_keep(struct picture_files *files, struct file_identity identity, bool written) {
+    for (int role = 0; written && role < FILE_ROLES; role++)
+        file_set_remove(&files->guard.own[role], identity);
+    if (!file_set_add(&files->guard.kept, identity))
+        (void)error_no_memory(&files->places_error, "the list of files that are read");
+}
+
+void picture_files_own(struct picture_files *files, const char *name) {
+    struct file_identity identity;
+    if (file_identity_of(name, &identity))
+        (void)file_set_add(&files->guard.own[FILE_ROLE_PICTURE], identity);
+}
+
+/* Names. */
+
+static const char *last_part(const char *name) {
+    const char *slash = strrchr(name, '/');
+    return slash ? slash + 1 : name;
+}
+
+enum ending { ENDING_PICTURE, ENDING_NONE, ENDING_OTHER };
+
+/* Old scenes have names such as "frame" and "frame.001": no ending at all. */
+static enum ending ending_of(const char *name) {
+    static const char *const known[] = {".png", ".pfm", ".hdr", ".exr"};
+    const char *dot = strrchr(last_part(name), '.');
+    if (!dot)
+        return ENDING_NONE;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        if (strcasecmp(dot, known[i]) == 0)
+            return ENDING_PICTURE;
+    }
+    bool digits = dot[1] != '\0' && dot[1 + strspn(dot + 1, "0123456789")] == '\0';
+    return digits ? ENDING_NONE : ENDING_OTHER;
+}
+
+static bool name_is_too_long(struct error *error) {
+    return error_set(error, ERROR_SCENE, "the name of the picture is longer than %d bytes", NAME_LIMIT - 1);
+}
+
+static bool name_from_script(struct picture_files *files, const char *from_script, char name[NAME_LIMIT],
+                             char notice[NAME_LIMIT + 128], struct error *error) {
+    size_t length = strlen(from_script);
+    if (length == 0)
+        return error_set(error, ERROR_SCENE, "the name of the picture is empty");
+    if (strcmp(from_script, "-") == 0)
+        return error_set(error, ERROR_SCENE,
+                         "the name '-' stands for standard output on the command line alone (-o -)");
+    if (from_script[length - 1] == '/')
+        return error_set(error, ERROR_SCENE, "%.600s: is a folder, a picture cannot be written there", from_script);
+    if (!files->options->script.no_sandbox && !reach_may_create(&files->places, from_script))
+        return error_set(error, ERROR_SCENE,
+                         "%s: scripts have pictures written below the working directory only, and under no hidden name "
+                         "(-o FILE or --allow-write DIR allow other places)",
+                         from_script);
+    enum ending ending = ending_of(from_script);
+    bool lenient = files->options->script.lenient;
+    if (ending == ENDING_OTHER && !lenient)
+        return error_set(error, ERROR_SCENE,
+                         "%.600s: the name of a picture ends in .png, .pfm, .hdr or .exr (-o FILE allows any name)",
+                         from_script);
+    const char *added = ending == ENDING_PICTURE ? "" : ".png";
+    if (length + strlen(added) >= NAME_LIMIT)
+        return name_is_too_long(error);
+    (void)snprintf(name, NAME_LIMIT, "%s%s", from_script, added);
+    if (added[0] && !files->ending_noticed) {
+        files->ending_noticed = true;
+        (void)snprintf(notice, NAME_LIMIT + 128, "gray: notice: '%.1500s' has no ending of a picture, so it is %.1500s",
+                       from_script, name);
+    }
+    return true;
+}
+
+bool picture_files_name(struct picture_files *files, const char *from_script, unsigned number, char name[NAME_LIMIT],
+                        char notice[NAME_LIMIT + 128], struct error *error) {
+    const char *output = files->options->output;
+    notice[0] = '\0';
+    if (output)
+        return output_name(output, number, name, NAME_LIMIT) || name_is_too_long(error);
+    if (files->places_error.kind != ERROR_NONE) {
+        *error = files->places_error;
+        return false;
+    }
+    return name_from_script(files, from_script, name, notice, error);
+}
+
+bool picture_files_prefixed(const char *name, const char *prefix, char out[NAME_LIMIT], struct error *error) {
+    size_t folder = (size_t)(last_part(name) - name);
+    int length = snprintf(out, NAME_LIMIT, "%.*s%s%s", (int)folder, name, prefix, name + folder);
+    return length < NAME_LIMIT ||
+           error_set(error, ERROR_SCENE, "%s: with %s before it the name is longer than %d bytes", name, prefix,
+                     NAME_LIMIT - 1);
+}
+
+bool picture_files_written(const struct picture_files *files, const char *name, char out[NAME_LIMIT],
+                           struct error *error) {
+    const struct options *options = files->options;
+    int length = options->shards ? snprintf(out, NAME_LIMIT, "%s.%u-of-%u.part", name, options->shard, options->shards)
+                                 : snprintf(out, NAME_LIMIT, "%s", name);
+    return length < NAME_LIMIT ||
+           error_set(error, ERROR_SCENE, "%.100s...: the name of its part is longer than %d bytes", name,
+                     NAME_LIMIT - 1);
+}
+
+bool picture_files_checkpoint(const struct picture_files *files, const char *name, char out[NAME_LIMIT],
+                              struct error *error) {
+    bool named = strcmp(files->options->checkpoint, "auto") != 0;
+    int length = named ? snprintf(out, NAME_LIMIT, "%s", files->options->checkpoint)
+                       : snprintf(out, NAME_LIMIT, "%s.checkpoint", name);
+    return length < NAME_LIMIT ||
+           error_set(error, ERROR_SCENE, "%.100s...: the name of its checkpoint is longer than %d bytes", name,
+                     NAME_LIMIT - 1);
+}
+
+/* Checks. */
+
+/* The file with this number of those that are named after a picture; *rules NULL: there are fewer, or this one is not
+ * wanted. */
+static bool name_file(const struct picture_files *files, const char *name, uint32_t layers, int number,
+                      char out[NAME_LIMIT], const struct file_rules **rules, struct error *error) {
+    const struct options *options = files->options;
+    const char *prefixes[2] = {options->targets_prefix, options->first_pass_prefix};
+    *rules = NULL;
+    if (number == 0) {
+        *rules = options->shards ? &files->part : &files->picture;
+        return picture_files_written(files, name, out, error);
+    }
+    if (options->shards)
+        return true;
+    *rules = &files->beside;
+    if (number <= 2 && prefixes[number - 1])
+        return picture_files_prefixed(name, prefixes[number - 1], out, error);
+    if (number == 3 && options->partial)
+        return layers_name(name, "partial", out, error);
+    bool inside = strlen(name) >= 4 && strcasecmp(name + strlen(name) - 4, ".exr") == 0;
+    if (number >= 4 && !inside && (layers >> (number - 4) & 1))
+        return layers_name(name, aov_name((enum aov)(number - 4)), out, error);
+    *rules = NULL;
+    return true;
+}
+
+/* One of them: that it can be written, and is none of those before it, nor the checkpoint. */
+static bool check_file(const struct picture_files *files, const char *name, uint32_t layers, int number,
+                       const char *checkpoint, struct error *error) {
+    const struct file_rules *rules, *before;
+    char file[NAME_LIMIT], other[NAME_LIMIT];
+    if (!name_file(files, name, layers, number, file, &rules, error))
+        return false;
+    if (!rules)
+        return true;
+    const struct file_target target = {.path = file, .rules = rules};
+    if (!file_output_check(&target, error))
+        return false;
+    for (int i = 0; i < number; i++) {
+        if (name_file(files, name, layers, i, other, &before, error) && before && file_same_place(file, other))
+            return error_set(error, ERROR_USAGE, "%.600s: two files of one picture would have this name", file);
+    }
+    if (checkpoint && file_same_place(file, checkpoint))
+        return error_set(error, files->options->output ? ERROR_USAGE : ERROR_SCENE,
+                         "%.600s: is the name of the checkpoint of this run, and cannot be that of a picture", file);
+    return true;
+}
+
+bool picture_files_check(struct picture_files *files, const char *name, uint32_t layers, const char *checkpoint,
+                         bool check_checkpoint, struct error *error) {
+    if (checkpoint && check_checkpoint) {
+        bool named = strcmp(files->options->checkpoint, "auto") != 0;
+        const struct file_target target = {.path = checkpoint,
+                                           .rules = named ? &files->named_checkpoint : &files->checkpoint};
+        if (!file_output_check(&target, error))
+            return named ? error_elsewhere(error) : false;
+    }
+    for (int number = 0; number < FILES_LIMIT; number++) {
+        if (!check_file(files, name, layers, number, checkpoint, error))
+            return files->options->output ? error_elsewhere(error) : false;
+    }
+    return true;
+}

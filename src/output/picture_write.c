@@ -1,0 +1,142 @@
+/* A film becomes files. Rows are toned while they are packed, so that no second picture is in memory. */
+#include "output/picture_write.h"
+
+#include "image/exr.h"
+#include "image/float_write.h"
+#include "image/png_write.h"
+#include "output/layers.h"
+
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+bool picture_name_ends_in(const char *name, const char *extension) {
+    size_t length = strlen(name), wanted = strlen(extension);
+    return length >= wanted && strcasecmp(name + length - wanted, extension) == 0;
+}
+
+struct tone picture_tone(const struct picture_request *request) {
+    return (struct tone){request->exposure, (enum tone_curve)request->curve, request->srgb != 0};
+}
+
+struct rows {
+    const struct film *film;
+    enum film_view view;
+    const struct tone *tone;
+};
+
+static void row(void *context, uint32_t y, uint8_t *line) {
+    const struct rows *rows = context;
+    film_row_toned(rows->film, rows->view, rows->tone, y, line);
+}
+
+static void row_16(void *context, uint32_t y, uint16_t *line) {
+    const struct rows *rows = context;
+    film_row_16(rows->film, rows->view, rows->tone, y, line);
+}
+
+static void row_linear(void *context, uint32_t y, float *line) {
+    const struct rows *rows = context;
+    film_row_linear(rows->film, rows->view, y, line);
+}
+
+/* Finished tiles one below the other: what packing the picture will take, before it is there. */
+enum { TRIAL_TILES = 16 };
+struct trial {
+    const struct film *film;
+    struct tone tone;
+    uint32_t tiles[TRIAL_TILES], count;
+};
+
+static void trial_row(void *context, uint32_t y, uint8_t *line) {
+    const struct trial *trial = context;
+    struct film_rectangle r = film_tile_rectangle(trial->film, trial->tiles[y / FILM_TILE]);
+    size_t at = (size_t)(r.y0 + y % FILM_TILE - trial->film->y0) * trial->film->width + (r.x0 - trial->film->x0);
+    for (uint32_t x = 0; x < FILM_TILE; x++) {
+        for (uint32_t c = 0; c < 3; c++)
+            line[3 * x + c] = png_write_byte(tone_apply(&trial->tone, (double)trial->film->pixels[at + x].rgb[c]));
+    }
+}
+
+double picture_write_trial(const struct picture *picture, uint32_t *pixels) {
+    const struct picture_request *request = &picture->request;
+    const struct film *film = &picture->film;
+    struct trial trial = {film, picture_tone(request), {0}, 0};
+    uint32_t count = film_tile_count(film), step = count / TRIAL_TILES / 4 + 1;
+    for (uint32_t tile = 0; tile < count && trial.count < TRIAL_TILES;) {
+        struct film_rectangle r = film_tile_rectangle(film, tile);
+        bool done = atomic_load_explicit(&film->tiles[tile], memory_order_acquire) == FILM_TILE_DONE &&
+                    r.x1 - r.x0 == FILM_TILE && r.y1 - r.y0 == FILM_TILE;
+        if (done)
+            trial.tiles[trial.count++] = tile;
+        tile += done ? count / TRIAL_TILES : step;
+    }
+    struct png_source source = {FILM_TILE, FILM_TILE * trial.count, trial_row, NULL, &trial};
+    double seconds = trial.count > 0 ? png_write_trial(&source) : -1;
+    *pixels = source.width * source.height;
+    return request->deep ? 2 * seconds : seconds;
+}
+
+bool picture_write_view(const struct picture *picture, const struct file_target *target, enum film_view view,
+                        struct pool *pool, struct error *error) {
+    const struct picture_request *request = &picture->request;
+    struct tone tone = picture_tone(request);
+    struct rows rows = {&picture->film, view, &tone};
+    const char *name = target->path;
+    if (picture_name_ends_in(name, ".pfm"))
+        return pfm_write(target, request->width, request->height, row_linear, &rows, error);
+    if (picture_name_ends_in(name, ".hdr"))
+        return hdr_write(target, request->width, request->height, row_linear, &rows, error);
+    if (picture_name_ends_in(name, ".exr") && view == FILM_FINAL && picture->film.layer_mask)
+        return layers_write_exr(target, &picture->film, error);
+    if (picture_name_ends_in(name, ".exr"))
+        return exr_write(target, request->width, request->height, row_linear, &rows, error);
+    struct png_source source = {.width = request->width, .height = request->height, .context = &rows};
+    if (request->deep)
+        source.words = row_16;
+    else
+        source.bytes = row;
+    return png_write_from(target, &source, pool, error);
+}
+
+static bool write_prefixed(const struct picture_files *files, const struct picture *picture, enum film_view view,
+                           struct pool *pool, struct error *error) {
+    const struct options *options = files->options;
+    const char *prefix = view == FILM_TARGETS ? options->targets_prefix : options->first_pass_prefix;
+    char name[NAME_LIMIT];
+    const struct file_target target = {.path = name, .rules = &files->beside};
+    if (!prefix)
+        return true;
+    return picture_files_prefixed(picture->name, prefix, name, error) &&
+           picture_write_view(picture, &target, view, pool, error);
+}
+
+/* Threads for the time of writing: there are none while a process is started. NULL: this one alone. */
+static struct pool *writing_pool(const struct options *options, const struct picture *picture) {
+    const struct picture_request *request = &picture->request;
+    uint32_t parts = png_write_stripes(request->width, request->height, request->deep ? 16 : 8);
+    int threads = options->threads > 0 ? options->threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
+    char warning[256];
+    if (parts < (uint32_t)threads)
+        threads = (int)parts;
+    return threads > 1 ? pool_create(threads, warning) : NULL;
+}
+
+bool picture_write_files(const struct picture_files *files, const struct picture *picture, const char *name,
+                         struct error *error) {
+    if (files->options->shards) {
+        struct tile_picture whole = picture->tiles;
+        whole.whole = true;
+        return tile_file_write(&(struct file_target){.path = name, .rules = &files->part}, NULL, 0, &whole,
+                               &picture->film, error);
+    }
+    struct pool *pool = writing_pool(files->options, picture);
+    const struct file_target target = {.path = name, .rules = &files->picture};
+    const struct file_target beside = {.path = picture->name, .rules = &files->beside};
+    bool ok = write_prefixed(files, picture, FILM_TARGETS, pool, error) &&
+              write_prefixed(files, picture, FILM_FIRST, pool, error) &&
+              layers_write(&beside, &picture->film, picture->request.deep != 0, error) &&
+              picture_write_view(picture, &target, FILM_FINAL, pool, error);
+    pool_destroy(pool);
+    return ok;
+}

@@ -1,0 +1,237 @@
+/* The time left is that until the end that the render foretells (render/outlook.h), and that of writing. The bar is
+ * erased with blanks, not with escape sequences, so that any terminal shows it. */
+#define _GNU_SOURCE
+#include "output/progress.h"
+
+#include "base/terminal_text.h"
+#include "session/text.h"
+
+#include <math.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { BAR_CELLS = 24, COLUMNS_LIMIT = 200 };
+
+/* Seconds of one core for a pixel of a PNG file, which is written after the last tile, until it is measured on tiles
+ * that are done: it depends on the picture. */
+static const double usual_writing = 5e-8;
+
+double progress_clock(void) {
+    struct timespec now;
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+double progress_processor_clock(void) {
+    struct timespec now;
+    (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+void progress_init(struct progress *progress, enum progress_mode mode, bool quiet, int threads) {
+    *progress = (struct progress){.mode = mode, .threads = threads > 0 ? threads : (int)sysconf(_SC_NPROCESSORS_ONLN)};
+    if (mode == PROGRESS_AUTO)
+        progress->mode = quiet ? PROGRESS_NONE : isatty(STDERR_FILENO) ? PROGRESS_BAR : PROGRESS_LINES;
+}
+
+/* What scenes have written to the same stream stands on a line of its own. */
+static void begin_line(const struct progress *progress) {
+    if (progress->stream)
+        error_stream_begin_line(progress->stream);
+}
+
+void progress_hide(struct progress *progress) {
+    if (progress->columns == 0)
+        return;
+    (void)fprintf(stderr, "\r%*s\r", progress->columns, "");
+    progress->columns = 0;
+}
+
+/* One column less than the terminal has: a full line would wrap. */
+static int terminal_columns(void) {
+    struct winsize size;
+    int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1 : 79;
+    return columns < COLUMNS_LIMIT ? columns : COLUMNS_LIMIT - 1;
+}
+
+/* How far the picture is. Where nobody asked for an estimate tiles are counted. */
+struct state {
+    double elapsed, share, left; /* share and left: negative while they are not known */
+    uint32_t done, count;
+};
+
+static struct state state_of(struct progress *progress, double now, uint32_t done, uint32_t count,
+                             const struct outlook *outlook) {
+    struct state state = {now - progress->begun, -1, -1, done, count};
+    bool asked = outlook_is_asked(outlook);
+    if (count == 0)
+        return state;
+    state.share = asked ? outlook_share(outlook) : (double)done / (double)count;
+    state.left = asked             ? outlook_left(outlook, now)
+                 : state.share > 0 ? state.elapsed / state.share - state.elapsed
+                                   : -1;
+    if (asked && state.share > 0 && state.left >= 0) {
+        /* The file is written by all threads, after the last tile. */
+        double pixels = (double)progress->width * progress->height;
+        double last = progress->writing * outlook_pace(outlook) * pixels / progress->threads;
+        double whole = state.elapsed + state.left;
+        state.share = fmax(progress->share, state.share * whole / (whole + last));
+        progress->share = state.share;
+        state.left += last;
+    }
+    return state;
+}
+
+/* The last bytes of a long path, as a terminal may show them at the beginning of a line. */
+static void short_name(const char *name, size_t shown, char *out, size_t size) {
+    char clean[40];
+    size_t length = strlen(name), used = 0;
+    const char *at = length > shown ? name + length - shown : name;
+    while (((unsigned char)*at & 0xc0) == 0x80 && at > name)
+        at++; /* not from the middle of a character */
+    for (size_t taken; *at && used + 8 < sizeof clean; at += taken)
+        used += text_clean_piece(at, clean + used, &taken);
+    clean[used] = '\0';
+    (void)snprintf(out, size, "%s%s", scene_mark(clean), clean);
+}
+
+static void draw_bar(struct progress *progress, const struct state *state) {
+    char cells[BAR_CELLS + 1], line[4 * COLUMNS_LIMIT], left[80] = "", elapsed[48];
+    double share = state->share > 0 ? state->share : 0;
+    /* In a narrow terminal the time left is worth more than a long bar. */
+    int limit = terminal_columns(), bar = limit < 78 ? BAR_CELLS / 3 : BAR_CELLS;
+    memset(cells, '.', (size_t)bar);
+    memset(cells, '#', (size_t)(share * bar));
+    cells[bar] = '\0';
+    text_time(state->elapsed, elapsed, sizeof elapsed);
+    if (state->left >= 0 && state->elapsed > 1) {
+        char time[48];
+        text_time(state->left, time, sizeof time);
+        (void)snprintf(left, sizeof left, ", about %s left", time);
+    }
+    char name[64];
+    short_name(progress->name, limit < 78 ? 14 : 30, name, sizeof name);
+    if (state->count > 0)
+        (void)snprintf(line, sizeof line, "%s [%s] %3.0f %%  %s%s", name, cells, 100 * share, elapsed, left);
+    else
+        (void)snprintf(line, sizeof line, "%s: building the scene  %s", name, elapsed);
+    int columns = (int)strlen(line);
+    if (columns > limit)
+        columns = limit;
+    begin_line(progress);
+    int blanks = progress->columns > columns ? progress->columns - columns : 0;
+    (void)fprintf(stderr, "\r%.*s%*s", columns, line, blanks, "");
+    (void)fflush(stderr);
+    progress->columns = columns;
+}
+
+static void print_line(struct progress *progress, const struct state *state) {
+    char line[4096 + 160], elapsed[48], left[48] = "";
+    text_time(state->elapsed, elapsed, sizeof elapsed);
+    if (state->left >= 0)
+        text_time(state->left, left, sizeof left);
+    if (state->count > 0)
+        (void)snprintf(line, sizeof line, "%s: %.0f %% after %s%s%s%s", progress->name,
+                       100 * (state->share > 0 ? state->share : 0), elapsed, left[0] ? ", about " : "", left,
+                       left[0] ? " left" : "");
+    else
+        (void)snprintf(line, sizeof line, "%s: building the scene, %s", progress->name, elapsed);
+    begin_line(progress);
+    text_print_scene_line(stderr, line);
+    progress->said = true;
+}
+
+static void print_json(const struct progress *progress, const char *event, const struct state *state) {
+    begin_line(progress);
+    (void)fputs("{\"picture\":", stderr);
+    text_print_json(stderr, progress->name);
+    (void)fprintf(stderr,
+                  ",\"event\":\"%s\",\"width\":%u,\"height\":%u,\"tiles_done\":%u,\"tiles\":%u,\"seconds\":%.3f", event,
+                  progress->width, progress->height, state->done, state->count, state->elapsed);
+    if (state->share >= 0)
+        (void)fprintf(stderr, ",\"share\":%.4f", state->share);
+    if (state->left >= 0)
+        (void)fprintf(stderr, ",\"left\":%.3f", state->left);
+    (void)fprintf(stderr, ",\"processor\":%.4f}\n", progress_processor_clock());
+    (void)fflush(stderr);
+}
+
+void progress_begin(struct progress *progress, const char *name, uint32_t width, uint32_t height) {
+    progress->name = name;
+    progress->said = false;
+    progress->share = 0;
+    progress->writing = usual_writing;
+    progress->tried = progress->known = false;
+    progress->width = width;
+    progress->height = height;
+    progress->begun = progress->shown = progress_clock();
+    if (progress->mode == PROGRESS_JSON)
+        print_json(progress, "begin", &(struct state){0, -1, -1, 0, 0});
+}
+
+bool progress_wants_trial(const struct progress *progress) {
+    return progress->mode != PROGRESS_NONE && !progress->tried && progress->share > 0.25;
+}
+
+void progress_note_trial(struct progress *progress, double seconds, uint32_t pixels) {
+    progress->tried = true;
+    if (seconds > 0 && pixels > 0)
+        progress->writing = seconds / pixels;
+}
+
+bool progress_wants_outlook(const struct progress *progress) {
+    return progress->mode != PROGRESS_NONE;
+}
+
+/* Ten times a second is smooth; lines are for logs: the first after ten seconds, then one for a tenth of the time so
+ * far. */
+static double pause_of(const struct progress *progress, double now) {
+    switch (progress->mode) {
+    case PROGRESS_BAR:
+        return 0.1;
+    case PROGRESS_JSON:
+        return 0.2;
+    case PROGRESS_LINES:
+        return fmax(10, 0.1 * (now - progress->begun));
+    case PROGRESS_AUTO:
+    case PROGRESS_NONE:
+        break;
+    }
+    return HUGE_VAL;
+}
+
+void progress_update(struct progress *progress, uint32_t done, uint32_t count, const struct outlook *outlook) {
+    double now = progress_clock();
+    bool first = progress->mode == PROGRESS_JSON && !progress->known && outlook_share(outlook) >= 0;
+    if (!progress->name || (now - progress->shown < pause_of(progress, now) && !first) || !text_error_is_taken())
+        return;
+    progress->known = progress->known || first;
+    struct state state = state_of(progress, now, done, count, outlook);
+    progress->shown = now;
+    if (progress->mode == PROGRESS_BAR)
+        draw_bar(progress, &state);
+    else if (progress->mode == PROGRESS_LINES)
+        print_line(progress, &state);
+    else
+        print_json(progress, count > 0 ? "render" : "build", &state);
+}
+
+void progress_end(struct progress *progress, enum progress_end how) {
+    if (!progress->name)
+        return;
+    double elapsed = progress_clock() - progress->begun;
+    progress_hide(progress);
+    if (progress->mode == PROGRESS_JSON)
+        print_json(progress, how == PROGRESS_WRITTEN ? "written" : "given up", &(struct state){elapsed, -1, -1, 0, 0});
+    bool told = progress->mode == PROGRESS_BAR || (progress->mode == PROGRESS_LINES && progress->said);
+    if (told && how == PROGRESS_WRITTEN) {
+        char line[4096 + 64];
+        (void)snprintf(line, sizeof line, "%s  %u x %u  %.1f s", progress->name, progress->width, progress->height,
+                       elapsed);
+        begin_line(progress);
+        text_print_scene_line(stderr, line);
+    }
+    progress->name = NULL;
+}

@@ -1,0 +1,48 @@
+/* How far the picture is, told on standard error: as a bar that is drawn over itself, as lines, as JSON lines, or not
+ * at all. */
+#ifndef GRAY_OUTPUT_PROGRESS_H
+#define GRAY_OUTPUT_PROGRESS_H
+
+#include "render/outlook.h"
+#include "session/error_stream.h"
+#include "session/options.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct progress {
+    struct error_stream *stream; /* standard error, where scenes write to it, too; not owned */
+    enum progress_mode mode;     /* never PROGRESS_AUTO */
+    const char *name;            /* of the picture; NULL while there is none */
+    uint32_t width, height;
+    int threads;
+    double begun, shown; /* seconds; when the picture began, when it was last told */
+    bool said;           /* a line was printed */
+    double writing;      /* seconds of one core for a pixel of the file */
+    bool tried;          /* that was measured; else it is a guess */
+    bool known;          /* that tiles have begun was told */
+    double share;        /* that was told; it never falls */
+    int columns;         /* that the bar on the screen covers; 0: none is there */
+};
+
+enum progress_end { PROGRESS_WRITTEN, PROGRESS_GIVEN_UP };
+
+double progress_clock(void);           /* seconds of a clock that never jumps */
+double progress_processor_clock(void); /* seconds that all threads of the process have worked */
+/* AUTO becomes a bar on a terminal, else lines; nothing when quiet. */
+void progress_init(struct progress *progress, enum progress_mode mode, bool quiet, int threads);
+/* `name` must stay until progress_end. */
+void progress_begin(struct progress *progress, const char *name, uint32_t width, uint32_t height);
+/* count 0: the scene is still being built. Tells at most ten times a second. */
+void progress_update(struct progress *progress, uint32_t done, uint32_t count, const struct outlook *outlook);
+/* It is time to measure what writing the file will take: enough of it is there, and somebody wants to know. */
+bool progress_wants_trial(const struct progress *progress);
+/* Processor seconds for so many pixels; negative: it could not be measured. */
+void progress_note_trial(struct progress *progress, double seconds, uint32_t pixels);
+/* Whether anybody will see an estimate. */
+bool progress_wants_outlook(const struct progress *progress);
+/* Takes the bar off the screen, so that a line can be printed; the next update draws it again. */
+void progress_hide(struct progress *progress);
+void progress_end(struct progress *progress, enum progress_end how);
+
+#endif

@@ -1,0 +1,98 @@
+/* Frames over SOCK_SEQPACKET: the kernel keeps one send as one receive, so a frame is never read in part and threads
+ * may send without a lock. What was received is trusted only after frame_is_sound. */
+#define _GNU_SOURCE
+#include "session/channel.h"
+
+#include "base/fault.h"
+#include <errno.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+bool channel_pair(struct channel ends[2], struct error *error) {
+    int descriptors[2];
+    if (MAY_FAIL(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, descriptors)) != 0)
+        return error_set(error, ERROR_MACHINE, "gray: the rendering process cannot be reached: %s", strerror(errno));
+    ends[0].descriptor = descriptors[0];
+    ends[1].descriptor = descriptors[1];
+    return true;
+}
+
+void channel_close(struct channel *channel) {
+    if (channel->descriptor >= 0)
+        (void)close(channel->descriptor);
+    channel->descriptor = -1;
+}
+
+/* A descriptor travels in a control message; the union gives it the alignment it needs. */
+union control_space {
+    struct cmsghdr header;
+    char bytes[CMSG_SPACE(sizeof(int))];
+};
+
+bool channel_send(struct channel *channel, enum frame_kind kind, const void *body, size_t size, int descriptor) {
+    uint32_t word = (uint32_t)kind;
+    struct iovec parts[2] = {{&word, sizeof word}, {(void *)(uintptr_t)body, size}};
+    struct msghdr message = {.msg_iov = parts, .msg_iovlen = size > 0 ? 2 : 1};
+    union control_space control;
+    memset(&control, 0, sizeof control);
+    if (descriptor >= 0) {
+        message.msg_control = &control;
+        message.msg_controllen = sizeof control.bytes;
+        struct cmsghdr *header = CMSG_FIRSTHDR(&message);
+        header->cmsg_level = SOL_SOCKET;
+        header->cmsg_type = SCM_RIGHTS;
+        header->cmsg_len = CMSG_LEN(sizeof(int));
+        memcpy(CMSG_DATA(header), &descriptor, sizeof descriptor);
+    }
+    ssize_t sent;
+    do {
+        sent = MAY_FAIL(sendmsg(channel->descriptor, &message, MSG_NOSIGNAL));
+    } while (sent < 0 && errno == EINTR);
+    return sent >= 0;
+}
+
+bool channel_send_line(struct channel *channel, enum line_kind kind, const char *text) {
+    struct frame_line line = {.kind = kind};
+    size_t length = strlen(text);
+    if (length >= sizeof line.text) {
+        length = sizeof line.text - 1;
+        memcpy(line.text, text, length);
+        memcpy(line.text + length - 3, "...", 3);
+    } else {
+        memcpy(line.text, text, length);
+    }
+    return channel_send(channel, FRAME_LINE, &line, offsetof(struct frame_line, text) + length + 1, -1);
+}
+
+enum channel_result channel_receive(struct channel *channel, struct frame *frame) {
+    uint32_t word = 0;
+    struct iovec parts[2] = {{&word, sizeof word}, {&frame->body, sizeof frame->body}};
+    union control_space control;
+    struct msghdr message = {
+        .msg_iov = parts, .msg_iovlen = 2, .msg_control = &control, .msg_controllen = sizeof control.bytes};
+    ssize_t got;
+    do {
+        got = MAY_FAIL(recvmsg(channel->descriptor, &message, MSG_CMSG_CLOEXEC));
+    } while (got < 0 && errno == EINTR);
+    frame->descriptor = -1;
+    if (got <= 0)
+        return CHANNEL_END;
+    struct cmsghdr *header = CMSG_FIRSTHDR(&message);
+    if (header && header->cmsg_level == SOL_SOCKET && header->cmsg_type == SCM_RIGHTS)
+        memcpy(&frame->descriptor, CMSG_DATA(header), sizeof frame->descriptor);
+    frame->kind = (enum frame_kind)word;
+    frame->size = (size_t)got - sizeof word;
+    /* Where this process has no descriptor left, that of a film is lost; whoever needs it sees that. */
+    bool lost = (message.msg_flags & MSG_CTRUNC) != 0;
+    bool sound = (size_t)got >= sizeof word && (message.msg_flags & MSG_TRUNC) == 0 &&
+                 (!lost || (frame->kind == FRAME_FILM && frame->descriptor < 0)) && frame_is_sound(frame) &&
+                 (frame->descriptor < 0 || frame->kind == FRAME_FILM);
+    if (sound)
+        return CHANNEL_FRAME;
+    if (frame->descriptor >= 0)
+        (void)close(frame->descriptor);
+    frame->descriptor = -1;
+    return CHANNEL_BROKEN;
+}

@@ -1,0 +1,29 @@
+/* The channel between supervisor and child: a pair of sockets that keep the borders of frames. A frame is a kind and a
+ * body of fixed size for its kind, or a text (messages.h). */
+#ifndef GRAY_SESSION_CHANNEL_H
+#define GRAY_SESSION_CHANNEL_H
+
+#include "base/error.h"
+#include "session/messages.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+struct channel {
+    int descriptor;
+};
+
+/* Two ends of a new channel; both are closed on exec. */
+bool channel_pair(struct channel ends[2], struct error *error);
+void channel_close(struct channel *channel);
+
+/* Blocks until the frame is handed over; false when the other side is gone. descriptor: one to pass along, or -1. */
+bool channel_send(struct channel *channel, enum frame_kind kind, const void *body, size_t size, int descriptor);
+bool channel_send_line(struct channel *channel, enum line_kind kind, const char *text);
+
+enum channel_result { CHANNEL_FRAME, CHANNEL_END, CHANNEL_BROKEN };
+/* Blocks for one frame. END: the other side is gone. BROKEN: not a frame of a known kind and right size; texts of
+ * frames that pass end in NUL. */
+enum channel_result channel_receive(struct channel *channel, struct frame *frame);
+
+#endif

@@ -1,0 +1,30 @@
+/* A few words of memory that supervisor and child share from the fork on, for what is too frequent or too urgent for
+ * the channel. The supervisor only shows what it reads here. */
+#ifndef GRAY_SESSION_CONTROL_H
+#define GRAY_SESSION_CONTROL_H
+
+#include "render/outlook.h"
+#include "session/error_stream.h"
+
+#include <stdatomic.h>
+#include <stdint.h>
+
+/* In a farm tiles are handed out while the picture is made; the picture ends when the gate is closed. */
+enum gate { GATE_NONE, GATE_OPEN, GATE_CLOSED };
+
+enum cancel { CANCEL_NOTHING, CANCEL_ALL /* give up the picture, end the script */, CANCEL_PASS /* of a window */ };
+
+struct control {
+    _Atomic int cancel;          /* an enum cancel, set by the supervisor */
+    _Atomic uint32_t tiles_done; /* of the picture being made */
+    _Atomic uint32_t tiles;      /* 0 until its scene is built */
+    _Atomic uint32_t gate;       /* an enum gate */
+    _Atomic int enough;          /* not 0: finish the tiles under way, begin no others */
+    struct outlook outlook;      /* how far the picture is, when somebody asks */
+    _Atomic uint32_t build_step; /* of building the world, from 1; 0: it is built */
+    _Atomic uint32_t build_done; /* thousandths of that step */
+    _Atomic uint32_t lost;       /* not 0: the child could not write all of its standard output */
+    struct error_stream error_stream;
+};
+
+#endif

@@ -1,0 +1,236 @@
+/* What the two processes say to each other: the bodies of the messages, what must hold of one that was received, and
+ * the memory of the film that both have. Both processes are the same program, so bodies are plain structs; the
+ * supervisor checks every size and every text, since the render process works on strangers' scenes. */
+#ifndef GRAY_SESSION_MESSAGES_H
+#define GRAY_SESSION_MESSAGES_H
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/hash.h"
+#include "math/affine.h"
+#include "render/overlay.h"
+#include "render/render.h"
+#include "scene/change.h"
+#include "scene/change_look.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Child to supervisor, then supervisor to child. */
+enum frame_kind {
+    FRAME_LINE = 1, /* struct frame_line: something to tell */
+    FRAME_BEGIN,    /* struct picture_request; answered by FRAME_FILM */
+    FRAME_DONE,     /* struct picture_report; answered by FRAME_ANSWER */
+    FRAME_NEWS,     /* struct studio_news: something for a window is done; answered by FRAME_ORDER */
+    FRAME_ABANDON,  /* no body: the picture that was begun will not be finished; no answer */
+    FRAME_SCRIPT,   /* struct frame_script: a script has ended; no answer */
+    FRAME_READ,     /* struct frame_read: a file was read, for somebody who watches; no answer */
+    FRAME_AGAIN,  /* no body: all scripts have ended; answered, perhaps much later, by FRAME_ANSWER: ok: run them again
+                   */
+    FRAME_FILM,   /* struct frame_answer, and on success the descriptor of the film's memory */
+    FRAME_ANSWER, /* struct frame_answer */
+    FRAME_ORDER,  /* struct studio_order */
+};
+
+/* What kind of line: decides whether -q or --verbose let it pass, and where it goes. */
+enum line_kind {
+    LINE_ERROR,
+    LINE_WARNING,
+    LINE_NOTICE,
+    LINE_DETAIL,
+    LINE_OUTPUT /* a piece of what was asked for: goes to standard output as it is, no newline added */
+};
+
+enum { FRAME_TEXT_LIMIT = 16384, FRAME_SIZE_LIMIT = FRAME_TEXT_LIMIT + 64 };
+
+struct frame_line {
+    enum line_kind kind;
+    char text[FRAME_TEXT_LIMIT]; /* sent only as long as it is, with its final NUL */
+};
+
+/* What a click has met (inspect/pick.h). */
+enum { PICK_PATH = 512, PICK_WORDS = 64 };
+
+struct picked {
+    bool hit;
+    char path[PICK_PATH]; /* names with their order of creation, from the root to the node */
+    char name[PICK_WORDS], shape[PICK_WORDS], material[PICK_WORDS];
+    uint32_t serial, parent_serial; /* of the node, and of the one above it */
+    char parent_name[PICK_WORDS];
+    uint64_t way;               /* to it (viewer/view_overlay.h); 0: not known */
+    uint64_t solid;             /* of an operand: the way to the solid that was placed; else 0 */
+    uint32_t levels;            /* nodes above it */
+    int32_t up;                 /* as it was asked for, but no farther than there are nodes */
+    uint32_t below;             /* operands below it on the way to the surface that was hit */
+    uint32_t material_serial;   /* of the base, which can be changed; 0: it is plain gray */
+    double look[LOOK_PARTS][3]; /* of that base */
+    bool can_own;               /* a shape was hit and is told: it can be given a material of its own */
+    double distance;            /* from the eye */
+    struct vec3 position, normal;
+    bool has_box;
+    struct vec3 corners[8];          /* of a box round the node: bit 0 of the number is its first axis, and so on */
+    struct affine world_from_parent; /* the space that the node stands in */
+};
+
+/* Zero value: none. */
+struct marks_wish {
+    struct overlay_wish lines; /* none: OVERLAY_NONE */
+    bool outline;              /* of the node with this serial ... */
+    uint32_t serial;
+    uint64_t way;   /* ... on this way, as marks_way tells it; 0: on all ways */
+    uint64_t solid; /* of an operand: the way to the combined solid that it is in; else 0 */
+};
+
+struct marks {
+    bool stopped; /* before they were complete */
+    bool has_lines, has_outline;
+    struct film_rectangle outline; /* of the film, from 0; outside of it nothing is of the node */
+};
+
+/* Where they are, for a picture in a window. */
+struct marks_place {
+    float (*lines)[4]; /* as overlay_lines makes them */
+    uint8_t *shows;    /* by pixel: not 0 where the node is seen */
+};
+
+/* A picture about to be made. */
+struct picture_request {
+    uint32_t full_width, full_height; /* of the whole picture */
+    uint32_t x0, y0, width, height;   /* the part that is rendered */
+    double exposure;                  /* of its file, as in struct tone */
+    uint32_t curve, srgb;             /* the same; an enum tone_curve, and not 0 for sRGB */
+    uint32_t deep;                    /* not 0: 16 bits a channel in a PNG file */
+    struct film_record record;        /* of its film */
+    uint32_t layers;                  /* mask of the layers beside the picture */
+    uint32_t live;                    /* not 0: in a window */
+    uint32_t overlay;                 /* in a window: an enum overlay, the lines that are asked for */
+    struct camera camera;             /* its view a direction */
+    struct lens lens;
+    uint32_t check;      /* not 0 for --check: only the names are looked at, no film is wanted */
+    struct digest files; /* of all that was read so far; zero when nobody wants to know */
+    char file[4096];     /* as the script gave it */
+};
+
+/* What a finished picture cost. */
+struct picture_report {
+    struct render_statistics rays;
+    double write_seconds, write_processor_seconds; /* of the files; filled by who writes them */
+    uint64_t primitives, triangles;
+    uint64_t node_bytes, mesh_bytes, image_bytes, placed_bytes, search_bytes, film_bytes; /* memory by part */
+    uint64_t peak_bytes;
+    uint32_t grid_cells[3];
+    int threads;
+    struct box bounds; /* of the scene */
+    uint32_t stopped;  /* not 0: a pass that was stopped */
+};
+
+/* A pass of a picture in a window. */
+struct live_view {
+    struct camera camera; /* its view a direction */
+    double exposure;      /* stops: it decides which pixels are sampled again */
+    uint32_t divide;      /* one pixel for so many across and down; from 1 */
+    bool plain;           /* one sample a pixel, coarse soft light */
+    bool own;             /* the camera, lens and motion of the script */
+};
+
+/* Lights of a scene are told so many at a time. */
+enum { TOLD_LIGHTS = 32 };
+struct told_light {
+    uint32_t kind;       /* an enum light_kind, for its name */
+    uint32_t properties; /* of enum light_property */
+    bool placed;         /* its position is known */
+    struct vec3 position, colour;
+    struct vec3 direction, edge1, edge2; /* as in struct light, zero where it has none */
+    double radius, cos_outer;
+    bool moves, turns, sizes; /* what can be done with it */
+};
+
+enum studio_news_kind {
+    NEWS_BUILT /* the world, for the first time */,
+    NEWS_PASS,
+    NEWS_PICKED,
+    NEWS_CHANGED,
+    NEWS_STORY,
+    NEWS_LIGHTS,
+    NEWS_MARKS
+};
+/* What the child has done for a window; it waits for an order. */
+struct studio_news {
+    enum studio_news_kind kind;
+    struct picture_report report; /* of BUILT (its bounds) and PASS */
+    struct picked picked;
+    struct marks marks; /* of PASS, PICKED and MARKS: those that were asked for and made */
+    double built;       /* of BUILT: when, on progress_clock */
+    uint32_t added;     /* of BUILT: nodes that the script has added by gr.change_add */
+    uint32_t owned;     /* of BUILT: materials of gr.change_own */
+    uint32_t root;      /* of BUILT: the serial of the root, and the space of its children */
+    char root_name[PICK_WORDS];
+    struct affine world_from_root;
+    uint32_t light_count; /* of BUILT, CHANGED and LIGHTS: all of them; those told begin with first_light, from 0 */
+    uint32_t first_light;
+    struct told_light lights[TOLD_LIGHTS];
+    char text[512]; /* of CHANGED: what could not be done, or empty */
+    bool unbuilt;   /* of CHANGED: the building of the world was stopped; the next pass begins with it */
+};
+
+enum studio_order_kind { ORDER_END, ORDER_PASS, ORDER_PICK, ORDER_CHANGE, ORDER_STORY, ORDER_LIGHTS, ORDER_MARKS };
+struct studio_order {
+    enum studio_order_kind kind;
+    bool quit;               /* of END: the window was closed */
+    struct live_view view;   /* of PASS, and from where PICK, STORY and MARKS look */
+    struct marks_wish marks; /* of PASS: made after it; of MARKS. After PICK the outline is made of what is picked */
+    double x, y;             /* of PICK and STORY: pixels of the whole picture */
+    int32_t up;              /* of PICK: nodes above the one that is hit, or operands below it */
+    uint32_t first_light;    /* of CHANGE and LIGHTS: tell them from this one on, counted from 0 */
+    struct change change;
+    bool present; /* of CHANGE: it is made; else it is undone */
+    bool more;    /* of CHANGE: another one follows at once */
+};
+
+struct frame_answer {
+    bool ok;
+    bool already; /* to FRAME_BEGIN: there is nothing to do, no film comes along */
+    struct error error;
+};
+
+struct frame_script {
+    int index;  /* into options.scripts */
+    int status; /* exit status this script alone would give */
+};
+
+struct frame_read {
+    struct file_version version;
+    bool written;    /* a script opened it for writing */
+    char path[4096]; /* as it was asked for: relative to the working directory, which both processes share */
+};
+
+/* A frame as it came: `size` bytes of body. */
+struct frame {
+    enum frame_kind kind;
+    size_t size;
+    int descriptor; /* that came along, or -1, that of a film also where it was lost; owned by the receiver */
+    union {
+        struct frame_line line;
+        struct picture_request request;
+        struct picture_report report;
+        struct studio_news news;
+        struct studio_order order;
+        struct frame_answer answer;
+        struct frame_script script;
+        struct frame_read read;
+        char bytes[FRAME_SIZE_LIMIT];
+    } body;
+};
+
+/* Whether sizes, texts and numbers are such that later code can rely on them. */
+bool frame_is_sound(const struct frame *frame);
+
+/* How many layers of three floats a pixel the memory of the film has, those of the overlay included. */
+uint32_t marks_layers(const struct picture_request *request);
+/* Where the overlay of a picture in a window is in that memory: behind the layers. */
+void marks_place(const struct picture_request *request, void *block, struct marks_place *place);
+/* The film that a pass fills: the picture's rectangle divided, in the same block. */
+struct film live_film(const struct picture_request *request, void *block, uint32_t divide);
+
+#endif

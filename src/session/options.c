@@ -1,0 +1,565 @@
+/* Parsing goes along the table: the kind of a row says how its value is read, `offset` where it goes. The long spelling
+ * of an option takes one dash or two, and '_' counts as '-'; `--name value` and `--name=value` are the same. Words that
+ * are no options are scripts; after "--" everything is. */
+#include "session/options_internal.h"
+
+#include "accel/isa.h"
+#include "base/size.h"
+#include "render/aov.h"
+
+#include <assert.h>
+#include <ctype.h>
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct piece option_next_piece(const char **rest) {
+    struct piece piece = {*rest, strcspn(*rest, "|")};
+    *rest += piece.length;
+    if (**rest == '|')
+        (*rest)++;
+    return piece;
+}
+
+static struct piece without_dashes(struct piece piece) {
+    for (int i = 0; i < 2 && piece.length > 0 && piece.text[0] == '-'; i++) {
+        piece.text++;
+        piece.length--;
+    }
+    return piece;
+}
+
+/* A word of the command line and a name of the table, which has no '_'. */
+static bool same_name(struct piece a, struct piece b) {
+    if (a.length != b.length)
+        return false;
+    for (size_t i = 0; i < a.length; i++) {
+        if ((a.text[i] == '_' ? '-' : a.text[i]) != b.text[i])
+            return false;
+    }
+    return true;
+}
+
+static const struct option *find_option(struct piece name) {
+    for (int i = 0; i < option_count; i++) {
+        for (const char *rest = option_table[i].names; *rest;) {
+            if (same_name(name, without_dashes(option_next_piece(&rest))))
+                return &option_table[i];
+        }
+    }
+    return NULL;
+}
+
+/* Edits (insert, delete, replace, swap of neighbours) between a word and a short name of the table; words over 31
+ * letters count as far. */
+static int name_distance(struct piece a, struct piece b) {
+    enum { LIMIT = 32 };
+    int rows[3][LIMIT];
+    assert(b.length < LIMIT);
+    if (a.length >= LIMIT)
+        return LIMIT;
+    int *before = rows[0], *last = rows[1], *row = rows[2];
+    for (size_t j = 0; j <= b.length; j++)
+        last[j] = (int)j;
+    for (size_t i = 1; i <= a.length; i++) {
+        row[0] = (int)i;
+        for (size_t j = 1; j <= b.length; j++) {
+            char x = a.text[i - 1] == '_' ? '-' : a.text[i - 1], y = b.text[j - 1];
+            int best = last[j - 1] + (x != y);
+            if (last[j] + 1 < best)
+                best = last[j] + 1;
+            if (row[j - 1] + 1 < best)
+                best = row[j - 1] + 1;
+            if (i > 1 && j > 1 && x == b.text[j - 2] && a.text[i - 2] == y && before[j - 2] + 1 < best)
+                best = before[j - 2] + 1;
+            row[j] = best;
+        }
+        int *spare = before;
+        before = last;
+        last = row;
+        row = spare;
+    }
+    return last[b.length];
+}
+
+/* The shown spelling of the option nearest to a misspelt name, or an empty piece when none is near. */
+static struct piece nearest_name(struct piece name) {
+    struct piece best = {"", 0};
+    int best_distance = name.length < 4 ? 2 : 3;
+    for (int i = 0; i < option_count; i++) {
+        for (const char *rest = option_table[i].names; *rest;) {
+            struct piece candidate = option_next_piece(&rest), bare = without_dashes(candidate);
+            int distance = name_distance(name, bare);
+            if (distance < best_distance && bare.length > 1) {
+                best_distance = distance;
+                best = candidate;
+            }
+        }
+    }
+    return best;
+}
+
+static bool is_word_start(char c) {
+    return c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+/* Decimal digits with an optional sign, nothing else. */
+static bool read_integer(const char *text, size_t length, long long low, long long high, long long *out) {
+    char copy[24];
+    size_t start = length > 0 && (text[0] == '-' || text[0] == '+') ? 1 : 0;
+    if (length <= start || length >= sizeof copy)
+        return false;
+    for (size_t i = start; i < length; i++) {
+        if (!isdigit((unsigned char)text[i]))
+            return false;
+    }
+    memcpy(copy, text, length);
+    copy[length] = '\0';
+    errno = 0;
+    long long value = strtoll(copy, NULL, 10);
+    if (errno != 0 || value < low || value > high)
+        return false;
+    *out = value;
+    return true;
+}
+
+static bool read_number(const char *text, double low, double high, double *out) {
+    if (!isdigit((unsigned char)text[0]) && !strchr("+-.", text[0]))
+        return false;
+    char *end = NULL;
+    double value = strtod(text, &end);
+    if (*text == '\0' || *end != '\0' || !isfinite(value) || value < low || value > high)
+        return false;
+    *out = value;
+    return true;
+}
+
+static bool read_bytes(const char *text, double low, double high, uint64_t *out) {
+    uint64_t bytes;
+    if (!size_parse(text, &bytes) || (double)bytes < low || (double)bytes > high)
+        return false;
+    *out = bytes;
+    return true;
+}
+
+/* Whole numbers parted by `separator`: exactly `count` of them. */
+static bool read_list(const char *text, char separator, int count, const long long *low, long long high,
+                      long long *out) {
+    for (int i = 0; i < count; i++) {
+        const char *end = i + 1 < count ? strchr(text, separator) : text + strlen(text);
+        if (!end || !read_integer(text, (size_t)(end - text), low[i], high, &out[i]))
+            return false;
+        text = end + 1;
+    }
+    return true;
+}
+
+static bool read_size(struct options *options, const char *text) {
+    static const long long low[] = {1, 1};
+    long long values[2];
+    if (!read_list(text, 'x', 2, low, 1 << 20, values))
+        return false;
+    options->width = (int)values[0];
+    options->height = (int)values[1];
+    return true;
+}
+
+static bool read_pixel(struct options *options, uint32_t (*pixels)[2], const char *text) {
+    static const long long low[] = {0, 0};
+    long long values[2];
+    if (!read_list(text, ',', 2, low, (1 << 20) - 1, values))
+        return false;
+    pixels[options->pixel_count][0] = (uint32_t)values[0];
+    pixels[options->pixel_count++][1] = (uint32_t)values[1];
+    return true;
+}
+
+static bool read_crop(struct options *options, const char *text) {
+    static const long long low[] = {0, 0, 1, 1};
+    long long values[4];
+    if (!read_list(text, ',', 4, low, 1 << 20, values))
+        return false;
+    options->settings.cropped = true;
+    options->settings.crop_x = values[0];
+    options->settings.crop_y = values[1];
+    options->settings.crop_width = values[2];
+    options->settings.crop_height = values[3];
+    return true;
+}
+
+/* The part and the number of parts. */
+static bool read_shard(const char *text, uint32_t field[2]) {
+    static const long long low[] = {1, 1};
+    long long values[2];
+    if (!read_list(text, '/', 2, low, 1000000, values) || values[0] > values[1])
+        return false;
+    field[0] = (uint32_t)values[0];
+    field[1] = (uint32_t)values[1];
+    return true;
+}
+
+static bool read_seed(struct options *options, const char *text) {
+    if (!isdigit((unsigned char)text[0]) || text[strspn(text, "0123456789")] != '\0')
+        return false;
+    errno = 0;
+    unsigned long long value = strtoull(text, NULL, 10);
+    if (errno != 0)
+        return false;
+    options->settings.seed = value;
+    options->script.seed = value;
+    return true;
+}
+
+static bool is_lua_keyword(struct piece name) {
+    const char *rest = "and|break|do|else|elseif|end|false|for|function|goto|if|in|local|nil|not|or|repeat|return|then|"
+                       "true|until|while";
+    while (*rest) {
+        struct piece word = option_next_piece(&rest);
+        if (word.length == name.length && memcmp(word.text, name.text, word.length) == 0)
+            return true;
+    }
+    return false;
+}
+
+static bool is_define(const char *text) {
+    struct piece name = {text, strcspn(text, "=")};
+    bool ok = name.length > 0 && text[name.length] == '=' && is_word_start(text[0]) && !is_lua_keyword(name);
+    for (size_t i = 0; ok && i < name.length; i++)
+        ok = is_word_start(text[i]) || isdigit((unsigned char)text[i]);
+    return ok;
+}
+
+/* Room for one more definition was made by options_parse. */
+static bool note_define(struct options *options, struct script_define *defines, const char *text, struct arena *arena,
+                        struct error *error) {
+    struct piece name = {text, strcspn(text, "=")};
+    char *copy = arena_copy_text(arena, name.text, name.length);
+    if (!copy)
+        return error_no_memory(error, "the command line");
+    defines[options->script.define_count++] = (struct script_define){copy, text + name.length + 1};
+    return true;
+}
+
+static bool read_choice(const struct option *option, void *field, const char *text) {
+    int position = 0;
+    for (const char *rest = option->value; *rest; position++) {
+        struct piece word = option_next_piece(&rest);
+        if (strlen(text) != word.length || memcmp(text, word.text, word.length) != 0)
+            continue;
+        if (option->size == sizeof(bool))
+            *(bool *)field = position != 0;
+        else
+            memcpy(field, &position, sizeof position);
+        return true;
+    }
+    return false;
+}
+
+static bool value_error(const struct option *option, const char *text, struct error *error) {
+    const char *rest = option->names;
+    int shown = (int)option_next_piece(&rest).length;
+    switch (option->kind) {
+    case OPTION_INTEGER:
+        return error_set(error, ERROR_USAGE, "%.*s needs a whole number from %.0f to %.0f, not '%s'", shown,
+                         option->names, option->low, option->high, text);
+    case OPTION_NUMBER:
+        return error_set(error, ERROR_USAGE, "%.*s needs a number of at least %g, not '%s'", shown, option->names,
+                         option->low, text);
+    case OPTION_BYTES:
+        return error_set(error, ERROR_USAGE,
+                         "%.*s needs a size from 1K to 1024T, as in 512M or 2G (a plain number is MiB), not '%s'",
+                         shown, option->names, text);
+    case OPTION_SEED:
+        return error_set(error, ERROR_USAGE, "%.*s needs a whole number from 0 to 18446744073709551615, not '%s'",
+                         shown, option->names, text);
+    case OPTION_CHOICE:
+    case OPTION_STATS:
+        return error_set(error, ERROR_USAGE, "%.*s needs one of %s, not '%s'", shown, option->names,
+                         option->value + (option->value[0] == '='), text);
+    case OPTION_LAYERS:
+        return error_set(error, ERROR_USAGE,
+                         "%.*s needs names parted by commas (depth, normal, albedo, uv, node, material, cost, samples, "
+                         "lights) or all, not '%s'",
+                         shown, option->names, text);
+    case OPTION_TEXT:
+        return error_set(error, ERROR_USAGE, "%.*s needs a text that is not empty", shown, option->names);
+    case OPTION_SIZE:
+        return error_set(error, ERROR_USAGE, "%.*s needs WxH, two whole numbers from 1 to 1048576, not '%s'", shown,
+                         option->names, text);
+    case OPTION_CROP:
+        return error_set(error, ERROR_USAGE,
+                         "%.*s needs X,Y,W,H, whole numbers with X and Y not negative and W and H at least 1, not '%s'",
+                         shown, option->names, text);
+    case OPTION_PIXEL:
+        return error_set(error, ERROR_USAGE, "%.*s needs X,Y, two whole numbers from 0, not '%s'", shown, option->names,
+                         text);
+    case OPTION_SHARD:
+        return error_set(error, ERROR_USAGE, "%.*s needs I/N, whole numbers with I from 1 to N, not '%s'", shown,
+                         option->names, text);
+    case OPTION_FOLDER:
+        return error_set(error, ERROR_USAGE, "%.*s needs the name of a folder", shown, option->names);
+    case OPTION_DEFINE:
+        return error_set(error, ERROR_USAGE, "%.*s needs name=value with a Lua name, not '%s'", shown, option->names,
+                         text);
+    case OPTION_FLAG:
+    case OPTION_ACTION:
+        break;
+    }
+    return error_set(error, ERROR_USAGE, "%.*s takes no value", shown, option->names);
+}
+
+/* Room for lists that grow with the words of the command line. */
+struct lists {
+    struct script_define *defines;
+    uint32_t (*pixels)[2];
+    const char **folders[2]; /* --allow-read, --allow-write */
+};
+
+static bool apply_option(const struct option *option, const char *text, struct options *options,
+                         const struct lists *lists, struct arena *arena, struct error *error) {
+    void *field = (char *)options + option->offset;
+    long long integer = 0;
+    bool ok = false;
+    switch (option->kind) {
+    case OPTION_FLAG:
+        *(bool *)field = true;
+        return true;
+    case OPTION_ACTION:
+        options->action = (enum options_action)option->low;
+        return true;
+    case OPTION_INTEGER:
+        ok = read_integer(text, strlen(text), (long long)option->low, (long long)option->high, &integer);
+        if (ok)
+            *(int *)field = (int)integer;
+        break;
+    case OPTION_NUMBER:
+        ok = read_number(text, option->low, option->high, field);
+        break;
+    case OPTION_BYTES:
+        ok = read_bytes(text, option->low, option->high, field);
+        break;
+    case OPTION_CHOICE:
+        ok = read_choice(option, field, text);
+        break;
+    case OPTION_TEXT:
+        ok = text[0] != '\0';
+        *(const char **)field = text;
+        break;
+    case OPTION_SIZE:
+        ok = read_size(options, text);
+        break;
+    case OPTION_CROP:
+        ok = read_crop(options, text);
+        break;
+    case OPTION_PIXEL:
+        ok = read_pixel(options, lists->pixels, text);
+        break;
+    case OPTION_SEED:
+        ok = read_seed(options, text);
+        break;
+    case OPTION_DEFINE:
+        ok = is_define(text);
+        if (ok)
+            return note_define(options, lists->defines, text, arena, error);
+        break;
+    case OPTION_FOLDER:
+        ok = text[0] != '\0';
+        lists->folders[(int)option->low][option->low == 0 ? options->script.allow_read_count++
+                                                          : options->script.allow_write_count++] = text;
+        break;
+    case OPTION_SHARD:
+        ok = read_shard(text, field);
+        break;
+    case OPTION_LAYERS:
+        ok = aov_parse(text, &options->settings.aov);
+        break;
+    case OPTION_STATS:
+        ok = strcmp(text, "text") == 0 || strcmp(text, "json") == 0;
+        options->statistics = strcmp(text, "json") == 0 ? STATISTICS_JSON : STATISTICS_TEXT;
+        break;
+    }
+    if (!ok)
+        return value_error(option, text, error);
+    return true;
+}
+
+/* -j4 and -Dname=value: the one-letter options whose value may follow without a blank. */
+static const struct option *find_attached(const char *word, const char **text) {
+    bool threads = word[1] == 'j' && isdigit((unsigned char)word[2]), define = word[1] == 'D' && is_word_start(word[2]);
+    if (!threads && !define)
+        return NULL;
+    *text = word + 2;
+    return find_option((struct piece){word + 1, 1});
+}
+
+static bool unknown_option(const char *word, struct piece name, struct error *error) {
+    struct piece near = nearest_name(name);
+    if (near.length == 0)
+        return error_set(error, ERROR_USAGE, "there is no option '%s'", word);
+    return error_set(error, ERROR_USAGE, "there is no option '%s'; did you mean %.*s?", word, (int)near.length,
+                     near.text);
+}
+
+/* Two options may change the order in which they are written, not what they are: so the values are looked at. */
+static struct digest digest_option(const struct option *option, const struct options *options, struct digest digest) {
+    assert(option->kind != OPTION_TEXT); /* of those the pointer would be looked at */
+    return digest_bytes((const char *)options + option->offset, option->size, digest);
+}
+
+struct digest options_digest(const struct options *options) {
+    struct digest digest = {0};
+    for (int i = 0; i < option_count; i++) {
+        const struct option *option = &option_table[i];
+        bool picture = option->group == GROUP_PICTURE || option->group == GROUP_LOOK || option->group == GROUP_OLD;
+        bool search = option->offset == offsetof(struct options, settings.accel) ||
+                      option->offset == offsetof(struct options, isa);
+        bool integrator = option->offset == offsetof(struct options, settings.integrator);
+        if (picture && option->size > 0 && !search && !integrator)
+            digest = digest_option(option, options, digest);
+    }
+    const struct settings *settings = &options->settings;
+    /* Files from before there was a choice have the key of the first. */
+    if (settings->integrator != INTEGRATOR_WHITTED)
+        digest = digest_bytes(&settings->integrator, sizeof settings->integrator, digest);
+    const int64_t numbers[] = {options->width,          options->height,
+                               (int64_t)settings->seed, settings->cropped,
+                               settings->crop_x,        settings->crop_y,
+                               settings->crop_width,    settings->crop_height,
+                               options->script_count,   options->script.define_count};
+    digest = digest_bytes(numbers, sizeof numbers, digest);
+    for (int i = 0; i < options->script.define_count; i++) {
+        const struct script_define *define = &options->script.defines[i];
+        digest = digest_bytes(define->name, strlen(define->name) + 1, digest);
+        digest = digest_bytes(define->value, strlen(define->value) + 1, digest);
+    }
+    return digest;
+}
+
+bool options_allow_picture(const struct options *options, uint64_t number, struct error *error) {
+    enum { STANDARD = 100000 };
+    int limit = options->picture_count > 0 ? options->picture_count : STANDARD;
+    if (number <= (uint64_t)limit || (options->picture_count == 0 && options->script.no_sandbox))
+        return true;
+    return error_set_limit(error, "the scripts render more than %d picture%s (--picture-count allows more)", limit,
+                           limit > 1 ? "s" : "");
+}
+
+uint64_t options_picture_bytes(const struct options *options) {
+    uint64_t otherwise = options->script.no_sandbox ? UINT64_MAX : 64 * GIBIBYTE;
+    return options->picture_bytes > 0 ? options->picture_bytes : otherwise;
+}
+
+bool options_parse(struct options *options, int argc, char *const *argv, struct arena *arena, struct error *error) {
+    *options =
+        (struct options){.settings = settings_default(), .checkpoint_every = 10, .farm_stall = 30, .farm_silence = 60};
+    size_t room = argc > 0 ? (size_t)argc : 1;
+    const char **scripts = arena_alloc_array(arena, room, sizeof *scripts);
+    struct lists lists = {.defines = arena_alloc_array(arena, room, sizeof *lists.defines),
+                          .pixels = arena_alloc_array(arena, room, sizeof *lists.pixels),
+                          .folders = {arena_alloc_array(arena, room, sizeof *lists.folders[0]),
+                                      arena_alloc_array(arena, room, sizeof *lists.folders[1])}};
+    if (!scripts || !lists.defines || !lists.pixels || !lists.folders[0] || !lists.folders[1])
+        return error_no_memory(error, "the command line");
+    options->scripts = scripts;
+    options->script.defines = lists.defines;
+    options->pixels = (const uint32_t(*)[2])lists.pixels;
+    options->script.allow_read = lists.folders[0];
+    options->script.allow_write = lists.folders[1];
+    bool only_scripts = false;
+    for (int i = 1; i < argc; i++) {
+        const char *word = argv[i];
+        /* The first word of its own; `gray -- merge` is a scene of that name. */
+        if (!only_scripts && options->action == ACTION_RENDER && options->script_count == 0 &&
+            strcmp(word, "merge") == 0) {
+            options->action = ACTION_MERGE;
+            continue;
+        }
+        if (only_scripts || word[0] != '-' || word[1] == '\0') {
+            scripts[options->script_count++] = word;
+            continue;
+        }
+        if (strcmp(word, "--") == 0) {
+            only_scripts = true;
+            continue;
+        }
+        /* The value: behind '=', or attached to a letter, or the next word. */
+        struct piece name = without_dashes((struct piece){word, strcspn(word, "=")});
+        const char *text = strchr(word, '=');
+        text = text ? text + 1 : NULL;
+        const struct option *option = find_option(name);
+        if (!option)
+            option = find_attached(word, &text);
+        if (!option)
+            return unknown_option(word, name, error);
+        if (!option->value && text)
+            return value_error(option, text, error);
+        if (option->kind == OPTION_STATS && !text)
+            text = "text";
+        if (option->value && !text) {
+            if (i + 1 >= argc)
+                return error_set(error, ERROR_USAGE, "%s needs a value: %s", word, option->value);
+            text = argv[++i];
+        }
+        if (!apply_option(option, text, options, &lists, arena, error))
+            return false;
+    }
+    options->settings.keep_first = options->targets_prefix || options->first_pass_prefix;
+    return options_check(options, error);
+}
+
+bool options_output_is_stream(const struct options *options) {
+    bool asks = options->pixel_count > 0 || options->dump_scene; /* then there is no picture */
+    return options->output && strcmp(options->output, "-") == 0 && !asks;
+}
+
+/* The %d of a name pattern: its place and length, or a length of 0. Digits between % and d are a width. */
+static struct piece find_number(const char *pattern) {
+    for (const char *at = pattern; *at; at++) {
+        if (at[0] != '%')
+            continue;
+        if (at[1] == '%') {
+            at++;
+            continue;
+        }
+        size_t digits = strspn(at + 1, "0123456789");
+        if (digits <= 2 && at[1 + digits] == 'd')
+            return (struct piece){at, digits + 2};
+    }
+    return (struct piece){pattern + strlen(pattern), 0};
+}
+
+bool output_name_numbered(const char *pattern) {
+    return find_number(pattern).length > 0;
+}
+
+bool output_name(const char *pattern, unsigned number, char *out, size_t size) {
+    struct piece place = find_number(pattern);
+    size_t length = 0;
+    for (const char *at = pattern; *at && length < size;) {
+        if (place.length > 0 && at == place.text) {
+            int width = atoi(at + 1);
+            bool zeros = at[1] == '0';
+            int printed = snprintf(out + length, size - length, zeros ? "%0*u" : "%*u", width, number);
+            length += (size_t)printed;
+            at += place.length;
+            continue;
+        }
+        if (at[0] == '%' && at[1] == '%')
+            at++;
+        out[length++] = *at++;
+    }
+    if (length >= size)
+        return false;
+    out[length] = '\0';
+    return true;
+}
+
+#define WORD_AFTER_AUTO(member, word) [(member) + 1] = (word),
+
+const char *options_isa_name(const struct options *options) {
+    static const char *const names[] = {"auto", ACCEL_ISAS(WORD_AFTER_AUTO)};
+    return names[options->isa];
+}

@@ -1,0 +1,108 @@
+/* The command line. One table describes every option: it parses, it checks ranges, it prints the help, and it suggests
+ * the nearest name for a misspelt one. */
+#ifndef GRAY_SESSION_OPTIONS_H
+#define GRAY_SESSION_OPTIONS_H
+
+#include "base/arena.h"
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/list.h"
+#include "render/settings.h"
+#include "script/script.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+
+enum options_action {
+    ACTION_RENDER,
+    ACTION_MERGE /* the scripts are parts of pictures */,
+    ACTION_HELP,
+    ACTION_MANUAL,
+    ACTION_VERSION,
+    ACTION_ANNOTATIONS
+};
+#define PROGRESS_MODES(X)                                                                                              \
+    X(PROGRESS_AUTO, "auto")                                                                                           \
+    X(PROGRESS_BAR, "bar")                                                                                             \
+    X(PROGRESS_LINES, "lines")                                                                                         \
+    X(PROGRESS_JSON, "json")                                                                                           \
+    X(PROGRESS_NONE, "none")
+enum progress_mode { PROGRESS_MODES(LIST_MEMBER) };
+enum statistics_mode { STATISTICS_NONE, STATISTICS_TEXT, STATISTICS_JSON };
+
+#define TERMINAL_GRAPHICS(X)                                                                                           \
+    X(TERMINAL_AUTO, "auto")                                                                                           \
+    X(TERMINAL_KITTY, "kitty")                                                                                         \
+    X(TERMINAL_SIXEL, "sixel")                                                                                         \
+    X(TERMINAL_BLOCKS, "blocks")
+enum terminal_graphics { TERMINAL_GRAPHICS(LIST_MEMBER) };
+enum display_kind { DISPLAY_NONE, DISPLAY_TEV, DISPLAY_TERMINAL };
+struct display_choice {
+    enum display_kind kind;
+    char host[256], port[8];
+    enum terminal_graphics graphics;
+};
+
+/* Texts point into argv or into the arena given to options_parse. */
+struct options {
+    enum options_action action;
+    struct settings settings;
+    struct script_options script; /* library_folder is filled in by main */
+    const char *const *scripts;
+    int script_count;
+    const char *output;            /* -o, or NULL: the names the scripts give */
+    bool force;                    /* --force: -o may replace a file that is no picture */
+    int width, height;             /* --size, or 0: the sizes the scripts give */
+    const char *targets_prefix;    /* -write-aa-targets, or NULL */
+    const char *first_pass_prefix; /* -write-pre-aa, or NULL */
+    int threads;                   /* 0: one per processor */
+    int picture_count;             /* limits on the pictures of a run; 0: 100,000 and 64 GiB, */
+    uint64_t picture_bytes;        /* without the sandbox none */
+    bool window;                   /* -gui */
+    bool quick, preview;           /* enum haste; preview is a quarter of the size, too */
+    bool watch;                    /* --watch */
+    bool check, quiet, verbose, no_fork;
+    const uint32_t (*pixels)[2]; /* --pixel: {x, y}, tell how these come about instead of rendering */
+    uint32_t pixel_count;
+    bool dump_scene;            /* --dump-scene: tell what the world is made of instead */
+    bool json;                  /* both: as JSON */
+    const char *checkpoint;     /* --checkpoint: a file, or "auto", or NULL */
+    double checkpoint_every;    /* seconds */
+    bool mpi;                   /* one of several processes that make a picture together */
+    double farm_stall;          /* seconds after which a renderer of a farm that stands still is killed; 0: never */
+    double farm_silence;        /* seconds after which a rank that is not heard is regarded as lost; 0: never */
+    const char *display;        /* --display, or NULL */
+    bool partial;               /* --partial: what an interruption leaves is written beside the picture */
+    bool resume;                /* go on with what the checkpoint holds */
+    uint32_t shard, shards;     /* --shard: this one of so many, from 1; 0 of 0: no shards */
+    uint32_t shard_of_pictures; /* --shard-pictures: the same over whole pictures */
+    uint32_t shards_of_pictures;
+    int isa; /* --isa: an index into options_isa_name */
+    enum progress_mode progress;
+    enum statistics_mode statistics;
+};
+
+/* False: error is ERROR_USAGE (or no memory) and its text names the option. */
+bool options_parse(struct options *options, int argc, char *const *argv, struct arena *arena, struct error *error);
+/* Of all that can change a picture, or the number of pictures; names of files that are written, threads, ways of
+ * searching and what is told are left out. */
+struct digest options_digest(const struct options *options);
+/* Whether the scripts of a run may render a picture of this number, counted from 1. */
+bool options_allow_picture(const struct options *options, uint64_t number, struct error *error);
+/* How many bytes may be written into files of pictures; UINT64_MAX: any number. */
+uint64_t options_picture_bytes(const struct options *options);
+/* What accel_select_isa understands. */
+const char *options_isa_name(const struct options *options);
+/* --display: tev, tev:host, tev:host:port, term, term:kitty, term:sixel, term:blocks. False: none of these. */
+bool display_parse(const char *text, struct display_choice *out);
+/* The options with their defaults, in groups, 100 columns wide. */
+void options_print_help(FILE *stream);
+
+/* The name of picture `number` under -o: %d, %3d or %03d stands for the number, %% for a percent sign. */
+bool output_name_numbered(const char *pattern);
+bool output_name(const char *pattern, unsigned number, char *out, size_t size);
+
+/* -o -: standard output is the picture's. */
+bool options_output_is_stream(const struct options *options);
+
+#endif

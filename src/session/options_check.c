@@ -1,0 +1,138 @@
+/* Options that exclude, need or stand for one another. */
+#include "session/options_internal.h"
+
+#include <string.h>
+
+static bool check_together(const struct options *options, struct error *error) {
+    bool merge = options->action == ACTION_MERGE;
+    if (options->action != ACTION_RENDER && !merge)
+        return true;
+    if (options->script_count == 0)
+        return error_set(error, ERROR_USAGE, merge ? "no parts to merge were given" : "no scene script was given");
+    for (int i = 0; i < options->script_count; i++) {
+        if (options->scripts[i][0] == '\0')
+            return error_set(error, ERROR_USAGE, "the name of a script is empty");
+        if (strcmp(options->scripts[i], "-") == 0)
+            return error_set(error, ERROR_USAGE, "scripts are not read from standard input; give the name of a file");
+    }
+    if (options->targets_prefix && options->first_pass_prefix &&
+        strcmp(options->targets_prefix, options->first_pass_prefix) == 0)
+        return error_set(error, ERROR_USAGE, "-write-aa-targets and -write-pre-aa would write the same file");
+    if (options->output && strcmp(options->output, "-") == 0 && (options->targets_prefix || options->first_pass_prefix))
+        return error_set(error, ERROR_USAGE, "-o - leaves no name for -write-aa-targets and -write-pre-aa");
+    if (options->output && strcmp(options->output, "-") == 0 && options->settings.aov)
+        return error_set(error, ERROR_USAGE, "-o - leaves no name for --aov");
+    if (options->output && strcmp(options->output, "-") == 0 && options->statistics == STATISTICS_JSON)
+        return error_set(error, ERROR_USAGE, "-o - and --stats=json both write to standard output");
+    return true;
+}
+
+/* --pixel and --dump-scene. */
+static bool check_questions(const struct options *options, struct error *error) {
+    const char *asked = options->pixel_count > 0 ? "--pixel" : "--dump-scene";
+    if (options->pixel_count == 0 && !options->dump_scene)
+        return !options->json || error_set(error, ERROR_USAGE, "--json is for --pixel and --dump-scene");
+    if (options->window || options->check || options->shards || options->shards_of_pictures || options->mpi ||
+        options->checkpoint || options->resume || options->action == ACTION_MERGE)
+        return error_set(error, ERROR_USAGE,
+                         "%s renders nothing: it goes with no -gui, --check, --shard, --mpi, --checkpoint, --resume "
+                         "or merge",
+                         asked);
+    return true;
+}
+
+static const char tev_port[] = "14158";
+
+static bool take_word(const char **text, char *out, size_t size) {
+    size_t length = strcspn(*text, ":");
+    if (length == 0 || length >= size)
+        return false;
+    memcpy(out, *text, length);
+    out[length] = '\0';
+    *text += length;
+    return true;
+}
+
+bool display_parse(const char *text, struct display_choice *out) {
+    static const char *const graphics[] = {TERMINAL_GRAPHICS(LIST_WORD)};
+    *out = (struct display_choice){.host = "127.0.0.1"};
+    memcpy(out->port, tev_port, sizeof tev_port);
+    if (strncmp(text, "tev", 3) == 0 && (text[3] == '\0' || text[3] == ':')) {
+        out->kind = DISPLAY_TEV;
+        text += 3;
+        if (*text++ == '\0')
+            return true;
+        if (!take_word(&text, out->host, sizeof out->host))
+            return false;
+        if (*text++ == '\0')
+            return true;
+        return take_word(&text, out->port, sizeof out->port) && *text == '\0' &&
+               out->port[strspn(out->port, "0123456789")] == '\0';
+    }
+    if (strncmp(text, "term", 4) != 0 || (text[4] != '\0' && text[4] != ':'))
+        return false;
+    out->kind = DISPLAY_TERMINAL;
+    for (int i = 0; i < LIST_COUNT(TERMINAL_GRAPHICS); i++) {
+        if (text[4] == '\0' || strcmp(text + 5, graphics[i]) == 0) {
+            out->graphics = text[4] ? (enum terminal_graphics)i : TERMINAL_AUTO;
+            return true;
+        }
+    }
+    return false;
+}
+
+/* What --checkpoint, --resume and --shard ask of one another and of -o. */
+static bool check_parts(struct options *options, struct error *error) {
+    bool pipe = options->output && strcmp(options->output, "-") == 0;
+    if (options->action == ACTION_MERGE &&
+        (options->checkpoint || options->resume || options->shards || options->shards_of_pictures || options->check))
+        return error_set(error, ERROR_USAGE, "merge takes no --checkpoint, --resume, --shard or --check");
+    struct display_choice display;
+    if (options->display && !display_parse(options->display, &display))
+        return error_set(error, ERROR_USAGE,
+                         "--display needs tev, tev:HOST, tev:HOST:PORT, term, term:kitty, term:sixel or term:blocks, "
+                         "not '%s'",
+                         options->display);
+    if (options->display && (options->window || options->check || options->shards || options->action == ACTION_MERGE ||
+                             (pipe && display.kind == DISPLAY_TERMINAL)))
+        return error_set(error, ERROR_USAGE, "--display takes no -gui, --check, --shard or merge, nor term with -o -");
+    if (options->partial && (options->window || options->shards || options->mpi || options->no_fork || pipe ||
+                             options->action == ACTION_MERGE))
+        return error_set(error, ERROR_USAGE, "--partial takes no -gui, --shard, --mpi, --no-fork, merge or -o -");
+    if (options->resume && !options->checkpoint)
+        options->checkpoint = "auto";
+    if (options->mpi && (options->shards || options->shards_of_pictures || options->no_fork || options->check))
+        return error_set(error, ERROR_USAGE, "--mpi takes no --shard, --shard-pictures, --no-fork or --check");
+    if (options->window && (options->checkpoint || options->shards || options->shards_of_pictures || options->mpi ||
+                            options->no_fork || options->check || options->settings.aov))
+        return error_set(error, ERROR_USAGE,
+                         "-gui takes no --checkpoint, --resume, --shard, --mpi, --no-fork, --check or --aov");
+    if (options->watch && (options->checkpoint || options->shards || options->shards_of_pictures || options->mpi ||
+                           options->no_fork || pipe))
+        return error_set(error, ERROR_USAGE,
+                         "--watch takes no --checkpoint, --resume, --shard, --mpi, --no-fork or -o -");
+    if (options->no_fork && (options->checkpoint || options->shards))
+        return error_set(error, ERROR_USAGE,
+                         "--no-fork is for debuggers: it takes no --checkpoint, --resume or --shard");
+    if (pipe && options->checkpoint && strcmp(options->checkpoint, "auto") == 0)
+        return error_set(error, ERROR_USAGE, "-o - leaves no name for a checkpoint; --checkpoint FILE gives one");
+    if (pipe && options->shards)
+        return error_set(error, ERROR_USAGE, "-o - leaves no name for the parts of --shard");
+    if ((options->shards || options->mpi || options->checkpoint || options->action == ACTION_MERGE) &&
+        options->settings.aov)
+        return error_set(error, ERROR_USAGE,
+                         "--aov is for pictures that one process makes in one go: no --shard, --mpi, --checkpoint, "
+                         "--resume or merge");
+    if ((options->shards || options->mpi || options->checkpoint || options->action == ACTION_MERGE) &&
+        options->settings.overlay != OVERLAY_NONE)
+        return error_set(error, ERROR_USAGE,
+                         "--overlay is for pictures that one process makes in one go: no --shard, --mpi, --checkpoint, "
+                         "--resume or merge");
+    if (options->shards && (options->targets_prefix || options->first_pass_prefix))
+        return error_set(error, ERROR_USAGE, "--shard writes no debug pictures; give -write-... to gray merge");
+    return true;
+}
+
+bool options_check(struct options *options, struct error *error) {
+    return check_together(options, error) && check_questions(options, error) && check_parts(options, error);
+}

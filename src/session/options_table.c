@@ -1,0 +1,206 @@
+/* The table of options. Its order is that of --help; options_digest goes by its groups. */
+#include "session/options_internal.h"
+
+#include "accel/isa.h"
+#include "render/aov.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stddef.h>
+
+#define FIELD(name) offsetof(struct options, name), sizeof(((struct options *)NULL)->name)
+#define NO_FIELD 0, 0
+#define NO_RANGE 0, 0
+/* The first choice is the best set that the processor has. */
+#define ISA_CHOICES "auto" ACCEL_ISAS(LIST_BAR_WORD)
+#define LAYER_NAME(aov, name, channels) " " name ","
+#define SIZES 0x1p10, 0x1p50 /* 1 KiB to 1 PiB */
+
+const char *const option_group_titles[GROUP_COUNT] = {
+    [GROUP_PICTURE] = "Anti-aliasing and rays",
+    [GROUP_LOOK] = "Size, crop and search",
+    [GROUP_FILES] = "Files",
+    [GROUP_OLD] = "Scenes written for other programs",
+    [GROUP_TRUST] = "Sandbox",
+    [GROUP_RUN] = "Execution",
+    [GROUP_PARTS] = "Long runs and many machines",
+    [GROUP_TALK] = "Display and messages",
+};
+
+const struct option option_table[] = {
+    {GROUP_PICTURE, "--integrator", OPTION_CHOICE, LIST_BARS(INTEGRATORS), NO_RANGE, FIELD(settings.integrator),
+     "whitted", "the algorithm that computes light"},
+    {GROUP_PICTURE, "-ss", OPTION_INTEGER, "N", 1, 64, FIELD(settings.samples), "3",
+     "N x N samples for a marked pixel"},
+    {GROUP_PICTURE, "-full", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.full), NULL,
+     "N x N samples for every pixel, not only for marked ones"},
+    {GROUP_PICTURE, "-side-tolerance", OPTION_NUMBER, "X", 0, HUGE_VAL, FIELD(settings.side_tolerance), "0.005",
+     "a pixel is marked when the squared RGB distance to a side neighbour exceeds X"},
+    {GROUP_PICTURE, "-corner-tolerance", OPTION_NUMBER, "X", 0, HUGE_VAL, FIELD(settings.corner_tolerance), "0.01",
+     "the same for the corner neighbours"},
+    {GROUP_PICTURE, "-reflect-limit", OPTION_INTEGER, "N", 0, 1000, FIELD(settings.reflect_limit), "2",
+     "how often a path may reflect"},
+    {GROUP_PICTURE, "-refract-limit", OPTION_INTEGER, "N", 0, 1000, FIELD(settings.refract_limit), "4",
+     "how often a path may refract"},
+    {GROUP_PICTURE, "-use-tir", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.use_tir), NULL,
+     "at total internal reflection, add the refracted amount to the reflected one; without it, that light is lost"},
+    {GROUP_PICTURE, "-al-samples|alsamples", OPTION_INTEGER, "N", 1, 64, FIELD(settings.area_samples), "4",
+     "N x N shadow rays for each area light"},
+    {GROUP_PICTURE, "--caustics", OPTION_INTEGER, "N", 0, PHOTONS_MOST, FIELD(settings.caustics.photons), "0",
+     "trace N photons for caustics, the light that glass and mirrors focus; 0: none"},
+    {GROUP_PICTURE, "--cutoff", OPTION_NUMBER, "X", 0, 1, FIELD(settings.cutoff), "0.0001",
+     "do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays"},
+    {GROUP_PICTURE, "--seed", OPTION_SEED, "N", NO_RANGE, NO_FIELD, "0",
+     "seed of all random numbers, including math.random in scripts"},
+
+    {GROUP_PICTURE, "--quick", OPTION_FLAG, NULL, NO_RANGE, FIELD(quick), NULL,
+     "draft: one sample per pixel, few shadow rays, no caustics, no depth of field, no motion blur; overrides other "
+     "options"},
+    {GROUP_PICTURE, "--preview", OPTION_FLAG, NULL, NO_RANGE, FIELD(preview), NULL,
+     "smaller draft: a quarter of the width and height (unless --size is given), no reflections, no refractions"},
+
+    {GROUP_LOOK, "--size", OPTION_SIZE, "WxH", NO_RANGE, NO_FIELD, "the script's", "size of the pictures in pixels"},
+    {GROUP_LOOK, "--crop", OPTION_CROP, "X,Y,W,H", NO_RANGE, NO_FIELD, "all",
+     "write a W x H picture, exactly that part of the whole; X,Y is its upper left pixel"},
+    {GROUP_LOOK, "--accel", OPTION_CHOICE, LIST_BARS(ACCEL_KINDS), NO_RANGE, FIELD(settings.accel), "auto",
+     "acceleration structure; the picture is the same"},
+    {GROUP_LOOK, "--isa", OPTION_CHOICE, ISA_CHOICES, NO_RANGE, FIELD(isa), "auto",
+     "instruction set of the kernels; the picture is the same"},
+
+    {GROUP_LOOK, "--exposure", OPTION_NUMBER, "STOPS", -100, 100, FIELD(settings.tone.exposure), "0",
+     "multiply light by 2^STOPS when a PNG file is written"},
+    {GROUP_LOOK, "--tone", OPTION_CHOICE, LIST_BARS(TONE_CURVES), NO_RANGE, FIELD(settings.tone.curve), "none",
+     "tone curve that maps bright light into the range of a PNG file"},
+    {GROUP_LOOK, "--srgb", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.tone.srgb), NULL,
+     "encode PNG files with the sRGB transfer function; without it, values are linear"},
+    {GROUP_LOOK, "--deep", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.deep), NULL, "16 bits per channel in PNG files"},
+
+    {GROUP_FILES, "-o", OPTION_TEXT, "FILE", NO_RANGE, FIELD(output), "the script's",
+     "name of the picture: .png, or .pfm, .hdr and .exr for linear light; '-' is standard output; with several "
+     "pictures FILE must contain %d (or %03d), which counts from 1"},
+    {GROUP_FILES, "--force", OPTION_FLAG, NULL, NO_RANGE, FIELD(force), NULL,
+     "let -o FILE replace a file that is not a picture"},
+    {GROUP_FILES, "-write-aa-targets", OPTION_TEXT, "X", NO_RANGE, FIELD(targets_prefix), NULL,
+     "for dir/foo.png also write dir/Xfoo.png: the first pass with the marked pixels in red"},
+    {GROUP_FILES, "-write-pre-aa", OPTION_TEXT, "X", NO_RANGE, FIELD(first_pass_prefix), NULL,
+     "for dir/foo.png also write dir/Xfoo.png: the first pass, one sample for each pixel"},
+
+    {GROUP_FILES, "--aov", OPTION_LAYERS, "LIST", NO_RANGE, NO_FIELD, NULL,
+     "for dir/foo.png also write dir/foo.NAME.png for each NAME of LIST, separated by commas:" AOVS(
+         LAYER_NAME) " or all"},
+
+    {GROUP_FILES, "--overlay", OPTION_CHOICE, LIST_BARS(OVERLAYS), NO_RANGE, FIELD(settings.overlay), "none",
+     "draw lines over the picture: bounding boxes of all primitives, or the cells of the acceleration structure (see "
+     "--accel)"},
+
+    {GROUP_OLD, "--transform-order", OPTION_CHOICE, LIST_BARS(SCRIPT_ORDERS), NO_RANGE, FIELD(script.transform_order),
+     "auto",
+     "order of transforms; new: they act as written; old: the last one acts first; separate: scale, then rotate, then "
+     "translate; auto: gray decides from the text of the script"},
+    {GROUP_OLD, "--view", OPTION_CHOICE, "direction|target", NO_RANGE, FIELD(settings.view_is_target), "direction",
+     "meaning of the view argument: a direction, or a point to look at"},
+    {GROUP_OLD, "--pixel-sample", OPTION_CHOICE, "centre|corner", NO_RANGE, FIELD(settings.pixel_corner), "centre",
+     "position of the first sample of a pixel"},
+    {GROUP_OLD, "--specular", OPTION_CHOICE, LIST_BARS(SPECULAR_KINDS), NO_RANGE, FIELD(settings.specular), "phong",
+     "formula of the highlight"},
+    {GROUP_OLD, "--ambient", OPTION_CHOICE, "kd|plain", NO_RANGE, FIELD(settings.ambient_plain), "kd",
+     "multiply ambient light by kd, or add it unchanged"},
+    {GROUP_OLD, "--lenient", OPTION_FLAG, NULL, NO_RANGE, FIELD(script.lenient), NULL,
+     "warn about gr functions that do not exist, and skip them"},
+
+    {GROUP_RUN, "-j", OPTION_INTEGER, "N", 1, 1024, FIELD(threads), "one for each processor",
+     "number of threads; the picture does not depend on it"},
+    {GROUP_RUN, "--tile-order", OPTION_CHOICE, LIST_BARS(TILE_ORDERS), NO_RANGE, FIELD(settings.order), "spread",
+     "order in which tiles are rendered (in a window always from the centre); the picture is the same"},
+    {GROUP_RUN, "-D", OPTION_DEFINE, "name=value", NO_RANGE, NO_FIELD, NULL,
+     "set the Lua global `name` before the script runs; value is a Lua literal, else a string; may be repeated"},
+    {GROUP_TRUST, "--allow-read", OPTION_FOLDER, "DIR", 0, 0, NO_FIELD, NULL,
+     "let scenes read below DIR too; they always read below their own folder, its parent, the working directory and "
+     "the library; may be repeated"},
+    {GROUP_TRUST, "--allow-write", OPTION_FOLDER, "DIR", 1, 0, NO_FIELD, NULL,
+     "let scenes write files below DIR; without it they write none, since gray itself writes the pictures; may be "
+     "repeated"},
+    {GROUP_TRUST, "--script-memory", OPTION_BYTES, "SIZE", SIZES, FIELD(script.memory_limit), "4G",
+     "memory limit of a script and the files that it reads, such as 512M or 2G (a plain number is in MiB); script and "
+     "picture together may use 1.75 times as much"},
+    {GROUP_TRUST, "--script-time", OPTION_NUMBER, "SECONDS", 0.001, HUGE_VAL, FIELD(script.time_limit), "60",
+     "limit of the processor time of a script; rendering does not count"},
+    {GROUP_TRUST, "--script-output", OPTION_BYTES, "SIZE", SIZES, FIELD(script.output_limit), "64M",
+     "limit of what a script prints and writes (a plain number is in MiB); pictures do not count"},
+    {GROUP_TRUST, "--picture-count", OPTION_INTEGER, "N", 1, INT_MAX, FIELD(picture_count), "100000",
+     "limit of the pictures in a run; a picture that replaces another one counts again"},
+    {GROUP_TRUST, "--picture-bytes", OPTION_BYTES, "SIZE", SIZES, FIELD(picture_bytes), "64G",
+     "limit of the bytes in picture files of a run (a plain number is in MiB)"},
+    {GROUP_TRUST, "--no-sandbox", OPTION_FLAG, NULL, NO_RANGE, FIELD(script.no_sandbox), NULL,
+     "turn the sandbox off: scenes may read and write all your files and start programs; only for scenes you trust"},
+
+    {GROUP_RUN, "--check", OPTION_FLAG, NULL, NO_RANGE, FIELD(check), NULL,
+     "run the scripts and build their scenes without rendering; report every problem"},
+    {GROUP_RUN, "--no-fork", OPTION_FLAG, NULL, NO_RANGE, FIELD(no_fork), NULL,
+     "render in one process (for debuggers)"},
+
+    {GROUP_PARTS, "--checkpoint", OPTION_TEXT, "FILE", NO_RANGE, FIELD(checkpoint), NULL,
+     "save finished tiles to FILE while rendering, for --resume; auto: a file beside the first picture; SIGUSR1 saves "
+     "at once; gray removes the file when all pictures are written"},
+    {GROUP_PARTS, "--checkpoint-every", OPTION_NUMBER, "SECONDS", 0, HUGE_VAL, FIELD(checkpoint_every), "10",
+     "shortest time between two checkpoints; saving takes at most a twentieth of the run"},
+    {GROUP_PARTS, "--resume", OPTION_FLAG, NULL, NO_RANGE, FIELD(resume), NULL,
+     "continue from the checkpoint (--checkpoint auto unless another file is given); an error if the scene has "
+     "changed; with --shard, skip a part that exists already"},
+    {GROUP_PARTS, "--partial", OPTION_FLAG, NULL, NO_RANGE, FIELD(partial), NULL,
+     "if rendering dir/foo.png is interrupted, write dir/foo.partial.png: finished tiles, and black for the others"},
+    {GROUP_PARTS, "--shard", OPTION_SHARD, "I/N", NO_RANGE, FIELD(shard), NULL,
+     "render part I of N of every picture into a file of tiles beside it; `gray merge PART ...` joins the parts"},
+    {GROUP_PARTS, "--shard-pictures", OPTION_SHARD, "I/N", NO_RANGE, FIELD(shard_of_pictures), NULL,
+     "of many pictures render every Nth, starting with the Ith"},
+    {GROUP_PARTS, "--mpi", OPTION_FLAG, NULL, NO_RANGE, FIELD(mpi), NULL,
+     "under mpirun: all processes render each picture together; the first one hands out tiles on demand"},
+    {GROUP_PARTS, "--farm-stall", OPTION_NUMBER, "SECONDS", 0, 1e9, FIELD(farm_stall), "30",
+     "with --mpi: kill a rendering process that could run but uses no processor time for this long; another one "
+     "renders its tiles; 0: never"},
+    {GROUP_PARTS, "--farm-silence", OPTION_NUMBER, "SECONDS", 0, 1e9, FIELD(farm_silence), "60",
+     "with --mpi: regard a process that sends nothing for this long as lost; others render its tiles; 0: never"},
+
+    {GROUP_TALK, "-gui", OPTION_FLAG, NULL, NO_RANGE, FIELD(window), NULL,
+     "show the picture in a window during rendering and fly through the scene: R renders, S saves the view, V saves "
+     "the camera, Space flies (W A S D Q E and the mouse, Esc stops), N is the next picture, Q quits"},
+    {GROUP_TALK, "--watch", OPTION_FLAG, NULL, NO_RANGE, FIELD(watch), NULL,
+     "run the scripts again when one of them, or a file that they read, changes; Ctrl-C ends"},
+    {GROUP_TALK, "-q|quiet", OPTION_FLAG, NULL, NO_RANGE, FIELD(quiet), NULL, "print errors only"},
+    {GROUP_TALK, "--verbose", OPTION_FLAG, NULL, NO_RANGE, FIELD(verbose), NULL, "print details and reasons"},
+    {GROUP_TALK, "--stats", OPTION_STATS, "=text|json", NO_RANGE, NO_FIELD, NULL,
+     "statistics of each picture: a table on standard error, or one line of JSON per picture on standard output"},
+    {GROUP_TALK, "--progress", OPTION_CHOICE, LIST_BARS(PROGRESS_MODES), NO_RANGE, FIELD(progress), "auto",
+     "progress and time left, on standard error; auto: a bar on a terminal, else a line from time to time during long "
+     "runs"},
+    {GROUP_TALK, "--display", OPTION_TEXT, "WHERE", NO_RANGE, FIELD(display), NULL,
+     "show the picture during rendering: tev[:HOST[:PORT]] in the image viewer tev (port 14158), term in the terminal "
+     "(term:kitty, term:sixel or term:blocks choose the protocol)"},
+    {GROUP_TALK, "--pixel", OPTION_PIXEL, "X,Y", NO_RANGE, NO_FIELD, NULL,
+     "do not render; explain this pixel of every picture on standard output: its rays, their hits, lights and weights, "
+     "and the final bytes; may be repeated"},
+    {GROUP_TALK, "--dump-scene", OPTION_FLAG, NULL, NO_RANGE, FIELD(dump_scene), NULL,
+     "do not render; list the primitives, materials and lights of every picture"},
+    {GROUP_TALK, "--json", OPTION_FLAG, NULL, NO_RANGE, FIELD(json), NULL,
+     "print --pixel and --dump-scene as JSON, one line per picture"},
+    {GROUP_TALK, "--help|h", OPTION_ACTION, NULL, ACTION_HELP, 0, NO_FIELD, NULL, "print this text"},
+    {GROUP_TALK, "--man", OPTION_ACTION, NULL, ACTION_MANUAL, 0, NO_FIELD, NULL,
+     "print this text and all functions of the scene language"},
+    {GROUP_TALK, "--annotations", OPTION_ACTION, NULL, ACTION_ANNOTATIONS, 0, NO_FIELD, NULL,
+     "print the functions as an annotation file for editors (lua/gr.lua)"},
+    {GROUP_TALK, "--version", OPTION_ACTION, NULL, ACTION_VERSION, 0, NO_FIELD, NULL,
+     "print the versions of the program and of its libraries"},
+};
+const int option_count = sizeof option_table / sizeof *option_table;
+
+_Static_assert(offsetof(struct options, shards) == offsetof(struct options, shard) + sizeof(uint32_t) &&
+                   offsetof(struct options, shards_of_pictures) ==
+                       offsetof(struct options, shard_of_pictures) + sizeof(uint32_t),
+               "a shard is two numbers in a row");
+
+/* Values are stored through their size: an enum is an int here. */
+_Static_assert(sizeof(enum specular_kind) == sizeof(int) && sizeof(enum accel_kind) == sizeof(int) &&
+                   sizeof(enum script_order) == sizeof(int) && sizeof(enum tone_curve) == sizeof(int) &&
+                   sizeof(enum progress_mode) == sizeof(int) && sizeof(enum order) == sizeof(int) &&
+                   sizeof(enum overlay) == sizeof(int) && sizeof(enum integrator_kind) == sizeof(int),
+               "choices are stored as int");

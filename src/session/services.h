@@ -1,0 +1,33 @@
+/* What the render process needs of the supervisor: it opens no file for writing and owns no terminal. The services go
+ * over the channel or, with --no-fork, to the output session of the same process. */
+#ifndef GRAY_SESSION_SERVICES_H
+#define GRAY_SESSION_SERVICES_H
+
+#include "render/film.h"
+#include "session/control.h"
+#include "session/messages.h"
+
+#include <stdbool.h>
+
+struct child_services {
+    void *context;
+    struct control *control;
+    /* A film for the picture; under request->check only the answer whether it could be written. *already: the picture
+     * is there or somebody else's; neither done nor abandon follows. */
+    bool (*begin)(void *context, const struct picture_request *request, struct film *film, bool *already,
+                  struct error *error);
+    /* Something for a window is done: waits for what comes next. False: there is nobody. */
+    bool (*news)(void *context, const struct studio_news *news, struct studio_order *order, struct error *error);
+    void (*abandon)(void *context);
+    /* The film is complete. True when the files are written. */
+    bool (*done)(void *context, const struct picture_report *report, struct error *error);
+    void (*line)(void *context, enum line_kind kind, const char *text);
+    void (*script_ended)(void *context, int index, int status);
+    /* A script read a file, or opened it for writing. */
+    void (*read)(void *context, const char *path, const struct file_version *version, bool written);
+    /* --watch: all scripts have ended; waits, and returns whether they run again in this process. NULL: no watch. */
+    bool (*again)(void *context);
+    void (*poll)(void *context); /* called every few milliseconds while a picture is made; may be NULL */
+};
+
+#endif

@@ -1,0 +1,103 @@
+/* All functions go character by character and write at once, so they need no memory and have no limit. */
+#include "session/text.h"
+
+#include "base/terminal_text.h"
+
+#include <poll.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static bool is_control(const unsigned char *at) {
+    enum character_class class = character_class_of(at);
+    return class == CHARACTER_CONTROL || class == CHARACTER_BREAK || class == CHARACTER_LINE_END;
+}
+
+static void print_cleaned(FILE *stream, const char *text, bool continued) {
+    for (const unsigned char *at = (const unsigned char *)text; *at;) {
+        size_t length = utf8_length(at), whole = length > 0 ? length : 1;
+        bool next_line = continued && at[0] == '\n' && at[1] == ' ' && at[2] == ' ';
+        if (is_control(at) && !next_line)
+            (void)fputc('?', stream);
+        else
+            (void)fwrite(at, 1, whole, stream);
+        at += whole;
+    }
+    (void)fputc('\n', stream);
+}
+
+size_t text_clean_piece(const char *text, char piece[8], size_t *taken) {
+    const unsigned char *at = (const unsigned char *)text;
+    size_t length = utf8_length(at);
+    *taken = length ? length : 1;
+    if (is_control(at)) {
+        piece[0] = '?';
+        return 1;
+    }
+    memcpy(piece, text, *taken);
+    return *taken;
+}
+
+void text_print(FILE *stream, const char *text) {
+    char piece[8];
+    for (size_t taken; *text; text += taken) {
+        size_t size = text_clean_piece(text, piece, &taken);
+        (void)fwrite(*text == '\n' ? text : piece, 1, size, stream);
+    }
+}
+
+void text_print_line(FILE *stream, const char *text) {
+    print_cleaned(stream, text, false);
+}
+
+void text_print_scene_line(FILE *stream, const char *text) {
+    (void)fputs(scene_mark(text), stream);
+    print_cleaned(stream, text, false);
+}
+
+void text_print_lines(FILE *stream, const char *text) {
+    print_cleaned(stream, text, true);
+}
+
+size_t text_json_piece(const char *text, char piece[8], size_t *taken) {
+    const unsigned char *at = (const unsigned char *)text;
+    size_t length = utf8_length(at);
+    *taken = length ? length : 1;
+    if (length == 0)
+        return (size_t)snprintf(piece, 8, "\\ufffd");
+    if (*at == '"' || *at == '\\')
+        return (size_t)snprintf(piece, 8, "\\%c", *at);
+    if (*at == '\t' || is_control(at))
+        return (size_t)snprintf(piece, 8, "\\u%04x", (unsigned)utf8_code(at, length) & 0xffff);
+    memcpy(piece, at, length);
+    return length;
+}
+
+void text_print_json(FILE *stream, const char *text) {
+    char piece[8];
+    (void)fputc('"', stream);
+    for (size_t taken; *text; text += taken) {
+        size_t size = text_json_piece(text, piece, &taken);
+        (void)fwrite(piece, 1, size, stream);
+    }
+    (void)fputc('"', stream);
+}
+
+void text_time(double seconds, char *out, size_t size) {
+    unsigned long whole = seconds < 1e9 ? (unsigned long)(seconds + 0.5) : 1000000000;
+    if (whole < 60)
+        (void)snprintf(out, size, "%lu s", whole);
+    else if (whole < 3600)
+        (void)snprintf(out, size, "%lu min %lu s", whole / 60, whole % 60);
+    else
+        (void)snprintf(out, size, "%lu h %lu min", whole / 3600, whole / 60 % 60);
+}
+
+/* Of other kinds of descriptors poll may know nothing; writing to them does not wait. */
+bool text_error_is_taken(void) {
+    struct stat status;
+    struct pollfd watched = {.fd = STDERR_FILENO, .events = POLLOUT};
+    bool waits = fstat(STDERR_FILENO, &status) == 0 &&
+                 (S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode) || S_ISSOCK(status.st_mode));
+    return !waits || poll(&watched, 1, 0) != 0;
+}

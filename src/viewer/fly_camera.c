@@ -1,0 +1,138 @@
+/* Turns are multiplied on the camera's side (about its own axes) or, round a centre, on the world's side. After each
+ * one the quaternion is made unit again, so errors do not add up. */
+#include "viewer/fly_camera.h"
+
+#include "math/elementary.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double degree = 3.14159265358979323846 / 180;
+
+static struct quaternion multiply(struct quaternion a, struct quaternion b) {
+    struct quaternion q = {a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+                           a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+                           a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+    double length = sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+    return (struct quaternion){q.w / length, q.x / length, q.y / length, q.z / length};
+}
+
+/* About a unit axis, by radians. */
+static struct quaternion turn_about(struct vec3 axis, double angle) {
+    double s = el_sin(angle / 2);
+    return (struct quaternion){el_cos(angle / 2), s * axis.x, s * axis.y, s * axis.z};
+}
+
+static struct vec3 rotate(struct quaternion q, struct vec3 v) {
+    struct vec3 u = {q.x, q.y, q.z};
+    struct vec3 t = vec3_scale(vec3_cross(u, v), 2);
+    return vec3_add(vec3_add_scaled(v, t, q.w), vec3_cross(u, t));
+}
+
+/* Of the rotation whose columns are right, up, back; the largest component first (Shepperd 1978). */
+static struct quaternion of_axes(struct vec3 right, struct vec3 up, struct vec3 back) {
+    double m[3][3] = {{right.x, up.x, back.x}, {right.y, up.y, back.y}, {right.z, up.z, back.z}};
+    double trace = m[0][0] + m[1][1] + m[2][2];
+    if (trace > m[0][0] && trace > m[1][1] && trace > m[2][2]) {
+        double s = sqrt(1 + trace) * 2;
+        return (struct quaternion){s / 4, (m[2][1] - m[1][2]) / s, (m[0][2] - m[2][0]) / s, (m[1][0] - m[0][1]) / s};
+    }
+    int i = m[1][1] > m[0][0] ? 1 : 0;
+    i = m[2][2] > m[i][i] ? 2 : i;
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    double s = sqrt(1 + m[i][i] - m[j][j] - m[k][k]) * 2, v[3];
+    v[i] = s / 4;
+    v[j] = (m[j][i] + m[i][j]) / s;
+    v[k] = (m[k][i] + m[i][k]) / s;
+    return (struct quaternion){(m[k][j] - m[j][k]) / s, v[0], v[1], v[2]};
+}
+
+static struct vec3 any_across(struct vec3 direction) {
+    struct vec3 axis = fabs(direction.y) < 0.9 ? vec3_make(0, 1, 0) : vec3_make(1, 0, 0);
+    return vec3_normalize(vec3_cross(direction, axis));
+}
+
+static struct quaternion looking(struct vec3 view, struct vec3 up) {
+    struct vec3 forward = vec3_normalize(view), right = vec3_cross(forward, up);
+    right = vec3_length(right) > 1e-12 * vec3_length(up) ? vec3_normalize(right) : any_across(forward);
+    return of_axes(right, vec3_cross(right, forward), vec3_negate(forward));
+}
+
+static struct vec3 forward_of(const struct pose *pose) {
+    return rotate(pose->turn, vec3_make(0, 0, -1));
+}
+
+void walk_begin(struct walk *walk, const struct camera *camera, const struct box *bounds) {
+    memset(walk, 0, sizeof *walk);
+    walk->pose = (struct pose){camera->eye, looking(camera->view, camera->up), camera->fov};
+    walk->home = walk->pose;
+    walk_measure(walk, bounds);
+}
+
+void walk_measure(struct walk *walk, const struct box *bounds) {
+    bool known = !box_is_empty(bounds) && vec3_finite(bounds->min) && vec3_finite(bounds->max);
+    double size = known ? vec3_length(vec3_sub(bounds->max, bounds->min)) : 10;
+    /* A wide floor under a small scene: from where it is seen counts too. */
+    walk->centre = known ? vec3_scale(vec3_add(bounds->min, bounds->max), 0.5) : vec3_make(0, 0, 0);
+    double away = vec3_length(vec3_sub(walk->centre, walk->home.place));
+    walk->speed = (size < 2 * away || away == 0 ? size : 2 * away) / 4;
+}
+
+struct camera walk_camera(const struct walk *walk) {
+    const struct pose *pose = &walk->pose;
+    return (struct camera){pose->place, forward_of(pose), rotate(pose->turn, vec3_make(0, 1, 0)), pose->fov};
+}
+
+bool walk_step(struct walk *walk, double seconds) {
+    const bool *down = walk->down;
+    struct vec3 way = {down[WALK_RIGHT] - down[WALK_LEFT], down[WALK_UP] - down[WALK_DOWN],
+                       down[WALK_BACK] - down[WALK_FORWARD]};
+    if (vec3_max_abs(way) == 0 || seconds <= 0)
+        return false;
+    double speed = walk->speed * (down[WALK_FAST] ? 4 : 1) * (down[WALK_SLOW] ? 0.25 : 1);
+    walk->pose.place = vec3_add_scaled(walk->pose.place, rotate(walk->pose.turn, vec3_normalize(way)), speed * seconds);
+    return true;
+}
+
+void walk_look(struct walk *walk, double x, double y) {
+    double angle = walk->pose.fov * degree;
+    struct quaternion turn = walk->pose.turn;
+    turn = multiply(turn, turn_about(vec3_make(0, 1, 0), -x * angle));
+    walk->pose.turn = multiply(turn, turn_about(vec3_make(1, 0, 0), -y * angle));
+}
+
+void walk_orbit(struct walk *walk, double x, double y) {
+    struct pose *pose = &walk->pose;
+    struct quaternion by = turn_about(rotate(pose->turn, vec3_make(0, 1, 0)), -x * 180 * degree);
+    by = multiply(by, turn_about(rotate(pose->turn, vec3_make(1, 0, 0)), -y * 180 * degree));
+    pose->place = vec3_add(walk->centre, rotate(by, vec3_sub(pose->place, walk->centre)));
+    pose->turn = multiply(by, pose->turn);
+}
+
+void walk_zoom(struct walk *walk, double steps) {
+    double fov = walk->pose.fov * el_exp(-0.1 * steps);
+    walk->pose.fov = fov < 0.01 ? 0.01 : fov > 170 ? 170 : fov;
+}
+
+void walk_roll(struct walk *walk, double degrees) {
+    walk->pose.turn = multiply(walk->pose.turn, turn_about(vec3_make(0, 0, -1), degrees * degree));
+}
+
+void walk_level(struct walk *walk) {
+    walk->pose.turn = looking(forward_of(&walk->pose), vec3_make(0, 1, 0));
+}
+
+void walk_home(struct walk *walk) {
+    walk->pose = walk->home;
+}
+
+void walk_save(struct walk *walk, int number) {
+    walk->views[number] = walk->pose;
+    walk->saved[number] = true;
+}
+
+bool walk_recall(struct walk *walk, int number) {
+    if (walk->saved[number])
+        walk->pose = walk->views[number];
+    return walk->saved[number];
+}

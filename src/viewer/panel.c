@@ -1,0 +1,97 @@
+/* A part is pressed where the button goes down on it, and used where it goes up on it again. Parts are known by their
+ * number in the frame; a frame with other parts in between forgets what was held, which then is not used. */
+#include "viewer/panel.h"
+
+static const struct ink ground = {18, 20, 24, 200}, plain = {225, 228, 232, 255}, quiet = {66, 72, 82, 235};
+static const struct ink lit = {96, 106, 122, 245}, chosen = {190, 120, 40, 245}, warning = {255, 120, 90, 255};
+static const struct ink filled = {90, 150, 220, 255};
+
+void panel_begin(struct panel *panel) {
+    paper_clear(&panel->paper);
+    panel->ground_count = 0;
+    panel->part = 0;
+}
+
+void panel_end(struct panel *panel) {
+    if (panel->released)
+        panel->held = 0;
+    panel->pressed = panel->released = false;
+}
+
+int panel_line_height(const struct panel *panel) {
+    return PAPER_LINE * panel->paper.scale;
+}
+
+int panel_button_width(const struct panel *panel, const char *text) {
+    return paper_text_width(&panel->paper, text) + 6 * panel->paper.scale;
+}
+
+static bool inside(const struct panel *panel, int x, int y, int width, int height) {
+    return panel->mouse_x >= x && panel->mouse_y >= y && panel->mouse_x < x + width && panel->mouse_y < y + height;
+}
+
+bool panel_covers(const struct panel *panel, double x, double y) {
+    struct panel there = {.mouse_x = x, .mouse_y = y};
+    bool covers = false;
+    for (int i = 0; i < panel->ground_count; i++)
+        covers = covers || inside(&there, panel->grounds[i].x, panel->grounds[i].y, panel->grounds[i].width,
+                                  panel->grounds[i].height);
+    return covers;
+}
+
+void panel_ground(struct panel *panel, int x, int y, int width, int height) {
+    if (panel->ground_count < PANEL_GROUNDS) {
+        int i = panel->ground_count++;
+        panel->grounds[i].x = x;
+        panel->grounds[i].y = y;
+        panel->grounds[i].width = width;
+        panel->grounds[i].height = height;
+    }
+    paper_box(&panel->paper, x, y, width, height, ground);
+}
+
+void panel_text(struct panel *panel, int x, int y, const char *text) {
+    paper_text(&panel->paper, x, y, text, plain);
+}
+
+void panel_warning(struct panel *panel, int x, int y, const char *text) {
+    paper_text(&panel->paper, x, y, text, warning);
+}
+
+void panel_bar(struct panel *panel, int x, int y, int width, double share) {
+    int scale = panel->paper.scale, height = PAPER_LETTER * scale;
+    share = share < 0 ? 0 : share > 1 ? 1 : share;
+    paper_box(&panel->paper, x, y, width, height, quiet);
+    paper_box(&panel->paper, x, y, (int)(width * share), height, filled);
+}
+
+bool panel_button(struct panel *panel, int x, int y, const char *text, bool on) {
+    int scale = panel->paper.scale, width = panel_button_width(panel, text), height = (PAPER_LETTER + 4) * scale;
+    int part = ++panel->part;
+    bool in = inside(panel, x, y, width, height);
+    if (in && panel->pressed)
+        panel->held = part;
+    paper_box(&panel->paper, x, y, width, height, on ? chosen : in ? lit : quiet);
+    paper_text(&panel->paper, x + 3 * scale, y + 2 * scale, text, plain);
+    return in && panel->released && panel->held == part;
+}
+
+bool panel_slider(struct panel *panel, int x, int y, int width, double low, double high, struct ink ink,
+                  double *value) {
+    int scale = panel->paper.scale, height = PAPER_LETTER * scale, part = ++panel->part;
+    bool in = inside(panel, x, y - scale, width, height + 2 * scale), changed = false;
+    if (in && panel->pressed)
+        panel->held = part;
+    if (panel->held == part && (panel->down || panel->released)) {
+        double share = (panel->mouse_x - x) / width;
+        share = share < 0 ? 0 : share > 1 ? 1 : share;
+        double wanted = low + share * (high - low);
+        changed = wanted < *value || wanted > *value;
+        *value = wanted;
+    }
+    double share = (*value - low) / (high - low);
+    share = share < 0 ? 0 : share > 1 ? 1 : share;
+    paper_box(&panel->paper, x, y, width, height, quiet);
+    paper_box(&panel->paper, x, y, (int)(width * share), height, ink);
+    return changed;
+}

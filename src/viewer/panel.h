@@ -1,0 +1,46 @@
+/* A small immediate-mode toolkit: a panel is told anew for every frame, and each part of it answers at once whether it
+ * was used. What must be remembered from frame to frame is which part the mouse holds. Knows no window. */
+#ifndef GRAY_VIEWER_PANEL_H
+#define GRAY_VIEWER_PANEL_H
+
+#include "viewer/canvas.h"
+
+enum { PANEL_GROUNDS = 16 };
+
+struct panel {
+    struct paper paper;
+    double mouse_x, mouse_y;
+    bool down;              /* the left button */
+    bool pressed, released; /* since the frame before */
+    int held;               /* the part that was pressed and not let go; 0: none */
+    int part;               /* parts are numbered in the order they are told */
+    struct {
+        int x, y, width, height;
+    } grounds[PANEL_GROUNDS]; /* of this frame */
+    int ground_count;
+};
+
+/* Begins a frame: clears the paper. */
+void panel_begin(struct panel *panel);
+/* Ends it: presses and releases are used up. */
+void panel_end(struct panel *panel);
+
+/* Whether a press there is for the panel, as it was told last. */
+bool panel_covers(const struct panel *panel, double x, double y);
+
+/* Sizes of parts, pixels. */
+int panel_line_height(const struct panel *panel);
+int panel_button_width(const struct panel *panel, const char *text);
+
+/* What parts lie on: at most PANEL_GROUNDS of them. */
+void panel_ground(struct panel *panel, int x, int y, int width, int height);
+void panel_text(struct panel *panel, int x, int y, const char *text);
+void panel_warning(struct panel *panel, int x, int y, const char *text);
+/* A share of 0 to 1. */
+void panel_bar(struct panel *panel, int x, int y, int width, double share);
+/* True: clicked. `on`: drawn as chosen. */
+bool panel_button(struct panel *panel, int x, int y, const char *text, bool on);
+/* True: *value was changed by the mouse, from low to high over the width. */
+bool panel_slider(struct panel *panel, int x, int y, int width, double low, double high, struct ink ink, double *value);
+
+#endif

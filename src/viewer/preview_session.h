@@ -1,0 +1,33 @@
+/* What the child does for a picture in a window: pass after pass, and between them what people ask of the scene and
+ * change in it. The world stays as long as nothing but the camera or a colour changes. */
+#ifndef GRAY_VIEWER_PREVIEW_SESSION_H
+#define GRAY_VIEWER_PREVIEW_SESSION_H
+
+#include "base/pool.h"
+#include "render/render.h"
+#include "scene/change.h"
+#include "script/script.h"
+#include "session/services.h"
+
+struct studio {
+    const struct child_services *services;
+    struct pool *pool;
+    const struct render_request *request;
+    const struct picture_request *asked;
+    struct render_job *job; /* as the script wants it; its world is the one to use */
+    struct world *world;
+    void *context; /* of the functions below */
+    /* Builds job->world again with these lights. False: there is none; its building can be stopped as a pass can. */
+    bool (*build)(void *context, const struct light *lights, uint32_t light_count, struct error *error);
+    void (*fill)(void *context, const struct film *film, struct picture_report *report);
+    void (*warn)(void *context, const char *text);
+};
+
+/* Until people are done with the picture. built: the world is there; else its building was stopped by people who may
+ * want it later. False: the window was closed, or an error. */
+bool studio_run(struct studio *studio, bool built, struct picture_report *report, double build_seconds,
+                struct error *error);
+/* Whether this is the error of something that was stopped for a while. */
+bool studio_was_stopped(const struct control *control, const struct error *error);
+
+#endif

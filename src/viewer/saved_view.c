@@ -1,0 +1,86 @@
+/* Nothing that is there is ever overwritten. */
+#include "viewer/saved_view.h"
+
+#include "base/file_output.h"
+#include "image/png_write.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { NAME = 4096, NUMBERS = 10000 };
+
+static bool free_name(const char *picture, const char *what, const char *extension, char *name, struct error *error) {
+    const char *slash = strrchr(picture, '/'), *dot = strrchr(picture, '.');
+    size_t stem = dot && (!slash || dot > slash + 1) && dot != picture ? (size_t)(dot - picture) : strlen(picture);
+    for (int i = 1; i < NUMBERS; i++) {
+        int length = snprintf(name, NAME, "%.*s%s%d.%s", (int)stem, picture, what, i, extension);
+        if (length < NAME && !file_exists(name))
+            return true;
+    }
+    return error_set(error, ERROR_SCENE, "%.400s: there is no free name for what is shown", picture);
+}
+
+static void row(void *context, uint32_t y, uint8_t *line) {
+    const struct live *live = context;
+    size_t bytes = 3 * (size_t)live->request.width;
+    memcpy(line, live->canvas + y * bytes, bytes);
+}
+
+bool souvenir_picture(const struct live *live, const struct file_target *picture, char *name, struct error *error) {
+    const struct file_target target = {.path = name, .rules = picture->rules};
+    return free_name(picture->path, "-view", "png", name, error) &&
+           png_write(&target, live->request.width, live->request.height, row, (void *)(uintptr_t)live, error);
+}
+
+struct written {
+    struct file_output file;
+    struct error *error;
+};
+
+static bool put_line(void *context, const char *line) {
+    struct written *written = context;
+    return file_output_write(&written->file, line, strlen(line), written->error);
+}
+
+static bool end_file(struct written *written, bool ok) {
+    if (ok)
+        return file_output_commit(&written->file, written->error);
+    file_output_abandon(&written->file);
+    return false;
+}
+
+bool souvenir_camera(const struct live *live, const struct file_target *picture, char *name, struct error *error) {
+    static const char head[] =
+        "-- A camera found by walking. With require and the name of this file without .lua, before gr.render, the\n"
+        "-- picture is made with it; it is given back as a table, too.\n";
+    static const struct change_list none;
+    struct camera c = live->flown ? walk_camera(&live->walk) : live->request.camera;
+    struct written written = {.error = error};
+    const struct file_target target = {.path = name, .rules = picture->rules};
+    char text[1024];
+    (void)snprintf(text, sizeof text,
+                   "return {\n  eye = {%.17g, %.17g, %.17g},\n  view = {%.17g, %.17g, %.17g},\n"
+                   "  up = {%.17g, %.17g, %.17g},\n  fov = %.17g,\n}\n",
+                   c.eye.x, c.eye.y, c.eye.z, c.view.x, c.view.y, c.view.z, c.up.x, c.up.y, c.up.z, c.fov);
+    if (!free_name(picture->path, "-view", "lua", name, error) || !file_output_open(&written.file, &target, error))
+        return false;
+    return end_file(&written, put_line(&written, head) &&
+                                  edits_tell(&none, live->request.file, &c, NULL, put_line, &written) &&
+                                  put_line(&written, text));
+}
+
+bool souvenir_changes(const struct live *live, const struct file_target *picture, char *name, struct error *error) {
+    static const char head[] =
+        "-- What was changed in the window. The scene shows the same when it says, before gr.render, require and the\n"
+        "-- name of this file without .lua.\n";
+    struct camera camera = walk_camera(&live->walk);
+    double exposure = live->request.exposure;
+    bool exposed = exposure < live->script_exposure || exposure > live->script_exposure;
+    struct written written = {.error = error};
+    const struct file_target target = {.path = name, .rules = picture->rules};
+    if (!free_name(picture->path, "-changes", "lua", name, error) || !file_output_open(&written.file, &target, error))
+        return false;
+    return end_file(&written, put_line(&written, head) &&
+                                  edits_tell(&live->edits.now, live->request.file, live->flown ? &camera : NULL,
+                                             exposed ? &exposure : NULL, put_line, &written));
+}

@@ -1,0 +1,177 @@
+/* Which pixels show a node is asked by one ray through the middle of each pixel of the rectangle that the boxes of the
+ * node's primitives fill in the picture. What the ray meets first counts: a node behind another one has no outline
+ * there. */
+#include "viewer/view_overlay.h"
+
+#include "base/mem.h"
+#include "geom/csg.h"
+#include "inspect/pick.h"
+#include "render/camera.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { ROWS = 8 }; /* of an item of work */
+
+struct seeking {
+    const struct world *world;
+    const struct marks_wish *wish;
+    uint8_t *member; /* by primitive: part of the node, or of the solid that it is an operand of */
+    struct box box;
+    uint32_t first_leaf, end_leaf; /* of that solid, by origin: those of the operand */
+    const struct scene_step *to_solid;
+    uint32_t depth;
+    bool no_memory;
+};
+
+static bool note_leaves(void *context, uint32_t first, uint32_t end, const struct scene_step *steps, uint32_t depth) {
+    struct scene_step way[2 * OPERAND_DEPTH];
+    struct seeking *s = context;
+    if (steps[depth - 1].node->serial != s->wish->serial || s->depth > OPERAND_DEPTH)
+        return true;
+    memcpy(way, s->to_solid, s->depth * sizeof *way);
+    memcpy(way + s->depth, steps, depth * sizeof *way);
+    if (marks_way(way, s->depth + depth) != s->wish->way)
+        return true;
+    s->first_leaf = first;
+    s->end_leaf = end;
+    return false;
+}
+
+static bool note_members(void *context, uint32_t first, uint32_t count, const struct scene_step *steps,
+                         uint32_t depth) {
+    struct seeking *s = context;
+    bool below = s->wish->solid != 0 && marks_way(steps, depth) == s->wish->solid;
+    if (below) {
+        s->to_solid = steps;
+        s->depth = depth;
+        s->no_memory = s->no_memory || !world_walk_operands(steps[depth - 1].node, note_leaves, s);
+    }
+    for (uint32_t i = 0; i < depth && !below && s->wish->solid == 0; i++)
+        below =
+            steps[i].node->serial == s->wish->serial && (s->wish->way == 0 || marks_way(steps, i + 1) == s->wish->way);
+    for (uint32_t i = first; below && i < first + count; i++) {
+        s->member[i] = 1;
+        s->box = box_join(s->box, s->world->boxes[i]);
+    }
+    return true;
+}
+
+/* Where the box is in the film; all of it where that is not easily told. */
+static struct film_rectangle rectangle_of(const struct camera_frame *frame, const struct film *film,
+                                          const struct box *box) {
+    const struct film_rectangle all = {0, 0, film->width, film->height};
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    enum projection projection = frame->lens.projection;
+    if ((projection != PROJECTION_PERSPECTIVE && projection != PROJECTION_ORTHOGRAPHIC) ||
+        frame->lens.stereo != STEREO_NONE || !vec3_finite(box->min) || !vec3_finite(box->max))
+        return all;
+    for (int i = 0; i < 8; i++) {
+        struct vec3 p = {i & 1 ? box->max.x : box->min.x, i & 2 ? box->max.y : box->min.y,
+                         i & 4 ? box->max.z : box->min.z};
+        double at[2];
+        if (!camera_project(frame, p, &at[0], &at[1]))
+            return all;
+        for (int k = 0; k < 2; k++) {
+            low[k] = fmin(low[k], at[k]);
+            high[k] = fmax(high[k], at[k]);
+        }
+    }
+    /* One more, for what is rounded. */
+    low[0] = fmin(fmax(floor(low[0]) - 1 - film->x0, 0), film->width);
+    low[1] = fmin(fmax(floor(low[1]) - 1 - film->y0, 0), film->height);
+    high[0] = fmin(fmax(ceil(high[0]) + 1 - film->x0, low[0]), film->width);
+    high[1] = fmin(fmax(ceil(high[1]) + 1 - film->y0, low[1]), film->height);
+    return (struct film_rectangle){(uint32_t)low[0], (uint32_t)low[1], (uint32_t)high[0], (uint32_t)high[1]};
+}
+
+struct outlining {
+    const struct render_job *job;
+    const struct camera_frame *frame;
+    const struct pool *pool;
+    const struct seeking *seeking;
+    struct world_scratch *scratch; /* by worker */
+    struct film_rectangle area;
+    uint8_t *shows;
+};
+
+static bool is_member(const struct seeking *s, const struct hit *hit) {
+    const struct shape *shape = placed_shape(s->world, hit->placed);
+    if (!s->member[hit->placed] || s->wish->solid == 0 || shape->kind != SHAPE_CSG)
+        return s->member[hit->placed];
+    uint32_t origin = shape->csg->leaves[hit->leaf].origin;
+    return origin >= s->first_leaf && origin < s->end_leaf;
+}
+
+static void outline_rows(void *context, uint32_t item, int worker) {
+    const struct outlining *o = context;
+    const struct film *film = o->job->film;
+    struct ray ray;
+    struct hit hit;
+    for (uint32_t y = o->area.y0 + item * ROWS; y < o->area.y1 && y < o->area.y0 + (item + 1) * ROWS; y++) {
+        for (uint32_t x = o->area.x0; x < o->area.x1; x++) {
+            bool shows = camera_ray_through(o->frame, film->x0 + x + 0.5, film->y0 + y + 0.5,
+                                            (struct sample2){0.5, 0.5}, 0, &ray) &&
+                         world_nearest(o->job->world, &ray, &o->scratch[worker], &hit) && is_member(o->seeking, &hit);
+            o->shows[(size_t)y * film->width + x] = shows;
+        }
+        if (pool_cancelled(o->pool))
+            return;
+    }
+}
+
+static bool run_outline(struct outlining *o, struct pool *pool, struct error *error) {
+    int workers = pool_workers(pool);
+    o->scratch = mem_alloc_zero((size_t)workers, sizeof *o->scratch);
+    bool ok = o->scratch != NULL;
+    for (int i = 0; ok && i < workers; i++)
+        ok = world_scratch_init(&o->scratch[i], o->job->world);
+    uint32_t items = (o->area.y1 - o->area.y0 + ROWS - 1) / ROWS;
+    bool complete = ok && (items == 0 || pool_run(pool, items, outline_rows, o));
+    for (int i = 0; o->scratch && i < workers; i++) {
+        ok = ok && !o->scratch[i].failed;
+        world_scratch_destroy(&o->scratch[i]);
+    }
+    mem_free(o->scratch);
+    if (!ok)
+        return error_no_memory(error, "the outline of a node");
+    return complete || error_set(error, ERROR_CANCELLED, "stopped while rendering");
+}
+
+static bool make_outline(const struct render_job *job, const struct node *root, struct pool *pool,
+                         const struct marks_wish *wish, uint8_t *shows, struct film_rectangle *found,
+                         struct error *error) {
+    struct seeking seeking = {.world = job->world, .wish = wish, .box = box_empty()};
+    struct settings settings = job->settings;
+    struct camera_frame frame;
+    char ignored[256];
+    settings.lens.aperture = 0;
+    *found = (struct film_rectangle){0};
+    if (!camera_prepare(&job->camera, &settings, job->width, job->height, &frame, ignored, error))
+        return false;
+    seeking.member = mem_alloc_zero((size_t)job->world->placed_count + 1, 1);
+    if (!seeking.member)
+        return error_no_memory(error, "the outline of a node");
+    bool ok = world_walk_paths(job->world, root, note_members, &seeking, error) &&
+              (!seeking.no_memory || error_no_memory(error, "the outline of a node"));
+    if (ok && !box_is_empty(&seeking.box)) {
+        struct outlining o = {.job = job, .frame = &frame, .pool = pool, .seeking = &seeking, .shows = shows};
+        o.area = rectangle_of(&frame, job->film, &seeking.box);
+        ok = run_outline(&o, pool, error);
+        *found = o.area;
+    }
+    mem_free(seeking.member);
+    return ok;
+}
+
+bool marks_make(const struct render_job *job, const struct node *root, struct pool *pool, const struct marks_wish *wish,
+                const struct marks_place *place, struct marks *marks, struct error *error) {
+    *marks = (struct marks){0};
+    if (wish->outline && !make_outline(job, root, pool, wish, place->shows, &marks->outline, error))
+        return false;
+    marks->has_outline = wish->outline;
+    if (wish->lines.kind != OVERLAY_NONE && !overlay_lines(job, pool, &wish->lines, place->lines, error))
+        return false;
+    marks->has_lines = wish->lines.kind != OVERLAY_NONE;
+    return true;
+}

@@ -1,0 +1,14 @@
+/* Marks: what lies over the picture in a window and is found by rays, so that only the child can make it: the lines of
+ * --overlay, and which pixels show the node that is selected. The child leaves them in the memory of the film, behind
+ * its layers, and says so with its news; the supervisor takes a copy before it sends another order. */
+#ifndef GRAY_VIEWER_VIEW_OVERLAY_H
+#define GRAY_VIEWER_VIEW_OVERLAY_H
+
+#include "session/messages.h"
+#include "world/path.h"
+
+/* Makes what is wished for, as the camera of the job sees it. False: no memory, or no such camera, or cancelled. */
+bool marks_make(const struct render_job *job, const struct node *root, struct pool *pool, const struct marks_wish *wish,
+                const struct marks_place *place, struct marks *marks, struct error *error);
+
+#endif
