@@ -171,16 +171,11 @@ static struct node *stand_add(struct stand *stand, struct node *parent, struct m
     return node;
 }
 
-static void ignore_warning(void *context, const char *text) {
-    (void)context;
-    (void)text;
-}
-
 static double stand_build(struct stand *stand, struct pool *pool) {
     struct sky sky = {.kind = SKY_CONSTANT};
     double start = seconds(CLOCK_MONOTONIC);
-    if (!world_build(&stand->world, &stand->arena, &stand->scene, stand->root, NULL, 0, &sky, (struct shutter){0, 0},
-                     ACCEL_AUTO, pool, ignore_warning, NULL, &stand->error)) {
+    const struct world_input input = {.scene = &stand->scene, .root = stand->root, .sky = &sky, .accel = ACCEL_AUTO};
+    if (!world_build(&stand->world, &input, &stand->arena, pool, &stand->error)) {
         fprintf(stderr, "growth: %s\n", stand->error.text);
         exit(3);
     }

@@ -437,10 +437,6 @@ static double trace(const struct work *work, struct share *shares, int threads) 
 
 /* A world of one mesh */
 
-static void ignore_warning(void *context, const char *text) {
-    (void)context, (void)text;
-}
-
 struct batches {
     struct assets assets;
     struct scene scene;
@@ -460,9 +456,8 @@ static void batches_begin(struct batches *b, struct mesh *mesh) {
     if (!node || !b->pool)
         exit(3);
     node->shape = (struct shape){.kind = SHAPE_MESH, .mesh = mesh};
-    if (!world_build(&b->world, &b->arena, &b->scene, node, NULL, 0, &sky, (struct shutter){0, 0}, ACCEL_AUTO, b->pool,
-                     ignore_warning, NULL, &error) ||
-        !world_scratch_init(&b->scratch, &b->world)) {
+    const struct world_input input = {.scene = &b->scene, .root = node, .sky = &sky, .accel = ACCEL_AUTO};
+    if (!world_build(&b->world, &input, &b->arena, b->pool, &error) || !world_scratch_init(&b->scratch, &b->world)) {
         fprintf(stderr, "rays: %s\n", error.text);
         exit(3);
     }

@@ -61,8 +61,16 @@ double stage_variance_about_half(struct stage *s, bool alone) {
 bool stage_build(struct stage *s, struct node *root, enum accel_kind accel) {
     world_destroy(&s->world);
     arena_reset(&s->arena);
-    return world_build(&s->world, &s->arena, &s->scene, root, s->lights, s->light_count, &s->sky, s->settings.shutter,
-                       accel, s->pool, count_warning, s, &s->error);
+    const struct world_input input = {.scene = &s->scene,
+                                      .root = root,
+                                      .lights = s->lights,
+                                      .light_count = s->light_count,
+                                      .sky = &s->sky,
+                                      .shutter = s->settings.shutter,
+                                      .accel = accel,
+                                      .warn = count_warning,
+                                      .warn_context = s};
+    return world_build(&s->world, &input, &s->arena, s->pool, &s->error);
 }
 
 struct render_job stage_job(struct stage *s, uint32_t width, uint32_t height) {

@@ -199,8 +199,16 @@ static bool build_world(struct child *child, const struct render_request *reques
     child->runs_before = pool_progress(child->pool).runs;
     atomic_store(&control->build_done, 0);
     atomic_store(&control->build_step, 1);
-    bool ok = world_build(world, &child->job, request->scene, request->root, lights, light_count, &request->sky,
-                          job->settings.shutter, job->settings.accel, child->pool, warn_of_scene, child, error);
+    const struct world_input input = {.scene = request->scene,
+                                      .root = request->root,
+                                      .lights = lights,
+                                      .light_count = light_count,
+                                      .sky = &request->sky,
+                                      .shutter = job->settings.shutter,
+                                      .accel = job->settings.accel,
+                                      .warn = warn_of_scene,
+                                      .warn_context = child};
+    bool ok = world_build(world, &input, &child->job, child->pool, error);
     child->building = false;
     atomic_store(&control->build_step, 0);
     return ok;

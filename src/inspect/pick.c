@@ -207,7 +207,7 @@ static bool describe(struct picking *p, const struct node *root, const struct hi
         pick_words(out->parent_name, p->steps[p->depth - 2].node->name);
     }
     pick_words(out->shape, shape_words(p, node));
-    tell_material(p->world->materials[hit->material], out);
+    tell_material(p->world->authored.materials[hit->material], out);
     out->can_own = p->depth == p->whole && node->kind == NODE_GEOMETRY;
     out->world_from_parent = world_from_parent(p->steps, p->depth).forward;
     return box_node(p, root, error);

@@ -112,7 +112,7 @@ static void link_words(struct sheet *sheet, const struct material *link) {
 
 static void dump_material(const struct dump *d, uint32_t number) {
     struct sheet *sheet = d->sheet;
-    const struct material *last = d->world->materials[number];
+    const struct material *last = d->world->authored.materials[number];
     sheet_print(sheet, d->json ? "%s{\"number\":%u,\"links\":[" : "%.0s%8u  ", d->json && number > 0 ? "," : "",
                 number + 1);
     for (const struct material *link = last; link; link = link->base)

@@ -9,6 +9,17 @@ static const struct phong *numbers_of(const struct material *material) {
     return material->origin ? &material->origin->phong : &material->phong;
 }
 
+struct material material_flat(const struct material *material) {
+    struct material out = *material;
+    out.phong = *numbers_of(material);
+    out.base = out.origin = NULL;
+    out.older = NULL;
+    out.name = NULL;
+    out.serial = 0;
+    out.depth = 1;
+    return out;
+}
+
 static void copy_numbers(const struct phong *numbers, struct surface_look *out) {
     out->kd = numbers->kd;
     out->ks = numbers->ks;

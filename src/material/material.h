@@ -80,6 +80,9 @@ struct surface_look {
     bool fresnel;           /* material_eval, which knows the media, replaces reflect and refract by F and 1 - F */
 };
 
+/* A copy that refers to no other material: the numbers of the base at the end of its chain are its own. Tables of
+ * worlds hold such copies; material_emission and material_emission_bound ask for the authored one. */
+struct material material_flat(const struct material *material);
 void material_look(const struct material *material, const struct hit *hit, struct surface_look *out);
 /* The same; `told` (or NULL) hears of every material of the chain, from the base on, and its own look. */
 typedef void material_told(void *context, const struct material *link, const struct surface_look *look);

@@ -73,7 +73,10 @@ void material_eval(const struct material *material, const struct hit *hit, const
     struct surface_look look;
     if (!context)
         context = &defaults;
-    material_look_told(material, hit, &look, context->told, context->told_to);
+    if (context->told)
+        material_look_told(context->authored, hit, &look, context->told, context->told_to);
+    else
+        material_look(material, hit, &look);
     out->count = 0;
     out->albedo = look.kd;
     out->opacity = look.opacity;

@@ -11,8 +11,9 @@ struct material_context {
     enum specular_kind specular;
     bool ambient_plain;    /* the ambient colour is not multiplied by kd */
     bool total_reflection; /* what cannot be refracted is reflected; else it is lost */
-    material_told *told;   /* hears of every link of the material, or NULL */
+    material_told *told;   /* hears of every link of `authored`, or NULL */
     void *told_to;
+    const struct material *authored; /* of the material, where told is set: the one that the scene has */
 };
 
 /* media: those that the ray is in; NULL: none. A surface that is all hole (opacity 0) has no lobes. */

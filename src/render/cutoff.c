@@ -12,7 +12,7 @@ static double largest(struct vec3 c) {
 
 static double brightest_of_scene(const struct render_job *job) {
     const struct world *world = job->world;
-    double most = sky_brightest(&world->sky), lit = largest(job->ambient), emission = 0;
+    double most = sky_brightest(&world->sky), lit = largest(job->ambient);
     for (uint32_t i = 0; i < world->light_count; i++) {
         const struct light *light = &world->lights[i];
         double own = light_brightest(light);
@@ -20,9 +20,7 @@ static double brightest_of_scene(const struct render_job *job) {
         if (light->visible && own > most)
             most = own;
     }
-    for (uint32_t i = 0; i < world->material_count; i++)
-        emission = fmax(emission, largest(material_emission_bound(world->materials[i])));
-    most = fmax(most, lit + emission);
+    most = fmax(most, lit + world->emission_bound);
     return job->fog ? fmax(most, largest(job->fog->colour)) : most;
 }
 

@@ -9,10 +9,10 @@ void media_around(const struct world *world, struct vec3 point, double ray_time,
     for (uint32_t i = 0; i < count; i++) {
         const struct thing *thing = placed_thing(world, inside[i]);
         uint32_t material = thing->shape.kind == SHAPE_CSG ? thing->shape.csg->leaves[0].material : thing->material;
-        struct medium medium = {.placed = inside[i]};
-        if (!material_is_transparent(world->materials[material], &medium.ior))
+        if (world->material_medium[material] == MEDIUM_NONE)
             continue;
-        medium.absorption = material_absorption(world->materials[material]);
+        struct medium medium = world->media[world->material_medium[material]];
+        medium.placed = inside[i];
         medium_stack_enter(out, &medium);
     }
 }

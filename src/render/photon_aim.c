@@ -60,7 +60,7 @@ static double placed_strength(const struct world *world, uint32_t index) {
         uint32_t material = csg ? csg->leaves[leaf].material : thing->material;
         uint32_t slots = csg ? csg->leaves[leaf].slot_count : thing->slot_count;
         for (uint32_t slot = 0; slot < (slots > 1 ? slots : 1); slot++) {
-            double strength = material_specular(world->materials[material + slot]);
+            double strength = material_specular(&world->materials[material + slot]);
             most = strength > most ? strength : most;
         }
     }

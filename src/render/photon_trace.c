@@ -139,7 +139,7 @@ static void send(struct sending *s, const struct photon_aim *aim, uint32_t index
         struct medium_effect effect;
         if (medium_transmittance(MEDIUM_RAY_PHOTON, s->fog, &flight.ray, hit.t, &effect))
             flight.left = vec3_mul(flight.left, effect.transmittance);
-        material_eval(s->world->materials[hit.material], &hit, &flight.media, &context, &bsdf);
+        material_eval(&s->world->materials[hit.material], &hit, &flight.media, &context, &bsdf);
         if (bsdf.opacity < 1 && draw(&flight) >= bsdf.opacity) {
             /* Through a hole, as if nothing were there. */
             flight.ray = hit_ray(&hit, &flight.ray, vec3_negate(hit.view), &flight.media);

@@ -236,19 +236,10 @@ static void count_tiles(struct run *run) {
     atomic_store(&run->done, done);
 }
 
-static bool anything_is_transparent(const struct world *world) {
-    double ior;
-    for (uint32_t i = 0; i < world->material_count; i++) {
-        if (material_is_transparent(world->materials[i], &ior))
-            return true;
-    }
-    return false;
-}
-
 /* The solids that rays may start in, and whether each ray must ask for itself. */
 static bool find_eye_media(struct run *run, const struct box *origins, bool spread) {
     const struct world *world = run->job->world;
-    run->closed_count = anything_is_transparent(world) ? world_closed_in(world, origins, NULL, 0) : 0;
+    run->closed_count = world->medium_count > 0 ? world_closed_in(world, origins, NULL, 0) : 0;
     run->closed = mem_alloc_zero((size_t)run->closed_count + 1, sizeof *run->closed);
     if (!run->closed)
         return false;

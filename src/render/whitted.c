@@ -156,15 +156,17 @@ static struct vec3 shade(struct integrator_state *state, const struct surface_po
 static struct vec3 shade_hit(struct integrator_state *state, const struct ray *ray, const struct hit *hit,
                              const struct path *path) {
     const struct settings *settings = &state->job->settings;
+    const struct world *world = state->job->world;
     const struct material_context context = {.specular = settings->specular,
                                              .ambient_plain = settings->ambient_plain,
                                              .total_reflection = settings->use_tir,
                                              .told = state->observer ? observe_material : NULL,
-                                             .told_to = state->observer};
+                                             .told_to = state->observer,
+                                             .authored = world->authored.materials[hit->material]};
     struct bsdf bsdf;
     struct surface_point at = {ray, hit, &bsdf};
     state->hits++;
-    material_eval(state->job->world->materials[hit->material], hit, ray->media, &context, &bsdf);
+    material_eval(&world->materials[hit->material], hit, ray->media, &context, &bsdf);
     double hole = 1 - bsdf.opacity;
     if (!(hole > 0))
         return shade(state, &at, path);

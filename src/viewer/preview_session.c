@@ -159,6 +159,8 @@ static bool change_scene(struct at_work *work, const struct studio_order *order,
     work->stale = work->stale || !change_keeps_world(&order->change);
     if (!order->more && !need_world(work, news, error))
         return false;
+    if (!work->stale)
+        world_update_materials(studio->world);
     news->unbuilt = work->stale;
     tell_lights(work, order->first_light, news);
     return true;

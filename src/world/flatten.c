@@ -98,7 +98,7 @@ static bool count_drawable(struct flattening *f, const struct node *root, uint32
 /* --- placing --- */
 
 static bool any_holes(const struct flattening *f, const struct shape *shape, uint32_t material, uint32_t slot_count) {
-    const struct material **materials = f->world->materials;
+    const struct material **materials = f->world->authored.materials;
     if (shape->kind == SHAPE_CSG) {
         for (uint32_t i = 0; i < shape->csg->leaf_count; i++) {
             const struct csg_leaf *leaf = &shape->csg->leaves[i];
@@ -172,11 +172,11 @@ static bool place(struct flattening *f, const struct stand *stand, const struct 
     struct world *world = f->world;
     if (world->placed_count == f->placed_capacity && !grow_placed(f))
         return false;
-    if ((around || f->limits) && !keep_limit(f, around && !stand->above ? &around->limit : NULL))
+    if ((around || f->limits) && !keep_limit(f, around && stand->above == LINK_NONE ? &around->limit : NULL))
         return false;
     struct placed *placed = &f->placed[world->placed_count++];
     placed->thing = thing;
-    return stand->above ? place_moving(f, stand, placed) : flatten_map(f, &stand->from_node, placed);
+    return stand->above != LINK_NONE ? place_moving(f, stand, placed) : flatten_map(f, &stand->from_node, placed);
 }
 
 bool flatten_mesh_accel(struct flattening *f, const struct shape *shape) {
@@ -278,12 +278,15 @@ struct place_frame {
 
 /* A node that moves: a link of its own, on which what is under it stands. */
 static bool stand_moving(struct flattening *f, const struct node *node, const struct stand *parent, struct stand *out) {
-    struct moving_link *link = arena_alloc(f->arena, sizeof *link);
-    if (!link)
+    struct world *world = f->world;
+    struct moving_link *links = room_for_one(world->links, world->link_count, &f->link_capacity, sizeof *links);
+    if (!links)
         return error_no_memory(f->error, "what moves in the scene");
+    world->links = links;
+    struct moving_link *link = &links[world->link_count];
     struct transform parent_from_node = node_parent_from_node(node);
     *link = (struct moving_link){.above = parent->above, .above_from_node = parent->from_node};
-    *out = (struct stand){link, parent_from_node};
+    *out = (struct stand){world->link_count++, parent_from_node};
     if (!node->moves_to || node->moves_to == node) {
         link->motion = motion_of_velocity(node->velocity);
         return true;
@@ -313,7 +316,8 @@ static const struct surroundings *surround(struct flattening *f, const struct no
     if (node->material)
         own->inherited = node->material;
     if (node->operation == NODE_BOUNDED) /* under what moves the hint is not taken */
-        return stand->above || flatten_limit(f, node->operands[1], &stand->from_node, &own->limit) ? own : NULL;
+        return stand->above != LINK_NONE || flatten_limit(f, node->operands[1], &stand->from_node, &own->limit) ? own
+                                                                                                                : NULL;
     *clip = (struct clip){node->operands[1], *stand, own->clips};
     own->clips = clip;
     return own;
@@ -346,7 +350,7 @@ static bool enter_node(struct flattening *f, const struct node *node, const stru
 }
 
 static bool place_all(struct flattening *f, struct scene_traversal *t) {
-    const struct stand ground = {.from_node = transform_identity()};
+    const struct stand ground = {LINK_NONE, transform_identity()};
     enum scene_event event;
     uint32_t steps = 0;
     while ((event = scene_traversal_next(t)) < SCENE_END) {

@@ -10,8 +10,8 @@ struct linear_table;
 
 /* Where a node stands: fixed to the world, or to the moving node above it. */
 struct stand {
-    const struct moving_link *above; /* NULL: nothing above moves */
-    struct transform from_node;      /* to the space of `above`, or to the world */
+    uint32_t above;             /* number of its link, or LINK_NONE: nothing above moves */
+    struct transform from_node; /* to the space of `above`, or to the world */
 };
 
 /* A solid that cuts open what is placed; the stand of the node that it is an operand of. */
@@ -39,14 +39,14 @@ struct flattening {
     bool unasked; /* no ray will ask this world: its meshes get no index */
     struct placed *placed;
     struct box *limits; /* of each placed primitive, when there are any; else NULL */
-    uint32_t placed_capacity, thing_capacity, linear_capacity, moving_capacity;
+    uint32_t placed_capacity, thing_capacity, linear_capacity, moving_capacity, link_capacity;
     uint32_t *thing_of;                /* by node->index: number of its first thing */
     struct linear_table *linear_table; /* the maps by their bits */
     struct material_table *materials;
 };
 
-/* Fills world->placed, things, linear_maps, materials. Errors: cycles, too many primitives, open operands of CSG, no
- * memory. */
+/* Fills world->placed, things, linear_maps, moving, links, and authored. Errors: cycles, too many primitives, open
+ * operands of CSG, no memory. */
 bool flatten_scene(struct flattening *f, const struct node *root);
 
 /* The CSG primitives of a NODE_CSG, or of geometry that is clipped, in its own space: none when it is empty, several

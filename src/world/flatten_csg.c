@@ -353,7 +353,8 @@ static bool may_be_split(const struct flattening *f, const struct csg_draft *dra
         const struct csg_leaf *leaf = &draft->leaves[i];
         double ior;
         for (uint32_t slot = 0; slot == 0 || slot < leaf->slot_count; slot++)
-            all_opaque = all_opaque && !material_is_transparent(f->world->materials[leaf->material + slot], &ior);
+            all_opaque =
+                all_opaque && !material_is_transparent(f->world->authored.materials[leaf->material + slot], &ior);
         all_alike = all_alike && leaf->material == draft->leaves[0].material && leaf->slot_count < 2;
     }
     return all_opaque || all_alike;

@@ -186,7 +186,7 @@ bool flatten_material(struct flattening *f, const struct node *node, const struc
             table->list[table->list_count++] = effective;
         }
     }
-    f->world->materials = f->materials->list;
+    f->world->authored.materials = f->materials->list;
     f->world->material_count = f->materials->list_count;
     *out = entry->index;
     return true;

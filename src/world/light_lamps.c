@@ -29,7 +29,8 @@ static void add_triangle(struct gathering *g, const struct mesh *mesh, uint32_t 
         size = fmax(size, vec3_max_abs(corners[i]));
     }
     if (!g->light->has_emission)
-        emission = material_emission(g->world->materials[thing->material + (slot < thing->slot_count ? slot : 0)]);
+        emission =
+            material_emission(g->world->authored.materials[thing->material + (slot < thing->slot_count ? slot : 0)]);
     light_mesh_add(&g->mesh, corners, sign, size, emission);
 }
 

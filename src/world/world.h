@@ -8,19 +8,21 @@
 #include "geom/csg.h"
 #include "geom/hit.h"
 #include "geom/shape.h"
+#include "material/medium_stack.h"
 #include "math/motion.h"
 #include "scene/node.h"
 #include "world/scene_accel.h"
 
 /* The way from a moving node to the world: after its own motion a fixed transform, then the next moving node above. */
 struct moving_link {
-    const struct moving_link *above;  /* NULL: the world itself */
+    uint32_t above;                   /* number of a link, or LINK_NONE: the world itself */
     struct transform above_from_node; /* from the space its motion leads to, to the one that moves above it */
     struct motion motion;
 };
+#define LINK_NONE UINT32_MAX
 /* Of a primitive under moving nodes. */
 struct moving {
-    const struct moving_link *link;
+    uint32_t link;
     struct transform link_from_object;
 };
 
@@ -38,8 +40,9 @@ struct thing {
 
 /* What was flattened, for inspection: searches and shading never look here. Borrows from the scene. */
 struct authored {
-    const struct node **nodes; /* of each thing; owned */
-    const uint8_t *draws;      /* by node->index: whether the node, or something below it, placed anything */
+    const struct node **nodes;         /* of each thing; owned */
+    const struct material **materials; /* of each material, with the chain that it was derived from */
+    const uint8_t *draws;              /* by node->index: whether the node, or something below it, placed anything */
 };
 
 /* The linear part of a placement's map and of its inverse; most placements share theirs with others. */
@@ -62,15 +65,19 @@ struct world {
     struct thing *things; /* owned, as are maps and moving */
     struct linear_map *linear_maps;
     struct moving *moving;
+    struct moving_link *links;
     struct box *boxes; /* world box of each placed primitive */
-    uint32_t placed_count, thing_count, linear_count, moving_count;
+    uint32_t placed_count, thing_count, linear_count, moving_count, link_count;
     struct shutter shutter;
     bool moves; /* something does */
     struct authored authored;
-    const struct material **materials;
-    bool *material_has_image;  /* such materials need to know the footprint on the surface */
-    bool *material_has_relief; /* and such ones where it rises */
-    uint32_t material_count;
+    struct material *materials; /* flat (material_flat) */
+    bool *material_has_image;   /* such materials need to know the footprint on the surface */
+    bool *material_has_relief;  /* and such ones where it rises */
+    uint32_t *material_medium;  /* number of the medium in solids of the material, or MEDIUM_NONE: opaque */
+    struct medium *media;       /* one for each transparent material; their `placed` is anything */
+    uint32_t material_count, medium_count;
+    double emission_bound; /* at least the largest component that a material emits */
     const struct light *lights;
     uint32_t light_count;
     struct sky sky;
@@ -81,6 +88,7 @@ struct world {
     size_t mesh_memory; /* bytes of the distinct meshes */
 };
 
+#define MEDIUM_NONE UINT32_MAX
 #define WORLD_NOTHING UINT32_MAX /* in the place of a primitive's number */
 enum { WORLD_BLOCKERS = 8 };
 
@@ -98,13 +106,25 @@ void world_scratch_destroy(struct world_scratch *scratch);
 /* Called with one line for things that are odd but not wrong (a geometry node without material ...). */
 typedef void world_warning(void *context, const char *text);
 
-/* Flattens the tree under root as it stands now; mesh indices are built where they are missing. The world points into
- * the scene's arena (materials, names), so it must not outlive the script. Errors: cycles (naming the nodes), no
- * memory, cancelled; nothing is left to destroy then. lights and sky are copied. */
-bool world_build(struct world *world, struct arena *arena, struct scene *scene, const struct node *root,
-                 const struct light *lights, uint32_t light_count, const struct sky *sky, struct shutter shutter,
-                 enum accel_kind accel, struct pool *pool, world_warning *warn, void *warn_context,
+/* What a world is built from; all of it is only read, but the scene notes which nodes it has warned of. */
+struct world_input {
+    struct scene *scene;
+    const struct node *root; /* everything under it, as it stands now */
+    const struct light *lights;
+    uint32_t light_count;
+    const struct sky *sky;
+    struct shutter shutter;
+    enum accel_kind accel; /* of the world and of the meshes */
+    world_warning *warn;   /* or NULL */
+    void *warn_context;
+};
+/* Flattens the tree under the root; mesh indices are built where they are missing. The world points into the scene's
+ * arena (textures, names), so it must not outlive the script. Errors: cycles (naming the nodes), no memory, cancelled;
+ * nothing is left to destroy then. Lights and sky are copied. */
+bool world_build(struct world *world, const struct world_input *input, struct arena *arena, struct pool *pool,
                  struct error *error);
+/* Copies the numbers of the scene's materials again, after changes that keep the world (change_keeps_world). */
+void world_update_materials(struct world *world);
 void world_destroy(struct world *world); /* what is not in the arena */
 /* Bytes of placements with what they share and their boxes. */
 size_t world_placed_memory(const struct world *world);

@@ -12,50 +12,72 @@ static void add_up_meshes(struct world *world, const struct assets *assets) {
         world->mesh_memory += mesh_memory(entry->mesh);
 }
 
+void world_update_materials(struct world *world) {
+    for (uint32_t i = 0; i < world->material_count; i++)
+        world->materials[i] = material_flat(world->authored.materials[i]);
+}
+
+/* The tables of materials and of the media inside. */
+static bool make_materials(struct world *world, struct arena *arena, struct error *error) {
+    uint32_t count = world->material_count;
+    world->materials = arena_alloc_array(arena, count, sizeof *world->materials);
+    world->material_has_image = arena_alloc_array(arena, count, sizeof *world->material_has_image);
+    world->material_has_relief = arena_alloc_array(arena, count, sizeof *world->material_has_relief);
+    world->material_medium = arena_alloc_array(arena, count, sizeof *world->material_medium);
+    world->media = arena_alloc_array(arena, count, sizeof *world->media);
+    if (!world->materials || !world->material_has_image || !world->material_has_relief || !world->material_medium ||
+        !world->media)
+        return error_no_memory(error, "the materials of the scene");
+    world_update_materials(world);
+    for (uint32_t i = 0; i < count; i++) {
+        const struct material *material = &world->materials[i];
+        struct medium medium = {.absorption = material_absorption(material)};
+        world->material_has_image[i] = material_has_image(material);
+        world->material_has_relief[i] = material_has_relief(material);
+        world->material_medium[i] = MEDIUM_NONE;
+        if (material_is_transparent(material, &medium.ior)) {
+            world->material_medium[i] = world->medium_count;
+            world->media[world->medium_count++] = medium;
+        }
+        struct vec3 emission = material_emission_bound(world->authored.materials[i]);
+        world->emission_bound = fmax(world->emission_bound, fmax(fmax(emission.x, emission.y), emission.z));
+    }
+    return true;
+}
+
 /* Leaves it to the caller to destroy what there is when it fails. */
-static bool build(struct world *world, struct arena *arena, struct scene *scene, const struct node *root,
-                  const struct light *lights, struct pool *pool, world_warning *warn, void *warn_context,
+static bool build(struct world *world, const struct world_input *input, struct arena *arena, struct pool *pool,
                   struct error *error) {
-    uint32_t light_count = world->light_count;
-    struct light *copied = arena_alloc_array(arena, light_count, sizeof *copied);
+    struct light *copied = arena_alloc_array(arena, input->light_count, sizeof *copied);
     if (!copied)
         return error_no_memory(error, "the lights of the scene");
-    if (light_count)
-        memcpy(copied, lights, light_count * sizeof *copied);
+    if (input->light_count)
+        memcpy(copied, input->lights, input->light_count * sizeof *copied);
     world->lights = copied;
     struct flattening flattening = {.arena = arena,
-                                    .scene = scene,
+                                    .scene = input->scene,
                                     .world = world,
                                     .pool = pool,
-                                    .warn = warn,
-                                    .warn_context = warn_context,
+                                    .warn = input->warn,
+                                    .warn_context = input->warn_context,
                                     .error = error};
-    if (!flatten_scene(&flattening, root) || !light_lists_resolve(world, copied, arena, root, error) ||
-        !light_lamps_resolve(&flattening, copied, root))
+    if (!flatten_scene(&flattening, input->root) || !light_lists_resolve(world, copied, arena, input->root, error) ||
+        !light_lamps_resolve(&flattening, copied, input->root))
         return false;
     world->boxes = arena_alloc_array(arena, world->placed_count, sizeof *world->boxes);
     if (!world->boxes)
         return error_no_memory(error, "the boxes of the scene");
-    world->material_has_image = arena_alloc_array(arena, world->material_count, sizeof *world->material_has_image);
-    world->material_has_relief = arena_alloc_array(arena, world->material_count, sizeof *world->material_has_relief);
-    if (!world->material_has_image || !world->material_has_relief)
-        return error_no_memory(error, "the materials of the scene");
-    for (uint32_t i = 0; i < world->material_count; i++) {
-        world->material_has_image[i] = material_has_image(world->materials[i]);
-        world->material_has_relief[i] = material_has_relief(world->materials[i]);
-    }
-    if (!world_place_boxes(world, flattening.limits, pool, error))
+    if (!make_materials(world, arena, error) || !world_place_boxes(world, flattening.limits, pool, error))
         return false;
-    add_up_meshes(world, scene->assets);
+    add_up_meshes(world, input->scene->assets);
     return scene_accel_build(&world->accel, world->mesh_accel, world->boxes, world->placed_count, pool, error);
 }
 
-bool world_build(struct world *world, struct arena *arena, struct scene *scene, const struct node *root,
-                 const struct light *lights, uint32_t light_count, const struct sky *sky, struct shutter shutter,
-                 enum accel_kind accel, struct pool *pool, world_warning *warn, void *warn_context,
+bool world_build(struct world *world, const struct world_input *input, struct arena *arena, struct pool *pool,
                  struct error *error) {
-    *world = (struct world){.mesh_accel = accel, .sky = *sky, .light_count = light_count, .shutter = shutter};
-    bool ok = build(world, arena, scene, root, lights, pool, warn, warn_context, error);
+    *world = (struct world){
+        .mesh_accel = input->accel, .sky = *input->sky, .light_count = input->light_count, .shutter = input->shutter};
+    bool ok = build(world, input, arena, pool, error);
     if (!ok)
         world_destroy(world);
     return ok;
@@ -66,15 +88,18 @@ void world_destroy(struct world *world) {
     mem_free(world->authored.nodes);
     mem_free(world->linear_maps);
     mem_free(world->moving);
+    mem_free(world->links);
     world->things = NULL;
     world->authored.nodes = NULL;
     world->linear_maps = NULL;
     world->moving = NULL;
+    world->links = NULL;
     scene_accel_destroy(&world->accel);
 }
 
 size_t world_placed_memory(const struct world *world) {
     return world->placed_count * (sizeof *world->placed + sizeof *world->boxes) +
            world->thing_count * (sizeof *world->things + sizeof *world->authored.nodes) +
-           world->linear_count * sizeof *world->linear_maps + world->moving_count * sizeof *world->moving;
+           world->linear_count * sizeof *world->linear_maps + world->moving_count * sizeof *world->moving +
+           world->link_count * sizeof *world->links;
 }

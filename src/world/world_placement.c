@@ -1,10 +1,11 @@
 /* Where placed primitives stand: their maps, at a time where they move, and their boxes in the world. */
 #include "world/world_internal.h"
 
-static struct transform moved(const struct moving *moving, struct shutter shutter, double ray_time) {
-    double time = shutter_time(shutter, ray_time);
+static struct transform moved(const struct world *world, const struct moving *moving, double ray_time) {
+    double time = shutter_time(world->shutter, ray_time);
     struct transform out = moving->link_from_object;
-    for (const struct moving_link *link = moving->link; link; link = link->above) {
+    for (uint32_t number = moving->link; number != LINK_NONE; number = world->links[number].above) {
+        const struct moving_link *link = &world->links[number];
         struct transform by = motion_at(&link->motion, time);
         out = transform_compose(&by, &out);
         out = transform_compose(&link->above_from_node, &out);
@@ -17,7 +18,7 @@ struct transform world_placement(const struct world *world, uint32_t placed, dou
     if (p->linear == LINEAR_NONE)
         return transform_identity();
     if (p->linear & LINEAR_MOVING)
-        return moved(&world->moving[p->linear & ~LINEAR_MOVING], world->shutter, ray_time);
+        return moved(world, &world->moving[p->linear & ~LINEAR_MOVING], ray_time);
     const struct linear_map *map = &world->linear_maps[p->linear];
     struct transform out;
     for (int i = 0; i < 3; i++) {
@@ -38,10 +39,11 @@ struct ray world_ray_of_moving(const struct world *world, uint32_t placed, const
 
 /* Everything that a moving primitive covers while the shutter is open: link by link, so that what the moves of two
  * links have to do with each other is forgotten and the box may be too large, never too small. */
-static struct box moving_bounds(const struct shape *shape, const struct moving *moving, struct shutter shutter) {
+static struct box moving_bounds(const struct world *world, const struct shape *shape, const struct moving *moving) {
     struct box box = box_pad(shape_bounds_under(shape, &moving->link_from_object.forward));
-    for (const struct moving_link *link = moving->link; link; link = link->above) {
-        box = box_pad(motion_bounds(&link->motion, &box, shutter));
+    for (uint32_t number = moving->link; number != LINK_NONE; number = world->links[number].above) {
+        const struct moving_link *link = &world->links[number];
+        box = box_pad(motion_bounds(&link->motion, &box, world->shutter));
         box = box_pad(box_transform(&link->above_from_node.forward, &box));
     }
     return box;
@@ -55,7 +57,7 @@ static struct box placed_bounds(const struct world *world, uint32_t placed, uint
     const struct shape *shape = placed_shape(world, placed);
     uint32_t linear = world->placed[placed].linear;
     if (linear != LINEAR_NONE && (linear & LINEAR_MOVING))
-        return moving_bounds(shape, &world->moving[linear & ~LINEAR_MOVING], world->shutter);
+        return moving_bounds(world, shape, &world->moving[linear & ~LINEAR_MOVING]);
     struct transform world_from_object = world_placement(world, placed, 0);
     uint32_t triangles = shape->kind == SHAPE_MESH ? mesh_triangle_count(shape->mesh) : UINT32_MAX;
     if (linear != LINEAR_NONE && triangles <= EXACT_AT_ONCE && triangles <= *exact) {

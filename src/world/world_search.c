@@ -210,7 +210,7 @@ static bool any_with_holes(const struct world *world, uint32_t index, const stru
         if (!world_ask_nearest(world, index, &ray_object, scratch, &crossing))
             return false;
         world_describe(world, ray, index, &crossing, &hit);
-        material_eval(world->materials[hit.material], &hit, NULL, NULL, &bsdf);
+        material_eval(&world->materials[hit.material], &hit, NULL, NULL, &bsdf);
         if (bsdf.opacity >= 0.5)
             return true;
         rest.t_min = crossing.t;

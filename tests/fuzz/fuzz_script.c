@@ -160,9 +160,15 @@ static bool render_small(void *context, const struct render_request *request, st
         film.y0 = y0;
         film.full_width = job.width;
         film.full_height = job.height;
-        ok = world_build(&world, &arena, request->scene, request->root, request->lights, request->light_count,
-                         &request->sky, job.settings.shutter, job.settings.accel, stage->pool, hear_of_scene, NULL,
-                         error) &&
+        const struct world_input input = {.scene = request->scene,
+                                          .root = request->root,
+                                          .lights = request->lights,
+                                          .light_count = request->light_count,
+                                          .sky = &request->sky,
+                                          .shutter = job.settings.shutter,
+                                          .accel = job.settings.accel,
+                                          .warn = hear_of_scene};
+        ok = world_build(&world, &input, &arena, stage->pool, error) &&
              render_run(&job, stage->pool, &statistics, error);
         if (!ok && error->kind == ERROR_NONE)
             abort();

@@ -126,8 +126,15 @@ static void check_scene(struct listener *listener, const struct render_request *
         struct arena arena = {0};
         struct error error = {0};
         char what[32];
-        if (world_build(&world, &arena, request->scene, request->root, request->lights, request->light_count,
-                        &request->sky, request->settings.shutter, accels[k], pool, hear_of_scene, NULL, &error)) {
+        const struct world_input input = {.scene = request->scene,
+                                          .root = request->root,
+                                          .lights = request->lights,
+                                          .light_count = request->light_count,
+                                          .sky = &request->sky,
+                                          .shutter = request->settings.shutter,
+                                          .accel = accels[k],
+                                          .warn = hear_of_scene};
+        if (world_build(&world, &input, &arena, pool, &error)) {
             for (uint32_t i = 0; i < world.placed_count; i++)
                 seen[placed_shape(&world, i)->kind] = true;
             (void)snprintf(what, sizeof what, "accelerator %d", (int)accels[k]);

@@ -131,8 +131,14 @@ static bool build_world(void *context) {
     struct stage *s = work->stage;
     struct world world = {0};
     struct arena arena = {0};
-    bool done = world_build(&world, &arena, &s->scene, s->root, s->lights, s->light_count, &s->sky, s->settings.shutter,
-                            work->accel, s->pool, NULL, NULL, &s->error);
+    const struct world_input input = {.scene = &s->scene,
+                                      .root = s->root,
+                                      .lights = s->lights,
+                                      .light_count = s->light_count,
+                                      .sky = &s->sky,
+                                      .shutter = s->settings.shutter,
+                                      .accel = work->accel};
+    bool done = world_build(&world, &input, &arena, s->pool, &s->error);
     if (done)
         world_destroy(&world);
     arena_destroy(&arena);

@@ -113,10 +113,16 @@ static bool render_small(void *context, const struct render_request *request, st
     film_place(&film, block, SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED));
     film_place_layers(&film, block, AOV_ALL);
     film.full_width = film.full_height = SIDE;
-    bool ok =
-        world_build(&world, &arena, request->scene, request->root, request->lights, request->light_count, &request->sky,
-                    job.settings.shutter, job.settings.accel, gallery->pool, hear_of_scene, NULL, error) &&
-        render_run(&job, gallery->pool, &statistics, error);
+    const struct world_input input = {.scene = request->scene,
+                                      .root = request->root,
+                                      .lights = request->lights,
+                                      .light_count = request->light_count,
+                                      .sky = &request->sky,
+                                      .shutter = job.settings.shutter,
+                                      .accel = job.settings.accel,
+                                      .warn = hear_of_scene};
+    bool ok = world_build(&world, &input, &arena, gallery->pool, error) &&
+              render_run(&job, gallery->pool, &statistics, error);
     if (ok)
         look_at(gallery, &film);
     gallery->clamped = gallery->clamped || statistics.clamped > 0;

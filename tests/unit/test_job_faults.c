@@ -89,9 +89,15 @@ static bool make(const struct render_request *request, enum accel_kind accel, st
         void *block = calloc(1, bytes);
         film_place(&film, block, SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED));
         film.full_width = film.full_height = SIDE;
-        ok = world_build(&world, &arena, request->scene, request->root, request->lights, request->light_count,
-                         &request->sky, request->settings.shutter, accel, pool, no_warning, NULL, error) &&
-             render_run(&job, pool, &statistics, error);
+        const struct world_input input = {.scene = request->scene,
+                                          .root = request->root,
+                                          .lights = request->lights,
+                                          .light_count = request->light_count,
+                                          .sky = &request->sky,
+                                          .shutter = request->settings.shutter,
+                                          .accel = accel,
+                                          .warn = no_warning};
+        ok = world_build(&world, &input, &arena, pool, error) && render_run(&job, pool, &statistics, error);
         if (ok && pixels)
             memcpy(pixels, film.pixels, 2 * sizeof *pixels * SIDE * SIDE);
         free(block);
@@ -255,8 +261,15 @@ static void ask_each(struct listener *listener, const struct render_request *req
     for (size_t a = 0; a < sizeof kinds / sizeof kinds[0]; a++) {
         struct world world = {0};
         struct arena arena = {0};
-        CHECK(world_build(&world, &arena, request->scene, request->root, request->lights, request->light_count,
-                          &request->sky, request->settings.shutter, kinds[a], pool, no_warning, NULL, &error));
+        const struct world_input input = {.scene = request->scene,
+                                          .root = request->root,
+                                          .lights = request->lights,
+                                          .light_count = request->light_count,
+                                          .sky = &request->sky,
+                                          .shutter = request->settings.shutter,
+                                          .accel = kinds[a],
+                                          .warn = no_warning};
+        CHECK(world_build(&world, &input, &arena, pool, &error));
         for (int question = 0; question < QUESTIONS; question++)
             if (kinds[a] == ACCEL_AUTO || question == ASK_CELLS)
                 ask_all((enum question)question, request, &world, pool);

@@ -40,7 +40,7 @@ static const struct material *seen(const struct stage *s, struct vec3 from, stru
     world_scratch_destroy(&scratch);
     if (t)
         *t = found ? hit.t : INFINITY;
-    return found ? s->world.materials[hit.material] : NULL;
+    return found ? s->world.authored.materials[hit.material] : NULL;
 }
 
 static void make_slots(struct stage *s, const struct material *slots[6]) {

@@ -111,7 +111,7 @@ static bool look_at(struct stage *s, struct ray ray, struct hit *hit, struct vec
     *normal = vec3_all(0);
     bool met = world_nearest(&s->world, &ray, &scratch, hit);
     if (met) {
-        material_look(s->world.materials[hit->material], hit, &look);
+        material_look(&s->world.materials[hit->material], hit, &look);
         *normal = look.normal;
     }
     world_scratch_destroy(&scratch);
