@@ -318,15 +318,20 @@ static bool name_temporary(struct file_output *file) {
     return file->named;
 }
 
-static void close_all(struct file_output *file) {
+static void remove_temporary(struct file_output *file) {
     if (file->named)
         (void)unlinkat(file->folder, file->temporary, 0);
+    file->named = false;
+}
+
+static void close_all(struct file_output *file) {
+    remove_temporary(file);
     if (file->descriptor >= 0)
         (void)close(file->descriptor);
     if (file->folder >= 0)
         (void)close(file->folder);
     file->descriptor = file->folder = -1;
-    file->open = file->named = file->nameless = false;
+    file->open = file->nameless = false;
 }
 
 /* Pipes and devices. */
@@ -510,7 +515,7 @@ static enum step publish_new(struct file_output *file) {
         return STEP_FAILED;
     /* A file system that knows no such rename. */
     if (MAY_FAIL(linkat(file->folder, file->temporary, file->folder, file->leaf, 0)) == 0)
-        return STEP_DONE; /* close_all removes the temporary name */
+        return STEP_DONE; /* file_output_commit removes the temporary name */
     if (errno == EEXIST)
         return STEP_AGAIN;
     if (MAY_FAIL(renameat(file->folder, file->temporary, file->folder, file->leaf)) != 0)
@@ -558,7 +563,7 @@ static enum step publish_over(struct file_output *file, struct stat *old, struct
         out.leaf = file->temporary;
         if (same || (inspect(&out, &there, &now, &ignored) && there)) {
             *old = now;
-            return STEP_DONE; /* close_all removes the old file */
+            return STEP_DONE; /* file_output_commit removes the old file */
         }
         put_back(file);
         return STEP_AGAIN;
@@ -616,6 +621,7 @@ bool file_output_commit(struct file_output *file, struct error *error) {
             *file->identity = identity_of(&status);
         if (rules->guard && rules->role != FILE_ROLE_NONE)
             (void)file_set_add(&rules->guard->own[rules->role], identity_of(&status));
+        remove_temporary(file); /* before the folder is synced, which may take long: a kill leaves nothing then */
         sync_folder(file);
     }
     close_all(file);

@@ -602,6 +602,11 @@ TEST(a_kill_while_the_picture_is_written_leaves_the_old_one_and_no_other_file) {
         char *bytes = bytes_of("out.png", NULL);
         CHECK(bytes && (strcmp(bytes, OLD_PICTURE) == 0 || memcmp(bytes, "\x89PNG", 4) == 0));
         free(bytes);
+    }
+    /* Between link and rename the file has a name; a run that finds it older than a minute removes it. */
+    if (leftovers(test_folder()) > 0) {
+        (void)sleep(62);
+        ends(test_gray(NULL, "-q scene.lua"), 0);
         CHECK_EQ_INT(leftovers(test_folder()), 0);
     }
 }
