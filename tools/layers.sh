@@ -1,5 +1,5 @@
 #!/bin/sh
-# Prints every include that points against the order of modules (docs/design.md), every circle of headers that include one
+# Prints every include that points against the order of modules (docs/architecture.md), every circle of headers that include one
 # another, and every use of files or memory outside the one module that owns them; fails when there is any.
 cd "$(dirname "$0")/.." || exit 1
 modules=$(sed -n 's/^MODULES = //p' Makefile) # in their order
