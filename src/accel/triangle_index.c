@@ -7,8 +7,8 @@
  * alike: 1.3 for 16 of them, 2 for 64; but a ray through a body of that many meets 2 to 4 occupied ones before it is
  * done. That much is about even for compact bodies. But with one voxel a ray need not be brought to the frame, and rays
  * of one origin walk the hierarchy together, which is worth four visits of a node to a ray; so one voxel is what the
- * model answers for every mesh that was measured, and each was fastest so (docs/performance.md has what the model says,
- * and the times of 8 to 4,096 voxels). The frame is then only the box every ray is cut to. */
+ * model answers for every mesh that was measured, and each was fastest so (docs/performance-notebook.md has what the
+ * model says, and the times of 8 to 4,096 voxels). The frame is then only the box every ray is cut to. */
 #include "accel/triangle_index.h"
 
 #include "accel/frame_cost.h"

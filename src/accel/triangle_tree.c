@@ -11,7 +11,7 @@
  * S. Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017, section 3.1. For every
  * branch and 1 .. 8 lanes the least cost of standing in so many lanes of a node is known when that of both children is.
  *
- * What it brings: docs/performance.md. */
+ * What it brings: docs/performance-notebook.md. */
 #include "accel/triangle_tree.h"
 
 #include "base/mem.h"
@@ -28,7 +28,8 @@ enum {
     POLL_COUNT = 2000 /* references that are split without asking whether to stop */
 };
 
-/* What a ray pays for a node and for a block that it meets, the time of a node (docs/performance.md: 30 cycles, 60). */
+/* What a ray pays for a node and for a block that it meets, the time of a node (docs/performance-notebook.md: 30
+ * cycles, 60). */
 #define NODE_COST 1.0f
 #define BLOCK_COST 2.0f
 
