@@ -44,6 +44,13 @@ void test_register(struct test *test) {
     test_count++;
 }
 
+bool test_is_named(const char *pattern) {
+    const struct test *test = all_tests;
+    while (test && fnmatch(pattern, test->name, 0) != 0)
+        test = test->next;
+    return test != NULL;
+}
+
 void test_fail(const char *file, int line, const char *format, ...) {
     if (++failures > 20)
         return;

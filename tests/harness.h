@@ -23,6 +23,8 @@ struct test {
     struct test *next;
 };
 void test_register(struct test *test);
+/* Whether some test of any kind has a name that the pattern of fnmatch fits. */
+bool test_is_named(const char *pattern);
 
 #define TEST_DEFINE(test_name, test_kind)                                                                              \
     static void test_name(void);                                                                                       \
