@@ -3,6 +3,8 @@
  * costs anything at a hit. */
 #include "material/material_inputs.h"
 
+#include <float.h>
+
 void material_derive(struct material *material, enum material_kind kind, const struct material *base) {
     *material = base ? *base : (struct material){0};
     material->kind = kind;
@@ -87,19 +89,26 @@ static const struct texture *packed(const struct texture *picture, enum texture_
     return part ? keep_shared(arena, texture_multiply(factor, part), error) : NULL;
 }
 
-/* kd * (1 - metalness), and kd * metalness + ks * (1 - metalness). */
-static bool put_metal(struct material *material, const struct texture *colour, const struct texture *ks,
-                      const struct texture *metalness, struct arena *arena, struct error *error) {
+/* kd * (1 - metalness). */
+static bool put_rest_of_metal(struct material *material, const struct texture *colour, const struct texture *metalness,
+                              struct arena *arena, struct error *error) {
     const struct texture *rest = texture_keep(arena, texture_map(metalness, FUNCTION_COMPLEMENT, 0), error);
-    return rest && put(material, INPUT_KD, texture_multiply(colour, rest), arena, error) &&
-           (!ks || put(material, INPUT_KS, texture_mix(colour, ks, metalness), arena, error));
+    return rest && put(material, INPUT_KD, texture_multiply(colour, rest), arena, error);
+}
+
+/* The input where `kept` is 1, the texture where it is 0. */
+static bool put_unless(struct material *material, enum material_input input, struct texture texture,
+                       const struct texture *kept, struct arena *arena, struct error *error) {
+    const struct texture *other = texture_keep(arena, texture, error);
+    return other && put(material, input, texture_mix(material_input(material, input), other, kept), arena, error);
 }
 
 bool material_mix_metal(struct material *material, const struct texture *metalness, struct arena *arena,
                         struct error *error) {
     const struct texture *colour = keep_shared(arena, *material_input(material, INPUT_KD), error);
     const struct texture *share = keep_shared(arena, *metalness, error);
-    return colour && share && put_metal(material, colour, material_input(material, INPUT_KS), share, arena, error);
+    return colour && share && put_rest_of_metal(material, colour, share, arena, error) &&
+           put(material, INPUT_KS, texture_mix(colour, material_input(material, INPUT_KS), share), arena, error);
 }
 
 /* The formulas of formats/gltf_look.c, point by point. */
@@ -121,12 +130,14 @@ bool material_split_metal(struct material *material, const struct texture_image 
         return false;
     material->is_metal = true;
     material->metal = image ? 1 : metalness * (1 - roughness);
-    const struct phong *numbers = material->origin ? &material->origin->phong : &material->phong;
-    if (numbers->refract > 0) /* what shines through has the filter in ks */
-        return put_metal(material, colour, NULL, metal, arena, error);
+    /* What shines through has the filter in ks; refract may change after this. */
+    const struct texture *refract = material_input(material, INPUT_REFRACT);
+    const struct texture *passes = texture_keep(arena, texture_map(refract, FUNCTION_STEP, DBL_TRUE_MIN), error);
     const struct texture *smooth = texture_keep(arena, texture_map(rough, FUNCTION_COMPLEMENT, 0), error);
     const struct texture *half = smooth ? texture_keep(arena, texture_multiply(metal, smooth), error) : NULL;
-    return half && put_metal(material, colour, plain, metal, arena, error) &&
-           put(material, INPUT_SHININESS, texture_map(rough, FUNCTION_PHONG_EXPONENT, 0), arena, error) &&
-           put(material, INPUT_REFLECT, texture_multiply(half, smooth), arena, error);
+    return passes && half && put_rest_of_metal(material, colour, metal, arena, error) &&
+           put_unless(material, INPUT_KS, texture_mix(colour, plain, metal), passes, arena, error) &&
+           put_unless(material, INPUT_SHININESS, texture_map(rough, FUNCTION_PHONG_EXPONENT, 0), passes, arena,
+                      error) &&
+           put_unless(material, INPUT_REFLECT, texture_multiply(half, smooth), passes, arena, error);
 }

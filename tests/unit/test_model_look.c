@@ -167,6 +167,31 @@ TEST(gltf_maps_of_metal_roughness_emission_and_normals_are_shown) {
 
 #endif
 
+/* The window changes numbers of the base after the material was made. */
+TEST(metal_that_begins_to_let_light_through_keeps_the_filter_of_its_base) {
+    struct arena arena = {0};
+    struct error error = {0};
+    struct material base, metal;
+    struct surface_look look;
+    struct hit hit = middle();
+    material_derive(&base, MATERIAL_PHONG, NULL);
+    base.phong = (struct phong){.kd = {0.8, 0.4, 0.2}, .ks = {0.9, 0.7, 0.5}, .shininess = 9, .reflect = 0.75};
+    for (int created = 0; created < 2; created++) {
+        base.phong.refract = created;
+        material_derive(&metal, MATERIAL_METAL, &base);
+        CHECK(material_split_metal(&metal, NULL, 0.5, 0.5, 0.04, &arena, &error));
+        for (int passes = 0; passes < 2; passes++) {
+            base.phong.refract = 0.25 * passes;
+            material_look(&metal, &hit, &look);
+            CHECK_NEAR(look.kd.y, 0.2, 1e-15);
+            CHECK_NEAR(look.ks.x, passes ? 0.9 : 0.42, 1e-15);
+            CHECK_NEAR(look.shininess, passes ? 9 : 30, 1e-12);
+            CHECK_NEAR(look.reflect, passes ? 0.75 : 0.125, 1e-15);
+        }
+    }
+    arena_destroy(&arena);
+}
+
 TEST(opacity_by_alpha_is_cut_where_a_mask_says) {
     static const double cutoffs[] = {0, 0.3, 0.6}, wanted[] = {0.4, 1, 0};
     uint8_t texels[4 * 4];
