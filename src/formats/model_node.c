@@ -113,11 +113,13 @@ static bool cut(struct scene *scene, const struct model_texture *map, const stru
 static bool raise_map(struct scene *scene, const struct model_texture *map, enum material_kind kind, double height,
                       const struct material **top, struct error *error) {
     struct relief relief = {.kind = kind, .height = height, .relative = kind == MATERIAL_BUMP};
+    struct texture_image image;
     bool there;
-    if (!find_map(scene, map, &relief.image, &there, error) || !there)
+    if (!find_map(scene, map, &image, &there, error) || !there)
         return !there;
     struct material *m = scene_material(scene, kind, *top, error);
-    if (!m || !material_raise(m, &relief, &scene->arena, error))
+    relief.texture = texture_keep(&scene->arena, texture_image(&image, NULL), error);
+    if (!m || !relief.texture || !material_raise(m, &relief, &scene->arena, error))
         return false;
     *top = m;
     return true;

@@ -11,11 +11,6 @@
 /* Where the whole primitive lies: anywhere; behind the tangent plane of the hit (convex shapes); in it (flat ones). */
 enum hit_hull { HULL_NONE, HULL_BEHIND, HULL_FLAT };
 
-/* What a shape supplies to place images on it: u and v with v from below (or nothing, has_uv); u and v on one of
- * several upright faces, each an image of its own with v from above; a pattern_normal that points from the centre of a
- * ball. */
-enum surface_layout { LAYOUT_UV, LAYOUT_FACES, LAYOUT_SPHERE };
-
 /* A surface point in the object space of the shape, filled by shape_describe. */
 struct surface {
     struct vec3 point;          /* in the shape's object space */
@@ -25,7 +20,6 @@ struct surface {
     struct vec3 pattern_normal; /* geometric, in that space, as the operand has it (not flipped) */
     bool has_uv;
     bool has_colour;
-    enum surface_layout layout;
     struct vec3 colour; /* of the vertices, interpolated */
     double u, v;
     struct vec3 dpdu, dpdv; /* object space; zero when has_uv is false */
@@ -41,7 +35,6 @@ static inline void surface_make(struct surface *out, struct vec3 point, struct v
     out->point = out->pattern_point = point;
     out->normal = out->shading_normal = out->pattern_normal = normal;
     out->has_uv = out->has_colour = false;
-    out->layout = LAYOUT_UV;
     out->colour = out->dpdu = out->dpdv = zero;
     out->u = out->v = 0;
     out->error = error;
@@ -58,10 +51,11 @@ struct hit {
     bool has_uv, has_colour;
     struct vec3 colour; /* of the vertices, interpolated */
     double u, v;
-    struct vec3 dpdu, dpdv; /* world */
+    struct vec3 dpdu, dpdv; /* world; of balls only where relief asks */
     /* Where relief asks: what one unit along the operand's outward normal is in the world, and along its tangents by
-     * frame_tangents. */
+     * frame_tangents; by how much pattern_normal turns along these, where that is known (of balls), else 0. */
     struct vec3 raise, along_a, along_b;
+    double curvature;
     double offset;        /* a secondary ray starts this far (world units) from point along the normal */
     double footprint;     /* diameter of the ray's cone here, world units; 0 = unknown */
     double pattern_scale; /* pattern-space units per world unit (largest stretch); for filtering */
@@ -70,7 +64,6 @@ struct hit {
     uint32_t leaf, part;
     uint32_t material; /* index into the world's materials */
     enum hit_hull hull;
-    enum surface_layout layout;
     double time;
 };
 

@@ -232,6 +232,24 @@ enum surface_layout shape_layout(const struct shape *shape) {
     return LAYOUT_UV;
 }
 
+bool shape_native_uv(const struct shape *shape, const struct hit *hit, double *u, double *v) {
+    *u = hit->u;
+    *v = hit->v;
+    switch (shape_layout(shape)) {
+    case LAYOUT_SPHERE: {
+        struct surface ball = {.normal = vec3_normalize(hit->pattern_normal)};
+        sphere_uv(1, &ball);
+        *u = ball.u;
+        *v = 1 - ball.v;
+        return true;
+    }
+    case LAYOUT_UV:
+    case LAYOUT_FACES:
+        break;
+    }
+    return hit->has_uv;
+}
+
 enum hit_hull shape_hull(const struct shape *shape) {
     switch (shape->kind) {
     case SHAPE_SPHERE:

@@ -83,8 +83,15 @@ struct box shape_bounds_under(const struct shape *shape, const struct affine *ma
 bool shape_inner_box(const struct shape *shape, const struct affine *map, struct box *out);
 /* Whether it may have many crossings, so that asking it costs more than a formula. */
 bool shape_is_listed(const struct shape *shape);
-/* How an image lies on it, as shape_describe fills it in; of CSG that of its operands is not known: LAYOUT_UV. */
+/* What a shape supplies to place images on it: u and v with v from below (or nothing, has_uv); u and v on one of
+ * several upright faces, each an image of its own with v from above; a pattern_normal that points from the centre of a
+ * ball (shape_native_uv works out its u and v). Of CSG that of its operands is not known: LAYOUT_UV. */
+enum surface_layout { LAYOUT_UV, LAYOUT_FACES, LAYOUT_SPHERE };
+enum { SURFACE_LAYOUTS = LAYOUT_SPHERE + 1 };
 enum surface_layout shape_layout(const struct shape *shape);
+/* The u and v of a hit on it, v from below on LAYOUT_UV and LAYOUT_SPHERE; those of balls are worked out here, because
+ * few ask for them. False: it has none. */
+bool shape_native_uv(const struct shape *shape, const struct hit *hit, double *u, double *v);
 /* Closed: every line crosses it an even number of times, so it has an inside (CSG operand, media). A solid without end
  * (a half-space) is closed too: a line that begins or ends inside crosses it at t = -INFINITY or INFINITY. */
 bool shape_is_closed(const struct shape *shape);

@@ -93,7 +93,6 @@ void box_shape_describe(const struct box *box, const struct ray *ray, const stru
     double low = vec3_max_abs(box->min), high = vec3_max_abs(box->max);
     surface_make(out, point, normal, 0x1p-50 * (low > high ? low : high));
     out->has_uv = true;
-    out->layout = LAYOUT_FACES;
     struct vec3 size = vec3_sub(box->max, box->min), from_corner = vec3_sub(point, box->min);
     struct vec3 q = {from_corner.x / size.x, from_corner.y / size.y, from_corner.z / size.z};
     face_image(face, q, size, out);

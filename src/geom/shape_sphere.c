@@ -73,7 +73,6 @@ void sphere_describe(struct vec3 centre, double radius, const struct ray *ray, c
     /* The point is put back on the sphere, so its error no longer depends on how far the ray came. */
     struct vec3 point = vec3_add_scaled(centre, n, radius);
     surface_make(out, point, n, 0x1p-49 * (vec3_max_abs(centre) + radius));
-    out->layout = LAYOUT_SPHERE;
 }
 
 void sphere_uv(double radius, struct surface *surface) {
@@ -81,7 +80,6 @@ void sphere_uv(double radius, struct surface *surface) {
     /* u = 1/2 + atan2(z, x) / 2 pi, v = 1/2 - asin(y) / pi counts from the top. */
     double y = n.y < -1 ? -1 : n.y > 1 ? 1 : n.y;
     surface->has_uv = true;
-    surface->layout = LAYOUT_UV;
     surface->u = 0.5 + el_atan2(n.z, n.x) / TURN;
     surface->v = 0.5 - el_asin(y) / (TURN / 2);
     sphere_tangents(radius, n, &surface->dpdu, &surface->dpdv);

@@ -174,12 +174,11 @@ static const char *shape_words(const struct picking *p, const struct node *node)
 static void tell_material(const struct material *material, struct picked *out) {
     char words[256] = "";
     size_t used = 0;
-    const struct material *base = material;
+    const struct material *base = material_origin(material);
     for (const struct material *link = material; link; link = link->base) {
         int length = snprintf(words + used, sizeof words - used, "%s%s", used > 0 ? " over " : "",
                               link->name ? link->name : inspect_material(link));
         used = length < 0 || used + (size_t)length >= sizeof words ? sizeof words - 1 : used + (size_t)length;
-        base = link;
     }
     pick_words(out->material, words);
     out->material_serial = base->serial;

@@ -95,14 +95,14 @@ static void json_hit(const struct told_story *told, struct sheet *sheet, const s
     vector(sheet, "geometric_normal", hit->normal_geometric);
     vector(sheet, "normal", hit->normal);
     double u, v;
-    if (texture_native_uv(hit, &u, &v)) {
+    if (world_native_uv(world, hit, &u, &v)) {
         sheet_print(sheet, ",\"uv\":[");
         sheet_json_number(sheet, u);
         sheet_print(sheet, ",");
         sheet_json_number(sheet, v);
         sheet_print(sheet, "]");
     }
-    sheet_print(sheet, ",\"material\":%u,\"links\":[", hit->material + 1);
+    sheet_print(sheet, ",\"material\":%u,\"links\":[", world->material_numbers[hit->material] + 1);
     for (const struct story_link *link = ray->links; link; link = link->next) {
         json_link(sheet, link);
         sheet_print(sheet, link->next ? "," : "");

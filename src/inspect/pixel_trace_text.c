@@ -157,9 +157,10 @@ static void tell_hit(const struct teller *t, const struct story_ray *ray) {
     if (!same(hit->normal, hit->normal_geometric))
         triple(t, ", interpolated ", hit->normal);
     double u, v;
-    if (texture_native_uv(hit, &u, &v))
+    if (world_native_uv(world, hit, &u, &v))
         sheet_print(t->sheet, ", uv (%.6g, %.6g)", u, v);
-    sheet_print(t->sheet, ", material %u of %u\n", hit->material + 1, world->material_count);
+    sheet_print(t->sheet, ", material %u of %u\n", world->material_numbers[hit->material] + 1,
+                world->material_number_count);
 }
 
 static void tell_ray(struct teller *t, const struct story_ray *ray);

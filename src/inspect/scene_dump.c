@@ -16,14 +16,20 @@ static uint32_t triangles_of(const struct shape *shape) {
     return shape->kind == SHAPE_MESH ? mesh_triangle_count(shape->mesh) : 0;
 }
 
+/* Of a material in the world, from 1. */
+static uint32_t number_of(const struct dump *d, uint32_t material) {
+    return d->world->material_numbers[material] + 1;
+}
+
 static void dump_line(const struct dump *d, uint32_t placed, const char *path) {
     const struct thing *thing = placed_thing(d->world, placed);
     const struct box *box = &d->world->boxes[placed];
     char material[24] = "-", triangles[24] = "-";
     bool moves = d->world->placed[placed].linear != LINEAR_NONE && (d->world->placed[placed].linear & LINEAR_MOVING);
-    if (thing->shape.kind != SHAPE_CSG)
-        (void)snprintf(material, sizeof material, thing->slot_count > 1 ? "%u-%u" : "%u", thing->material + 1,
-                       thing->material + thing->slot_count);
+    uint32_t first = thing->shape.kind != SHAPE_CSG ? number_of(d, thing->material) : 0;
+    if (first > 0)
+        (void)snprintf(material, sizeof material, thing->slot_count > 1 ? "%u-%u" : "%u", first,
+                       first + thing->slot_count - 1);
     if (thing->shape.kind == SHAPE_MESH)
         (void)snprintf(triangles, sizeof triangles, "%u", triangles_of(&thing->shape));
     sheet_print(d->sheet, "%8u  %-14s %9s %9s  %-5s (%.6g, %.6g, %.6g) to (%.6g, %.6g, %.6g)  ", placed + 1,
@@ -36,7 +42,7 @@ static void dump_line(const struct dump *d, uint32_t placed, const char *path) {
     for (uint32_t i = 0; i < thing->shape.csg->leaf_count; i++) {
         const struct csg_leaf *leaf = &thing->shape.csg->leaves[i];
         sheet_print(d->sheet, "          . operand %u: %s, material %u\n", i + 1, shape_kind_name(leaf->shape.kind),
-                    leaf->material + 1);
+                    number_of(d, leaf->material));
     }
 }
 
@@ -54,10 +60,10 @@ static void dump_json(const struct dump *d, uint32_t placed, const char *path) {
         for (uint32_t i = 0; i < thing->shape.csg->leaf_count; i++)
             sheet_print(sheet, "%s{\"shape\":\"%s\",\"material\":%u}", i > 0 ? "," : "",
                         shape_kind_name(thing->shape.csg->leaves[i].shape.kind),
-                        thing->shape.csg->leaves[i].material + 1);
+                        number_of(d, thing->shape.csg->leaves[i].material));
         sheet_print(sheet, "]");
     } else {
-        sheet_print(sheet, ",\"material\":%u,\"slots\":%u", thing->material + 1,
+        sheet_print(sheet, ",\"material\":%u,\"slots\":%u", number_of(d, thing->material),
                     thing->slot_count > 1 ? thing->slot_count : 1);
     }
     struct transform map = world_placement(d->world, placed, 0);
@@ -83,6 +89,7 @@ static bool dump_placed(void *context, uint32_t first, uint32_t count, const str
 }
 
 static void link_json(struct sheet *sheet, const struct material *link) {
+    const struct phong *phong = &material_origin(link)->phong;
     sheet_print(sheet, "{\"kind\":\"%s\"", inspect_material(link));
     if (link->name && link->name[0]) {
         sheet_print(sheet, ",\"name\":");
@@ -90,14 +97,15 @@ static void link_json(struct sheet *sheet, const struct material *link) {
     }
     if (!link->base) {
         sheet_print(sheet, ",\"kd\":");
-        sheet_json_vector(sheet, link->phong.kd);
+        sheet_json_vector(sheet, phong->kd);
         sheet_print(sheet, ",\"ks\":");
-        sheet_json_vector(sheet, link->phong.ks);
+        sheet_json_vector(sheet, phong->ks);
     }
     sheet_print(sheet, link->base ? "}," : "}");
 }
 
 static void link_words(struct sheet *sheet, const struct material *link) {
+    const struct phong *phong = &material_origin(link)->phong;
     sheet_print(sheet, "%s", inspect_material(link));
     if (link->name && link->name[0]) {
         sheet_print(sheet, " '");
@@ -105,16 +113,17 @@ static void link_words(struct sheet *sheet, const struct material *link) {
         sheet_print(sheet, "'");
     }
     if (!link->base)
-        sheet_print(sheet, " kd (%.6g, %.6g, %.6g) ks (%.6g, %.6g, %.6g)", link->phong.kd.x, link->phong.kd.y,
-                    link->phong.kd.z, link->phong.ks.x, link->phong.ks.y, link->phong.ks.z);
+        sheet_print(sheet, " kd (%.6g, %.6g, %.6g) ks (%.6g, %.6g, %.6g)", phong->kd.x, phong->kd.y, phong->kd.z,
+                    phong->ks.x, phong->ks.y, phong->ks.z);
     sheet_print(sheet, link->base ? " over " : "");
 }
 
-static void dump_material(const struct dump *d, uint32_t number) {
+static void dump_material(const struct dump *d, uint32_t material) {
     struct sheet *sheet = d->sheet;
-    const struct material *last = d->world->authored.materials[number];
-    sheet_print(sheet, d->json ? "%s{\"number\":%u,\"links\":[" : "%.0s%8u  ", d->json && number > 0 ? "," : "",
-                number + 1);
+    const struct material *last = d->world->authored.materials[material];
+    uint32_t number = number_of(d, material);
+    sheet_print(sheet, d->json ? "%s{\"number\":%u,\"links\":[" : "%.0s%8u  ", d->json && number > 1 ? "," : "",
+                number);
     for (const struct material *link = last; link; link = link->base)
         d->json ? link_json(sheet, link) : link_words(sheet, link);
     sheet_print(sheet, d->json ? "]}" : "\n");
@@ -143,8 +152,12 @@ static void dump_light(const struct dump *d, uint32_t number) {
 static void dump_rest(const struct dump *d) {
     const struct world *world = d->world;
     sheet_print(d->sheet, d->json ? "],\"materials\":[" : "\n  number  material\n");
-    for (uint32_t i = 0; i < world->material_count; i++)
+    for (uint32_t i = 0, numbers = 0; i < world->material_count; i++) {
+        if (world->material_numbers[i] != numbers) /* known already, as another shape shows it */
+            continue;
         dump_material(d, i);
+        numbers++;
+    }
     sheet_print(d->sheet, d->json ? "],\"lights\":[" : "\n  number  light\n");
     for (uint32_t i = 0; i < world->light_count; i++)
         dump_light(d, i);
@@ -163,7 +176,7 @@ bool inspect_world(const struct inspected *picture, bool json, struct sheet *she
         sheet_print(sheet,
                     ": %u primitives, %llu triangles, %u materials, %u lights; background: %s\n\n"
                     "  number  shape          triangles  material        box  node\n",
-                    world->placed_count, (unsigned long long)world->triangles, world->material_count,
+                    world->placed_count, (unsigned long long)world->triangles, world->material_number_count,
                     world->light_count, inspect_sky(world->sky.kind));
     }
     bool ok = world_walk_paths(world, picture->root, dump_placed, &d, error);

@@ -5,8 +5,12 @@
 
 #include "material/relief.h"
 
+const struct material *material_origin(const struct material *material) {
+    return material->origin ? material->origin : material;
+}
+
 static const struct phong *numbers_of(const struct material *material) {
-    return material->origin ? &material->origin->phong : &material->phong;
+    return &material_origin(material)->phong;
 }
 
 struct material material_flat(const struct material *material) {
@@ -109,7 +113,7 @@ struct vec3 material_absorption(const struct material *material) {
 }
 
 static struct vec3 emission_of(const struct material *material, enum texture_estimate which) {
-    const struct material *base = material->origin ? material->origin : material;
+    const struct material *base = material_origin(material);
     const struct texture *texture = base->inputs[INPUT_EMISSION];
     return texture ? texture_estimate(texture, &base->phong, which) : base->phong.emission;
 }

@@ -38,13 +38,14 @@ enum specular_kind { SPECULAR_KINDS(LIST_MEMBER) };
 /* A texture that turns the normal, over those below it. */
 struct relief {
     enum material_kind kind; /* MATERIAL_BUMP or MATERIAL_NORMAL */
-    /* Of a bump: white over black, in units of the object; `relative`: of the image's size on the surface. Of a
-     * normal map: factor of the slopes. */
+    /* Of a bump: white over black, in units of the object; `relative`, of one image alone: of its size on the surface.
+     * Of a normal map: factor of the slopes. */
     double height;
     bool relative;
-    struct texture_image image;    /* where `texture` is NULL */
-    const struct texture *texture; /* of any kind: its number is the height in units of the object, or its colour the
-                                    * normal along the coordinates that the shape supplies */
+    /* Its number is the height, or its colour the normal along the coordinates that the shape supplies; of one image
+     * alone, along those of the image. */
+    const struct texture *texture;
+    bool from_above; /* the shape's v counts from the top (material_mapping.h) */
     const struct relief *below;
 };
 
@@ -88,6 +89,9 @@ void material_look(const struct material *material, const struct hit *hit, struc
 typedef void material_told(void *context, const struct material *link, const struct surface_look *look);
 void material_look_told(const struct material *material, const struct hit *hit, struct surface_look *out,
                         material_told *told, void *context);
+/* The base at the end of its chain, as it was made: what the world has copied of it (material_mapping.h) has the
+ * numbers of that. */
+const struct material *material_origin(const struct material *material);
 /* What hits must know for it: the footprint in pattern space; where bumps rise (hit->raise). */
 bool material_has_image(const struct material *material);
 bool material_has_relief(const struct material *material);

@@ -12,7 +12,6 @@
  * programs write it. */
 #include "material/relief.h"
 
-#include "geom/shape_sphere.h"
 #include "material/texture_mapping.h"
 #include "math/frame.h"
 
@@ -29,8 +28,8 @@ static double step_of(double width, uint32_t texels) {
     return width > texel ? fmin(width, 1) : texel;
 }
 
-static void turn_by_heights(const struct relief *relief, const struct hit *hit, struct vec3 *normal) {
-    const struct texture_image *image = &relief->image;
+static void turn_by_heights(const struct relief *relief, const struct texture_image *image, const struct hit *hit,
+                            struct vec3 *normal) {
     struct texcoord at;
     if (!texture_coordinates(image, hit, &at))
         return;
@@ -61,6 +60,8 @@ static struct hit moved(const struct hit *hit, struct vec3 a, struct vec3 b, dou
     struct hit out = *hit;
     struct vec3 way = vec3_add(vec3_scale(hit->along_a, s), vec3_scale(hit->along_b, t));
     out.pattern_point = vec3_add_scaled(vec3_add_scaled(hit->pattern_point, a, s), b, t);
+    out.pattern_normal =
+        vec3_add_scaled(vec3_add_scaled(hit->pattern_normal, a, s * hit->curvature), b, t * hit->curvature);
     double uu = vec3_length_squared(hit->dpdu), vv = vec3_length_squared(hit->dpdv);
     double uv = vec3_dot(hit->dpdu, hit->dpdv), determinant = uu * vv - uv * uv;
     if (!(determinant > 0) || !isfinite(determinant))
@@ -69,11 +70,6 @@ static struct hit moved(const struct hit *hit, struct vec3 a, struct vec3 b, dou
     double du = (vv * wu - uv * wv) / determinant, dv = (uu * wv - uv * wu) / determinant;
     out.u += du;
     out.v += dv;
-    if (hit->layout == LAYOUT_SPHERE) {
-        struct vec3 along_u, along_v;
-        sphere_tangents(1, vec3_normalize(hit->pattern_normal), &along_u, &along_v);
-        out.pattern_normal = vec3_add_scaled(vec3_add_scaled(hit->pattern_normal, along_u, du), along_v, dv);
-    }
     return out;
 }
 
@@ -116,12 +112,13 @@ static void turn_along(double x, double y, double z, struct vec3 dpdu, struct ve
         *normal = vec3_normalize(turned);
 }
 
-static void turn_to_colours(const struct relief *relief, const struct hit *hit, struct vec3 *normal) {
+static void turn_to_colours(const struct relief *relief, const struct texture_image *image, const struct hit *hit,
+                            struct vec3 *normal) {
     struct texcoord at;
-    if (!texture_coordinates(&relief->image, hit, &at))
+    if (!texture_coordinates(image, hit, &at))
         return;
-    struct rgba texel = texture_texel(&relief->image, &at);
-    double flat = image_bits(relief->image.image) == 8 ? 128.0 / 255 : 32768.0 / 65535;
+    struct rgba texel = texture_texel(image, &at);
+    double flat = image_bits(image->image) == 8 ? 128.0 / 255 : 32768.0 / 65535;
     if (!(texel.a > 0))
         return;
     double x = 2 * relief->height * (texel.r / texel.a - flat);
@@ -133,16 +130,17 @@ static void turn_to_colours(const struct relief *relief, const struct hit *hit, 
 static void turn_to_texture(const struct relief *relief, const struct hit *hit, struct vec3 *normal) {
     struct vec3 colour = texture_colour(relief->texture, hit);
     double x = 2 * relief->height * (colour.x - 0.5), y = 2 * relief->height * (colour.y - 0.5);
-    bool from_below = hit->layout == LAYOUT_UV;
-    turn_along(x, y, 2 * colour.z - 1, hit->dpdu, from_below ? vec3_negate(hit->dpdv) : hit->dpdv, normal);
+    struct vec3 down = relief->from_above ? hit->dpdv : vec3_negate(hit->dpdv);
+    turn_along(x, y, 2 * colour.z - 1, hit->dpdu, down, normal);
 }
 
 void relief_turn(const struct relief *relief, const struct hit *hit, struct vec3 *normal) {
     if (relief->below)
         relief_turn(relief->below, hit, normal);
+    const struct texture_image *image = texture_as_image(relief->texture);
     bool by_colours = relief->kind == MATERIAL_NORMAL;
-    if (relief->texture)
-        (by_colours ? turn_to_texture : turn_by_texture)(relief, hit, normal);
+    if (image)
+        (by_colours ? turn_to_colours : turn_by_heights)(relief, image, hit, normal);
     else
-        (by_colours ? turn_to_colours : turn_by_heights)(relief, hit, normal);
+        (by_colours ? turn_to_texture : turn_by_texture)(relief, hit, normal);
 }

@@ -33,10 +33,17 @@ enum texture_kind {
     TEXTURE_KINDS
 };
 
-/* How a hit becomes a point of an image. SPHERE, CUBE: the decorators td_sphere_material and td_cube_material;
- * SPHERE_CLASSIC: set_texture on a sphere (the formulas are in texture_mapping.c); UV: the coordinates that the shape
- * supplies, on spheres those of SPHERE_CLASSIC; BY_SHAPE: the same, on spheres those of SPHERE. */
-enum texture_mapping { MAPPING_SPHERE, MAPPING_CUBE, MAPPING_SPHERE_CLASSIC, MAPPING_UV, MAPPING_BY_SHAPE };
+/* How a hit becomes a point of an image; the formulas are in texture_mapping.c. What scripts and files ask for depends
+ * on the shape where that is a ball or a box: texture_mapping_on says what becomes of it when the world is built. */
+enum texture_mapping {
+    MAPPING_SPHERE,   /* as seen from the origin: td_sphere_material */
+    MAPPING_CUBE,     /* by the side that the normal looks to: td_cube_material */
+    MAPPING_UV,       /* the coordinates that the shape supplies; those of balls are BALL_CLASSIC */
+    MAPPING_BY_SHAPE, /* the same; those of balls are BALL */
+    MAPPING_FACES,    /* the coordinates of the faces of a box */
+    MAPPING_BALL,     /* SPHERE as seen from the centre of a ball */
+    MAPPING_BALL_CLASSIC,
+};
 
 /* What the alpha of an image means. */
 enum texture_alpha {
@@ -149,6 +156,10 @@ struct texture texture_multiply(const struct texture *a, const struct texture *b
 struct texture texture_map(const struct texture *of, enum texture_function function, double amount);
 /* The number of that input of whatever material is evaluated. */
 const struct texture *texture_parameter(enum material_input input);
+/* The image, where the texture is that over nothing and no more; else NULL. */
+static inline const struct texture_image *texture_as_image(const struct texture *texture) {
+    return texture->kind == TEXTURE_IMAGE && !texture->image.below ? &texture->image.lookup : NULL;
+}
 
 /* A copy in the arena. NULL and error: no memory, or the tree is larger than TEXTURE_SIZE. */
 const struct texture *texture_keep(struct arena *arena, struct texture value, struct error *error);

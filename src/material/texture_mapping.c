@@ -6,10 +6,21 @@
 
 static const double pi = 3.14159265358979323846;
 
+enum texture_mapping texture_mapping_on(enum texture_mapping mapping, enum surface_layout layout) {
+    static const enum texture_mapping on[][SURFACE_LAYOUTS] = {
+        [MAPPING_SPHERE] = {MAPPING_SPHERE, MAPPING_SPHERE, MAPPING_BALL},
+        [MAPPING_CUBE] = {MAPPING_CUBE, MAPPING_FACES, MAPPING_CUBE},
+        [MAPPING_UV] = {MAPPING_UV, MAPPING_FACES, MAPPING_BALL_CLASSIC},
+        [MAPPING_BY_SHAPE] = {MAPPING_UV, MAPPING_FACES, MAPPING_BALL},
+        [MAPPING_FACES] = {MAPPING_FACES, MAPPING_FACES, MAPPING_FACES},
+        [MAPPING_BALL] = {MAPPING_BALL, MAPPING_BALL, MAPPING_BALL},
+        [MAPPING_BALL_CLASSIC] = {MAPPING_BALL_CLASSIC, MAPPING_BALL_CLASSIC, MAPPING_BALL_CLASSIC}};
+    return on[mapping][layout];
+}
+
 /* u grows with the angle about y, v from the north pole down (docs/language.md 6.2). */
-static void on_sphere(const struct hit *hit, bool classic, struct texcoord *at) {
-    struct vec3 from_centre = hit->layout == LAYOUT_SPHERE ? hit->pattern_normal : hit->pattern_point;
-    struct vec3 p = vec3_normalize(from_centre);
+static void by_direction(const struct hit *hit, struct vec3 direction, bool classic, struct texcoord *at) {
+    struct vec3 p = vec3_normalize(direction);
     double y = p.y < -1 ? -1 : p.y > 1 ? 1 : p.y;
     *at = (struct texcoord){.wrap_u = IMAGE_REPEAT, .wrap_v = IMAGE_CLAMP};
     if (classic) {
@@ -19,33 +30,39 @@ static void on_sphere(const struct hit *hit, bool classic, struct texcoord *at) 
         at->u = (el_atan2(-p.z, -p.x) + pi) / (2 * pi);
         at->v = el_acos(y) / pi;
     }
-    double radius = hit->layout == LAYOUT_SPHERE ? vec3_length(from_centre) : vec3_length(hit->pattern_point);
+    double radius = vec3_length(direction);
     double width = radius > 0 ? hit->footprint * hit->pattern_scale / radius : 0;
     double ring = sqrt(1 - y * y);
     at->width_v = width / pi;
     at->width_u = width < 2 * pi * ring ? width / (2 * pi * ring) : width > 0 ? 1 : 0;
-    if (hit->layout == LAYOUT_SPHERE) {
-        at->dpdu = hit->dpdu;
-        at->dpdv = hit->dpdv;
-    }
 }
 
-/* The sides stand upright and alike; front, top and bottom meet at the edges (docs/language.md 6.2). A box brings these
- * parameters itself; other shapes are seen from the direction of their normal. */
+/* The pattern_normal of a ball points from its centre. */
+static void on_ball(const struct hit *hit, bool classic, struct texcoord *at) {
+    by_direction(hit, hit->pattern_normal, classic, at);
+    at->dpdu = hit->dpdu;
+    at->dpdv = hit->dpdv;
+}
+
+/* A box brings the parameters of on_cube itself. */
+static void on_faces(const struct hit *hit, struct texcoord *at) {
+    double du = vec3_length(hit->dpdu), dv = vec3_length(hit->dpdv);
+    *at = (struct texcoord){.u = hit->u,
+                            .v = hit->v,
+                            .width_u = du > 0 ? hit->footprint / du : 0,
+                            .width_v = dv > 0 ? hit->footprint / dv : 0,
+                            .wrap_u = IMAGE_CLAMP,
+                            .wrap_v = IMAGE_CLAMP,
+                            .dpdu = hit->dpdu,
+                            .dpdv = hit->dpdv};
+}
+
+/* The sides stand upright and alike; front, top and bottom meet at the edges (docs/language.md 6.2). Shapes are seen
+ * from the direction of their normal. */
 static void on_cube(const struct hit *hit, struct texcoord *at) {
     struct vec3 p = hit->pattern_point, n = hit->pattern_normal;
     double width = hit->footprint * hit->pattern_scale;
     *at = (struct texcoord){.wrap_u = IMAGE_CLAMP, .wrap_v = IMAGE_CLAMP, .width_u = width, .width_v = width};
-    if (hit->layout == LAYOUT_FACES) {
-        double du = vec3_length(hit->dpdu), dv = vec3_length(hit->dpdv);
-        at->u = hit->u;
-        at->v = hit->v;
-        at->width_u = du > 0 ? hit->footprint / du : 0;
-        at->width_v = dv > 0 ? hit->footprint / dv : 0;
-        at->dpdu = hit->dpdu;
-        at->dpdv = hit->dpdv;
-        return;
-    }
     double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
     if (z >= x && z >= y) {
         at->u = n.z > 0 ? p.x : 1 - p.x;
@@ -88,24 +105,25 @@ static void stretch(const struct texture_image *image, struct texcoord *at) {
 bool texture_coordinates(const struct texture_image *image, const struct hit *hit, struct texcoord *out) {
     switch (image->mapping) {
     case MAPPING_SPHERE:
-        on_sphere(hit, false, out);
-        break;
-    case MAPPING_SPHERE_CLASSIC:
-        on_sphere(hit, true, out);
+        by_direction(hit, hit->pattern_point, false, out);
         break;
     case MAPPING_CUBE:
         on_cube(hit, out);
         break;
     case MAPPING_UV:
     case MAPPING_BY_SHAPE:
-        if (hit->layout == LAYOUT_SPHERE)
-            on_sphere(hit, image->mapping == MAPPING_UV, out);
-        else if (!hit->has_uv)
+        if (!hit->has_uv)
             return false;
-        else if (hit->layout == LAYOUT_FACES)
-            on_cube(hit, out);
-        else
-            by_uv(hit, image, out);
+        by_uv(hit, image, out);
+        break;
+    case MAPPING_FACES:
+        on_faces(hit, out);
+        break;
+    case MAPPING_BALL:
+        on_ball(hit, false, out);
+        break;
+    case MAPPING_BALL_CLASSIC:
+        on_ball(hit, true, out);
         break;
     }
     if (image->apart)
@@ -115,19 +133,6 @@ bool texture_coordinates(const struct texture_image *image, const struct hit *hi
         out->dpdu = vec3_negate(out->dpdu);
     }
     return true;
-}
-
-bool texture_native_uv(const struct hit *hit, double *u, double *v) {
-    if (hit->layout == LAYOUT_SPHERE) {
-        struct texcoord at;
-        on_sphere(hit, true, &at);
-        *u = at.u;
-        *v = 1 - at.v;
-        return true;
-    }
-    *u = hit->u;
-    *v = hit->v;
-    return hit->has_uv;
 }
 
 struct rgba texture_texel(const struct texture_image *image, const struct texcoord *at) {

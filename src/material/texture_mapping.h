@@ -2,6 +2,7 @@
 #ifndef GRAY_MATERIAL_TEXTURE_MAPPING_H
 #define GRAY_MATERIAL_TEXTURE_MAPPING_H
 
+#include "geom/shape.h"
 #include "material/texture.h"
 
 /* u from the left, v from the top, both in images; the size of the ray's footprint in the same units. */
@@ -12,11 +13,10 @@ struct texcoord {
     struct vec3 dpdu, dpdv;
 };
 
+/* The mapping that stands for this one on shapes of that layout. */
+enum texture_mapping texture_mapping_on(enum texture_mapping mapping, enum surface_layout layout);
 /* False: this surface has no coordinates for the mapping. */
 bool texture_coordinates(const struct texture_image *image, const struct hit *hit, struct texcoord *out);
-/* The coordinates that the shape itself supplies, v from below; false: none. Searches leave those of balls out, because
- * few materials ask for them. */
-bool texture_native_uv(const struct hit *hit, double *u, double *v);
 /* The image there, premultiplied. */
 struct rgba texture_texel(const struct texture_image *image, const struct texcoord *at);
 

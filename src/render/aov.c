@@ -94,10 +94,11 @@ void aov_surface(const struct world *world, const struct ray *ray, uint32_t mask
     set(out[AOV_NORMAL], bsdf.normal.x, bsdf.normal.y, bsdf.normal.z);
     set(out[AOV_ALBEDO], bsdf.albedo.x, bsdf.albedo.y, bsdf.albedo.z);
     double u, v;
-    if (texture_native_uv(&hit, &u, &v))
+    if (world_native_uv(world, &hit, &u, &v))
         set(out[AOV_UV], u, v, 1);
     set(out[AOV_NODE], node, node, node);
-    set(out[AOV_MATERIAL], hit.material + 1.0, hit.material + 1.0, hit.material + 1.0);
+    double number = world->material_numbers[hit.material] + 1.0;
+    set(out[AOV_MATERIAL], number, number, number);
     if (mask >> AOV_LIGHTS & 1) {
         double seen = lights_seen(world, &hit, scratch);
         set(out[AOV_LIGHTS], seen, seen, seen);

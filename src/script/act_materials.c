@@ -142,8 +142,8 @@ struct image *act_find_image(struct context *context, const struct value *value,
 }
 
 static void image_defaults(struct texture_image *out, const struct value *value, struct image *image) {
-    *out =
-        value->texture ? value->texture->image : (struct texture_image){.filter = IMAGE_MIPMAP, .wrap = IMAGE_REPEAT};
+    const struct texture_image *from = value->texture ? texture_as_image(value->texture->texture) : NULL;
+    *out = from ? *from : (struct texture_image){.filter = IMAGE_MIPMAP, .wrap = IMAGE_REPEAT};
     out->image = image;
 }
 
@@ -173,6 +173,15 @@ static bool read_image(struct context *context, const struct value *value, const
     if (offset->given)
         out->offset[0] = offset->vector.x, out->offset[1] = offset->vector.y;
     return true;
+}
+
+/* The image alone, as a texture. NULL and error: it cannot be read. */
+static const struct texture *read_texture(struct context *context, const struct value *value,
+                                          const struct value *lookup, struct error *error) {
+    struct texture_image image;
+    return read_image(context, value, lookup, &image, error)
+               ? texture_keep(&context->scene.arena, texture_image(&image, NULL), error)
+               : NULL;
 }
 
 /* The image over an input of the material below. */
@@ -219,16 +228,17 @@ static bool read_relief(struct context *context, const struct value *value, cons
                         const struct value *args, struct relief *out, struct error *error) {
     const struct relief *from = value->texture;
     bool known = from && from->kind != MATERIAL_IMAGE;
+    bool is_image = !from || texture_as_image(from->texture);
     *out = (struct relief){.kind = known ? from->kind : MATERIAL_BUMP, .texture = from ? from->texture : NULL};
     static const enum material_kind kinds[] = {RELIEF_KINDS(LIST_MEMBER)};
     if (args[1].given)
         out->kind = kinds[args[1].choice];
-    if (!out->texture && !read_image(context, value, lookup, &out->image, error))
+    if (is_image && !(out->texture = read_texture(context, value, lookup, error)))
         return false;
     if (args[0].given) {
         out->height = args[0].number;
     } else if (!known || from->kind != out->kind) {
-        out->relative = out->kind == MATERIAL_BUMP && !out->texture;
+        out->relative = out->kind == MATERIAL_BUMP && is_image;
         out->height = out->kind == MATERIAL_BUMP ? RELIEF_HEIGHT : 1;
     } else {
         out->relative = from->relative;
@@ -239,9 +249,8 @@ static bool read_relief(struct context *context, const struct value *value, cons
 
 bool act_texture(struct context *context, const struct value *args, struct result *result, struct error *error) {
     struct relief texture = {.kind = MATERIAL_IMAGE};
-    if (!read_image(context, &args[TEXTURE_FILE], &args[TEXTURE_LOOKUP], &texture.image, error))
-        return false;
-    result->pointer = act_keep_texture(context, &texture, error);
+    texture.texture = read_texture(context, &args[TEXTURE_FILE], &args[TEXTURE_LOOKUP], error);
+    result->pointer = texture.texture ? act_keep_texture(context, &texture, error) : NULL;
     return result->pointer != NULL;
 }
 
@@ -269,11 +278,13 @@ const struct relief *act_relief(struct context *context, const struct value *val
 }
 
 const struct texture_image *act_image(struct context *context, const struct value *value, struct error *error) {
-    struct relief texture = {.kind = MATERIAL_IMAGE};
     struct image *image = act_find_image(context, value, error);
-    if (!image)
+    struct texture_image *kept = image ? arena_alloc(&context->scene.arena, sizeof *kept) : NULL;
+    if (image && !kept)
+        error_no_memory(error, "a texture");
+    if (!kept)
         return NULL;
-    image_defaults(&texture.image, value, image);
-    const struct relief *kept = act_keep_texture(context, &texture, error);
-    return kept ? &kept->image : NULL;
+    image_defaults(kept, value, image);
+    context->scene.material_count++; /* as act_keep_texture does */
+    return kept;
 }

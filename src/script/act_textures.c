@@ -20,12 +20,13 @@ const struct texture *act_texture_of(struct context *context, const struct value
     struct arena *arena = &context->scene.arena;
     const struct relief *given = value->texture;
     struct vec3 v = value->vector;
-    if (given && given->texture)
-        return given->texture;
-    if (given) { /* what is transparent is white */
+    const struct texture_image *image = given ? texture_as_image(given->texture) : NULL;
+    if (image) { /* what is transparent is white */
         const struct texture *white = texture_keep(arena, texture_number(1), error);
-        return white ? texture_keep(arena, texture_image(&given->image, white), error) : NULL;
+        return white ? texture_keep(arena, texture_image(image, white), error) : NULL;
     }
+    if (given)
+        return given->texture;
     return texture_keep(arena, v.x == v.y && v.y == v.z ? texture_number(v.x) : texture_constant(v), error);
 }
 

@@ -431,6 +431,12 @@ static void read_caustics(struct context *c, int index, const struct place *plac
     lua_pop(L, 2);
 }
 
+/* The image of a texture that is nothing else, or NULL. */
+static struct image *image_of(const struct relief *texture) {
+    const struct texture_image *image = texture_as_image(texture->texture);
+    return image ? image->image : NULL;
+}
+
 /* One argument at an absolute stack index. False: it is a ghost. */
 static bool read_value(struct context *c, int index, const struct parameter *p, struct value *value) {
     struct place place = {.parameter = p};
@@ -440,7 +446,7 @@ static bool read_value(struct context *c, int index, const struct parameter *p, 
     const struct handle *handle = p->flags & OR_TEXTURE ? handle_at(L, index) : NULL;
     if (handle && handle->type == HANDLE_TEXTURE) {
         value->texture = handle->pointer;
-        value->image = value->texture->image.image;
+        value->image = image_of(value->texture);
         value->number = 1;
         value->vector = vec3_all(1);
         return true;
@@ -515,7 +521,7 @@ static bool read_value(struct context *c, int index, const struct parameter *p, 
             return true;
         }
         value->texture = read_handle(c, index, &place, HANDLE_TEXTURE);
-        value->image = value->texture ? value->texture->image.image : NULL;
+        value->image = value->texture ? image_of(value->texture) : NULL;
         if (value->texture && !value->image)
             context_raise(c, "%s must be an image, not another texture", place_words(&place, words));
         return value->texture != NULL;

@@ -66,7 +66,8 @@ struct value {
     struct node *node;
     const struct material *material;
     const struct material **materials;
-    const struct relief *texture; /* what gr.texture, gr.bump and their like made; without relief a MATERIAL_IMAGE */
+    const struct relief
+        *texture; /* what gr.texture, gr.bump and their like made; what is no bump is a MATERIAL_IMAGE */
     const char **names;
     struct image *image;
     uint32_t count;

@@ -348,6 +348,7 @@ static bool add_clips(struct flattening *f, struct csg_draft *draft, const struc
 
 /* Whether nobody can tell parts that keep apart from one solid, from inside of it either. */
 static bool may_be_split(const struct flattening *f, const struct csg_draft *draft) {
+    const uint32_t *numbers = f->world->material_numbers;
     bool all_opaque = true, all_alike = true;
     for (uint32_t i = 0; i < draft->leaf_count; i++) {
         const struct csg_leaf *leaf = &draft->leaves[i];
@@ -355,7 +356,7 @@ static bool may_be_split(const struct flattening *f, const struct csg_draft *dra
         for (uint32_t slot = 0; slot == 0 || slot < leaf->slot_count; slot++)
             all_opaque =
                 all_opaque && !material_is_transparent(f->world->authored.materials[leaf->material + slot], &ior);
-        all_alike = all_alike && leaf->material == draft->leaves[0].material && leaf->slot_count < 2;
+        all_alike = all_alike && leaf->slot_count < 2 && numbers[leaf->material] == numbers[draft->leaves[0].material];
     }
     return all_opaque || all_alike;
 }

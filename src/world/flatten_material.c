@@ -1,10 +1,12 @@
 /* Effective materials: a node's texture (set_texture) and relief (set_bump) go over its material, a node without
- * material is plain gray. Each distinct set gets one index, in order of first use; the table that finds pairs again is
- * hashed by address, which decides where an entry stands and never which index it gets. */
+ * material is plain gray. Each distinct set gets one number, in order of first use, and one index for each layout of
+ * shapes on which its images lie otherwise (material/material_mapping.h). The table that finds sets again is hashed by
+ * address, which decides where an entry stands and never which number it gets. */
 #include "world/flatten.h"
 
 #include "base/random.h"
 #include "material/material_inputs.h"
+#include "material/material_mapping.h"
 
 #include <stdio.h>
 
@@ -13,7 +15,8 @@ struct material_entry {
     const struct texture_image *texture;
     const struct relief *relief;
     enum shape_kind shape; /* a texture is mapped by the kind of its shape */
-    uint32_t index;
+    uint32_t number;
+    uint32_t after[SURFACE_LAYOUTS]; /* its index + 1; 0: not known yet */
     bool used;
 };
 
@@ -21,7 +24,9 @@ struct material_table {
     struct material_entry *entries; /* capacity a power of two, at most half full */
     uint32_t capacity, count;
     const struct material **list;
-    uint32_t list_capacity, list_count;
+    uint32_t *numbers; /* of the list */
+    uint32_t list_capacity, list_count, number_count;
+    struct material_mapping mapping;
 };
 
 static const struct material plain_gray = {
@@ -56,12 +61,10 @@ static bool grow(struct flattening *f) {
     struct material_entry *entries = arena_alloc_array(f->arena, capacity, sizeof *entries);
     if (!table || !entries)
         return error_no_memory(f->error, "the materials of the scene");
-    *table = (struct material_table){.entries = entries,
-                                     .capacity = capacity,
-                                     .count = old.count,
-                                     .list = old.list,
-                                     .list_capacity = old.list_capacity,
-                                     .list_count = old.list_count};
+    *table = old;
+    table->entries = entries;
+    table->capacity = capacity;
+    table->mapping.arena = f->arena;
     for (uint32_t i = 0; i < old.capacity; i++) {
         const struct material_entry *entry = &old.entries[i];
         if (entry->used)
@@ -79,19 +82,6 @@ static void warn_once(struct flattening *f, const struct node *node, const char 
     f->warn(f->warn_context, text);
 }
 
-/* The mapping of an image that a node gives to its shape (docs/language.md 6.2). */
-static enum texture_mapping mapping_of(enum surface_layout layout) {
-    switch (layout) {
-    case LAYOUT_SPHERE:
-        return MAPPING_SPHERE_CLASSIC;
-    case LAYOUT_FACES:
-        return MAPPING_CUBE;
-    case LAYOUT_UV:
-        break;
-    }
-    return MAPPING_UV;
-}
-
 static struct material *derived(struct flattening *f, enum material_kind kind, const struct material *base) {
     struct material *material = arena_alloc(f->arena, sizeof *material);
     if (!material) {
@@ -103,25 +93,28 @@ static struct material *derived(struct flattening *f, enum material_kind kind, c
 }
 
 /* The node's image over the base; the base itself without an image, NULL without memory. */
-static const struct material *covered(struct flattening *f, const struct node *node, const struct texture_image *image,
+static const struct material *covered(struct flattening *f, const struct texture_image *image,
                                       const struct material *base) {
     if (!image)
         return base;
     struct material *material = derived(f, MATERIAL_IMAGE, base);
     struct texture_image mapped = *image;
-    mapped.mapping = mapping_of(shape_layout(&node->shape));
+    mapped.mapping = MAPPING_UV;
     return material && material_cover(material, INPUT_KD, &mapped, f->arena, f->error) ? material : NULL;
 }
 
 /* Likewise its bump or normal map. */
-static const struct material *raised(struct flattening *f, const struct node *node, const struct relief *relief,
-                                     const struct material *base) {
+static const struct material *raised(struct flattening *f, const struct relief *relief, const struct material *base) {
     if (!relief || !base)
         return base;
     struct material *material = derived(f, relief->kind, base);
     struct relief mapped = *relief;
-    mapped.image.mapping = mapping_of(shape_layout(&node->shape));
-    return material && material_raise(material, &mapped, f->arena, f->error) ? material : NULL;
+    if (texture_as_image(relief->texture)) {
+        struct texture own = *relief->texture;
+        own.image.lookup.mapping = MAPPING_UV;
+        mapped.texture = texture_keep(f->arena, own, f->error);
+    }
+    return material && mapped.texture && material_raise(material, &mapped, f->arena, f->error) ? material : NULL;
 }
 
 /* Room for `count` more at the end of the list. */
@@ -133,12 +126,56 @@ static bool grow_list(struct flattening *f, uint32_t count) {
     if (capacity > UINT32_MAX)
         return error_set(f->error, ERROR_SCENE, "the scene has more than 2^31 materials");
     const struct material **list = arena_alloc_array(f->arena, capacity, sizeof *list);
-    if (!list)
+    uint32_t *numbers = arena_alloc_array(f->arena, capacity, sizeof *numbers);
+    if (!list || !numbers)
         return error_no_memory(f->error, "the materials of the scene");
-    for (uint32_t i = 0; i < table->list_count; i++)
+    for (uint32_t i = 0; i < table->list_count; i++) {
         list[i] = table->list[i];
+        numbers[i] = table->numbers[i];
+    }
     table->list = list;
+    table->numbers = numbers;
     table->list_capacity = (uint32_t)capacity;
+    return true;
+}
+
+/* The set of an entry on shapes of one layout goes to the end of the list, which has room. *alike: no image lies
+ * otherwise than it was asked for. */
+static bool add_set(struct flattening *f, const struct material_entry *entry, const struct material *const *bases,
+                    uint32_t count, enum surface_layout layout, bool *alike) {
+    struct material_table *table = f->materials;
+    *alike = true;
+    for (uint32_t i = 0; i < count; i++) {
+        const struct material *base = bases[i] ? bases[i] : &plain_gray;
+        const struct material *set = raised(f, entry->relief, covered(f, entry->texture, base));
+        const struct material *on = set ? material_on_layout(&table->mapping, set, layout, f->error) : NULL;
+        if (!on)
+            return false;
+        *alike = *alike && on == set;
+        table->list[table->list_count + i] = on;
+        table->numbers[table->list_count + i] = entry->number + i;
+    }
+    return true;
+}
+
+/* The index of an entry's first material on shapes of a layout. */
+static bool find_index(struct flattening *f, struct material_entry *entry, const struct material *const *bases,
+                       uint32_t count, enum surface_layout layout, uint32_t *out) {
+    struct material_table *table = f->materials;
+    bool alike = true;
+    if (entry->after[layout] == 0) {
+        if (!grow_list(f, count) || !add_set(f, entry, bases, count, layout, &alike))
+            return false;
+        uint32_t *as_asked = &entry->after[LAYOUT_UV];
+        if (!alike || *as_asked == 0) {
+            entry->after[layout] = table->list_count + 1;
+            table->list_count += count;
+        }
+        if (alike && *as_asked == 0)
+            *as_asked = entry->after[layout];
+        entry->after[layout] = alike ? *as_asked : entry->after[layout];
+    }
+    *out = entry->after[layout] - 1;
     return true;
 }
 
@@ -169,25 +206,20 @@ bool flatten_material(struct flattening *f, const struct node *node, const struc
     if ((!f->materials || f->materials->count * 2 >= f->materials->capacity) && !grow(f))
         return false;
     const void *key = by_slot ? (const void *)node->slots : only ? (const void *)only : &plain_gray;
-    struct material_entry wanted = {key, texture, relief, node->shape.kind, 0, true};
+    struct material_entry wanted = {
+        .material = key, .texture = texture, .relief = relief, .shape = node->shape.kind, .used = true};
     struct material_entry *entry = find(f->materials, &wanted);
     if (!entry->used) {
-        if (!grow_list(f, *count))
-            return false;
-        struct material_table *table = f->materials;
+        wanted.number = f->materials->number_count;
         *entry = wanted;
-        entry->index = table->list_count;
-        table->count++;
-        for (uint32_t i = 0; i < *count; i++) {
-            const struct material *base = bases[i] ? bases[i] : &plain_gray;
-            const struct material *effective = raised(f, node, relief, covered(f, node, texture, base));
-            if (!effective)
-                return false;
-            table->list[table->list_count++] = effective;
-        }
+        f->materials->count++;
+        f->materials->number_count += *count;
     }
+    if (!find_index(f, entry, bases, *count, shape_layout(&node->shape), out))
+        return false;
     f->world->authored.materials = f->materials->list;
+    f->world->material_numbers = f->materials->numbers;
     f->world->material_count = f->materials->list_count;
-    *out = entry->index;
+    f->world->material_number_count = f->materials->number_count;
     return true;
 }

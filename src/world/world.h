@@ -71,12 +71,15 @@ struct world {
     struct shutter shutter;
     bool moves; /* something does */
     struct authored authored;
-    struct material *materials; /* flat (material_flat) */
-    bool *material_has_image;   /* such materials need to know the footprint on the surface */
-    bool *material_has_relief;  /* and such ones where it rises */
-    uint32_t *material_medium;  /* number of the medium in solids of the material, or MEDIUM_NONE: opaque */
-    struct medium *media;       /* one for each transparent material; their `placed` is anything */
-    uint32_t material_count, medium_count;
+    /* Flat (material_flat), as shapes show them: one whose images lie otherwise on balls or boxes stands here several
+     * times, with the same number. */
+    struct material *materials;
+    const uint32_t *material_numbers;
+    bool *material_has_image;  /* such materials need to know the footprint on the surface */
+    bool *material_has_relief; /* and such ones where it rises */
+    uint32_t *material_medium; /* number of the medium in solids of the material, or MEDIUM_NONE: opaque */
+    struct medium *media;      /* one for each transparent material; their `placed` is anything */
+    uint32_t material_count, material_number_count, medium_count;
     double emission_bound; /* at least the largest component that a material emits */
     const struct light *lights;
     uint32_t light_count;
@@ -185,6 +188,8 @@ void world_any_batch(const struct world *world, const struct ray *rays, uint32_t
 /* Only what world_nearest_crossing has found, described. */
 void world_describe(const struct world *world, const struct ray *ray, uint32_t placed, const struct crossing *crossing,
                     struct hit *hit);
+/* The u and v that the shape of a hit supplies. False: it has none. */
+bool world_native_uv(const struct world *world, const struct hit *hit, double *u, double *v);
 /* The closed primitives whose box meets `region`: all that can hold a point of it, in flattening order. `out` (or NULL)
  * has room for `limit`. Returns how many there are. */
 uint32_t world_closed_in(const struct world *world, const struct box *region, uint32_t *out, uint32_t limit);

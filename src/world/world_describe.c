@@ -32,14 +32,24 @@ static bool same_vector(const struct vec3 *a, const struct vec3 *b) {
     return memcmp(a, b, sizeof *a) == 0;
 }
 
+/* The shape that made the surface: of a solid one of its operands. */
+static const struct shape *shape_of(const struct thing *thing, uint32_t leaf) {
+    return thing->shape.kind == SHAPE_CSG ? &thing->shape.csg->leaves[leaf].shape : &thing->shape;
+}
+
+bool world_native_uv(const struct world *world, const struct hit *hit, double *u, double *v) {
+    return shape_native_uv(shape_of(placed_thing(world, hit->placed), hit->leaf), hit, u, v);
+}
+
 /* What bumps need: the world's vectors of one unit along the operand's normal and along its tangents, and on spheres
  * the tangents of their coordinates, which other materials do not ask for. */
 static void describe_relief(const struct thing *thing, const struct affine *map, const struct csg_leaf *leaf,
                             struct hit *hit) {
-    const struct shape *shape = leaf ? &leaf->shape : &thing->shape;
+    const struct shape *shape = shape_of(thing, hit->leaf);
+    bool is_ball = shape_layout(shape) == LAYOUT_SPHERE;
     struct vec3 normal = vec3_normalize(hit->pattern_normal), raise = normal, u = {0}, v = {0}, a, b;
     frame_tangents(normal, &a, &b);
-    if (hit->layout == LAYOUT_SPHERE)
+    if (is_ball)
         sphere_tangents(shape->sphere.radius, normal, &u, &v);
     if (leaf) {
         const struct affine *csg_from_leaf = &leaf->csg_from_leaf.forward;
@@ -54,7 +64,8 @@ static void describe_relief(const struct thing *thing, const struct affine *map,
     hit->along_b = affine_vector(map, b);
     /* The hollow that an operand leaves has its outside in the operand. */
     hit->raise = vec3_dot(raise, hit->normal_geometric) < 0 ? vec3_negate(raise) : raise;
-    if (hit->layout == LAYOUT_SPHERE) {
+    if (is_ball) {
+        hit->curvature = 1 / shape->sphere.radius;
         hit->dpdu = affine_vector(map, u);
         hit->dpdv = affine_vector(map, v);
     }
@@ -97,7 +108,7 @@ static void place_surface(const struct surface *surface, const struct transform 
         hit->dpdu = map ? affine_vector(&map->forward, surface->dpdu) : as_it_is(surface->dpdu);
         hit->dpdv = map ? affine_vector(&map->forward, surface->dpdv) : as_it_is(surface->dpdv);
     }
-    hit->layout = surface->layout;
+    hit->curvature = 0;
     hit->has_colour = surface->has_colour;
     hit->colour = surface->colour;
     hit->leaf = surface->leaf;

@@ -363,6 +363,21 @@ struct failures {
     long crossings, order, nearest, any, box, placed_box, points, normals, layout;
 };
 
+/* A surface has what the layout of its shape promises. */
+static bool layout_holds(const struct shape *shape, const struct surface *surface) {
+    if (shape->kind == SHAPE_CSG) /* that of one of its operands */
+        return true;
+    switch (shape_layout(shape)) {
+    case LAYOUT_UV:
+        return surface->has_uv || (surface->u == 0 && surface->v == 0);
+    case LAYOUT_FACES:
+        return surface->has_uv && surface->u >= 0 && surface->u <= 1 && surface->v >= 0 && surface->v <= 1;
+    case LAYOUT_SPHERE:
+        return !surface->has_uv && fabs(vec3_length(surface->pattern_normal) - 1) < 1e-15;
+    }
+    return false;
+}
+
 static void check_line_of(const struct shape *shape, struct test_random *random, struct geom_scratch *scratch,
                           struct failures *n) {
     struct vec3 origin = random_vec3(random, chance(random, 0.3) ? 0.7 : 4);
@@ -401,7 +416,7 @@ static void check_line_of(const struct shape *shape, struct test_random *random,
         double cosine = vec3_dot(vec3_normalize(surface.normal), vec3_normalize(ray.direction));
         n->normals += fabs(cosine) > 1e-4 && closed && c.enter != (cosine < 0);
         n->box += !box_contains(&box, surface.point);
-        n->layout += shape->kind != SHAPE_CSG && surface.layout != shape_layout(shape);
+        n->layout += !layout_holds(shape, &surface);
     }
     for (uint32_t k = 0; closed && k <= list.count; k++) {
         double before = k > 0 ? scratch->items[k - 1].t : -INFINITY;

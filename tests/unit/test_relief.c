@@ -75,11 +75,13 @@ static struct vec3 tilted_up(double x, double y) {
     return vec3_make(128.0 / 255, 204.0 / 255, 230.0 / 255);
 }
 
-static struct relief relief_of(enum material_kind kind, struct image *image, double height) {
-    return (struct relief){
-        .kind = kind,
-        .height = height,
-        .image = {.image = image, .mapping = MAPPING_BY_SHAPE, .filter = IMAGE_MIPMAP, .wrap = IMAGE_REPEAT}};
+static struct relief relief_of(struct stage *s, enum material_kind kind, struct image *image, double height,
+                               bool flip_u) {
+    const struct texture_image lookup = {
+        .image = image, .mapping = MAPPING_BY_SHAPE, .filter = IMAGE_MIPMAP, .wrap = IMAGE_REPEAT, .flip_u = flip_u};
+    const struct texture *texture = texture_keep(&s->scene.arena, texture_image(&lookup, NULL), &s->error);
+    CHECK(texture != NULL);
+    return (struct relief){.kind = kind, .height = height, .texture = texture};
 }
 
 static struct material *raised_white(struct stage *s, const struct relief *relief) {
@@ -90,7 +92,7 @@ static struct material *raised_white(struct stage *s, const struct relief *relie
 }
 
 static struct material *relief_over(struct stage *s, enum material_kind kind, struct image *image, double height) {
-    struct relief relief = relief_of(kind, image, height);
+    struct relief relief = relief_of(s, kind, image, height, false);
     return raised_white(s, &relief);
 }
 
@@ -302,8 +304,7 @@ TEST(normal_maps_turn_to_where_their_colours_point) {
     for (int i = 0; i < 8; i++) {
         struct stage s;
         stage_begin(&s, 1);
-        struct relief map = relief_of(MATERIAL_NORMAL, i & 1 ? up : right, 1);
-        map.image.flip_u = (i & 4) != 0;
+        struct relief map = relief_of(&s, MATERIAL_NORMAL, i & 1 ? up : right, 1, (i & 4) != 0);
         struct material *m = raised_white(&s, &map);
         (void)add_shape(&s, shapes[i >> 1 & 1], m);
         CHECK(stage_build(&s, s.root, ACCEL_AUTO));
@@ -368,7 +369,7 @@ TEST(bumps_grow_with_the_object_bit_by_bit) {
         bool relative = turn % 2;
         struct stage s;
         stage_begin(&s, 1);
-        struct relief map = relief_of(MATERIAL_BUMP, image, RELIEF_HEIGHT);
+        struct relief map = relief_of(&s, MATERIAL_BUMP, image, RELIEF_HEIGHT, false);
         map.relative = relative;
         struct material *m = raised_white(&s, &map);
         double size = ldexp(1, 3 * i);
@@ -465,12 +466,13 @@ TEST(tiles_and_offsets_place_pictures_by_the_formula_on_every_mapping) {
                           .dpdu = {test_uniform(&random, 0.5, 2), 0.1, 0},
                           .dpdv = {0.2, test_uniform(&random, 0.5, 2), 0},
                           .footprint = 0.01,
-                          .pattern_scale = 1,
-                          .layout = (enum surface_layout)(i % 3)};
+                          .pattern_scale = 1};
+        enum surface_layout layout = (enum surface_layout)(i % 3);
         hit.pattern_normal = vec3_normalize(
             vec3_make(test_uniform(&random, -1, 1), test_uniform(&random, -0.9, 0.9), test_uniform(&random, -1, 1)));
         hit.pattern_point = hit.pattern_normal;
-        struct texture_image plain = {.mapping = i % 2 ? MAPPING_UV : MAPPING_BY_SHAPE, .wrap = IMAGE_MIRROR};
+        enum texture_mapping mapping = texture_mapping_on(i % 2 ? MAPPING_UV : MAPPING_BY_SHAPE, layout);
+        struct texture_image plain = {.mapping = mapping, .wrap = IMAGE_MIRROR};
         struct texture_image tiled = plain;
         tiled.apart = true;
         double scale[2] = {test_uniform(&random, -3, 3), test_uniform(&random, -3, 3)};

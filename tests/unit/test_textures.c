@@ -1,6 +1,8 @@
 /* Textures as values, and the inputs of materials that take them. Every kind is made by a switch without `default`, so
  * that a new kind is named here by the compiler. */
 #include "material/material_inputs.h"
+#include "material/material_mapping.h"
+#include "material/texture_mapping.h"
 #include "math/frame.h"
 #include "math/noise.h"
 #include "tests/harness.h"
@@ -506,6 +508,112 @@ TEST(bumps_of_patterns_grow_with_the_object_and_leave_flat_heights_bit_by_bit) {
     hit.dpdv = vec3_scale(hit.dpdv, 8);
     material_look(&bumped, &hit, &scaled);
     CHECK(same(look.normal, scaled.normal));
+    palette_destroy(&p);
+}
+
+/* --- mappings --- */
+
+/* A point of a ball of radius 2 whose shape supplies no coordinates; `normal` is a unit vector. */
+static struct hit ball_hit(struct vec3 normal) {
+    struct hit hit = hit_at(0, 0, 0);
+    hit.pattern_normal = hit.normal = hit.normal_geometric = normal;
+    hit.pattern_point = vec3_add_scaled(vec3_make(5, 6, 7), normal, 2);
+    hit.has_uv = false;
+    return hit;
+}
+
+TEST(mappings_become_those_of_the_shape_that_shows_them) {
+    struct palette p;
+    palette_init(&p);
+    struct vec3 n = vec3_make(0.6, 0.64, 0.48);
+    struct hit ball = ball_hit(n), box = hit_at(0, 0, 0);
+    box.u = 0.25, box.v = 0.125;
+    for (int asked = 0; asked < 4; asked++) {
+        static const enum texture_mapping mappings[] = {MAPPING_SPHERE, MAPPING_CUBE, MAPPING_UV, MAPPING_BY_SHAPE};
+        struct texture_image image = {.image = p.image, .mapping = mappings[asked]};
+        struct texcoord at;
+        CHECK(texture_mapping_on(image.mapping, LAYOUT_UV) ==
+              (image.mapping == MAPPING_BY_SHAPE ? MAPPING_UV : image.mapping));
+        CHECK(asked < 2 || !texture_coordinates(&image, &ball, &at));
+        image.mapping = texture_mapping_on(mappings[asked], LAYOUT_SPHERE);
+        CHECK(texture_coordinates(&image, &ball, &at));
+        double turn = atan2(n.z, n.x) / 6.283185307179586;
+        if (image.mapping != MAPPING_CUBE) { /* from the centre, wherever it is: half a turn apart */
+            CHECK_NEAR(at.u, mappings[asked] == MAPPING_UV ? 0.5 + turn : turn, 1e-15);
+            CHECK_NEAR(at.v, acos(n.y) / 3.141592653589793, 1e-15);
+        }
+        image.mapping = texture_mapping_on(mappings[asked], LAYOUT_FACES);
+        CHECK(texture_coordinates(&image, &box, &at));
+        if (image.mapping != MAPPING_SPHERE) /* of the face, from above */
+            CHECK(at.u == 0.25 && at.v == 0.125 && at.wrap_u == IMAGE_CLAMP);
+        /* Once more changes nothing. */
+        for (int layout = 0; layout < SURFACE_LAYOUTS; layout++) {
+            enum texture_mapping on = texture_mapping_on(mappings[asked], (enum surface_layout)layout);
+            CHECK(texture_mapping_on(on, (enum surface_layout)layout) == on);
+        }
+    }
+    palette_destroy(&p);
+}
+
+/* Images of other mappings below each kind of texture, found whichever way the tree goes. */
+TEST(a_copy_for_a_layout_changes_every_image_and_shares_what_its_tree_shares) {
+    struct palette p;
+    palette_init(&p);
+    struct texture_image lookup = picture(&p, ALPHA_COVERS);
+    lookup.mapping = MAPPING_BY_SHAPE;
+    struct texture shared = texture_image(&lookup, colour(&p, 0.5, 0.25, 1));
+    shared.shared = true;
+    const struct texture *image = keep(&p, shared), *red = keep(&p, texture_map(image, FUNCTION_RED, 0));
+    const struct texture *tree = keep(&p, texture_mix(keep(&p, texture_multiply(image, red)), red, image));
+    struct material base = base_material(), covered, raised;
+    struct relief relief = {.kind = MATERIAL_BUMP, .height = 1, .texture = tree};
+    struct material_mapping mapping = {.arena = &p.arena};
+    material_derive(&covered, MATERIAL_IMAGE, &base);
+    CHECK(material_multiply(&covered, INPUT_KD, tree, &p.arena, &p.error));
+    material_derive(&raised, MATERIAL_BUMP, &covered);
+    CHECK(material_raise(&raised, &relief, &p.arena, &p.error));
+    struct hit ball = ball_hit(vec3_make(0.6, 0.64, 0.48)), square = hit_at(0, 0, 0);
+    CHECK(material_on_layout(&mapping, &raised, LAYOUT_UV, &p.error) == &raised);
+    CHECK(material_on_layout(&mapping, &base, LAYOUT_SPHERE, &p.error) == &base);
+    const struct material *on = material_on_layout(&mapping, &raised, LAYOUT_SPHERE, &p.error);
+    CHECK(on && on != &raised && on == material_on_layout(&mapping, &raised, LAYOUT_SPHERE, &p.error));
+    CHECK(on->base == material_on_layout(&mapping, &covered, LAYOUT_SPHERE, &p.error) && on->base->base == &base);
+    const struct texture *copy = on->inputs[INPUT_KD]->multiply.b;
+    CHECK(copy == on->relief->texture && copy->mix.ratio == copy->mix.a->multiply.a && copy->mix.ratio->shared);
+    CHECK(copy->mix.ratio->image.lookup.mapping == MAPPING_BALL && image->image.lookup.mapping == MAPPING_BY_SHAPE);
+    /* Without coordinates the original shows what is below its image; the copy shows the image, which is even. */
+    struct surface_look bare, shown, flat;
+    material_look(&covered, &ball, &bare);
+    material_look(on->base, &ball, &shown);
+    material_look(&covered, &square, &flat);
+    CHECK(!same(bare.kd, shown.kd) && same(shown.kd, flat.kd));
+    base.phong.kd = vec3_scale(base.phong.kd, 2); /* what changes of the base later reaches copies */
+    material_look(on->base, &ball, &bare);
+    CHECK(same(bare.kd, vec3_scale(shown.kd, 2)));
+    palette_destroy(&p);
+}
+
+TEST(a_material_on_shapes_of_several_layouts_has_one_number_and_an_index_for_each) {
+    struct stage s;
+    struct palette p;
+    palette_init(&p);
+    stage_begin(&s, 1);
+    struct texture_image lookup = picture(&p, ALPHA_COVERS);
+    lookup.mapping = MAPPING_BY_SHAPE;
+    struct material *plain = stage_phong(&s, vec3_all(1), vec3_all(0), 1);
+    struct material *m = scene_material(&s.scene, MATERIAL_IMAGE, plain, &s.error);
+    CHECK(material_cover(m, INPUT_KD, &lookup, &s.scene.arena, &s.error));
+    for (int i = 0; i < 6; i++) {
+        struct node *node = i % 2 ? stage_cube(&s, s.root, m) : stage_sphere(&s, s.root, i == 4 ? plain : m);
+        if (i == 3)
+            node->shape = (struct shape){.kind = SHAPE_TORUS, .torus = {1, 0.2}};
+    }
+    CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+    CHECK_EQ_INT(s.world.material_number_count, 2);
+    CHECK_EQ_INT(s.world.material_count, 4);
+    for (uint32_t i = 0; i < s.world.material_count; i++)
+        CHECK_EQ_INT(s.world.material_numbers[i], i == 3 ? 1 : 0);
+    stage_end(&s);
     palette_destroy(&p);
 }
 

@@ -1,0 +1,166 @@
+/* Copies of trees of textures, of bumps and of chains of materials, wherever an image below has another mapping. Trees
+ * share parts, and chains share most of their trees: whatever was asked about once is found again by its address, so
+ * the work is that of the distinct parts. Addresses decide where an entry stands and nothing else. */
+#include "material/material_mapping.h"
+
+#include "base/random.h"
+#include "material/texture_mapping.h"
+
+struct material_mapping_entry {
+    const void *of; /* a texture, a relief or a material; NULL: free */
+    enum surface_layout layout;
+    const void *on; /* what stands for it; may be the same */
+};
+
+static struct material_mapping_entry *find(const struct material_mapping *mapping, const void *of,
+                                           enum surface_layout layout) {
+    for (uint32_t at = (uint32_t)random_combine((uint64_t)(uintptr_t)of, (uint64_t)layout);; at++) {
+        struct material_mapping_entry *entry = &mapping->entries[at & (mapping->capacity - 1)];
+        if (!entry->of || (entry->of == of && entry->layout == layout))
+            return entry;
+    }
+}
+
+static const void *known(const struct material_mapping *mapping, const void *of, enum surface_layout layout) {
+    return mapping->capacity > 0 ? find(mapping, of, layout)->on : NULL;
+}
+
+static bool grow(struct material_mapping *mapping) {
+    struct material_mapping old = *mapping;
+    uint32_t capacity = old.capacity ? old.capacity * 2 : 64;
+    struct material_mapping_entry *entries = arena_alloc_array(mapping->arena, capacity, sizeof *entries);
+    if (!entries)
+        return false;
+    mapping->entries = entries;
+    mapping->capacity = capacity;
+    for (uint32_t i = 0; i < old.capacity; i++)
+        if (old.entries[i].of)
+            *find(mapping, old.entries[i].of, old.entries[i].layout) = old.entries[i];
+    return true;
+}
+
+/* `on`, which is known from now on; NULL: no memory. */
+static const void *remember(struct material_mapping *mapping, const void *of, enum surface_layout layout,
+                            const void *on) {
+    if (!on || (mapping->count * 2 >= mapping->capacity && !grow(mapping)))
+        return NULL;
+    *find(mapping, of, layout) = (struct material_mapping_entry){of, layout, on};
+    mapping->count++;
+    return on;
+}
+
+static const struct texture *texture_on(struct material_mapping *mapping, const struct texture *texture,
+                                        enum surface_layout layout);
+
+/* In the place of a part of a tree. */
+static bool replace(struct material_mapping *mapping, const struct texture **part, enum surface_layout layout,
+                    bool *changed) {
+    if (!*part)
+        return true;
+    const struct texture *on = texture_on(mapping, *part, layout);
+    *changed = *changed || on != *part;
+    *part = on;
+    return on != NULL;
+}
+
+/* What of the tree's root and below it changes, written into `own`. */
+static bool replace_parts(struct material_mapping *mapping, struct texture *own, enum surface_layout layout,
+                          bool *changed) {
+    switch (own->kind) {
+    case TEXTURE_CONSTANT:
+    case TEXTURE_PARAMETER:
+    case TEXTURE_VERTEX_COLOUR:
+    case TEXTURE_MARBLE:
+    case TEXTURE_WOOD:
+    case TEXTURE_KINDS:
+        break;
+    case TEXTURE_IMAGE: {
+        enum texture_mapping before = own->image.lookup.mapping;
+        own->image.lookup.mapping = texture_mapping_on(before, layout);
+        *changed = own->image.lookup.mapping != before;
+        return replace(mapping, &own->image.below, layout, changed);
+    }
+    case TEXTURE_MIX:
+        return replace(mapping, &own->mix.a, layout, changed) && replace(mapping, &own->mix.b, layout, changed) &&
+               replace(mapping, &own->mix.ratio, layout, changed);
+    case TEXTURE_MULTIPLY:
+        return replace(mapping, &own->multiply.a, layout, changed) &&
+               replace(mapping, &own->multiply.b, layout, changed);
+    case TEXTURE_MAP:
+        return replace(mapping, &own->map.of, layout, changed);
+    }
+    return true;
+}
+
+static const struct texture *texture_on(struct material_mapping *mapping, const struct texture *texture,
+                                        enum surface_layout layout) {
+    const struct texture *on = known(mapping, texture, layout);
+    if (on || !texture->has_image)
+        return on ? on : texture;
+    struct texture own = *texture, *kept = NULL;
+    bool changed = false;
+    if (!replace_parts(mapping, &own, layout, &changed) ||
+        (changed && !(kept = arena_alloc(mapping->arena, sizeof *kept))))
+        return NULL;
+    if (kept)
+        *kept = own;
+    return remember(mapping, texture, layout, kept ? kept : texture);
+}
+
+/* Normals count along the coordinates of the shape, so theirs change on every layout. */
+static const struct relief *relief_on(struct material_mapping *mapping, const struct relief *relief,
+                                      enum surface_layout layout) {
+    const struct relief *on = known(mapping, relief, layout);
+    if (on)
+        return on;
+    struct relief *own = arena_alloc(mapping->arena, sizeof *own);
+    if (!own)
+        return NULL;
+    *own = *relief;
+    own->from_above = layout != LAYOUT_UV;
+    own->texture = texture_on(mapping, relief->texture, layout);
+    if (relief->below)
+        own->below = relief_on(mapping, relief->below, layout);
+    bool whole = own->texture && (own->below || !relief->below);
+    return remember(mapping, relief, layout, whole ? own : NULL);
+}
+
+static const struct material *material_on(struct material_mapping *mapping, const struct material *material,
+                                          enum surface_layout layout) {
+    const struct material *on = known(mapping, material, layout);
+    if (on)
+        return on;
+    struct material own = *material, *kept = NULL;
+    bool changed = false;
+    if (material->base) {
+        own.base = material_on(mapping, material->base, layout);
+        changed = own.base != material->base;
+        if (!own.base)
+            return NULL;
+    }
+    for (int i = 0; i < INPUT_COUNT; i++)
+        if (!replace(mapping, &own.inputs[i], layout, &changed))
+            return NULL;
+    if (material->relief) {
+        own.relief = relief_on(mapping, material->relief, layout);
+        changed = true;
+        if (!own.relief)
+            return NULL;
+    }
+    own.origin = material_origin(material);
+    if (changed && !(kept = arena_alloc(mapping->arena, sizeof *kept)))
+        return NULL;
+    if (kept)
+        *kept = own;
+    return remember(mapping, material, layout, kept ? kept : material);
+}
+
+const struct material *material_on_layout(struct material_mapping *mapping, const struct material *material,
+                                          enum surface_layout layout, struct error *error) {
+    if (layout == LAYOUT_UV || !material_has_image(material)) /* where MAPPING_BY_SHAPE is MAPPING_UV */
+        return material;
+    const struct material *on = material_on(mapping, material, layout);
+    if (!on)
+        error_no_memory(error, "the materials of the scene");
+    return on;
+}
