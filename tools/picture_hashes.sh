@@ -2,7 +2,7 @@
 # Renders every scene of the repository in small, in several ways, and compares the files with recorded hashes: the
 # measure of a change that must not change pictures.
 #   tools/picture_hashes.sh check [DIR]    renders into DIR (build/pictures), names what differs; status 1 if anything does
-#   tools/picture_hashes.sh record [DIR]   renders, and writes tests/picture_hashes.txt anew
+#   tools/picture_hashes.sh record [DIR]   renders, and writes into tests/picture_hashes.txt what was rendered
 # WAYS="default j1 bvh base" chooses among the ways; ONLY="word ..." scenes whose path holds one of the words.
 # The hashes are of whole PNG files, so they hold for one version of zlib; tools/picture_difference.py OLD NEW shows by
 # how many levels the pictures of two folders differ.
@@ -78,7 +78,10 @@ done
     esac
 done) | sort -k 2 >"$folder/hashes"
 if [ "$action" = record ]; then
-    cp "$folder/hashes" "$list"
+    # What was not rendered keeps its line.
+    [ -n "${ONLY:-}${WAYS:-}" ] && join -1 2 -2 2 -v 1 -o 1.1,1.2 "$list" "$folder/hashes" | sed 's/ /  /' >"$folder/kept"
+    cat "$folder/hashes" "$folder/kept" 2>/dev/null | sort -k 2 >"$list.new"
+    mv "$list.new" "$list"
     echo "$(wc -l <"$list") files recorded in $list"
     exit 0
 fi
