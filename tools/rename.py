@@ -81,16 +81,23 @@ class Renamer:
         self.map = maps
         self.tests = set()
         self.changed = {}  # (old, new) -> paths
+        self.known = {}  # (path, word, is_test) -> new name
 
     def word(self, paths, word, is_test=False):
+        key = (paths[0], word, is_test)
+        if key not in self.known:
+            self.known[key] = self.find_word(paths, word, is_test)
+        return self.known[key]
+
+    def find_word(self, paths, word, is_test):
         if any(fnmatch.fnmatchcase(word, pattern) for pattern in self.map.keep):
             return word
         for verb, scope, old, new, merge in self.map.rules:
             if verb == 'part' and (is_test or word in self.tests):
                 continue
-            if in_scope(scope, paths):
-                made = apply_rule(verb, old, new, word)
-                if made != word:
+            made = apply_rule(verb, old, new, word)
+            if made != word:
+                if in_scope(scope, paths):
                     # Parts may follow one another in one identifier; a word is complete.
                     if verb == 'part':
                         made = self.word(paths, made)
