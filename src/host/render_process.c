@@ -273,17 +273,18 @@ static bool make_picture_unlimited(struct child *child, const struct render_requ
     double begun = progress_clock(), worked = progress_processor_clock();
     if (build_world(child, request, job, request->lights, request->light_count, &world, error))
         job->world = &world;
-    else if (!asked->live || !studio_was_stopped(child->services->control, error))
+    else if (!asked->in_window || !studio_was_stopped(child->services->control, error))
         return false;
     bool ok = true;
     double built = progress_clock(), built_worked = progress_processor_clock();
     if (is_asked(child->options)) {
         ok = answer_questions(child, request, job, error);
     } else if (!child->options->check) {
-        if (!asked->live)
+        if (!asked->in_window)
             atomic_store(&child->services->control->tiles, film_tile_count(job->film));
-        ok = asked->live ? make_in_window(child, request, job, &world, asked, report, built - begun, error)
-                         : render_run(job, child->pool, &report->rays, error) && overlay_draw(job, child->pool, error);
+        ok = asked->in_window
+                 ? make_in_window(child, request, job, &world, asked, report, built - begun, error)
+                 : render_run(job, child->pool, &report->rays, error) && overlay_draw(job, child->pool, error);
     }
     report->rays.build_seconds = built - begun;
     report->rays.build_processor_seconds = built_worked - worked;
@@ -343,7 +344,7 @@ static bool begin_picture(struct child *child, const struct render_request *requ
                                     .deep = job->settings.deep,
                                     .record = integrator_record(job->settings.integrator),
                                     .layers = job->settings.aov,
-                                    .live = child->options->window,
+                                    .in_window = child->options->window,
                                     .overlay = (uint32_t)job->settings.overlay,
                                     .camera = job->camera,
                                     .lens = job->settings.lens,

@@ -13,18 +13,18 @@
 #include <string.h>
 #include <time.h>
 
-enum message_kind {
-    MESSAGE_BEGIN = 1, /* to the first rank: struct begin */
-    MESSAGE_TILE,      /* to the first rank: number, tile, packed tile */
-    MESSAGE_LEAVE,     /* to the first rank: number; no more tiles of this picture */
-    MESSAGE_LINE,      /* to the first rank: an error line */
-    MESSAGE_BYE,       /* to the first rank: all scripts have ended */
-    MESSAGE_ANSWER,    /* from the first rank: number, enum answer */
-    MESSAGE_ASSIGN,    /* from the first rank: number, tile */
-    MESSAGE_CLOSE,     /* from the first rank: number; all tiles are there */
-    MESSAGE_ALIVE,     /* to and from the first rank: a heartbeat, nothing else */
-    MESSAGE_NOTE,      /* to the first rank: a line to be shown at once */
-    MESSAGE_END,       /* from the first rank: number, how many ranks are silent; the farm has ended */
+enum farm_message_kind {
+    FARM_BEGIN = 1, /* to the first rank: struct begin */
+    FARM_TILE,      /* to the first rank: number, tile, packed tile */
+    FARM_LEAVE,     /* to the first rank: number; no more tiles of this picture */
+    FARM_LINE,      /* to the first rank: an error line */
+    FARM_BYE,       /* to the first rank: all scripts have ended */
+    FARM_ANSWER,    /* from the first rank: number, enum answer */
+    FARM_ASSIGN,    /* from the first rank: number, tile */
+    FARM_CLOSE,     /* from the first rank: number; all tiles are there */
+    FARM_ALIVE,     /* to and from the first rank: a heartbeat, nothing else */
+    FARM_NOTE,      /* to the first rank: a line to be shown at once */
+    FARM_END,       /* from the first rank: number, how many ranks are silent; the farm has ended */
 };
 
 enum answer { ANSWER_GO, ANSWER_SKIP, ANSWER_OTHER, ANSWER_STOP };
@@ -117,11 +117,11 @@ bool farm_is_first(const struct farm *farm) {
     return farm->transport->rank == 0;
 }
 
-static void send(const struct farm *farm, int to, enum message_kind kind, const void *data, size_t size) {
+static void send(const struct farm *farm, int to, enum farm_message_kind kind, const void *data, size_t size) {
     farm->transport->send(farm->transport->context, to, (int)kind, data, size);
 }
 
-static void send_pair(const struct farm *farm, int to, enum message_kind kind, uint32_t value) {
+static void send_pair(const struct farm *farm, int to, enum farm_message_kind kind, uint32_t value) {
     struct pair pair = {farm->number, value};
     send(farm, to, kind, &pair, sizeof pair);
 }
@@ -179,7 +179,7 @@ static bool assign(struct farm *farm, int rank) {
     farm->owner[tile] = (uint16_t)rank;
     set_state(farm->film, tile, rank == 0 ? FILM_TILE_WANTED : FILM_TILE_TAKEN);
     if (rank > 0)
-        send_pair(farm, rank, MESSAGE_ASSIGN, tile);
+        send_pair(farm, rank, FARM_ASSIGN, tile);
     return true;
 }
 
@@ -234,7 +234,7 @@ static void send_heartbeats(struct farm *farm) {
         return;
     for (int rank = 1; rank < farm->transport->size; rank++) {
         if (!farm->peers[rank].silent)
-            send(farm, rank, MESSAGE_ALIVE, "", 1);
+            send(farm, rank, FARM_ALIVE, "", 1);
     }
 }
 
@@ -248,7 +248,7 @@ static void answer_waiting(struct farm *farm) {
         if (farm->film && picture->number == farm->number)
             answer = tile_picture_difference(picture, &farm->picture) ? ANSWER_OTHER : ANSWER_GO;
         struct pair pair = {picture->number, answer};
-        send(farm, rank, MESSAGE_ANSWER, &pair, sizeof pair);
+        send(farm, rank, FARM_ANSWER, &pair, sizeof pair);
         peer->waiting = false;
         peer->joined = answer == ANSWER_GO;
         give_slots(farm, rank);
@@ -258,7 +258,7 @@ static void answer_waiting(struct farm *farm) {
 static void close_picture(struct farm *farm) {
     for (int rank = 1; rank < farm->transport->size; rank++) {
         if (farm->peers[rank].joined)
-            send_pair(farm, rank, MESSAGE_CLOSE, 0);
+            send_pair(farm, rank, FARM_CLOSE, 0);
         farm->peers[rank].joined = false;
     }
     atomic_store(&farm->control->gate, GATE_CLOSED);
@@ -283,38 +283,38 @@ static void take_tile(struct farm *farm, int from, const uint8_t *data, size_t s
 
 static void take_message(struct farm *farm, int from, int kind, const uint8_t *data, size_t size) {
     struct peer *peer = &farm->peers[from];
-    switch ((enum message_kind)kind) {
-    case MESSAGE_BEGIN:
+    switch ((enum farm_message_kind)kind) {
+    case FARM_BEGIN:
         if (size == sizeof peer->begin) {
             memcpy(&peer->begin, data, size);
             peer->waiting = true;
         }
         return;
-    case MESSAGE_TILE:
+    case FARM_TILE:
         if (size > sizeof(struct pair))
             take_tile(farm, from, data, size);
         return;
-    case MESSAGE_LEAVE:
+    case FARM_LEAVE:
         take_back(farm, from);
         peer->joined = false;
         return;
-    case MESSAGE_LINE:
+    case FARM_LINE:
         if (farm->line_count < LINES_LIMIT)
             (void)snprintf(farm->lines[farm->line_count++], LINE_LIMIT, "%d %.*s", from, (int)size, (const char *)data);
         return;
-    case MESSAGE_BYE:
+    case FARM_BYE:
         take_back(farm, from);
         peer->joined = false;
         peer->gone = true;
         return;
-    case MESSAGE_NOTE:
+    case FARM_NOTE:
         add_note(farm, from, (const char *)data, (int)size);
         return;
-    case MESSAGE_ALIVE:
-    case MESSAGE_ANSWER:
-    case MESSAGE_ASSIGN:
-    case MESSAGE_CLOSE:
-    case MESSAGE_END:
+    case FARM_ALIVE:
+    case FARM_ANSWER:
+    case FARM_ASSIGN:
+    case FARM_CLOSE:
+    case FARM_END:
         return;
     }
 }
@@ -354,7 +354,7 @@ static void send_finished(struct farm *farm) {
         memcpy(farm->message, &pair, sizeof pair);
         size_t size = film_tile_pack(farm->film, tile, farm->message + sizeof pair);
         set_state(farm->film, tile, FILM_TILE_ELSEWHERE);
-        send(farm, 0, MESSAGE_TILE, farm->message, sizeof pair + size);
+        send(farm, 0, FARM_TILE, farm->message, sizeof pair + size);
     }
 }
 
@@ -364,7 +364,7 @@ static bool listen(struct farm *farm, int *kind, struct pair *pair) {
     size_t size;
     pass_time(farm);
     if (heartbeat_is_due(farm))
-        send(farm, 0, MESSAGE_ALIVE, "", 1);
+        send(farm, 0, FARM_ALIVE, "", 1);
     while (farm->transport->receive(farm->transport->context, &from, kind, farm->message, &size)) {
         if (from != 0)
             continue;
@@ -372,7 +372,7 @@ static bool listen(struct farm *farm, int *kind, struct pair *pair) {
         if (size != sizeof *pair)
             continue;
         memcpy(pair, farm->message, sizeof *pair);
-        if (*kind != MESSAGE_END)
+        if (*kind != FARM_END)
             return true;
         farm->ended = true;
         farm->silent = (int)pair->value;
@@ -397,9 +397,9 @@ static void step_other(struct farm *farm) {
     while (listen(farm, &kind, &pair)) {
         if (!farm->film || pair.number != farm->number)
             continue;
-        if (kind == MESSAGE_ASSIGN && pair.value < film_tile_count(farm->film))
+        if (kind == FARM_ASSIGN && pair.value < film_tile_count(farm->film))
             want_tile(farm->film, pair.value);
-        if (kind == MESSAGE_CLOSE)
+        if (kind == FARM_CLOSE)
             atomic_store(&farm->control->gate, GATE_CLOSED);
     }
     if (farm->ended) /* without this rank, which was silent: what it still does is for nobody */
@@ -417,7 +417,7 @@ static bool await_answer(struct farm *farm, struct pair *answer, struct error *e
         if (farm_is_abandoned(farm))
             return error_set(error, ERROR_CANCELLED, "the first rank is silent");
         while (listen(farm, &kind, answer)) {
-            if (kind == MESSAGE_ANSWER && answer->number == farm->number)
+            if (kind == FARM_ANSWER && answer->number == farm->number)
                 return true;
         }
         if (farm->ended) {
@@ -430,7 +430,7 @@ static bool await_answer(struct farm *farm, struct pair *answer, struct error *e
 static bool join(struct farm *farm, bool *already, struct error *error) {
     struct begin begin = {farm->picture, farm->slots};
     struct pair answer;
-    send(farm, 0, MESSAGE_BEGIN, &begin, sizeof begin);
+    send(farm, 0, FARM_BEGIN, &begin, sizeof begin);
     if (!await_answer(farm, &answer, error))
         return false;
     *already = answer.value == ANSWER_SKIP;
@@ -487,7 +487,7 @@ void farm_end(struct farm *farm, bool given_up) {
             close_picture(farm);
     } else if (open) {
         if (given_up)
-            send_pair(farm, 0, MESSAGE_LEAVE, 0);
+            send_pair(farm, 0, FARM_LEAVE, 0);
         else
             send_finished(farm);
     }
@@ -503,7 +503,7 @@ void farm_note(struct farm *farm, const char *text) {
     if (farm_is_first(farm))
         add_note(farm, 0, text, length);
     else
-        send(farm, 0, MESSAGE_NOTE, text, (size_t)length);
+        send(farm, 0, FARM_NOTE, text, (size_t)length);
 }
 
 bool farm_next_note(struct farm *farm, char *line, size_t size) {
@@ -517,7 +517,7 @@ bool farm_next_note(struct farm *farm, char *line, size_t size) {
 
 void farm_tell(struct farm *farm, const char *line) {
     if (!farm_is_first(farm))
-        send(farm, 0, MESSAGE_LINE, line, strnlen(line, LINE_LIMIT - 16));
+        send(farm, 0, FARM_LINE, line, strnlen(line, LINE_LIMIT - 16));
     else if (farm->line_count < LINES_LIMIT)
         (void)snprintf(farm->lines[farm->line_count++], LINE_LIMIT, "0 %s", line);
 }
@@ -552,13 +552,13 @@ static void await_others(struct farm *farm) {
     }
     /* A silent rank may still read it, when it goes on. */
     for (int rank = 1; rank < farm->transport->size; rank++)
-        send_pair(farm, rank, MESSAGE_END, (uint32_t)farm->silent);
+        send_pair(farm, rank, FARM_END, (uint32_t)farm->silent);
 }
 
 static void await_end(struct farm *farm) {
     struct pair pair;
     int kind;
-    send(farm, 0, MESSAGE_BYE, "", 1);
+    send(farm, 0, FARM_BYE, "", 1);
     for (; !farm->ended && !atomic_load(&farm->control->cancel) && !farm_is_abandoned(farm); rest(farm)) {
         while (listen(farm, &kind, &pair))
             continue;

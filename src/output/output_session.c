@@ -232,11 +232,11 @@ bool desk_begin(struct desk *desk, const struct picture_request *request, bool *
     atomic_store(&desk->control->tiles, 0);
     atomic_store(&desk->control->tiles_done, 0);
     bool helps = desk->farm && !farm_is_first(desk->farm);
-    outlook_reset(&desk->control->outlook, progress_wants_outlook(&desk->progress) && !request->live && !helps);
+    outlook_reset(&desk->control->outlook, progress_wants_outlook(&desk->progress) && !request->in_window && !helps);
     (void)takes_text(desk);
     progress_begin(&desk->progress, picture->name, request->width, request->height);
     struct tone tone = picture_tone(request);
-    if (!request->live)
+    if (!request->in_window)
         display_begin(&desk->display, picture->name, &picture->film, &tone);
     return true;
 }
@@ -426,7 +426,7 @@ void desk_show_progress(struct desk *desk) {
         progress_hide(&desk->progress);
     show_elsewhere(desk, display_step(&desk->display, progress_clock(), &error), &error);
     progress_update(&desk->progress, done, count, &desk->control->outlook);
-    if (desk->current.open && !desk->current.request.live && progress_wants_trial(&desk->progress)) {
+    if (desk->current.open && !desk->current.request.in_window && progress_wants_trial(&desk->progress)) {
         uint32_t pixels;
         double seconds = picture_write_trial(&desk->current, &pixels);
         progress_note_trial(&desk->progress, seconds, pixels);

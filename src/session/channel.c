@@ -34,13 +34,13 @@ union control_space {
 bool channel_send(struct channel *channel, enum frame_kind kind, const void *body, size_t size, int descriptor) {
     uint32_t word = (uint32_t)kind;
     struct iovec parts[2] = {{&word, sizeof word}, {(void *)(uintptr_t)body, size}};
-    struct msghdr message = {.msg_iov = parts, .msg_iovlen = size > 0 ? 2 : 1};
+    struct msghdr packet = {.msg_iov = parts, .msg_iovlen = size > 0 ? 2 : 1};
     union control_space control;
     memset(&control, 0, sizeof control);
     if (descriptor >= 0) {
-        message.msg_control = &control;
-        message.msg_controllen = sizeof control.bytes;
-        struct cmsghdr *header = CMSG_FIRSTHDR(&message);
+        packet.msg_control = &control;
+        packet.msg_controllen = sizeof control.bytes;
+        struct cmsghdr *header = CMSG_FIRSTHDR(&packet);
         header->cmsg_level = SOL_SOCKET;
         header->cmsg_type = SCM_RIGHTS;
         header->cmsg_len = CMSG_LEN(sizeof(int));
@@ -48,7 +48,7 @@ bool channel_send(struct channel *channel, enum frame_kind kind, const void *bod
     }
     ssize_t sent;
     do {
-        sent = MAY_FAIL(sendmsg(channel->descriptor, &message, MSG_NOSIGNAL));
+        sent = MAY_FAIL(sendmsg(channel->descriptor, &packet, MSG_NOSIGNAL));
     } while (sent < 0 && errno == EINTR);
     return sent >= 0;
 }
@@ -70,23 +70,23 @@ enum channel_result channel_receive(struct channel *channel, struct frame *frame
     uint32_t word = 0;
     struct iovec parts[2] = {{&word, sizeof word}, {&frame->body, sizeof frame->body}};
     union control_space control;
-    struct msghdr message = {
+    struct msghdr packet = {
         .msg_iov = parts, .msg_iovlen = 2, .msg_control = &control, .msg_controllen = sizeof control.bytes};
     ssize_t got;
     do {
-        got = MAY_FAIL(recvmsg(channel->descriptor, &message, MSG_CMSG_CLOEXEC));
+        got = MAY_FAIL(recvmsg(channel->descriptor, &packet, MSG_CMSG_CLOEXEC));
     } while (got < 0 && errno == EINTR);
     frame->descriptor = -1;
     if (got <= 0)
         return CHANNEL_END;
-    struct cmsghdr *header = CMSG_FIRSTHDR(&message);
+    struct cmsghdr *header = CMSG_FIRSTHDR(&packet);
     if (header && header->cmsg_level == SOL_SOCKET && header->cmsg_type == SCM_RIGHTS)
         memcpy(&frame->descriptor, CMSG_DATA(header), sizeof frame->descriptor);
     frame->kind = (enum frame_kind)word;
     frame->size = (size_t)got - sizeof word;
     /* Where this process has no descriptor left, that of a film is lost; whoever needs it sees that. */
-    bool lost = (message.msg_flags & MSG_CTRUNC) != 0;
-    bool sound = (size_t)got >= sizeof word && (message.msg_flags & MSG_TRUNC) == 0 &&
+    bool lost = (packet.msg_flags & MSG_CTRUNC) != 0;
+    bool sound = (size_t)got >= sizeof word && (packet.msg_flags & MSG_TRUNC) == 0 &&
                  (!lost || (frame->kind == FRAME_FILM && frame->descriptor < 0)) && frame_is_sound(frame) &&
                  (frame->descriptor < 0 || frame->kind == FRAME_FILM);
     if (sound)

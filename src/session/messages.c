@@ -64,7 +64,7 @@ bool frame_is_sound(const struct frame *frame) {
 enum { OVERLAY_LAYERS = 2 };
 
 uint32_t marks_layers(const struct picture_request *request) {
-    return aov_layers(request->layers & AOV_ALL) + (request->live ? OVERLAY_LAYERS : 0);
+    return aov_layers(request->layers & AOV_ALL) + (request->in_window ? OVERLAY_LAYERS : 0);
 }
 
 void marks_place(const struct picture_request *request, void *block, struct marks_place *place) {

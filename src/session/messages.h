@@ -103,7 +103,7 @@ struct picture_request {
     uint32_t deep;                    /* not 0: 16 bits a channel in a PNG file */
     struct film_record record;        /* of its film */
     uint32_t layers;                  /* mask of the layers beside the picture */
-    uint32_t live;                    /* not 0: in a window */
+    uint32_t in_window;               /* not 0: in a window */
     uint32_t overlay;                 /* in a window: an enum overlay, the lines that are asked for */
     struct camera camera;             /* its view a direction */
     struct lens lens;

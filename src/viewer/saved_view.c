@@ -23,7 +23,7 @@ static bool free_name(const char *picture, const char *what, const char *extensi
 static void row(void *context, uint32_t y, uint8_t *line) {
     const struct live *live = context;
     size_t bytes = 3 * (size_t)live->request.width;
-    memcpy(line, live->canvas + y * bytes, bytes);
+    memcpy(line, live->image + y * bytes, bytes);
 }
 
 bool souvenir_picture(const struct live *live, const struct file_target *picture, char *name, struct error *error) {

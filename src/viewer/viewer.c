@@ -47,12 +47,12 @@ static void forget_work(struct live *live) {
 static void close_window(struct live *live) {
     if (live->open)
         live->driver->close(live->driver->context);
-    mem_free(live->canvas);
+    mem_free(live->image);
     mem_free(live->light);
     mem_free(live->drawn);
     live_destroy_marks(live);
     mem_free(live->panel.paper.rgba);
-    live->canvas = live->drawn = live->panel.paper.rgba = NULL;
+    live->image = live->drawn = live->panel.paper.rgba = NULL;
     live->light = NULL;
     live->place = (struct live_place){0};
     live->open = false;
@@ -63,7 +63,7 @@ static void keep_window(struct live *live, const struct live *before) {
     live->control = before->control;
     live->number = before->number;
     live->tells = before->tells;
-    live->canvas = before->canvas;
+    live->image = before->image;
     live->light = before->light;
     live->drawn = before->drawn;
     live->place = before->place;
@@ -76,10 +76,10 @@ static void keep_window(struct live *live, const struct live *before) {
 static bool open_window(struct live *live, struct error *error) {
     const struct picture_request *request = &live->request;
     size_t pixels = (size_t)request->width * request->height;
-    live->canvas = mem_alloc_zero(pixels, 3);
+    live->image = mem_alloc_zero(pixels, 3);
     live->light = mem_alloc_zero(pixels, 3 * sizeof(float));
     live->drawn = mem_alloc_zero(live->tiles, 1);
-    if (!live->canvas || !live->light || !live->drawn)
+    if (!live->image || !live->light || !live->drawn)
         return error_no_memory(error, "the window");
     live->open = live->driver->open(live->driver->context, request->width, request->height, live->name, error);
     return live->open;

@@ -26,7 +26,7 @@ enum live_order {
     LIVE_STOP,    /* the pass that runs is of no use any more */
     LIVE_ORDER,   /* the child waits: send live->order */
     LIVE_WRITE,   /* the script's own picture is complete for the first time: write it */
-    LIVE_SAVE,    /* somebody wants what is shown in a file: live->canvas */
+    LIVE_SAVE,    /* somebody wants what is shown in a file: live->image */
     LIVE_RECORD,  /* somebody wants the camera in a file: walk_camera(&live->walk) */
     LIVE_CHANGES, /* somebody wants what was changed in a file */
     LIVE_NOTE,    /* live->note is to be told where details are */
@@ -67,7 +67,7 @@ struct live {
     struct film film;             /* as that pass lays it out */
     struct studio_order order;    /* for LIVE_ORDER */
     struct picture_report report; /* of the last pass that was finished */
-    uint8_t *canvas;              /* what is shown: 3 bytes a pixel of the whole part */
+    uint8_t *image;               /* what is shown: 3 bytes a pixel of the whole part */
     float *light;                 /* the same before exposure and tone */
     uint8_t *drawn;               /* by tile: already on the canvas */
     size_t tiles;                 /* room in drawn */
@@ -81,8 +81,8 @@ struct live {
     struct studio_news scene;   /* lights and root, as the child told last */
     struct told_light *lights;  /* owned; those from lights_known on are not known yet */
     uint32_t light_room, light_count, lights_known;
-    double light_top;  /* of the sliders of a light's colour */
-    bool lists_lights; /* a list of them is shown, from this one on: */
+    double light_colour_max; /* of the sliders of a light's colour */
+    bool lists_lights;       /* a list of them is shown, from this one on: */
     uint32_t list_first;
     struct selection selection, asked; /* asked: a click that the child is to answer */
     bool asks;

@@ -50,7 +50,7 @@ static void tone_pixel(const struct live *live, const struct tone *tone, size_t 
     if (live->has_lines)
         overlay_ink(live->lines[pixel], rgb);
     for (size_t c = 0; c < 3; c++)
-        live->canvas[3 * pixel + c] = png_write_byte(tone_apply(tone, (double)rgb[c]));
+        live->image[3 * pixel + c] = png_write_byte(tone_apply(tone, (double)rgb[c]));
 }
 
 static struct tone tone_of(const struct live *live) {
@@ -82,7 +82,7 @@ static void draw_pixel(struct live *live, const struct tone *tone, uint32_t x, u
         for (uint32_t u = x * divide; u < (x + 1) * divide && u < request->width; u++) {
             size_t pixel = (size_t)v * request->width + u;
             if (red) {
-                memcpy(live->canvas + 3 * pixel, mark, 3);
+                memcpy(live->image + 3 * pixel, mark, 3);
                 continue;
             }
             memcpy(live->light + 3 * pixel, colour, 3 * sizeof *colour);
@@ -90,7 +90,7 @@ static void draw_pixel(struct live *live, const struct tone *tone, uint32_t x, u
             if (!begun || lined)
                 tone_pixel(live, tone, pixel);
             else
-                memcpy(live->canvas + 3 * pixel, live->canvas + 3 * first, 3);
+                memcpy(live->image + 3 * pixel, live->image + 3 * first, 3);
             first = lined || begun ? first : pixel;
             begun = begun || !lined;
         }
@@ -209,7 +209,7 @@ void live_show(struct live *live, double now) {
         live->told = due ? now : live->told;
     }
     const struct live_place *place = &live->place;
-    struct window_frame frame = {.picture = live->canvas,
+    struct window_frame frame = {.picture = live->image,
                                  .width = live->request.width,
                                  .height = live->request.height,
                                  .picture_changed = live->dirty,

@@ -126,7 +126,7 @@ void live_select_light(struct live *live, uint32_t number) {
     live->selection = (struct selection){.kind = SELECTED_LIGHT, .light = number};
     live->joins = false;
     live->over_dirty = true;
-    live->light_top = fmax(1, largest(live_light_colour_now(live)));
+    live->light_colour_max = fmax(1, largest(live_light_colour_now(live)));
 }
 
 void live_next_light(struct live *live, bool back) {

@@ -357,7 +357,7 @@ static void tell_light(struct live *live, struct column *column) {
     column->y += panel_line_height(panel);
     (void)snprintf(row, sizeof row, "%+.2f stops", stops);
     tell_text(live, column, row);
-    if (tell_sliders(live, column, live->light_top, &colour))
+    if (tell_sliders(live, column, live->light_colour_max, &colour))
         live_light_colour(live, colour);
 }
 

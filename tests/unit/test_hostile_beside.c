@@ -396,13 +396,13 @@ TEST(hostile_what_an_interruption_writes_follows_the_rules_of_pictures) {
 static int save(bool (*one)(const struct live *, const struct file_target *, char *, struct error *)) {
     static struct live live;
     static const struct file_rules rules = {.never_replace = true};
-    static uint8_t canvas[3 * 4 * 3];
+    static uint8_t image[3 * 4 * 3];
     const struct file_target picture = {.path = "x.png", .rules = &rules};
     char name[4096];
     struct error error;
     live.request.width = 4;
     live.request.height = 3;
-    live.canvas = canvas;
+    live.image = image;
     (void)snprintf(live.request.file, sizeof live.request.file, "x.png");
     for (int i = 0; i < 3; i++) {
         if (!one(&live, &picture, name, &error))
