@@ -34,8 +34,8 @@ fi
     }
 }'
 [ -s "$out/sheet.stl" ] || "$out/formats" --stl "$out/sheet.obj" "$out/sheet.stl"
-[ -s "$out/sheet_binary.ply" ] || "$out/formats" --ply "$out/sheet.obj" "$out/sheet_binary.ply"
-set -- "$out/sheet.obj" "$out/sheet.ply" "$out/sheet_binary.ply" "$out/sheet.stl"
+[ -s "$out/text_writer_binary.ply" ] || "$out/formats" --ply "$out/sheet.obj" "$out/text_writer_binary.ply"
+set -- "$out/sheet.obj" "$out/sheet.ply" "$out/text_writer_binary.ply" "$out/sheet.stl"
 for model in ../shared/models/igea.ply ../shared/models/nefertiti.obj ../shared/models/stanford-bunny.obj; do
     [ -f "$model" ] && set -- "$@" "$model"
 done

@@ -20,7 +20,7 @@
 #define START_COST 1.2 /* of a hierarchy in a voxel */
 /* Of a ray that walks voxels over a mesh, once: it is brought to the frame and less sure of its hits (2.5), and goes
  * alone where rays of one origin go together (a third of them, at half the price: 1.5). */
-#define WALK_COST 4.0
+#define FLY_COST 4.0
 
 enum { BIG_ITEM = 64 /* voxels */, ENOUGH = 4 /* samples to an occupied voxel */ };
 
@@ -106,7 +106,7 @@ void frame_census_take(struct frame_census *census, const struct box *bounds, fr
     uint32_t stride = count > samples ? count / samples : 1, most = 2, kept = 0;
     while (most < levels && (double)(UINT64_C(1) << 3 * (most - 1)) < count)
         most++;
-    most = most < FRAME_LEVELS ? most : FRAME_LEVELS;
+    most = most < MESSAGE_LEVELS ? most : MESSAGE_LEVELS;
     size_t largest = (size_t)1 << 3 * (most - 1);
     struct box *boxes = mem_alloc(((size_t)count / stride + 1) * sizeof *boxes);
     uint32_t *counts = mem_alloc(largest * sizeof *counts);
@@ -155,7 +155,7 @@ struct frame_of_mesh frame_over_mesh(const struct frame_census *census) {
     uint32_t last = census->level_count - 1;
     for (uint32_t l = 0; l <= last; l++) {
         const struct frame_level *at = &census->levels[l];
-        double walk = l > 0 ? WALK_COST + STEP_COST * at->visited : 0, starts = START_COST * at->occupied;
+        double walk = l > 0 ? FLY_COST + STEP_COST * at->visited : 0, starts = START_COST * at->occupied;
         double across = 0, depth = 0;
         for (uint32_t below = l + 1; below <= last; below++) {
             double nodes = growth(census, below, 8);

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { FRAME_LEVELS = 7 };
+enum { MESSAGE_LEVELS = 7 };
 
 /* Level l has cubical voxels, 2^l along the longest axis. */
 struct frame_level {
@@ -20,7 +20,7 @@ struct frame_level {
 };
 
 struct frame_census {
-    struct frame_level levels[FRAME_LEVELS];
+    struct frame_level levels[MESSAGE_LEVELS];
     uint32_t level_count; /* 1: nothing to choose from, or no memory */
     double items;
 };
@@ -42,7 +42,7 @@ struct frame_choice frame_lists_or_hierarchy(const struct frame_census *census);
 /* A frame over a mesh: for every level of the census what a ray costs through voxels with hierarchies of eight children
  * to a node in them, in visits of a node and beyond what all levels have in common; and the level that costs least. */
 struct frame_of_mesh {
-    double costs[FRAME_LEVELS];
+    double costs[MESSAGE_LEVELS];
     uint32_t level;
 };
 struct frame_of_mesh frame_over_mesh(const struct frame_census *census);

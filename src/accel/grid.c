@@ -18,7 +18,7 @@
 #include "base/mem.h"
 #include "math/elementary.h"
 
-enum { WALK_UNBOUNDED, WALK_VOXELS, WALK_EVERYTHING, WALK_DONE };
+enum { FLY_UNBOUNDED, FLY_VOXELS, FLY_EVERYTHING, FLY_DONE };
 enum { POLL_ITEMS = 4096 }; /* how often building asks whether it was cancelled */
 
 #define SLACK 0x1p-12   /* of a voxel */
@@ -240,7 +240,7 @@ static bool enter_grid(struct grid_walk *walk, const struct grid *grid, const st
     double t_enter, t_exit;
     if (!grid->cell_start || !box_clip(&grid->bounds, ray, &t_enter, &t_exit))
         return false;
-    walk->state = WALK_VOXELS;
+    walk->state = FLY_VOXELS;
     walk->t_end = t_exit;
     walk->cell = 0;
     int64_t stride = 1;
@@ -254,7 +254,7 @@ static bool enter_grid(struct grid_walk *walk, const struct grid *grid, const st
         walk->left[i] = 0;
         if (cells > 1) {
             if (!(fabs(o) < cell * FAR_AWAY))
-                walk->state = WALK_EVERYTHING;
+                walk->state = FLY_EVERYTHING;
             uint32_t index = voxel_index(grid, i, d != 0 ? o + t_enter * d : o);
             walk->cell += stride * (int64_t)index;
             if (d != 0) {
@@ -285,7 +285,7 @@ static int next_axis(const struct grid_walk *walk) {
 }
 
 /* Steps until a voxel has items. */
-static bool walk_on(struct grid_walk *walk, bool step_first) {
+static bool fly_camera_on(struct grid_walk *walk, bool step_first) {
     for (;;) {
         int axis = next_axis(walk);
         if (step_first) {
@@ -303,13 +303,13 @@ static bool walk_on(struct grid_walk *walk, bool step_first) {
             return true;
         }
     }
-    walk->state = WALK_DONE;
+    walk->state = FLY_DONE;
     return false;
 }
 
 static bool offer_everything(struct grid_walk *walk) {
     const struct grid *grid = walk->grid;
-    walk->state = WALK_DONE;
+    walk->state = FLY_DONE;
     walk->items = grid->cell_items;
     walk->count = grid->cell_start[(size_t)grid->cells[0] * grid->cells[1] * grid->cells[2]];
     walk->t_exit = -INFINITY;
@@ -320,7 +320,7 @@ static bool offer_everything(struct grid_walk *walk) {
 bool grid_walk_begin(struct grid_walk *walk, const struct grid *grid, const struct ray *ray) {
     walk->grid = grid;
     walk->voxels = 0;
-    walk->state = WALK_DONE;
+    walk->state = FLY_DONE;
     bool inside = enter_grid(walk, grid, ray);
     if (grid->unbounded_count > 0) {
         walk->items = grid->unbounded;
@@ -330,13 +330,13 @@ bool grid_walk_begin(struct grid_walk *walk, const struct grid *grid, const stru
     }
     if (!inside)
         return false;
-    return walk->state == WALK_EVERYTHING ? offer_everything(walk) : walk_on(walk, false);
+    return walk->state == FLY_EVERYTHING ? offer_everything(walk) : fly_camera_on(walk, false);
 }
 
 bool grid_walk_next(struct grid_walk *walk) {
-    if (walk->state == WALK_DONE)
+    if (walk->state == FLY_DONE)
         return false;
-    if (walk->state == WALK_EVERYTHING)
+    if (walk->state == FLY_EVERYTHING)
         return offer_everything(walk);
-    return walk_on(walk, walk->voxels > 0);
+    return fly_camera_on(walk, walk->voxels > 0);
 }

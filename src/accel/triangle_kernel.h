@@ -498,8 +498,8 @@ done:
     return found;
 }
 
-static inline __attribute__((always_inline)) bool walk_voxels(struct search *s, const enum triangle_search kind,
-                                                              const bool many) {
+static inline __attribute__((always_inline)) bool fly_camera_voxels(struct search *s, const enum triangle_search kind,
+                                                                    const bool many) {
     const struct triangle_index *index = s->index;
     if (!index->voxels)
         return false;
@@ -540,16 +540,16 @@ static inline __attribute__((always_inline)) bool walk_voxels(struct search *s, 
 static inline __attribute__((always_inline)) bool walk(struct search *s, const enum triangle_search kind) {
     const bool many = kind == TRIANGLE_NEAREST && s->set->count > MANY_TRIANGLES;
     if (s->index->only == REF_EMPTY)
-        return walk_voxels(s, kind, many);
+        return fly_camera_voxels(s, kind, many);
     return s->far_away ? descend(s, s->index->only, kind, true, many) : descend(s, s->index->only, kind, false, many);
 }
 
 /* Apart from the kernel of the others, which needs its registers. */
-static __attribute__((noinline)) bool walk_nearest_apart(struct search *s) {
+static __attribute__((noinline)) bool fly_camera_nearest_apart(struct search *s) {
     return walk(s, TRIANGLE_NEAREST);
 }
 
-static __attribute__((noinline)) bool walk_any_apart(struct search *s) {
+static __attribute__((noinline)) bool fly_camera_any_apart(struct search *s) {
     return walk(s, TRIANGLE_ANY);
 }
 
@@ -661,7 +661,7 @@ bool KERNEL(nearest)(const struct triangle_index *index, const struct triangle_s
     if (beginning != RAY_INSIDE)
         return beginning == RAY_UNUSABLE && triangle_brute_nearest(set, ray, hit, cost);
     if (s.moved)
-        walk_nearest_apart(&s);
+        fly_camera_nearest_apart(&s);
     else if (set->count > MANY_TRIANGLES)
         descend(&s, index->only, TRIANGLE_NEAREST, false, true);
     else
@@ -680,7 +680,7 @@ bool KERNEL(any)(const struct triangle_index *index, const struct triangle_set *
     enum beginning beginning = search_begin(&s);
     if (beginning != RAY_INSIDE)
         return beginning == RAY_UNUSABLE && triangle_brute_any(set, ray, cost);
-    return s.moved ? walk_any_apart(&s) : descend(&s, index->only, TRIANGLE_ANY, false, false);
+    return s.moved ? fly_camera_any_apart(&s) : descend(&s, index->only, TRIANGLE_ANY, false, false);
 }
 
 void KERNEL(all)(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,

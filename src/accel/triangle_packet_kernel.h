@@ -444,8 +444,8 @@ static inline __attribute__((always_inline)) uint32_t push_children(struct packe
     return top;
 }
 
-static inline __attribute__((always_inline)) void walk_all(struct packet *p, uint32_t root, const bool any,
-                                                           const bool mixed) {
+static inline __attribute__((always_inline)) void fly_camera_all(struct packet *p, uint32_t root, const bool any,
+                                                                 const bool mixed) {
     struct waiting_box stack[STACK_ENTRIES];
     uint32_t top = 0;
     if (root & REF_LEAF) {
@@ -468,13 +468,13 @@ static inline __attribute__((always_inline)) void walk_all(struct packet *p, uin
 
 static void walk(struct packet *p, uint32_t root, const bool any) {
     if (any && p->mixed)
-        walk_all(p, root, true, true);
+        fly_camera_all(p, root, true, true);
     else if (any)
-        walk_all(p, root, true, false);
+        fly_camera_all(p, root, true, false);
     else if (p->mixed)
-        walk_all(p, root, false, true);
+        fly_camera_all(p, root, false, true);
     else
-        walk_all(p, root, false, false);
+        fly_camera_all(p, root, false, false);
 }
 
 /* ---- beginning ---- */

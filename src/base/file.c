@@ -17,12 +17,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Where file_set_witness and file_set_listener say: the two things here that outlive a call. */
-static struct file_witness *file_witness;
+/* Where file_set_read_log and file_set_listener say: the two things here that outlive a call. */
+static struct file_read_log *file_read_log;
 static const struct file_listener *file_listener;
 
-void file_set_witness(struct file_witness *witness) {
-    file_witness = witness;
+void file_set_read_log(struct file_read_log *read_log) {
+    file_read_log = read_log;
 }
 
 void file_set_listener(const struct file_listener *listener) {
@@ -110,22 +110,22 @@ bool file_identity_of_descriptor(int descriptor, struct file_identity *out) {
 }
 
 static void note_content(struct digest content) {
-    struct file_witness *witness = file_witness;
-    for (size_t i = 0; i < witness->count; i++) {
-        if (digest_equal(witness->contents[i], content))
+    struct file_read_log *read_log = file_read_log;
+    for (size_t i = 0; i < read_log->count; i++) {
+        if (digest_equal(read_log->contents[i], content))
             return;
     }
-    if (witness->count == witness->room) {
-        size_t room = witness->room ? 2 * witness->room : 16;
-        struct digest *more = mem_resize(witness->contents, room * sizeof *more);
+    if (read_log->count == read_log->room) {
+        size_t room = read_log->room ? 2 * read_log->room : 16;
+        struct digest *more = mem_resize(read_log->contents, room * sizeof *more);
         if (!more) {
-            witness->incomplete = true;
+            read_log->incomplete = true;
             return;
         }
-        witness->contents = more;
-        witness->room = room;
+        read_log->contents = more;
+        read_log->room = room;
     }
-    witness->contents[witness->count++] = content;
+    read_log->contents[read_log->count++] = content;
 }
 
 /* False: it could not be read to its end. */
@@ -153,14 +153,14 @@ static struct file_version version_of(const struct stat *status) {
 void file_note_read(int descriptor, const char *path) {
     struct stat status;
     const struct file_listener *listener = file_listener;
-    if ((!file_witness && !listener) || MAY_FAIL(fstat(descriptor, &status)) != 0 || !S_ISREG(status.st_mode))
+    if ((!file_read_log && !listener) || MAY_FAIL(fstat(descriptor, &status)) != 0 || !S_ISREG(status.st_mode))
         return;
     struct file_version version = version_of(&status);
-    if (file_witness || listener->contents) {
+    if (file_read_log || listener->contents) {
         bool whole = digest_of(descriptor, &version.content);
-        if (file_witness && !whole)
-            file_witness->incomplete = true;
-        if (file_witness)
+        if (file_read_log && !whole)
+            file_read_log->incomplete = true;
+        if (file_read_log)
             note_content(version.content);
     }
     if (listener)
@@ -207,21 +207,21 @@ bool file_digest(const char *path, struct digest *digest) {
     return ok;
 }
 
-struct digest file_witness_sum(const struct file_witness *witness) {
-    struct digest sum = {witness->count, 0};
-    for (size_t i = 0; i < witness->count; i++) {
-        struct digest one = digest_bytes(&witness->contents[i], sizeof witness->contents[i], (struct digest){0});
+struct digest file_read_log_sum(const struct file_read_log *read_log) {
+    struct digest sum = {read_log->count, 0};
+    for (size_t i = 0; i < read_log->count; i++) {
+        struct digest one = digest_bytes(&read_log->contents[i], sizeof read_log->contents[i], (struct digest){0});
         sum.a += one.a;
         sum.b += one.b;
     }
     return sum;
 }
 
-void file_witness_destroy(struct file_witness *witness) {
-    if (file_witness == witness)
-        file_witness = NULL;
-    mem_free(witness->contents);
-    *witness = (struct file_witness){0};
+void file_read_log_destroy(struct file_read_log *read_log) {
+    if (file_read_log == read_log)
+        file_read_log = NULL;
+    mem_free(read_log->contents);
+    *read_log = (struct file_read_log){0};
 }
 
 /* The size of an open regular file; anything else is an error. */

@@ -51,15 +51,15 @@ bool file_source_read(const struct file_source *source, uint64_t at, void *out, 
 void file_source_close(struct file_source *source);
 
 /* The contents of all files that this process has read, each once, whatever its name: whether a picture that was half
- * made elsewhere or earlier was made of the same. Zero-initialise; file_witness_destroy gives the list back. */
-struct file_witness {
+ * made elsewhere or earlier was made of the same. Zero-initialise; file_read_log_destroy gives the list back. */
+struct file_read_log {
     struct digest *contents;
     size_t count, room;
     bool incomplete; /* no memory for one of them, or one could not be read again */
 };
 /* From now on every file that is read is noted in `witness`, which must stay; NULL: none is. Set once, before the first
  * scene, by the thread that reads files. */
-void file_set_witness(struct file_witness *witness);
+void file_set_read_log(struct file_read_log *witness);
 /* What a file held, and when: two versions that are told apart by size and time need not be read again. */
 struct file_version {
     struct file_identity identity;
@@ -74,7 +74,7 @@ struct file_listener {
     bool contents; /* versions have digests */
     void *context;
 };
-/* As file_set_witness. */
+/* As file_set_read_log. */
 void file_set_listener(const struct file_listener *listener);
 /* The version that stands under this name now; false: none that can be read. `known`, or NULL: when size and time are
  * its own the content is taken to be, too. */
@@ -86,8 +86,8 @@ void file_note_write(int descriptor, const char *path);
 /* The content of a regular file, which is opened only when it is one; false: there is none that can be read. */
 bool file_digest(const char *path, struct digest *digest);
 /* Does not depend on the order in which the files were read. */
-struct digest file_witness_sum(const struct file_witness *witness);
-void file_witness_destroy(struct file_witness *witness);
+struct digest file_read_log_sum(const struct file_read_log *witness);
+void file_read_log_destroy(struct file_read_log *witness);
 
 /* Anything of this name, a link that leads nowhere too. */
 bool file_exists(const char *path);

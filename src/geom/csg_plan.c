@@ -178,7 +178,8 @@ static void add_live(struct live *parent, bool decides, struct box box) {
 
 /* Where the truth of each node may differ from that at the start, bottom up; then what of it the nodes above leave, top
  * down; then the same for the leaves, in plan->boxes, which come in as the leaves' own. */
-static void live_boxes(struct csg *csg, struct csg_plan *plan, const bool *is_all, struct live *live, uint32_t *trims) {
+static void viewer_boxes(struct csg *csg, struct csg_plan *plan, const bool *is_all, struct live *live,
+                         uint32_t *trims) {
     for (uint32_t i = 0; i < plan->node_count; i++)
         live[i] = (struct live){.decided = box_all(), .joined = box_empty(), .first_trim = CSG_NONE};
     for (uint32_t i = csg->leaf_count; i-- > 0;) {
@@ -364,7 +365,7 @@ static bool fill_plan(struct csg *csg, struct csg_plan *plan, struct error *erro
         plan->clip_root = csg->clipped ? build_nodes(csg, plan, csg->solid_length, length, pending, flags) : CSG_NONE;
         start_truth(csg, plan, flags);
         csg->inside_out = plan->starts_in;
-        live_boxes(csg, plan, flags, live, trims);
+        viewer_boxes(csg, plan, flags, live, trims);
         build_bounds(plan, 0, leaf_count, leaf_count <= FEW_LEAVES ? FEW_LEAVES : LEAVES_PER_BOUND);
         choose_probes(plan);
         choose_needed(csg, plan, flags);

@@ -208,7 +208,7 @@ static inline double greater(double a, double b) {
 }
 
 /* The line over one triangle, from s = from to s = to. */
-static bool walk_triangle(struct walk *w, uint32_t column, uint32_t row, bool upper, double from, double to) {
+static bool fly_camera_triangle(struct walk *w, uint32_t column, uint32_t row, bool upper, double from, double to) {
     double start = phi(w, from, column, row, upper), end = phi(w, to, column, row, upper);
     if (!w->known) {
         w->known = true;
@@ -223,14 +223,14 @@ static bool walk_triangle(struct walk *w, uint32_t column, uint32_t row, bool up
     return cross(w, lesser(greater(s, from), to), part);
 }
 
-static bool walk_cell(struct walk *w, uint32_t column, uint32_t row, double from, double to) {
+static bool fly_camera_cell(struct walk *w, uint32_t column, uint32_t row, double from, double to) {
     double before = (w->z + from * w->dz - row) - (w->x + from * w->dx - column);
     double after = (w->z + to * w->dz - row) - (w->x + to * w->dx - column);
     if ((before > 0) == (after > 0))
-        return walk_triangle(w, column, row, before > 0, from, to);
+        return fly_camera_triangle(w, column, row, before > 0, from, to);
     double middle = from + (to - from) * (before / (before - after));
-    return walk_triangle(w, column, row, before > 0, from, middle) &&
-           walk_triangle(w, column, row, after > 0, middle, to);
+    return fly_camera_triangle(w, column, row, before > 0, from, middle) &&
+           fly_camera_triangle(w, column, row, after > 0, middle, to);
 }
 
 /* The line over or under a whole block. */
@@ -340,7 +340,7 @@ static bool collect(const struct height_field *f, const struct ray *ray, bool ne
         else if (greater(y0, y1) < heights.lo)
             room = pass(&w, true, block.from, column, row);
         else if (block.level == 0)
-            room = walk_cell(&w, column, row, block.from, block.to);
+            room = fly_camera_cell(&w, column, row, block.from, block.to);
         else
             depth = divide(&w, &block, stack, depth);
     }

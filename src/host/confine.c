@@ -385,7 +385,7 @@ static void close_others(int keep) {
 #endif
 }
 
-bool confine_process_as(const struct options *options, int keep, long landlock_at_most, char *report, size_t size,
+bool confine_process_as(const struct options *options, int keep, long landlock_max, char *report, size_t size,
                         struct error *error) {
     struct reach reach = {0};
     bool ok = true;
@@ -396,7 +396,7 @@ bool confine_process_as(const struct options *options, int keep, long landlock_a
         ok = script_reach(options->scripts[i], &options->script, &reach, error);
     ok = ok && (MAY_FAIL(prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)) == 0 ||
                 error_set(error, ERROR_MACHINE, "gray: privileges cannot be given up: %s", strerror(errno)));
-    long landlock = ok ? confine_files(options, &reach, landlock_at_most, error) : -1;
+    long landlock = ok ? confine_files(options, &reach, landlock_max, error) : -1;
     /* What is missing stands first; what confines the process nevertheless follows. */
     char missing[256] = "", files[64] = "checks of file names";
     const char *calls = ", seccomp";

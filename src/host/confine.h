@@ -16,7 +16,7 @@
  * False: the folders of a scene cannot be listed, or what the kernel promised failed half-way. */
 bool confine_process(const struct options *options, int keep, char *report, size_t size, struct error *error);
 /* The same as on a kernel whose Landlock has at most that version; 0: none. */
-bool confine_process_as(const struct options *options, int keep, long landlock_at_most, char *report, size_t size,
+bool confine_process_as(const struct options *options, int keep, long landlock_max, char *report, size_t size,
                         struct error *error);
 
 #endif

@@ -8,105 +8,105 @@
 #include <signal.h>
 #include <stdio.h>
 
-struct alone {
-    struct desk desk;
+struct in_process {
+    struct output_session output;
     int status;
 };
 
-static bool alone_begin(void *context, const struct picture_request *request, struct film *film, bool *already,
-                        struct error *error) {
-    struct alone *alone = context;
-    if (!desk_begin(&alone->desk, request, already, error))
+static bool in_process_begin(void *context, const struct picture_request *request, struct film *film, bool *already,
+                             struct error *error) {
+    struct in_process *in_process = context;
+    if (!output_begin(&in_process->output, request, already, error))
         return false;
-    *film = alone->desk.current.film;
+    *film = in_process->output.current.film;
     return true;
 }
 
-static void alone_abandon(void *context) {
-    struct alone *alone = context;
-    desk_abandon(&alone->desk);
+static void in_process_abandon(void *context) {
+    struct in_process *in_process = context;
+    output_abandon(&in_process->output);
 }
 
-static bool alone_done(void *context, const struct picture_report *report, struct error *error) {
-    struct alone *alone = context;
-    return desk_done(&alone->desk, report, error);
+static bool in_process_done(void *context, const struct picture_report *report, struct error *error) {
+    struct in_process *in_process = context;
+    return output_done(&in_process->output, report, error);
 }
 
-static void alone_line(void *context, enum line_kind kind, const char *text) {
-    struct alone *alone = context;
-    desk_line(&alone->desk, kind, text);
+static void in_process_line(void *context, enum line_kind kind, const char *text) {
+    struct in_process *in_process = context;
+    output_report(&in_process->output, kind, text);
 }
 
-static void alone_script_ended(void *context, int index, int status) {
-    struct alone *alone = context;
+static void in_process_script_ended(void *context, int index, int status) {
+    struct in_process *in_process = context;
     (void)index;
-    if (status > alone->status)
-        alone->status = status;
+    if (status > in_process->status)
+        in_process->status = status;
 }
 
-static void alone_read(void *context, const char *path, const struct file_version *version, bool written) {
-    struct alone *alone = context;
+static void in_process_read(void *context, const char *path, const struct file_version *version, bool written) {
+    struct in_process *in_process = context;
     (void)path;
-    picture_files_keep(&alone->desk.files, version->identity, written);
+    picture_files_keep(&in_process->output.files, version->identity, written);
 }
 
-static void alone_poll(void *context) {
-    struct alone *alone = context;
-    desk_show_progress(&alone->desk);
+static void in_process_poll(void *context) {
+    struct in_process *in_process = context;
+    output_show_progress(&in_process->output);
 }
 
 struct scripts {
     const struct options *options;
-    const struct child_services *services;
+    const struct host_services *services;
 };
 
 static void run_scripts(void *context) {
     const struct scripts *scripts = context;
-    child_run(scripts->options, scripts->services, 0);
+    render_process_run(scripts->options, scripts->services, 0);
 }
 
-static void note_failure(struct alone *alone, const struct error *error) {
-    desk_line(&alone->desk, LINE_ERROR, error->text);
-    alone_script_ended(alone, 0, (int)error->kind);
+static void note_failure(struct in_process *in_process, const struct error *error) {
+    output_report(&in_process->output, LINE_ERROR, error->text);
+    in_process_script_ended(in_process, 0, (int)error->kind);
 }
 
-static int run(struct alone *alone, const struct options *options) {
+static int run(struct in_process *in_process, const struct options *options) {
     struct control control = {0};
     struct error error;
-    struct child_services services = {.context = alone,
-                                      .control = &control,
-                                      .begin = alone_begin,
-                                      .abandon = alone_abandon,
-                                      .done = alone_done,
-                                      .line = alone_line,
-                                      .script_ended = alone_script_ended,
-                                      .read = alone_read,
-                                      .poll = alone_poll};
+    struct host_services services = {.context = in_process,
+                                     .control = &control,
+                                     .begin = in_process_begin,
+                                     .abandon = in_process_abandon,
+                                     .done = in_process_done,
+                                     .line = in_process_line,
+                                     .script_ended = in_process_script_ended,
+                                     .read = in_process_read,
+                                     .poll = in_process_poll};
     struct scripts scripts = {options, &services};
     (void)signal(SIGPIPE, SIG_IGN);
     (void)signal(SIGXFSZ, SIG_IGN);
-    desk_init(&alone->desk, options, &control);
-    desk_tell_trust(&alone->desk);
+    output_init(&in_process->output, options, &control);
+    output_warn_no_sandbox(&in_process->output);
     if (!options->script.no_sandbox)
-        desk_line(&alone->desk, LINE_WARNING,
-                  "gray: warning: --no-fork: no Landlock, no seccomp filter: confined by checks of file names");
+        output_report(&in_process->output, LINE_WARNING,
+                      "gray: warning: --no-fork: no Landlock, no seccomp filter: confined by checks of file names");
     if (!pool_call_with_stack(run_scripts, &scripts, &error))
-        note_failure(alone, &error);
-    if (!desk_finish(&alone->desk, alone->status == 0, &error))
-        note_failure(alone, &error);
-    if (!desk_finish_output(&alone->desk, &error))
-        note_failure(alone, &error);
-    return alone->status;
+        note_failure(in_process, &error);
+    if (!output_finish(&in_process->output, in_process->status == 0, &error))
+        note_failure(in_process, &error);
+    if (!output_flush_streams(&in_process->output, &error))
+        note_failure(in_process, &error);
+    return in_process->status;
 }
 
 /* Not on the stack: that may be a small one. */
-int alone_run(const struct options *options) {
-    struct alone *alone = mem_alloc_zero(1, sizeof *alone);
-    if (!alone) {
+int in_process_run(const struct options *options) {
+    struct in_process *in_process = mem_alloc_zero(1, sizeof *in_process);
+    if (!in_process) {
         (void)fputs("gray: out of memory\n", stderr);
         return ERROR_MACHINE;
     }
-    int status = run(alone, options);
-    mem_free(alone);
+    int status = run(in_process, options);
+    mem_free(in_process);
     return status;
 }

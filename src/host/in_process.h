@@ -5,6 +5,6 @@
 #include "session/options.h"
 
 /* Makes every picture of every script; returns the exit status of the program. */
-int alone_run(const struct options *options);
+int in_process_run(const struct options *options);
 
 #endif

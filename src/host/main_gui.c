@@ -14,7 +14,7 @@ struct sdl {
     int width, height; /* of the window in pixels */
     double unit;       /* pixels for a unit of the desktop, in which the mouse is told */
     double density;    /* pixels for what people see as one: of letters */
-    bool full, size_told;
+    bool full, size_sent;
 };
 
 static void close_window(void *context) {
@@ -50,7 +50,7 @@ static bool measure(struct sdl *sdl) {
     if (SDL_GetRendererOutputSize(sdl->renderer, &width, &height) != 0)
         return false;
     SDL_GetWindowSize(sdl->window, &units, &ignored);
-    bool other = width != sdl->width || height != sdl->height || !sdl->size_told;
+    bool other = width != sdl->width || height != sdl->height || !sdl->size_sent;
     sdl->width = width;
     sdl->height = height;
     sdl->unit = units > 0 && width > 0 ? (double)width / units : 1;
@@ -175,8 +175,8 @@ static int button_of(int button) {
     return button == SDL_BUTTON_LEFT ? WINDOW_LEFT : button == SDL_BUTTON_RIGHT ? WINDOW_RIGHT : WINDOW_MIDDLE;
 }
 
-static void tell_size(struct sdl *sdl, struct window_event *out) {
-    sdl->size_told = true;
+static void send_size(struct sdl *sdl, struct window_event *out) {
+    sdl->size_sent = true;
     *out = (struct window_event){.kind = WINDOW_SIZE, .x = sdl->width, .y = sdl->height, .density = sdl->density};
 }
 
@@ -220,7 +220,7 @@ static bool translate(struct sdl *sdl, const SDL_Event *in, struct window_event 
         /* What was covered is drawn again by whoever is told the size. */
         if (in->window.event == SDL_WINDOWEVENT_EXPOSED || in->window.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
             (void)measure(sdl);
-            tell_size(sdl, out);
+            send_size(sdl, out);
             return true;
         }
         out->kind = WINDOW_LEAVE;
@@ -233,8 +233,8 @@ static bool translate(struct sdl *sdl, const SDL_Event *in, struct window_event 
 static bool poll_event(void *context, struct window_event *event) {
     struct sdl *sdl = context;
     SDL_Event in;
-    if (!sdl->size_told) {
-        tell_size(sdl, event);
+    if (!sdl->size_sent) {
+        send_size(sdl, event);
         return true;
     }
     while (SDL_PollEvent(&in)) {

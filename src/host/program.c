@@ -87,7 +87,7 @@ static void help_only(struct options *options) {
 
 static int render(struct options *options, const struct program_parts *parts) {
     if (options->no_fork)
-        return alone_run(options);
+        return in_process_run(options);
     struct program_parts wanted = {.transport = options->mpi ? parts->transport : NULL,
                                    .window = options->window ? parts->window : NULL};
     if (wanted.transport && wanted.transport->rank > 0)

@@ -18,11 +18,11 @@ void supervisor_note_status(struct supervisor *supervisor, int status) {
 
 /* In the terminal, and what is wrong in the window, too. */
 void supervisor_report(struct supervisor *supervisor, enum line_kind kind, const char *text) {
-    desk_line(&supervisor->desk, kind, text);
+    output_report(&supervisor->output, kind, text);
     if (kind == LINE_ERROR)
-        live_tell(&supervisor->live, text);
+        viewer_show_message(&supervisor->viewer, text);
     if (kind == LINE_OUTPUT)
-        live_hear(&supervisor->live, text);
+        viewer_add_pixel_trace(&supervisor->viewer, text);
 }
 
 void supervisor_note_error(struct supervisor *supervisor, const struct error *error) {
@@ -33,13 +33,13 @@ void supervisor_note_error(struct supervisor *supervisor, const struct error *er
 /* What happened to ranks. */
 static void show_notes(struct supervisor *supervisor) {
     char line[2048];
-    while (supervisor->desk.farm && farm_next_note(supervisor->desk.farm, line, sizeof line))
-        desk_line(&supervisor->desk, LINE_WARNING, line);
+    while (supervisor->output.farm && farm_next_note(supervisor->output.farm, line, sizeof line))
+        output_report(&supervisor->output, LINE_WARNING, line);
 }
 
 /* Another rank ends with the first one. */
 static void leave_abandoned(struct supervisor *supervisor) {
-    if (!supervisor->desk.farm || supervisor->ended || !farm_is_abandoned(supervisor->desk.farm))
+    if (!supervisor->output.farm || supervisor->ended || !farm_is_abandoned(supervisor->output.farm))
         return;
     text_print_line(stderr, "gray: the first rank of the farm has been silent for too long, this one ends");
     supervisor_interrupt(supervisor);
@@ -48,13 +48,13 @@ static void leave_abandoned(struct supervisor *supervisor) {
 
 /* Milliseconds to wait for the next frame at most; -1: until it comes. */
 static int poll_time(const struct supervisor *supervisor) {
-    if (supervisor->desk.farm)
+    if (supervisor->output.farm)
         return 2;
     if (supervisor->window)
         return 4;
     if (supervisor->deadline > 0)
         return 5;
-    return supervisor->desk.current.open || supervisor->watch.open ? 50 : supervisor_script_patience(supervisor);
+    return supervisor->output.current.open || supervisor->watch.open ? 50 : supervisor_script_patience(supervisor);
 }
 
 static bool files_changed(struct supervisor *supervisor) {
@@ -66,7 +66,7 @@ static bool files_changed(struct supervisor *supervisor) {
 
 /* Until the child closes its end, or has nothing more to do until something changes. */
 static void talk_to_child(struct supervisor *supervisor) {
-    struct frame frame;
+    struct message message;
     while (!supervisor->broken) {
         struct pollfd watched[2] = {{.fd = supervisor->channel.descriptor, .events = POLLIN},
                                     {.fd = supervisor->signals, .events = POLLIN}};
@@ -85,18 +85,18 @@ static void talk_to_child(struct supervisor *supervisor) {
         leave_abandoned(supervisor);
         if (supervisor->deadline > 0 && progress_clock() > supervisor->deadline)
             break;
-        desk_show_progress(&supervisor->desk);
+        output_show_progress(&supervisor->output);
         show_notes(supervisor);
         supervisor_step_window(supervisor);
         if (files_changed(supervisor))
             supervisor_restart(supervisor);
         if (!watched[0].revents)
             continue;
-        enum channel_result result = channel_receive(&supervisor->channel, &frame);
+        enum channel_result result = channel_receive(&supervisor->channel, &message);
         if (result == CHANNEL_END)
             return;
-        if (result == CHANNEL_FRAME)
-            supervisor_take_message(supervisor, &frame);
+        if (result == CHANNEL_MESSAGE)
+            supervisor_take_message(supervisor, &message);
         else
             supervisor->broken = true;
         if (supervisor->waits)
@@ -113,7 +113,7 @@ static void run_children(struct supervisor *supervisor) {
         supervisor->broken = false;
         if (!there && !supervisor_start_child(supervisor, &error)) {
             supervisor_note_error(supervisor, &error);
-            desk_abandon(&supervisor->desk);
+            output_abandon(&supervisor->output);
             supervisor->retry.kept = 0;
             return;
         }
@@ -133,7 +133,7 @@ static bool wait_for_change(struct supervisor *supervisor) {
     supervisor->waits = true;
     watch_settle(&supervisor->watch, supervisor->status != 0, progress_clock());
     if (!supervisor->window && !supervisor->restarts)
-        desk_line(&supervisor->desk, LINE_NOTICE, "gray: notice: waiting for changes (Ctrl-C ends)");
+        output_report(&supervisor->output, LINE_NOTICE, "gray: notice: waiting for changes (Ctrl-C ends)");
     supervisor->stop = false;
     supervisor->deadline = 0;
     while (!supervisor->ended && !supervisor->restarts) {
@@ -155,7 +155,7 @@ static void answer_again(struct supervisor *supervisor, bool again) {
     const struct error none = {0};
     if (supervisor->child <= 0)
         return;
-    supervisor_send_answer(supervisor, FRAME_ANSWER, again, false, &none, -1);
+    supervisor_send_answer(supervisor, MESSAGE_ANSWER, again, false, &none, -1);
     if (again) {
         supervisor_start_script_clock(supervisor);
         return;
@@ -180,13 +180,13 @@ static void run_and_watch(struct supervisor *supervisor) {
     struct error error;
     run_children(supervisor);
     while (supervisor->watch.open && !supervisor->ended) {
-        if (!supervisor->restarts && !desk_settle(&supervisor->desk, &error))
+        if (!supervisor->restarts && !output_write_held(&supervisor->output, &error))
             supervisor_note_error(supervisor, &error);
         if (!wait_for_change(supervisor))
             break;
         supervisor->watch.any = false;
-        live_keep(&supervisor->live);
-        desk_restart(&supervisor->desk);
+        viewer_keep(&supervisor->viewer);
+        output_restart(&supervisor->output);
         supervisor->restarts = supervisor->waits = supervisor->stop = false;
         supervisor->deadline = 0;
         supervisor->status = supervisor->next_script = 0;
@@ -206,9 +206,9 @@ static void poll_in_farm(void *context) {
     show_notes(supervisor);
 }
 
-static void tell_foreign_line(void *context, const char *line) {
+static void report_foreign_line(void *context, const char *line) {
     struct supervisor *supervisor = context;
-    desk_line(&supervisor->desk, LINE_WARNING, line);
+    output_report(&supervisor->output, LINE_WARNING, line);
 }
 
 static bool start_farm(struct supervisor *supervisor, const struct farm_transport *transport, struct error *error) {
@@ -216,29 +216,30 @@ static bool start_farm(struct supervisor *supervisor, const struct farm_transpor
     uint32_t threads = (uint32_t)(supervisor->options->threads ? supervisor->options->threads : processors);
     if (!transport)
         return true;
-    supervisor->desk.farm = farm_create(transport, 2 * threads, supervisor->options->farm_silence, supervisor->control);
-    if (!supervisor->desk.farm)
+    supervisor->output.farm =
+        farm_create(transport, 2 * threads, supervisor->options->farm_silence, supervisor->control);
+    if (!supervisor->output.farm)
         return error_no_memory(error, "the farm");
     atomic_store(&supervisor->control->error_stream.mute, transport->rank > 0);
-    farm_set_poll(supervisor->desk.farm, poll_in_farm, supervisor);
+    farm_set_poll(supervisor->output.farm, poll_in_farm, supervisor);
     return true;
 }
 
 /* The first rank stays until the others have ended; all is written before. It also says what became of the pictures:
  * what went wrong on another rank alone is a line, not a status. */
 static void end_farm(struct supervisor *supervisor) {
-    struct farm *farm = supervisor->desk.farm;
+    struct farm *farm = supervisor->output.farm;
     if (!farm)
         return;
     bool interrupted = supervisor->ended && supervisor->status == ERROR_CANCELLED;
     supervisor->all_written = true;
     if (!farm_is_first(farm) && !interrupted)
         supervisor->status = 0;
-    farm_finish(farm, supervisor->status == 0, tell_foreign_line, supervisor);
+    farm_finish(farm, supervisor->status == 0, report_foreign_line, supervisor);
     leave_abandoned(supervisor);
     show_notes(supervisor);
     farm_destroy(farm);
-    supervisor->desk.farm = NULL;
+    supervisor->output.farm = NULL;
     mem_free(supervisor->retry.settled);
     supervisor->retry.settled = NULL;
 }
@@ -247,35 +248,35 @@ static int run(struct supervisor *supervisor, const struct farm_transport *trans
     const struct options *options = supervisor->options;
     struct error error;
     supervisor->control = mem_share(sizeof *supervisor->control);
-    supervisor->live.control = supervisor->control;
-    supervisor->live.tells = options->verbose;
-    desk_init(&supervisor->desk, options, supervisor->control);
-    supervisor->desk.takes_text = supervisor_wait_for_reader;
-    supervisor->desk.takes_context = supervisor;
+    supervisor->viewer.control = supervisor->control;
+    supervisor->viewer.logs_notes = options->verbose;
+    output_init(&supervisor->output, options, supervisor->control);
+    supervisor->output.wait_for_text = supervisor_wait_for_reader;
+    supervisor->output.wait_context = supervisor;
     bool ready = supervisor->control
                      ? supervisor_listen(supervisor, &error) && start_farm(supervisor, transport, &error) &&
                            (!options->watch || watch_scripts(supervisor, &error))
                      : error_no_memory(&error, "the rendering process");
     if (ready)
         standard_streams_begin(&supervisor->streams);
-    desk_set_interrupt(&supervisor->desk,
-                       &(struct file_interrupt){supervisor->signals, supervisor_is_stopped, supervisor});
-    desk_tell_trust(&supervisor->desk);
+    output_set_interrupt(&supervisor->output,
+                         &(struct file_interrupt){supervisor->signals, supervisor_is_stopped, supervisor});
+    output_warn_no_sandbox(&supervisor->output);
     if (ready)
         run_and_watch(supervisor);
     else
         supervisor_note_error(supervisor, &error);
-    live_end(&supervisor->live);
+    viewer_end(&supervisor->viewer);
     if (supervisor->quit_at > 0) {
         char line[80];
         (void)snprintf(line, sizeof line, "gray: the window closed in %.1f ms",
                        1000 * (progress_clock() - supervisor->quit_at));
-        desk_line(&supervisor->desk, LINE_DETAIL, line);
+        output_report(&supervisor->output, LINE_DETAIL, line);
     }
     watch_close(&supervisor->watch);
-    if (!desk_finish(&supervisor->desk, supervisor->status == 0, &error) && error.kind != ERROR_CANCELLED)
+    if (!output_finish(&supervisor->output, supervisor->status == 0, &error) && error.kind != ERROR_CANCELLED)
         supervisor_note_error(supervisor, &error);
-    if (!desk_finish_output(&supervisor->desk, &error))
+    if (!output_flush_streams(&supervisor->output, &error))
         supervisor_note_error(supervisor, &error);
     end_farm(supervisor);
     standard_streams_end(&supervisor->streams);

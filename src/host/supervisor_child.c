@@ -55,7 +55,7 @@ int supervisor_script_patience(const struct supervisor *supervisor) {
 }
 
 /* What is in force is a detail; what is missing is a warning, once in a run, without the list of folders. */
-static void report_confinement(const struct supervisor *supervisor, const struct child_services *services,
+static void report_confinement(const struct supervisor *supervisor, const struct host_services *services,
                                char *report) {
     static const char warning[] = "gray: warning: ";
     enum line_kind kind = LINE_DETAIL;
@@ -68,20 +68,20 @@ static void report_confinement(const struct supervisor *supervisor, const struct
 }
 
 /* What runs in the child once it is confined. */
-struct child_work {
+struct process_work {
     const struct options *options;
-    const struct child_services *services;
+    const struct host_services *services;
     int first;
 };
 
 static void work_in_child(void *context) {
-    const struct child_work *work = context;
-    child_run(work->options, work->services, work->first);
+    const struct process_work *work = context;
+    render_process_run(work->options, work->services, work->first);
 }
 
 /* No script can run: one line, and all of them have ended. */
-static _Noreturn void give_up(const struct child_work *work, const struct error *error) {
-    const struct child_services *services = work->services;
+static _Noreturn void give_up(const struct process_work *work, const struct error *error) {
+    const struct host_services *services = work->services;
     services->line(services->context, LINE_ERROR, error->text);
     for (int i = work->first; i < work->options->script_count; i++)
         services->script_ended(services->context, i, (int)error->kind);
@@ -95,11 +95,11 @@ static _Noreturn void give_up(const struct child_work *work, const struct error 
 bool supervisor_child_is_stalled(struct supervisor *supervisor) {
     double limit = supervisor->options->farm_stall, now = progress_clock(), pause = limit / 32;
     double passed = now - supervisor->stall.checked;
-    if (!supervisor->desk.farm || limit <= 0 || passed < pause)
+    if (!supervisor->output.farm || limit <= 0 || passed < pause)
         return false;
     double used = child_clock(supervisor);
     enum process_state state = process_state(supervisor->child);
-    const struct picture *picture = &supervisor->desk.current;
+    const struct picture *picture = &supervisor->output.current;
     bool renders = picture->open && !picture->request.check && !supervisor->retry.kept;
     bool might = state == PROCESS_STOPPED || (state == PROCESS_WAITS && renders);
     supervisor->stall.checked = now;
@@ -110,14 +110,14 @@ bool supervisor_child_is_stalled(struct supervisor *supervisor) {
     return supervisor->stall.seconds >= limit;
 }
 
-/* In the child, after the fork: never returns. From child_run on this process needs the channel, the memory it gets,
- * and the files that scenes may read: confine_process takes the rest away. */
+/* In the child, after the fork: never returns. From render_process_run on this process needs the channel, the memory it
+ * gets, and the files that scenes may read: confine_process takes the rest away. */
 static _Noreturn void be_child(struct supervisor *supervisor, struct channel channel, pid_t parent) {
     standard_streams_end(&supervisor->streams);
     (void)close(supervisor->signals);
     watch_close(&supervisor->watch);
     channel_close(&supervisor->channel);
-    display_close(&supervisor->desk.display);
+    display_close(&supervisor->output.display);
     /* Ctrl-C reaches the whole group; the supervisor passes on what it means. */
     (void)signal(SIGINT, SIG_IGN);
     (void)signal(SIGTERM, SIG_IGN);
@@ -128,9 +128,9 @@ static _Noreturn void be_child(struct supervisor *supervisor, struct channel cha
     if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != parent)
         _exit(ERROR_MACHINE);
     (void)setvbuf(stdout, NULL, _IOLBF, BUFSIZ);
-    struct child_link link = {.channel = channel};
-    struct child_services services = child_link_services(&link, supervisor->control);
-    struct child_work work = {supervisor->options, &services, supervisor->next_script};
+    struct channel_services link = {.channel = channel};
+    struct host_services services = channel_services_make(&link, supervisor->control);
+    struct process_work work = {supervisor->options, &services, supervisor->next_script};
     struct error error;
     if (options_output_is_stream(supervisor->options)) /* what scripts print goes beside the picture */
         (void)dup2(STDERR_FILENO, STDOUT_FILENO);
@@ -143,7 +143,7 @@ static _Noreturn void be_child(struct supervisor *supervisor, struct channel cha
     }
     if (!pool_call_with_stack(work_in_child, &work, &error))
         give_up(&work, &error);
-    child_link_close(&link);
+    channel_services_close(&link);
     exit(link.broken ? ERROR_MACHINE : 0);
 }
 
@@ -189,9 +189,9 @@ int supervisor_reap_child(struct supervisor *supervisor) {
 }
 
 /* The child is gone in the middle of a script. (os.exit in a script ends the script, not the process.) */
-static void tell_death(struct supervisor *supervisor, int how) {
+static void report_death(struct supervisor *supervisor, int how) {
     struct error error;
-    const struct picture *picture = &supervisor->desk.current;
+    const struct picture *picture = &supervisor->output.current;
     const char *script = supervisor->options->scripts[supervisor->next_script];
     char making[NAME_LIMIT + 64] = "";
     if (picture->open)
@@ -221,10 +221,10 @@ static void tell_death(struct supervisor *supervisor, int how) {
  * finished are passed over. The first rank keeps the tiles of the picture that was being made, the others give theirs
  * back. */
 static bool tries_again(struct supervisor *supervisor, int how) {
-    struct desk *desk = &supervisor->desk;
+    struct output_session *output = &supervisor->output;
     char text[512];
     bool killed = WIFSIGNALED(how) && WTERMSIG(how) == SIGKILL;
-    if (!desk->farm || !killed || supervisor->script.out_of_time || supervisor->broken ||
+    if (!output->farm || !killed || supervisor->script.out_of_time || supervisor->broken ||
         supervisor->retry.count >= TRIES_MAX)
         return false;
     if (supervisor->stall.found)
@@ -235,15 +235,15 @@ static bool tries_again(struct supervisor *supervisor, int how) {
     else
         (void)snprintf(text, sizeof text, "has lost its rendering process, which was killed; %.200s begins anew",
                        supervisor->options->scripts[supervisor->next_script]);
-    farm_note(desk->farm, text);
+    farm_note(output->farm, text);
     supervisor->retry.count++;
-    if (farm_is_first(desk->farm) && desk->current.open && !desk->current.request.check) {
-        farm_take_back_own(desk->farm);
-        supervisor->retry.kept = supervisor->retry.kept ? supervisor->retry.kept : desk->pictures;
+    if (farm_is_first(output->farm) && output->current.open && !output->current.request.check) {
+        farm_take_back_own(output->farm);
+        supervisor->retry.kept = supervisor->retry.kept ? supervisor->retry.kept : output->pictures;
     } else {
-        desk_abandon(desk);
+        output_abandon(output);
     }
-    desk->pictures = supervisor->retry.pictures_before;
+    output->pictures = supervisor->retry.pictures_before;
     return true;
 }
 
@@ -255,17 +255,17 @@ void supervisor_judge_end(struct supervisor *supervisor, int how) {
     } else if (!all_ended && !supervisor->stop && tries_again(supervisor, how)) {
         return;
     } else if (!all_ended && !supervisor->stop) {
-        tell_death(supervisor, how);
+        report_death(supervisor, how);
         supervisor->next_script++;
         supervisor->retry.count = 0;
-        supervisor->retry.pictures_before = supervisor->desk.pictures;
+        supervisor->retry.pictures_before = supervisor->output.pictures;
     } else if (how != 0) {
         struct error error;
         error_set(&error, ERROR_MACHINE, "gray: the rendering process failed after its work (%s %d)",
                   WIFSIGNALED(how) ? "signal" : "status", WIFSIGNALED(how) ? WTERMSIG(how) : WEXITSTATUS(how));
         supervisor_note_error(supervisor, &error);
     }
-    live_detach(&supervisor->live);
-    desk_abandon(&supervisor->desk);
+    viewer_detach(&supervisor->viewer);
+    output_abandon(&supervisor->output);
     supervisor->retry.kept = 0;
 }

@@ -40,9 +40,9 @@ struct script_retry {
 
 struct supervisor {
     const struct options *options;
-    struct desk desk;
+    struct output_session output;
     const struct window_driver *window; /* or NULL */
-    struct live live;                   /* the picture in the window */
+    struct viewer viewer;               /* the picture in the window */
     struct watch watch;                 /* --watch */
     struct control *control;            /* shared with the child */
     struct channel channel;             /* to the child */
@@ -101,8 +101,8 @@ int supervisor_script_patience(const struct supervisor *supervisor);
 bool supervisor_child_is_stalled(struct supervisor *supervisor);
 
 /* supervisor_messages.c */
-void supervisor_take_message(struct supervisor *supervisor, const struct frame *frame);
-void supervisor_send_answer(struct supervisor *supervisor, enum frame_kind kind, bool ok, bool already,
+void supervisor_take_message(struct supervisor *supervisor, const struct message *message);
+void supervisor_send_answer(struct supervisor *supervisor, enum message_kind kind, bool ok, bool already,
                             const struct error *error, int descriptor);
 void supervisor_step_window(struct supervisor *supervisor);
 /* The scripts are ended, to run again. */

@@ -20,9 +20,9 @@ static void note_unsent(struct supervisor *supervisor) {
     supervisor->broken = supervisor->broken || !gone;
 }
 
-void supervisor_send_answer(struct supervisor *supervisor, enum frame_kind kind, bool ok, bool already,
+void supervisor_send_answer(struct supervisor *supervisor, enum message_kind kind, bool ok, bool already,
                             const struct error *error, int descriptor) {
-    struct frame_answer answer = {.ok = ok, .already = already};
+    struct message_answer answer = {.ok = ok, .already = already};
     if (!ok)
         answer.error = *error;
     if (!channel_send(&supervisor->channel, kind, &answer, sizeof answer, descriptor))
@@ -39,7 +39,7 @@ static void forget_stop(const struct supervisor *supervisor) {
 /* For a script that is begun anew: nothing is left to do for this picture. Without memory it is made again. */
 static void settle(struct supervisor *supervisor, uint32_t number) {
     uint32_t room = supervisor->retry.settled_count;
-    if (!supervisor->desk.farm)
+    if (!supervisor->output.farm)
         return;
     if (number >= room) {
         uint32_t larger = 2 * number + 64;
@@ -66,62 +66,65 @@ static bool same_picture(const struct picture_request *a, const struct picture_r
 /* A script that is begun anew comes to its pictures again; the one that is kept goes on with the tiles it has. False:
  * the picture is made like any other. */
 static bool answer_retry(struct supervisor *supervisor, const struct picture_request *request) {
-    struct desk *desk = &supervisor->desk;
+    struct output_session *output = &supervisor->output;
     struct error error = {0};
-    uint32_t number = desk->pictures + 1;
+    uint32_t number = output->pictures + 1;
     bool settled = is_settled(supervisor, number);
     if (!supervisor->retry.kept)
         return false;
-    desk->pictures = number;
+    output->pictures = number;
     if (number < supervisor->retry.kept) {
         error_set(&error, ERROR_SCENE, "this picture could not be made before, either");
-        supervisor_send_answer(supervisor, FRAME_FILM, settled, settled, &error, -1);
+        supervisor_send_answer(supervisor, MESSAGE_FILM, settled, settled, &error, -1);
         return true;
     }
-    bool same = same_picture(request, &desk->current.request);
+    bool same = same_picture(request, &output->current.request);
     supervisor->retry.kept = 0;
     if (!same) {
-        desk_abandon(desk);
+        output_abandon(output);
         error_set(&error, ERROR_SCENE,
                   "begun anew after its rendering process was killed, the script makes another picture than before");
     } else {
-        outlook_reset(&supervisor->control->outlook, progress_wants_outlook(&desk->progress));
+        outlook_reset(&supervisor->control->outlook, progress_wants_outlook(&output->progress));
     }
-    supervisor_send_answer(supervisor, FRAME_FILM, same, false, &error, same ? desk->current.memory.descriptor : -1);
+    supervisor_send_answer(supervisor, MESSAGE_FILM, same, false, &error,
+                           same ? output->current.memory.descriptor : -1);
     return true;
 }
 
-static void answer_begin(struct supervisor *supervisor, const struct frame *frame) {
-    struct desk *desk = &supervisor->desk;
-    if (answer_retry(supervisor, &frame->body.request))
+static void answer_begin(struct supervisor *supervisor, const struct message *message) {
+    struct output_session *output = &supervisor->output;
+    if (answer_retry(supervisor, &message->body.request))
         return;
     struct error error = {0};
-    bool already = live_skips(&supervisor->live, desk->pictures + 1) || is_settled(supervisor, desk->pictures + 1);
-    bool ok = desk_begin(desk, &frame->body.request, &already, &error);
-    bool film = ok && !already && !frame->body.request.check;
+    bool already =
+        viewer_skips(&supervisor->viewer, output->pictures + 1) || is_settled(supervisor, output->pictures + 1);
+    bool ok = output_begin(output, &message->body.request, &already, &error);
+    bool film = ok && !already && !message->body.request.check;
     if (ok && already)
-        settle(supervisor, desk->pictures);
-    supervisor->live.number = film ? desk->pictures : supervisor->live.number;
+        settle(supervisor, output->pictures);
+    supervisor->viewer.number = film ? output->pictures : supervisor->viewer.number;
     if (film && supervisor->window &&
-        !live_begin(&supervisor->live, supervisor->window, &desk->current.request, desk->current.memory.block,
-                    desk->current.name, progress_clock(), &error)) {
-        desk_abandon(desk);
+        !viewer_begin(&supervisor->viewer, supervisor->window, &output->current.request, output->current.memory.block,
+                      output->current.name, progress_clock(), &error)) {
+        output_abandon(output);
         film = ok = false;
     }
     forget_stop(supervisor);
-    supervisor_send_answer(supervisor, FRAME_FILM, ok, already, &error, film ? desk->current.memory.descriptor : -1);
+    supervisor_send_answer(supervisor, MESSAGE_FILM, ok, already, &error,
+                           film ? output->current.memory.descriptor : -1);
 }
 
-static void send_order(struct supervisor *supervisor, const struct studio_order *order) {
-    supervisor->live.waiting = false;
+static void send_command(struct supervisor *supervisor, const struct preview_command *command) {
+    supervisor->viewer.waiting = false;
     forget_stop(supervisor);
-    if (!channel_send(&supervisor->channel, FRAME_ORDER, order, sizeof *order, -1))
+    if (!channel_send(&supervisor->channel, MESSAGE_PREVIEW_COMMAND, command, sizeof *command, -1))
         note_unsent(supervisor);
 }
 
 static void end_picture(struct supervisor *supervisor, bool quit) {
-    const struct studio_order order = {.kind = ORDER_END, .quit = quit};
-    send_order(supervisor, &order);
+    const struct preview_command command = {.kind = COMMAND_END, .quit = quit};
+    send_command(supervisor, &command);
 }
 
 /* No picture is lost by closing the window: it is there already, or people did not wait for it. */
@@ -133,9 +136,9 @@ static void quit_window(struct supervisor *supervisor) {
     supervisor->stop = true;
     supervisor->deadline = progress_clock() + patience_quit;
     atomic_store(&supervisor->control->cancel, CANCEL_ALL);
-    if (!supervisor->live.written)
+    if (!supervisor->viewer.written)
         supervisor_note_status(supervisor, ERROR_CANCELLED);
-    if (supervisor->live.waiting)
+    if (supervisor->viewer.waiting)
         end_picture(supervisor, true);
 }
 
@@ -146,89 +149,89 @@ void supervisor_restart(struct supervisor *supervisor) {
     supervisor->stop = supervisor->restarts = true;
     supervisor->deadline = progress_clock() + patience_again;
     atomic_store(&supervisor->control->cancel, CANCEL_ALL);
-    live_keep(&supervisor->live);
-    if (supervisor->live.waiting)
+    viewer_keep(&supervisor->viewer);
+    if (supervisor->viewer.waiting)
         end_picture(supervisor, true);
 }
 
-static void take_home(struct supervisor *supervisor,
-                      bool (*take)(const struct live *live, const struct file_target *picture, char *name,
-                                   struct error *error)) {
+static void save_from_window(struct supervisor *supervisor,
+                             bool (*take)(const struct viewer *viewer, const struct file_target *picture, char *name,
+                                          struct error *error)) {
     struct error error;
     char name[NAME_LIMIT], line[NAME_LIMIT + 64];
-    const struct file_target picture = {.path = supervisor->live.name, .rules = &supervisor->desk.files.saved};
-    bool ok = take(&supervisor->live, &picture, name, &error);
+    const struct file_target picture = {.path = supervisor->viewer.name, .rules = &supervisor->output.files.saved};
+    bool ok = take(&supervisor->viewer, &picture, name, &error);
     (void)snprintf(line, sizeof line, ok ? "gray: notice: %s is written" : "%s", ok ? name : error.text);
-    desk_line(&supervisor->desk, ok ? LINE_NOTICE : LINE_ERROR, line);
+    output_report(&supervisor->output, ok ? LINE_NOTICE : LINE_ERROR, line);
 }
 
 void supervisor_step_window(struct supervisor *supervisor) {
-    struct live *live = &supervisor->live;
+    struct viewer *viewer = &supervisor->viewer;
     struct error error;
     int nothing = CANCEL_NOTHING;
-    while (live->open && supervisor->deadline <= 0) {
-        switch (live_step(live, progress_clock())) {
-        case LIVE_NOTHING:
+    while (viewer->open && supervisor->deadline <= 0) {
+        switch (viewer_step(viewer, progress_clock())) {
+        case VIEWER_NOTHING:
             return;
-        case LIVE_STOP:
+        case VIEWER_STOP_PASS:
             (void)atomic_compare_exchange_strong(&supervisor->control->cancel, &nothing, CANCEL_PASS);
             return;
-        case LIVE_ORDER:
-            send_order(supervisor, &live->order);
+        case VIEWER_SEND_COMMAND:
+            send_command(supervisor, &viewer->command);
             break;
-        case LIVE_WRITE:
-            if (!desk_write(&supervisor->desk, &error))
+        case VIEWER_WRITE_PICTURE:
+            if (!output_write(&supervisor->output, &error))
                 supervisor_note_error(supervisor, &error);
             break;
-        case LIVE_SAVE:
-            take_home(supervisor, souvenir_picture);
+        case VIEWER_SAVE_IMAGE:
+            save_from_window(supervisor, save_view_image);
             break;
-        case LIVE_RECORD:
-            take_home(supervisor, souvenir_camera);
+        case VIEWER_SAVE_CAMERA:
+            save_from_window(supervisor, save_view_camera);
             break;
-        case LIVE_CHANGES:
-            take_home(supervisor, souvenir_changes);
+        case VIEWER_SAVE_EDITS:
+            save_from_window(supervisor, save_edits);
             break;
-        case LIVE_NOTE:
-            desk_line(&supervisor->desk, LINE_DETAIL, live->note);
-            live->note[0] = '\0';
+        case VIEWER_LOG_NOTE:
+            output_report(&supervisor->output, LINE_DETAIL, viewer->note);
+            viewer->note[0] = '\0';
             break;
-        case LIVE_NEXT:
+        case VIEWER_NEXT_PICTURE:
             end_picture(supervisor, false);
             return;
-        case LIVE_QUIT:
+        case VIEWER_QUIT:
             quit_window(supervisor);
             return;
         }
     }
 }
 
-static void answer_done(struct supervisor *supervisor, const struct frame *frame) {
+static void answer_done(struct supervisor *supervisor, const struct message *message) {
     struct error error = {0};
-    live_detach(&supervisor->live);
-    bool ok = desk_done(&supervisor->desk, &frame->body.report, &error);
+    viewer_detach(&supervisor->viewer);
+    bool ok = output_done(&supervisor->output, &message->body.report, &error);
     if (ok)
-        settle(supervisor, supervisor->desk.pictures);
+        settle(supervisor, supervisor->output.pictures);
     if (supervisor->finishing) { /* the tiles under way were the last ones: the picture is whole, and the end is here */
         supervisor->deadline = progress_clock() + supervisor_patience;
         atomic_store(&supervisor->control->cancel, CANCEL_ALL);
     }
-    supervisor_send_answer(supervisor, FRAME_ANSWER, ok, false, &error, -1);
+    supervisor_send_answer(supervisor, MESSAGE_ANSWER, ok, false, &error, -1);
 }
 
 /* A script that was begun anew has ended before it came to its picture again. */
-static void drop_kept(struct supervisor *supervisor, const struct frame_script *script) {
+static void drop_kept(struct supervisor *supervisor, const struct message_script *script) {
     struct error error;
     error_set(&error, ERROR_SCENE,
               "%.400s: begun anew after its rendering process was killed, the script did not come to %.400s again, "
               "which is not written",
-              supervisor->options->scripts[script->index], supervisor->desk.current.name);
-    desk_abandon(&supervisor->desk);
+              supervisor->options->scripts[script->index], supervisor->output.current.name);
+    output_abandon(&supervisor->output);
     supervisor->retry.kept = 0;
     supervisor_note_error(supervisor, &error);
 }
 
-static void note_script(struct supervisor *supervisor, const struct frame_script *script) {
+static void note_script(struct supervisor *supervisor, const struct message_script *script) {
     static const int known[] = {0, ERROR_SCENE, ERROR_USAGE, ERROR_MACHINE, ERROR_CANCELLED};
     bool sound = script->index == supervisor->next_script && script->index < supervisor->options->script_count;
     bool is_known = false;
@@ -241,7 +244,7 @@ static void note_script(struct supervisor *supervisor, const struct frame_script
     supervisor->next_script++;
     supervisor->script.used = 0;
     supervisor->retry.count = 0;
-    supervisor->retry.pictures_before = supervisor->desk.pictures;
+    supervisor->retry.pictures_before = supervisor->output.pictures;
     if (supervisor->retry.kept)
         drop_kept(supervisor, script);
     supervisor_start_script_clock(supervisor);
@@ -251,9 +254,9 @@ static void note_script(struct supervisor *supervisor, const struct frame_script
         supervisor_note_status(supervisor, script->status);
 }
 
-static void note_read(struct supervisor *supervisor, const struct frame_read *read) {
+static void note_read(struct supervisor *supervisor, const struct message_read *read) {
     struct error error;
-    picture_files_keep(&supervisor->desk.files, read->version.identity, read->written);
+    picture_files_keep(&supervisor->output.files, read->version.identity, read->written);
     if (read->written)
         return;
     if (supervisor->watch.open && !watch_add(&supervisor->watch, read->path, &read->version, progress_clock())) {
@@ -263,56 +266,56 @@ static void note_read(struct supervisor *supervisor, const struct frame_read *re
 }
 
 /* A frame out of turn (a second picture before the first is finished ...) is not answered: it breaks the rules. */
-void supervisor_take_message(struct supervisor *supervisor, const struct frame *frame) {
-    const struct picture *current = &supervisor->desk.current;
-    switch (frame->kind) {
-    case FRAME_LINE:
-        supervisor_report(supervisor, frame->body.line.kind, frame->body.line.text);
+void supervisor_take_message(struct supervisor *supervisor, const struct message *message) {
+    const struct picture *current = &supervisor->output.current;
+    switch (message->kind) {
+    case MESSAGE_LINE:
+        supervisor_report(supervisor, message->body.line.kind, message->body.line.text);
         error_stream_note_handled(&supervisor->control->error_stream);
         return;
-    case FRAME_BEGIN:
+    case MESSAGE_BEGIN:
         if (current->open && !supervisor->retry.kept)
             break;
         supervisor_stop_script_clock(supervisor);
-        answer_begin(supervisor, frame);
+        answer_begin(supervisor, message);
         if (!current->open || supervisor->retry.kept)
             supervisor_start_script_clock(supervisor);
         return;
-    case FRAME_DONE:
+    case MESSAGE_DONE:
         if (!current->open || supervisor->retry.kept || current->request.check || supervisor->deadline > 0)
             break;
         supervisor_start_script_clock(supervisor);
-        answer_done(supervisor, frame);
+        answer_done(supervisor, message);
         return;
-    case FRAME_NEWS:
-        if (!current->open || !supervisor->window || supervisor->live.waiting)
+    case MESSAGE_PREVIEW_REPLY:
+        if (!current->open || !supervisor->window || supervisor->viewer.waiting)
             break;
-        live_take_news(&supervisor->live, &frame->body.news, progress_clock());
+        viewer_take_reply(&supervisor->viewer, &message->body.reply, progress_clock());
         if (supervisor->deadline > 0)
             end_picture(supervisor, true);
         return;
-    case FRAME_ABANDON:
+    case MESSAGE_ABANDON:
         if (!current->open || supervisor->retry.kept)
             break;
-        live_detach(&supervisor->live);
-        desk_abandon(&supervisor->desk);
+        viewer_detach(&supervisor->viewer);
+        output_abandon(&supervisor->output);
         supervisor_start_script_clock(supervisor);
         return;
-    case FRAME_SCRIPT:
-        note_script(supervisor, &frame->body.script);
+    case MESSAGE_SCRIPT:
+        note_script(supervisor, &message->body.script);
         return;
-    case FRAME_READ:
-        note_read(supervisor, &frame->body.read);
+    case MESSAGE_READ:
+        note_read(supervisor, &message->body.read);
         return;
-    case FRAME_AGAIN:
+    case MESSAGE_AGAIN:
         if (!supervisor->watch.open || current->open)
             break;
         supervisor_stop_script_clock(supervisor);
         supervisor->waits = true;
         return;
-    case FRAME_FILM:
-    case FRAME_ANSWER:
-    case FRAME_ORDER:
+    case MESSAGE_FILM:
+    case MESSAGE_ANSWER:
+    case MESSAGE_PREVIEW_COMMAND:
         break;
     }
     supervisor->broken = true;

@@ -34,9 +34,9 @@ bool supervisor_listen(struct supervisor *supervisor, struct error *error) {
 /* The first Ctrl-C, where somebody wants the tiles: those under way are finished. Else nothing would become of them. */
 static bool finish_tiles(struct supervisor *supervisor) {
     const struct options *options = supervisor->options;
-    const struct picture *picture = &supervisor->desk.current;
+    const struct picture *picture = &supervisor->output.current;
     bool wanted = (options->checkpoint || options->partial) && picture->open && !picture->request.check &&
-                  !supervisor->desk.farm && !supervisor->window && !options->watch &&
+                  !supervisor->output.farm && !supervisor->window && !options->watch &&
                   atomic_load(&supervisor->control->tiles) > 0;
     char line[NAME_LIMIT + 160];
     if (!wanted || supervisor->finishing || supervisor->deadline > 0)
@@ -47,7 +47,7 @@ static bool finish_tiles(struct supervisor *supervisor) {
     (void)snprintf(line, sizeof line,
                    "gray: interrupted, %s is not written; tiles under way are finished (once more: at once)",
                    picture->name);
-    desk_line(&supervisor->desk, LINE_ERROR, line);
+    output_report(&supervisor->output, LINE_ERROR, line);
     return true;
 }
 
@@ -66,15 +66,15 @@ void supervisor_interrupt(struct supervisor *supervisor) {
     supervisor->deadline = progress_clock() + supervisor_patience;
     supervisor_note_status(supervisor, ERROR_CANCELLED);
     atomic_store(&supervisor->control->cancel, 1);
-    const struct desk *desk = &supervisor->desk;
-    const struct picture *picture = desk->current.open ? &desk->current : desk->held.open ? &desk->held : NULL;
+    const struct output_session *output = &supervisor->output;
+    const struct picture *picture = output->current.open ? &output->current : output->held.open ? &output->held : NULL;
     if (!picture) {
-        desk_line(&supervisor->desk, LINE_ERROR, "gray: interrupted");
+        output_report(&supervisor->output, LINE_ERROR, "gray: interrupted");
         return;
     }
     char line[NAME_LIMIT + 64];
     (void)snprintf(line, sizeof line, "gray: interrupted, %s is not written", picture->name);
-    desk_line(&supervisor->desk, LINE_ERROR, line);
+    output_report(&supervisor->output, LINE_ERROR, line);
 }
 
 void supervisor_read_signals(struct supervisor *supervisor) {
@@ -83,7 +83,7 @@ void supervisor_read_signals(struct supervisor *supervisor) {
         if (info.ssi_signo == SIGUSR1 && supervisor->all_written)
             continue;
         if (info.ssi_signo == SIGUSR1)
-            desk_checkpoint(&supervisor->desk);
+            output_write_checkpoint(&supervisor->output);
         else if (info.ssi_signo != SIGINT || !finish_tiles(supervisor))
             supervisor_interrupt(supervisor);
     }
@@ -100,7 +100,7 @@ bool supervisor_is_stopped(void *context) {
  * ending. */
 bool supervisor_wait_for_reader(void *context) {
     struct supervisor *supervisor = context;
-    while (!text_error_is_taken()) {
+    while (!text_stderr_is_ready()) {
         struct pollfd watched[2] = {{.fd = STDERR_FILENO, .events = POLLOUT},
                                     {.fd = supervisor->signals, .events = POLLIN}};
         if (supervisor->deadline > 0 || supervisor->ended)

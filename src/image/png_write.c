@@ -34,7 +34,7 @@ struct packer {
     uint8_t *filtered;
 };
 
-struct writer {
+struct text_writer {
     const struct png_source *rows;
     size_t row_bytes, stripe_bytes, packed_limit;
     uint32_t stripe_rows, stripe_count, first; /* number of the first one in flight */
@@ -45,7 +45,7 @@ struct writer {
     uint32_t adler;
 };
 
-static void fetch_row(const struct writer *writer, struct packer *packer, uint32_t y) {
+static void fetch_row(const struct text_writer *writer, struct packer *packer, uint32_t y) {
     const struct png_source *rows = writer->rows;
     if (rows->bytes) {
         rows->bytes(rows->context, y, packer->row);
@@ -63,7 +63,7 @@ static unsigned size_of(uint8_t difference) {
 }
 
 /* Of the filters Sub and Up the one whose differences are smaller in all (the rule of thumb in the standard). */
-static void filter_row(const struct writer *writer, const struct packer *packer, bool has_above, uint8_t *out) {
+static void filter_row(const struct text_writer *writer, const struct packer *packer, bool has_above, uint8_t *out) {
     const uint8_t *row = packer->row, *above = packer->above;
     size_t pixel = writer->rows->words ? 6 : 3, size = writer->row_bytes;
     uint64_t sub = 0, up = 0;
@@ -80,7 +80,7 @@ static void filter_row(const struct writer *writer, const struct packer *packer,
 }
 
 static void pack_stripe(void *context, uint32_t item, int index) {
-    struct writer *writer = context;
+    struct text_writer *writer = context;
     struct packer *packer = &writer->packers[index];
     struct stripe *stripe = &writer->stripes[item];
     uint32_t number = writer->first + item, height = writer->rows->height;
@@ -113,7 +113,7 @@ static void put_word(uint8_t *out, uint32_t value) {
     out[3] = (uint8_t)value;
 }
 
-static bool write_chunk(struct writer *writer, const char *kind, const uint8_t *bytes, size_t size, uint32_t crc,
+static bool write_chunk(struct text_writer *writer, const char *kind, const uint8_t *bytes, size_t size, uint32_t crc,
                         struct error *error) {
     uint8_t head[8], tail[4];
     put_word(head, (uint32_t)size);
@@ -124,13 +124,13 @@ static bool write_chunk(struct writer *writer, const char *kind, const uint8_t *
            file_output_write(&writer->output, tail, sizeof tail, error);
 }
 
-static bool write_small(struct writer *writer, const char *kind, const uint8_t *bytes, size_t size,
+static bool write_small(struct text_writer *writer, const char *kind, const uint8_t *bytes, size_t size,
                         struct error *error) {
     uint32_t crc = (uint32_t)crc32_z(crc32_z(0, (const uint8_t *)kind, 4), bytes, size);
     return write_chunk(writer, kind, bytes, size, crc, error);
 }
 
-static bool write_head(struct writer *writer, struct error *error) {
+static bool write_head(struct text_writer *writer, struct error *error) {
     static const uint8_t signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     static const uint8_t stream_head[2] = {0x78, 0x5e}; /* deflate, a window of 32 kB, a fast level (RFC 1950) */
     uint8_t header[13] = {[8] = writer->rows->words ? 16 : 8, [9] = 2 /* red, green, blue */};
@@ -141,13 +141,13 @@ static bool write_head(struct writer *writer, struct error *error) {
            write_small(writer, "IDAT", stream_head, sizeof stream_head, error);
 }
 
-static bool write_tail(struct writer *writer, struct error *error) {
+static bool write_tail(struct text_writer *writer, struct error *error) {
     uint8_t sum[4];
     put_word(sum, writer->adler);
     return write_small(writer, "IDAT", sum, sizeof sum, error) && write_small(writer, "IEND", sum, 0, error);
 }
 
-static bool encode(struct writer *writer, struct pool *pool, struct error *error) {
+static bool encode(struct text_writer *writer, struct pool *pool, struct error *error) {
     if (!write_head(writer, error))
         return false;
     writer->adler = 1;
@@ -169,7 +169,7 @@ static bool encode(struct writer *writer, struct pool *pool, struct error *error
     return write_tail(writer, error);
 }
 
-static bool begin_packer(const struct writer *writer, struct packer *packer) {
+static bool begin_packer(const struct text_writer *writer, struct packer *packer) {
     packer->stream = (z_stream){.zalloc = zlib_alloc, .zfree = zlib_free};
     packer->words = writer->rows->words ? mem_alloc_zero(writer->row_bytes / 2, sizeof *packer->words) : NULL;
     packer->row = mem_alloc(writer->row_bytes);
@@ -180,7 +180,7 @@ static bool begin_packer(const struct writer *writer, struct packer *packer) {
 }
 
 /* Everything that is needed, before any thread works. */
-static bool begin(struct writer *writer) {
+static bool begin(struct text_writer *writer) {
     writer->packers = mem_alloc_zero((size_t)writer->workers, sizeof *writer->packers);
     writer->stripes = mem_alloc_zero((size_t)writer->in_flight, sizeof *writer->stripes);
     bool ok = writer->packers && writer->stripes;
@@ -195,7 +195,7 @@ static bool begin(struct writer *writer) {
     return ok;
 }
 
-static void end(struct writer *writer) {
+static void end(struct text_writer *writer) {
     for (int i = 0; writer->packers && i < writer->workers; i++) {
         struct packer *packer = &writer->packers[i];
         if (packer->begun)
@@ -217,8 +217,8 @@ uint32_t png_write_stripes(uint32_t width, uint32_t height, int bits) {
     return (height - 1) / rows + 1;
 }
 
-static struct writer writer_for(const struct png_source *rows, const struct pool *pool) {
-    struct writer writer = {.rows = rows, .row_bytes = (size_t)rows->width * 3 * (rows->words ? 2 : 1)};
+static struct text_writer writer_for(const struct png_source *rows, const struct pool *pool) {
+    struct text_writer writer = {.rows = rows, .row_bytes = (size_t)rows->width * 3 * (rows->words ? 2 : 1)};
     writer.stripe_count = png_write_stripes(rows->width, rows->height, rows->words ? 16 : 8);
     writer.stripe_rows = writer.row_bytes + 1 < STRIPE ? (uint32_t)(STRIPE / (writer.row_bytes + 1)) : 1;
     writer.stripe_bytes = writer.stripe_rows * (writer.row_bytes + 1);
@@ -228,7 +228,7 @@ static struct writer writer_for(const struct png_source *rows, const struct pool
 }
 
 double png_write_trial(const struct png_source *source) {
-    struct writer writer = writer_for(source, NULL);
+    struct text_writer writer = writer_for(source, NULL);
     struct timespec begun, ended;
     bool ready = begin(&writer);
     for (int round = 0; round < 2; round++) { /* the first one warms what a long run has warm */
@@ -246,7 +246,7 @@ bool png_write_from(const struct file_target *target, const struct png_source *r
     if (rows->width == 0 || rows->height == 0 || rows->width > SIDE_LIMIT / 8 || rows->height > SIDE_LIMIT)
         return error_set(error, ERROR_SCENE, "%s: a PNG file cannot have %u x %u pixels", target->path, rows->width,
                          rows->height);
-    struct writer writer = writer_for(rows, pool);
+    struct text_writer writer = writer_for(rows, pool);
     if (!file_output_open(&writer.output, target, error))
         return false;
     bool ready = begin(&writer);

@@ -79,17 +79,17 @@ const char *inspect_ray(enum ray_kind kind) {
     return "?";
 }
 
-const char *story_path(const struct told_story *told, uint32_t placed) {
-    uint32_t low = 0, high = told->names.count;
+const char *trace_path(const struct trace_report *report, uint32_t placed) {
+    uint32_t low = 0, high = report->names.count;
     while (low < high) {
         uint32_t middle = low + (high - low) / 2;
-        if (told->names.placed[middle] < placed)
+        if (report->names.placed[middle] < placed)
             low = middle + 1;
         else
             high = middle;
     }
-    bool found = low < told->names.count && told->names.placed[low] == placed && told->names.paths[low];
-    return found ? told->names.paths[low] : placed_node(told->picture->job->world, placed)->name;
+    bool found = low < report->names.count && report->names.placed[low] == placed && report->names.paths[low];
+    return found ? report->names.paths[low] : placed_node(report->picture->job->world, placed)->name;
 }
 
 /* All placed primitives that the rays of a list and below tell of: counts them, or notes them too. */
@@ -112,7 +112,7 @@ static size_t note_placed(const struct story_ray *ray, uint64_t *out, size_t cou
     return count;
 }
 
-static bool find_names(struct story *story, const struct inspected *picture, struct story_names *names,
+static bool find_names(struct story *story, const struct inspected *picture, struct trace_names *names,
                        struct error *error) {
     size_t count = 0, at = 0;
     for (const struct story_sample *sample = story->sample; sample; sample = sample->next)
@@ -132,34 +132,34 @@ static bool find_names(struct story *story, const struct inspected *picture, str
                             names->paths, error);
 }
 
-struct telling {
+struct trace_context {
     const struct inspected *picture;
     bool json;
-    struct sheet *sheet;
+    struct text_writer *writer;
 };
 
-static bool tell_pixel(void *context, struct story *story, struct error *error) {
-    const struct telling *telling = context;
-    struct told_story told = {telling->picture, story, {0}};
-    if (!find_names(story, telling->picture, &told.names, error))
+static bool report_pixel(void *context, struct story *story, struct error *error) {
+    const struct trace_context *trace_context = context;
+    struct trace_report report = {trace_context->picture, story, {0}};
+    if (!find_names(story, trace_context->picture, &report.names, error))
         return false;
-    if (telling->json)
-        story_tell_json(&told, telling->sheet);
+    if (trace_context->json)
+        pixel_trace_print_json(&report, trace_context->writer);
     else
-        story_tell(&told, telling->sheet);
+        pixel_trace_print(&report, trace_context->writer);
     return true;
 }
 
 bool inspect_pixels(const struct inspected *picture, const uint32_t (*pixels)[2], uint32_t count, bool json,
-                    struct pool *pool, struct sheet *sheet, struct error *error) {
+                    struct pool *pool, struct text_writer *writer, struct error *error) {
     const struct render_job *job = picture->job;
-    struct telling telling = {picture, json, sheet};
+    struct trace_context trace_context = {picture, json, writer};
     for (uint32_t i = 0; i < count; i++) {
         if (pixels[i][0] >= job->width || pixels[i][1] >= job->height)
             return error_set(error, ERROR_USAGE, "--pixel %u,%u is not in the picture of %u x %u", pixels[i][0],
                              pixels[i][1], job->width, job->height);
     }
-    bool ok = render_pixels(job, pool, pixels, count, tell_pixel, &telling, error);
-    sheet_flush(sheet);
+    bool ok = render_pixels(job, pool, pixels, count, report_pixel, &trace_context, error);
+    text_writer_flush(writer);
     return ok;
 }

@@ -17,24 +17,24 @@ struct inspected {
 /* --pixel: makes pixels {x, y} of the whole picture and tells their stories, in words or as one line of JSON each.
  * Errors: a pixel is not in the picture (ERROR_USAGE), those of render_pixels. */
 bool inspect_pixels(const struct inspected *picture, const uint32_t (*pixels)[2], uint32_t count, bool json,
-                    struct pool *pool, struct sheet *sheet, struct error *error);
+                    struct pool *pool, struct text_writer *writer, struct error *error);
 /* --dump-scene: everything placed, in flattening order, then lights and materials. */
-bool inspect_world(const struct inspected *picture, bool json, struct sheet *sheet, struct error *error);
+bool inspect_world(const struct inspected *picture, bool json, struct text_writer *writer, struct error *error);
 
 /* A story with what it needs to be told: the ways to the nodes in it. */
-struct story_names {
+struct trace_names {
     uint32_t count;
     uint32_t *placed; /* ascending */
     const char **paths;
 };
-struct told_story {
+struct trace_report {
     const struct inspected *picture;
     const struct story *story;
-    struct story_names names;
+    struct trace_names names;
 };
-const char *story_path(const struct told_story *told, uint32_t placed); /* never NULL */
-void story_tell(const struct told_story *told, struct sheet *sheet);
-void story_tell_json(const struct told_story *told, struct sheet *sheet);
+const char *trace_path(const struct trace_report *report, uint32_t placed); /* never NULL */
+void pixel_trace_print(const struct trace_report *report, struct text_writer *writer);
+void pixel_trace_print_json(const struct trace_report *report, struct text_writer *writer);
 
 /* Words for kinds. */
 const char *inspect_material(const struct material *link);

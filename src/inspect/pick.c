@@ -12,15 +12,15 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { WAY_LIMIT = 256 };
+enum { ROUTE_LIMIT = 256 };
 
 struct picking {
     const struct world *world;
     struct picked *out;
     uint32_t placed; /* what was hit */
     /* The way to it, and on to the operand; the node that is told is the last of `depth`. */
-    struct scene_step steps[WAY_LIMIT];
-    uint32_t way, whole, depth;
+    struct scene_step steps[ROUTE_LIMIT];
+    uint32_t route, whole, depth;
     struct box box; /* of everything under it */
 };
 
@@ -34,28 +34,28 @@ static struct transform world_from_parent(const struct scene_step *steps, uint32
     return out;
 }
 
-void pick_words(char out[PICK_WORDS], const char *text) {
-    (void)snprintf(out, PICK_WORDS, "%s", text);
+void pick_words(char out[PICK_NAME], const char *text) {
+    (void)snprintf(out, PICK_NAME, "%s", text);
     for (char *c = out; *c; c++)
         *c = (unsigned char)*c < 32 || *c == 127 ? '?' : *c;
 }
 
-uint64_t marks_way(const struct scene_step *steps, uint32_t depth) {
-    uint64_t way = depth;
+uint64_t route_hash(const struct scene_step *steps, uint32_t depth) {
+    uint64_t route = depth;
     for (uint32_t i = 0; i < depth; i++) {
         const uint32_t words[2] = {steps[i].node->serial, i + 1 < depth ? steps[i].placement : 0};
-        way = hash_bytes(words, sizeof words, way);
+        route = hash_bytes(words, sizeof words, route);
     }
-    return way ? way : 1;
+    return route ? route : 1;
 }
 
 /* The way to what was hit; the walk ends there. */
-static bool find_way(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
+static bool find_route(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
     struct picking *p = context;
     if (p->placed < first || p->placed >= first + count)
         return true;
-    p->way = depth <= WAY_LIMIT ? depth : 0;
-    memcpy(p->steps, steps, p->way * sizeof *steps);
+    p->route = depth <= ROUTE_LIMIT ? depth : 0;
+    memcpy(p->steps, steps, p->route * sizeof *steps);
     return false;
 }
 
@@ -63,13 +63,14 @@ static bool find_way(void *context, uint32_t first, uint32_t count, const struct
 static bool choose_node(struct picking *p, const struct hit *hit, int32_t up) {
     const struct shape *shape = &placed_thing(p->world, p->placed)->shape;
     uint32_t length = 0;
-    if (shape->kind == SHAPE_CSG && !world_operand_way(p->steps[p->way - 1].node, shape->csg->leaves[hit->leaf].origin,
-                                                       p->steps + p->way, WAY_LIMIT - p->way, &length))
+    if (shape->kind == SHAPE_CSG &&
+        !world_operand_way(p->steps[p->route - 1].node, shape->csg->leaves[hit->leaf].origin, p->steps + p->route,
+                           ROUTE_LIMIT - p->route, &length))
         return false;
-    int32_t way = (int32_t)p->way, below = (int32_t)length;
-    up = up > way - 1 ? way - 1 : up < -below ? -below : up;
-    p->whole = (uint32_t)(way + below);
-    p->depth = (uint32_t)(way - up);
+    int32_t route = (int32_t)p->route, below = (int32_t)length;
+    up = up > route - 1 ? route - 1 : up < -below ? -below : up;
+    p->whole = (uint32_t)(route + below);
+    p->depth = (uint32_t)(route - up);
     p->out->up = up;
     p->out->below = p->whole - p->depth;
     p->out->levels = p->depth - 1;
@@ -146,13 +147,13 @@ static bool box_operand(struct picking *p, const struct node *node, const struct
 
 static bool box_node(struct picking *p, const struct node *root, struct error *error) {
     const struct thing *thing = placed_thing(p->world, p->placed);
-    if (p->depth == p->way && thing->parts == 1 && !thing->is_later_part) {
+    if (p->depth == p->route && thing->parts == 1 && !thing->is_later_part) {
         struct transform map = world_placement(p->world, p->placed, 0);
         struct box box = shape_bounds(&thing->shape);
         set_corners(p->out, &box, &map.forward);
         return true;
     }
-    if (p->depth > p->way) {
+    if (p->depth > p->route) {
         struct transform above = world_from_parent(p->steps, p->depth);
         return box_operand(p, p->steps[p->depth - 1].node, &above) || error_no_memory(error, "the box of a node");
     }
@@ -164,14 +165,14 @@ static bool box_node(struct picking *p, const struct node *root, struct error *e
 }
 
 static const char *shape_words(const struct picking *p, const struct node *node) {
-    if (p->depth == p->way)
+    if (p->depth == p->route)
         return shape_kind_name(placed_shape(p->world, p->placed)->kind);
-    bool solid = p->depth > p->way && node->kind != NODE_GROUP && node->kind != NODE_JOINT;
+    bool solid = p->depth > p->route && node->kind != NODE_GROUP && node->kind != NODE_JOINT;
     return solid ? shape_kind_name(node->kind == NODE_CSG ? SHAPE_CSG : node->shape.kind) : "group";
 }
 
 /* "marble over phong", and the base. */
-static void tell_material(const struct material *material, struct picked *out) {
+static void describe_material(const struct material *material, struct picked *out) {
     char words[256] = "";
     size_t used = 0;
     const struct material *base = material_origin(material);
@@ -189,24 +190,24 @@ static void tell_material(const struct material *material, struct picked *out) {
 static bool describe(struct picking *p, const struct node *root, const struct hit *hit, int32_t up,
                      struct error *error) {
     struct picked *out = p->out;
-    if (!world_walk_paths(p->world, root, find_way, p, error))
+    if (!world_walk_paths(p->world, root, find_route, p, error))
         return false;
-    out->hit = p->way > 0;
+    out->hit = p->route > 0;
     if (!out->hit)
         return true;
     if (!choose_node(p, hit, up))
         return error_no_memory(error, "the way to an operand");
     const struct node *node = p->steps[p->depth - 1].node;
     out->serial = node->serial;
-    out->way = marks_way(p->steps, p->depth);
-    out->solid = p->depth > p->way ? marks_way(p->steps, p->way) : 0;
+    out->route = route_hash(p->steps, p->depth);
+    out->solid = p->depth > p->route ? route_hash(p->steps, p->route) : 0;
     pick_words(out->name, node->name);
     if (p->depth > 1) {
         out->parent_serial = p->steps[p->depth - 2].node->serial;
         pick_words(out->parent_name, p->steps[p->depth - 2].node->name);
     }
     pick_words(out->shape, shape_words(p, node));
-    tell_material(p->world->authored.materials[hit->material], out);
+    describe_material(p->world->authored.materials[hit->material], out);
     out->can_own = p->depth == p->whole && node->kind == NODE_GEOMETRY;
     out->world_from_parent = world_from_parent(p->steps, p->depth).forward;
     return box_node(p, root, error);

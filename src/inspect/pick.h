@@ -6,10 +6,10 @@
 #include "world/path.h"
 
 /* A name cut to this size; control characters become '?'. */
-void pick_words(char out[PICK_WORDS], const char *text);
+void pick_words(char out[PICK_NAME], const char *text);
 
 /* A number for a way to a node, so that of a node under several parents one can be told. */
-uint64_t marks_way(const struct scene_step *steps, uint32_t depth);
+uint64_t route_hash(const struct scene_step *steps, uint32_t depth);
 
 /* The ray through (x, y) of the whole picture, in pixels, with the camera of the job as it is at time 0. up: so many
  * nodes above the one that was hit; below 0: so many operands below it, if it is a combined solid. False: no memory, or

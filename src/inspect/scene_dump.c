@@ -8,7 +8,7 @@
 struct dump {
     const struct inspected *picture;
     const struct world *world;
-    struct sheet *sheet;
+    struct text_writer *writer;
     bool json;
 };
 
@@ -32,51 +32,51 @@ static void dump_line(const struct dump *d, uint32_t placed, const char *path) {
                        first + thing->slot_count - 1);
     if (thing->shape.kind == SHAPE_MESH)
         (void)snprintf(triangles, sizeof triangles, "%u", triangles_of(&thing->shape));
-    sheet_print(d->sheet, "%8u  %-14s %9s %9s  %-5s (%.6g, %.6g, %.6g) to (%.6g, %.6g, %.6g)  ", placed + 1,
-                shape_kind_name(thing->shape.kind), triangles, material, moves ? "moves" : "", box->min.x, box->min.y,
-                box->min.z, box->max.x, box->max.y, box->max.z);
-    sheet_name(d->sheet, path);
-    sheet_print(d->sheet, "\n");
+    text_writer_print(d->writer, "%8u  %-14s %9s %9s  %-5s (%.6g, %.6g, %.6g) to (%.6g, %.6g, %.6g)  ", placed + 1,
+                      shape_kind_name(thing->shape.kind), triangles, material, moves ? "moves" : "", box->min.x,
+                      box->min.y, box->min.z, box->max.x, box->max.y, box->max.z);
+    text_writer_name(d->writer, path);
+    text_writer_print(d->writer, "\n");
     if (thing->shape.kind != SHAPE_CSG)
         return;
     for (uint32_t i = 0; i < thing->shape.csg->leaf_count; i++) {
         const struct csg_leaf *leaf = &thing->shape.csg->leaves[i];
-        sheet_print(d->sheet, "          . operand %u: %s, material %u\n", i + 1, shape_kind_name(leaf->shape.kind),
-                    number_of(d, leaf->material));
+        text_writer_print(d->writer, "          . operand %u: %s, material %u\n", i + 1,
+                          shape_kind_name(leaf->shape.kind), number_of(d, leaf->material));
     }
 }
 
 static void dump_json(const struct dump *d, uint32_t placed, const char *path) {
     const struct thing *thing = placed_thing(d->world, placed);
-    struct sheet *sheet = d->sheet;
-    sheet_print(sheet, "%s{\"number\":%u,\"node\":", placed > 0 ? "," : "", placed + 1);
-    sheet_json(sheet, path);
-    sheet_print(sheet, ",\"node_number\":%u,\"shape\":\"%s\"", placed_node(d->world, placed)->serial,
-                shape_kind_name(thing->shape.kind));
+    struct text_writer *writer = d->writer;
+    text_writer_print(writer, "%s{\"number\":%u,\"node\":", placed > 0 ? "," : "", placed + 1);
+    text_writer_json(writer, path);
+    text_writer_print(writer, ",\"node_number\":%u,\"shape\":\"%s\"", placed_node(d->world, placed)->serial,
+                      shape_kind_name(thing->shape.kind));
     if (thing->shape.kind == SHAPE_MESH)
-        sheet_print(sheet, ",\"triangles\":%u", triangles_of(&thing->shape));
+        text_writer_print(writer, ",\"triangles\":%u", triangles_of(&thing->shape));
     if (thing->shape.kind == SHAPE_CSG) {
-        sheet_print(sheet, ",\"operands\":[");
+        text_writer_print(writer, ",\"operands\":[");
         for (uint32_t i = 0; i < thing->shape.csg->leaf_count; i++)
-            sheet_print(sheet, "%s{\"shape\":\"%s\",\"material\":%u}", i > 0 ? "," : "",
-                        shape_kind_name(thing->shape.csg->leaves[i].shape.kind),
-                        number_of(d, thing->shape.csg->leaves[i].material));
-        sheet_print(sheet, "]");
+            text_writer_print(writer, "%s{\"shape\":\"%s\",\"material\":%u}", i > 0 ? "," : "",
+                              shape_kind_name(thing->shape.csg->leaves[i].shape.kind),
+                              number_of(d, thing->shape.csg->leaves[i].material));
+        text_writer_print(writer, "]");
     } else {
-        sheet_print(sheet, ",\"material\":%u,\"slots\":%u", number_of(d, thing->material),
-                    thing->slot_count > 1 ? thing->slot_count : 1);
+        text_writer_print(writer, ",\"material\":%u,\"slots\":%u", number_of(d, thing->material),
+                          thing->slot_count > 1 ? thing->slot_count : 1);
     }
     struct transform map = world_placement(d->world, placed, 0);
-    sheet_print(sheet, ",\"min\":");
-    sheet_json_vector(sheet, d->world->boxes[placed].min);
-    sheet_print(sheet, ",\"max\":");
-    sheet_json_vector(sheet, d->world->boxes[placed].max);
-    sheet_print(sheet, ",\"world_from_object\":[");
+    text_writer_print(writer, ",\"min\":");
+    text_writer_json_vector(writer, d->world->boxes[placed].min);
+    text_writer_print(writer, ",\"max\":");
+    text_writer_json_vector(writer, d->world->boxes[placed].max);
+    text_writer_print(writer, ",\"world_from_object\":[");
     for (int i = 0; i < 12; i++) {
-        sheet_print(sheet, i > 0 ? "," : "");
-        sheet_json_number(sheet, map.forward.m[i / 4][i % 4]);
+        text_writer_print(writer, i > 0 ? "," : "");
+        text_writer_json_number(writer, map.forward.m[i / 4][i % 4]);
     }
-    sheet_print(sheet, "]}");
+    text_writer_print(writer, "]}");
 }
 
 static bool dump_placed(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
@@ -88,45 +88,45 @@ static bool dump_placed(void *context, uint32_t first, uint32_t count, const str
     return true;
 }
 
-static void link_json(struct sheet *sheet, const struct material *link) {
+static void link_json(struct text_writer *writer, const struct material *link) {
     const struct phong *phong = &material_origin(link)->phong;
-    sheet_print(sheet, "{\"kind\":\"%s\"", inspect_material(link));
+    text_writer_print(writer, "{\"kind\":\"%s\"", inspect_material(link));
     if (link->name && link->name[0]) {
-        sheet_print(sheet, ",\"name\":");
-        sheet_json(sheet, link->name);
+        text_writer_print(writer, ",\"name\":");
+        text_writer_json(writer, link->name);
     }
     if (!link->base) {
-        sheet_print(sheet, ",\"kd\":");
-        sheet_json_vector(sheet, phong->kd);
-        sheet_print(sheet, ",\"ks\":");
-        sheet_json_vector(sheet, phong->ks);
+        text_writer_print(writer, ",\"kd\":");
+        text_writer_json_vector(writer, phong->kd);
+        text_writer_print(writer, ",\"ks\":");
+        text_writer_json_vector(writer, phong->ks);
     }
-    sheet_print(sheet, link->base ? "}," : "}");
+    text_writer_print(writer, link->base ? "}," : "}");
 }
 
-static void link_words(struct sheet *sheet, const struct material *link) {
+static void link_words(struct text_writer *writer, const struct material *link) {
     const struct phong *phong = &material_origin(link)->phong;
-    sheet_print(sheet, "%s", inspect_material(link));
+    text_writer_print(writer, "%s", inspect_material(link));
     if (link->name && link->name[0]) {
-        sheet_print(sheet, " '");
-        sheet_name(sheet, link->name);
-        sheet_print(sheet, "'");
+        text_writer_print(writer, " '");
+        text_writer_name(writer, link->name);
+        text_writer_print(writer, "'");
     }
     if (!link->base)
-        sheet_print(sheet, " kd (%.6g, %.6g, %.6g) ks (%.6g, %.6g, %.6g)", phong->kd.x, phong->kd.y, phong->kd.z,
-                    phong->ks.x, phong->ks.y, phong->ks.z);
-    sheet_print(sheet, link->base ? " over " : "");
+        text_writer_print(writer, " kd (%.6g, %.6g, %.6g) ks (%.6g, %.6g, %.6g)", phong->kd.x, phong->kd.y, phong->kd.z,
+                          phong->ks.x, phong->ks.y, phong->ks.z);
+    text_writer_print(writer, link->base ? " over " : "");
 }
 
 static void dump_material(const struct dump *d, uint32_t material) {
-    struct sheet *sheet = d->sheet;
+    struct text_writer *writer = d->writer;
     const struct material *last = d->world->authored.materials[material];
     uint32_t number = number_of(d, material);
-    sheet_print(sheet, d->json ? "%s{\"number\":%u,\"links\":[" : "%.0s%8u  ", d->json && number > 1 ? "," : "",
-                number);
+    text_writer_print(writer, d->json ? "%s{\"number\":%u,\"links\":[" : "%.0s%8u  ", d->json && number > 1 ? "," : "",
+                      number);
     for (const struct material *link = last; link; link = link->base)
-        d->json ? link_json(sheet, link) : link_words(sheet, link);
-    sheet_print(sheet, d->json ? "]}" : "\n");
+        d->json ? link_json(writer, link) : link_words(writer, link);
+    text_writer_print(writer, d->json ? "]}" : "\n");
 }
 
 static void dump_light(const struct dump *d, uint32_t number) {
@@ -134,54 +134,55 @@ static void dump_light(const struct dump *d, uint32_t number) {
     unsigned has = light_properties(light);
     bool placed = has & LIGHT_HAS_POSITION, directed = has & LIGHT_HAS_DIRECTION, lamp = !light_is_delta(light);
     struct vec3 at = placed ? light->position : light->direction, colour = light->colour;
-    sheet_print(d->sheet, d->json ? "%s{\"number\":%u,\"kind\":\"%s\",\"lamp\":%s,\"colour\":" : "%.0s%8u  %s%.0s of ",
-                d->json && number > 0 ? "," : "", number + 1, light_kind_name(light->kind), lamp ? "true" : "false");
+    text_writer_print(
+        d->writer, d->json ? "%s{\"number\":%u,\"kind\":\"%s\",\"lamp\":%s,\"colour\":" : "%.0s%8u  %s%.0s of ",
+        d->json && number > 0 ? "," : "", number + 1, light_kind_name(light->kind), lamp ? "true" : "false");
     if (d->json)
-        sheet_json_vector(d->sheet, colour);
+        text_writer_json_vector(d->writer, colour);
     else
-        sheet_print(d->sheet, "(%.6g, %.6g, %.6g)%s", colour.x, colour.y, colour.z, lamp ? ", a lamp" : "");
+        text_writer_print(d->writer, "(%.6g, %.6g, %.6g)%s", colour.x, colour.y, colour.z, lamp ? ", a lamp" : "");
     if ((placed || directed) && d->json) {
-        sheet_print(d->sheet, placed ? ",\"position\":" : ",\"direction\":");
-        sheet_json_vector(d->sheet, at);
+        text_writer_print(d->writer, placed ? ",\"position\":" : ",\"direction\":");
+        text_writer_json_vector(d->writer, at);
     } else if (placed || directed) {
-        sheet_print(d->sheet, " %s (%.6g, %.6g, %.6g)", placed ? "at" : "along", at.x, at.y, at.z);
+        text_writer_print(d->writer, " %s (%.6g, %.6g, %.6g)", placed ? "at" : "along", at.x, at.y, at.z);
     }
-    sheet_print(d->sheet, d->json ? "}" : "\n");
+    text_writer_print(d->writer, d->json ? "}" : "\n");
 }
 
 static void dump_rest(const struct dump *d) {
     const struct world *world = d->world;
-    sheet_print(d->sheet, d->json ? "],\"materials\":[" : "\n  number  material\n");
+    text_writer_print(d->writer, d->json ? "],\"materials\":[" : "\n  number  material\n");
     for (uint32_t i = 0, numbers = 0; i < world->material_count; i++) {
         if (world->material_numbers[i] != numbers) /* known already, as another shape shows it */
             continue;
         dump_material(d, i);
         numbers++;
     }
-    sheet_print(d->sheet, d->json ? "],\"lights\":[" : "\n  number  light\n");
+    text_writer_print(d->writer, d->json ? "],\"lights\":[" : "\n  number  light\n");
     for (uint32_t i = 0; i < world->light_count; i++)
         dump_light(d, i);
-    sheet_print(d->sheet, d->json ? "]}\n" : "");
+    text_writer_print(d->writer, d->json ? "]}\n" : "");
 }
 
-bool inspect_world(const struct inspected *picture, bool json, struct sheet *sheet, struct error *error) {
+bool inspect_world(const struct inspected *picture, bool json, struct text_writer *writer, struct error *error) {
     const struct world *world = picture->job->world;
-    struct dump d = {picture, world, sheet, json};
+    struct dump d = {picture, world, writer, json};
     if (json) {
-        sheet_print(sheet, "{\"picture\":");
-        sheet_json(sheet, picture->file);
-        sheet_print(sheet, ",\"primitives\":[");
+        text_writer_print(writer, "{\"picture\":");
+        text_writer_json(writer, picture->file);
+        text_writer_print(writer, ",\"primitives\":[");
     } else {
-        sheet_name(sheet, picture->file);
-        sheet_print(sheet,
-                    ": %u primitives, %llu triangles, %u materials, %u lights; background: %s\n\n"
-                    "  number  shape          triangles  material        box  node\n",
-                    world->placed_count, (unsigned long long)world->triangles, world->material_number_count,
-                    world->light_count, inspect_sky(world->sky.kind));
+        text_writer_name(writer, picture->file);
+        text_writer_print(writer,
+                          ": %u primitives, %llu triangles, %u materials, %u lights; background: %s\n\n"
+                          "  number  shape          triangles  material        box  node\n",
+                          world->placed_count, (unsigned long long)world->triangles, world->material_number_count,
+                          world->light_count, inspect_sky(world->sky.kind));
     }
     bool ok = world_walk_paths(world, picture->root, dump_placed, &d, error);
     if (ok)
         dump_rest(&d);
-    sheet_flush(sheet);
+    text_writer_flush(writer);
     return ok;
 }

@@ -9,7 +9,7 @@
 #include "session/options.h"
 
 /* Zero value: no checkpoint is asked for, and every call does nothing. */
-struct keeper {
+struct checkpoint {
     bool on, opened, resume;
     const struct picture_files *files; /* not owned */
     struct error refused;              /* why nothing may be made: said again for every picture */
@@ -28,25 +28,25 @@ struct keeper {
     bool failed;               /* it could not be written, which was told once */
 };
 
-void keeper_init(struct keeper *keeper, const struct options *options, const struct picture_files *files);
+void checkpoint_init(struct checkpoint *checkpoint, const struct options *options, const struct picture_files *files);
 /* Called for every picture before anything else; the first one decides the file. False: there is a file already and no
  * --resume, or it is damaged. *notice: something to tell, or empty. */
-bool keeper_open(struct keeper *keeper, const char *picture_name, char notice[256], struct error *error);
+bool checkpoint_open(struct checkpoint *checkpoint, const char *picture_name, char notice[256], struct error *error);
 /* Whether an earlier run has written this picture and its file still holds the same. False with error: the run before
  * made it of something else. */
-bool keeper_has_written(struct keeper *keeper, uint32_t number, const struct tile_key *key, const char *name,
-                        bool *written, struct error *error);
+bool checkpoint_has_written(struct checkpoint *checkpoint, uint32_t number, const struct tile_key *key,
+                            const char *name, bool *written, struct error *error);
 /* Puts finished tiles of this picture into its film. False: they are of something else. */
-bool keeper_restore(struct keeper *keeper, const struct tile_picture *picture, struct film *film, char notice[256],
-                    struct error *error);
+bool checkpoint_restore(struct checkpoint *checkpoint, const struct tile_picture *picture, struct film *film,
+                        char notice[256], struct error *error);
 /* Writes the file when it is time, or `now`; film: of the picture being made, or NULL. False with error: it could not
  * be written, told once; the run goes on. *tiles: how many the file holds now; untouched when nothing was written. */
-bool keeper_tick(struct keeper *keeper, const struct tile_picture *picture, const struct film *film, bool now,
-                 uint32_t *tiles, struct error *error);
+bool checkpoint_update(struct checkpoint *checkpoint, const struct tile_picture *picture, const struct film *film,
+                       bool now, uint32_t *tiles, struct error *error);
 /* The picture is written under its name. */
-bool keeper_note_written(struct keeper *keeper, uint32_t number, const struct tile_key *key, const char *name,
-                         struct error *error);
+bool checkpoint_note_written(struct checkpoint *checkpoint, uint32_t number, const struct tile_key *key,
+                             const char *name, struct error *error);
 /* After all scripts. all_written: nothing is left to do, the file goes. Otherwise it gets what is pending. */
-bool keeper_finish(struct keeper *keeper, bool all_written, struct error *error);
+bool checkpoint_finish(struct checkpoint *checkpoint, bool all_written, struct error *error);
 
 #endif

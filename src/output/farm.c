@@ -19,7 +19,7 @@ enum farm_message_kind {
     FARM_LEAVE,     /* to the first rank: number; no more tiles of this picture */
     FARM_LINE,      /* to the first rank: an error line */
     FARM_BYE,       /* to the first rank: all scripts have ended */
-    FARM_ANSWER,    /* from the first rank: number, enum answer */
+    FARM_ANSWER,    /* from the first rank: number, enum farm_answer */
     FARM_ASSIGN,    /* from the first rank: number, tile */
     FARM_CLOSE,     /* from the first rank: number; all tiles are there */
     FARM_ALIVE,     /* to and from the first rank: a heartbeat, nothing else */
@@ -27,7 +27,7 @@ enum farm_message_kind {
     FARM_END,       /* from the first rank: number, how many ranks are silent; the farm has ended */
 };
 
-enum answer { ANSWER_GO, ANSWER_SKIP, ANSWER_OTHER, ANSWER_STOP };
+enum farm_answer { FARM_ANSWER_GO, FARM_ANSWER_SKIP, FARM_ANSWER_OTHER, FARM_ANSWER_STOP };
 
 struct begin {
     struct tile_picture picture;
@@ -244,13 +244,13 @@ static void answer_waiting(struct farm *farm) {
         const struct tile_picture *picture = &peer->begin.picture;
         if (!peer->waiting || (picture->number > farm->number && !farm->over))
             continue;
-        enum answer answer = farm->over && farm->failed ? ANSWER_STOP : ANSWER_SKIP;
+        enum farm_answer farm_answer = farm->over && farm->failed ? FARM_ANSWER_STOP : FARM_ANSWER_SKIP;
         if (farm->film && picture->number == farm->number)
-            answer = tile_picture_difference(picture, &farm->picture) ? ANSWER_OTHER : ANSWER_GO;
-        struct pair pair = {picture->number, answer};
+            farm_answer = tile_picture_difference(picture, &farm->picture) ? FARM_ANSWER_OTHER : FARM_ANSWER_GO;
+        struct pair pair = {picture->number, farm_answer};
         send(farm, rank, FARM_ANSWER, &pair, sizeof pair);
         peer->waiting = false;
-        peer->joined = answer == ANSWER_GO;
+        peer->joined = farm_answer == FARM_ANSWER_GO;
         give_slots(farm, rank);
     }
 }
@@ -261,7 +261,7 @@ static void close_picture(struct farm *farm) {
             send_pair(farm, rank, FARM_CLOSE, 0);
         farm->peers[rank].joined = false;
     }
-    atomic_store(&farm->control->gate, GATE_CLOSED);
+    atomic_store(&farm->control->handout, HANDOUT_CLOSED);
     farm->film = NULL;
 }
 
@@ -400,7 +400,7 @@ static void step_other(struct farm *farm) {
         if (kind == FARM_ASSIGN && pair.value < film_tile_count(farm->film))
             want_tile(farm->film, pair.value);
         if (kind == FARM_CLOSE)
-            atomic_store(&farm->control->gate, GATE_CLOSED);
+            atomic_store(&farm->control->handout, HANDOUT_CLOSED);
     }
     if (farm->ended) /* without this rank, which was silent: what it still does is for nobody */
         atomic_store(&farm->control->cancel, CANCEL_ALL);
@@ -409,19 +409,19 @@ static void step_other(struct farm *farm) {
 }
 
 /* Waits for the answer to the beginning of a picture. */
-static bool await_answer(struct farm *farm, struct pair *answer, struct error *error) {
+static bool await_answer(struct farm *farm, struct pair *farm_answer, struct error *error) {
     int kind;
     for (;; rest(farm)) {
         if (atomic_load(&farm->control->cancel))
             return error_set(error, ERROR_CANCELLED, "interrupted");
         if (farm_is_abandoned(farm))
             return error_set(error, ERROR_CANCELLED, "the first rank is silent");
-        while (listen(farm, &kind, answer)) {
-            if (kind == FARM_ANSWER && answer->number == farm->number)
+        while (listen(farm, &kind, farm_answer)) {
+            if (kind == FARM_ANSWER && farm_answer->number == farm->number)
                 return true;
         }
         if (farm->ended) {
-            *answer = (struct pair){farm->number, ANSWER_STOP};
+            *farm_answer = (struct pair){farm->number, FARM_ANSWER_STOP};
             return true;
         }
     }
@@ -429,15 +429,15 @@ static bool await_answer(struct farm *farm, struct pair *answer, struct error *e
 
 static bool join(struct farm *farm, bool *already, struct error *error) {
     struct begin begin = {farm->picture, farm->slots};
-    struct pair answer;
+    struct pair farm_answer;
     send(farm, 0, FARM_BEGIN, &begin, sizeof begin);
-    if (!await_answer(farm, &answer, error))
+    if (!await_answer(farm, &farm_answer, error))
         return false;
-    *already = answer.value == ANSWER_SKIP;
-    if (answer.value == ANSWER_OTHER)
+    *already = farm_answer.value == FARM_ANSWER_SKIP;
+    if (farm_answer.value == FARM_ANSWER_OTHER)
         return error_set(error, ERROR_SCENE,
                          "this rank makes another picture than the first one: its files, options or version differ");
-    if (answer.value == ANSWER_STOP)
+    if (farm_answer.value == FARM_ANSWER_STOP)
         return error_set(error, ERROR_CANCELLED, "the first rank has given up");
     return true;
 }
@@ -468,7 +468,7 @@ bool farm_begin(struct farm *farm, const struct tile_picture *picture, struct fi
             set_state(film, tile, FILM_TILE_LATER);
     }
     farm->film = film;
-    atomic_store(&farm->control->gate, GATE_OPEN);
+    atomic_store(&farm->control->handout, HANDOUT_OPEN);
     farm_step(farm);
     return true;
 }
@@ -515,7 +515,7 @@ bool farm_next_note(struct farm *farm, char *line, size_t size) {
     return true;
 }
 
-void farm_tell(struct farm *farm, const char *line) {
+void farm_report(struct farm *farm, const char *line) {
     if (!farm_is_first(farm))
         send(farm, 0, FARM_LINE, line, strnlen(line, LINE_LIMIT - 16));
     else if (farm->line_count < LINES_LIMIT)
@@ -523,7 +523,7 @@ void farm_tell(struct farm *farm, const char *line) {
 }
 
 /* Lines of other ranks that the first one did not have itself: the same script error happens on all. */
-static void tell_foreign(const struct farm *farm, void (*tell)(void *context, const char *line), void *context) {
+static void report_foreign(const struct farm *farm, void (*report)(void *context, const char *line), void *context) {
     for (int i = 0; i < farm->line_count; i++) {
         const char *text = strchr(farm->lines[i], ' ') + 1;
         bool known = farm->lines[i][0] == '0';
@@ -533,7 +533,7 @@ static void tell_foreign(const struct farm *farm, void (*tell)(void *context, co
         (void)snprintf(line, sizeof line, "gray: rank %.*s: %s", (int)(text - 1 - farm->lines[i]), farm->lines[i],
                        text);
         if (!known)
-            tell(context, line);
+            report(context, line);
     }
 }
 
@@ -565,13 +565,13 @@ static void await_end(struct farm *farm) {
     }
 }
 
-void farm_finish(struct farm *farm, bool well, void (*tell)(void *context, const char *line), void *context) {
+void farm_finish(struct farm *farm, bool well, void (*report)(void *context, const char *line), void *context) {
     farm->film = NULL;
     farm->over = true;
     farm->failed = !well;
     if (farm_is_first(farm)) {
         await_others(farm);
-        tell_foreign(farm, tell, context);
+        report_foreign(farm, report, context);
     } else {
         await_end(farm);
     }

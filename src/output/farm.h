@@ -48,7 +48,7 @@ void farm_end(struct farm *farm, bool given_up);
  * handed out again. */
 void farm_take_back_own(struct farm *farm);
 /* An error of this rank, for the people at the first one. */
-void farm_tell(struct farm *farm, const char *line);
+void farm_report(struct farm *farm, const char *line);
 /* What happened to a rank, to be shown by the first one at once. */
 void farm_note(struct farm *farm, const char *text);
 /* First rank: the next line to be shown, if there is one. */

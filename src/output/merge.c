@@ -113,7 +113,7 @@ static bool fill_film(const struct part *parts, size_t count, struct film *film,
     return true;
 }
 
-static bool merge_picture(struct desk *desk, const struct part *parts, size_t count, struct error *error) {
+static bool merge_picture(struct output_session *output, const struct part *parts, size_t count, struct error *error) {
     const struct tile_picture *first = &parts[0].picture;
     struct picture_request request = {.full_width = first->full_width,
                                       .full_height = first->full_height,
@@ -128,38 +128,38 @@ static bool merge_picture(struct desk *desk, const struct part *parts, size_t co
                                       .record = first->record};
     memcpy(request.file, first->name, sizeof request.file);
     bool already = false;
-    if (!check_parts(parts, count, error) || !desk_begin(desk, &request, &already, error))
+    if (!check_parts(parts, count, error) || !output_begin(output, &request, &already, error))
         return false;
     const struct picture_report report = {0};
-    if (fill_film(parts, count, &desk->current.film, error))
-        return desk_done(desk, &report, error);
-    desk_abandon(desk);
+    if (fill_film(parts, count, &output->current.film, error))
+        return output_done(output, &report, error);
+    output_abandon(output);
     return false;
 }
 
-static int tell(struct desk *desk, const struct error *error, int status) {
-    desk_line(desk, LINE_ERROR, error->text);
+static int tell(struct output_session *output, const struct error *error, int status) {
+    output_report(output, LINE_ERROR, error->text);
     return (int)error->kind > status ? (int)error->kind : status;
 }
 
 int merge_run(const struct options *options) {
     struct control control = {0};
-    struct desk desk;
+    struct output_session output;
     struct error error = {0};
     size_t count = (size_t)options->script_count, first = 0;
     int status = 0;
     (void)signal(SIGPIPE, SIG_IGN);
     (void)signal(SIGXFSZ, SIG_IGN);
-    desk_init(&desk, options, &control);
+    output_init(&output, options, &control);
     struct part *parts = mem_alloc_zero(count, sizeof *parts);
     if (!parts) {
         (void)error_no_memory(&error, "the parts");
-        status = tell(&desk, &error, status);
+        status = tell(&output, &error, status);
         count = 0;
     }
     for (size_t i = 0; i < count; i++) {
         if (!read_part(options->scripts[i], &parts[i], &error))
-            status = tell(&desk, &error, status);
+            status = tell(&output, &error, status);
     }
     /* A part that cannot be read may be of any picture: nothing is put together without it. */
     if (status != 0)
@@ -169,11 +169,11 @@ int merge_run(const struct options *options) {
     for (size_t end; first < count; first = end) {
         for (end = first + 1; end < count && parts[end].picture.number == parts[first].picture.number;)
             end++;
-        if (!merge_picture(&desk, parts + first, end - first, &error))
-            status = tell(&desk, &error, status);
+        if (!merge_picture(&output, parts + first, end - first, &error))
+            status = tell(&output, &error, status);
     }
     mem_free(parts);
-    if (!desk_finish(&desk, status == 0, &error))
-        status = tell(&desk, &error, status);
+    if (!output_finish(&output, status == 0, &error))
+        status = tell(&output, &error, status);
     return status;
 }

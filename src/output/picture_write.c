@@ -41,38 +41,40 @@ static void row_linear(void *context, uint32_t y, float *line) {
 }
 
 /* Finished tiles one below the other: what packing the picture will take, before it is there. */
-enum { TRIAL_TILES = 16 };
-struct trial {
+enum { PACKING_SAMPLE_TILES = 16 };
+struct packing_sample {
     const struct film *film;
     struct tone tone;
-    uint32_t tiles[TRIAL_TILES], count;
+    uint32_t tiles[PACKING_SAMPLE_TILES], count;
 };
 
-static void trial_row(void *context, uint32_t y, uint8_t *line) {
-    const struct trial *trial = context;
-    struct film_rectangle r = film_tile_rectangle(trial->film, trial->tiles[y / FILM_TILE]);
-    size_t at = (size_t)(r.y0 + y % FILM_TILE - trial->film->y0) * trial->film->width + (r.x0 - trial->film->x0);
+static void packing_sample_row(void *context, uint32_t y, uint8_t *line) {
+    const struct packing_sample *packing_sample = context;
+    struct film_rectangle r = film_tile_rectangle(packing_sample->film, packing_sample->tiles[y / FILM_TILE]);
+    size_t at = (size_t)(r.y0 + y % FILM_TILE - packing_sample->film->y0) * packing_sample->film->width +
+                (r.x0 - packing_sample->film->x0);
     for (uint32_t x = 0; x < FILM_TILE; x++) {
         for (uint32_t c = 0; c < 3; c++)
-            line[3 * x + c] = png_write_byte(tone_apply(&trial->tone, (double)trial->film->pixels[at + x].rgb[c]));
+            line[3 * x + c] =
+                png_write_byte(tone_apply(&packing_sample->tone, (double)packing_sample->film->pixels[at + x].rgb[c]));
     }
 }
 
-double picture_write_trial(const struct picture *picture, uint32_t *pixels) {
+double picture_packing_time(const struct picture *picture, uint32_t *pixels) {
     const struct picture_request *request = &picture->request;
     const struct film *film = &picture->film;
-    struct trial trial = {film, picture_tone(request), {0}, 0};
-    uint32_t count = film_tile_count(film), step = count / TRIAL_TILES / 4 + 1;
-    for (uint32_t tile = 0; tile < count && trial.count < TRIAL_TILES;) {
+    struct packing_sample packing_sample = {film, picture_tone(request), {0}, 0};
+    uint32_t count = film_tile_count(film), step = count / PACKING_SAMPLE_TILES / 4 + 1;
+    for (uint32_t tile = 0; tile < count && packing_sample.count < PACKING_SAMPLE_TILES;) {
         struct film_rectangle r = film_tile_rectangle(film, tile);
         bool done = atomic_load_explicit(&film->tiles[tile], memory_order_acquire) == FILM_TILE_DONE &&
                     r.x1 - r.x0 == FILM_TILE && r.y1 - r.y0 == FILM_TILE;
         if (done)
-            trial.tiles[trial.count++] = tile;
-        tile += done ? count / TRIAL_TILES : step;
+            packing_sample.tiles[packing_sample.count++] = tile;
+        tile += done ? count / PACKING_SAMPLE_TILES : step;
     }
-    struct png_source source = {FILM_TILE, FILM_TILE * trial.count, trial_row, NULL, &trial};
-    double seconds = trial.count > 0 ? png_write_trial(&source) : -1;
+    struct png_source source = {FILM_TILE, FILM_TILE * packing_sample.count, packing_sample_row, NULL, &packing_sample};
+    double seconds = packing_sample.count > 0 ? png_write_trial(&source) : -1;
     *pixels = source.width * source.height;
     return request->deep ? 2 * seconds : seconds;
 }

@@ -34,6 +34,6 @@ bool picture_write_view(const struct picture *picture, const struct file_target 
 bool picture_write_files(const struct picture_files *files, const struct picture *picture, const char *name,
                          struct error *error);
 /* Seconds of one core that packing some finished tiles takes; *pixels: of them. Negative: it could not be measured. */
-double picture_write_trial(const struct picture *picture, uint32_t *pixels);
+double picture_packing_time(const struct picture *picture, uint32_t *pixels);
 
 #endif

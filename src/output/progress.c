@@ -105,10 +105,10 @@ static void draw_bar(struct progress *progress, const struct state *state) {
     memset(cells, '.', (size_t)bar);
     memset(cells, '#', (size_t)(share * bar));
     cells[bar] = '\0';
-    text_time(state->elapsed, elapsed, sizeof elapsed);
+    text_duration(state->elapsed, elapsed, sizeof elapsed);
     if (state->left >= 0 && state->elapsed > 1) {
         char time[48];
-        text_time(state->left, time, sizeof time);
+        text_duration(state->left, time, sizeof time);
         (void)snprintf(left, sizeof left, ", about %s left", time);
     }
     char name[64];
@@ -129,9 +129,9 @@ static void draw_bar(struct progress *progress, const struct state *state) {
 
 static void print_line(struct progress *progress, const struct state *state) {
     char line[4096 + 160], elapsed[48], left[48] = "";
-    text_time(state->elapsed, elapsed, sizeof elapsed);
+    text_duration(state->elapsed, elapsed, sizeof elapsed);
     if (state->left >= 0)
-        text_time(state->left, left, sizeof left);
+        text_duration(state->left, left, sizeof left);
     if (state->count > 0)
         (void)snprintf(line, sizeof line, "%s: %.0f %% after %s%s%s%s", progress->name,
                        100 * (state->share > 0 ? state->share : 0), elapsed, left[0] ? ", about " : "", left,
@@ -171,11 +171,11 @@ void progress_begin(struct progress *progress, const char *name, uint32_t width,
         print_json(progress, "begin", &(struct state){0, -1, -1, 0, 0});
 }
 
-bool progress_wants_trial(const struct progress *progress) {
+bool progress_wants_packing_time(const struct progress *progress) {
     return progress->mode != PROGRESS_NONE && !progress->tried && progress->share > 0.25;
 }
 
-void progress_note_trial(struct progress *progress, double seconds, uint32_t pixels) {
+void progress_note_packing_time(struct progress *progress, double seconds, uint32_t pixels) {
     progress->tried = true;
     if (seconds > 0 && pixels > 0)
         progress->writing = seconds / pixels;
@@ -205,7 +205,7 @@ static double pause_of(const struct progress *progress, double now) {
 void progress_update(struct progress *progress, uint32_t done, uint32_t count, const struct outlook *outlook) {
     double now = progress_clock();
     bool first = progress->mode == PROGRESS_JSON && !progress->known && outlook_share(outlook) >= 0;
-    if (!progress->name || (now - progress->shown < pause_of(progress, now) && !first) || !text_error_is_taken())
+    if (!progress->name || (now - progress->shown < pause_of(progress, now) && !first) || !text_stderr_is_ready())
         return;
     progress->known = progress->known || first;
     struct state state = state_of(progress, now, done, count, outlook);
@@ -225,8 +225,8 @@ void progress_end(struct progress *progress, enum progress_end how) {
     progress_hide(progress);
     if (progress->mode == PROGRESS_JSON)
         print_json(progress, how == PROGRESS_WRITTEN ? "written" : "given up", &(struct state){elapsed, -1, -1, 0, 0});
-    bool told = progress->mode == PROGRESS_BAR || (progress->mode == PROGRESS_LINES && progress->said);
-    if (told && how == PROGRESS_WRITTEN) {
+    bool reported = progress->mode == PROGRESS_BAR || (progress->mode == PROGRESS_LINES && progress->said);
+    if (reported && how == PROGRESS_WRITTEN) {
         char line[4096 + 64];
         (void)snprintf(line, sizeof line, "%s  %u x %u  %.1f s", progress->name, progress->width, progress->height,
                        elapsed);

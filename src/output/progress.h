@@ -36,9 +36,9 @@ void progress_begin(struct progress *progress, const char *name, uint32_t width,
 /* count 0: the scene is still being built. Tells at most ten times a second. */
 void progress_update(struct progress *progress, uint32_t done, uint32_t count, const struct outlook *outlook);
 /* It is time to measure what writing the file will take: enough of it is there, and somebody wants to know. */
-bool progress_wants_trial(const struct progress *progress);
+bool progress_wants_packing_time(const struct progress *progress);
 /* Processor seconds for so many pixels; negative: it could not be measured. */
-void progress_note_trial(struct progress *progress, double seconds, uint32_t pixels);
+void progress_note_packing_time(struct progress *progress, double seconds, uint32_t pixels);
 /* Whether anybody will see an estimate. */
 bool progress_wants_outlook(const struct progress *progress);
 /* Takes the bar off the screen, so that a line can be printed; the next update draws it again. */

@@ -14,7 +14,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-enum { KITTY_PIECE = 4096 /* letters of base64 a command */, MOST_PIXELS = 1600 };
+enum { KITTY_PIECE = 4096 /* letters of base64 a command */, PIXELS_MAX = 1600 };
 
 static bool variable_has(const char *name, const char *word) {
     const char *value = getenv(name);
@@ -200,7 +200,7 @@ void terminal_draw(struct terminal *terminal, const struct film *film, const str
     bool blocks = terminal->graphics == TERMINAL_BLOCKS;
     double across = blocks ? terminal->columns : terminal->columns * terminal->cell_width;
     double down = blocks ? 2 * lines : lines * terminal->cell_height;
-    fit(film, fmin(across, MOST_PIXELS), fmin(down, MOST_PIXELS), &width, &height);
+    fit(film, fmin(across, PIXELS_MAX), fmin(down, PIXELS_MAX), &width, &height);
     uint8_t *rgb = mem_alloc_zero((size_t)width * height, 3);
     if (!rgb)
         return;

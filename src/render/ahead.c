@@ -75,7 +75,7 @@ bool run_look_ahead(struct run *run) {
     forget_counts(run);
     forecast_settle(&run->forecast);
     run->foretold = true;
-    atomic_store(&outlook->begun, run->job->gate ? begun : nanoseconds_of(CLOCK_MONOTONIC));
+    atomic_store(&outlook->begun, run->job->handout ? begun : nanoseconds_of(CLOCK_MONOTONIC));
     outlook_tell(outlook, 0, 1, 0);
     run->worked = nanoseconds_of(CLOCK_PROCESS_CPUTIME_ID);
     return true;
@@ -86,7 +86,7 @@ void run_tell_outlook(struct run *run) {
     if (now - told < pause || !atomic_compare_exchange_strong(&run->told, &told, now))
         return;
     struct outlook *outlook = run->job->outlook;
-    struct forecast_work work = forecast_work(&run->forecast, run->job->gate ? run->job->film : NULL);
+    struct forecast_work work = forecast_work(&run->forecast, run->job->handout ? run->job->film : NULL);
     uint64_t worked = nanoseconds_of(CLOCK_PROCESS_CPUTIME_ID) - run->worked + 1;
     double passed = (double)(now - atomic_load(&outlook->begun)) * pool_workers(run->pool);
     atomic_store_explicit(&outlook->pace, (uint64_t)(1000 * passed / (double)worked), memory_order_relaxed);

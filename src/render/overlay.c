@@ -34,7 +34,7 @@ enum { CHUNK = 512, PIECES = 32, EDGES = 12 };
 struct pen {
     const struct render_job *job;
     struct pool *pool;
-    const struct overlay_wish *wish;
+    const struct overlay_request *request;
     struct camera_frame camera;
     struct world_scratch *scratch; /* by worker */
     float *depths;                 /* of the surface in each cell of the film: negative while nobody has asked */
@@ -60,7 +60,7 @@ static double depth_of(const struct pen *pen, struct vec3 point) {
 /* Through the middle of the cell. */
 static double surface_depth(struct pen *pen, struct world_scratch *scratch, uint32_t x, uint32_t y) {
     const struct film *film = pen->job->film;
-    uint32_t cell = pen->wish->cell;
+    uint32_t cell = pen->request->cell;
     float *depth = &pen->depths[(size_t)(y / cell) * pen->cells_across + x / cell];
     struct ray ray;
     struct hit hit;
@@ -226,7 +226,7 @@ static bool stopped(const struct pen *pen) {
 /* --- what is drawn --- */
 
 static uint32_t step_for(const struct pen *pen, uint64_t count) {
-    return (uint32_t)((count + pen->wish->limit - 1) / pen->wish->limit);
+    return (uint32_t)((count + pen->request->limit - 1) / pen->request->limit);
 }
 
 static void number_colour(struct pen *pen, uint64_t number) {
@@ -301,7 +301,7 @@ static void draw_halves(struct pen *pen) {
         return;
     stack[depth].cell = tree->bounds;
     stack[depth++].node = 0;
-    while (depth > 0 && !stopped(pen) && pen->drawn < pen->wish->limit) {
+    while (depth > 0 && !stopped(pen) && pen->drawn < pen->request->limit) {
         struct box cell = stack[--depth].cell, lower = cell, upper = cell;
         uint32_t number = stack[depth].node;
         const struct kd_node *node = &tree->nodes[number];
@@ -339,7 +339,7 @@ static void draw_cells(struct pen *pen) {
 }
 
 static void draw(struct pen *pen) {
-    switch (pen->wish->kind) {
+    switch (pen->request->kind) {
     case OVERLAY_NONE:
         return;
     case OVERLAY_OF_BOXES:
@@ -363,7 +363,7 @@ static void give_back(struct pen *pen) {
 
 static bool make_room(struct pen *pen) {
     const struct film *film = pen->job->film;
-    uint32_t cell = pen->wish->cell, workers = (uint32_t)pool_workers(pen->pool);
+    uint32_t cell = pen->request->cell, workers = (uint32_t)pool_workers(pen->pool);
     uint32_t rows = (film->height + cell - 1) / cell, share = (rows + 4 * workers - 1) / (4 * workers);
     pen->cells_across = (film->width + cell - 1) / cell;
     pen->band = share * cell;
@@ -382,17 +382,17 @@ static bool make_room(struct pen *pen) {
     return ok;
 }
 
-bool overlay_lines(const struct render_job *job, struct pool *pool, const struct overlay_wish *wish, float (*lines)[4],
-                   struct error *error) {
+bool overlay_lines(const struct render_job *job, struct pool *pool, const struct overlay_request *request,
+                   float (*lines)[4], struct error *error) {
     const struct film *film = job->film;
     struct camera camera = job->camera;
     char warning[256];
-    struct pen pen = {.job = job, .pool = pool, .wish = wish, .lines = lines};
+    struct pen pen = {.job = job, .pool = pool, .request = request, .lines = lines};
     for (size_t i = 0; i < (size_t)film->width * film->height; i++) {
         lines[i][0] = lines[i][1] = lines[i][2] = 0;
         lines[i][3] = 1;
     }
-    if (wish->kind == OVERLAY_NONE)
+    if (request->kind == OVERLAY_NONE)
         return true;
     if (job->settings.motion.moves)
         camera = camera_at(&job->camera, &job->settings.motion, shutter_time(job->settings.shutter, 0));
@@ -421,14 +421,14 @@ void overlay_lay(struct film *film, float (*lines)[4]) {
 }
 
 bool overlay_draw(const struct render_job *job, struct pool *pool, struct error *error) {
-    const struct overlay_wish wish = {job->settings.overlay, OVERLAY_BOXES, 1};
+    const struct overlay_request request = {job->settings.overlay, OVERLAY_BOXES, 1};
     struct film *film = job->film;
-    if (wish.kind == OVERLAY_NONE)
+    if (request.kind == OVERLAY_NONE)
         return true;
     float(*lines)[4] = mem_alloc_zero((size_t)film->width * film->height, sizeof *lines);
     if (!lines)
         return error_no_memory(error, "the lines over a picture");
-    bool ok = overlay_lines(job, pool, &wish, lines, error);
+    bool ok = overlay_lines(job, pool, &request, lines, error);
     if (ok)
         overlay_lay(film, lines);
     mem_free(lines);

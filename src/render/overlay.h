@@ -7,7 +7,7 @@
 
 enum { OVERLAY_BOXES = 200000 };
 
-struct overlay_wish {
+struct overlay_request {
     enum overlay kind;
     uint32_t limit; /* at most so many boxes, from 1: of more, every second, third ... */
     uint32_t cell;  /* what is behind a surface is asked once for so many pixels across and down, from 1 */
@@ -16,8 +16,8 @@ struct overlay_wish {
 /* Finds the lines of a wish for the film of a job, whose pixels are not looked at. Lines are seen through the middle of
  * the lens when the shutter opens; what lies behind a surface is drawn faintly. lines: by pixel what overlay_ink does
  * to it. The same for any number of threads. False: no memory, or cancelled. */
-bool overlay_lines(const struct render_job *job, struct pool *pool, const struct overlay_wish *wish, float (*lines)[4],
-                   struct error *error);
+bool overlay_lines(const struct render_job *job, struct pool *pool, const struct overlay_request *request,
+                   float (*lines)[4], struct error *error);
 
 /* One pixel under its lines: the share of it that is still seen, and the light of the lines. */
 static inline void overlay_ink(const float lines[4], float rgb[3]) {

@@ -131,7 +131,7 @@ static void tile_item(void *context, uint32_t place, int index) {
 }
 
 /* Makes whatever becomes wanted until no more can. */
-static void gated_item(void *context, uint32_t item, int index) {
+static void handout_item(void *context, uint32_t item, int index) {
     struct run *run = context;
     const struct film *film = run->job->film;
     const struct timespec pause = {0, 500000};
@@ -143,7 +143,7 @@ static void gated_item(void *context, uint32_t item, int index) {
             tile++;
         if (tile < count)
             make_tile(run, tile, index);
-        else if (atomic_load(run->job->gate) != 1)
+        else if (atomic_load(run->job->handout) != 1)
             return;
         else
             (void)nanosleep(&pause, NULL);
@@ -158,8 +158,8 @@ static bool run_tiles(struct run *run, struct render_statistics *statistics) {
     for (int i = 0; i < workers; i++)
         run->workers[i].tile_ended = begun;
     uint32_t tail = film_tile_count(run->job->film) - run->whole_tiles;
-    bool whole = run->job->gate ? pool_run(run->pool, (uint32_t)workers, gated_item, run)
-                                : pool_run(run->pool, run->whole_tiles + QUARTERS * tail, tile_item, run);
+    bool whole = run->job->handout ? pool_run(run->pool, (uint32_t)workers, handout_item, run)
+                                   : pool_run(run->pool, run->whole_tiles + QUARTERS * tail, tile_item, run);
     double ended = seconds_now();
     for (uint32_t i = 0; i < tail && !whole; i++) { /* those of which quarters are missing */
         uint8_t taken = FILM_TILE_TAKEN;
@@ -332,7 +332,7 @@ static bool order_tiles(struct run *run) {
     if (run->job->outlook && !forecast_create(&run->forecast, count, film_tiles_across(film), pool_workers(run->pool)))
         return false;
     run->whole_tiles = count;
-    if (run->job->gate)
+    if (run->job->handout)
         return true;
     uint32_t tail = (count + TAIL_SHARE - 1) / TAIL_SHARE;
     tail = tail < TAIL_LIMIT ? tail : TAIL_LIMIT;

@@ -31,10 +31,10 @@ struct render_job {
     struct settings settings;
     uint32_t width, height; /* of the whole picture */
     struct vec3 ambient;
-    const struct fog *fog;        /* or NULL */
-    struct film *film;            /* placed for the crop; only tiles in the state FILM_TILE_WANTED are made */
-    const _Atomic uint32_t *gate; /* or NULL; while it is 1 more tiles may become wanted */
-    uint32_t shard, shards;       /* this one of so many, from 1, makes its own tiles only; 0 of 0: all */
+    const struct fog *fog;           /* or NULL */
+    struct film *film;               /* placed for the crop; only tiles in the state FILM_TILE_WANTED are made */
+    const _Atomic uint32_t *handout; /* or NULL; while it is 1 more tiles may become wanted */
+    uint32_t shard, shards;          /* this one of so many, from 1, makes its own tiles only; 0 of 0: all */
     /* Called from any worker when a tile is final; may be NULL. done counts from 1. */
     void (*tile_done)(void *context, uint32_t tile, uint32_t done, uint32_t count);
     void *context;

@@ -17,8 +17,8 @@ struct settings settings_default(void) {
                              .lens = {.view_height = 2, .angle = 180, .screen = 1}};
 }
 
-void settings_hasten(struct settings *settings, enum haste haste) {
-    if (haste == HASTE_NONE)
+void settings_set_draft(struct settings *settings, enum draft_level draft_level) {
+    if (draft_level == DRAFT_NONE)
         return;
     settings->full = false;
     settings->samples = 1;
@@ -28,7 +28,7 @@ void settings_hasten(struct settings *settings, enum haste haste) {
     settings->caustics.photons = 0;
     settings->lens.aperture = 0;
     settings->shutter.close = settings->shutter.open;
-    if (haste == HASTE_PREVIEW) {
+    if (draft_level == DRAFT_PREVIEW) {
         settings->reflect_limit = settings->refract_limit = 0;
         settings->area_samples = 1;
     }

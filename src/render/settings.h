@@ -105,8 +105,8 @@ struct settings {
 struct settings settings_default(void);
 /* How much to leave out so that something is seen soon. QUICK: one sample a pixel, coarse, no caustics, no blur by lens
  * or motion; PREVIEW: neither mirrored nor refracted rays either, one shadow ray for a light. */
-enum haste { HASTE_NONE, HASTE_QUICK, HASTE_PREVIEW };
-void settings_hasten(struct settings *settings, enum haste haste);
+enum draft_level { DRAFT_NONE, DRAFT_QUICK, DRAFT_PREVIEW };
+void settings_set_draft(struct settings *settings, enum draft_level draft_level);
 
 struct camera {
     struct vec3 eye, view,

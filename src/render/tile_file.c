@@ -117,13 +117,13 @@ static uint64_t check_of(uint64_t place, uint32_t kind, const uint8_t *payload, 
 
 /* Writing. */
 
-struct writer {
+struct text_writer {
     struct file_output file;
     uint64_t records;
     uint8_t *buffer; /* RECORD_HEAD, payload, RECORD_CHECK */
 };
 
-static bool write_record(struct writer *writer, uint32_t kind, size_t size, struct error *error) {
+static bool write_record(struct text_writer *writer, uint32_t kind, size_t size, struct error *error) {
     struct pen pen = {writer->buffer};
     put_u32(&pen, kind);
     put_u32(&pen, 0);
@@ -133,7 +133,7 @@ static bool write_record(struct writer *writer, uint32_t kind, size_t size, stru
     return file_output_write(&writer->file, writer->buffer, RECORD_HEAD + size + RECORD_CHECK, error);
 }
 
-static bool write_done(struct writer *writer, const struct tile_done *done, struct error *error) {
+static bool write_done(struct text_writer *writer, const struct tile_done *done, struct error *error) {
     struct pen pen = {writer->buffer + RECORD_HEAD};
     put_u32(&pen, done->number);
     put_key(&pen, &done->key);
@@ -142,7 +142,7 @@ static bool write_done(struct writer *writer, const struct tile_done *done, stru
     return write_record(writer, RECORD_DONE, (size_t)(pen.at - writer->buffer) - RECORD_HEAD, error);
 }
 
-static bool write_picture(struct writer *writer, const struct tile_picture *picture, struct error *error) {
+static bool write_picture(struct text_writer *writer, const struct tile_picture *picture, struct error *error) {
     struct pen pen = {writer->buffer + RECORD_HEAD};
     uint64_t exposure;
     memcpy(&exposure, &picture->tone.exposure, sizeof exposure);
@@ -169,7 +169,7 @@ static bool write_picture(struct writer *writer, const struct tile_picture *pict
     return write_record(writer, RECORD_PICTURE, (size_t)(pen.at - writer->buffer) - RECORD_HEAD, error);
 }
 
-static bool write_tiles(struct writer *writer, const struct film *film, struct error *error) {
+static bool write_tiles(struct text_writer *writer, const struct film *film, struct error *error) {
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
         if (atomic_load_explicit(&film->tiles[tile], memory_order_acquire) != FILM_TILE_DONE)
             continue;
@@ -182,7 +182,7 @@ static bool write_tiles(struct writer *writer, const struct film *film, struct e
     return true;
 }
 
-static bool write_all(struct writer *writer, const struct tile_done *done, size_t done_count,
+static bool write_all(struct text_writer *writer, const struct tile_done *done, size_t done_count,
                       const struct tile_picture *picture, const struct film *film, struct error *error) {
     struct pen pen = {writer->buffer};
     put(&pen, magic, sizeof magic);
@@ -199,7 +199,7 @@ static bool write_all(struct writer *writer, const struct tile_done *done, size_
 
 bool tile_file_write(const struct file_target *target, const struct tile_done *done, size_t done_count,
                      const struct tile_picture *picture, const struct film *film, struct error *error) {
-    struct writer writer = {.buffer = mem_alloc(RECORD_HEAD + PAYLOAD_LIMIT + RECORD_CHECK)};
+    struct text_writer writer = {.buffer = mem_alloc(RECORD_HEAD + PAYLOAD_LIMIT + RECORD_CHECK)};
     if (!writer.buffer)
         return error_no_memory(error, target->path);
     bool ok = file_output_open(&writer.file, target, error);

@@ -1,5 +1,5 @@
 /* Frames over SOCK_SEQPACKET: the kernel keeps one send as one receive, so a frame is never read in part and threads
- * may send without a lock. What was received is trusted only after frame_is_sound. */
+ * may send without a lock. What was received is trusted only after message_is_valid. */
 #define _GNU_SOURCE
 #include "session/channel.h"
 
@@ -31,7 +31,7 @@ union control_space {
     char bytes[CMSG_SPACE(sizeof(int))];
 };
 
-bool channel_send(struct channel *channel, enum frame_kind kind, const void *body, size_t size, int descriptor) {
+bool channel_send(struct channel *channel, enum message_kind kind, const void *body, size_t size, int descriptor) {
     uint32_t word = (uint32_t)kind;
     struct iovec parts[2] = {{&word, sizeof word}, {(void *)(uintptr_t)body, size}};
     struct msghdr packet = {.msg_iov = parts, .msg_iovlen = size > 0 ? 2 : 1};
@@ -54,7 +54,7 @@ bool channel_send(struct channel *channel, enum frame_kind kind, const void *bod
 }
 
 bool channel_send_line(struct channel *channel, enum line_kind kind, const char *text) {
-    struct frame_line line = {.kind = kind};
+    struct message_line line = {.kind = kind};
     size_t length = strlen(text);
     if (length >= sizeof line.text) {
         length = sizeof line.text - 1;
@@ -63,12 +63,12 @@ bool channel_send_line(struct channel *channel, enum line_kind kind, const char 
     } else {
         memcpy(line.text, text, length);
     }
-    return channel_send(channel, FRAME_LINE, &line, offsetof(struct frame_line, text) + length + 1, -1);
+    return channel_send(channel, MESSAGE_LINE, &line, offsetof(struct message_line, text) + length + 1, -1);
 }
 
-enum channel_result channel_receive(struct channel *channel, struct frame *frame) {
+enum channel_result channel_receive(struct channel *channel, struct message *message) {
     uint32_t word = 0;
-    struct iovec parts[2] = {{&word, sizeof word}, {&frame->body, sizeof frame->body}};
+    struct iovec parts[2] = {{&word, sizeof word}, {&message->body, sizeof message->body}};
     union control_space control;
     struct msghdr packet = {
         .msg_iov = parts, .msg_iovlen = 2, .msg_control = &control, .msg_controllen = sizeof control.bytes};
@@ -76,23 +76,23 @@ enum channel_result channel_receive(struct channel *channel, struct frame *frame
     do {
         got = MAY_FAIL(recvmsg(channel->descriptor, &packet, MSG_CMSG_CLOEXEC));
     } while (got < 0 && errno == EINTR);
-    frame->descriptor = -1;
+    message->descriptor = -1;
     if (got <= 0)
         return CHANNEL_END;
     struct cmsghdr *header = CMSG_FIRSTHDR(&packet);
     if (header && header->cmsg_level == SOL_SOCKET && header->cmsg_type == SCM_RIGHTS)
-        memcpy(&frame->descriptor, CMSG_DATA(header), sizeof frame->descriptor);
-    frame->kind = (enum frame_kind)word;
-    frame->size = (size_t)got - sizeof word;
+        memcpy(&message->descriptor, CMSG_DATA(header), sizeof message->descriptor);
+    message->kind = (enum message_kind)word;
+    message->size = (size_t)got - sizeof word;
     /* Where this process has no descriptor left, that of a film is lost; whoever needs it sees that. */
     bool lost = (packet.msg_flags & MSG_CTRUNC) != 0;
     bool sound = (size_t)got >= sizeof word && (packet.msg_flags & MSG_TRUNC) == 0 &&
-                 (!lost || (frame->kind == FRAME_FILM && frame->descriptor < 0)) && frame_is_sound(frame) &&
-                 (frame->descriptor < 0 || frame->kind == FRAME_FILM);
+                 (!lost || (message->kind == MESSAGE_FILM && message->descriptor < 0)) && message_is_valid(message) &&
+                 (message->descriptor < 0 || message->kind == MESSAGE_FILM);
     if (sound)
-        return CHANNEL_FRAME;
-    if (frame->descriptor >= 0)
-        (void)close(frame->descriptor);
-    frame->descriptor = -1;
+        return CHANNEL_MESSAGE;
+    if (message->descriptor >= 0)
+        (void)close(message->descriptor);
+    message->descriptor = -1;
     return CHANNEL_BROKEN;
 }

@@ -18,12 +18,12 @@ bool channel_pair(struct channel ends[2], struct error *error);
 void channel_close(struct channel *channel);
 
 /* Blocks until the frame is handed over; false when the other side is gone. descriptor: one to pass along, or -1. */
-bool channel_send(struct channel *channel, enum frame_kind kind, const void *body, size_t size, int descriptor);
+bool channel_send(struct channel *channel, enum message_kind kind, const void *body, size_t size, int descriptor);
 bool channel_send_line(struct channel *channel, enum line_kind kind, const char *text);
 
-enum channel_result { CHANNEL_FRAME, CHANNEL_END, CHANNEL_BROKEN };
+enum channel_result { CHANNEL_MESSAGE, CHANNEL_END, CHANNEL_BROKEN };
 /* Blocks for one frame. END: the other side is gone. BROKEN: not a frame of a known kind and right size; texts of
  * frames that pass end in NUL. */
-enum channel_result channel_receive(struct channel *channel, struct frame *frame);
+enum channel_result channel_receive(struct channel *channel, struct message *message);
 
 #endif

@@ -10,7 +10,7 @@
 #include <stdint.h>
 
 /* In a farm tiles are handed out while the picture is made; the picture ends when the gate is closed. */
-enum gate { GATE_NONE, GATE_OPEN, GATE_CLOSED };
+enum handout { HANDOUT_NONE, HANDOUT_OPEN, HANDOUT_CLOSED };
 
 enum cancel { CANCEL_NOTHING, CANCEL_ALL /* give up the picture, end the script */, CANCEL_PASS /* of a window */ };
 
@@ -18,7 +18,7 @@ struct control {
     _Atomic int cancel;          /* an enum cancel, set by the supervisor */
     _Atomic uint32_t tiles_done; /* of the picture being made */
     _Atomic uint32_t tiles;      /* 0 until its scene is built */
-    _Atomic uint32_t gate;       /* an enum gate */
+    _Atomic uint32_t handout;    /* an enum handout */
     _Atomic int enough;          /* not 0: finish the tiles under way, begin no others */
     struct outlook outlook;      /* how far the picture is, when somebody asks */
     _Atomic uint32_t build_step; /* of building the world, from 1; 0: it is built */

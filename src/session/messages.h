@@ -18,19 +18,21 @@
 #include <stdint.h>
 
 /* Child to supervisor, then supervisor to child. */
-enum frame_kind {
-    FRAME_LINE = 1, /* struct frame_line: something to tell */
-    FRAME_BEGIN,    /* struct picture_request; answered by FRAME_FILM */
-    FRAME_DONE,     /* struct picture_report; answered by FRAME_ANSWER */
-    FRAME_NEWS,     /* struct studio_news: something for a window is done; answered by FRAME_ORDER */
-    FRAME_ABANDON,  /* no body: the picture that was begun will not be finished; no answer */
-    FRAME_SCRIPT,   /* struct frame_script: a script has ended; no answer */
-    FRAME_READ,     /* struct frame_read: a file was read, for somebody who watches; no answer */
-    FRAME_AGAIN,  /* no body: all scripts have ended; answered, perhaps much later, by FRAME_ANSWER: ok: run them again
-                   */
-    FRAME_FILM,   /* struct frame_answer, and on success the descriptor of the film's memory */
-    FRAME_ANSWER, /* struct frame_answer */
-    FRAME_ORDER,  /* struct studio_order */
+enum message_kind {
+    MESSAGE_LINE = 1,      /* struct message_line: something to tell */
+    MESSAGE_BEGIN,         /* struct picture_request; answered by MESSAGE_FILM */
+    MESSAGE_DONE,          /* struct picture_report; answered by MESSAGE_ANSWER */
+    MESSAGE_PREVIEW_REPLY, /* struct preview_reply: something for a window is done; answered by MESSAGE_PREVIEW_COMMAND
+                            */
+    MESSAGE_ABANDON,       /* no body: the picture that was begun will not be finished; no answer */
+    MESSAGE_SCRIPT,        /* struct message_script: a script has ended; no answer */
+    MESSAGE_READ,          /* struct message_read: a file was read, for somebody who watches; no answer */
+    MESSAGE_AGAIN,  /* no body: all scripts have ended; answered, perhaps much later, by MESSAGE_ANSWER: ok: run them
+                     * again
+                     */
+    MESSAGE_FILM,   /* struct message_answer, and on success the descriptor of the film's memory */
+    MESSAGE_ANSWER, /* struct message_answer */
+    MESSAGE_PREVIEW_COMMAND, /* struct preview_command */
 };
 
 /* What kind of line: decides whether -q or --verbose let it pass, and where it goes. */
@@ -42,23 +44,23 @@ enum line_kind {
     LINE_OUTPUT /* a piece of what was asked for: goes to standard output as it is, no newline added */
 };
 
-enum { FRAME_TEXT_LIMIT = 16384, FRAME_SIZE_LIMIT = FRAME_TEXT_LIMIT + 64 };
+enum { MESSAGE_TEXT_LIMIT = 16384, MESSAGE_SIZE_LIMIT = MESSAGE_TEXT_LIMIT + 64 };
 
-struct frame_line {
+struct message_line {
     enum line_kind kind;
-    char text[FRAME_TEXT_LIMIT]; /* sent only as long as it is, with its final NUL */
+    char text[MESSAGE_TEXT_LIMIT]; /* sent only as long as it is, with its final NUL */
 };
 
 /* What a click has met (inspect/pick.h). */
-enum { PICK_PATH = 512, PICK_WORDS = 64 };
+enum { PICK_PATH = 512, PICK_NAME = 64 };
 
 struct picked {
     bool hit;
     char path[PICK_PATH]; /* names with their order of creation, from the root to the node */
-    char name[PICK_WORDS], shape[PICK_WORDS], material[PICK_WORDS];
+    char name[PICK_NAME], shape[PICK_NAME], material[PICK_NAME];
     uint32_t serial, parent_serial; /* of the node, and of the one above it */
-    char parent_name[PICK_WORDS];
-    uint64_t way;               /* to it (viewer/view_overlay.h); 0: not known */
+    char parent_name[PICK_NAME];
+    uint64_t route;             /* to it (viewer/view_overlay.h); 0: not known */
     uint64_t solid;             /* of an operand: the way to the solid that was placed; else 0 */
     uint32_t levels;            /* nodes above it */
     int32_t up;                 /* as it was asked for, but no farther than there are nodes */
@@ -74,22 +76,22 @@ struct picked {
 };
 
 /* Zero value: none. */
-struct marks_wish {
-    struct overlay_wish lines; /* none: OVERLAY_NONE */
-    bool outline;              /* of the node with this serial ... */
+struct view_overlay_request {
+    struct overlay_request lines; /* none: OVERLAY_NONE */
+    bool outline;                 /* of the node with this serial ... */
     uint32_t serial;
-    uint64_t way;   /* ... on this way, as marks_way tells it; 0: on all ways */
+    uint64_t route; /* ... on this way, as route_hash tells it; 0: on all ways */
     uint64_t solid; /* of an operand: the way to the combined solid that it is in; else 0 */
 };
 
-struct marks {
+struct view_overlay {
     bool stopped; /* before they were complete */
     bool has_lines, has_outline;
     struct film_rectangle outline; /* of the film, from 0; outside of it nothing is of the node */
 };
 
 /* Where they are, for a picture in a window. */
-struct marks_place {
+struct view_overlay_buffers {
     float (*lines)[4]; /* as overlay_lines makes them */
     uint8_t *shows;    /* by pixel: not 0 where the node is seen */
 };
@@ -126,7 +128,7 @@ struct picture_report {
 };
 
 /* A pass of a picture in a window. */
-struct live_view {
+struct pass_view {
     struct camera camera; /* its view a direction */
     double exposure;      /* stops: it decides which pixels are sampled again */
     uint32_t divide;      /* one pixel for so many across and down; from 1 */
@@ -135,8 +137,8 @@ struct live_view {
 };
 
 /* Lights of a scene are told so many at a time. */
-enum { TOLD_LIGHTS = 32 };
-struct told_light {
+enum { LIGHTS_PER_MESSAGE = 32 };
+struct light_info {
     uint32_t kind;       /* an enum light_kind, for its name */
     uint32_t properties; /* of enum light_property */
     bool placed;         /* its position is known */
@@ -146,91 +148,100 @@ struct told_light {
     bool moves, turns, sizes; /* what can be done with it */
 };
 
-enum studio_news_kind {
-    NEWS_BUILT /* the world, for the first time */,
-    NEWS_PASS,
-    NEWS_PICKED,
-    NEWS_CHANGED,
-    NEWS_STORY,
-    NEWS_LIGHTS,
-    NEWS_MARKS
+enum preview_reply_kind {
+    REPLY_BUILT /* the world, for the first time */,
+    REPLY_PASS,
+    REPLY_PICKED,
+    REPLY_CHANGED,
+    REPLY_PIXEL_TRACE,
+    REPLY_LIGHTS,
+    REPLY_OVERLAY
 };
 /* What the child has done for a window; it waits for an order. */
-struct studio_news {
-    enum studio_news_kind kind;
+struct preview_reply {
+    enum preview_reply_kind kind;
     struct picture_report report; /* of BUILT (its bounds) and PASS */
     struct picked picked;
-    struct marks marks; /* of PASS, PICKED and MARKS: those that were asked for and made */
-    double built;       /* of BUILT: when, on progress_clock */
-    uint32_t added;     /* of BUILT: nodes that the script has added by gr.change_add */
-    uint32_t owned;     /* of BUILT: materials of gr.change_own */
-    uint32_t root;      /* of BUILT: the serial of the root, and the space of its children */
-    char root_name[PICK_WORDS];
+    struct view_overlay overlay; /* of PASS, PICKED and MARKS: those that were asked for and made */
+    double built;                /* of BUILT: when, on progress_clock */
+    uint32_t added;              /* of BUILT: nodes that the script has added by gr.change_add */
+    uint32_t owned;              /* of BUILT: materials of gr.change_own */
+    uint32_t root;               /* of BUILT: the serial of the root, and the space of its children */
+    char root_name[PICK_NAME];
     struct affine world_from_root;
     uint32_t light_count; /* of BUILT, CHANGED and LIGHTS: all of them; those told begin with first_light, from 0 */
     uint32_t first_light;
-    struct told_light lights[TOLD_LIGHTS];
+    struct light_info lights[LIGHTS_PER_MESSAGE];
     char text[512]; /* of CHANGED: what could not be done, or empty */
     bool unbuilt;   /* of CHANGED: the building of the world was stopped; the next pass begins with it */
 };
 
-enum studio_order_kind { ORDER_END, ORDER_PASS, ORDER_PICK, ORDER_CHANGE, ORDER_STORY, ORDER_LIGHTS, ORDER_MARKS };
-struct studio_order {
-    enum studio_order_kind kind;
-    bool quit;               /* of END: the window was closed */
-    struct live_view view;   /* of PASS, and from where PICK, STORY and MARKS look */
-    struct marks_wish marks; /* of PASS: made after it; of MARKS. After PICK the outline is made of what is picked */
-    double x, y;             /* of PICK and STORY: pixels of the whole picture */
-    int32_t up;              /* of PICK: nodes above the one that is hit, or operands below it */
-    uint32_t first_light;    /* of CHANGE and LIGHTS: tell them from this one on, counted from 0 */
+enum preview_command_kind {
+    COMMAND_END,
+    COMMAND_PASS,
+    COMMAND_PICK,
+    COMMAND_CHANGE,
+    COMMAND_PIXEL_TRACE,
+    COMMAND_LIGHTS,
+    COMMAND_OVERLAY
+};
+struct preview_command {
+    enum preview_command_kind kind;
+    bool quit;             /* of END: the window was closed */
+    struct pass_view view; /* of PASS, and from where PICK, STORY and MARKS look */
+    struct view_overlay_request
+        overlay;          /* of PASS: made after it; of MARKS. After PICK the outline is made of what is picked */
+    double x, y;          /* of PICK and STORY: pixels of the whole picture */
+    int32_t up;           /* of PICK: nodes above the one that is hit, or operands below it */
+    uint32_t first_light; /* of CHANGE and LIGHTS: tell them from this one on, counted from 0 */
     struct change change;
     bool present; /* of CHANGE: it is made; else it is undone */
     bool more;    /* of CHANGE: another one follows at once */
 };
 
-struct frame_answer {
+struct message_answer {
     bool ok;
-    bool already; /* to FRAME_BEGIN: there is nothing to do, no film comes along */
+    bool already; /* to MESSAGE_BEGIN: there is nothing to do, no film comes along */
     struct error error;
 };
 
-struct frame_script {
+struct message_script {
     int index;  /* into options.scripts */
     int status; /* exit status this script alone would give */
 };
 
-struct frame_read {
+struct message_read {
     struct file_version version;
     bool written;    /* a script opened it for writing */
     char path[4096]; /* as it was asked for: relative to the working directory, which both processes share */
 };
 
 /* A frame as it came: `size` bytes of body. */
-struct frame {
-    enum frame_kind kind;
+struct message {
+    enum message_kind kind;
     size_t size;
     int descriptor; /* that came along, or -1, that of a film also where it was lost; owned by the receiver */
     union {
-        struct frame_line line;
+        struct message_line line;
         struct picture_request request;
         struct picture_report report;
-        struct studio_news news;
-        struct studio_order order;
-        struct frame_answer answer;
-        struct frame_script script;
-        struct frame_read read;
-        char bytes[FRAME_SIZE_LIMIT];
+        struct preview_reply reply;
+        struct preview_command command;
+        struct message_answer answer;
+        struct message_script script;
+        struct message_read read;
+        char bytes[MESSAGE_SIZE_LIMIT];
     } body;
 };
 
 /* Whether sizes, texts and numbers are such that later code can rely on them. */
-bool frame_is_sound(const struct frame *frame);
+bool message_is_valid(const struct message *message);
 
 /* How many layers of three floats a pixel the memory of the film has, those of the overlay included. */
-uint32_t marks_layers(const struct picture_request *request);
+uint32_t picture_film_layers(const struct picture_request *request);
 /* Where the overlay of a picture in a window is in that memory: behind the layers. */
-void marks_place(const struct picture_request *request, void *block, struct marks_place *place);
+void view_overlay_buffers(const struct picture_request *request, void *block, struct view_overlay_buffers *place);
 /* The film that a pass fills: the picture's rectangle divided, in the same block. */
-struct film live_film(const struct picture_request *request, void *block, uint32_t divide);
+struct film pass_film(const struct picture_request *request, void *block, uint32_t divide);
 
 #endif

@@ -413,7 +413,8 @@ struct digest options_digest(const struct options *options) {
     struct digest digest = {0};
     for (int i = 0; i < option_count; i++) {
         const struct option *option = &option_table[i];
-        bool picture = option->group == GROUP_PICTURE || option->group == GROUP_LOOK || option->group == GROUP_OLD;
+        bool picture = option->group == OPTION_GROUP_PICTURE || option->group == OPTION_GROUP_SHADING ||
+                       option->group == OPTION_GROUP_OLD;
         bool search = option->offset == offsetof(struct options, settings.accel) ||
                       option->offset == offsetof(struct options, isa);
         bool integrator = option->offset == offsetof(struct options, settings.integrator);

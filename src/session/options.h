@@ -59,7 +59,7 @@ struct options {
     int picture_count;             /* limits on the pictures of a run; 0: 100,000 and 64 GiB, */
     uint64_t picture_bytes;        /* without the sandbox none */
     bool window;                   /* -gui */
-    bool quick, preview;           /* enum haste; preview is a quarter of the size, too */
+    bool quick, preview;           /* enum draft_level; preview is a quarter of the size, too */
     bool watch;                    /* --watch */
     bool check, quiet, verbose, no_fork;
     const uint32_t (*pixels)[2]; /* --pixel: {x, y}, tell how these come about instead of rendering */

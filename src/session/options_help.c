@@ -47,7 +47,7 @@ void options_print_help(FILE *stream) {
                 "       gray merge [-o FILE] [options] PART ...\n"
                 "Long options take one dash or two, and '_' or '-' between words; a space or '=' precedes the value.\n",
                 stream);
-    for (int group = 0; group < GROUP_COUNT; group++) {
+    for (int group = 0; group < OPTION_GROUP_COUNT; group++) {
         (void)fprintf(stream, "\n%s\n", option_group_titles[group]);
         for (int i = 0; i < option_count; i++) {
             if (option_table[i].group == (enum option_group)group)

@@ -24,15 +24,15 @@ enum option_kind {
 };
 
 enum option_group {
-    GROUP_PICTURE,
-    GROUP_LOOK,
-    GROUP_FILES,
-    GROUP_OLD,
-    GROUP_TRUST,
-    GROUP_RUN,
-    GROUP_PARTS,
-    GROUP_TALK,
-    GROUP_COUNT
+    OPTION_GROUP_PICTURE,
+    OPTION_GROUP_SHADING,
+    OPTION_GROUP_FILES,
+    OPTION_GROUP_OLD,
+    OPTION_GROUP_TRUST,
+    OPTION_GROUP_RUN,
+    OPTION_GROUP_PARTS,
+    OPTION_GROUP_TALK,
+    OPTION_GROUP_COUNT
 };
 
 struct option {
@@ -46,7 +46,7 @@ struct option {
     const char *help;
 };
 
-extern const char *const option_group_titles[GROUP_COUNT];
+extern const char *const option_group_titles[OPTION_GROUP_COUNT];
 extern const struct option option_table[];
 extern const int option_count;
 

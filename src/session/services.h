@@ -9,7 +9,7 @@
 
 #include <stdbool.h>
 
-struct child_services {
+struct host_services {
     void *context;
     struct control *control;
     /* A film for the picture; under request->check only the answer whether it could be written. *already: the picture
@@ -17,7 +17,8 @@ struct child_services {
     bool (*begin)(void *context, const struct picture_request *request, struct film *film, bool *already,
                   struct error *error);
     /* Something for a window is done: waits for what comes next. False: there is nobody. */
-    bool (*news)(void *context, const struct studio_news *news, struct studio_order *order, struct error *error);
+    bool (*reply)(void *context, const struct preview_reply *reply, struct preview_command *command,
+                  struct error *error);
     void (*abandon)(void *context);
     /* The film is complete. True when the files are written. */
     bool (*done)(void *context, const struct picture_report *report, struct error *error);

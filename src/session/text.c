@@ -83,7 +83,7 @@ void text_print_json(FILE *stream, const char *text) {
     (void)fputc('"', stream);
 }
 
-void text_time(double seconds, char *out, size_t size) {
+void text_duration(double seconds, char *out, size_t size) {
     unsigned long whole = seconds < 1e9 ? (unsigned long)(seconds + 0.5) : 1000000000;
     if (whole < 60)
         (void)snprintf(out, size, "%lu s", whole);
@@ -94,7 +94,7 @@ void text_time(double seconds, char *out, size_t size) {
 }
 
 /* Of other kinds of descriptors poll may know nothing; writing to them does not wait. */
-bool text_error_is_taken(void) {
+bool text_stderr_is_ready(void) {
     struct stat status;
     struct pollfd watched = {.fd = STDERR_FILENO, .events = POLLOUT};
     bool waits = fstat(STDERR_FILENO, &status) == 0 &&

@@ -26,9 +26,9 @@ size_t text_clean_piece(const char *text, char piece[8], size_t *taken);
 /* A text of several lines of our own, cleaned like that but for its line ends. */
 void text_print(FILE *stream, const char *text);
 /* Seconds as people say them: 40 s, 3 min 20 s, 2 h 5 min. */
-void text_time(double seconds, char *out, size_t size);
+void text_duration(double seconds, char *out, size_t size);
 
 /* Whether standard error takes text now: a pipe or a terminal whose reader has stopped does not. */
-bool text_error_is_taken(void);
+bool text_stderr_is_ready(void);
 
 #endif

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-static const uint8_t letters[95][PAPER_LETTER] = {
+static const uint8_t letters[95][CANVAS_LETTER] = {
     {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}, /*   */
     {0x04, 0x04, 0x04, 0x04, 0x04, 0x00, 0x04}, /* ! */
     {0x0a, 0x0a, 0x00, 0x00, 0x00, 0x00, 0x00}, /* " */
@@ -106,38 +106,38 @@ static const uint8_t letters[95][PAPER_LETTER] = {
     {0x00, 0x00, 0x09, 0x15, 0x12, 0x00, 0x00}, /* ~ */
 };
 
-void paper_clear(const struct paper *paper) {
-    memset(paper->rgba, 0, 4 * (size_t)paper->width * (size_t)paper->height);
+void canvas_clear(const struct canvas *canvas) {
+    memset(canvas->rgba, 0, 4 * (size_t)canvas->width * (size_t)canvas->height);
 }
 
-static void put(const struct paper *paper, int x, int y, struct ink ink) {
-    assert(x >= 0 && y >= 0 && x < paper->width && y < paper->height); /* boxes are cut before */
-    uint8_t *at = paper->rgba + 4 * ((size_t)y * (size_t)paper->width + (size_t)x);
-    at[0] = ink.red;
-    at[1] = ink.green;
-    at[2] = ink.blue;
-    at[3] = ink.opacity;
+static void put(const struct canvas *canvas, int x, int y, struct canvas_colour colour) {
+    assert(x >= 0 && y >= 0 && x < canvas->width && y < canvas->height); /* boxes are cut before */
+    uint8_t *at = canvas->rgba + 4 * ((size_t)y * (size_t)canvas->width + (size_t)x);
+    at[0] = colour.red;
+    at[1] = colour.green;
+    at[2] = colour.blue;
+    at[3] = colour.opacity;
 }
 
 static int clamp(int value, int low, int high) {
     return value < low ? low : value > high ? high : value;
 }
 
-void paper_box(const struct paper *paper, int x, int y, int width, int height, struct ink ink) {
-    int left = clamp(x, 0, paper->width), right = clamp(x + width, 0, paper->width);
-    int top = clamp(y, 0, paper->height), bottom = clamp(y + height, 0, paper->height);
+void canvas_box(const struct canvas *canvas, int x, int y, int width, int height, struct canvas_colour colour) {
+    int left = clamp(x, 0, canvas->width), right = clamp(x + width, 0, canvas->width);
+    int top = clamp(y, 0, canvas->height), bottom = clamp(y + height, 0, canvas->height);
     for (int v = top; v < bottom; v++) {
         for (int u = left; u < right; u++)
-            put(paper, u, v, ink);
+            put(canvas, u, v, colour);
     }
 }
 
-void paper_frame(const struct paper *paper, int x, int y, int width, int height, struct ink ink) {
-    int wide = paper->scale;
-    paper_box(paper, x, y, width, wide, ink);
-    paper_box(paper, x, y + height - wide, width, wide, ink);
-    paper_box(paper, x, y, wide, height, ink);
-    paper_box(paper, x + width - wide, y, wide, height, ink);
+void canvas_frame(const struct canvas *canvas, int x, int y, int width, int height, struct canvas_colour colour) {
+    int wide = canvas->scale;
+    canvas_box(canvas, x, y, width, wide, colour);
+    canvas_box(canvas, x, y + height - wide, width, wide, colour);
+    canvas_box(canvas, x, y, wide, height, colour);
+    canvas_box(canvas, x + width - wide, y, wide, height, colour);
 }
 
 /* The next character; bytes that go on with one of UTF-8 are passed over. NUL at the end. */
@@ -151,45 +151,46 @@ static char next_letter(const char **text) {
     return c >= 32 && c < 127 ? c : '?';
 }
 
-void paper_text(const struct paper *paper, int x, int y, const char *text, struct ink ink) {
-    for (char c; (c = next_letter(&text)) != '\0'; x += PAPER_CELL * paper->scale) {
+void canvas_text(const struct canvas *canvas, int x, int y, const char *text, struct canvas_colour colour) {
+    for (char c; (c = next_letter(&text)) != '\0'; x += CANVAS_CELL * canvas->scale) {
         const uint8_t *rows = letters[c - 32];
-        for (int row = 0; row < PAPER_LETTER; row++) {
+        for (int row = 0; row < CANVAS_LETTER; row++) {
             for (int dot = 0; dot < 5; dot++) {
                 if (rows[row] >> (4 - dot) & 1)
-                    paper_box(paper, x + dot * paper->scale, y + row * paper->scale, paper->scale, paper->scale, ink);
+                    canvas_box(canvas, x + dot * canvas->scale, y + row * canvas->scale, canvas->scale, canvas->scale,
+                               colour);
             }
         }
     }
 }
 
-int paper_text_width(const struct paper *paper, const char *text) {
+int canvas_text_width(const struct canvas *canvas, const char *text) {
     int count = 0;
     while (next_letter(&text) != '\0')
         count++;
-    return count * PAPER_CELL * paper->scale;
+    return count * CANVAS_CELL * canvas->scale;
 }
 
-void paper_line(const struct paper *paper, double x0, double y0, double x1, double y1, struct ink ink) {
+void canvas_line(const struct canvas *canvas, double x0, double y0, double x1, double y1, struct canvas_colour colour) {
     /* What is far outside would take for ever. */
-    double limit = 4.0 * (paper->width + paper->height);
+    double limit = 4.0 * (canvas->width + canvas->height);
     if (!(fabs(x0) < limit && fabs(y0) < limit && fabs(x1) < limit && fabs(y1) < limit))
         return;
     double dx = x1 - x0, dy = y1 - y0;
-    int steps = (int)ceil(fmax(fabs(dx), fabs(dy))), wide = paper->scale;
+    int steps = (int)ceil(fmax(fabs(dx), fabs(dy))), wide = canvas->scale;
     for (int i = 0; i <= steps; i++) {
         double t = steps > 0 ? (double)i / steps : 0;
-        paper_box(paper, (int)floor(x0 + t * dx) - wide / 2, (int)floor(y0 + t * dy) - wide / 2, wide, wide, ink);
+        canvas_box(canvas, (int)floor(x0 + t * dx) - wide / 2, (int)floor(y0 + t * dy) - wide / 2, wide, wide, colour);
     }
 }
 
-void paper_ring(const struct paper *paper, double x, double y, double radius, struct ink ink) {
+void canvas_ring(const struct canvas *canvas, double x, double y, double radius, struct canvas_colour colour) {
     enum { SIDES = 24 };
     double from_x = x + radius, from_y = y;
     for (int i = 1; i <= SIDES; i++) {
         double sine, cosine;
         el_sincos(2 * 3.14159265358979323846 * i / SIDES, &sine, &cosine);
-        paper_line(paper, from_x, from_y, x + radius * cosine, y + radius * sine, ink);
+        canvas_line(canvas, from_x, from_y, x + radius * cosine, y + radius * sine, colour);
         from_x = x + radius * cosine;
         from_y = y + radius * sine;
     }

@@ -7,26 +7,26 @@
 #include <stddef.h>
 #include <stdint.h>
 
-struct ink {
+struct canvas_colour {
     uint8_t red, green, blue, opacity;
 };
 
-struct paper {
+struct canvas {
     uint8_t *rgba; /* not owned */
     int width, height;
     int scale; /* pixels for a dot of a letter */
 };
 
-enum { PAPER_CELL = 6, PAPER_LINE = 10, PAPER_LETTER = 7 }; /* dots */
+enum { CANVAS_CELL = 6, CANVAS_LINE = 10, CANVAS_LETTER = 7 }; /* dots */
 
-void paper_clear(const struct paper *paper);
+void canvas_clear(const struct canvas *canvas);
 /* What was there goes away: panels are opaque as far as their ink is. */
-void paper_box(const struct paper *paper, int x, int y, int width, int height, struct ink ink);
-void paper_frame(const struct paper *paper, int x, int y, int width, int height, struct ink ink);
+void canvas_box(const struct canvas *canvas, int x, int y, int width, int height, struct canvas_colour colour);
+void canvas_frame(const struct canvas *canvas, int x, int y, int width, int height, struct canvas_colour colour);
 /* The text ends at NUL; other than printable ASCII becomes '?' (once for each character in UTF-8). */
-void paper_text(const struct paper *paper, int x, int y, const char *text, struct ink ink);
-int paper_text_width(const struct paper *paper, const char *text);
-void paper_line(const struct paper *paper, double x0, double y0, double x1, double y1, struct ink ink);
-void paper_ring(const struct paper *paper, double x, double y, double radius, struct ink ink);
+void canvas_text(const struct canvas *canvas, int x, int y, const char *text, struct canvas_colour colour);
+int canvas_text_width(const struct canvas *canvas, const char *text);
+void canvas_line(const struct canvas *canvas, double x0, double y0, double x1, double y1, struct canvas_colour colour);
+void canvas_ring(const struct canvas *canvas, double x, double y, double radius, struct canvas_colour colour);
 
 #endif

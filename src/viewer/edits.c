@@ -81,39 +81,39 @@ static void quote(char *out, size_t size, const char *text) {
     out[used] = '\0';
 }
 
-static void tell_numbers(char *out, size_t size, const double *numbers, int count) {
+static void format_numbers(char *out, size_t size, const double *numbers, int count) {
     size_t used = (size_t)snprintf(out, size, "{");
     for (int i = 0; i < count; i++)
         used += (size_t)snprintf(out + used, size - used, "%s%.17g", i > 0 ? ", " : "", numbers[i]);
     (void)snprintf(out + used, size - used, "}");
 }
 
-static void tell_light(const struct change *c, char *line, size_t size) {
+static void format_light(const struct change *c, char *line, size_t size) {
     char move[120], factor[120], turn[300] = "nil", colour[120] = "";
     bool more = c->turns || c->colours;
-    tell_numbers(move, sizeof move, c->numbers, 3);
-    tell_numbers(factor, sizeof factor, c->numbers + 3, 3);
+    format_numbers(move, sizeof move, c->numbers, 3);
+    format_numbers(factor, sizeof factor, c->numbers + 3, 3);
     if (c->turns)
-        tell_numbers(turn, sizeof turn, c->numbers + TURN_AT, TURN_NUMBERS);
+        format_numbers(turn, sizeof turn, c->numbers + TURN_AT, TURN_NUMBERS);
     if (c->colours)
-        tell_numbers(colour, sizeof colour, c->numbers + COLOUR_AT, 3);
+        format_numbers(colour, sizeof colour, c->numbers + COLOUR_AT, 3);
     (void)snprintf(line, size, "gr.change_light(%u, %s, %s%s%s%s%s)\n", c->serial, move, factor, more ? ", " : "",
                    more ? turn : "", c->colours ? ", " : "", colour);
 }
 
-static void tell_change(const struct change *c, char *line, size_t size) {
+static void format_change(const struct change *c, char *line, size_t size) {
     char name[8 * CHANGE_NAME], a[400], b[120];
     quote(name, sizeof name, c->name);
     switch (c->kind) {
     case CHANGE_PLACE:
-        tell_numbers(a, sizeof a, c->numbers, 12);
+        format_numbers(a, sizeof a, c->numbers, 12);
         (void)snprintf(line, size, "gr.change_node(%s, %u, %s)\n", name, c->serial, a);
         return;
     case CHANGE_GONE:
         (void)snprintf(line, size, "gr.change_delete(%s, %u)\n", name, c->serial);
         return;
     case CHANGE_ADD:
-        tell_numbers(a, sizeof a, c->numbers, 3);
+        format_numbers(a, sizeof a, c->numbers, 3);
         (void)snprintf(line, size, "gr.change_add(%s, %u, '%s', %s, %u)\n", name, c->serial, added_kind_name(c->added),
                        a, c->source);
         return;
@@ -121,21 +121,21 @@ static void tell_change(const struct change *c, char *line, size_t size) {
         (void)snprintf(line, size, "gr.change_own(%s, %u, %u)\n", name, c->serial, c->source);
         return;
     case CHANGE_MATERIAL:
-        tell_numbers(a, sizeof a, c->numbers, look_part_count(c->part));
+        format_numbers(a, sizeof a, c->numbers, look_part_count(c->part));
         if (c->part == LOOK_KD)
             (void)snprintf(line, size, "gr.change_material(%u, %s)\n", c->serial, a);
         else
             (void)snprintf(line, size, "gr.change_look(%u, '%s', %s)\n", c->serial, look_part_name(c->part), a);
         return;
     case CHANGE_LIGHT:
-        tell_light(c, line, size);
+        format_light(c, line, size);
         return;
     case CHANGE_DARK:
         (void)snprintf(line, size, "gr.change_delete_light(%u)\n", c->serial);
         return;
     case CHANGE_ADD_LIGHT:
-        tell_numbers(a, sizeof a, c->numbers, 3);
-        tell_numbers(b, sizeof b, c->numbers + 3, 3);
+        format_numbers(a, sizeof a, c->numbers, 3);
+        format_numbers(b, sizeof b, c->numbers + 3, 3);
         if (c->source)
             (void)snprintf(line, size, "gr.change_copy_light(%u, %s, %s)\n", c->source, a, b);
         else
@@ -147,12 +147,12 @@ static void tell_change(const struct change *c, char *line, size_t size) {
     line[0] = '\0';
 }
 
-bool edits_tell(const struct change_list *changes, const char *picture, const struct camera *camera,
-                const double *exposure, bool (*put)(void *context, const char *line), void *context) {
+bool edits_write_lua(const struct change_list *changes, const char *picture, const struct camera *camera,
+                     const double *exposure, bool (*put)(void *context, const char *line), void *context) {
     char line[LINE], name[LINE / 2];
     quote(name, sizeof name, picture);
     for (uint32_t i = 0; i < changes->count; i++) {
-        tell_change(&changes->items[i], line, sizeof line);
+        format_change(&changes->items[i], line, sizeof line);
         if (!put(context, line))
             return false;
     }

@@ -28,7 +28,7 @@ void edits_destroy(struct edits *edits);
 
 /* What a Lua file must say to give a picture these changes: calls of gr.change_... with every digit. `put` is given
  * line after line. camera, exposure: NULL where the script's own hold. False: put said so. */
-bool edits_tell(const struct change_list *changes, const char *picture, const struct camera *camera,
-                const double *exposure, bool (*put)(void *context, const char *line), void *context);
+bool edits_write_lua(const struct change_list *changes, const char *picture, const struct camera *camera,
+                     const double *exposure, bool (*put)(void *context, const char *line), void *context);
 
 #endif

@@ -62,77 +62,78 @@ static struct vec3 forward_of(const struct pose *pose) {
     return rotate(pose->turn, vec3_make(0, 0, -1));
 }
 
-void walk_begin(struct walk *walk, const struct camera *camera, const struct box *bounds) {
-    memset(walk, 0, sizeof *walk);
-    walk->pose = (struct pose){camera->eye, looking(camera->view, camera->up), camera->fov};
-    walk->home = walk->pose;
-    walk_measure(walk, bounds);
+void fly_camera_begin(struct fly_camera *fly_camera, const struct camera *camera, const struct box *bounds) {
+    memset(fly_camera, 0, sizeof *fly_camera);
+    fly_camera->pose = (struct pose){camera->eye, looking(camera->view, camera->up), camera->fov};
+    fly_camera->home = fly_camera->pose;
+    fly_camera_measure(fly_camera, bounds);
 }
 
-void walk_measure(struct walk *walk, const struct box *bounds) {
+void fly_camera_measure(struct fly_camera *fly_camera, const struct box *bounds) {
     bool known = !box_is_empty(bounds) && vec3_finite(bounds->min) && vec3_finite(bounds->max);
     double size = known ? vec3_length(vec3_sub(bounds->max, bounds->min)) : 10;
     /* A wide floor under a small scene: from where it is seen counts too. */
-    walk->centre = known ? vec3_scale(vec3_add(bounds->min, bounds->max), 0.5) : vec3_make(0, 0, 0);
-    double away = vec3_length(vec3_sub(walk->centre, walk->home.place));
-    walk->speed = (size < 2 * away || away == 0 ? size : 2 * away) / 4;
+    fly_camera->centre = known ? vec3_scale(vec3_add(bounds->min, bounds->max), 0.5) : vec3_make(0, 0, 0);
+    double away = vec3_length(vec3_sub(fly_camera->centre, fly_camera->home.position));
+    fly_camera->speed = (size < 2 * away || away == 0 ? size : 2 * away) / 4;
 }
 
-struct camera walk_camera(const struct walk *walk) {
-    const struct pose *pose = &walk->pose;
-    return (struct camera){pose->place, forward_of(pose), rotate(pose->turn, vec3_make(0, 1, 0)), pose->fov};
+struct camera fly_camera_camera(const struct fly_camera *fly_camera) {
+    const struct pose *pose = &fly_camera->pose;
+    return (struct camera){pose->position, forward_of(pose), rotate(pose->turn, vec3_make(0, 1, 0)), pose->fov};
 }
 
-bool walk_step(struct walk *walk, double seconds) {
-    const bool *down = walk->down;
-    struct vec3 way = {down[WALK_RIGHT] - down[WALK_LEFT], down[WALK_UP] - down[WALK_DOWN],
-                       down[WALK_BACK] - down[WALK_FORWARD]};
-    if (vec3_max_abs(way) == 0 || seconds <= 0)
+bool fly_camera_step(struct fly_camera *fly_camera, double seconds) {
+    const bool *down = fly_camera->down;
+    struct vec3 route = {down[FLY_RIGHT] - down[FLY_LEFT], down[FLY_UP] - down[FLY_DOWN],
+                         down[FLY_BACK] - down[FLY_FORWARD]};
+    if (vec3_max_abs(route) == 0 || seconds <= 0)
         return false;
-    double speed = walk->speed * (down[WALK_FAST] ? 4 : 1) * (down[WALK_SLOW] ? 0.25 : 1);
-    walk->pose.place = vec3_add_scaled(walk->pose.place, rotate(walk->pose.turn, vec3_normalize(way)), speed * seconds);
+    double speed = fly_camera->speed * (down[FLY_FAST] ? 4 : 1) * (down[FLY_SLOW] ? 0.25 : 1);
+    fly_camera->pose.position = vec3_add_scaled(fly_camera->pose.position,
+                                                rotate(fly_camera->pose.turn, vec3_normalize(route)), speed * seconds);
     return true;
 }
 
-void walk_look(struct walk *walk, double x, double y) {
-    double angle = walk->pose.fov * degree;
-    struct quaternion turn = walk->pose.turn;
+void fly_camera_turn(struct fly_camera *fly_camera, double x, double y) {
+    double angle = fly_camera->pose.fov * degree;
+    struct quaternion turn = fly_camera->pose.turn;
     turn = multiply(turn, turn_about(vec3_make(0, 1, 0), -x * angle));
-    walk->pose.turn = multiply(turn, turn_about(vec3_make(1, 0, 0), -y * angle));
+    fly_camera->pose.turn = multiply(turn, turn_about(vec3_make(1, 0, 0), -y * angle));
 }
 
-void walk_orbit(struct walk *walk, double x, double y) {
-    struct pose *pose = &walk->pose;
+void fly_camera_orbit(struct fly_camera *fly_camera, double x, double y) {
+    struct pose *pose = &fly_camera->pose;
     struct quaternion by = turn_about(rotate(pose->turn, vec3_make(0, 1, 0)), -x * 180 * degree);
     by = multiply(by, turn_about(rotate(pose->turn, vec3_make(1, 0, 0)), -y * 180 * degree));
-    pose->place = vec3_add(walk->centre, rotate(by, vec3_sub(pose->place, walk->centre)));
+    pose->position = vec3_add(fly_camera->centre, rotate(by, vec3_sub(pose->position, fly_camera->centre)));
     pose->turn = multiply(by, pose->turn);
 }
 
-void walk_zoom(struct walk *walk, double steps) {
-    double fov = walk->pose.fov * el_exp(-0.1 * steps);
-    walk->pose.fov = fov < 0.01 ? 0.01 : fov > 170 ? 170 : fov;
+void fly_camera_zoom(struct fly_camera *fly_camera, double steps) {
+    double fov = fly_camera->pose.fov * el_exp(-0.1 * steps);
+    fly_camera->pose.fov = fov < 0.01 ? 0.01 : fov > 170 ? 170 : fov;
 }
 
-void walk_roll(struct walk *walk, double degrees) {
-    walk->pose.turn = multiply(walk->pose.turn, turn_about(vec3_make(0, 0, -1), degrees * degree));
+void fly_camera_roll(struct fly_camera *fly_camera, double degrees) {
+    fly_camera->pose.turn = multiply(fly_camera->pose.turn, turn_about(vec3_make(0, 0, -1), degrees * degree));
 }
 
-void walk_level(struct walk *walk) {
-    walk->pose.turn = looking(forward_of(&walk->pose), vec3_make(0, 1, 0));
+void fly_camera_level(struct fly_camera *fly_camera) {
+    fly_camera->pose.turn = looking(forward_of(&fly_camera->pose), vec3_make(0, 1, 0));
 }
 
-void walk_home(struct walk *walk) {
-    walk->pose = walk->home;
+void fly_camera_home(struct fly_camera *fly_camera) {
+    fly_camera->pose = fly_camera->home;
 }
 
-void walk_save(struct walk *walk, int number) {
-    walk->views[number] = walk->pose;
-    walk->saved[number] = true;
+void fly_camera_save(struct fly_camera *fly_camera, int number) {
+    fly_camera->views[number] = fly_camera->pose;
+    fly_camera->saved[number] = true;
 }
 
-bool walk_recall(struct walk *walk, int number) {
-    if (walk->saved[number])
-        walk->pose = walk->views[number];
-    return walk->saved[number];
+bool fly_camera_recall(struct fly_camera *fly_camera, int number) {
+    if (fly_camera->saved[number])
+        fly_camera->pose = fly_camera->views[number];
+    return fly_camera->saved[number];
 }

@@ -12,42 +12,43 @@ struct quaternion {
 };
 
 struct pose {
-    struct vec3 place;
+    struct vec3 position;
     struct quaternion turn; /* world from camera: the camera looks along -z, y is up */
     double fov;             /* degrees */
 };
 
-enum walk_key { WALK_FORWARD, WALK_BACK, WALK_LEFT, WALK_RIGHT, WALK_UP, WALK_DOWN, WALK_FAST, WALK_SLOW, WALK_KEYS };
-enum { WALK_VIEWS = 10 };
+enum fly_camera_key { FLY_FORWARD, FLY_BACK, FLY_LEFT, FLY_RIGHT, FLY_UP, FLY_DOWN, FLY_FAST, FLY_SLOW, FLY_KEYS };
+enum { FLY_VIEWS = 10 };
 
-struct walk {
+struct fly_camera {
     struct pose pose, home;
-    double speed;         /* world units a second */
-    struct vec3 centre;   /* that orbits go round */
-    bool down[WALK_KEYS]; /* which keys are held */
-    bool saved[WALK_VIEWS];
-    struct pose views[WALK_VIEWS];
+    double speed;        /* world units a second */
+    struct vec3 centre;  /* that orbits go round */
+    bool down[FLY_KEYS]; /* which keys are held */
+    bool saved[FLY_VIEWS];
+    struct pose views[FLY_VIEWS];
 };
 
 /* camera: with a direction as its view. bounds: of the scene; a way through it takes four seconds. */
-void walk_begin(struct walk *walk, const struct camera *camera, const struct box *bounds);
+void fly_camera_begin(struct fly_camera *fly_camera, const struct camera *camera, const struct box *bounds);
 /* Speed and centre for other bounds; the camera and kept views stay. */
-void walk_measure(struct walk *walk, const struct box *bounds);
+void fly_camera_measure(struct fly_camera *fly_camera, const struct box *bounds);
 /* The camera of where it stands now. */
-struct camera walk_camera(const struct walk *walk);
+struct camera fly_camera_camera(const struct fly_camera *fly_camera);
 /* What the held keys do in `seconds`. True: something moved. */
-bool walk_step(struct walk *walk, double seconds);
+bool fly_camera_step(struct fly_camera *fly_camera, double seconds);
 /* Looks around: a way of one turns by the angle of view. x to the right, y downwards. */
-void walk_look(struct walk *walk, double x, double y);
+void fly_camera_turn(struct fly_camera *fly_camera, double x, double y);
 /* Goes round the centre, which stays where it is in the picture. A way of one is half a turn. */
-void walk_orbit(struct walk *walk, double x, double y);
+void fly_camera_orbit(struct fly_camera *fly_camera, double x, double y);
 /* Narrows (steps > 0) or widens the angle of view, by a tenth each. */
-void walk_zoom(struct walk *walk, double steps);
-/* Rolls to the right by degrees; walk_level turns until the horizon is level (y is up), and keeps where it looks. */
-void walk_roll(struct walk *walk, double degrees);
-void walk_level(struct walk *walk);
-void walk_home(struct walk *walk);
-void walk_save(struct walk *walk, int number); /* 0..9 */
-bool walk_recall(struct walk *walk, int number);
+void fly_camera_zoom(struct fly_camera *fly_camera, double steps);
+/* Rolls to the right by degrees; fly_camera_level turns until the horizon is level (y is up), and keeps where it looks.
+ */
+void fly_camera_roll(struct fly_camera *fly_camera, double degrees);
+void fly_camera_level(struct fly_camera *fly_camera);
+void fly_camera_home(struct fly_camera *fly_camera);
+void fly_camera_save(struct fly_camera *fly_camera, int number); /* 0..9 */
+bool fly_camera_recall(struct fly_camera *fly_camera, int number);
 
 #endif

@@ -2,12 +2,13 @@
  * number in the frame; a frame with other parts in between forgets what was held, which then is not used. */
 #include "viewer/panel.h"
 
-static const struct ink ground = {18, 20, 24, 200}, plain = {225, 228, 232, 255}, quiet = {66, 72, 82, 235};
-static const struct ink lit = {96, 106, 122, 245}, chosen = {190, 120, 40, 245}, warning = {255, 120, 90, 255};
-static const struct ink filled = {90, 150, 220, 255};
+static const struct canvas_colour ground = {18, 20, 24, 200}, plain = {225, 228, 232, 255}, quiet = {66, 72, 82, 235};
+static const struct canvas_colour lit = {96, 106, 122, 245}, chosen = {190, 120, 40, 245},
+                                  warning = {255, 120, 90, 255};
+static const struct canvas_colour filled = {90, 150, 220, 255};
 
 void panel_begin(struct panel *panel) {
-    paper_clear(&panel->paper);
+    canvas_clear(&panel->canvas);
     panel->ground_count = 0;
     panel->part = 0;
 }
@@ -19,11 +20,11 @@ void panel_end(struct panel *panel) {
 }
 
 int panel_line_height(const struct panel *panel) {
-    return PAPER_LINE * panel->paper.scale;
+    return CANVAS_LINE * panel->canvas.scale;
 }
 
 int panel_button_width(const struct panel *panel, const char *text) {
-    return paper_text_width(&panel->paper, text) + 6 * panel->paper.scale;
+    return canvas_text_width(&panel->canvas, text) + 6 * panel->canvas.scale;
 }
 
 static bool inside(const struct panel *panel, int x, int y, int width, int height) {
@@ -47,38 +48,38 @@ void panel_ground(struct panel *panel, int x, int y, int width, int height) {
         panel->grounds[i].width = width;
         panel->grounds[i].height = height;
     }
-    paper_box(&panel->paper, x, y, width, height, ground);
+    canvas_box(&panel->canvas, x, y, width, height, ground);
 }
 
 void panel_text(struct panel *panel, int x, int y, const char *text) {
-    paper_text(&panel->paper, x, y, text, plain);
+    canvas_text(&panel->canvas, x, y, text, plain);
 }
 
 void panel_warning(struct panel *panel, int x, int y, const char *text) {
-    paper_text(&panel->paper, x, y, text, warning);
+    canvas_text(&panel->canvas, x, y, text, warning);
 }
 
 void panel_bar(struct panel *panel, int x, int y, int width, double share) {
-    int scale = panel->paper.scale, height = PAPER_LETTER * scale;
+    int scale = panel->canvas.scale, height = CANVAS_LETTER * scale;
     share = share < 0 ? 0 : share > 1 ? 1 : share;
-    paper_box(&panel->paper, x, y, width, height, quiet);
-    paper_box(&panel->paper, x, y, (int)(width * share), height, filled);
+    canvas_box(&panel->canvas, x, y, width, height, quiet);
+    canvas_box(&panel->canvas, x, y, (int)(width * share), height, filled);
 }
 
 bool panel_button(struct panel *panel, int x, int y, const char *text, bool on) {
-    int scale = panel->paper.scale, width = panel_button_width(panel, text), height = (PAPER_LETTER + 4) * scale;
+    int scale = panel->canvas.scale, width = panel_button_width(panel, text), height = (CANVAS_LETTER + 4) * scale;
     int part = ++panel->part;
     bool in = inside(panel, x, y, width, height);
     if (in && panel->pressed)
         panel->held = part;
-    paper_box(&panel->paper, x, y, width, height, on ? chosen : in ? lit : quiet);
-    paper_text(&panel->paper, x + 3 * scale, y + 2 * scale, text, plain);
+    canvas_box(&panel->canvas, x, y, width, height, on ? chosen : in ? lit : quiet);
+    canvas_text(&panel->canvas, x + 3 * scale, y + 2 * scale, text, plain);
     return in && panel->released && panel->held == part;
 }
 
-bool panel_slider(struct panel *panel, int x, int y, int width, double low, double high, struct ink ink,
+bool panel_slider(struct panel *panel, int x, int y, int width, double low, double high, struct canvas_colour colour,
                   double *value) {
-    int scale = panel->paper.scale, height = PAPER_LETTER * scale, part = ++panel->part;
+    int scale = panel->canvas.scale, height = CANVAS_LETTER * scale, part = ++panel->part;
     bool in = inside(panel, x, y - scale, width, height + 2 * scale), changed = false;
     if (in && panel->pressed)
         panel->held = part;
@@ -91,7 +92,7 @@ bool panel_slider(struct panel *panel, int x, int y, int width, double low, doub
     }
     double share = (*value - low) / (high - low);
     share = share < 0 ? 0 : share > 1 ? 1 : share;
-    paper_box(&panel->paper, x, y, width, height, quiet);
-    paper_box(&panel->paper, x, y, (int)(width * share), height, ink);
+    canvas_box(&panel->canvas, x, y, width, height, quiet);
+    canvas_box(&panel->canvas, x, y, (int)(width * share), height, colour);
     return changed;
 }

@@ -8,7 +8,7 @@
 enum { PANEL_GROUNDS = 16 };
 
 struct panel {
-    struct paper paper;
+    struct canvas canvas;
     double mouse_x, mouse_y;
     bool down;              /* the left button */
     bool pressed, released; /* since the frame before */
@@ -41,6 +41,7 @@ void panel_bar(struct panel *panel, int x, int y, int width, double share);
 /* True: clicked. `on`: drawn as chosen. */
 bool panel_button(struct panel *panel, int x, int y, const char *text, bool on);
 /* True: *value was changed by the mouse, from low to high over the width. */
-bool panel_slider(struct panel *panel, int x, int y, int width, double low, double high, struct ink ink, double *value);
+bool panel_slider(struct panel *panel, int x, int y, int width, double low, double high, struct canvas_colour colour,
+                  double *value);
 
 #endif

@@ -11,21 +11,21 @@
 #include <stdio.h>
 #include <string.h>
 
-struct at_work {
-    struct studio *studio;
+struct preview_state {
+    struct preview_session *preview;
     struct change_list changes;
     struct changed_scene changed;
-    bool stale; /* the world is not that of the changes, or there is none */
-    bool told;  /* the world was told of for the first time */
-    struct live_view view;
+    bool stale;    /* the world is not that of the changes, or there is none */
+    bool reported; /* the world was told of for the first time */
+    struct pass_view view;
     double build_seconds;
 };
 
 /* Settings of a pass: coarse ones have one sample a pixel, and a soft light few rays. */
-static void set_pass(struct render_job *job, const struct render_job *own, const struct live_view *view,
+static void set_pass(struct render_job *job, const struct render_job *own, const struct pass_view *view,
                      const struct picture_request *asked, struct film *film, void *block) {
     *job = *own;
-    *film = live_film(asked, block, view->divide);
+    *film = pass_film(asked, block, view->divide);
     job->film = film;
     job->width = film->full_width;
     job->height = film->full_height;
@@ -62,39 +62,40 @@ static struct box finite_bounds(const struct world *world) {
 }
 
 /* The wish to stop is the supervisor's: it takes it back before it sends the next order. */
-bool studio_was_stopped(const struct control *control, const struct error *error) {
+bool preview_was_stopped(const struct control *control, const struct error *error) {
     return error->kind == ERROR_CANCELLED && atomic_load(&control->cancel) != CANCEL_ALL;
 }
 
-static bool make_pass(struct at_work *work, struct picture_report *report, struct error *error) {
-    struct studio *studio = work->studio;
+static bool make_pass(struct preview_state *work, struct picture_report *report, struct error *error) {
+    struct preview_session *preview = work->preview;
     struct render_job job;
     struct film film;
     double begun = progress_clock();
-    set_pass(&job, studio->job, &work->view, studio->asked, &film, studio->job->film->pixels);
+    set_pass(&job, preview->job, &work->view, preview->asked, &film, preview->job->film->pixels);
     /* How long a coarse pass takes nobody needs to know. */
-    struct outlook *outlook = &studio->services->control->outlook;
+    struct outlook *outlook = &preview->services->control->outlook;
     bool fine = work->view.divide <= 1 && !work->view.plain;
     outlook_reset(outlook, fine);
     job.outlook = fine ? outlook : NULL;
     report->rays = (struct render_statistics){.build_seconds = work->build_seconds};
-    bool ok = render_run(&job, studio->pool, &report->rays, error);
-    report->stopped = !ok && studio_was_stopped(studio->services->control, error);
+    bool ok = render_run(&job, preview->pool, &report->rays, error);
+    report->stopped = !ok && preview_was_stopped(preview->services->control, error);
     if (!ok && !report->stopped)
         return false;
-    pool_reset_cancel(studio->pool);
+    pool_reset_cancel(preview->pool);
     report->rays.render_seconds = progress_clock() - begun;
-    studio->fill(studio->context, &film, report);
+    preview->fill(preview->context, &film, report);
     return true;
 }
 
 /* The light as changed, which may not be built yet; of a mesh the world, if there is one, knows where it is. */
-static void tell_light(const struct world *world, const struct light *light, uint32_t number, struct told_light *out) {
+static void describe_light(const struct world *world, const struct light *light, uint32_t number,
+                           struct light_info *out) {
     const struct light *built = world && number < world->light_count ? &world->lights[number] : light;
     unsigned properties = light_properties(light);
     struct vec3 position = light->position;
     bool placed = light_can_move(light) || light_centre(built, &position);
-    *out = (struct told_light){.kind = (uint32_t)light->kind,
+    *out = (struct light_info){.kind = (uint32_t)light->kind,
                                .properties = properties,
                                .placed = placed,
                                .position = position,
@@ -109,66 +110,66 @@ static void tell_light(const struct world *world, const struct light *light, uin
                                .sizes = light_can_size(light)};
 }
 
-static void tell_lights(const struct at_work *work, uint32_t first, struct studio_news *news) {
+static void describe_lights(const struct preview_state *work, uint32_t first, struct preview_reply *reply) {
     bool over = work->changes.count > 0;
-    const struct light *lights = over ? work->changed.lights : work->studio->request->lights;
-    news->light_count = over ? work->changed.light_count : work->studio->request->light_count;
-    news->first_light = first;
-    for (uint32_t i = 0; i < TOLD_LIGHTS && first < news->light_count && i < news->light_count - first; i++)
-        tell_light(work->stale ? NULL : work->studio->world, &lights[first + i], first + i, &news->lights[i]);
+    const struct light *lights = over ? work->changed.lights : work->preview->request->lights;
+    reply->light_count = over ? work->changed.light_count : work->preview->request->light_count;
+    reply->first_light = first;
+    for (uint32_t i = 0; i < LIGHTS_PER_MESSAGE && first < reply->light_count && i < reply->light_count - first; i++)
+        describe_light(work->stale ? NULL : work->preview->world, &lights[first + i], first + i, &reply->lights[i]);
 }
 
-static bool build_again(struct at_work *work, struct error *error) {
-    struct studio *studio = work->studio;
-    const struct render_request *request = studio->request;
+static bool build_again(struct preview_state *work, struct error *error) {
+    struct preview_session *preview = work->preview;
+    const struct render_request *request = preview->request;
     bool over = work->changes.count > 0;
     double begun = progress_clock();
-    bool ok = studio->build(studio->context, over ? work->changed.lights : request->lights,
-                            over ? work->changed.light_count : request->light_count, error);
+    bool ok = preview->build(preview->context, over ? work->changed.lights : request->lights,
+                             over ? work->changed.light_count : request->light_count, error);
     work->build_seconds = progress_clock() - begun;
     work->stale = !ok;
-    pool_reset_cancel(studio->pool);
+    pool_reset_cancel(preview->pool);
     return ok;
 }
 
-/* The world of the changes; where people stop its building it stays stale, and `news` says so. False: an error. */
-static bool need_world(struct at_work *work, struct studio_news *news, struct error *error) {
+/* The world of the changes; where people stop its building it stays stale, and `reply` says so. False: an error. */
+static bool need_world(struct preview_state *work, struct preview_reply *reply, struct error *error) {
     if (!work->stale || build_again(work, error))
         return true;
-    news->unbuilt = studio_was_stopped(work->studio->services->control, error);
-    if (news->unbuilt)
-        news->kind = NEWS_CHANGED;
-    return news->unbuilt;
+    reply->unbuilt = preview_was_stopped(work->preview->services->control, error);
+    if (reply->unbuilt)
+        reply->kind = REPLY_CHANGED;
+    return reply->unbuilt;
 }
 
-static bool change_scene(struct at_work *work, const struct studio_order *order, struct studio_news *news,
+static bool change_scene(struct preview_state *work, const struct preview_command *command, struct preview_reply *reply,
                          struct error *error) {
-    struct studio *studio = work->studio;
-    const struct render_request *request = studio->request;
-    news->kind = NEWS_CHANGED;
-    if ((unsigned)order->change.kind >= CHANGE_KINDS || (unsigned)order->change.added >= ADDED_KINDS ||
-        (unsigned)order->change.part >= LOOK_PARTS ||
-        !change_list_set(&work->changes, &order->change, order->present)) {
-        (void)snprintf(news->text, sizeof news->text, "there are too many changes");
+    struct preview_session *preview = work->preview;
+    const struct render_request *request = preview->request;
+    reply->kind = REPLY_CHANGED;
+    if ((unsigned)command->change.kind >= CHANGE_KINDS || (unsigned)command->change.added >= ADDED_KINDS ||
+        (unsigned)command->change.part >= LOOK_PARTS ||
+        !change_list_set(&work->changes, &command->change, command->present)) {
+        (void)snprintf(reply->text, sizeof reply->text, "there are too many changes");
         return true;
     }
     changes_take_off(&work->changed);
     if (!changes_lay_over(work->changes.items, work->changes.count, request->scene, request->root, request->lights,
-                          request->light_count, studio->warn, studio->context, &work->changed, error))
+                          request->light_count, preview->warn, preview->context, &work->changed, error))
         return false;
-    work->stale = work->stale || !change_keeps_world(&order->change);
-    if (!order->more && !need_world(work, news, error))
+    work->stale = work->stale || !change_keeps_world(&command->change);
+    if (!command->more && !need_world(work, reply, error))
         return false;
     if (!work->stale)
-        world_update_materials(studio->world);
-    news->unbuilt = work->stale;
-    tell_lights(work, order->first_light, news);
+        world_update_materials(preview->world);
+    reply->unbuilt = work->stale;
+    describe_lights(work, command->first_light, reply);
     return true;
 }
 
 /* The job with the camera that people look through. */
-static struct render_job looking_job(const struct at_work *work, const struct live_view *view) {
-    struct render_job job = *work->studio->job;
+static struct render_job view_job(const struct preview_state *work, const struct pass_view *view) {
+    struct render_job job = *work->preview->job;
     if (!view->own) {
         job.camera = view->camera;
         job.settings.view_is_target = false;
@@ -178,10 +179,10 @@ static struct render_job looking_job(const struct at_work *work, const struct li
 }
 
 /* The look is told as it was before the changes of the window, which knows these itself. */
-static bool answer_click(const struct at_work *work, const struct studio_order *order, struct picked *picked,
+static bool answer_click(const struct preview_state *work, const struct preview_command *command, struct picked *picked,
                          struct error *error) {
-    struct render_job job = looking_job(work, &order->view);
-    if (!pick_at(&job, work->studio->request->root, order->x, order->y, order->up, picked, error))
+    struct render_job job = view_job(work, &command->view);
+    if (!pick_at(&job, work->preview->request->root, command->x, command->y, command->up, picked, error))
         return false;
     const struct material *before = changes_before(&work->changed, picked->material_serial);
     for (int part = 0; before && part < LOOK_PARTS; part++)
@@ -190,125 +191,125 @@ static bool answer_click(const struct at_work *work, const struct studio_order *
 }
 
 static void print_piece(void *context, const char *text) {
-    const struct studio *studio = context;
-    studio->services->line(studio->services->context, LINE_OUTPUT, text);
+    const struct preview_session *preview = context;
+    preview->services->line(preview->services->context, LINE_OUTPUT, text);
 }
 
-static bool tell_story(struct at_work *work, const struct studio_order *order, struct error *error) {
-    struct studio *studio = work->studio;
-    struct render_job job = looking_job(work, &order->view);
-    struct inspected picture = {studio->request->file, &job, studio->request->root};
-    struct sheet sheet = {.put = print_piece, .context = studio};
-    const uint32_t pixel[1][2] = {{(uint32_t)order->x, (uint32_t)order->y}};
+static bool send_pixel_trace(struct preview_state *work, const struct preview_command *command, struct error *error) {
+    struct preview_session *preview = work->preview;
+    struct render_job job = view_job(work, &command->view);
+    struct inspected picture = {preview->request->file, &job, preview->request->root};
+    struct text_writer writer = {.put = print_piece, .context = preview};
+    const uint32_t pixel[1][2] = {{(uint32_t)command->x, (uint32_t)command->y}};
     /* The supervisor asks for pixels of the picture; another one has no story. */
-    if (!(order->x >= 0 && order->y >= 0 && order->x < job.width && order->y < job.height))
+    if (!(command->x >= 0 && command->y >= 0 && command->x < job.width && command->y < job.height))
         return true;
-    return inspect_pixels(&picture, pixel, 1, false, studio->pool, &sheet, error);
+    return inspect_pixels(&picture, pixel, 1, false, preview->pool, &writer, error);
 }
 
-static void tell_world(struct at_work *work, struct studio_news *news) {
-    const struct node *root = work->studio->request->root;
-    news->kind = NEWS_BUILT;
-    news->built = progress_clock();
-    news->added = work->studio->request->added;
-    news->owned = work->studio->request->owned;
-    news->report.bounds = finite_bounds(work->studio->world);
-    news->root = root->serial;
-    news->world_from_root = node_parent_from_node(root).forward;
-    pick_words(news->root_name, root->name);
-    tell_lights(work, 0, news);
-    work->told = true;
+static void describe_world(struct preview_state *work, struct preview_reply *reply) {
+    const struct node *root = work->preview->request->root;
+    reply->kind = REPLY_BUILT;
+    reply->built = progress_clock();
+    reply->added = work->preview->request->added;
+    reply->owned = work->preview->request->owned;
+    reply->report.bounds = finite_bounds(work->preview->world);
+    reply->root = root->serial;
+    reply->world_from_root = node_parent_from_node(root).forward;
+    pick_words(reply->root_name, root->name);
+    describe_lights(work, 0, reply);
+    work->reported = true;
 }
 
 /* Marks that are stopped are made later. False: an error. */
-static bool make_marks(struct at_work *work, const struct live_view *view, const struct marks_wish *wish,
-                       struct studio_news *news, struct error *error) {
-    struct studio *studio = work->studio;
-    struct render_job job = looking_job(work, view);
-    struct marks_place place;
-    marks_place(studio->asked, job.film->pixels, &place);
-    if (wish->lines.limit == 0 || wish->lines.cell == 0) /* nothing is asked for */
+static bool make_overlay(struct preview_state *work, const struct pass_view *view,
+                         const struct view_overlay_request *request, struct preview_reply *reply, struct error *error) {
+    struct preview_session *preview = work->preview;
+    struct render_job job = view_job(work, view);
+    struct view_overlay_buffers layout;
+    view_overlay_buffers(preview->asked, job.film->pixels, &layout);
+    if (request->lines.limit == 0 || request->lines.cell == 0) /* nothing is asked for */
         return true;
     double begun = progress_clock();
-    bool ok = marks_make(&job, studio->request->root, studio->pool, wish, &place, &news->marks, error);
-    news->report.rays.render_seconds += progress_clock() - begun; /* a frame is not there before its lines */
-    news->marks.stopped = !ok && studio_was_stopped(studio->services->control, error);
-    pool_reset_cancel(studio->pool);
-    return ok || news->marks.stopped;
+    bool ok = view_overlay_make(&job, preview->request->root, preview->pool, request, &layout, &reply->overlay, error);
+    reply->report.rays.render_seconds += progress_clock() - begun; /* a frame is not there before its lines */
+    reply->overlay.stopped = !ok && preview_was_stopped(preview->services->control, error);
+    pool_reset_cancel(preview->pool);
+    return ok || reply->overlay.stopped;
 }
 
 /* What stands there, and where it is seen. */
-static bool pick(struct at_work *work, const struct studio_order *order, struct studio_news *news,
+static bool pick(struct preview_state *work, const struct preview_command *command, struct preview_reply *reply,
                  struct error *error) {
-    struct marks_wish wish = {.lines = {OVERLAY_NONE, 1, 1}, .outline = true};
-    if (!answer_click(work, order, &news->picked, error))
+    struct view_overlay_request request = {.lines = {OVERLAY_NONE, 1, 1}, .outline = true};
+    if (!answer_click(work, command, &reply->picked, error))
         return false;
-    wish.serial = news->picked.serial;
-    wish.way = news->picked.way;
-    wish.solid = news->picked.solid;
-    return !news->picked.hit || make_marks(work, &order->view, &wish, news, error);
+    request.serial = reply->picked.serial;
+    request.route = reply->picked.route;
+    request.solid = reply->picked.solid;
+    return !reply->picked.hit || make_overlay(work, &command->view, &request, reply, error);
 }
 
-static bool obey(struct at_work *work, const struct studio_order *order, struct studio_news *news,
-                 struct error *error) {
-    if (order->kind != ORDER_CHANGE && (!need_world(work, news, error) || news->unbuilt))
-        return news->unbuilt;
-    if (order->kind != ORDER_CHANGE && !work->told) {
-        tell_world(work, news);
+static bool execute_command(struct preview_state *work, const struct preview_command *command,
+                            struct preview_reply *reply, struct error *error) {
+    if (command->kind != COMMAND_CHANGE && (!need_world(work, reply, error) || reply->unbuilt))
+        return reply->unbuilt;
+    if (command->kind != COMMAND_CHANGE && !work->reported) {
+        describe_world(work, reply);
         return true;
     }
-    switch (order->kind) {
-    case ORDER_PASS:
-        news->kind = NEWS_PASS;
-        work->view = order->view;
-        return make_pass(work, &news->report, error) &&
-               (news->report.stopped || make_marks(work, &order->view, &order->marks, news, error));
-    case ORDER_PICK:
-        news->kind = NEWS_PICKED;
-        return pick(work, order, news, error);
-    case ORDER_MARKS:
-        news->kind = NEWS_MARKS;
-        return make_marks(work, &order->view, &order->marks, news, error);
-    case ORDER_CHANGE:
-        return change_scene(work, order, news, error);
-    case ORDER_STORY:
-        news->kind = NEWS_STORY;
-        return tell_story(work, order, error);
-    case ORDER_LIGHTS:
-        news->kind = NEWS_LIGHTS;
-        tell_lights(work, order->first_light, news);
+    switch (command->kind) {
+    case COMMAND_PASS:
+        reply->kind = REPLY_PASS;
+        work->view = command->view;
+        return make_pass(work, &reply->report, error) &&
+               (reply->report.stopped || make_overlay(work, &command->view, &command->overlay, reply, error));
+    case COMMAND_PICK:
+        reply->kind = REPLY_PICKED;
+        return pick(work, command, reply, error);
+    case COMMAND_OVERLAY:
+        reply->kind = REPLY_OVERLAY;
+        return make_overlay(work, &command->view, &command->overlay, reply, error);
+    case COMMAND_CHANGE:
+        return change_scene(work, command, reply, error);
+    case COMMAND_PIXEL_TRACE:
+        reply->kind = REPLY_PIXEL_TRACE;
+        return send_pixel_trace(work, command, error);
+    case COMMAND_LIGHTS:
+        reply->kind = REPLY_LIGHTS;
+        describe_lights(work, command->first_light, reply);
         return true;
-    case ORDER_END:
+    case COMMAND_END:
         break;
     }
     return true;
 }
 
-static bool work_on(struct at_work *work, struct picture_report *report, struct error *error) {
-    struct studio *studio = work->studio;
-    struct studio_news news = {.kind = NEWS_CHANGED, .report = *report, .unbuilt = work->stale};
-    struct studio_order order;
+static bool serve(struct preview_state *work, struct picture_report *report, struct error *error) {
+    struct preview_session *preview = work->preview;
+    struct preview_reply reply = {.kind = REPLY_CHANGED, .report = *report, .unbuilt = work->stale};
+    struct preview_command command;
     if (!work->stale)
-        tell_world(work, &news);
+        describe_world(work, &reply);
     for (;;) {
-        if (news.kind == NEWS_BUILT)
-            report->bounds = news.report.bounds;
-        if (!studio->services->news(studio->services->context, &news, &order, error))
+        if (reply.kind == REPLY_BUILT)
+            report->bounds = reply.report.bounds;
+        if (!preview->services->reply(preview->services->context, &reply, &command, error))
             return false;
-        if (order.kind == ORDER_END)
-            return !order.quit || error_set(error, ERROR_CANCELLED, "the window was closed");
-        news = (struct studio_news){.report = *report};
-        if (!obey(work, &order, &news, error))
+        if (command.kind == COMMAND_END)
+            return !command.quit || error_set(error, ERROR_CANCELLED, "the window was closed");
+        reply = (struct preview_reply){.report = *report};
+        if (!execute_command(work, &command, &reply, error))
             return false;
-        if (news.kind == NEWS_PASS)
-            *report = news.report;
+        if (reply.kind == REPLY_PASS)
+            *report = reply.report;
     }
 }
 
-bool studio_run(struct studio *studio, bool built, struct picture_report *report, double build_seconds,
-                struct error *error) {
-    struct at_work work = {.studio = studio, .stale = !built, .build_seconds = build_seconds};
-    bool ok = work_on(&work, report, error);
+bool preview_run(struct preview_session *preview, bool built, struct picture_report *report, double build_seconds,
+                 struct error *error) {
+    struct preview_state work = {.preview = preview, .stale = !built, .build_seconds = build_seconds};
+    bool ok = serve(&work, report, error);
     changes_take_off(&work.changed);
     change_list_destroy(&work.changes);
     return ok;

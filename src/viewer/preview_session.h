@@ -9,8 +9,8 @@
 #include "script/script.h"
 #include "session/services.h"
 
-struct studio {
-    const struct child_services *services;
+struct preview_session {
+    const struct host_services *services;
     struct pool *pool;
     const struct render_request *request;
     const struct picture_request *asked;
@@ -25,9 +25,9 @@ struct studio {
 
 /* Until people are done with the picture. built: the world is there; else its building was stopped by people who may
  * want it later. False: the window was closed, or an error. */
-bool studio_run(struct studio *studio, bool built, struct picture_report *report, double build_seconds,
-                struct error *error);
+bool preview_run(struct preview_session *preview, bool built, struct picture_report *report, double build_seconds,
+                 struct error *error);
 /* Whether this is the error of something that was stopped for a while. */
-bool studio_was_stopped(const struct control *control, const struct error *error);
+bool preview_was_stopped(const struct control *control, const struct error *error);
 
 #endif

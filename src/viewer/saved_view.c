@@ -21,66 +21,67 @@ static bool free_name(const char *picture, const char *what, const char *extensi
 }
 
 static void row(void *context, uint32_t y, uint8_t *line) {
-    const struct live *live = context;
-    size_t bytes = 3 * (size_t)live->request.width;
-    memcpy(line, live->image + y * bytes, bytes);
+    const struct viewer *viewer = context;
+    size_t bytes = 3 * (size_t)viewer->request.width;
+    memcpy(line, viewer->image + y * bytes, bytes);
 }
 
-bool souvenir_picture(const struct live *live, const struct file_target *picture, char *name, struct error *error) {
+bool save_view_image(const struct viewer *viewer, const struct file_target *picture, char *name, struct error *error) {
     const struct file_target target = {.path = name, .rules = picture->rules};
     return free_name(picture->path, "-view", "png", name, error) &&
-           png_write(&target, live->request.width, live->request.height, row, (void *)(uintptr_t)live, error);
+           png_write(&target, viewer->request.width, viewer->request.height, row, (void *)(uintptr_t)viewer, error);
 }
 
-struct written {
+struct lua_file {
     struct file_output file;
     struct error *error;
 };
 
 static bool put_line(void *context, const char *line) {
-    struct written *written = context;
-    return file_output_write(&written->file, line, strlen(line), written->error);
+    struct lua_file *lua_file = context;
+    return file_output_write(&lua_file->file, line, strlen(line), lua_file->error);
 }
 
-static bool end_file(struct written *written, bool ok) {
+static bool end_file(struct lua_file *lua_file, bool ok) {
     if (ok)
-        return file_output_commit(&written->file, written->error);
-    file_output_abandon(&written->file);
+        return file_output_commit(&lua_file->file, lua_file->error);
+    file_output_abandon(&lua_file->file);
     return false;
 }
 
-bool souvenir_camera(const struct live *live, const struct file_target *picture, char *name, struct error *error) {
+bool save_view_camera(const struct viewer *viewer, const struct file_target *picture, char *name, struct error *error) {
     static const char head[] =
         "-- A camera found by walking. With require and the name of this file without .lua, before gr.render, the\n"
         "-- picture is made with it; it is given back as a table, too.\n";
     static const struct change_list none;
-    struct camera c = live->flown ? walk_camera(&live->walk) : live->request.camera;
-    struct written written = {.error = error};
+    struct camera c = viewer->camera_moved ? fly_camera_camera(&viewer->fly_camera) : viewer->request.camera;
+    struct lua_file lua_file = {.error = error};
     const struct file_target target = {.path = name, .rules = picture->rules};
     char text[1024];
     (void)snprintf(text, sizeof text,
                    "return {\n  eye = {%.17g, %.17g, %.17g},\n  view = {%.17g, %.17g, %.17g},\n"
                    "  up = {%.17g, %.17g, %.17g},\n  fov = %.17g,\n}\n",
                    c.eye.x, c.eye.y, c.eye.z, c.view.x, c.view.y, c.view.z, c.up.x, c.up.y, c.up.z, c.fov);
-    if (!free_name(picture->path, "-view", "lua", name, error) || !file_output_open(&written.file, &target, error))
+    if (!free_name(picture->path, "-view", "lua", name, error) || !file_output_open(&lua_file.file, &target, error))
         return false;
-    return end_file(&written, put_line(&written, head) &&
-                                  edits_tell(&none, live->request.file, &c, NULL, put_line, &written) &&
-                                  put_line(&written, text));
+    return end_file(&lua_file, put_line(&lua_file, head) &&
+                                   edits_write_lua(&none, viewer->request.file, &c, NULL, put_line, &lua_file) &&
+                                   put_line(&lua_file, text));
 }
 
-bool souvenir_changes(const struct live *live, const struct file_target *picture, char *name, struct error *error) {
+bool save_edits(const struct viewer *viewer, const struct file_target *picture, char *name, struct error *error) {
     static const char head[] =
         "-- What was changed in the window. The scene shows the same when it says, before gr.render, require and the\n"
         "-- name of this file without .lua.\n";
-    struct camera camera = walk_camera(&live->walk);
-    double exposure = live->request.exposure;
-    bool exposed = exposure < live->script_exposure || exposure > live->script_exposure;
-    struct written written = {.error = error};
+    struct camera camera = fly_camera_camera(&viewer->fly_camera);
+    double exposure = viewer->request.exposure;
+    bool exposed = exposure < viewer->script_exposure || exposure > viewer->script_exposure;
+    struct lua_file lua_file = {.error = error};
     const struct file_target target = {.path = name, .rules = picture->rules};
-    if (!free_name(picture->path, "-changes", "lua", name, error) || !file_output_open(&written.file, &target, error))
+    if (!free_name(picture->path, "-changes", "lua", name, error) || !file_output_open(&lua_file.file, &target, error))
         return false;
-    return end_file(&written, put_line(&written, head) &&
-                                  edits_tell(&live->edits.now, live->request.file, live->flown ? &camera : NULL,
-                                             exposed ? &exposure : NULL, put_line, &written));
+    return end_file(&lua_file,
+                    put_line(&lua_file, head) &&
+                        edits_write_lua(&viewer->edits.now, viewer->request.file, viewer->camera_moved ? &camera : NULL,
+                                        exposed ? &exposure : NULL, put_line, &lua_file));
 }

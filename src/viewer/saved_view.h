@@ -8,10 +8,10 @@
 /* `picture` has the name of the picture and rules that replace nothing. Both choose a name that is still free:
  * dir/foo.png gives dir/foo-view1.png, dir/foo-view1.lua and so on; it is put into `name` (4096 bytes). The Lua file
  * gives back a table of eye, view, up and fov with every digit. */
-bool souvenir_picture(const struct live *live, const struct file_target *picture, char *name, struct error *error);
-bool souvenir_camera(const struct live *live, const struct file_target *picture, char *name, struct error *error);
+bool save_view_image(const struct viewer *viewer, const struct file_target *picture, char *name, struct error *error);
+bool save_view_camera(const struct viewer *viewer, const struct file_target *picture, char *name, struct error *error);
 /* dir/foo-changes1.lua: required by the scene, it gives the picture the camera, the exposure and all that was changed.
  */
-bool souvenir_changes(const struct live *live, const struct file_target *picture, char *name, struct error *error);
+bool save_edits(const struct viewer *viewer, const struct file_target *picture, char *name, struct error *error);
 
 #endif

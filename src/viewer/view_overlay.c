@@ -13,9 +13,9 @@
 
 enum { ROWS = 8 }; /* of an item of work */
 
-struct seeking {
+struct node_members {
     const struct world *world;
-    const struct marks_wish *wish;
+    const struct view_overlay_request *request;
     uint8_t *member; /* by primitive: part of the node, or of the solid that it is an operand of */
     struct box box;
     uint32_t first_leaf, end_leaf; /* of that solid, by origin: those of the operand */
@@ -25,13 +25,13 @@ struct seeking {
 };
 
 static bool note_leaves(void *context, uint32_t first, uint32_t end, const struct scene_step *steps, uint32_t depth) {
-    struct scene_step way[2 * OPERAND_DEPTH];
-    struct seeking *s = context;
-    if (steps[depth - 1].node->serial != s->wish->serial || s->depth > OPERAND_DEPTH)
+    struct scene_step route[2 * OPERAND_DEPTH];
+    struct node_members *s = context;
+    if (steps[depth - 1].node->serial != s->request->serial || s->depth > OPERAND_DEPTH)
         return true;
-    memcpy(way, s->to_solid, s->depth * sizeof *way);
-    memcpy(way + s->depth, steps, depth * sizeof *way);
-    if (marks_way(way, s->depth + depth) != s->wish->way)
+    memcpy(route, s->to_solid, s->depth * sizeof *route);
+    memcpy(route + s->depth, steps, depth * sizeof *route);
+    if (route_hash(route, s->depth + depth) != s->request->route)
         return true;
     s->first_leaf = first;
     s->end_leaf = end;
@@ -40,16 +40,16 @@ static bool note_leaves(void *context, uint32_t first, uint32_t end, const struc
 
 static bool note_members(void *context, uint32_t first, uint32_t count, const struct scene_step *steps,
                          uint32_t depth) {
-    struct seeking *s = context;
-    bool below = s->wish->solid != 0 && marks_way(steps, depth) == s->wish->solid;
+    struct node_members *s = context;
+    bool below = s->request->solid != 0 && route_hash(steps, depth) == s->request->solid;
     if (below) {
         s->to_solid = steps;
         s->depth = depth;
         s->no_memory = s->no_memory || !world_walk_operands(steps[depth - 1].node, note_leaves, s);
     }
-    for (uint32_t i = 0; i < depth && !below && s->wish->solid == 0; i++)
-        below =
-            steps[i].node->serial == s->wish->serial && (s->wish->way == 0 || marks_way(steps, i + 1) == s->wish->way);
+    for (uint32_t i = 0; i < depth && !below && s->request->solid == 0; i++)
+        below = steps[i].node->serial == s->request->serial &&
+                (s->request->route == 0 || route_hash(steps, i + 1) == s->request->route);
     for (uint32_t i = first; below && i < first + count; i++) {
         s->member[i] = 1;
         s->box = box_join(s->box, s->world->boxes[i]);
@@ -85,26 +85,26 @@ static struct film_rectangle rectangle_of(const struct camera_frame *frame, cons
     return (struct film_rectangle){(uint32_t)low[0], (uint32_t)low[1], (uint32_t)high[0], (uint32_t)high[1]};
 }
 
-struct outlining {
+struct outline_job {
     const struct render_job *job;
     const struct camera_frame *frame;
     const struct pool *pool;
-    const struct seeking *seeking;
+    const struct node_members *node_members;
     struct world_scratch *scratch; /* by worker */
     struct film_rectangle area;
     uint8_t *shows;
 };
 
-static bool is_member(const struct seeking *s, const struct hit *hit) {
+static bool is_member(const struct node_members *s, const struct hit *hit) {
     const struct shape *shape = placed_shape(s->world, hit->placed);
-    if (!s->member[hit->placed] || s->wish->solid == 0 || shape->kind != SHAPE_CSG)
+    if (!s->member[hit->placed] || s->request->solid == 0 || shape->kind != SHAPE_CSG)
         return s->member[hit->placed];
     uint32_t origin = shape->csg->leaves[hit->leaf].origin;
     return origin >= s->first_leaf && origin < s->end_leaf;
 }
 
 static void outline_rows(void *context, uint32_t item, int worker) {
-    const struct outlining *o = context;
+    const struct outline_job *o = context;
     const struct film *film = o->job->film;
     struct ray ray;
     struct hit hit;
@@ -112,7 +112,8 @@ static void outline_rows(void *context, uint32_t item, int worker) {
         for (uint32_t x = o->area.x0; x < o->area.x1; x++) {
             bool shows = camera_ray_through(o->frame, film->x0 + x + 0.5, film->y0 + y + 0.5,
                                             (struct sample2){0.5, 0.5}, 0, &ray) &&
-                         world_nearest(o->job->world, &ray, &o->scratch[worker], &hit) && is_member(o->seeking, &hit);
+                         world_nearest(o->job->world, &ray, &o->scratch[worker], &hit) &&
+                         is_member(o->node_members, &hit);
             o->shows[(size_t)y * film->width + x] = shows;
         }
         if (pool_cancelled(o->pool))
@@ -120,7 +121,7 @@ static void outline_rows(void *context, uint32_t item, int worker) {
     }
 }
 
-static bool run_outline(struct outlining *o, struct pool *pool, struct error *error) {
+static bool run_outline(struct outline_job *o, struct pool *pool, struct error *error) {
     int workers = pool_workers(pool);
     o->scratch = mem_alloc_zero((size_t)workers, sizeof *o->scratch);
     bool ok = o->scratch != NULL;
@@ -139,9 +140,9 @@ static bool run_outline(struct outlining *o, struct pool *pool, struct error *er
 }
 
 static bool make_outline(const struct render_job *job, const struct node *root, struct pool *pool,
-                         const struct marks_wish *wish, uint8_t *shows, struct film_rectangle *found,
+                         const struct view_overlay_request *request, uint8_t *shows, struct film_rectangle *found,
                          struct error *error) {
-    struct seeking seeking = {.world = job->world, .wish = wish, .box = box_empty()};
+    struct node_members node_members = {.world = job->world, .request = request, .box = box_empty()};
     struct settings settings = job->settings;
     struct camera_frame frame;
     char ignored[256];
@@ -149,29 +150,31 @@ static bool make_outline(const struct render_job *job, const struct node *root, 
     *found = (struct film_rectangle){0};
     if (!camera_prepare(&job->camera, &settings, job->width, job->height, &frame, ignored, error))
         return false;
-    seeking.member = mem_alloc_zero((size_t)job->world->placed_count + 1, 1);
-    if (!seeking.member)
+    node_members.member = mem_alloc_zero((size_t)job->world->placed_count + 1, 1);
+    if (!node_members.member)
         return error_no_memory(error, "the outline of a node");
-    bool ok = world_walk_paths(job->world, root, note_members, &seeking, error) &&
-              (!seeking.no_memory || error_no_memory(error, "the outline of a node"));
-    if (ok && !box_is_empty(&seeking.box)) {
-        struct outlining o = {.job = job, .frame = &frame, .pool = pool, .seeking = &seeking, .shows = shows};
-        o.area = rectangle_of(&frame, job->film, &seeking.box);
+    bool ok = world_walk_paths(job->world, root, note_members, &node_members, error) &&
+              (!node_members.no_memory || error_no_memory(error, "the outline of a node"));
+    if (ok && !box_is_empty(&node_members.box)) {
+        struct outline_job o = {
+            .job = job, .frame = &frame, .pool = pool, .node_members = &node_members, .shows = shows};
+        o.area = rectangle_of(&frame, job->film, &node_members.box);
         ok = run_outline(&o, pool, error);
         *found = o.area;
     }
-    mem_free(seeking.member);
+    mem_free(node_members.member);
     return ok;
 }
 
-bool marks_make(const struct render_job *job, const struct node *root, struct pool *pool, const struct marks_wish *wish,
-                const struct marks_place *place, struct marks *marks, struct error *error) {
-    *marks = (struct marks){0};
-    if (wish->outline && !make_outline(job, root, pool, wish, place->shows, &marks->outline, error))
+bool view_overlay_make(const struct render_job *job, const struct node *root, struct pool *pool,
+                       const struct view_overlay_request *request, const struct view_overlay_buffers *layout,
+                       struct view_overlay *overlay, struct error *error) {
+    *overlay = (struct view_overlay){0};
+    if (request->outline && !make_outline(job, root, pool, request, layout->shows, &overlay->outline, error))
         return false;
-    marks->has_outline = wish->outline;
-    if (wish->lines.kind != OVERLAY_NONE && !overlay_lines(job, pool, &wish->lines, place->lines, error))
+    overlay->has_outline = request->outline;
+    if (request->lines.kind != OVERLAY_NONE && !overlay_lines(job, pool, &request->lines, layout->lines, error))
         return false;
-    marks->has_lines = wish->lines.kind != OVERLAY_NONE;
+    overlay->has_lines = request->lines.kind != OVERLAY_NONE;
     return true;
 }

@@ -8,7 +8,8 @@
 #include "world/path.h"
 
 /* Makes what is wished for, as the camera of the job sees it. False: no memory, or no such camera, or cancelled. */
-bool marks_make(const struct render_job *job, const struct node *root, struct pool *pool, const struct marks_wish *wish,
-                const struct marks_place *place, struct marks *marks, struct error *error);
+bool view_overlay_make(const struct render_job *job, const struct node *root, struct pool *pool,
+                       const struct view_overlay_request *request, const struct view_overlay_buffers *layout,
+                       struct view_overlay *overlay, struct error *error);
 
 #endif

@@ -11,365 +11,370 @@
 enum { FIRST_DIVIDE = 16, MIDDLE_DIVIDE = 4, DIVIDE_LIMIT = 32 };
 static const double pass_goal = 0.033;
 
-static bool differ(double a, double b) {
+static bool is_different(double a, double b) {
     return a < b || a > b;
 }
 
-static struct live_view view_now(const struct live *live, uint32_t divide, bool plain) {
-    return (struct live_view){.camera = live->flown ? walk_camera(&live->walk) : live->request.camera,
-                              .exposure = live->request.exposure,
+static struct pass_view current_view(const struct viewer *viewer, uint32_t divide, bool plain) {
+    return (struct pass_view){.camera = viewer->camera_moved ? fly_camera_camera(&viewer->fly_camera)
+                                                             : viewer->request.camera,
+                              .exposure = viewer->request.exposure,
                               .divide = divide,
                               .plain = plain,
-                              .own = !live->flown};
+                              .own = !viewer->camera_moved};
 }
 
 /* The scripts ran again: where somebody has flown to and what was changed stays. */
-static void keep_work(struct live *live, const struct live *before) {
-    struct pose home = live->walk.home;
-    if (before->flown) {
-        live->walk = before->walk;
-        live->walk.home = home;
-        live->flown = true;
+static void keep_work(struct viewer *viewer, const struct viewer *before) {
+    struct pose home = viewer->fly_camera.home;
+    if (before->camera_moved) {
+        viewer->fly_camera = before->fly_camera;
+        viewer->fly_camera.home = home;
+        viewer->camera_moved = true;
     }
-    if (differ(before->request.exposure, before->script_exposure))
-        live->request.exposure = before->request.exposure;
-    live->edits = before->edits;
-    live->pending = before->pending;
-    live->tool = before->tool;
-    live_resend(live);
+    if (is_different(before->request.exposure, before->script_exposure))
+        viewer->request.exposure = before->request.exposure;
+    viewer->edits = before->edits;
+    viewer->pending = before->pending;
+    viewer->tool = before->tool;
+    viewer_resend_edits(viewer);
 }
 
-static void forget_work(struct live *live) {
-    edits_destroy(&live->edits);
-    change_list_destroy(&live->pending);
+static void forget_work(struct viewer *viewer) {
+    edits_destroy(&viewer->edits);
+    change_list_destroy(&viewer->pending);
 }
 
-static void close_window(struct live *live) {
-    if (live->open)
-        live->driver->close(live->driver->context);
-    mem_free(live->image);
-    mem_free(live->light);
-    mem_free(live->drawn);
-    live_destroy_marks(live);
-    mem_free(live->panel.paper.rgba);
-    live->image = live->drawn = live->panel.paper.rgba = NULL;
-    live->light = NULL;
-    live->place = (struct live_place){0};
-    live->open = false;
+static void close_window(struct viewer *viewer) {
+    if (viewer->open)
+        viewer->driver->close(viewer->driver->context);
+    mem_free(viewer->image);
+    mem_free(viewer->light);
+    mem_free(viewer->drawn);
+    viewer_destroy_overlay(viewer);
+    mem_free(viewer->panel.canvas.rgba);
+    viewer->image = viewer->drawn = viewer->panel.canvas.rgba = NULL;
+    viewer->light = NULL;
+    viewer->layout = (struct window_layout){0};
+    viewer->open = false;
 }
 
 /* The window with all that belongs to it. */
-static void keep_window(struct live *live, const struct live *before) {
-    live->control = before->control;
-    live->number = before->number;
-    live->tells = before->tells;
-    live->image = before->image;
-    live->light = before->light;
-    live->drawn = before->drawn;
-    live->place = before->place;
-    live->panel = before->panel;
-    live->bare = before->bare;
-    live->overlay = before->open ? before->overlay : live->overlay;
-    live->open = before->open;
+static void keep_window(struct viewer *viewer, const struct viewer *before) {
+    viewer->control = before->control;
+    viewer->number = before->number;
+    viewer->logs_notes = before->logs_notes;
+    viewer->image = before->image;
+    viewer->light = before->light;
+    viewer->drawn = before->drawn;
+    viewer->layout = before->layout;
+    viewer->panel = before->panel;
+    viewer->hides_overlay = before->hides_overlay;
+    viewer->overlay = before->open ? before->overlay : viewer->overlay;
+    viewer->open = before->open;
 }
 
-static bool open_window(struct live *live, struct error *error) {
-    const struct picture_request *request = &live->request;
+static bool open_window(struct viewer *viewer, struct error *error) {
+    const struct picture_request *request = &viewer->request;
     size_t pixels = (size_t)request->width * request->height;
-    live->image = mem_alloc_zero(pixels, 3);
-    live->light = mem_alloc_zero(pixels, 3 * sizeof(float));
-    live->drawn = mem_alloc_zero(live->tiles, 1);
-    if (!live->image || !live->light || !live->drawn)
+    viewer->image = mem_alloc_zero(pixels, 3);
+    viewer->light = mem_alloc_zero(pixels, 3 * sizeof(float));
+    viewer->drawn = mem_alloc_zero(viewer->tiles, 1);
+    if (!viewer->image || !viewer->light || !viewer->drawn)
         return error_no_memory(error, "the window");
-    live->open = live->driver->open(live->driver->context, request->width, request->height, live->name, error);
-    return live->open;
+    viewer->open = viewer->driver->open(viewer->driver->context, request->width, request->height, viewer->name, error);
+    return viewer->open;
 }
 
-bool live_begin(struct live *live, const struct window_driver *driver, const struct picture_request *request,
-                void *block, const char *name, double now, struct error *error) {
-    struct film whole = live_film(request, block, 1);
+bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, const struct picture_request *request,
+                  void *block, const char *name, double now, struct error *error) {
+    struct film whole = pass_film(request, block, 1);
     const struct box unknown = box_empty();
-    bool kept = live->keep && live->open;
-    if (live->open && (live->request.width != request->width || live->request.height != request->height))
-        close_window(live);
-    live_destroy_marks(live);
-    struct live before = *live;
-    *live =
-        (struct live){.driver = driver,
-                      .request = *request,
-                      .block = block,
-                      .script_exposure = request->exposure,
-                      .overlay = request->overlay <= OVERLAY_OF_GRID ? (enum overlay)request->overlay : OVERLAY_NONE,
-                      .tiles = film_tile_count(&whole),
-                      .moved = true,
-                      .again = true,
-                      .divide = FIRST_DIVIDE / 2,
-                      .pass_began = now,
-                      .stepped = now,
-                      .shown = now};
+    bool kept = viewer->keep && viewer->open;
+    if (viewer->open && (viewer->request.width != request->width || viewer->request.height != request->height))
+        close_window(viewer);
+    viewer_destroy_overlay(viewer);
+    struct viewer before = *viewer;
+    *viewer =
+        (struct viewer){.driver = driver,
+                        .request = *request,
+                        .block = block,
+                        .script_exposure = request->exposure,
+                        .overlay = request->overlay <= OVERLAY_OF_GRID ? (enum overlay)request->overlay : OVERLAY_NONE,
+                        .tiles = film_tile_count(&whole),
+                        .moved = true,
+                        .again = true,
+                        .divide = FIRST_DIVIDE / 2,
+                        .pass_began = now,
+                        .stepped = now,
+                        .shown = now};
     mem_free(before.lights);
-    keep_window(live, &before);
-    (void)snprintf(live->name, sizeof live->name, "%s", name);
-    walk_begin(&live->walk, &request->camera, &unknown);
-    live->view = view_now(live, FIRST_DIVIDE, true);
+    keep_window(viewer, &before);
+    (void)snprintf(viewer->name, sizeof viewer->name, "%s", name);
+    fly_camera_begin(&viewer->fly_camera, &request->camera, &unknown);
+    viewer->view = current_view(viewer, FIRST_DIVIDE, true);
     if (kept)
-        keep_work(live, &before);
+        keep_work(viewer, &before);
     else
         forget_work(&before);
-    if (!live->open && !open_window(live, error))
+    if (!viewer->open && !open_window(viewer, error))
         return false;
-    memset(live->drawn, 0, live->tiles);
+    memset(viewer->drawn, 0, viewer->tiles);
     return true;
 }
 
-void live_end(struct live *live) {
-    close_window(live);
-    forget_work(live);
-    mem_free(live->lights);
-    *live = (struct live){.control = live->control, .tells = live->tells};
+void viewer_end(struct viewer *viewer) {
+    close_window(viewer);
+    forget_work(viewer);
+    mem_free(viewer->lights);
+    *viewer = (struct viewer){.control = viewer->control, .logs_notes = viewer->logs_notes};
 }
 
-void live_detach(struct live *live) {
-    live->block = NULL;
-    live->film = (struct film){0};
-    live->running = live->waiting = live->stopping = live->partial = live->asks = live->asks_story = false;
-    live->halted = live->unbuilt = false;
-    live->selection.kind = SELECTED_NOTHING;
-    live->told = 0;
+void viewer_detach(struct viewer *viewer) {
+    viewer->block = NULL;
+    viewer->film = (struct film){0};
+    viewer->running = viewer->waiting = viewer->stopping = viewer->partial = viewer->asks = viewer->wants_trace = false;
+    viewer->halted = viewer->unbuilt = false;
+    viewer->selection.kind = SELECTED_NOTHING;
+    viewer->figures_at = 0;
 }
 
-void live_keep(struct live *live) {
-    live->keep = live->open;
+void viewer_keep(struct viewer *viewer) {
+    viewer->keep = viewer->open;
 }
 
-bool live_skips(const struct live *live, unsigned number) {
-    return live->keep && number < live->number;
+bool viewer_skips(const struct viewer *viewer, unsigned number) {
+    return viewer->keep && number < viewer->number;
 }
 
-void live_hear(struct live *live, const char *text) {
-    size_t used = strlen(live->story);
-    (void)snprintf(live->story + used, sizeof live->story - used, "%s", text);
-    live->over_dirty = true;
+void viewer_add_pixel_trace(struct viewer *viewer, const char *text) {
+    size_t used = strlen(viewer->trace_text);
+    (void)snprintf(viewer->trace_text + used, sizeof viewer->trace_text - used, "%s", text);
+    viewer->over_dirty = true;
 }
 
-void live_tell(struct live *live, const char *text) {
+void viewer_show_message(struct viewer *viewer, const char *text) {
     size_t length = strcspn(text, "\n");
-    (void)snprintf(live->message, sizeof live->message, "%.*s", (int)(length < 500 ? length : 500), text);
-    live->told = 0;
+    (void)snprintf(viewer->message, sizeof viewer->message, "%.*s", (int)(length < 500 ? length : 500), text);
+    viewer->figures_at = 0;
 }
 
 /* Orders. */
 
-void live_note_stop(struct live *live, double seconds) {
-    (void)snprintf(live->note, sizeof live->note, "%.100s: stopped in %.1f ms", live->request.file, 1000 * seconds);
+void viewer_note_stop(struct viewer *viewer, double seconds) {
+    (void)snprintf(viewer->note, sizeof viewer->note, "%.100s: stopped in %.1f ms", viewer->request.file,
+                   1000 * seconds);
 }
 
-bool live_is_idle(const struct live *live) {
-    return live->waiting && live->complete && !live->moved && !live->asks && !live->asks_story &&
-           live->pending.count == 0;
+bool viewer_is_idle(const struct viewer *viewer) {
+    return viewer->waiting && viewer->complete && !viewer->moved && !viewer->asks && !viewer->wants_trace &&
+           viewer->pending.count == 0;
 }
 
-static void end_pass(struct live *live, const struct picture_report *report, double now) {
-    bool known = live->report.threads > 0;
-    live->partial = report->stopped != 0;
+static void end_pass(struct viewer *viewer, const struct picture_report *report, double now) {
+    bool known = viewer->report.threads > 0;
+    viewer->partial = report->stopped != 0;
     if (report->stopped)
         return;
-    live_draw_tiles(live);
+    viewer_draw_tiles(viewer);
     /* Passes that take no time say nothing about how coarse they must be. */
-    double took = now - live->pass_began, divide = live->view.divide * sqrt(took / pass_goal);
-    if (live->view.plain && live->view.divide == live->divide && known)
-        live->divide = divide < 1 ? 1 : divide > DIVIDE_LIMIT ? DIVIDE_LIMIT : (uint32_t)ceil(divide);
-    live->complete = !live->view.plain;
-    live->report = *report;
+    double took = now - viewer->pass_began, divide = viewer->view.divide * sqrt(took / pass_goal);
+    if (viewer->view.plain && viewer->view.divide == viewer->divide && known)
+        viewer->divide = divide < 1 ? 1 : divide > DIVIDE_LIMIT ? DIVIDE_LIMIT : (uint32_t)ceil(divide);
+    viewer->complete = !viewer->view.plain;
+    viewer->report = *report;
 }
 
-void live_take_news(struct live *live, const struct studio_news *news, double now) {
-    if (live->halted && live->halted_at > 0)
-        live_note_stop(live, now - live->halted_at);
-    live->halted_at = 0;
-    live->running = live->stopping = false;
-    live->waiting = live->over_dirty = true;
-    live->unbuilt = news->unbuilt;
-    switch (news->kind) {
-    case NEWS_BUILT:
-        walk_measure(&live->walk, &news->report.bounds);
-        live->moved = true;
-        live->built = news->built;
-        live->scene = *news;
-        live_take_lights(live, news);
+void viewer_take_reply(struct viewer *viewer, const struct preview_reply *reply, double now) {
+    if (viewer->halted && viewer->halted_at > 0)
+        viewer_note_stop(viewer, now - viewer->halted_at);
+    viewer->halted_at = 0;
+    viewer->running = viewer->stopping = false;
+    viewer->waiting = viewer->over_dirty = true;
+    viewer->unbuilt = reply->unbuilt;
+    switch (reply->kind) {
+    case REPLY_BUILT:
+        fly_camera_measure(&viewer->fly_camera, &reply->report.bounds);
+        viewer->moved = true;
+        viewer->built = reply->built;
+        viewer->scene = *reply;
+        viewer_take_lights(viewer, reply);
         return;
-    case NEWS_PASS:
-        end_pass(live, &news->report, now);
-        if (!news->report.stopped && live->order.marks.lines.limit > 0)
-            live_take_marks(live, &live->order.marks, &news->marks);
+    case REPLY_PASS:
+        end_pass(viewer, &reply->report, now);
+        if (!reply->report.stopped && viewer->command.overlay.lines.limit > 0)
+            viewer_take_overlay(viewer, &viewer->command.overlay, &reply->overlay);
         return;
-    case NEWS_MARKS:
-        live_take_marks(live, &live->order.marks, &news->marks);
+    case REPLY_OVERLAY:
+        viewer_take_overlay(viewer, &viewer->command.overlay, &reply->overlay);
         return;
-    case NEWS_PICKED:
-        live_take_picked(live, &news->picked);
-        live->order.marks = live_marks_wish(live, false);
-        live->order.marks.lines.kind = OVERLAY_NONE;
-        live_take_marks(live, &live->order.marks, &news->marks);
+    case REPLY_PICKED:
+        viewer_take_picked(viewer, &reply->picked);
+        viewer->command.overlay = viewer_overlay_request(viewer, false);
+        viewer->command.overlay.lines.kind = OVERLAY_NONE;
+        viewer_take_overlay(viewer, &viewer->command.overlay, &reply->overlay);
         return;
-    case NEWS_CHANGED:
-        if (!news->unbuilt || news->light_count > 0)
-            live_take_lights(live, news);
-        if (news->text[0] != '\0')
-            live_tell(live, news->text);
-        live->moved = true;
-        live_stale_marks(live);
+    case REPLY_CHANGED:
+        if (!reply->unbuilt || reply->light_count > 0)
+            viewer_take_lights(viewer, reply);
+        if (reply->text[0] != '\0')
+            viewer_show_message(viewer, reply->text);
+        viewer->moved = true;
+        viewer_invalidate_overlay(viewer);
         return;
-    case NEWS_LIGHTS:
-        live_take_lights(live, news);
+    case REPLY_LIGHTS:
+        viewer_take_lights(viewer, reply);
         return;
-    case NEWS_STORY:
+    case REPLY_PIXEL_TRACE:
         return;
     }
 }
 
 /* resume: the tiles that are done stay. */
-static void begin_pass(struct live *live, uint32_t divide, bool plain, bool resume, double now) {
+static void begin_pass(struct viewer *viewer, uint32_t divide, bool plain, bool resume, double now) {
     if (!resume) {
-        live->view = view_now(live, divide, plain);
-        live->film = live_film(&live->request, live->block, divide);
-        live->edited = live->edits.now.count > 0 || differ(live->request.exposure, live->script_exposure);
-        memset(live->drawn, 0, live->tiles);
-        if (live->film.marked)
-            memset(live->film.marked, 0, (size_t)live->film.width * live->film.height);
+        viewer->view = current_view(viewer, divide, plain);
+        viewer->film = pass_film(&viewer->request, viewer->block, divide);
+        viewer->edited = viewer->edits.now.count > 0 || is_different(viewer->request.exposure, viewer->script_exposure);
+        memset(viewer->drawn, 0, viewer->tiles);
+        if (viewer->film.marked)
+            memset(viewer->film.marked, 0, (size_t)viewer->film.width * viewer->film.height);
     }
-    for (uint32_t tile = 0; tile < film_tile_count(&live->film); tile++) {
-        if (!resume || atomic_load(&live->film.tiles[tile]) != FILM_TILE_DONE)
-            atomic_store(&live->film.tiles[tile], FILM_TILE_WANTED);
+    for (uint32_t tile = 0; tile < film_tile_count(&viewer->film); tile++) {
+        if (!resume || atomic_load(&viewer->film.tiles[tile]) != FILM_TILE_DONE)
+            atomic_store(&viewer->film.tiles[tile], FILM_TILE_WANTED);
     }
-    live->order = (struct studio_order){.kind = ORDER_PASS, .view = live->view};
-    if (live->moved)
-        live_stale_marks(live);
-    if (plain && !resume && live_wants_marks(live))
-        live->order.marks = live_marks_wish(live, live->moved);
-    live->moved = live->complete = live->partial = false;
-    live->running = true;
-    live->pass_began = now;
+    viewer->command = (struct preview_command){.kind = COMMAND_PASS, .view = viewer->view};
+    if (viewer->moved)
+        viewer_invalidate_overlay(viewer);
+    if (plain && !resume && viewer_needs_overlay(viewer))
+        viewer->command.overlay = viewer_overlay_request(viewer, viewer->moved);
+    viewer->moved = viewer->complete = viewer->partial = false;
+    viewer->running = true;
+    viewer->pass_began = now;
 }
 
 /* The first of what the child has not been told yet. */
-static void order_change(struct live *live) {
-    struct change target = live->pending.items[0];
-    const struct change *now = change_list_find(&live->edits.now, &target);
-    (void)change_list_set(&live->pending, &target, false);
+static void command_change(struct viewer *viewer) {
+    struct change target = viewer->pending.items[0];
+    const struct change *now = change_list_find(&viewer->edits.now, &target);
+    (void)change_list_set(&viewer->pending, &target, false);
     bool light = target.kind == CHANGE_LIGHT || target.kind == CHANGE_DARK;
-    live->order = (struct studio_order){.kind = ORDER_CHANGE,
-                                        .change = now ? *now : target,
-                                        .present = now != NULL,
-                                        .more = live->pending.count > 0,
-                                        .first_light = light ? target.serial - 1 : 0};
+    viewer->command = (struct preview_command){.kind = COMMAND_CHANGE,
+                                               .change = now ? *now : target,
+                                               .present = now != NULL,
+                                               .more = viewer->pending.count > 0,
+                                               .first_light = light ? target.serial - 1 : 0};
 }
 
-static void order_pick(struct live *live) {
-    live->asks = false;
-    live->order = (struct studio_order){.kind = ORDER_PICK,
-                                        .view = view_now(live, 1, true),
-                                        .x = live->asked.x,
-                                        .y = live->asked.y,
-                                        .up = live->asked.up};
+static void command_pick(struct viewer *viewer) {
+    viewer->asks = false;
+    viewer->command = (struct preview_command){.kind = COMMAND_PICK,
+                                               .view = current_view(viewer, 1, true),
+                                               .x = viewer->asked.x,
+                                               .y = viewer->asked.y,
+                                               .up = viewer->asked.up};
 }
 
-static void order_story(struct live *live) {
-    live->asks_story = false;
-    live->story[0] = '\0';
-    live->story_line = 0;
-    live->order = (struct studio_order){
-        .kind = ORDER_STORY, .view = view_now(live, 1, false), .x = live->story_x, .y = live->story_y};
+static void command_pixel_trace(struct viewer *viewer) {
+    viewer->wants_trace = false;
+    viewer->trace_text[0] = '\0';
+    viewer->trace_line = 0;
+    viewer->command = (struct preview_command){.kind = COMMAND_PIXEL_TRACE,
+                                               .view = current_view(viewer, 1, false),
+                                               .x = viewer->trace_x,
+                                               .y = viewer->trace_y};
 }
 
-static void order_marks(struct live *live) {
-    live->order = (struct studio_order){
-        .kind = ORDER_MARKS, .view = view_now(live, 1, true), .marks = live_marks_wish(live, false)};
+static void command_overlay(struct viewer *viewer) {
+    viewer->command = (struct preview_command){.kind = COMMAND_OVERLAY,
+                                               .view = current_view(viewer, 1, true),
+                                               .overlay = viewer_overlay_request(viewer, false)};
 }
 
-static enum live_order next_order(struct live *live, double now) {
-    uint32_t divide = live->again ? FIRST_DIVIDE : live->divide;
-    bool coarse = live->view.plain && live->view.divide > MIDDLE_DIVIDE && !live->halted;
-    if (live->halted && live->unbuilt) /* what is asked now has no answer */
-        live->asks = live->asks_story = false;
-    if (live->pending.count > 0 && !live->halted) {
-        order_change(live);
-    } else if (live->asks) {
-        order_pick(live);
-    } else if (live->asks_story) {
-        order_story(live);
-    } else if (!live->moved && !coarse && live_wants_marks(live)) {
-        order_marks(live);
-    } else if (live->halted) {
-        return LIVE_NOTHING;
-    } else if (live->moved) {
-        live->again = false;
-        begin_pass(live, divide, true, false, now);
-    } else if (live->lights_known < live->light_count) {
-        live->order = (struct studio_order){.kind = ORDER_LIGHTS, .first_light = live->lights_known};
-    } else if (!live->view.plain && differ(live->view.exposure, live->request.exposure)) {
-        begin_pass(live, 1, false, false, now);
-    } else if (live->partial) {
-        begin_pass(live, 0, false, true, now);
-    } else if (live->complete) {
-        return LIVE_NOTHING;
-    } else if (live->view.divide > MIDDLE_DIVIDE) {
-        begin_pass(live, MIDDLE_DIVIDE, true, false, now);
+static enum viewer_action next_command(struct viewer *viewer, double now) {
+    uint32_t divide = viewer->again ? FIRST_DIVIDE : viewer->divide;
+    bool coarse = viewer->view.plain && viewer->view.divide > MIDDLE_DIVIDE && !viewer->halted;
+    if (viewer->halted && viewer->unbuilt) /* what is asked now has no answer */
+        viewer->asks = viewer->wants_trace = false;
+    if (viewer->pending.count > 0 && !viewer->halted) {
+        command_change(viewer);
+    } else if (viewer->asks) {
+        command_pick(viewer);
+    } else if (viewer->wants_trace) {
+        command_pixel_trace(viewer);
+    } else if (!viewer->moved && !coarse && viewer_needs_overlay(viewer)) {
+        command_overlay(viewer);
+    } else if (viewer->halted) {
+        return VIEWER_NOTHING;
+    } else if (viewer->moved) {
+        viewer->again = false;
+        begin_pass(viewer, divide, true, false, now);
+    } else if (viewer->lights_known < viewer->light_count) {
+        viewer->command = (struct preview_command){.kind = COMMAND_LIGHTS, .first_light = viewer->lights_known};
+    } else if (!viewer->view.plain && is_different(viewer->view.exposure, viewer->request.exposure)) {
+        begin_pass(viewer, 1, false, false, now);
+    } else if (viewer->partial) {
+        begin_pass(viewer, 0, false, true, now);
+    } else if (viewer->complete) {
+        return VIEWER_NOTHING;
+    } else if (viewer->view.divide > MIDDLE_DIVIDE) {
+        begin_pass(viewer, MIDDLE_DIVIDE, true, false, now);
     } else {
-        begin_pass(live, 1, false, false, now);
+        begin_pass(viewer, 1, false, false, now);
     }
-    live->waiting = false;
-    return LIVE_ORDER;
+    viewer->waiting = false;
+    return VIEWER_SEND_COMMAND;
 }
 
 /* What can be done while the child works. */
-static enum live_order step_running(struct live *live) {
+static enum viewer_action step_running(struct viewer *viewer) {
     /* A coarse pass is over soon and is worth showing; a fine one is not. */
-    bool coarse = live->view.plain && live->view.divide >= live->divide;
-    if (live->halted && live->block && !live->stopping) {
-        live->stopping = true;
-        return LIVE_STOP;
+    bool coarse = viewer->view.plain && viewer->view.divide >= viewer->divide;
+    if (viewer->halted && viewer->block && !viewer->stopping) {
+        viewer->stopping = true;
+        return VIEWER_STOP_PASS;
     }
-    bool wanted = live->moved || (!coarse && live_wants_marks(live)) || live->asks || live->asks_story ||
-                  live->pending.count > 0 || differ(live->view.exposure, live->request.exposure);
-    if (!live->running || !wanted || live->stopping || coarse)
-        return LIVE_NOTHING;
-    live->stopping = true;
-    return LIVE_STOP;
+    bool wanted = viewer->moved || (!coarse && viewer_needs_overlay(viewer)) || viewer->asks || viewer->wants_trace ||
+                  viewer->pending.count > 0 || is_different(viewer->view.exposure, viewer->request.exposure);
+    if (!viewer->running || !wanted || viewer->stopping || coarse)
+        return VIEWER_NOTHING;
+    viewer->stopping = true;
+    return VIEWER_STOP_PASS;
 }
 
 /* The picture is written with the lines of the command line, which are there where people look at them. */
-static bool lines_of_script(const struct live *live) {
-    return live->request.overlay == OVERLAY_NONE || (live->overlay == (enum overlay)live->request.overlay &&
-                                                     live->lines_fresh && live->has_lines && !live->moved);
+static bool lines_of_script(const struct viewer *viewer) {
+    return viewer->request.overlay == OVERLAY_NONE || (viewer->overlay == (enum overlay)viewer->request.overlay &&
+                                                       viewer->lines_fresh && viewer->has_lines && !viewer->moved);
 }
 
-enum live_order live_step(struct live *live, double now) {
+enum viewer_action viewer_step(struct viewer *viewer, double now) {
     struct window_event event;
-    double seconds = now - live->stepped;
-    live->stepped = now;
-    if (live->block && walk_step(&live->walk, seconds < 0.1 ? seconds : 0.1))
-        live_change_view(live);
-    while (live->wish == LIVE_NOTHING && !live->quit && live->driver->poll(live->driver->context, &event))
-        live_take_event(live, &event);
-    if (live->running)
-        live_draw_tiles(live);
-    live_show(live, now);
-    enum live_order wish = live->wish;
-    live->wish = LIVE_NOTHING;
-    if (wish != LIVE_NOTHING)
-        return wish;
-    if (live->tells && live->note[0] != '\0')
-        return LIVE_NOTE;
-    if (live->quit)
-        return LIVE_QUIT;
-    if (live->complete && live->view.own && !live->edited && !live->written && lines_of_script(live)) {
-        live->written = true;
-        if (live->request.overlay != OVERLAY_NONE)
-            overlay_lay(&live->film, live->lines);
-        return LIVE_WRITE;
+    double seconds = now - viewer->stepped;
+    viewer->stepped = now;
+    if (viewer->block && fly_camera_step(&viewer->fly_camera, seconds < 0.1 ? seconds : 0.1))
+        viewer_change_view(viewer);
+    while (viewer->action == VIEWER_NOTHING && !viewer->quit && viewer->driver->poll(viewer->driver->context, &event))
+        viewer_take_event(viewer, &event);
+    if (viewer->running)
+        viewer_draw_tiles(viewer);
+    viewer_show(viewer, now);
+    enum viewer_action action = viewer->action;
+    viewer->action = VIEWER_NOTHING;
+    if (action != VIEWER_NOTHING)
+        return action;
+    if (viewer->logs_notes && viewer->note[0] != '\0')
+        return VIEWER_LOG_NOTE;
+    if (viewer->quit)
+        return VIEWER_QUIT;
+    if (viewer->complete && viewer->view.own && !viewer->edited && !viewer->written && lines_of_script(viewer)) {
+        viewer->written = true;
+        if (viewer->request.overlay != OVERLAY_NONE)
+            overlay_lay(&viewer->film, viewer->lines);
+        return VIEWER_WRITE_PICTURE;
     }
-    if (live->waiting && live->next && live->written)
-        return LIVE_NEXT;
-    return live->waiting ? next_order(live, now) : step_running(live);
+    if (viewer->waiting && viewer->next && viewer->written)
+        return VIEWER_NEXT_PICTURE;
+    return viewer->waiting ? next_command(viewer, now) : step_running(viewer);
 }

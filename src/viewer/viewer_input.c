@@ -3,322 +3,323 @@
 
 #include <string.h>
 
-void live_change_view(struct live *live) {
-    live->moved = live->flown = true;
-    live_halt(live, false);
+void viewer_change_view(struct viewer *viewer) {
+    viewer->moved = viewer->camera_moved = true;
+    viewer_halt(viewer, false);
 }
 
-void live_halt(struct live *live, bool on) {
-    on = on && live->block && !live_is_idle(live);
-    if (on == live->halted)
+void viewer_halt(struct viewer *viewer, bool on) {
+    on = on && viewer->block && !viewer_is_idle(viewer);
+    if (on == viewer->halted)
         return;
-    live->halted = on;
-    live->halted_at = on && !live->waiting ? live->stepped : 0;
-    if (on && live->waiting) /* between two passes */
-        live_note_stop(live, 0);
-    live->over_dirty = true;
-    live->told = 0;
+    viewer->halted = on;
+    viewer->halted_at = on && !viewer->waiting ? viewer->stepped : 0;
+    if (on && viewer->waiting) /* between two passes */
+        viewer_note_stop(viewer, 0);
+    viewer->over_dirty = true;
+    viewer->figures_at = 0;
 }
 
-void live_render(struct live *live) {
-    if (!live->block)
+void viewer_render(struct viewer *viewer) {
+    if (!viewer->block)
         return;
-    live->again = live->moved = true;
-    live_halt(live, false);
+    viewer->again = viewer->moved = true;
+    viewer_halt(viewer, false);
 }
 
-static void grab(struct live *live, bool on) {
-    live->grabbed = on;
-    memset(live->walk.down, 0, sizeof live->walk.down);
-    live->driver->grab(live->driver->context, on);
+static void grab(struct viewer *viewer, bool on) {
+    viewer->grabbed = on;
+    memset(viewer->fly_camera.down, 0, sizeof viewer->fly_camera.down);
+    viewer->driver->grab(viewer->driver->context, on);
 }
 
 /* Keys that are held. True: it was one. */
-static bool take_held_key(struct live *live, int key, bool down) {
+static bool take_held_key(struct viewer *viewer, int key, bool down) {
     static const struct {
         int key;
-        enum walk_key walk;
+        enum fly_camera_key fly_camera;
         bool only_grabbed; /* the letter is a command otherwise */
-    } keys[] = {{WINDOW_ARROW_UP, WALK_FORWARD, false},
-                {WINDOW_ARROW_DOWN, WALK_BACK, false},
-                {WINDOW_ARROW_LEFT, WALK_LEFT, false},
-                {WINDOW_ARROW_RIGHT, WALK_RIGHT, false},
-                {WINDOW_SHIFT, WALK_FAST, false},
-                {WINDOW_CONTROL, WALK_SLOW, false},
-                {'w', WALK_FORWARD, true},
-                {'s', WALK_BACK, true},
-                {'a', WALK_LEFT, true},
-                {'d', WALK_RIGHT, true},
-                {'e', WALK_UP, true},
-                {'q', WALK_DOWN, true}};
+    } keys[] = {{WINDOW_ARROW_UP, FLY_FORWARD, false},
+                {WINDOW_ARROW_DOWN, FLY_BACK, false},
+                {WINDOW_ARROW_LEFT, FLY_LEFT, false},
+                {WINDOW_ARROW_RIGHT, FLY_RIGHT, false},
+                {WINDOW_SHIFT, FLY_FAST, false},
+                {WINDOW_CONTROL, FLY_SLOW, false},
+                {'w', FLY_FORWARD, true},
+                {'s', FLY_BACK, true},
+                {'a', FLY_LEFT, true},
+                {'d', FLY_RIGHT, true},
+                {'e', FLY_UP, true},
+                {'q', FLY_DOWN, true}};
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
-        if (keys[i].key == key && (live->grabbed || !keys[i].only_grabbed)) {
-            live->walk.down[keys[i].walk] = down;
+        if (keys[i].key == key && (viewer->grabbed || !keys[i].only_grabbed)) {
+            viewer->fly_camera.down[keys[i].fly_camera] = down;
             return true;
         }
     }
     return false;
 }
 
-static void take_view_key(struct live *live, int key, bool control) {
-    struct walk *walk = &live->walk;
+static void take_view_key(struct viewer *viewer, int key, bool control) {
+    struct fly_camera *fly_camera = &viewer->fly_camera;
     if (key >= '0' && key <= '9' && control) {
-        walk_save(walk, key - '0');
+        fly_camera_save(fly_camera, key - '0');
         return;
     }
     switch (key) {
     case 'l':
-        walk_level(walk);
+        fly_camera_level(fly_camera);
         break;
     case '[':
-        walk_roll(walk, -5);
+        fly_camera_roll(fly_camera, -5);
         break;
     case ']':
-        walk_roll(walk, 5);
+        fly_camera_roll(fly_camera, 5);
         break;
     case WINDOW_HOME:
-        walk_home(walk);
-        live_change_view(live);
-        live->flown = false;
+        fly_camera_home(fly_camera);
+        viewer_change_view(viewer);
+        viewer->camera_moved = false;
         return;
     default:
-        if (key < '0' || key > '9' || !walk_recall(walk, key - '0'))
+        if (key < '0' || key > '9' || !fly_camera_recall(fly_camera, key - '0'))
             return;
     }
-    live_change_view(live);
+    viewer_change_view(viewer);
 }
 
 /* True: it was one of those that need no scene. */
-static bool take_plain_key(struct live *live, int key) {
+static bool take_plain_key(struct viewer *viewer, int key) {
     switch (key) {
     case 'q':
-        live->quit = true;
+        viewer->quit = true;
         return true;
     case 's':
-        live->wish = LIVE_SAVE;
+        viewer->action = VIEWER_SAVE_IMAGE;
         return true;
     case 'c':
-        live->wish = LIVE_CHANGES;
+        viewer->action = VIEWER_SAVE_EDITS;
         return true;
     case '+':
     case '=':
     case '-':
-        live_expose(live, live->request.exposure + (key == '-' ? -0.25 : 0.25));
+        viewer_set_exposure(viewer, viewer->request.exposure + (key == '-' ? -0.25 : 0.25));
         return true;
     case 'f':
-        live->driver->full_screen(live->driver->context);
+        viewer->driver->full_screen(viewer->driver->context);
         return true;
     case 'b':
-        live_choose_overlay(live, OVERLAY_OF_BOXES);
+        viewer_choose_overlay(viewer, OVERLAY_OF_BOXES);
         return true;
     case 'g':
-        live_choose_overlay(live, OVERLAY_OF_GRID);
+        viewer_choose_overlay(viewer, OVERLAY_OF_GRID);
         return true;
     case WINDOW_TAB:
-        live->bare = !live->bare;
-        live->over_dirty = true;
+        viewer->hides_overlay = !viewer->hides_overlay;
+        viewer->over_dirty = true;
         return true;
     default:
         return false;
     }
 }
 
-static void choose_tool(struct live *live, enum live_tool tool) {
-    live->tool = live->tool == tool ? TOOL_NONE : tool;
-    live->joins = false;
-    live->over_dirty = true;
+static void choose_tool(struct viewer *viewer, enum edit_tool tool) {
+    viewer->tool = viewer->tool == tool ? TOOL_NONE : tool;
+    viewer->joins = false;
+    viewer->over_dirty = true;
 }
 
 /* Esc, while the mouse is free: what was chosen, and where nothing was, what is being made. */
-static void put_away(struct live *live) {
-    bool something = live->selection.kind != SELECTED_NOTHING || live->tool != TOOL_NONE || live->story[0] != '\0';
+static void clear_selection(struct viewer *viewer) {
+    bool something =
+        viewer->selection.kind != SELECTED_NOTHING || viewer->tool != TOOL_NONE || viewer->trace_text[0] != '\0';
     if (!something)
-        live_halt(live, true);
-    live->selection.kind = SELECTED_NOTHING;
-    live->tool = TOOL_NONE;
-    live->story[0] = '\0';
-    live->over_dirty = true;
+        viewer_halt(viewer, true);
+    viewer->selection.kind = SELECTED_NOTHING;
+    viewer->tool = TOOL_NONE;
+    viewer->trace_text[0] = '\0';
+    viewer->over_dirty = true;
 }
 
 /* True: it was one of those that change the scene. */
-static bool take_edit_key(struct live *live, const struct window_event *event) {
+static bool take_edit_key(struct viewer *viewer, const struct window_event *event) {
     switch (event->key) {
     case 'z':
         if (event->control)
-            live_undo(live, event->shift);
+            viewer_undo(viewer, event->shift);
         else
-            choose_tool(live, TOOL_SIZE);
+            choose_tool(viewer, TOOL_SIZE);
         return true;
     case 'y':
         if (event->control)
-            live_undo(live, true);
+            viewer_undo(viewer, true);
         return event->control;
     case 'm':
-        choose_tool(live, TOOL_MOVE);
+        choose_tool(viewer, TOOL_MOVE);
         return true;
     case 't':
-        choose_tool(live, TOOL_TURN);
+        choose_tool(viewer, TOOL_TURN);
         return true;
     case 'p':
-        live_ask_story(live, live->panel.mouse_x, live->panel.mouse_y);
+        viewer_request_pixel_trace(viewer, viewer->panel.mouse_x, viewer->panel.mouse_y);
         return true;
     case ',':
     case '.':
-        live_next_light(live, event->key == ',');
+        viewer_next_light(viewer, event->key == ',');
         return true;
     case 'i':
-        live->lists_lights = !live->lists_lights;
-        live->over_dirty = true;
+        viewer->lists_lights = !viewer->lists_lights;
+        viewer->over_dirty = true;
         return true;
     case WINDOW_PAGE_DOWN:
-        if (live->story[0] == '\0')
-            live_select_up(live, true);
-        live->story_line += 10;
-        live->over_dirty = true;
+        if (viewer->trace_text[0] == '\0')
+            viewer_select_up(viewer, true);
+        viewer->trace_line += 10;
+        viewer->over_dirty = true;
         return true;
     case WINDOW_DELETE:
-        live_delete(live);
+        viewer_delete_selection(viewer);
         return true;
     case WINDOW_PAGE_UP:
-        live_select_up(live, false);
+        viewer_select_up(viewer, false);
         return true;
     case WINDOW_ESCAPE:
-        if (live->grabbed)
+        if (viewer->grabbed)
             return false;
-        put_away(live);
+        clear_selection(viewer);
         return true;
     default:
         return false;
     }
 }
 
-static void take_key(struct live *live, const struct window_event *event) {
+static void take_key(struct viewer *viewer, const struct window_event *event) {
     /* Without a scene there is nowhere to walk to. */
-    if (live->block && take_held_key(live, event->key, event->down))
+    if (viewer->block && take_held_key(viewer, event->key, event->down))
         return;
-    if (!event->down || take_plain_key(live, event->key) || !live->block || take_edit_key(live, event))
+    if (!event->down || take_plain_key(viewer, event->key) || !viewer->block || take_edit_key(viewer, event))
         return;
     switch (event->key) {
     case 'r':
-        live_render(live);
+        viewer_render(viewer);
         return;
     case 'x':
-        live_halt(live, !live->halted);
+        viewer_halt(viewer, !viewer->halted);
         return;
     case 'n':
-        live->next = true;
+        viewer->next = true;
         return;
     case 'v':
-        live->wish = LIVE_RECORD;
+        viewer->action = VIEWER_SAVE_CAMERA;
         return;
     case WINDOW_SPACE:
-        grab(live, !live->grabbed);
+        grab(viewer, !viewer->grabbed);
         return;
     case WINDOW_ESCAPE:
-        grab(live, false);
+        grab(viewer, false);
         return;
     default:
-        take_view_key(live, event->key, event->control);
+        take_view_key(viewer, event->key, event->control);
         return;
     }
 }
 
 /* A little way is still a click. */
-static bool is_drag(struct live *live) {
-    double x = live->panel.mouse_x - live->press_x, y = live->panel.mouse_y - live->press_y;
-    double limit = 3 * live->place.density;
-    live->dragged = live->dragged || x * x + y * y > limit * limit;
-    return live->dragged;
+static bool is_drag(struct viewer *viewer) {
+    double x = viewer->panel.mouse_x - viewer->press_x, y = viewer->panel.mouse_y - viewer->press_y;
+    double limit = 3 * viewer->layout.density;
+    viewer->dragged = viewer->dragged || x * x + y * y > limit * limit;
+    return viewer->dragged;
 }
 
-static void take_motion(struct live *live, const struct window_event *event) {
-    double x = event->dx / live->place.shown_height, y = event->dy / live->place.shown_height;
-    live->panel.mouse_x = event->x;
-    live->panel.mouse_y = event->y;
-    live->over_dirty = live->over_dirty || !live->grabbed;
-    if (!live->block || (!live->grabbed && !(live->pressed && is_drag(live))))
+static void take_motion(struct viewer *viewer, const struct window_event *event) {
+    double x = event->dx / viewer->layout.shown_height, y = event->dy / viewer->layout.shown_height;
+    viewer->panel.mouse_x = event->x;
+    viewer->panel.mouse_y = event->y;
+    viewer->over_dirty = viewer->over_dirty || !viewer->grabbed;
+    if (!viewer->block || (!viewer->grabbed && !(viewer->pressed && is_drag(viewer))))
         return;
-    if (!live->grabbed && live->tool != TOOL_NONE && live->selection.kind != SELECTED_NOTHING) {
-        live_drag(live, event->dx, event->dy);
+    if (!viewer->grabbed && viewer->tool != TOOL_NONE && viewer->selection.kind != SELECTED_NOTHING) {
+        viewer_drag_selection(viewer, event->dx, event->dy);
         return;
     }
-    if (live->grabbed)
-        walk_look(&live->walk, x, y);
+    if (viewer->grabbed)
+        fly_camera_turn(&viewer->fly_camera, x, y);
     else
-        walk_orbit(&live->walk, x, y);
-    live_change_view(live);
+        fly_camera_orbit(&viewer->fly_camera, x, y);
+    viewer_change_view(viewer);
 }
 
-static void press_picture(struct live *live, const struct window_event *event) {
+static void press_picture(struct viewer *viewer, const struct window_event *event) {
     if (event->button == WINDOW_RIGHT)
-        grab(live, !live->grabbed);
-    if (event->button != WINDOW_LEFT || live->grabbed)
+        grab(viewer, !viewer->grabbed);
+    if (event->button != WINDOW_LEFT || viewer->grabbed)
         return;
-    live->pressed = true;
-    live->dragged = live->joins = false;
-    live->press_x = event->x;
-    live->press_y = event->y;
+    viewer->pressed = true;
+    viewer->dragged = viewer->joins = false;
+    viewer->press_x = event->x;
+    viewer->press_y = event->y;
 }
 
-static void take_button(struct live *live, const struct window_event *event, bool down) {
-    struct panel *panel = &live->panel;
+static void take_button(struct viewer *viewer, const struct window_event *event, bool down) {
+    struct panel *panel = &viewer->panel;
     bool covered = panel_covers(panel, event->x, event->y);
-    if (!live->grabbed) {
+    if (!viewer->grabbed) {
         panel->mouse_x = event->x;
         panel->mouse_y = event->y;
     }
-    live->over_dirty = true;
-    if (event->button == WINDOW_LEFT && !live->grabbed) {
+    viewer->over_dirty = true;
+    if (event->button == WINDOW_LEFT && !viewer->grabbed) {
         panel->down = down;
         panel->pressed = panel->pressed || (down && covered);
         panel->released = panel->released || !down;
     }
-    if (!down && event->button == WINDOW_LEFT && live->pressed) {
-        live->pressed = false;
-        if (live->block && !is_drag(live))
-            live_click(live, event->x, event->y, event->control);
+    if (!down && event->button == WINDOW_LEFT && viewer->pressed) {
+        viewer->pressed = false;
+        if (viewer->block && !is_drag(viewer))
+            viewer_click(viewer, event->x, event->y, event->control);
     }
-    if (down && !covered && live->block)
-        press_picture(live, event);
+    if (down && !covered && viewer->block)
+        press_picture(viewer, event);
 }
 
-static void take_wheel(struct live *live, double steps) {
-    if (!live->block)
+static void take_wheel(struct viewer *viewer, double steps) {
+    if (!viewer->block)
         return;
-    if (live->tool == TOOL_MOVE && live->selection.kind != SELECTED_NOTHING && !live->grabbed) {
-        live_push(live, steps);
+    if (viewer->tool == TOOL_MOVE && viewer->selection.kind != SELECTED_NOTHING && !viewer->grabbed) {
+        viewer_push_selection(viewer, steps);
         return;
     }
-    walk_zoom(&live->walk, steps);
-    live_change_view(live);
+    fly_camera_zoom(&viewer->fly_camera, steps);
+    viewer_change_view(viewer);
 }
 
-void live_take_event(struct live *live, const struct window_event *event) {
+void viewer_take_event(struct viewer *viewer, const struct window_event *event) {
     switch (event->kind) {
     case WINDOW_CLOSE:
-        live->quit = true;
+        viewer->quit = true;
         return;
     case WINDOW_KEY:
-        take_key(live, event);
+        take_key(viewer, event);
         return;
     case WINDOW_MOVE:
-        take_motion(live, event);
+        take_motion(viewer, event);
         return;
     case WINDOW_WHEEL:
-        take_wheel(live, event->y);
+        take_wheel(viewer, event->y);
         return;
     case WINDOW_PRESS:
     case WINDOW_RELEASE:
-        take_button(live, event, event->kind == WINDOW_PRESS);
+        take_button(viewer, event, event->kind == WINDOW_PRESS);
         return;
     case WINDOW_LEAVE:
-        memset(live->walk.down, 0, sizeof live->walk.down);
-        live->pressed = false;
-        live->panel.held = 0;
+        memset(viewer->fly_camera.down, 0, sizeof viewer->fly_camera.down);
+        viewer->pressed = false;
+        viewer->panel.held = 0;
         return;
     case WINDOW_SIZE:
-        if (!live_resize(live, (int)event->x, (int)event->y, event->density))
-            live_tell(live, "gray: out of memory for a window of this size");
+        if (!viewer_resize(viewer, (int)event->x, (int)event->y, event->density))
+            viewer_show_message(viewer, "gray: out of memory for a window of this size");
         return;
     }
 }

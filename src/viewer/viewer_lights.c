@@ -14,41 +14,41 @@ enum { LIGHT_LIMIT = 4096 }; /* further ones are not known in the window */
 
 /* What is known. */
 
-static bool make_room(struct live *live, uint32_t count) {
-    if (count <= live->light_room)
+static bool make_room(struct viewer *viewer, uint32_t count) {
+    if (count <= viewer->light_room)
         return true;
-    struct told_light *more = mem_resize_array(live->lights, count, sizeof *more);
+    struct light_info *more = mem_resize_array(viewer->lights, count, sizeof *more);
     if (!more)
         return false;
-    memset(more + live->light_room, 0, (count - live->light_room) * sizeof *more);
-    live->lights = more;
-    live->light_room = count;
+    memset(more + viewer->light_room, 0, (count - viewer->light_room) * sizeof *more);
+    viewer->lights = more;
+    viewer->light_room = count;
     return true;
 }
 
-void live_take_lights(struct live *live, const struct studio_news *news) {
-    uint32_t count = news->light_count < LIGHT_LIMIT ? news->light_count : LIGHT_LIMIT, first = news->first_light;
-    if (!make_room(live, count))
-        count = live->light_room;
-    live->light_count = count;
-    uint32_t told = first < count ? count - first : 0;
-    told = told < TOLD_LIGHTS ? told : TOLD_LIGHTS;
-    if (told > 0)
-        memcpy(live->lights + first, news->lights, told * sizeof *news->lights);
-    if (first <= live->lights_known && first + told > live->lights_known)
-        live->lights_known = first + told;
-    live->lights_known = live->lights_known < count ? live->lights_known : count;
-    live->over_dirty = true;
+void viewer_take_lights(struct viewer *viewer, const struct preview_reply *reply) {
+    uint32_t count = reply->light_count < LIGHT_LIMIT ? reply->light_count : LIGHT_LIMIT, first = reply->first_light;
+    if (!make_room(viewer, count))
+        count = viewer->light_room;
+    viewer->light_count = count;
+    uint32_t figures_at = first < count ? count - first : 0;
+    figures_at = figures_at < LIGHTS_PER_MESSAGE ? figures_at : LIGHTS_PER_MESSAGE;
+    if (figures_at > 0)
+        memcpy(viewer->lights + first, reply->lights, figures_at * sizeof *reply->lights);
+    if (first <= viewer->lights_known && first + figures_at > viewer->lights_known)
+        viewer->lights_known = first + figures_at;
+    viewer->lights_known = viewer->lights_known < count ? viewer->lights_known : count;
+    viewer->over_dirty = true;
 }
 
-const struct told_light *live_light(const struct live *live, uint32_t number) {
-    return number >= 1 && number <= live->lights_known ? &live->lights[number - 1] : NULL;
+const struct light_info *viewer_light(const struct viewer *viewer, uint32_t number) {
+    return number >= 1 && number <= viewer->lights_known ? &viewer->lights[number - 1] : NULL;
 }
 
-static struct told_light *selected(struct live *live) {
-    uint32_t number = live->selection.light;
-    bool known = live->selection.kind == SELECTED_LIGHT && number >= 1 && number <= live->lights_known;
-    return known ? &live->lights[number - 1] : NULL;
+static struct light_info *selected(struct viewer *viewer) {
+    uint32_t number = viewer->selection.light;
+    bool known = viewer->selection.kind == SELECTED_LIGHT && number >= 1 && number <= viewer->lights_known;
+    return known ? &viewer->lights[number - 1] : NULL;
 }
 
 static double largest(struct vec3 v) {
@@ -58,24 +58,25 @@ static double largest(struct vec3 v) {
 /* Marks. */
 
 /* What is left of the picture beside the menu and the margin. */
-static bool free_part(const struct live *live, double *left, double *top, double *right, double *bottom) {
-    const struct live_place *place = &live->place;
-    int scale = live->panel.paper.scale;
-    double margin = MARGIN * scale, menu = (live->panel.paper.height >= 24 * panel_line_height(&live->panel) ? 30 : 15);
-    *left = fmax(place->left, 0) + margin;
-    *top = fmax(place->top, menu * scale) + margin;
-    *right = fmin(place->left + place->shown_width, place->width) - margin;
-    *bottom = fmin(place->top + place->shown_height, place->height) - margin;
+static bool free_part(const struct viewer *viewer, double *left, double *top, double *right, double *bottom) {
+    const struct window_layout *layout = &viewer->layout;
+    int scale = viewer->panel.canvas.scale;
+    double margin = MARGIN * scale,
+           menu = (viewer->panel.canvas.height >= 24 * panel_line_height(&viewer->panel) ? 30 : 15);
+    *left = fmax(layout->left, 0) + margin;
+    *top = fmax(layout->top, menu * scale) + margin;
+    *right = fmin(layout->left + layout->shown_width, layout->width) - margin;
+    *bottom = fmin(layout->top + layout->shown_height, layout->height) - margin;
     return *left < *right && *top < *bottom;
 }
 
 /* Where that point is, or at the border on the way there. */
-static bool mark_point(const struct live *live, const struct camera_frame *frame, struct vec3 point, double *x,
+static bool mark_point(const struct viewer *viewer, const struct camera_frame *frame, struct vec3 point, double *x,
                        double *y, bool *seen) {
     double left, top, right, bottom;
-    if (!free_part(live, &left, &top, &right, &bottom))
+    if (!free_part(viewer, &left, &top, &right, &bottom))
         return false;
-    *seen = live_project(live, frame, point, x, y) && *x >= left && *x <= right && *y >= top && *y <= bottom;
+    *seen = viewer_project(viewer, frame, point, x, y) && *x >= left && *x <= right && *y >= top && *y <= bottom;
     if (*seen)
         return true;
     struct vec3 toward = vec3_sub(point, frame->eye);
@@ -89,26 +90,26 @@ static bool mark_point(const struct live *live, const struct camera_frame *frame
     return isfinite(*x) && isfinite(*y);
 }
 
-bool live_light_mark(const struct live *live, const struct camera_frame *frame, uint32_t number, double *x, double *y,
-                     bool *seen) {
-    const struct told_light *light = live_light(live, number);
+bool viewer_light_mark(const struct viewer *viewer, const struct camera_frame *frame, uint32_t number, double *x,
+                       double *y, bool *seen) {
+    const struct light_info *light = viewer_light(viewer, number);
     if (!light || !(largest(light->colour) > 0)) /* one that was taken away is black */
         return false;
     if (light->placed)
-        return mark_point(live, frame, light->position, x, y, seen);
+        return mark_point(viewer, frame, light->position, x, y, seen);
     struct vec3 from = light->properties & LIGHT_HAS_DIRECTION ? vec3_negate(light->direction) : vec3_make(0, 1, 0);
     double far = 1e6 * (1 + vec3_max_abs(frame->eye));
-    return mark_point(live, frame, vec3_add_scaled(frame->eye, from, far), x, y, seen);
+    return mark_point(viewer, frame, vec3_add_scaled(frame->eye, from, far), x, y, seen);
 }
 
-bool live_near_light(const struct live *live, double x, double y, uint32_t *number) {
+bool viewer_near_light(const struct viewer *viewer, double x, double y, uint32_t *number) {
     struct camera_frame frame;
-    double best = MARKER * live->panel.paper.scale, u, v;
+    double best = MARKER * viewer->panel.canvas.scale, u, v;
     bool found = false, seen;
-    if (!live_frame(live, &frame))
+    if (!viewer_camera_frame(viewer, &frame))
         return false;
-    for (uint32_t i = 1; i <= live->lights_known; i++) {
-        if (!live_light_mark(live, &frame, i, &u, &v, &seen))
+    for (uint32_t i = 1; i <= viewer->lights_known; i++) {
+        if (!viewer_light_mark(viewer, &frame, i, &u, &v, &seen))
             continue;
         double apart = sqrt((u - x) * (u - x) + (v - y) * (v - y));
         if (apart < best) {
@@ -122,27 +123,27 @@ bool live_near_light(const struct live *live, double x, double y, uint32_t *numb
 
 /* Selecting. */
 
-void live_select_light(struct live *live, uint32_t number) {
-    live->selection = (struct selection){.kind = SELECTED_LIGHT, .light = number};
-    live->joins = false;
-    live->over_dirty = true;
-    live->light_colour_max = fmax(1, largest(live_light_colour_now(live)));
+void viewer_select_light(struct viewer *viewer, uint32_t number) {
+    viewer->selection = (struct selection){.kind = SELECTED_LIGHT, .light = number};
+    viewer->joins = false;
+    viewer->over_dirty = true;
+    viewer->light_colour_max = fmax(1, largest(viewer_light_colour_now(viewer)));
 }
 
-void live_next_light(struct live *live, bool back) {
-    uint32_t count = live->lights_known, at = live->selection.light;
+void viewer_next_light(struct viewer *viewer, bool back) {
+    uint32_t count = viewer->lights_known, at = viewer->selection.light;
     if (count == 0)
         return;
-    if (live->selection.kind != SELECTED_LIGHT || at > count)
+    if (viewer->selection.kind != SELECTED_LIGHT || at > count)
         at = back ? 1 : count;
-    live_select_light(live, back ? (at + count - 2) % count + 1 : at % count + 1);
+    viewer_select_light(viewer, back ? (at + count - 2) % count + 1 : at % count + 1);
 }
 
 /* Changing. */
 
-static struct change light_change(const struct live *live, enum change_kind kind) {
-    struct change change = {.kind = kind, .serial = live->selection.light, .numbers = {0, 0, 0, 1, 1, 1}};
-    const struct change *now = change_list_find(&live->edits.now, &change);
+static struct change light_change(const struct viewer *viewer, enum change_kind kind) {
+    struct change change = {.kind = kind, .serial = viewer->selection.light, .numbers = {0, 0, 0, 1, 1, 1}};
+    const struct change *now = change_list_find(&viewer->edits.now, &change);
     return now ? *now : change;
 }
 
@@ -156,24 +157,24 @@ static struct vec3 three(const double *numbers) {
     return vec3_make(numbers[0], numbers[1], numbers[2]);
 }
 
-static void make(struct live *live, const struct change *change) {
-    live_make(live, change, true, live->joins);
-    live->joins = true;
+static void make(struct viewer *viewer, const struct change *change) {
+    viewer_make_edit(viewer, change, true, viewer->joins);
+    viewer->joins = true;
 }
 
-void live_light_move(struct live *live, struct vec3 way) {
-    struct told_light *light = selected(live);
-    struct change change = light_change(live, CHANGE_LIGHT);
+void viewer_light_move(struct viewer *viewer, struct vec3 route) {
+    struct light_info *light = selected(viewer);
+    struct change change = light_change(viewer, CHANGE_LIGHT);
     if (!light || !light->moves)
         return;
-    put(change.numbers, vec3_add(three(change.numbers), way));
-    make(live, &change);
-    light->position = vec3_add(light->position, way);
+    put(change.numbers, vec3_add(three(change.numbers), route));
+    make(viewer, &change);
+    light->position = vec3_add(light->position, route);
 }
 
-void live_light_turn(struct live *live, const struct transform *map, bool sizes) {
-    struct told_light *light = selected(live);
-    struct change change = light_change(live, CHANGE_LIGHT);
+void viewer_light_turn(struct viewer *viewer, const struct transform *map, bool sizes) {
+    struct light_info *light = selected(viewer);
+    struct change change = light_change(viewer, CHANGE_LIGHT);
     struct affine before = affine_identity();
     if (!light || !(sizes ? light->sizes : light->turns))
         return;
@@ -195,7 +196,7 @@ void live_light_turn(struct live *live, const struct transform *map, bool sizes)
     change.turns = true;
     for (int i = 0; i < TURN_NUMBERS; i++)
         change.numbers[TURN_AT + i] = after.m[i / 3][i % 3];
-    make(live, &change);
+    make(viewer, &change);
     light->edge1 = affine_vector(&turn, light->edge1);
     light->edge2 = affine_vector(&turn, light->edge2);
     light->radius *= el_cbrt(fabs(affine_determinant(&turn)));
@@ -203,103 +204,103 @@ void live_light_turn(struct live *live, const struct transform *map, bool sizes)
         light->direction = vec3_normalize(affine_vector(&turn, light->direction));
 }
 
-double live_stops_now(const struct live *live) {
-    struct change change = light_change(live, CHANGE_LIGHT);
+double viewer_light_stops_now(const struct viewer *viewer) {
+    struct change change = light_change(viewer, CHANGE_LIGHT);
     return el_log2(change.numbers[3]);
 }
 
-void live_brighten(struct live *live, double stops) {
-    struct told_light *light = selected(live);
-    struct change change = light_change(live, CHANGE_LIGHT);
+void viewer_brighten_light(struct viewer *viewer, double stops) {
+    struct light_info *light = selected(viewer);
+    struct change change = light_change(viewer, CHANGE_LIGHT);
     double before = change.numbers[3], after = el_exp2(stops);
     put(change.numbers + 3, vec3_all(after));
-    make(live, &change);
+    make(viewer, &change);
     if (light && before > 0)
         light->colour = vec3_scale(light->colour, after / before);
 }
 
-struct vec3 live_light_colour_now(const struct live *live) {
-    const struct told_light *light = live_light(live, live->selection.light);
-    struct change change = light_change(live, CHANGE_LIGHT);
+struct vec3 viewer_light_colour_now(const struct viewer *viewer) {
+    const struct light_info *light = viewer_light(viewer, viewer->selection.light);
+    struct change change = light_change(viewer, CHANGE_LIGHT);
     if (change.colours)
         return three(change.numbers + COLOUR_AT);
     return light && change.numbers[3] > 0 ? vec3_scale(light->colour, 1 / change.numbers[3]) : vec3_all(0);
 }
 
-void live_light_colour(struct live *live, struct vec3 colour) {
-    struct told_light *light = selected(live);
-    struct change change = light_change(live, CHANGE_LIGHT);
+void viewer_light_colour(struct viewer *viewer, struct vec3 colour) {
+    struct light_info *light = selected(viewer);
+    struct change change = light_change(viewer, CHANGE_LIGHT);
     change.colours = true;
     put(change.numbers + COLOUR_AT, colour);
-    make(live, &change);
+    make(viewer, &change);
     if (light)
         light->colour = vec3_mul(colour, three(change.numbers + 3));
 }
 
-void live_light_delete(struct live *live) {
-    struct change change = {.kind = CHANGE_DARK, .serial = live->selection.light};
-    live_make(live, &change, true, false);
+void viewer_light_delete(struct viewer *viewer) {
+    struct change change = {.kind = CHANGE_DARK, .serial = viewer->selection.light};
+    viewer_make_edit(viewer, &change, true, false);
 }
 
 /* Whether there is a number for one more. */
-static bool room_for_one(struct live *live) {
-    if (live->light_count >= LIGHT_LIMIT)
-        live_tell(live, "gray: the window knows no more lights than 4,096");
-    return live->light_count < LIGHT_LIMIT && live->light_count == live->lights_known;
+static bool room_for_one(struct viewer *viewer) {
+    if (viewer->light_count >= LIGHT_LIMIT)
+        viewer_show_message(viewer, "gray: the window knows no more lights than 4,096");
+    return viewer->light_count < LIGHT_LIMIT && viewer->light_count == viewer->lights_known;
 }
 
 /* The next one that is added; what it is told to be holds until the child says the same. */
-static struct change new_light(struct live *live) {
+static struct change new_light(struct viewer *viewer) {
     uint32_t count = 0;
-    for (uint32_t i = 0; i < live->edits.now.count; i++)
-        count += live->edits.now.items[i].kind == CHANGE_ADD_LIGHT;
+    for (uint32_t i = 0; i < viewer->edits.now.count; i++)
+        count += viewer->edits.now.items[i].kind == CHANGE_ADD_LIGHT;
     return (struct change){.kind = CHANGE_ADD_LIGHT, .number = count};
 }
 
-static void select_new(struct live *live, const struct told_light *light) {
-    if (make_room(live, live->light_count + 1)) {
-        live->lights[live->light_count] = *light;
-        live->lights_known += live->lights_known == live->light_count;
-        live->light_count++;
+static void select_new(struct viewer *viewer, const struct light_info *light) {
+    if (make_room(viewer, viewer->light_count + 1)) {
+        viewer->lights[viewer->light_count] = *light;
+        viewer->lights_known += viewer->lights_known == viewer->light_count;
+        viewer->light_count++;
     }
-    live_select_light(live, live->light_count);
-    live->tool = light->moves ? TOOL_MOVE : light->turns ? TOOL_TURN : TOOL_NONE;
+    viewer_select_light(viewer, viewer->light_count);
+    viewer->tool = light->moves ? TOOL_MOVE : light->turns ? TOOL_TURN : TOOL_NONE;
 }
 
-void live_add_light(struct live *live) {
-    struct change change = new_light(live);
-    struct vec3 place = live_new_place(live), eye = live->view.camera.eye;
-    if (!room_for_one(live))
+void viewer_add_light(struct viewer *viewer) {
+    struct change change = new_light(viewer);
+    struct vec3 layout = viewer_new_position(viewer), eye = viewer->view.camera.eye;
+    if (!room_for_one(viewer))
         return;
-    put(change.numbers, vec3_add_scaled(place, vec3_sub(eye, place), 0.5));
+    put(change.numbers, vec3_add_scaled(layout, vec3_sub(eye, layout), 0.5));
     put(change.numbers + 3, vec3_all(0.5));
-    live_make(live, &change, true, false);
-    select_new(live, &(struct told_light){.properties = LIGHT_HAS_POSITION,
-                                          .placed = true,
-                                          .position = three(change.numbers),
-                                          .colour = vec3_all(0.5),
-                                          .moves = true});
+    viewer_make_edit(viewer, &change, true, false);
+    select_new(viewer, &(struct light_info){.properties = LIGHT_HAS_POSITION,
+                                            .placed = true,
+                                            .position = three(change.numbers),
+                                            .colour = vec3_all(0.5),
+                                            .moves = true});
 }
 
 /* What was changed of the light is changed of its copy, which stands a little to the right. */
-void live_copy_light(struct live *live) {
-    const struct told_light *light = selected(live);
-    struct change change = new_light(live), held = light_change(live, CHANGE_LIGHT);
-    bool has = change_list_find(&live->edits.now, &held) != NULL;
+void viewer_copy_light(struct viewer *viewer) {
+    const struct light_info *light = selected(viewer);
+    struct change change = new_light(viewer), held = light_change(viewer, CHANGE_LIGHT);
+    bool has = change_list_find(&viewer->edits.now, &held) != NULL;
     struct camera_frame frame;
-    if (!light || !room_for_one(live) || !live_frame(live, &frame))
+    if (!light || !room_for_one(viewer) || !viewer_camera_frame(viewer, &frame))
         return;
-    struct told_light copy = *light;
-    struct vec3 way = vec3_scale(frame.unit_right, 0.1 * vec3_length(vec3_sub(light->position, frame.eye)));
+    struct light_info copy = *light;
+    struct vec3 route = vec3_scale(frame.unit_right, 0.1 * vec3_length(vec3_sub(light->position, frame.eye)));
     if (!light->moves)
-        way = vec3_all(0);
-    change.source = live->selection.light;
-    put(change.numbers, way);
+        route = vec3_all(0);
+    change.source = viewer->selection.light;
+    put(change.numbers, route);
     put(change.numbers + 3, vec3_all(1));
-    live_make(live, &change, true, false);
-    held.serial = live->light_count + 1;
+    viewer_make_edit(viewer, &change, true, false);
+    held.serial = viewer->light_count + 1;
     if (has)
-        live_make(live, &held, true, false);
-    copy.position = vec3_add(copy.position, way);
-    select_new(live, &copy);
+        viewer_make_edit(viewer, &held, true, false);
+    copy.position = vec3_add(copy.position, route);
+    select_new(viewer, &copy);
 }

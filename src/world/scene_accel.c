@@ -29,7 +29,7 @@ static enum accel_kind choose(const struct box *boxes, uint32_t count) {
     if (box_is_empty(&bounds))
         return ACCEL_BVH;
     struct frame_census census;
-    frame_census_take(&census, &bounds, box_of, boxes, count, SAMPLES, FRAME_LEVELS);
+    frame_census_take(&census, &bounds, box_of, boxes, count, SAMPLES, MESSAGE_LEVELS);
     struct frame_choice cost = frame_lists_or_hierarchy(&census);
     return cost.lists < clear * cost.hierarchy ? ACCEL_GRID : ACCEL_BVH;
 }

@@ -13,32 +13,32 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 /* Of the kinds that this target is about; others are sent as long as they are. */
 static size_t whole_size(uint32_t kind, size_t size) {
-    if (kind == FRAME_BEGIN)
+    if (kind == MESSAGE_BEGIN)
         return sizeof(struct picture_request);
-    if (kind == FRAME_NEWS)
-        return sizeof(struct studio_news);
-    if (kind == FRAME_DONE)
+    if (kind == MESSAGE_PREVIEW_REPLY)
+        return sizeof(struct preview_reply);
+    if (kind == MESSAGE_DONE)
         return sizeof(struct picture_report);
-    if (kind == FRAME_SCRIPT)
-        return sizeof(struct frame_script);
-    return kind == FRAME_FILM || kind == FRAME_ANSWER ? sizeof(struct frame_answer) : size;
+    if (kind == MESSAGE_SCRIPT)
+        return sizeof(struct message_script);
+    return kind == MESSAGE_FILM || kind == MESSAGE_ANSWER ? sizeof(struct message_answer) : size;
 }
 
 /* As the supervisor does. */
-static bool take(struct desk *desk, const struct frame *frame) {
-    const struct picture_request *request = &frame->body.request;
+static bool take(struct output_session *output, const struct message *message) {
+    const struct picture_request *request = &message->body.request;
     struct error error = {0};
     bool already = false, ok = true, fits = true;
-    if (frame->kind == FRAME_LINE) {
-        desk_line(desk, frame->body.line.kind, frame->body.line.text);
-    } else if (frame->kind == FRAME_BEGIN) {
-        fits = !desk->current.open && (uint64_t)request->width * request->height <= 1 << 14;
-        ok = !fits || desk_begin(desk, request, &already, &error);
-    } else if (frame->kind == FRAME_DONE) {
-        fits = desk->current.open && !desk->current.request.check;
-        ok = !fits || desk_done(desk, &frame->body.report, &error);
-    } else if (frame->kind == FRAME_ABANDON) {
-        desk_abandon(desk);
+    if (message->kind == MESSAGE_LINE) {
+        output_report(output, message->body.line.kind, message->body.line.text);
+    } else if (message->kind == MESSAGE_BEGIN) {
+        fits = !output->current.open && (uint64_t)request->width * request->height <= 1 << 14;
+        ok = !fits || output_begin(output, request, &already, &error);
+    } else if (message->kind == MESSAGE_DONE) {
+        fits = output->current.open && !output->current.request.check;
+        ok = !fits || output_done(output, &message->body.report, &error);
+    } else if (message->kind == MESSAGE_ABANDON) {
+        output_abandon(output);
     } else {
         fits = false;
     }
@@ -47,9 +47,9 @@ static bool take(struct desk *desk, const struct frame *frame) {
     return fits;
 }
 
-static void talk(struct desk *desk, struct channel ends[2], const uint8_t *data, size_t size) {
-    static uint8_t body[FRAME_SIZE_LIMIT];
-    static struct frame frame;
+static void talk(struct output_session *output, struct channel ends[2], const uint8_t *data, size_t size) {
+    static uint8_t body[MESSAGE_SIZE_LIMIT];
+    static struct message message;
     for (size_t at = 0; size - at >= 3;) {
         size_t length = data[at] | (size_t)data[at + 1] << 8;
         uint32_t kind = data[at + 2];
@@ -60,8 +60,8 @@ static void talk(struct desk *desk, struct channel ends[2], const uint8_t *data,
         memcpy(body, data + at, length);
         at += length;
         size_t whole = kind & 128 ? length : whole_size(kind, length);
-        if (!channel_send(&ends[1], (enum frame_kind)(kind & 127), body, whole, -1) ||
-            channel_receive(&ends[0], &frame) != CHANNEL_FRAME || !take(desk, &frame))
+        if (!channel_send(&ends[1], (enum message_kind)(kind & 127), body, whole, -1) ||
+            channel_receive(&ends[0], &message) != CHANNEL_MESSAGE || !take(output, &message))
             return;
     }
 }
@@ -71,15 +71,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     struct control control = {0};
     struct channel ends[2];
     struct error error = {0};
-    static struct desk desk;
+    static struct output_session output;
     (void)fuzz_folder();
     if (!channel_pair(ends, &error))
         return 0;
     fuzz_hush(true);
-    desk_init(&desk, &options, &control);
-    talk(&desk, ends, data, size);
-    desk_abandon(&desk);
-    (void)desk_finish(&desk, false, &error);
+    output_init(&output, &options, &control);
+    talk(&output, ends, data, size);
+    output_abandon(&output);
+    (void)output_finish(&output, false, &error);
     fuzz_hush(false);
     channel_close(&ends[0]);
     channel_close(&ends[1]);

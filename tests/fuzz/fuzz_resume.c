@@ -21,7 +21,7 @@ static void check_error(const struct error *error) {
 }
 
 /* The picture that the run makes: the one of the file, as a changed scene cannot go on, or another one. */
-static void go_on(struct keeper *keeper, const struct tile_picture *picture) {
+static void go_on(struct checkpoint *checkpoint, const struct tile_picture *picture) {
     struct error error = {0};
     char notice[256];
     bool written;
@@ -34,12 +34,12 @@ static void go_on(struct keeper *keeper, const struct tile_picture *picture) {
     if (!block)
         return;
     film_place(&film, block, picture->width, picture->height, picture->record);
-    if (!keeper_has_written(keeper, picture->number, &picture->key, picture->name, &written, &error) ||
-        !keeper_restore(keeper, picture, &film, notice, &error)) {
+    if (!checkpoint_has_written(checkpoint, picture->number, &picture->key, picture->name, &written, &error) ||
+        !checkpoint_restore(checkpoint, picture, &film, notice, &error)) {
         check_error(&error);
-    } else if (!written && keeper_tick(keeper, picture, &film, true, &tiles, &error)) {
+    } else if (!written && checkpoint_update(checkpoint, picture, &film, true, &tiles, &error)) {
         struct tile_file file;
-        if (picture->number >= keeper->old_number) {
+        if (picture->number >= checkpoint->old_number) {
             demand(tile_file_read("c.tiles", &file, &error) && file.tiles == tiles);
             tile_file_close(&file);
         }
@@ -49,7 +49,7 @@ static void go_on(struct keeper *keeper, const struct tile_picture *picture) {
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     struct options options = {.checkpoint = "c.tiles", .resume = true};
-    struct keeper keeper;
+    struct checkpoint checkpoint;
     struct error error = {0};
     char notice[256];
     uint8_t *bytes = malloc(size + 1);
@@ -62,10 +62,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     fuzz_write("c.tiles", bytes, size);
     free(bytes);
     const struct picture_files files = {.options = &options};
-    keeper_init(&keeper, &options, &files);
-    if (keeper_open(&keeper, "out.png", notice, &error)) {
-        struct tile_picture picture = keeper.old.picture;
-        if (!keeper.old.has_picture)
+    checkpoint_init(&checkpoint, &options, &files);
+    if (checkpoint_open(&checkpoint, "out.png", notice, &error)) {
+        struct tile_picture picture = checkpoint.old.picture;
+        if (!checkpoint.old.has_picture)
             picture = (struct tile_picture){.number = 1,
                                             .full_width = 9,
                                             .full_height = 9,
@@ -76,10 +76,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
                                             .shards = 1,
                                             .name = "out.png"};
         if ((uint64_t)picture.width * picture.height <= 1 << 16)
-            go_on(&keeper, &picture);
+            go_on(&checkpoint, &picture);
     } else {
         check_error(&error);
     }
-    (void)keeper_finish(&keeper, false, &error);
+    (void)checkpoint_finish(&checkpoint, false, &error);
     return 0;
 }

@@ -39,17 +39,17 @@ static struct ray_packet any_packet(const struct maker *m, const struct mesh *me
     if (test_uniform(random, 0, 1) < 0.15)
         packet.origin = some_vertex(m, random);
     struct vec3 target = vec3_add_scaled(some_vertex(m, random), test_point(random, 1), 0.02 * size);
-    struct vec3 way = vec3_sub(target, packet.origin);
-    double length = vec3_length(way), width = test_uniform(random, 0, 0.3) * test_uniform(random, 0, 1);
+    struct vec3 route = vec3_sub(target, packet.origin);
+    double length = vec3_length(route), width = test_uniform(random, 0, 0.3) * test_uniform(random, 0, 1);
     double scale = pow(2, floor(test_uniform(random, -40, 40)));
     for (uint32_t i = 0; i < packet.count; i++) {
-        struct vec3 d = vec3_add_scaled(way, test_point(random, 1), width * length);
+        struct vec3 d = vec3_add_scaled(route, test_point(random, 1), width * length);
         if (form == FAN)
-            d = vec3_add_scaled(way, test_point(random, 1), length);
+            d = vec3_add_scaled(route, test_point(random, 1), length);
         if (form == AT_VERTICES || (form == ODD_ONES && i % 3 == 1))
             d = vec3_sub(some_vertex(m, random), packet.origin);
         if (form == ALONG_AXES) {
-            d = vec3_make(0, 0, way.z < 0 ? -1 : 1);
+            d = vec3_make(0, 0, route.z < 0 ? -1 : 1);
             if (i % 4)
                 d = vec3_make(i % 4 == 1 ? 0x1p-70 : 0.0, i % 4 == 2 ? -0.01 * i : -0.0, d.z);
         }

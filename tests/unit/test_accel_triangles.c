@@ -120,8 +120,8 @@ TEST(rays_from_a_few_sizes_away_meet_what_trying_every_triangle_meets_and_nothin
     struct triangle_cost cost = {0};
     int hits = 0;
     for (int i = 0; i < 20000; i++) {
-        struct vec3 way = i & 1 ? test_point(&random, 1) : vec3_add(vec3_all(1), test_point(&random, 0.2));
-        struct vec3 origin = vec3_scale(vec3_normalize(way), test_uniform(&random, 1, 30));
+        struct vec3 route = i & 1 ? test_point(&random, 1) : vec3_add(vec3_all(1), test_point(&random, 0.2));
+        struct vec3 origin = vec3_scale(vec3_normalize(route), test_uniform(&random, 1, 30));
         /* At the mesh, or past places where an index may have put what is not of the mesh. */
         struct vec3 target = test_point(&random, 1);
         double far = pow(2, floor(test_uniform(&random, 1, 9)));

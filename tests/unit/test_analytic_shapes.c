@@ -365,8 +365,8 @@ static bool flat_has(const struct shape *s, enum form form, struct vec3 p, doubl
             corners[2] = corners[3];
         *clearance = INFINITY;
         for (int i = 0; i < count; i++) {
-            struct vec3 edge = vec3_sub(corners[(i + 1) % count], corners[i]), way = vec3_sub(p, corners[i]);
-            double side = vec3_dot(vec3_cross(edge, way), f->normal) / vec3_length(f->normal);
+            struct vec3 edge = vec3_sub(corners[(i + 1) % count], corners[i]), route = vec3_sub(p, corners[i]);
+            double side = vec3_dot(vec3_cross(edge, route), f->normal) / vec3_length(f->normal);
             left += side > 0;
             *clearance = fmin(*clearance, fabs(side));
         }

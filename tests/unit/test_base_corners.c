@@ -184,11 +184,11 @@ TEST(folders_are_listed_in_order_up_to_a_limit_or_until_it_is_enough) {
 }
 
 TEST(a_witness_counts_every_content_once_in_any_order) {
-    struct file_witness witness = {0}, turned = {0};
+    struct file_read_log witness = {0}, turned = {0};
     struct file_bytes bytes;
     struct error error = {0};
     for (int round = 0; round < 2; round++) {
-        file_set_witness(round ? &turned : &witness);
+        file_set_read_log(round ? &turned : &witness);
         for (int i = 0; i < 50; i++) {
             int n = round ? 49 - i : i;
             char name[16], text[16];
@@ -200,23 +200,23 @@ TEST(a_witness_counts_every_content_once_in_any_order) {
         }
     }
     CHECK(witness.count == 40 && turned.count == 40 && !witness.incomplete);
-    CHECK(digest_equal(file_witness_sum(&witness), file_witness_sum(&turned)));
+    CHECK(digest_equal(file_read_log_sum(&witness), file_read_log_sum(&turned)));
 #ifdef GRAY_FAULTS
     for (uint64_t k = 1; k <= 2; k++) { /* the bytes themselves, then the list */
-        struct file_witness poor = {0};
-        file_set_witness(&poor);
+        struct file_read_log poor = {0};
+        file_set_read_log(&poor);
         fault_at(FAULT_OF_ALLOCATION, k);
         bool read = file_map(test_path("1.txt"), 100, &bytes, &error);
         fault_at(FAULT_OF_ALLOCATION, 0);
         CHECK(read == (k == 2) && poor.incomplete == (k == 2));
         if (read)
             file_unmap(&bytes);
-        file_witness_destroy(&poor);
+        file_read_log_destroy(&poor);
     }
 #endif
-    file_set_witness(NULL);
-    file_witness_destroy(&witness);
-    file_witness_destroy(&turned);
+    file_set_read_log(NULL);
+    file_read_log_destroy(&witness);
+    file_read_log_destroy(&turned);
 }
 
 TEST(versions_of_files_are_their_contents_wherever_time_says_otherwise) {

@@ -15,8 +15,8 @@ static void open_channel(void) {
     CHECK(channel_pair(ends, &error));
 }
 
-static enum channel_result receive(struct frame *frame) {
-    return channel_receive(&ends[0], frame);
+static enum channel_result receive(struct message *message) {
+    return channel_receive(&ends[0], message);
 }
 
 static struct picture_request sound_request(void) {
@@ -26,44 +26,44 @@ static struct picture_request sound_request(void) {
 }
 
 TEST(frames_keep_their_borders_and_their_order) {
-    static struct frame frame;
+    static struct message message;
     open_channel();
     struct picture_request request = sound_request();
     CHECK(channel_send_line(&ends[1], LINE_WARNING, "one"));
-    CHECK(channel_send(&ends[1], FRAME_BEGIN, &request, sizeof request, -1));
+    CHECK(channel_send(&ends[1], MESSAGE_BEGIN, &request, sizeof request, -1));
     CHECK(channel_send_line(&ends[1], LINE_ERROR, ""));
-    CHECK_EQ_INT(receive(&frame), CHANNEL_FRAME);
-    CHECK_EQ_INT(frame.kind, FRAME_LINE);
-    CHECK_EQ_INT(frame.body.line.kind, LINE_WARNING);
-    CHECK_TEXT(frame.body.line.text, "one");
-    CHECK_EQ_INT(receive(&frame), CHANNEL_FRAME);
-    CHECK_EQ_INT(frame.kind, FRAME_BEGIN);
-    CHECK_TEXT(frame.body.request.file, "a.png");
-    CHECK_EQ_INT(receive(&frame), CHANNEL_FRAME);
-    CHECK_TEXT(frame.body.line.text, "");
+    CHECK_EQ_INT(receive(&message), CHANNEL_MESSAGE);
+    CHECK_EQ_INT(message.kind, MESSAGE_LINE);
+    CHECK_EQ_INT(message.body.line.kind, LINE_WARNING);
+    CHECK_TEXT(message.body.line.text, "one");
+    CHECK_EQ_INT(receive(&message), CHANNEL_MESSAGE);
+    CHECK_EQ_INT(message.kind, MESSAGE_BEGIN);
+    CHECK_TEXT(message.body.request.file, "a.png");
+    CHECK_EQ_INT(receive(&message), CHANNEL_MESSAGE);
+    CHECK_TEXT(message.body.line.text, "");
     channel_close(&ends[1]);
-    CHECK_EQ_INT(receive(&frame), CHANNEL_END);
+    CHECK_EQ_INT(receive(&message), CHANNEL_END);
     CHECK(!channel_send_line(&ends[0], LINE_ERROR, "nobody there"));
     channel_close(&ends[0]);
 }
 
 TEST(a_line_that_is_too_long_is_cut_with_dots) {
-    static struct frame frame;
+    static struct message message;
     open_channel();
-    char *text = malloc(3 * FRAME_TEXT_LIMIT);
-    memset(text, 'x', 3 * FRAME_TEXT_LIMIT);
-    text[3 * FRAME_TEXT_LIMIT - 1] = '\0';
+    char *text = malloc(3 * MESSAGE_TEXT_LIMIT);
+    memset(text, 'x', 3 * MESSAGE_TEXT_LIMIT);
+    text[3 * MESSAGE_TEXT_LIMIT - 1] = '\0';
     CHECK(channel_send_line(&ends[1], LINE_NOTICE, text));
-    CHECK_EQ_INT(receive(&frame), CHANNEL_FRAME);
-    CHECK_EQ_INT(strlen(frame.body.line.text), FRAME_TEXT_LIMIT - 1);
-    CHECK_TEXT(frame.body.line.text + FRAME_TEXT_LIMIT - 4, "...");
+    CHECK_EQ_INT(receive(&message), CHANNEL_MESSAGE);
+    CHECK_EQ_INT(strlen(message.body.line.text), MESSAGE_TEXT_LIMIT - 1);
+    CHECK_TEXT(message.body.line.text + MESSAGE_TEXT_LIMIT - 4, "...");
     free(text);
 }
 
-static void broken(enum frame_kind kind, const void *body, size_t size) {
-    static struct frame frame;
+static void broken(enum message_kind kind, const void *body, size_t size) {
+    static struct message message;
     CHECK(channel_send(&ends[1], kind, body, size, -1));
-    if (receive(&frame) != CHANNEL_BROKEN)
+    if (receive(&message) != CHANNEL_BROKEN)
         test_fail(__FILE__, __LINE__, "a frame of kind %d and %zu bytes is taken", (int)kind, size);
 }
 
@@ -72,23 +72,23 @@ TEST(frames_of_wrong_kind_size_or_content_are_refused) {
     char bytes[sizeof(struct picture_request) + 1] = {0};
     broken(0, bytes, 4);
     broken(99, bytes, 4);
-    broken(FRAME_BEGIN, bytes, 10);
-    broken(FRAME_BEGIN, bytes, sizeof bytes);
-    broken(FRAME_DONE, bytes, 1);
-    broken(FRAME_ABANDON, bytes, 1);
-    broken(FRAME_SCRIPT, bytes, 3);
-    broken(FRAME_LINE, bytes, 2);
-    struct frame_line line = {.kind = (enum line_kind)77, .text = "x"};
-    broken(FRAME_LINE, &line, offsetof(struct frame_line, text) + 2);
+    broken(MESSAGE_BEGIN, bytes, 10);
+    broken(MESSAGE_BEGIN, bytes, sizeof bytes);
+    broken(MESSAGE_DONE, bytes, 1);
+    broken(MESSAGE_ABANDON, bytes, 1);
+    broken(MESSAGE_SCRIPT, bytes, 3);
+    broken(MESSAGE_LINE, bytes, 2);
+    struct message_line line = {.kind = (enum line_kind)77, .text = "x"};
+    broken(MESSAGE_LINE, &line, offsetof(struct message_line, text) + 2);
     line.kind = LINE_ERROR;
-    broken(FRAME_LINE, &line, offsetof(struct frame_line, text) + 1); /* its text does not end */
+    broken(MESSAGE_LINE, &line, offsetof(struct message_line, text) + 1); /* its text does not end */
     CHECK(send(ends[1].descriptor, "ab", 2, 0) == 2);
-    static struct frame frame;
-    CHECK_EQ_INT(receive(&frame), CHANNEL_BROKEN);
+    static struct message message;
+    CHECK_EQ_INT(receive(&message), CHANNEL_BROKEN);
 }
 
 static void broken_request(struct picture_request request) {
-    broken(FRAME_BEGIN, &request, sizeof request);
+    broken(MESSAGE_BEGIN, &request, sizeof request);
 }
 
 TEST(requests_for_impossible_pictures_are_refused) {
@@ -136,74 +136,74 @@ TEST(requests_for_impossible_pictures_are_refused) {
     request.lens.stereo = (enum stereo)1000;
     broken_request(request);
     request = sound_request();
-    static struct frame frame;
-    CHECK(channel_send(&ends[1], FRAME_BEGIN, &request, sizeof request, -1));
-    CHECK_EQ_INT(receive(&frame), CHANNEL_FRAME);
+    static struct message message;
+    CHECK(channel_send(&ends[1], MESSAGE_BEGIN, &request, sizeof request, -1));
+    CHECK_EQ_INT(receive(&message), CHANNEL_MESSAGE);
 }
 
 /* What a child that was taken over might send: texts without an end, kinds that do not exist. */
 TEST(news_answers_and_names_without_an_end_are_refused) {
     open_channel();
-    static const struct studio_news sound;
-    struct studio_news news = sound;
-    char *const words[] = {news.picked.name, news.picked.shape, news.picked.material, news.picked.parent_name,
-                           news.root_name};
+    static const struct preview_reply sound;
+    struct preview_reply reply = sound;
+    char *const words[] = {reply.picked.name, reply.picked.shape, reply.picked.material, reply.picked.parent_name,
+                           reply.root_name};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
-        news = sound;
-        memset(words[i], 'x', PICK_WORDS);
-        broken(FRAME_NEWS, &news, sizeof news);
+        reply = sound;
+        memset(words[i], 'x', PICK_NAME);
+        broken(MESSAGE_PREVIEW_REPLY, &reply, sizeof reply);
     }
-    news = sound;
-    memset(news.text, 'x', sizeof news.text);
-    broken(FRAME_NEWS, &news, sizeof news);
-    news = sound;
-    memset(news.picked.path, 'x', sizeof news.picked.path);
-    broken(FRAME_NEWS, &news, sizeof news);
-    news = sound;
-    news.kind = (enum studio_news_kind)1000;
-    broken(FRAME_NEWS, &news, sizeof news);
-    broken(FRAME_NEWS, &sound, sizeof sound - 1);
-    struct frame_answer answer;
+    reply = sound;
+    memset(reply.text, 'x', sizeof reply.text);
+    broken(MESSAGE_PREVIEW_REPLY, &reply, sizeof reply);
+    reply = sound;
+    memset(reply.picked.path, 'x', sizeof reply.picked.path);
+    broken(MESSAGE_PREVIEW_REPLY, &reply, sizeof reply);
+    reply = sound;
+    reply.kind = (enum preview_reply_kind)1000;
+    broken(MESSAGE_PREVIEW_REPLY, &reply, sizeof reply);
+    broken(MESSAGE_PREVIEW_REPLY, &sound, sizeof sound - 1);
+    struct message_answer answer;
     memset(&answer, 'x', sizeof answer);
-    broken(FRAME_ANSWER, &answer, sizeof answer);
-    broken(FRAME_ANSWER, &answer, 3);
-    struct frame_read read;
+    broken(MESSAGE_ANSWER, &answer, sizeof answer);
+    broken(MESSAGE_ANSWER, &answer, 3);
+    struct message_read read;
     memset(&read, 'x', sizeof read);
-    broken(FRAME_READ, &read, sizeof read);
-    static const char bytes[FRAME_SIZE_LIMIT];
-    broken(FRAME_READ, bytes, 5);
-    broken(FRAME_AGAIN, bytes, 1);
-    broken(FRAME_ORDER, bytes, 1);
-    broken(FRAME_LINE, bytes, sizeof(struct frame_line) + 1);
+    broken(MESSAGE_READ, &read, sizeof read);
+    static const char bytes[MESSAGE_SIZE_LIMIT];
+    broken(MESSAGE_READ, bytes, 5);
+    broken(MESSAGE_AGAIN, bytes, 1);
+    broken(MESSAGE_PREVIEW_COMMAND, bytes, 1);
+    broken(MESSAGE_LINE, bytes, sizeof(struct message_line) + 1);
 }
 
 TEST(a_channel_that_is_closed_twice_is_closed_once) {
-    static struct frame frame;
+    static struct message message;
     open_channel();
     channel_close(&ends[1]);
     channel_close(&ends[1]);
-    CHECK_EQ_INT(receive(&frame), CHANNEL_END);
+    CHECK_EQ_INT(receive(&message), CHANNEL_END);
 }
 
 TEST(shared_memory_passes_through_the_channel) {
-    static struct frame frame;
+    static struct message message;
     open_channel();
     struct share mine, theirs;
     struct error error;
-    struct frame_answer answer = {.ok = true};
+    struct message_answer answer = {.ok = true};
     CHECK(share_create(&mine, 100000, &error));
-    CHECK(channel_send(&ends[1], FRAME_FILM, &answer, sizeof answer, mine.descriptor));
-    CHECK_EQ_INT(receive(&frame), CHANNEL_FRAME);
-    CHECK(frame.descriptor >= 0);
-    CHECK(share_attach(&theirs, frame.descriptor, 100000, &error));
+    CHECK(channel_send(&ends[1], MESSAGE_FILM, &answer, sizeof answer, mine.descriptor));
+    CHECK_EQ_INT(receive(&message), CHANNEL_MESSAGE);
+    CHECK(message.descriptor >= 0);
+    CHECK(share_attach(&theirs, message.descriptor, 100000, &error));
     CHECK_EQ_INT(((char *)theirs.block)[99999], 0);
     ((char *)theirs.block)[99999] = 42;
     CHECK_EQ_INT(((char *)mine.block)[99999], 42);
     CHECK(ftruncate(theirs.descriptor, 10) != 0);
     share_destroy(&theirs);
     /* A descriptor in a frame that has none, and memory that is too small. */
-    CHECK(channel_send(&ends[1], FRAME_ABANDON, NULL, 0, mine.descriptor));
-    CHECK_EQ_INT(receive(&frame), CHANNEL_BROKEN);
+    CHECK(channel_send(&ends[1], MESSAGE_ABANDON, NULL, 0, mine.descriptor));
+    CHECK_EQ_INT(receive(&message), CHANNEL_BROKEN);
     CHECK(!share_attach(&theirs, dup(mine.descriptor), 200000, &error));
     CHECK_EQ_INT(error.kind, ERROR_MACHINE);
     share_destroy(&mine);

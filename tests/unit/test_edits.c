@@ -303,7 +303,7 @@ TEST(edits_as_lua_text_are_read_back_to_the_bit) {
         CHECK(change_list_set(&list, &changes[i], true));
     const struct camera camera = {{0.1, 0.2, 6.3}, {0.01, -0.02, -1.03}, {0, 1.0 / 3, 0}, 41.7};
     const double exposure = 1.0 / 3;
-    CHECK(edits_tell(&list, "out.png", &camera, &exposure, collect, &c));
+    CHECK(edits_write_lua(&list, "out.png", &camera, &exposure, collect, &c));
     CHECK(strstr(c.text, "'ba\\039l\\092l\\010'") != NULL);
     /* Numbers as C reads them are the numbers as they were. */
     const char *at = strstr(c.text, "gr.change_material(1, {");

@@ -47,15 +47,15 @@ static const char head[] =
     "  show(make(red):set_bump(bump), name .. '-bumps.png')\n"
     "  show(make(gr.bump_material{material = red, image = bump}), name .. '-relief.png') end\n";
 
-static char *bytes_of(const char *name, const char *way, size_t *size) {
+static char *bytes_of(const char *name, const char *route, size_t *size) {
     char path[600];
-    (void)snprintf(path, sizeof path, "%s/%s-%s.png", test_folder(), name, way);
+    (void)snprintf(path, sizeof path, "%s/%s-%s.png", test_folder(), name, route);
     return test_read_file(path, size);
 }
 
-static bool same_picture(const char *name, const char *way, const char *other) {
+static bool same_picture(const char *name, const char *route, const char *other) {
     size_t size = 0, other_size = 1;
-    char *a = bytes_of(name, way, &size), *b = bytes_of(name, other, &other_size);
+    char *a = bytes_of(name, route, &size), *b = bytes_of(name, other, &other_size);
     bool same = a && b && size == other_size && memcmp(a, b, size) == 0;
     CHECK(a && b);
     free(a);

@@ -167,7 +167,7 @@ static void disturb(struct test_random *random) {
 }
 
 static bool is_open(int rank) {
-    return controls[rank].gate == GATE_OPEN;
+    return controls[rank].handout == HANDOUT_OPEN;
 }
 
 TEST(ranks_in_any_order_with_nonsense_between_make_every_tile_once) {
@@ -189,7 +189,7 @@ TEST(ranks_in_any_order_with_nonsense_between_make_every_tile_once) {
             if (turn % 3 == 1 && step > 20 && rank == 2) {
                 if (is_open(2))
                     farm_end(farms[2], true);
-                controls[2].gate = GATE_CLOSED;
+                controls[2].handout = HANDOUT_CLOSED;
                 continue;
             }
             if (turn % 5 == 2 && step == 15)
@@ -431,18 +431,18 @@ TEST(ranks_with_another_picture_late_ones_and_those_after_a_failure_are_told) {
         CHECK(!farm_begin(farms[1], &other, &films[1], &already, &error));
         CHECK(error.kind == ERROR_SCENE && strstr(error.text, "another picture than the first one"));
         /* Lines of a rank that the first one has told itself are not told again; too many are cut. */
-        farm_tell(farms[0], "the same");
-        farm_tell(farms[1], "the same");
+        farm_report(farms[0], "the same");
+        farm_report(farms[1], "the same");
         for (int i = 0; i < 20; i++)
-            farm_tell(farms[i % 2], "something");
-        farm_tell(farms[1], "another");
+            farm_report(farms[i % 2], "something");
+        farm_report(farms[1], "another");
         farm_step(farms[0]);
         for (int i = 0; i < 3; i++) { /* a rank that is slow asks when all is over */
             post(1, 0, LINE, "foreign", 7);
             farm_step(farms[0]);
         }
         for (int i = 0; i < 40; i++)
-            farm_tell(farms[i % 2], "more than there is room for");
+            farm_report(farms[i % 2], "more than there is room for");
         farm_end(farms[0], true);
         post(1, 0, BYE, "", 1);
         told = 0;

@@ -154,16 +154,16 @@ TEST(a_checkpoint_of_another_record_is_not_gone_on_with) {
     const struct picture_files files = {.options = &options};
     struct film old = painted(plain), film = film_of(integrator_record(INTEGRATOR_WHITTED));
     struct tile_picture before = picture_of(plain, 1, 1), now = picture_of(film.record, 1, 1);
-    struct keeper keeper;
+    struct checkpoint checkpoint;
     struct error error;
     char notice[256];
     CHECK(tile_file_write(FILE_AT(path), NULL, 0, &before, &old, &error));
-    keeper_init(&keeper, &options, &files);
-    CHECK(keeper_open(&keeper, "a.png", notice, &error));
-    CHECK(!keeper_restore(&keeper, &now, &film, notice, &error));
+    checkpoint_init(&checkpoint, &options, &files);
+    CHECK(checkpoint_open(&checkpoint, "a.png", notice, &error));
+    CHECK(!checkpoint_restore(&checkpoint, &now, &film, notice, &error));
     CHECK(strstr(error.text, "cannot be gone on with: its pixels have records of another size") != NULL);
     CHECK_EQ_INT(film_tiles_in(&film, FILM_TILE_DONE), 0);
-    (void)keeper_finish(&keeper, false, &error);
+    (void)checkpoint_finish(&checkpoint, false, &error);
     free(old.pixels);
     free(film.pixels);
 }

@@ -84,7 +84,7 @@ TEST(fog_is_integrated_on_its_borders_and_along_axes) {
     const struct fog height = {.kind = FOG_HEIGHT, .density = 0.5, .base = 0, .scale = 1};
     const struct {
         const struct fog *fog;
-        struct vec3 from, way;
+        struct vec3 from, route;
         double distance, depth;
     } all[] = {{&profile, {0, -5, 0}, {1, 0, 0}, 7, 0},               /* level, below: none */
                {&profile, {0, 0, 0}, {1, 0, 0}, 7, 0},                /* level, on the border */
@@ -107,9 +107,9 @@ TEST(fog_is_integrated_on_its_borders_and_along_axes) {
                {&height, {0, 0, 0}, {1, 0, 0}, 3, 1.5}};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         double depth = all[i].depth;
-        if (all[i].fog == &grid && all[i].way.z > 0) /* leaves cell (0,0) at z = 1, then (0,1) at x = 1, then (1,1) */
+        if (all[i].fog == &grid && all[i].route.z > 0) /* leaves cell (0,0) at z = 1, then (0,1) at x = 1, then (1,1) */
             depth = 1.25 * 0.1 + (1 / 0.6 - 1.25) * 0.3 + (2.5 - 1 / 0.6) * 0.4;
-        CHECK_NEAR(fog_transmittance(all[i].fog, all[i].from, all[i].way, all[i].distance), exp(-depth), 1e-9);
+        CHECK_NEAR(fog_transmittance(all[i].fog, all[i].from, all[i].route, all[i].distance), exp(-depth), 1e-9);
     }
 }
 
@@ -147,9 +147,9 @@ TEST(reflected_and_refracted_rays_go_through_the_fog) {
         s.fog = &fog;
         s.settings.samples = 1;
         CHECK(stage_render(&s, 1, 1));
-        double way = through ? 10 + 5 : 10 + 15;
-        CHECK_NEAR(stage_pixel(&s, 0, 0).x, exp(-0.05 * way), 1e-6);
-        CHECK_NEAR(stage_pixel(&s, 0, 0).y, 1 - exp(-0.05 * way), 1e-6);
+        double route = through ? 10 + 5 : 10 + 15;
+        CHECK_NEAR(stage_pixel(&s, 0, 0).x, exp(-0.05 * route), 1e-6);
+        CHECK_NEAR(stage_pixel(&s, 0, 0).y, 1 - exp(-0.05 * route), 1e-6);
         stage_end(&s);
     }
 }

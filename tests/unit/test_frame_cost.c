@@ -72,17 +72,17 @@ static struct soup make_soup(int form, struct test_random *random) {
 
 /* Half of the rays are lines at random, half look at random triangles. */
 static struct ray soup_ray(const struct soup *s, struct test_random *random, int i) {
-    struct vec3 size = vec3_sub(s->bounds.max, s->bounds.min), way, target;
-    way = vec3_make(test_uniform(random, -1, 1), test_uniform(random, -1, 1), test_uniform(random, -1, 1));
+    struct vec3 size = vec3_sub(s->bounds.max, s->bounds.min), route, target;
+    route = vec3_make(test_uniform(random, -1, 1), test_uniform(random, -1, 1), test_uniform(random, -1, 1));
     target = vec3_add(s->bounds.min, vec3_mul(size, vec3_make(test_uniform(random, 0, 1), test_uniform(random, 0, 1),
                                                               test_uniform(random, 0, 1))));
     if (i % 2) {
         const double *v = s->vertices[3 * (uint32_t)test_uniform(random, 0, s->count)];
         target = vec3_make(v[0], v[1], v[2]);
     }
-    way = vec3_normalize(way);
+    route = vec3_normalize(route);
     return (struct ray){
-        .origin = vec3_add_scaled(target, way, -2 * vec3_length(size)), .direction = way, .t_max = INFINITY};
+        .origin = vec3_add_scaled(target, route, -2 * vec3_length(size)), .direction = route, .t_max = INFINITY};
 }
 
 static double counted(const struct soup *s, uint32_t voxels) {
@@ -203,13 +203,13 @@ static double counted_world(const struct stage *s) {
     CHECK(world_scratch_init(&scratch, &s->world));
     enum { RAYS = 4000 };
     for (int i = 0; i < RAYS; i++) {
-        struct vec3 way = {test_uniform(&random, -1, 1), test_uniform(&random, -1, 1), test_uniform(&random, -1, 1)};
+        struct vec3 route = {test_uniform(&random, -1, 1), test_uniform(&random, -1, 1), test_uniform(&random, -1, 1)};
         struct vec3 at = {test_uniform(&random, -1, 1), test_uniform(&random, -1, 1), test_uniform(&random, -1, 1)};
         if (i % 2) {
             const struct box *box = &s->world.boxes[(uint32_t)test_uniform(&random, 0, s->world.placed_count)];
             at = vec3_scale(vec3_add(box->min, box->max), 0.5);
         }
-        struct ray ray = {.origin = vec3_add_scaled(at, way, -5), .direction = way, .t_max = INFINITY};
+        struct ray ray = {.origin = vec3_add_scaled(at, route, -5), .direction = route, .t_max = INFINITY};
         uint32_t placed;
         struct crossing crossing;
         (void)world_nearest_crossing(&s->world, &ray, &scratch, &placed, &crossing);

@@ -393,34 +393,34 @@ TEST(hostile_what_an_interruption_writes_follows_the_rules_of_pictures) {
 }
 
 /* What the window saves when a key is pressed, three times each. */
-static int save(bool (*one)(const struct live *, const struct file_target *, char *, struct error *)) {
-    static struct live live;
+static int save(bool (*one)(const struct viewer *, const struct file_target *, char *, struct error *)) {
+    static struct viewer viewer;
     static const struct file_rules rules = {.never_replace = true};
     static uint8_t image[3 * 4 * 3];
     const struct file_target picture = {.path = "x.png", .rules = &rules};
     char name[4096];
     struct error error;
-    live.request.width = 4;
-    live.request.height = 3;
-    live.image = image;
-    (void)snprintf(live.request.file, sizeof live.request.file, "x.png");
+    viewer.request.width = 4;
+    viewer.request.height = 3;
+    viewer.image = image;
+    (void)snprintf(viewer.request.file, sizeof viewer.request.file, "x.png");
     for (int i = 0; i < 3; i++) {
-        if (!one(&live, &picture, name, &error))
+        if (!one(&viewer, &picture, name, &error))
             return 1;
     }
     return 0;
 }
 
 static int save_views(void) {
-    return save(souvenir_picture);
+    return save(save_view_image);
 }
 
 static int save_cameras(void) {
-    return save(souvenir_camera);
+    return save(save_view_camera);
 }
 
 static int save_changes(void) {
-    return save(souvenir_changes);
+    return save(save_edits);
 }
 
 TEST(hostile_what_the_window_saves_replaces_nothing) {

@@ -166,20 +166,20 @@ static void add_text(void *context, const char *text) {
 
 static bool answer(enum question question, const struct render_request *request, struct render_job *job,
                    struct pool *pool, uint64_t *sum, struct error *error) {
-    static struct sheet sheet;
+    static struct text_writer writer;
     struct inspected picture = {"a.png", job, request->root};
     const uint32_t pixels[][2] = {{3, 3}, {1, 4}, {5, 0}};
     struct render_statistics statistics = {0};
     struct picked picked;
     bool ok = false;
-    sheet = (struct sheet){.put = add_text, .context = sum};
+    writer = (struct text_writer){.put = add_text, .context = sum};
     switch (question) {
     case ASK_PIXELS:
     case ASK_PIXELS_JSON:
-        return inspect_pixels(&picture, pixels, 3, question == ASK_PIXELS_JSON, pool, &sheet, error);
+        return inspect_pixels(&picture, pixels, 3, question == ASK_PIXELS_JSON, pool, &writer, error);
     case ASK_DUMP:
     case ASK_DUMP_JSON:
-        return inspect_world(&picture, question == ASK_DUMP_JSON, &sheet, error);
+        return inspect_world(&picture, question == ASK_DUMP_JSON, &writer, error);
     case ASK_BOXES:
     case ASK_CELLS:
         job->settings.overlay = question == ASK_BOXES ? OVERLAY_OF_BOXES : OVERLAY_OF_GRID;

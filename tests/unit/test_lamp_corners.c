@@ -31,8 +31,8 @@ TEST(a_lamp_that_is_a_ball_is_met_where_the_ray_goes_in_else_where_it_comes_out)
 
 TEST(flat_lamps_are_met_in_their_outline_from_the_side_that_shines) {
     struct light disc = {.kind = LIGHT_DISC, .position = {0, 4, 0}, .direction = {0, -1, 0}, .radius = 1};
-    struct light sheet = {.kind = LIGHT_PARALLELOGRAM, .corner = {-1, 4, -1}, .edge1 = {2, 0, 0}, .edge2 = {1, 0, 2}};
-    struct light *const lamps[] = {&disc, &sheet};
+    struct light writer = {.kind = LIGHT_PARALLELOGRAM, .corner = {-1, 4, -1}, .edge1 = {2, 0, 0}, .edge2 = {1, 0, 2}};
+    struct light *const lamps[] = {&disc, &writer};
     struct light_hit met;
     for (int k = 0; k < 2; k++) {
         struct ray below = part_of(vec3_make(0.2, 0, 0.2), vec3_make(0, 2, 0), 0, INFINITY);
@@ -54,7 +54,7 @@ TEST(flat_lamps_are_met_in_their_outline_from_the_side_that_shines) {
         double x = test_uniform(&random, -2.5, 2.5), z = test_uniform(&random, -2.5, 2.5), v = (z + 1) / 2;
         struct ray ray = part_of(vec3_make(x, 0, z), vec3_make(0, 1, 0), 0, INFINITY);
         CHECK(light_meets_ray(&disc, &ray, &met) == (x * x + z * z < 1));
-        CHECK(light_meets_ray(&sheet, &ray, &met) == (v >= 0 && v <= 1 && x + 1 - v >= 0 && x + 1 - v <= 2));
+        CHECK(light_meets_ray(&writer, &ray, &met) == (v >= 0 && v <= 1 && x + 1 - v >= 0 && x + 1 - v <= 2));
     }
     struct light mesh = {.kind = LIGHT_MESH}, sky = {.kind = LIGHT_SKY};
     struct ray ray = part_of(vec3_all(0), vec3_make(0, 1, 0), 0, INFINITY);
@@ -92,12 +92,12 @@ TEST(a_ball_is_aimed_at_from_any_distance_and_from_inside) {
 
 /* The light of a point in the lamp itself, or in its plane, is none and no infinity. */
 TEST(a_lamp_gives_nothing_to_points_in_its_own_plane) {
-    struct light sheet = {.kind = LIGHT_PARALLELOGRAM,
-                          .corner = {0, 0, 0},
-                          .edge1 = {1, 0, 0},
-                          .edge2 = {0.5, 1, 0}, /* not at right angles: sampled by area */
-                          .colour = {1, 1, 1},
-                          .emits = true};
+    struct light writer = {.kind = LIGHT_PARALLELOGRAM,
+                           .corner = {0, 0, 0},
+                           .edge1 = {1, 0, 0},
+                           .edge2 = {0.5, 1, 0}, /* not at right angles: sampled by area */
+                           .colour = {1, 1, 1},
+                           .emits = true};
     struct light_triangle triangle = {.corner = {0, 0, 0}, .edge1 = {1, 0, 0}, .edge2 = {0, 1, 0}, .normal = {0, 0, 1}};
     triangle.intensity = vec3_all(1);
     const double until[] = {1};
@@ -108,8 +108,8 @@ TEST(a_lamp_gives_nothing_to_points_in_its_own_plane) {
     for (size_t i = 0; i < sizeof places / sizeof places[0]; i++)
         for (int k = 0; k < 9; k++) {
             struct sample2 place = {k / 8.0, (8 - k) / 8.0};
-            (void)light_context_make(&sheet, places[i], places[i], &context);
-            struct light_sample sample = light_sample(&sheet, &context, place);
+            (void)light_context_make(&writer, places[i], places[i], &context);
+            struct light_sample sample = light_sample(&writer, &context, place);
             CHECK(sample.intensity.x == 0 && vec3_finite(sample.target.at));
             (void)light_context_make(&lamp, places[i], places[i], &context);
             sample = light_sample(&lamp, &context, place);

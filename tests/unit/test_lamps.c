@@ -148,18 +148,18 @@ TEST(a_rectangle_of_two_triangles_gives_its_view_factor) {
  * halves of which one hangs deeper and each has a material of its own. */
 TEST(a_mesh_that_is_not_shown_lights_as_if_it_were) {
     enum { BY_LIGHT, BY_MATERIAL, BY_SLOTS, BY_GROUP, WAYS };
-    for (int way = 0; way < WAYS; way++) {
+    for (int route = 0; route < WAYS; route++) {
         struct stage s;
         stage_floor(&s);
         double a = 2, b = 1.5, h = 1.25;
-        struct node *node = square_node(&s, way == BY_MATERIAL ? glowing(&s, 2) : NULL);
+        struct node *node = square_node(&s, route == BY_MATERIAL ? glowing(&s, 2) : NULL);
         const struct material *const slots[] = {glowing(&s, 2), NULL};
-        if (way == BY_SLOTS) {
+        if (route == BY_SLOTS) {
             node->slots = slots;
             node->slot_count = 2; /* faces without slots have the first */
         }
         s.lights[0] = mesh_lamp(node, 48);
-        if (way == BY_GROUP) {
+        if (route == BY_GROUP) {
             struct node *group = scene_node(&s.scene, NODE_GROUP, "group", &s.error);
             struct node *inner = scene_node(&s.scene, NODE_GROUP, "inner", &s.error);
             struct node *left = square_node(&s, glowing(&s, 2)), *right = square_node(&s, glowing(&s, 2));
@@ -172,7 +172,7 @@ TEST(a_mesh_that_is_not_shown_lights_as_if_it_were) {
         }
         stage_scale(&s, node, a, 1, b);
         stage_move(&s, node, 0, h, 0);
-        s.lights[0].has_emission = way == BY_LIGHT;
+        s.lights[0].has_emission = route == BY_LIGHT;
         s.lights[0].emission = vec3_all(2);
         s.lights[0].colour = vec3_make(0.5, 1, 1);
         CHECK_NEAR(patch_at(&s, 0, 0), corner_factor(a, b, h), 2.5e-3);

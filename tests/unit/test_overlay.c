@@ -190,8 +190,8 @@ TEST(lines_over_a_picture_are_the_same_for_any_number_of_threads) {
         s.settings.lens.projection = PROJECTION_PERSPECTIVE;
         CHECK(stage_render(&s, WIDTH, HEIGHT));
         struct render_job job = stage_job(&s, WIDTH, HEIGHT);
-        const struct overlay_wish wish = {OVERLAY_OF_BOXES, 1000, 3};
-        CHECK(overlay_lines(&job, s.pool, &wish, lines[threads - 1], &s.error));
+        const struct overlay_request request = {OVERLAY_OF_BOXES, 1000, 3};
+        CHECK(overlay_lines(&job, s.pool, &request, lines[threads - 1], &s.error));
         stage_end(&s);
     }
     CHECK(memcmp(lines[0], lines[1], sizeof lines[0]) == 0);

@@ -71,8 +71,8 @@ TEST(edges_round_the_camera_are_drawn_where_their_points_are) {
         s.settings.samples = 1;
         CHECK(stage_render(&s, WIDTH, HEIGHT));
         struct render_job job = stage_job(&s, WIDTH, HEIGHT);
-        const struct overlay_wish wish = {OVERLAY_OF_BOXES, OVERLAY_BOXES, 1};
-        CHECK(overlay_lines(&job, s.pool, &wish, lines, &s.error));
+        const struct overlay_request request = {OVERLAY_OF_BOXES, OVERLAY_BOXES, 1};
+        CHECK(overlay_lines(&job, s.pool, &request, lines, &s.error));
         CHECK(camera_prepare(&s.camera, &s.settings, WIDTH, HEIGHT, &frame, warning, &s.error));
         memset(wanted, 0, sizeof wanted);
         for (uint32_t i = 0; i < s.world.placed_count; i++)
@@ -106,8 +106,8 @@ TEST(lines_may_be_stopped_and_some_boxes_stand_for_all) {
         s.settings.accel = kinds[k % 4];
         CHECK(stage_render(&s, WIDTH, HEIGHT));
         struct render_job job = stage_job(&s, WIDTH, HEIGHT);
-        const struct overlay_wish whole = {k < 4 ? OVERLAY_OF_BOXES : OVERLAY_OF_GRID, OVERLAY_BOXES, 1},
-                                  part = {whole.kind, 3, 4};
+        const struct overlay_request whole = {k < 4 ? OVERLAY_OF_BOXES : OVERLAY_OF_GRID, OVERLAY_BOXES, 1},
+                                     part = {whole.kind, 3, 4};
         CHECK(overlay_lines(&job, s.pool, &whole, all, &s.error) && overlay_lines(&job, s.pool, &part, some, &s.error));
         int more = 0, fewer = 0;
         for (int i = 0; i < WIDTH * HEIGHT; i++) {

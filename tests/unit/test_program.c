@@ -442,7 +442,7 @@ static bool enter_namespace(void) {
     return true;
 }
 
-static void live_on_tiny_disk(void) {
+static void viewer_on_tiny_disk(void) {
     if (!enter_namespace())
         _exit(NO_SMALL_DISK);
     (void)mount(NULL, "/", NULL, MS_REC | MS_PRIVATE, NULL);
@@ -465,7 +465,7 @@ TEST(a_full_disk_leaves_the_old_picture_and_no_temporary_file) {
     CHECK(mkdir(disk, 0777) == 0);
     free(disk);
     write_in_folder("scene.lua", BALL "picture('disk/out.png', 300, 200)\n");
-    int status = finish(start(words, live_on_tiny_disk));
+    int status = finish(start(words, viewer_on_tiny_disk));
     if (status == NO_SMALL_DISK)
         test_skip("this user may not mount a small file system");
     CHECK_EQ_INT(status, 3);

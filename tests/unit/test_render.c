@@ -164,8 +164,8 @@ TEST(a_face_seen_from_behind_gets_no_light_unless_two_sided) {
                                    .vertices = vertices,
                                    .face_start = starts,
                                    .vertex_index = indices};
-        struct node *sheet = stage_cube(&s, s.root, white);
-        sheet->shape = (struct shape){.kind = SHAPE_MESH, .mesh = assets_mesh(&s.assets, &input, &s.error)};
+        struct node *writer = stage_cube(&s, s.root, white);
+        writer->shape = (struct shape){.kind = SHAPE_MESH, .mesh = assets_mesh(&s.assets, &input, &s.error)};
         stage_point_light(&s, vec3_make(0, 0, 5), vec3_all(1));
         CHECK(stage_render(&s, 21, 21));
         CHECK_NEAR(stage_pixel(&s, 10, 10).x, two_sided, 1e-2);

@@ -24,13 +24,13 @@ TEST(light_fades_exponentially_with_the_way_inside_glass) {
             s.sky.colour = vec3_all(1);
             s.settings.samples = 1;
             s.camera.fov = 0.01;
-            double way = thickness[i];
+            double route = thickness[i];
             if (inside) {
                 s.camera.eye.z = -0.25 * thickness[i];
-                way *= 0.75;
+                route *= 0.75;
             }
-            CHECK_NEAR(centre_of(&s, 1), exp(-0.7 * way), 1e-6);
-            CHECK_NEAR(stage_pixel(&s, 0, 0).y, exp(-0.1 * way), 1e-6);
+            CHECK_NEAR(centre_of(&s, 1), exp(-0.7 * route), 1e-6);
+            CHECK_NEAR(stage_pixel(&s, 0, 0).y, exp(-0.1 * route), 1e-6);
             CHECK_NEAR(stage_pixel(&s, 0, 0).z, 1, 1e-6);
             stage_end(&s);
         }

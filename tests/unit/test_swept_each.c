@@ -119,17 +119,17 @@ TEST(lathe_with_a_thousand_segments_tests_few_of_them) {
 TEST(lathe_without_discs_is_a_sheet_and_a_loop_is_a_ring) {
     struct arena arena = {0};
     const double wall[][2] = {{1, 0}, {1, 1}}, ring[][2] = {{1, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 0}};
-    struct shape sheet = make_lathe(&arena, SPLINE_LINEAR, wall, 2, false, true);
+    struct shape writer = make_lathe(&arena, SPLINE_LINEAR, wall, 2, false, true);
     struct shape torus = make_lathe(&arena, SPLINE_LINEAR, ring, 5, false, false);
-    CHECK(!shape_is_closed(&sheet) && shape_is_closed(&torus));
+    CHECK(!shape_is_closed(&writer) && shape_is_closed(&torus));
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 64));
     struct ray ray = ray_from(vec3_make(-5, 0.5, 0), vec3_make(1, 0, 0));
-    struct crossing_list list = list_of(&sheet, &ray, &scratch);
+    struct crossing_list list = list_of(&writer, &ray, &scratch);
     CHECK_EQ_INT(list.count, 2);
     CHECK(scratch.items[0].enter && !scratch.items[1].enter);
     ray = ray_from(vec3_make(0, 3, 0), vec3_make(0.1, -1, 0)); /* through the open top, out by the open bottom */
-    CHECK_EQ_INT(list_of(&sheet, &ray, &scratch).count, 0);
+    CHECK_EQ_INT(list_of(&writer, &ray, &scratch).count, 0);
     ray = ray_from(vec3_make(-5, 0.5, 0), vec3_make(1, 0, 0));
     list = list_of(&torus, &ray, &scratch);
     CHECK_EQ_INT(list.count, 4);

@@ -352,7 +352,7 @@ static const struct picture_files *files_for(const struct options *options) {
 
 TEST(a_keeper_without_a_checkpoint_or_with_check_does_nothing) {
     struct options options = options_for("auto", false);
-    struct keeper keeper;
+    struct checkpoint checkpoint;
     struct error error;
     char notice[256];
     uint32_t tiles;
@@ -361,36 +361,36 @@ TEST(a_keeper_without_a_checkpoint_or_with_check_does_nothing) {
     for (int i = 0; i < 2; i++) {
         options.checkpoint = i ? "auto" : NULL;
         options.check = i;
-        keeper_init(&keeper, &options, files_for(&options));
-        CHECK(keeper_open(&keeper, "a.png", notice, &error) && !keeper.opened && notice[0] == '\0');
-        CHECK(keeper_has_written(&keeper, 1, &picture.key, "a.png", &written, &error) && !written);
-        CHECK(keeper_tick(&keeper, &picture, NULL, true, &tiles, &error));
-        CHECK(keeper_note_written(&keeper, 1, &picture.key, "a.png", &error));
-        CHECK(keeper_finish(&keeper, true, &error));
+        checkpoint_init(&checkpoint, &options, files_for(&options));
+        CHECK(checkpoint_open(&checkpoint, "a.png", notice, &error) && !checkpoint.opened && notice[0] == '\0');
+        CHECK(checkpoint_has_written(&checkpoint, 1, &picture.key, "a.png", &written, &error) && !written);
+        CHECK(checkpoint_update(&checkpoint, &picture, NULL, true, &tiles, &error));
+        CHECK(checkpoint_note_written(&checkpoint, 1, &picture.key, "a.png", &error));
+        CHECK(checkpoint_finish(&checkpoint, true, &error));
     }
 }
 
 TEST(a_keeper_tells_names_that_are_too_long_and_files_that_are_damaged) {
     struct options options = options_for("auto", true);
-    struct keeper keeper;
+    struct checkpoint checkpoint;
     struct error error;
     char notice[256], *name = malloc(4096);
     memset(name, 'x', 4095);
     name[4095] = '\0';
-    keeper_init(&keeper, &options, files_for(&options));
-    CHECK(!keeper_open(&keeper, name, notice, &error));
+    checkpoint_init(&checkpoint, &options, files_for(&options));
+    CHECK(!checkpoint_open(&checkpoint, name, notice, &error));
     CHECK(strstr(error.text, "the name of its checkpoint is longer than 4095 bytes") != NULL);
     free(name);
     const char *path = test_path("broken.tiles");
     test_write_text(path, "GRAYTILE and no more");
     options = options_for(path, true);
-    keeper_init(&keeper, &options, files_for(&options));
+    checkpoint_init(&checkpoint, &options, files_for(&options));
     for (int i = 0; i < 2; i++) { /* said again for every picture */
         error = (struct error){0};
-        CHECK(!keeper_open(&keeper, "a.png", notice, &error));
+        CHECK(!checkpoint_open(&checkpoint, "a.png", notice, &error));
         CHECK(strstr(error.text, "broken.tiles: is ") != NULL);
     }
-    CHECK(keeper_finish(&keeper, false, &error));
+    CHECK(checkpoint_finish(&checkpoint, false, &error));
     CHECK(access(path, F_OK) == 0); /* not ours */
 }
 
@@ -399,23 +399,24 @@ static void leave_checkpoint(const char *path, const char *first, struct film *f
     const struct tile_picture picture = some_picture();
     struct tile_picture second = picture;
     struct options options = options_for(path, false);
-    struct keeper keeper;
+    struct checkpoint checkpoint;
     struct error error;
     char notice[256];
     uint32_t tiles = 0;
     bool written;
     (void)remove(path);
-    keeper_init(&keeper, &options, files_for(&options));
+    checkpoint_init(&checkpoint, &options, files_for(&options));
     second.number = 2;
-    CHECK(keeper_open(&keeper, first, notice, &error));
-    CHECK(keeper_has_written(&keeper, 1, &picture.key, first, &written, &error) && !written);
+    CHECK(checkpoint_open(&checkpoint, first, notice, &error));
+    CHECK(checkpoint_has_written(&checkpoint, 1, &picture.key, first, &written, &error) && !written);
     test_write_text(first, "a picture");
-    CHECK(keeper_note_written(&keeper, 1, &picture.key, first, &error));
-    CHECK(keeper_note_written(&keeper, 1, &picture.key, "/nothing/there.png", &error)); /* as a pipe is: not kept */
-    CHECK(keeper_has_written(&keeper, 2, &picture.key, "b.png", &written, &error) && !written);
-    CHECK(keeper_tick(&keeper, &second, film, true, &tiles, &error));
+    CHECK(checkpoint_note_written(&checkpoint, 1, &picture.key, first, &error));
+    CHECK(checkpoint_note_written(&checkpoint, 1, &picture.key, "/nothing/there.png",
+                                  &error)); /* as a pipe is: not kept */
+    CHECK(checkpoint_has_written(&checkpoint, 2, &picture.key, "b.png", &written, &error) && !written);
+    CHECK(checkpoint_update(&checkpoint, &second, film, true, &tiles, &error));
     CHECK_EQ_INT(tiles, 2);
-    CHECK(keeper_finish(&keeper, false, &error));
+    CHECK(checkpoint_finish(&checkpoint, false, &error));
     CHECK(access(path, F_OK) == 0);
 }
 
@@ -426,7 +427,7 @@ TEST(a_keeper_goes_on_only_with_what_is_the_same) {
     struct tile_picture second = picture;
     struct options options = options_for(path, true);
     struct error error;
-    struct keeper keeper;
+    struct checkpoint checkpoint;
     char notice[256];
     bool written;
     uint32_t tiles;
@@ -441,24 +442,24 @@ TEST(a_keeper_goes_on_only_with_what_is_the_same) {
         test_write_text(first, what == 2 ? "another picture" : "a picture");
         if (what == 3)
             CHECK(remove(first) == 0);
-        keeper_init(&keeper, &options, files_for(&options));
-        CHECK(keeper_open(&keeper, first, notice, &error) && keeper.has_old && keeper.old_number == 2);
-        CHECK(keeper_open(&keeper, first, notice, &error)); /* it is open */
-        bool ok = keeper_has_written(&keeper, 1, &key, what == 4 ? "other.png" : first, &written, &error);
+        checkpoint_init(&checkpoint, &options, files_for(&options));
+        CHECK(checkpoint_open(&checkpoint, first, notice, &error) && checkpoint.has_old && checkpoint.old_number == 2);
+        CHECK(checkpoint_open(&checkpoint, first, notice, &error)); /* it is open */
+        bool ok = checkpoint_has_written(&checkpoint, 1, &key, what == 4 ? "other.png" : first, &written, &error);
         CHECK(ok == (what != 1));
         CHECK(!ok || written == (what == 0 || what >= 5));
         if (!ok) {
             CHECK(strstr(error.text, "cannot be gone on with: the scene, or a file it reads, has changed") != NULL);
-            CHECK(!keeper_open(&keeper, first, notice, &error));
+            CHECK(!checkpoint_open(&checkpoint, first, notice, &error));
         }
         /* The first picture is not the one that has tiles; then the second, another shard of it, another picture. */
         if (ok)
-            CHECK(keeper_restore(&keeper, &picture, &back, notice, &error) && notice[0] == '\0');
+            CHECK(checkpoint_restore(&checkpoint, &picture, &back, notice, &error) && notice[0] == '\0');
         second.shard = what == 5 ? 2 : 1;
         if (what == 5)
             second.shards = 1;
         if (ok) {
-            bool restored = keeper_restore(&keeper, &second, &back, notice, &error);
+            bool restored = checkpoint_restore(&checkpoint, &second, &back, notice, &error);
             CHECK(restored == (what != 5 && what != 6));
             CHECK(!restored || strstr(notice, "of 4 tiles of ") != NULL);
             if (!restored)
@@ -466,8 +467,8 @@ TEST(a_keeper_goes_on_only_with_what_is_the_same) {
                              what == 5 ? "it is another part of the picture" : "it was made with other options"));
         }
         /* Until the run has come as far as the one before, the file is not written again. */
-        CHECK(keeper_tick(&keeper, &second, &film, true, &tiles, &error));
-        CHECK(keeper_finish(&keeper, what == 7, &error));
+        CHECK(checkpoint_update(&checkpoint, &second, &film, true, &tiles, &error));
+        CHECK(checkpoint_finish(&checkpoint, what == 7, &error));
         CHECK((access(path, F_OK) == 0) == (what != 7)); /* all is written: the file goes */
     }
     free(film.pixels);
@@ -478,16 +479,16 @@ TEST(a_keeper_refuses_the_checkpoint_of_somebody_else) {
     const char *path = test_path("d.tiles"), *first = test_path("first.png");
     struct film film = half_film();
     struct options options = options_for(path, false);
-    struct keeper keeper;
+    struct checkpoint checkpoint;
     struct error error;
     char notice[256];
     leave_checkpoint(path, first, &film);
-    keeper_init(&keeper, &options, files_for(&options));
-    CHECK(!keeper_open(&keeper, first, notice, &error));
+    checkpoint_init(&checkpoint, &options, files_for(&options));
+    CHECK(!checkpoint_open(&checkpoint, first, notice, &error));
     CHECK(error.kind == ERROR_USAGE && strstr(error.text, "--resume goes on with it, or remove it"));
     options = options_for(test_path("none.tiles"), true);
-    keeper_init(&keeper, &options, files_for(&options));
-    CHECK(keeper_open(&keeper, first, notice, &error) && strstr(notice, "the run starts from its beginning"));
+    checkpoint_init(&checkpoint, &options, files_for(&options));
+    CHECK(checkpoint_open(&checkpoint, first, notice, &error) && strstr(notice, "the run starts from its beginning"));
     free(film.pixels);
 }
 
@@ -496,19 +497,19 @@ TEST(a_checkpoint_that_cannot_be_written_is_told_once_and_again_when_asked_for) 
     const char *file = test_path("no");
     struct film film = half_film();
     const struct tile_picture picture = some_picture();
-    struct keeper keeper;
+    struct checkpoint checkpoint;
     struct error error;
     char notice[256];
     uint32_t tiles = 77;
     bool written;
     test_write_text(file, "a file where a folder must be");
-    keeper_init(&keeper, &options, files_for(&options));
-    CHECK(keeper_open(&keeper, "a.png", notice, &error));
-    CHECK(keeper_has_written(&keeper, 1, &picture.key, "a.png", &written, &error));
-    CHECK(!keeper_tick(&keeper, &picture, &film, false, &tiles, &error));
-    keeper.took = keeper.written_at = 0; /* as if long ago */
-    CHECK(keeper_tick(&keeper, &picture, &film, false, &tiles, &error));
-    CHECK(!keeper_tick(&keeper, &picture, &film, true, &tiles, &error));
+    checkpoint_init(&checkpoint, &options, files_for(&options));
+    CHECK(checkpoint_open(&checkpoint, "a.png", notice, &error));
+    CHECK(checkpoint_has_written(&checkpoint, 1, &picture.key, "a.png", &written, &error));
+    CHECK(!checkpoint_update(&checkpoint, &picture, &film, false, &tiles, &error));
+    checkpoint.took = checkpoint.written_at = 0; /* as if long ago */
+    CHECK(checkpoint_update(&checkpoint, &picture, &film, false, &tiles, &error));
+    CHECK(!checkpoint_update(&checkpoint, &picture, &film, true, &tiles, &error));
     CHECK_EQ_INT(tiles, 77);
     free(film.pixels);
 }
@@ -528,19 +529,19 @@ TEST(any_allocation_or_call_may_fail_in_a_keeper) {
     second.number = 2;
     for (int kind = 0; kind < 2; kind++)
         for (uint64_t k = 1, over = 0; !over; k++) {
-            struct keeper keeper;
+            struct checkpoint checkpoint;
             bool written;
             leave_checkpoint(path, first, &film);
             uint64_t before = fault_count((enum fault_kind)kind);
             fault_at((enum fault_kind)kind, k);
-            keeper_init(&keeper, &options, files_for(&options));
-            bool ok = keeper_open(&keeper, first, notice, &error) &&
-                      keeper_has_written(&keeper, 1, &picture.key, first, &written, &error) &&
-                      keeper_has_written(&keeper, 2, &picture.key, "b.png", &written, &error) &&
-                      keeper_restore(&keeper, &second, &back, notice, &error) &&
-                      keeper_tick(&keeper, &second, &film, true, &tiles, &error) &&
-                      keeper_note_written(&keeper, 2, &picture.key, first, &error);
-            ok = keeper_finish(&keeper, false, &error) && ok;
+            checkpoint_init(&checkpoint, &options, files_for(&options));
+            bool ok = checkpoint_open(&checkpoint, first, notice, &error) &&
+                      checkpoint_has_written(&checkpoint, 1, &picture.key, first, &written, &error) &&
+                      checkpoint_has_written(&checkpoint, 2, &picture.key, "b.png", &written, &error) &&
+                      checkpoint_restore(&checkpoint, &second, &back, notice, &error) &&
+                      checkpoint_update(&checkpoint, &second, &film, true, &tiles, &error) &&
+                      checkpoint_note_written(&checkpoint, 2, &picture.key, first, &error);
+            ok = checkpoint_finish(&checkpoint, false, &error) && ok;
             fault_at((enum fault_kind)kind, 0);
             over = fault_count((enum fault_kind)kind) - before < k;
             CHECK(ok || error.text[0]);

@@ -21,14 +21,14 @@ static const char *at(const char *name) {
     return path;
 }
 
-struct desk_of_tests {
+struct output_of_tests {
     struct watch watch;
     double now;
 };
 
-static void watch_files(struct desk_of_tests *t, const char *const *names) {
+static void watch_files(struct output_of_tests *t, const char *const *names) {
     struct error error;
-    *t = (struct desk_of_tests){.now = 10};
+    *t = (struct output_of_tests){.now = 10};
     CHECK(watch_open(&t->watch, &error));
     for (; *names; names++) {
         struct file_version version;
@@ -38,14 +38,14 @@ static void watch_files(struct desk_of_tests *t, const char *const *names) {
 }
 
 /* After a quiet second. */
-static bool changed(struct desk_of_tests *t) {
+static bool changed(struct output_of_tests *t) {
     watch_read(&t->watch, t->now);
     t->now += 1;
     return watch_changed(&t->watch, t->now);
 }
 
 TEST(watch_tells_another_content_once_and_nothing_of_the_same_content) {
-    struct desk_of_tests t;
+    struct output_of_tests t;
     test_write_text(at("a.lua"), "one");
     test_write_text(at("b.obj"), "two");
     watch_files(&t, (const char *const[]){"a.lua", "b.obj", NULL});
@@ -64,7 +64,7 @@ TEST(watch_tells_another_content_once_and_nothing_of_the_same_content) {
 }
 
 TEST(watch_sees_files_that_are_renamed_over_and_files_behind_links) {
-    struct desk_of_tests t;
+    struct output_of_tests t;
     CHECK(system(NULL) != 0);
     char line[9000];
     (void)snprintf(line, sizeof line, "cd '%s' && mkdir far && echo 1 >far/real.lua && ln -s far/real.lua link.lua",
@@ -89,13 +89,13 @@ TEST(watch_sees_files_that_are_renamed_over_and_files_behind_links) {
 }
 
 TEST(watch_waits_until_editors_are_done_and_minds_what_changed_before_it_looked) {
-    struct desk_of_tests t;
+    struct output_of_tests t;
     test_write_text(at("a.lua"), "one");
     struct file_version version;
     struct error error;
     CHECK(file_version_of(at("a.lua"), NULL, &version));
     test_write_text(at("a.lua"), "it changed while it was read");
-    t = (struct desk_of_tests){.now = 10};
+    t = (struct output_of_tests){.now = 10};
     CHECK(watch_open(&t.watch, &error));
     CHECK(watch_add(&t.watch, at("a.lua"), &version, t.now));
     CHECK(!watch_changed(&t.watch, t.now + 0.01));
@@ -111,7 +111,7 @@ TEST(watch_waits_until_editors_are_done_and_minds_what_changed_before_it_looked)
 }
 
 TEST(watch_of_a_run_that_failed_minds_files_that_appear) {
-    struct desk_of_tests t;
+    struct output_of_tests t;
     test_write_text(at("a.lua"), "require 'b'");
     watch_files(&t, (const char *const[]){"a.lua", NULL});
     CHECK(!changed(&t));

@@ -13,21 +13,21 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static struct walk some_walk(void) {
-    struct walk walk;
+static struct fly_camera some_walk(void) {
+    struct fly_camera fly_camera;
     const struct camera camera = {{1, 2, 3}, {1, -0.5, -2}, {0, 1, 0}, 50};
     const struct box bounds = {{-4, -4, -4}, {4, 4, 4}};
-    walk_begin(&walk, &camera, &bounds);
-    return walk;
+    fly_camera_begin(&fly_camera, &camera, &bounds);
+    return fly_camera;
 }
 
 static double apart(struct vec3 a, struct vec3 b) {
     return vec3_length(vec3_sub(a, b));
 }
 
-TEST(walk_begins_with_the_camera_of_the_script) {
-    struct walk walk = some_walk();
-    struct camera camera = walk_camera(&walk);
+TEST(fly_camera_begins_with_the_camera_of_the_script) {
+    struct fly_camera fly_camera = some_walk();
+    struct camera camera = fly_camera_camera(&fly_camera);
     CHECK_NEAR(apart(camera.eye, vec3_make(1, 2, 3)), 0, 0);
     CHECK_NEAR(apart(camera.view, vec3_normalize(vec3_make(1, -0.5, -2))), 0, 1e-15);
     CHECK_NEAR(vec3_dot(camera.view, camera.up), 0, 1e-15);
@@ -35,73 +35,73 @@ TEST(walk_begins_with_the_camera_of_the_script) {
     CHECK_NEAR(camera.fov, 50, 0);
 }
 
-TEST(walk_keeps_a_proper_orientation_through_a_million_turns) {
-    struct walk walk = some_walk();
+TEST(fly_camera_keeps_a_proper_orientation_through_a_million_turns) {
+    struct fly_camera fly_camera = some_walk();
     struct test_random random = {3};
     for (int i = 0; i < 1000000; i++)
-        walk_look(&walk, test_uniform(&random, -0.2, 0.2), test_uniform(&random, -0.2, 0.2));
-    struct camera camera = walk_camera(&walk);
+        fly_camera_turn(&fly_camera, test_uniform(&random, -0.2, 0.2), test_uniform(&random, -0.2, 0.2));
+    struct camera camera = fly_camera_camera(&fly_camera);
     CHECK_NEAR(vec3_length(camera.view), 1, 1e-12);
     CHECK_NEAR(vec3_length(camera.up), 1, 1e-12);
     CHECK_NEAR(vec3_dot(camera.view, camera.up), 0, 1e-12);
 }
 
-TEST(walk_looks_straight_up_and_over_without_trouble) {
-    struct walk walk;
+TEST(fly_camera_looks_straight_up_and_over_without_trouble) {
+    struct fly_camera fly_camera;
     const struct camera camera = {{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 90};
     const struct box bounds = {{-1, -1, -1}, {1, 1, 1}};
-    walk_begin(&walk, &camera, &bounds);
+    fly_camera_begin(&fly_camera, &camera, &bounds);
     for (int i = 1; i <= 36; i++) { /* ten degrees a step, once round */
-        walk_look(&walk, 0, -10.0 / 90);
+        fly_camera_turn(&fly_camera, 0, -10.0 / 90);
         double a = i * 10 * M_PI / 180;
-        CHECK_NEAR(apart(walk_camera(&walk).view, vec3_make(0, sin(a), -cos(a))), 0, 1e-12);
+        CHECK_NEAR(apart(fly_camera_camera(&fly_camera).view, vec3_make(0, sin(a), -cos(a))), 0, 1e-12);
     }
 }
 
-TEST(walk_goes_as_far_in_a_hundred_steps_as_in_one) {
-    struct walk fine = some_walk(), coarse = some_walk();
-    fine.down[WALK_FORWARD] = fine.down[WALK_RIGHT] = coarse.down[WALK_FORWARD] = coarse.down[WALK_RIGHT] = true;
+TEST(fly_camera_goes_as_far_in_a_hundred_steps_as_in_one) {
+    struct fly_camera fine = some_walk(), coarse = some_walk();
+    fine.down[FLY_FORWARD] = fine.down[FLY_RIGHT] = coarse.down[FLY_FORWARD] = coarse.down[FLY_RIGHT] = true;
     for (int i = 0; i < 100; i++)
-        CHECK(walk_step(&fine, 0.01));
-    CHECK(walk_step(&coarse, 1));
-    CHECK_NEAR(apart(fine.pose.place, coarse.pose.place), 0, 1e-12);
-    CHECK_NEAR(apart(coarse.pose.place, coarse.home.place), coarse.speed, 1e-12);
-    struct walk fast = some_walk();
-    fast.down[WALK_FORWARD] = fast.down[WALK_FAST] = true;
-    CHECK(walk_step(&fast, 1));
-    CHECK_NEAR(apart(fast.pose.place, fast.home.place), 4 * fast.speed, 1e-12);
-    walk_home(&fast);
-    CHECK_NEAR(apart(fast.pose.place, vec3_make(1, 2, 3)), 0, 0);
+        CHECK(fly_camera_step(&fine, 0.01));
+    CHECK(fly_camera_step(&coarse, 1));
+    CHECK_NEAR(apart(fine.pose.position, coarse.pose.position), 0, 1e-12);
+    CHECK_NEAR(apart(coarse.pose.position, coarse.home.position), coarse.speed, 1e-12);
+    struct fly_camera fast = some_walk();
+    fast.down[FLY_FORWARD] = fast.down[FLY_FAST] = true;
+    CHECK(fly_camera_step(&fast, 1));
+    CHECK_NEAR(apart(fast.pose.position, fast.home.position), 4 * fast.speed, 1e-12);
+    fly_camera_home(&fast);
+    CHECK_NEAR(apart(fast.pose.position, vec3_make(1, 2, 3)), 0, 0);
 }
 
-TEST(walk_round_the_centre_keeps_its_distance_and_its_place_in_the_picture) {
-    struct walk walk = some_walk();
-    struct camera before = walk_camera(&walk);
-    struct vec3 right = vec3_cross(before.view, before.up), to = vec3_sub(walk.centre, before.eye);
+TEST(fly_camera_round_the_centre_keeps_its_distance_and_its_place_in_the_picture) {
+    struct fly_camera fly_camera = some_walk();
+    struct camera before = fly_camera_camera(&fly_camera);
+    struct vec3 right = vec3_cross(before.view, before.up), to = vec3_sub(fly_camera.centre, before.eye);
     for (int i = 0; i < 50; i++)
-        walk_orbit(&walk, 0.07, -0.03);
-    struct camera after = walk_camera(&walk);
-    struct vec3 right_after = vec3_cross(after.view, after.up), to_after = vec3_sub(walk.centre, after.eye);
+        fly_camera_orbit(&fly_camera, 0.07, -0.03);
+    struct camera after = fly_camera_camera(&fly_camera);
+    struct vec3 right_after = vec3_cross(after.view, after.up), to_after = vec3_sub(fly_camera.centre, after.eye);
     CHECK(apart(before.eye, after.eye) > 0.1);
     CHECK_NEAR(vec3_dot(to, right), vec3_dot(to_after, right_after), 1e-9);
     CHECK_NEAR(vec3_dot(to, before.up), vec3_dot(to_after, after.up), 1e-9);
     CHECK_NEAR(vec3_dot(to, before.view), vec3_dot(to_after, after.view), 1e-9);
 }
 
-TEST(walk_levels_the_horizon_and_keeps_where_it_looks) {
-    struct walk walk = some_walk();
-    walk_roll(&walk, 40);
-    struct vec3 view = walk_camera(&walk).view;
-    CHECK(fabs(vec3_cross(view, walk_camera(&walk).up).y) > 0.1);
-    walk_level(&walk);
-    CHECK_NEAR(vec3_cross(walk_camera(&walk).view, walk_camera(&walk).up).y, 0, 1e-12);
-    CHECK_NEAR(apart(walk_camera(&walk).view, view), 0, 1e-12);
-    walk_save(&walk, 3);
-    struct vec3 place = walk.pose.place;
-    walk.down[WALK_BACK] = true;
-    CHECK(walk_step(&walk, 2));
-    CHECK(!walk_recall(&walk, 4) && walk_recall(&walk, 3));
-    CHECK_NEAR(apart(walk.pose.place, place), 0, 0);
+TEST(fly_camera_levels_the_horizon_and_keeps_where_it_looks) {
+    struct fly_camera fly_camera = some_walk();
+    fly_camera_roll(&fly_camera, 40);
+    struct vec3 view = fly_camera_camera(&fly_camera).view;
+    CHECK(fabs(vec3_cross(view, fly_camera_camera(&fly_camera).up).y) > 0.1);
+    fly_camera_level(&fly_camera);
+    CHECK_NEAR(vec3_cross(fly_camera_camera(&fly_camera).view, fly_camera_camera(&fly_camera).up).y, 0, 1e-12);
+    CHECK_NEAR(apart(fly_camera_camera(&fly_camera).view, view), 0, 1e-12);
+    fly_camera_save(&fly_camera, 3);
+    struct vec3 layout = fly_camera.pose.position;
+    fly_camera.down[FLY_BACK] = true;
+    CHECK(fly_camera_step(&fly_camera, 2));
+    CHECK(!fly_camera_recall(&fly_camera, 4) && fly_camera_recall(&fly_camera, 3));
+    CHECK_NEAR(apart(fly_camera.pose.position, layout), 0, 0);
 }
 
 /* A window without a screen: the test says what people do. */
@@ -152,32 +152,32 @@ static void key(struct fake *fake, int code, bool down) {
 struct table {
     struct fake fake;
     struct window_driver driver;
-    struct live live;
+    struct viewer viewer;
     struct picture_request request;
     void *block;
     double now;
 };
 
-static enum live_order step(struct table *t) {
+static enum viewer_action step(struct table *t) {
     t->now += 0.02;
-    return live_step(&t->live, t->now);
+    return viewer_step(&t->viewer, t->now);
 }
 
-static void tell_news(struct table *t, const struct studio_news *news) {
-    live_take_news(&t->live, news, t->now);
+static void tell_news(struct table *t, const struct preview_reply *reply) {
+    viewer_take_reply(&t->viewer, reply, t->now);
 }
 
 /* The child has built the world: the first order is the coarsest pass. */
 static void build(struct table *t) {
-    struct studio_news news = {.kind = NEWS_BUILT, .light_count = 1, .world_from_root = affine_identity()};
-    news.report.bounds = (struct box){{-1, -1, -1}, {1, 1, 1}};
-    news.lights[0] = (struct told_light){
+    struct preview_reply reply = {.kind = REPLY_BUILT, .light_count = 1, .world_from_root = affine_identity()};
+    reply.report.bounds = (struct box){{-1, -1, -1}, {1, 1, 1}};
+    reply.lights[0] = (struct light_info){
         .kind = LIGHT_POINT, .placed = true, .position = {0, 1, 0}, .colour = {1, 1, 1}, .moves = true};
-    memcpy(news.root_name, "root", 5);
-    tell_news(t, &news);
-    CHECK_EQ_INT(step(t), LIVE_ORDER);
-    CHECK_EQ_INT(t->live.order.kind, ORDER_PASS);
-    CHECK(t->live.view.divide == 16 && t->live.view.plain && t->live.view.own);
+    memcpy(reply.root_name, "root", 5);
+    tell_news(t, &reply);
+    CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
+    CHECK_EQ_INT(t->viewer.command.kind, COMMAND_PASS);
+    CHECK(t->viewer.view.divide == 16 && t->viewer.view.plain && t->viewer.view.own);
 }
 
 static void begin(struct table *t) {
@@ -193,13 +193,13 @@ static void begin(struct table *t) {
                                        fake_title, fake_grab, fake_nothing, fake_nothing};
     CHECK(film_size(100, 70, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
     t->block = mem_alloc_zero(1, bytes);
-    CHECK(live_begin(&t->live, &t->driver, &t->request, t->block, "x.png", t->now, &error));
+    CHECK(viewer_begin(&t->viewer, &t->driver, &t->request, t->block, "x.png", t->now, &error));
     t->fake.queue[t->fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 400, .y = 280, .density = 1};
     build(t);
 }
 
 static void end(struct table *t) {
-    live_end(&t->live);
+    viewer_end(&t->viewer);
     CHECK(!t->fake.open);
     mem_free(t->block);
 }
@@ -208,42 +208,42 @@ static void end(struct table *t) {
 static void finish_pass(struct table *t, double seconds, bool stopped) {
     const struct picture_report report = {.threads = 2, .bounds = {{-1, -1, -1}, {1, 1, 1}}, .stopped = stopped};
     t->now += seconds;
-    for (uint32_t tile = 0; !stopped && tile < film_tile_count(&t->live.film); tile++)
-        atomic_store(&t->live.film.tiles[tile], FILM_TILE_DONE);
-    tell_news(t, &(struct studio_news){.kind = NEWS_PASS, .report = report});
+    for (uint32_t tile = 0; !stopped && tile < film_tile_count(&t->viewer.film); tile++)
+        atomic_store(&t->viewer.film.tiles[tile], FILM_TILE_DONE);
+    tell_news(t, &(struct preview_reply){.kind = REPLY_PASS, .report = report});
 }
 
 /* To the script's picture, whole. */
 static void go_to_the_end(struct table *t) {
     finish_pass(t, 0.02, false);
-    CHECK_EQ_INT(step(t), LIVE_ORDER);
-    CHECK(t->live.view.plain && t->live.view.divide == 4 && t->live.view.own);
-    CHECK_EQ_INT(step(t), LIVE_NOTHING);
+    CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
+    CHECK(t->viewer.view.plain && t->viewer.view.divide == 4 && t->viewer.view.own);
+    CHECK_EQ_INT(step(t), VIEWER_NOTHING);
     finish_pass(t, 0.1, false);
-    CHECK_EQ_INT(step(t), LIVE_ORDER);
-    CHECK(!t->live.view.plain && t->live.view.divide == 1 && t->live.view.own);
+    CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
+    CHECK(!t->viewer.view.plain && t->viewer.view.divide == 1 && t->viewer.view.own);
     finish_pass(t, 1, false);
-    CHECK_EQ_INT(step(t), LIVE_WRITE);
-    CHECK_EQ_INT(step(t), LIVE_NOTHING);
+    CHECK_EQ_INT(step(t), VIEWER_WRITE_PICTURE);
+    CHECK_EQ_INT(step(t), VIEWER_NOTHING);
 }
 
 TEST(window_shows_coarse_passes_first_and_writes_the_picture_of_the_script_once) {
     struct table t;
     begin(&t);
-    CHECK_EQ_INT(t.live.film.width, 7);
-    CHECK_EQ_INT(t.live.film.height, 5);
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    CHECK_EQ_INT(t.viewer.film.width, 7);
+    CHECK_EQ_INT(t.viewer.film.height, 5);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     go_to_the_end(&t);
     CHECK(t.fake.shown >= 3);
     key(&t.fake, 'r', true);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
-    CHECK(t.live.view.divide == 16 && t.live.view.own);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(t.viewer.view.divide == 16 && t.viewer.view.own);
     finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     end(&t);
 }
 
@@ -252,20 +252,20 @@ TEST(window_walks_in_coarse_passes_and_refines_when_still) {
     begin(&t);
     go_to_the_end(&t);
     key(&t.fake, WINDOW_ARROW_UP, true);
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING); /* no time has gone by yet */
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING); /* no time has gone by yet */
     for (int i = 0; i < 5; i++) {
-        CHECK_EQ_INT(step(&t), LIVE_ORDER);
-        CHECK(t.live.view.plain && t.live.view.divide > 1 && !t.live.view.own);
-        CHECK(t.live.view.camera.eye.z < 5);
-        CHECK_EQ_INT(step(&t), LIVE_NOTHING); /* a coarse pass is worth its end */
+        CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+        CHECK(t.viewer.view.plain && t.viewer.view.divide > 1 && !t.viewer.view.own);
+        CHECK(t.viewer.view.camera.eye.z < 5);
+        CHECK_EQ_INT(step(&t), VIEWER_NOTHING); /* a coarse pass is worth its end */
         finish_pass(&t, 0.03, false);
     }
     key(&t.fake, WINDOW_ARROW_UP, false);
-    while (t.live.view.plain) {
-        CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    while (t.viewer.view.plain) {
+        CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
         finish_pass(&t, 0.03, false);
     }
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING); /* where somebody has walked to is not the script's picture */
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING); /* where somebody has walked to is not the script's picture */
     end(&t);
 }
 
@@ -273,16 +273,16 @@ TEST(window_stops_a_fine_pass_for_somebody_who_walks_on) {
     struct table t;
     begin(&t);
     finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     finish_pass(&t, 0.1, false);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
-    CHECK(!t.live.view.plain);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(!t.viewer.view.plain);
     t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_WHEEL, .y = 2};
-    CHECK_EQ_INT(step(&t), LIVE_STOP);
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    CHECK_EQ_INT(step(&t), VIEWER_STOP_PASS);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     finish_pass(&t, 0.001, true);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
-    CHECK(t.live.view.plain && t.live.view.camera.fov < 40);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(t.viewer.view.plain && t.viewer.view.camera.fov < 40);
     end(&t);
 }
 
@@ -294,8 +294,8 @@ TEST(window_makes_passes_as_coarse_as_thirty_a_second_need) {
     (void)step(&t);
     uint32_t divide = 0;
     for (int i = 0; i < 12; i++) {
-        CHECK_EQ_INT(step(&t), LIVE_ORDER);
-        divide = t.live.view.divide;
+        CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+        divide = t.viewer.view.divide;
         finish_pass(&t, 0.8 / (divide * divide), false); /* a scene that takes 0.8 s at one sample a pixel */
     }
     CHECK_EQ_INT(divide, 5); /* 0.8 / 25 s is below a thirtieth, 0.8 / 16 is not */
@@ -307,20 +307,20 @@ TEST(window_keys_mean_walking_only_while_the_mouse_looks) {
     begin(&t);
     go_to_the_end(&t);
     key(&t.fake, 's', true);
-    CHECK_EQ_INT(step(&t), LIVE_SAVE);
+    CHECK_EQ_INT(step(&t), VIEWER_SAVE_IMAGE);
     key(&t.fake, 'v', true);
-    CHECK_EQ_INT(step(&t), LIVE_RECORD);
+    CHECK_EQ_INT(step(&t), VIEWER_SAVE_CAMERA);
     key(&t.fake, WINDOW_SPACE, true);
     key(&t.fake, 's', true);
     (void)step(&t);
     CHECK(t.fake.grabbed);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
-    CHECK(t.live.view.camera.eye.z > 5);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(t.viewer.view.camera.eye.z > 5);
     key(&t.fake, WINDOW_ESCAPE, true);
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
-    CHECK(!t.fake.grabbed && !t.live.walk.down[WALK_BACK]);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    CHECK(!t.fake.grabbed && !t.viewer.fly_camera.down[FLY_BACK]);
     key(&t.fake, 'q', true);
-    CHECK_EQ_INT(step(&t), LIVE_QUIT);
+    CHECK_EQ_INT(step(&t), VIEWER_QUIT);
     end(&t);
 }
 
@@ -424,36 +424,36 @@ TEST(window_menu_renders_again_and_quits_by_clicks_that_do_not_turn_the_camera) 
     begin(&t);
     go_to_the_end(&t);
     click(&t, 10, 6); /* Render */
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
-    CHECK(t.live.view.divide == 16 && t.live.view.own && !t.live.pressed);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(t.viewer.view.divide == 16 && t.viewer.view.own && !t.viewer.pressed);
     /* Pressed on a button and let go elsewhere: not used. */
     t.fake.queue[t.fake.count++] = mouse(WINDOW_PRESS, 60, 6);
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     t.fake.queue[t.fake.count++] = mouse(WINDOW_MOVE, 200, 200);
     t.fake.queue[t.fake.count++] = mouse(WINDOW_RELEASE, 200, 200);
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
-    CHECK(!t.live.flown);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    CHECK(!t.viewer.camera_moved);
     click(&t, 60, 6); /* Quit */
-    CHECK_EQ_INT(step(&t), LIVE_QUIT);
+    CHECK_EQ_INT(step(&t), VIEWER_QUIT);
     end(&t);
 }
 
 TEST(window_places_the_picture_in_its_middle_for_any_size_and_density) {
     struct table t;
     begin(&t);
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
-    const struct live_place *place = &t.live.place;
-    CHECK(place->left == 0 && place->top == 0 && place->shown_width == 400 && place->shown_height == 280);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    const struct window_layout *layout = &t.viewer.layout;
+    CHECK(layout->left == 0 && layout->top == 0 && layout->shown_width == 400 && layout->shown_height == 280);
     t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 1600, .y = 700, .density = 2};
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
-    CHECK(place->left == 300 && place->top == 0 && place->shown_width == 1000 && place->shown_height == 700);
-    CHECK_EQ_INT(t.live.panel.paper.scale, 2); /* letters as large as before to the eye */
-    CHECK(t.live.panel.paper.width == 1600 && t.live.panel.paper.height == 700);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    CHECK(layout->left == 300 && layout->top == 0 && layout->shown_width == 1000 && layout->shown_height == 700);
+    CHECK_EQ_INT(t.viewer.panel.canvas.scale, 2); /* letters as large as before to the eye */
+    CHECK(t.viewer.panel.canvas.width == 1600 && t.viewer.panel.canvas.height == 700);
     t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 50, .y = 90, .density = 1};
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
-    CHECK(place->left == 0 && place->top == 27 && place->shown_width == 50 && place->shown_height == 35);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    CHECK(layout->left == 0 && layout->top == 27 && layout->shown_width == 50 && layout->shown_height == 35);
     t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 0, .y = 0, .density = 1};
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     end(&t);
 }
 
@@ -461,18 +461,18 @@ TEST(window_tells_how_long_the_picture_will_take) {
     struct table t;
     struct control control = {.build_step = 0};
     begin(&t);
-    t.live.control = &control;
+    t.viewer.control = &control;
     outlook_reset(&control.outlook, true);
     atomic_store(&control.outlook.begun, (uint64_t)((t.now - 30) * 1e9));
     outlook_tell(&control.outlook, 1, 3, (uint64_t)(t.now * 1e9));
     finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     t.now += 1;
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
-    CHECK(t.live.view.plain && strstr(t.fake.title, "(coarse)") && !strstr(t.fake.title, "left"));
-    for (int i = 0; i < 9 && t.live.view.plain; i++) {
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    CHECK(t.viewer.view.plain && strstr(t.fake.title, "(coarse)") && !strstr(t.fake.title, "left"));
+    for (int i = 0; i < 9 && t.viewer.view.plain; i++) {
         finish_pass(&t, 1, false);
-        CHECK_EQ_INT(step(&t), LIVE_ORDER);
+        CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     }
     atomic_store(&control.outlook.begun, (uint64_t)((t.now - 30) * 1e9));
     outlook_tell(&control.outlook, 1, 3, (uint64_t)(t.now * 1e9));
@@ -486,36 +486,36 @@ TEST(window_tells_how_far_building_is_and_what_went_wrong) {
     struct table t;
     struct control control = {.build_step = 3, .build_done = 250};
     begin(&t);
-    t.live.control = &control;
+    t.viewer.control = &control;
     t.now += 1;
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK(strstr(t.fake.title, "building, step 3: 25 %") != NULL);
     control.build_step = 0;
     finish_pass(&t, 1, false);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     CHECK(strstr(t.fake.title, "triangles") && strstr(t.fake.title, "rays/s") && strstr(t.fake.title, "frames/s"));
-    live_tell(&t.live, "scene.lua:3: no such thing\nstack traceback");
+    viewer_show_message(&t.viewer, "scene.lua:3: no such thing\nstack traceback");
     (void)step(&t);
     CHECK_TEXT(t.fake.title, "scene.lua:3: no such thing");
-    live_detach(&t.live);
+    viewer_detach(&t.viewer);
     (void)step(&t);
     key(&t.fake, 'r', true); /* there is nothing to render */
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     key(&t.fake, 's', true); /* but what is shown can be kept */
-    CHECK_EQ_INT(step(&t), LIVE_SAVE);
+    CHECK_EQ_INT(step(&t), VIEWER_SAVE_IMAGE);
     end(&t);
 }
 
-TEST(paper_letters_keep_inside_their_cell_and_inside_the_paper) {
+TEST(canvas_letters_keep_inside_their_cell_and_inside_the_paper) {
     enum { W = 40, H = 30 };
     static uint8_t rgba[4 * W * H];
-    const struct paper paper = {rgba, W, H, 1};
-    const struct ink ink = {1, 2, 3, 255};
+    const struct canvas canvas = {rgba, W, H, 1};
+    const struct canvas_colour colour = {1, 2, 3, 255};
     for (int c = 33; c < 127; c++) {
         const char text[2] = {(char)c, '\0'};
         int dots = 0;
-        paper_clear(&paper);
-        paper_text(&paper, 10, 10, text, ink);
+        canvas_clear(&canvas);
+        canvas_text(&canvas, 10, 10, text, colour);
         for (int i = 0; i < W * H; i++) {
             bool set = rgba[4 * i + 3] != 0;
             dots += set;
@@ -523,43 +523,43 @@ TEST(paper_letters_keep_inside_their_cell_and_inside_the_paper) {
         }
         CHECK(dots >= 2 && dots < 30);
     }
-    CHECK_EQ_INT(paper_text_width(&paper, "a\xc3\xa4?"), 18); /* one cell for each character */
-    paper_text(&paper, -3, -3, "ends", ink);
-    paper_text(&paper, W - 2, H - 2, "ends", ink);
-    paper_line(&paper, -1e9, 5, 1e9, 5, ink);
-    paper_line(&paper, -50, -50, 90, 90, ink);
+    CHECK_EQ_INT(canvas_text_width(&canvas, "a\xc3\xa4?"), 18); /* one cell for each character */
+    canvas_text(&canvas, -3, -3, "ends", colour);
+    canvas_text(&canvas, W - 2, H - 2, "ends", colour);
+    canvas_line(&canvas, -1e9, 5, 1e9, 5, colour);
+    canvas_line(&canvas, -50, -50, 90, 90, colour);
     CHECK_EQ_INT(rgba[4 * (20 * W + 20) + 3], 255);
 }
 
 TEST(panel_sliders_follow_the_mouse_that_holds_them_and_stop_at_their_ends) {
     static uint8_t rgba[4 * 100 * 20];
-    struct panel panel = {.paper = {rgba, 100, 20, 1}};
-    const struct ink ink = {9, 9, 9, 255};
+    struct panel panel = {.canvas = {rgba, 100, 20, 1}};
+    const struct canvas_colour colour = {9, 9, 9, 255};
     double value = 0.5;
     panel.mouse_x = 30;
     panel.mouse_y = 5;
     panel_begin(&panel);
-    CHECK(!panel_slider(&panel, 10, 2, 80, 0, 1, ink, &value)); /* the mouse is on it, no button is down */
+    CHECK(!panel_slider(&panel, 10, 2, 80, 0, 1, colour, &value)); /* the mouse is on it, no button is down */
     panel_end(&panel);
     panel.down = panel.pressed = true;
     panel_begin(&panel);
-    CHECK(panel_slider(&panel, 10, 2, 80, 0, 1, ink, &value));
+    CHECK(panel_slider(&panel, 10, 2, 80, 0, 1, colour, &value));
     panel_end(&panel);
     CHECK_NEAR(value, 0.25, 1e-12);
     panel.mouse_x = 500;
     panel.mouse_y = 19;
     panel_begin(&panel);
-    CHECK(panel_slider(&panel, 10, 2, 80, 0, 1, ink, &value));
+    CHECK(panel_slider(&panel, 10, 2, 80, 0, 1, colour, &value));
     panel_end(&panel);
     CHECK_NEAR(value, 1, 0);
     panel.down = false;
     panel.released = true;
     panel_begin(&panel);
-    CHECK(!panel_slider(&panel, 10, 2, 80, 0, 1, ink, &value));
+    CHECK(!panel_slider(&panel, 10, 2, 80, 0, 1, colour, &value));
     panel_end(&panel);
     panel.mouse_x = 30;
     panel_begin(&panel);
-    CHECK(!panel_slider(&panel, 10, 2, 80, 0, 1, ink, &value));
+    CHECK(!panel_slider(&panel, 10, 2, 80, 0, 1, colour, &value));
     panel_end(&panel);
 }
 
@@ -590,12 +590,12 @@ static void enlarge(struct table *t) {
 /* Clicks into the middle of the picture, and lets the child answer. */
 static void pick_ball(struct table *t) {
     click(t, 400, 280);
-    CHECK_EQ_INT(step(t), LIVE_ORDER);
-    CHECK_EQ_INT(t->live.order.kind, ORDER_PICK);
-    CHECK(t->live.order.x == 50.5 && t->live.order.y == 35.5 && t->live.order.up == 0);
-    tell_news(t, &(struct studio_news){.kind = NEWS_PICKED, .picked = a_ball});
-    CHECK_EQ_INT(step(t), LIVE_NOTHING); /* the finished picture stays */
-    CHECK(t->live.selection.kind == SELECTED_NODE && t->live.complete);
+    CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
+    CHECK_EQ_INT(t->viewer.command.kind, COMMAND_PICK);
+    CHECK(t->viewer.command.x == 50.5 && t->viewer.command.y == 35.5 && t->viewer.command.up == 0);
+    tell_news(t, &(struct preview_reply){.kind = REPLY_PICKED, .picked = a_ball});
+    CHECK_EQ_INT(step(t), VIEWER_NOTHING); /* the finished picture stays */
+    CHECK(t->viewer.selection.kind == SELECTED_NODE && t->viewer.complete);
 }
 
 static void drag(struct table *t, double dx, double dy) {
@@ -610,22 +610,22 @@ static void drag(struct table *t, double dx, double dy) {
 }
 
 static void take_change(struct table *t) {
-    CHECK_EQ_INT(step(t), LIVE_ORDER);
-    CHECK_EQ_INT(t->live.order.kind, ORDER_CHANGE);
-    struct studio_news news = {.kind = NEWS_CHANGED, .light_count = 1};
-    news.lights[0] = (struct told_light){
+    CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
+    CHECK_EQ_INT(t->viewer.command.kind, COMMAND_CHANGE);
+    struct preview_reply reply = {.kind = REPLY_CHANGED, .light_count = 1};
+    reply.lights[0] = (struct light_info){
         .kind = LIGHT_POINT, .placed = true, .position = {0, 1, 0}, .colour = {1, 1, 1}, .moves = true};
-    tell_news(t, &news);
+    tell_news(t, &reply);
 }
 
 /* The passes after a change, to the finest. */
 static void refine(struct table *t) {
     do {
-        CHECK_EQ_INT(step(t), LIVE_ORDER);
-        CHECK_EQ_INT(t->live.order.kind, ORDER_PASS);
+        CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
+        CHECK_EQ_INT(t->viewer.command.kind, COMMAND_PASS);
         finish_pass(t, 0.02, false);
-    } while (t->live.view.plain);
-    CHECK_EQ_INT(step(t), LIVE_NOTHING);
+    } while (t->viewer.view.plain);
+    CHECK_EQ_INT(step(t), VIEWER_NOTHING);
 }
 
 TEST(window_clicks_ask_what_stands_there_and_orbits_go_round_it) {
@@ -634,12 +634,12 @@ TEST(window_clicks_ask_what_stands_there_and_orbits_go_round_it) {
     enlarge(&t);
     go_to_the_end(&t);
     pick_ball(&t);
-    CHECK(apart(t.live.walk.centre, vec3_make(0, 0, 1)) == 0);
-    struct vec3 before = t.live.walk.pose.place;
+    CHECK(apart(t.viewer.fly_camera.centre, vec3_make(0, 0, 1)) == 0);
+    struct vec3 before = t.viewer.fly_camera.pose.position;
     drag(&t, 40, 10);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
-    CHECK(t.live.flown && apart(t.live.walk.pose.place, before) > 0.1);
-    CHECK_NEAR(apart(t.live.walk.pose.place, vec3_make(0, 0, 1)), apart(before, vec3_make(0, 0, 1)), 1e-9);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(t.viewer.camera_moved && apart(t.viewer.fly_camera.pose.position, before) > 0.1);
+    CHECK_NEAR(apart(t.viewer.fly_camera.pose.position, vec3_make(0, 0, 1)), apart(before, vec3_make(0, 0, 1)), 1e-9);
     end(&t);
 }
 
@@ -648,22 +648,22 @@ TEST(window_that_is_asked_during_a_fine_pass_goes_on_with_it) {
     begin(&t);
     enlarge(&t);
     finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
-    CHECK(!t.live.view.plain);
-    atomic_store(&t.live.film.tiles[1], FILM_TILE_DONE);
-    atomic_store(&t.live.film.tiles[2], FILM_TILE_TAKEN);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(!t.viewer.view.plain);
+    atomic_store(&t.viewer.film.tiles[1], FILM_TILE_DONE);
+    atomic_store(&t.viewer.film.tiles[2], FILM_TILE_TAKEN);
     click(&t, 400, 280);
-    CHECK_EQ_INT(step(&t), LIVE_STOP);
+    CHECK_EQ_INT(step(&t), VIEWER_STOP_PASS);
     finish_pass(&t, 0.001, true);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
-    CHECK_EQ_INT(t.live.order.kind, ORDER_PICK);
-    tell_news(&t, &(struct studio_news){.kind = NEWS_PICKED, .picked = a_ball});
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
-    CHECK(t.live.order.kind == ORDER_PASS && !t.live.order.view.plain);
-    CHECK_EQ_INT(atomic_load(&t.live.film.tiles[1]), FILM_TILE_DONE);
-    CHECK_EQ_INT(atomic_load(&t.live.film.tiles[2]), FILM_TILE_WANTED);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK_EQ_INT(t.viewer.command.kind, COMMAND_PICK);
+    tell_news(&t, &(struct preview_reply){.kind = REPLY_PICKED, .picked = a_ball});
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(t.viewer.command.kind == COMMAND_PASS && !t.viewer.command.view.plain);
+    CHECK_EQ_INT(atomic_load(&t.viewer.film.tiles[1]), FILM_TILE_DONE);
+    CHECK_EQ_INT(atomic_load(&t.viewer.film.tiles[2]), FILM_TILE_WANTED);
     end(&t);
 }
 
@@ -676,24 +676,24 @@ TEST(window_moves_what_is_picked_by_the_way_of_the_mouse_and_undoes_it) {
     key(&t.fake, 'm', true);
     drag(&t, 40, -20);
     take_change(&t);
-    const struct change *change = &t.live.order.change;
-    CHECK(change->kind == CHANGE_PLACE && change->serial == 2 && t.live.order.present);
+    const struct change *change = &t.viewer.command.change;
+    CHECK(change->kind == CHANGE_PLACE && change->serial == 2 && t.viewer.command.present);
     CHECK_TEXT(change->name, "ball");
     /* The middle of the box is 5 from the eye; 560 pixels show 2 x 5 x tan 20 degrees there. */
     double pixel = 2 * 5 * tan(20 * M_PI / 180) / 560;
     CHECK_NEAR(change->numbers[3], 40 * pixel, 1e-9);
     CHECK_NEAR(change->numbers[7], 20 * pixel, 1e-9);
     CHECK_NEAR(change->numbers[11], 0, 1e-9);
-    CHECK(change->numbers[0] == 1 && t.live.edits.count == 1);
+    CHECK(change->numbers[0] == 1 && t.viewer.edits.count == 1);
     refine(&t);
-    CHECK(t.live.edited && !t.live.flown);
+    CHECK(t.viewer.edited && !t.viewer.camera_moved);
     t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_KEY, .key = 'z', .down = true, .control = true};
     take_change(&t);
-    CHECK(!t.live.order.present && t.live.edits.now.count == 0);
+    CHECK(!t.viewer.command.present && t.viewer.edits.now.count == 0);
     refine(&t);
     t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_KEY, .key = 'y', .down = true, .control = true};
     take_change(&t);
-    CHECK(t.live.order.present && t.live.order.change.numbers[3] > 0);
+    CHECK(t.viewer.command.present && t.viewer.command.change.numbers[3] > 0);
     end(&t);
 }
 
@@ -706,7 +706,7 @@ TEST(window_turns_and_sizes_about_the_middle_of_what_is_picked) {
     key(&t.fake, 't', true);
     drag(&t, 560, 0); /* the height of the picture: half a turn */
     take_change(&t);
-    const double *m = t.live.order.change.numbers;
+    const double *m = t.viewer.command.change.numbers;
     const double half_turn[12] = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0};
     for (int i = 0; i < 12; i++)
         CHECK_NEAR(m[i], half_turn[i], 1e-9);
@@ -714,9 +714,9 @@ TEST(window_turns_and_sizes_about_the_middle_of_what_is_picked) {
     key(&t.fake, 'z', true);
     drag(&t, 0, -280);
     take_change(&t);
-    CHECK_NEAR(t.live.order.change.numbers[0], -exp(1), 1e-9);
-    CHECK_NEAR(t.live.order.change.numbers[5], exp(1), 1e-9);
-    CHECK_EQ_INT(t.live.edits.count, 2);
+    CHECK_NEAR(t.viewer.command.change.numbers[0], -exp(1), 1e-9);
+    CHECK_NEAR(t.viewer.command.change.numbers[5], exp(1), 1e-9);
+    CHECK_EQ_INT(t.viewer.edits.count, 2);
     end(&t);
 }
 
@@ -728,29 +728,31 @@ TEST(window_deletes_and_adds_nodes_and_lights) {
     pick_ball(&t);
     key(&t.fake, WINDOW_DELETE, true);
     take_change(&t);
-    CHECK(t.live.order.change.kind == CHANGE_GONE && t.live.selection.kind == SELECTED_NOTHING);
+    CHECK(t.viewer.command.change.kind == CHANGE_GONE && t.viewer.selection.kind == SELECTED_NOTHING);
     refine(&t);
     click(&t, 101, 20); /* Sphere */
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
-    CHECK(t.live.order.kind == ORDER_CHANGE && t.live.order.change.kind == CHANGE_ADD && t.live.order.more);
-    CHECK(t.live.order.change.added == ADDED_SPHERE && t.live.order.change.serial == 0);
-    tell_news(&t, &(struct studio_news){.kind = NEWS_CHANGED});
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(t.viewer.command.kind == COMMAND_CHANGE && t.viewer.command.change.kind == CHANGE_ADD &&
+          t.viewer.command.more);
+    CHECK(t.viewer.command.change.added == ADDED_SPHERE && t.viewer.command.change.serial == 0);
+    tell_news(&t, &(struct preview_reply){.kind = REPLY_CHANGED});
     take_change(&t); /* and its place */
-    CHECK(t.live.order.change.kind == CHANGE_PLACE && t.live.order.change.serial == UINT32_MAX && !t.live.order.more);
-    CHECK(t.live.tool == TOOL_MOVE && t.live.selection.picked.serial == UINT32_MAX);
+    CHECK(t.viewer.command.change.kind == CHANGE_PLACE && t.viewer.command.change.serial == UINT32_MAX &&
+          !t.viewer.command.more);
+    CHECK(t.viewer.tool == TOOL_MOVE && t.viewer.selection.picked.serial == UINT32_MAX);
     refine(&t);
     click(&t, 400, 280 - 560 * 1 / (2 * 5 * tan(20 * M_PI / 180))); /* the light at {0, 1, 0} */
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
-    CHECK(t.live.selection.kind == SELECTED_LIGHT && t.live.selection.light == 1);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    CHECK(t.viewer.selection.kind == SELECTED_LIGHT && t.viewer.selection.light == 1);
     drag(&t, 28, 0);
     take_change(&t);
-    CHECK(t.live.order.change.kind == CHANGE_LIGHT && t.live.order.change.serial == 1);
-    CHECK_NEAR(t.live.order.change.numbers[0], 28 * 2 * 5 * tan(20 * M_PI / 180) / 560, 1e-9);
-    CHECK(t.live.order.change.numbers[3] == 1);
+    CHECK(t.viewer.command.change.kind == CHANGE_LIGHT && t.viewer.command.change.serial == 1);
+    CHECK_NEAR(t.viewer.command.change.numbers[0], 28 * 2 * 5 * tan(20 * M_PI / 180) / 560, 1e-9);
+    CHECK(t.viewer.command.change.numbers[3] == 1);
     refine(&t);
     key(&t.fake, WINDOW_DELETE, true);
     take_change(&t);
-    CHECK(t.live.order.change.kind == CHANGE_DARK);
+    CHECK(t.viewer.command.change.kind == CHANGE_DARK);
     end(&t);
 }
 
@@ -762,54 +764,54 @@ TEST(window_changes_parts_of_a_material_and_copies_them_to_one_of_its_own) {
     enlarge(&t);
     go_to_the_end(&t);
     pick_ball(&t);
-    live_look_now(&t.live, LOOK_KD, now);
+    viewer_material_now(&t.viewer, LOOK_KD, now);
     CHECK(now[0] == 0.5 && now[2] == 0.5);
-    live_look(&t.live, LOOK_REFLECT, half);
+    viewer_set_material(&t.viewer, LOOK_REFLECT, half);
     take_change(&t);
-    const struct change *change = &t.live.order.change;
+    const struct change *change = &t.viewer.command.change;
     CHECK(change->kind == CHANGE_MATERIAL && change->serial == 1 && change->part == LOOK_REFLECT);
     refine(&t);
-    live_own(&t.live);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
-    CHECK(change->kind == CHANGE_OWN && change->serial == 2 && change->source == 1 && t.live.order.more);
-    tell_news(&t, &(struct studio_news){.kind = NEWS_CHANGED});
+    viewer_make_own_material(&t.viewer);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(change->kind == CHANGE_OWN && change->serial == 2 && change->source == 1 && t.viewer.command.more);
+    tell_news(&t, &(struct preview_reply){.kind = REPLY_CHANGED});
     take_change(&t);
     CHECK(change->kind == CHANGE_MATERIAL && change->serial == OWN_SERIAL && change->numbers[0] == 0.5);
-    CHECK(t.live.selection.picked.material_serial == OWN_SERIAL && !t.live.selection.picked.can_own);
+    CHECK(t.viewer.selection.picked.material_serial == OWN_SERIAL && !t.viewer.selection.picked.can_own);
     refine(&t);
-    live_undo(&t.live, false);
-    live_undo(&t.live, false);
-    CHECK(t.live.selection.kind == SELECTED_NOTHING && t.live.edits.now.count == 1);
+    viewer_undo(&t.viewer, false);
+    viewer_undo(&t.viewer, false);
+    CHECK(t.viewer.selection.kind == SELECTED_NOTHING && t.viewer.edits.now.count == 1);
     end(&t);
 }
 
 TEST(window_goes_up_to_the_node_above_and_down_to_the_operand_below) {
     struct table t;
-    struct studio_news news = {.kind = NEWS_PICKED, .picked = a_ball};
+    struct preview_reply reply = {.kind = REPLY_PICKED, .picked = a_ball};
     begin(&t);
     enlarge(&t);
     go_to_the_end(&t);
     t.fake.queue[t.fake.count++] = mouse(WINDOW_PRESS, 400, 280);
     t.fake.queue[t.fake.count++] = mouse(WINDOW_RELEASE, 400, 280);
     t.fake.queue[1].control = true; /* as far down as it goes */
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
-    CHECK(t.live.order.kind == ORDER_PICK && t.live.order.up < -1000);
-    news.picked.up = -1;
-    news.picked.levels = 2;
-    tell_news(&t, &news);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(t.viewer.command.kind == COMMAND_PICK && t.viewer.command.up < -1000);
+    reply.picked.up = -1;
+    reply.picked.levels = 2;
+    tell_news(&t, &reply);
     key(&t.fake, WINDOW_PAGE_DOWN, true); /* there is nothing below */
     key(&t.fake, WINDOW_PAGE_UP, true);
     do
-        CHECK_EQ_INT(step(&t), LIVE_ORDER);
-    while (t.live.order.kind == ORDER_MARKS);
-    CHECK(t.live.order.kind == ORDER_PICK && t.live.order.up == 0 && t.live.order.x == 50.5);
-    news.picked.up = 0;
-    news.picked.levels = 1;
-    news.picked.below = 1;
-    tell_news(&t, &news);
+        CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    while (t.viewer.command.kind == COMMAND_OVERLAY);
+    CHECK(t.viewer.command.kind == COMMAND_PICK && t.viewer.command.up == 0 && t.viewer.command.x == 50.5);
+    reply.picked.up = 0;
+    reply.picked.levels = 1;
+    reply.picked.below = 1;
+    tell_news(&t, &reply);
     key(&t.fake, WINDOW_PAGE_DOWN, true);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
-    CHECK(t.live.order.kind == ORDER_PICK && t.live.order.up == -1);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(t.viewer.command.kind == COMMAND_PICK && t.viewer.command.up == -1);
     end(&t);
 }
 
@@ -817,48 +819,48 @@ TEST(window_asks_for_lights_until_it_knows_them_all_and_goes_through_them_by_key
     struct table t;
     begin(&t);
     enlarge(&t);
-    struct studio_news news = {.kind = NEWS_BUILT, .light_count = 70, .world_from_root = affine_identity()};
-    for (int i = 0; i < TOLD_LIGHTS; i++)
-        news.lights[i] = (struct told_light){.kind = LIGHT_DIRECTIONAL, .turns = true, .direction = {0, 0, -1}};
-    tell_news(&t, &news);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
-    for (uint32_t first = TOLD_LIGHTS; first < 70; first += TOLD_LIGHTS) {
+    struct preview_reply reply = {.kind = REPLY_BUILT, .light_count = 70, .world_from_root = affine_identity()};
+    for (int i = 0; i < LIGHTS_PER_MESSAGE; i++)
+        reply.lights[i] = (struct light_info){.kind = LIGHT_DIRECTIONAL, .turns = true, .direction = {0, 0, -1}};
+    tell_news(&t, &reply);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    for (uint32_t first = LIGHTS_PER_MESSAGE; first < 70; first += LIGHTS_PER_MESSAGE) {
         finish_pass(&t, 0.02, false);
-        CHECK_EQ_INT(step(&t), LIVE_ORDER);
-        CHECK(t.live.order.kind == ORDER_LIGHTS && t.live.order.first_light == first);
-        news.kind = NEWS_LIGHTS;
-        news.first_light = first;
-        tell_news(&t, &news);
-        CHECK_EQ_INT(step(&t), LIVE_ORDER);
+        CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+        CHECK(t.viewer.command.kind == COMMAND_LIGHTS && t.viewer.command.first_light == first);
+        reply.kind = REPLY_LIGHTS;
+        reply.first_light = first;
+        tell_news(&t, &reply);
+        CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     }
-    while (t.live.order.kind == ORDER_PASS && t.live.view.plain) {
+    while (t.viewer.command.kind == COMMAND_PASS && t.viewer.view.plain) {
         finish_pass(&t, 0.02, false);
-        CHECK_EQ_INT(step(&t), LIVE_ORDER);
+        CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     }
     finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), LIVE_WRITE);
-    CHECK_EQ_INT(t.live.lights_known, 70);
+    CHECK_EQ_INT(step(&t), VIEWER_WRITE_PICTURE);
+    CHECK_EQ_INT(t.viewer.lights_known, 70);
     key(&t.fake, 'i', true);
     key(&t.fake, ',', true);
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
-    CHECK(t.live.selection.kind == SELECTED_LIGHT && t.live.selection.light == 70 && t.live.lists_lights);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    CHECK(t.viewer.selection.kind == SELECTED_LIGHT && t.viewer.selection.light == 70 && t.viewer.lists_lights);
     key(&t.fake, '.', true);
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
-    CHECK_EQ_INT(t.live.selection.light, 1);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    CHECK_EQ_INT(t.viewer.selection.light, 1);
     key(&t.fake, ',', true);
     key(&t.fake, 't', true);
     drag(&t, 560, 0); /* the height of the picture: half a turn */
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
-    const struct change *change = &t.live.order.change;
-    CHECK(change->kind == CHANGE_LIGHT && change->serial == 70 && change->turns && t.live.order.first_light == 69);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    const struct change *change = &t.viewer.command.change;
+    CHECK(change->kind == CHANGE_LIGHT && change->serial == 70 && change->turns && t.viewer.command.first_light == 69);
     CHECK_NEAR(change->numbers[TURN_AT], -1, 1e-9);
     CHECK_NEAR(change->numbers[TURN_AT + 4], 1, 1e-9);
-    CHECK_NEAR(live_light(&t.live, 70)->direction.z, 1, 1e-9);
-    live_add(&t.live, ADDED_COPY); /* with what was changed of it */
-    CHECK(t.live.selection.light == 71 && t.live.light_count == 71 && t.live.tool == TOOL_TURN);
-    const struct change *copy = &t.live.edits.steps[t.live.edits.count - 2].after;
+    CHECK_NEAR(viewer_light(&t.viewer, 70)->direction.z, 1, 1e-9);
+    viewer_add_node(&t.viewer, ADDED_COPY); /* with what was changed of it */
+    CHECK(t.viewer.selection.light == 71 && t.viewer.light_count == 71 && t.viewer.tool == TOOL_TURN);
+    const struct change *copy = &t.viewer.edits.steps[t.viewer.edits.count - 2].after;
     CHECK(copy->kind == CHANGE_ADD_LIGHT && copy->source == 70);
-    CHECK(copy[0].number == 0 && t.live.edits.steps[t.live.edits.count - 1].after.serial == 71);
+    CHECK(copy[0].number == 0 && t.viewer.edits.steps[t.viewer.edits.count - 1].after.serial == 71);
     end(&t);
 }
 
@@ -869,23 +871,23 @@ TEST(window_asks_for_the_story_of_the_pixel_under_the_mouse) {
     go_to_the_end(&t);
     t.fake.queue[t.fake.count++] = mouse(WINDOW_MOVE, 8 * 12 + 3, 8 * 60 + 7);
     key(&t.fake, 'p', true);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
-    CHECK_EQ_INT(t.live.order.kind, ORDER_STORY);
-    CHECK(t.live.order.x == 12 && t.live.order.y == 60 && t.live.order.view.own);
-    live_hear(&t.live, "one line\n");
-    live_hear(&t.live, "another\n");
-    tell_news(&t, &(struct studio_news){.kind = NEWS_STORY});
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
-    CHECK_TEXT(t.live.story, "one line\nanother\n");
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK_EQ_INT(t.viewer.command.kind, COMMAND_PIXEL_TRACE);
+    CHECK(t.viewer.command.x == 12 && t.viewer.command.y == 60 && t.viewer.command.view.own);
+    viewer_add_pixel_trace(&t.viewer, "one line\n");
+    viewer_add_pixel_trace(&t.viewer, "another\n");
+    tell_news(&t, &(struct preview_reply){.kind = REPLY_PIXEL_TRACE});
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    CHECK_TEXT(t.viewer.trace_text, "one line\nanother\n");
     key(&t.fake, WINDOW_PAGE_DOWN, true); /* past its end: from the beginning */
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
-    CHECK_EQ_INT(t.live.story_line, 0);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    CHECK_EQ_INT(t.viewer.trace_line, 0);
     for (int i = 0; i < 5000; i++) /* more than there is room for */
-        live_hear(&t.live, "a line of some length\n");
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+        viewer_add_pixel_trace(&t.viewer, "a line of some length\n");
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     key(&t.fake, WINDOW_ESCAPE, true);
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
-    CHECK_TEXT(t.live.story, "");
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    CHECK_TEXT(t.viewer.trace_text, "");
     end(&t);
 }
 
@@ -894,20 +896,20 @@ TEST(window_makes_the_picture_anew_in_another_exposure_and_does_not_write_it_as_
     begin(&t);
     enlarge(&t);
     finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     key(&t.fake, '=', true);
-    CHECK_EQ_INT(step(&t), LIVE_STOP);
+    CHECK_EQ_INT(step(&t), VIEWER_STOP_PASS);
     finish_pass(&t, 0.001, true);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
-    CHECK(t.live.order.view.exposure == 0.25 && !t.live.order.view.plain); /* nothing coarse in between */
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(t.viewer.command.view.exposure == 0.25 && !t.viewer.command.view.plain); /* nothing coarse in between */
     finish_pass(&t, 1, false);
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     key(&t.fake, '-', true);
-    CHECK_EQ_INT(step(&t), LIVE_ORDER);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     finish_pass(&t, 1, false);
-    CHECK_EQ_INT(step(&t), LIVE_WRITE);
+    CHECK_EQ_INT(step(&t), VIEWER_WRITE_PICTURE);
     end(&t);
 }
 
@@ -921,17 +923,17 @@ TEST(window_tells_the_child_all_changes_again_when_the_scripts_run_again) {
     key(&t.fake, 'm', true);
     drag(&t, 40, 0);
     take_change(&t);
-    live_keep(&t.live);
-    live_detach(&t.live);
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
-    CHECK(live_begin(&t.live, &t.driver, &t.request, t.block, "x.png", t.now, &error));
-    CHECK_EQ_INT(step(&t), LIVE_NOTHING);
-    struct studio_news news = {.kind = NEWS_BUILT};
-    tell_news(&t, &news);
+    viewer_keep(&t.viewer);
+    viewer_detach(&t.viewer);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    CHECK(viewer_begin(&t.viewer, &t.driver, &t.request, t.block, "x.png", t.now, &error));
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    struct preview_reply reply = {.kind = REPLY_BUILT};
+    tell_news(&t, &reply);
     take_change(&t);
-    CHECK(t.live.order.change.kind == CHANGE_PLACE && t.live.order.present);
+    CHECK(t.viewer.command.change.kind == CHANGE_PLACE && t.viewer.command.present);
     refine(&t);
-    CHECK(t.live.edited);
+    CHECK(t.viewer.edited);
     end(&t);
 }
 

@@ -13,22 +13,22 @@
 #include <string.h>
 #include <unistd.h>
 
-static int inked(const struct paper *paper) {
+static int inked(const struct canvas *canvas) {
     int count = 0;
-    for (int i = 0; i < paper->width * paper->height; i++)
-        count += paper->rgba[4 * i + 3] != 0;
+    for (int i = 0; i < canvas->width * canvas->height; i++)
+        count += canvas->rgba[4 * i + 3] != 0;
     return count;
 }
 
 TEST(nothing_is_drawn_beyond_the_edges_of_the_paper) {
     enum { WIDTH = 30, HEIGHT = 20, ROOM = 4 * WIDTH * HEIGHT, AROUND = 4096 };
     static uint8_t block[AROUND + ROOM + AROUND];
-    const struct paper paper = {block + AROUND, WIDTH, HEIGHT, 1};
-    const struct ink ink = {255, 200, 100, 255};
+    const struct canvas canvas = {block + AROUND, WIDTH, HEIGHT, 1};
+    const struct canvas_colour colour = {255, 200, 100, 255};
     struct test_random random = {4};
     memset(block, 77, sizeof block);
-    paper_clear(&paper);
-    CHECK_EQ_INT(inked(&paper), 0);
+    canvas_clear(&canvas);
+    CHECK_EQ_INT(inked(&canvas), 0);
     for (int i = 0; i < 3000; i++) {
         double v[4];
         int at[4];
@@ -36,34 +36,34 @@ TEST(nothing_is_drawn_beyond_the_edges_of_the_paper) {
             v[k] = test_uniform(&random, 0, 1) < 0.1 ? 1e9 : test_uniform(&random, -60, 90);
             at[k] = (int)test_uniform(&random, -50, 60);
         }
-        paper_line(&paper, v[0], v[1], v[2], v[3], ink);
-        paper_ring(&paper, v[0], v[1], fabs(v[2]), ink);
-        paper_box(&paper, at[0], at[1], at[2], at[3], ink);
-        paper_frame(&paper, at[0], at[1], at[2], at[3], ink);
-        paper_text(&paper, at[0], at[1], "Text \xC3\xA4 \x7f~!", ink);
+        canvas_line(&canvas, v[0], v[1], v[2], v[3], colour);
+        canvas_ring(&canvas, v[0], v[1], fabs(v[2]), colour);
+        canvas_box(&canvas, at[0], at[1], at[2], at[3], colour);
+        canvas_frame(&canvas, at[0], at[1], at[2], at[3], colour);
+        canvas_text(&canvas, at[0], at[1], "Text \xC3\xA4 \x7f~!", colour);
     }
     for (int i = 0; i < AROUND; i++)
         CHECK(block[i] == 77 && block[AROUND + ROOM + i] == 77);
     /* What is no place draws nothing, what has no length draws a dot. */
-    paper_clear(&paper);
+    canvas_clear(&canvas);
     for (int k = 0; k < 4; k++)
         for (int bad = 0; bad < 3; bad++) {
             double v[4] = {5, 5, 9, 9};
             v[k] = bad == 0 ? NAN : bad == 1 ? INFINITY : -1e300;
-            paper_line(&paper, v[0], v[1], v[2], v[3], ink);
+            canvas_line(&canvas, v[0], v[1], v[2], v[3], colour);
         }
-    CHECK_EQ_INT(inked(&paper), 0);
-    paper_line(&paper, 7, 8, 7, 8, ink);
-    CHECK(inked(&paper) >= 1 && inked(&paper) <= 9);
+    CHECK_EQ_INT(inked(&canvas), 0);
+    canvas_line(&canvas, 7, 8, 7, 8, colour);
+    CHECK(inked(&canvas) >= 1 && inked(&canvas) <= 9);
     /* Letters that are none look like the question mark, one for each character. */
-    CHECK_EQ_INT(paper_text_width(&paper, "\xC3\xA4\xE2\x82\xAC\x7f"), paper_text_width(&paper, "???"));
+    CHECK_EQ_INT(canvas_text_width(&canvas, "\xC3\xA4\xE2\x82\xAC\x7f"), canvas_text_width(&canvas, "???"));
     static uint8_t other[ROOM];
-    const struct paper second = {other, WIDTH, HEIGHT, 1};
-    paper_clear(&paper);
-    paper_clear(&second);
-    paper_text(&paper, 1, 1, "\xC3\xA4\x7f", ink);
-    paper_text(&second, 1, 1, "\?\?", ink);
-    CHECK(memcmp(paper.rgba, other, ROOM) == 0);
+    const struct canvas second = {other, WIDTH, HEIGHT, 1};
+    canvas_clear(&canvas);
+    canvas_clear(&second);
+    canvas_text(&canvas, 1, 1, "\xC3\xA4\x7f", colour);
+    canvas_text(&second, 1, 1, "\?\?", colour);
+    CHECK(memcmp(canvas.rgba, other, ROOM) == 0);
 }
 
 /* Whatever it looks at, also straight up and with an up that is no direction across. */
@@ -79,28 +79,28 @@ TEST(a_walk_begins_where_the_camera_looks) {
                     if (x == 0 && y == 0 && z == 0)
                         continue;
                     const struct camera camera = {{3, 4, 5}, view, up, 40};
-                    struct walk walk;
-                    walk_begin(&walk, &camera, boxes[(x + y + z + 3) % 4]);
-                    struct camera now = walk_camera(&walk);
+                    struct fly_camera fly_camera;
+                    fly_camera_begin(&fly_camera, &camera, boxes[(x + y + z + 3) % 4]);
+                    struct camera now = fly_camera_camera(&fly_camera);
                     struct vec3 have = vec3_normalize(now.view), wanted = vec3_normalize(view);
                     CHECK(vec3_length(vec3_sub(have, wanted)) < 1e-9);
                     CHECK(fabs(vec3_dot(vec3_normalize(now.up), have)) < 1e-9);
                     CHECK(now.eye.x == 3 && now.eye.y == 4 && now.eye.z == 5);
-                    CHECK(walk.speed > 0 && isfinite(walk.speed));
-                    walk.down[WALK_FORWARD] = true;
-                    CHECK(!walk_step(&walk, 0) && walk_step(&walk, 1));
-                    struct vec3 way = vec3_normalize(vec3_sub(walk_camera(&walk).eye, now.eye));
-                    CHECK(vec3_length(vec3_sub(way, wanted)) < 1e-9);
-                    walk.down[WALK_BACK] = true; /* both: nowhere */
-                    CHECK(!walk_step(&walk, 1));
+                    CHECK(fly_camera.speed > 0 && isfinite(fly_camera.speed));
+                    fly_camera.down[FLY_FORWARD] = true;
+                    CHECK(!fly_camera_step(&fly_camera, 0) && fly_camera_step(&fly_camera, 1));
+                    struct vec3 route = vec3_normalize(vec3_sub(fly_camera_camera(&fly_camera).eye, now.eye));
+                    CHECK(vec3_length(vec3_sub(route, wanted)) < 1e-9);
+                    fly_camera.down[FLY_BACK] = true; /* both: nowhere */
+                    CHECK(!fly_camera_step(&fly_camera, 1));
                 }
-    struct walk walk;
+    struct fly_camera fly_camera;
     const struct camera camera = {{0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 40};
-    walk_begin(&walk, &camera, &box);
-    walk_zoom(&walk, 1000);
-    CHECK_NEAR(walk_camera(&walk).fov, 0.01, 1e-12);
-    walk_zoom(&walk, -2000);
-    CHECK_NEAR(walk_camera(&walk).fov, 170, 1e-9);
+    fly_camera_begin(&fly_camera, &camera, &box);
+    fly_camera_zoom(&fly_camera, 1000);
+    CHECK_NEAR(fly_camera_camera(&fly_camera).fov, 0.01, 1e-12);
+    fly_camera_zoom(&fly_camera, -2000);
+    CHECK_NEAR(fly_camera_camera(&fly_camera).fov, 170, 1e-9);
 }
 
 /* --- steps --- */
@@ -120,14 +120,14 @@ TEST(edits_are_told_until_somebody_has_enough) {
     const struct camera camera = {{1, 2, 3}, {0, 0, -1}, {0, 1, 0}, 30};
     const double exposure = 1.5;
     int lines = 1000;
-    CHECK(edits_tell(&edits.now, "a.png", &camera, &exposure, put_until, &lines));
+    CHECK(edits_write_lua(&edits.now, "a.png", &camera, &exposure, put_until, &lines));
     int all = 1000 - lines;
     for (int room = 0; room < all; room++) {
         lines = room;
-        CHECK(!edits_tell(&edits.now, "a.png", &camera, &exposure, put_until, &lines));
+        CHECK(!edits_write_lua(&edits.now, "a.png", &camera, &exposure, put_until, &lines));
     }
     lines = 1000;
-    CHECK(edits_tell(&edits.now, "a.png", NULL, NULL, put_until, &lines));
+    CHECK(edits_write_lua(&edits.now, "a.png", NULL, NULL, put_until, &lines));
     CHECK(1000 - lines < all);
     edits_destroy(&edits);
 }

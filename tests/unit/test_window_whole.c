@@ -94,7 +94,7 @@ static const char scene[] =
 #define AT_THE_BALL .button = WINDOW_LEFT, .x = 320, .y = 240
 
 /* The status of the program. */
-static int live_over(const struct deed *deeds, const char *overlay, uint8_t *over) {
+static int viewer_over(const struct deed *deeds, const char *overlay, uint8_t *over) {
     struct person person = {.deeds = deeds, .over = over};
     const struct window_driver driver = {&person,      person_open, person_show,    person_poll,
                                          person_title, person_grab, person_nothing, person_close};
@@ -113,8 +113,8 @@ static int live_over(const struct deed *deeds, const char *overlay, uint8_t *ove
     return status;
 }
 
-static int live_with(const struct deed *deeds) {
-    return live_over(deeds, "none", NULL);
+static int viewer_with(const struct deed *deeds) {
+    return viewer_over(deeds, "none", NULL);
 }
 
 /* Two of them can be used at a time. */
@@ -134,9 +134,9 @@ TEST(window_goes_on_after_a_stop_to_the_picture_of_one_that_was_never_stopped) {
                                    {SETTLED, KEY('r'), 0}, {NULL, KEY(WINDOW_ESCAPE), 5}, {SETTLED, KEY('r'), 0},
                                    {NULL, KEY('x'), 0},    {"stopped", KEY('x'), 0},      {"ready", KEY('s'), 0},
                                    {NULL, KEY('q'), 0}};
-    CHECK_EQ_INT(live_with(plain), 0);
+    CHECK_EQ_INT(viewer_with(plain), 0);
     CHECK(rename(test_path("out.png"), test_path("whole.png")) == 0);
-    CHECK_EQ_INT(live_with(stopped), 0);
+    CHECK_EQ_INT(viewer_with(stopped), 0);
     CHECK(same_files("out.png", "whole.png") && same_files("out-view1.png", "out-view2.png"));
 }
 
@@ -165,7 +165,7 @@ TEST(window_stops_building_after_an_edit_and_goes_on_with_it_or_without) {
     }
     deeds[count++] = (struct deed){"ready", KEY('s'), 0};
     deeds[count++] = (struct deed){NULL, KEY('q'), 0};
-    CHECK_EQ_INT(live_with(deeds), 0);
+    CHECK_EQ_INT(viewer_with(deeds), 0);
     CHECK(same_files("out.png", "out-view1.png") && same_files("out.png", "out-view3.png"));
     CHECK(!same_files("out.png", "out-view4.png"));
 }
@@ -184,13 +184,13 @@ TEST(window_shows_and_saves_the_lines_that_overlay_draws) {
                                  {"ready", KEY('s'), 0}, {NULL, KEY('g'), 0},    {"ready", KEY('s'), 0},
                                  {NULL, KEY('q'), 0}};
     const struct deed nothing[] = {{"ready", KEY('b'), 0}, {"ready", KEY('q'), 0}};
-    CHECK_EQ_INT(live_with(deeds), 0);
+    CHECK_EQ_INT(viewer_with(deeds), 0);
     picture_without_window("boxes", "boxes.png");
     picture_without_window("grid", "grid.png");
     CHECK(same_files("out-view1.png", "boxes.png") && same_files("out-view2.png", "grid.png"));
     CHECK(same_files("out-view3.png", "out.png") && !same_files("out.png", "boxes.png"));
     /* Asked for on the command line, they are part of the script's picture. */
-    CHECK_EQ_INT(live_over(nothing, "boxes", NULL), 0);
+    CHECK_EQ_INT(viewer_over(nothing, "boxes", NULL), 0);
     CHECK(same_files("out.png", "boxes.png"));
 }
 
@@ -199,16 +199,16 @@ TEST(window_outlines_what_is_picked_by_its_silhouette) {
     const struct window_event press = {.kind = WINDOW_PRESS, AT_THE_BALL};
     const struct window_event release = {.kind = WINDOW_RELEASE, AT_THE_BALL};
     const struct deed deeds[] = {{"ready", press, 0}, {NULL, release, 0}, {"ready", KEY('x'), 0}, {NULL, KEY('q'), 20}};
-    CHECK_EQ_INT(live_over(deeds, "none", over), 0);
+    CHECK_EQ_INT(viewer_over(deeds, "none", over), 0);
     /* A ball of radius 1 that is 6 away, under 40 degrees for 480 pixels; pixels of the picture are 10 wide. */
     double radius = HIGH / 2.0 * tan(asin(1.0 / 6)) / tan(20 * M_PI / 180);
     bool turns[36] = {false};
-    const uint8_t ink[4] = {255, 190, 60, 255};
+    const uint8_t colour[4] = {255, 190, 60, 255};
     for (int y = 0; y < HIGH; y++) {
         for (int x = 0; x < WIDE; x++) {
             const uint8_t *p = over + 4 * ((size_t)y * WIDE + (size_t)x);
             double dx = x + 0.5 - WIDE / 2.0, dy = y + 0.5 - HIGH / 2.0, far = hypot(dx, dy);
-            if (memcmp(p, ink, 4) != 0 || far < 20) /* the mark of the click */
+            if (memcmp(p, colour, 4) != 0 || far < 20) /* the mark of the click */
                 continue;
             CHECK(far > radius - 16 && far < radius + 16);
             turns[(int)((atan2(dy, dx) / M_PI + 1) * 17.999)] = true;

@@ -14,7 +14,7 @@ static bool way_of_second(void *context, uint32_t first, uint32_t count, const s
                           uint32_t depth) {
     (void)count;
     if (first == 1)
-        *(uint64_t *)context = marks_way(steps, depth);
+        *(uint64_t *)context = route_hash(steps, depth);
     return true;
 }
 
@@ -30,15 +30,16 @@ TEST(a_node_shows_where_the_ray_through_the_middle_of_a_pixel_meets_it_first) {
     s.camera = (struct camera){{0, 0, 8}, {0, 0, -1}, {0, 1, 0}, 35};
     CHECK(stage_render(&s, WIDTH, HEIGHT));
     struct render_job job = stage_job(&s, WIDTH, HEIGHT);
-    struct marks_place place = {.shows = shows};
-    uint64_t way = 0;
-    CHECK(world_walk_paths(&s.world, s.root, way_of_second, &way, &s.error));
+    struct view_overlay_buffers place = {.shows = shows};
+    uint64_t route = 0;
+    CHECK(world_walk_paths(&s.world, s.root, way_of_second, &route, &s.error));
     for (int by_way = 0; by_way < 2; by_way++) {
-        const struct marks_wish wish = {.outline = true, .serial = behind->serial, .way = by_way ? way : 0};
-        struct marks marks;
+        const struct view_overlay_request request = {
+            .outline = true, .serial = behind->serial, .route = by_way ? route : 0};
+        struct view_overlay overlay;
         memset(shows, 7, sizeof shows);
-        CHECK(marks_make(&job, s.root, s.pool, &wish, &place, &marks, &s.error));
-        CHECK(marks.has_outline && !marks.has_lines && !marks.stopped);
+        CHECK(view_overlay_make(&job, s.root, s.pool, &request, &place, &overlay, &s.error));
+        CHECK(overlay.has_outline && !overlay.has_lines && !overlay.stopped);
         int seen = 0;
         for (uint32_t y = 0; y < HEIGHT; y++) {
             for (uint32_t x = 0; x < WIDTH; x++) {
@@ -48,8 +49,8 @@ TEST(a_node_shows_where_the_ray_through_the_middle_of_a_pixel_meets_it_first) {
                 struct vec3 d = vec3_normalize(vec3_make(px, py, -1)), a = {0.5, 0, -6}, b = {-0.4, 0.2, -8};
                 double apart_a = vec3_length(vec3_sub(a, vec3_scale(d, vec3_dot(a, d))));
                 double apart_b = vec3_length(vec3_sub(b, vec3_scale(d, vec3_dot(b, d))));
-                bool inside =
-                    x >= marks.outline.x0 && x < marks.outline.x1 && y >= marks.outline.y0 && y < marks.outline.y1;
+                bool inside = x >= overlay.outline.x0 && x < overlay.outline.x1 && y >= overlay.outline.y0 &&
+                              y < overlay.outline.y1;
                 bool expected = apart_b < 1 && apart_a > 1;
                 CHECK_EQ_INT(inside && shows[y * WIDTH + x], expected);
                 CHECK(inside || shows[y * WIDTH + x] == 7);
@@ -57,11 +58,11 @@ TEST(a_node_shows_where_the_ray_through_the_middle_of_a_pixel_meets_it_first) {
             }
         }
         CHECK(seen > 100);
-        CHECK(marks.outline.x1 - marks.outline.x0 < 40); /* not all of the picture was asked */
+        CHECK(overlay.outline.x1 - overlay.outline.x0 < 40); /* not all of the picture was asked */
     }
-    const struct marks_wish nobody = {.outline = true, .serial = 12345};
-    struct marks none;
-    CHECK(marks_make(&job, s.root, s.pool, &nobody, &place, &none, &s.error));
+    const struct view_overlay_request nobody = {.outline = true, .serial = 12345};
+    struct view_overlay none;
+    CHECK(view_overlay_make(&job, s.root, s.pool, &nobody, &place, &none, &s.error));
     CHECK(none.has_outline && none.outline.x1 == 0);
     stage_end(&s);
 }
@@ -84,22 +85,22 @@ TEST(an_operand_shows_where_its_surface_is_that_of_the_solid) {
     s.camera = (struct camera){{0, 0, 8}, {0, 0, -1}, {0, 1, 0}, 35};
     CHECK(stage_render(&s, WIDTH, HEIGHT));
     struct render_job job = stage_job(&s, WIDTH, HEIGHT);
-    struct marks_place place = {.shows = shows};
+    struct view_overlay_buffers place = {.shows = shows};
     struct picked picked;
-    struct marks marks;
+    struct view_overlay overlay;
     /* The middle is in the hollow; its outline is where a click finds it. */
     for (int32_t down = 0; down <= 1; down++) {
         int seen = 0;
         CHECK(pick_at(&job, s.root, WIDTH / 2.0, HEIGHT / 2.0, -down, &picked, &s.error));
         CHECK_EQ_INT(picked.serial, down ? hollow->serial : cut->serial);
-        const struct marks_wish wish = {
-            .outline = true, .serial = picked.serial, .way = picked.way, .solid = picked.solid};
+        const struct view_overlay_request request = {
+            .outline = true, .serial = picked.serial, .route = picked.route, .solid = picked.solid};
         memset(shows, 0, sizeof shows);
-        CHECK(marks_make(&job, s.root, s.pool, &wish, &place, &marks, &s.error));
+        CHECK(view_overlay_make(&job, s.root, s.pool, &request, &place, &overlay, &s.error));
         for (uint32_t y = 0; y < HEIGHT; y++) {
             for (uint32_t x = 0; x < WIDTH; x++) {
                 CHECK(pick_at(&job, s.root, x + 0.5, y + 0.5, -down, &picked, &s.error));
-                bool expected = picked.hit && picked.serial == wish.serial;
+                bool expected = picked.hit && picked.serial == request.serial;
                 CHECK_EQ_INT(shows[y * WIDTH + x] != 0, expected);
                 seen += expected;
             }
