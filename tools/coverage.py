@@ -199,16 +199,16 @@ def main():
         if inside:
             out.append(row(module, add(inside)))
     total = add(counts.values())
-    out += [row("**all**", total), "", f"| must be whole {head}"]
+    out += [row("**all**", total), "", f"| must be complete {head}"]
     for mark, pattern in MARKS.items():
         out.append(row(mark, add(c for name, c in counts.items() if re.match(pattern, name))))
-    out += ["", "Files below their mark (100 % of branches where it must be whole, else 95 % of lines and 90 % of branches):",
+    out += ["", "Files below the goal (100 % of branches where coverage must be complete, else 95 % of lines and 90 % of branches):",
             "", f"| file {head}"]
     for name in sorted(counts):
         c = counts[name]
         whole = any(re.match(pattern, name) for pattern in MARKS.values())
         if c[2] < c[3] if whole else percent(c[0], c[1]) < ALL_LINES or percent(c[2], c[3]) < ALL_BRANCHES:
-            out.append(row(f"`{name}`{' (must be whole)' if whole else ''}", c))
+            out.append(row(f"`{name}`{' (must be complete)' if whole else ''}", c))
     open(os.path.join(folder, "summary.md"), "w").write("\n".join(out) + "\n")
     with open(os.path.join(folder, "missing.txt"), "w") as missing:
         for name in sorted(files):
