@@ -11,6 +11,7 @@
 #define GRAY_LIGHT_LIGHT_H
 
 #include "base/list.h"
+#include "math/box.h"
 #include "math/ray.h"
 #include "math/sampling.h"
 #include "math/vec3.h"
@@ -30,6 +31,8 @@
     X(LIGHT_SKY, "sky light")
 enum light_kind { LIGHT_KINDS(LIST_MEMBER) };
 enum { LIGHT_KIND_COUNT = LIST_COUNT(LIGHT_KINDS) };
+
+#define LIGHT_NONE UINT32_MAX /* in the place of a light's number */
 
 /* COEFFICIENTS: 1 / (c0 + c1 d + c2 d^2); RANGE: 1 - d / range, 0 beyond; INVERSE_SQUARE: intensity / d^2. */
 enum light_fading { FADING_COEFFICIENTS, FADING_RANGE, FADING_INVERSE_SQUARE };
@@ -134,6 +137,7 @@ struct light_sample {
     double pdf;                 /* of the target, by solid angle at the point; of a delta light 1 */
     struct vec3 intensity;      /* the classic one: the mean over all samples of intensity * (n.l) is what arrives */
     bool is_delta;
+    uint32_t triangle; /* of a mesh */
 };
 /* The sample for a place in the unit square: equal areas of the square are equal areas of a parallelogram or disc,
  * equal solid angles of a lamp that is a sphere or a rectangle, equal light of a mesh or a sky. A target that the light
@@ -162,6 +166,8 @@ bool light_meets_ray(const struct light *light, const struct ray *ray, struct li
 bool light_is_seen(const struct light *light);
 /* The radiance that it sends back along a ray that meets it. */
 struct vec3 light_emitted(const struct light *light, const struct ray *ray, const struct light_hit *hit);
+/* The box of the surface that light_meets_ray knows of. False: there is none. */
+bool light_surface_box(const struct light *light, struct box *out);
 /* At least the largest component of what comes from it. */
 double light_brightest(const struct light *light);
 

@@ -1,0 +1,345 @@
+/* Building: from the root down, each set of lights is parted where the cost of the two halves is least, by the surface
+ * area orientation heuristic of Conty Estevez and Kulla (section 4.4) over bins along each axis: power times the area
+ * of the box times the solid angle that the cone of directions fills, larger for boxes that are thin across the split.
+ * Sets whose centres agree, and those deeper than DEPTH_LIMIT, are halved in the order of the lights.
+ *
+ * Sampling: one number is used up on the way down; each choice leaves it uniform again. The probability of a light is
+ * the product over the way from its leaf up. */
+#include "light/light_sampler.h"
+
+#include "base/error.h"
+#include "base/mem.h"
+#include "math/elementary.h"
+
+static const double pi = 3.14159265358979323846;
+static const double below_one = 1 - 0x1p-53;
+
+enum { BINS = 12, DEPTH_LIMIT = 64 };
+
+/* --- building --- */
+
+struct item {
+    struct light_bounds bounds;
+    struct vec3 centre;
+    uint32_t light;
+};
+
+struct building {
+    struct light_tree_node *nodes;
+    uint32_t node_count;
+    uint32_t *leaf_of;
+    struct item *items;
+};
+
+/* The solid angle of the directions in which a cone of normals shines, those near its rim by their cosine. */
+static double cone_measure(const struct light_bounds *b) {
+    double theta_o = el_acos(b->cos_theta_o), theta_e = el_acos(b->cos_theta_e), all = fmin(theta_o + theta_e, pi);
+    double sin_o, cos_o;
+    el_sincos(theta_o, &sin_o, &cos_o);
+    double inside = 2 * pi * (1 - cos_o);
+    double rim = pi / 2 * (2 * all * sin_o - el_cos(theta_o - 2 * all) - 2 * theta_o * sin_o + cos_o);
+    return (inside + rim) * (b->two_sided ? 2 : 1);
+}
+
+/* A row of lamps has a box without surface: the square of its length keeps the measure above 0. */
+static double box_measure(const struct box *box) {
+    struct vec3 d = vec3_sub(box->max, box->min);
+    return 2 * (d.x * d.y + d.y * d.z + d.z * d.x) + vec3_length_squared(d);
+}
+
+static double cost_of(const struct light_bounds *b) {
+    return (b->steady + b->fading) * cone_measure(b) * box_measure(&b->box);
+}
+
+struct bin {
+    struct light_bounds bounds;
+    uint32_t count;
+};
+
+static void add_to_bin(struct bin *bin, const struct light_bounds *bounds) {
+    bin->bounds = bin->count > 0 ? light_bounds_join(&bin->bounds, bounds) : *bounds;
+    bin->count++;
+}
+
+static uint32_t bin_of(double x, double low, double high) {
+    double bin = (x - low) / (high - low) * BINS;
+    return bin > 0 ? (bin < BINS ? (uint32_t)bin : BINS - 1) : 0;
+}
+
+/* The costs of parting before bin k, k = 1 to BINS - 1, of what lies on one side. */
+static void sweep_costs(const struct bin bins[BINS], bool from_below, double costs[BINS], uint32_t counts[BINS]) {
+    struct bin all = {.count = 0};
+    for (int i = 0; i + 1 < BINS; i++) {
+        const struct bin *bin = &bins[from_below ? i : BINS - 1 - i];
+        if (bin->count > 0) {
+            all.bounds = all.count > 0 ? light_bounds_join(&all.bounds, &bin->bounds) : bin->bounds;
+            all.count += bin->count;
+        }
+        int k = from_below ? i + 1 : BINS - 1 - i;
+        costs[k] += all.count > 0 ? cost_of(&all.bounds) : 0;
+        counts[k] = counts[k] < all.count ? counts[k] : all.count;
+    }
+}
+
+struct split {
+    int axis; /* -1: none */
+    uint32_t bin;
+    double low, high, cost;
+};
+
+static void try_axis(const struct building *b, uint32_t first, uint32_t count, int axis, const struct box *centres,
+                     struct split *best) {
+    double low = vec3_get(centres->min, axis), high = vec3_get(centres->max, axis);
+    struct vec3 size = vec3_sub(centres->max, centres->min);
+    if (!(high > low))
+        return;
+    struct bin bins[BINS] = {{.count = 0}};
+    for (uint32_t i = first; i < first + count; i++)
+        add_to_bin(&bins[bin_of(vec3_get(b->items[i].centre, axis), low, high)], &b->items[i].bounds);
+    double costs[BINS] = {0}, thin = vec3_max_abs(size) / (high - low);
+    uint32_t counts[BINS];
+    for (int k = 0; k < BINS; k++)
+        counts[k] = count;
+    sweep_costs(bins, true, costs, counts);
+    sweep_costs(bins, false, costs, counts);
+    for (uint32_t k = 1; k < BINS; k++)
+        if (counts[k] > 0 && costs[k] * thin < best->cost)
+            *best = (struct split){axis, k, low, high, costs[k] * thin};
+}
+
+/* Puts the items of the lower half first, both halves in the order they had; returns how many they are. */
+static uint32_t part(struct building *b, struct item *spare, uint32_t first, uint32_t count,
+                     const struct split *split) {
+    uint32_t lower = 0, upper = 0;
+    for (uint32_t i = first; i < first + count; i++) {
+        const struct item *item = &b->items[i];
+        if (bin_of(vec3_get(item->centre, split->axis), split->low, split->high) < split->bin)
+            b->items[first + lower++] = *item;
+        else
+            spare[upper++] = *item;
+    }
+    for (uint32_t i = 0; i < upper; i++)
+        b->items[first + lower + i] = spare[i];
+    return lower;
+}
+
+static uint32_t build_node(struct building *b, struct item *spare, uint32_t first, uint32_t count, uint32_t parent,
+                           int depth) {
+    uint32_t index = b->node_count++;
+    struct light_tree_node *node = &b->nodes[index];
+    node->parent = parent;
+    if (count == 1) {
+        node->bounds = b->items[first].bounds;
+        node->light = b->items[first].light;
+        b->leaf_of[node->light] = index;
+        return index;
+    }
+    struct box centres = box_empty();
+    for (uint32_t i = first; i < first + count; i++)
+        centres = box_add_point(centres, b->items[i].centre);
+    struct split split = {.axis = -1, .cost = INFINITY};
+    for (int axis = 0; axis < 3 && depth < DEPTH_LIMIT; axis++)
+        try_axis(b, first, count, axis, &centres, &split);
+    uint32_t lower = split.axis < 0 ? count / 2 : part(b, spare, first, count, &split);
+    uint32_t one = build_node(b, spare, first, lower, index, depth + 1);
+    node->second = build_node(b, spare, first + lower, count - lower, index, depth + 1);
+    node->bounds = light_bounds_join(&b->nodes[one].bounds, &b->nodes[node->second].bounds);
+    return index;
+}
+
+/* The items of the lights that have a place; the others that send something are listed. */
+static uint32_t collect(const struct light *lights, uint32_t count, struct item *items, uint32_t *infinite,
+                        uint32_t *infinite_count) {
+    uint32_t placed = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        struct item *item = &items[placed];
+        *item = (struct item){.light = i};
+        switch (light_bounds_of(&lights[i], &item->bounds)) {
+        case LIGHT_REACH_NONE:
+            break;
+        case LIGHT_REACH_PLACED:
+            item->centre = vec3_scale(vec3_add(item->bounds.box.min, item->bounds.box.max), 0.5);
+            placed++;
+            break;
+        case LIGHT_REACH_INFINITE:
+            infinite[(*infinite_count)++] = i;
+            break;
+        }
+    }
+    return placed;
+}
+
+static bool build_tree(struct light_sampler *out, struct item *items, uint32_t count, uint32_t light_count,
+                       struct arena *arena) {
+    struct item *spare = mem_alloc_zero(count, sizeof *spare);
+    struct building b = {.items = items};
+    b.nodes = arena_alloc_array(arena, (size_t)count * 2, sizeof *b.nodes);
+    b.leaf_of = arena_alloc_array(arena, light_count, sizeof *b.leaf_of);
+    bool ok = spare && b.nodes && b.leaf_of;
+    for (uint32_t i = 0; ok && i < light_count; i++)
+        b.leaf_of[i] = LIGHT_NONE;
+    if (ok && count > 0)
+        (void)build_node(&b, spare, 0, count, LIGHT_NONE, 0);
+    mem_free(spare);
+    out->nodes = b.nodes;
+    out->node_count = b.node_count;
+    out->leaf_of = b.leaf_of;
+    return ok;
+}
+
+/* Shares that do not depend on the point. An infinite light counts as the mean of the others. */
+static bool build_shares(struct light_sampler *out, const struct item *items, uint32_t placed, uint32_t light_count,
+                         struct arena *arena) {
+    uint32_t *candidates = arena_alloc_array(arena, out->count, sizeof *candidates);
+    double *until = arena_alloc_array(arena, out->count, sizeof *until), sum = 0, so_far = 0;
+    double *share = arena_alloc_array(arena, light_count, sizeof *share);
+    if (!candidates || !until || !share)
+        return false;
+    bool by_power = out->choice == LIGHT_CHOICE_POWER;
+    for (uint32_t i = 0; i < placed; i++) {
+        candidates[i] = items[i].light;
+        until[i] = by_power ? items[i].bounds.steady + items[i].bounds.fading : 1;
+        sum += until[i];
+    }
+    double mean = placed > 0 ? sum / placed : 1;
+    for (uint32_t i = placed; i < out->count; i++) {
+        candidates[i] = out->infinite[i - placed];
+        until[i] = mean;
+        sum += mean;
+    }
+    for (uint32_t i = 0; i < out->count; i++) {
+        double begin = so_far;
+        so_far = i + 1 < out->count ? fmin(so_far + until[i] / sum, 1) : 1;
+        until[i] = so_far;
+        share[candidates[i]] = so_far - begin;
+    }
+    out->candidates = candidates;
+    out->until = until;
+    out->share = share;
+    return true;
+}
+
+bool light_sampler_build(struct light_sampler *out, enum light_choice choice, const struct light *lights,
+                         uint32_t light_count, struct arena *arena, struct error *error) {
+    *out = (struct light_sampler){.choice = choice};
+    struct item *items = mem_alloc_zero((size_t)light_count + 1, sizeof *items);
+    uint32_t *infinite = arena_alloc_array(arena, light_count, sizeof *infinite);
+    bool ok = items && infinite;
+    if (ok) {
+        uint32_t placed = collect(lights, light_count, items, infinite, &out->infinite_count);
+        out->infinite = infinite;
+        out->count = placed + out->infinite_count;
+        switch (choice) {
+        case LIGHT_CHOICE_TREE:
+            ok = build_tree(out, items, placed, light_count, arena);
+            break;
+        case LIGHT_CHOICE_POWER:
+        case LIGHT_CHOICE_UNIFORM:
+            ok = build_shares(out, items, placed, light_count, arena);
+            break;
+        }
+    }
+    mem_free(items);
+    return ok || error_no_memory(error, "the lights of the scene");
+}
+
+/* --- sampling --- */
+
+static double importance_at(const struct light_sampler *s, uint32_t node, struct vec3 point, struct vec3 normal) {
+    return light_bounds_importance(&s->nodes[node].bounds, point, normal);
+}
+
+/* The share of the tree beside the infinite lights; none where all of it is dark. */
+static double tree_share(const struct light_sampler *s, struct vec3 point, struct vec3 normal) {
+    bool lit = s->node_count > 0 && importance_at(s, 0, point, normal) > 0;
+    return lit ? 1.0 / (1 + s->infinite_count) : 0;
+}
+
+static uint32_t sample_tree(const struct light_sampler *s, struct vec3 point, struct vec3 normal, double u,
+                            double *pmf) {
+    uint32_t node = 0;
+    while (s->nodes[node].second != 0) {
+        uint32_t one = node + 1, other = s->nodes[node].second;
+        double a = importance_at(s, one, point, normal), b = importance_at(s, other, point, normal);
+        if (!(a + b > 0)) {
+            *pmf = 0;
+            return LIGHT_NONE;
+        }
+        double share = a / (a + b);
+        bool first = u < share;
+        node = first ? one : other;
+        *pmf *= first ? share : b / (a + b);
+        u = fmin(first ? u / share : (u - share) / (1 - share), below_one);
+    }
+    return s->nodes[node].light;
+}
+
+static double tree_pmf(const struct light_sampler *s, struct vec3 point, struct vec3 normal, uint32_t light) {
+    double pmf = 1;
+    uint32_t node = s->leaf_of[light];
+    if (node == LIGHT_NONE)
+        return 0;
+    for (uint32_t parent; (parent = s->nodes[node].parent) != LIGHT_NONE; node = parent) {
+        uint32_t one = parent + 1, other = s->nodes[parent].second;
+        double a = importance_at(s, one, point, normal), b = importance_at(s, other, point, normal);
+        if (!(a + b > 0))
+            return 0;
+        pmf *= (node == one ? a : b) / (a + b);
+    }
+    return pmf;
+}
+
+static uint32_t sample_shares(const struct light_sampler *s, double u, double *pmf) {
+    uint32_t low = 0, high = s->count - 1;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        if (s->until[middle] > u)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    *pmf = s->share[s->candidates[low]];
+    return s->candidates[low];
+}
+
+uint32_t light_sampler_sample(const struct light_sampler *s, struct vec3 point, struct vec3 normal, double u,
+                              double *pmf) {
+    *pmf = 0;
+    if (s->count == 0)
+        return LIGHT_NONE;
+    switch (s->choice) {
+    case LIGHT_CHOICE_TREE:
+        break;
+    case LIGHT_CHOICE_POWER:
+    case LIGHT_CHOICE_UNIFORM:
+        return sample_shares(s, u, pmf);
+    }
+    double tree = tree_share(s, point, normal);
+    if (tree == 0 && s->infinite_count == 0)
+        return LIGHT_NONE;
+    if (u < tree) {
+        *pmf = tree;
+        return sample_tree(s, point, normal, fmin(u / tree, below_one), pmf);
+    }
+    double place = (u - tree) / (1 - tree) * s->infinite_count;
+    uint32_t number = place < s->infinite_count ? (uint32_t)place : s->infinite_count - 1;
+    *pmf = (1 - tree) / s->infinite_count;
+    return s->infinite[number];
+}
+
+double light_sampler_pmf(const struct light_sampler *s, struct vec3 point, struct vec3 normal, uint32_t light) {
+    switch (s->choice) {
+    case LIGHT_CHOICE_TREE:
+        break;
+    case LIGHT_CHOICE_POWER:
+    case LIGHT_CHOICE_UNIFORM:
+        return s->count > 0 ? s->share[light] : 0;
+    }
+    double tree = tree_share(s, point, normal);
+    if (s->leaf_of[light] != LIGHT_NONE)
+        return tree * tree_pmf(s, point, normal, light);
+    for (uint32_t i = 0; i < s->infinite_count; i++)
+        if (s->infinite[i] == light)
+            return (1 - tree) / s->infinite_count;
+    return 0;
+}

@@ -1,0 +1,73 @@
+/* Chooses one light of many, in proportion to about what each of them brings to a point: a hierarchy over the lights
+ * with their power, their bounds and the cone of directions in which they shine (A. Conty Estevez and C. Kulla,
+ * "Importance Sampling of Many Lights with Adaptive Tree Splitting", 2018; the vocabulary is that of M. Pharr, W.
+ * Jakob, G. Humphreys, "Physically Based Rendering", 4th edition, section 12.6.3). The way down is random, at every
+ * node in proportion to the importance of its two children. Lights without a place (skies, directional lights) stand
+ * beside the tree; each of them is chosen as often as the whole tree.
+ *
+ * Choosing never looks at visibility. A light with probability 0 brings nothing to the point. The same lights in the
+ * same order make the same sampler. */
+#ifndef GRAY_LIGHT_LIGHT_SAMPLER_H
+#define GRAY_LIGHT_LIGHT_SAMPLER_H
+
+#include "base/arena.h"
+#include "base/list.h"
+#include "light/light.h"
+
+/* What is known of a light, or of several together, from afar. */
+struct light_bounds {
+    struct box box; /* of the places that send light */
+    /* The light leaves from normals within theta_o of the axis (unit), in directions within theta_e of these. */
+    struct vec3 axis;
+    double cos_theta_o, cos_theta_e;
+    bool two_sided; /* ... and likewise about the opposite of the axis */
+    /* What a white surface facing it shows at distance d, on average over colours and visible sides:
+     * steady + fading / (falloff[0] + falloff[1] d + falloff[2] d^2), nothing beyond `range`. */
+    double steady, fading, falloff[3], range;
+};
+/* NONE: it sends nothing. INFINITE: it has no place; its bounds are not set. */
+enum light_reach { LIGHT_REACH_NONE, LIGHT_REACH_PLACED, LIGHT_REACH_INFINITE };
+enum light_reach light_bounds_of(const struct light *light, struct light_bounds *out);
+struct light_bounds light_bounds_join(const struct light_bounds *a, const struct light_bounds *b);
+/* About what it brings to a surface with that normal (either side; {0,0,0}: to a point in the open). 0: nothing. */
+double light_bounds_importance(const struct light_bounds *bounds, struct vec3 point, struct vec3 normal);
+
+/* How a light is chosen. UNIFORM and POWER are there to be compared with. */
+#define LIGHT_CHOICES(X)                                                                                               \
+    X(LIGHT_CHOICE_TREE, "tree")                                                                                       \
+    X(LIGHT_CHOICE_POWER, "power")                                                                                     \
+    X(LIGHT_CHOICE_UNIFORM, "uniform")
+enum light_choice { LIGHT_CHOICES(LIST_MEMBER) };
+
+struct light_tree_node {
+    struct light_bounds bounds;
+    uint32_t parent; /* LIGHT_NONE: the root */
+    uint32_t second; /* of an inner node: its second child; the first one follows it. 0: a leaf */
+    uint32_t light;  /* of a leaf */
+};
+
+struct light_sampler {
+    enum light_choice choice;
+    uint32_t count; /* of lights that can be chosen: all, but those that send nothing */
+    const uint32_t *infinite;
+    uint32_t infinite_count;
+    const struct light_tree_node *nodes; /* node 0 is the root */
+    uint32_t node_count;
+    const uint32_t *leaf_of;    /* by light: its leaf; LIGHT_NONE: it is not in the tree */
+    const uint32_t *candidates; /* of POWER and UNIFORM */
+    const double *until;        /* of POWER: share of the unit interval up to and with a candidate */
+    const double *share;        /* of POWER and UNIFORM, by light */
+};
+
+/* Of the lights, which are prepared (light_prepare) and stay as they are. Everything is in the arena. False: no memory.
+ */
+bool light_sampler_build(struct light_sampler *out, enum light_choice choice, const struct light *lights,
+                         uint32_t light_count, struct arena *arena, struct error *error);
+/* A light for a point whose surface has that normal ({0,0,0}: none), by a number u of [0, 1), and its probability.
+ * LIGHT_NONE: nothing brings light there, as far as that is seen on the way. */
+uint32_t light_sampler_sample(const struct light_sampler *sampler, struct vec3 point, struct vec3 normal, double u,
+                              double *pmf);
+/* The probability with which it chooses that light. */
+double light_sampler_pmf(const struct light_sampler *sampler, struct vec3 point, struct vec3 normal, uint32_t light);
+
+#endif
