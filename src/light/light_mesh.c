@@ -31,6 +31,8 @@ void light_mesh_add(struct light_mesh_builder *builder, const struct vec3 corner
     t->intensity = vec3_scale(emission, 1 / radiance_of(luminance)); /* times the sum, once it is known */
     t->density = luminance;                                          /* over the sum */
     t->offset = size * 0x1p-40;
+    t->primitive = builder->primitive;
+    t->part = builder->part;
     for (int i = 0; i < 3; i++)
         builder->bounds = box_add_point(builder->bounds, corners[i]);
     builder->sum += weight;
@@ -52,6 +54,23 @@ void light_mesh_end(struct light_mesh_builder *builder, struct vec3 colour, stru
         out->centre = vec3_scale(vec3_add(builder->bounds.min, builder->bounds.max), 0.5);
         out->radius = vec3_length(vec3_sub(builder->bounds.max, out->centre)) * (1 + 0x1p-40);
     }
+}
+
+static bool is_before(const struct light_triangle *t, uint32_t primitive, uint32_t part) {
+    return t->primitive != primitive ? t->primitive < primitive : t->part < part;
+}
+
+uint32_t light_mesh_find(const struct light_mesh *mesh, uint32_t primitive, uint32_t part) {
+    uint32_t low = 0, high = mesh->count;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        if (is_before(&mesh->triangles[middle], primitive, part))
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    const struct light_triangle *t = &mesh->triangles[low];
+    return low < mesh->count && t->primitive == primitive && t->part == part ? low : LIGHT_NONE;
 }
 
 /* The place's x, spread over the unit interval again within the share of its triangle. */
@@ -101,7 +120,8 @@ struct light_sample light_mesh_sample(const struct light_mesh *mesh, const struc
                                  .target = {target, false},
                                  .radiance = light_triangle_radiance(t),
                                  .pdf = weight > 0 ? t->density / weight : 0,
-                                 .intensity = vec3_scale(t->intensity, weight)};
+                                 .intensity = vec3_scale(t->intensity, weight),
+                                 .triangle = (uint32_t)(t - mesh->triangles)};
 }
 
 double light_mesh_pdf(const struct light_mesh *mesh, const struct light_context *context, const struct light_hit *hit) {

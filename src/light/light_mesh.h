@@ -11,10 +11,11 @@ struct light_triangle {
     struct vec3 intensity;                    /* classic, of its radiance over the density of samples by area */
     double density;                           /* of samples by area */
     double offset;                            /* shadow rays end this far from it */
+    uint32_t primitive, part;                 /* what it was made of: a placed primitive, and which triangle there */
 };
 struct light_mesh {
-    const struct light_triangle *triangles;
-    const double *until; /* until[i]: share of the unit interval up to and with triangle i */
+    const struct light_triangle *triangles; /* by primitive, then by part */
+    const double *until;                    /* until[i]: share of the unit interval up to and with triangle i */
     uint32_t count;
     bool one_sided; /* normals point outwards, and light comes from that side only */
     bool shown;     /* rays meet the meshes that it was made of */
@@ -27,7 +28,8 @@ struct light_mesh_builder {
     struct light_triangle *triangles;
     double *until;
     uint32_t count;
-    bool one_sided; /* to be set by the caller before the end */
+    bool one_sided;           /* to be set by the caller before the end */
+    uint32_t primitive, part; /* of the triangle that is added next; never falling */
     struct box bounds;
     double sum; /* of areas times luminances */
 };
@@ -39,6 +41,9 @@ void light_mesh_add(struct light_mesh_builder *builder, const struct vec3 corner
                     struct vec3 emission);
 /* colour: multiplies all emissions. */
 void light_mesh_end(struct light_mesh_builder *builder, struct vec3 colour, struct light_mesh *out);
+
+/* The triangle that was made of that part of a primitive; LIGHT_NONE: it sends no light. */
+uint32_t light_mesh_find(const struct light_mesh *mesh, uint32_t primitive, uint32_t part);
 
 /* A place on it, for one in the unit square: uniform on the triangle that the place's x falls on. */
 struct light_point {

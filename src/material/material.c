@@ -126,6 +126,11 @@ struct vec3 material_emission_bound(const struct material *material) {
     return emission_of(material, TEXTURE_LARGEST);
 }
 
+/* What is unlit shows its colour as emission, too (material_eval). */
+bool material_emission_varies(const struct material *material) {
+    return material->inputs[INPUT_EMISSION] || numbers_of(material)->unlit;
+}
+
 bool material_has_ior(const struct material *material) {
     return numbers_of(material)->has_ior;
 }

@@ -103,6 +103,8 @@ struct vec3 material_absorption(const struct material *material);
 /* Of the base: its own light on average, and at most (texture_estimate). */
 struct vec3 material_emission(const struct material *material);
 struct vec3 material_emission_bound(const struct material *material);
+/* Whether it may be another one at every hit. */
+bool material_emission_varies(const struct material *material);
 /* The share of light that its mirror and its refraction give back together, at most; 0: neither. */
 double material_specular(const struct material *material);
 bool material_has_ior(const struct material *material);

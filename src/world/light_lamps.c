@@ -42,8 +42,11 @@ static void add_mesh(struct gathering *g, uint32_t index) {
     bool mirrored = affine_determinant(&map.forward) < 0;
     double sign = mesh_is_closed(mesh) && mesh_is_outward(mesh) == mirrored ? -1 : 1;
     g->mesh.one_sided = g->mesh.one_sided && mesh_is_closed(mesh);
-    for (uint32_t i = 0; i < mesh_triangle_count(mesh); i++)
+    g->mesh.primitive = index;
+    for (uint32_t i = 0; i < mesh_triangle_count(mesh); i++) {
+        g->mesh.part = i;
         add_triangle(g, mesh, i, &map, sign, thing);
+    }
 }
 
 static bool is_lamp(const struct gathering *g, uint32_t index) {
@@ -65,6 +68,19 @@ static bool gather(struct gathering *g, uint64_t total, struct arena *arena, str
     for (uint32_t i = 0; i < g->world->placed_count; i++)
         if (is_lamp(g, i))
             add_mesh(g, i);
+    return true;
+}
+
+bool light_lamps_primitive(const struct world *world, uint32_t placed, struct light *light, struct arena *arena,
+                           struct error *error) {
+    struct gathering g = {.world = world, .light = light};
+    struct light_mesh *mesh = arena_alloc(arena, sizeof *mesh);
+    if (!mesh || !light_mesh_begin(&g.mesh, mesh_triangle_count(placed_shape(world, placed)->mesh), arena))
+        return error_no_memory(error, "a mesh light");
+    add_mesh(&g, placed);
+    light_mesh_end(&g.mesh, light->colour, mesh);
+    mesh->shown = true;
+    light->mesh = mesh;
     return true;
 }
 

@@ -10,5 +10,8 @@
  * that is not in the scene. Warnings: a mesh lamp without light. A sky that is to be turned is, and behind everything,
  * too, if it is seen there. */
 bool light_lamps_resolve(struct flattening *f, struct light *lights, const struct node *root);
+/* Sets `mesh` of a light that is one placed mesh alone, with the emission of its materials. Errors: no memory. */
+bool light_lamps_primitive(const struct world *world, uint32_t placed, struct light *light, struct arena *arena,
+                           struct error *error);
 
 #endif

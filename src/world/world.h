@@ -138,6 +138,11 @@ static inline const struct thing *placed_thing(const struct world *world, uint32
 static inline const struct shape *placed_shape(const struct world *world, uint32_t placed) {
     return &placed_thing(world, placed)->shape;
 }
+/* It stands at another place at another time. */
+static inline bool placed_moves(const struct world *world, uint32_t placed) {
+    uint32_t linear = world->placed[placed].linear;
+    return linear != LINEAR_NONE && (linear & LINEAR_MOVING) != 0;
+}
 /* The node that a placed primitive came from. */
 static inline const struct node *placed_node(const struct world *world, uint32_t placed) {
     return world->authored.nodes[world->placed[placed].thing];

@@ -1,0 +1,499 @@
+/* See world_lights.h. A sphere, a flat shape and a mesh become a light of a kind that samples them; everything else is
+ * sampled by the solid angle of a ball around it, and the ray decides whether it meets what sends light. So is what
+ * moves: its ball holds every place of the shutter's time. What has no end cannot be sampled; rays meet it. */
+#include "world/world_lights.h"
+
+#include "base/mem.h"
+#include "light/light_mesh.h"
+#include "material/classic.h"
+#include "world/light_lamps.h"
+
+#include <string.h>
+
+/* --- what emits --- */
+
+/* Of a thing: its brightest material. */
+struct emission {
+    struct vec3 colour;
+    bool emits, varies;
+};
+
+static void look_at_materials(const struct world *world, uint32_t first, uint32_t slots, struct emission *out) {
+    for (uint32_t i = first; i < first + (slots > 1 ? slots : 1); i++) {
+        const struct material *material = &world->materials[i];
+        struct vec3 colour = material_emission(material), bound = material_emission_bound(material);
+        bool brighter = vec3_max_abs(colour) > vec3_max_abs(out->colour);
+        out->emits = out->emits || vec3_max_abs(colour) > 0 || vec3_max_abs(bound) > 0;
+        out->varies = out->varies || material_emission_varies(material);
+        out->colour = brighter ? colour : out->colour;
+    }
+}
+
+static struct emission emission_of_thing(const struct world *world, const struct thing *thing) {
+    struct emission out = {.varies = thing->holes || thing->cull != CULL_NONE};
+    if (thing->shape.kind != SHAPE_CSG) {
+        look_at_materials(world, thing->material, thing->slot_count, &out);
+        return out;
+    }
+    for (uint32_t i = 0; i < thing->shape.csg->leaf_count; i++) {
+        const struct csg_leaf *leaf = &thing->shape.csg->leaves[i];
+        look_at_materials(world, leaf->material, leaf->slot_count, &out);
+    }
+    return out;
+}
+
+/* --- lights of shapes --- */
+
+/* The map's factor of lengths; 0: it is none for all directions. */
+static double similarity(const struct affine *map) {
+    struct vec3 axis[3];
+    for (int i = 0; i < 3; i++)
+        axis[i] = vec3_make(map->m[0][i], map->m[1][i], map->m[2][i]);
+    double squared = vec3_length_squared(axis[0]);
+    bool same = true;
+    for (int i = 0; i < 3; i++) {
+        const struct vec3 *next = &axis[(i + 1) % 3];
+        same = same && fabs(vec3_length_squared(axis[i]) - squared) <= 0x1p-40 * squared &&
+               fabs(vec3_dot(axis[i], *next)) <= 0x1p-40 * squared;
+    }
+    return same ? sqrt(squared) : 0;
+}
+
+/* A light that is to stand for a primitive. */
+struct derived {
+    const struct world *world;
+    uint32_t placed;
+    struct transform map; /* world from object */
+    struct light light;
+    struct emitter emitter;
+    struct arena *arena;
+    struct error *error;
+};
+
+/* The smaller one of the balls around its box in the world and around that of its shape. False: it has no end. */
+static bool derive_ball(struct derived *d, bool moves) {
+    const struct box *box = &d->world->boxes[d->placed];
+    struct box own = shape_bounds(placed_shape(d->world, d->placed));
+    struct vec3 centre = vec3_scale(vec3_add(box->min, box->max), 0.5);
+    double radius = vec3_length(vec3_sub(box->max, centre)), reach = 0;
+    struct vec3 middle = affine_point(&d->map.forward, vec3_scale(vec3_add(own.min, own.max), 0.5));
+    for (int i = 0; i < 8; i++) {
+        struct vec3 corner = {i & 1 ? own.max.x : own.min.x, i & 2 ? own.max.y : own.min.y,
+                              i & 4 ? own.max.z : own.min.z};
+        reach = fmax(reach, vec3_length(vec3_sub(affine_point(&d->map.forward, corner), middle)));
+    }
+    bool smaller = !moves && reach < radius;
+    d->light.kind = LIGHT_SPHERE;
+    d->light.position = smaller ? middle : centre;
+    d->light.radius = (smaller ? reach : radius) * (1 + 0x1p-30);
+    d->emitter.decided = true;
+    return vec3_finite(d->light.position) && d->light.radius > 0 && isfinite(d->light.radius);
+}
+
+static bool derive_sphere(struct derived *d) {
+    const struct shape *shape = placed_shape(d->world, d->placed);
+    double factor = similarity(&d->map.forward);
+    if (!(factor > 0))
+        return derive_ball(d, false);
+    d->light.kind = LIGHT_SPHERE;
+    d->light.position = affine_point(&d->map.forward, shape->sphere.centre);
+    d->light.radius = shape->sphere.radius * factor;
+    return true;
+}
+
+/* The parallelogram of the points origin + a u + b v. */
+static bool derive_parallelogram(struct derived *d, const struct flat *flat, double a0, double b0, double a1,
+                                 double b1) {
+    struct vec3 corner = vec3_add_scaled(vec3_add_scaled(flat->origin, flat->u, a0), flat->v, b0);
+    d->light.kind = LIGHT_PARALLELOGRAM;
+    d->light.corner = affine_point(&d->map.forward, corner);
+    d->light.edge1 = affine_vector(&d->map.forward, vec3_scale(flat->u, a1 - a0));
+    d->light.edge2 = affine_vector(&d->map.forward, vec3_scale(flat->v, b1 - b0));
+    d->light.position = vec3_add_scaled(vec3_add_scaled(d->light.corner, d->light.edge1, 0.5), d->light.edge2, 0.5);
+    return vec3_length(vec3_cross(d->light.edge1, d->light.edge2)) > 0;
+}
+
+static bool derive_disc(struct derived *d, const struct flat *flat) {
+    struct vec3 u = affine_vector(&d->map.forward, flat->u), v = affine_vector(&d->map.forward, flat->v);
+    double squared = vec3_length_squared(u);
+    bool round =
+        fabs(vec3_length_squared(v) - squared) <= 0x1p-40 * squared && fabs(vec3_dot(u, v)) <= 0x1p-40 * squared;
+    d->emitter.decided = d->emitter.decided || !round || flat->inner > 0;
+    if (!round)
+        return derive_parallelogram(d, flat, -1, -1, 1, 1);
+    d->light.kind = LIGHT_DISC;
+    d->light.position = affine_point(&d->map.forward, flat->origin);
+    d->light.direction = vec3_normalize(vec3_cross(u, v));
+    d->light.radius = sqrt(squared);
+    return d->light.radius > 0;
+}
+
+static bool derive_triangle(struct derived *d, const struct flat *flat, bool *ok) {
+    struct light_mesh *mesh = arena_alloc(d->arena, sizeof *mesh);
+    struct light_mesh_builder builder;
+    struct vec3 corners[3] = {flat->origin, vec3_add(flat->origin, flat->u), vec3_add(flat->origin, flat->v)};
+    double size = 0;
+    *ok = (mesh && light_mesh_begin(&builder, 1, d->arena)) || error_no_memory(d->error, "a triangle as a light");
+    if (!*ok)
+        return false;
+    for (int i = 0; i < 3; i++) {
+        size = fmax(size, vec3_max_abs(corners[i]) * transform_stretch(&d->map));
+        corners[i] = affine_point(&d->map.forward, corners[i]);
+        size = fmax(size, vec3_max_abs(corners[i]));
+    }
+    builder.one_sided = false;
+    builder.primitive = d->placed;
+    light_mesh_add(&builder, corners, 1, size, d->light.colour);
+    light_mesh_end(&builder, vec3_all(1), mesh);
+    d->light.kind = LIGHT_MESH;
+    d->light.mesh = mesh;
+    d->emitter.by_triangle = true;
+    return mesh->count > 0;
+}
+
+/* The rectangle around a polygon, along its own axes. */
+static bool derive_polygon(struct derived *d, const struct flat *flat) {
+    struct vec3 n = vec3_cross(flat->u, flat->v);
+    double squared = vec3_length_squared(n), low[2], high[2];
+    const struct vec3 rows[2] = {vec3_scale(vec3_cross(flat->v, n), 1 / squared),
+                                 vec3_scale(vec3_cross(n, flat->u), 1 / squared)};
+    for (int i = 0; i < 2; i++) {
+        double start = vec3_dot(rows[i], flat->origin);
+        flat_extent(flat, rows[i], &low[i], &high[i]);
+        low[i] -= start;
+        high[i] -= start;
+    }
+    d->emitter.decided = true;
+    return derive_parallelogram(d, flat, low[0], low[1], high[0], high[1]);
+}
+
+static bool derive_flat(struct derived *d, bool *ok) {
+    const struct flat *flat = &placed_shape(d->world, d->placed)->flat;
+    switch (flat->kind) {
+    case FLAT_PLANE:
+        break;
+    case FLAT_PARALLELOGRAM:
+        return derive_parallelogram(d, flat, 0, 0, 1, 1);
+    case FLAT_DISC:
+        return derive_disc(d, flat);
+    case FLAT_TRIANGLE:
+        return derive_triangle(d, flat, ok);
+    case FLAT_POLYGON:
+        return derive_polygon(d, flat);
+    }
+    return false;
+}
+
+static bool derive_mesh(struct derived *d, bool *ok) {
+    d->light.kind = LIGHT_MESH;
+    d->emitter.by_triangle = true;
+    struct light unit = {.colour = {1, 1, 1}};
+    *ok = light_lamps_primitive(d->world, d->placed, &unit, d->arena, d->error);
+    d->light.mesh = unit.mesh;
+    return *ok && unit.mesh->count > 0;
+}
+
+/* False: the primitive cannot be sampled, or *ok says that memory ran out. */
+static bool derive(struct derived *d, bool *ok) {
+    *ok = true;
+    if (placed_moves(d->world, d->placed))
+        return derive_ball(d, true);
+    d->map = world_placement(d->world, d->placed, 0.5);
+    switch (placed_shape(d->world, d->placed)->kind) {
+    case SHAPE_SPHERE:
+        return derive_sphere(d);
+    case SHAPE_FLAT:
+        return derive_flat(d, ok);
+    case SHAPE_MESH:
+        return derive_mesh(d, ok);
+    case SHAPE_BOX:
+    case SHAPE_CONIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_HEIGHT_FIELD:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE:
+    case SHAPE_CSG:
+        break;
+    }
+    return derive_ball(d, false);
+}
+
+/* --- building --- */
+
+struct building {
+    struct world_lights *out;
+    struct light *lights;
+    struct emitter *emitters;
+    uint32_t *of_primitive;
+    struct emission *of_thing;
+    struct arena *arena;
+    struct error *error;
+};
+
+/* A light of the scene. Of several over one primitive the first has it. */
+static void take_light(struct building *b, uint32_t number) {
+    const struct world *world = b->out->world;
+    const struct light *light = &b->lights[number];
+    struct emitter *emitter = &b->emitters[number];
+    *emitter = (struct emitter){.placed = WORLD_NOTHING, .unmet = light_is_delta(light), .emission = light->colour};
+    if (!light->mesh)
+        return;
+    emitter->shown = light->mesh->shown;
+    emitter->unmet = !light->mesh->shown;
+    emitter->by_triangle = true;
+    emitter->has_own = light->has_emission;
+    if (light->has_emission)
+        emitter->emission = vec3_mul(light->emission, light->colour);
+    for (uint32_t i = 0; i < light->mesh->count && light->mesh->shown; i++) {
+        uint32_t placed = light->mesh->triangles[i].primitive;
+        if (b->of_primitive[placed] != LIGHT_NONE)
+            continue;
+        const struct thing *thing = placed_thing(world, placed);
+        b->of_primitive[placed] = number;
+        emitter->unmet = emitter->unmet || placed_moves(world, placed);
+        emitter->decided = emitter->decided || thing->holes || thing->cull != CULL_NONE ||
+                           (!light->has_emission && b->of_thing[world->placed[placed].thing].varies);
+    }
+    emitter->decided = emitter->decided && !emitter->unmet;
+}
+
+static bool take_primitive(struct building *b, uint32_t placed) {
+    const struct world *world = b->out->world;
+    const struct emission *emission = &b->of_thing[world->placed[placed].thing];
+    if (!emission->emits || b->of_primitive[placed] != LIGHT_NONE)
+        return true;
+    struct derived d = {.world = world,
+                        .placed = placed,
+                        .light = {.emits = true, .colour = emission->colour},
+                        .emitter = {.placed = placed, .shown = true, .decided = emission->varies},
+                        .arena = b->arena,
+                        .error = b->error};
+    d.emitter.emission = vec3_all(1);
+    bool ok;
+    if (!derive(&d, &ok))
+        return ok;
+    uint32_t number = b->out->count++;
+    b->lights[number] = d.light;
+    b->emitters[number] = d.emitter;
+    b->of_primitive[placed] = number;
+    return true;
+}
+
+static bool take_background(struct building *b, struct pool *pool) {
+    struct light *light = &b->lights[b->out->count];
+    for (uint32_t i = 0; i < b->out->count; i++)
+        if (light_properties(&b->lights[i]) & LIGHT_IS_ENVIRONMENT)
+            return true;
+    *light = (struct light){.kind = LIGHT_SKY, .emits = true, .colour = {1, 1, 1}, .sky = &b->out->world->sky};
+    b->emitters[b->out->count++] = (struct emitter){.placed = WORLD_NOTHING};
+    return light_prepare(light, b->arena, pool, b->error);
+}
+
+static bool build_lamps(struct building *b, struct pool *pool) {
+    struct world_lights *out = b->out;
+    uint32_t *lamps = arena_alloc_array(b->arena, out->world->light_count, sizeof *lamps);
+    struct box *boxes = mem_alloc_zero((size_t)out->world->light_count + 1, sizeof *boxes);
+    bool ok = (lamps && boxes) || error_no_memory(b->error, "the lights of the scene");
+    for (uint32_t i = 0; ok && i < out->world->light_count; i++) {
+        const struct light *light = &b->lights[i];
+        struct box *box = &boxes[out->lamp_count];
+        if ((light_is_delta(light) && !light->visible) || !light_surface_box(light, box))
+            continue;
+        *box = box_pad(*box);
+        lamps[out->lamp_count++] = i;
+    }
+    out->lamps = lamps;
+    ok = ok && (out->lamp_count == 0 || box_tree_build(&out->surfaces, boxes, out->lamp_count, pool, b->error));
+    mem_free(boxes);
+    return ok;
+}
+
+static bool allocate(struct building *b) {
+    const struct world *world = b->out->world;
+    uint32_t emitting = 0;
+    b->of_thing = arena_alloc_array(b->arena, (size_t)world->thing_count + 1, sizeof *b->of_thing);
+    b->of_primitive = arena_alloc_array(b->arena, (size_t)world->placed_count + 1, sizeof *b->of_primitive);
+    if (!b->of_thing || !b->of_primitive)
+        return false;
+    for (uint32_t i = 0; i < world->thing_count; i++)
+        b->of_thing[i] = emission_of_thing(world, &world->things[i]);
+    for (uint32_t i = 0; i < world->placed_count; i++) {
+        b->of_primitive[i] = LIGHT_NONE;
+        emitting += b->of_thing[world->placed[i].thing].emits;
+    }
+    size_t most = (size_t)world->light_count + emitting + 1;
+    b->lights = arena_alloc_array(b->arena, most, sizeof *b->lights);
+    b->emitters = arena_alloc_array(b->arena, most, sizeof *b->emitters);
+    return b->lights && b->emitters;
+}
+
+static bool build(struct building *b, bool background, enum light_choice choice, struct pool *pool) {
+    struct world_lights *out = b->out;
+    const struct world *world = out->world;
+    if (!allocate(b))
+        return error_no_memory(b->error, "the lights of the scene");
+    out->lights = b->lights;
+    out->emitters = b->emitters;
+    out->of_primitive = b->of_primitive;
+    if (world->light_count > 0)
+        memcpy(b->lights, world->lights, world->light_count * sizeof *b->lights);
+    out->count = world->light_count;
+    for (uint32_t i = 0; i < world->light_count; i++)
+        take_light(b, i);
+    for (uint32_t i = 0; i < world->placed_count; i++) {
+        if ((i & 1023) == 0 && pool_cancelled(pool))
+            return error_set(b->error, ERROR_CANCELLED, "stopped while the lights of the scene were gathered");
+        if (!take_primitive(b, i))
+            return false;
+    }
+    return (!background || take_background(b, pool)) && build_lamps(b, pool) &&
+           light_sampler_build(&out->sampler, choice, out->lights, out->count, b->arena, b->error);
+}
+
+bool world_lights_build(struct world_lights *out, const struct world *world, bool background, enum light_choice choice,
+                        struct arena *arena, struct pool *pool, struct error *error) {
+    struct building b = {.out = out, .arena = arena, .error = error};
+    *out = (struct world_lights){.world = world};
+    bool ok = build(&b, background, choice, pool);
+    if (!ok)
+        world_lights_destroy(out);
+    return ok;
+}
+
+void world_lights_destroy(struct world_lights *lights) {
+    box_tree_destroy(&lights->surfaces);
+}
+
+/* --- sampling --- */
+
+/* Whether a mesh light has a triangle: of several over one primitive the first has it. */
+static bool is_own_triangle(const struct world_lights *lights, uint32_t light, uint32_t triangle) {
+    const struct emitter *emitter = &lights->emitters[light];
+    if (!emitter->shown || !emitter->by_triangle)
+        return true;
+    return lights->of_primitive[lights->lights[light].mesh->triangles[triangle].primitive] == light;
+}
+
+static bool is_dark(struct vec3 c) {
+    return c.x == 0 && c.y == 0 && c.z == 0;
+}
+
+bool world_lights_sample(const struct world_lights *lights, const struct light_receiver *receiver, uint32_t number,
+                         struct sample2 place, struct world_light_sample *out) {
+    const struct light *light = &lights->lights[number];
+    const struct emitter *emitter = &lights->emitters[number];
+    struct light_context context;
+    if (!world_lights_reach(lights, number, receiver->placed) ||
+        !light_context_make(light, receiver->point, receiver->from, &context))
+        return false;
+    struct light_sample sample = light_sample(light, &context, place);
+    if (!(sample.pdf > 0) || !is_own_triangle(lights, number, sample.triangle))
+        return false;
+    bool own = emitter->shown && receiver->placed == emitter->placed && receiver->placed != WORLD_NOTHING;
+    *out = (struct world_light_sample){.direction = sample.direction,
+                                       .target = sample.target,
+                                       .radiance = sample.radiance,
+                                       .pdf = sample.pdf,
+                                       .is_delta = emitter->unmet,
+                                       .decided = emitter->decided || own,
+                                       .light = number,
+                                       .triangle = sample.triangle};
+    if (sample.is_delta)
+        out->radiance = vec3_scale(sample.intensity, radiance_of(1));
+    bool alone = emitter->shown && !emitter->by_triangle && !out->decided;
+    out->passes = alone ? emitter->placed + 1 : 0;
+    return out->decided || !is_dark(out->radiance);
+}
+
+static uint32_t triangle_of_hit(const struct world_lights *lights, uint32_t light, const struct hit *hit) {
+    bool by_triangle = lights->emitters[light].by_triangle;
+    return by_triangle ? light_mesh_find(lights->lights[light].mesh, hit->placed, hit->part) : 0;
+}
+
+bool world_lights_shows(const struct world_lights *lights, const struct world_light_sample *sample,
+                        const struct hit *hit) {
+    if (lights->of_primitive[hit->placed] != sample->light)
+        return false;
+    return triangle_of_hit(lights, sample->light, hit) == sample->triangle;
+}
+
+struct vec3 world_lights_radiance(const struct world_lights *lights, uint32_t placed, const struct hit *hit,
+                                  struct vec3 emission) {
+    uint32_t light = lights->of_primitive[hit->placed];
+    if (light == LIGHT_NONE)
+        return emission;
+    const struct emitter *emitter = &lights->emitters[light];
+    if (emitter->unmet || !world_lights_reach(lights, light, placed))
+        return vec3_all(0);
+    return emitter->has_own ? emitter->emission : vec3_mul(emission, emitter->emission);
+}
+
+double world_lights_pdf(const struct world_lights *lights, const struct light_receiver *receiver, uint32_t light,
+                        struct vec3 direction, const struct light_hit *hit) {
+    struct light_context context;
+    if (lights->emitters[light].unmet || !world_lights_reach(lights, light, receiver->placed))
+        return 0;
+    double pmf = light_sampler_pmf(&lights->sampler, receiver->point, receiver->normal, light);
+    if (!(pmf > 0) || !light_context_make(&lights->lights[light], receiver->point, receiver->from, &context))
+        return 0;
+    return pmf * light_pdf(&lights->lights[light], &context, direction, hit);
+}
+
+double world_lights_pdf_of_hit(const struct world_lights *lights, const struct light_receiver *receiver,
+                               struct vec3 direction, const struct hit *hit) {
+    uint32_t light = lights->of_primitive[hit->placed];
+    uint32_t triangle = light != LIGHT_NONE ? triangle_of_hit(lights, light, hit) : LIGHT_NONE;
+    if (triangle == LIGHT_NONE)
+        return 0;
+    struct light_hit met = {.t = hit->t, .point = hit->point, .triangle = triangle};
+    return world_lights_pdf(lights, receiver, light, direction, &met);
+}
+
+/* --- lamps --- */
+
+void world_lights_met_begin(struct world_lights_walk *walk, const struct world_lights *lights, const struct ray *ray) {
+    walk->lights = lights;
+    walk->ray = ray;
+    walk->tree.top = 0;
+    if (lights->lamp_count > 0)
+        box_tree_walk_begin(&walk->tree, &lights->surfaces, ray);
+}
+
+bool world_lights_met_next(struct world_lights_walk *walk, uint32_t *light, struct light_hit *hit) {
+    uint32_t item;
+    while (box_tree_walk_next(&walk->tree, walk->ray->t_max, &item)) {
+        *light = walk->lights->lamps[item];
+        const struct light *lamp = &walk->lights->lights[*light];
+        if (!light_is_delta(lamp) && light_meets_ray(lamp, walk->ray, hit))
+            return true;
+    }
+    return false;
+}
+
+bool world_lights_seen(const struct world_lights *lights, const struct ray *ray, uint32_t *light,
+                       struct light_hit *hit) {
+    struct box_tree_walk walk;
+    struct ray limited = *ray;
+    struct light_hit met;
+    uint32_t item;
+    bool found = false;
+    if (lights->lamp_count == 0)
+        return false;
+    box_tree_walk_begin(&walk, &lights->surfaces, ray);
+    while (box_tree_walk_next(&walk, limited.t_max, &item)) {
+        uint32_t number = lights->lamps[item];
+        if (!lights->lights[number].visible || !light_meets_ray(&lights->lights[number], &limited, &met))
+            continue;
+        *light = number;
+        *hit = met;
+        limited.t_max = met.t;
+        found = true;
+    }
+    return found;
+}

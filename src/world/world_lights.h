@@ -1,0 +1,115 @@
+/* All light of a world for integrators that follow light from wall to wall: the lights of the scene, and every
+ * primitive whose material emits as a light that can be sampled. Built only for integrators that ask for it; Whitted's
+ * direct light never looks here. Numbers of lights: those of world->lights first, then the emitting primitives, then
+ * the background where it lights the scene.
+ *
+ * Next-event estimation at a point (struct light_receiver):
+ *     light = light_sampler_sample(&lights->sampler, point, normal, u, &pmf);
+ *     if (light != LIGHT_NONE && world_lights_sample(lights, &receiver, light, place, &sample))
+ * Then a ray decides. Where sample.decided is false, the light arrives if world_any finds nothing between receiver.from
+ * and sample.target for a ray that skips sample.passes, and its radiance is sample.radiance. Else it arrives if what
+ * world_nearest finds in that direction is what was sampled (world_lights_shows), and its radiance is what
+ * world_lights_radiance says of the hit and its material's emission. Its weight is bsdf_eval / (pdf * pmf), times that
+ * of multiple importance sampling; with is_delta no other ray brings this light, and that weight is 1.
+ *
+ * Rays that were scattered meet: a surface (world_lights_radiance with world_lights_pdf_of_hit), lamps on the way,
+ * which have no body and all count (world_lights_met_next with world_lights_pdf), and behind everything each light of
+ * lights->sampler.infinite (light_emitted with world_lights_pdf). Camera rays and those after smooth surfaces only see:
+ * emission as the material has it, world_lights_seen, the background.
+ *
+ * Lists: a light with `lit` reaches nothing else, sampled or met; all functions here know it. */
+#ifndef GRAY_WORLD_WORLD_LIGHTS_H
+#define GRAY_WORLD_WORLD_LIGHTS_H
+
+#include "accel/box_tree.h"
+#include "light/light_sampler.h"
+#include "world/world.h"
+
+/* What a light has to do with primitives. */
+struct emitter {
+    uint32_t placed;      /* the only primitive, or WORLD_NOTHING: none or several */
+    bool shown;           /* hits of primitives are its own */
+    bool by_triangle;     /* each triangle has a density of its own */
+    bool decided;         /* the ray to it decides what it meets: emission varies, there are holes, or the light is only
+                           * a bound of what sends */
+    bool unmet;           /* scattered rays do not bring its light */
+    bool has_own;         /* of gr.mesh_light: the emission that takes the place of the materials' */
+    struct vec3 emission; /* that one, or a factor */
+};
+
+struct world_lights {
+    const struct world *world;
+    const struct light *lights;
+    uint32_t count;
+    struct light_sampler sampler;
+    const struct emitter *emitters; /* by light */
+    const uint32_t *of_primitive;   /* its light; LIGHT_NONE: it emits nothing, or scattered rays alone bring it */
+    struct box_tree surfaces;       /* over the lamps with a surface of their own; `lamps` by item */
+    const uint32_t *lamps;
+    uint32_t lamp_count;
+};
+
+/* background: whether scattered rays meet the sky of the world, which is then one more light; where the scene has a sky
+ * light they meet that instead. Errors: no memory, cancelled; nothing is left to destroy then. */
+bool world_lights_build(struct world_lights *out, const struct world *world, bool background, enum light_choice choice,
+                        struct arena *arena, struct pool *pool, struct error *error);
+void world_lights_destroy(struct world_lights *lights);
+
+/* What light is sampled for. */
+struct light_receiver {
+    struct vec3 point, from; /* from: where shadow rays start, next to it */
+    struct vec3 normal;      /* shading; {0,0,0}: none */
+    uint32_t placed;         /* the primitive, or WORLD_NOTHING */
+};
+
+struct world_light_sample {
+    struct vec3 direction;      /* unit, from the point */
+    struct light_target target; /* of the shadow ray, from receiver.from */
+    struct vec3 radiance;       /* where `decided` is false; of a delta light over pdf 1 */
+    double pdf;                 /* by solid angle at the point, for this light; of a delta light 1 */
+    bool is_delta;              /* no scattered ray brings this light */
+    bool decided;
+    uint32_t passes; /* for ray->passes of the shadow ray */
+    uint32_t light, triangle;
+};
+/* False: nothing arrives from there. */
+bool world_lights_sample(const struct world_lights *lights, const struct light_receiver *receiver, uint32_t light,
+                         struct sample2 place, struct world_light_sample *out);
+/* Whether a hit is what a `decided` sample was of. */
+bool world_lights_shows(const struct world_lights *lights, const struct world_light_sample *sample,
+                        const struct hit *hit);
+
+/* What a hit surface, whose material emits `emission` there, sends to a receiver on primitive `placed` (WORLD_NOTHING:
+ * none): with gr.mesh_light what that says of it. */
+struct vec3 world_lights_radiance(const struct world_lights *lights, uint32_t placed, const struct hit *hit,
+                                  struct vec3 emission);
+/* The density (by solid angle, times the probability of the light) with which samples for the receiver have this
+ * direction (unit) and end at this hit; 0: only scattered rays meet it. */
+double world_lights_pdf_of_hit(const struct world_lights *lights, const struct light_receiver *receiver,
+                               struct vec3 direction, const struct hit *hit);
+
+/* The lamps with a surface of their own that a ray meets in its interval, each once, in any order:
+ *     world_lights_met_begin(&walk, lights, &ray);
+ *     while (world_lights_met_next(&walk, &light, &hit)) ...
+ * Their radiance is light_emitted. */
+struct world_lights_walk {
+    const struct world_lights *lights;
+    const struct ray *ray;
+    struct box_tree_walk tree;
+};
+void world_lights_met_begin(struct world_lights_walk *walk, const struct world_lights *lights, const struct ray *ray);
+bool world_lights_met_next(struct world_lights_walk *walk, uint32_t *light, struct light_hit *hit);
+/* The nearest of them that shows itself (light->visible); it hides what lies behind. False: none. */
+bool world_lights_seen(const struct world_lights *lights, const struct ray *ray, uint32_t *light,
+                       struct light_hit *hit);
+/* The density of samples for the receiver (with the probability of the light) where a scattered ray of that unit
+ * direction meets that light, a lamp or an infinite one. */
+double world_lights_pdf(const struct world_lights *lights, const struct light_receiver *receiver, uint32_t light,
+                        struct vec3 direction, const struct light_hit *hit);
+/* Whether a light reaches a primitive (WORLD_NOTHING: anything), by its lists. */
+static inline bool world_lights_reach(const struct world_lights *lights, uint32_t light, uint32_t placed) {
+    const uint8_t *lit = lights->lights[light].lit;
+    return !lit || placed == WORLD_NOTHING || lit[placed];
+}
+
+#endif

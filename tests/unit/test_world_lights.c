@@ -1,0 +1,379 @@
+/* All light of a world: samples of lights, and of directions that meet them, agree for emitters of every kind. */
+#include "base/random.h"
+#include "material/classic.h"
+#include "tests/harness.h"
+#include "tests/stage.h"
+#include "tests/unit/shape_makers.h"
+#include "world/world_lights.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+struct room {
+    struct stage stage;
+    struct arena arena;
+    struct world_lights lights;
+    struct world_scratch scratch;
+    uint64_t asked;
+};
+
+static void room_begin(struct room *r) {
+    memset(r, 0, sizeof *r);
+    stage_begin(&r->stage, 1);
+}
+
+static void room_build(struct room *r, bool background) {
+    struct stage *s = &r->stage;
+    CHECK(stage_build(s, s->root, ACCEL_AUTO));
+    CHECK(world_lights_build(&r->lights, &s->world, background, LIGHT_CHOICE_TREE, &r->arena, s->pool, &s->error));
+    CHECK(world_scratch_init(&r->scratch, &s->world));
+}
+
+static void room_end(struct room *r) {
+    world_scratch_destroy(&r->scratch);
+    world_lights_destroy(&r->lights);
+    arena_destroy(&r->arena);
+    stage_end(&r->stage);
+}
+
+static const struct material *glowing(struct room *r, double red, double green, double blue) {
+    struct material *material = stage_phong(&r->stage, vec3_all(0), vec3_all(0), 1);
+    material->phong.emission = vec3_make(red, green, blue);
+    return material;
+}
+
+static struct vec3 emission_at(const struct room *r, const struct hit *hit) {
+    return r->stage.world.materials[hit->material].phong.emission;
+}
+
+static struct sample2 place_of(uint64_t seed, uint64_t index) {
+    return (struct sample2){random_unit(random_combine(seed, 2 * index)),
+                            random_unit(random_combine(seed, 2 * index + 1))};
+}
+
+static struct vec3 direction_of(struct sample2 place) {
+    double y = 1 - 2 * place.y, level = sqrt(fmax(0, 1 - y * y));
+    return vec3_make(level * cos(2 * pi * place.x), y, level * sin(2 * pi * place.x));
+}
+
+/* What one sample of the lights brings, times |cosine|; *density: that of its direction, chosen light included. */
+static struct vec3 of_lights(struct room *r, const struct light_receiver *at, uint64_t i, double *density,
+                             bool *is_delta) {
+    struct world_light_sample sample;
+    double pmf;
+    uint32_t light =
+        light_sampler_sample(&r->lights.sampler, at->point, at->normal, random_unit(random_combine(11, i)), &pmf);
+    if (light == LIGHT_NONE || !world_lights_sample(&r->lights, at, light, place_of(12, i), &sample))
+        return vec3_all(0);
+    struct ray ray = {.origin = at->from,
+                      .direction = light_target_from(&sample.target, at->from),
+                      .t_max = sample.decided ? INFINITY : light_target_end(&sample.target),
+                      .time = 0.5,
+                      .passes = sample.passes};
+    struct hit hit;
+    struct vec3 radiance = sample.radiance;
+    *density = sample.pdf * pmf;
+    *is_delta = sample.is_delta;
+    if (sample.decided) {
+        if (!world_nearest(&r->stage.world, &ray, &r->scratch, &hit) || !world_lights_shows(&r->lights, &sample, &hit))
+            return vec3_all(0);
+        radiance = world_lights_radiance(&r->lights, at->placed, &hit, emission_at(r, &hit));
+        r->asked++;
+        double pdf = world_lights_pdf_of_hit(&r->lights, at, sample.direction, &hit);
+        if (!sample.is_delta)
+            CHECK_NEAR(pdf / *density, 1, 1e-4);
+    } else if (world_any(&r->stage.world, &ray, &r->scratch)) {
+        return vec3_all(0);
+    }
+    return vec3_scale(radiance, fabs(vec3_dot(sample.direction, at->normal)));
+}
+
+struct estimate {
+    double mean, error;
+};
+
+static void estimate_add(struct estimate *e, double value) {
+    e->mean += value;
+    e->error += value * value;
+}
+static void estimate_end(struct estimate *e, double n) {
+    e->mean /= n;
+    e->error = sqrt(fmax(0, e->error / n - e->mean * e->mean) / n);
+}
+
+/* Light on a point by scattered rays alone (uniform over the sphere), and by both kinds of samples with the balance
+ * heuristic; green. Deltas are left out: no scattered ray meets them. */
+static void compare(struct room *r, const struct light_receiver *at, uint64_t n, double tolerance) {
+    struct estimate alone = {0, 0}, both = {0, 0};
+    for (uint64_t i = 0; i < n; i++) {
+        double density = 0, of_scattered = 1 / (4 * pi), sum = 0, met = 0, weighted = 0;
+        bool is_delta = false;
+        struct vec3 carried = of_lights(r, at, i, &density, &is_delta);
+        if (density > 0 && !is_delta)
+            sum = carried.y / (density + of_scattered);
+        struct vec3 direction = direction_of(place_of(13, i));
+        struct ray ray = {.origin = at->from, .direction = direction, .t_max = INFINITY, .time = 0.5};
+        struct hit hit;
+        double cosine = fabs(vec3_dot(direction, at->normal));
+        bool found = world_nearest(&r->stage.world, &ray, &r->scratch, &hit);
+        if (found) {
+            double shown = world_lights_radiance(&r->lights, at->placed, &hit, emission_at(r, &hit)).y * cosine;
+            double pdf = world_lights_pdf_of_hit(&r->lights, at, direction, &hit);
+            met += shown / of_scattered;
+            weighted += shown / (of_scattered + pdf);
+            ray.t_max = hit.t;
+        }
+        struct world_lights_walk walk;
+        struct light_hit lamp;
+        uint32_t light;
+        world_lights_met_begin(&walk, &r->lights, &ray);
+        while (world_lights_met_next(&walk, &light, &lamp)) {
+            if (!world_lights_reach(&r->lights, light, at->placed))
+                continue;
+            double shown = light_emitted(&r->lights.lights[light], &ray, &lamp).y * cosine;
+            met += shown / of_scattered;
+            weighted += shown / (of_scattered + world_lights_pdf(&r->lights, at, light, direction, &lamp));
+        }
+        for (uint32_t k = 0; k < r->lights.sampler.infinite_count && !found; k++) {
+            struct light_hit behind = {.t = INFINITY};
+            light = r->lights.sampler.infinite[k];
+            double shown = light_emitted(&r->lights.lights[light], &ray, &behind).y * cosine;
+            met += shown / of_scattered;
+            weighted += shown / (of_scattered + world_lights_pdf(&r->lights, at, light, direction, &behind));
+        }
+        estimate_add(&alone, met);
+        estimate_add(&both, sum + weighted);
+    }
+    estimate_end(&alone, (double)n);
+    estimate_end(&both, (double)n);
+    CHECK_NEAR(both.mean, alone.mean, 4.5 * (both.error + alone.error) + 1e-9);
+    CHECK(alone.mean == 0 || both.error <= tolerance * alone.error); /* else no scattered ray met anything */
+}
+
+static struct light_receiver receiver_at(double x, double y, double z) {
+    struct light_receiver at = {.point = {x, y, z}, .normal = vec3_normalize(vec3_make(0.2, 1, -0.3))};
+    at.from = at.point;
+    at.placed = WORLD_NOTHING;
+    return at;
+}
+
+static void paint(struct node *node, const struct material *material) {
+    node->material = material;
+}
+
+TEST(emitters_of_every_kind_of_shape_are_sampled_as_scattered_rays_meet_them) {
+    struct test_random random = {17};
+    struct shape_makers makers = {0};
+    for (int kind = 0; kind < SHAPE_KIND_COUNT; kind++) {
+        for (int turn = 0; turn < 6; turn++) {
+            struct room r;
+            room_begin(&r);
+            struct node *node =
+                scene_node(&r.stage.scene, kind == SHAPE_CSG ? NODE_CSG : NODE_GEOMETRY, "it", &r.stage.error);
+            if (kind == SHAPE_CSG) {
+                struct node **operands = arena_alloc_array(&r.stage.scene.arena, 2, sizeof(struct node *));
+                for (int i = 0; i < 2; i++) {
+                    operands[i] = scene_node(&r.stage.scene, NODE_GEOMETRY, "part", &r.stage.error);
+                    operands[i]->shape = make_solid(&makers, true, &random);
+                    paint(operands[i], glowing(&r, 1, i ? 2 : 1, 1));
+                }
+                node->operation = NODE_UNION;
+                node->operands = operands;
+                node->operand_count = 2;
+            } else {
+                node->shape = make_shape(&makers, (enum shape_kind)kind, &random).shape;
+                paint(node, glowing(&r, 1, 2, 1));
+            }
+            node->parent_from_node = turn % 3 == 0 ? transform_identity() : make_transform(&random, 1);
+            CHECK(node_add_child(&r.stage.scene, r.stage.root, node, &r.stage.error));
+            struct node *screen = stage_sphere(&r.stage, r.stage.root, glowing(&r, 0, 0, 0));
+            stage_scale(&r.stage, screen, 0.3, 0.3, 0.3);
+            stage_move(&r.stage, screen, 0.8, -1.7, 0.4);
+            room_build(&r, false);
+            struct light_receiver at = receiver_at(turn % 2 ? 0.1 : 1, turn % 2 ? 0.05 : -2.6, turn % 2 ? 0.2 : 0.7);
+            compare(&r, &at, 6000, turn % 2 ? 3 : 1.5);
+            room_end(&r);
+        }
+    }
+    shape_makers_destroy(&makers);
+}
+
+static struct light lamp_of_kind(enum light_kind kind, double x, double y, double z) {
+    struct light light = {.kind = kind, .colour = {1, 2, 1}, .emits = true, .position = {x, y, z}, .radius = 0.6};
+    light.direction = vec3_normalize(vec3_make(0.3, -1, 0.1));
+    light.corner = vec3_make(x - 0.5, y, z - 0.4);
+    light.edge1 = vec3_make(1, 0, 0.2);
+    light.edge2 = vec3_make(0, 0.3, 0.8);
+    return light;
+}
+
+TEST(lamps_and_skies_are_sampled_as_scattered_rays_meet_them) {
+    for (int background = 0; background < 2; background++) {
+        struct room r;
+        room_begin(&r);
+        struct node *ball = stage_sphere(&r.stage, r.stage.root, glowing(&r, 3, 3, 3));
+        stage_scale(&r.stage, ball, 0.4, 0.4, 0.4);
+        stage_move(&r.stage, ball, -1.5, 1, 0);
+        sky_make_clear(vec3_normalize(vec3_make(1, 1, -1)), 3, vec3_all(0.15), &r.stage.sky);
+        r.stage.lights[r.stage.light_count++] = lamp_of_kind(LIGHT_SPHERE, 1, 2, 0);
+        r.stage.lights[r.stage.light_count++] = lamp_of_kind(LIGHT_DISC, -0.5, 1.5, 0.4);
+        r.stage.lights[r.stage.light_count++] = lamp_of_kind(LIGHT_PARALLELOGRAM, 0.5, 1.2, -0.6);
+        r.stage.lights[r.stage.light_count++] =
+            (struct light){.kind = LIGHT_POINT, .colour = {9, 9, 9}, .position = {0, 3, 0}};
+        room_build(&r, background);
+        CHECK_EQ_INT(r.lights.count, 5 + background);
+        struct light_receiver at = receiver_at(0.1, 0, 0.2);
+        compare(&r, &at, 40000, 1);
+        room_end(&r);
+    }
+}
+
+/* A white floor: what arrives is E / pi = I f cos, for one light by its own samples. */
+TEST(lights_without_emission_give_what_the_classic_language_says) {
+    static const struct {
+        enum light_fading fading;
+        double falloff[3], factor; /* at distance 2 */
+    } cases[] = {{FADING_COEFFICIENTS, {1, 0, 0}, 1},
+                 {FADING_COEFFICIENTS, {0.5, 0.25, 0.125}, 1 / 1.5},
+                 {FADING_RANGE, {0}, 1 - 2.0 / 5},
+                 {FADING_INVERSE_SQUARE, {0}, 3.0 / 4}};
+    static const enum light_kind kinds[] = {LIGHT_POINT, LIGHT_SPOT, LIGHT_DISC, LIGHT_SPHERE, LIGHT_PARALLELOGRAM};
+    for (int k = 0; k < 20; k++) {
+        struct room r;
+        room_begin(&r);
+        struct light light = lamp_of_kind(kinds[k % 5], 0, 2, 0);
+        light.emits = false;
+        light.fading = cases[k / 5].fading;
+        memcpy(light.falloff, cases[k / 5].falloff, sizeof light.falloff);
+        light.range = 5;
+        light.intensity = 3;
+        light.direction = vec3_make(0, -1, 0);
+        light.cos_inner = 0.9, light.cos_outer = 0.8;
+        r.stage.lights[0] = light;
+        r.stage.light_count = 1;
+        room_build(&r, false);
+        struct light_receiver at = receiver_at(0, 0, 0);
+        at.normal = vec3_normalize(vec3_make(0.6, 0.8, 0));
+        for (uint64_t i = 0; i < 16; i++) {
+            struct world_light_sample sample;
+            CHECK(world_lights_sample(&r.lights, &at, 0, place_of(3, i), &sample));
+            CHECK(sample.is_delta && !sample.decided && sample.pdf == 1);
+            double white = sample.radiance.y * vec3_dot(sample.direction, at.normal) / pi; /* of a white surface */
+            CHECK_NEAR(white, 2 * cases[k / 5].factor * 0.8, 1e-12);
+        }
+        double pmf;
+        CHECK_EQ_INT(light_sampler_sample(&r.lights.sampler, at.point, at.normal, 0.3, &pmf), 0);
+        CHECK_NEAR(pmf, 1, 0);
+        room_end(&r);
+    }
+}
+
+/* gr.mesh_light over an emitting mesh says how it is sampled, with its own emission what it lights with; either way
+ * there is one light. */
+static struct node *tetrahedron(struct room *r, const struct material *material) {
+    static const double corners[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+    static const uint32_t start[] = {0, 3, 6, 9, 12}, index[] = {0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2};
+    struct mesh_input input = {.name = "tetrahedron",
+                               .vertex_count = 4,
+                               .face_count = 4,
+                               .vertices = corners,
+                               .face_start = start,
+                               .vertex_index = index};
+    struct node *node = scene_node(&r->stage.scene, NODE_GEOMETRY, "mesh", &r->stage.error);
+    node->shape = (struct shape){.kind = SHAPE_MESH, .mesh = assets_mesh(&r->stage.assets, &input, &r->stage.error)};
+    node->material = material;
+    stage_move(&r->stage, node, 0.5, 3, 0);
+    CHECK(node_add_child(&r->stage.scene, r->stage.root, node, &r->stage.error));
+    return node;
+}
+
+static double mean_of_samples(struct room *r, const struct light_receiver *at, uint64_t n) {
+    double sum = 0;
+    for (uint64_t i = 0; i < n; i++) {
+        double density = 0;
+        bool is_delta;
+        struct vec3 carried = of_lights(r, at, i, &density, &is_delta);
+        sum += density > 0 ? carried.y / density / (double)n : 0;
+    }
+    return sum;
+}
+
+TEST(a_mesh_light_over_an_emitting_mesh_counts_once) {
+    double lit[4];
+    for (int i = 0; i < 4; i++) {
+        struct room r;
+        room_begin(&r);
+        struct node *node = tetrahedron(&r, glowing(&r, 1, 2, 3));
+        for (int k = 0; k < i; k++) { /* none, one, two; the last with emission of its own */
+            r.stage.lights[k] = (struct light){.kind = LIGHT_MESH, .emits = true, .colour = {1, 1, 1}, .node = node};
+            r.stage.lights[k].has_emission = i == 3;
+            r.stage.lights[k].emission = vec3_make(5, 5, 5);
+        }
+        r.stage.light_count = i == 3 ? 1 : (uint32_t)i;
+        room_build(&r, false);
+        CHECK_EQ_INT(r.lights.count, i == 2 ? 2 : 1);
+        struct light_receiver at = receiver_at(0, 0, 0);
+        compare(&r, &at, 20000, 1);
+        lit[i] = mean_of_samples(&r, &at, 20000);
+        room_end(&r);
+    }
+    CHECK_NEAR(lit[1], lit[0], 1e-9);
+    CHECK_NEAR(lit[2], lit[0], 0.02 * lit[0]);
+    CHECK_NEAR(lit[3], 2.5 * lit[0], 1e-9);
+}
+
+TEST(lists_hold_for_lights_that_are_sampled_and_met) {
+    struct room r;
+    room_begin(&r);
+    struct node *node = tetrahedron(&r, glowing(&r, 1, 2, 3)),
+                *ball = stage_sphere(&r.stage, r.stage.root, glowing(&r, 0, 0, 0));
+    const struct node *list[] = {ball};
+    r.stage.lights[0] = (struct light){.kind = LIGHT_MESH, .emits = true, .colour = {1, 1, 1}, .node = node};
+    r.stage.lights[1] = lamp_of_kind(LIGHT_SPHERE, 0, 3, 2);
+    for (int i = 0; i < 2; i++)
+        r.stage.lights[i].exclude = list, r.stage.lights[i].exclude_count = 1;
+    r.stage.light_count = 2;
+    room_build(&r, false);
+    struct light_receiver at = receiver_at(0, 1.001, 0);
+    struct ray up = {.origin = at.from, .direction = {0.1, 1, 0}, .t_max = INFINITY};
+    struct hit hit;
+    CHECK(world_nearest(&r.stage.world, &up, &r.scratch, &hit));
+    for (uint32_t placed = 0; placed < 2; placed++) {
+        struct world_light_sample sample;
+        at.placed = placed; /* the mesh, then the ball */
+        for (uint32_t light = 0; light < 2; light++)
+            CHECK(world_lights_sample(&r.lights, &at, light, (struct sample2){0.4, 0.4}, &sample) == (placed == 0) ||
+                  (light == 0 && placed == 0));
+        CHECK((world_lights_radiance(&r.lights, placed, &hit, vec3_all(1)).y > 0) == (placed == 0));
+        CHECK((world_lights_pdf_of_hit(&r.lights, &at, vec3_normalize(up.direction), &hit) > 0) == (placed == 0));
+    }
+    room_end(&r);
+}
+
+TEST(camera_rays_see_the_nearest_lamp_that_shows_itself) {
+    struct room r;
+    room_begin(&r);
+    for (int i = 0; i < 4; i++) {
+        r.stage.lights[i] = lamp_of_kind(i % 2 ? LIGHT_DISC : LIGHT_SPHERE, 0, 3 + 2 * i, 0);
+        r.stage.lights[i].visible = i > 0;
+    }
+    r.stage.light_count = 4;
+    room_build(&r, false);
+    struct ray up = {.direction = {0, 1, 0}, .t_max = INFINITY};
+    struct light_hit hit;
+    struct world_lights_walk walk;
+    uint32_t light;
+    int met = 0;
+    CHECK(world_lights_seen(&r.lights, &up, &light, &hit));
+    CHECK_EQ_INT(light, 1);
+    CHECK_NEAR(hit.t, 5, 1e-9);
+    world_lights_met_begin(&walk, &r.lights, &up);
+    while (world_lights_met_next(&walk, &light, &hit))
+        met++;
+    CHECK_EQ_INT(met, 4);
+    up.t_max = 4;
+    CHECK(!world_lights_seen(&r.lights, &up, &light, &hit));
+    room_end(&r);
+}
