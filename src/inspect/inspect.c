@@ -4,45 +4,10 @@
 #include "base/sort.h"
 
 const char *inspect_material(const struct material *link) {
-    switch (link->kind) {
-    case MATERIAL_PHONG:
-        return "phong";
-    case MATERIAL_MARBLE:
-        return "marble";
-    case MATERIAL_WOOD:
-        return "wood";
-    case MATERIAL_IMAGE:
-        switch (link->changed) {
-        case INPUT_KD:
-            return "image";
-        case INPUT_KS:
-            return "image on ks";
-        case INPUT_SHININESS:
-            return "image on shininess";
-        case INPUT_REFLECT:
-            return "image on reflect";
-        case INPUT_REFRACT:
-            return "image on refract";
-        case INPUT_ROUGHNESS:
-            return "image on roughness";
-        case INPUT_EMISSION:
-            return "image on emission";
-        case INPUT_OPACITY:
-            return "image on opacity";
-        case INPUT_COUNT:
-            break;
-        }
-        return "?";
-    case MATERIAL_BUMP:
-        return "bump";
-    case MATERIAL_NORMAL:
-        return "normal map";
-    case MATERIAL_METAL:
-        return "metal";
-    case MATERIAL_FRESNEL:
-        return "fresnel";
-    }
-    return "?";
+#define IMAGE_ON(input, word) [input] = "image on " word,
+    static const char *const kinds[] = {MATERIAL_KINDS(LIST_WORD)}, *const images[] = {MATERIAL_INPUTS(IMAGE_ON)};
+#undef IMAGE_ON
+    return link->kind == MATERIAL_IMAGE && link->changed != INPUT_KD ? images[link->changed] : kinds[link->kind];
 }
 
 const char *inspect_sky(enum sky_kind kind) {

@@ -14,17 +14,20 @@
 
 enum { MATERIAL_DEPTH = 1000 };
 
-/* What a material was made of its base by; in words it describes the chain. */
-enum material_kind {
-    MATERIAL_PHONG, /* nothing: it is a base */
-    MATERIAL_MARBLE,
-    MATERIAL_WOOD,
-    MATERIAL_IMAGE,  /* over `changed` */
-    MATERIAL_BUMP,   /* turns the normal as if the texture's heights stood on the surface */
-    MATERIAL_NORMAL, /* turns the normal to where the image's colours point */
-    MATERIAL_METAL,  /* glTF: splits the colour below by metalness and roughness */
-    MATERIAL_FRESNEL
-};
+/* What a material was made of its base by, with its name in descriptions of the chain. PHONG: by nothing, it is a base.
+ * IMAGE: over `changed`. BUMP: turns the normal as if the texture's heights stood on the surface. NORMAL: turns the
+ * normal to where the image's colours point. METAL (glTF): splits the colour below by metalness and roughness. */
+#define MATERIAL_KINDS(X)                                                                                              \
+    X(MATERIAL_PHONG, "phong")                                                                                         \
+    X(MATERIAL_MARBLE, "marble")                                                                                       \
+    X(MATERIAL_WOOD, "wood")                                                                                           \
+    X(MATERIAL_IMAGE, "image")                                                                                         \
+    X(MATERIAL_BUMP, "bump")                                                                                           \
+    X(MATERIAL_NORMAL, "normal map")                                                                                   \
+    X(MATERIAL_METAL, "metal")                                                                                         \
+    X(MATERIAL_FRESNEL, "fresnel")
+enum material_kind { MATERIAL_KINDS(LIST_MEMBER) };
+enum { MATERIAL_KIND_COUNT = LIST_COUNT(MATERIAL_KINDS) };
 
 /* The highlight of the picture. */
 #define SPECULAR_KINDS(X)                                                                                              \

@@ -72,7 +72,6 @@ static bool replace_parts(struct material_mapping *mapping, struct texture *own,
     case TEXTURE_VERTEX_COLOUR:
     case TEXTURE_MARBLE:
     case TEXTURE_WOOD:
-    case TEXTURE_KINDS:
         break;
     case TEXTURE_IMAGE: {
         enum texture_mapping before = own->image.lookup.mapping;

@@ -75,12 +75,10 @@ struct texture texture_map(const struct texture *of, enum texture_function funct
     return out;
 }
 
-#define PARAMETER(input) [input] = {.kind = TEXTURE_PARAMETER, .size = 1, .parameter = input}
-
 const struct texture *texture_parameter(enum material_input input) {
-    static const struct texture parameters[INPUT_COUNT] = {
-        PARAMETER(INPUT_KD),      PARAMETER(INPUT_KS),        PARAMETER(INPUT_SHININESS), PARAMETER(INPUT_REFLECT),
-        PARAMETER(INPUT_REFRACT), PARAMETER(INPUT_ROUGHNESS), PARAMETER(INPUT_EMISSION),  PARAMETER(INPUT_OPACITY)};
+#define PARAMETER(input, name) [input] = {.kind = TEXTURE_PARAMETER, .size = 1, .parameter = (input)},
+    static const struct texture parameters[] = {MATERIAL_INPUTS(PARAMETER)};
+#undef PARAMETER
     return &parameters[input];
 }
 
@@ -119,7 +117,6 @@ static struct vec3 parameter_colour(enum material_input input, const struct phon
     case INPUT_EMISSION:
         return numbers->emission;
     case INPUT_OPACITY:
-    case INPUT_COUNT:
         break;
     }
     return vec3_all(1);
@@ -190,8 +187,6 @@ static double function_of(enum texture_function function, double amount, double 
         double r4 = x * x * x * x, n = 2 / fmax(r4, 1e-3) - 2;
         return n < 1 ? 1 : n > 2000 ? 2000 : n;
     }
-    case FUNCTION_COUNT:
-        break;
     }
     return x;
 }
@@ -243,8 +238,6 @@ static struct vec3 evaluate_colour(const struct texture *texture, struct texture
         return vec3_make(function_of(function, amount, of.x), function_of(function, amount, of.y),
                          function_of(function, amount, of.z));
     }
-    case TEXTURE_KINDS:
-        break;
     }
     return vec3_all(0);
 }
@@ -286,8 +279,6 @@ static double evaluate_scalar(const struct texture *texture, struct texture_read
         }
         return function_of(function, texture->map.amount, texture_read_scalar(texture->map.of, reader));
     }
-    case TEXTURE_KINDS:
-        break;
     }
     return 0;
 }
@@ -395,8 +386,6 @@ struct vec3 texture_estimate(const struct texture *texture, const struct phong *
         return vec3_make(function_of(function, amount, of.x), function_of(function, amount, of.y),
                          function_of(function, amount, of.z));
     }
-    case TEXTURE_KINDS:
-        break;
     }
     return vec3_all(0);
 }

@@ -11,6 +11,7 @@
 
 #include "base/arena.h"
 #include "base/error.h"
+#include "base/list.h"
 #include "geom/hit.h"
 #include "image/image.h"
 #include "math/vec3.h"
@@ -20,18 +21,22 @@
 
 enum { TEXTURE_SIZE = 16384 };
 
-enum texture_kind {
-    TEXTURE_CONSTANT,
-    TEXTURE_PARAMETER,     /* the number that a material has for one of its inputs; white outside of materials */
-    TEXTURE_VERTEX_COLOUR, /* the colours of a mesh's vertices, interpolated; white where there are none */
-    TEXTURE_IMAGE,
-    TEXTURE_MARBLE, /* patterns between 0 and 1 of the point in object space, so that they stick to the object */
-    TEXTURE_WOOD,
-    TEXTURE_MIX,      /* a * ratio + b * (1 - ratio) */
-    TEXTURE_MULTIPLY, /* a * b, by components */
-    TEXTURE_MAP,      /* a function of another texture, by components */
-    TEXTURE_KINDS
-};
+/* PARAMETER: the number that a material has for one of its inputs; white outside of materials. VERTEX_COLOUR: the
+ * colours of a mesh's vertices, interpolated; white where there are none. MARBLE, WOOD: patterns between 0 and 1 of the
+ * point in object space, so that they stick to the object. MIX: a * ratio + b * (1 - ratio). MULTIPLY: a * b, by
+ * components. MAP: a function of another texture, by components. */
+#define TEXTURE_KINDS(X)                                                                                               \
+    X(TEXTURE_CONSTANT)                                                                                                \
+    X(TEXTURE_PARAMETER)                                                                                               \
+    X(TEXTURE_VERTEX_COLOUR)                                                                                           \
+    X(TEXTURE_IMAGE)                                                                                                   \
+    X(TEXTURE_MARBLE)                                                                                                  \
+    X(TEXTURE_WOOD)                                                                                                    \
+    X(TEXTURE_MIX)                                                                                                     \
+    X(TEXTURE_MULTIPLY)                                                                                                \
+    X(TEXTURE_MAP)
+enum texture_kind { TEXTURE_KINDS(LIST_MEMBER) };
+enum { TEXTURE_KIND_COUNT = LIST_COUNT(TEXTURE_KINDS) };
 
 /* How a hit becomes a point of an image; the formulas are in texture_mapping.c. What scripts and files ask for depends
  * on the shape where that is a ball or a box: texture_mapping_on says what becomes of it when the world is built. */
@@ -69,16 +74,18 @@ struct texture_image {
     enum texture_alpha alpha;
 };
 
-enum texture_function {
-    FUNCTION_RED, /* one component, as a number */
-    FUNCTION_GREEN,
-    FUNCTION_BLUE,
-    FUNCTION_COMPLEMENT,     /* 1 - x */
-    FUNCTION_SATURATE,       /* between 0 and 1 */
-    FUNCTION_STEP,           /* 1 from `amount` on, else 0 */
-    FUNCTION_PHONG_EXPONENT, /* of roughness r: 2 / r^4 - 2, 1 to 2000 (formats/gltf_look.c gives the source) */
-    FUNCTION_COUNT
-};
+/* RED, GREEN, BLUE: one component, as a number. COMPLEMENT: 1 - x. SATURATE: between 0 and 1. STEP: 1 from `amount` on,
+ * else 0. PHONG_EXPONENT: of roughness r 2 / r^4 - 2, 1 to 2000 (formats/gltf_look.c gives the source). */
+#define TEXTURE_FUNCTIONS(X)                                                                                           \
+    X(FUNCTION_RED)                                                                                                    \
+    X(FUNCTION_GREEN)                                                                                                  \
+    X(FUNCTION_BLUE)                                                                                                   \
+    X(FUNCTION_COMPLEMENT)                                                                                             \
+    X(FUNCTION_SATURATE)                                                                                               \
+    X(FUNCTION_STEP)                                                                                                   \
+    X(FUNCTION_PHONG_EXPONENT)
+enum texture_function { TEXTURE_FUNCTIONS(LIST_MEMBER) };
+enum { FUNCTION_COUNT = LIST_COUNT(TEXTURE_FUNCTIONS) };
 
 /* AS_SET: what the settings of the picture say. */
 enum material_highlight { HIGHLIGHT_AS_SET, HIGHLIGHT_PHONG, HIGHLIGHT_BLINN };
@@ -94,18 +101,19 @@ struct phong {
     int glossy_samples;
 };
 
-/* What textures are for. */
-enum material_input {
-    INPUT_KD,
-    INPUT_KS,
-    INPUT_SHININESS,
-    INPUT_REFLECT,
-    INPUT_REFRACT,
-    INPUT_ROUGHNESS,
-    INPUT_EMISSION,
-    INPUT_OPACITY, /* of a surface with holes; 1 without a texture */
-    INPUT_COUNT
-};
+/* What textures are for, by the names that scripts use. Opacity is that of a surface with holes: 1 without a texture.
+ */
+#define MATERIAL_INPUTS(X)                                                                                             \
+    X(INPUT_KD, "kd")                                                                                                  \
+    X(INPUT_KS, "ks")                                                                                                  \
+    X(INPUT_SHININESS, "shininess")                                                                                    \
+    X(INPUT_REFLECT, "reflect")                                                                                        \
+    X(INPUT_REFRACT, "refract")                                                                                        \
+    X(INPUT_ROUGHNESS, "roughness")                                                                                    \
+    X(INPUT_EMISSION, "emission")                                                                                      \
+    X(INPUT_OPACITY, "opacity")
+enum material_input { MATERIAL_INPUTS(LIST_MEMBER) };
+enum { INPUT_COUNT = LIST_COUNT(MATERIAL_INPUTS) };
 
 struct texture {
     enum texture_kind kind;

@@ -215,6 +215,54 @@ TEST(every_kind_of_shape_is_made_by_a_function) {
                       shape_kind_name((enum shape_kind)kind));
 }
 
+/* Likewise of the chains of materials. */
+struct material_kinds {
+    struct listener listener;
+    bool made[MATERIAL_KIND_COUNT];
+};
+
+static void note_materials(struct listener *listener, const struct render_request *request) {
+    struct material_kinds *kinds = (struct material_kinds *)(void *)listener;
+    for (const struct material *link = request->root->material; link; link = link->base)
+        kinds->made[link->kind] = true;
+}
+
+static void make_material(struct material_kinds *kinds, const char *call) {
+    char text[CALL_SIZE + 512];
+    struct error error;
+    (void)snprintf(text, sizeof text,
+                   PREPARATION "root = gr.sphere(%s)\n"
+                               "gr.render{node = root, file = 'x.png', width = 4, height = 4, eye = {0, 0, 9}}\n",
+                   call);
+    if (!listen_to_text(&kinds->listener, text, NULL, &error))
+        test_fail(__FILE__, __LINE__, "%s: %s", call, error.text);
+}
+
+TEST(every_kind_of_material_is_made_by_a_function) {
+    write_files();
+    struct material_kinds kinds = {.listener = {.seen = note_materials}};
+    for (int f = 0; f < function_count(); f++) {
+        const struct function *function = function_at(f);
+        char call[CALL_SIZE], word[61];
+        if (function->owner != OWNER_GR || function->result != RESULT_MATERIAL)
+            continue;
+        positional_call(function, function->forms[0], -1, "", call);
+        make_material(&kinds, call);
+        for (int p = 0; p < function->parameter_count; p++) { /* and with each word of a choice */
+            const char *words = function->parameters[p].kind == KIND_CHOICE ? function->parameters[p].choices : "";
+            for (int length; sscanf(words, " %60s%n", word, &length) == 1; words += length) {
+                char quoted[64];
+                (void)snprintf(quoted, sizeof quoted, "'%s'", word);
+                table_call(function, p, quoted, call);
+                make_material(&kinds, call);
+            }
+        }
+    }
+    for (int kind = 0; kind < MATERIAL_KIND_COUNT; kind++)
+        if (!kinds.made[kind] && kind != MATERIAL_METAL) /* which only files have (test_model_look.c) */
+            test_fail(__FILE__, __LINE__, "no gr function makes a material of kind %d", kind);
+}
+
 /* Whichever allocation fails once the call has begun. Most failures inside Lua are survived by its collector. */
 static void fail_in_call(const char *call) {
     for (uint64_t k = 1;; k++) {

@@ -115,8 +115,6 @@ static const struct texture *make(struct palette *p, enum texture_kind kind, con
     case TEXTURE_MAP:
         *wanted = vec3_make(0.9, 0.8, 0.3);
         return keep(p, texture_map(colour(p, 0.1, 0.2, 0.7), FUNCTION_COMPLEMENT, 0));
-    case TEXTURE_KINDS:
-        break;
     }
     return NULL;
 }
@@ -125,7 +123,7 @@ TEST(every_kind_of_texture_is_what_its_definition_says) {
     struct palette p;
     struct test_random random = {3};
     palette_init(&p);
-    for (int kind = 0; kind < TEXTURE_KINDS; kind++)
+    for (int kind = 0; kind < TEXTURE_KIND_COUNT; kind++)
         for (int i = 0; i < 50; i++) {
             struct hit hit = random_hit(&random);
             struct vec3 wanted;
@@ -141,8 +139,8 @@ TEST(a_mix_of_any_two_kinds_lies_where_its_ratio_says_and_products_commute) {
     struct palette p;
     struct test_random random = {5};
     palette_init(&p);
-    for (int a = 0; a < TEXTURE_KINDS; a++)
-        for (int b = 0; b < TEXTURE_KINDS; b++) {
+    for (int a = 0; a < TEXTURE_KIND_COUNT; a++)
+        for (int b = 0; b < TEXTURE_KIND_COUNT; b++) {
             struct hit hit = random_hit(&random);
             struct vec3 va, vb;
             const struct texture *ta = make(&p, (enum texture_kind)a, &hit, &va);
@@ -164,7 +162,7 @@ TEST(a_shared_texture_is_what_it_is_alone) {
     struct palette p;
     struct test_random random = {7};
     palette_init(&p);
-    for (int kind = 0; kind < TEXTURE_KINDS; kind++) {
+    for (int kind = 0; kind < TEXTURE_KIND_COUNT; kind++) {
         struct hit hit = random_hit(&random);
         struct vec3 ignored;
         struct texture shared = *make(&p, (enum texture_kind)kind, &hit, &ignored);
@@ -184,7 +182,7 @@ TEST(every_kind_stays_below_its_bound_and_constants_are_their_average) {
     struct palette p;
     struct test_random random = {9};
     palette_init(&p);
-    for (int kind = 0; kind < TEXTURE_KINDS; kind++)
+    for (int kind = 0; kind < TEXTURE_KIND_COUNT; kind++)
         for (int i = 0; i < 100; i++) {
             struct hit hit = random_hit(&random);
             struct vec3 ignored;
@@ -263,8 +261,6 @@ TEST(functions_of_textures_follow_their_formulas) {
             case FUNCTION_PHONG_EXPONENT:
                 wanted = fmax(exponent, 1);
                 break;
-            case FUNCTION_COUNT:
-                break;
             }
             CHECK_NEAR(texture_colour(&map, &hit).x, wanted, 1e-9);
         }
@@ -309,8 +305,6 @@ static void *field_of(struct surface_look *look, enum material_input input, bool
         return &look->emission;
     case INPUT_OPACITY:
         return &look->opacity;
-    case INPUT_COUNT:
-        break;
     }
     return NULL;
 }
@@ -665,8 +659,6 @@ static const char *in_words(enum texture_kind kind) {
         return "gr.mix_texture(1, {0, 1, 0}, .25)";
     case TEXTURE_MULTIPLY:
         return "gr.multiply_texture(.5, {0, 1, 0})";
-    case TEXTURE_KINDS:
-        break;
     }
     return NULL;
 }
@@ -675,7 +667,7 @@ TEST(every_kind_that_scripts_can_make_is_taken_as_colour_number_and_height) {
     char scene[8192];
     int length =
         snprintf(scene, sizeof scene, "%spicture('a.png', gr.material({1, 1, 1}, {0, 0, 0}, 1))\n", two_pictures);
-    for (int kind = 0; kind < TEXTURE_KINDS; kind++) {
+    for (int kind = 0; kind < TEXTURE_KIND_COUNT; kind++) {
         const char *words = in_words((enum texture_kind)kind);
         if (!words)
             continue;
