@@ -14,11 +14,25 @@ static const double pi = 3.14159265358979323846;
 enum { LEAST_COLUMNS = 128, MOST_COLUMNS = 512, PROBES = 2 };
 static const double everywhere = 1.0 / 16; /* the part that goes everywhere */
 
+/* Texels of a picture of the sky all around. */
+static uint32_t texels_around(const struct sky *sky) {
+    switch (sky->kind) {
+    case SKY_MAP:
+    case SKY_CROSS:
+        return image_width(sky->image);
+    case SKY_FACES:
+        return 4 * image_width(sky->faces[0]);
+    case SKY_GRADIENT:
+    case SKY_CONSTANT:
+    case SKY_STOPS:
+    case SKY_CLEAR:
+        break;
+    }
+    return LEAST_COLUMNS;
+}
+
 static uint32_t columns_for(const struct sky *sky) {
-    uint32_t columns = sky->kind == SKY_MAP     ? image_width(sky->image)
-                       : sky->kind == SKY_CROSS ? image_width(sky->image)
-                       : sky->kind == SKY_FACES ? 4 * image_width(sky->faces[0])
-                                                : LEAST_COLUMNS;
+    uint32_t columns = texels_around(sky);
     return columns < LEAST_COLUMNS ? LEAST_COLUMNS : columns > MOST_COLUMNS ? MOST_COLUMNS : columns;
 }
 

@@ -8,6 +8,7 @@
  */
 #include "material/bsdf.h"
 
+#include "material/classic.h"
 #include "material/dielectric.h"
 #include "material/microfacet.h"
 #include "math/elementary.h"
@@ -231,11 +232,11 @@ static double lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct
     double n_l = classic_cosine(bsdf, wi);
     switch (lobe->kind) {
     case LOBE_DIFFUSE:
-        return n_l > 0 ? n_l / pi : 0;
+        return n_l > 0 ? intensity_of(n_l) : 0;
     case LOBE_PHONG:
-        return n_l > 0 ? phong_formula(lobe, bsdf->lit, n_l, wo, wi) / pi : 0;
+        return n_l > 0 ? intensity_of(phong_formula(lobe, bsdf->lit, n_l, wo, wi)) : 0;
     case LOBE_BLINN:
-        return n_l > 0 ? blinn_formula(lobe, bsdf->lit, wo, wi) / pi : 0;
+        return n_l > 0 ? intensity_of(blinn_formula(lobe, bsdf->lit, wo, wi)) : 0;
     case LOBE_MIRROR:
     case LOBE_REFRACTION:
         return 0;
