@@ -1,6 +1,6 @@
 /* See world_lights.h. A sphere, a flat shape and a mesh become a light of a kind that samples them; everything else is
- * sampled by the solid angle of a ball around it, and the ray decides whether it meets what sends light. So is what
- * moves: its ball holds every place of the shutter's time. What has no end cannot be sampled; rays meet it. */
+ * sampled by the solid angle of its bound, a ball or a box, and the ray decides whether it meets what sends light. So
+ * is what moves: its bound holds every place of the shutter's time. What has no end cannot be sampled; rays meet it. */
 #include "world/world_lights.h"
 
 #include "base/mem.h"
@@ -9,6 +9,8 @@
 #include "world/light_lamps.h"
 
 #include <string.h>
+
+static const double pi = 3.14159265358979323846;
 
 /* --- what emits --- */
 
@@ -44,19 +46,26 @@ static struct emission emission_of_thing(const struct world *world, const struct
 
 /* --- lights of shapes --- */
 
+static struct vec3 column(const struct affine *map, int i) {
+    return vec3_make(map->m[0][i], map->m[1][i], map->m[2][i]);
+}
+
+static bool keeps_right_angles(const struct affine *map) {
+    for (int i = 0; i < 3; i++) {
+        struct vec3 a = column(map, i), b = column(map, (i + 1) % 3);
+        if (!(fabs(vec3_dot(a, b)) <= 0x1p-40 * vec3_length(a) * vec3_length(b)))
+            return false;
+    }
+    return true;
+}
+
 /* The map's factor of lengths; 0: it is none for all directions. */
 static double similarity(const struct affine *map) {
-    struct vec3 axis[3];
-    for (int i = 0; i < 3; i++)
-        axis[i] = vec3_make(map->m[0][i], map->m[1][i], map->m[2][i]);
-    double squared = vec3_length_squared(axis[0]);
-    bool same = true;
-    for (int i = 0; i < 3; i++) {
-        const struct vec3 *next = &axis[(i + 1) % 3];
-        same = same && fabs(vec3_length_squared(axis[i]) - squared) <= 0x1p-40 * squared &&
-               fabs(vec3_dot(axis[i], *next)) <= 0x1p-40 * squared;
-    }
-    return same ? sqrt(squared) : 0;
+    double squared = vec3_length_squared(column(map, 0));
+    for (int i = 1; i < 3; i++)
+        if (!(fabs(vec3_length_squared(column(map, i)) - squared) <= 0x1p-40 * squared))
+            return 0;
+    return keeps_right_angles(map) ? sqrt(squared) : 0;
 }
 
 /* A light that is to stand for a primitive. */
@@ -70,31 +79,55 @@ struct derived {
     struct error *error;
 };
 
-/* The smaller one of the balls around its box in the world and around that of its shape. False: it has no end. */
-static bool derive_ball(struct derived *d, bool moves) {
-    const struct box *box = &d->world->boxes[d->placed];
-    struct box own = shape_bounds(placed_shape(d->world, d->placed));
-    struct vec3 centre = vec3_scale(vec3_add(box->min, box->max), 0.5);
-    double radius = vec3_length(vec3_sub(box->max, centre)), reach = 0;
-    struct vec3 middle = affine_point(&d->map.forward, vec3_scale(vec3_add(own.min, own.max), 0.5));
-    for (int i = 0; i < 8; i++) {
-        struct vec3 corner = {i & 1 ? own.max.x : own.min.x, i & 2 ? own.max.y : own.min.y,
-                              i & 4 ? own.max.z : own.min.z};
-        reach = fmax(reach, vec3_length(vec3_sub(affine_point(&d->map.forward, corner), middle)));
-    }
-    bool smaller = !moves && reach < radius;
-    d->light.kind = LIGHT_SPHERE;
-    d->light.position = smaller ? middle : centre;
-    d->light.radius = (smaller ? reach : radius) * (1 + 0x1p-30);
-    d->emitter.decided = true;
-    return vec3_finite(d->light.position) && d->light.radius > 0 && isfinite(d->light.radius);
+/* The box of its shape as it is placed, where it keeps its right angles, else its box in the world. */
+static struct light_box bounding_box(const struct derived *d, bool moves) {
+    struct box box = shape_bounds(placed_shape(d->world, d->placed));
+    bool own = !moves && keeps_right_angles(&d->map.forward) && vec3_finite(box.min) && vec3_finite(box.max);
+    if (!own)
+        box = d->world->boxes[d->placed];
+    /* Flat ones have faces on all sides, too. */
+    double margin = 0x1p-20 * vec3_max_abs(vec3_sub(box.max, box.min));
+    box.min = vec3_sub(box.min, vec3_all(margin));
+    box.max = vec3_add(box.max, vec3_all(margin));
+    struct vec3 size = vec3_sub(box.max, box.min);
+    struct light_box out = {box.min, {{size.x, 0, 0}, {0, size.y, 0}, {0, 0, size.z}}};
+    if (own)
+        out.corner = affine_point(&d->map.forward, out.corner);
+    for (int i = 0; i < 3 && own; i++)
+        out.edges[i] = affine_vector(&d->map.forward, out.edges[i]);
+    return out;
 }
 
-static bool derive_sphere(struct derived *d) {
+/* The bound with the smaller mean area as it is seen from all sides (a quarter of its surface, Cauchy). False: it has
+ * no end. */
+static bool derive_bound(struct derived *d, bool moves, bool *ok) {
+    struct light_box box = bounding_box(d, moves);
+    struct vec3 diagonal = vec3_add(vec3_add(box.edges[0], box.edges[1]), box.edges[2]);
+    double sides[3], radius = vec3_length(diagonal) / 2;
+    for (int i = 0; i < 3; i++)
+        sides[i] = vec3_length(box.edges[i]);
+    double of_box = (sides[0] * sides[1] + sides[1] * sides[2] + sides[2] * sides[0]) / 2;
+    d->light.kind = LIGHT_SPHERE;
+    d->light.position = vec3_add_scaled(box.corner, diagonal, 0.5);
+    d->light.radius = radius * (1 + 0x1p-30);
+    d->emitter.decided = true;
+    if (!vec3_finite(d->light.position) || !(radius > 0) || !isfinite(radius))
+        return false;
+    if (of_box >= pi * radius * radius)
+        return true;
+    struct light_box *kept = arena_alloc(d->arena, sizeof *kept);
+    *ok = kept || error_no_memory(d->error, "the bound of a light");
+    if (kept)
+        *kept = box;
+    d->emitter.bound = kept;
+    return *ok;
+}
+
+static bool derive_sphere(struct derived *d, bool *ok) {
     const struct shape *shape = placed_shape(d->world, d->placed);
     double factor = similarity(&d->map.forward);
     if (!(factor > 0))
-        return derive_ball(d, false);
+        return derive_bound(d, false, ok);
     d->light.kind = LIGHT_SPHERE;
     d->light.position = affine_point(&d->map.forward, shape->sphere.centre);
     d->light.radius = shape->sphere.radius * factor;
@@ -197,11 +230,11 @@ static bool derive_mesh(struct derived *d, bool *ok) {
 static bool derive(struct derived *d, bool *ok) {
     *ok = true;
     if (placed_moves(d->world, d->placed))
-        return derive_ball(d, true);
+        return derive_bound(d, true, ok);
     d->map = world_placement(d->world, d->placed, 0.5);
     switch (placed_shape(d->world, d->placed)->kind) {
     case SHAPE_SPHERE:
-        return derive_sphere(d);
+        return derive_sphere(d, ok);
     case SHAPE_FLAT:
         return derive_flat(d, ok);
     case SHAPE_MESH:
@@ -221,7 +254,7 @@ static bool derive(struct derived *d, bool *ok) {
     case SHAPE_CSG:
         break;
     }
-    return derive_ball(d, false);
+    return derive_bound(d, false, ok);
 }
 
 /* --- building --- */
@@ -384,15 +417,38 @@ static bool is_dark(struct vec3 c) {
     return c.x == 0 && c.y == 0 && c.z == 0;
 }
 
+/* A light as a receiver sees it: its context, or the bound that is sampled instead. */
+struct view {
+    struct light_context context;
+    struct spherical_box bound;
+    bool by_bound;
+};
+
+static bool view_make(const struct world_lights *lights, const struct light_receiver *receiver, uint32_t light,
+                      struct view *out) {
+    const struct light_box *bound = lights->emitters[light].bound;
+    out->by_bound = bound && spherical_box_make(bound, receiver->from, &out->bound);
+    return out->by_bound || light_context_make(&lights->lights[light], receiver->point, receiver->from, &out->context);
+}
+
+static struct light_sample view_sample(const struct view *view, const struct light *light,
+                                       const struct light_receiver *receiver, struct sample2 place) {
+    if (!view->by_bound)
+        return light_sample(light, &view->context, place);
+    struct light_sample sample = {.pdf = 1 / view->bound.angle};
+    sample.target.at = spherical_box_point(&view->bound, place);
+    sample.direction = vec3_normalize(vec3_sub(sample.target.at, receiver->point));
+    return sample;
+}
+
 bool world_lights_sample(const struct world_lights *lights, const struct light_receiver *receiver, uint32_t number,
                          struct sample2 place, struct world_light_sample *out) {
     const struct light *light = &lights->lights[number];
     const struct emitter *emitter = &lights->emitters[number];
-    struct light_context context;
-    if (!world_lights_reach(lights, number, receiver->placed) ||
-        !light_context_make(light, receiver->point, receiver->from, &context))
+    struct view view;
+    if (!world_lights_reach(lights, number, receiver->placed) || !view_make(lights, receiver, number, &view))
         return false;
-    struct light_sample sample = light_sample(light, &context, place);
+    struct light_sample sample = view_sample(&view, light, receiver, place);
     if (!(sample.pdf > 0) || !is_own_triangle(lights, number, sample.triangle))
         return false;
     bool own = emitter->shown && receiver->placed == emitter->placed && receiver->placed != WORLD_NOTHING;
@@ -436,13 +492,15 @@ struct vec3 world_lights_radiance(const struct world_lights *lights, uint32_t pl
 
 double world_lights_pdf(const struct world_lights *lights, const struct light_receiver *receiver, uint32_t light,
                         struct vec3 direction, const struct light_hit *hit) {
-    struct light_context context;
+    struct view view;
     if (lights->emitters[light].unmet || !world_lights_reach(lights, light, receiver->placed))
         return 0;
     double pmf = light_sampler_pmf(&lights->sampler, receiver->point, receiver->normal, light);
-    if (!(pmf > 0) || !light_context_make(&lights->lights[light], receiver->point, receiver->from, &context))
+    if (!(pmf > 0) || !view_make(lights, receiver, light, &view))
         return 0;
-    return pmf * light_pdf(&lights->lights[light], &context, direction, hit);
+    if (view.by_bound)
+        return pmf * spherical_box_pdf(lights->emitters[light].bound, &view.bound, receiver->from, direction);
+    return pmf * light_pdf(&lights->lights[light], &view.context, direction, hit);
 }
 
 double world_lights_pdf_of_hit(const struct world_lights *lights, const struct light_receiver *receiver,

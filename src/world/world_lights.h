@@ -22,6 +22,7 @@
 #define GRAY_WORLD_WORLD_LIGHTS_H
 
 #include "accel/box_tree.h"
+#include "light/light_box.h"
 #include "light/light_sampler.h"
 #include "world/world.h"
 
@@ -35,6 +36,7 @@ struct emitter {
     bool unmet;           /* scattered rays do not bring its light */
     bool has_own;         /* of gr.mesh_light: the emission that takes the place of the materials' */
     struct vec3 emission; /* that one, or a factor */
+    const struct light_box *bound; /* sampled in place of the light; NULL: none */
 };
 
 struct world_lights {

@@ -1,5 +1,7 @@
 /* Lamps that are rectangles seen large, meshes, and skies: against view factors, solid angles and integrals. */
+#include "base/random.h"
 #include "light/light.h"
+#include "light/light_box.h"
 #include "light/light_mesh.h"
 #include "light/sky_light.h"
 #include "tests/harness.h"
@@ -72,6 +74,72 @@ TEST(a_rectangle_is_sampled_by_the_solid_angle_of_its_parts) {
 
 /* Sixteen shadow rays, a lamp close above. One whose edges are a little off the right angle is sampled by area: the
  * light of one of its rays varies by the factor 600. */
+/* Whether a direction from the origin enters the box, and by which eighth of all directions. */
+static bool direction_meets(const struct light_box *box, struct vec3 from, struct vec3 d) {
+    double enter = 0, leave = INFINITY;
+    for (int i = 0; i < 3; i++) {
+        const struct vec3 *e = &box->edges[i];
+        double at = vec3_dot(vec3_sub(from, box->corner), *e), step = vec3_dot(d, *e), all = vec3_dot(*e, *e);
+        double a = (0 - at) / step, b = (all - at) / step;
+        enter = fmax(enter, fmin(a, b));
+        leave = fmin(leave, fmax(a, b));
+    }
+    return enter < leave;
+}
+
+/* Of a box, too: as many samples in each cell of directions as its share of the solid angle says. */
+TEST(a_box_is_sampled_by_its_solid_angle) {
+    enum { N = 60000, CELLS = 6 * 12 };
+    static const double sizes[][3] = {{1, 1, 1}, {0.1, 4, 0.2}, {3, 0.001, 2}};
+    static const struct vec3 points[] = {{2, 3, 4}, {0.5, 2.2, 0.4}, {-1, 0.3, 0.3}, {0.5, 0.5, -0.4}};
+    for (int i = 0; i < 12; i++) {
+        static int of_box[CELLS], of_samples[CELLS];
+        memset(of_box, 0, sizeof of_box);
+        memset(of_samples, 0, sizeof of_samples);
+        struct transform turn = transform_rotate_about(vec3_make(1, 2, 3), 40.0 * i);
+        struct light_box box = {.corner = {0, 0, 0}};
+        for (int k = 0; k < 3; k++) {
+            double edge[3] = {0, 0, 0};
+            edge[k] = sizes[i / 4][k];
+            box.edges[k] = affine_vector(&turn.forward, vec3_make(edge[0], edge[1], edge[2]));
+        }
+        struct spherical_box seen;
+        struct vec3 from = affine_point(&turn.forward, points[i % 4]);
+        CHECK(spherical_box_make(&box, from, &seen));
+        int met = 0;
+        for (uint64_t j = 0; j < 2 * N; j++) {
+            struct sample2 u = {random_unit(random_combine(1, j)), random_unit(random_combine(2, j))};
+            double y = 1 - 2 * u.y, level = sqrt(1 - y * y);
+            struct vec3 d = {level * cos(2 * pi * u.x), y, level * sin(2 * pi * u.x)};
+            bool meets = direction_meets(&box, from, d);
+            met += meets;
+            int cell = (int)(u.x * 12) + 12 * (int)(u.y * 6);
+            of_box[cell] += meets;
+            if (meets && j % 16 == 0)
+                CHECK_NEAR(spherical_box_pdf(&box, &seen, from, d) * seen.angle, 1, 1e-12);
+            if (j >= N)
+                continue;
+            d = vec3_normalize(vec3_sub(spherical_box_point(&seen, u), from));
+            double round = atan2(d.z, d.x) / (2 * pi);
+            cell = (int)((round < 0 ? round + 1 : round) * 12) % 12 + 12 * (int)fmin(5, (1 - d.y) / 2 * 6);
+            of_samples[cell]++;
+        }
+        CHECK_NEAR(met / (2.0 * N), seen.angle / (4 * pi), 5 * sqrt(met + 1.0) / (2.0 * N));
+        double chi = 0;
+        int used = 0;
+        for (int cell = 0; cell < CELLS; cell++) {
+            double a = of_box[cell], b = of_samples[cell], ka = sqrt((double)N / met), kb = 1 / ka;
+            if (a + b < 20)
+                continue;
+            chi += (ka * a - kb * b) * (ka * a - kb * b) / (a + b);
+            used++;
+        }
+        CHECK(chi < used + 5 * sqrt(2.0 * used));
+        struct vec3 inside = vec3_scale(vec3_add(vec3_add(box.edges[0], box.edges[1]), box.edges[2]), 0.5);
+        CHECK(!spherical_box_make(&box, inside, &seen));
+    }
+}
+
 TEST(a_rectangle_close_to_a_surface_is_not_grainy) {
     double squares[2] = {0, 0};
     for (int by_area = 0; by_area < 2; by_area++) {
