@@ -116,7 +116,8 @@ static void answer_begin(struct supervisor *supervisor, const struct message *me
 }
 
 static void send_command(struct supervisor *supervisor, const struct preview_command *command) {
-    supervisor->viewer.waiting = false;
+    if (supervisor->viewer.pass.state == PASS_WAITING) /* END: it was not the viewer that decided */
+        supervisor->viewer.pass.state = PASS_BUSY;
     forget_stop(supervisor);
     if (!channel_send(&supervisor->channel, MESSAGE_PREVIEW_COMMAND, command, sizeof *command, -1))
         note_unsent(supervisor);
@@ -138,7 +139,7 @@ static void quit_window(struct supervisor *supervisor) {
     atomic_store(&supervisor->control->cancel, CANCEL_ALL);
     if (!supervisor->viewer.written)
         supervisor_note_status(supervisor, ERROR_CANCELLED);
-    if (supervisor->viewer.waiting)
+    if (supervisor->viewer.pass.state == PASS_WAITING)
         end_picture(supervisor, true);
 }
 
@@ -150,7 +151,7 @@ void supervisor_restart(struct supervisor *supervisor) {
     supervisor->deadline = progress_clock() + patience_again;
     atomic_store(&supervisor->control->cancel, CANCEL_ALL);
     viewer_keep(&supervisor->viewer);
-    if (supervisor->viewer.waiting)
+    if (supervisor->viewer.pass.state == PASS_WAITING)
         end_picture(supervisor, true);
 }
 
@@ -288,7 +289,7 @@ void supervisor_take_message(struct supervisor *supervisor, const struct message
         answer_done(supervisor, message);
         return;
     case MESSAGE_PREVIEW_REPLY:
-        if (!current->open || !supervisor->window || supervisor->viewer.waiting)
+        if (!current->open || !supervisor->window || supervisor->viewer.pass.state == PASS_WAITING)
             break;
         viewer_take_reply(&supervisor->viewer, &message->body.reply, progress_clock());
         if (supervisor->deadline > 0)

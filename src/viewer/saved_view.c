@@ -23,7 +23,7 @@ static bool free_name(const char *picture, const char *what, const char *extensi
 static void row(void *context, uint32_t y, uint8_t *line) {
     const struct viewer *viewer = context;
     size_t bytes = 3 * (size_t)viewer->request.width;
-    memcpy(line, viewer->image + y * bytes, bytes);
+    memcpy(line, viewer->display.image + y * bytes, bytes);
 }
 
 bool save_view_image(const struct viewer *viewer, const struct file_target *picture, char *name, struct error *error) {
@@ -82,6 +82,6 @@ bool save_edits(const struct viewer *viewer, const struct file_target *picture, 
         return false;
     return end_file(&lua_file,
                     put_line(&lua_file, head) &&
-                        edits_write_lua(&viewer->edits.now, viewer->request.file, viewer->camera_moved ? &camera : NULL,
+                        edits_write_lua(&viewer->edit.steps.now, viewer->request.file, viewer->camera_moved ? &camera : NULL,
                                         exposed ? &exposure : NULL, put_line, &lua_file));
 }

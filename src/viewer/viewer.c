@@ -34,28 +34,28 @@ static void keep_work(struct viewer *viewer, const struct viewer *before) {
     }
     if (is_different(before->request.exposure, before->script_exposure))
         viewer->request.exposure = before->request.exposure;
-    viewer->edits = before->edits;
-    viewer->pending = before->pending;
-    viewer->tool = before->tool;
+    viewer->edit.steps = before->edit.steps;
+    viewer->edit.pending = before->edit.pending;
+    viewer->edit.tool = before->edit.tool;
     viewer_resend_edits(viewer);
 }
 
 static void forget_work(struct viewer *viewer) {
-    edits_destroy(&viewer->edits);
-    change_list_destroy(&viewer->pending);
+    edits_destroy(&viewer->edit.steps);
+    change_list_destroy(&viewer->edit.pending);
 }
 
 static void close_window(struct viewer *viewer) {
     if (viewer->open)
         viewer->driver->close(viewer->driver->context);
-    mem_free(viewer->image);
-    mem_free(viewer->light);
-    mem_free(viewer->drawn);
+    mem_free(viewer->display.image);
+    mem_free(viewer->display.light);
+    mem_free(viewer->display.drawn);
     viewer_destroy_overlay(viewer);
-    mem_free(viewer->panel.canvas.rgba);
-    viewer->image = viewer->drawn = viewer->panel.canvas.rgba = NULL;
-    viewer->light = NULL;
-    viewer->layout = (struct window_layout){0};
+    mem_free(viewer->display.panel.canvas.rgba);
+    viewer->display.image = viewer->display.drawn = viewer->display.panel.canvas.rgba = NULL;
+    viewer->display.light = NULL;
+    viewer->display.layout = (struct window_layout){0};
     viewer->open = false;
 }
 
@@ -64,23 +64,23 @@ static void keep_window(struct viewer *viewer, const struct viewer *before) {
     viewer->control = before->control;
     viewer->number = before->number;
     viewer->logs_notes = before->logs_notes;
-    viewer->image = before->image;
-    viewer->light = before->light;
-    viewer->drawn = before->drawn;
-    viewer->layout = before->layout;
-    viewer->panel = before->panel;
-    viewer->hides_overlay = before->hides_overlay;
-    viewer->overlay = before->open ? before->overlay : viewer->overlay;
+    viewer->display.image = before->display.image;
+    viewer->display.light = before->display.light;
+    viewer->display.drawn = before->display.drawn;
+    viewer->display.layout = before->display.layout;
+    viewer->display.panel = before->display.panel;
+    viewer->display.hides_hud = before->display.hides_hud;
+    viewer->overlay.kind = before->open ? before->overlay.kind : viewer->overlay.kind;
     viewer->open = before->open;
 }
 
 static bool open_window(struct viewer *viewer, struct error *error) {
     const struct picture_request *request = &viewer->request;
     size_t pixels = (size_t)request->width * request->height;
-    viewer->image = mem_alloc_zero(pixels, 3);
-    viewer->light = mem_alloc_zero(pixels, 3 * sizeof(float));
-    viewer->drawn = mem_alloc_zero(viewer->tiles, 1);
-    if (!viewer->image || !viewer->light || !viewer->drawn)
+    viewer->display.image = mem_alloc_zero(pixels, 3);
+    viewer->display.light = mem_alloc_zero(pixels, 3 * sizeof(float));
+    viewer->display.drawn = mem_alloc_zero(viewer->display.tiles, 1);
+    if (!viewer->display.image || !viewer->display.light || !viewer->display.drawn)
         return error_no_memory(error, "the window");
     viewer->open = viewer->driver->open(viewer->driver->context, request->width, request->height, viewer->name, error);
     return viewer->open;
@@ -95,48 +95,47 @@ bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, con
         close_window(viewer);
     viewer_destroy_overlay(viewer);
     struct viewer before = *viewer;
-    *viewer =
-        (struct viewer){.driver = driver,
-                        .request = *request,
-                        .block = block,
-                        .script_exposure = request->exposure,
-                        .overlay = request->overlay <= OVERLAY_OF_GRID ? (enum overlay)request->overlay : OVERLAY_NONE,
-                        .tiles = film_tile_count(&whole),
-                        .moved = true,
-                        .again = true,
-                        .divide = FIRST_DIVIDE / 2,
-                        .pass_began = now,
-                        .stepped = now,
-                        .shown = now};
-    mem_free(before.lights);
+    *viewer = (struct viewer){.driver = driver,
+                              .request = *request,
+                              .block = block,
+                              .script_exposure = request->exposure,
+                              .pass = {.outdated = true, .from_coarse = true, .divide = FIRST_DIVIDE / 2, .began = now},
+                              .overlay.kind =
+                                  request->overlay <= OVERLAY_OF_GRID ? (enum overlay)request->overlay : OVERLAY_NONE,
+                              .display = {.tiles = film_tile_count(&whole), .shown_at = now},
+                              .stepped = now};
+    mem_free(before.lights.items);
     keep_window(viewer, &before);
     (void)snprintf(viewer->name, sizeof viewer->name, "%s", name);
     fly_camera_begin(&viewer->fly_camera, &request->camera, &unknown);
-    viewer->view = current_view(viewer, FIRST_DIVIDE, true);
+    viewer->pass.view = current_view(viewer, FIRST_DIVIDE, true);
     if (kept)
         keep_work(viewer, &before);
     else
         forget_work(&before);
     if (!viewer->open && !open_window(viewer, error))
         return false;
-    memset(viewer->drawn, 0, viewer->tiles);
+    memset(viewer->display.drawn, 0, viewer->display.tiles);
     return true;
 }
 
 void viewer_end(struct viewer *viewer) {
     close_window(viewer);
     forget_work(viewer);
-    mem_free(viewer->lights);
+    mem_free(viewer->lights.items);
     *viewer = (struct viewer){.control = viewer->control, .logs_notes = viewer->logs_notes};
 }
 
 void viewer_detach(struct viewer *viewer) {
     viewer->block = NULL;
-    viewer->film = (struct film){0};
-    viewer->running = viewer->waiting = viewer->stopping = viewer->partial = viewer->asks = viewer->wants_trace = false;
-    viewer->halted = viewer->unbuilt = false;
-    viewer->selection.kind = SELECTED_NOTHING;
-    viewer->figures_at = 0;
+    viewer->pass.film = (struct film){0};
+    viewer->pass.state = PASS_BUSY;
+    if (viewer->pass.result == RESULT_STOPPED)
+        viewer->pass.result = RESULT_NONE;
+    viewer->edit.click_waits = viewer->trace.wanted = false;
+    viewer->pass.halted = viewer->pass.unbuilt = false;
+    viewer->edit.selection.kind = SELECTED_NOTHING;
+    viewer->display.figures_at = 0;
 }
 
 void viewer_keep(struct viewer *viewer) {
@@ -148,15 +147,15 @@ bool viewer_skips(const struct viewer *viewer, unsigned number) {
 }
 
 void viewer_add_pixel_trace(struct viewer *viewer, const char *text) {
-    size_t used = strlen(viewer->trace_text);
-    (void)snprintf(viewer->trace_text + used, sizeof viewer->trace_text - used, "%s", text);
-    viewer->over_dirty = true;
+    size_t used = strlen(viewer->trace.text);
+    (void)snprintf(viewer->trace.text + used, sizeof viewer->trace.text - used, "%s", text);
+    viewer->display.hud_dirty = true;
 }
 
 void viewer_show_message(struct viewer *viewer, const char *text) {
     size_t length = strcspn(text, "\n");
     (void)snprintf(viewer->message, sizeof viewer->message, "%.*s", (int)(length < 500 ? length : 500), text);
-    viewer->figures_at = 0;
+    viewer->display.figures_at = 0;
 }
 
 /* Orders. */
@@ -167,35 +166,34 @@ void viewer_note_stop(struct viewer *viewer, double seconds) {
 }
 
 bool viewer_is_idle(const struct viewer *viewer) {
-    return viewer->waiting && viewer->complete && !viewer->moved && !viewer->asks && !viewer->wants_trace &&
-           viewer->pending.count == 0;
+    return viewer->pass.state == PASS_WAITING && viewer->pass.result == RESULT_COMPLETE && !viewer->pass.outdated &&
+           !viewer->edit.click_waits && !viewer->trace.wanted && viewer->edit.pending.count == 0;
 }
 
 static void end_pass(struct viewer *viewer, const struct picture_report *report, double now) {
-    bool known = viewer->report.threads > 0;
-    viewer->partial = report->stopped != 0;
+    bool known = viewer->pass.report.threads > 0;
+    viewer->pass.result = report->stopped ? RESULT_STOPPED : viewer->pass.view.plain ? RESULT_COARSE : RESULT_COMPLETE;
     if (report->stopped)
         return;
     viewer_draw_tiles(viewer);
     /* Passes that take no time say nothing about how coarse they must be. */
-    double took = now - viewer->pass_began, divide = viewer->view.divide * sqrt(took / pass_goal);
-    if (viewer->view.plain && viewer->view.divide == viewer->divide && known)
-        viewer->divide = divide < 1 ? 1 : divide > DIVIDE_LIMIT ? DIVIDE_LIMIT : (uint32_t)ceil(divide);
-    viewer->complete = !viewer->view.plain;
-    viewer->report = *report;
+    double took = now - viewer->pass.began, divide = viewer->pass.view.divide * sqrt(took / pass_goal);
+    if (viewer->pass.view.plain && viewer->pass.view.divide == viewer->pass.divide && known)
+        viewer->pass.divide = divide < 1 ? 1 : divide > DIVIDE_LIMIT ? DIVIDE_LIMIT : (uint32_t)ceil(divide);
+    viewer->pass.report = *report;
 }
 
 void viewer_take_reply(struct viewer *viewer, const struct preview_reply *reply, double now) {
-    if (viewer->halted && viewer->halted_at > 0)
-        viewer_note_stop(viewer, now - viewer->halted_at);
-    viewer->halted_at = 0;
-    viewer->running = viewer->stopping = false;
-    viewer->waiting = viewer->over_dirty = true;
-    viewer->unbuilt = reply->unbuilt;
+    if (viewer->pass.halted && viewer->pass.halted_at > 0)
+        viewer_note_stop(viewer, now - viewer->pass.halted_at);
+    viewer->pass.halted_at = 0;
+    viewer->pass.state = PASS_WAITING;
+    viewer->display.hud_dirty = true;
+    viewer->pass.unbuilt = reply->unbuilt;
     switch (reply->kind) {
     case REPLY_BUILT:
         fly_camera_measure(&viewer->fly_camera, &reply->report.bounds);
-        viewer->moved = true;
+        viewer->pass.outdated = true;
         viewer->built = reply->built;
         viewer->scene = *reply;
         viewer_take_lights(viewer, reply);
@@ -219,7 +217,7 @@ void viewer_take_reply(struct viewer *viewer, const struct preview_reply *reply,
             viewer_take_lights(viewer, reply);
         if (reply->text[0] != '\0')
             viewer_show_message(viewer, reply->text);
-        viewer->moved = true;
+        viewer->pass.outdated = true;
         viewer_invalidate_overlay(viewer);
         return;
     case REPLY_LIGHTS:
@@ -233,57 +231,59 @@ void viewer_take_reply(struct viewer *viewer, const struct preview_reply *reply,
 /* resume: the tiles that are done stay. */
 static void begin_pass(struct viewer *viewer, uint32_t divide, bool plain, bool resume, double now) {
     if (!resume) {
-        viewer->view = current_view(viewer, divide, plain);
-        viewer->film = pass_film(&viewer->request, viewer->block, divide);
-        viewer->edited = viewer->edits.now.count > 0 || is_different(viewer->request.exposure, viewer->script_exposure);
-        memset(viewer->drawn, 0, viewer->tiles);
-        if (viewer->film.marked)
-            memset(viewer->film.marked, 0, (size_t)viewer->film.width * viewer->film.height);
+        viewer->pass.view = current_view(viewer, divide, plain);
+        viewer->pass.film = pass_film(&viewer->request, viewer->block, divide);
+        viewer->pass.edited =
+            viewer->edit.steps.now.count > 0 || is_different(viewer->request.exposure, viewer->script_exposure);
+        memset(viewer->display.drawn, 0, viewer->display.tiles);
+        if (viewer->pass.film.marked)
+            memset(viewer->pass.film.marked, 0, (size_t)viewer->pass.film.width * viewer->pass.film.height);
     }
-    for (uint32_t tile = 0; tile < film_tile_count(&viewer->film); tile++) {
-        if (!resume || atomic_load(&viewer->film.tiles[tile]) != FILM_TILE_DONE)
-            atomic_store(&viewer->film.tiles[tile], FILM_TILE_WANTED);
+    for (uint32_t tile = 0; tile < film_tile_count(&viewer->pass.film); tile++) {
+        if (!resume || atomic_load(&viewer->pass.film.tiles[tile]) != FILM_TILE_DONE)
+            atomic_store(&viewer->pass.film.tiles[tile], FILM_TILE_WANTED);
     }
-    viewer->command = (struct preview_command){.kind = COMMAND_PASS, .view = viewer->view};
-    if (viewer->moved)
+    viewer->command = (struct preview_command){.kind = COMMAND_PASS, .view = viewer->pass.view};
+    if (viewer->pass.outdated)
         viewer_invalidate_overlay(viewer);
     if (plain && !resume && viewer_needs_overlay(viewer))
-        viewer->command.overlay = viewer_overlay_request(viewer, viewer->moved);
-    viewer->moved = viewer->complete = viewer->partial = false;
-    viewer->running = true;
-    viewer->pass_began = now;
+        viewer->command.overlay = viewer_overlay_request(viewer, viewer->pass.outdated);
+    viewer->pass.outdated = false;
+    viewer->pass.result = RESULT_NONE;
+    viewer->pass.state = PASS_RUNNING;
+    viewer->pass.began = now;
 }
 
 /* The first of what the child has not been told yet. */
 static void command_change(struct viewer *viewer) {
-    struct change target = viewer->pending.items[0];
-    const struct change *now = change_list_find(&viewer->edits.now, &target);
-    (void)change_list_set(&viewer->pending, &target, false);
+    struct change target = viewer->edit.pending.items[0];
+    const struct change *now = change_list_find(&viewer->edit.steps.now, &target);
+    (void)change_list_set(&viewer->edit.pending, &target, false);
     bool light = target.kind == CHANGE_LIGHT || target.kind == CHANGE_DARK;
     viewer->command = (struct preview_command){.kind = COMMAND_CHANGE,
                                                .change = now ? *now : target,
                                                .present = now != NULL,
-                                               .more = viewer->pending.count > 0,
+                                               .more = viewer->edit.pending.count > 0,
                                                .first_light = light ? target.serial - 1 : 0};
 }
 
 static void command_pick(struct viewer *viewer) {
-    viewer->asks = false;
+    viewer->edit.click_waits = false;
     viewer->command = (struct preview_command){.kind = COMMAND_PICK,
                                                .view = current_view(viewer, 1, true),
-                                               .x = viewer->asked.x,
-                                               .y = viewer->asked.y,
-                                               .up = viewer->asked.up};
+                                               .x = viewer->edit.click.x,
+                                               .y = viewer->edit.click.y,
+                                               .up = viewer->edit.click.up};
 }
 
 static void command_pixel_trace(struct viewer *viewer) {
-    viewer->wants_trace = false;
-    viewer->trace_text[0] = '\0';
-    viewer->trace_line = 0;
+    viewer->trace.wanted = false;
+    viewer->trace.text[0] = '\0';
+    viewer->trace.line = 0;
     viewer->command = (struct preview_command){.kind = COMMAND_PIXEL_TRACE,
                                                .view = current_view(viewer, 1, false),
-                                               .x = viewer->trace_x,
-                                               .y = viewer->trace_y};
+                                               .x = viewer->trace.x,
+                                               .y = viewer->trace.y};
 }
 
 static void command_overlay(struct viewer *viewer) {
@@ -293,60 +293,63 @@ static void command_overlay(struct viewer *viewer) {
 }
 
 static enum viewer_action next_command(struct viewer *viewer, double now) {
-    uint32_t divide = viewer->again ? FIRST_DIVIDE : viewer->divide;
-    bool coarse = viewer->view.plain && viewer->view.divide > MIDDLE_DIVIDE && !viewer->halted;
-    if (viewer->halted && viewer->unbuilt) /* what is asked now has no answer */
-        viewer->asks = viewer->wants_trace = false;
-    if (viewer->pending.count > 0 && !viewer->halted) {
+    uint32_t divide = viewer->pass.from_coarse ? FIRST_DIVIDE : viewer->pass.divide;
+    bool coarse = viewer->pass.view.plain && viewer->pass.view.divide > MIDDLE_DIVIDE && !viewer->pass.halted;
+    if (viewer->pass.halted && viewer->pass.unbuilt) /* what is asked now has no answer */
+        viewer->edit.click_waits = viewer->trace.wanted = false;
+    if (viewer->edit.pending.count > 0 && !viewer->pass.halted) {
         command_change(viewer);
-    } else if (viewer->asks) {
+    } else if (viewer->edit.click_waits) {
         command_pick(viewer);
-    } else if (viewer->wants_trace) {
+    } else if (viewer->trace.wanted) {
         command_pixel_trace(viewer);
-    } else if (!viewer->moved && !coarse && viewer_needs_overlay(viewer)) {
+    } else if (!viewer->pass.outdated && !coarse && viewer_needs_overlay(viewer)) {
         command_overlay(viewer);
-    } else if (viewer->halted) {
+    } else if (viewer->pass.halted) {
         return VIEWER_NOTHING;
-    } else if (viewer->moved) {
-        viewer->again = false;
+    } else if (viewer->pass.outdated) {
+        viewer->pass.from_coarse = false;
         begin_pass(viewer, divide, true, false, now);
-    } else if (viewer->lights_known < viewer->light_count) {
-        viewer->command = (struct preview_command){.kind = COMMAND_LIGHTS, .first_light = viewer->lights_known};
-    } else if (!viewer->view.plain && is_different(viewer->view.exposure, viewer->request.exposure)) {
+    } else if (viewer->lights.known < viewer->lights.count) {
+        viewer->command = (struct preview_command){.kind = COMMAND_LIGHTS, .first_light = viewer->lights.known};
+    } else if (!viewer->pass.view.plain && is_different(viewer->pass.view.exposure, viewer->request.exposure)) {
         begin_pass(viewer, 1, false, false, now);
-    } else if (viewer->partial) {
+    } else if (viewer->pass.result == RESULT_STOPPED) {
         begin_pass(viewer, 0, false, true, now);
-    } else if (viewer->complete) {
+    } else if (viewer->pass.result == RESULT_COMPLETE) {
         return VIEWER_NOTHING;
-    } else if (viewer->view.divide > MIDDLE_DIVIDE) {
+    } else if (viewer->pass.view.divide > MIDDLE_DIVIDE) {
         begin_pass(viewer, MIDDLE_DIVIDE, true, false, now);
     } else {
         begin_pass(viewer, 1, false, false, now);
     }
-    viewer->waiting = false;
+    if (viewer->command.kind != COMMAND_PASS)
+        viewer->pass.state = PASS_BUSY;
     return VIEWER_SEND_COMMAND;
 }
 
 /* What can be done while the child works. */
 static enum viewer_action step_running(struct viewer *viewer) {
     /* A coarse pass is over soon and is worth showing; a fine one is not. */
-    bool coarse = viewer->view.plain && viewer->view.divide >= viewer->divide;
-    if (viewer->halted && viewer->block && !viewer->stopping) {
-        viewer->stopping = true;
+    bool coarse = viewer->pass.view.plain && viewer->pass.view.divide >= viewer->pass.divide;
+    if (viewer->pass.halted && viewer->block && viewer->pass.state != PASS_STOPPING) {
+        viewer->pass.state = PASS_STOPPING;
         return VIEWER_STOP_PASS;
     }
-    bool wanted = viewer->moved || (!coarse && viewer_needs_overlay(viewer)) || viewer->asks || viewer->wants_trace ||
-                  viewer->pending.count > 0 || is_different(viewer->view.exposure, viewer->request.exposure);
-    if (!viewer->running || !wanted || viewer->stopping || coarse)
+    bool wanted = viewer->pass.outdated || (!coarse && viewer_needs_overlay(viewer)) || viewer->edit.click_waits ||
+                  viewer->trace.wanted || viewer->edit.pending.count > 0 ||
+                  is_different(viewer->pass.view.exposure, viewer->request.exposure);
+    if (viewer->pass.state != PASS_RUNNING || !wanted || coarse)
         return VIEWER_NOTHING;
-    viewer->stopping = true;
+    viewer->pass.state = PASS_STOPPING;
     return VIEWER_STOP_PASS;
 }
 
 /* The picture is written with the lines of the command line, which are there where people look at them. */
 static bool lines_of_script(const struct viewer *viewer) {
-    return viewer->request.overlay == OVERLAY_NONE || (viewer->overlay == (enum overlay)viewer->request.overlay &&
-                                                       viewer->lines_fresh && viewer->has_lines && !viewer->moved);
+    return viewer->request.overlay == OVERLAY_NONE ||
+           (viewer->overlay.kind == (enum overlay)viewer->request.overlay && viewer->overlay.lines_fresh &&
+            viewer->overlay.has_lines && !viewer->pass.outdated);
 }
 
 enum viewer_action viewer_step(struct viewer *viewer, double now) {
@@ -357,7 +360,7 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
         viewer_change_view(viewer);
     while (viewer->action == VIEWER_NOTHING && !viewer->quit && viewer->driver->poll(viewer->driver->context, &event))
         viewer_take_event(viewer, &event);
-    if (viewer->running)
+    if (viewer->pass.state == PASS_RUNNING || viewer->pass.state == PASS_STOPPING)
         viewer_draw_tiles(viewer);
     viewer_show(viewer, now);
     enum viewer_action action = viewer->action;
@@ -368,13 +371,14 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
         return VIEWER_LOG_NOTE;
     if (viewer->quit)
         return VIEWER_QUIT;
-    if (viewer->complete && viewer->view.own && !viewer->edited && !viewer->written && lines_of_script(viewer)) {
+    if (viewer->pass.result == RESULT_COMPLETE && viewer->pass.view.own && !viewer->pass.edited && !viewer->written &&
+        lines_of_script(viewer)) {
         viewer->written = true;
         if (viewer->request.overlay != OVERLAY_NONE)
-            overlay_lay(&viewer->film, viewer->lines);
+            overlay_lay(&viewer->pass.film, viewer->overlay.lines);
         return VIEWER_WRITE_PICTURE;
     }
-    if (viewer->waiting && viewer->next && viewer->written)
+    if (viewer->pass.state == PASS_WAITING && viewer->next && viewer->written)
         return VIEWER_NEXT_PICTURE;
-    return viewer->waiting ? next_command(viewer, now) : step_running(viewer);
+    return viewer->pass.state == PASS_WAITING ? next_command(viewer, now) : step_running(viewer);
 }

@@ -24,13 +24,13 @@ struct outline_side {
 enum viewer_action {
     VIEWER_NOTHING,
     VIEWER_STOP_PASS,     /* the pass that runs is of no use any more */
-    VIEWER_SEND_COMMAND,  /* the child waits: send viewer->command */
+    VIEWER_SEND_COMMAND,  /* viewer->command is to be sent */
     VIEWER_WRITE_PICTURE, /* the script's own picture is complete for the first time: write it */
-    VIEWER_SAVE_IMAGE,    /* somebody wants what is shown in a file: viewer->image */
-    VIEWER_SAVE_CAMERA,   /* somebody wants the camera in a file: fly_camera_camera(&viewer->fly_camera) */
-    VIEWER_SAVE_EDITS,    /* somebody wants what was changed in a file */
-    VIEWER_LOG_NOTE,      /* viewer->note is to be told where details are */
-    VIEWER_NEXT_PICTURE,  /* the child waits, and this picture is done with: the script goes on */
+    VIEWER_SAVE_IMAGE,    /* what is shown is to be saved: viewer->display.image */
+    VIEWER_SAVE_CAMERA,   /* the camera is to be saved */
+    VIEWER_SAVE_EDITS,    /* the edits are to be saved */
+    VIEWER_LOG_NOTE,      /* viewer->note is a detail for the log */
+    VIEWER_NEXT_PICTURE,  /* this picture is done with: the script goes on */
     VIEWER_QUIT,          /* the window was closed, or Q */
 };
 
@@ -54,76 +54,131 @@ struct selection {
 /* What the mouse does with what is selected. */
 enum edit_tool { TOOL_NONE, TOOL_MOVE, TOOL_TURN, TOOL_SIZE };
 
-struct viewer {
-    const struct window_driver *driver;
-    const struct control *control; /* or NULL; set by the caller, not owned */
-    struct fly_camera fly_camera;
-    struct picture_request request;
-    void *block;                    /* of the film; not owned; NULL: no picture is being made */
-    char name[4096];                /* of the picture */
-    unsigned number;                /* of the picture among those of a run, from 1; kept by the caller */
-    char message[512];              /* what went wrong, or empty */
-    struct pass_view view;          /* of the pass that runs or ran last */
-    struct film film;               /* as that pass lays it out */
-    struct preview_command command; /* for VIEWER_SEND_COMMAND */
-    struct picture_report report;   /* of the last pass that was finished */
-    uint8_t *image;                 /* what is shown: 3 bytes a pixel of the whole part */
-    float *light;                   /* the same before exposure and tone */
-    uint8_t *drawn;                 /* by tile: already on the canvas */
-    size_t tiles;                   /* room in drawn */
-    struct window_layout layout;
-    struct panel panel; /* its paper is owned */
-    bool hides_overlay; /* nothing is drawn over the picture */
-    enum viewer_action action;
+/* What the render process does for the window. */
+enum pass_state {
+    PASS_BUSY,     /* no pass: it builds the world, or answers another command */
+    PASS_RUNNING,  /* it renders a pass */
+    PASS_STOPPING, /* it was told to stop what it does */
+    PASS_WAITING,  /* for a command */
+};
+/* What the last pass has left. */
+enum pass_result {
+    RESULT_NONE,     /* nothing that counts any more */
+    RESULT_STOPPED,  /* some of its tiles: it can go on */
+    RESULT_COARSE,   /* a picture with few samples */
+    RESULT_COMPLETE, /* the picture as the script wants it */
+};
 
-    struct edits edits;
-    struct change_list pending; /* what the child has not been told yet: what holds now for these targets */
-    struct preview_reply scene; /* lights and root, as the child told last */
-    struct light_info *lights;  /* owned; those from lights_known on are not known yet */
-    uint32_t light_room, light_count, lights_known;
-    double light_colour_max; /* of the sliders of a light's colour */
-    bool lists_lights;       /* a list of them is shown, from this one on: */
-    uint32_t list_first;
-    struct selection selection, asked; /* asked: a click that the child is to answer */
-    bool asks;
-    bool wants_trace;        /* of the pixel under the mouse */
-    double trace_x, trace_y; /* pixels of the whole picture */
-    char trace_text[16384];  /* of a pixel, in words; empty: none is shown */
-    int trace_line;          /* the first one shown */
+struct viewer_pass {
+    enum pass_state state;
+    enum pass_result result;
+    struct pass_view view;        /* of the pass that runs or ran last */
+    struct film film;             /* as that pass lays it out */
+    struct picture_report report; /* of the last pass that was finished */
+    bool edited;                  /* it shows a changed scene */
+    uint32_t divide;              /* of passes while the camera moves */
+    double began;
+    bool outdated;    /* the camera is not that of `view`, or the scene was changed */
+    bool from_coarse; /* the next pass is a coarse one (R) */
+    bool halted;      /* by the user: nothing is begun until something is wanted */
+    bool unbuilt;     /* the render process has no world of what is wanted */
+    double halted_at; /* 0: the time of the stop was reported */
+};
+
+/* What is changed in the scene, and what it is changed by. */
+struct viewer_edit {
+    struct edits steps;
+    struct change_list pending; /* not sent yet: what holds now for these targets */
+    struct selection selection;
+    struct selection click; /* where something is to be selected, while click_waits: it was not sent yet */
+    bool click_waits;
     enum edit_tool tool;
-    enum look_part part;    /* of the material, that the panel has sliders for */
-    int panel_height;       /* of the panel of the selection, as it was needed last */
-    bool joins;             /* the next change by the mouse is part of the last one */
-    double script_exposure; /* stops */
+    enum look_part part; /* of the material, that the panel has sliders for */
+    bool joins;          /* the next change by the mouse is part of the last one */
+};
 
-    bool open, running, stopping, waiting;
-    bool moved;             /* the camera is not the one of the view that was sent last, or the scene was changed */
-    bool camera_moved;      /* it is not the script's any more */
-    bool again;             /* R */
-    bool partial;           /* the last pass was stopped for a moment, and can go on */
-    bool edited;            /* the last pass shows a changed scene */
-    bool complete, written; /* the last pass was the finest; the script's picture was written */
-    /* What lies over the picture and is made by the child (viewer_overlay.c). */
-    enum overlay overlay;            /* what people want to see */
-    float (*lines)[4];               /* over the canvas, where has_lines; owned */
+/* Lights of the scene as they are reported, in parts. */
+struct viewer_lights {
+    struct light_info *items; /* owned; those from `known` on are not known yet */
+    uint32_t room, count, known;
+    double colour_max;   /* of the sliders of a light's colour */
+    bool listed;         /* a list of them is shown ... */
+    uint32_t list_first; /* ... from this one on */
+};
+
+/* How the colour of a pixel came about. */
+struct viewer_trace {
+    bool wanted;      /* of the pixel x, y of the whole picture; it was not sent yet */
+    double x, y;      /* pixels of the whole picture */
+    char text[16384]; /* empty: none is shown */
+    int line;         /* the first one shown */
+};
+
+/* What lies over the picture and is made by the render process (viewer_overlay.c). */
+struct viewer_overlay {
+    enum overlay kind;               /* which lines are wanted */
+    float (*lines)[4];               /* over the image, where has_lines; owned */
     bool has_lines;                  /* some are shown, perhaps those of another view */
     bool lines_fresh, outline_fresh; /* those of the view, as fine as they can be; or asked for in vain */
     struct outline_side *sides;      /* the outline; owned */
     uint32_t side_count, side_room;
+};
 
-    bool halted;  /* somebody said stop: nothing is begun until something is wanted */
-    bool unbuilt; /* the child has no world of what is wanted */
-    bool grabbed, next, quit;
-    bool keep; /* the scripts run again: the camera stays where somebody has flown, pictures before are left out */
+/* What is on the screen. */
+struct viewer_display {
+    uint8_t *image; /* 3 bytes a pixel of the whole part; owned */
+    float *light;   /* the same before exposure and tone; owned */
+    uint8_t *drawn; /* by tile: already on the image; owned */
+    size_t tiles;   /* room in drawn */
+    struct window_layout layout;
+    struct panel panel; /* its canvas is owned */
+    int panel_height;   /* of the panel of the selection, as it was needed last */
+    bool hides_hud;     /* nothing is drawn over the picture */
+    bool dirty;         /* the image was changed since it was shown */
+    bool hud_dirty;     /* what is drawn over it is out of date */
+    double shown_at, figures_at;
+};
+
+/* The mouse. */
+struct viewer_input {
+    bool grabbed;            /* it turns the camera */
     bool pressed, dragged;   /* the left button is down on the picture, and has moved since */
     double press_x, press_y; /* where */
-    uint32_t divide;         /* of passes while somebody walks */
-    double pass_began, stepped, shown, figures_at;
-    double built, halted_at; /* 0: what was to be told of them has been told */
-    bool logs_notes;         /* notes are wanted */
-    char note[160];
-    bool dirty;      /* the canvas was changed since it was shown */
-    bool over_dirty; /* what is drawn over it is not right any more */
+};
+
+/* Zero value: no window. */
+struct viewer {
+    const struct window_driver *driver;
+    const struct control *control; /* or NULL; set by the caller, not owned */
+    unsigned number;               /* of the picture among those of a run, from 1; kept by the caller */
+    bool logs_notes;               /* notes are wanted; set by the caller */
+    bool open;
+    bool keep; /* the scripts run again: camera and edits stay, pictures before are left out */
+
+    struct picture_request request;
+    void *block;                /* of the film; not owned; NULL: no picture is being made */
+    char name[4096];            /* of the picture */
+    double script_exposure;     /* stops */
+    struct preview_reply scene; /* its root, as reported last */
+    bool written;               /* the script's picture is in its file */
+    char message[512];          /* an error, or empty */
+    char note[160];             /* for the log, or empty */
+    double built;               /* when the world was; 0: that was reported */
+
+    struct fly_camera fly_camera;
+    bool camera_moved; /* it is not the script's any more */
+    struct viewer_pass pass;
+    struct viewer_edit edit;
+    struct viewer_lights lights;
+    struct viewer_trace trace;
+    struct viewer_overlay overlay;
+    struct viewer_display display;
+    struct viewer_input input;
+
+    double stepped;                 /* when viewer_step was called last */
+    struct preview_command command; /* for VIEWER_SEND_COMMAND */
+    enum viewer_action action;      /* wanted by a key or a button */
+    bool next, quit;                /* the same: the next picture, the end */
 };
 
 /* Opens the window. Owner: the caller; viewer_end gives everything back. */

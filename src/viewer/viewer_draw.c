@@ -13,8 +13,8 @@
 static const double frame_pause = 0.016, figures_pause = 0.25;
 
 bool viewer_resize(struct viewer *viewer, int width, int height, double density) {
-    struct window_layout *layout = &viewer->layout;
-    struct canvas *canvas = &viewer->panel.canvas;
+    struct window_layout *layout = &viewer->display.layout;
+    struct canvas *canvas = &viewer->display.panel.canvas;
     double w = viewer->request.width, h = viewer->request.height;
     if (width < 1 || height < 1)
         return true;
@@ -36,7 +36,7 @@ bool viewer_resize(struct viewer *viewer, int width, int height, double density)
                                      .shown_height = fmax(1, floor(h * fit + 0.5))};
     layout->left = floor((width - layout->shown_width) / 2);
     layout->top = floor((height - layout->shown_height) / 2);
-    viewer->over_dirty = true;
+    viewer->display.hud_dirty = true;
     (void)snprintf(viewer->note, sizeof viewer->note, "%.60s: window of %dx%d pixels, density %g, letters of %d",
                    viewer->request.file, width, height, density, canvas->scale);
     return true;
@@ -46,11 +46,11 @@ bool viewer_resize(struct viewer *viewer, int width, int height, double density)
 
 static void tone_pixel(const struct viewer *viewer, const struct tone *tone, size_t pixel) {
     float rgb[3];
-    memcpy(rgb, viewer->light + 3 * pixel, sizeof rgb);
-    if (viewer->has_lines)
-        overlay_ink(viewer->lines[pixel], rgb);
+    memcpy(rgb, viewer->display.light + 3 * pixel, sizeof rgb);
+    if (viewer->overlay.has_lines)
+        overlay_ink(viewer->overlay.lines[pixel], rgb);
     for (size_t c = 0; c < 3; c++)
-        viewer->image[3 * pixel + c] = png_write_byte(tone_apply(tone, (double)rgb[c]));
+        viewer->display.image[3 * pixel + c] = png_write_byte(tone_apply(tone, (double)rgb[c]));
 }
 
 static struct tone tone_of(const struct viewer *viewer) {
@@ -67,30 +67,30 @@ void viewer_redraw(struct viewer *viewer) {
     struct tone tone = tone_of(viewer);
     for (size_t i = 0; i < (size_t)viewer->request.width * viewer->request.height; i++)
         tone_pixel(viewer, &tone, i);
-    viewer->dirty = true;
+    viewer->display.dirty = true;
 }
 
 /* One pixel of the film is a square of the canvas. */
 static void draw_pixel(struct viewer *viewer, const struct tone *tone, uint32_t x, uint32_t y, bool red) {
     static const uint8_t mark[3] = {255, 0, 0};
     const struct picture_request *request = &viewer->request;
-    uint32_t divide = viewer->view.divide;
-    const float *colour = viewer->film.pixels[(size_t)y * viewer->film.width + x].rgb;
+    uint32_t divide = viewer->pass.view.divide;
+    const float *colour = viewer->pass.film.pixels[(size_t)y * viewer->pass.film.width + x].rgb;
     size_t first = 0;
     bool begun = false;
     for (uint32_t v = y * divide; v < (y + 1) * divide && v < request->height; v++) {
         for (uint32_t u = x * divide; u < (x + 1) * divide && u < request->width; u++) {
             size_t pixel = (size_t)v * request->width + u;
             if (red) {
-                memcpy(viewer->image + 3 * pixel, mark, 3);
+                memcpy(viewer->display.image + 3 * pixel, mark, 3);
                 continue;
             }
-            memcpy(viewer->light + 3 * pixel, colour, 3 * sizeof *colour);
-            bool lined = viewer->has_lines && viewer->lines[pixel][3] < 1;
+            memcpy(viewer->display.light + 3 * pixel, colour, 3 * sizeof *colour);
+            bool lined = viewer->overlay.has_lines && viewer->overlay.lines[pixel][3] < 1;
             if (!begun || lined)
                 tone_pixel(viewer, tone, pixel);
             else
-                memcpy(viewer->image + 3 * pixel, viewer->image + 3 * first, 3);
+                memcpy(viewer->display.image + 3 * pixel, viewer->display.image + 3 * first, 3);
             first = lined || begun ? first : pixel;
             begun = begun || !lined;
         }
@@ -99,12 +99,12 @@ static void draw_pixel(struct viewer *viewer, const struct tone *tone, uint32_t 
 
 /* Tiles that are finished, and in those under way the pixels that are being sampled again, in red. */
 void viewer_draw_tiles(struct viewer *viewer) {
-    const struct film *film = &viewer->film;
+    const struct film *film = &viewer->pass.film;
     struct tone tone = tone_of(viewer);
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
         uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_acquire);
-        bool done = state == FILM_TILE_DONE, under_way = state == FILM_TILE_TAKEN && !viewer->view.plain;
-        if (viewer->drawn[tile] || (!done && !under_way))
+        bool done = state == FILM_TILE_DONE, under_way = state == FILM_TILE_TAKEN && !viewer->pass.view.plain;
+        if (viewer->display.drawn[tile] || (!done && !under_way))
             continue;
         struct film_rectangle r = film_tile_rectangle(film, tile);
         for (uint32_t y = r.y0 - film->y0; y < r.y1 - film->y0; y++) {
@@ -114,8 +114,8 @@ void viewer_draw_tiles(struct viewer *viewer) {
                     draw_pixel(viewer, &tone, x, y, red && !done);
             }
         }
-        viewer->drawn[tile] = done;
-        viewer->dirty = true;
+        viewer->display.drawn[tile] = done;
+        viewer->display.dirty = true;
     }
 }
 
@@ -134,31 +134,31 @@ static uint32_t building_step(const struct viewer *viewer) {
 /* The picture itself by its work, with the time left once it is known (render/outlook.h); coarse ones by their tiles.
  */
 static void describe_pass(const struct viewer *viewer, struct figures *figures, double now) {
-    const struct outlook *outlook = viewer->control && !viewer->view.plain ? &viewer->control->outlook : NULL;
+    const struct outlook *outlook = viewer->control && !viewer->pass.view.plain ? &viewer->control->outlook : NULL;
     double share = outlook ? outlook_share(outlook) : -1, left = outlook ? outlook_left(outlook, now) : -1;
     char time[48];
     figures->share = share >= 0 ? share : figures->share;
     text_duration(left > 0 ? left : 0, time, sizeof time);
     (void)snprintf(figures->state, sizeof figures->state, left > 0 ? "%.0f %%%s, %s left" : "%.0f %%%s",
-                   100 * figures->share, viewer->view.plain ? " (coarse)" : "", time);
+                   100 * figures->share, viewer->pass.view.plain ? " (coarse)" : "", time);
 }
 
 static void describe_state(const struct viewer *viewer, struct figures *figures, double now) {
     uint32_t step = building_step(viewer);
-    uint32_t done = viewer->block ? film_tiles_in(&viewer->film, FILM_TILE_DONE) : 0;
-    uint32_t count = viewer->block ? film_tile_count(&viewer->film) : 0;
-    figures->share = count > 0 ? (double)done / count : viewer->complete ? 1 : 0;
-    if (viewer->halted && viewer->block) {
-        (void)snprintf(figures->state, sizeof figures->state, viewer->unbuilt ? "stopped building" : "stopped, %.0f %%",
-                       100 * figures->share);
+    uint32_t done = viewer->block ? film_tiles_in(&viewer->pass.film, FILM_TILE_DONE) : 0;
+    uint32_t count = viewer->block ? film_tile_count(&viewer->pass.film) : 0;
+    figures->share = count > 0 ? (double)done / count : viewer->pass.result == RESULT_COMPLETE ? 1 : 0;
+    if (viewer->pass.halted && viewer->block) {
+        (void)snprintf(figures->state, sizeof figures->state,
+                       viewer->pass.unbuilt ? "stopped building" : "stopped, %.0f %%", 100 * figures->share);
     } else if (step > 0) {
         figures->share = 0.001 * atomic_load_explicit(&viewer->control->build_done, memory_order_relaxed);
         (void)snprintf(figures->state, sizeof figures->state, "building, step %u: %.0f %%", step, 100 * figures->share);
     } else if (!viewer->block) {
         (void)snprintf(figures->state, sizeof figures->state, "waiting for a change");
-    } else if (viewer->report.threads == 0 && done == 0) {
+    } else if (viewer->pass.report.threads == 0 && done == 0) {
         (void)snprintf(figures->state, sizeof figures->state, "building");
-    } else if (viewer->complete) {
+    } else if (viewer->pass.result == RESULT_COMPLETE) {
         (void)snprintf(figures->state, sizeof figures->state, viewer_is_idle(viewer) ? "ready" : "working");
     } else {
         describe_pass(viewer, figures, now);
@@ -166,7 +166,7 @@ static void describe_state(const struct viewer *viewer, struct figures *figures,
 }
 
 static void compute_figures(const struct viewer *viewer, struct figures *figures, double now) {
-    const struct picture_report *report = &viewer->report;
+    const struct picture_report *report = &viewer->pass.report;
     const struct render_statistics *rays = &report->rays;
     double seconds = rays->render_seconds;
     double traced = (double)rays->camera_rays + (double)rays->reflected_rays + (double)rays->refracted_rays +
@@ -189,46 +189,46 @@ static void set_title(struct viewer *viewer, const struct figures *figures) {
     char title[1024];
     (void)snprintf(title, sizeof title, "%.200s  %s  %s  %s  %s  %s  %s%s", viewer->request.file, figures->size,
                    figures->state, figures->rays, figures->triangles, figures->voxels, figures->frames,
-                   viewer->grabbed ? "  (Esc leaves)" : "");
+                   viewer->input.grabbed ? "  (Esc leaves)" : "");
     viewer->driver->title(viewer->driver->context, viewer->message[0] != '\0' ? viewer->message : title);
 }
 
 void viewer_show(struct viewer *viewer, double now) {
     const struct window_driver *driver = viewer->driver;
-    bool due = now - viewer->figures_at >= figures_pause;
-    if (!viewer->panel.canvas.rgba ||
-        (!due && !((viewer->dirty || viewer->over_dirty) && now - viewer->shown >= frame_pause)))
+    bool due = now - viewer->display.figures_at >= figures_pause;
+    if (!viewer->display.panel.canvas.rgba || (!due && !((viewer->display.dirty || viewer->display.hud_dirty) &&
+                                                         now - viewer->display.shown_at >= frame_pause)))
         return;
-    bool over = due || viewer->over_dirty;
+    bool over = due || viewer->display.hud_dirty;
     if (over) {
         struct figures figures;
-        viewer->over_dirty = false; /* what is used in the panel asks for another frame */
+        viewer->display.hud_dirty = false; /* what is used in the panel asks for another frame */
         compute_figures(viewer, &figures, now);
         viewer_draw_hud(viewer, &figures);
         if (due)
             set_title(viewer, &figures);
-        viewer->figures_at = due ? now : viewer->figures_at;
+        viewer->display.figures_at = due ? now : viewer->display.figures_at;
     }
-    const struct window_layout *layout = &viewer->layout;
-    struct window_frame frame = {.picture = viewer->image,
+    const struct window_layout *layout = &viewer->display.layout;
+    struct window_frame frame = {.picture = viewer->display.image,
                                  .width = viewer->request.width,
                                  .height = viewer->request.height,
-                                 .picture_changed = viewer->dirty,
+                                 .picture_changed = viewer->display.dirty,
                                  .left = (int)layout->left,
                                  .top = (int)layout->top,
                                  .shown_width = (int)layout->shown_width,
                                  .shown_height = (int)layout->shown_height,
-                                 .overlay = viewer->panel.canvas.rgba,
+                                 .overlay = viewer->display.panel.canvas.rgba,
                                  .window_width = (uint32_t)layout->width,
                                  .window_height = (uint32_t)layout->height,
                                  .overlay_changed = over};
     driver->show(driver->context, &frame);
     /* The picture that is on the screen now, coarse as it may be, is of the world that was built. */
-    if (viewer->built > 0 && viewer->report.threads > 0) {
+    if (viewer->built > 0 && viewer->pass.report.threads > 0) {
         (void)snprintf(viewer->note, sizeof viewer->note, "%.100s: on the screen %.1f ms after its world was built",
                        viewer->request.file, 1000 * (progress_clock() - viewer->built));
         viewer->built = 0;
     }
-    viewer->shown = now;
-    viewer->dirty = false;
+    viewer->display.shown_at = now;
+    viewer->display.dirty = false;
 }

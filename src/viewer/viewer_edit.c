@@ -19,13 +19,13 @@ bool viewer_camera_frame(const struct viewer *viewer, struct camera_frame *frame
     char warning[256];
     settings.lens = viewer->request.lens;
     settings.lens.aperture = 0;
-    return camera_prepare(&viewer->view.camera, &settings, viewer->request.full_width, viewer->request.full_height,
+    return camera_prepare(&viewer->pass.view.camera, &settings, viewer->request.full_width, viewer->request.full_height,
                           frame, warning, &ignored);
 }
 
 /* Pixels of the window for one of the picture. */
 static double zoom(const struct viewer *viewer) {
-    return viewer->layout.shown_width / viewer->request.width;
+    return viewer->display.layout.shown_width / viewer->request.width;
 }
 
 bool viewer_project(const struct viewer *viewer, const struct camera_frame *frame, struct vec3 point, double *x,
@@ -33,39 +33,40 @@ bool viewer_project(const struct viewer *viewer, const struct camera_frame *fram
     double u, v;
     if (!camera_project(frame, point, &u, &v))
         return false;
-    *x = viewer->layout.left + (u - viewer->request.x0) * zoom(viewer);
-    *y = viewer->layout.top + (v - viewer->request.y0) * zoom(viewer);
+    *x = viewer->display.layout.left + (u - viewer->request.x0) * zoom(viewer);
+    *y = viewer->display.layout.top + (v - viewer->request.y0) * zoom(viewer);
     return true;
 }
 
 /* Making changes. */
 
 void viewer_make_edit(struct viewer *viewer, const struct change *change, bool present, bool join) {
-    if (!edits_make(&viewer->edits, change, present, join) || !change_list_set(&viewer->pending, change, true))
+    if (!edits_make(&viewer->edit.steps, change, present, join) ||
+        !change_list_set(&viewer->edit.pending, change, true))
         viewer_show_message(viewer, "gray: there is no room for more changes");
     viewer_halt(viewer, false);
-    viewer->over_dirty = true;
+    viewer->display.hud_dirty = true;
 }
 
 void viewer_undo(struct viewer *viewer, bool again) {
     struct change target;
-    bool did = again ? edits_redo(&viewer->edits, &target) : edits_undo(&viewer->edits, &target);
-    viewer->joins = false;
+    bool did = again ? edits_redo(&viewer->edit.steps, &target) : edits_undo(&viewer->edit.steps, &target);
+    viewer->edit.joins = false;
     if (!did)
         return;
-    (void)change_list_set(&viewer->pending, &target, true);
+    (void)change_list_set(&viewer->edit.pending, &target, true);
     viewer_halt(viewer, false);
     /* What is not there any more cannot be selected. */
     bool gone = target.kind == CHANGE_OWN || target.kind == CHANGE_ADD || target.kind == CHANGE_GONE ||
                 target.kind == CHANGE_ADD_LIGHT || target.kind == CHANGE_DARK;
     if (gone)
-        viewer->selection.kind = SELECTED_NOTHING;
-    viewer->over_dirty = true;
+        viewer->edit.selection.kind = SELECTED_NOTHING;
+    viewer->display.hud_dirty = true;
 }
 
 void viewer_resend_edits(struct viewer *viewer) {
-    for (uint32_t i = 0; i < viewer->edits.now.count; i++)
-        (void)change_list_set(&viewer->pending, &viewer->edits.now.items[i], true);
+    for (uint32_t i = 0; i < viewer->edit.steps.now.count; i++)
+        (void)change_list_set(&viewer->edit.pending, &viewer->edit.steps.now.items[i], true);
 }
 
 static struct vec3 three(const double *numbers) {
@@ -74,10 +75,10 @@ static struct vec3 three(const double *numbers) {
 
 /* The change of one kind of what is selected as it holds now, or one that changes nothing. */
 static struct change node_change(const struct viewer *viewer, enum change_kind kind) {
-    const struct picked *picked = &viewer->selection.picked;
+    const struct picked *picked = &viewer->edit.selection.picked;
     struct change change = {.kind = kind, .serial = picked->serial};
     (void)snprintf(change.name, sizeof change.name, "%s", picked->name);
-    const struct change *now = change_list_find(&viewer->edits.now, &change);
+    const struct change *now = change_list_find(&viewer->edit.steps.now, &change);
     const struct affine none = affine_identity();
     if (now)
         return *now;
@@ -95,7 +96,7 @@ static bool map_of(const struct change *change, struct transform *out) {
 /* The same map, told in the space that the node stands in. False: that space is flat. */
 static bool map_to_parent(const struct viewer *viewer, const struct transform *in_world, struct transform *out) {
     struct transform world_from_parent;
-    if (!transform_from_affine(&viewer->selection.picked.world_from_parent, &world_from_parent))
+    if (!transform_from_affine(&viewer->edit.selection.picked.world_from_parent, &world_from_parent))
         return false;
     struct transform parent_from_world = transform_invert(&world_from_parent);
     struct transform half = transform_compose(in_world, &world_from_parent);
@@ -105,8 +106,8 @@ static bool map_to_parent(const struct viewer *viewer, const struct transform *i
 
 struct vec3 viewer_moved_point(const struct viewer *viewer, struct vec3 point) {
     struct change change = node_change(viewer, CHANGE_PLACE);
-    struct transform now, parent, then_back = transform_invert(&viewer->selection.placed);
-    if (!map_of(&change, &now) || !transform_from_affine(&viewer->selection.picked.world_from_parent, &parent))
+    struct transform now, parent, then_back = transform_invert(&viewer->edit.selection.placed);
+    if (!map_of(&change, &now) || !transform_from_affine(&viewer->edit.selection.picked.world_from_parent, &parent))
         return point;
     struct vec3 p = affine_point(&parent.inverse, point);
     p = affine_point(&now.forward, affine_point(&then_back.forward, p));
@@ -122,13 +123,13 @@ static void apply_in_world(struct viewer *viewer, const struct transform *in_wor
     if (!transform_from_affine(&after.forward, &checked)) /* made so small that it has no inverse */
         return;
     memcpy(change.numbers, after.forward.m, sizeof after.forward.m);
-    viewer_make_edit(viewer, &change, true, viewer->joins);
-    viewer->joins = true;
+    viewer_make_edit(viewer, &change, true, viewer->edit.joins);
+    viewer->edit.joins = true;
 }
 
 /* The middle of the box, or where it was hit. */
 static struct vec3 pivot(const struct viewer *viewer) {
-    const struct picked *picked = &viewer->selection.picked;
+    const struct picked *picked = &viewer->edit.selection.picked;
     struct vec3 sum = {0, 0, 0};
     for (int i = 0; i < 8; i++)
         sum = vec3_add_scaled(sum, picked->corners[i], 0.125);
@@ -137,15 +138,15 @@ static struct vec3 pivot(const struct viewer *viewer) {
 
 static void move_by(struct viewer *viewer, struct vec3 route) {
     struct transform map = transform_translate(route);
-    if (viewer->selection.kind == SELECTED_NODE)
+    if (viewer->edit.selection.kind == SELECTED_NODE)
         apply_in_world(viewer, &map);
     else
         viewer_light_move(viewer, route);
 }
 
 static struct vec3 selection_position(const struct viewer *viewer) {
-    const struct light_info *light = viewer_light(viewer, viewer->selection.light);
-    if (viewer->selection.kind == SELECTED_LIGHT)
+    const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
+    if (viewer->edit.selection.kind == SELECTED_LIGHT)
         return light && light->placed ? light->position : viewer->fly_camera.centre;
     return pivot(viewer);
 }
@@ -159,30 +160,30 @@ static struct transform about(struct vec3 point, const struct transform *linear)
 
 void viewer_drag_selection(struct viewer *viewer, double dx, double dy) {
     struct camera_frame frame;
-    if (viewer->selection.kind == SELECTED_NOTHING || !viewer_camera_frame(viewer, &frame))
+    if (viewer->edit.selection.kind == SELECTED_NOTHING || !viewer_camera_frame(viewer, &frame))
         return;
     struct vec3 at = selection_position(viewer);
     double depth = vec3_dot(vec3_sub(at, frame.eye), frame.forward), pixel = vec3_length(frame.right) / zoom(viewer);
     if (viewer->request.lens.projection != PROJECTION_ORTHOGRAPHIC)
         pixel *= fabs(depth);
-    if (viewer->tool == TOOL_MOVE) {
+    if (viewer->edit.tool == TOOL_MOVE) {
         struct vec3 route = vec3_scale(frame.unit_right, dx * pixel);
         move_by(viewer, vec3_add_scaled(route, frame.unit_down, dy * pixel));
         return;
     }
     struct transform map;
-    if (viewer->tool == TOOL_TURN) {
+    if (viewer->edit.tool == TOOL_TURN) {
         /* As a ball under the mouse: about the axis in the film's plane that is across the way. */
         struct vec3 axis = vec3_add_scaled(vec3_scale(frame.unit_right, -dy), frame.unit_down, dx);
         double length = vec3_length(axis);
         if (!(length > 0))
             return;
-        map = transform_rotate_about(axis, -180 * length / viewer->layout.shown_height);
+        map = transform_rotate_about(axis, -180 * length / viewer->display.layout.shown_height);
     } else {
-        map = transform_scale(vec3_all(el_exp(-2 * dy / viewer->layout.shown_height)));
+        map = transform_scale(vec3_all(el_exp(-2 * dy / viewer->display.layout.shown_height)));
     }
-    if (viewer->selection.kind == SELECTED_LIGHT) {
-        viewer_light_turn(viewer, &map, viewer->tool == TOOL_SIZE);
+    if (viewer->edit.selection.kind == SELECTED_LIGHT) {
+        viewer_light_turn(viewer, &map, viewer->edit.tool == TOOL_SIZE);
         return;
     }
     map = about(at, &map);
@@ -191,7 +192,7 @@ void viewer_drag_selection(struct viewer *viewer, double dx, double dy) {
 
 void viewer_push_selection(struct viewer *viewer, double steps) {
     struct camera_frame frame;
-    if (viewer->selection.kind == SELECTED_NOTHING || !viewer_camera_frame(viewer, &frame))
+    if (viewer->edit.selection.kind == SELECTED_NOTHING || !viewer_camera_frame(viewer, &frame))
         return;
     struct vec3 to = vec3_sub(selection_position(viewer), frame.eye);
     move_by(viewer, vec3_scale(to, 0.05 * steps));
@@ -201,8 +202,8 @@ void viewer_push_selection(struct viewer *viewer, double steps) {
 
 /* From pixels of the window to those of the whole picture. False: beside it. */
 static bool pixel_at(const struct viewer *viewer, double x, double y, double *u, double *v) {
-    *u = floor((x - viewer->layout.left) / zoom(viewer));
-    *v = floor((y - viewer->layout.top) / zoom(viewer));
+    *u = floor((x - viewer->display.layout.left) / zoom(viewer));
+    *v = floor((y - viewer->display.layout.top) / zoom(viewer));
     bool inside = *u >= 0 && *v >= 0 && *u < viewer->request.width && *v < viewer->request.height;
     *u += viewer->request.x0;
     *v += viewer->request.y0;
@@ -211,49 +212,49 @@ static bool pixel_at(const struct viewer *viewer, double x, double y, double *u,
 
 void viewer_click(struct viewer *viewer, double x, double y, bool operand) {
     uint32_t number;
-    viewer->joins = false;
-    viewer->over_dirty = true;
-    if (!viewer->hides_overlay && !operand && viewer_near_light(viewer, x, y, &number)) {
+    viewer->edit.joins = false;
+    viewer->display.hud_dirty = true;
+    if (!viewer->display.hides_hud && !operand && viewer_near_light(viewer, x, y, &number)) {
         viewer_select_light(viewer, number);
         return;
     }
     /* The middle of the pixel: what is told is what its first ray meets. */
-    viewer->asked = (struct selection){0};
-    if (!pixel_at(viewer, x, y, &viewer->asked.x, &viewer->asked.y))
+    viewer->edit.click = (struct selection){0};
+    if (!pixel_at(viewer, x, y, &viewer->edit.click.x, &viewer->edit.click.y))
         return;
-    viewer->asked.up = operand ? -OPERANDS_BELOW : 0;
-    viewer->asked.x += 0.5;
-    viewer->asked.y += 0.5;
-    viewer->asks = true;
+    viewer->edit.click.up = operand ? -OPERANDS_BELOW : 0;
+    viewer->edit.click.x += 0.5;
+    viewer->edit.click.y += 0.5;
+    viewer->edit.click_waits = true;
 }
 
 void viewer_request_pixel_trace(struct viewer *viewer, double x, double y) {
-    viewer->wants_trace = pixel_at(viewer, x, y, &viewer->trace_x, &viewer->trace_y);
+    viewer->trace.wanted = pixel_at(viewer, x, y, &viewer->trace.x, &viewer->trace.y);
 }
 
 void viewer_select_up(struct viewer *viewer, bool down) {
-    const struct picked *picked = &viewer->selection.picked;
-    if (viewer->selection.kind != SELECTED_NODE || (down ? picked->below == 0 : picked->levels == 0))
+    const struct picked *picked = &viewer->edit.selection.picked;
+    if (viewer->edit.selection.kind != SELECTED_NODE || (down ? picked->below == 0 : picked->levels == 0))
         return;
-    viewer->asked = viewer->selection;
-    viewer->asked.up += down ? -1 : 1;
-    viewer->asks = true;
+    viewer->edit.click = viewer->edit.selection;
+    viewer->edit.click.up += down ? -1 : 1;
+    viewer->edit.click_waits = true;
 }
 
 void viewer_take_picked(struct viewer *viewer, const struct picked *picked) {
-    viewer->selection = (struct selection){.kind = picked->hit ? SELECTED_NODE : SELECTED_NOTHING,
-                                           .picked = *picked,
-                                           .placed = transform_identity(),
-                                           .x = viewer->asked.x,
-                                           .y = viewer->asked.y,
-                                           .up = picked->up < -OPERANDS_BELOW  ? -OPERANDS_BELOW
-                                                 : picked->up > OPERANDS_BELOW ? OPERANDS_BELOW
-                                                                               : picked->up};
-    viewer->joins = false;
+    viewer->edit.selection = (struct selection){.kind = picked->hit ? SELECTED_NODE : SELECTED_NOTHING,
+                                                .picked = *picked,
+                                                .placed = transform_identity(),
+                                                .x = viewer->edit.click.x,
+                                                .y = viewer->edit.click.y,
+                                                .up = picked->up < -OPERANDS_BELOW  ? -OPERANDS_BELOW
+                                                      : picked->up > OPERANDS_BELOW ? OPERANDS_BELOW
+                                                                                    : picked->up};
+    viewer->edit.joins = false;
     if (!picked->hit)
         return;
     struct change change = node_change(viewer, CHANGE_PLACE);
-    (void)map_of(&change, &viewer->selection.placed);
+    (void)map_of(&change, &viewer->edit.selection.placed);
     viewer->fly_camera.centre = picked->position;
 }
 
@@ -261,30 +262,30 @@ void viewer_take_picked(struct viewer *viewer, const struct picked *picked) {
 
 void viewer_delete_selection(struct viewer *viewer) {
     struct change change;
-    viewer->joins = false;
-    if (viewer->selection.kind == SELECTED_NOTHING)
+    viewer->edit.joins = false;
+    if (viewer->edit.selection.kind == SELECTED_NOTHING)
         return;
-    if (viewer->selection.kind == SELECTED_LIGHT) {
+    if (viewer->edit.selection.kind == SELECTED_LIGHT) {
         viewer_light_delete(viewer);
     } else {
         change = node_change(viewer, CHANGE_GONE);
         viewer_make_edit(viewer, &change, true, false);
     }
-    viewer->selection.kind = SELECTED_NOTHING;
+    viewer->edit.selection.kind = SELECTED_NOTHING;
 }
 
 static uint32_t count_of(const struct viewer *viewer, enum change_kind kind) {
     uint32_t count = 0;
-    for (uint32_t i = 0; i < viewer->edits.now.count; i++)
-        count += viewer->edits.now.items[i].kind == kind;
+    for (uint32_t i = 0; i < viewer->edit.steps.now.count; i++)
+        count += viewer->edit.steps.now.items[i].kind == kind;
     return count;
 }
 
 /* Where new things go: where somebody clicked last, or before the camera. */
 struct vec3 viewer_new_position(const struct viewer *viewer) {
-    if (viewer->selection.kind == SELECTED_NODE)
-        return viewer_moved_point(viewer, viewer->selection.picked.position);
-    struct vec3 eye = viewer->view.camera.eye, ahead = vec3_normalize(viewer->view.camera.view);
+    if (viewer->edit.selection.kind == SELECTED_NODE)
+        return viewer_moved_point(viewer, viewer->edit.selection.picked.position);
+    struct vec3 eye = viewer->pass.view.camera.eye, ahead = vec3_normalize(viewer->pass.view.camera.view);
     return vec3_add_scaled(eye, ahead, vec3_length(vec3_sub(viewer->fly_camera.centre, eye)));
 }
 
@@ -296,7 +297,7 @@ static struct picked new_picked(const struct viewer *viewer, const struct change
                             .parent_serial = change->serial,
                             .levels = 1,
                             .material_serial = UINT32_MAX - change->number,
-                            .distance = vec3_length(vec3_sub(layout, viewer->view.camera.eye)),
+                            .distance = vec3_length(vec3_sub(layout, viewer->pass.view.camera.eye)),
                             .position = layout,
                             .has_box = true,
                             .world_from_parent = viewer->scene.world_from_root};
@@ -315,14 +316,14 @@ static struct picked new_picked(const struct viewer *viewer, const struct change
 }
 
 static void select_new(struct viewer *viewer, const struct picked *picked) {
-    viewer->selection = (struct selection){.kind = SELECTED_NODE, .picked = *picked};
-    viewer->selection.placed = transform_identity();
-    viewer->joins = false;
+    viewer->edit.selection = (struct selection){.kind = SELECTED_NODE, .picked = *picked};
+    viewer->edit.selection.placed = transform_identity();
+    viewer->edit.joins = false;
 }
 
 static void add_copy(struct viewer *viewer) {
-    struct picked picked = viewer->selection.picked;
-    if (viewer->selection.kind != SELECTED_NODE || picked.levels == 0)
+    struct picked picked = viewer->edit.selection.picked;
+    if (viewer->edit.selection.kind != SELECTED_NODE || picked.levels == 0)
         return;
     struct change change = {.kind = CHANGE_ADD,
                             .serial = picked.parent_serial,
@@ -337,25 +338,25 @@ static void add_copy(struct viewer *viewer) {
     pick_words(picked.name, added_kind_name(ADDED_COPY));
     viewer_make_edit(viewer, &change, true, false);
     select_new(viewer, &picked);
-    viewer->tool = TOOL_MOVE;
+    viewer->edit.tool = TOOL_MOVE;
     /* Beside the other one, by its own width. */
     double width = picked.has_box ? vec3_length(vec3_sub(picked.corners[7], picked.corners[0])) / 2 : 1;
     struct camera_frame frame;
     if (viewer_camera_frame(viewer, &frame))
         move_by(viewer, vec3_scale(frame.unit_right, width));
-    viewer->joins = false;
+    viewer->edit.joins = false;
 }
 
 void viewer_add_node(struct viewer *viewer, enum added_kind kind) {
     if (kind == ADDED_COPY) {
-        if (viewer->selection.kind == SELECTED_LIGHT)
+        if (viewer->edit.selection.kind == SELECTED_LIGHT)
             viewer_copy_light(viewer);
         else
             add_copy(viewer);
         return;
     }
     struct vec3 layout = viewer_new_position(viewer);
-    double size = 0.1 * vec3_length(vec3_sub(layout, viewer->view.camera.eye));
+    double size = 0.1 * vec3_length(vec3_sub(layout, viewer->pass.view.camera.eye));
     struct change change = {.kind = CHANGE_ADD,
                             .serial = viewer->scene.root,
                             .number = viewer->scene.added + count_of(viewer, CHANGE_ADD),
@@ -377,16 +378,16 @@ void viewer_add_node(struct viewer *viewer, enum added_kind kind) {
     struct transform move = transform_translate(vec3_sub(layout, picked.position));
     map = transform_compose(&move, &map);
     apply_in_world(viewer, &map);
-    viewer->joins = false;
-    viewer->tool = TOOL_MOVE;
+    viewer->edit.joins = false;
+    viewer->edit.tool = TOOL_MOVE;
 }
 
 /* Looks. */
 
 static struct change material_change(const struct viewer *viewer, enum look_part part) {
-    const struct picked *picked = &viewer->selection.picked;
+    const struct picked *picked = &viewer->edit.selection.picked;
     struct change change = {.kind = CHANGE_MATERIAL, .serial = picked->material_serial, .part = part};
-    const struct change *now = change_list_find(&viewer->edits.now, &change);
+    const struct change *now = change_list_find(&viewer->edit.steps.now, &change);
     if (!now)
         memcpy(change.numbers, picked->look[part], sizeof picked->look[part]);
     return now ? *now : change;
@@ -402,20 +403,20 @@ void viewer_set_material(struct viewer *viewer, enum look_part part, const doubl
     if (change.serial == 0)
         return;
     memcpy(change.numbers, numbers, 3 * sizeof *numbers);
-    viewer_make_edit(viewer, &change, true, viewer->joins);
-    viewer->joins = true;
+    viewer_make_edit(viewer, &change, true, viewer->edit.joins);
+    viewer->edit.joins = true;
 }
 
 /* The copy is made of the script's material; what was changed of that is changed of the copy, too. */
 void viewer_make_own_material(struct viewer *viewer) {
-    struct picked *picked = &viewer->selection.picked;
+    struct picked *picked = &viewer->edit.selection.picked;
     struct change held[LOOK_PARTS];
     int count = 0;
-    if (viewer->selection.kind != SELECTED_NODE || !picked->can_own)
+    if (viewer->edit.selection.kind != SELECTED_NODE || !picked->can_own)
         return;
     for (int part = 0; part < LOOK_PARTS; part++) {
         struct change change = material_change(viewer, (enum look_part)part);
-        if (change_list_find(&viewer->edits.now, &change))
+        if (change_list_find(&viewer->edit.steps.now, &change))
             held[count++] = change;
     }
     struct change change = {.kind = CHANGE_OWN,
@@ -430,11 +431,11 @@ void viewer_make_own_material(struct viewer *viewer) {
         viewer_make_edit(viewer, &held[i], true, false);
     }
     picked->can_own = false;
-    viewer->joins = false;
+    viewer->edit.joins = false;
 }
 
 void viewer_set_exposure(struct viewer *viewer, double stops) {
     viewer->request.exposure = stops < -100 ? -100 : stops > 100 ? 100 : stops;
     viewer_redraw(viewer);
-    viewer->over_dirty = true;
+    viewer->display.hud_dirty = true;
 }

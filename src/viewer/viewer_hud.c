@@ -12,13 +12,13 @@ static const struct canvas_colour outline = {255, 190, 60, 255}, gray = {170, 17
 /* On the picture. */
 
 static void draw_selection(struct viewer *viewer, const struct camera_frame *frame) {
-    const struct picked *picked = &viewer->selection.picked;
+    const struct picked *picked = &viewer->edit.selection.picked;
     struct vec3 corners[8];
-    if (viewer->selection.kind != SELECTED_NODE)
+    if (viewer->edit.selection.kind != SELECTED_NODE)
         return;
     double x, y;
     if (viewer_project(viewer, frame, viewer_moved_point(viewer, picked->position), &x, &y))
-        canvas_ring(&viewer->panel.canvas, x, y, 3 * viewer->panel.canvas.scale, outline);
+        canvas_ring(&viewer->display.panel.canvas, x, y, 3 * viewer->display.panel.canvas.scale, outline);
     /* Of an operand much may not be seen at all: its box shows where it is. */
     if (viewer_draw_outline(viewer, outline) && picked->solid == 0)
         return;
@@ -36,7 +36,7 @@ static void draw_selection(struct viewer *viewer, const struct camera_frame *fra
 
 /* on: by bit, which of them are drawn as chosen. */
 static int draw_buttons(struct viewer *viewer, int y, const char *const *words, int count, unsigned on, bool *used) {
-    struct panel *panel = &viewer->panel;
+    struct panel *panel = &viewer->display.panel;
     int scale = panel->canvas.scale, x = 2 * scale;
     for (int i = 0; i < count; i++) {
         int width = panel_button_width(panel, words[i]);
@@ -63,28 +63,28 @@ enum { MENU(LIST_MEMBER) };
 
 static void draw_menu(struct viewer *viewer) {
     static const char *const words[] = {MENU(LIST_WORD)};
-    struct panel *panel = &viewer->panel;
+    struct panel *panel = &viewer->display.panel;
     bool used[LIST_COUNT(MENU)] = {false};
-    unsigned on = (viewer->halted ? 1u << MENU_STOP : 0) |
-                  (viewer->overlay == OVERLAY_OF_BOXES ? 1u << MENU_BOXES : 0) |
-                  (viewer->overlay == OVERLAY_OF_GRID ? 1u << MENU_GRID : 0);
+    unsigned on = (viewer->pass.halted ? 1u << MENU_STOP : 0) |
+                  (viewer->overlay.kind == OVERLAY_OF_BOXES ? 1u << MENU_BOXES : 0) |
+                  (viewer->overlay.kind == OVERLAY_OF_GRID ? 1u << MENU_GRID : 0);
     panel_ground(panel, 0, 0, panel->canvas.width, 15 * panel->canvas.scale);
     (void)draw_buttons(viewer, 2 * panel->canvas.scale, words, LIST_COUNT(MENU), on, used);
     if (used[MENU_RENDER])
         viewer_render(viewer);
     viewer->quit = viewer->quit || used[MENU_QUIT];
     if (used[MENU_STOP])
-        viewer_halt(viewer, !viewer->halted);
+        viewer_halt(viewer, !viewer->pass.halted);
     if (used[MENU_SAVE_PICTURE])
         viewer->action = VIEWER_SAVE_IMAGE;
     else if (used[MENU_SAVE_VIEW] && viewer->block)
         viewer->action = VIEWER_SAVE_CAMERA;
     else if (used[MENU_SAVE_CHANGES])
         viewer->action = VIEWER_SAVE_EDITS;
-    viewer->hides_overlay = viewer->hides_overlay || used[MENU_HIDE];
+    viewer->display.hides_hud = viewer->display.hides_hud || used[MENU_HIDE];
     if (used[MENU_BOXES] || used[MENU_GRID])
         viewer_choose_overlay(viewer, used[MENU_BOXES] ? OVERLAY_OF_BOXES : OVERLAY_OF_GRID);
-    viewer->lists_lights = viewer->lists_lights != used[MENU_LIGHTS];
+    viewer->lights.listed = viewer->lights.listed != used[MENU_LIGHTS];
 }
 
 /* Undoing, adding, exposure: a second row. */
@@ -101,7 +101,7 @@ enum { WORK(LIST_MEMBER) };
 
 static void draw_work(struct viewer *viewer) {
     static const char *const words[] = {WORK(LIST_WORD)};
-    struct panel *panel = &viewer->panel;
+    struct panel *panel = &viewer->display.panel;
     int scale = panel->canvas.scale, y = 17 * scale, wide = 10 * CANVAS_CELL * scale;
     bool used[LIST_COUNT(WORK)] = {false};
     panel_ground(panel, 0, 15 * scale, panel->canvas.width, 15 * scale);
@@ -131,7 +131,7 @@ static void draw_work(struct viewer *viewer) {
 }
 
 static int draw_figures(struct viewer *viewer, const struct figures *figures, int top) {
-    struct panel *panel = &viewer->panel;
+    struct panel *panel = &viewer->display.panel;
     int scale = panel->canvas.scale, line = panel_line_height(panel), y = top + 2 * scale, x = 2 * scale;
     const char *const rows[] = {figures->rays, figures->triangles, figures->voxels, figures->frames};
     int count = panel->canvas.height >= 24 * line ? 4 : 0, width = 33 * CANVAS_CELL * scale;
@@ -146,16 +146,16 @@ static int draw_figures(struct viewer *viewer, const struct figures *figures, in
 
 /* The story of a pixel, from the line on that was scrolled to; after its end it begins again. */
 static void draw_story(struct viewer *viewer, int top) {
-    struct panel *panel = &viewer->panel;
+    struct panel *panel = &viewer->display.panel;
     int scale = panel->canvas.scale, line = panel_line_height(panel), y = top + 2 * scale;
-    const char *at = viewer->trace_text;
+    const char *at = viewer->trace.text;
     if (at[0] == '\0')
         return;
-    for (int i = 0; i < viewer->trace_line && *at; i++)
+    for (int i = 0; i < viewer->trace.line && *at; i++)
         at += strcspn(at, "\n") + (at[strcspn(at, "\n")] == '\n');
     if (*at == '\0') {
-        viewer->trace_line = 0;
-        at = viewer->trace_text;
+        viewer->trace.line = 0;
+        at = viewer->trace.text;
     }
     panel_ground(panel, 0, top, panel->canvas.width, panel->canvas.height - top);
     for (; *at && y + line <= panel->canvas.height; y += line) {
@@ -169,7 +169,7 @@ static void draw_story(struct viewer *viewer, int top) {
 
 /* What went wrong, broken into lines at the bottom. */
 static void draw_message(struct viewer *viewer) {
-    struct panel *panel = &viewer->panel;
+    struct panel *panel = &viewer->display.panel;
     int scale = panel->canvas.scale, line = panel_line_height(panel);
     int columns = (panel->canvas.width - 4 * scale) / (CANVAS_CELL * scale), length = (int)strlen(viewer->message);
     if (length == 0 || columns < 8)
@@ -185,10 +185,10 @@ static void draw_message(struct viewer *viewer) {
 
 void viewer_draw_hud(struct viewer *viewer, const struct figures *figures) {
     struct camera_frame frame;
-    panel_begin(&viewer->panel);
-    if (!viewer->hides_overlay) {
-        bool room = viewer->panel.canvas.height >= 24 * panel_line_height(&viewer->panel);
-        int top = (room && viewer->block ? 30 : 15) * viewer->panel.canvas.scale;
+    panel_begin(&viewer->display.panel);
+    if (!viewer->display.hides_hud) {
+        bool room = viewer->display.panel.canvas.height >= 24 * panel_line_height(&viewer->display.panel);
+        int top = (room && viewer->block ? 30 : 15) * viewer->display.panel.canvas.scale;
         if (viewer->block && viewer_camera_frame(viewer, &frame)) {
             draw_selection(viewer, &frame);
             viewer_draw_lights(viewer, &frame);
@@ -199,10 +199,10 @@ void viewer_draw_hud(struct viewer *viewer, const struct figures *figures) {
         int below = draw_figures(viewer, figures, top);
         if (viewer->block)
             viewer_draw_selection_panel(viewer, top);
-        if (viewer->block && viewer->trace_text[0] == '\0')
-            viewer_draw_light_list(viewer, below + viewer->panel.canvas.scale);
-        draw_story(viewer, below + viewer->panel.canvas.scale);
+        if (viewer->block && viewer->trace.text[0] == '\0')
+            viewer_draw_light_list(viewer, below + viewer->display.panel.canvas.scale);
+        draw_story(viewer, below + viewer->display.panel.canvas.scale);
     }
     draw_message(viewer);
-    panel_end(&viewer->panel);
+    panel_end(&viewer->display.panel);
 }

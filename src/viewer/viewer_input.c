@@ -4,31 +4,31 @@
 #include <string.h>
 
 void viewer_change_view(struct viewer *viewer) {
-    viewer->moved = viewer->camera_moved = true;
+    viewer->pass.outdated = viewer->camera_moved = true;
     viewer_halt(viewer, false);
 }
 
 void viewer_halt(struct viewer *viewer, bool on) {
     on = on && viewer->block && !viewer_is_idle(viewer);
-    if (on == viewer->halted)
+    if (on == viewer->pass.halted)
         return;
-    viewer->halted = on;
-    viewer->halted_at = on && !viewer->waiting ? viewer->stepped : 0;
-    if (on && viewer->waiting) /* between two passes */
+    viewer->pass.halted = on;
+    viewer->pass.halted_at = on && viewer->pass.state != PASS_WAITING ? viewer->stepped : 0;
+    if (on && viewer->pass.state == PASS_WAITING) /* between two passes */
         viewer_note_stop(viewer, 0);
-    viewer->over_dirty = true;
-    viewer->figures_at = 0;
+    viewer->display.hud_dirty = true;
+    viewer->display.figures_at = 0;
 }
 
 void viewer_render(struct viewer *viewer) {
     if (!viewer->block)
         return;
-    viewer->again = viewer->moved = true;
+    viewer->pass.from_coarse = viewer->pass.outdated = true;
     viewer_halt(viewer, false);
 }
 
 static void grab(struct viewer *viewer, bool on) {
-    viewer->grabbed = on;
+    viewer->input.grabbed = on;
     memset(viewer->fly_camera.down, 0, sizeof viewer->fly_camera.down);
     viewer->driver->grab(viewer->driver->context, on);
 }
@@ -52,7 +52,7 @@ static bool take_held_key(struct viewer *viewer, int key, bool down) {
                 {'e', FLY_UP, true},
                 {'q', FLY_DOWN, true}};
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
-        if (keys[i].key == key && (viewer->grabbed || !keys[i].only_grabbed)) {
+        if (keys[i].key == key && (viewer->input.grabbed || !keys[i].only_grabbed)) {
             viewer->fly_camera.down[keys[i].fly_camera] = down;
             return true;
         }
@@ -115,8 +115,8 @@ static bool take_plain_key(struct viewer *viewer, int key) {
         viewer_choose_overlay(viewer, OVERLAY_OF_GRID);
         return true;
     case WINDOW_TAB:
-        viewer->hides_overlay = !viewer->hides_overlay;
-        viewer->over_dirty = true;
+        viewer->display.hides_hud = !viewer->display.hides_hud;
+        viewer->display.hud_dirty = true;
         return true;
     default:
         return false;
@@ -124,21 +124,21 @@ static bool take_plain_key(struct viewer *viewer, int key) {
 }
 
 static void choose_tool(struct viewer *viewer, enum edit_tool tool) {
-    viewer->tool = viewer->tool == tool ? TOOL_NONE : tool;
-    viewer->joins = false;
-    viewer->over_dirty = true;
+    viewer->edit.tool = viewer->edit.tool == tool ? TOOL_NONE : tool;
+    viewer->edit.joins = false;
+    viewer->display.hud_dirty = true;
 }
 
 /* Esc, while the mouse is free: what was chosen, and where nothing was, what is being made. */
 static void clear_selection(struct viewer *viewer) {
-    bool something =
-        viewer->selection.kind != SELECTED_NOTHING || viewer->tool != TOOL_NONE || viewer->trace_text[0] != '\0';
+    bool something = viewer->edit.selection.kind != SELECTED_NOTHING || viewer->edit.tool != TOOL_NONE ||
+                     viewer->trace.text[0] != '\0';
     if (!something)
         viewer_halt(viewer, true);
-    viewer->selection.kind = SELECTED_NOTHING;
-    viewer->tool = TOOL_NONE;
-    viewer->trace_text[0] = '\0';
-    viewer->over_dirty = true;
+    viewer->edit.selection.kind = SELECTED_NOTHING;
+    viewer->edit.tool = TOOL_NONE;
+    viewer->trace.text[0] = '\0';
+    viewer->display.hud_dirty = true;
 }
 
 /* True: it was one of those that change the scene. */
@@ -161,21 +161,21 @@ static bool take_edit_key(struct viewer *viewer, const struct window_event *even
         choose_tool(viewer, TOOL_TURN);
         return true;
     case 'p':
-        viewer_request_pixel_trace(viewer, viewer->panel.mouse_x, viewer->panel.mouse_y);
+        viewer_request_pixel_trace(viewer, viewer->display.panel.mouse_x, viewer->display.panel.mouse_y);
         return true;
     case ',':
     case '.':
         viewer_next_light(viewer, event->key == ',');
         return true;
     case 'i':
-        viewer->lists_lights = !viewer->lists_lights;
-        viewer->over_dirty = true;
+        viewer->lights.listed = !viewer->lights.listed;
+        viewer->display.hud_dirty = true;
         return true;
     case WINDOW_PAGE_DOWN:
-        if (viewer->trace_text[0] == '\0')
+        if (viewer->trace.text[0] == '\0')
             viewer_select_up(viewer, true);
-        viewer->trace_line += 10;
-        viewer->over_dirty = true;
+        viewer->trace.line += 10;
+        viewer->display.hud_dirty = true;
         return true;
     case WINDOW_DELETE:
         viewer_delete_selection(viewer);
@@ -184,7 +184,7 @@ static bool take_edit_key(struct viewer *viewer, const struct window_event *even
         viewer_select_up(viewer, false);
         return true;
     case WINDOW_ESCAPE:
-        if (viewer->grabbed)
+        if (viewer->input.grabbed)
             return false;
         clear_selection(viewer);
         return true;
@@ -204,7 +204,7 @@ static void take_key(struct viewer *viewer, const struct window_event *event) {
         viewer_render(viewer);
         return;
     case 'x':
-        viewer_halt(viewer, !viewer->halted);
+        viewer_halt(viewer, !viewer->pass.halted);
         return;
     case 'n':
         viewer->next = true;
@@ -213,7 +213,7 @@ static void take_key(struct viewer *viewer, const struct window_event *event) {
         viewer->action = VIEWER_SAVE_CAMERA;
         return;
     case WINDOW_SPACE:
-        grab(viewer, !viewer->grabbed);
+        grab(viewer, !viewer->input.grabbed);
         return;
     case WINDOW_ESCAPE:
         grab(viewer, false);
@@ -226,24 +226,25 @@ static void take_key(struct viewer *viewer, const struct window_event *event) {
 
 /* A little way is still a click. */
 static bool is_drag(struct viewer *viewer) {
-    double x = viewer->panel.mouse_x - viewer->press_x, y = viewer->panel.mouse_y - viewer->press_y;
-    double limit = 3 * viewer->layout.density;
-    viewer->dragged = viewer->dragged || x * x + y * y > limit * limit;
-    return viewer->dragged;
+    double x = viewer->display.panel.mouse_x - viewer->input.press_x,
+           y = viewer->display.panel.mouse_y - viewer->input.press_y;
+    double limit = 3 * viewer->display.layout.density;
+    viewer->input.dragged = viewer->input.dragged || x * x + y * y > limit * limit;
+    return viewer->input.dragged;
 }
 
 static void take_motion(struct viewer *viewer, const struct window_event *event) {
-    double x = event->dx / viewer->layout.shown_height, y = event->dy / viewer->layout.shown_height;
-    viewer->panel.mouse_x = event->x;
-    viewer->panel.mouse_y = event->y;
-    viewer->over_dirty = viewer->over_dirty || !viewer->grabbed;
-    if (!viewer->block || (!viewer->grabbed && !(viewer->pressed && is_drag(viewer))))
+    double x = event->dx / viewer->display.layout.shown_height, y = event->dy / viewer->display.layout.shown_height;
+    viewer->display.panel.mouse_x = event->x;
+    viewer->display.panel.mouse_y = event->y;
+    viewer->display.hud_dirty = viewer->display.hud_dirty || !viewer->input.grabbed;
+    if (!viewer->block || (!viewer->input.grabbed && !(viewer->input.pressed && is_drag(viewer))))
         return;
-    if (!viewer->grabbed && viewer->tool != TOOL_NONE && viewer->selection.kind != SELECTED_NOTHING) {
+    if (!viewer->input.grabbed && viewer->edit.tool != TOOL_NONE && viewer->edit.selection.kind != SELECTED_NOTHING) {
         viewer_drag_selection(viewer, event->dx, event->dy);
         return;
     }
-    if (viewer->grabbed)
+    if (viewer->input.grabbed)
         fly_camera_turn(&viewer->fly_camera, x, y);
     else
         fly_camera_orbit(&viewer->fly_camera, x, y);
@@ -252,30 +253,30 @@ static void take_motion(struct viewer *viewer, const struct window_event *event)
 
 static void press_picture(struct viewer *viewer, const struct window_event *event) {
     if (event->button == WINDOW_RIGHT)
-        grab(viewer, !viewer->grabbed);
-    if (event->button != WINDOW_LEFT || viewer->grabbed)
+        grab(viewer, !viewer->input.grabbed);
+    if (event->button != WINDOW_LEFT || viewer->input.grabbed)
         return;
-    viewer->pressed = true;
-    viewer->dragged = viewer->joins = false;
-    viewer->press_x = event->x;
-    viewer->press_y = event->y;
+    viewer->input.pressed = true;
+    viewer->input.dragged = viewer->edit.joins = false;
+    viewer->input.press_x = event->x;
+    viewer->input.press_y = event->y;
 }
 
 static void take_button(struct viewer *viewer, const struct window_event *event, bool down) {
-    struct panel *panel = &viewer->panel;
+    struct panel *panel = &viewer->display.panel;
     bool covered = panel_covers(panel, event->x, event->y);
-    if (!viewer->grabbed) {
+    if (!viewer->input.grabbed) {
         panel->mouse_x = event->x;
         panel->mouse_y = event->y;
     }
-    viewer->over_dirty = true;
-    if (event->button == WINDOW_LEFT && !viewer->grabbed) {
+    viewer->display.hud_dirty = true;
+    if (event->button == WINDOW_LEFT && !viewer->input.grabbed) {
         panel->down = down;
         panel->pressed = panel->pressed || (down && covered);
         panel->released = panel->released || !down;
     }
-    if (!down && event->button == WINDOW_LEFT && viewer->pressed) {
-        viewer->pressed = false;
+    if (!down && event->button == WINDOW_LEFT && viewer->input.pressed) {
+        viewer->input.pressed = false;
         if (viewer->block && !is_drag(viewer))
             viewer_click(viewer, event->x, event->y, event->control);
     }
@@ -286,7 +287,7 @@ static void take_button(struct viewer *viewer, const struct window_event *event,
 static void take_wheel(struct viewer *viewer, double steps) {
     if (!viewer->block)
         return;
-    if (viewer->tool == TOOL_MOVE && viewer->selection.kind != SELECTED_NOTHING && !viewer->grabbed) {
+    if (viewer->edit.tool == TOOL_MOVE && viewer->edit.selection.kind != SELECTED_NOTHING && !viewer->input.grabbed) {
         viewer_push_selection(viewer, steps);
         return;
     }
@@ -314,8 +315,8 @@ void viewer_take_event(struct viewer *viewer, const struct window_event *event) 
         return;
     case WINDOW_LEAVE:
         memset(viewer->fly_camera.down, 0, sizeof viewer->fly_camera.down);
-        viewer->pressed = false;
-        viewer->panel.held = 0;
+        viewer->input.pressed = false;
+        viewer->display.panel.held = 0;
         return;
     case WINDOW_SIZE:
         if (!viewer_resize(viewer, (int)event->x, (int)event->y, event->density))

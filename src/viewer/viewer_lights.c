@@ -15,40 +15,40 @@ enum { LIGHT_LIMIT = 4096 }; /* further ones are not known in the window */
 /* What is known. */
 
 static bool make_room(struct viewer *viewer, uint32_t count) {
-    if (count <= viewer->light_room)
+    if (count <= viewer->lights.room)
         return true;
-    struct light_info *more = mem_resize_array(viewer->lights, count, sizeof *more);
+    struct light_info *more = mem_resize_array(viewer->lights.items, count, sizeof *more);
     if (!more)
         return false;
-    memset(more + viewer->light_room, 0, (count - viewer->light_room) * sizeof *more);
-    viewer->lights = more;
-    viewer->light_room = count;
+    memset(more + viewer->lights.room, 0, (count - viewer->lights.room) * sizeof *more);
+    viewer->lights.items = more;
+    viewer->lights.room = count;
     return true;
 }
 
 void viewer_take_lights(struct viewer *viewer, const struct preview_reply *reply) {
     uint32_t count = reply->light_count < LIGHT_LIMIT ? reply->light_count : LIGHT_LIMIT, first = reply->first_light;
     if (!make_room(viewer, count))
-        count = viewer->light_room;
-    viewer->light_count = count;
+        count = viewer->lights.room;
+    viewer->lights.count = count;
     uint32_t figures_at = first < count ? count - first : 0;
     figures_at = figures_at < LIGHTS_PER_MESSAGE ? figures_at : LIGHTS_PER_MESSAGE;
     if (figures_at > 0)
-        memcpy(viewer->lights + first, reply->lights, figures_at * sizeof *reply->lights);
-    if (first <= viewer->lights_known && first + figures_at > viewer->lights_known)
-        viewer->lights_known = first + figures_at;
-    viewer->lights_known = viewer->lights_known < count ? viewer->lights_known : count;
-    viewer->over_dirty = true;
+        memcpy(viewer->lights.items + first, reply->lights, figures_at * sizeof *reply->lights);
+    if (first <= viewer->lights.known && first + figures_at > viewer->lights.known)
+        viewer->lights.known = first + figures_at;
+    viewer->lights.known = viewer->lights.known < count ? viewer->lights.known : count;
+    viewer->display.hud_dirty = true;
 }
 
 const struct light_info *viewer_light(const struct viewer *viewer, uint32_t number) {
-    return number >= 1 && number <= viewer->lights_known ? &viewer->lights[number - 1] : NULL;
+    return number >= 1 && number <= viewer->lights.known ? &viewer->lights.items[number - 1] : NULL;
 }
 
 static struct light_info *selected(struct viewer *viewer) {
-    uint32_t number = viewer->selection.light;
-    bool known = viewer->selection.kind == SELECTED_LIGHT && number >= 1 && number <= viewer->lights_known;
-    return known ? &viewer->lights[number - 1] : NULL;
+    uint32_t number = viewer->edit.selection.light;
+    bool known = viewer->edit.selection.kind == SELECTED_LIGHT && number >= 1 && number <= viewer->lights.known;
+    return known ? &viewer->lights.items[number - 1] : NULL;
 }
 
 static double largest(struct vec3 v) {
@@ -59,10 +59,10 @@ static double largest(struct vec3 v) {
 
 /* What is left of the picture beside the menu and the margin. */
 static bool free_part(const struct viewer *viewer, double *left, double *top, double *right, double *bottom) {
-    const struct window_layout *layout = &viewer->layout;
-    int scale = viewer->panel.canvas.scale;
+    const struct window_layout *layout = &viewer->display.layout;
+    int scale = viewer->display.panel.canvas.scale;
     double margin = MARGIN * scale,
-           menu = (viewer->panel.canvas.height >= 24 * panel_line_height(&viewer->panel) ? 30 : 15);
+           menu = (viewer->display.panel.canvas.height >= 24 * panel_line_height(&viewer->display.panel) ? 30 : 15);
     *left = fmax(layout->left, 0) + margin;
     *top = fmax(layout->top, menu * scale) + margin;
     *right = fmin(layout->left + layout->shown_width, layout->width) - margin;
@@ -104,11 +104,11 @@ bool viewer_light_mark(const struct viewer *viewer, const struct camera_frame *f
 
 bool viewer_near_light(const struct viewer *viewer, double x, double y, uint32_t *number) {
     struct camera_frame frame;
-    double best = MARKER * viewer->panel.canvas.scale, u, v;
+    double best = MARKER * viewer->display.panel.canvas.scale, u, v;
     bool found = false, seen;
     if (!viewer_camera_frame(viewer, &frame))
         return false;
-    for (uint32_t i = 1; i <= viewer->lights_known; i++) {
+    for (uint32_t i = 1; i <= viewer->lights.known; i++) {
         if (!viewer_light_mark(viewer, &frame, i, &u, &v, &seen))
             continue;
         double apart = sqrt((u - x) * (u - x) + (v - y) * (v - y));
@@ -124,17 +124,17 @@ bool viewer_near_light(const struct viewer *viewer, double x, double y, uint32_t
 /* Selecting. */
 
 void viewer_select_light(struct viewer *viewer, uint32_t number) {
-    viewer->selection = (struct selection){.kind = SELECTED_LIGHT, .light = number};
-    viewer->joins = false;
-    viewer->over_dirty = true;
-    viewer->light_colour_max = fmax(1, largest(viewer_light_colour_now(viewer)));
+    viewer->edit.selection = (struct selection){.kind = SELECTED_LIGHT, .light = number};
+    viewer->edit.joins = false;
+    viewer->display.hud_dirty = true;
+    viewer->lights.colour_max = fmax(1, largest(viewer_light_colour_now(viewer)));
 }
 
 void viewer_next_light(struct viewer *viewer, bool back) {
-    uint32_t count = viewer->lights_known, at = viewer->selection.light;
+    uint32_t count = viewer->lights.known, at = viewer->edit.selection.light;
     if (count == 0)
         return;
-    if (viewer->selection.kind != SELECTED_LIGHT || at > count)
+    if (viewer->edit.selection.kind != SELECTED_LIGHT || at > count)
         at = back ? 1 : count;
     viewer_select_light(viewer, back ? (at + count - 2) % count + 1 : at % count + 1);
 }
@@ -142,8 +142,8 @@ void viewer_next_light(struct viewer *viewer, bool back) {
 /* Changing. */
 
 static struct change light_change(const struct viewer *viewer, enum change_kind kind) {
-    struct change change = {.kind = kind, .serial = viewer->selection.light, .numbers = {0, 0, 0, 1, 1, 1}};
-    const struct change *now = change_list_find(&viewer->edits.now, &change);
+    struct change change = {.kind = kind, .serial = viewer->edit.selection.light, .numbers = {0, 0, 0, 1, 1, 1}};
+    const struct change *now = change_list_find(&viewer->edit.steps.now, &change);
     return now ? *now : change;
 }
 
@@ -158,8 +158,8 @@ static struct vec3 three(const double *numbers) {
 }
 
 static void make(struct viewer *viewer, const struct change *change) {
-    viewer_make_edit(viewer, change, true, viewer->joins);
-    viewer->joins = true;
+    viewer_make_edit(viewer, change, true, viewer->edit.joins);
+    viewer->edit.joins = true;
 }
 
 void viewer_light_move(struct viewer *viewer, struct vec3 route) {
@@ -220,7 +220,7 @@ void viewer_brighten_light(struct viewer *viewer, double stops) {
 }
 
 struct vec3 viewer_light_colour_now(const struct viewer *viewer) {
-    const struct light_info *light = viewer_light(viewer, viewer->selection.light);
+    const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
     struct change change = light_change(viewer, CHANGE_LIGHT);
     if (change.colours)
         return three(change.numbers + COLOUR_AT);
@@ -238,38 +238,38 @@ void viewer_light_colour(struct viewer *viewer, struct vec3 colour) {
 }
 
 void viewer_light_delete(struct viewer *viewer) {
-    struct change change = {.kind = CHANGE_DARK, .serial = viewer->selection.light};
+    struct change change = {.kind = CHANGE_DARK, .serial = viewer->edit.selection.light};
     viewer_make_edit(viewer, &change, true, false);
 }
 
 /* Whether there is a number for one more. */
 static bool room_for_one(struct viewer *viewer) {
-    if (viewer->light_count >= LIGHT_LIMIT)
+    if (viewer->lights.count >= LIGHT_LIMIT)
         viewer_show_message(viewer, "gray: the window knows no more lights than 4,096");
-    return viewer->light_count < LIGHT_LIMIT && viewer->light_count == viewer->lights_known;
+    return viewer->lights.count < LIGHT_LIMIT && viewer->lights.count == viewer->lights.known;
 }
 
 /* The next one that is added; what it is told to be holds until the child says the same. */
 static struct change new_light(struct viewer *viewer) {
     uint32_t count = 0;
-    for (uint32_t i = 0; i < viewer->edits.now.count; i++)
-        count += viewer->edits.now.items[i].kind == CHANGE_ADD_LIGHT;
+    for (uint32_t i = 0; i < viewer->edit.steps.now.count; i++)
+        count += viewer->edit.steps.now.items[i].kind == CHANGE_ADD_LIGHT;
     return (struct change){.kind = CHANGE_ADD_LIGHT, .number = count};
 }
 
 static void select_new(struct viewer *viewer, const struct light_info *light) {
-    if (make_room(viewer, viewer->light_count + 1)) {
-        viewer->lights[viewer->light_count] = *light;
-        viewer->lights_known += viewer->lights_known == viewer->light_count;
-        viewer->light_count++;
+    if (make_room(viewer, viewer->lights.count + 1)) {
+        viewer->lights.items[viewer->lights.count] = *light;
+        viewer->lights.known += viewer->lights.known == viewer->lights.count;
+        viewer->lights.count++;
     }
-    viewer_select_light(viewer, viewer->light_count);
-    viewer->tool = light->moves ? TOOL_MOVE : light->turns ? TOOL_TURN : TOOL_NONE;
+    viewer_select_light(viewer, viewer->lights.count);
+    viewer->edit.tool = light->moves ? TOOL_MOVE : light->turns ? TOOL_TURN : TOOL_NONE;
 }
 
 void viewer_add_light(struct viewer *viewer) {
     struct change change = new_light(viewer);
-    struct vec3 layout = viewer_new_position(viewer), eye = viewer->view.camera.eye;
+    struct vec3 layout = viewer_new_position(viewer), eye = viewer->pass.view.camera.eye;
     if (!room_for_one(viewer))
         return;
     put(change.numbers, vec3_add_scaled(layout, vec3_sub(eye, layout), 0.5));
@@ -286,7 +286,7 @@ void viewer_add_light(struct viewer *viewer) {
 void viewer_copy_light(struct viewer *viewer) {
     const struct light_info *light = selected(viewer);
     struct change change = new_light(viewer), held = light_change(viewer, CHANGE_LIGHT);
-    bool has = change_list_find(&viewer->edits.now, &held) != NULL;
+    bool has = change_list_find(&viewer->edit.steps.now, &held) != NULL;
     struct camera_frame frame;
     if (!light || !room_for_one(viewer) || !viewer_camera_frame(viewer, &frame))
         return;
@@ -294,11 +294,11 @@ void viewer_copy_light(struct viewer *viewer) {
     struct vec3 route = vec3_scale(frame.unit_right, 0.1 * vec3_length(vec3_sub(light->position, frame.eye)));
     if (!light->moves)
         route = vec3_all(0);
-    change.source = viewer->selection.light;
+    change.source = viewer->edit.selection.light;
     put(change.numbers, route);
     put(change.numbers + 3, vec3_all(1));
     viewer_make_edit(viewer, &change, true, false);
-    held.serial = viewer->light_count + 1;
+    held.serial = viewer->lights.count + 1;
     if (has)
         viewer_make_edit(viewer, &held, true, false);
     copy.position = vec3_add(copy.position, route);

@@ -23,7 +23,7 @@ void viewer_draw_edge(struct viewer *viewer, const struct camera_frame *frame, s
     for (int i = 0; i <= PIECES; i++) {
         bool has = viewer_project(viewer, frame, vec3_add_scaled(a, vec3_sub(b, a), (double)i / PIECES), &x1, &y1);
         if (has && had)
-            canvas_line(&viewer->panel.canvas, x0, y0, x1, y1, colour);
+            canvas_line(&viewer->display.panel.canvas, x0, y0, x1, y1, colour);
         had = has;
         x0 = x1;
         y0 = y1;
@@ -81,10 +81,10 @@ static void draw_form(struct viewer *viewer, const struct camera_frame *frame, c
 }
 
 void viewer_draw_lights(struct viewer *viewer, const struct camera_frame *frame) {
-    const struct canvas *canvas = &viewer->panel.canvas;
+    const struct canvas *canvas = &viewer->display.panel.canvas;
     double x, y, r = 4 * canvas->scale;
-    for (uint32_t i = 1; i <= viewer->lights_known; i++) {
-        bool chosen = viewer->selection.kind == SELECTED_LIGHT && viewer->selection.light == i, seen;
+    for (uint32_t i = 1; i <= viewer->lights.known; i++) {
+        bool chosen = viewer->edit.selection.kind == SELECTED_LIGHT && viewer->edit.selection.light == i, seen;
         const struct light_info *light = viewer_light(viewer, i);
         if (!viewer_light_mark(viewer, frame, i, &x, &y, &seen))
             continue;
@@ -99,35 +99,35 @@ void viewer_draw_lights(struct viewer *viewer, const struct camera_frame *frame)
             canvas_line(canvas, x + u * r, y + v * r, x + 1.6 * u * r, y + 1.6 * v * r, colour);
         }
     }
-    if (viewer->selection.kind == SELECTED_LIGHT && viewer_light(viewer, viewer->selection.light))
-        draw_form(viewer, frame, viewer_light(viewer, viewer->selection.light));
+    if (viewer->edit.selection.kind == SELECTED_LIGHT && viewer_light(viewer, viewer->edit.selection.light))
+        draw_form(viewer, frame, viewer_light(viewer, viewer->edit.selection.light));
 }
 
 /* The list of the lights. */
 
 void viewer_draw_light_list(struct viewer *viewer, int top) {
-    struct panel *panel = &viewer->panel;
+    struct panel *panel = &viewer->display.panel;
     int scale = panel->canvas.scale, step = panel_line_height(panel) + 3 * scale, width = 24 * CANVAS_CELL * scale;
     int rows = (panel->canvas.height - top - 2 * step) / step, y = top + 2 * scale;
-    if (!viewer->lists_lights || rows < 2 || 2 * width > panel->canvas.width)
+    if (!viewer->lights.listed || rows < 2 || 2 * width > panel->canvas.width)
         return;
-    uint32_t count = viewer->lights_known, shown = (uint32_t)rows;
+    uint32_t count = viewer->lights.known, shown = (uint32_t)rows;
     bool paged = count > shown;
-    viewer->list_first = viewer->list_first < count ? viewer->list_first : 0;
-    uint32_t last = count - viewer->list_first < shown ? count : viewer->list_first + shown;
-    panel_ground(panel, 0, top, width, ((int)(last - viewer->list_first) + paged) * step + 3 * scale);
-    for (uint32_t i = viewer->list_first; i < last; i++, y += step) {
+    viewer->lights.list_first = viewer->lights.list_first < count ? viewer->lights.list_first : 0;
+    uint32_t last = count - viewer->lights.list_first < shown ? count : viewer->lights.list_first + shown;
+    panel_ground(panel, 0, top, width, ((int)(last - viewer->lights.list_first) + paged) * step + 3 * scale);
+    for (uint32_t i = viewer->lights.list_first; i < last; i++, y += step) {
         char row[64];
-        bool chosen = viewer->selection.kind == SELECTED_LIGHT && viewer->selection.light == i + 1;
-        const char *words = light_kind_name((enum light_kind)viewer->lights[i].kind);
+        bool chosen = viewer->edit.selection.kind == SELECTED_LIGHT && viewer->edit.selection.light == i + 1;
+        const char *words = light_kind_name((enum light_kind)viewer->lights.items[i].kind);
         (void)snprintf(row, sizeof row, "%u %s", i + 1, words);
         if (panel_button(panel, 2 * scale, y, row, chosen))
             viewer_select_light(viewer, i + 1);
     }
     if (paged && panel_button(panel, 2 * scale, y, "Back", false))
-        viewer->list_first = viewer->list_first > shown ? viewer->list_first - shown : 0;
+        viewer->lights.list_first = viewer->lights.list_first > shown ? viewer->lights.list_first - shown : 0;
     if (paged && panel_button(panel, 32 * scale, y, "More", false) && last < count)
-        viewer->list_first = last;
+        viewer->lights.list_first = last;
 }
 
 /* The selection. */
@@ -144,8 +144,8 @@ static void draw_text(struct viewer *viewer, struct column *column, const char *
          text += (int)strlen(text) < column->columns ? (int)strlen(text) : column->columns) {
         char row[128];
         (void)snprintf(row, sizeof row, "%.*s", column->columns, text);
-        panel_text(&viewer->panel, column->x, column->y, row);
-        column->y += panel_line_height(&viewer->panel);
+        panel_text(&viewer->display.panel, column->x, column->y, row);
+        column->y += panel_line_height(&viewer->display.panel);
     }
 }
 
@@ -167,8 +167,8 @@ enum tool_button { TOOL_BUTTONS(LIST_MEMBER) };
 
 /* Whether it can be done with what is selected. */
 static bool can_use(const struct viewer *viewer, enum tool_button button) {
-    const struct light_info *light = viewer_light(viewer, viewer->selection.light);
-    bool node = viewer->selection.kind == SELECTED_NODE;
+    const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
+    bool node = viewer->edit.selection.kind == SELECTED_NODE;
     switch (button) {
     case BUTTON_MOVE:
         return node || (light && light->moves);
@@ -179,7 +179,7 @@ static bool can_use(const struct viewer *viewer, enum tool_button button) {
     case BUTTON_UP:
         return node;
     case BUTTON_DOWN:
-        return node && viewer->selection.picked.below > 0;
+        return node && viewer->edit.selection.picked.below > 0;
     case BUTTON_COPY:
     case BUTTON_DELETE:
         break;
@@ -209,8 +209,8 @@ static void use_button(struct viewer *viewer, enum tool_button button) {
     case BUTTON_MOVE:
     case BUTTON_TURN:
     case BUTTON_SIZE:
-        viewer->tool = viewer->tool == tool_of(button) ? TOOL_NONE : tool_of(button);
-        viewer->joins = false;
+        viewer->edit.tool = viewer->edit.tool == tool_of(button) ? TOOL_NONE : tool_of(button);
+        viewer->edit.joins = false;
         return;
     case BUTTON_UP:
     case BUTTON_DOWN:
@@ -227,14 +227,14 @@ static void use_button(struct viewer *viewer, enum tool_button button) {
 
 static void draw_tools(struct viewer *viewer, struct column *column) {
     static const char *const words[] = {TOOL_BUTTONS(LIST_WORD)};
-    struct panel *panel = &viewer->panel;
+    struct panel *panel = &viewer->display.panel;
     int x = column->x;
     for (int i = 0; i < LIST_COUNT(TOOL_BUTTONS); i++) {
         enum tool_button button = (enum tool_button)i;
         enum edit_tool tool = tool_of(button);
         if (!can_use(viewer, button))
             continue;
-        bool used = panel_button(panel, x, column->y, words[i], tool != TOOL_NONE && viewer->tool == tool);
+        bool used = panel_button(panel, x, column->y, words[i], tool != TOOL_NONE && viewer->edit.tool == tool);
         x += panel_button_width(panel, words[i]) + 2 * panel->canvas.scale;
         if (used)
             use_button(viewer, button);
@@ -244,12 +244,12 @@ static void draw_tools(struct viewer *viewer, struct column *column) {
 
 /* Three sliders. */
 static bool draw_sliders(struct viewer *viewer, struct column *column, double top, struct vec3 *colour) {
-    struct panel *panel = &viewer->panel;
+    struct panel *panel = &viewer->display.panel;
     int width = column->columns * CANVAS_CELL * panel->canvas.scale;
     double parts[3] = {colour->x, colour->y, colour->z};
     bool changed = false;
     if (panel->pressed)
-        viewer->joins = false;
+        viewer->edit.joins = false;
     for (int i = 0; i < 3; i++) {
         changed = panel_slider(panel, column->x, column->y, width, 0, top, parts_of_colour[i], &parts[i]) || changed;
         column->y += panel_line_height(panel);
@@ -260,7 +260,7 @@ static bool draw_sliders(struct viewer *viewer, struct column *column, double to
 
 /* One slider for a number that is no share: its logarithm, or from 1 on. */
 static bool draw_number(struct viewer *viewer, struct column *column, enum look_part part, double *number) {
-    struct panel *panel = &viewer->panel;
+    struct panel *panel = &viewer->display.panel;
     int width = column->columns * CANVAS_CELL * panel->canvas.scale;
     double low, high, at = part == LOOK_SHININESS ? el_log2(1 + *number) : *number;
     look_part_range(part, &low, &high);
@@ -274,7 +274,7 @@ static bool draw_number(struct viewer *viewer, struct column *column, enum look_
 
 /* Rows of buttons, one for each part. */
 static void choose_part(struct viewer *viewer, struct column *column) {
-    struct panel *panel = &viewer->panel;
+    struct panel *panel = &viewer->display.panel;
     int scale = panel->canvas.scale, x = column->x, right = column->x + column->columns * CANVAS_CELL * scale;
     for (int i = 0; i < LOOK_PARTS; i++) {
         const char *name = look_part_name((enum look_part)i);
@@ -283,36 +283,36 @@ static void choose_part(struct viewer *viewer, struct column *column) {
             x = column->x;
             column->y += panel_line_height(panel) + 3 * scale;
         }
-        if (panel_button(panel, x, column->y, name, viewer->part == (enum look_part)i))
-            viewer->part = (enum look_part)i;
+        if (panel_button(panel, x, column->y, name, viewer->edit.part == (enum look_part)i))
+            viewer->edit.part = (enum look_part)i;
         x += width + 2 * scale;
     }
     column->y += panel_line_height(panel) + 4 * scale;
 }
 
 static void draw_look(struct viewer *viewer, struct column *column) {
-    struct panel *panel = &viewer->panel;
+    struct panel *panel = &viewer->display.panel;
     char row[128];
     double numbers[3];
-    if (viewer->selection.picked.material_serial != 0) {
+    if (viewer->edit.selection.picked.material_serial != 0) {
         choose_part(viewer, column);
-        viewer_material_now(viewer, viewer->part, numbers);
-        bool colour = look_part_count(viewer->part) == 3, changed;
+        viewer_material_now(viewer, viewer->edit.part, numbers);
+        bool colour = look_part_count(viewer->edit.part) == 3, changed;
         struct vec3 c = {numbers[0], numbers[1], numbers[2]};
-        double top = viewer->part == LOOK_KD || viewer->part == LOOK_KS ? 1 : 4;
+        double top = viewer->edit.part == LOOK_KD || viewer->edit.part == LOOK_KS ? 1 : 4;
         if (panel->pressed)
-            viewer->joins = false;
-        changed =
-            colour ? draw_sliders(viewer, column, top, &c) : draw_number(viewer, column, viewer->part, &numbers[0]);
+            viewer->edit.joins = false;
+        changed = colour ? draw_sliders(viewer, column, top, &c)
+                         : draw_number(viewer, column, viewer->edit.part, &numbers[0]);
         if (colour)
             numbers[0] = c.x, numbers[1] = c.y, numbers[2] = c.z;
         if (changed)
-            viewer_set_material(viewer, viewer->part, numbers);
-        (void)snprintf(row, sizeof row, colour ? "%s %.3g %.3g %.3g" : "%s %.4g", look_part_name(viewer->part),
+            viewer_set_material(viewer, viewer->edit.part, numbers);
+        (void)snprintf(row, sizeof row, colour ? "%s %.3g %.3g %.3g" : "%s %.4g", look_part_name(viewer->edit.part),
                        numbers[0], numbers[1], numbers[2]);
         draw_text(viewer, column, row);
     }
-    if (!viewer->selection.picked.can_own)
+    if (!viewer->edit.selection.picked.can_own)
         return;
     if (panel_button(panel, column->x, column->y, "A material of its own", false))
         viewer_make_own_material(viewer);
@@ -320,27 +320,27 @@ static void draw_look(struct viewer *viewer, struct column *column) {
 }
 
 static void draw_node(struct viewer *viewer, struct column *column) {
-    const struct picked *picked = &viewer->selection.picked;
+    const struct picked *picked = &viewer->edit.selection.picked;
     struct vec3 layout = viewer_moved_point(viewer, picked->position);
     char row[256];
     draw_text(viewer, column, picked->path);
     (void)snprintf(row, sizeof row, "%s, %s", picked->shape, picked->material);
     draw_text(viewer, column, row);
     draw_point(viewer, column, "at", layout);
-    (void)snprintf(row, sizeof row, "distance %.5g", vec3_length(vec3_sub(layout, viewer->view.camera.eye)));
+    (void)snprintf(row, sizeof row, "distance %.5g", vec3_length(vec3_sub(layout, viewer->pass.view.camera.eye)));
     draw_text(viewer, column, row);
     draw_tools(viewer, column);
-    if (viewer->selection.kind == SELECTED_NODE)
+    if (viewer->edit.selection.kind == SELECTED_NODE)
         draw_look(viewer, column);
 }
 
 static void draw_light(struct viewer *viewer, struct column *column) {
-    const struct light_info *light = viewer_light(viewer, viewer->selection.light);
-    struct panel *panel = &viewer->panel;
+    const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
+    struct panel *panel = &viewer->display.panel;
     char row[128];
     if (!light)
         return;
-    (void)snprintf(row, sizeof row, "light %u of %u: %s", viewer->selection.light, viewer->light_count,
+    (void)snprintf(row, sizeof row, "light %u of %u: %s", viewer->edit.selection.light, viewer->lights.count,
                    light_kind_name((enum light_kind)light->kind));
     draw_text(viewer, column, row);
     if (light->placed)
@@ -349,43 +349,44 @@ static void draw_light(struct viewer *viewer, struct column *column) {
         draw_point(viewer, column, "to", light->direction);
     draw_point(viewer, column, "colour", light->colour);
     draw_tools(viewer, column);
-    if (viewer->selection.kind != SELECTED_LIGHT)
+    if (viewer->edit.selection.kind != SELECTED_LIGHT)
         return;
     double stops = viewer_light_stops_now(viewer);
     struct vec3 colour = viewer_light_colour_now(viewer);
     if (panel->pressed)
-        viewer->joins = false;
+        viewer->edit.joins = false;
     if (panel_slider(panel, column->x, column->y, column->columns * CANVAS_CELL * panel->canvas.scale, -5, 5, bulb,
                      &stops))
         viewer_brighten_light(viewer, stops);
     column->y += panel_line_height(panel);
     (void)snprintf(row, sizeof row, "%+.2f stops", stops);
     draw_text(viewer, column, row);
-    if (draw_sliders(viewer, column, viewer->light_colour_max, &colour))
+    if (draw_sliders(viewer, column, viewer->lights.colour_max, &colour))
         viewer_light_colour(viewer, colour);
 }
 
 /* In a small window one line has to do. */
 static void draw_shortly(struct viewer *viewer) {
-    struct panel *panel = &viewer->panel;
-    const struct picked *picked = &viewer->selection.picked;
+    struct panel *panel = &viewer->display.panel;
+    const struct picked *picked = &viewer->edit.selection.picked;
     int scale = panel->canvas.scale, line = panel_line_height(panel), top = panel->canvas.height - line - 2 * scale;
     char row[256];
-    const struct light_info *light = viewer_light(viewer, viewer->selection.light);
-    if (viewer->selection.kind == SELECTED_NODE)
+    const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
+    if (viewer->edit.selection.kind == SELECTED_NODE)
         (void)snprintf(row, sizeof row, "%.60s, %s, at %.4g", picked->name, picked->shape, picked->distance);
     else
-        (void)snprintf(row, sizeof row, "light %u, %s", viewer->selection.light,
+        (void)snprintf(row, sizeof row, "light %u, %s", viewer->edit.selection.light,
                        light ? light_kind_name((enum light_kind)light->kind) : "not known yet");
     panel_ground(panel, 0, top, panel->canvas.width, line + 2 * scale);
     panel_text(panel, 2 * scale, top + 2 * scale, row);
 }
 
 void viewer_draw_selection_panel(struct viewer *viewer, int top) {
-    struct panel *panel = &viewer->panel;
+    struct panel *panel = &viewer->display.panel;
     int scale = panel->canvas.scale, columns = 38, width = (columns * CANVAS_CELL + 4) * scale;
-    int usual = 12 * panel_line_height(panel), height = viewer->panel_height > 0 ? viewer->panel_height : usual;
-    if (viewer->selection.kind == SELECTED_NOTHING)
+    int usual = 12 * panel_line_height(panel),
+        height = viewer->display.panel_height > 0 ? viewer->display.panel_height : usual;
+    if (viewer->edit.selection.kind == SELECTED_NOTHING)
         return;
     if (5 * width > 2 * panel->canvas.width || 2 * (top + usual) > panel->canvas.height) {
         draw_shortly(viewer);
@@ -393,11 +394,11 @@ void viewer_draw_selection_panel(struct viewer *viewer, int top) {
     }
     struct column column = {panel->canvas.width - width + 2 * scale, top + 2 * scale, columns};
     panel_ground(panel, panel->canvas.width - width, top, width, height);
-    if (viewer->selection.kind == SELECTED_NODE)
+    if (viewer->edit.selection.kind == SELECTED_NODE)
         draw_node(viewer, &column);
     else
         draw_light(viewer, &column);
     /* How high it must be is known now: the next frame has it right. */
-    viewer->over_dirty = viewer->over_dirty || viewer->panel_height != column.y - top;
-    viewer->panel_height = column.y - top;
+    viewer->display.hud_dirty = viewer->display.hud_dirty || viewer->display.panel_height != column.y - top;
+    viewer->display.panel_height = column.y - top;
 }

@@ -177,7 +177,7 @@ static void build(struct table *t) {
     tell_news(t, &reply);
     CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
     CHECK_EQ_INT(t->viewer.command.kind, COMMAND_PASS);
-    CHECK(t->viewer.view.divide == 16 && t->viewer.view.plain && t->viewer.view.own);
+    CHECK(t->viewer.pass.view.divide == 16 && t->viewer.pass.view.plain && t->viewer.pass.view.own);
 }
 
 static void begin(struct table *t) {
@@ -208,8 +208,8 @@ static void end(struct table *t) {
 static void finish_pass(struct table *t, double seconds, bool stopped) {
     const struct picture_report report = {.threads = 2, .bounds = {{-1, -1, -1}, {1, 1, 1}}, .stopped = stopped};
     t->now += seconds;
-    for (uint32_t tile = 0; !stopped && tile < film_tile_count(&t->viewer.film); tile++)
-        atomic_store(&t->viewer.film.tiles[tile], FILM_TILE_DONE);
+    for (uint32_t tile = 0; !stopped && tile < film_tile_count(&t->viewer.pass.film); tile++)
+        atomic_store(&t->viewer.pass.film.tiles[tile], FILM_TILE_DONE);
     tell_news(t, &(struct preview_reply){.kind = REPLY_PASS, .report = report});
 }
 
@@ -217,11 +217,11 @@ static void finish_pass(struct table *t, double seconds, bool stopped) {
 static void go_to_the_end(struct table *t) {
     finish_pass(t, 0.02, false);
     CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
-    CHECK(t->viewer.view.plain && t->viewer.view.divide == 4 && t->viewer.view.own);
+    CHECK(t->viewer.pass.view.plain && t->viewer.pass.view.divide == 4 && t->viewer.pass.view.own);
     CHECK_EQ_INT(step(t), VIEWER_NOTHING);
     finish_pass(t, 0.1, false);
     CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
-    CHECK(!t->viewer.view.plain && t->viewer.view.divide == 1 && t->viewer.view.own);
+    CHECK(!t->viewer.pass.view.plain && t->viewer.pass.view.divide == 1 && t->viewer.pass.view.own);
     finish_pass(t, 1, false);
     CHECK_EQ_INT(step(t), VIEWER_WRITE_PICTURE);
     CHECK_EQ_INT(step(t), VIEWER_NOTHING);
@@ -230,14 +230,14 @@ static void go_to_the_end(struct table *t) {
 TEST(window_shows_coarse_passes_first_and_writes_the_picture_of_the_script_once) {
     struct table t;
     begin(&t);
-    CHECK_EQ_INT(t.viewer.film.width, 7);
-    CHECK_EQ_INT(t.viewer.film.height, 5);
+    CHECK_EQ_INT(t.viewer.pass.film.width, 7);
+    CHECK_EQ_INT(t.viewer.pass.film.height, 5);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     go_to_the_end(&t);
     CHECK(t.fake.shown >= 3);
     key(&t.fake, 'r', true);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    CHECK(t.viewer.view.divide == 16 && t.viewer.view.own);
+    CHECK(t.viewer.pass.view.divide == 16 && t.viewer.pass.view.own);
     finish_pass(&t, 0.02, false);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     finish_pass(&t, 0.02, false);
@@ -255,13 +255,13 @@ TEST(window_walks_in_coarse_passes_and_refines_when_still) {
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING); /* no time has gone by yet */
     for (int i = 0; i < 5; i++) {
         CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-        CHECK(t.viewer.view.plain && t.viewer.view.divide > 1 && !t.viewer.view.own);
-        CHECK(t.viewer.view.camera.eye.z < 5);
+        CHECK(t.viewer.pass.view.plain && t.viewer.pass.view.divide > 1 && !t.viewer.pass.view.own);
+        CHECK(t.viewer.pass.view.camera.eye.z < 5);
         CHECK_EQ_INT(step(&t), VIEWER_NOTHING); /* a coarse pass is worth its end */
         finish_pass(&t, 0.03, false);
     }
     key(&t.fake, WINDOW_ARROW_UP, false);
-    while (t.viewer.view.plain) {
+    while (t.viewer.pass.view.plain) {
         CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
         finish_pass(&t, 0.03, false);
     }
@@ -276,13 +276,13 @@ TEST(window_stops_a_fine_pass_for_somebody_who_walks_on) {
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     finish_pass(&t, 0.1, false);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    CHECK(!t.viewer.view.plain);
+    CHECK(!t.viewer.pass.view.plain);
     t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_WHEEL, .y = 2};
     CHECK_EQ_INT(step(&t), VIEWER_STOP_PASS);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     finish_pass(&t, 0.001, true);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    CHECK(t.viewer.view.plain && t.viewer.view.camera.fov < 40);
+    CHECK(t.viewer.pass.view.plain && t.viewer.pass.view.camera.fov < 40);
     end(&t);
 }
 
@@ -295,7 +295,7 @@ TEST(window_makes_passes_as_coarse_as_thirty_a_second_need) {
     uint32_t divide = 0;
     for (int i = 0; i < 12; i++) {
         CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-        divide = t.viewer.view.divide;
+        divide = t.viewer.pass.view.divide;
         finish_pass(&t, 0.8 / (divide * divide), false); /* a scene that takes 0.8 s at one sample a pixel */
     }
     CHECK_EQ_INT(divide, 5); /* 0.8 / 25 s is below a thirtieth, 0.8 / 16 is not */
@@ -315,7 +315,7 @@ TEST(window_keys_mean_walking_only_while_the_mouse_looks) {
     (void)step(&t);
     CHECK(t.fake.grabbed);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    CHECK(t.viewer.view.camera.eye.z > 5);
+    CHECK(t.viewer.pass.view.camera.eye.z > 5);
     key(&t.fake, WINDOW_ESCAPE, true);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK(!t.fake.grabbed && !t.viewer.fly_camera.down[FLY_BACK]);
@@ -425,7 +425,7 @@ TEST(window_menu_renders_again_and_quits_by_clicks_that_do_not_turn_the_camera) 
     go_to_the_end(&t);
     click(&t, 10, 6); /* Render */
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    CHECK(t.viewer.view.divide == 16 && t.viewer.view.own && !t.viewer.pressed);
+    CHECK(t.viewer.pass.view.divide == 16 && t.viewer.pass.view.own && !t.viewer.input.pressed);
     /* Pressed on a button and let go elsewhere: not used. */
     t.fake.queue[t.fake.count++] = mouse(WINDOW_PRESS, 60, 6);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
@@ -442,13 +442,13 @@ TEST(window_places_the_picture_in_its_middle_for_any_size_and_density) {
     struct table t;
     begin(&t);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    const struct window_layout *layout = &t.viewer.layout;
+    const struct window_layout *layout = &t.viewer.display.layout;
     CHECK(layout->left == 0 && layout->top == 0 && layout->shown_width == 400 && layout->shown_height == 280);
     t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 1600, .y = 700, .density = 2};
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK(layout->left == 300 && layout->top == 0 && layout->shown_width == 1000 && layout->shown_height == 700);
-    CHECK_EQ_INT(t.viewer.panel.canvas.scale, 2); /* letters as large as before to the eye */
-    CHECK(t.viewer.panel.canvas.width == 1600 && t.viewer.panel.canvas.height == 700);
+    CHECK_EQ_INT(t.viewer.display.panel.canvas.scale, 2); /* letters as large as before to the eye */
+    CHECK(t.viewer.display.panel.canvas.width == 1600 && t.viewer.display.panel.canvas.height == 700);
     t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 50, .y = 90, .density = 1};
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK(layout->left == 0 && layout->top == 27 && layout->shown_width == 50 && layout->shown_height == 35);
@@ -469,8 +469,8 @@ TEST(window_tells_how_long_the_picture_will_take) {
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     t.now += 1;
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    CHECK(t.viewer.view.plain && strstr(t.fake.title, "(coarse)") && !strstr(t.fake.title, "left"));
-    for (int i = 0; i < 9 && t.viewer.view.plain; i++) {
+    CHECK(t.viewer.pass.view.plain && strstr(t.fake.title, "(coarse)") && !strstr(t.fake.title, "left"));
+    for (int i = 0; i < 9 && t.viewer.pass.view.plain; i++) {
         finish_pass(&t, 1, false);
         CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     }
@@ -595,7 +595,7 @@ static void pick_ball(struct table *t) {
     CHECK(t->viewer.command.x == 50.5 && t->viewer.command.y == 35.5 && t->viewer.command.up == 0);
     tell_news(t, &(struct preview_reply){.kind = REPLY_PICKED, .picked = a_ball});
     CHECK_EQ_INT(step(t), VIEWER_NOTHING); /* the finished picture stays */
-    CHECK(t->viewer.selection.kind == SELECTED_NODE && t->viewer.complete);
+    CHECK(t->viewer.edit.selection.kind == SELECTED_NODE && t->viewer.pass.result == RESULT_COMPLETE);
 }
 
 static void drag(struct table *t, double dx, double dy) {
@@ -624,7 +624,7 @@ static void refine(struct table *t) {
         CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
         CHECK_EQ_INT(t->viewer.command.kind, COMMAND_PASS);
         finish_pass(t, 0.02, false);
-    } while (t->viewer.view.plain);
+    } while (t->viewer.pass.view.plain);
     CHECK_EQ_INT(step(t), VIEWER_NOTHING);
 }
 
@@ -651,9 +651,9 @@ TEST(window_that_is_asked_during_a_fine_pass_goes_on_with_it) {
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     finish_pass(&t, 0.02, false);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    CHECK(!t.viewer.view.plain);
-    atomic_store(&t.viewer.film.tiles[1], FILM_TILE_DONE);
-    atomic_store(&t.viewer.film.tiles[2], FILM_TILE_TAKEN);
+    CHECK(!t.viewer.pass.view.plain);
+    atomic_store(&t.viewer.pass.film.tiles[1], FILM_TILE_DONE);
+    atomic_store(&t.viewer.pass.film.tiles[2], FILM_TILE_TAKEN);
     click(&t, 400, 280);
     CHECK_EQ_INT(step(&t), VIEWER_STOP_PASS);
     finish_pass(&t, 0.001, true);
@@ -662,8 +662,8 @@ TEST(window_that_is_asked_during_a_fine_pass_goes_on_with_it) {
     tell_news(&t, &(struct preview_reply){.kind = REPLY_PICKED, .picked = a_ball});
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     CHECK(t.viewer.command.kind == COMMAND_PASS && !t.viewer.command.view.plain);
-    CHECK_EQ_INT(atomic_load(&t.viewer.film.tiles[1]), FILM_TILE_DONE);
-    CHECK_EQ_INT(atomic_load(&t.viewer.film.tiles[2]), FILM_TILE_WANTED);
+    CHECK_EQ_INT(atomic_load(&t.viewer.pass.film.tiles[1]), FILM_TILE_DONE);
+    CHECK_EQ_INT(atomic_load(&t.viewer.pass.film.tiles[2]), FILM_TILE_WANTED);
     end(&t);
 }
 
@@ -684,12 +684,12 @@ TEST(window_moves_what_is_picked_by_the_way_of_the_mouse_and_undoes_it) {
     CHECK_NEAR(change->numbers[3], 40 * pixel, 1e-9);
     CHECK_NEAR(change->numbers[7], 20 * pixel, 1e-9);
     CHECK_NEAR(change->numbers[11], 0, 1e-9);
-    CHECK(change->numbers[0] == 1 && t.viewer.edits.count == 1);
+    CHECK(change->numbers[0] == 1 && t.viewer.edit.steps.count == 1);
     refine(&t);
-    CHECK(t.viewer.edited && !t.viewer.camera_moved);
+    CHECK(t.viewer.pass.edited && !t.viewer.camera_moved);
     t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_KEY, .key = 'z', .down = true, .control = true};
     take_change(&t);
-    CHECK(!t.viewer.command.present && t.viewer.edits.now.count == 0);
+    CHECK(!t.viewer.command.present && t.viewer.edit.steps.now.count == 0);
     refine(&t);
     t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_KEY, .key = 'y', .down = true, .control = true};
     take_change(&t);
@@ -716,7 +716,7 @@ TEST(window_turns_and_sizes_about_the_middle_of_what_is_picked) {
     take_change(&t);
     CHECK_NEAR(t.viewer.command.change.numbers[0], -exp(1), 1e-9);
     CHECK_NEAR(t.viewer.command.change.numbers[5], exp(1), 1e-9);
-    CHECK_EQ_INT(t.viewer.edits.count, 2);
+    CHECK_EQ_INT(t.viewer.edit.steps.count, 2);
     end(&t);
 }
 
@@ -728,7 +728,7 @@ TEST(window_deletes_and_adds_nodes_and_lights) {
     pick_ball(&t);
     key(&t.fake, WINDOW_DELETE, true);
     take_change(&t);
-    CHECK(t.viewer.command.change.kind == CHANGE_GONE && t.viewer.selection.kind == SELECTED_NOTHING);
+    CHECK(t.viewer.command.change.kind == CHANGE_GONE && t.viewer.edit.selection.kind == SELECTED_NOTHING);
     refine(&t);
     click(&t, 101, 20); /* Sphere */
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
@@ -739,11 +739,11 @@ TEST(window_deletes_and_adds_nodes_and_lights) {
     take_change(&t); /* and its place */
     CHECK(t.viewer.command.change.kind == CHANGE_PLACE && t.viewer.command.change.serial == UINT32_MAX &&
           !t.viewer.command.more);
-    CHECK(t.viewer.tool == TOOL_MOVE && t.viewer.selection.picked.serial == UINT32_MAX);
+    CHECK(t.viewer.edit.tool == TOOL_MOVE && t.viewer.edit.selection.picked.serial == UINT32_MAX);
     refine(&t);
     click(&t, 400, 280 - 560 * 1 / (2 * 5 * tan(20 * M_PI / 180))); /* the light at {0, 1, 0} */
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    CHECK(t.viewer.selection.kind == SELECTED_LIGHT && t.viewer.selection.light == 1);
+    CHECK(t.viewer.edit.selection.kind == SELECTED_LIGHT && t.viewer.edit.selection.light == 1);
     drag(&t, 28, 0);
     take_change(&t);
     CHECK(t.viewer.command.change.kind == CHANGE_LIGHT && t.viewer.command.change.serial == 1);
@@ -777,11 +777,11 @@ TEST(window_changes_parts_of_a_material_and_copies_them_to_one_of_its_own) {
     tell_news(&t, &(struct preview_reply){.kind = REPLY_CHANGED});
     take_change(&t);
     CHECK(change->kind == CHANGE_MATERIAL && change->serial == OWN_SERIAL && change->numbers[0] == 0.5);
-    CHECK(t.viewer.selection.picked.material_serial == OWN_SERIAL && !t.viewer.selection.picked.can_own);
+    CHECK(t.viewer.edit.selection.picked.material_serial == OWN_SERIAL && !t.viewer.edit.selection.picked.can_own);
     refine(&t);
     viewer_undo(&t.viewer, false);
     viewer_undo(&t.viewer, false);
-    CHECK(t.viewer.selection.kind == SELECTED_NOTHING && t.viewer.edits.now.count == 1);
+    CHECK(t.viewer.edit.selection.kind == SELECTED_NOTHING && t.viewer.edit.steps.now.count == 1);
     end(&t);
 }
 
@@ -833,20 +833,20 @@ TEST(window_asks_for_lights_until_it_knows_them_all_and_goes_through_them_by_key
         tell_news(&t, &reply);
         CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     }
-    while (t.viewer.command.kind == COMMAND_PASS && t.viewer.view.plain) {
+    while (t.viewer.command.kind == COMMAND_PASS && t.viewer.pass.view.plain) {
         finish_pass(&t, 0.02, false);
         CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     }
     finish_pass(&t, 0.02, false);
     CHECK_EQ_INT(step(&t), VIEWER_WRITE_PICTURE);
-    CHECK_EQ_INT(t.viewer.lights_known, 70);
+    CHECK_EQ_INT(t.viewer.lights.known, 70);
     key(&t.fake, 'i', true);
     key(&t.fake, ',', true);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    CHECK(t.viewer.selection.kind == SELECTED_LIGHT && t.viewer.selection.light == 70 && t.viewer.lists_lights);
+    CHECK(t.viewer.edit.selection.kind == SELECTED_LIGHT && t.viewer.edit.selection.light == 70 && t.viewer.lights.listed);
     key(&t.fake, '.', true);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    CHECK_EQ_INT(t.viewer.selection.light, 1);
+    CHECK_EQ_INT(t.viewer.edit.selection.light, 1);
     key(&t.fake, ',', true);
     key(&t.fake, 't', true);
     drag(&t, 560, 0); /* the height of the picture: half a turn */
@@ -857,10 +857,10 @@ TEST(window_asks_for_lights_until_it_knows_them_all_and_goes_through_them_by_key
     CHECK_NEAR(change->numbers[TURN_AT + 4], 1, 1e-9);
     CHECK_NEAR(viewer_light(&t.viewer, 70)->direction.z, 1, 1e-9);
     viewer_add_node(&t.viewer, ADDED_COPY); /* with what was changed of it */
-    CHECK(t.viewer.selection.light == 71 && t.viewer.light_count == 71 && t.viewer.tool == TOOL_TURN);
-    const struct change *copy = &t.viewer.edits.steps[t.viewer.edits.count - 2].after;
+    CHECK(t.viewer.edit.selection.light == 71 && t.viewer.lights.count == 71 && t.viewer.edit.tool == TOOL_TURN);
+    const struct change *copy = &t.viewer.edit.steps.steps[t.viewer.edit.steps.count - 2].after;
     CHECK(copy->kind == CHANGE_ADD_LIGHT && copy->source == 70);
-    CHECK(copy[0].number == 0 && t.viewer.edits.steps[t.viewer.edits.count - 1].after.serial == 71);
+    CHECK(copy[0].number == 0 && t.viewer.edit.steps.steps[t.viewer.edit.steps.count - 1].after.serial == 71);
     end(&t);
 }
 
@@ -878,16 +878,16 @@ TEST(window_asks_for_the_story_of_the_pixel_under_the_mouse) {
     viewer_add_pixel_trace(&t.viewer, "another\n");
     tell_news(&t, &(struct preview_reply){.kind = REPLY_PIXEL_TRACE});
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    CHECK_TEXT(t.viewer.trace_text, "one line\nanother\n");
+    CHECK_TEXT(t.viewer.trace.text, "one line\nanother\n");
     key(&t.fake, WINDOW_PAGE_DOWN, true); /* past its end: from the beginning */
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    CHECK_EQ_INT(t.viewer.trace_line, 0);
+    CHECK_EQ_INT(t.viewer.trace.line, 0);
     for (int i = 0; i < 5000; i++) /* more than there is room for */
         viewer_add_pixel_trace(&t.viewer, "a line of some length\n");
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     key(&t.fake, WINDOW_ESCAPE, true);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    CHECK_TEXT(t.viewer.trace_text, "");
+    CHECK_TEXT(t.viewer.trace.text, "");
     end(&t);
 }
 
@@ -933,7 +933,7 @@ TEST(window_tells_the_child_all_changes_again_when_the_scripts_run_again) {
     take_change(&t);
     CHECK(t.viewer.command.change.kind == CHANGE_PLACE && t.viewer.command.present);
     refine(&t);
-    CHECK(t.viewer.edited);
+    CHECK(t.viewer.pass.edited);
     end(&t);
 }
 
