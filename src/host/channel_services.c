@@ -19,8 +19,7 @@ static bool link_begin(void *context, const struct picture_request *request, str
     struct channel_services *link = context;
     struct message message;
     size_t bytes;
-    if (!film_size_layered(request->width, request->height, request->record, picture_film_layers(request), &bytes,
-                           error))
+    if (!picture_film_size(request, &bytes, error))
         return false;
     if (!channel_send(&link->channel, MESSAGE_BEGIN, request, sizeof *request, -1) ||
         channel_receive(&link->channel, &message) != CHANNEL_MESSAGE || message.kind != MESSAGE_FILM)
@@ -40,8 +39,7 @@ static bool link_begin(void *context, const struct picture_request *request, str
         note(link, channel_send(&link->channel, MESSAGE_ABANDON, NULL, 0, -1));
         return false;
     }
-    film_place(film, link->memory.block, request->width, request->height, request->record);
-    film_place_layers(film, link->memory.block, request->layers);
+    picture_film_place(request, link->memory.block, film);
     return true;
 }
 

@@ -324,7 +324,7 @@ static bool reserve_memory(struct render_process *process, const struct picture_
     size_t film = 0;
     if (asked->check)
         return true;
-    if (!film_size_layered(asked->width, asked->height, asked->record, picture_film_layers(asked), &film, error))
+    if (!picture_film_size(asked, &film, error))
         return false;
     uint64_t levels = (uint64_t)settings->reflect_limit + (uint64_t)settings->refract_limit;
     uint64_t bytes = (uint64_t)pool_workers(process->pool) * levels * STACK_OF_A_LEVEL;
@@ -369,6 +369,7 @@ static bool begin_picture(struct render_process *process, const struct render_re
         return false;
     if (!process->services->begin(process->services->context, &asked, film, already, error))
         return false;
+    /* Also where only questions are answered, and there is no film. */
     film->x0 = asked.x0;
     film->y0 = asked.y0;
     film->full_width = asked.full_width;

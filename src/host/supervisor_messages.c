@@ -3,7 +3,6 @@
 #include "host/supervisor_internal.h"
 
 #include "base/mem.h"
-#include "viewer/saved_view.h"
 
 #include <poll.h>
 #include <string.h>
@@ -185,13 +184,13 @@ void supervisor_step_window(struct supervisor *supervisor) {
                 supervisor_note_error(supervisor, &error);
             break;
         case VIEWER_SAVE_IMAGE:
-            save_from_window(supervisor, save_view_image);
+            save_from_window(supervisor, viewer_save_image);
             break;
         case VIEWER_SAVE_CAMERA:
-            save_from_window(supervisor, save_view_camera);
+            save_from_window(supervisor, viewer_save_camera);
             break;
         case VIEWER_SAVE_EDITS:
-            save_from_window(supervisor, save_edits);
+            save_from_window(supervisor, viewer_save_edits);
             break;
         case VIEWER_LOG_NOTE:
             output_report(&supervisor->output, LINE_DETAIL, viewer->note);

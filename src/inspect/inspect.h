@@ -4,7 +4,7 @@
 
 #include "render/render.h"
 #include "render/story.h"
-#include "session/text_writer.h"
+#include "session/text.h"
 #include "world/path.h"
 
 /* A picture about to be made: its name, its world, the tree that the world was built of. */

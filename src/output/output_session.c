@@ -142,18 +142,11 @@ static bool make_film(struct output_session *output, struct picture *picture, st
     const struct picture_request *request = &picture->request;
     size_t bytes;
     char notice[256];
-    if (!film_size_layered(request->width, request->height, request->record, picture_film_layers(request), &bytes,
-                           error) ||
-        !allow_film(output, bytes, error))
+    if (!picture_film_size(request, &bytes, error) || !allow_film(output, bytes, error))
         return false;
     if (!share_create(&picture->memory, bytes, error))
         return error_prefix(error, "%s", picture->name);
-    film_place(&picture->film, picture->memory.block, request->width, request->height, request->record);
-    film_place_layers(&picture->film, picture->memory.block, request->layers & AOV_ALL);
-    picture->film.x0 = request->x0;
-    picture->film.y0 = request->y0;
-    picture->film.full_width = request->full_width;
-    picture->film.full_height = request->full_height;
+    picture_film_place(request, picture->memory.block, &picture->film);
     if (!checkpoint_restore(&output->checkpoint, &picture->tiles, &picture->film, notice, error)) {
         share_destroy(&picture->memory);
         return false;

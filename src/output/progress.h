@@ -4,8 +4,8 @@
 #define GRAY_OUTPUT_PROGRESS_H
 
 #include "render/outlook.h"
-#include "session/error_stream.h"
 #include "session/options.h"
+#include "session/standard_streams.h"
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -4,7 +4,7 @@
 #define GRAY_SESSION_CONTROL_H
 
 #include "render/outlook.h"
-#include "session/error_stream.h"
+#include "session/standard_streams.h"
 
 #include <stdatomic.h>
 #include <stdint.h>

@@ -63,8 +63,18 @@ bool message_is_valid(const struct message *message) {
 /* Room for both parts of the overlay. */
 enum { OVERLAY_LAYERS = 2 };
 
-uint32_t picture_film_layers(const struct picture_request *request) {
-    return aov_layers(request->layers & AOV_ALL) + (request->in_window ? OVERLAY_LAYERS : 0);
+bool picture_film_size(const struct picture_request *request, size_t *bytes, struct error *error) {
+    uint32_t layers = aov_layers(request->layers & AOV_ALL) + (request->in_window ? OVERLAY_LAYERS : 0);
+    return film_size_layered(request->width, request->height, request->record, layers, bytes, error);
+}
+
+void picture_film_place(const struct picture_request *request, void *block, struct film *film) {
+    film_place(film, block, request->width, request->height, request->record);
+    film_place_layers(film, block, request->layers & AOV_ALL);
+    film->x0 = request->x0;
+    film->y0 = request->y0;
+    film->full_width = request->full_width;
+    film->full_height = request->full_height;
 }
 
 void view_overlay_buffers(const struct picture_request *request, void *block, struct view_overlay_buffers *place) {

@@ -237,8 +237,10 @@ struct message {
 /* Whether sizes, texts and numbers are such that later code can rely on them. */
 bool message_is_valid(const struct message *message);
 
-/* How many layers of three floats a pixel the memory of the film has, those of the overlay included. */
-uint32_t picture_film_layers(const struct picture_request *request);
+/* Bytes of the memory of the film, layers and overlay included. False: too large. */
+bool picture_film_size(const struct picture_request *request, size_t *bytes, struct error *error);
+/* The film in that memory, with its layers and the part of the picture that it is. */
+void picture_film_place(const struct picture_request *request, void *block, struct film *film);
 /* Where the overlay of a picture in a window is in that memory: behind the layers. */
 void view_overlay_buffers(const struct picture_request *request, void *block, struct view_overlay_buffers *place);
 /* The film that a pass fills: the picture's rectangle divided, in the same block. */

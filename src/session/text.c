@@ -1,9 +1,11 @@
-/* All functions go character by character and write at once, so they need no memory and have no limit. */
+/* What prints goes character by character and writes at once, so it needs no memory and has no limit. A text_writer
+ * hands its piece on when the next word does not fit. */
 #include "session/text.h"
 
 #include "base/terminal_text.h"
 
 #include <poll.h>
+#include <stdarg.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -100,4 +102,63 @@ bool text_stderr_is_ready(void) {
     bool waits = fstat(STDERR_FILENO, &status) == 0 &&
                  (S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode) || S_ISSOCK(status.st_mode));
     return !waits || poll(&watched, 1, 0) != 0;
+}
+
+void text_writer_flush(struct text_writer *writer) {
+    if (writer->used == 0)
+        return;
+    writer->text[writer->used] = '\0';
+    writer->put(writer->context, writer->text);
+    writer->used = 0;
+}
+
+static void add(struct text_writer *writer, const char *bytes, size_t size) {
+    if (writer->used + size >= sizeof writer->text)
+        text_writer_flush(writer);
+    memcpy(writer->text + writer->used, bytes, size);
+    writer->used += size;
+}
+
+void text_writer_print(struct text_writer *writer, const char *format, ...) {
+    char text[1000];
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    if (length > 0)
+        add(writer, text, (size_t)length < sizeof text ? (size_t)length : sizeof text - 1);
+}
+
+void text_writer_name(struct text_writer *writer, const char *text) {
+    char piece[8];
+    for (size_t taken; *text; text += taken) {
+        size_t size = text_clean_piece(text, piece, &taken);
+        add(writer, piece, size);
+    }
+}
+
+void text_writer_json(struct text_writer *writer, const char *text) {
+    char piece[8];
+    add(writer, "\"", 1);
+    for (const char *at = text; *at;) {
+        size_t taken, size = text_json_piece(at, piece, &taken);
+        add(writer, piece, size);
+        at += taken;
+    }
+    add(writer, "\"", 1);
+}
+
+void text_writer_json_number(struct text_writer *writer, double number) {
+    if (isfinite(number))
+        text_writer_print(writer, "%.17g", number);
+    else
+        text_writer_print(writer, "null");
+}
+
+void text_writer_json_vector(struct text_writer *writer, struct vec3 v) {
+    for (int i = 0; i < 3; i++) {
+        text_writer_print(writer, i > 0 ? "," : "[");
+        text_writer_json_number(writer, vec3_get(v, i));
+    }
+    text_writer_print(writer, "]");
 }

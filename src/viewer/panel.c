@@ -96,3 +96,15 @@ bool panel_slider(struct panel *panel, int x, int y, int width, double low, doub
     canvas_box(&panel->canvas, x, y, (int)(width * share), height, colour);
     return changed;
 }
+
+int panel_button_row(struct panel *panel, int y, const char *const *words, int count, unsigned on, bool *used) {
+    int scale = panel->canvas.scale, x = 2 * scale;
+    for (int i = 0; i < count; i++) {
+        int width = panel_button_width(panel, words[i]);
+        if (x + width > panel->canvas.width)
+            break;
+        used[i] = panel_button(panel, x, y, words[i], on >> i & 1);
+        x += width + 2 * scale;
+    }
+    return x;
+}

@@ -40,6 +40,9 @@ void panel_warning(struct panel *panel, int x, int y, const char *text);
 void panel_bar(struct panel *panel, int x, int y, int width, double share);
 /* True: clicked. `on`: drawn as chosen. */
 bool panel_button(struct panel *panel, int x, int y, const char *text, bool on);
+/* Buttons from the left on, as many as there is room for. on: by bit, which of them are drawn as chosen; used: which
+ * one was clicked. Returns where the row ends. */
+int panel_button_row(struct panel *panel, int y, const char *const *words, int count, unsigned on, bool *used);
 /* True: *value was changed by the mouse, from low to high over the width. */
 bool panel_slider(struct panel *panel, int x, int y, int width, double low, double high, struct canvas_colour colour,
                   double *value);

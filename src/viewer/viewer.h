@@ -6,6 +6,7 @@
 #ifndef GRAY_VIEWER_VIEWER_H
 #define GRAY_VIEWER_VIEWER_H
 
+#include "base/file_output.h"
 #include "render/film.h"
 #include "session/control.h"
 #include "session/messages.h"
@@ -199,5 +200,16 @@ void viewer_add_pixel_trace(struct viewer *viewer, const char *text);
 void viewer_take_reply(struct viewer *viewer, const struct preview_reply *reply, double now);
 /* Takes events, draws, decides. To be called until it says VIEWER_NOTHING, every few milliseconds. */
 enum viewer_action viewer_step(struct viewer *viewer, double now);
+
+/* Saving the image as it is shown, the camera, and the edits (viewer_edit.c). */
+/* `picture` has the name of the picture and rules that replace nothing. Both choose a name that is still free:
+ * dir/foo.png gives dir/foo-view1.png, dir/foo-view1.lua and so on; it is put into `name` (4096 bytes). The Lua file
+ * gives back a table of eye, view, up and fov with every digit. */
+bool viewer_save_image(const struct viewer *viewer, const struct file_target *picture, char *name, struct error *error);
+bool viewer_save_camera(const struct viewer *viewer, const struct file_target *picture, char *name,
+                        struct error *error);
+/* dir/foo-changes1.lua: required by the scene, it gives the picture the camera, the exposure and all that was changed.
+ */
+bool viewer_save_edits(const struct viewer *viewer, const struct file_target *picture, char *name, struct error *error);
 
 #endif

@@ -34,20 +34,6 @@ static void draw_selection(struct viewer *viewer, const struct camera_frame *fra
 
 /* The menu. */
 
-/* on: by bit, which of them are drawn as chosen. */
-static int draw_buttons(struct viewer *viewer, int y, const char *const *words, int count, unsigned on, bool *used) {
-    struct panel *panel = &viewer->display.panel;
-    int scale = panel->canvas.scale, x = 2 * scale;
-    for (int i = 0; i < count; i++) {
-        int width = panel_button_width(panel, words[i]);
-        if (x + width > panel->canvas.width)
-            break;
-        used[i] = panel_button(panel, x, y, words[i], on >> i & 1);
-        x += width + 2 * scale;
-    }
-    return x;
-}
-
 #define MENU(X)                                                                                                        \
     X(MENU_RENDER, "Render")                                                                                           \
     X(MENU_QUIT, "Quit")                                                                                               \
@@ -69,7 +55,7 @@ static void draw_menu(struct viewer *viewer) {
                   (viewer->overlay.kind == OVERLAY_OF_BOXES ? 1u << MENU_BOXES : 0) |
                   (viewer->overlay.kind == OVERLAY_OF_GRID ? 1u << MENU_GRID : 0);
     panel_ground(panel, 0, 0, panel->canvas.width, 15 * panel->canvas.scale);
-    (void)draw_buttons(viewer, 2 * panel->canvas.scale, words, LIST_COUNT(MENU), on, used);
+    (void)panel_button_row(panel, 2 * panel->canvas.scale, words, LIST_COUNT(MENU), on, used);
     if (used[MENU_RENDER])
         viewer_render(viewer);
     viewer->quit = viewer->quit || used[MENU_QUIT];
@@ -105,7 +91,7 @@ static void draw_work(struct viewer *viewer) {
     int scale = panel->canvas.scale, y = 17 * scale, wide = 10 * CANVAS_CELL * scale;
     bool used[LIST_COUNT(WORK)] = {false};
     panel_ground(panel, 0, 15 * scale, panel->canvas.width, 15 * scale);
-    int x = draw_buttons(viewer, y, words, LIST_COUNT(WORK), 0, used);
+    int x = panel_button_row(panel, y, words, LIST_COUNT(WORK), 0, used);
     if (used[WORK_UNDO] || used[WORK_REDO])
         viewer_undo(viewer, used[WORK_REDO]);
     if (used[WORK_SPHERE])

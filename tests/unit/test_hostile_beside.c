@@ -2,7 +2,7 @@
  * rows are attacks: see attack.h. What a row does not name must be as it was. */
 #define _GNU_SOURCE
 #include "tests/attack.h"
-#include "viewer/saved_view.h"
+#include "viewer/viewer.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -412,15 +412,15 @@ static int save(bool (*one)(const struct viewer *, const struct file_target *, c
 }
 
 static int save_views(void) {
-    return save(save_view_image);
+    return save(viewer_save_image);
 }
 
 static int save_cameras(void) {
-    return save(save_view_camera);
+    return save(viewer_save_camera);
 }
 
 static int save_changes(void) {
-    return save(save_edits);
+    return save(viewer_save_edits);
 }
 
 TEST(hostile_what_the_window_saves_replaces_nothing) {
