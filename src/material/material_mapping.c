@@ -50,56 +50,24 @@ static const void *remember(struct material_mapping *mapping, const void *of, en
 }
 
 static const struct texture *texture_on(struct material_mapping *mapping, const struct texture *texture,
-                                        enum surface_layout layout);
-
-/* In the place of a part of a tree. */
-static bool replace(struct material_mapping *mapping, const struct texture **part, enum surface_layout layout,
-                    bool *changed) {
-    if (!*part)
-        return true;
-    const struct texture *on = texture_on(mapping, *part, layout);
-    *changed = *changed || on != *part;
-    *part = on;
-    return on != NULL;
-}
-
-/* What of the tree's root and below it changes, written into `own`. */
-static bool replace_parts(struct material_mapping *mapping, struct texture *own, enum surface_layout layout,
-                          bool *changed) {
-    switch (own->kind) {
-    case TEXTURE_CONSTANT:
-    case TEXTURE_PARAMETER:
-    case TEXTURE_VERTEX_COLOUR:
-    case TEXTURE_MARBLE:
-    case TEXTURE_WOOD:
-        break;
-    case TEXTURE_IMAGE: {
-        enum texture_mapping before = own->image.lookup.mapping;
-        own->image.lookup.mapping = texture_mapping_on(before, layout);
-        *changed = own->image.lookup.mapping != before;
-        return replace(mapping, &own->image.below, layout, changed);
-    }
-    case TEXTURE_MIX:
-        return replace(mapping, &own->mix.a, layout, changed) && replace(mapping, &own->mix.b, layout, changed) &&
-               replace(mapping, &own->mix.ratio, layout, changed);
-    case TEXTURE_MULTIPLY:
-        return replace(mapping, &own->multiply.a, layout, changed) &&
-               replace(mapping, &own->multiply.b, layout, changed);
-    case TEXTURE_MAP:
-        return replace(mapping, &own->map.of, layout, changed);
-    }
-    return true;
-}
-
-static const struct texture *texture_on(struct material_mapping *mapping, const struct texture *texture,
                                         enum surface_layout layout) {
-    const struct texture *on = known(mapping, texture, layout);
+    const struct texture *on = known(mapping, texture, layout), **parts[TEXTURE_PARTS];
     if (on || !texture->has_image)
         return on ? on : texture;
     struct texture own = *texture, *kept = NULL;
     bool changed = false;
-    if (!replace_parts(mapping, &own, layout, &changed) ||
-        (changed && !(kept = arena_alloc(mapping->arena, sizeof *kept))))
+    if (own.kind == TEXTURE_IMAGE) {
+        own.image.lookup.mapping = texture_mapping_on(own.image.lookup.mapping, layout);
+        changed = own.image.lookup.mapping != texture->image.lookup.mapping;
+    }
+    for (int i = texture_parts(&own, parts); i-- > 0;) {
+        const struct texture *part = texture_on(mapping, *parts[i], layout);
+        if (!part)
+            return NULL;
+        changed = changed || part != *parts[i];
+        *parts[i] = part;
+    }
+    if (changed && !(kept = arena_alloc(mapping->arena, sizeof *kept)))
         return NULL;
     if (kept)
         *kept = own;
@@ -137,9 +105,12 @@ static const struct material *material_on(struct material_mapping *mapping, cons
         if (!own.base)
             return NULL;
     }
-    for (int i = 0; i < INPUT_COUNT; i++)
-        if (!replace(mapping, &own.inputs[i], layout, &changed))
+    for (int i = 0; i < INPUT_COUNT; i++) {
+        own.inputs[i] = material->inputs[i] ? texture_on(mapping, material->inputs[i], layout) : NULL;
+        changed = changed || own.inputs[i] != material->inputs[i];
+        if (material->inputs[i] && !own.inputs[i])
             return NULL;
+    }
     if (material->relief) {
         own.relief = relief_on(mapping, material->relief, layout);
         changed = true;

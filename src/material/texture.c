@@ -96,6 +96,38 @@ const struct texture *texture_keep(struct arena *arena, struct texture value, st
     return out;
 }
 
+int texture_parts(struct texture *texture, const struct texture **parts[TEXTURE_PARTS]) {
+    const struct texture **all[TEXTURE_PARTS] = {NULL};
+    int count = 0;
+    switch (texture->kind) {
+    case TEXTURE_CONSTANT:
+    case TEXTURE_PARAMETER:
+    case TEXTURE_VERTEX_COLOUR:
+    case TEXTURE_MARBLE:
+    case TEXTURE_WOOD:
+        break;
+    case TEXTURE_IMAGE:
+        all[0] = &texture->image.below;
+        break;
+    case TEXTURE_MIX:
+        all[0] = &texture->mix.a;
+        all[1] = &texture->mix.b;
+        all[2] = &texture->mix.ratio;
+        break;
+    case TEXTURE_MULTIPLY:
+        all[0] = &texture->multiply.a;
+        all[1] = &texture->multiply.b;
+        break;
+    case TEXTURE_MAP:
+        all[0] = &texture->map.of;
+        break;
+    }
+    for (int i = 0; i < TEXTURE_PARTS; i++)
+        if (all[i] && *all[i])
+            parts[count++] = all[i];
+    return count;
+}
+
 /* --- leaves --- */
 
 static struct vec3 parameter_colour(enum material_input input, const struct phong *numbers) {

@@ -172,6 +172,10 @@ static inline const struct texture_image *texture_as_image(const struct texture 
 /* A copy in the arena. NULL and error: no memory, or the tree is larger than TEXTURE_SIZE. */
 const struct texture *texture_keep(struct arena *arena, struct texture value, struct error *error);
 
+/* Where a texture holds those below it that are not NULL; returns how many. */
+enum { TEXTURE_PARTS = 3 };
+int texture_parts(struct texture *texture, const struct texture **parts[TEXTURE_PARTS]);
+
 /* What is known of a texture without a hit, of a material with these numbers. */
 enum texture_estimate {
     TEXTURE_AVERAGE, /* of images: of all texels; of patterns: one half */
