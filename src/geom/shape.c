@@ -232,6 +232,32 @@ enum surface_layout shape_layout(const struct shape *shape) {
     return LAYOUT_UV;
 }
 
+enum shape_area shape_area(const struct shape *shape) {
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+        return SHAPE_AREA_SPHERE;
+    case SHAPE_FLAT:
+        return SHAPE_AREA_FLAT;
+    case SHAPE_MESH:
+        return SHAPE_AREA_TRIANGLES;
+    case SHAPE_BOX:
+    case SHAPE_CONIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_HEIGHT_FIELD:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE:
+    case SHAPE_CSG:
+        break;
+    }
+    return SHAPE_AREA_UNKNOWN;
+}
+
 bool shape_native_uv(const struct shape *shape, const struct hit *hit, double *u, double *v) {
     *u = hit->u;
     *v = hit->v;

@@ -92,6 +92,9 @@ enum surface_layout shape_layout(const struct shape *shape);
 /* The u and v of a hit on it, v from below on LAYOUT_UV and LAYOUT_SPHERE; those of balls are worked out here, because
  * few ask for them. False: it has none. */
 bool shape_native_uv(const struct shape *shape, const struct hit *hit, double *u, double *v);
+/* How places on it are drawn evenly, where that has a closed form. */
+enum shape_area { SHAPE_AREA_SPHERE, SHAPE_AREA_FLAT, SHAPE_AREA_TRIANGLES, SHAPE_AREA_UNKNOWN };
+enum shape_area shape_area(const struct shape *shape);
 /* Closed: every line crosses it an even number of times, so it has an inside (CSG operand, media). A solid without end
  * (a half-space) is closed too: a line that begins or ends inside crosses it at t = -INFINITY or INFINITY. */
 bool shape_is_closed(const struct shape *shape);

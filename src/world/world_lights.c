@@ -232,26 +232,14 @@ static bool derive(struct derived *d, bool *ok) {
     if (placed_moves(d->world, d->placed))
         return derive_bound(d, true, ok);
     d->map = world_placement(d->world, d->placed, 0.5);
-    switch (placed_shape(d->world, d->placed)->kind) {
-    case SHAPE_SPHERE:
+    switch (shape_area(placed_shape(d->world, d->placed))) {
+    case SHAPE_AREA_SPHERE:
         return derive_sphere(d, ok);
-    case SHAPE_FLAT:
+    case SHAPE_AREA_FLAT:
         return derive_flat(d, ok);
-    case SHAPE_MESH:
+    case SHAPE_AREA_TRIANGLES:
         return derive_mesh(d, ok);
-    case SHAPE_BOX:
-    case SHAPE_CONIC:
-    case SHAPE_ELLIPSOID:
-    case SHAPE_QUADRIC:
-    case SHAPE_TORUS:
-    case SHAPE_SUPERELLIPSOID:
-    case SHAPE_LATHE:
-    case SHAPE_PRISM:
-    case SHAPE_SWEEP:
-    case SHAPE_HEIGHT_FIELD:
-    case SHAPE_BLOB:
-    case SHAPE_CURVE:
-    case SHAPE_CSG:
+    case SHAPE_AREA_UNKNOWN:
         break;
     }
     return derive_bound(d, false, ok);
