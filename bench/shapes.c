@@ -7,20 +7,13 @@
 #include "geom/csg.h"
 #include "geom/shape.h"
 #include "geom/shape_blob.h"
-#include "geom/shape_cone.h"
+#include "geom/conic.h"
 #include "geom/shape_curve.h"
-#include "geom/shape_cylinder.h"
-#include "geom/shape_disc.h"
+#include "geom/flat.h"
 #include "geom/shape_height_field.h"
-#include "geom/shape_hyperboloid.h"
 #include "geom/shape_lathe.h"
-#include "geom/shape_paraboloid.h"
-#include "geom/shape_plane.h"
-#include "geom/shape_polygon.h"
 #include "geom/shape_prism.h"
-#include "geom/shape_rectangle.h"
 #include "geom/shape_sweep.h"
-#include "geom/shape_triangle.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -161,3 +161,48 @@ void conic_extent(const struct conic *c, struct vec3 g, double *lo, double *hi) 
     *lo += offset;
     *hi += offset;
 }
+
+/* The cone. The radius grows evenly with the height s: x^2 + z^2 = (r0 + m s)^2, m = (r1 - r0) / length, whose second
+ * nappe the limits of the height leave out (Apollonius' cone in Cartesian form; Haines in Glassner, "An Introduction to
+ * Ray Tracing", 1989, ch. 2, intersects it the same way). */
+
+struct conic conic_frustum(struct vec3 from, double from_radius, struct vec3 to, double to_radius, bool open) {
+    struct vec3 way = vec3_sub(to, from);
+    double length = vec3_length(way), slope = (to_radius - from_radius) / length;
+    return (struct conic){.base = from,
+                          .axis = vec3_normalize(way),
+                          .a = slope * slope,
+                          .b = 2 * from_radius * slope,
+                          .c = from_radius * from_radius,
+                          .lo = 0,
+                          .hi = length,
+                          .open = open};
+}
+
+/* The cylinder: x^2 + z^2 = r^2 between two heights, a frustum whose radius does not change (Roth, "Ray casting for
+ * modeling solids", 1982, has it among his primitives). */
+
+struct conic conic_cylinder(struct vec3 from, struct vec3 to, double radius, bool open) {
+    return conic_frustum(from, radius, to, radius, open);
+}
+
+/* The paraboloid: x^2 + z^2 = (r^2 / h) y, the square of the radius grows evenly with the height (Archimedes, "On
+ * conoids and spheroids"). */
+
+struct conic conic_paraboloid(double radius, double height, bool open) {
+    return conic_upright(0, radius * (radius / height), 0, 0, height, open);
+}
+
+/* The hyperboloids: x^2 + z^2 = m y^2 + w^2 of one sheet, x^2 + z^2 = m (y^2 - g^2) of two, with the cone of slope
+ * sqrt(m) as their asymptote (Wren, "Generatio corporis cylindroidis hyperbolici", 1669, found the lines on the first).
+ * The slope follows from the rim; differences of squares are products, so that nothing cancels. */
+
+struct conic conic_one_sheet(double waist, double rim, double lo, double hi, bool open) {
+    double reach = fmax(fabs(lo), fabs(hi)), slope = (rim - waist) / reach * ((rim + waist) / reach);
+    return conic_upright(slope, 0, waist * waist, lo, hi, open);
+}
+
+struct conic conic_two_sheets(double gap, double reach, double rim, bool open) {
+    double slope = rim / (reach - gap) * (rim / (reach + gap));
+    return conic_upright(slope, 0, -slope * gap * gap, -reach, reach, open);
+}

@@ -1,5 +1,5 @@
-/* Conics turned about an axis, in the shape's own space: what is common to shape_cylinder.h, shape_cone.h,
- * shape_paraboloid.h and shape_hyperboloid.h, which make them. Lengths between 2^-200 and 2^200. */
+/* Conics turned about an axis, in the shape's own space: cylinders, cones, paraboloids and
+ * hyperboloids. Lengths between 2^-200 and 2^200. */
 #ifndef GRAY_GEOM_CONIC_H
 #define GRAY_GEOM_CONIC_H
 
@@ -34,5 +34,27 @@ void conic_describe(const struct conic *conic, const struct ray *ray, const stru
                     struct surface *out);
 /* The least and the greatest dot(g, p) over the shape; lo > hi when it is empty. */
 void conic_extent(const struct conic *conic, struct vec3 g, double *lo, double *hi);
+
+/* --- The cone and the frustum, between any two points --- */
+
+/* Radii >= 0, at least one > 0; from != to. With `open` without the discs at the ends. */
+struct conic conic_frustum(struct vec3 from, double from_radius, struct vec3 to, double to_radius, bool open);
+
+/* --- The cylinder, capped or open, between any two points --- */
+
+/* radius > 0, from != to. With `open` without the discs at the ends. */
+struct conic conic_cylinder(struct vec3 from, struct vec3 to, double radius, bool open);
+
+/* --- The paraboloid about the y axis --- */
+
+/* The tip at the origin, radius > 0 at the height > 0, where it ends. */
+struct conic conic_paraboloid(double radius, double height, bool open);
+
+/* --- The hyperboloids of one and of two sheets about the y axis --- */
+
+/* One sheet: radius `waist` at y = 0 and `rim` > waist at y = lo or hi, whichever is farther. lo < hi. */
+struct conic conic_one_sheet(double waist, double rim, double lo, double hi, bool open);
+/* Two sheets with their tips at y = -gap and y = gap, radius `rim` at y = -reach and y = reach > gap > 0. */
+struct conic conic_two_sheets(double gap, double reach, double rim, bool open);
 
 #endif

@@ -33,9 +33,7 @@
 
 /* ---- order ---- */
 
-static bool comes_before(const struct crossing *a, const struct crossing *b, bool by_leaf) {
-    if (by_leaf && a->leaf != b->leaf)
-        return a->leaf < b->leaf;
+static bool comes_before(const struct crossing *a, const struct crossing *b) {
     if (a->t != b->t)
         return a->t < b->t;
     if (a->leaf != b->leaf)
@@ -45,20 +43,8 @@ static bool comes_before(const struct crossing *a, const struct crossing *b, boo
     return a->enter && !b->enter;
 }
 
-static void sift_down(struct crossing *items, uint32_t root, uint32_t count, bool by_leaf) {
-    struct crossing moved = items[root];
-    for (;;) {
-        uint32_t child = 2 * root + 1;
-        if (child >= count)
-            break;
-        if (child + 1 < count && comes_before(&items[child], &items[child + 1], by_leaf))
-            child++;
-        if (!comes_before(&moved, &items[child], by_leaf))
-            break;
-        items[root] = items[child];
-        root = child;
-    }
-    items[root] = moved;
+static bool comes_before_by_leaf(const struct crossing *a, const struct crossing *b) {
+    return a->leaf != b->leaf ? a->leaf < b->leaf : comes_before(a, b);
 }
 
 /* The first `sorted` are in order already. The order is total, so it does not matter that neither way of sorting is
@@ -71,25 +57,21 @@ static void sort_crossings(struct crossing *items, uint32_t sorted, uint32_t cou
             struct crossing moved = items[i];
             uint32_t j = i;
             if (by_leaf)
-                for (; j > 0 && comes_before(&moved, &items[j - 1], true); j--)
+                for (; j > 0 && comes_before_by_leaf(&moved, &items[j - 1]); j--)
                     items[j] = items[j - 1];
             else
-                for (; j > 0 && (moved.t < items[j - 1].t ||
-                                 (moved.t == items[j - 1].t && comes_before(&moved, &items[j - 1], false)));
+                for (; j > 0 &&
+                       (moved.t < items[j - 1].t || (moved.t == items[j - 1].t && comes_before(&moved, &items[j - 1])));
                      j--)
                     items[j] = items[j - 1];
             items[j] = moved;
         }
         return;
     }
-    for (uint32_t i = count / 2; i-- > 0;)
-        sift_down(items, i, count, by_leaf);
-    for (uint32_t end = count; end-- > 1;) {
-        struct crossing last = items[end];
-        items[end] = items[0];
-        items[0] = last;
-        sift_down(items, 0, end, by_leaf);
-    }
+    if (by_leaf)
+        crossings_heap_sort(items, count, comes_before_by_leaf);
+    else
+        crossings_heap_sort(items, count, comes_before);
 }
 
 /* ---- the sweep ---- */

@@ -18,7 +18,7 @@ enum csg_operation { CSG_LEAF, CSG_UNION, CSG_INTERSECTION, CSG_DIFFERENCE, CSG_
 enum csg_cull { CSG_CULL_NONE, CSG_CULL_BACK, CSG_CULL_FRONT };
 
 struct csg_leaf {
-    struct shape shape; /* closed; not SHAPE_CSG (nested programs are flattened into one) */
+    struct shape shape; /* closed; nested programs are flattened into one */
     struct transform csg_from_leaf;
     const struct box *limit; /* in CSG space: nothing of the leaf that matters is outside of it; NULL: not known */
     uint32_t material;

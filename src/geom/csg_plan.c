@@ -430,7 +430,6 @@ const struct csg *csg_build_clipped(struct arena *arena, const struct csg_leaf *
         return NULL;
     }
     for (uint32_t i = 0; i < leaf_count; i++) {
-        assert(leaves[i].shape.kind != SHAPE_CSG);
         own_leaves[i] = leaves[i];
     }
     for (uint32_t i = 0; i < program_length; i++)

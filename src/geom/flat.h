@@ -1,10 +1,10 @@
-/* Flat shapes, anywhere in space: what is common to shape_plane.h, shape_rectangle.h, shape_disc.h, shape_triangle.h
- * and shape_polygon.h, which make them. A point is origin + a u + b v; a and b decide whether it belongs to the shape
- * and are its image coordinates, so u points along the rows of an image and v up its columns. The normal's side is the
- * front. */
+/* Flat shapes, anywhere in space: planes, parallelograms, discs, triangles and polygons. A point is origin + a u + b v;
+ * a and b decide whether it belongs to the shape and are its image coordinates, so u points along the rows of an image
+ * and v up its columns. The normal's side is the front. */
 #ifndef GRAY_GEOM_FLAT_H
 #define GRAY_GEOM_FLAT_H
 
+#include "base/arena.h"
 #include "geom/crossing.h"
 #include "geom/hit.h"
 #include "math/ray.h"
@@ -32,5 +32,38 @@ bool flat_contains(const struct flat *flat, struct vec3 point); /* of the half-s
 void flat_describe(const struct flat *flat, const struct ray *ray, const struct crossing *crossing,
                    struct surface *out);
 void flat_extent(const struct flat *flat, struct vec3 g, double *lo, double *hi);
+
+/* --- The infinite plane, and the half-space behind it --- */
+
+/* { p : normal . p = distance }, normal of any length > 0, distance in units of length. As a solid the plane is the
+ * half-space behind it. */
+struct flat flat_plane(struct vec3 normal, double distance);
+
+/* --- The square, the rectangle and the parallelogram --- */
+
+/* From a corner along two edges that are not parallel; the front is where `along` turns to `up` counter-clockwise, and
+ * there an image stands upright. */
+struct flat flat_parallelogram(struct vec3 corner, struct vec3 along, struct vec3 up);
+/* The square of docs/language.md 3.3: -0.5 .. 0.5 in x and z at y = 0, normal +y. */
+struct flat flat_square(void);
+
+/* --- The disc and the annulus --- */
+
+/* 0 <= inner < radius, normal of any length > 0. */
+struct flat flat_disc(struct vec3 centre, struct vec3 normal, double radius, double inner);
+
+/* --- The single triangle; many of them are a mesh --- */
+
+/* The front sees the corners counter-clockwise. */
+struct flat flat_triangle(struct vec3 a, struct vec3 b, struct vec3 c);
+
+/* --- The polygon: convex, concave, with holes --- */
+
+/* Outlines of points that lie in one plane, one after the other; ends[i] is one past the last point of outline i. A
+ * point is inside when it is so by the even-odd rule over all outlines; the front sees the first outline
+ * counter-clockwise. False, with what is wrong in `why`: fewer than three points, no area, not flat, or (why = NULL) no
+ * memory. */
+bool flat_polygon(struct arena *arena, const struct vec3 *points, const uint32_t *ends, uint32_t outlines,
+                  struct flat *out, const char **why);
 
 #endif

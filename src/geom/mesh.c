@@ -244,38 +244,6 @@ static bool before(const struct crossing *a, const struct crossing *b) {
     return a->t != b->t ? a->t < b->t : a->part < b->part;
 }
 
-static void swap(struct crossing *a, struct crossing *b) {
-    struct crossing c = *a;
-    *a = *b;
-    *b = c;
-}
-
-static void sift_down(struct crossing *items, uint32_t root, uint32_t count) {
-    for (uint32_t child; (child = 2 * root + 1) < count; root = child) {
-        if (child + 1 < count && before(&items[child], &items[child + 1]))
-            child++;
-        if (!before(&items[root], &items[child]))
-            return;
-        swap(&items[root], &items[child]);
-    }
-}
-
-/* Without allocating, and never quadratic: a line can meet a hundred thousand leaves. */
-static void sort(struct crossing *items, uint32_t count) {
-    if (count <= 16) {
-        for (uint32_t i = 1; i < count; i++)
-            for (uint32_t j = i; j > 0 && before(&items[j], &items[j - 1]); j--)
-                swap(&items[j], &items[j - 1]);
-        return;
-    }
-    for (uint32_t root = count / 2; root-- > 0;)
-        sift_down(items, root, count);
-    for (uint32_t last = count - 1; last > 0; last--) {
-        swap(&items[0], &items[last]);
-        sift_down(items, 0, last);
-    }
-}
-
 /* The signs of the triangle test make a line enter a closed mesh as often as it leaves it, but where it touches an edge
  * or passes a thin wall the two t are equal up to rounding and may stand in the wrong order. Within that rounding ways
  * in and out are made to alternate. */
@@ -317,7 +285,7 @@ bool mesh_crossings(const struct mesh *mesh, const struct ray *ray, enum accel_k
     }
     struct crossing *items = scratch->items + out->first;
     uint32_t count = scratch->used - out->first, kept = 0;
-    sort(items, count);
+    crossings_sort_by(items, count, before);
     for (uint32_t i = 0; i < count; i++)
         if (i == 0 || items[i].part != items[kept - 1].part)
             items[kept++] = items[i];

@@ -1,7 +1,6 @@
 /* The switch over shapes. A new shape adds one case to every function here; the compiler names those it forgot. */
 #include "geom/shape.h"
 
-#include "geom/csg.h"
 #include "geom/mesh.h"
 #include "geom/shape_blob.h"
 #include "geom/shape_box.h"
@@ -68,7 +67,6 @@ static bool shape_extent(const struct shape *shape, struct vec3 g, double *lo, d
         return quadric_extent(shape->quadric, g, lo, hi);
     case SHAPE_BOX:
     case SHAPE_MESH:
-    case SHAPE_CSG:
         return false;
     }
     return false;
@@ -120,8 +118,6 @@ struct box shape_bounds(const struct shape *shape) {
         return curve_bounds(shape->curve);
     case SHAPE_MESH:
         return mesh_bounds(shape->mesh);
-    case SHAPE_CSG:
-        return shape->csg->bounds;
     }
     return box_empty();
 }
@@ -150,7 +146,6 @@ static bool is_box_under(const struct shape *shape, const struct affine *map, co
     case SHAPE_BLOB:
     case SHAPE_CURVE:
     case SHAPE_MESH:
-    case SHAPE_CSG:
         break;
     }
     return false;
@@ -201,8 +196,6 @@ bool shape_is_closed(const struct shape *shape) {
         return false;
     case SHAPE_MESH:
         return mesh_is_closed(shape->mesh);
-    case SHAPE_CSG:
-        return !shape->csg->clipped;
     }
     return false;
 }
@@ -226,7 +219,6 @@ enum surface_layout shape_layout(const struct shape *shape) {
     case SHAPE_BLOB:
     case SHAPE_CURVE:
     case SHAPE_MESH:
-    case SHAPE_CSG:
         break;
     }
     return LAYOUT_UV;
@@ -252,7 +244,6 @@ enum shape_area shape_area(const struct shape *shape) {
     case SHAPE_HEIGHT_FIELD:
     case SHAPE_BLOB:
     case SHAPE_CURVE:
-    case SHAPE_CSG:
         break;
     }
     return SHAPE_AREA_UNKNOWN;
@@ -296,7 +287,6 @@ enum hit_hull shape_hull(const struct shape *shape) {
     case SHAPE_BLOB:
     case SHAPE_CURVE:
     case SHAPE_MESH:
-    case SHAPE_CSG: /* by its leaves */
         break;
     }
     return HULL_NONE;
@@ -319,8 +309,6 @@ const char *shape_why_open(const struct shape *shape) {
         return "is a sheet without walls and floor (open = true), so it has no inside";
     case SHAPE_MESH:
         return "is a mesh with open edges, so it has no inside";
-    case SHAPE_CSG:
-        return "is clipped, cut open without caps, so it has no inside";
     case SHAPE_SPHERE:
     case SHAPE_BOX:
     case SHAPE_ELLIPSOID:
@@ -360,7 +348,6 @@ static int analytic_crossings(const struct shape *shape, const struct ray *ray, 
     case SHAPE_BLOB:
     case SHAPE_CURVE:
     case SHAPE_MESH:
-    case SHAPE_CSG:
         break;
     }
     return 0;
@@ -395,7 +382,6 @@ bool shape_is_listed(const struct shape *shape) {
     case SHAPE_BLOB:
     case SHAPE_CURVE:
     case SHAPE_MESH:
-    case SHAPE_CSG:
         break;
     }
     return true;
@@ -426,7 +412,6 @@ static bool listed_crossings(const struct shape *shape, const struct ray *ray, s
     case SHAPE_SUPERELLIPSOID:
     case SHAPE_FLAT:
     case SHAPE_MESH:
-    case SHAPE_CSG:
         break;
     }
     *out = (struct crossing_list){scratch->used, 0};
@@ -474,8 +459,6 @@ bool shape_nearest(const struct shape *shape, const struct ray *ray, struct geom
         return height_field_nearest(shape->height_field, ray, scratch, out);
     case SHAPE_MESH:
         return mesh_nearest(shape->mesh, ray, ACCEL_AUTO, scratch, out);
-    case SHAPE_CSG:
-        return csg_nearest(shape->csg, ray, scratch, out);
     }
     return false;
 }
@@ -510,8 +493,6 @@ bool shape_any(const struct shape *shape, const struct ray *ray, struct geom_scr
     }
     case SHAPE_MESH:
         return mesh_any(shape->mesh, ray, ACCEL_AUTO, scratch);
-    case SHAPE_CSG:
-        return csg_any(shape->csg, ray, scratch);
     }
     return false;
 }
@@ -554,8 +535,6 @@ bool shape_crossings(const struct shape *shape, const struct ray *ray, struct ge
         return listed_crossings(shape, ray, scratch, out);
     case SHAPE_MESH:
         return mesh_crossings(shape->mesh, ray, ACCEL_AUTO, scratch, out);
-    case SHAPE_CSG:
-        return csg_crossings(shape->csg, ray, scratch, out);
     }
     return false;
 }
@@ -611,8 +590,6 @@ bool shape_contains(const struct shape *shape, struct vec3 point, struct geom_sc
         return false;
     case SHAPE_MESH:
         return mesh_contains(shape->mesh, point, scratch);
-    case SHAPE_CSG:
-        return csg_contains(shape->csg, point, scratch);
     }
     return false;
 }
@@ -665,9 +642,6 @@ void shape_describe(const struct shape *shape, const struct ray *ray, const stru
     case SHAPE_MESH:
         mesh_describe(shape->mesh, ray, crossing, out);
         return;
-    case SHAPE_CSG:
-        csg_describe(shape->csg, ray, crossing, out);
-        return;
     }
 }
 
@@ -700,8 +674,6 @@ uint32_t shape_scratch_need(const struct shape *shape) {
         return curve_scratch_need(shape->curve);
     case SHAPE_MESH:
         return MESH_CROSSINGS_GUESS;
-    case SHAPE_CSG:
-        return shape->csg->max_crossings;
     }
     return 0;
 }

@@ -10,15 +10,14 @@
 #include "geom/crossing.h"
 #include "geom/flat.h"
 #include "geom/hit.h"
-#include "geom/shape_ellipsoid.h"
 #include "geom/shape_quadric.h"
+#include "geom/shape_sphere.h"
 #include "geom/shape_superellipsoid.h"
 #include "geom/shape_torus.h"
 #include "math/box.h"
 #include "math/ray.h"
 
 struct mesh;
-struct csg;
 struct lathe;
 struct prism;
 struct sweep_path;
@@ -42,8 +41,7 @@ struct curve;
     X(SHAPE_HEIGHT_FIELD, "height field")                                                                              \
     X(SHAPE_BLOB, "blob")                                                                                              \
     X(SHAPE_CURVE, "curve")                                                                                            \
-    X(SHAPE_MESH, "mesh")                                                                                              \
-    X(SHAPE_CSG, "csg")
+    X(SHAPE_MESH, "mesh")
 enum shape_kind { SHAPE_KINDS(LIST_MEMBER) };
 enum { SHAPE_KIND_COUNT = LIST_COUNT(SHAPE_KINDS) };
 
@@ -68,7 +66,6 @@ struct shape {
         const struct blob *blob;
         const struct curve *curve;
         const struct mesh *mesh;
-        const struct csg *csg;
     };
 };
 
@@ -85,7 +82,7 @@ bool shape_inner_box(const struct shape *shape, const struct affine *map, struct
 bool shape_is_listed(const struct shape *shape);
 /* What a shape supplies to place images on it: u and v with v from below (or nothing, has_uv); u and v on one of
  * several upright faces, each an image of its own with v from above; a pattern_normal that points from the centre of a
- * ball (shape_native_uv works out its u and v). Of CSG that of its operands is not known: LAYOUT_UV. */
+ * ball (shape_native_uv works out its u and v). */
 enum surface_layout { LAYOUT_UV, LAYOUT_FACES, LAYOUT_SPHERE };
 enum { SURFACE_LAYOUTS = LAYOUT_SPHERE + 1 };
 enum surface_layout shape_layout(const struct shape *shape);
@@ -111,12 +108,12 @@ bool shape_any(const struct shape *shape, const struct ray *ray, struct geom_scr
  * pops by setting scratch->used = list.first. Tangential touches appear twice (enter, leave) or not at all. */
 bool shape_crossings(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch,
                      struct crossing_list *out);
-/* Whether a point of object space is inside a closed shape, decided pointwise (for CSG: the boolean expression of the
- * operands). Used by tests and for the camera's first media stack. Meshes: parity of crossings along a fixed ray. */
+/* Whether a point of object space is inside a closed shape, decided pointwise. Used by tests and for the camera's first
+ * media stack. Meshes: parity of crossings along a fixed ray. */
 bool shape_contains(const struct shape *shape, struct vec3 point, struct geom_scratch *scratch);
 void shape_describe(const struct shape *shape, const struct ray *ray, const struct crossing *crossing,
                     struct surface *out);
-/* Upper bound of the scratch items one ray can need when it is known (analytic shapes, CSG of them), else a guess. */
+/* Upper bound of the scratch items one ray can need when it is known (analytic shapes), else a guess. */
 uint32_t shape_scratch_need(const struct shape *shape);
 
 #endif

@@ -10,7 +10,7 @@
 #include "geom/shape_blob.h"
 
 #include "geom/bernstein.h"
-#include "geom/line.h"
+#include "geom/crossing.h"
 #include "geom/part_tree.h"
 #include "geom/wrap.h"
 

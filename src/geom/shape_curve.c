@@ -8,9 +8,9 @@
 #include "geom/shape_curve.h"
 
 #include "geom/bernstein.h"
-#include "geom/line.h"
-#include "geom/outline.h"
+#include "geom/crossing.h"
 #include "geom/part_tree.h"
+#include "geom/spline.h"
 
 #include <string.h>
 

@@ -7,7 +7,7 @@
  * divided in four; the line meets at most three of them, one after the other. */
 #include "geom/shape_height_field.h"
 
-#include "geom/line.h"
+#include "geom/crossing.h"
 
 enum { FLOOR, WALL_X0, WALL_X1, WALL_Z0, WALL_Z1, GROUND, MAX_LEVELS = 18 };
 

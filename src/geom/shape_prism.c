@@ -7,9 +7,9 @@
 #include "geom/shape_prism.h"
 
 #include "geom/bernstein.h"
-#include "geom/line.h"
-#include "geom/outline.h"
+#include "geom/crossing.h"
 #include "geom/part_tree.h"
+#include "geom/spline.h"
 
 enum { BOTTOM, TOP, SIDES };
 

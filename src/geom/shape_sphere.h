@@ -18,4 +18,16 @@ void sphere_uv(double radius, struct surface *surface);
 /* How the point with this unit normal moves with u and with v. */
 void sphere_tangents(double radius, struct vec3 normal, struct vec3 *dpdu, struct vec3 *dpdv);
 
+/* --- The ellipsoid with its axes along x, y and z, in its own space --- */
+
+struct ellipsoid {
+    struct vec3 centre, radii; /* > 0 */
+};
+
+int ellipsoid_crossings(const struct ellipsoid *e, const struct ray *ray, struct crossing out[2]);
+bool ellipsoid_contains(const struct ellipsoid *e, struct vec3 point);
+void ellipsoid_describe(const struct ellipsoid *e, const struct ray *ray, const struct crossing *crossing,
+                        struct surface *out);
+void ellipsoid_extent(const struct ellipsoid *e, struct vec3 g, double *lo, double *hi);
+
 #endif

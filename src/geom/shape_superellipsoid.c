@@ -51,12 +51,12 @@ static double value_and_slope(const struct superellipsoid *s, struct vec3 p, str
 }
 
 /* The line measured from its point nearest to the middle, in units of the direction's length. */
-struct line {
+struct measured_line {
     struct vec3 o, d;
     double shift, length, lo, hi;
 };
 
-static bool line_in_box(const struct ray *ray, struct line *line) {
+static bool line_in_box(const struct ray *ray, struct measured_line *line) {
     double length = vec3_length(ray->direction);
     if (!(length > 0) || !isfinite(length))
         return false;
@@ -83,7 +83,8 @@ static bool line_in_box(const struct ray *ray, struct line *line) {
 /* ---- convex ---- */
 
 /* From outside at t along the sign; false when N stops falling first. */
-static bool newton(const struct superellipsoid *s, const struct line *line, double t, double sign, double *root) {
+static bool newton(const struct superellipsoid *s, const struct measured_line *line, double t, double sign,
+                   double *root) {
     struct vec3 d = vec3_scale(line->d, sign);
     double end = sign > 0 ? line->hi : -line->lo;
     t *= sign;
@@ -104,7 +105,7 @@ static bool newton(const struct superellipsoid *s, const struct line *line, doub
     return true;
 }
 
-static int convex_crossings(const struct superellipsoid *s, const struct line *line, double roots[2]) {
+static int convex_crossings(const struct superellipsoid *s, const struct measured_line *line, double roots[2]) {
     if (!newton(s, line, line->lo, 1, &roots[0]) || !newton(s, line, line->hi, -1, &roots[1]))
         return 0;
     return roots[0] < roots[1] ? 2 : 0;
@@ -136,7 +137,7 @@ static struct range range_add_scaled(struct range sum, struct range a, double sc
 
 struct search {
     const struct superellipsoid *s;
-    const struct line *line;
+    const struct measured_line *line;
     double roots[SUPERELLIPSOID_MOST];
     int count;
 };
@@ -189,7 +190,7 @@ static void search_piece(struct search *f, double lo, double hi, bool lo_in, boo
     search_piece(f, middle, hi, middle_in, hi_in, depth - 1);
 }
 
-static int folded_crossings(const struct superellipsoid *s, const struct line *line, double *roots) {
+static int folded_crossings(const struct superellipsoid *s, const struct measured_line *line, double *roots) {
     struct search f = {.s = s, .line = line};
     double cuts[5] = {line->lo};
     int count = 1;
@@ -218,7 +219,7 @@ static int folded_crossings(const struct superellipsoid *s, const struct line *l
 
 int superellipsoid_crossings(const struct superellipsoid *s, const struct ray *ray,
                              struct crossing out[SUPERELLIPSOID_MOST]) {
-    struct line line;
+    struct measured_line line;
     if (!line_in_box(ray, &line))
         return 0;
     double roots[SUPERELLIPSOID_MOST];

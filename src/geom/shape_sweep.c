@@ -10,9 +10,9 @@
 #include "geom/shape_sweep.h"
 
 #include "geom/bernstein.h"
-#include "geom/line.h"
-#include "geom/outline.h"
+#include "geom/crossing.h"
 #include "geom/part_tree.h"
+#include "geom/spline.h"
 #include "math/elementary.h"
 
 #include <string.h>

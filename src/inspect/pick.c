@@ -61,11 +61,10 @@ static bool find_route(void *context, uint32_t first, uint32_t count, const stru
 
 /* The node that is so many above what was placed, or below. */
 static bool choose_node(struct picking *p, const struct hit *hit, int32_t up) {
-    const struct shape *shape = &placed_thing(p->world, p->placed)->shape;
+    const struct csg *csg = placed_geometry(p->world, p->placed)->csg;
     uint32_t length = 0;
-    if (shape->kind == SHAPE_CSG &&
-        !world_operand_way(p->steps[p->route - 1].node, shape->csg->leaves[hit->leaf].origin, p->steps + p->route,
-                           ROUTE_LIMIT - p->route, &length))
+    if (csg && !world_operand_way(p->steps[p->route - 1].node, csg->leaves[hit->leaf].origin, p->steps + p->route,
+                                  ROUTE_LIMIT - p->route, &length))
         return false;
     int32_t route = (int32_t)p->route, below = (int32_t)length;
     up = up > route - 1 ? route - 1 : up < -below ? -below : up;
@@ -149,7 +148,7 @@ static bool box_node(struct picking *p, const struct node *root, struct error *e
     const struct thing *thing = placed_thing(p->world, p->placed);
     if (p->depth == p->route && thing->parts == 1 && !thing->is_later_part) {
         struct transform map = world_placement(p->world, p->placed, 0);
-        struct box box = shape_bounds(&thing->shape);
+        struct box box = geometry_bounds(&thing->geometry);
         set_corners(p->out, &box, &map.forward);
         return true;
     }
@@ -166,9 +165,9 @@ static bool box_node(struct picking *p, const struct node *root, struct error *e
 
 static const char *shape_words(const struct picking *p, const struct node *node) {
     if (p->depth == p->route)
-        return shape_kind_name(placed_shape(p->world, p->placed)->kind);
+        return geometry_kind_name(placed_geometry(p->world, p->placed));
     bool solid = p->depth > p->route && node->kind != NODE_GROUP && node->kind != NODE_JOINT;
-    return solid ? shape_kind_name(node->kind == NODE_CSG ? SHAPE_CSG : node->shape.kind) : "group";
+    return !solid ? "group" : node->kind == NODE_CSG ? "csg" : shape_kind_name(node->shape.kind);
 }
 
 /* "marble over phong", and the base. */

@@ -81,13 +81,13 @@ static void json_light(const struct trace_report *report, struct text_writer *wr
 static void json_hit(const struct trace_report *report, struct text_writer *writer, const struct story_ray *ray) {
     const struct world *world = report->picture->job->world;
     const struct hit *hit = &ray->hit;
-    const struct shape *shape = placed_shape(world, hit->placed);
+    const struct geometry *geometry = placed_geometry(world, hit->placed);
     text(writer, "node", trace_path(report, hit->placed));
     text_writer_print(writer, ",\"node_number\":%u,\"placed\":%u,\"shape\":\"%s\"",
-                      placed_node(world, hit->placed)->serial, hit->placed, shape_kind_name(shape->kind));
-    if (shape->kind == SHAPE_CSG)
+                      placed_node(world, hit->placed)->serial, hit->placed, geometry_kind_name(geometry));
+    if (geometry->csg)
         text_writer_print(writer, ",\"operand\":%u,\"operand_shape\":\"%s\"", hit->leaf + 1,
-                          shape_kind_name(shape->csg->leaves[hit->leaf].shape.kind));
+                          shape_kind_name(geometry_shape(geometry, hit->leaf)->kind));
     text_writer_print(writer, ",\"part\":%u", hit->part);
     number(writer, "t", hit->t);
     flag(writer, "front", hit->front);

@@ -141,14 +141,14 @@ static void print_light(const struct text_state *t, const struct story_light *li
 static void print_hit(const struct text_state *t, const struct story_ray *ray) {
     const struct world *world = t->report->picture->job->world;
     const struct hit *hit = &ray->hit;
-    const struct shape *shape = placed_shape(world, hit->placed);
+    const struct geometry *geometry = placed_geometry(world, hit->placed);
     indent(t, 1);
     text_writer_print(t->writer, "meets ");
     text_writer_name(t->writer, trace_path(t->report, hit->placed));
-    text_writer_print(t->writer, ", %s", shape_kind_name(shape->kind));
-    if (shape->kind == SHAPE_CSG)
-        text_writer_print(t->writer, ", operand %u of %u, %s", hit->leaf + 1, shape->csg->leaf_count,
-                          shape_kind_name(shape->csg->leaves[hit->leaf].shape.kind));
+    text_writer_print(t->writer, ", %s", geometry_kind_name(geometry));
+    if (geometry->csg)
+        text_writer_print(t->writer, ", operand %u of %u, %s", hit->leaf + 1, geometry->csg->leaf_count,
+                          shape_kind_name(geometry_shape(geometry, hit->leaf)->kind));
     text_writer_print(t->writer, ", part %u, from %s, at distance %.6g\n", hit->part, hit->front ? "outside" : "inside",
                       ray->distance);
     indent(t, 1);

@@ -12,10 +12,6 @@ struct dump {
     bool json;
 };
 
-static uint32_t triangles_of(const struct shape *shape) {
-    return shape->kind == SHAPE_MESH ? mesh_triangle_count(shape->mesh) : 0;
-}
-
 /* Of a material in the world, from 1. */
 static uint32_t number_of(const struct dump *d, uint32_t material) {
     return d->world->material_numbers[material] + 1;
@@ -23,24 +19,25 @@ static uint32_t number_of(const struct dump *d, uint32_t material) {
 
 static void dump_line(const struct dump *d, uint32_t placed, const char *path) {
     const struct thing *thing = placed_thing(d->world, placed);
+    const struct mesh *mesh = geometry_mesh(&thing->geometry);
     const struct box *box = &d->world->boxes[placed];
     char material[24] = "-", triangles[24] = "-";
     bool moves = d->world->placed[placed].linear != LINEAR_NONE && (d->world->placed[placed].linear & LINEAR_MOVING);
-    uint32_t first = thing->shape.kind != SHAPE_CSG ? number_of(d, thing->material) : 0;
+    uint32_t first = !thing->geometry.csg ? number_of(d, thing->material) : 0;
     if (first > 0)
         (void)snprintf(material, sizeof material, thing->slot_count > 1 ? "%u-%u" : "%u", first,
                        first + thing->slot_count - 1);
-    if (thing->shape.kind == SHAPE_MESH)
-        (void)snprintf(triangles, sizeof triangles, "%u", triangles_of(&thing->shape));
+    if (mesh)
+        (void)snprintf(triangles, sizeof triangles, "%u", mesh_triangle_count(mesh));
     text_writer_print(d->writer, "%8u  %-14s %9s %9s  %-5s (%.6g, %.6g, %.6g) to (%.6g, %.6g, %.6g)  ", placed + 1,
-                      shape_kind_name(thing->shape.kind), triangles, material, moves ? "moves" : "", box->min.x,
+                      geometry_kind_name(&thing->geometry), triangles, material, moves ? "moves" : "", box->min.x,
                       box->min.y, box->min.z, box->max.x, box->max.y, box->max.z);
     text_writer_name(d->writer, path);
     text_writer_print(d->writer, "\n");
-    if (thing->shape.kind != SHAPE_CSG)
+    if (!thing->geometry.csg)
         return;
-    for (uint32_t i = 0; i < thing->shape.csg->leaf_count; i++) {
-        const struct csg_leaf *leaf = &thing->shape.csg->leaves[i];
+    for (uint32_t i = 0; i < thing->geometry.csg->leaf_count; i++) {
+        const struct csg_leaf *leaf = &thing->geometry.csg->leaves[i];
         text_writer_print(d->writer, "          . operand %u: %s, material %u\n", i + 1,
                           shape_kind_name(leaf->shape.kind), number_of(d, leaf->material));
     }
@@ -48,19 +45,20 @@ static void dump_line(const struct dump *d, uint32_t placed, const char *path) {
 
 static void dump_json(const struct dump *d, uint32_t placed, const char *path) {
     const struct thing *thing = placed_thing(d->world, placed);
+    const struct mesh *mesh = geometry_mesh(&thing->geometry);
     struct text_writer *writer = d->writer;
     text_writer_print(writer, "%s{\"number\":%u,\"node\":", placed > 0 ? "," : "", placed + 1);
     text_writer_json(writer, path);
     text_writer_print(writer, ",\"node_number\":%u,\"shape\":\"%s\"", placed_node(d->world, placed)->serial,
-                      shape_kind_name(thing->shape.kind));
-    if (thing->shape.kind == SHAPE_MESH)
-        text_writer_print(writer, ",\"triangles\":%u", triangles_of(&thing->shape));
-    if (thing->shape.kind == SHAPE_CSG) {
+                      geometry_kind_name(&thing->geometry));
+    if (mesh)
+        text_writer_print(writer, ",\"triangles\":%u", mesh_triangle_count(mesh));
+    if (thing->geometry.csg) {
         text_writer_print(writer, ",\"operands\":[");
-        for (uint32_t i = 0; i < thing->shape.csg->leaf_count; i++)
+        for (uint32_t i = 0; i < thing->geometry.csg->leaf_count; i++)
             text_writer_print(writer, "%s{\"shape\":\"%s\",\"material\":%u}", i > 0 ? "," : "",
-                              shape_kind_name(thing->shape.csg->leaves[i].shape.kind),
-                              number_of(d, thing->shape.csg->leaves[i].material));
+                              shape_kind_name(thing->geometry.csg->leaves[i].shape.kind),
+                              number_of(d, thing->geometry.csg->leaves[i].material));
         text_writer_print(writer, "]");
     } else {
         text_writer_print(writer, ",\"material\":%u,\"slots\":%u", number_of(d, thing->material),

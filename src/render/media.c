@@ -8,7 +8,7 @@ void media_around(const struct world *world, struct vec3 point, double ray_time,
     out->count = 0;
     for (uint32_t i = 0; i < count; i++) {
         const struct thing *thing = placed_thing(world, inside[i]);
-        uint32_t material = thing->shape.kind == SHAPE_CSG ? thing->shape.csg->leaves[0].material : thing->material;
+        uint32_t material = thing->geometry.csg ? thing->geometry.csg->leaves[0].material : thing->material;
         if (world->material_medium[material] == MEDIUM_NONE)
             continue;
         struct medium medium = world->media[world->material_medium[material]];

@@ -54,7 +54,7 @@ struct casters {
 
 static double placed_strength(const struct world *world, uint32_t index) {
     const struct thing *thing = placed_thing(world, index);
-    const struct csg *csg = thing->shape.kind == SHAPE_CSG ? thing->shape.csg : NULL;
+    const struct csg *csg = thing->geometry.csg;
     double most = 0;
     for (uint32_t leaf = 0; leaf < (csg ? csg->leaf_count : 1); leaf++) {
         uint32_t material = csg ? csg->leaves[leaf].material : thing->material;
@@ -73,14 +73,14 @@ static bool is_finite(const struct box *box) {
 
 static struct caster caster_make(const struct world *world, uint32_t index, const struct box *box, double strength) {
     struct caster caster = {.box = *box, .strength = strength, .order = index};
-    const struct shape *shape = placed_shape(world, index);
+    const struct geometry *geometry = placed_geometry(world, index);
     uint32_t linear = world->placed[index].linear;
     bool still = linear == LINEAR_NONE || !(linear & LINEAR_MOVING);
     caster.middle = vec3_scale(vec3_add(box->min, box->max), 0.5);
     caster.radius = vec3_length(vec3_sub(box->max, caster.middle));
-    if (shape->kind == SHAPE_SPHERE && still) {
+    if (!geometry->csg && geometry->shape.kind == SHAPE_SPHERE && still) {
         double stretch = linear == LINEAR_NONE ? 1 : world->linear_maps[linear].stretch;
-        caster.radius = fmin(caster.radius, shape->sphere.radius * stretch * (1 + 0x1p-30));
+        caster.radius = fmin(caster.radius, geometry->shape.sphere.radius * stretch * (1 + 0x1p-30));
     }
     return caster;
 }

@@ -3,8 +3,7 @@
 #include "scene/change.h"
 
 #include "base/mem.h"
-#include "geom/shape_cone.h"
-#include "geom/shape_cylinder.h"
+#include "geom/conic.h"
 #include "scene/traversal.h"
 
 #include <stddef.h>

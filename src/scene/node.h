@@ -58,7 +58,7 @@ struct node {
         double min, init, max;
     } joint_x, joint_y; /* NODE_JOINT, degrees */
     /* A NODE_JOINT ends here. */
-    struct shape shape;              /* NODE_GEOMETRY; never SHAPE_CSG */
+    struct shape shape;              /* NODE_GEOMETRY */
     const struct material *material; /* may be NULL: plain gray and one warning */
     /* A mesh whose faces have slots: their materials, NULL for plain gray. `material`, where it is set, covers them
      * all. */

@@ -1,14 +1,7 @@
 /* Analytic shapes: every row of the table becomes a geometry node with one shape in it. Numbers are checked here for
  * what the table cannot say about several of them together, and for sizes beyond what the root-finders are made for. */
-#include "geom/shape_cone.h"
-#include "geom/shape_cylinder.h"
-#include "geom/shape_disc.h"
-#include "geom/shape_hyperboloid.h"
-#include "geom/shape_paraboloid.h"
-#include "geom/shape_plane.h"
-#include "geom/shape_polygon.h"
-#include "geom/shape_rectangle.h"
-#include "geom/shape_triangle.h"
+#include "geom/conic.h"
+#include "geom/flat.h"
 #include "math/range.h"
 #include "script/context.h"
 #include "script/table_rows.h"

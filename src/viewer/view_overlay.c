@@ -96,10 +96,10 @@ struct outline_job {
 };
 
 static bool is_member(const struct node_members *s, const struct hit *hit) {
-    const struct shape *shape = placed_shape(s->world, hit->placed);
-    if (!s->member[hit->placed] || s->request->solid == 0 || shape->kind != SHAPE_CSG)
+    const struct csg *csg = placed_geometry(s->world, hit->placed)->csg;
+    if (!s->member[hit->placed] || s->request->solid == 0 || !csg)
         return s->member[hit->placed];
-    uint32_t origin = shape->csg->leaves[hit->leaf].origin;
+    uint32_t origin = csg->leaves[hit->leaf].origin;
     return origin >= s->first_leaf && origin < s->end_leaf;
 }
 

@@ -97,20 +97,20 @@ static bool count_drawable(struct flattening *f, const struct node *root, uint32
 
 /* --- placing --- */
 
-static bool any_holes(const struct flattening *f, const struct shape *shape, uint32_t material, uint32_t slot_count) {
+static bool any_slot_has_holes(const struct flattening *f, uint32_t material, uint32_t slot_count) {
     const struct material **materials = f->world->authored.materials;
-    if (shape->kind == SHAPE_CSG) {
-        for (uint32_t i = 0; i < shape->csg->leaf_count; i++) {
-            const struct csg_leaf *leaf = &shape->csg->leaves[i];
-            if (any_holes(f, &leaf->shape, leaf->material, leaf->slot_count))
-                return true;
-        }
-        return false;
-    }
     for (uint32_t i = 0; i < (slot_count > 1 ? slot_count : 1); i++)
         if (material_has_holes(materials[material + i]))
             return true;
     return false;
+}
+
+static bool any_holes(const struct flattening *f, const struct thing *thing) {
+    const struct csg *csg = thing->geometry.csg;
+    for (uint32_t i = 0; csg && i < csg->leaf_count; i++)
+        if (any_slot_has_holes(f, csg->leaves[i].material, csg->leaves[i].slot_count))
+            return true;
+    return !csg && any_slot_has_holes(f, thing->material, thing->slot_count);
 }
 
 /* Room for one more in a list that doubles. */
@@ -196,7 +196,7 @@ static bool add_thing(struct flattening *f, const struct node *node, struct thin
     if (!nodes)
         return error_no_memory(f->error, "the things of the scene");
     world->authored.nodes = nodes;
-    thing->holes = any_holes(f, &thing->shape, thing->material, thing->slot_count);
+    thing->holes = any_holes(f, thing);
     things[world->thing_count] = *thing;
     nodes[world->thing_count++] = node;
     return true;
@@ -209,7 +209,7 @@ static bool make_csg(struct flattening *f, const struct node *node, const struct
     if (!flatten_csg(f, node, stand, around, &parts, &count))
         return false;
     for (uint32_t i = 0; i < count; i++) {
-        struct thing thing = {.shape = {.kind = SHAPE_CSG, .csg = parts[i]}, .slot_count = 1, .parts = count - i};
+        struct thing thing = {.geometry = geometry_of_csg(parts[i]), .slot_count = 1, .parts = count - i};
         thing.is_later_part = i > 0;
         if (!add_thing(f, node, &thing))
             return false;
@@ -228,7 +228,7 @@ static bool make_thing(struct flattening *f, const struct node *node, const stru
         if (!make_csg(f, node, stand, around))
             return false;
     } else {
-        struct thing thing = {.shape = node->shape, .cull = node->cull, .parts = 1};
+        struct thing thing = {.geometry = geometry_of_shape(&node->shape), .cull = node->cull, .parts = 1};
         const struct material *inherited = around ? around->inherited : NULL;
         if ((!f->unasked && !flatten_mesh_accel(f, &node->shape)) ||
             !flatten_material(f, node, inherited, &thing.material, &thing.slot_count) || !add_thing(f, node, &thing))

@@ -36,7 +36,7 @@ static void add_triangle(struct gathering *g, const struct mesh *mesh, uint32_t 
 
 static void add_mesh(struct gathering *g, uint32_t index) {
     const struct thing *thing = placed_thing(g->world, index);
-    const struct mesh *mesh = thing->shape.mesh;
+    const struct mesh *mesh = thing->geometry.shape.mesh;
     struct transform map =
         world_placement(g->world, index, 0.5); /* of what moves: in the middle of the shutter's time */
     bool mirrored = affine_determinant(&map.forward) < 0;
@@ -50,13 +50,13 @@ static void add_mesh(struct gathering *g, uint32_t index) {
 }
 
 static bool is_lamp(const struct gathering *g, uint32_t index) {
-    return (!g->marked || g->marked[index]) && placed_shape(g->world, index)->kind == SHAPE_MESH;
+    return (!g->marked || g->marked[index]) && geometry_mesh(placed_geometry(g->world, index));
 }
 
 static uint64_t count_triangles(const struct gathering *g) {
     uint64_t total = 0;
     for (uint32_t i = 0; i < g->world->placed_count; i++)
-        total += is_lamp(g, i) ? mesh_triangle_count(placed_shape(g->world, i)->mesh) : 0;
+        total += is_lamp(g, i) ? mesh_triangle_count(placed_geometry(g->world, i)->shape.mesh) : 0;
     return total;
 }
 
@@ -75,7 +75,7 @@ bool light_lamps_primitive(const struct world *world, uint32_t placed, struct li
                            struct error *error) {
     struct gathering g = {.world = world, .light = light};
     struct light_mesh *mesh = arena_alloc(arena, sizeof *mesh);
-    if (!mesh || !light_mesh_begin(&g.mesh, mesh_triangle_count(placed_shape(world, placed)->mesh), arena))
+    if (!mesh || !light_mesh_begin(&g.mesh, mesh_triangle_count(placed_geometry(world, placed)->shape.mesh), arena))
         return error_no_memory(error, "a mesh light");
     add_mesh(&g, placed);
     light_mesh_end(&g.mesh, light->colour, mesh);

@@ -77,7 +77,7 @@ static uint64_t meet_box(const struct packet_search *s, const struct box *box) {
 static bool is_plain_mesh(const struct world *world, uint32_t index) {
     const struct thing *thing = placed_thing(world, index);
     uint32_t linear = world->placed[index].linear;
-    return thing->shape.kind == SHAPE_MESH && thing->cull == CULL_NONE &&
+    return geometry_mesh(&thing->geometry) && thing->cull == CULL_NONE &&
            (linear == LINEAR_NONE || !(linear & LINEAR_MOVING));
 }
 
@@ -127,7 +127,7 @@ static void better(struct packet_search *s, unsigned i, uint32_t index, const st
 static void try_mesh(struct packet_search *s, uint32_t index, uint64_t active) {
     struct ray_packet object;
     struct packet_hits hits;
-    const struct mesh *mesh = placed_shape(s->world, index)->mesh;
+    const struct mesh *mesh = placed_geometry(s->world, index)->shape.mesh;
     uint64_t met = mesh_nearest_packet(mesh, placed_rays(s, index, &object), active, s->world->mesh_accel,
                                        &s->scratch->geom, &hits);
     for (; met; met &= met - 1) {
@@ -208,7 +208,7 @@ static uint64_t stopped_by(const struct packet_search *s, uint32_t index, uint64
     const struct thing *thing = placed_thing(s->world, index);
     if (is_plain_mesh(s->world, index) && !thing->holes) {
         struct ray_packet object;
-        return mesh_any_packet(thing->shape.mesh, placed_rays(s, index, &object), active, s->world->mesh_accel,
+        return mesh_any_packet(thing->geometry.shape.mesh, placed_rays(s, index, &object), active, s->world->mesh_accel,
                                &s->scratch->geom);
     }
     uint64_t stopped = 0;

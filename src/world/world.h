@@ -5,9 +5,8 @@
 
 #include "base/arena.h"
 #include "base/pool.h"
-#include "geom/csg.h"
+#include "geom/geometry.h"
 #include "geom/hit.h"
-#include "geom/shape.h"
 #include "material/medium_stack.h"
 #include "math/motion.h"
 #include "scene/node.h"
@@ -28,7 +27,7 @@ struct moving {
 
 /* What all placements of one node share. */
 struct thing {
-    struct shape shape;
+    struct geometry geometry;
     uint32_t material;   /* unused for CSG: the leaves have their own */
     uint32_t slot_count; /* of a mesh: face slot k has material + k; below 2 all have `material` */
     enum node_cull cull; /* of a mesh */
@@ -135,8 +134,8 @@ size_t world_placed_memory(const struct world *world);
 static inline const struct thing *placed_thing(const struct world *world, uint32_t placed) {
     return &world->things[world->placed[placed].thing];
 }
-static inline const struct shape *placed_shape(const struct world *world, uint32_t placed) {
-    return &placed_thing(world, placed)->shape;
+static inline const struct geometry *placed_geometry(const struct world *world, uint32_t placed) {
+    return &placed_thing(world, placed)->geometry;
 }
 /* It stands at another place at another time. */
 static inline bool placed_moves(const struct world *world, uint32_t placed) {

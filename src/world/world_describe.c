@@ -32,20 +32,15 @@ static bool same_vector(const struct vec3 *a, const struct vec3 *b) {
     return memcmp(a, b, sizeof *a) == 0;
 }
 
-/* The shape that made the surface: of a solid one of its operands. */
-static const struct shape *shape_of(const struct thing *thing, uint32_t leaf) {
-    return thing->shape.kind == SHAPE_CSG ? &thing->shape.csg->leaves[leaf].shape : &thing->shape;
-}
-
 bool world_native_uv(const struct world *world, const struct hit *hit, double *u, double *v) {
-    return shape_native_uv(shape_of(placed_thing(world, hit->placed), hit->leaf), hit, u, v);
+    return shape_native_uv(geometry_shape(placed_geometry(world, hit->placed), hit->leaf), hit, u, v);
 }
 
 /* What bumps need: the world's vectors of one unit along the operand's normal and along its tangents, and on spheres
  * the tangents of their coordinates, which other materials do not ask for. */
 static void describe_relief(const struct thing *thing, const struct affine *map, const struct csg_leaf *leaf,
                             struct hit *hit) {
-    const struct shape *shape = shape_of(thing, hit->leaf);
+    const struct shape *shape = geometry_shape(&thing->geometry, hit->leaf);
     bool is_ball = shape_layout(shape) == LAYOUT_SPHERE;
     struct vec3 normal = vec3_normalize(hit->pattern_normal), raise = normal, u = {0}, v = {0}, a, b;
     frame_tangents(normal, &a, &b);
@@ -79,7 +74,7 @@ static double stretch_of(const struct world *world, uint32_t index, const struct
 static enum hit_hull hull_of(const struct thing *thing, const struct csg_leaf *leaf, const struct crossing *crossing) {
     if (!leaf)
         return thing->hull;
-    return thing->shape.csg->hull[crossing->leaf] && !crossing->flip ? HULL_BEHIND : HULL_NONE;
+    return thing->geometry.csg->hull[crossing->leaf] && !crossing->flip ? HULL_BEHIND : HULL_NONE;
 }
 
 /* The surface of an object in the world; map NULL: the object's space is the world. Every field of the hit is written
@@ -143,10 +138,10 @@ void world_describe(const struct world *world, const struct ray *ray, uint32_t i
         own_ray = &ray_object;
     }
     struct surface surface;
-    shape_describe(&thing->shape, own_ray, crossing, &surface);
+    geometry_describe(&thing->geometry, own_ray, crossing, &surface);
     double length = vec3_length(ray->direction);
-    bool in_csg = thing->shape.kind == SHAPE_CSG;
-    const struct csg_leaf *leaf = in_csg ? &thing->shape.csg->leaves[surface.leaf] : NULL;
+    bool in_csg = thing->geometry.csg != NULL;
+    const struct csg_leaf *leaf = in_csg ? &thing->geometry.csg->leaves[surface.leaf] : NULL;
     uint32_t material = in_csg ? leaf->material : thing->material;
     uint32_t slot_count = in_csg ? leaf->slot_count : thing->slot_count;
     if (surface.material_slot < slot_count)

@@ -4,16 +4,16 @@
 #include <string.h>
 
 /* Such a solid holds what is outside of its box. */
-static bool is_inside_out(const struct shape *shape) {
-    return shape->kind == SHAPE_CSG && shape->csg->inside_out;
+static bool is_inside_out(const struct geometry *geometry) {
+    return geometry->csg && geometry->csg->inside_out;
 }
 
 uint32_t world_closed_in(const struct world *world, const struct box *region, uint32_t *out, uint32_t limit) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < world->placed_count; i++) {
         struct box common = box_meet(world->boxes[i], *region);
-        const struct shape *shape = placed_shape(world, i);
-        if ((box_is_empty(&common) && !is_inside_out(shape)) || !shape_is_closed(shape))
+        const struct geometry *geometry = placed_geometry(world, i);
+        if ((box_is_empty(&common) && !is_inside_out(geometry)) || !geometry_is_closed(geometry))
             continue;
         if (out && count < limit)
             out[count] = i;
@@ -23,10 +23,10 @@ uint32_t world_closed_in(const struct world *world, const struct box *region, ui
 }
 
 static bool contains(const struct world *world, uint32_t index, struct vec3 p_object, struct world_scratch *scratch) {
-    const struct shape *shape = placed_shape(world, index);
-    bool inside = shape_contains(shape, p_object, &scratch->geom);
+    const struct geometry *geometry = placed_geometry(world, index);
+    bool inside = geometry_contains(geometry, p_object, &scratch->geom);
     while (scratch->geom.overflow && geom_scratch_grow(&scratch->geom))
-        inside = shape_contains(shape, p_object, &scratch->geom);
+        inside = geometry_contains(geometry, p_object, &scratch->geom);
     scratch->failed = scratch->failed || scratch->geom.overflow;
     return inside && !scratch->geom.overflow;
 }
@@ -39,7 +39,7 @@ uint32_t world_containing(const struct world *world, struct vec3 point, double r
     limit = limit < WORLD_NESTING ? limit : WORLD_NESTING;
     for (uint32_t k = 0; k < candidate_count; k++) {
         uint32_t i = candidates[k];
-        if (!box_contains(&world->boxes[i], point) && !is_inside_out(placed_shape(world, i)))
+        if (!box_contains(&world->boxes[i], point) && !is_inside_out(placed_geometry(world, i)))
             continue;
         struct ray ray_object = placed_ray(world, i, &ray);
         if (!contains(world, i, ray_object.origin, scratch))

@@ -33,12 +33,12 @@ static void look_at_materials(const struct world *world, uint32_t first, uint32_
 
 static struct emission emission_of_thing(const struct world *world, const struct thing *thing) {
     struct emission out = {.varies = thing->holes || thing->cull != CULL_NONE};
-    if (thing->shape.kind != SHAPE_CSG) {
+    if (!thing->geometry.csg) {
         look_at_materials(world, thing->material, thing->slot_count, &out);
         return out;
     }
-    for (uint32_t i = 0; i < thing->shape.csg->leaf_count; i++) {
-        const struct csg_leaf *leaf = &thing->shape.csg->leaves[i];
+    for (uint32_t i = 0; i < thing->geometry.csg->leaf_count; i++) {
+        const struct csg_leaf *leaf = &thing->geometry.csg->leaves[i];
         look_at_materials(world, leaf->material, leaf->slot_count, &out);
     }
     return out;
@@ -81,7 +81,7 @@ struct derived {
 
 /* The box of its shape as it is placed, where it keeps its right angles, else its box in the world. */
 static struct light_box bounding_box(const struct derived *d, bool moves) {
-    struct box box = shape_bounds(placed_shape(d->world, d->placed));
+    struct box box = geometry_bounds(placed_geometry(d->world, d->placed));
     bool own = !moves && keeps_right_angles(&d->map.forward) && vec3_finite(box.min) && vec3_finite(box.max);
     if (!own)
         box = d->world->boxes[d->placed];
@@ -124,7 +124,7 @@ static bool derive_bound(struct derived *d, bool moves, bool *ok) {
 }
 
 static bool derive_sphere(struct derived *d, bool *ok) {
-    const struct shape *shape = placed_shape(d->world, d->placed);
+    const struct shape *shape = &placed_geometry(d->world, d->placed)->shape;
     double factor = similarity(&d->map.forward);
     if (!(factor > 0))
         return derive_bound(d, false, ok);
@@ -201,7 +201,7 @@ static bool derive_polygon(struct derived *d, const struct flat *flat) {
 }
 
 static bool derive_flat(struct derived *d, bool *ok) {
-    const struct flat *flat = &placed_shape(d->world, d->placed)->flat;
+    const struct flat *flat = &placed_geometry(d->world, d->placed)->shape.flat;
     switch (flat->kind) {
     case FLAT_PLANE:
         break;
@@ -232,7 +232,7 @@ static bool derive(struct derived *d, bool *ok) {
     if (placed_moves(d->world, d->placed))
         return derive_bound(d, true, ok);
     d->map = world_placement(d->world, d->placed, 0.5);
-    switch (shape_area(placed_shape(d->world, d->placed))) {
+    switch (geometry_area(placed_geometry(d->world, d->placed))) {
     case SHAPE_AREA_SPHERE:
         return derive_sphere(d, ok);
     case SHAPE_AREA_FLAT:

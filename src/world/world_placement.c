@@ -39,8 +39,9 @@ struct ray world_ray_of_moving(const struct world *world, uint32_t placed, const
 
 /* Everything that a moving primitive covers while the shutter is open: link by link, so that what the moves of two
  * links have to do with each other is forgotten and the box may be too large, never too small. */
-static struct box moving_bounds(const struct world *world, const struct shape *shape, const struct moving *moving) {
-    struct box box = box_pad(shape_bounds_under(shape, &moving->link_from_object.forward));
+static struct box moving_bounds(const struct world *world, const struct geometry *geometry,
+                                const struct moving *moving) {
+    struct box box = box_pad(geometry_bounds_under(geometry, &moving->link_from_object.forward));
     for (uint32_t number = moving->link; number != LINK_NONE; number = world->links[number].above) {
         const struct moving_link *link = &world->links[number];
         box = box_pad(motion_bounds(&link->motion, &box, world->shutter));
@@ -54,24 +55,25 @@ static struct box moving_bounds(const struct world *world, const struct shape *s
 enum { EXACT_AT_ONCE = 1 << 20, EXACT_IN_ALL = 1 << 22 };
 
 static struct box placed_bounds(const struct world *world, uint32_t placed, uint32_t *exact) {
-    const struct shape *shape = placed_shape(world, placed);
+    const struct geometry *geometry = placed_geometry(world, placed);
     uint32_t linear = world->placed[placed].linear;
     if (linear != LINEAR_NONE && (linear & LINEAR_MOVING))
-        return moving_bounds(world, shape, &world->moving[linear & ~LINEAR_MOVING]);
+        return moving_bounds(world, geometry, &world->moving[linear & ~LINEAR_MOVING]);
     struct transform world_from_object = world_placement(world, placed, 0);
-    uint32_t triangles = shape->kind == SHAPE_MESH ? mesh_triangle_count(shape->mesh) : UINT32_MAX;
+    const struct mesh *mesh = geometry_mesh(geometry);
+    uint32_t triangles = mesh ? mesh_triangle_count(mesh) : UINT32_MAX;
     if (linear != LINEAR_NONE && triangles <= EXACT_AT_ONCE && triangles <= *exact) {
         *exact -= triangles;
-        return box_pad(mesh_bounds_under(shape->mesh, &world_from_object.forward));
+        return box_pad(mesh_bounds_under(mesh, &world_from_object.forward));
     }
-    return box_pad(shape_bounds_under(shape, &world_from_object.forward));
+    return box_pad(geometry_bounds_under(geometry, &world_from_object.forward));
 }
 
 bool world_place_boxes(struct world *world, const struct box *limits, struct pool *pool, struct error *error) {
     uint32_t exact = EXACT_IN_ALL;
     world->moves = world->moving_count > 0;
     for (uint32_t i = 0; i < world->placed_count; i++) {
-        const struct shape *shape = placed_shape(world, i);
+        const struct mesh *mesh = geometry_mesh(placed_geometry(world, i));
         uint32_t before = exact;
         world->boxes[i] = placed_bounds(world, i, &exact);
         if (limits)
@@ -80,13 +82,13 @@ bool world_place_boxes(struct world *world, const struct box *limits, struct poo
             world->boxes[i] = box_empty();
         if (before != exact && pool_cancelled(pool))
             return error_set(error, ERROR_CANCELLED, "stopped while the scene was measured");
-        if (shape->kind == SHAPE_MESH)
-            world->triangles += mesh_triangle_count(shape->mesh);
+        if (mesh)
+            world->triangles += mesh_triangle_count(mesh);
     }
     for (uint32_t i = 0; i < world->thing_count; i++) {
-        uint32_t need = shape_scratch_need(&world->things[i].shape);
+        uint32_t need = geometry_scratch_need(&world->things[i].geometry);
         world->scratch_need = need > world->scratch_need ? need : world->scratch_need;
-        world->things[i].hull = shape_hull(&world->things[i].shape);
+        world->things[i].hull = geometry_hull(&world->things[i].geometry);
     }
     return true;
 }

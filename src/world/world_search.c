@@ -38,13 +38,13 @@ struct search {
 static bool nearest_of_mesh(const struct world *world, uint32_t index, const struct ray *ray_object,
                             struct geom_scratch *geom, struct crossing *out) {
     const struct thing *thing = placed_thing(world, index);
-    bool found = mesh_nearest(thing->shape.mesh, ray_object, world->mesh_accel, geom, out);
+    bool found = mesh_nearest(thing->geometry.shape.mesh, ray_object, world->mesh_accel, geom, out);
     if (thing->cull == CULL_NONE)
         return found;
     struct ray rest = *ray_object;
     while (found && out->enter == (thing->cull == CULL_FRONT)) {
         rest.t_min = out->t;
-        found = mesh_nearest(thing->shape.mesh, &rest, world->mesh_accel, geom, out);
+        found = mesh_nearest(thing->geometry.shape.mesh, &rest, world->mesh_accel, geom, out);
     }
     return found;
 }
@@ -52,11 +52,12 @@ static bool nearest_of_mesh(const struct world *world, uint32_t index, const str
 /* Runs one question about one placed primitive again with more scratch until it fits. */
 bool world_ask_nearest(const struct world *world, uint32_t index, const struct ray *ray_object,
                        struct world_scratch *scratch, struct crossing *out) {
-    const struct shape *shape = placed_shape(world, index);
+    const struct geometry *geometry = placed_geometry(world, index);
+    bool is_mesh = geometry_mesh(geometry) != NULL;
     struct geom_scratch *geom = &scratch->geom;
     for (;;) {
-        bool found = shape->kind == SHAPE_MESH ? nearest_of_mesh(world, index, ray_object, geom, out)
-                                               : shape_nearest(shape, ray_object, geom, out);
+        bool found = is_mesh ? nearest_of_mesh(world, index, ray_object, geom, out)
+                             : geometry_nearest(geometry, ray_object, geom, out);
         if (!geom->overflow)
             return found;
         if (!geom_scratch_grow(geom)) {
@@ -224,13 +225,13 @@ bool world_ask_any(const struct world *world, uint32_t index, const struct ray *
     if (thing->holes)
         return any_with_holes(world, index, ray, scratch);
     struct ray ray_object = placed_ray(world, index, ray);
+    const struct mesh *mesh = geometry_mesh(&thing->geometry);
     for (;;) {
         struct crossing ignored;
-        bool found = thing->shape.kind == SHAPE_MESH && thing->cull != CULL_NONE
+        bool found = mesh && thing->cull != CULL_NONE
                          ? nearest_of_mesh(world, index, &ray_object, &scratch->geom, &ignored)
-                     : thing->shape.kind == SHAPE_MESH
-                         ? mesh_any(thing->shape.mesh, &ray_object, world->mesh_accel, &scratch->geom)
-                         : shape_any(&thing->shape, &ray_object, &scratch->geom);
+                     : mesh ? mesh_any(mesh, &ray_object, world->mesh_accel, &scratch->geom)
+                            : geometry_any(&thing->geometry, &ray_object, &scratch->geom);
         if (!scratch->geom.overflow)
             return found;
         if (!geom_scratch_grow(&scratch->geom)) {

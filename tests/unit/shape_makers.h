@@ -5,8 +5,8 @@
 #define GRAY_TESTS_SHAPE_MAKERS_H
 
 #include "base/arena.h"
+#include "geom/geometry.h"
 #include "geom/mesh.h"
-#include "geom/shape.h"
 #include "math/affine.h"
 #include "tests/harness.h"
 
@@ -27,8 +27,15 @@ struct made_shape {
 };
 
 struct made_shape make_shape(struct shape_makers *makers, enum shape_kind kind, struct test_random *random);
-/* A closed shape of any kind. With `single` no SHAPE_CSG, as an operand needs it. */
-struct shape make_solid(struct shape_makers *makers, bool single, struct test_random *random);
+/* The same of what the world places: shapes by their kind, and SHAPE_KIND_COUNT for a CSG solid. */
+struct made_geometry {
+    struct geometry geometry;
+    double volume, area;
+};
+enum { GEOMETRY_KIND_COUNT = SHAPE_KIND_COUNT + 1 };
+struct made_geometry make_geometry(struct shape_makers *makers, int kind, struct test_random *random);
+/* A closed shape of any kind. */
+struct shape make_solid(struct shape_makers *makers, struct test_random *random);
 void shape_makers_destroy(struct shape_makers *makers);
 
 /* A map that turns, scales by 1/2 to 2 along each axis, mirrors now and then, and moves by up to `spread`. */

@@ -6,9 +6,9 @@
 #include "base/mem.h"
 #include "geom/bernstein.h"
 #include "geom/csg.h"
+#include "geom/geometry.h"
 #include "geom/mesh.h"
 #include "geom/patch.h"
-#include "geom/shape.h"
 #include "geom/shape_blob.h"
 #include "geom/shape_curve.h"
 #include "geom/shape_height_field.h"
@@ -191,15 +191,21 @@ static inline struct shape make(enum maker maker, struct arena *arena, struct te
 
 /* ---- checks that hold for every closed shape ---- */
 
-static inline struct crossing_list list_of(const struct shape *shape, const struct ray *ray,
-                                           struct geom_scratch *scratch) {
+static inline struct crossing_list list_of_geometry(const struct geometry *geometry, const struct ray *ray,
+                                                    struct geom_scratch *scratch) {
     struct crossing_list list = {0, 0};
     scratch->used = 0;
-    while (!shape_crossings(shape, ray, scratch, &list)) {
+    while (!geometry_crossings(geometry, ray, scratch, &list)) {
         CHECK(scratch->overflow && scratch->used == 0);
         CHECK(geom_scratch_grow(scratch));
     }
     return list;
+}
+
+static inline struct crossing_list list_of(const struct shape *shape, const struct ray *ray,
+                                           struct geom_scratch *scratch) {
+    struct geometry geometry = geometry_of_shape(shape);
+    return list_of_geometry(&geometry, ray, scratch);
 }
 
 struct tally {

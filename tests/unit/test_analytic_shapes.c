@@ -3,15 +3,8 @@
  * here are written anew, in long double. */
 #include "geom/csg.h"
 #include "geom/shape.h"
-#include "geom/shape_cone.h"
-#include "geom/shape_cylinder.h"
-#include "geom/shape_disc.h"
-#include "geom/shape_hyperboloid.h"
-#include "geom/shape_paraboloid.h"
-#include "geom/shape_plane.h"
-#include "geom/shape_polygon.h"
-#include "geom/shape_rectangle.h"
-#include "geom/shape_triangle.h"
+#include "geom/conic.h"
+#include "geom/flat.h"
 #include "tests/harness.h"
 #include "tests/unit/random_makers.h"
 

@@ -1,7 +1,6 @@
 /* Caustics: what is sent arrives, where geometry says, in the unit of direct light. */
-#include "geom/shape_cylinder.h"
-#include "geom/shape_disc.h"
-#include "geom/shape_plane.h"
+#include "geom/conic.h"
+#include "geom/flat.h"
 #include "light/sky.h"
 #include "math/elementary.h"
 #include "render/photon_trace.h"

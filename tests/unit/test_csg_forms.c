@@ -1,7 +1,7 @@
 /* Solids of every closed shape against point-by-point evaluation; inverses, clips, hints and unions in parts against
  * what they are by definition. */
 #include "geom/csg_split.h"
-#include "geom/shape_plane.h"
+#include "geom/flat.h"
 #include "tests/unit/shape_makers.h"
 #include "tests/unit/swept_makers.h"
 
@@ -29,13 +29,14 @@ static struct transform small_transform(struct test_random *random) {
 
 static struct csg_leaf random_leaf(struct test_random *random, struct shape_makers *makers) {
     struct csg_leaf leaf = {.csg_from_leaf = small_transform(random)};
-    leaf.shape = make_solid(makers, true, random);
+    leaf.shape = make_solid(makers, random);
     return leaf;
 }
 
 static struct shape random_open(struct shape_makers *makers, struct test_random *random) {
     for (;;) {
-        struct shape shape = make_shape(makers, (enum shape_kind)(int)test_uniform(random, 0, SHAPE_CSG), random).shape;
+        struct shape shape =
+            make_shape(makers, (enum shape_kind)(int)test_uniform(random, 0, SHAPE_KIND_COUNT), random).shape;
         if (!shape_is_closed(&shape))
             return shape;
     }

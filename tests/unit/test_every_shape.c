@@ -4,14 +4,8 @@
 #include "tests/unit/shape_makers.h"
 
 #include "geom/csg.h"
-#include "geom/shape_cone.h"
-#include "geom/shape_cylinder.h"
-#include "geom/shape_disc.h"
-#include "geom/shape_hyperboloid.h"
-#include "geom/shape_paraboloid.h"
-#include "geom/shape_plane.h"
-#include "geom/shape_rectangle.h"
-#include "geom/shape_triangle.h"
+#include "geom/conic.h"
+#include "geom/flat.h"
 #include "tests/unit/swept_makers.h"
 
 #include <math.h>
@@ -258,7 +252,7 @@ static struct made_shape made_mesh(struct shape_makers *makers, struct test_rand
 }
 
 /* A cube with a hollow ball in it, or a tree of any solids. */
-static struct made_shape made_csg(struct shape_makers *makers, struct test_random *random) {
+static struct made_geometry made_csg(struct shape_makers *makers, struct test_random *random) {
     enum { LEAVES = 5 };
     struct csg_leaf leaves[LEAVES];
     struct csg_token program[4 * LEAVES] = {{CSG_LEAF, 0}, {CSG_LEAF, 1}, {CSG_DIFFERENCE, 0}};
@@ -273,16 +267,15 @@ static struct made_shape made_csg(struct shape_makers *makers, struct test_rando
         count = 1 + (uint32_t)test_uniform(random, 0, LEAVES - 0.001);
         length = random_program(random, 0, count, 0, program);
         for (uint32_t i = 0; i < count; i++)
-            leaves[i] = (struct csg_leaf){.csg_from_leaf = make_transform(random, 0.4),
-                                          .shape = make_solid(makers, true, random)};
+            leaves[i] =
+                (struct csg_leaf){.csg_from_leaf = make_transform(random, 0.4), .shape = make_solid(makers, random)};
     }
     struct error error = {0};
     const struct csg *csg = csg_build(&makers->arena, leaves, count, program, length, &error);
     if (!csg)
         test_fail(__FILE__, __LINE__, "%s", error.text);
-    struct shape shape = {.kind = SHAPE_CSG, .csg = csg};
-    return (struct made_shape){shape, known ? 3.375 - 4 * M_PI / 3 * radius * radius * radius : NAN,
-                               known ? 13.5 + 4 * M_PI * radius * radius : NAN};
+    return (struct made_geometry){geometry_of_csg(csg), known ? 3.375 - 4 * M_PI / 3 * radius * radius * radius : NAN,
+                                  known ? 13.5 + 4 * M_PI * radius * radius : NAN};
 }
 
 struct made_shape make_shape(struct shape_makers *makers, enum shape_kind kind, struct test_random *random) {
@@ -317,20 +310,23 @@ struct made_shape make_shape(struct shape_makers *makers, enum shape_kind kind, 
         return made_curve(makers, random);
     case SHAPE_MESH:
         return made_mesh(makers, random);
-    case SHAPE_CSG:
-        return made_csg(makers, random);
     }
     return made_sphere(random);
 }
 
-struct shape make_solid(struct shape_makers *makers, bool single, struct test_random *random) {
+struct made_geometry make_geometry(struct shape_makers *makers, int kind, struct test_random *random) {
+    if (kind == SHAPE_KIND_COUNT)
+        return made_csg(makers, random);
+    struct made_shape made = make_shape(makers, (enum shape_kind)kind, random);
+    return (struct made_geometry){geometry_of_shape(&made.shape), made.volume, made.area};
+}
+
+struct shape make_solid(struct shape_makers *makers, struct test_random *random) {
     for (;;) {
         enum shape_kind kind = (enum shape_kind)(int)test_uniform(random, 0, SHAPE_KIND_COUNT - 0.001);
-        struct made_shape made = {0};
-        if (!single || kind != SHAPE_CSG)
-            made = make_shape(makers, kind, random);
-        if ((!single || kind != SHAPE_CSG) && shape_is_closed(&made.shape))
-            return made.shape;
+        struct shape shape = make_shape(makers, kind, random).shape;
+        if (shape_is_closed(&shape))
+            return shape;
     }
 }
 
@@ -356,6 +352,10 @@ struct transform make_transform(struct test_random *random, double spread) {
 
 /* ---- tests ---- */
 
+static const char *kind_name(int kind) {
+    return kind == SHAPE_KIND_COUNT ? "csg" : shape_kind_name((enum shape_kind)kind);
+}
+
 /* What is thinner than this is not asked about: the surface of a shape is where it is up to rounding. */
 #define THIN 1e-5
 
@@ -364,10 +364,10 @@ struct failures {
 };
 
 /* A surface has what the layout of its shape promises. */
-static bool layout_holds(const struct shape *shape, const struct surface *surface) {
-    if (shape->kind == SHAPE_CSG) /* that of one of its operands */
+static bool layout_holds(const struct geometry *geometry, const struct surface *surface) {
+    if (geometry->csg) /* that of one of its operands */
         return true;
-    switch (shape_layout(shape)) {
+    switch (shape_layout(&geometry->shape)) {
     case LAYOUT_UV:
         return surface->has_uv || (surface->u == 0 && surface->v == 0);
     case LAYOUT_FACES:
@@ -378,15 +378,15 @@ static bool layout_holds(const struct shape *shape, const struct surface *surfac
     return false;
 }
 
-static void check_line_of(const struct shape *shape, struct test_random *random, struct geom_scratch *scratch,
+static void check_line_of(const struct geometry *geometry, struct test_random *random, struct geom_scratch *scratch,
                           struct failures *n) {
     struct vec3 origin = random_vec3(random, chance(random, 0.3) ? 0.7 : 4);
     struct ray ray = ray_from(origin, vec3_sub(random_vec3(random, 0.8), origin));
-    struct crossing_list list = list_of(shape, &ray, scratch);
-    bool closed = shape_is_closed(shape);
+    struct crossing_list list = list_of_geometry(geometry, &ray, scratch);
+    bool closed = geometry_is_closed(geometry);
     n->crossings += list.count;
     n->order += closed && list.count % 2 != 0;
-    n->order += shape->kind != SHAPE_MESH && list.count > shape_scratch_need(shape); /* of a mesh it is a guess */
+    n->order += !geometry_mesh(geometry) && list.count > geometry_scratch_need(geometry); /* of a mesh it is a guess */
     for (uint32_t k = 1; k < list.count; k++)
         n->order += !(scratch->items[k - 1].t < scratch->items[k].t) && closed;
 
@@ -401,22 +401,22 @@ static void check_line_of(const struct shape *shape, struct test_random *random,
         if (scratch->items[k].t > part.t_min && scratch->items[k].t < part.t_max)
             expected = scratch->items[k];
     scratch->used = list.count;
-    bool found = shape_nearest(shape, &part, scratch, &nearest);
+    bool found = geometry_nearest(geometry, &part, scratch, &nearest);
     n->nearest += found != isfinite(expected.t) || (found && nearest.t != expected.t);
-    n->any += shape_any(shape, &part, scratch) != found;
+    n->any += geometry_any(geometry, &part, scratch) != found;
 
-    struct box box = shape_bounds(shape);
+    struct box box = geometry_bounds(geometry);
     box = (struct box){vec3_sub(box.min, vec3_all(1e-9)), vec3_add(box.max, vec3_all(1e-9))};
     for (uint32_t k = 0; k < list.count; k++) {
         struct crossing c = scratch->items[k];
         if (!isfinite(c.t))
             continue;
         struct surface surface;
-        shape_describe(shape, &ray, &c, &surface);
+        geometry_describe(geometry, &ray, &c, &surface);
         double cosine = vec3_dot(vec3_normalize(surface.normal), vec3_normalize(ray.direction));
         n->normals += fabs(cosine) > 1e-4 && closed && c.enter != (cosine < 0);
         n->box += !box_contains(&box, surface.point);
-        n->layout += !layout_holds(shape, &surface);
+        n->layout += !layout_holds(geometry, &surface);
     }
     for (uint32_t k = 0; closed && k <= list.count; k++) {
         double before = k > 0 ? scratch->items[k - 1].t : -INFINITY;
@@ -424,7 +424,7 @@ static void check_line_of(const struct shape *shape, struct test_random *random,
         if (!isfinite(before) || !isfinite(after) || after - before < THIN)
             continue;
         uint32_t used = scratch->used;
-        n->points += shape_contains(shape, ray_at(&ray, before / 2 + after / 2), scratch) != (k % 2 == 1);
+        n->points += geometry_contains(geometry, ray_at(&ray, before / 2 + after / 2), scratch) != (k % 2 == 1);
         scratch->used = used;
     }
 }
@@ -432,23 +432,22 @@ static void check_line_of(const struct shape *shape, struct test_random *random,
 TEST(every_shape_is_crossed_where_its_points_and_its_box_say_and_met_at_the_first_crossing) {
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 4000));
-    for (int kind = 0; kind < SHAPE_KIND_COUNT; kind++) {
+    for (int kind = 0; kind < GEOMETRY_KIND_COUNT; kind++) {
         struct shape_makers makers = {0};
         struct test_random random = {(uint64_t)(1 + kind)};
         struct failures n = {0};
         for (int i = 0; i < 120; i++) {
-            struct shape shape = make_shape(&makers, (enum shape_kind)kind, &random).shape;
-            CHECK_EQ_INT((int)shape.kind, kind);
+            struct geometry geometry = make_geometry(&makers, kind, &random).geometry;
+            CHECK(geometry.csg ? kind == SHAPE_KIND_COUNT : (int)geometry.shape.kind == kind);
             for (int ray = 0; ray < 150; ray++)
-                check_line_of(&shape, &random, &scratch, &n);
+                check_line_of(&geometry, &random, &scratch, &n);
         }
         shape_makers_destroy(&makers);
         if (n.order || n.nearest || n.any || n.box || n.points || n.normals || n.layout || n.crossings < 1000)
             test_fail(__FILE__, __LINE__,
                       "%s, %ld crossings: %ld out of order, %ld nearest, %ld any, %ld beyond the box, %ld points, %ld "
                       "normals, %ld layouts",
-                      shape_kind_name((enum shape_kind)kind), n.crossings, n.order, n.nearest, n.any, n.box, n.points,
-                      n.normals, n.layout);
+                      kind_name(kind), n.crossings, n.order, n.nearest, n.any, n.box, n.points, n.normals, n.layout);
     }
     geom_scratch_destroy(&scratch);
 }
@@ -456,19 +455,19 @@ TEST(every_shape_is_crossed_where_its_points_and_its_box_say_and_met_at_the_firs
 TEST(every_shape_under_a_random_map_lies_in_its_box_there) {
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 4000));
-    for (int kind = 0; kind < SHAPE_KIND_COUNT; kind++) {
+    for (int kind = 0; kind < GEOMETRY_KIND_COUNT; kind++) {
         struct shape_makers makers = {0};
         struct test_random random = {(uint64_t)(100 + kind)};
         long outside = 0, crossings = 0;
         for (int i = 0; i < 120; i++) {
-            struct shape shape = make_shape(&makers, (enum shape_kind)kind, &random).shape;
+            struct geometry geometry = make_geometry(&makers, kind, &random).geometry;
             struct transform map = make_transform(&random, 2);
-            struct box box = shape_bounds_under(&shape, &map.forward);
+            struct box box = geometry_bounds_under(&geometry, &map.forward);
             box = (struct box){vec3_sub(box.min, vec3_all(1e-8)), vec3_add(box.max, vec3_all(1e-8))};
             for (int k = 0; k < 80; k++) {
                 struct vec3 origin = random_vec3(&random, 4);
                 struct ray ray = ray_from(origin, vec3_sub(random_vec3(&random, 0.8), origin));
-                struct crossing_list list = list_of(&shape, &ray, &scratch);
+                struct crossing_list list = list_of_geometry(&geometry, &ray, &scratch);
                 crossings += list.count;
                 for (uint32_t c = 0; c < list.count; c++)
                     if (isfinite(scratch.items[c].t))
@@ -477,8 +476,7 @@ TEST(every_shape_under_a_random_map_lies_in_its_box_there) {
         }
         shape_makers_destroy(&makers);
         if (outside || crossings < 500)
-            test_fail(__FILE__, __LINE__, "%s: %ld of %ld crossings outside", shape_kind_name((enum shape_kind)kind),
-                      outside, crossings);
+            test_fail(__FILE__, __LINE__, "%s: %ld of %ld crossings outside", kind_name(kind), outside, crossings);
     }
     geom_scratch_destroy(&scratch);
 }
@@ -504,9 +502,9 @@ static bool agrees(const struct sums *sums, double factor, double expected) {
 /* Integral geometry (Santalo 1976, I.4 and IV.14): of lines that cross a ball of radius R evenly from all sides, the
  * mean length inside a solid times pi R^2 is its volume, the mean number of crossings times 2 pi R^2 the area of its
  * surface. The ball is the one around the shape's box. */
-static void measure(const struct made_shape *made, struct test_random *random, struct geom_scratch *scratch) {
+static void measure(const struct made_geometry *made, struct test_random *random, struct geom_scratch *scratch) {
     enum { LINES = 60000 };
-    struct box box = shape_bounds(&made->shape);
+    struct box box = geometry_bounds(&made->geometry);
     struct vec3 middle = vec3_scale(vec3_add(box.min, box.max), 0.5);
     double radius = vec3_length(vec3_sub(box.max, box.min)) / 2, across = M_PI * radius * radius;
     struct sums inside = {0}, crossings = {0};
@@ -517,7 +515,7 @@ static void measure(const struct made_shape *made, struct test_random *random, s
         double far = radius * sqrt(test_uniform(random, 0, 1)), angle = test_uniform(random, 0, 2 * M_PI);
         struct vec3 origin = vec3_add_scaled(middle, side, far * cos(angle));
         struct ray ray = ray_from(vec3_add_scaled(origin, up, far * sin(angle)), direction);
-        struct crossing_list list = list_of(&made->shape, &ray, scratch);
+        struct crossing_list list = list_of_geometry(&made->geometry, &ray, scratch);
         double length = 0;
         for (uint32_t k = 1; k < list.count; k += 2)
             length += scratch->items[k].t - scratch->items[k - 1].t;
@@ -526,27 +524,26 @@ static void measure(const struct made_shape *made, struct test_random *random, s
     }
     if (!agrees(&inside, across, made->volume) || !agrees(&crossings, 2 * across, made->area))
         test_fail(__FILE__, __LINE__, "%s: volume %g, %g by lines; area %g, %g by lines",
-                  shape_kind_name(made->shape.kind), made->volume, across * inside.sum / inside.count, made->area,
+                  geometry_kind_name(&made->geometry), made->volume, across * inside.sum / inside.count, made->area,
                   2 * across * crossings.sum / crossings.count);
 }
 
 TEST(every_shape_has_the_volume_or_the_area_of_its_closed_form) {
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 64));
-    for (int kind = 0; kind < SHAPE_KIND_COUNT; kind++) {
+    for (int kind = 0; kind < GEOMETRY_KIND_COUNT; kind++) {
         struct shape_makers makers = {0};
         struct test_random random = {(uint64_t)(200 + kind)};
         int known = 0;
         for (int i = 0; i < 60 && known < 3; i++) {
-            struct made_shape made = make_shape(&makers, (enum shape_kind)kind, &random);
+            struct made_geometry made = make_geometry(&makers, kind, &random);
             if (isnan(made.volume) && isnan(made.area))
                 continue;
             known++;
             measure(&made, &random, &scratch);
         }
         if (known < 3)
-            test_fail(__FILE__, __LINE__, "%s: its maker states neither a volume nor an area",
-                      shape_kind_name((enum shape_kind)kind));
+            test_fail(__FILE__, __LINE__, "%s: its maker states neither a volume nor an area", kind_name(kind));
         shape_makers_destroy(&makers);
     }
     geom_scratch_destroy(&scratch);

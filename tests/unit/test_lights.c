@@ -1,7 +1,7 @@
 /* Lights against closed forms. What a small patch of a white floor gets from a lamp of radiance 1 is the view factor of
  * the lamp; the formulas are those of Howell, "A Catalog of Radiation Heat Transfer Configuration Factors": B-12
  * (disc), B-3 (rectangle over its corner), B-38 (sphere). */
-#include "geom/shape_plane.h"
+#include "geom/flat.h"
 #include "math/elementary.h"
 #include "math/sampling.h"
 #include "tests/harness.h"

@@ -1,6 +1,6 @@
 /* Lines over a picture whose camera stands among the boxes: edges that run past the eye, boxes behind it, boxes without
  * end. What is drawn is what edges give that are projected point by point. */
-#include "geom/shape_plane.h"
+#include "geom/flat.h"
 #include "render/camera.h"
 #include "render/overlay.h"
 #include "tests/harness.h"

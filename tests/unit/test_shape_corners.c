@@ -152,12 +152,12 @@ TEST(profiles_that_come_back_to_their_first_point_are_loops) {
 /* --- room for crossings --- */
 
 /* With whatever room is left, each question is answered as with enough, or says that there is too little. */
-static void check_room(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch) {
-    struct crossing_list list = list_of(shape, ray, scratch), other;
+static void check_room(const struct geometry *solid, const struct ray *ray, struct geom_scratch *scratch) {
+    struct crossing_list list = list_of_geometry(solid, ray, scratch), other;
     struct crossing nearest = {0}, near;
     scratch->used = 0;
-    bool found = shape_nearest(shape, ray, scratch, &nearest), any = shape_any(shape, ray, scratch);
-    bool inside = shape_is_closed(shape) && shape_contains(shape, ray->origin, scratch);
+    bool found = geometry_nearest(solid, ray, scratch, &nearest), any = geometry_any(solid, ray, scratch);
+    bool inside = geometry_is_closed(solid) && geometry_contains(solid, ray->origin, scratch);
     CHECK(!scratch->overflow);
     for (uint32_t room = 0; room < 14; room++) {
         uint32_t base = scratch->capacity - room;
@@ -167,16 +167,16 @@ static void check_room(const struct shape *shape, const struct ray *ray, struct 
             scratch->overflow = false;
             switch (question) {
             case 0:
-                right = !shape_crossings(shape, ray, scratch, &other) || other.count == list.count;
+                right = !geometry_crossings(solid, ray, scratch, &other) || other.count == list.count;
                 break;
             case 1:
-                right = shape_nearest(shape, ray, scratch, &near) == found && (!found || near.t == nearest.t);
+                right = geometry_nearest(solid, ray, scratch, &near) == found && (!found || near.t == nearest.t);
                 break;
             case 2:
-                right = shape_any(shape, ray, scratch) == any;
+                right = geometry_any(solid, ray, scratch) == any;
                 break;
             case 3:
-                right = !shape_is_closed(shape) || shape_contains(shape, ray->origin, scratch) == inside;
+                right = !geometry_is_closed(solid) || geometry_contains(solid, ray->origin, scratch) == inside;
                 break;
             }
             CHECK(right || scratch->overflow);
@@ -210,14 +210,14 @@ TEST(solids_are_answered_or_say_that_room_is_missing_with_any_room) {
         uint32_t solid = random_program(&random, 0, LEAVES - clip, turn % 2 ? 0.2 : 0, program), length = solid;
         if (clip)
             length += random_program(&random, LEAVES - clip, clip, 0, program + solid);
-        struct shape shape = {.kind = SHAPE_CSG};
-        shape.csg = csg_build_clipped(&arena, leaves, LEAVES, program, solid, length, &error);
-        CHECK(shape.csg != NULL);
-        for (int i = 0; i < 20 && shape.csg; i++) {
+        const struct csg *csg = csg_build_clipped(&arena, leaves, LEAVES, program, solid, length, &error);
+        struct geometry geometry = geometry_of_csg(csg);
+        CHECK(csg != NULL);
+        for (int i = 0; i < 20 && csg; i++) {
             struct vec3 from = random_vec3(&random, i % 2 ? 1 : 4);
             struct ray ray = ray_from(from, vec3_sub(random_vec3(&random, 0.7), from));
             ray.t_min = 0;
-            check_room(&shape, &ray, &scratch);
+            check_room(&geometry, &ray, &scratch);
         }
         arena_destroy(&arena);
     }

@@ -232,8 +232,8 @@ TEST(swept_shapes_in_csg_equal_point_by_point_evaluation) {
         for (int i = 0; csg && i < 300; i++) {
             struct vec3 o = random_vec3(&random, 4);
             struct ray ray = ray_from(o, vec3_sub(random_vec3(&random, 0.8), o));
-            struct shape shape = {.kind = SHAPE_CSG, .csg = csg};
-            struct crossing_list list = list_of(&shape, &ray, &scratch);
+            struct geometry solid = geometry_of_csg(csg);
+            struct crossing_list list = list_of_geometry(&solid, &ray, &scratch);
             disorder += list.count % 2;
             struct crossing own[64];
             uint32_t n = list.count < 64 ? list.count : 64;

@@ -259,11 +259,10 @@ TEST(paths_inside_of_solids_lead_to_the_shapes_that_flattening_made_leaves_of) {
             continue;
         const struct world *world = &f.stage.world;
         for (uint32_t i = 0; i < world->placed_count; i++) {
-            const struct shape *whole = placed_shape(world, i);
+            const struct csg *whole = placed_geometry(world, i)->csg;
             const struct node *node = placed_node(world, i);
-            for (uint32_t k = 0; whole->kind == SHAPE_CSG && node->kind == NODE_CSG && k < whole->csg->leaf_count;
-                 k++) {
-                const struct csg_leaf *leaf = &whole->csg->leaves[k];
+            for (uint32_t k = 0; whole && node->kind == NODE_CSG && k < whole->leaf_count; k++) {
+                const struct csg_leaf *leaf = &whole->leaves[k];
                 uint32_t depth;
                 CHECK(world_operand_way(node, leaf->origin, steps, DEEP, &depth));
                 if (depth == 0) /* of a clip, which is no part of the node */

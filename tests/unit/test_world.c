@@ -1,7 +1,7 @@
 /* The world beside brute force, and what flattening promises. */
 #include "tests/harness.h"
 
-#include "geom/shape_disc.h"
+#include "geom/flat.h"
 #include "tests/stage.h"
 #include "tests/unit/shape_makers.h"
 #include "world/packet.h"
@@ -32,7 +32,7 @@ static struct node *shape_node(struct stage *s, struct test_random *random, cons
 /* A closed shape of any kind, or a tree of them. */
 static struct node *random_solid(struct stage *s, struct shape_makers *makers, struct test_random *random, int depth) {
     if (depth == 0 || test_uniform(random, 0, 1) < 0.75) {
-        struct shape shape = make_solid(makers, true, random);
+        struct shape shape = make_solid(makers, random);
         return shape_node(s, random, &shape);
     }
     enum node_csg operation = (enum node_csg)(int)test_uniform(random, 0, 3);
@@ -45,10 +45,10 @@ static struct node *random_solid(struct stage *s, struct shape_makers *makers, s
 
 /* A shape of any kind, closed or not; as many of one kind as of another. */
 static struct node *random_shape(struct stage *s, struct shape_makers *makers, struct test_random *random) {
-    enum shape_kind kind = (enum shape_kind)(int)test_uniform(random, 0, SHAPE_KIND_COUNT - 0.001);
-    if (kind == SHAPE_CSG)
+    int kind = (int)test_uniform(random, 0, GEOMETRY_KIND_COUNT - 0.001);
+    if (kind == SHAPE_KIND_COUNT) /* a CSG solid */
         return random_solid(s, makers, random, 2);
-    struct shape shape = make_shape(makers, kind, random).shape;
+    struct shape shape = make_shape(makers, (enum shape_kind)kind, random).shape;
     return shape_node(s, random, &shape);
 }
 

@@ -173,17 +173,17 @@ static void paint(struct node *node, const struct material *material) {
 TEST(emitters_of_every_kind_of_shape_are_sampled_as_scattered_rays_meet_them) {
     struct test_random random = {17};
     struct shape_makers makers = {0};
-    for (int kind = 0; kind < SHAPE_KIND_COUNT; kind++) {
+    for (int kind = 0; kind <= SHAPE_KIND_COUNT; kind++) {
         for (int turn = 0; turn < 6; turn++) {
             struct room r;
             room_begin(&r);
             struct node *node =
-                scene_node(&r.stage.scene, kind == SHAPE_CSG ? NODE_CSG : NODE_GEOMETRY, "it", &r.stage.error);
-            if (kind == SHAPE_CSG) {
+                scene_node(&r.stage.scene, kind == SHAPE_KIND_COUNT ? NODE_CSG : NODE_GEOMETRY, "it", &r.stage.error);
+            if (kind == SHAPE_KIND_COUNT) {
                 struct node **operands = arena_alloc_array(&r.stage.scene.arena, 2, sizeof(struct node *));
                 for (int i = 0; i < 2; i++) {
                     operands[i] = scene_node(&r.stage.scene, NODE_GEOMETRY, "part", &r.stage.error);
-                    operands[i]->shape = make_solid(&makers, true, &random);
+                    operands[i]->shape = make_solid(&makers, &random);
                     paint(operands[i], glowing(&r, 1, i ? 2 : 1, 1));
                 }
                 node->operation = NODE_UNION;
