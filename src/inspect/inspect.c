@@ -48,12 +48,12 @@ const char *trace_path(const struct trace_report *report, uint32_t placed) {
     uint32_t low = 0, high = report->names.count;
     while (low < high) {
         uint32_t middle = low + (high - low) / 2;
-        if (report->names.placed[middle] < placed)
+        if (report->names.primitives[middle] < placed)
             low = middle + 1;
         else
             high = middle;
     }
-    bool found = low < report->names.count && report->names.placed[low] == placed && report->names.paths[low];
+    bool found = low < report->names.count && report->names.primitives[low] == placed && report->names.paths[low];
     return found ? report->names.paths[low] : placed_node(report->picture->job->world, placed)->name;
 }
 
@@ -83,17 +83,17 @@ static bool find_names(struct story *story, const struct inspected *picture, str
     for (const struct story_sample *sample = story->sample; sample; sample = sample->next)
         count += note_placed(sample->first, NULL, 0);
     uint64_t *all = arena_alloc_array(&story->arena, count + 1, sizeof *all);
-    names->placed = arena_alloc_array(&story->arena, count + 1, sizeof *names->placed);
+    names->primitives = arena_alloc_array(&story->arena, count + 1, sizeof *names->primitives);
     names->paths = arena_alloc_array(&story->arena, count + 1, sizeof *names->paths);
-    if (!all || !names->placed || !names->paths)
+    if (!all || !names->primitives || !names->paths)
         return error_no_memory(error, "the story of a pixel");
     for (const struct story_sample *sample = story->sample; sample; sample = sample->next)
         at = note_placed(sample->first, all, at);
     sort_words(all, count);
     for (size_t i = 0; i < count; i++)
         if (i == 0 || all[i] != all[i - 1])
-            names->placed[names->count++] = (uint32_t)all[i];
-    return world_find_paths(picture->job->world, picture->root, names->placed, names->count, &story->arena,
+            names->primitives[names->count++] = (uint32_t)all[i];
+    return world_find_paths(picture->job->world, picture->root, names->primitives, names->count, &story->arena,
                             names->paths, error);
 }
 

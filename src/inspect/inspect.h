@@ -24,7 +24,7 @@ bool inspect_world(const struct inspected *picture, bool json, struct text_write
 /* A story with what it needs to be told: the ways to the nodes in it. */
 struct trace_names {
     uint32_t count;
-    uint32_t *placed; /* ascending */
+    uint32_t *primitives; /* ascending */
     const char **paths;
 };
 struct trace_report {

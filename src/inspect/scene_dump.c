@@ -22,7 +22,8 @@ static void dump_line(const struct dump *d, uint32_t placed, const char *path) {
     const struct mesh *mesh = geometry_mesh(&thing->geometry);
     const struct box *box = &d->world->boxes[placed];
     char material[24] = "-", triangles[24] = "-";
-    bool moves = d->world->placed[placed].linear != LINEAR_NONE && (d->world->placed[placed].linear & LINEAR_MOVING);
+    bool moves =
+        d->world->primitives[placed].linear != LINEAR_NONE && (d->world->primitives[placed].linear & LINEAR_MOVING);
     uint32_t first = !thing->geometry.csg ? number_of(d, thing->material) : 0;
     if (first > 0)
         (void)snprintf(material, sizeof material, thing->slot_count > 1 ? "%u-%u" : "%u", first,
@@ -130,8 +131,8 @@ static void dump_material(const struct dump *d, uint32_t material) {
 static void dump_light(const struct dump *d, uint32_t number) {
     const struct light *light = &d->world->lights[number];
     unsigned has = light_properties(light);
-    bool placed = has & LIGHT_HAS_POSITION, directed = has & LIGHT_HAS_DIRECTION, lamp = !light_is_delta(light);
-    struct vec3 at = placed ? light->position : light->direction, colour = light->colour;
+    bool located = has & LIGHT_HAS_POSITION, directed = has & LIGHT_HAS_DIRECTION, lamp = !light_is_delta(light);
+    struct vec3 at = located ? light->position : light->direction, colour = light->colour;
     text_writer_print(
         d->writer, d->json ? "%s{\"number\":%u,\"kind\":\"%s\",\"lamp\":%s,\"colour\":" : "%.0s%8u  %s%.0s of ",
         d->json && number > 0 ? "," : "", number + 1, light_kind_name(light->kind), lamp ? "true" : "false");
@@ -139,11 +140,11 @@ static void dump_light(const struct dump *d, uint32_t number) {
         text_writer_json_vector(d->writer, colour);
     else
         text_writer_print(d->writer, "(%.6g, %.6g, %.6g)%s", colour.x, colour.y, colour.z, lamp ? ", a lamp" : "");
-    if ((placed || directed) && d->json) {
-        text_writer_print(d->writer, placed ? ",\"position\":" : ",\"direction\":");
+    if ((located || directed) && d->json) {
+        text_writer_print(d->writer, located ? ",\"position\":" : ",\"direction\":");
         text_writer_json_vector(d->writer, at);
-    } else if (placed || directed) {
-        text_writer_print(d->writer, " %s (%.6g, %.6g, %.6g)", placed ? "at" : "along", at.x, at.y, at.z);
+    } else if (located || directed) {
+        text_writer_print(d->writer, " %s (%.6g, %.6g, %.6g)", located ? "at" : "along", at.x, at.y, at.z);
     }
     text_writer_print(d->writer, d->json ? "}" : "\n");
 }

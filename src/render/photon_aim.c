@@ -74,7 +74,7 @@ static bool is_finite(const struct box *box) {
 static struct caster caster_make(const struct world *world, uint32_t index, const struct box *box, double strength) {
     struct caster caster = {.box = *box, .strength = strength, .order = index};
     const struct geometry *geometry = placed_geometry(world, index);
-    uint32_t linear = world->placed[index].linear;
+    uint32_t linear = world->primitives[index].linear;
     bool still = linear == LINEAR_NONE || !(linear & LINEAR_MOVING);
     caster.middle = vec3_scale(vec3_add(box->min, box->max), 0.5);
     caster.radius = vec3_length(vec3_sub(box->max, caster.middle));

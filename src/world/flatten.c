@@ -145,10 +145,10 @@ static bool grow_placed(struct flattening *f) {
     struct box *limits = f->limits ? arena_alloc_array(f->arena, capacity, sizeof *limits) : NULL;
     if (!placed || (f->limits && !limits))
         return error_set(f->error, ERROR_MACHINE, "out of memory for %u placed primitives", capacity);
-    memcpy(placed, f->placed, count * sizeof *placed);
+    memcpy(placed, f->primitives, count * sizeof *placed);
     if (limits)
         memcpy(limits, f->limits, count * sizeof *limits);
-    f->world->placed = f->placed = placed;
+    f->world->primitives = f->primitives = placed;
     f->limits = limits;
     f->placed_capacity = capacity;
     return true;
@@ -174,7 +174,7 @@ static bool place(struct flattening *f, const struct stand *stand, const struct 
         return false;
     if ((around || f->limits) && !keep_limit(f, around && stand->above == LINK_NONE ? &around->limit : NULL))
         return false;
-    struct placed *placed = &f->placed[world->placed_count++];
+    struct placed *placed = &f->primitives[world->placed_count++];
     placed->thing = thing;
     return stand->above != LINK_NONE ? place_moving(f, stand, placed) : flatten_map(f, &stand->from_node, placed);
 }
@@ -394,10 +394,10 @@ bool flatten_scene(struct flattening *f, const struct node *root) {
         return error_set(f->error, ERROR_SCENE, "the scene places more than %d primitives (instances of instances?)",
                          PLACED_LIMIT);
     f->placed_capacity = count;
-    f->placed = arena_alloc_array(f->arena, f->placed_capacity, sizeof *f->placed);
-    if (!f->placed)
+    f->primitives = arena_alloc_array(f->arena, f->placed_capacity, sizeof *f->primitives);
+    if (!f->primitives)
         return error_set(f->error, ERROR_MACHINE, "out of memory for %u placed primitives", f->placed_capacity);
-    f->world->placed = f->placed;
+    f->world->primitives = f->primitives;
     bool ok = place_scene(f, root);
     flatten_map_end(f);
     return ok;

@@ -37,7 +37,7 @@ struct flattening {
     void *warn_context;
     struct error *error;
     bool unasked; /* no ray will ask this world: its meshes get no index */
-    struct placed *placed;
+    struct placed *primitives;
     struct box *limits; /* of each placed primitive, when there are any; else NULL */
     uint32_t placed_capacity, thing_capacity, linear_capacity, moving_capacity, link_capacity;
     uint32_t *thing_of;                /* by node->index: number of its first thing */
@@ -45,7 +45,7 @@ struct flattening {
     struct material_table *materials;
 };
 
-/* Fills world->placed, things, linear_maps, moving, links, and authored. Errors: cycles, too many primitives, open
+/* Fills world->primitives, things, linear_maps, moving, links, and authored. Errors: cycles, too many primitives, open
  * operands of CSG, no memory. */
 bool flatten_scene(struct flattening *f, const struct node *root);
 

@@ -76,14 +76,14 @@ static uint64_t meet_box(const struct packet_search *s, const struct box *box) {
 /* A mesh without faces to pass over, at rest: all rays may go together. */
 static bool is_plain_mesh(const struct world *world, uint32_t index) {
     const struct thing *thing = placed_thing(world, index);
-    uint32_t linear = world->placed[index].linear;
+    uint32_t linear = world->primitives[index].linear;
     return geometry_mesh(&thing->geometry) && thing->cull == CULL_NONE &&
            (linear == LINEAR_NONE || !(linear & LINEAR_MOVING));
 }
 
 /* The rays in the space of a primitive, number by number what placed_ray says. */
 static const struct ray_packet *placed_rays(const struct packet_search *s, uint32_t index, struct ray_packet *out) {
-    const struct placed *placed = &s->world->placed[index];
+    const struct placed *placed = &s->world->primitives[index];
     const struct ray_packet *rays = s->rays;
     uint32_t count = places(rays);
     out->t_min = rays->t_min;

@@ -11,8 +11,8 @@ struct scene_traversal world_traversal(const struct world *world, const struct n
 }
 
 uint32_t world_placed_by(const struct world *world, const struct node *node, uint32_t next) {
-    bool placed = next < world->placed_count && placed_node(world, next) == node;
-    return placed ? placed_thing(world, next)->parts : 0;
+    bool places = next < world->placed_count && placed_node(world, next) == node;
+    return places ? placed_thing(world, next)->parts : 0;
 }
 
 bool world_walk_paths(const struct world *world, const struct node *root, world_path_visit *visit, void *context,

@@ -60,7 +60,7 @@ struct placed {
 #define LINEAR_MOVING (UINT32_C(1) << 31) /* with the number of an entry in world->moving */
 
 struct world {
-    const struct placed *placed;
+    const struct placed *primitives;
     struct thing *things; /* owned, as are maps and moving */
     struct linear_map *linear_maps;
     struct moving *moving;
@@ -132,19 +132,19 @@ void world_destroy(struct world *world); /* what is not in the arena */
 size_t world_placed_memory(const struct world *world);
 
 static inline const struct thing *placed_thing(const struct world *world, uint32_t placed) {
-    return &world->things[world->placed[placed].thing];
+    return &world->things[world->primitives[placed].thing];
 }
 static inline const struct geometry *placed_geometry(const struct world *world, uint32_t placed) {
     return &placed_thing(world, placed)->geometry;
 }
 /* It stands at another place at another time. */
 static inline bool placed_moves(const struct world *world, uint32_t placed) {
-    uint32_t linear = world->placed[placed].linear;
+    uint32_t linear = world->primitives[placed].linear;
     return linear != LINEAR_NONE && (linear & LINEAR_MOVING) != 0;
 }
 /* The node that a placed primitive came from. */
 static inline const struct node *placed_node(const struct world *world, uint32_t placed) {
-    return world->authored.nodes[world->placed[placed].thing];
+    return world->authored.nodes[world->primitives[placed].thing];
 }
 /* world_from_object at a ray's time; of what stands still the bits are those of the nodes' transforms, composed. */
 struct transform world_placement(const struct world *world, uint32_t placed, double ray_time);
@@ -152,7 +152,7 @@ struct transform world_placement(const struct world *world, uint32_t placed, dou
 struct ray world_ray_of_moving(const struct world *world, uint32_t placed, const struct ray *ray);
 /* The ray in object space. */
 static inline struct ray placed_ray(const struct world *world, uint32_t placed, const struct ray *ray) {
-    const struct placed *p = &world->placed[placed];
+    const struct placed *p = &world->primitives[placed];
     if (p->linear == LINEAR_NONE)
         return *ray;
     if (p->linear & LINEAR_MOVING)

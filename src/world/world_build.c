@@ -98,7 +98,7 @@ void world_destroy(struct world *world) {
 }
 
 size_t world_placed_memory(const struct world *world) {
-    return world->placed_count * (sizeof *world->placed + sizeof *world->boxes) +
+    return world->placed_count * (sizeof *world->primitives + sizeof *world->boxes) +
            world->thing_count * (sizeof *world->things + sizeof *world->authored.nodes) +
            world->linear_count * sizeof *world->linear_maps + world->moving_count * sizeof *world->moving +
            world->link_count * sizeof *world->links;

@@ -67,7 +67,7 @@ static void describe_relief(const struct thing *thing, const struct affine *map,
 }
 
 static double stretch_of(const struct world *world, uint32_t index, const struct transform *map) {
-    uint32_t linear = world->placed[index].linear;
+    uint32_t linear = world->primitives[index].linear;
     return linear & LINEAR_MOVING ? transform_stretch(map) : world->linear_maps[linear].stretch;
 }
 
@@ -131,7 +131,7 @@ void world_describe(const struct world *world, const struct ray *ray, uint32_t i
     struct ray ray_object;
     const struct transform *map = NULL;
     const struct ray *own_ray = ray;
-    if (world->placed[index].linear != LINEAR_NONE) {
+    if (world->primitives[index].linear != LINEAR_NONE) {
         world_from_object = world_placement(world, index, ray->time);
         ray_object = ray_transform(&world_from_object.inverse, ray);
         map = &world_from_object;

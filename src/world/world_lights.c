@@ -279,14 +279,14 @@ static void take_light(struct building *b, uint32_t number) {
         b->of_primitive[placed] = number;
         emitter->unmet = emitter->unmet || placed_moves(world, placed);
         emitter->decided = emitter->decided || thing->holes || thing->cull != CULL_NONE ||
-                           (!light->has_emission && b->of_thing[world->placed[placed].thing].varies);
+                           (!light->has_emission && b->of_thing[world->primitives[placed].thing].varies);
     }
     emitter->decided = emitter->decided && !emitter->unmet;
 }
 
 static bool take_primitive(struct building *b, uint32_t placed) {
     const struct world *world = b->out->world;
-    const struct emission *emission = &b->of_thing[world->placed[placed].thing];
+    const struct emission *emission = &b->of_thing[world->primitives[placed].thing];
     if (!emission->emits || b->of_primitive[placed] != LIGHT_NONE)
         return true;
     struct derived d = {.world = world,
@@ -346,7 +346,7 @@ static bool allocate(struct building *b) {
         b->of_thing[i] = emission_of_thing(world, &world->things[i]);
     for (uint32_t i = 0; i < world->placed_count; i++) {
         b->of_primitive[i] = LIGHT_NONE;
-        emitting += b->of_thing[world->placed[i].thing].emits;
+        emitting += b->of_thing[world->primitives[i].thing].emits;
     }
     size_t most = (size_t)world->light_count + emitting + 1;
     b->lights = arena_alloc_array(b->arena, most, sizeof *b->lights);

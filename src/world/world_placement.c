@@ -14,7 +14,7 @@ static struct transform moved(const struct world *world, const struct moving *mo
 }
 
 struct transform world_placement(const struct world *world, uint32_t placed, double ray_time) {
-    const struct placed *p = &world->placed[placed];
+    const struct placed *p = &world->primitives[placed];
     if (p->linear == LINEAR_NONE)
         return transform_identity();
     if (p->linear & LINEAR_MOVING)
@@ -56,7 +56,7 @@ enum { EXACT_AT_ONCE = 1 << 20, EXACT_IN_ALL = 1 << 22 };
 
 static struct box placed_bounds(const struct world *world, uint32_t placed, uint32_t *exact) {
     const struct geometry *geometry = placed_geometry(world, placed);
-    uint32_t linear = world->placed[placed].linear;
+    uint32_t linear = world->primitives[placed].linear;
     if (linear != LINEAR_NONE && (linear & LINEAR_MOVING))
         return moving_bounds(world, geometry, &world->moving[linear & ~LINEAR_MOVING]);
     struct transform world_from_object = world_placement(world, placed, 0);

@@ -70,7 +70,7 @@ bool world_ask_nearest(const struct world *world, uint32_t index, const struct r
 static void try_placed(struct search *s, uint32_t index) {
     if (index + 1 == s->ray->passes)
         return;
-    bool as_it_is = s->world->placed[index].linear == LINEAR_NONE;
+    bool as_it_is = s->world->primitives[index].linear == LINEAR_NONE;
     struct ray ray_object;
     struct crossing *crossing = s->next;
     if (!as_it_is)
