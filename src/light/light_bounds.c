@@ -14,6 +14,22 @@ static const double most = 1e200;
 
 static const double least_cosine = 1.0 / 32;
 
+static double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
+static double sine_of(double cosine) {
+    double squared = 1 - cosine * cosine;
+    return squared > 0 ? sqrt(squared) : 0;
+}
+
+/* What importance needs at every node. */
+static void work_out(struct light_bounds *b) {
+    b->centre = vec3_scale(vec3_add(b->box.min, b->box.max), 0.5);
+    b->radius = vec3_length(vec3_sub(b->box.max, b->centre));
+    b->sin_theta_o = sine_of(b->cos_theta_o);
+}
+
 static double magnitude(struct vec3 c) {
     return (fabs(c.x) + fabs(c.y) + fabs(c.z)) / 3;
 }
@@ -175,6 +191,7 @@ enum light_reach light_bounds_of(const struct light *light, struct light_bounds 
     }
     out->steady = fmin(out->steady, most);
     out->fading = fmin(out->fading, most);
+    work_out(out);
     bool shines = out->steady + out->fading > 0 && vec3_finite(out->box.min) && vec3_finite(out->box.max);
     return shines ? LIGHT_REACH_PLACED : LIGHT_REACH_NONE;
 }
@@ -224,21 +241,15 @@ struct light_bounds light_bounds_join(const struct light_bounds *a, const struct
     double both = a->fading + b->fading;
     for (int i = 0; i < 3 && both > 0; i++)
         out.falloff[i] = a->falloff[i] * (a->fading / both) + b->falloff[i] * (b->fading / both);
+    work_out(&out);
     return out;
 }
 
 /* --- importance --- */
 
-static double sine_of(double cosine) {
-    return sqrt(fmax(0, 1 - cosine * cosine));
-}
-
-/* The cosine and sine of max(0, a - b). */
+/* The cosine of max(0, a - b). */
 static double cos_less(double sin_a, double cos_a, double sin_b, double cos_b) {
     return cos_a > cos_b ? 1 : cos_a * cos_b + sin_a * sin_b;
-}
-static double sin_less(double sin_a, double cos_a, double sin_b, double cos_b) {
-    return cos_a > cos_b ? 0 : sin_a * cos_b - cos_a * sin_b;
 }
 
 static double least_distance(const struct box *box, struct vec3 point) {
@@ -249,7 +260,7 @@ static double least_distance(const struct box *box, struct vec3 point) {
 /* What arrives at a distance, its direction aside. */
 static double strength_at(const struct light_bounds *b, struct vec3 point, double distance) {
     double steady = b->steady;
-    if (isfinite(b->range)) {
+    if (b->range < INFINITY) {
         double nearest = least_distance(&b->box, point);
         if (nearest >= b->range)
             return 0;
@@ -262,27 +273,28 @@ static double strength_at(const struct light_bounds *b, struct vec3 point, doubl
 }
 
 double light_bounds_importance(const struct light_bounds *b, struct vec3 point, struct vec3 normal) {
-    struct vec3 centre = vec3_scale(vec3_add(b->box.min, b->box.max), 0.5);
-    struct vec3 away = vec3_sub(point, centre);
-    double radius = vec3_length(vec3_sub(b->box.max, centre)), distance = vec3_length(away);
-    double strength = strength_at(b, point, fmax(distance, radius));
+    struct vec3 away = vec3_sub(point, b->centre);
+    double radius = b->radius, distance = vec3_length(away);
+    double strength = strength_at(b, point, larger(distance, radius));
     if (!(distance > radius))
         return strength;
-    struct vec3 from_light = vec3_scale(away, 1 / distance);
-    /* Half the angle that a ball around the lights fills. */
-    double sin_b = radius / distance, cos_b = sqrt((1 - sin_b) * (1 + sin_b));
-    double cos_w = vec3_dot(b->axis, from_light);
+    double inverse = 1 / distance;
+    /* Half the angle that the ball fills. */
+    double sin_b = radius * inverse, cos_b = sqrt((1 - sin_b) * (1 + sin_b));
+    double cos_w = vec3_dot(b->axis, away) * inverse, cos_o = b->cos_theta_o, sin_o = b->sin_theta_o;
     if (b->two_sided)
         cos_w = fabs(cos_w);
-    double sin_w = sine_of(cos_w), sin_o = sine_of(b->cos_theta_o);
-    double cos_x = cos_less(sin_w, cos_w, sin_o, b->cos_theta_o), sin_x = sin_less(sin_w, cos_w, sin_o, b->cos_theta_o);
-    double cos_leaving = cos_less(sin_x, cos_x, sin_b, cos_b);
-    if (cos_leaving < b->cos_theta_e)
-        return 0;
-    strength *= cos_leaving;
+    if (cos_w <= cos_o) { /* the direction is beside the cone of normals */
+        double sin_w = sine_of(cos_w);
+        double cos_x = cos_w * cos_o + sin_w * sin_o, sin_x = sin_w * cos_o - cos_w * sin_o;
+        double cos_leaving = cos_less(sin_x, cos_x, sin_b, cos_b);
+        if (cos_leaving < b->cos_theta_e)
+            return 0;
+        strength *= cos_leaving;
+    }
     if (normal.x == 0 && normal.y == 0 && normal.z == 0)
         return strength;
     /* Highlights of classic materials know no cosine: light that grazes the surface keeps a chance. */
-    double cos_i = fmin(1, fabs(vec3_dot(from_light, normal)));
-    return strength * fmax(least_cosine, cos_less(sine_of(cos_i), cos_i, sin_b, cos_b));
+    double cos_i = fabs(vec3_dot(away, normal)) * inverse;
+    return cos_i > cos_b ? strength : strength * larger(least_cosine, cos_i * cos_b + sine_of(cos_i) * sin_b);
 }

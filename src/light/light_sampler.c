@@ -20,7 +20,6 @@ enum { BINS = 12, DEPTH_LIMIT = 64 };
 
 struct item {
     struct light_bounds bounds;
-    struct vec3 centre;
     uint32_t light;
 };
 
@@ -95,7 +94,7 @@ static void try_axis(const struct building *b, uint32_t first, uint32_t count, i
         return;
     struct bin bins[BINS] = {{.count = 0}};
     for (uint32_t i = first; i < first + count; i++)
-        add_to_bin(&bins[bin_of(vec3_get(b->items[i].centre, axis), low, high)], &b->items[i].bounds);
+        add_to_bin(&bins[bin_of(vec3_get(b->items[i].bounds.centre, axis), low, high)], &b->items[i].bounds);
     double costs[BINS] = {0}, thin = vec3_max_abs(size) / (high - low);
     uint32_t counts[BINS];
     for (int k = 0; k < BINS; k++)
@@ -113,7 +112,7 @@ static uint32_t part(struct building *b, struct item *spare, uint32_t first, uin
     uint32_t lower = 0, upper = 0;
     for (uint32_t i = first; i < first + count; i++) {
         const struct item *item = &b->items[i];
-        if (bin_of(vec3_get(item->centre, split->axis), split->low, split->high) < split->bin)
+        if (bin_of(vec3_get(item->bounds.centre, split->axis), split->low, split->high) < split->bin)
             b->items[first + lower++] = *item;
         else
             spare[upper++] = *item;
@@ -136,7 +135,7 @@ static uint32_t build_node(struct building *b, struct item *spare, uint32_t firs
     }
     struct box centres = box_empty();
     for (uint32_t i = first; i < first + count; i++)
-        centres = box_add_point(centres, b->items[i].centre);
+        centres = box_add_point(centres, b->items[i].bounds.centre);
     struct split split = {.axis = -1, .cost = INFINITY};
     for (int axis = 0; axis < 3 && depth < DEPTH_LIMIT; axis++)
         try_axis(b, first, count, axis, &centres, &split);
@@ -158,7 +157,6 @@ static uint32_t collect(const struct light *lights, uint32_t count, struct item 
         case LIGHT_REACH_NONE:
             break;
         case LIGHT_REACH_PLACED:
-            item->centre = vec3_scale(vec3_add(item->bounds.box.min, item->bounds.box.max), 0.5);
             placed++;
             break;
         case LIGHT_REACH_INFINITE:
@@ -251,6 +249,8 @@ static double importance_at(const struct light_sampler *s, uint32_t node, struct
 
 /* The share of the tree beside the infinite lights; none where all of it is dark. */
 static double tree_share(const struct light_sampler *s, struct vec3 point, struct vec3 normal) {
+    if (s->infinite_count == 0)
+        return s->node_count > 0;
     bool lit = s->node_count > 0 && importance_at(s, 0, point, normal) > 0;
     return lit ? 1.0 / (1 + s->infinite_count) : 0;
 }
@@ -315,7 +315,7 @@ uint32_t light_sampler_sample(const struct light_sampler *s, struct vec3 point, 
         return sample_shares(s, u, pmf);
     }
     double tree = tree_share(s, point, normal);
-    if (tree == 0 && s->infinite_count == 0)
+    if (tree == 0 && s->infinite_count == 0) /* nothing can be chosen */
         return LIGHT_NONE;
     if (u < tree) {
         *pmf = tree;

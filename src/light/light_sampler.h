@@ -24,6 +24,8 @@ struct light_bounds {
     /* What a white surface facing it shows at distance d, on average over colours and visible sides:
      * steady + fading / (falloff[0] + falloff[1] d + falloff[2] d^2), nothing beyond `range`. */
     double steady, fading, falloff[3], range;
+    struct vec3 centre; /* from here on worked out of what stands above: a ball around the box */
+    double radius, sin_theta_o;
 };
 /* NONE: it sends nothing. INFINITE: it has no place; its bounds are not set. */
 enum light_reach { LIGHT_REACH_NONE, LIGHT_REACH_PLACED, LIGHT_REACH_INFINITE };
