@@ -20,9 +20,6 @@ static const double pi = 3.14159265358979323846;
  * is not of the disc: bench/lamps.c. */
 static const double disc_by_angle = 1.5;
 
-/* Where a falloff passes through zero, or a light is touched. A colour times it is finite. */
-static const double strongest = 1e200;
-
 bool light_prepare(struct light *light, struct arena *arena, struct pool *pool, struct error *error) {
     switch (light->kind) {
     case LIGHT_SKY:
@@ -41,33 +38,6 @@ bool light_prepare(struct light *light, struct arena *arena, struct pool *pool, 
 }
 
 /* --- delta lights --- */
-
-static double attenuation(const struct light *light, double distance) {
-    const double *c = light->falloff;
-    switch (light->fading) {
-    case FADING_RANGE:
-        return distance < light->range ? 1 - distance / light->range : 0;
-    case FADING_INVERSE_SQUARE:
-        return number_clamped(light->intensity / (distance * distance), strongest);
-    case FADING_COEFFICIENTS:
-        break;
-    }
-    if (c[0] == 0 && c[1] == 0 && c[2] == 0)
-        return 1;
-    return number_clamped(1 / (c[0] + c[1] * distance + c[2] * distance * distance), strongest);
-}
-
-/* Share of a spot's light in the unit direction from the light: 1 inside the inner cone, 0 outside the outer, between
- * them the cubic 3 s^2 - 2 s^3 of the cosine. */
-static double cone(const struct light *light, struct vec3 from_light) {
-    double cosine = vec3_dot(light->direction, from_light);
-    if (cosine >= light->cos_inner)
-        return 1;
-    if (cosine <= light->cos_outer)
-        return 0;
-    double s = (cosine - light->cos_outer) / (light->cos_inner - light->cos_outer);
-    return s * s * (3 - 2 * s);
-}
 
 bool light_middle(const struct light *light, struct light_target *out) {
     switch (light->kind) {
@@ -102,10 +72,10 @@ bool light_arrive(const struct light *light, struct vec3 point, struct light_arr
     if (!(out->distance > 0))
         return false;
     out->direction = vec3_scale(to_light, 1 / out->distance);
-    out->strength = attenuation(light, out->distance);
+    out->strength = light_attenuation(light, out->distance);
     switch (light->kind) {
     case LIGHT_SPOT:
-        out->strength *= cone(light, vec3_negate(out->direction));
+        out->strength *= light_cone(light, vec3_negate(out->direction));
         break;
     case LIGHT_POINT:
     case LIGHT_PARALLELOGRAM:
@@ -120,10 +90,6 @@ bool light_arrive(const struct light *light, struct vec3 point, struct light_arr
 }
 
 /* --- samples --- */
-
-static bool is_behind(const struct light *light, struct vec3 normal, struct vec3 from) {
-    return light->emits && light->one_sided && !(vec3_dot(normal, vec3_sub(from, light->position)) > 0);
-}
 
 bool light_context_make(const struct light *light, struct vec3 point, struct vec3 from, struct light_context *out) {
     out->point = point;
@@ -141,7 +107,7 @@ bool light_context_make(const struct light *light, struct vec3 point, struct vec
         out->axis = vec3_normalize(normal);
         out->by_angle =
             light->emits && spherical_rectangle_make(light->corner, light->edge1, light->edge2, from, &out->seen);
-        return !is_behind(light, normal, from);
+        return !light_flat_is_behind(light, normal, from);
     }
     case LIGHT_DISC:
         out->axis = light->direction;
@@ -151,7 +117,7 @@ bool light_context_make(const struct light *light, struct vec3 point, struct vec
         out->by_angle = light->emits &&
                         spherical_rectangle_make(out->corner, out->edge1, out->edge2, from, &out->seen) &&
                         out->seen.angle > disc_by_angle;
-        return !is_behind(light, light->direction, from);
+        return !light_flat_is_behind(light, light->direction, from);
     case LIGHT_SPHERE:
         if (light_sphere_context(light, out))
             return true;
@@ -173,12 +139,6 @@ bool light_context_make(const struct light *light, struct vec3 point, struct vec
     return true;
 }
 
-static struct vec3 disc_target(const struct light *light, const struct light_context *context, struct sample2 place) {
-    struct sample2 round = sample_disc(place);
-    struct vec3 target = vec3_add_scaled(light->position, context->right, light->radius * round.x);
-    return vec3_add_scaled(target, context->up, light->radius * round.y);
-}
-
 struct vec3 light_target_at(const struct light *light, const struct light_context *context, struct sample2 place) {
     if (context->by_angle)
         return spherical_rectangle_point(&context->seen, place);
@@ -186,7 +146,7 @@ struct vec3 light_target_at(const struct light *light, const struct light_contex
     case LIGHT_PARALLELOGRAM:
         return vec3_add_scaled(vec3_add_scaled(light->corner, light->edge1, place.x), light->edge2, place.y);
     case LIGHT_DISC:
-        return disc_target(light, context, place);
+        return light_disc_target(light, context, place);
     case LIGHT_SPHERE:
         return context->single ? light->position : light_sphere_target(light, context, place);
     case LIGHT_POINT:
@@ -202,10 +162,6 @@ struct vec3 light_target_at(const struct light *light, const struct light_contex
 /* From the intensity of radiance 1. */
 static double pdf_of(double weight) {
     return weight > 0 ? 1 / radiance_of(weight) : 0;
-}
-
-static bool is_beside_disc(const struct light *light, struct vec3 place) {
-    return vec3_length_squared(vec3_sub(place, light->position)) > light->radius * light->radius;
 }
 
 static struct light_sample delta_sample(const struct light *light, const struct light_context *context,
@@ -258,7 +214,7 @@ struct light_sample light_sample(const struct light *light, const struct light_c
         return flat_sample(light, context, place);
     case LIGHT_DISC:
         sample = flat_sample(light, context, place);
-        if (context->by_angle && is_beside_disc(light, sample.target.at))
+        if (context->by_angle && light_is_beside_disc(light, sample.target.at))
             sample.radiance = sample.intensity = vec3_all(0);
         return sample;
     case LIGHT_SPHERE:
@@ -305,37 +261,12 @@ double light_pdf(const struct light *light, const struct light_context *context,
 
 /* --- what a ray sees --- */
 
-/* The plane through a point, from the side that shines; p: from that point. */
-static bool plane_meets_ray(const struct light *light, struct vec3 normal, struct vec3 on_plane, const struct ray *ray,
-                            double *t, struct vec3 *p) {
-    double across = vec3_dot(normal, ray->direction);
-    if (across == 0 || (light->one_sided && across > 0))
-        return false;
-    *t = vec3_dot(normal, vec3_sub(on_plane, ray->origin)) / across;
-    if (!(*t > ray->t_min && *t < ray->t_max))
-        return false;
-    *p = vec3_sub(ray_at(ray, *t), on_plane);
-    return true;
-}
-
-static bool parallelogram_meets_ray(const struct light *light, const struct ray *ray, double *t) {
-    struct vec3 normal = vec3_cross(light->edge1, light->edge2), p;
-    if (!plane_meets_ray(light, normal, light->corner, ray, t, &p))
-        return false;
-    double n2 = vec3_dot(normal, normal);
-    double u = vec3_dot(vec3_cross(p, light->edge2), normal) / n2;
-    double v = vec3_dot(vec3_cross(light->edge1, p), normal) / n2;
-    return u >= 0 && u <= 1 && v >= 0 && v <= 1;
-}
-
 static bool surface_meets_ray(const struct light *light, const struct ray *ray, double *t) {
-    struct vec3 p;
     switch (light->kind) {
     case LIGHT_PARALLELOGRAM:
-        return parallelogram_meets_ray(light, ray, t);
+        return light_parallelogram_meets_ray(light, ray, t);
     case LIGHT_DISC:
-        return plane_meets_ray(light, light->direction, light->position, ray, t, &p) &&
-               vec3_dot(p, p) < light->radius * light->radius;
+        return light_disc_meets_ray(light, ray, t);
     case LIGHT_SPHERE:
         return light_sphere_meets_ray(light, ray, t);
     case LIGHT_POINT:
@@ -408,6 +339,78 @@ double light_brightest(const struct light *light) {
     return most;
 }
 
+bool light_surface_box(const struct light *light, struct box *out) {
+    switch (light->kind) {
+    case LIGHT_PARALLELOGRAM:
+        *out = light_parallelogram_box(light);
+        return true;
+    case LIGHT_DISC:
+        *out = light_disc_box(light);
+        return true;
+    case LIGHT_SPHERE:
+        *out = light_box_around(light->position, vec3_all(light->radius));
+        return true;
+    case LIGHT_POINT:
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_SPOT:
+    case LIGHT_MESH:
+    case LIGHT_SKY:
+        break;
+    }
+    return false;
+}
+
+/* --- from afar --- */
+
+enum light_reach light_bounds_of(const struct light *light, struct light_bounds *out) {
+    struct vec3 across;
+    *out = (struct light_bounds){.box = {light->position, light->position}, .range = INFINITY};
+    (void)light_surface_box(light, &out->box);
+    out->axis = vec3_make(0, 1, 0); /* into all directions alike */
+    out->cos_theta_o = -1;
+    out->cos_theta_e = 1;
+    switch (light->kind) {
+    case LIGHT_POINT:
+        light_bounds_fade(light, out);
+        break;
+    case LIGHT_SPOT:
+        light_bounds_fade(light, out);
+        out->axis = light->direction;
+        out->cos_theta_o = fmax(-1, fmin(1, light->cos_outer) - 0x1p-40);
+        break;
+    case LIGHT_PARALLELOGRAM:
+        if (light_is_delta(light)) {
+            light_bounds_fade(light, out);
+            break;
+        }
+        across = vec3_cross(light->edge1, light->edge2);
+        light_bounds_shine(light, vec3_normalize(across), intensity_of(vec3_length(across)), out);
+        break;
+    case LIGHT_DISC:
+        if (light_is_delta(light)) {
+            light_bounds_fade(light, out);
+            break;
+        }
+        light_bounds_shine(light, light->direction, light->radius * light->radius, out); /* the area is pi r^2 */
+        break;
+    case LIGHT_SPHERE:
+        if (light_is_delta(light)) {
+            light_bounds_fade(light, out);
+            break;
+        }
+        light_bounds_emit(light_magnitude(light->colour) * light->radius * light->radius,
+                          out); /* as a disc in all directions */
+        break;
+    case LIGHT_MESH:
+        light_mesh_bounds(light->mesh, out);
+        break;
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_SKY:
+        return light_magnitude(light->colour) > 0 ? LIGHT_REACH_INFINITE : LIGHT_REACH_NONE;
+    }
+    return light_bounds_finish(out) ? LIGHT_REACH_PLACED : LIGHT_REACH_NONE;
+}
+
 /* --- photons --- */
 
 double light_divided_extent(const struct light *light) {
@@ -426,16 +429,6 @@ double light_divided_extent(const struct light *light) {
     return 0;
 }
 
-/* The ball that holds the places of a part. */
-static void parallelogram_emitter(struct light_emitter *out) {
-    const struct light *light = out->light;
-    double u = out->low[0] + out->side / 2, v = out->low[1] + out->side / 2;
-    out->centre = vec3_add_scaled(vec3_add_scaled(light->corner, light->edge1, u), light->edge2, v);
-    double one = vec3_length(vec3_add(light->edge1, light->edge2)) / 2;
-    double other = vec3_length(vec3_sub(light->edge1, light->edge2)) / 2;
-    out->radius = (one > other ? one : other) * out->side;
-}
-
 bool light_emitter_make(const struct light *light, uint32_t i, uint32_t j, uint32_t parts, struct light_emitter *out) {
     *out = (struct light_emitter){.light = light, .centre = light->position, .side = 1.0 / parts, .even = true};
     out->low[0] = i * out->side;
@@ -448,7 +441,7 @@ bool light_emitter_make(const struct light *light, uint32_t i, uint32_t j, uint3
         return true;
     case LIGHT_PARALLELOGRAM:
         out->even = !light->emits;
-        parallelogram_emitter(out);
+        light_parallelogram_emitter(out);
         return true;
     case LIGHT_DISC:
         out->even = !light->emits;
@@ -473,23 +466,17 @@ bool light_emitter_make(const struct light *light, uint32_t i, uint32_t j, uint3
     return false;
 }
 
-/* The cosine at a flat lamp, of the side that shines. */
-static double flat_shine(const struct light *light, struct vec3 normal, struct vec3 direction) {
-    double cosine = vec3_dot(normal, direction);
-    return cosine > 0 ? cosine : light->one_sided ? 0 : -cosine;
-}
-
 double light_emitter_shine(const struct light_emitter *emitter, struct vec3 direction) {
     const struct light *light = emitter->light;
     if (emitter->even)
         return 1;
     switch (light->kind) {
     case LIGHT_SPOT:
-        return cone(light, direction);
+        return light_cone(light, direction);
     case LIGHT_PARALLELOGRAM:
-        return flat_shine(light, vec3_normalize(vec3_cross(light->edge1, light->edge2)), direction);
+        return light_flat_shine(light, vec3_normalize(vec3_cross(light->edge1, light->edge2)), direction);
     case LIGHT_DISC:
-        return flat_shine(light, light->direction, direction);
+        return light_flat_shine(light, light->direction, direction);
     case LIGHT_POINT:
     case LIGHT_DIRECTIONAL:
     case LIGHT_SPHERE:
@@ -631,7 +618,7 @@ double light_photon_fading(const struct light *light, double length) {
     case LIGHT_SPOT:
     case LIGHT_DISC:
     case LIGHT_SPHERE:
-        return length * length * attenuation(light, length);
+        return length * length * light_attenuation(light, length);
     case LIGHT_DIRECTIONAL:
     case LIGHT_MESH:
     case LIGHT_SKY:

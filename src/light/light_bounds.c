@@ -1,9 +1,7 @@
-/* Bounds of lights, for light_sampler.c: those of a kind, their union and their importance. The formulas for cones are
+/* Bounds of lights, for light_sampler.c: their union and their importance. The formulas for cones are
  * those of Pharr, Jakob and Humphreys, sections 3.8.4 and 12.6.3. All decisions err towards giving a light a chance:
  * importance is 0 only where nothing arrives. */
 #include "light/light_internal.h"
-#include "light/light_mesh.h"
-#include "light/light_sampler.h"
 #include "math/elementary.h"
 #include "math/range.h"
 
@@ -30,170 +28,11 @@ static void work_out(struct light_bounds *b) {
     b->sin_theta_o = sine_of(b->cos_theta_o);
 }
 
-static double magnitude(struct vec3 c) {
-    return (fabs(c.x) + fabs(c.y) + fabs(c.z)) / 3;
-}
-
-static struct box box_around(struct vec3 centre, struct vec3 half) {
-    return (struct box){vec3_sub(centre, half), vec3_add(centre, half)};
-}
-
-static struct box box_of_parallelogram(const struct light *light) {
-    struct box box = {light->corner, light->corner};
-    box = box_add_point(box, vec3_add(light->corner, light->edge1));
-    box = box_add_point(box, vec3_add(light->corner, light->edge2));
-    return box_add_point(box, vec3_add(vec3_add(light->corner, light->edge1), light->edge2));
-}
-
-static struct box box_of_disc(const struct light *light) {
-    struct vec3 n = light->direction;
-    struct vec3 sines = {sqrt(fmax(0, 1 - n.x * n.x)), sqrt(fmax(0, 1 - n.y * n.y)), sqrt(fmax(0, 1 - n.z * n.z))};
-    return box_around(light->position, vec3_scale(sines, light->radius));
-}
-
-/* Into all directions alike. */
-static void shine_everywhere(struct light_bounds *out) {
-    out->axis = vec3_make(0, 1, 0);
-    out->cos_theta_o = -1;
-    out->cos_theta_e = 1;
-}
-
-/* How a delta light fades (light.c). */
-static void fade(const struct light *light, struct light_bounds *out) {
-    double strength = magnitude(light->colour);
-    const double *c = light->falloff;
-    switch (light->fading) {
-    case FADING_RANGE:
-        out->steady = strength;
-        out->range = light->range;
-        return;
-    case FADING_INVERSE_SQUARE:
-        out->fading = strength * fabs(light->intensity);
-        out->falloff[2] = 1;
-        return;
-    case FADING_COEFFICIENTS:
-        break;
-    }
-    bool constant = c[1] == 0 && c[2] == 0;
-    if (constant)
-        out->steady = c[0] != 0 ? strength / fabs(c[0]) : strength;
-    else
-        out->fading = strength;
-    for (int i = 0; i < 3 && !constant; i++)
-        out->falloff[i] = fabs(c[i]);
-}
-
-static void emit(double intensity, struct light_bounds *out) {
-    out->fading = intensity;
-    out->falloff[2] = 1;
-}
-
-/* From a parallelogram or disc of an area over pi. */
-static void shine_from_plane(const struct light *light, struct vec3 normal, double area, struct light_bounds *out) {
-    (void)light_surface_box(light, &out->box);
-    emit(magnitude(light->colour) * area, out);
-    out->axis = normal;
-    out->cos_theta_o = 1;
-    out->cos_theta_e = 0;
-    out->two_sided = !light->one_sided;
-}
-
-/* The cone about the mean normal that holds all normals. What is seen of the triangles is their projection: as much as
- * the sum of their vectors, and a quarter of their area (Cauchy), a half where both sides shine, on average. */
-static void bounds_of_mesh(const struct light_mesh *mesh, struct light_bounds *out) {
-    struct vec3 sum = {0, 0, 0};
-    double all = 0, least = 1;
-    out->box = box_empty();
-    for (uint32_t i = 0; i < mesh->count; i++) {
-        const struct light_triangle *t = &mesh->triangles[i];
-        double weight = vec3_length(vec3_cross(t->edge1, t->edge2)) / 2 * magnitude(light_triangle_radiance(t));
-        sum = vec3_add_scaled(sum, t->normal, weight);
-        all += weight;
-        out->box = box_add_point(out->box, t->corner);
-        out->box = box_add_point(out->box, vec3_add(t->corner, t->edge1));
-        out->box = box_add_point(out->box, vec3_add(t->corner, t->edge2));
-    }
-    out->axis = vec3_normalize(sum);
-    bool directed = vec3_length(sum) > 0x1p-20 * all;
-    for (uint32_t i = 0; i < mesh->count && directed; i++)
-        least = fmin(least, vec3_dot(out->axis, mesh->triangles[i].normal));
-    emit(intensity_of(fmax(vec3_length(sum), all / (mesh->one_sided ? 4 : 2))), out);
-    out->cos_theta_o = directed ? fmax(-1, least - 0x1p-40) : -1;
-    out->cos_theta_e = 0;
-    out->two_sided = !mesh->one_sided;
-    if (!directed)
-        out->axis = vec3_make(0, 1, 0);
-}
-
-bool light_surface_box(const struct light *light, struct box *out) {
-    switch (light->kind) {
-    case LIGHT_PARALLELOGRAM:
-        *out = box_of_parallelogram(light);
-        return true;
-    case LIGHT_DISC:
-        *out = box_of_disc(light);
-        return true;
-    case LIGHT_SPHERE:
-        *out = box_around(light->position, vec3_all(light->radius));
-        return true;
-    case LIGHT_POINT:
-    case LIGHT_DIRECTIONAL:
-    case LIGHT_SPOT:
-    case LIGHT_MESH:
-    case LIGHT_SKY:
-        break;
-    }
-    return false;
-}
-
-enum light_reach light_bounds_of(const struct light *light, struct light_bounds *out) {
-    struct vec3 across;
-    *out = (struct light_bounds){.box = {light->position, light->position}, .range = INFINITY};
-    shine_everywhere(out);
-    switch (light->kind) {
-    case LIGHT_POINT:
-        fade(light, out);
-        break;
-    case LIGHT_SPOT:
-        fade(light, out);
-        out->axis = light->direction;
-        out->cos_theta_o = fmax(-1, fmin(1, light->cos_outer) - 0x1p-40);
-        break;
-    case LIGHT_PARALLELOGRAM:
-        if (light_is_delta(light)) {
-            fade(light, out);
-            break;
-        }
-        across = vec3_cross(light->edge1, light->edge2);
-        shine_from_plane(light, vec3_normalize(across), intensity_of(vec3_length(across)), out);
-        break;
-    case LIGHT_DISC:
-        if (light_is_delta(light)) {
-            fade(light, out);
-            break;
-        }
-        shine_from_plane(light, light->direction, light->radius * light->radius, out); /* the area is pi r^2 */
-        break;
-    case LIGHT_SPHERE:
-        if (light_is_delta(light)) {
-            fade(light, out);
-            break;
-        }
-        (void)light_surface_box(light, &out->box);
-        emit(magnitude(light->colour) * light->radius * light->radius, out); /* as a disc in all directions */
-        break;
-    case LIGHT_MESH:
-        bounds_of_mesh(light->mesh, out);
-        break;
-    case LIGHT_DIRECTIONAL:
-    case LIGHT_SKY:
-        return magnitude(light->colour) > 0 ? LIGHT_REACH_INFINITE : LIGHT_REACH_NONE;
-    }
-    out->steady = fmin(out->steady, most);
-    out->fading = fmin(out->fading, most);
-    work_out(out);
-    bool shines = out->steady + out->fading > 0 && vec3_finite(out->box.min) && vec3_finite(out->box.max);
-    return shines ? LIGHT_REACH_PLACED : LIGHT_REACH_NONE;
+bool light_bounds_finish(struct light_bounds *b) {
+    b->steady = fmin(b->steady, most);
+    b->fading = fmin(b->fading, most);
+    work_out(b);
+    return b->steady + b->fading > 0 && vec3_finite(b->box.min) && vec3_finite(b->box.max);
 }
 
 /* --- unions --- */

@@ -2,7 +2,7 @@
 #ifndef GRAY_LIGHT_LIGHT_INTERNAL_H
 #define GRAY_LIGHT_LIGHT_INTERNAL_H
 
-#include "light/light.h"
+#include "light/light_sampler.h"
 #include "material/classic.h"
 
 #include <math.h>
@@ -24,5 +24,43 @@ static inline void light_context_square(struct light_context *out, struct vec3 c
     out->edge2 = vec3_scale(out->up, 2 * half);
     out->corner = vec3_add_scaled(vec3_add_scaled(centre, out->right, -half), out->up, -half);
 }
+
+/* light_falloff.c: the share of a delta light that is left at a distance. */
+double light_attenuation(const struct light *light, double distance);
+/* Share of a spot's light in the unit direction from the light: 1 inside the inner cone, 0 outside the outer, between
+ * them the cubic 3 s^2 - 2 s^3 of the cosine. */
+double light_cone(const struct light *light, struct vec3 from_light);
+
+/* light_flat.c: parallelograms and discs. False: a lamp that shines to one side is seen from the other. */
+bool light_flat_is_behind(const struct light *light, struct vec3 normal, struct vec3 from);
+struct vec3 light_disc_target(const struct light *light, const struct light_context *context, struct sample2 place);
+bool light_is_beside_disc(const struct light *light, struct vec3 place);
+bool light_parallelogram_meets_ray(const struct light *light, const struct ray *ray, double *t);
+bool light_disc_meets_ray(const struct light *light, const struct ray *ray, double *t);
+/* Sets the ball that holds the places of a part. */
+void light_parallelogram_emitter(struct light_emitter *out);
+/* The cosine at a flat lamp, of the side that shines. */
+double light_flat_shine(const struct light *light, struct vec3 normal, struct vec3 direction);
+struct box light_parallelogram_box(const struct light *light);
+struct box light_disc_box(const struct light *light);
+
+/* Parts of light_bounds_of. How bright a colour is for a choice; negative light counts as much. */
+static inline double light_magnitude(struct vec3 c) {
+    return (fabs(c.x) + fabs(c.y) + fabs(c.z)) / 3;
+}
+static inline struct box light_box_around(struct vec3 centre, struct vec3 half) {
+    return (struct box){vec3_sub(centre, half), vec3_add(centre, half)};
+}
+/* A delta light: as its attenuation says (light_falloff.c). */
+void light_bounds_fade(const struct light *light, struct light_bounds *out);
+/* A light of that classic intensity at distance 1, which falls with the square of the distance. */
+static inline void light_bounds_emit(double intensity, struct light_bounds *out) {
+    out->fading = intensity;
+    out->falloff[2] = 1;
+}
+/* A flat lamp of an area over pi, by the cosine (light_flat.c). */
+void light_bounds_shine(const struct light *light, struct vec3 normal, double area, struct light_bounds *out);
+/* Works out the rest of what stands in the bounds; false: nothing is sent (light_bounds.c). */
+bool light_bounds_finish(struct light_bounds *bounds);
 
 #endif

@@ -147,3 +147,30 @@ struct light_photon light_mesh_photon(const struct light_mesh *mesh, struct vec3
     return (struct light_photon){vec3_add_scaled(point.place, t->normal, side), direction,
                                  vec3_scale(t->intensity, shines)};
 }
+
+/* The cone about the mean normal that holds all normals. What is seen of the triangles is their projection: as much as
+ * the sum of their vectors, and a quarter of their area (Cauchy), a half where both sides shine, on average. */
+void light_mesh_bounds(const struct light_mesh *mesh, struct light_bounds *out) {
+    struct vec3 sum = {0, 0, 0};
+    double all = 0, least = 1;
+    out->box = box_empty();
+    for (uint32_t i = 0; i < mesh->count; i++) {
+        const struct light_triangle *t = &mesh->triangles[i];
+        double weight = vec3_length(vec3_cross(t->edge1, t->edge2)) / 2 * light_magnitude(light_triangle_radiance(t));
+        sum = vec3_add_scaled(sum, t->normal, weight);
+        all += weight;
+        out->box = box_add_point(out->box, t->corner);
+        out->box = box_add_point(out->box, vec3_add(t->corner, t->edge1));
+        out->box = box_add_point(out->box, vec3_add(t->corner, t->edge2));
+    }
+    out->axis = vec3_normalize(sum);
+    bool directed = vec3_length(sum) > 0x1p-20 * all;
+    for (uint32_t i = 0; i < mesh->count && directed; i++)
+        least = fmin(least, vec3_dot(out->axis, mesh->triangles[i].normal));
+    light_bounds_emit(intensity_of(fmax(vec3_length(sum), all / (mesh->one_sided ? 4 : 2))), out);
+    out->cos_theta_o = directed ? fmax(-1, least - 0x1p-40) : -1;
+    out->cos_theta_e = 0;
+    out->two_sided = !mesh->one_sided;
+    if (!directed)
+        out->axis = vec3_make(0, 1, 0);
+}

@@ -59,6 +59,9 @@ double light_mesh_pdf(const struct light_mesh *mesh, const struct light_context 
 struct light_photon light_mesh_photon(const struct light_mesh *mesh, struct vec3 direction, struct sample2 place);
 /* The mean over places and directions, about. */
 struct vec3 light_mesh_colour(const struct light_mesh *mesh);
+/* Its part of light_bounds_of. */
+struct light_bounds;
+void light_mesh_bounds(const struct light_mesh *mesh, struct light_bounds *out);
 /* The radiance of a triangle. */
 struct vec3 light_triangle_radiance(const struct light_triangle *triangle);
 

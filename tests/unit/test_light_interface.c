@@ -3,6 +3,7 @@
 #include "base/random.h"
 #include "light/light_edit.h"
 #include "light/light_mesh.h"
+#include "light/light_sampler.h"
 #include "light/sky_light.h"
 #include "math/frame.h"
 #include "tests/harness.h"
@@ -404,6 +405,41 @@ TEST(photons_of_the_parts_of_a_light_are_those_of_the_whole) {
         }
         CHECK(most == 1 || fabs(units[1] / units[0] - 1) < 1e-12);
         example_end(&e);
+    }
+}
+
+/* --- from afar --- */
+
+/* Importance is 0 only where no sample brings light, and about as large as what they bring where they do. */
+TEST(the_bounds_of_every_light_hold_what_its_samples_bring) {
+    for (int kind = 0; kind < LIGHT_KIND_COUNT; kind++) {
+        for (int lamp = 0; lamp < 2; lamp++) {
+            struct example e;
+            struct light_bounds bounds;
+            example_begin(&e, (enum light_kind)kind, lamp, 0.4);
+            enum light_reach reach = light_bounds_of(&e.light, &bounds);
+            CHECK(reach != LIGHT_REACH_NONE);
+            int lit = 0;
+            for (uint64_t i = 0; i < 400 && reach == LIGHT_REACH_PLACED; i++) {
+                struct sample2 a = place_of(41, i), b = place_of(42, i);
+                struct vec3 from = {8 * a.x - 4, 8 * a.y - 2, 8 * b.x - 4}, normal = {0, i % 2 ? -0.6 : 0.8, 0.6};
+                struct light_context context;
+                double brought = 0, importance = light_bounds_importance(&bounds, from, vec3_normalize(normal));
+                for (uint64_t k = 0; k < 64 && light_context_make(&e.light, from, from, &context); k++) {
+                    struct light_sample sample = light_sample(&e.light, &context, place_of(43, k));
+                    double cosine = fabs(vec3_dot(sample.direction, vec3_normalize(normal)));
+                    brought += (sample.intensity.x + sample.intensity.y + sample.intensity.z) / 3 * cosine / 64;
+                }
+                CHECK(importance > 0 || !(brought > 0));
+                CHECK(brought < 3 * importance + 1e-12);
+                lit += brought > 0.2 * importance && brought > 0;
+            }
+            CHECK(reach == LIGHT_REACH_INFINITE || lit > 20);
+            struct box box;
+            CHECK(!light_surface_box(&e.light, &box) ||
+                  (box_contains(&box, e.light.position) && reach == LIGHT_REACH_PLACED));
+            example_end(&e);
+        }
     }
 }
 

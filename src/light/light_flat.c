@@ -1,0 +1,90 @@
+/* Parallelograms and discs: where rays meet them, where samples and photons lie, what holds them. */
+#include "light/light_internal.h"
+
+/* --- samples --- */
+
+bool light_flat_is_behind(const struct light *light, struct vec3 normal, struct vec3 from) {
+    return light->emits && light->one_sided && !(vec3_dot(normal, vec3_sub(from, light->position)) > 0);
+}
+
+struct vec3 light_disc_target(const struct light *light, const struct light_context *context, struct sample2 place) {
+    struct sample2 round = sample_disc(place);
+    struct vec3 target = vec3_add_scaled(light->position, context->right, light->radius * round.x);
+    return vec3_add_scaled(target, context->up, light->radius * round.y);
+}
+
+bool light_is_beside_disc(const struct light *light, struct vec3 place) {
+    return vec3_length_squared(vec3_sub(place, light->position)) > light->radius * light->radius;
+}
+
+/* --- rays --- */
+
+/* The plane through a point, from the side that shines; p: from that point. */
+static bool plane_meets_ray(const struct light *light, struct vec3 normal, struct vec3 on_plane, const struct ray *ray,
+                            double *t, struct vec3 *p) {
+    double across = vec3_dot(normal, ray->direction);
+    if (across == 0 || (light->one_sided && across > 0))
+        return false;
+    *t = vec3_dot(normal, vec3_sub(on_plane, ray->origin)) / across;
+    if (!(*t > ray->t_min && *t < ray->t_max))
+        return false;
+    *p = vec3_sub(ray_at(ray, *t), on_plane);
+    return true;
+}
+
+bool light_parallelogram_meets_ray(const struct light *light, const struct ray *ray, double *t) {
+    struct vec3 normal = vec3_cross(light->edge1, light->edge2), p;
+    if (!plane_meets_ray(light, normal, light->corner, ray, t, &p))
+        return false;
+    double n2 = vec3_dot(normal, normal);
+    double u = vec3_dot(vec3_cross(p, light->edge2), normal) / n2;
+    double v = vec3_dot(vec3_cross(light->edge1, p), normal) / n2;
+    return u >= 0 && u <= 1 && v >= 0 && v <= 1;
+}
+
+bool light_disc_meets_ray(const struct light *light, const struct ray *ray, double *t) {
+    struct vec3 p;
+    return plane_meets_ray(light, light->direction, light->position, ray, t, &p) &&
+           vec3_dot(p, p) < light->radius * light->radius;
+}
+
+/* --- photons --- */
+
+/* The ball that holds the places of a part. */
+void light_parallelogram_emitter(struct light_emitter *out) {
+    const struct light *light = out->light;
+    double u = out->low[0] + out->side / 2, v = out->low[1] + out->side / 2;
+    out->centre = vec3_add_scaled(vec3_add_scaled(light->corner, light->edge1, u), light->edge2, v);
+    double one = vec3_length(vec3_add(light->edge1, light->edge2)) / 2;
+    double other = vec3_length(vec3_sub(light->edge1, light->edge2)) / 2;
+    out->radius = (one > other ? one : other) * out->side;
+}
+
+/* The cosine at a flat lamp, of the side that shines. */
+double light_flat_shine(const struct light *light, struct vec3 normal, struct vec3 direction) {
+    double cosine = vec3_dot(normal, direction);
+    return cosine > 0 ? cosine : light->one_sided ? 0 : -cosine;
+}
+
+/* --- bounds --- */
+
+struct box light_parallelogram_box(const struct light *light) {
+    struct box box = {light->corner, light->corner};
+    box = box_add_point(box, vec3_add(light->corner, light->edge1));
+    box = box_add_point(box, vec3_add(light->corner, light->edge2));
+    return box_add_point(box, vec3_add(vec3_add(light->corner, light->edge1), light->edge2));
+}
+
+struct box light_disc_box(const struct light *light) {
+    struct vec3 n = light->direction;
+    struct vec3 sines = {sqrt(fmax(0, 1 - n.x * n.x)), sqrt(fmax(0, 1 - n.y * n.y)), sqrt(fmax(0, 1 - n.z * n.z))};
+    return light_box_around(light->position, vec3_scale(sines, light->radius));
+}
+
+void light_bounds_shine(const struct light *light, struct vec3 normal, double area, struct light_bounds *out) {
+    light_bounds_emit(light_magnitude(light->colour) * area, out);
+    out->axis = normal;
+    out->cos_theta_o = 1;
+    out->cos_theta_e = 0;
+    out->two_sided = !light->one_sided;
+}
