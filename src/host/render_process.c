@@ -48,6 +48,17 @@ struct render_process {
     int warned_count;
 };
 
+/* A picture on its way from the call of gr.render to the finished film. */
+struct picture_work {
+    struct render_process *process;
+    const struct render_request *request;
+    struct render_job job;
+    struct picture_request asked;
+    struct film film;
+    struct world world;
+    struct picture_report report;
+};
+
 static bool is_cancelled(void *context) {
     const struct render_process *process = context;
     return atomic_load(&process->services->control->cancel) == CANCEL_ALL;
@@ -138,8 +149,8 @@ static void tile_done(void *context, uint32_t tile, uint32_t done, uint32_t coun
         ;
 }
 
-static void fill_report(const struct render_process *process, const struct world *world, const struct scene *scene,
-                        const struct film *film, struct picture_report *report) {
+static void fill_report(const struct picture_work *work, const struct film *film, struct picture_report *report) {
+    const struct world *world = &work->world;
     struct rusage usage;
     struct error ignored;
     size_t film_bytes = 0;
@@ -149,14 +160,14 @@ static void fill_report(const struct render_process *process, const struct world
     report->placed_bytes = world_placed_memory(world);
     report->search_bytes = scene_accel_memory(&world->accel);
     report->image_bytes = 0;
-    for (const struct asset_image *entry = process->assets.images; entry; entry = entry->next)
+    for (const struct asset_image *entry = work->process->assets.images; entry; entry = entry->next)
         report->image_bytes += image_memory(entry->image);
     memcpy(report->grid_cells, world->accel.grid.cells, sizeof report->grid_cells);
-    report->node_bytes = scene->arena.total;
+    report->node_bytes = work->request->scene->arena.total;
     (void)film_size_layered(film->width, film->height, film->record, aov_layers(film->layer_mask), &film_bytes,
                             &ignored);
     report->film_bytes = film_bytes;
-    report->threads = pool_workers(process->pool);
+    report->threads = pool_workers(work->process->pool);
     if (getrusage(RUSAGE_SELF, &usage) == 0)
         report->peak_bytes = (uint64_t)usage.ru_maxrss * 1024;
 }
@@ -182,82 +193,74 @@ static void print_piece(void *context, const char *text) {
     text_print(stdout, text);
 }
 
-static bool answer_questions(struct render_process *process, const struct render_request *request,
-                             const struct render_job *job, struct error *error) {
-    const struct options *options = process->options;
-    struct inspected picture = {request->file, job, request->root};
+static bool answer_questions(const struct picture_work *work, struct error *error) {
+    const struct options *options = work->process->options;
+    struct inspected picture = {.file = work->request->file,
+                                .job = &work->job,
+                                .root = work->request->root,
+                                .pool = work->process->pool,
+                                .json = options->json};
     struct text_writer writer = {.put = print_piece};
-    return (!options->dump_scene || inspect_world(&picture, options->json, &writer, error)) &&
-           (options->pixel_count == 0 || inspect_pixels(&picture, options->pixels, options->pixel_count, options->json,
-                                                        process->pool, &writer, error));
+    return (!options->dump_scene || inspect_world(&picture, &writer, error)) &&
+           (options->pixel_count == 0 ||
+            inspect_pixels(&picture, options->pixels, options->pixel_count, &writer, error));
 }
 
-static bool build_world(struct render_process *process, const struct render_request *request,
-                        const struct render_job *job, const struct light *lights, uint32_t light_count,
-                        struct world *world, struct error *error) {
+static bool build_world(struct picture_work *work, const struct light *lights, uint32_t light_count,
+                        struct error *error) {
+    struct render_process *process = work->process;
     struct control *control = process->services->control;
     process->building = true;
     process->runs_before = pool_progress(process->pool).runs;
     atomic_store(&control->build_done, 0);
     atomic_store(&control->build_step, 1);
-    const struct world_input input = {.scene = request->scene,
-                                      .root = request->root,
+    const struct world_input input = {.scene = work->request->scene,
+                                      .root = work->request->root,
                                       .lights = lights,
                                       .light_count = light_count,
-                                      .sky = &request->sky,
-                                      .shutter = job->settings.shutter,
-                                      .accel = job->settings.accel,
+                                      .sky = &work->request->sky,
+                                      .shutter = work->job.settings.shutter,
+                                      .accel = work->job.settings.accel,
                                       .warn = warn_of_scene,
                                       .warn_context = process};
-    bool ok = world_build(world, &input, &process->job, process->pool, error);
+    bool ok = world_build(&work->world, &input, &process->job, process->pool, error);
     process->building = false;
     atomic_store(&control->build_step, 0);
     return ok;
 }
 
 /* A picture in a window. */
-struct preview_context {
-    struct render_process *process;
-    const struct render_request *request;
-    struct render_job *job;
-    struct world *world;
-};
 
 static bool preview_build(void *context, const struct light *lights, uint32_t light_count, struct error *error) {
-    struct preview_context *preview_context = context;
-    world_destroy(preview_context->world);
-    arena_reset(&preview_context->process->job);
-    return build_world(preview_context->process, preview_context->request, preview_context->job, lights, light_count,
-                       preview_context->world, error);
+    struct picture_work *work = context;
+    world_destroy(&work->world);
+    arena_reset(&work->process->job);
+    return build_world(work, lights, light_count, error);
 }
 
 static void preview_fill_report(void *context, const struct film *film, struct picture_report *report) {
-    const struct preview_context *preview_context = context;
-    fill_report(preview_context->process, preview_context->world, preview_context->request->scene, film, report);
+    fill_report(context, film, report);
 }
 
 static void preview_warn(void *context, const char *text) {
-    const struct preview_context *preview_context = context;
-    warn_of_scene(preview_context->process, text);
+    const struct picture_work *work = context;
+    warn_of_scene(work->process, text);
 }
 
-static bool make_in_window(struct render_process *process, const struct render_request *request, struct render_job *job,
-                           struct world *world, const struct picture_request *asked, struct picture_report *report,
-                           double build_seconds, struct error *error) {
-    struct preview_context preview_context = {process, request, job, world};
-    bool built = job->world != NULL;
-    job->world = world;
-    struct preview_session preview = {.services = process->services,
-                                      .pool = process->pool,
-                                      .request = request,
-                                      .asked = asked,
-                                      .job = job,
-                                      .world = world,
-                                      .context = &preview_context,
+static bool make_in_window(struct picture_work *work, double build_seconds, struct error *error) {
+    bool built = work->job.world != NULL;
+    work->job.world = &work->world;
+    struct preview_session preview = {.services = work->process->services,
+                                      .pool = work->process->pool,
+                                      .request = work->request,
+                                      .asked = &work->asked,
+                                      .job = &work->job,
+                                      .world = &work->world,
+                                      .context = work,
                                       .build = preview_build,
                                       .fill = preview_fill_report,
                                       .warn = preview_warn};
-    return preview_run(&preview, built, report, build_seconds, error);
+    return preview_run(&preview, built, &work->report, build_seconds, error);
 }
 
 static bool too_much_memory(const struct render_process *process, struct error *error) {
@@ -268,43 +271,44 @@ static bool too_much_memory(const struct render_process *process, struct error *
 }
 
 /* From the flattened scene to the finished film. */
-static bool make_picture_unlimited(struct render_process *process, const struct render_request *request,
-                                   struct render_job *job, const struct picture_request *asked,
-                                   struct picture_report *report, struct error *error) {
-    struct world world = {0};
+static bool make_picture_unlimited(struct picture_work *work, struct error *error) {
+    struct render_process *process = work->process;
+    struct render_job *job = &work->job;
+    struct picture_report *report = &work->report;
+    bool in_window = work->asked.in_window;
     double begun = progress_clock(), worked = progress_processor_clock();
-    if (build_world(process, request, job, request->lights, request->light_count, &world, error))
-        job->world = &world;
-    else if (!asked->in_window || !preview_was_stopped(process->services->control, error))
+    if (build_world(work, work->request->lights, work->request->light_count, error))
+        job->world = &work->world;
+    else if (!in_window || !preview_was_stopped(process->services->control, error))
         return false;
     bool ok = true;
     double built = progress_clock(), built_worked = progress_processor_clock();
     if (is_asked(process->options)) {
-        ok = answer_questions(process, request, job, error);
+        ok = answer_questions(work, error);
     } else if (!process->options->check) {
-        if (!asked->in_window)
+        if (!in_window)
             atomic_store(&process->services->control->tiles, film_tile_count(job->film));
-        ok = asked->in_window
-                 ? make_in_window(process, request, job, &world, asked, report, built - begun, error)
+        ok = in_window
+                 ? make_in_window(work, built - begun, error)
                  : render_run(job, process->pool, &report->rays, error) && overlay_draw(job, process->pool, error);
     }
     report->rays.build_seconds = built - begun;
     report->rays.build_processor_seconds = built_worked - worked;
     report->rays.render_seconds = progress_clock() - built;
     report->rays.render_processor_seconds = progress_processor_clock() - built_worked;
-    fill_report(process, &world, request->scene, job->film, report);
-    world_destroy(&world);
+    fill_report(work, job->film, report);
+    world_destroy(&work->world);
     if (ok)
-        report_world(process, request->file, report);
+        report_world(process, work->request->file, report);
     return ok;
 }
 
 /* The same within what memory is left. */
-static bool make_picture(struct render_process *process, const struct render_request *request, struct render_job *job,
-                         const struct picture_request *asked, struct picture_report *report, struct error *error) {
+static bool make_picture(struct picture_work *work, struct error *error) {
+    struct render_process *process = work->process;
     (void)mem_charge(process->account);
     uint64_t refusals = mem_refusals();
-    bool ok = make_picture_unlimited(process, request, job, asked, report, error);
+    bool ok = make_picture_unlimited(work, error);
     if (!ok && mem_refusals() != refusals)
         (void)too_much_memory(process, error);
     /* Of a large scene nothing is kept: the next picture may need its memory in other pieces. */
@@ -336,9 +340,8 @@ static bool reserve_memory(struct render_process *process, const struct picture_
     return ok || too_much_memory(process, error);
 }
 
-static bool begin_picture(struct render_process *process, const struct render_request *request, struct render_job *job,
-                          struct film *film, struct picture_request *out, bool *already, struct error *error) {
-    struct picture_request asked = {.full_width = job->width,
+static struct picture_request picture_request_of(const struct options *options, const struct render_job *job) {
+    return (struct picture_request){.full_width = job->width,
                                     .full_height = job->height,
                                     .exposure = job->settings.tone.exposure,
                                     .curve = (uint32_t)job->settings.tone.curve,
@@ -346,35 +349,45 @@ static bool begin_picture(struct render_process *process, const struct render_re
                                     .deep = job->settings.deep,
                                     .record = integrator_record(job->settings.integrator),
                                     .layers = job->settings.aov,
-                                    .in_window = process->options->window,
+                                    .in_window = options->window,
                                     .overlay = (uint32_t)job->settings.overlay,
                                     .camera = job->camera,
                                     .lens = job->settings.lens,
-                                    .check = process->options->check || is_asked(process->options)};
+                                    .check = options->check || is_asked(options)};
+}
+
+/* Names the picture and has its film made. *already: nothing is to be done. */
+static bool begin_picture(struct picture_work *work, bool *already, struct error *error) {
+    struct render_process *process = work->process;
+    struct render_job *job = &work->job;
+    struct picture_request *asked = &work->asked;
+    struct film *film = &work->film;
+    const char *file = work->request->file;
+    *asked = picture_request_of(process->options, job);
     char warning[256] = "";
-    size_t length = strlen(request->file);
-    if (length >= sizeof asked.file)
-        return error_set(error, ERROR_SCENE, "the name of the picture is longer than %zu bytes", sizeof asked.file - 1);
-    memcpy(asked.file, request->file, length);
-    if (!render_prepare(job, &asked.x0, &asked.y0, &asked.width, &asked.height, warning, error))
+    size_t length = strlen(file);
+    if (length >= sizeof asked->file)
+        return error_set(error, ERROR_SCENE, "the name of the picture is longer than %zu bytes",
+                         sizeof asked->file - 1);
+    memcpy(asked->file, file, length);
+    if (!render_prepare(job, &asked->x0, &asked->y0, &asked->width, &asked->height, warning, error))
         return false;
     if (warning[0] != '\0')
         warn_of_scene(process, warning);
     if (job->settings.view_is_target)
-        asked.camera.view = vec3_sub(job->camera.view, job->camera.eye);
-    asked.files = file_read_log_sum(&process->read_log);
+        asked->camera.view = vec3_sub(job->camera.view, job->camera.eye);
+    asked->files = file_read_log_sum(&process->read_log);
     if (process->read_log.incomplete)
         return error_no_memory(error, "the list of files that were read");
-    if (!reserve_memory(process, &asked, &job->settings, error))
+    if (!reserve_memory(process, asked, &job->settings, error))
         return false;
-    if (!process->services->begin(process->services->context, &asked, film, already, error))
+    if (!process->services->begin(process->services->context, asked, film, already, error))
         return false;
     /* Also where only questions are answered, and there is no film. */
-    film->x0 = asked.x0;
-    film->y0 = asked.y0;
-    film->full_width = asked.full_width;
-    film->full_height = asked.full_height;
-    *out = asked;
+    film->x0 = asked->x0;
+    film->y0 = asked->y0;
+    film->full_width = asked->full_width;
+    film->full_height = asked->full_height;
     return true;
 }
 
@@ -384,41 +397,48 @@ static uint32_t in_preview(const struct options *options, double side) {
     return options->preview ? (whole + 3) / 4 : whole;
 }
 
-static bool render_job_run(struct render_process *process, const struct render_request *request, struct error *error) {
+static void init_work(struct picture_work *work, struct render_process *process, const struct render_request *request) {
     const struct options *options = process->options;
-    const struct host_services *services = process->services;
-    struct film film = {0};
-    struct picture_report report = {0};
-    struct render_job job = {
+    struct control *control = process->services->control;
+    *work = (struct picture_work){.process = process, .request = request};
+    work->job = (struct render_job){
         .camera = request->camera,
         .settings = request->settings,
         .width = options->width ? (uint32_t)options->width : in_preview(options, request->width),
         .height = options->height ? (uint32_t)options->height : in_preview(options, request->height),
         .ambient = request->ambient,
         .fog = request->fog,
-        .film = &film,
+        .film = &work->film,
         .shard = options->shard,
         .shards = options->shards,
         .tile_done = tile_done,
-        .context = services->control,
-        .enough = &services->control->enough,
+        .context = control,
+        .enough = &control->enough,
     };
-    settings_set_draft(&job.settings, options->preview ? DRAFT_PREVIEW : options->quick ? DRAFT_QUICK : DRAFT_NONE);
+    settings_set_draft(&work->job.settings, options->preview ? DRAFT_PREVIEW
+                                            : options->quick ? DRAFT_QUICK
+                                                             : DRAFT_NONE);
+}
+
+static bool render_job_run(struct render_process *process, const struct render_request *request, struct error *error) {
+    const struct host_services *services = process->services;
+    struct control *control = services->control;
+    struct picture_work work;
+    bool already = false;
+    init_work(&work, process, request);
     finish_output(process);
     if (is_cancelled(process))
         return error_set(error, ERROR_CANCELLED, "interrupted");
-    struct picture_request asked;
-    bool already = false;
-    if (!need_pool(process, error) || !begin_picture(process, request, &job, &film, &asked, &already, error))
+    if (!need_pool(process, error) || !begin_picture(&work, &already, error))
         return false;
     if (already)
         return true;
-    if (atomic_load(&services->control->outlook.begun) == OUTLOOK_WANTED)
-        job.outlook = &services->control->outlook;
-    job.handout = atomic_load(&services->control->handout) != HANDOUT_NONE ? &services->control->handout : NULL;
-    bool ok = make_picture(process, request, &job, &asked, &report, error);
-    if (ok && !asked.check)
-        return services->done(services->context, &report, error);
+    if (atomic_load(&control->outlook.begun) == OUTLOOK_WANTED)
+        work.job.outlook = &control->outlook;
+    work.job.handout = atomic_load(&control->handout) != HANDOUT_NONE ? &control->handout : NULL;
+    bool ok = make_picture(&work, error);
+    if (ok && !work.asked.check)
+        return services->done(services->context, &work.report, error);
     services->abandon(services->context);
     return ok;
 }

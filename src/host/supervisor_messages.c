@@ -102,10 +102,11 @@ static void answer_begin(struct supervisor *supervisor, const struct message *me
     bool film = ok && !already && !message->body.request.check;
     if (ok && already)
         settle(supervisor, output->pictures);
+    const struct viewer_picture picture = {&output->current.request, output->current.memory.block,
+                                           output->current.name};
     supervisor->viewer.number = film ? output->pictures : supervisor->viewer.number;
     if (film && supervisor->window &&
-        !viewer_begin(&supervisor->viewer, supervisor->window, &output->current.request, output->current.memory.block,
-                      output->current.name, progress_clock(), &error)) {
+        !viewer_begin(&supervisor->viewer, supervisor->window, &picture, progress_clock(), &error)) {
         output_abandon(output);
         film = ok = false;
     }

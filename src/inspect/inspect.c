@@ -99,7 +99,6 @@ static bool find_names(struct story *story, const struct inspected *picture, str
 
 struct trace_context {
     const struct inspected *picture;
-    bool json;
     struct text_writer *writer;
 };
 
@@ -108,23 +107,23 @@ static bool report_pixel(void *context, struct story *story, struct error *error
     struct trace_report report = {trace_context->picture, story, {0}};
     if (!find_names(story, trace_context->picture, &report.names, error))
         return false;
-    if (trace_context->json)
+    if (trace_context->picture->json)
         pixel_trace_print_json(&report, trace_context->writer);
     else
         pixel_trace_print(&report, trace_context->writer);
     return true;
 }
 
-bool inspect_pixels(const struct inspected *picture, const uint32_t (*pixels)[2], uint32_t count, bool json,
-                    struct pool *pool, struct text_writer *writer, struct error *error) {
+bool inspect_pixels(const struct inspected *picture, const uint32_t (*pixels)[2], uint32_t count,
+                    struct text_writer *writer, struct error *error) {
     const struct render_job *job = picture->job;
-    struct trace_context trace_context = {picture, json, writer};
+    struct trace_context trace_context = {picture, writer};
     for (uint32_t i = 0; i < count; i++) {
         if (pixels[i][0] >= job->width || pixels[i][1] >= job->height)
             return error_set(error, ERROR_USAGE, "--pixel %u,%u is not in the picture of %u x %u", pixels[i][0],
                              pixels[i][1], job->width, job->height);
     }
-    bool ok = render_pixels(job, pool, pixels, count, report_pixel, &trace_context, error);
+    bool ok = render_pixels(job, picture->pool, pixels, count, report_pixel, &trace_context, error);
     text_writer_flush(writer);
     return ok;
 }

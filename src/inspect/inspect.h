@@ -12,14 +12,16 @@ struct inspected {
     const char *file;
     const struct render_job *job; /* with its world */
     const struct node *root;
+    struct pool *pool; /* for pixels */
+    bool json;         /* else in words */
 };
 
 /* --pixel: makes pixels {x, y} of the whole picture and tells their stories, in words or as one line of JSON each.
  * Errors: a pixel is not in the picture (ERROR_USAGE), those of render_pixels. */
-bool inspect_pixels(const struct inspected *picture, const uint32_t (*pixels)[2], uint32_t count, bool json,
-                    struct pool *pool, struct text_writer *writer, struct error *error);
+bool inspect_pixels(const struct inspected *picture, const uint32_t (*pixels)[2], uint32_t count,
+                    struct text_writer *writer, struct error *error);
 /* --dump-scene: everything placed, in flattening order, then lights and materials. */
-bool inspect_world(const struct inspected *picture, bool json, struct text_writer *writer, struct error *error);
+bool inspect_world(const struct inspected *picture, struct text_writer *writer, struct error *error);
 
 /* A story with what it needs to be told: the ways to the nodes in it. */
 struct trace_names {

@@ -212,7 +212,7 @@ static bool describe(struct picking *p, const struct node *root, const struct hi
     return box_node(p, root, error);
 }
 
-bool pick_at(const struct render_job *job, const struct node *root, double x, double y, int32_t up, struct picked *out,
+bool pick_at(const struct render_job *job, const struct node *root, struct pick_query query, struct picked *out,
              struct error *error) {
     struct settings settings = job->settings;
     struct camera_frame frame;
@@ -224,7 +224,7 @@ bool pick_at(const struct render_job *job, const struct node *root, double x, do
     settings.lens.aperture = 0;
     if (!camera_prepare(&job->camera, &settings, job->width, job->height, &frame, ignored, error))
         return false;
-    if (!camera_ray_through(&frame, x, y, (struct sample2){0.5, 0.5}, 0, &ray))
+    if (!camera_ray_through(&frame, query.x, query.y, (struct sample2){0.5, 0.5}, 0, &ray))
         return true;
     if (!world_scratch_init(&scratch, job->world))
         return error_no_memory(error, "the ray of a click");
@@ -234,7 +234,7 @@ bool pick_at(const struct render_job *job, const struct node *root, double x, do
         out->distance = vec3_length(vec3_sub(hit.point, ray.origin));
         out->position = hit.point;
         out->normal = hit.normal;
-        ok = describe(&p, root, &hit, up, error);
+        ok = describe(&p, root, &hit, query.up, error);
     }
     world_scratch_destroy(&scratch);
     return ok;

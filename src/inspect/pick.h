@@ -11,10 +11,13 @@ void pick_words(char out[PICK_NAME], const char *text);
 /* A number for a way to a node, so that of a node under several parents one can be told. */
 uint64_t route_hash(const struct scene_step *steps, uint32_t depth);
 
-/* The ray through (x, y) of the whole picture, in pixels, with the camera of the job as it is at time 0. up: so many
- * nodes above the one that was hit; below 0: so many operands below it, if it is a combined solid. False: no memory, or
- * no such camera. */
-bool pick_at(const struct render_job *job, const struct node *root, double x, double y, int32_t up, struct picked *out,
+struct pick_query {
+    double x, y; /* pixels of the whole picture */
+    int32_t up;  /* so many nodes above the one that is hit; below 0: so many operands below it, in a combined solid */
+};
+/* What the ray through a pixel hits, with the camera of the job as it is at time 0. False: no memory, or no such
+ * camera. */
+bool pick_at(const struct render_job *job, const struct node *root, struct pick_query query, struct picked *out,
              struct error *error);
 
 #endif

@@ -164,7 +164,8 @@ static void dump_rest(const struct dump *d) {
     text_writer_print(d->writer, d->json ? "]}\n" : "");
 }
 
-bool inspect_world(const struct inspected *picture, bool json, struct text_writer *writer, struct error *error) {
+bool inspect_world(const struct inspected *picture, struct text_writer *writer, struct error *error) {
+    bool json = picture->json;
     const struct world *world = picture->job->world;
     struct dump d = {picture, world, writer, json};
     if (json) {

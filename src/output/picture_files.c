@@ -184,50 +184,55 @@ bool picture_files_checkpoint(const struct picture_files *files, const char *nam
 
 /* Checks. */
 
-/* The file with this number of those that are named after a picture; *rules NULL: there are fewer, or this one is not
- * wanted. */
+/* A file that is named after a picture; rules NULL: it is not written. */
+struct named_file {
+    char path[NAME_LIMIT];
+    const struct file_rules *rules;
+};
+
+/* The one with this number of those that a picture may have. */
 static bool name_file(const struct picture_files *files, const char *name, uint32_t layers, int number,
-                      char out[NAME_LIMIT], const struct file_rules **rules, struct error *error) {
+                      struct named_file *file, struct error *error) {
     const struct options *options = files->options;
     const char *prefixes[2] = {options->targets_prefix, options->first_pass_prefix};
-    *rules = NULL;
+    file->rules = NULL;
     if (number == 0) {
-        *rules = options->shards ? &files->part : &files->picture;
-        return picture_files_written(files, name, out, error);
+        file->rules = options->shards ? &files->part : &files->picture;
+        return picture_files_written(files, name, file->path, error);
     }
     if (options->shards)
         return true;
-    *rules = &files->beside;
+    file->rules = &files->beside;
     if (number <= 2 && prefixes[number - 1])
-        return picture_files_prefixed(name, prefixes[number - 1], out, error);
+        return picture_files_prefixed(name, prefixes[number - 1], file->path, error);
     if (number == 3 && options->partial)
-        return layers_name(name, "partial", out, error);
+        return layers_name(name, "partial", file->path, error);
     bool inside = strlen(name) >= 4 && strcasecmp(name + strlen(name) - 4, ".exr") == 0;
     if (number >= 4 && !inside && (layers >> (number - 4) & 1))
-        return layers_name(name, aov_name((enum aov)(number - 4)), out, error);
-    *rules = NULL;
+        return layers_name(name, aov_name((enum aov)(number - 4)), file->path, error);
+    file->rules = NULL;
     return true;
 }
 
 /* One of them: that it can be written, and is none of those before it, nor the checkpoint. */
 static bool check_file(const struct picture_files *files, const char *name, uint32_t layers, int number,
                        const char *checkpoint, struct error *error) {
-    const struct file_rules *rules, *before;
-    char file[NAME_LIMIT], other[NAME_LIMIT];
-    if (!name_file(files, name, layers, number, file, &rules, error))
+    struct named_file file, other;
+    if (!name_file(files, name, layers, number, &file, error))
         return false;
-    if (!rules)
+    if (!file.rules)
         return true;
-    const struct file_target target = {.path = file, .rules = rules};
+    const struct file_target target = {.path = file.path, .rules = file.rules};
     if (!file_output_check(&target, error))
         return false;
     for (int i = 0; i < number; i++) {
-        if (name_file(files, name, layers, i, other, &before, error) && before && file_same_place(file, other))
-            return error_set(error, ERROR_USAGE, "%.600s: two files of one picture would have this name", file);
+        if (name_file(files, name, layers, i, &other, error) && other.rules && file_same_place(file.path, other.path))
+            return error_set(error, ERROR_USAGE, "%.600s: two files of one picture would have this name", file.path);
     }
-    if (checkpoint && file_same_place(file, checkpoint))
+    if (checkpoint && file_same_place(file.path, checkpoint))
         return error_set(error, files->options->output ? ERROR_USAGE : ERROR_SCENE,
-                         "%.600s: is the name of the checkpoint of this run, and cannot be that of a picture", file);
+                         "%.600s: is the name of the checkpoint of this run, and cannot be that of a picture",
+                         file.path);
     return true;
 }
 

@@ -77,8 +77,9 @@ bool panel_button(struct panel *panel, int x, int y, const char *text, bool on) 
     return in && panel->released && panel->held == part;
 }
 
-bool panel_slider(struct panel *panel, int x, int y, int width, double low, double high, struct canvas_colour colour,
-                  double *value) {
+bool panel_slider(struct panel *panel, const struct panel_slider *slider, double *value) {
+    int x = slider->x, y = slider->y, width = slider->width;
+    double low = slider->low, high = slider->high;
     int scale = panel->canvas.scale, height = CANVAS_LETTER * scale, part = ++panel->part;
     bool in = inside(panel, x, y - scale, width, height + 2 * scale), changed = false;
     if (in && panel->pressed)
@@ -93,7 +94,7 @@ bool panel_slider(struct panel *panel, int x, int y, int width, double low, doub
     double share = (*value - low) / (high - low);
     share = share < 0 ? 0 : share > 1 ? 1 : share;
     canvas_box(&panel->canvas, x, y, width, height, quiet);
-    canvas_box(&panel->canvas, x, y, (int)(width * share), height, colour);
+    canvas_box(&panel->canvas, x, y, (int)(width * share), height, slider->colour);
     return changed;
 }
 

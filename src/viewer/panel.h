@@ -43,8 +43,12 @@ bool panel_button(struct panel *panel, int x, int y, const char *text, bool on);
 /* Buttons from the left on, as many as there is room for. on: by bit, which of them are drawn as chosen; used: which
  * one was clicked. Returns where the row ends. */
 int panel_button_row(struct panel *panel, int y, const char *const *words, int count, unsigned on, bool *used);
-/* True: *value was changed by the mouse, from low to high over the width. */
-bool panel_slider(struct panel *panel, int x, int y, int width, double low, double high, struct canvas_colour colour,
-                  double *value);
+struct panel_slider {
+    int x, y, width;
+    double low, high;
+    struct canvas_colour colour;
+};
+/* True: *value was changed by the mouse. */
+bool panel_slider(struct panel *panel, const struct panel_slider *slider, double *value);
 
 #endif

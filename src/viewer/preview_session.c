@@ -182,7 +182,8 @@ static struct render_job view_job(const struct preview_state *work, const struct
 static bool answer_click(const struct preview_state *work, const struct preview_command *command, struct picked *picked,
                          struct error *error) {
     struct render_job job = view_job(work, &command->view);
-    if (!pick_at(&job, work->preview->request->root, command->x, command->y, command->up, picked, error))
+    if (!pick_at(&job, work->preview->request->root, (struct pick_query){command->x, command->y, command->up}, picked,
+                 error))
         return false;
     const struct material *before = changes_before(&work->changed, picked->material_serial);
     for (int part = 0; before && part < LOOK_PARTS; part++)
@@ -198,13 +199,14 @@ static void print_piece(void *context, const char *text) {
 static bool send_pixel_trace(struct preview_state *work, const struct preview_command *command, struct error *error) {
     struct preview_session *preview = work->preview;
     struct render_job job = view_job(work, &command->view);
-    struct inspected picture = {preview->request->file, &job, preview->request->root};
+    struct inspected picture = {
+        .file = preview->request->file, .job = &job, .root = preview->request->root, .pool = preview->pool};
     struct text_writer writer = {.put = print_piece, .context = preview};
     const uint32_t pixel[1][2] = {{(uint32_t)command->x, (uint32_t)command->y}};
     /* The supervisor asks for pixels of the picture; another one has no story. */
     if (!(command->x >= 0 && command->y >= 0 && command->x < job.width && command->y < job.height))
         return true;
-    return inspect_pixels(&picture, pixel, 1, false, preview->pool, &writer, error);
+    return inspect_pixels(&picture, pixel, 1, &writer, error);
 }
 
 static void describe_world(struct preview_state *work, struct preview_reply *reply) {
@@ -226,12 +228,13 @@ static bool make_overlay(struct preview_state *work, const struct pass_view *vie
                          const struct view_overlay_request *request, struct preview_reply *reply, struct error *error) {
     struct preview_session *preview = work->preview;
     struct render_job job = view_job(work, view);
-    struct view_overlay_buffers layout;
-    view_overlay_buffers(preview->asked, job.film->pixels, &layout);
+    struct view_overlay_buffers buffers;
+    view_overlay_buffers(preview->asked, job.film->pixels, &buffers);
     if (request->lines.limit == 0 || request->lines.cell == 0) /* nothing is asked for */
         return true;
     double begun = progress_clock();
-    bool ok = view_overlay_make(&job, preview->request->root, preview->pool, request, &layout, &reply->overlay, error);
+    const struct view_overlay_scene scene = {&job, preview->request->root, preview->pool};
+    bool ok = view_overlay_make(&scene, request, &buffers, &reply->overlay, error);
     reply->report.rays.render_seconds += progress_clock() - begun; /* a frame is not there before its lines */
     reply->overlay.stopped = !ok && preview_was_stopped(preview->services->control, error);
     pool_reset_cancel(preview->pool);

@@ -139,10 +139,10 @@ static bool run_outline(struct outline_job *o, struct pool *pool, struct error *
     return complete || error_set(error, ERROR_CANCELLED, "stopped while rendering");
 }
 
-static bool make_outline(const struct render_job *job, const struct node *root, struct pool *pool,
-                         const struct view_overlay_request *request, uint8_t *shows, struct film_rectangle *found,
-                         struct error *error) {
-    struct node_members node_members = {.world = job->world, .request = request, .box = box_empty()};
+static bool make_outline(const struct view_overlay_scene *scene, const struct view_overlay_request *request,
+                         uint8_t *shows, struct film_rectangle *found, struct error *error) {
+    const struct render_job *job = scene->job;
+    struct node_members members = {.world = job->world, .request = request, .box = box_empty()};
     struct settings settings = job->settings;
     struct camera_frame frame;
     char ignored[256];
@@ -150,30 +150,30 @@ static bool make_outline(const struct render_job *job, const struct node *root, 
     *found = (struct film_rectangle){0};
     if (!camera_prepare(&job->camera, &settings, job->width, job->height, &frame, ignored, error))
         return false;
-    node_members.member = mem_alloc_zero((size_t)job->world->placed_count + 1, 1);
-    if (!node_members.member)
+    members.member = mem_alloc_zero((size_t)job->world->placed_count + 1, 1);
+    if (!members.member)
         return error_no_memory(error, "the outline of a node");
-    bool ok = world_walk_paths(job->world, root, note_members, &node_members, error) &&
-              (!node_members.no_memory || error_no_memory(error, "the outline of a node"));
-    if (ok && !box_is_empty(&node_members.box)) {
+    bool ok = world_walk_paths(job->world, scene->root, note_members, &members, error) &&
+              (!members.no_memory || error_no_memory(error, "the outline of a node"));
+    if (ok && !box_is_empty(&members.box)) {
         struct outline_job o = {
-            .job = job, .frame = &frame, .pool = pool, .node_members = &node_members, .shows = shows};
-        o.area = rectangle_of(&frame, job->film, &node_members.box);
-        ok = run_outline(&o, pool, error);
+            .job = job, .frame = &frame, .pool = scene->pool, .node_members = &members, .shows = shows};
+        o.area = rectangle_of(&frame, job->film, &members.box);
+        ok = run_outline(&o, scene->pool, error);
         *found = o.area;
     }
-    mem_free(node_members.member);
+    mem_free(members.member);
     return ok;
 }
 
-bool view_overlay_make(const struct render_job *job, const struct node *root, struct pool *pool,
-                       const struct view_overlay_request *request, const struct view_overlay_buffers *layout,
-                       struct view_overlay *overlay, struct error *error) {
+bool view_overlay_make(const struct view_overlay_scene *scene, const struct view_overlay_request *request,
+                       const struct view_overlay_buffers *buffers, struct view_overlay *overlay, struct error *error) {
     *overlay = (struct view_overlay){0};
-    if (request->outline && !make_outline(job, root, pool, request, layout->shows, &overlay->outline, error))
+    if (request->outline && !make_outline(scene, request, buffers->shows, &overlay->outline, error))
         return false;
     overlay->has_outline = request->outline;
-    if (request->lines.kind != OVERLAY_NONE && !overlay_lines(job, pool, &request->lines, layout->lines, error))
+    if (request->lines.kind != OVERLAY_NONE &&
+        !overlay_lines(scene->job, scene->pool, &request->lines, buffers->lines, error))
         return false;
     overlay->has_lines = request->lines.kind != OVERLAY_NONE;
     return true;

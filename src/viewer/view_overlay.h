@@ -7,9 +7,14 @@
 #include "session/messages.h"
 #include "world/path.h"
 
+struct view_overlay_scene {
+    const struct render_job *job; /* with its world; its camera is the one that looks */
+    const struct node *root;      /* of which the world was built */
+    struct pool *pool;
+};
+
 /* Makes what is wished for, as the camera of the job sees it. False: no memory, or no such camera, or cancelled. */
-bool view_overlay_make(const struct render_job *job, const struct node *root, struct pool *pool,
-                       const struct view_overlay_request *request, const struct view_overlay_buffers *layout,
-                       struct view_overlay *overlay, struct error *error);
+bool view_overlay_make(const struct view_overlay_scene *scene, const struct view_overlay_request *request,
+                       const struct view_overlay_buffers *buffers, struct view_overlay *overlay, struct error *error);
 
 #endif

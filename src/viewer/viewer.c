@@ -86,9 +86,10 @@ static bool open_window(struct viewer *viewer, struct error *error) {
     return viewer->open;
 }
 
-bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, const struct picture_request *request,
-                  void *block, const char *name, double now, struct error *error) {
-    struct film whole = pass_film(request, block, 1);
+bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, const struct viewer_picture *picture,
+                  double now, struct error *error) {
+    const struct picture_request *request = picture->request;
+    struct film whole = pass_film(request, picture->block, 1);
     const struct box unknown = box_empty();
     bool kept = viewer->keep && viewer->open;
     if (viewer->open && (viewer->request.width != request->width || viewer->request.height != request->height))
@@ -97,7 +98,7 @@ bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, con
     struct viewer before = *viewer;
     *viewer = (struct viewer){.driver = driver,
                               .request = *request,
-                              .block = block,
+                              .block = picture->block,
                               .script_exposure = request->exposure,
                               .pass = {.outdated = true, .from_coarse = true, .divide = FIRST_DIVIDE / 2, .began = now},
                               .overlay.kind =
@@ -106,7 +107,7 @@ bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, con
                               .stepped = now};
     mem_free(before.lights.items);
     keep_window(viewer, &before);
-    (void)snprintf(viewer->name, sizeof viewer->name, "%s", name);
+    (void)snprintf(viewer->name, sizeof viewer->name, "%s", picture->name);
     fly_camera_begin(&viewer->fly_camera, &request->camera, &unknown);
     viewer->pass.view = current_view(viewer, FIRST_DIVIDE, true);
     if (kept)

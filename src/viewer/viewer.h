@@ -182,9 +182,15 @@ struct viewer {
     bool next, quit;                /* the same: the next picture, the end */
 };
 
+/* A picture that is about to be made. */
+struct viewer_picture {
+    const struct picture_request *request;
+    void *block; /* of its film; it stays until viewer_detach */
+    const char *name;
+};
 /* Opens the window. Owner: the caller; viewer_end gives everything back. */
-bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, const struct picture_request *request,
-                  void *block, const char *name, double now, struct error *error);
+bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, const struct viewer_picture *picture,
+                  double now, struct error *error);
 void viewer_end(struct viewer *viewer);
 /* The film goes away: what was shown last stays. */
 void viewer_detach(struct viewer *viewer);

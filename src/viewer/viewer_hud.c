@@ -111,7 +111,8 @@ static void draw_work(struct viewer *viewer) {
     (void)snprintf(text, sizeof text, "%+.2f stops", stops);
     if (x + 2 * wide > panel->canvas.width)
         return;
-    if (panel_slider(panel, x + 2 * scale, y + 2 * scale, wide, -4, 4, gray, &stops))
+    const struct panel_slider slider = {x + 2 * scale, y + 2 * scale, wide, -4, 4, gray};
+    if (panel_slider(panel, &slider, &stops))
         viewer_set_exposure(viewer, stops);
     panel_text(panel, x + 4 * scale + wide, y + 2 * scale, text);
 }

@@ -251,7 +251,8 @@ static bool draw_sliders(struct viewer *viewer, struct column *column, double to
     if (panel->pressed)
         viewer->edit.joins = false;
     for (int i = 0; i < 3; i++) {
-        changed = panel_slider(panel, column->x, column->y, width, 0, top, parts_of_colour[i], &parts[i]) || changed;
+        const struct panel_slider slider = {column->x, column->y, width, 0, top, parts_of_colour[i]};
+        changed = panel_slider(panel, &slider, &parts[i]) || changed;
         column->y += panel_line_height(panel);
     }
     *colour = vec3_make(parts[0], parts[1], parts[2]);
@@ -265,7 +266,8 @@ static bool draw_number(struct viewer *viewer, struct column *column, enum look_
     double low, high, at = part == LOOK_SHININESS ? el_log2(1 + *number) : *number;
     look_part_range(part, &low, &high);
     double top = part == LOOK_SHININESS ? 12 : part == LOOK_IOR ? 3 : 1;
-    bool changed = panel_slider(panel, column->x, column->y, width, low, top, bulb, &at);
+    const struct panel_slider slider = {column->x, column->y, width, low, top, bulb};
+    bool changed = panel_slider(panel, &slider, &at);
     column->y += panel_line_height(panel);
     if (changed)
         *number = part == LOOK_SHININESS ? el_exp2(at) - 1 : at;
@@ -355,8 +357,9 @@ static void draw_light(struct viewer *viewer, struct column *column) {
     struct vec3 colour = viewer_light_colour_now(viewer);
     if (panel->pressed)
         viewer->edit.joins = false;
-    if (panel_slider(panel, column->x, column->y, column->columns * CANVAS_CELL * panel->canvas.scale, -5, 5, bulb,
-                     &stops))
+    int width = column->columns * CANVAS_CELL * panel->canvas.scale;
+    const struct panel_slider slider = {column->x, column->y, width, -5, 5, bulb};
+    if (panel_slider(panel, &slider, &stops))
         viewer_brighten_light(viewer, stops);
     column->y += panel_line_height(panel);
     (void)snprintf(row, sizeof row, "%+.2f stops", stops);

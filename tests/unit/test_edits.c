@@ -363,7 +363,7 @@ TEST(picking_tells_the_way_to_a_node_its_place_and_its_box) {
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
     const struct render_job job = {
         .world = &s.world, .camera = s.camera, .settings = s.settings, .width = 100, .height = 80};
-    CHECK(pick_at(&job, s.root, 50, 40, 0, &picked, &s.error));
+    CHECK(pick_at(&job, s.root, (struct pick_query){50, 40, 0}, &picked, &s.error));
     CHECK(picked.hit && strstr(picked.path, "/ group#") && strstr(picked.path, "/ ball#"));
     CHECK_TEXT(picked.name, "ball");
     CHECK_TEXT(picked.shape, "sphere");
@@ -376,13 +376,13 @@ TEST(picking_tells_the_way_to_a_node_its_place_and_its_box) {
     CHECK_NEAR(picked.corners[7].z, 1, 1e-12);
     CHECK_NEAR(affine_point(&picked.world_from_parent, vec3_make(0, 0, 0)).z, -1, 1e-12);
     /* One up: the group, with all that is under it. */
-    CHECK(pick_at(&job, s.root, 50, 40, 1, &picked, &s.error));
+    CHECK(pick_at(&job, s.root, (struct pick_query){50, 40, 1}, &picked, &s.error));
     CHECK_TEXT(picked.name, "group");
     CHECK_TEXT(picked.shape, "group");
     CHECK(picked.corners[7].x > 50.9 && picked.corners[7].x < 51.1 && picked.corners[0].x < -1.9);
-    CHECK(pick_at(&job, s.root, 50, 40, 99, &picked, &s.error));
+    CHECK(pick_at(&job, s.root, (struct pick_query){50, 40, 99}, &picked, &s.error));
     CHECK_EQ_INT(picked.levels, 0);
-    CHECK(pick_at(&job, s.root, 1, 1, 0, &picked, &s.error));
+    CHECK(pick_at(&job, s.root, (struct pick_query){1, 1, 0}, &picked, &s.error));
     CHECK(!picked.hit);
     stage_end(&s);
 }
@@ -616,8 +616,8 @@ TEST(picking_goes_down_to_the_operand_whose_surface_was_hit) {
         for (int i = 0; i < 200; i++) {
             double x = test_uniform(&f.random, 25, 75), y = test_uniform(&f.random, 25, 75);
             struct picked picked, leaf, between;
-            CHECK(pick_at(&job, s.root, x, y, 0, &picked, &s.error));
-            CHECK(pick_at(&job, s.root, x, y, -1000, &leaf, &s.error));
+            CHECK(pick_at(&job, s.root, (struct pick_query){x, y, 0}, &picked, &s.error));
+            CHECK(pick_at(&job, s.root, (struct pick_query){x, y, -1000}, &leaf, &s.error));
             CHECK(leaf.hit == picked.hit);
             if (!leaf.hit)
                 continue;
@@ -634,7 +634,7 @@ TEST(picking_goes_down_to_the_operand_whose_surface_was_hit) {
             CHECK_NEAR(vec3_length(p), 1, 1e-9);
             /* And in the box of whatever is between. */
             int32_t up = -(int32_t)(test_uniform(&f.random, 0, picked.below + 0.99));
-            CHECK(pick_at(&job, s.root, x, y, up, &between, &s.error));
+            CHECK(pick_at(&job, s.root, (struct pick_query){x, y, up}, &between, &s.error));
             CHECK(between.levels == picked.levels + (uint32_t)-up && between.has_box);
             struct box box = box_empty();
             for (int corner = 0; corner < 8; corner++)

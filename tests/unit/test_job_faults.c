@@ -167,7 +167,7 @@ static void add_text(void *context, const char *text) {
 static bool answer(enum question question, const struct render_request *request, struct render_job *job,
                    struct pool *pool, uint64_t *sum, struct error *error) {
     static struct text_writer writer;
-    struct inspected picture = {"a.png", job, request->root};
+    struct inspected picture = {.file = "a.png", .job = job, .root = request->root, .pool = pool};
     const uint32_t pixels[][2] = {{3, 3}, {1, 4}, {5, 0}};
     struct render_statistics statistics = {0};
     struct picked picked;
@@ -176,10 +176,12 @@ static bool answer(enum question question, const struct render_request *request,
     switch (question) {
     case ASK_PIXELS:
     case ASK_PIXELS_JSON:
-        return inspect_pixels(&picture, pixels, 3, question == ASK_PIXELS_JSON, pool, &writer, error);
+        picture.json = question == ASK_PIXELS_JSON;
+        return inspect_pixels(&picture, pixels, 3, &writer, error);
     case ASK_DUMP:
     case ASK_DUMP_JSON:
-        return inspect_world(&picture, question == ASK_DUMP_JSON, &writer, error);
+        picture.json = question == ASK_DUMP_JSON;
+        return inspect_world(&picture, &writer, error);
     case ASK_BOXES:
     case ASK_CELLS:
         job->settings.overlay = question == ASK_BOXES ? OVERLAY_OF_BOXES : OVERLAY_OF_GRID;
@@ -192,7 +194,8 @@ static bool answer(enum question question, const struct render_request *request,
         return ok;
     case ASK_PICK:
         for (int place = 0; place < SIDE * SIDE; place++) {
-            if (!pick_at(job, request->root, place % SIDE + 0.5, place / SIDE + 0.5, place % 3 - 1, &picked, error))
+            if (!pick_at(job, request->root, (struct pick_query){place % SIDE + 0.5, place / SIDE + 0.5, place % 3 - 1},
+                         &picked, error))
                 return false;
             add_text(sum, picked.path);
         }

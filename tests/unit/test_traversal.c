@@ -231,7 +231,7 @@ TEST(picking_names_the_path_of_what_a_ray_meets_and_no_ray_meets_anything_outsid
             double x = pick(&f, 16, 48), y = pick(&f, 16, 48);
             struct picked picked;
             struct hit hit;
-            CHECK(pick_at(&job, s->root, x, y, 0, &picked, &s->error));
+            CHECK(pick_at(&job, s->root, (struct pick_query){x, y, 0}, &picked, &s->error));
             if (!picked.hit)
                 continue;
             struct vec3 eye = vec3_make(0, 0, 10);

@@ -38,7 +38,8 @@ TEST(a_node_shows_where_the_ray_through_the_middle_of_a_pixel_meets_it_first) {
             .outline = true, .serial = behind->serial, .route = by_way ? route : 0};
         struct view_overlay overlay;
         memset(shows, 7, sizeof shows);
-        CHECK(view_overlay_make(&job, s.root, s.pool, &request, &place, &overlay, &s.error));
+        CHECK(view_overlay_make(&(struct view_overlay_scene){&job, s.root, s.pool}, &request, &place, &overlay,
+                                &s.error));
         CHECK(overlay.has_outline && !overlay.has_lines && !overlay.stopped);
         int seen = 0;
         for (uint32_t y = 0; y < HEIGHT; y++) {
@@ -62,7 +63,7 @@ TEST(a_node_shows_where_the_ray_through_the_middle_of_a_pixel_meets_it_first) {
     }
     const struct view_overlay_request nobody = {.outline = true, .serial = 12345};
     struct view_overlay none;
-    CHECK(view_overlay_make(&job, s.root, s.pool, &nobody, &place, &none, &s.error));
+    CHECK(view_overlay_make(&(struct view_overlay_scene){&job, s.root, s.pool}, &nobody, &place, &none, &s.error));
     CHECK(none.has_outline && none.outline.x1 == 0);
     stage_end(&s);
 }
@@ -91,15 +92,16 @@ TEST(an_operand_shows_where_its_surface_is_that_of_the_solid) {
     /* The middle is in the hollow; its outline is where a click finds it. */
     for (int32_t down = 0; down <= 1; down++) {
         int seen = 0;
-        CHECK(pick_at(&job, s.root, WIDTH / 2.0, HEIGHT / 2.0, -down, &picked, &s.error));
+        CHECK(pick_at(&job, s.root, (struct pick_query){WIDTH / 2.0, HEIGHT / 2.0, -down}, &picked, &s.error));
         CHECK_EQ_INT(picked.serial, down ? hollow->serial : cut->serial);
         const struct view_overlay_request request = {
             .outline = true, .serial = picked.serial, .route = picked.route, .solid = picked.solid};
         memset(shows, 0, sizeof shows);
-        CHECK(view_overlay_make(&job, s.root, s.pool, &request, &place, &overlay, &s.error));
+        CHECK(view_overlay_make(&(struct view_overlay_scene){&job, s.root, s.pool}, &request, &place, &overlay,
+                                &s.error));
         for (uint32_t y = 0; y < HEIGHT; y++) {
             for (uint32_t x = 0; x < WIDTH; x++) {
-                CHECK(pick_at(&job, s.root, x + 0.5, y + 0.5, -down, &picked, &s.error));
+                CHECK(pick_at(&job, s.root, (struct pick_query){x + 0.5, y + 0.5, -down}, &picked, &s.error));
                 bool expected = picked.hit && picked.serial == request.serial;
                 CHECK_EQ_INT(shows[y * WIDTH + x] != 0, expected);
                 seen += expected;

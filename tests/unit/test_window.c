@@ -193,7 +193,8 @@ static void begin(struct table *t) {
                                        fake_title, fake_grab, fake_nothing, fake_nothing};
     CHECK(film_size(100, 70, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
     t->block = mem_alloc_zero(1, bytes);
-    CHECK(viewer_begin(&t->viewer, &t->driver, &t->request, t->block, "x.png", t->now, &error));
+    CHECK(
+        viewer_begin(&t->viewer, &t->driver, &(struct viewer_picture){&t->request, t->block, "x.png"}, t->now, &error));
     t->fake.queue[t->fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 400, .y = 280, .density = 1};
     build(t);
 }
@@ -534,32 +535,32 @@ TEST(canvas_letters_keep_inside_their_cell_and_inside_the_paper) {
 TEST(panel_sliders_follow_the_mouse_that_holds_them_and_stop_at_their_ends) {
     static uint8_t rgba[4 * 100 * 20];
     struct panel panel = {.canvas = {rgba, 100, 20, 1}};
-    const struct canvas_colour colour = {9, 9, 9, 255};
+    const struct panel_slider slider = {10, 2, 80, 0, 1, {9, 9, 9, 255}};
     double value = 0.5;
     panel.mouse_x = 30;
     panel.mouse_y = 5;
     panel_begin(&panel);
-    CHECK(!panel_slider(&panel, 10, 2, 80, 0, 1, colour, &value)); /* the mouse is on it, no button is down */
+    CHECK(!panel_slider(&panel, &slider, &value)); /* the mouse is on it, no button is down */
     panel_end(&panel);
     panel.down = panel.pressed = true;
     panel_begin(&panel);
-    CHECK(panel_slider(&panel, 10, 2, 80, 0, 1, colour, &value));
+    CHECK(panel_slider(&panel, &slider, &value));
     panel_end(&panel);
     CHECK_NEAR(value, 0.25, 1e-12);
     panel.mouse_x = 500;
     panel.mouse_y = 19;
     panel_begin(&panel);
-    CHECK(panel_slider(&panel, 10, 2, 80, 0, 1, colour, &value));
+    CHECK(panel_slider(&panel, &slider, &value));
     panel_end(&panel);
     CHECK_NEAR(value, 1, 0);
     panel.down = false;
     panel.released = true;
     panel_begin(&panel);
-    CHECK(!panel_slider(&panel, 10, 2, 80, 0, 1, colour, &value));
+    CHECK(!panel_slider(&panel, &slider, &value));
     panel_end(&panel);
     panel.mouse_x = 30;
     panel_begin(&panel);
-    CHECK(!panel_slider(&panel, 10, 2, 80, 0, 1, colour, &value));
+    CHECK(!panel_slider(&panel, &slider, &value));
     panel_end(&panel);
 }
 
@@ -843,7 +844,8 @@ TEST(window_asks_for_lights_until_it_knows_them_all_and_goes_through_them_by_key
     key(&t.fake, 'i', true);
     key(&t.fake, ',', true);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    CHECK(t.viewer.edit.selection.kind == SELECTED_LIGHT && t.viewer.edit.selection.light == 70 && t.viewer.lights.listed);
+    CHECK(t.viewer.edit.selection.kind == SELECTED_LIGHT && t.viewer.edit.selection.light == 70 &&
+          t.viewer.lights.listed);
     key(&t.fake, '.', true);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK_EQ_INT(t.viewer.edit.selection.light, 1);
@@ -926,7 +928,7 @@ TEST(window_tells_the_child_all_changes_again_when_the_scripts_run_again) {
     viewer_keep(&t.viewer);
     viewer_detach(&t.viewer);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    CHECK(viewer_begin(&t.viewer, &t.driver, &t.request, t.block, "x.png", t.now, &error));
+    CHECK(viewer_begin(&t.viewer, &t.driver, &(struct viewer_picture){&t.request, t.block, "x.png"}, t.now, &error));
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     struct preview_reply reply = {.kind = REPLY_BUILT};
     tell_news(&t, &reply);
