@@ -1,4 +1,4 @@
-/* Each question is a frame and, where there is one, its answer. When the supervisor cannot be reached every question
+/* Each request is a message and, where there is one, its answer. When the supervisor cannot be reached, every request
  * fails as "cancelled", which ends the scripts. */
 #include "host/channel_services.h"
 

@@ -1,4 +1,4 @@
-/* What the child asks of the supervisor, said over the channel. */
+/* The services of the supervisor over the channel. */
 #ifndef GRAY_HOST_CHANNEL_SERVICES_H
 #define GRAY_HOST_CHANNEL_SERVICES_H
 

@@ -1,6 +1,6 @@
-/* Takes away from the process, before a stranger's scene runs, what it will not need: files outside the scene's folders
+/* Takes away from the process, before an untrusted scene runs, what it does not need: files outside the scene's folders
  * (Landlock), and system calls other than those of a program that computes (seccomp). Both stay for good and hold for
- * every thread made later. docs/security.md tells what is promised. */
+ * every thread made later. docs/security.md describes what is promised. */
 #ifndef GRAY_HOST_CONFINE_H
 #define GRAY_HOST_CONFINE_H
 

@@ -1,5 +1,5 @@
-/* A file is suspected when its folder tells of its name; when it has been quiet for a moment it is looked at, and only
- * another content counts. A folder that went away is asked for again whenever something is looked at. */
+/* A file is suspected when its folder reports an event with its name; when it has been quiet for a moment it is looked
+ * at, and only another content counts. A folder that went away is asked for again whenever something is looked at. */
 #define _GNU_SOURCE
 #include "host/file_watch.h"
 

@@ -32,7 +32,7 @@ bool watch_open(struct watch *watch, struct error *error);
 void watch_close(struct watch *watch);
 /* The file was read, in this version; NULL: it is about to be. False: no memory. */
 bool watch_add(struct watch *watch, const char *path, const struct file_version *version, double now);
-/* From now on any: see there. What happened while nobody looked is found. */
+/* From now on any: see there. Changes since the last look are found. */
 void watch_settle(struct watch *watch, bool any, double now);
 /* Takes what inotify has. */
 void watch_read(struct watch *watch, double now);

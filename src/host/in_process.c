@@ -1,4 +1,4 @@
-/* The services of the child, answered on the spot by the desk: no channel, no second process. */
+/* The services of the render process, done at once by the output session: no channel, no second process. */
 #include "host/in_process.h"
 
 #include "base/mem.h"

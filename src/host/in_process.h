@@ -1,4 +1,4 @@
-/* Everything in one process, for debuggers (--no-fork): a crash is a crash, Ctrl-C ends it at once. */
+/* Everything in one process, for debuggers (--no-fork): nothing survives a crash, Ctrl-C ends the program at once. */
 #ifndef GRAY_HOST_IN_PROCESS_H
 #define GRAY_HOST_IN_PROCESS_H
 

@@ -229,7 +229,7 @@ int main(int argc, char **argv) {
     (void)MPI_Comm_size(MPI_COMM_WORLD, &transport.size);
     find_neighbours();
     int status = program_run(argc, argv, &(struct program_parts){.transport = &transport});
-    /* Nobody waits for ranks that were interrupted. */
+    /* Ranks that were interrupted are not waited for. */
     if (status == ERROR_CANCELLED)
         (void)MPI_Abort(MPI_COMM_WORLD, status);
     finalize(&queues, transport.rank, status);

@@ -151,7 +151,7 @@ int program_run(int argc, char **argv, const struct program_parts *parts) {
         (void)snprintf(line, sizeof line, "gray: %s", error.text);
         text_print_line(stderr, line);
         if (error.kind == ERROR_USAGE)
-            (void)fputs("usage: gray [options] [--] scene.lua ...; gray --help tells all options\n", stderr);
+            (void)fputs("usage: gray [options] [--] scene.lua ...; gray --help lists all options\n", stderr);
         status = (int)error.kind;
     } else if (options.mpi && options.action == ACTION_RENDER && !parts->transport) {
         status = become("mpi", "ompi-c (Debian: libopenmpi-dev)", argv);

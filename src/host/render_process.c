@@ -85,7 +85,7 @@ static void report_scene(const struct render_process *process, enum line_kind ki
     report(process, kind, mark[0] != '\0' ? line : text);
 }
 
-/* How many steps building takes depends on the scene; how far each one is can be told. */
+/* How many steps building takes depends on the scene; only the progress of each one is known. */
 static void report_building(const struct render_process *process) {
     struct pool_progress progress = pool_progress(process->pool);
     struct control *control = process->services->control;

@@ -1,6 +1,5 @@
-/* The child: runs the scripts and makes their pictures. It opens no file for writing and owns no terminal; what it
- * needs of those it asks for through host_services, which is the channel to the supervisor or, with --no-fork, the
- * desk itself. */
+/* The render process: runs the scripts and renders their pictures. It opens no file for writing and owns no terminal;
+ * host_services does that for it, over the channel to the supervisor or, with --no-fork, in the same process. */
 #ifndef GRAY_HOST_RENDER_PROCESS_H
 #define GRAY_HOST_RENDER_PROCESS_H
 

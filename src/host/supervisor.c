@@ -1,5 +1,5 @@
-/* One child runs all scripts, so that what one script has read serves the next; when it dies, a new child goes on with
- * the script after the one that was running. */
+/* One render process runs all scripts, so that what one script has read serves the next. When it dies, a new one goes
+ * on with the script after the one that was running. */
 #include "host/supervisor_internal.h"
 
 #include "base/mem.h"
@@ -46,7 +46,7 @@ static void leave_abandoned(struct supervisor *supervisor) {
     supervisor_note_status(supervisor, ERROR_CANCELLED);
 }
 
-/* Milliseconds to wait for the next frame at most; -1: until it comes. */
+/* Milliseconds to wait for the next message at most; -1: until it comes. */
 static int poll_time(const struct supervisor *supervisor) {
     if (supervisor->output.farm)
         return 2;

@@ -1,4 +1,4 @@
-/* The supervisor: forks the child that runs the scripts, answers it, listens for signals, and survives it. */
+/* The supervisor: forks the render process, answers its messages, receives signals, and survives it. */
 #ifndef GRAY_HOST_SUPERVISOR_H
 #define GRAY_HOST_SUPERVISOR_H
 

@@ -251,7 +251,7 @@ static bool tries_again(struct supervisor *supervisor, int how) {
 void supervisor_judge_end(struct supervisor *supervisor, int how) {
     bool all_ended = supervisor->next_script >= supervisor->options->script_count;
     if (supervisor->deadline > 0) {
-        /* It was told to stop; how it did does not matter. */
+        /* It was asked to stop; how it did does not matter. */
     } else if (!all_ended && !supervisor->stop && tries_again(supervisor, how)) {
         return;
     } else if (!all_ended && !supervisor->stop) {

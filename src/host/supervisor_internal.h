@@ -32,7 +32,7 @@ struct stall_check {
 /* In a farm: the script that is begun anew after its render process was killed. */
 struct script_retry {
     int count;
-    uint32_t pictures_before; /* of desk.pictures, when the script began */
+    uint32_t pictures_before; /* of output.pictures, when the script began */
     uint32_t kept;            /* number of the picture that is open since an earlier try, or 0 */
     uint8_t *settled;         /* by number of the picture: 1: nothing is left to do for it */
     uint32_t settled_count;

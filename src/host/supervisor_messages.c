@@ -28,8 +28,8 @@ void supervisor_send_answer(struct supervisor *supervisor, enum message_kind kin
         note_unsent(supervisor);
 }
 
-/* The wish to stop a pass is used up; that to stop everything stays. To be called while the child waits for an answer:
- * a wish that comes later is one to stop what it will do then. */
+/* A request to stop a pass ends here; one to stop everything stays. To be called while the child waits for an answer: a
+ * later request stops what the child does then. */
 static void forget_stop(const struct supervisor *supervisor) {
     int stop = CANCEL_PASS;
     (void)atomic_compare_exchange_strong(&supervisor->control->cancel, &stop, CANCEL_NOTHING);
@@ -128,7 +128,7 @@ static void end_picture(struct supervisor *supervisor, bool quit) {
     send_command(supervisor, &command);
 }
 
-/* No picture is lost by closing the window: it is there already, or people did not wait for it. */
+/* Closing the window loses no picture: it is written already, or the user did not wait for it. */
 static void quit_window(struct supervisor *supervisor) {
     supervisor->ended = true;
     supervisor->quit_at = progress_clock();
@@ -250,7 +250,7 @@ static void note_script(struct supervisor *supervisor, const struct message_scri
         drop_kept(supervisor, script);
     supervisor_start_script_clock(supervisor);
     supervisor->stop = supervisor->stop || script->status == ERROR_USAGE || script->status == ERROR_CANCELLED;
-    /* What a wish to stop means was noted when it came. */
+    /* What a request to stop means was noted when it came. */
     if (supervisor->deadline <= 0)
         supervisor_note_status(supervisor, script->status);
 }
@@ -266,7 +266,7 @@ static void note_read(struct supervisor *supervisor, const struct message_read *
     }
 }
 
-/* A frame out of turn (a second picture before the first is finished ...) is not answered: it breaks the rules. */
+/* A message out of turn (a second picture before the first is finished ...) is not answered: it breaks the protocol. */
 void supervisor_take_message(struct supervisor *supervisor, const struct message *message) {
     const struct picture *current = &supervisor->output.current;
     switch (message->kind) {

@@ -57,7 +57,7 @@ const char *trace_path(const struct trace_report *report, uint32_t placed) {
     return found ? report->names.paths[low] : placed_node(report->picture->job->world, placed)->name;
 }
 
-/* All placed primitives that the rays of a list and below tell of: counts them, or notes them too. */
+/* All primitives that the rays of a list and below have met: counts them, or notes them too. */
 static size_t note_placed(const struct story_ray *ray, uint64_t *out, size_t count) {
     for (; ray; ray = ray->next) {
         if (ray->met) {
@@ -86,7 +86,7 @@ static bool find_names(struct story *story, const struct inspected *picture, str
     names->primitives = arena_alloc_array(&story->arena, count + 1, sizeof *names->primitives);
     names->paths = arena_alloc_array(&story->arena, count + 1, sizeof *names->paths);
     if (!all || !names->primitives || !names->paths)
-        return error_no_memory(error, "the story of a pixel");
+        return error_no_memory(error, "the trace of a pixel");
     for (const struct story_sample *sample = story->sample; sample; sample = sample->next)
         at = note_placed(sample->first, all, at);
     sort_words(all, count);

@@ -1,4 +1,5 @@
-/* What people ask about a scene instead of rendering it: the story of a pixel, and the flattened world as a table. */
+/* Questions about a scene that are answered instead of rendering it: the trace of a pixel, and the flattened world as a
+ * table. */
 #ifndef GRAY_INSPECT_INSPECT_H
 #define GRAY_INSPECT_INSPECT_H
 
@@ -16,14 +17,14 @@ struct inspected {
     bool json;         /* else in words */
 };
 
-/* --pixel: makes pixels {x, y} of the whole picture and tells their stories, in words or as one line of JSON each.
+/* --pixel: renders pixels {x, y} of the whole picture and prints their traces, in words or as one line of JSON each.
  * Errors: a pixel is not in the picture (ERROR_USAGE), those of render_pixels. */
 bool inspect_pixels(const struct inspected *picture, const uint32_t (*pixels)[2], uint32_t count,
                     struct text_writer *writer, struct error *error);
 /* --dump-scene: everything placed, in flattening order, then lights and materials. */
 bool inspect_world(const struct inspected *picture, struct text_writer *writer, struct error *error);
 
-/* A story with what it needs to be told: the ways to the nodes in it. */
+/* A trace with what its text needs: the paths of the nodes in it. */
 struct trace_names {
     uint32_t count;
     uint32_t *primitives; /* ascending */

@@ -1,6 +1,6 @@
 /* The node's box is that of its own shape, turned with it, where the node is one shape; of a group it is the box along
- * the world's axes round everything under it. The way to a combined solid goes on to the operand whose surface was hit;
- * which of its nodes is told is a matter of going up or down on it. */
+ * the world's axes around everything under it. The route to a combined solid goes on to the operand whose surface was hit;
+ * the user selects one of its nodes by going up or down on it. */
 #include "inspect/pick.h"
 
 #include "base/hash.h"
@@ -18,7 +18,7 @@ struct picking {
     const struct world *world;
     struct picked *out;
     uint32_t placed; /* what was hit */
-    /* The way to it, and on to the operand; the node that is told is the last of `depth`. */
+    /* The route to it, and on to the operand; the selected node is the last of `depth`. */
     struct scene_step steps[ROUTE_LIMIT];
     uint32_t route, whole, depth;
     struct box box; /* of everything under it */
@@ -49,7 +49,7 @@ uint64_t route_hash(const struct scene_step *steps, uint32_t depth) {
     return route ? route : 1;
 }
 
-/* The way to what was hit; the walk ends there. */
+/* The route to what was hit; the traversal ends there. */
 static bool find_route(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
     struct picking *p = context;
     if (p->placed < first || p->placed >= first + count)
@@ -195,7 +195,7 @@ static bool describe(struct picking *p, const struct node *root, const struct hi
     if (!out->hit)
         return true;
     if (!choose_node(p, hit, up))
-        return error_no_memory(error, "the way to an operand");
+        return error_no_memory(error, "the route to an operand");
     const struct node *node = p->steps[p->depth - 1].node;
     out->serial = node->serial;
     out->route = route_hash(p->steps, p->depth);

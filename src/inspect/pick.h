@@ -1,4 +1,4 @@
-/* What stands at a place of the picture: the first thing on the way through it, and which node that belongs to. */
+/* Picking: what the ray through a point of the picture hits first, and which node that belongs to. */
 #ifndef GRAY_INSPECT_PICK_H
 #define GRAY_INSPECT_PICK_H
 
@@ -8,7 +8,7 @@
 /* A name cut to this size; control characters become '?'. */
 void pick_words(char out[PICK_NAME], const char *text);
 
-/* A number for a way to a node, so that of a node under several parents one can be told. */
+/* A number for a route to a node: it tells apart the routes to a node with several parents. */
 uint64_t route_hash(const struct scene_step *steps, uint32_t depth);
 
 struct pick_query {

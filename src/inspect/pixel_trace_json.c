@@ -1,4 +1,4 @@
-/* The story of a pixel as one JSON object on one line; docs/pixel.md tells its fields. All numbers are exact. */
+/* The trace of a pixel as one JSON object on one line; docs/pixel.md describes its fields. All numbers are exact. */
 #include "image/png_write.h"
 #include "inspect/inspect.h"
 #include "material/texture_mapping.h"

@@ -1,4 +1,4 @@
-/* The story of a pixel in words. A ray is a paragraph, indented below the surface that sent it; the last line of each
+/* The trace of a pixel in words. A ray is a paragraph, indented below the surface that sent it; the last line of each
  * is what it brings. Numbers have six digits: enough to read; --json has them all. */
 #include "image/png_write.h"
 #include "inspect/inspect.h"
@@ -8,7 +8,7 @@ struct text_state {
     const struct trace_report *report;
     struct text_writer *writer;
     int depth;
-    bool changed; /* by the link that is told */
+    bool changed; /* by the link that is printed */
 };
 
 static void indent(const struct text_state *t, int deeper) {
@@ -283,7 +283,7 @@ static void print_samples(struct text_state *t) {
         text_writer_print(t->writer, "\n");
     }
     if (story->untold > 0)
-        text_writer_print(t->writer, "\n%u more rays are not told\n", story->untold);
+        text_writer_print(t->writer, "\n%u more rays are not shown\n", story->untold);
 }
 
 /* How the colour is the sum, and what becomes of it in the file. */

@@ -62,7 +62,7 @@ bool checkpoint_open(struct checkpoint *checkpoint, const char *picture_name, ch
 
 /* From then on nothing is written: the file stays what it is. */
 static bool refuse(struct checkpoint *checkpoint, const char *why, struct error *error) {
-    error_set(&checkpoint->refused, ERROR_SCENE, "%.400s: cannot be gone on with: %s", checkpoint->path, why);
+    error_set(&checkpoint->refused, ERROR_SCENE, "%.400s: cannot be resumed: %s", checkpoint->path, why);
     checkpoint->opened = false;
     *error = checkpoint->refused;
     return false;

@@ -1,6 +1,5 @@
-/* The keeper: the checkpoint of a run. While pictures are made it writes now and then what is finished into one file of
- * tiles (render/tile_file.h), and with --resume it gives back what an earlier run left there. It belongs to the desk
- * and, like it, sees no scene. */
+/* The checkpoint of a run. While pictures are rendered it writes from time to time all finished tiles into one file
+ * (render/tile_file.h), and with --resume it restores what an earlier run left there. */
 #ifndef GRAY_OUTPUT_CHECKPOINT_H
 #define GRAY_OUTPUT_CHECKPOINT_H
 
@@ -25,12 +24,12 @@ struct checkpoint {
     uint32_t tiles_kept;       /* of the picture being made, that the file has */
     double written_at, took;   /* seconds: when the file was last written, and how long that took */
     struct file_identity file; /* of the checkpoint, once this run has written or taken it over; else 0 */
-    bool failed;               /* it could not be written, which was told once */
+    bool failed;               /* it could not be written, which was reported once */
 };
 
 void checkpoint_init(struct checkpoint *checkpoint, const struct options *options, const struct picture_files *files);
 /* Called for every picture before anything else; the first one decides the file. False: there is a file already and no
- * --resume, or it is damaged. *notice: something to tell, or empty. */
+ * --resume, or it is damaged. *notice: a line to report, or empty. */
 bool checkpoint_open(struct checkpoint *checkpoint, const char *picture_name, char notice[256], struct error *error);
 /* Whether an earlier run has written this picture and its file still holds the same. False with error: the run before
  * made it of something else. */
@@ -40,7 +39,8 @@ bool checkpoint_has_written(struct checkpoint *checkpoint, uint32_t number, cons
 bool checkpoint_restore(struct checkpoint *checkpoint, const struct tile_picture *picture, struct film *film,
                         char notice[256], struct error *error);
 /* Writes the file when it is time, or `now`; film: of the picture being made, or NULL. False with error: it could not
- * be written, told once; the run goes on. *tiles: how many the file holds now; untouched when nothing was written. */
+ * be written, reported once; the run goes on. *tiles: how many the file holds now; untouched when nothing was written.
+ */
 bool checkpoint_update(struct checkpoint *checkpoint, const struct tile_picture *picture, const struct film *film,
                        bool now, uint32_t *tiles, struct error *error);
 /* The picture is written under its name. */

@@ -29,14 +29,14 @@ struct display {
     double shown;
 };
 
-/* Connects. False: nobody listens, and nothing will be shown; error says so. */
+/* Connects. False: there is no viewer, and nothing will be shown; error says so. */
 bool display_open(struct display *display, const char *text, struct error *error);
 void display_close(struct display *display);
 /* `name` and `film` must stay until display_end. */
 void display_begin(struct display *display, const char *name, const struct film *film, const struct tone *tone);
 /* Whether the next step draws on the terminal. */
 bool display_draws(const struct display *display, double now);
-/* Shows what is new as far as that goes at once. False: the viewer is gone (told once). */
+/* Shows what is new as far as that goes at once. False: the viewer is gone (reported once). */
 bool display_step(struct display *display, double now, struct error *error);
 /* Shows the rest, waiting a little. */
 bool display_end(struct display *display, struct error *error);

@@ -1,4 +1,4 @@
-/* State of a tile in a farm: LATER until somebody may make it, WANTED when a worker of this process may, TAKEN when one
+/* State of a tile in a farm: LATER until it may be rendered, WANTED when a worker of this process may, TAKEN when one
  * does, DONE when it is finished; a rank that has sent a finished tile on marks it ELSEWHERE. The first rank keeps for
  * every tile who has it, so that a rank that falls out gives its tiles back. Every picture has the number that counts
  * pictures in the run; messages of other pictures are late and are passed over.
@@ -163,7 +163,7 @@ static void add_note(struct farm *farm, int rank, const char *text, int length) 
         (void)snprintf(farm->notes[farm->note_count++], LINE_LIMIT, "rank %d %.*s", rank, length, text);
 }
 
-/* The next tile that nobody has, or UINT32_MAX. */
+/* The next tile that no rank has, or UINT32_MAX. */
 static uint32_t next_tile(struct farm *farm) {
     uint32_t count = film_tile_count(farm->film);
     while (farm->from < count && state_of(farm->film, farm->from) != FILM_TILE_LATER)
@@ -171,7 +171,7 @@ static uint32_t next_tile(struct farm *farm) {
     return farm->from < count ? farm->from : UINT32_MAX;
 }
 
-/* A tile that another rank has stays WANTED by nobody here: it is TAKEN until it comes back. */
+/* A tile that another rank has is TAKEN here until it comes back. */
 static bool assign(struct farm *farm, int rank) {
     uint32_t tile = next_tile(farm);
     if (tile == UINT32_MAX)
@@ -270,7 +270,7 @@ static void take_tile(struct farm *farm, int from, const uint8_t *data, size_t s
     memcpy(&pair, data, sizeof pair);
     if (!farm->film || pair.number != farm->number || pair.value >= film_tile_count(farm->film))
         return;
-    /* Of a rank that was silent: a tile that nobody else has been given yet is as good as before. */
+    /* Of a rank that was silent: a tile that no other rank has got yet is as good as before. */
     enum film_tile state = state_of(farm->film, pair.value);
     if (state == FILM_TILE_DONE || (state != FILM_TILE_LATER && farm->owner[pair.value] != from))
         return;
@@ -402,7 +402,7 @@ static void step_other(struct farm *farm) {
         if (kind == FARM_CLOSE)
             atomic_store(&farm->control->handout, HANDOUT_CLOSED);
     }
-    if (farm->ended) /* without this rank, which was silent: what it still does is for nobody */
+    if (farm->ended) /* without this rank, which was silent: its work is of no use */
         atomic_store(&farm->control->cancel, CANCEL_ALL);
     if (farm->film)
         send_finished(farm);

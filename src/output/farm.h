@@ -1,8 +1,8 @@
 /* The farm: several processes, on one machine or many, make one picture together. Each runs the whole scene by itself,
  * so that nothing but tiles travels; the first (rank 0) hands tiles out on demand, takes them back finished and writes
  * the picture. Whoever falls out is done without: its tiles are handed out again. So are those of a rank that is
- * silent; if it comes back, tiles that others have are not taken from it. This file knows what is said; how it travels
- * is the transport's business (MPI in main_mpi.c). */
+ * silent; if it comes back, tiles that others have are not taken from it. This file has the protocol; the
+ * transport moves the messages (MPI in main_mpi.c). */
 #ifndef GRAY_OUTPUT_FARM_H
 #define GRAY_OUTPUT_FARM_H
 
@@ -47,7 +47,7 @@ void farm_end(struct farm *farm, bool given_up);
 /* The rendering process of this rank is gone, another one will go on with the picture: first rank only. Its tiles are
  * handed out again. */
 void farm_take_back_own(struct farm *farm);
-/* An error of this rank, for the people at the first one. */
+/* An error of this rank, which the first one reports. */
 void farm_report(struct farm *farm, const char *line);
 /* What happened to a rank, to be shown by the first one at once. */
 void farm_note(struct farm *farm, const char *text);
@@ -56,7 +56,7 @@ bool farm_next_note(struct farm *farm, char *line, size_t size);
 /* Another rank: the first one has been silent for ten times the limit, so that nothing will come of this run. */
 bool farm_is_abandoned(const struct farm *farm);
 /* After all scripts: the first rank waits for the others, except silent ones; the others wait for its word that the
- * farm has ended. `tell` gets lines that are only of other ranks. */
+ * farm has ended. `report` gets lines that are only of other ranks. */
 void farm_finish(struct farm *farm, bool well, void (*tell)(void *context, const char *line), void *context);
 /* How many tiles of the last picture each rank made, first rank's view: "12 9 14". */
 void farm_shares(const struct farm *farm, char *out, size_t size);

@@ -1,6 +1,6 @@
-/* Parts are sorted by the picture they are of; each picture then goes over the desk like one that a scene made, so that
- * names, formats and the care for old files are the same. A part is read twice, once to know it and once for its tiles,
- * so that no more than one of them is in memory. */
+/* Parts are sorted by the picture they are of; each picture then goes through the output session like one that a scene
+ * rendered, so that names, formats and the care for old files are the same. A part is read twice, once to know it and
+ * once for its tiles, so that no more than one of them is in memory. */
 #include "output/merge.h"
 
 #include "base/mem.h"

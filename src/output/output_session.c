@@ -15,7 +15,7 @@
 
 #include <string.h>
 
-/* A viewer that is gone is told of; the picture does not depend on it. */
+/* A viewer that is gone is a warning; the picture does not depend on it. */
 static void report_display(struct output_session *output, bool ok, const struct error *error) {
     char line[sizeof error->text + 32];
     if (ok)
@@ -391,7 +391,7 @@ bool output_done(struct output_session *output, const struct picture_report *rep
         return true;
     }
     if (one_name_for_all(output)) {
-        /* Names of progress point into the picture, so it is told before the picture moves. */
+        /* Names of progress point into the picture, so it is reported before the picture moves. */
         progress_end(&output->progress, PROGRESS_WRITTEN);
         report_statistics(output, report);
         output->held = output->current;

@@ -1,5 +1,5 @@
-/* A name from a scene is a stranger's: it must end as a picture does, lie in a folder that scenes may have pictures
- * written to, and may only replace a picture. A name from the command line is the user's. */
+/* A name from a scene is untrusted: it must end as a picture does, lie in a folder where scenes may have pictures
+ * written, and may only replace a picture. A name from the command line is the user's. */
 #include "output/picture_files.h"
 
 #include "base/size.h"

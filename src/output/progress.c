@@ -56,7 +56,7 @@ static int terminal_columns(void) {
     return columns < COLUMNS_LIMIT ? columns : COLUMNS_LIMIT - 1;
 }
 
-/* How far the picture is. Where nobody asked for an estimate tiles are counted. */
+/* How far the picture is. Where no estimate is wanted, tiles are counted. */
 struct state {
     double elapsed, share, left; /* share and left: negative while they are not known */
     uint32_t done, count;

@@ -1,5 +1,5 @@
-/* How far the picture is, told on standard error: as a bar that is drawn over itself, as lines, as JSON lines, or not
- * at all. */
+/* Reports the progress of a picture on standard error: as a bar that is drawn over itself, as lines, as JSON lines, or
+ * not at all. */
 #ifndef GRAY_OUTPUT_PROGRESS_H
 #define GRAY_OUTPUT_PROGRESS_H
 
@@ -16,12 +16,12 @@ struct progress {
     const char *name;            /* of the picture; NULL while there is none */
     uint32_t width, height;
     int threads;
-    double begun, shown; /* seconds; when the picture began, when it was last told */
+    double begun, shown; /* seconds; when the picture began, when it was last reported */
     bool said;           /* a line was printed */
     double writing;      /* seconds of one core for a pixel of the file */
     bool tried;          /* that was measured; else it is a guess */
-    bool known;          /* that tiles have begun was told */
-    double share;        /* that was told; it never falls */
+    bool known;          /* that tiles have begun was reported */
+    double share;        /* that was reported; it never falls */
     int columns;         /* that the bar on the screen covers; 0: none is there */
 };
 
@@ -33,13 +33,13 @@ double progress_processor_clock(void); /* seconds that all threads of the proces
 void progress_init(struct progress *progress, enum progress_mode mode, bool quiet, int threads);
 /* `name` must stay until progress_end. */
 void progress_begin(struct progress *progress, const char *name, uint32_t width, uint32_t height);
-/* count 0: the scene is still being built. Tells at most ten times a second. */
+/* count 0: the scene is still being built. Reports at most ten times a second. */
 void progress_update(struct progress *progress, uint32_t done, uint32_t count, const struct outlook *outlook);
-/* It is time to measure what writing the file will take: enough of it is there, and somebody wants to know. */
+/* It is time to measure what writing the file will take: enough of it is there, and an estimate is shown. */
 bool progress_wants_packing_time(const struct progress *progress);
 /* Processor seconds for so many pixels; negative: it could not be measured. */
 void progress_note_packing_time(struct progress *progress, double seconds, uint32_t pixels);
-/* Whether anybody will see an estimate. */
+/* Whether an estimate is shown. */
 bool progress_wants_outlook(const struct progress *progress);
 /* Takes the bar off the screen, so that a line can be printed; the next update draws it again. */
 void progress_hide(struct progress *progress);

@@ -1,4 +1,4 @@
-/* One list of figures serves both forms, so they cannot tell different things. */
+/* One list of figures serves both forms, so they cannot differ. */
 #include "output/statistics.h"
 
 #include "session/text.h"

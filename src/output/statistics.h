@@ -1,4 +1,4 @@
-/* What a picture cost, as a table for people or as one JSON line for programs. */
+/* What a picture cost, as a table or as one JSON line. */
 #ifndef GRAY_OUTPUT_STATISTICS_H
 #define GRAY_OUTPUT_STATISTICS_H
 

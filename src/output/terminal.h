@@ -14,7 +14,7 @@ struct terminal {
     enum terminal_graphics graphics; /* never AUTO once it is open */
     bool moves;                      /* a real terminal: the picture is drawn over itself while it is made */
     int columns, lines;              /* of the terminal */
-    int cell_width, cell_height;     /* pixels, where it tells; else 8 x 16 */
+    int cell_width, cell_height;     /* pixels, where the terminal reports them; else 8 x 16 */
     int rows;                        /* lines the picture covers above the cursor; 0: none is there */
 };
 

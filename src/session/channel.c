@@ -1,5 +1,5 @@
-/* Frames over SOCK_SEQPACKET: the kernel keeps one send as one receive, so a frame is never read in part and threads
- * may send without a lock. What was received is trusted only after message_is_valid. */
+/* Messages over SOCK_SEQPACKET: the kernel keeps one send as one receive, so a message is never read in part and
+ * threads may send without a lock. A received message is used only after message_is_valid. */
 #define _GNU_SOURCE
 #include "session/channel.h"
 

@@ -1,5 +1,5 @@
-/* The channel between supervisor and child: a pair of sockets that keep the borders of frames. A frame is a kind and a
- * body of fixed size for its kind, or a text (messages.h). */
+/* The channel between supervisor and render process: a pair of sockets that keep the boundaries of messages. A message
+ * is a kind and a body, whose size is fixed by the kind, or a text (messages.h). */
 #ifndef GRAY_SESSION_CHANNEL_H
 #define GRAY_SESSION_CHANNEL_H
 
@@ -17,13 +17,12 @@ struct channel {
 bool channel_pair(struct channel ends[2], struct error *error);
 void channel_close(struct channel *channel);
 
-/* Blocks until the frame is handed over; false when the other side is gone. descriptor: one to pass along, or -1. */
+/* Blocks until the message is handed over; false when the other side is gone. descriptor: one to pass along, or -1. */
 bool channel_send(struct channel *channel, enum message_kind kind, const void *body, size_t size, int descriptor);
 bool channel_send_line(struct channel *channel, enum line_kind kind, const char *text);
 
 enum channel_result { CHANNEL_MESSAGE, CHANNEL_END, CHANNEL_BROKEN };
-/* Blocks for one frame. END: the other side is gone. BROKEN: not a frame of a known kind and right size; texts of
- * frames that pass end in NUL. */
+/* Blocks for one message. END: the other side is gone. BROKEN: the message is not valid. */
 enum channel_result channel_receive(struct channel *channel, struct message *message);
 
 #endif

@@ -1,5 +1,5 @@
-/* A few words of memory that supervisor and child share from the fork on, for what is too frequent or too urgent for
- * the channel. The supervisor only shows what it reads here. */
+/* A few words of memory that supervisor and render process share from the fork on, for what is too frequent or too
+ * urgent for the channel. The supervisor uses what it reads here for display only. */
 #ifndef GRAY_SESSION_CONTROL_H
 #define GRAY_SESSION_CONTROL_H
 
@@ -20,10 +20,10 @@ struct control {
     _Atomic uint32_t tiles;      /* 0 until its scene is built */
     _Atomic uint32_t handout;    /* an enum handout */
     _Atomic int enough;          /* not 0: finish the tiles under way, begin no others */
-    struct outlook outlook;      /* how far the picture is, when somebody asks */
+    struct outlook outlook;      /* the progress of the picture, where it is wanted */
     _Atomic uint32_t build_step; /* of building the world, from 1; 0: it is built */
     _Atomic uint32_t build_done; /* thousandths of that step */
-    _Atomic uint32_t lost;       /* not 0: the child could not write all of its standard output */
+    _Atomic uint32_t lost;       /* not 0: the render process could not write all of its standard output */
     struct error_stream error_stream;
 };
 

@@ -1,5 +1,6 @@
-/* Of the render process nothing is trusted but what message_is_valid has checked. The film of a picture in a window is
- * followed in its memory by the layers, and these by the overlay: lines, four floats a pixel, and the outline, a byte.
+/* Nothing that comes from the render process is used before message_is_valid has checked it. The film of a picture in a
+ * window is followed in its memory by the layers, and these by the overlay: lines, four floats a pixel, and the
+ * outline, a byte.
  */
 #include "session/messages.h"
 

@@ -1,6 +1,6 @@
-/* What the two processes say to each other: the bodies of the messages, what must hold of one that was received, and
- * the memory of the film that both have. Both processes are the same program, so bodies are plain structs; the
- * supervisor checks every size and every text, since the render process works on strangers' scenes. */
+/* Messages between the two processes: their bodies, the check of a received one, and the layout of the film's memory,
+ * which both processes map. Both are the same program, so bodies are plain structs; the supervisor checks every size
+ * and every text, since the render process runs untrusted scenes. */
 #ifndef GRAY_SESSION_MESSAGES_H
 #define GRAY_SESSION_MESSAGES_H
 
@@ -17,16 +17,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Child to supervisor, then supervisor to child. */
+/* From the render process to the supervisor, then from the supervisor to the render process. */
 enum message_kind {
-    MESSAGE_LINE = 1,      /* struct message_line: something to tell */
+    MESSAGE_LINE = 1,      /* struct message_line: a line for the user */
     MESSAGE_BEGIN,         /* struct picture_request; answered by MESSAGE_FILM */
     MESSAGE_DONE,          /* struct picture_report; answered by MESSAGE_ANSWER */
-    MESSAGE_PREVIEW_REPLY, /* struct preview_reply: something for a window is done; answered by MESSAGE_PREVIEW_COMMAND
+    MESSAGE_PREVIEW_REPLY, /* struct preview_reply: a command of the window is done; answered by MESSAGE_PREVIEW_COMMAND
                             */
     MESSAGE_ABANDON,       /* no body: the picture that was begun will not be finished; no answer */
     MESSAGE_SCRIPT,        /* struct message_script: a script has ended; no answer */
-    MESSAGE_READ,          /* struct message_read: a file was read, for somebody who watches; no answer */
+    MESSAGE_READ,          /* struct message_read: a file was read; no answer */
     MESSAGE_AGAIN,  /* no body: all scripts have ended; answered, perhaps much later, by MESSAGE_ANSWER: ok: run them
                      * again
                      */
@@ -61,13 +61,13 @@ struct picked {
     uint32_t serial, parent_serial; /* of the node, and of the one above it */
     char parent_name[PICK_NAME];
     uint64_t route;             /* to it (viewer/view_overlay.h); 0: not known */
-    uint64_t solid;             /* of an operand: the way to the solid that was placed; else 0 */
+    uint64_t solid;             /* of an operand: the route to the solid; else 0 */
     uint32_t levels;            /* nodes above it */
     int32_t up;                 /* as it was asked for, but no farther than there are nodes */
     uint32_t below;             /* operands below it on the way to the surface that was hit */
     uint32_t material_serial;   /* of the base, which can be changed; 0: it is plain gray */
     double look[LOOK_PARTS][3]; /* of that base */
-    bool can_own;               /* a shape was hit and is told: it can be given a material of its own */
+    bool can_own;               /* a shape was hit and selected: it can be given a material of its own */
     double distance;            /* from the eye */
     struct vec3 position, normal;
     bool has_box;
@@ -80,8 +80,8 @@ struct view_overlay_request {
     struct overlay_request lines; /* none: OVERLAY_NONE */
     bool outline;                 /* of the node with this serial ... */
     uint32_t serial;
-    uint64_t route; /* ... on this way, as route_hash tells it; 0: on all ways */
-    uint64_t solid; /* of an operand: the way to the combined solid that it is in; else 0 */
+    uint64_t route; /* ... on this route (route_hash); 0: on all routes */
+    uint64_t solid; /* of an operand: the route to the combined solid that it is in; else 0 */
 };
 
 struct view_overlay {
@@ -110,7 +110,7 @@ struct picture_request {
     struct camera camera;             /* its view a direction */
     struct lens lens;
     uint32_t check;      /* not 0 for --check: only the names are looked at, no film is wanted */
-    struct digest files; /* of all that was read so far; zero when nobody wants to know */
+    struct digest files; /* of all files read so far; zero where it is not needed */
     char file[4096];     /* as the script gave it */
 };
 
@@ -136,7 +136,7 @@ struct pass_view {
     bool own;             /* the camera, lens and motion of the script */
 };
 
-/* Lights of a scene are told so many at a time. */
+/* Lights of a scene are reported so many at a time. */
 enum { LIGHTS_PER_MESSAGE = 32 };
 struct light_info {
     uint32_t kind;       /* an enum light_kind, for its name */
@@ -157,19 +157,19 @@ enum preview_reply_kind {
     REPLY_LIGHTS,
     REPLY_OVERLAY
 };
-/* What the child has done for a window; it waits for an order. */
+/* What the render process has done for the window; it waits for a command. */
 struct preview_reply {
     enum preview_reply_kind kind;
     struct picture_report report; /* of BUILT (its bounds) and PASS */
     struct picked picked;
-    struct view_overlay overlay; /* of PASS, PICKED and MARKS: those that were asked for and made */
+    struct view_overlay overlay; /* of PASS, PICKED and OVERLAY: the parts that were requested and made */
     double built;                /* of BUILT: when, on progress_clock */
     uint32_t added;              /* of BUILT: nodes that the script has added by gr.change_add */
     uint32_t owned;              /* of BUILT: materials of gr.change_own */
     uint32_t root;               /* of BUILT: the serial of the root, and the space of its children */
     char root_name[PICK_NAME];
     struct affine world_from_root;
-    uint32_t light_count; /* of BUILT, CHANGED and LIGHTS: all of them; those told begin with first_light, from 0 */
+    uint32_t light_count; /* of BUILT, CHANGED and LIGHTS: all of them; those reported begin with first_light, from 0 */
     uint32_t first_light;
     struct light_info lights[LIGHTS_PER_MESSAGE];
     char text[512]; /* of CHANGED: what could not be done, or empty */
@@ -188,12 +188,12 @@ enum preview_command_kind {
 struct preview_command {
     enum preview_command_kind kind;
     bool quit;             /* of END: the window was closed */
-    struct pass_view view; /* of PASS, and from where PICK, STORY and MARKS look */
+    struct pass_view view; /* of PASS, PICK, PIXEL_TRACE and OVERLAY */
     struct view_overlay_request
-        overlay;          /* of PASS: made after it; of MARKS. After PICK the outline is made of what is picked */
-    double x, y;          /* of PICK and STORY: pixels of the whole picture */
+        overlay;          /* of PASS: made after it; of OVERLAY. After PICK the outline is made of what is picked */
+    double x, y;          /* of PICK and PIXEL_TRACE: pixels of the whole picture */
     int32_t up;           /* of PICK: nodes above the one that is hit, or operands below it */
-    uint32_t first_light; /* of CHANGE and LIGHTS: tell them from this one on, counted from 0 */
+    uint32_t first_light; /* of CHANGE and LIGHTS: report lights from this one on, counted from 0 */
     struct change change;
     bool present; /* of CHANGE: it is made; else it is undone */
     bool more;    /* of CHANGE: another one follows at once */
@@ -216,7 +216,7 @@ struct message_read {
     char path[4096]; /* as it was asked for: relative to the working directory, which both processes share */
 };
 
-/* A frame as it came: `size` bytes of body. */
+/* A message as it was received: `size` bytes of body. */
 struct message {
     enum message_kind kind;
     size_t size;
@@ -234,7 +234,7 @@ struct message {
     } body;
 };
 
-/* Whether sizes, texts and numbers are such that later code can rely on them. */
+/* Whether sizes, texts and numbers are such that later code can rely on them: texts end in NUL, enums are known. */
 bool message_is_valid(const struct message *message);
 
 /* Bytes of the memory of the film, layers and overlay included. False: too large. */
@@ -243,7 +243,7 @@ bool picture_film_size(const struct picture_request *request, size_t *bytes, str
 void picture_film_place(const struct picture_request *request, void *block, struct film *film);
 /* Where the overlay of a picture in a window is in that memory: behind the layers. */
 void view_overlay_buffers(const struct picture_request *request, void *block, struct view_overlay_buffers *place);
-/* The film that a pass fills: the picture's rectangle divided, in the same block. */
+/* The film of a pass in the same memory: the rectangle of the picture, divided. */
 struct film pass_film(const struct picture_request *request, void *block, uint32_t divide);
 
 #endif

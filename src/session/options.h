@@ -62,9 +62,9 @@ struct options {
     bool quick, preview;           /* enum draft_level; preview is a quarter of the size, too */
     bool watch;                    /* --watch */
     bool check, quiet, verbose, no_fork;
-    const uint32_t (*pixels)[2]; /* --pixel: {x, y}, tell how these come about instead of rendering */
+    const uint32_t (*pixels)[2]; /* --pixel: {x, y}; these are traced instead of rendering */
     uint32_t pixel_count;
-    bool dump_scene;            /* --dump-scene: tell what the world is made of instead */
+    bool dump_scene;            /* --dump-scene: the world is listed instead of rendering */
     bool json;                  /* both: as JSON */
     const char *checkpoint;     /* --checkpoint: a file, or "auto", or NULL */
     double checkpoint_every;    /* seconds */
@@ -85,7 +85,7 @@ struct options {
 /* False: error is ERROR_USAGE (or no memory) and its text names the option. */
 bool options_parse(struct options *options, int argc, char *const *argv, struct arena *arena, struct error *error);
 /* Of all that can change a picture, or the number of pictures; names of files that are written, threads, ways of
- * searching and what is told are left out. */
+ * searching and verbosity are left out. */
 struct digest options_digest(const struct options *options);
 /* Whether the scripts of a run may render a picture of this number, counted from 1. */
 bool options_allow_picture(const struct options *options, uint64_t number, struct error *error);

@@ -1,4 +1,4 @@
-/* The table of options, and --help, which prints it in its order. options_digest goes by its groups. */
+/* The table of options, and --help, which prints it in this order. options_digest uses its groups. */
 #include "session/options_internal.h"
 
 #include "accel/isa.h"

@@ -13,10 +13,10 @@ struct host_services {
     void *context;
     struct control *control;
     /* A film for the picture; under request->check only the answer whether it could be written. *already: the picture
-     * is there or somebody else's; neither done nor abandon follows. */
+     * is written, or another process makes it; neither done nor abandon follows. */
     bool (*begin)(void *context, const struct picture_request *request, struct film *film, bool *already,
                   struct error *error);
-    /* Something for a window is done: waits for what comes next. False: there is nobody. */
+    /* A command of the window is done: waits for the next one. False: the window is gone. */
     bool (*reply)(void *context, const struct preview_reply *reply, struct preview_command *command,
                   struct error *error);
     void (*abandon)(void *context);

@@ -10,8 +10,8 @@
 #include <stdio.h>
 
 /* The text as one line and a newline; control characters other than tab become '?', line ends, those of the upper half
- * (U+0080 to U+009F) and the marks that turn the direction of writing (U+202E and its like) too, so that a scene cannot
- * steer the terminal. */
+ * (U+0080 to U+009F) and the marks that change the direction of writing (U+202E and its like) too, so that a scene
+ * cannot steer the terminal. */
 void text_print_line(FILE *stream, const char *text);
 /* The same of a line whose beginning a scene or a file has chosen, such as the name of a picture: it is not shown as a
  * line of the program (base/terminal_text.h). */
@@ -28,7 +28,7 @@ size_t text_json_piece(const char *text, char piece[8], size_t *taken);
 size_t text_clean_piece(const char *text, char piece[8], size_t *taken);
 /* A text of several lines of our own, cleaned like that but for its line ends. */
 void text_print(FILE *stream, const char *text);
-/* Seconds as people say them: 40 s, 3 min 20 s, 2 h 5 min. */
+/* Seconds in words: 40 s, 3 min 20 s, 2 h 5 min. */
 void text_duration(double seconds, char *out, size_t size);
 
 /* Whether standard error takes text now: a pipe or a terminal whose reader has stopped does not. */

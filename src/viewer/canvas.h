@@ -1,5 +1,5 @@
 /* Drawing over a picture: letters, boxes and lines into red, green, blue, opacity. The letters are our own, 5 x 7 dots
- * in a cell of 6 x 10, printable ASCII. Everything is cut at the paper's edge. */
+ * in a cell of 6 x 10, printable ASCII. Everything is clipped at the edge of the canvas. */
 #ifndef GRAY_VIEWER_CANVAS_H
 #define GRAY_VIEWER_CANVAS_H
 

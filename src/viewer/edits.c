@@ -1,4 +1,4 @@
-/* A step keeps both sides, so undoing is making its other side; the list of what holds now is never worked out from the
+/* A step keeps both sides, so undoing applies its other side; the list of current changes is never computed from the
  * beginning. */
 #include "viewer/edits.h"
 
@@ -68,7 +68,7 @@ bool edits_redo(struct edits *edits, struct change *target) {
     return true;
 }
 
-/* As a Lua string: what is no plain letter is told by its number. */
+/* As a Lua string: characters other than printable ASCII become escapes. */
 static void quote(char *out, size_t size, const char *text) {
     size_t used = 0;
     out[used++] = '\'';

@@ -1,5 +1,5 @@
-/* What somebody has changed in a window: steps, each with its inverse, that can be undone and made again, and the
- * changes that hold now. Knows no window and no scene. */
+/* Edits made in a window: steps, each with its inverse, that can be undone and made again, and the changes that hold
+ * now. Knows no window and no scene. */
 #ifndef GRAY_VIEWER_EDITS_H
 #define GRAY_VIEWER_EDITS_H
 

@@ -78,7 +78,7 @@ void fly_camera_measure(struct fly_camera *fly_camera, const struct box *bounds)
     fly_camera->speed = (size < 2 * away || away == 0 ? size : 2 * away) / 4;
 }
 
-struct camera fly_camera_camera(const struct fly_camera *fly_camera) {
+struct camera fly_camera_current(const struct fly_camera *fly_camera) {
     const struct pose *pose = &fly_camera->pose;
     return (struct camera){pose->position, forward_of(pose), rotate(pose->turn, vec3_make(0, 1, 0)), pose->fov};
 }

@@ -1,6 +1,6 @@
-/* Walking through a scene: a place and an orientation that keys and the mouse change. The orientation is a quaternion
+/* Flying through a scene: a position and an orientation that keys and the mouse change. The orientation is a quaternion
  * (Shoemake, "Animating Rotation with Quaternion Curves", SIGGRAPH 1985), so no direction is special. Knows no window:
- * times are seconds, mouse ways are shares of the window's height. */
+ * times are seconds, distances of the mouse are fractions of the window's height. */
 #ifndef GRAY_VIEWER_FLY_CAMERA_H
 #define GRAY_VIEWER_FLY_CAMERA_H
 
@@ -34,7 +34,7 @@ void fly_camera_begin(struct fly_camera *fly_camera, const struct camera *camera
 /* Speed and centre for other bounds; the camera and kept views stay. */
 void fly_camera_measure(struct fly_camera *fly_camera, const struct box *bounds);
 /* The camera of where it stands now. */
-struct camera fly_camera_camera(const struct fly_camera *fly_camera);
+struct camera fly_camera_current(const struct fly_camera *fly_camera);
 /* What the held keys do in `seconds`. True: something moved. */
 bool fly_camera_step(struct fly_camera *fly_camera, double seconds);
 /* Looks around: a way of one turns by the angle of view. x to the right, y downwards. */

@@ -1,5 +1,5 @@
-/* A small immediate-mode toolkit: a panel is told anew for every frame, and each part of it answers at once whether it
- * was used. What must be remembered from frame to frame is which part the mouse holds. Knows no window. */
+/* A small immediate-mode toolkit: a panel is described anew for every frame, and each part of it answers at once
+ * whether it was used. The only state from frame to frame is which part the mouse holds. Knows no window. */
 #ifndef GRAY_VIEWER_PANEL_H
 #define GRAY_VIEWER_PANEL_H
 
@@ -13,7 +13,7 @@ struct panel {
     bool down;              /* the left button */
     bool pressed, released; /* since the frame before */
     int held;               /* the part that was pressed and not let go; 0: none */
-    int part;               /* parts are numbered in the order they are told */
+    int part;               /* parts are numbered in the order of the calls */
     struct {
         int x, y, width, height;
     } grounds[PANEL_GROUNDS]; /* of this frame */
@@ -25,7 +25,7 @@ void panel_begin(struct panel *panel);
 /* Ends it: presses and releases are used up. */
 void panel_end(struct panel *panel);
 
-/* Whether a press there is for the panel, as it was told last. */
+/* Whether a press there is for the panel, as of the last frame. */
 bool panel_covers(const struct panel *panel, double x, double y);
 
 /* Sizes of parts, pixels. */

@@ -1,5 +1,5 @@
-/* The child never has an opinion: it does what it is told, says what became of it, and asks again. Changes are taken
- * off and laid over anew as a whole, so that their order is that of the list, as it is when a script makes them. */
+/* Executes a command, replies, and waits for the next one; all decisions are the viewer's. Changes are undone and
+ * applied again as a whole, so that their order is that of the list, as it is when a script makes them. */
 #include "viewer/preview_session.h"
 
 #include "inspect/inspect.h"
@@ -16,7 +16,7 @@ struct preview_state {
     struct change_list changes;
     struct changed_scene changed;
     bool stale;    /* the world is not that of the changes, or there is none */
-    bool reported; /* the world was told of for the first time */
+    bool reported; /* the first reply about the world was sent */
     struct pass_view view;
     double build_seconds;
 };
@@ -61,7 +61,7 @@ static struct box finite_bounds(const struct world *world) {
     return bounds;
 }
 
-/* The wish to stop is the supervisor's: it takes it back before it sends the next order. */
+/* The supervisor requests a stop, and clears the request before it sends the next command. */
 bool preview_was_stopped(const struct control *control, const struct error *error) {
     return error->kind == ERROR_CANCELLED && atomic_load(&control->cancel) != CANCEL_ALL;
 }
@@ -72,7 +72,7 @@ static bool make_pass(struct preview_state *work, struct picture_report *report,
     struct film film;
     double begun = progress_clock();
     set_pass(&job, preview->job, &work->view, preview->asked, &film, preview->job->film->pixels);
-    /* How long a coarse pass takes nobody needs to know. */
+    /* A coarse pass needs no time estimate. */
     struct outlook *outlook = &preview->services->control->outlook;
     bool fine = work->view.divide <= 1 && !work->view.plain;
     outlook_reset(outlook, fine);
@@ -132,7 +132,7 @@ static bool build_again(struct preview_state *work, struct error *error) {
     return ok;
 }
 
-/* The world of the changes; where people stop its building it stays stale, and `reply` says so. False: an error. */
+/* The world of the changes; where the user stops its building it stays stale, and `reply` says so. False: an error. */
 static bool need_world(struct preview_state *work, struct preview_reply *reply, struct error *error) {
     if (!work->stale || build_again(work, error))
         return true;
@@ -167,7 +167,7 @@ static bool change_scene(struct preview_state *work, const struct preview_comman
     return true;
 }
 
-/* The job with the camera that people look through. */
+/* The job with the camera of the window. */
 static struct render_job view_job(const struct preview_state *work, const struct pass_view *view) {
     struct render_job job = *work->preview->job;
     if (!view->own) {
@@ -178,7 +178,7 @@ static struct render_job view_job(const struct preview_state *work, const struct
     return job;
 }
 
-/* The look is told as it was before the changes of the window, which knows these itself. */
+/* The material is reported as it was before the changes of the window, which has these itself. */
 static bool answer_click(const struct preview_state *work, const struct preview_command *command, struct picked *picked,
                          struct error *error) {
     struct render_job job = view_job(work, &command->view);
@@ -203,7 +203,7 @@ static bool send_pixel_trace(struct preview_state *work, const struct preview_co
         .file = preview->request->file, .job = &job, .root = preview->request->root, .pool = preview->pool};
     struct text_writer writer = {.put = print_piece, .context = preview};
     const uint32_t pixel[1][2] = {{(uint32_t)command->x, (uint32_t)command->y}};
-    /* The supervisor asks for pixels of the picture; another one has no story. */
+    /* The supervisor asks for pixels of the picture; others have no trace. */
     if (!(command->x >= 0 && command->y >= 0 && command->x < job.width && command->y < job.height))
         return true;
     return inspect_pixels(&picture, pixel, 1, &writer, error);
@@ -223,7 +223,7 @@ static void describe_world(struct preview_state *work, struct preview_reply *rep
     work->reported = true;
 }
 
-/* Marks that are stopped are made later. False: an error. */
+/* An overlay that was stopped is made later. False: an error. */
 static bool make_overlay(struct preview_state *work, const struct pass_view *view,
                          const struct view_overlay_request *request, struct preview_reply *reply, struct error *error) {
     struct preview_session *preview = work->preview;

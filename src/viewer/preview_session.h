@@ -1,5 +1,5 @@
-/* What the child does for a picture in a window: pass after pass, and between them what people ask of the scene and
- * change in it. The world stays as long as nothing but the camera or a colour changes. */
+/* Executes commands of the viewer in the render process: renders passes, picks and changes nodes, traces pixels. The
+ * world stays as long as only the camera or a colour changes. */
 #ifndef GRAY_VIEWER_PREVIEW_SESSION_H
 #define GRAY_VIEWER_PREVIEW_SESSION_H
 
@@ -23,8 +23,8 @@ struct preview_session {
     void (*warn)(void *context, const char *text);
 };
 
-/* Until people are done with the picture. built: the world is there; else its building was stopped by people who may
- * want it later. False: the window was closed, or an error. */
+/* Until the picture is done. built: the world is there; else the user stopped its building and may want it later.
+ * False: the window was closed, or an error. */
 bool preview_run(struct preview_session *preview, bool built, struct picture_report *report, double build_seconds,
                  struct error *error);
 /* Whether this is the error of something that was stopped for a while. */

@@ -57,7 +57,7 @@ static bool note_members(void *context, uint32_t first, uint32_t count, const st
     return true;
 }
 
-/* Where the box is in the film; all of it where that is not easily told. */
+/* Where the box is in the film; all of it where that is not easily computed. */
 static struct film_rectangle rectangle_of(const struct camera_frame *frame, const struct film *film,
                                           const struct box *box) {
     const struct film_rectangle all = {0, 0, film->width, film->height};

@@ -1,6 +1,7 @@
-/* Marks: what lies over the picture in a window and is found by rays, so that only the child can make it: the lines of
- * --overlay, and which pixels show the node that is selected. The child leaves them in the memory of the film, behind
- * its layers, and says so with its news; the supervisor takes a copy before it sends another order. */
+/* The overlay of a picture in a window as far as rays find it, so that only the render process can make it: the lines
+ * of
+ * --overlay, and which pixels show the selected node. The render process leaves it in the memory of the film, behind
+ * the layers, and replies; the supervisor copies it before it sends another command. */
 #ifndef GRAY_VIEWER_VIEW_OVERLAY_H
 #define GRAY_VIEWER_VIEW_OVERLAY_H
 
@@ -13,7 +14,7 @@ struct view_overlay_scene {
     struct pool *pool;
 };
 
-/* Makes what is wished for, as the camera of the job sees it. False: no memory, or no such camera, or cancelled. */
+/* Makes what is requested, as the camera of the job sees it. False: no memory, or no such camera, or cancelled. */
 bool view_overlay_make(const struct view_overlay_scene *scene, const struct view_overlay_request *request,
                        const struct view_overlay_buffers *buffers, struct view_overlay *overlay, struct error *error);
 

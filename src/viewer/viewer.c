@@ -1,6 +1,6 @@
-/* Passes: while somebody walks, one sample for every divide x divide pixels, with divide so that a pass takes about a
- * thirtieth of a second; then finer ones, and at last the picture as the script wants it. The cost of a pass goes with
- * the square of 1 / divide, which is how divide is found. */
+/* Passes: while the camera moves, one sample for every divide x divide pixels, with divide chosen so that a pass takes
+ * about a thirtieth of a second; then finer ones, and at last the picture as the script wants it. The cost of a pass
+ * goes with the square of 1 / divide, from which divide follows. */
 #include "base/mem.h"
 #include "viewer/viewer_internal.h"
 
@@ -16,7 +16,7 @@ static bool is_different(double a, double b) {
 }
 
 static struct pass_view current_view(const struct viewer *viewer, uint32_t divide, bool plain) {
-    return (struct pass_view){.camera = viewer->camera_moved ? fly_camera_camera(&viewer->fly_camera)
+    return (struct pass_view){.camera = viewer->camera_moved ? fly_camera_current(&viewer->fly_camera)
                                                              : viewer->request.camera,
                               .exposure = viewer->request.exposure,
                               .divide = divide,
@@ -24,7 +24,7 @@ static struct pass_view current_view(const struct viewer *viewer, uint32_t divid
                               .own = !viewer->camera_moved};
 }
 
-/* The scripts ran again: where somebody has flown to and what was changed stays. */
+/* The scripts ran again: a moved camera and the edits stay. */
 static void keep_work(struct viewer *viewer, const struct viewer *before) {
     struct pose home = viewer->fly_camera.home;
     if (before->camera_moved) {
@@ -159,7 +159,7 @@ void viewer_show_message(struct viewer *viewer, const char *text) {
     viewer->display.figures_at = 0;
 }
 
-/* Orders. */
+/* Commands. */
 
 void viewer_note_stop(struct viewer *viewer, double seconds) {
     (void)snprintf(viewer->note, sizeof viewer->note, "%.100s: stopped in %.1f ms", viewer->request.file,
@@ -255,7 +255,7 @@ static void begin_pass(struct viewer *viewer, uint32_t divide, bool plain, bool 
     viewer->pass.began = now;
 }
 
-/* The first of what the child has not been told yet. */
+/* The first change that was not sent yet. */
 static void command_change(struct viewer *viewer) {
     struct change target = viewer->edit.pending.items[0];
     const struct change *now = change_list_find(&viewer->edit.steps.now, &target);
@@ -346,7 +346,7 @@ static enum viewer_action step_running(struct viewer *viewer) {
     return VIEWER_STOP_PASS;
 }
 
-/* The picture is written with the lines of the command line, which are there where people look at them. */
+/* The picture is written with the lines of the command line, which are there if they are shown. */
 static bool lines_of_script(const struct viewer *viewer) {
     return viewer->request.overlay == OVERLAY_NONE ||
            (viewer->overlay.kind == (enum overlay)viewer->request.overlay && viewer->overlay.lines_fresh &&

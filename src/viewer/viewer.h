@@ -1,7 +1,7 @@
-/* A picture in a window: shows it while it is made, lets people walk and change things, and decides what the child does
- * next. The child renders one pass after the other (coarse ones first, and while somebody walks) and asks after each
- * what comes next; the answer is an order. Neither waits for the other: the window is drawn from the film as it is.
- * viewer.c decides, viewer_input.c reads what people do, viewer_edit.c and viewer_lights.c change the scene,
+/* A picture in a window: shows it while it is rendered, takes input, and decides what the render process does next. The
+ * render process renders one pass after the other (coarse ones first, and while the camera moves), replies after each,
+ * and waits for the next command. Neither waits otherwise: the window is drawn from the film as it is.
+ * viewer.c decides, viewer_input.c reads keys and mouse, viewer_edit.c and viewer_lights.c change the scene,
  * viewer_draw.c, viewer_hud.c and viewer_panel.c draw. */
 #ifndef GRAY_VIEWER_VIEWER_H
 #define GRAY_VIEWER_VIEWER_H
@@ -59,7 +59,7 @@ enum edit_tool { TOOL_NONE, TOOL_MOVE, TOOL_TURN, TOOL_SIZE };
 enum pass_state {
     PASS_BUSY,     /* no pass: it builds the world, or answers another command */
     PASS_RUNNING,  /* it renders a pass */
-    PASS_STOPPING, /* it was told to stop what it does */
+    PASS_STOPPING, /* a stop was requested */
     PASS_WAITING,  /* for a command */
 };
 /* What the last pass has left. */
@@ -196,13 +196,13 @@ void viewer_end(struct viewer *viewer);
 void viewer_detach(struct viewer *viewer);
 /* The scripts will run again for what is in the window. */
 void viewer_keep(struct viewer *viewer);
-/* Whether a picture of this number is left out, since people look at a later one. */
+/* Whether a picture of this number is left out, since a later one is in the window. */
 bool viewer_skips(const struct viewer *viewer, unsigned number);
 /* Shows what went wrong until a picture begins; the first line is shown. */
 void viewer_show_message(struct viewer *viewer, const char *text);
-/* A piece of a story that was asked for. */
+/* A piece of the pixel trace that was requested. */
 void viewer_add_pixel_trace(struct viewer *viewer, const char *text);
-/* Something is done; the child waits for the next order. */
+/* A command is done; the render process waits for the next one. */
 void viewer_take_reply(struct viewer *viewer, const struct preview_reply *reply, double now);
 /* Takes events, draws, decides. To be called until it says VIEWER_NOTHING, every few milliseconds. */
 enum viewer_action viewer_step(struct viewer *viewer, double now);

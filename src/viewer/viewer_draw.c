@@ -1,4 +1,4 @@
-/* The canvas follows the film tile by tile; over it lie the menu and the figures. The window is drawn at most every 16
+/* The image follows the film tile by tile; the menu and the figures lie over it. The window is drawn at most every 16
  * milliseconds, and what lies over the picture only when something in it can have changed. */
 #include "base/mem.h"
 #include "image/png_write.h"

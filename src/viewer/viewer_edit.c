@@ -1,6 +1,6 @@
-/* Selecting and changing. What is selected is kept as it was when it was picked, with the change of its place at that
- * time; where it is now follows from the change that holds now, so undoing needs no word from the child. All maps are
- * made in the world and carried into the space that the node stands in. */
+/* Selecting, changing, saving. The selection is kept as it was when it was picked, with the change of its position at
+ * that time; where it is now follows from the change that holds now, so undoing needs no reply of the render process.
+ * All maps are made in the world and converted to the space of the node's parent. */
 #include "inspect/pick.h"
 #include "math/elementary.h"
 #include "viewer/viewer_internal.h"
@@ -96,7 +96,7 @@ static bool map_of(const struct change *change, struct transform *out) {
     return transform_from_affine(&matrix, out);
 }
 
-/* The same map, told in the space that the node stands in. False: that space is flat. */
+/* The same map in the space of the node's parent. False: that space is flat. */
 static bool map_to_parent(const struct viewer *viewer, const struct transform *in_world, struct transform *out) {
     struct transform world_from_parent;
     if (!transform_from_affine(&viewer->edit.selection.picked.world_from_parent, &world_from_parent))
@@ -221,7 +221,7 @@ void viewer_click(struct viewer *viewer, double x, double y, bool operand) {
         viewer_select_light(viewer, number);
         return;
     }
-    /* The middle of the pixel: what is told is what its first ray meets. */
+    /* The middle of the pixel: where its first ray goes. */
     viewer->edit.click = (struct selection){0};
     if (!pixel_at(viewer, x, y, &viewer->edit.click.x, &viewer->edit.click.y))
         return;
@@ -284,7 +284,7 @@ static uint32_t count_of(const struct viewer *viewer, enum change_kind kind) {
     return count;
 }
 
-/* Where new things go: where somebody clicked last, or before the camera. */
+/* Where new nodes go: where the user clicked last, or before the camera. */
 struct vec3 viewer_new_position(const struct viewer *viewer) {
     if (viewer->edit.selection.kind == SELECTED_NODE)
         return viewer_moved_point(viewer, viewer->edit.selection.picked.position);
@@ -492,10 +492,10 @@ static bool end_file(struct lua_file *lua_file, bool ok) {
 bool viewer_save_camera(const struct viewer *viewer, const struct file_target *picture, char *name,
                         struct error *error) {
     static const char head[] =
-        "-- A camera found by walking. With require and the name of this file without .lua, before gr.render, the\n"
-        "-- picture is made with it; it is given back as a table, too.\n";
+        "-- A camera saved from the window. A scene that requires this file (its name without .lua) before gr.render\n"
+        "-- renders the picture with it. The file also returns the camera as a table.\n";
     static const struct change_list none;
-    struct camera c = viewer->camera_moved ? fly_camera_camera(&viewer->fly_camera) : viewer->request.camera;
+    struct camera c = viewer->camera_moved ? fly_camera_current(&viewer->fly_camera) : viewer->request.camera;
     struct lua_file lua_file = {.error = error};
     const struct file_target target = {.path = name, .rules = picture->rules};
     char text[1024];
@@ -513,9 +513,9 @@ bool viewer_save_camera(const struct viewer *viewer, const struct file_target *p
 bool viewer_save_edits(const struct viewer *viewer, const struct file_target *picture, char *name,
                        struct error *error) {
     static const char head[] =
-        "-- What was changed in the window. The scene shows the same when it says, before gr.render, require and the\n"
-        "-- name of this file without .lua.\n";
-    struct camera camera = fly_camera_camera(&viewer->fly_camera);
+        "-- Edits made in the window. A scene that requires this file (its name without .lua) before gr.render has\n"
+        "-- them.\n";
+    struct camera camera = fly_camera_current(&viewer->fly_camera);
     double exposure = viewer->request.exposure;
     bool exposed = exposure < viewer->script_exposure || exposure > viewer->script_exposure;
     struct lua_file lua_file = {.error = error};

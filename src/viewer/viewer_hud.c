@@ -1,5 +1,5 @@
-/* What lies over the picture: the outline of what is selected, marks of the lights, the menu, the figures, and what is
- * known of the selection. Everything is told anew for every frame; what is clicked is done at once. */
+/* What lies over the picture: the outline of the selection, markers of the lights, the menu, the figures, and the
+ * selection's properties. Everything is drawn anew for every frame; a click takes effect at once. */
 #include "inspect/inspect.h"
 #include "viewer/viewer_internal.h"
 
@@ -131,7 +131,7 @@ static int draw_figures(struct viewer *viewer, const struct figures *figures, in
     return top + height;
 }
 
-/* The story of a pixel, from the line on that was scrolled to; after its end it begins again. */
+/* The trace of a pixel, from the line on that was scrolled to; after its end it begins again. */
 static void draw_story(struct viewer *viewer, int top) {
     struct panel *panel = &viewer->display.panel;
     int scale = panel->canvas.scale, line = panel_line_height(panel), y = top + 2 * scale;
@@ -154,7 +154,7 @@ static void draw_story(struct viewer *viewer, int top) {
     }
 }
 
-/* What went wrong, broken into lines at the bottom. */
+/* The error, broken into lines at the bottom. */
 static void draw_message(struct viewer *viewer) {
     struct panel *panel = &viewer->display.panel;
     int scale = panel->canvas.scale, line = panel_line_height(panel);

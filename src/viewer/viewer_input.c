@@ -1,4 +1,4 @@
-/* What people do with keys and the mouse. */
+/* Keys and the mouse. */
 #include "viewer/viewer_internal.h"
 
 #include <string.h>
@@ -129,7 +129,7 @@ static void choose_tool(struct viewer *viewer, enum edit_tool tool) {
     viewer->display.hud_dirty = true;
 }
 
-/* Esc, while the mouse is free: what was chosen, and where nothing was, what is being made. */
+/* Esc, while the mouse is free: ends the selection, and where there is none, stops the pass. */
 static void clear_selection(struct viewer *viewer) {
     bool something = viewer->edit.selection.kind != SELECTED_NOTHING || viewer->edit.tool != TOOL_NONE ||
                      viewer->trace.text[0] != '\0';
@@ -194,7 +194,7 @@ static bool take_edit_key(struct viewer *viewer, const struct window_event *even
 }
 
 static void take_key(struct viewer *viewer, const struct window_event *event) {
-    /* Without a scene there is nowhere to walk to. */
+    /* Without a scene the camera does not move. */
     if (viewer->block && take_held_key(viewer, event->key, event->down))
         return;
     if (!event->down || take_plain_key(viewer, event->key) || !viewer->block || take_edit_key(viewer, event))
@@ -224,7 +224,7 @@ static void take_key(struct viewer *viewer, const struct window_event *event) {
     }
 }
 
-/* A little way is still a click. */
+/* A short distance is still a click. */
 static bool is_drag(struct viewer *viewer) {
     double x = viewer->display.panel.mouse_x - viewer->input.press_x,
            y = viewer->display.panel.mouse_y - viewer->input.press_y;

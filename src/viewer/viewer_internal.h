@@ -1,11 +1,11 @@
-/* What the files of a live picture share; nobody else includes this. */
+/* What the files of the viewer share. */
 #ifndef GRAY_VIEWER_VIEWER_INTERNAL_H
 #define GRAY_VIEWER_VIEWER_INTERNAL_H
 
 #include "render/camera.h"
 #include "viewer/viewer.h"
 
-/* viewer.c: the picture is complete, and nobody wants anything. */
+/* viewer.c: the picture is complete, and there is nothing to do. */
 bool viewer_is_idle(const struct viewer *viewer);
 void viewer_note_stop(struct viewer *viewer, double seconds);
 
@@ -34,7 +34,7 @@ void viewer_set_material(struct viewer *viewer, enum look_part part,
                          const double numbers[3]);    /* of the material that was hit */
 void viewer_make_own_material(struct viewer *viewer); /* gives what is selected a material of its own */
 void viewer_set_exposure(struct viewer *viewer, double stops);
-/* The child is told everything anew. */
+/* All edits are sent again. */
 void viewer_resend_edits(struct viewer *viewer);
 /* What holds now. */
 void viewer_material_now(const struct viewer *viewer, enum look_part part, double numbers[3]);
@@ -42,7 +42,7 @@ void viewer_material_now(const struct viewer *viewer, enum look_part part, doubl
 struct vec3 viewer_moved_point(const struct viewer *viewer, struct vec3 point);
 /* The camera of the last pass; false: it cannot be. */
 bool viewer_camera_frame(const struct viewer *viewer, struct camera_frame *frame);
-/* Where new things go: where somebody clicked last, or before the camera. */
+/* Where new nodes go: where the user clicked last, or before the camera. */
 struct vec3 viewer_new_position(const struct viewer *viewer);
 /* From a place in the world to pixels of the window; false: it is not to be seen. */
 bool viewer_project(const struct viewer *viewer, const struct camera_frame *frame, struct vec3 point, double *x,
@@ -77,7 +77,7 @@ bool viewer_needs_overlay(const struct viewer *viewer);
 struct view_overlay_request viewer_overlay_request(const struct viewer *viewer, bool walking);
 void viewer_take_overlay(struct viewer *viewer, const struct view_overlay_request *asked,
                          const struct view_overlay *overlay);
-/* False: there is none that is true now. */
+/* False if the outline is out of date. */
 bool viewer_draw_outline(struct viewer *viewer, struct canvas_colour colour);
 void viewer_destroy_overlay(struct viewer *viewer);
 
@@ -100,7 +100,7 @@ void viewer_draw_lights(struct viewer *viewer, const struct camera_frame *frame)
 void viewer_draw_light_list(struct viewer *viewer, int top); /* the list, where it is wanted */
 void viewer_draw_selection_panel(struct viewer *viewer, int top);
 
-/* viewer_hud.c: what lies over the picture, and what people do there. */
+/* viewer_hud.c: what is drawn over the picture, and its buttons. */
 void viewer_draw_hud(struct viewer *viewer, const struct figures *figures);
 
 #endif

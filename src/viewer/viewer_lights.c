@@ -1,6 +1,7 @@
-/* Lights in the window: what the child has told of them, where they are marked on the picture, and changing them.
- * Lights without a place (from afar, skies) are marked in the direction that they come from, at the border of the
- * picture where that is not to be seen. What is changed here is believed until the child tells the same. */
+/* Lights in the window: what the render process has reported of them, where they are marked on the picture, and
+ * changing them. Lights without a position (directional ones, skies) are marked in the direction that they come from,
+ * at the border of the picture where that is not in view. A change made here counts until the render process reports
+ * the same. */
 #include "base/mem.h"
 #include "math/elementary.h"
 #include "viewer/viewer_internal.h"
@@ -55,7 +56,7 @@ static double largest(struct vec3 v) {
     return fmax(v.x, fmax(v.y, v.z));
 }
 
-/* Marks. */
+/* Markers. */
 
 /* What is left of the picture beside the menu and the margin. */
 static bool free_part(const struct viewer *viewer, double *left, double *top, double *right, double *bottom) {
@@ -249,7 +250,7 @@ static bool room_for_one(struct viewer *viewer) {
     return viewer->lights.count < LIGHT_LIMIT && viewer->lights.count == viewer->lights.known;
 }
 
-/* The next one that is added; what it is told to be holds until the child says the same. */
+/* The next one that is added; its values hold until the render process reports them. */
 static struct change new_light(struct viewer *viewer) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < viewer->edit.steps.now.count; i++)

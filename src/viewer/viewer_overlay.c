@@ -1,6 +1,6 @@
-/* Marks in the window: lines are part of what is shown and saved, the outline of what is selected lies over it. While
- * somebody moves, lines are few and their depth is coarse, and the outline is a box; both are made anew before the
- * finest pass goes on. */
+/* The overlay in the window: lines are part of the image that is shown and saved, the outline of the selection lies
+ * over it. While the camera moves, lines are few and their depth is coarse, and the outline is a box; both are made
+ * anew before the finest pass goes on. */
 #include "base/mem.h"
 #include "viewer/viewer_internal.h"
 

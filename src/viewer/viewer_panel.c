@@ -1,4 +1,4 @@
-/* The lights on the picture, the list of them, and the panel that tells of what is selected. */
+/* The lights on the picture, their list, and the panel of the selection. */
 #include "inspect/inspect.h"
 #include "math/elementary.h"
 #include "math/frame.h"
@@ -68,7 +68,7 @@ static void draw_form(struct viewer *viewer, const struct camera_frame *frame, c
     }
     if (light->placed && vec3_max_abs(light->direction) > 0)
         viewer_draw_edge(viewer, frame, at, vec3_add_scaled(at, light->direction, reach), outline);
-    if (!light->placed && (has & LIGHT_HAS_DIRECTION)) { /* an arrow through the middle of what people look at */
+    if (!light->placed && (has & LIGHT_HAS_DIRECTION)) { /* an arrow through the middle of the view */
         struct vec3 middle = viewer->fly_camera.centre;
         double half = 0.15 * vec3_length(vec3_sub(middle, frame->eye));
         struct vec3 tip = vec3_add_scaled(middle, light->direction, half), right, up;

@@ -1,6 +1,6 @@
-/* A window as the program needs one: it shows a picture with something drawn over it, and tells what people do. Which
- * library makes it is the driver's business (SDL2 in main_gui.c); tests have a driver of their own. All places are
- * pixels of the window as the screen has them, from the upper left corner. */
+/* A window as the program needs one: it shows a picture with something drawn over it, and reports input. The driver
+ * decides on the library (SDL 2 in main_gui.c); tests have a driver of their own. All positions are pixels of the
+ * screen, from the upper left corner of the window. */
 #ifndef GRAY_VIEWER_WINDOW_H
 #define GRAY_VIEWER_WINDOW_H
 
@@ -16,8 +16,8 @@ enum window_event_kind {
     WINDOW_WHEEL,   /* y: steps away from the user */
     WINDOW_PRESS,   /* button at x, y */
     WINDOW_RELEASE, /* the same */
-    WINDOW_LEAVE,   /* the keyboard is somebody else's now: no key is held */
-    WINDOW_SIZE,    /* x, y: how many pixels the window has now; density: how many of them people see as one */
+    WINDOW_LEAVE,   /* the window has lost the keyboard: no key is held */
+    WINDOW_SIZE,    /* x, y: how many pixels the window has now; density: how many of them make a dot of a letter */
 };
 
 /* Letters and digits are their own small ASCII codes. */

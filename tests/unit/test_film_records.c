@@ -161,7 +161,7 @@ TEST(a_checkpoint_of_another_record_is_not_gone_on_with) {
     checkpoint_init(&checkpoint, &options, &files);
     CHECK(checkpoint_open(&checkpoint, "a.png", notice, &error));
     CHECK(!checkpoint_restore(&checkpoint, &now, &film, notice, &error));
-    CHECK(strstr(error.text, "cannot be gone on with: its pixels have records of another size") != NULL);
+    CHECK(strstr(error.text, "cannot be resumed: its pixels have records of another size") != NULL);
     CHECK_EQ_INT(film_tiles_in(&film, FILM_TILE_DONE), 0);
     (void)checkpoint_finish(&checkpoint, false, &error);
     free(old.pixels);

@@ -239,7 +239,7 @@ struct kills {
 
 #define KILLED_RUN "scene.lua -q -j 1 -full -ss 5 --resume --checkpoint c.tiles --checkpoint-every 0"
 
-/* One picture: killed at a moment of its run, from 0 to 1, and gone on with. *length: how long a whole run takes on
+/* One picture: killed at a moment of its run, from 0 to 1, and resumed. *length: how long a whole run takes on
  * this machine at this time, kept up to date. */
 static void kill_once(double moment, double *length, struct kills *kills) {
     int how;
@@ -321,7 +321,7 @@ TEST(a_checkpoint_of_something_else_is_refused_and_stays) {
     leave_checkpoint("");
     gives("$gray scene.lua -full -ss 9 --checkpoint c.tiles", 2, "c.tiles: this checkpoint of an earlier run is there");
     gives("cp c.tiles kept; $gray scene.lua -full -ss 8 --checkpoint c.tiles --resume", 1,
-          "c.tiles: cannot be gone on with: it was made with other options");
+          "c.tiles: cannot be resumed: it was made with other options");
     gives("$gray scene.lua -full -ss 9 -D x=1 --checkpoint c.tiles --resume", 1, "it was made with other options");
     put("data.txt", "two");
     gives("$gray scene.lua -full -ss 9 --checkpoint c.tiles --resume", 1, "the scene, or a file it reads, has changed");
@@ -332,7 +332,7 @@ TEST(a_checkpoint_of_something_else_is_refused_and_stays) {
     CHECK(!exists("out.png"));
     /* Catching the error does not get past it. */
     put("scene.lua", SCENE "pcall(picture, 'a.png', 64, 64)\npicture('b.png', 64, 64)\n");
-    gives("$gray scene.lua -full -ss 9 --checkpoint c.tiles --resume", 1, "cannot be gone on with");
+    gives("$gray scene.lua -full -ss 9 --checkpoint c.tiles --resume", 1, "cannot be resumed");
     CHECK_EQ_INT(shell("cmp c.tiles kept"), 0);
     CHECK(!exists("a.png") && !exists("b.png"));
 }

@@ -449,7 +449,7 @@ TEST(a_keeper_goes_on_only_with_what_is_the_same) {
         CHECK(ok == (what != 1));
         CHECK(!ok || written == (what == 0 || what >= 5));
         if (!ok) {
-            CHECK(strstr(error.text, "cannot be gone on with: the scene, or a file it reads, has changed") != NULL);
+            CHECK(strstr(error.text, "cannot be resumed: the scene, or a file it reads, has changed") != NULL);
             CHECK(!checkpoint_open(&checkpoint, first, notice, &error));
         }
         /* The first picture is not the one that has tiles; then the second, another shard of it, another picture. */

@@ -27,7 +27,7 @@ static double apart(struct vec3 a, struct vec3 b) {
 
 TEST(fly_camera_begins_with_the_camera_of_the_script) {
     struct fly_camera fly_camera = some_walk();
-    struct camera camera = fly_camera_camera(&fly_camera);
+    struct camera camera = fly_camera_current(&fly_camera);
     CHECK_NEAR(apart(camera.eye, vec3_make(1, 2, 3)), 0, 0);
     CHECK_NEAR(apart(camera.view, vec3_normalize(vec3_make(1, -0.5, -2))), 0, 1e-15);
     CHECK_NEAR(vec3_dot(camera.view, camera.up), 0, 1e-15);
@@ -40,7 +40,7 @@ TEST(fly_camera_keeps_a_proper_orientation_through_a_million_turns) {
     struct test_random random = {3};
     for (int i = 0; i < 1000000; i++)
         fly_camera_turn(&fly_camera, test_uniform(&random, -0.2, 0.2), test_uniform(&random, -0.2, 0.2));
-    struct camera camera = fly_camera_camera(&fly_camera);
+    struct camera camera = fly_camera_current(&fly_camera);
     CHECK_NEAR(vec3_length(camera.view), 1, 1e-12);
     CHECK_NEAR(vec3_length(camera.up), 1, 1e-12);
     CHECK_NEAR(vec3_dot(camera.view, camera.up), 0, 1e-12);
@@ -54,7 +54,7 @@ TEST(fly_camera_looks_straight_up_and_over_without_trouble) {
     for (int i = 1; i <= 36; i++) { /* ten degrees a step, once round */
         fly_camera_turn(&fly_camera, 0, -10.0 / 90);
         double a = i * 10 * M_PI / 180;
-        CHECK_NEAR(apart(fly_camera_camera(&fly_camera).view, vec3_make(0, sin(a), -cos(a))), 0, 1e-12);
+        CHECK_NEAR(apart(fly_camera_current(&fly_camera).view, vec3_make(0, sin(a), -cos(a))), 0, 1e-12);
     }
 }
 
@@ -76,11 +76,11 @@ TEST(fly_camera_goes_as_far_in_a_hundred_steps_as_in_one) {
 
 TEST(fly_camera_round_the_centre_keeps_its_distance_and_its_place_in_the_picture) {
     struct fly_camera fly_camera = some_walk();
-    struct camera before = fly_camera_camera(&fly_camera);
+    struct camera before = fly_camera_current(&fly_camera);
     struct vec3 right = vec3_cross(before.view, before.up), to = vec3_sub(fly_camera.centre, before.eye);
     for (int i = 0; i < 50; i++)
         fly_camera_orbit(&fly_camera, 0.07, -0.03);
-    struct camera after = fly_camera_camera(&fly_camera);
+    struct camera after = fly_camera_current(&fly_camera);
     struct vec3 right_after = vec3_cross(after.view, after.up), to_after = vec3_sub(fly_camera.centre, after.eye);
     CHECK(apart(before.eye, after.eye) > 0.1);
     CHECK_NEAR(vec3_dot(to, right), vec3_dot(to_after, right_after), 1e-9);
@@ -91,11 +91,11 @@ TEST(fly_camera_round_the_centre_keeps_its_distance_and_its_place_in_the_picture
 TEST(fly_camera_levels_the_horizon_and_keeps_where_it_looks) {
     struct fly_camera fly_camera = some_walk();
     fly_camera_roll(&fly_camera, 40);
-    struct vec3 view = fly_camera_camera(&fly_camera).view;
-    CHECK(fabs(vec3_cross(view, fly_camera_camera(&fly_camera).up).y) > 0.1);
+    struct vec3 view = fly_camera_current(&fly_camera).view;
+    CHECK(fabs(vec3_cross(view, fly_camera_current(&fly_camera).up).y) > 0.1);
     fly_camera_level(&fly_camera);
-    CHECK_NEAR(vec3_cross(fly_camera_camera(&fly_camera).view, fly_camera_camera(&fly_camera).up).y, 0, 1e-12);
-    CHECK_NEAR(apart(fly_camera_camera(&fly_camera).view, view), 0, 1e-12);
+    CHECK_NEAR(vec3_cross(fly_camera_current(&fly_camera).view, fly_camera_current(&fly_camera).up).y, 0, 1e-12);
+    CHECK_NEAR(apart(fly_camera_current(&fly_camera).view, view), 0, 1e-12);
     fly_camera_save(&fly_camera, 3);
     struct vec3 layout = fly_camera.pose.position;
     fly_camera.down[FLY_BACK] = true;

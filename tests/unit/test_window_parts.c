@@ -81,7 +81,7 @@ TEST(a_walk_begins_where_the_camera_looks) {
                     const struct camera camera = {{3, 4, 5}, view, up, 40};
                     struct fly_camera fly_camera;
                     fly_camera_begin(&fly_camera, &camera, boxes[(x + y + z + 3) % 4]);
-                    struct camera now = fly_camera_camera(&fly_camera);
+                    struct camera now = fly_camera_current(&fly_camera);
                     struct vec3 have = vec3_normalize(now.view), wanted = vec3_normalize(view);
                     CHECK(vec3_length(vec3_sub(have, wanted)) < 1e-9);
                     CHECK(fabs(vec3_dot(vec3_normalize(now.up), have)) < 1e-9);
@@ -89,7 +89,7 @@ TEST(a_walk_begins_where_the_camera_looks) {
                     CHECK(fly_camera.speed > 0 && isfinite(fly_camera.speed));
                     fly_camera.down[FLY_FORWARD] = true;
                     CHECK(!fly_camera_step(&fly_camera, 0) && fly_camera_step(&fly_camera, 1));
-                    struct vec3 route = vec3_normalize(vec3_sub(fly_camera_camera(&fly_camera).eye, now.eye));
+                    struct vec3 route = vec3_normalize(vec3_sub(fly_camera_current(&fly_camera).eye, now.eye));
                     CHECK(vec3_length(vec3_sub(route, wanted)) < 1e-9);
                     fly_camera.down[FLY_BACK] = true; /* both: nowhere */
                     CHECK(!fly_camera_step(&fly_camera, 1));
@@ -98,9 +98,9 @@ TEST(a_walk_begins_where_the_camera_looks) {
     const struct camera camera = {{0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 40};
     fly_camera_begin(&fly_camera, &camera, &box);
     fly_camera_zoom(&fly_camera, 1000);
-    CHECK_NEAR(fly_camera_camera(&fly_camera).fov, 0.01, 1e-12);
+    CHECK_NEAR(fly_camera_current(&fly_camera).fov, 0.01, 1e-12);
     fly_camera_zoom(&fly_camera, -2000);
-    CHECK_NEAR(fly_camera_camera(&fly_camera).fov, 170, 1e-9);
+    CHECK_NEAR(fly_camera_current(&fly_camera).fov, 170, 1e-9);
 }
 
 /* --- steps --- */
