@@ -326,7 +326,7 @@ static void expected(struct attack_stand *stand, const struct attack_tree *old, 
     } else if (strcmp(verb, "maybe") == 0) {
         wrong = changed ? attack_wrong_picture(is) : was && !is ? "is gone" : NULL;
     } else if (strcmp(verb, "maybepart") == 0) {
-        wrong = changed && !attack_begins(is, "GRAYTILE", 8) ? "is no file of tiles" : NULL;
+        wrong = changed && !attack_begins(is, "GRAYTILE", 8) ? "is not a file of tiles" : NULL;
     } else if (strcmp(verb, "maybedir") == 0) {
         wrong = is && !S_ISDIR(is->status.st_mode) ? "is no folder" : NULL;
     } else if (!is) {
@@ -334,8 +334,8 @@ static void expected(struct attack_stand *stand, const struct attack_tree *old, 
     } else if (strcmp(verb, "picture") == 0) {
         wrong = changed ? attack_wrong_picture(is) : "was not written";
     } else if (strcmp(verb, "part") == 0) {
-        wrong =
-            changed && attack_begins(is, "GRAYTILE", 8) && !(is->status.st_mode & 07111) ? NULL : "is no file of tiles";
+        wrong = changed && attack_begins(is, "GRAYTILE", 8) && !(is->status.st_mode & 07111) ? NULL
+                                                                                             : "is not a file of tiles";
     } else if (strcmp(verb, "dir") == 0) {
         wrong = S_ISDIR(is->status.st_mode) ? NULL : "is no folder";
     } else if (strcmp(verb, "file") == 0) {

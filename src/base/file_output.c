@@ -155,7 +155,7 @@ static bool may_replace(const struct file_output *file, int place, const struct 
     struct file_identity identity = identity_of(status);
     uint8_t head[FILE_HEAD_SIZE] = {0};
     if (rules->never_replace)
-        return error_set(error, ERROR_SCENE, "%.600s: is there already", file->target);
+        return error_set(error, ERROR_SCENE, "%.600s: exists already", file->target);
     if (rules->guard && is_kept(rules, identity))
         return refuse(error, file, "is a file that this run reads or uses for another purpose, and is not replaced");
     if (!rules->may_replace || status->st_size == 0 || rules->force)
@@ -166,7 +166,7 @@ static bool may_replace(const struct file_output *file, int place, const struct 
                          file->target, strerror(errno), rules->expected, advice_of(rules));
     if (rules->may_replace(head, (size_t)size))
         return true;
-    return error_set(error, ERROR_SCENE, "%.600s: is there already and is not %s%s", file->target, rules->expected,
+    return error_set(error, ERROR_SCENE, "%.600s: exists already and is not %s%s", file->target, rules->expected,
                      rules->named_by_user ? "; --force replaces it" : advice_of(rules));
 }
 

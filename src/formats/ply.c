@@ -164,7 +164,7 @@ static enum meaning meaning_of(const struct words *words, int i, const char *ele
 
 static bool read_property(struct ply *ply, const struct words *words) {
     if (ply->element_count == 0)
-        return header_fail(ply, words, 0, "stands before the first element");
+        return header_fail(ply, words, 0, "comes before the first element");
     if (ply->property_count == PROPERTIES)
         return header_fail(ply, words, 0, "is one too many");
     struct element *element = &ply->elements[ply->element_count - 1];
@@ -184,7 +184,7 @@ static bool read_property(struct ply *ply, const struct words *words) {
         return header_fail(ply, words, name, "must be whole numbers");
     for (int k = element->first; k < ply->property_count && p.meaning != NOTHING; k++)
         if (ply->properties[k].meaning == p.meaning)
-            return header_fail(ply, words, name, "says what an earlier property says");
+            return header_fail(ply, words, name, "repeats an earlier property");
     if (p.meaning > NOTHING && p.meaning < SCALARS)
         ply->has[p.meaning] = true;
     if (p.meaning == RED && whole)
@@ -228,12 +228,12 @@ static bool read_header(struct ply *ply) {
             continue;
         if (word_is(&words, 0, "end_header")) {
             if (!has_format)
-                return header_fail(ply, &words, 0, "stands before the format");
+                return header_fail(ply, &words, 0, "comes before the format");
             return true;
         }
         if (word_is(&words, 0, "format")) {
             if (has_format)
-                return header_fail(ply, &words, 0, "stands here a second time");
+                return header_fail(ply, &words, 0, "is given a second time");
             if (word_is(&words, 1, "ascii"))
                 ply->format = ASCII;
             else if (word_is(&words, 1, "binary_little_endian"))
@@ -244,7 +244,7 @@ static bool read_header(struct ply *ply) {
                 return header_fail(ply, &words, 1, "is none of ascii, binary_little_endian, binary_big_endian");
             has_format = true;
         } else if (!has_format) {
-            return header_fail(ply, &words, 0, "stands before the format");
+            return header_fail(ply, &words, 0, "comes before the format");
         } else if (word_is(&words, 0, "element")) {
             if (!read_element(ply, &words))
                 return false;

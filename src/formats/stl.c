@@ -100,7 +100,7 @@ static bool fail(struct text *t, size_t length, const char *wanted) {
     word[shown] = '\0';
     if (length == 0)
         return error_set(t->error, ERROR_SCENE, "%s:%zu: the file ends where %s must be", t->path, t->line, wanted);
-    return error_set(t->error, ERROR_SCENE, "%s:%zu: '%s' stands where %s must be", t->path, t->line, word, wanted);
+    return error_set(t->error, ERROR_SCENE, "%s:%zu: '%s' is found where %s must be", t->path, t->line, word, wanted);
 }
 
 static bool expect(struct text *t, const char *word) {

@@ -122,7 +122,7 @@ bool patch_tessellate(struct arena *arena, const struct patch_input *in, struct 
     for (size_t i = 0; i < (size_t)in->count * 16; i++) {
         struct vec3 p = vec3_make(in->points[i][0], in->points[i][1], in->points[i][2]);
         if (!(vec3_max_abs(p) < 0x1p300) || !vec3_finite(p))
-            return error_set(error, ERROR_SCENE, "%s: point %zu of patch %zu is no number to work with", in->name,
+            return error_set(error, ERROR_SCENE, "%s: point %zu of patch %zu is not a usable number", in->name,
                              i % 16 + 1, i / 16 + 1);
         lo = vec3_min(lo, p);
         hi = vec3_max(hi, p);

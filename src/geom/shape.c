@@ -300,7 +300,7 @@ const char *shape_why_open(const struct shape *shape) {
     case SHAPE_QUADRIC:
         return "has no caps (open = true), so it has no inside";
     case SHAPE_FLAT:
-        return "is flat, so it has no inside; only a plane with a normal stands for the half-space behind it";
+        return "is flat, so it has no inside; only a plane with a normal is a half-space";
     case SHAPE_CURVE:
         return "is a curve, a ribbon without inside";
     case SHAPE_LATHE:
@@ -319,7 +319,7 @@ const char *shape_why_open(const struct shape *shape) {
     case SHAPE_BLOB:
         break;
     }
-    return "is a mere surface, so it has no inside";
+    return "is only a surface, so it has no inside";
 }
 
 /* All crossings of the whole line in order with a shape that has only a few. */

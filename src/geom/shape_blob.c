@@ -143,7 +143,7 @@ static bool check(const struct blob_input *in, struct error *error) {
         const struct blob_element *e = &in->elements[i];
         if (!vec3_finite(e->a) || !vec3_finite(e->b) || !(e->radius > 0x1p-300) ||
             !(fmax(fmax(vec3_max_abs(e->a), vec3_max_abs(e->b)), e->radius) < 0x1p300))
-            return error_set(error, ERROR_SCENE, "element %u of the blob has no measure to work with", i + 1);
+            return error_set(error, ERROR_SCENE, "element %u of the blob has no usable size", i + 1);
         if (!isfinite(e->strength) || e->strength == 0)
             return error_set(error, ERROR_SCENE, "element %u of the blob has the strength %g", i + 1, e->strength);
     }

@@ -90,7 +90,7 @@ const struct curve *curve_build(struct arena *arena, const struct curve_input *i
         }
         for (int d = 0; d < 4; d++)
             if (!(fabs(points[i][d]) < 0x1p300)) {
-                error_set(error, ERROR_SCENE, "point %u of the curve is no number to work with", i + 1);
+                error_set(error, ERROR_SCENE, "point %u of the curve is not a usable number", i + 1);
                 return NULL;
             }
     }

@@ -93,7 +93,7 @@ const struct height_field *height_field_build(struct arena *arena, const struct 
     for (size_t i = 0; i < count; i++) {
         heights[i] = in->heights[i];
         if (!(fabs(heights[i]) < 0x1p300)) {
-            error_set(error, ERROR_SCENE, "the height in row %zu, column %zu is no number to work with",
+            error_set(error, ERROR_SCENE, "the height in row %zu, column %zu is not a usable number",
                       i / in->columns + 1, i % in->columns + 1);
             return NULL;
         }

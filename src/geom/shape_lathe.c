@@ -54,7 +54,7 @@ static bool check_points(const struct lathe_input *in, struct error *error) {
         top = fmax(top, fmax(fabs(in->points[i][0]), fabs(in->points[i][1])));
     }
     if (!(top > 0x1p-300 && top < 0x1p300))
-        return error_set(error, ERROR_SCENE, "the profile has no extent, or one beyond all measure");
+        return error_set(error, ERROR_SCENE, "the profile has no extent, or is too large");
     return true;
 }
 

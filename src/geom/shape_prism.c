@@ -37,7 +37,7 @@ const struct prism *prism_build(struct arena *arena, const struct prism_input *i
         for (uint32_t i = 0; i < count; i++)
             if (!isfinite(points[i][0]) || !isfinite(points[i][1]) ||
                 fmax(fabs(points[i][0]), fabs(points[i][1])) > 0x1p300) {
-                error_set(error, ERROR_SCENE, "point %u of curve %u of the outline is no number to work with", i + 1,
+                error_set(error, ERROR_SCENE, "point %u of curve %u of the outline is not a usable number", i + 1,
                           k + 1);
                 return NULL;
             }

@@ -133,7 +133,7 @@ const struct sweep_path *sweep_build(struct arena *arena, const struct sweep_inp
         }
         for (int d = 0; d < 4; d++)
             if (!isfinite(points[i][d]) || fabs(points[i][d]) > 0x1p300) {
-                error_set(error, ERROR_SCENE, "point %u of the sweep is no number to work with", i + 1);
+                error_set(error, ERROR_SCENE, "point %u of the sweep is not a usable number", i + 1);
                 return NULL;
             }
     }

@@ -395,7 +395,7 @@ bool confine_process_as(const struct options *options, int keep, long landlock_m
     for (int i = 0; ok && i < options->script_count; i++)
         ok = script_reach(options->scripts[i], &options->script, &reach, error);
     ok = ok && (MAY_FAIL(prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)) == 0 ||
-                error_set(error, ERROR_MACHINE, "gray: privileges cannot be given up: %s", strerror(errno)));
+                error_set(error, ERROR_MACHINE, "gray: privileges cannot be dropped: %s", strerror(errno)));
     long landlock = ok ? confine_files(options, &reach, landlock_max, error) : -1;
     /* What is missing stands first; what confines the process nevertheless follows. */
     char missing[256] = "", files[64] = "checks of file names";

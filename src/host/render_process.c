@@ -266,7 +266,7 @@ static bool make_in_window(struct picture_work *work, double build_seconds, stru
 static bool too_much_memory(const struct render_process *process, struct error *error) {
     const struct script_options *options = &process->options->script;
     char size[SIZE_WORDS];
-    return error_set_limit(error, "the picture needs too much memory: --script-memory allows %s for it and the script",
+    return error_set_limit(error, "the picture needs too much memory: --script-memory allows %s for picture and script",
                            size_words(script_picture_memory(options), size));
 }
 
@@ -526,7 +526,7 @@ static void begin_memory(struct render_process *process) {
     if (process->assets.memory > script_picture_memory(&process->options->script))
         assets_destroy(&process->assets);
     process->account = NULL;
-    process->memory = (struct mem_account){.option = "--script-memory", .words = "--script-memory allows no more"};
+    process->memory = (struct mem_account){.option = "--script-memory", .words = "--script-memory is the limit"};
 }
 
 /* Exit status of one script. */

@@ -256,7 +256,7 @@ static int run(struct supervisor *supervisor, const struct farm_transport *trans
     bool ready = supervisor->control
                      ? supervisor_listen(supervisor, &error) && start_farm(supervisor, transport, &error) &&
                            (!options->watch || watch_scripts(supervisor, &error))
-                     : error_no_memory(&error, "the rendering process");
+                     : error_no_memory(&error, "the render process");
     if (ready)
         standard_streams_begin(&supervisor->streams);
     output_set_interrupt(&supervisor->output,

@@ -168,7 +168,7 @@ bool supervisor_start_child(struct supervisor *supervisor, struct error *error) 
     if (supervisor->child > 0)
         return true;
     channel_close(&supervisor->channel);
-    return error_set(error, ERROR_MACHINE, "gray: the rendering process cannot be started: %s", strerror(saved));
+    return error_set(error, ERROR_MACHINE, "gray: the render process cannot be started: %s", strerror(saved));
 }
 
 /* The channel is closed before the process is gone: wait, but not for ever. */
@@ -195,25 +195,24 @@ static void report_death(struct supervisor *supervisor, int how) {
     const char *script = supervisor->options->scripts[supervisor->next_script];
     char making[NAME_LIMIT + 64] = "";
     if (picture->open)
-        (void)snprintf(making, sizeof making, " while it made %.400s, which is not written", picture->name);
+        (void)snprintf(making, sizeof making, " while it rendered %.400s, which is not written", picture->name);
     if (supervisor->script.out_of_time)
         error_set(&error, ERROR_SCENE,
                   "%.400s: the script used up its %g s of processor time (--script-time allows more)", script,
                   script_time_limit(&supervisor->options->script));
     else if (supervisor->broken)
-        error_set(&error, ERROR_MACHINE, "%.400s: the rendering process did not keep to its protocol%s", script,
-                  making);
+        error_set(&error, ERROR_MACHINE, "%.400s: the render process violated its protocol%s", script, making);
     else if (supervisor->stall.found)
-        error_set(&error, ERROR_MACHINE, "%.400s: the rendering process stood still for %g s%s", script,
+        error_set(&error, ERROR_MACHINE, "%.400s: the render process hung for %g s%s", script,
                   supervisor->options->farm_stall, making);
     else if (WIFSIGNALED(how) && WTERMSIG(how) == SIGKILL)
-        error_set(&error, ERROR_MACHINE, "%.400s: the rendering process was killed%s (out of memory?)", script, making);
+        error_set(&error, ERROR_MACHINE, "%.400s: the render process was killed%s (out of memory?)", script, making);
     else if (WIFSIGNALED(how))
-        error_set(&error, ERROR_MACHINE, "%.400s: the rendering process crashed (signal %d, %s)%s", script,
-                  WTERMSIG(how), strsignal(WTERMSIG(how)), making);
+        error_set(&error, ERROR_MACHINE, "%.400s: the render process crashed (signal %d, %s)%s", script, WTERMSIG(how),
+                  strsignal(WTERMSIG(how)), making);
     else
-        error_set(&error, ERROR_MACHINE, "%.400s: the rendering process ended with status %d%s", script,
-                  WEXITSTATUS(how), making);
+        error_set(&error, ERROR_MACHINE, "%.400s: the render process ended with status %d%s", script, WEXITSTATUS(how),
+                  making);
     supervisor_note_error(supervisor, &error);
 }
 
@@ -228,12 +227,11 @@ static bool tries_again(struct supervisor *supervisor, int how) {
         supervisor->retry.count >= TRIES_MAX)
         return false;
     if (supervisor->stall.found)
-        (void)snprintf(
-            text, sizeof text,
-            "has killed its rendering process, which stood still for %g s (--farm-stall); %.200s begins anew",
-            supervisor->options->farm_stall, supervisor->options->scripts[supervisor->next_script]);
+        (void)snprintf(text, sizeof text,
+                       "has killed its render process, which hung for %g s (--farm-stall); %.200s starts again",
+                       supervisor->options->farm_stall, supervisor->options->scripts[supervisor->next_script]);
     else
-        (void)snprintf(text, sizeof text, "has lost its rendering process, which was killed; %.200s begins anew",
+        (void)snprintf(text, sizeof text, "has lost its render process, which was killed; %.200s starts again",
                        supervisor->options->scripts[supervisor->next_script]);
     farm_note(output->farm, text);
     supervisor->retry.count++;
@@ -261,7 +259,7 @@ void supervisor_judge_end(struct supervisor *supervisor, int how) {
         supervisor->retry.pictures_before = supervisor->output.pictures;
     } else if (how != 0) {
         struct error error;
-        error_set(&error, ERROR_MACHINE, "gray: the rendering process failed after its work (%s %d)",
+        error_set(&error, ERROR_MACHINE, "gray: the render process failed after its work (%s %d)",
                   WIFSIGNALED(how) ? "signal" : "status", WIFSIGNALED(how) ? WTERMSIG(how) : WEXITSTATUS(how));
         supervisor_note_error(supervisor, &error);
     }

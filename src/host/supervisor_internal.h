@@ -47,7 +47,7 @@ struct supervisor {
     struct control *control;            /* shared with the child */
     struct channel channel;             /* to the child */
     pid_t child;
-    bool had_child; /* a rendering process was started before */
+    bool had_child; /* a render process was started before */
     int signals;    /* descriptor, or -1 */
     sigset_t signals_before;
     struct standard_streams streams;

@@ -73,7 +73,7 @@ static bool answer_retry(struct supervisor *supervisor, const struct picture_req
         return false;
     output->pictures = number;
     if (number < supervisor->retry.kept) {
-        error_set(&error, ERROR_SCENE, "this picture could not be made before, either");
+        error_set(&error, ERROR_SCENE, "this picture failed before, too");
         supervisor_send_answer(supervisor, MESSAGE_FILM, settled, settled, &error, -1);
         return true;
     }
@@ -82,7 +82,7 @@ static bool answer_retry(struct supervisor *supervisor, const struct picture_req
     if (!same) {
         output_abandon(output);
         error_set(&error, ERROR_SCENE,
-                  "begun anew after its rendering process was killed, the script makes another picture than before");
+                  "started again after its render process was killed, the script renders a different picture");
     } else {
         outlook_reset(&supervisor->control->outlook, progress_wants_outlook(&output->progress));
     }
@@ -224,8 +224,8 @@ static void answer_done(struct supervisor *supervisor, const struct message *mes
 static void drop_kept(struct supervisor *supervisor, const struct message_script *script) {
     struct error error;
     error_set(&error, ERROR_SCENE,
-              "%.400s: begun anew after its rendering process was killed, the script did not come to %.400s again, "
-              "which is not written",
+              "%.400s: started again after its render process was killed, the script did not render %.400s, which is "
+              "not written",
               supervisor->options->scripts[script->index], supervisor->output.current.name);
     output_abandon(&supervisor->output);
     supervisor->retry.kept = 0;

@@ -45,7 +45,7 @@ static bool finish_tiles(struct supervisor *supervisor) {
     supervisor_note_status(supervisor, ERROR_CANCELLED);
     atomic_store(&supervisor->control->enough, 1);
     (void)snprintf(line, sizeof line,
-                   "gray: interrupted, %s is not written; tiles under way are finished (once more: at once)",
+                   "gray: interrupted, %s is not written; tiles under way are finished (Ctrl-C again: at once)",
                    picture->name);
     output_report(&supervisor->output, LINE_ERROR, line);
     return true;

@@ -28,7 +28,7 @@ bool exr_can_write(void) {
 }
 
 static bool no_library(const char *path, struct error *error) {
-    return error_set(error, ERROR_SCENE, "%s: EXR pictures need OpenEXR, without which this gray was made", path);
+    return error_set(error, ERROR_SCENE, "%s: EXR pictures need OpenEXR, and this build was made without it", path);
 }
 
 bool exr_write(const struct file_target *target, uint32_t width, uint32_t height, float_rows *rows, void *context,

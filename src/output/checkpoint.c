@@ -37,12 +37,11 @@ bool checkpoint_open(struct checkpoint *checkpoint, const char *picture_name, ch
     bool there = file_is_regular(checkpoint->path);
     if (there && !checkpoint->resume)
         return error_set(error, ERROR_USAGE,
-                         "%.400s: this checkpoint of an earlier run is there already; --resume goes on with it, or "
-                         "remove it",
+                         "%.400s: a checkpoint of an earlier run exists; continue it with --resume, or remove it",
                          checkpoint->path);
     checkpoint->opened = !there;
     if (!there && checkpoint->resume)
-        (void)snprintf(notice, 256, "gray: notice: there is no %.150s, so the run starts from its beginning",
+        (void)snprintf(notice, 256, "gray: notice: there is no %.150s: the run starts from the beginning",
                        checkpoint->path);
     if (!there)
         return true;

@@ -195,7 +195,7 @@ static bool send_tiles(struct display *display, int wait, struct error *error) {
         if (errno == EAGAIN && wait == 0)
             return true;
         error_set(error, ERROR_MACHINE, "--display tev: the viewer is gone (%s)",
-                  errno == EAGAIN ? "it takes nothing more" : strerror(errno));
+                  errno == EAGAIN ? "it accepts no more data" : strerror(errno));
         display_close(display);
         return false;
     }

@@ -1,4 +1,4 @@
-/* --display: the picture shown elsewhere while it is made, by the supervisor: the rendering process has no sockets and
+/* --display: the picture shown elsewhere while it is made, by the supervisor: the render process has no sockets and
  * no terminal. Neither waits: what cannot be sent at once is sent later, and a viewer that goes away is done without.
  *
  * tev (https://github.com/Tom94/tev) listens for packets over TCP: a length (of all of it, 4 bytes), a type, and

@@ -222,7 +222,7 @@ static void find_silent(struct farm *farm) {
         peer->silent = true;
         if (peer->gone)
             continue;
-        int length = snprintf(text, sizeof text, "has been silent for %g s, others make its tiles (--farm-silence)",
+        int length = snprintf(text, sizeof text, "has been silent for %g s, others render its tiles (--farm-silence)",
                               farm->silence);
         add_note(farm, rank, text, length);
         take_back(farm, rank);
@@ -435,10 +435,11 @@ static bool join(struct farm *farm, bool *already, struct error *error) {
         return false;
     *already = farm_answer.value == FARM_ANSWER_SKIP;
     if (farm_answer.value == FARM_ANSWER_OTHER)
-        return error_set(error, ERROR_SCENE,
-                         "this rank makes another picture than the first one: its files, options or version differ");
+        return error_set(
+            error, ERROR_SCENE,
+            "this rank renders a different picture from the first one: its files, options or version differ");
     if (farm_answer.value == FARM_ANSWER_STOP)
-        return error_set(error, ERROR_CANCELLED, "the first rank has given up");
+        return error_set(error, ERROR_CANCELLED, "the first rank has stopped");
     return true;
 }
 

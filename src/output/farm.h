@@ -44,7 +44,7 @@ bool farm_begin(struct farm *farm, const struct tile_picture *picture, struct fi
 void farm_step(struct farm *farm);
 /* The picture is finished or given up. */
 void farm_end(struct farm *farm, bool given_up);
-/* The rendering process of this rank is gone, another one will go on with the picture: first rank only. Its tiles are
+/* The render process of this rank is gone, another one will go on with the picture: first rank only. Its tiles are
  * handed out again. */
 void farm_take_back_own(struct farm *farm);
 /* An error of this rank, which the first one reports. */

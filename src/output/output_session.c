@@ -199,7 +199,7 @@ bool output_begin(struct output_session *output, const struct picture_request *r
         !picture_files_written(&output->files, picture->name, written, error))
         return false;
     if (picture_name_ends_in(written, ".exr") && !exr_can_write())
-        return error_set(error, ERROR_SCENE, "%s: EXR pictures need OpenEXR, without which this gray was made",
+        return error_set(error, ERROR_SCENE, "%s: EXR pictures need OpenEXR, and this build was made without it",
                          written);
     picture->request = *request;
     picture->written = false;
@@ -270,7 +270,7 @@ static void report_checkpoint(struct output_session *output, uint32_t tiles) {
     char line[2 * NAME_LIMIT];
     const struct picture *picture = kept_picture(output);
     if (picture)
-        (void)snprintf(line, sizeof line, "gray: notice: %.3000s holds %u of %u tiles of %.3000s (--resume goes on)",
+        (void)snprintf(line, sizeof line, "gray: notice: %.3000s holds %u of %u tiles of %.3000s (--resume continues)",
                        output->checkpoint.path, tiles, film_tile_count(&picture->film), picture->name);
     else
         (void)snprintf(line, sizeof line, "gray: notice: %.3000s holds %zu finished pictures", output->checkpoint.path,

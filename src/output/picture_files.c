@@ -114,13 +114,12 @@ static bool name_from_script(struct picture_files *files, const char *from_scrip
     if (length == 0)
         return error_set(error, ERROR_SCENE, "the name of the picture is empty");
     if (strcmp(from_script, "-") == 0)
-        return error_set(error, ERROR_SCENE,
-                         "the name '-' stands for standard output on the command line alone (-o -)");
+        return error_set(error, ERROR_SCENE, "the name '-' means standard output only on the command line (-o -)");
     if (from_script[length - 1] == '/')
         return error_set(error, ERROR_SCENE, "%.600s: is a folder, a picture cannot be written there", from_script);
     if (!files->options->script.no_sandbox && !reach_may_create(&files->places, from_script))
         return error_set(error, ERROR_SCENE,
-                         "%s: scripts have pictures written below the working directory only, and under no hidden name "
+                         "%s: pictures of scripts must be below the working directory, without a hidden name "
                          "(-o FILE or --allow-write DIR allow other places)",
                          from_script);
     enum ending ending = ending_of(from_script);
@@ -135,8 +134,8 @@ static bool name_from_script(struct picture_files *files, const char *from_scrip
     (void)snprintf(name, NAME_LIMIT, "%s%s", from_script, added);
     if (added[0] && !files->ending_noticed) {
         files->ending_noticed = true;
-        (void)snprintf(notice, NAME_LIMIT + 128, "gray: notice: '%.1500s' has no ending of a picture, so it is %.1500s",
-                       from_script, name);
+        (void)snprintf(notice, NAME_LIMIT + 128,
+                       "gray: notice: '%.1500s' has no ending of a picture and becomes %.1500s", from_script, name);
     }
     return true;
 }

@@ -26,9 +26,9 @@ static bool prepare_lens(const struct camera *camera, const struct lens *lens, s
     bool planar = lens->projection == PROJECTION_PERSPECTIVE || lens->projection == PROJECTION_ORTHOGRAPHIC;
     out->lens = *lens;
     if (lens->aperture > 0 && !planar)
-        return error_set(error, ERROR_SCENE, "a lens (aperture) goes with perspective and orthographic pictures only");
+        return error_set(error, ERROR_SCENE, "a lens (aperture) works only with perspective and orthographic pictures");
     if (lens->stereo != STEREO_NONE && lens->projection != PROJECTION_PERSPECTIVE)
-        return error_set(error, ERROR_SCENE, "stereo goes with perspective pictures only");
+        return error_set(error, ERROR_SCENE, "stereo works only with perspective pictures");
     if (lens->stereo == STEREO_SIDE) {
         if (floor(out->width / 2) != out->width / 2)
             return error_set(error, ERROR_SCENE, "a stereo pair side by side needs an even width");
@@ -36,7 +36,7 @@ static bool prepare_lens(const struct camera *camera, const struct lens *lens, s
     }
     out->focus = lens->focus > 0 ? lens->focus : vec3_dot(vec3_sub(lens->focus_point, camera->eye), out->forward);
     if (lens->aperture > 0 && !(out->focus > 0))
-        return error_set(error, ERROR_SCENE, "the place in focus must lie in front of the camera");
+        return error_set(error, ERROR_SCENE, "the point in focus must be in front of the camera");
     if (lens->aperture > 0 && out->focus < NUMBER_SMALLEST)
         return error_set(error, ERROR_SCENE, "focus is too small: %g", out->focus);
     if (lens->stereo != STEREO_NONE && lens->screen < NUMBER_SMALLEST)
@@ -62,7 +62,7 @@ bool camera_prepare(const struct camera *camera, const struct settings *settings
     struct vec3 view = settings->view_is_target ? vec3_sub(camera->view, camera->eye) : camera->view;
     if (!vec3_finite(view) || !(vec3_length(view) > 0))
         return error_set(error, ERROR_SCENE, "%s",
-                         settings->view_is_target ? "view: the point to look at must not be the eye itself"
+                         settings->view_is_target ? "view: the point to look at must differ from the eye"
                                                   : "view: the direction must not be zero");
     out->eye = camera->eye;
     out->forward = vec3_normalize(view);

@@ -292,7 +292,7 @@ static bool tell_pixel(struct run *run, struct film *film, struct story *story, 
     if (!integrator_render(run, worker, &tile) || run_stopped(run, worker))
         return worker->scratch.failed ? error_no_memory(error, "the crossings of a ray")
                                       : error_set(error, ERROR_CANCELLED, "stopped while rendering");
-    return !story->failed || error_no_memory(error, "the story of a pixel");
+    return !story->failed || error_no_memory(error, "the trace of a pixel");
 }
 
 bool render_pixels(const struct render_job *job, struct pool *pool, const uint32_t (*pixels)[2], uint32_t count,

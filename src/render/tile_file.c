@@ -254,7 +254,7 @@ static bool next_record(struct reader *reader, struct record *out, struct error 
     uint32_t reserved = get_u32(&eye);
     uint64_t size = get_u64(&eye);
     if (size > PAYLOAD_LIMIT || reserved != 0)
-        return wrong(reader, error, "a record has a size that none can have");
+        return wrong(reader, error, "a record has an impossible size");
     const uint8_t *whole =
         size > left - RECORD_HEAD - RECORD_CHECK ? NULL : fetch(reader, RECORD_HEAD + (size_t)size + RECORD_CHECK);
     if (!whole)
@@ -263,7 +263,7 @@ static bool next_record(struct reader *reader, struct record *out, struct error 
     out->payload = whole + RECORD_HEAD;
     eye.at = out->payload + size;
     if (get_u64(&eye) != check_of(reader->records, out->kind, out->payload, out->size))
-        return wrong(reader, error, "a record does not have its check");
+        return wrong(reader, error, "the checksum of a record is wrong");
     reader->at += RECORD_HEAD + out->size + RECORD_CHECK;
     reader->records++;
     return true;
@@ -287,7 +287,7 @@ static bool read_done(const struct reader *reader, const struct record *record, 
     out->key = get_key(&eye);
     out->written = get_digest(&eye);
     return get_name(&eye, record->payload + record->size, out->name) ||
-           wrong(reader, error, "a finished picture has no proper name");
+           wrong(reader, error, "a finished picture has an invalid name");
 }
 
 static bool read_picture(const struct reader *reader, const struct record *record, struct tile_picture *out,
@@ -322,9 +322,9 @@ static bool read_picture(const struct reader *reader, const struct record *recor
                 film_size(out->width, out->height, out->record, &bytes, &size_error);
     if (!fits || curve > TONE_FILMIC || !isfinite(out->tone.exposure) || out->number == 0 || out->shard == 0 ||
         out->shard > out->shards)
-        return wrong(reader, error, "the description of the picture is none");
+        return wrong(reader, error, "the description of the picture is invalid");
     return get_name(&eye, record->payload + record->size, out->name) ||
-           wrong(reader, error, "the picture has no proper name");
+           wrong(reader, error, "the picture has an invalid name");
 }
 
 /* A film of the picture's rectangle without any memory: enough to know its tiles. */
@@ -348,9 +348,9 @@ static bool check_tile(const struct reader *reader, const struct tile_file *file
         return wrong(reader, error, "a tile is too short");
     uint32_t tile = get_u32(&eye);
     if (tile >= film_tile_count(&film) || (int64_t)tile <= *last)
-        return wrong(reader, error, "a tile is not the next one");
+        return wrong(reader, error, "a tile is out of order");
     if (!film_tile_fits(&film, tile, eye.at, record->size - 4))
-        return wrong(reader, error, "a tile has not the size of a tile, or holds a colour that is not finite");
+        return wrong(reader, error, "a tile has a wrong size, or a colour that is not finite");
     *last = tile;
     return true;
 }
@@ -358,7 +358,7 @@ static bool check_tile(const struct reader *reader, const struct tile_file *file
 static bool add_done(struct tile_file *file, const struct reader *reader, const struct record *record,
                      struct error *error) {
     if (file->done_count == DONE_LIMIT)
-        return wrong(reader, error, "it has more finished pictures than are read");
+        return wrong(reader, error, "it has too many finished pictures");
     struct tile_done *more = mem_resize_array(file->done, file->done_count + 1, sizeof *more);
     if (!more)
         return error_no_memory(error, reader->path);
@@ -380,7 +380,7 @@ static bool read_records(struct tile_file *file, struct reader *reader, struct e
         switch (record.kind) {
         case RECORD_DONE:
             ok = !file->has_picture ? add_done(file, reader, &record, error)
-                                    : wrong(reader, error, "a finished picture comes too late");
+                                    : wrong(reader, error, "a finished picture is out of order");
             break;
         case RECORD_PICTURE:
             ok = !file->has_picture ? read_picture(reader, &record, &file->picture, error)
@@ -398,12 +398,12 @@ static bool read_records(struct tile_file *file, struct reader *reader, struct e
             if (record.size != 8 || get_u64(&eye) != reader->records - 1)
                 return wrong(reader, error, "records are missing");
             if (reader->at != reader->size)
-                return wrong(reader, error, "something follows its end");
+                return wrong(reader, error, "data follow its end");
             return true;
         }
         default:
             reader->at = start;
-            return wrong(reader, error, "there is no such kind of record");
+            return wrong(reader, error, "a record has an unknown kind");
         }
         if (!ok)
             return false;
@@ -415,7 +415,7 @@ static bool read_file(const char *path, uint64_t size, struct tile_file *out, st
     struct reader reader = {.path = path, .file = out, .size = size};
     struct eye eye = {size < sizeof magic + 8 ? NULL : fetch(&reader, sizeof magic + 8)};
     if (!eye.at || memcmp(eye.at, magic, sizeof magic) != 0)
-        return error_set(error, ERROR_SCENE, "%s: is no file of tiles", path);
+        return error_set(error, ERROR_SCENE, "%s: is not a file of tiles", path);
     eye.at += sizeof magic;
     out->format = get_u32(&eye);
     if ((out->format != FORMAT && out->format != FORMAT_RECORD) || get_u32(&eye) != FILM_TILE)
@@ -473,9 +473,9 @@ void tile_file_restore(const struct tile_file *file, struct film *film, uint32_t
 
 const char *tile_key_difference(const struct tile_key *have, const struct tile_key *want) {
     if (strcmp(have->version, want->version) != 0)
-        return "it was made by another version of gray";
+        return "it was made by a different version of gray";
     if (!digest_equal(have->options, want->options))
-        return "it was made with other options";
+        return "it was made with different options";
     if (!digest_equal(have->files, want->files))
         return "the scene, or a file it reads, has changed";
     return NULL;
@@ -493,9 +493,9 @@ const char *tile_picture_difference(const struct tile_picture *have, const struc
     if (!film_record_equal(have->record, want->record))
         return "its pixels have records of another size";
     if (have->shards != want->shards)
-        return "the picture was parted otherwise";
+        return "the picture was divided differently";
     if (have->tone.exposure != want->tone.exposure || have->tone.curve != want->tone.curve ||
         have->tone.srgb != want->tone.srgb || have->deep != want->deep)
-        return "its tones are others";
+        return "its tone settings differ";
     return NULL;
 }

@@ -149,8 +149,8 @@ struct laying {
 
 static void tell_missing(const struct laying *l, const char *what) {
     char text[256];
-    (void)snprintf(text, sizeof text, "a change of %s '%s' (%u) is left out: there is no such one any more", what,
-                   l->change->name, l->change->serial);
+    (void)snprintf(text, sizeof text, "an edit of %s '%s' (%u) is skipped: it no longer exists", what, l->change->name,
+                   l->change->serial);
     l->warn(l->context, text);
 }
 

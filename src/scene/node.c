@@ -141,7 +141,7 @@ struct material *scene_material(struct scene *scene, enum material_kind kind, co
                                 struct error *error) {
     int depth = base ? base->depth + 1 : 1;
     if (depth > MATERIAL_DEPTH) {
-        error_set(error, ERROR_SCENE, "more than %d materials are stacked on each other", MATERIAL_DEPTH);
+        error_set(error, ERROR_SCENE, "more than %d materials are nested", MATERIAL_DEPTH);
         return NULL;
     }
     struct material *material = arena_alloc(&scene->arena, sizeof *material);

@@ -35,7 +35,7 @@ static bool enter(struct measuring *m) {
     if (t->depth - 1 > DEPTH_LIMIT)
         return error_set(m->error, ERROR_SCENE, "nodes are nested more than %d deep, or in a cycle", DEPTH_LIMIT);
     if (--m->steps < 0)
-        return error_set(m->error, ERROR_SCENE, "more than %d things are under this node", STEPS);
+        return error_set(m->error, ERROR_SCENE, "more than %d objects are below this node", STEPS);
     frame->from_node = node_parent_from_node(node);
     if (t->depth > 1) {
         const struct measure_frame *above = scene_traversal_frame(t, 1);

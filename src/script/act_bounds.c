@@ -10,7 +10,7 @@ bool act_bounds(struct context *context, const struct value *args, struct result
     if (!node_bounds(args[SELF].node, box, error))
         return false;
     if (box_is_empty(box))
-        return error_set(error, ERROR_SCENE, "nothing is under this node");
+        return error_set(error, ERROR_SCENE, "no shape is below this node");
     result->pointer = box;
     return true;
 }

@@ -46,7 +46,7 @@ bool act_change_node(struct context *context, const struct value *args, struct r
         return error_set(error, ERROR_SCENE, "matrix has %u numbers, not 12", matrix->count);
     memcpy(map.m, matrix->numbers, sizeof map.m);
     if (!transform_from_affine(&map, &ignored))
-        return error_set(error, ERROR_SCENE, "matrix flattens everything: it has no inverse");
+        return error_set(error, ERROR_SCENE, "matrix is singular: it has no inverse");
     struct change *change =
         note(context, CHANGE_PLACE, args[CHANGENODE_NAME].text, args[CHANGENODE_SERIAL].number, error);
     if (change)
@@ -119,7 +119,7 @@ bool act_change_light(struct context *context, const struct value *args, struct 
     if (turn->given && turn->count != TURN_NUMBERS)
         return error_set(error, ERROR_SCENE, "linear has %u numbers, not %d", turn->count, TURN_NUMBERS);
     if (turn->given && !(fabs(light_turn_volume(turn->numbers)) > 0))
-        return error_set(error, ERROR_SCENE, "linear flattens everything: it has no inverse");
+        return error_set(error, ERROR_SCENE, "linear is singular: it has no inverse");
     struct change *change = note(context, CHANGE_LIGHT, NULL, args[CHANGELIGHT_NUMBER].number, error);
     if (!change)
         return false;

@@ -175,9 +175,7 @@ static bool give_lamp(struct context *context, struct light *light, const struct
     if (!args[LIGHT_COLOUR].given && !light->emits)
         return error_set(error, ERROR_SCENE, "colour is missing");
     if (light->emits && (args[LIGHT_FALLOFF].given || args[LIGHT_RANGE].given || args[LIGHT_INTENSITY].given))
-        return error_set(error, ERROR_SCENE,
-                         "a light with emission fades by its shape alone, without falloff, range "
-                         "or intensity");
+        return error_set(error, ERROR_SCENE, "a light with emission has no falloff, range or intensity");
     if (light->emits && !args[LIGHT_COLOUR].given)
         lamp[LIGHT_COLOUR].vector = vec3_all(1);
     if (light->emits)
@@ -220,7 +218,7 @@ static bool act_spot_light(struct context *context, const struct value *args, st
     struct vec3 axis = args[SPOT_TARGET].given      ? vec3_sub(args[SPOT_TARGET].vector, light.position)
                        : args[SPOT_DIRECTION].given ? args[SPOT_DIRECTION].vector
                                                     : (struct vec3){0, -1, 0};
-    return set_direction(&light, axis, args[SPOT_TARGET].given ? "the way to target" : "direction", error) &&
+    return set_direction(&light, axis, args[SPOT_TARGET].given ? "the direction to target" : "direction", error) &&
            set_fading(&light, args, error) && give_light(context, &light, args, result, error);
 }
 

@@ -83,7 +83,7 @@ static struct material *phong(struct context *context, const struct value *args,
 
 bool act_material(struct context *context, const struct value *args, struct result *result, struct error *error) {
     if (args[PHONG_REFRACT].number > 0 && !args[PHONG_IOR].given)
-        return error_set(error, ERROR_SCENE, "ior is missing: light that is refracted needs an index of refraction");
+        return error_set(error, ERROR_SCENE, "ior is missing: refraction needs an index of refraction");
     return give(result, phong(context, args, error));
 }
 

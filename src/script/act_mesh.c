@@ -79,9 +79,9 @@ static bool face_slots(struct context *context, const struct value *args, const 
     if (!numbers->given && !materials->given)
         return true;
     if (!numbers->given)
-        return error_set(error, ERROR_SCENE, "face_materials is missing: which face has which of the materials?");
+        return error_set(error, ERROR_SCENE, "face_materials is missing: it says which face has which material");
     if (!materials->given || materials->names)
-        return error_set(error, ERROR_SCENE, "materials must be a list that face_materials counts in");
+        return error_set(error, ERROR_SCENE, "materials must be a list, since face_materials has indices into it");
     if (numbers->single || numbers->count != args[MESH_FACES].count)
         return error_set(error, ERROR_SCENE, "face_materials has %u entries, but faces has %u", numbers->count,
                          args[MESH_FACES].count);
@@ -216,7 +216,7 @@ bool act_faces(struct context *context, const struct value *args, struct result 
     (void)context;
     const struct node *node = args[SELF].node;
     if (node->kind != NODE_GEOMETRY || node->shape.kind != SHAPE_MESH)
-        return error_set(error, ERROR_SCENE, "the node is no mesh");
+        return error_set(error, ERROR_SCENE, "the node is not a mesh");
     result->mesh = node->shape.mesh;
     return true;
 }

@@ -116,7 +116,7 @@ bool act_rotate_quat(struct context *context, const struct value *args, struct r
     if (table->given)
         xyz = table->vector;
     if (w == 0 && vec3_max_abs(xyz) == 0)
-        return error_set(error, ERROR_SCENE, "the quaternion is 0: it says no turn");
+        return error_set(error, ERROR_SCENE, "the quaternion must not be 0");
     struct transform by = transform_rotate_quaternion(w, xyz);
     return step(context, args, NODE_ROTATE, &by, error);
 }

@@ -58,8 +58,7 @@ static bool check_rows(const struct value *at, uint32_t length, struct error *er
             continue;
         memcpy(matrix.m, at->numbers + (size_t)i * MATRIX_NUMBERS, sizeof matrix.m);
         if (!transform_from_affine(&matrix, &ignored))
-            return error_set(error, ERROR_SCENE, "at[%u] is a matrix that flattens everything: it has no inverse",
-                             i + 1);
+            return error_set(error, ERROR_SCENE, "at[%u] is a singular matrix: it has no inverse", i + 1);
     }
     return true;
 }
@@ -70,7 +69,7 @@ bool act_instances(struct context *context, const struct value *args, struct res
     if (!check_rows(at, matrices ? MATRIX_NUMBERS : PLACE_NUMBERS, error))
         return false;
     if (matrices && (args[INSTANCES_TURN].given || args[INSTANCES_SIZE].given))
-        return error_set(error, ERROR_SCENE, "matrices in at say everything: turn and size go with places {x, y, z}");
+        return error_set(error, ERROR_SCENE, "turn and size need positions {x, y, z} in at, not matrices");
     struct node *node = scene_node(&context->scene, NODE_GROUP, text_or(&args[INSTANCES_NAME], "instances"), error);
     struct placements *placements = arena_alloc(&context->scene.arena, sizeof *placements);
     size_t numbers = (size_t)at->count * (matrices ? MATRIX_NUMBERS : PLACE_NUMBERS);

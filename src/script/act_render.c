@@ -88,7 +88,7 @@ static bool apply_lens(const struct value *args, struct lens *lens, const struct
 static bool apply_motion(const struct value *args, struct settings *settings, const struct camera *camera,
                          struct error *error) {
     if (args[RENDER_VIEW_TO].given && args[RENDER_TARGET].given)
-        return error_set(error, ERROR_SCENE, "view_to goes with view, target_to with target");
+        return error_set(error, ERROR_SCENE, "view_to needs view, and target_to needs target");
     if (args[RENDER_TARGET_TO].given && !args[RENDER_TARGET].given)
         return error_set(error, ERROR_SCENE, "target_to needs target");
     if (args[RENDER_SHUTTER].given)

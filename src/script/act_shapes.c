@@ -53,7 +53,7 @@ static bool ends_are_fine(struct vec3 from, struct vec3 to, struct error *error)
     double length = vec3_length(vec3_sub(to, from));
     if (!(length > 0))
         return error_set(error, ERROR_SCENE, "from and to are the same point");
-    return length_is_fine(length, "the way from from to to", error);
+    return length_is_fine(length, "the distance of from and to", error);
 }
 
 enum { CYLINDER_FROM = SHAPE_FIRST, CYLINDER_TO, CYLINDER_RADIUS, CYLINDER_OPEN };
@@ -433,7 +433,8 @@ static bool act_polygon(struct context *context, const struct value *args, struc
     struct flat flat;
     const char *why;
     if (!flat_polygon(&context->scene.arena, corners, ends, outline_count, &flat, &why))
-        return why ? error_set(error, ERROR_SCENE, "this is no polygon: %s", why) : error_no_memory(error, "a polygon");
+        return why ? error_set(error, ERROR_SCENE, "this is not a polygon: %s", why)
+                   : error_no_memory(error, "a polygon");
     return give_flat(context, args, "polygon", &flat, result, error);
 }
 

@@ -62,9 +62,7 @@ static bool find_sun(const struct value *sun, struct vec3 *out, struct error *er
     bool by_time = sun[SUN_HOUR].given || sun[SUN_DAY].given || sun[SUN_LATITUDE].given || sun[SUN_LONGITUDE].given ||
                    sun[SUN_ZONE].given;
     if (sun[SUN_DIRECTION].given && by_time)
-        return error_set(error, ERROR_SCENE,
-                         "sun and time and place (hour, day, latitude, longitude, zone) exclude "
-                         "each other");
+        return error_set(error, ERROR_SCENE, "sun excludes time and position (hour, day, latitude, longitude, zone)");
     if (sun[SUN_DIRECTION].given) {
         if (!(vec3_length(sun[SUN_DIRECTION].vector) > 0))
             return error_set(error, ERROR_SCENE, "sun must not be zero");

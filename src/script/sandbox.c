@@ -20,7 +20,7 @@ static int end_script(lua_State *L) {
     if (!well) {
         char where[PATH_SIZE + 32];
         context_where(context, where, sizeof where);
-        error_set(&context->fatal, ERROR_SCENE, "%sos.exit: the script says that it failed", where);
+        error_set(&context->fatal, ERROR_SCENE, "%sos.exit: the script reports a failure", where);
     }
     context->ended = true;
     context_raise_fatal(L);

@@ -142,7 +142,7 @@ static bool choose_order(struct context *context, struct error *error) {
         return true;
     char text[PATH_SIZE + 600];
     snprintf(text, sizeof text,
-             "%s: old transform order, because %s; pin it with --transform-order old or gr.transform_order('old')",
+             "%s: old transform order, because %s; set it with --transform-order old or gr.transform_order('old')",
              context->path, finding.reason);
     context->host->message(context->host->context, SCRIPT_NOTICE, text);
     return true;

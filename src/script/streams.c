@@ -28,10 +28,10 @@ static const char *refusal(const struct context *context, const char *name, bool
     if (errno != EACCES || !context->reach)
         return strerror(errno);
     if (write)
-        return "scenes write no files (--allow-write DIR lets them)";
+        return "scenes cannot write files (--allow-write DIR allows it)";
     if (reach_is_outside(context->reach, name))
         return "lies outside the folders that scenes may read (--allow-read DIR adds one)";
-    return "may not be read by scenes, or is no regular file";
+    return "cannot be read by scenes, or is not a regular file";
 }
 
 static bool is_mode(const char *mode) {

@@ -13,7 +13,7 @@
 bool channel_pair(struct channel ends[2], struct error *error) {
     int descriptors[2];
     if (MAY_FAIL(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, descriptors)) != 0)
-        return error_set(error, ERROR_MACHINE, "gray: the rendering process cannot be reached: %s", strerror(errno));
+        return error_set(error, ERROR_MACHINE, "gray: the render process cannot be reached: %s", strerror(errno));
     ends[0].descriptor = descriptors[0];
     ends[1].descriptor = descriptors[1];
     return true;

@@ -280,12 +280,13 @@ static bool value_error(const struct option *option, const char *text, struct er
         return error_set(error, ERROR_USAGE, "%.*s needs one of %s, not '%s'", shown, option->names,
                          option->value + (option->value[0] == '='), text);
     case OPTION_LAYERS:
-        return error_set(error, ERROR_USAGE,
-                         "%.*s needs names parted by commas (depth, normal, albedo, uv, node, material, cost, samples, "
-                         "lights) or all, not '%s'",
-                         shown, option->names, text);
+        return error_set(
+            error, ERROR_USAGE,
+            "%.*s needs names separated by commas (depth, normal, albedo, uv, node, material, cost, samples, "
+            "lights) or all, not '%s'",
+            shown, option->names, text);
     case OPTION_TEXT:
-        return error_set(error, ERROR_USAGE, "%.*s needs a text that is not empty", shown, option->names);
+        return error_set(error, ERROR_USAGE, "%.*s needs a text", shown, option->names);
     case OPTION_SIZE:
         return error_set(error, ERROR_USAGE, "%.*s needs WxH, two whole numbers from 1 to 1048576, not '%s'", shown,
                          option->names, text);

@@ -120,14 +120,16 @@ static bool check_parts(struct options *options, struct error *error) {
         return error_set(error, ERROR_USAGE, "-o - leaves no name for the parts of --shard");
     if ((options->shards || options->mpi || options->checkpoint || options->action == ACTION_MERGE) &&
         options->settings.aov)
-        return error_set(error, ERROR_USAGE,
-                         "--aov is for pictures that one process makes in one go: no --shard, --mpi, --checkpoint, "
-                         "--resume or merge");
+        return error_set(
+            error, ERROR_USAGE,
+            "--aov works only for pictures that one process renders at once: no --shard, --mpi, --checkpoint, "
+            "--resume or merge");
     if ((options->shards || options->mpi || options->checkpoint || options->action == ACTION_MERGE) &&
         options->settings.overlay != OVERLAY_NONE)
-        return error_set(error, ERROR_USAGE,
-                         "--overlay is for pictures that one process makes in one go: no --shard, --mpi, --checkpoint, "
-                         "--resume or merge");
+        return error_set(
+            error, ERROR_USAGE,
+            "--overlay works only for pictures that one process renders at once: no --shard, --mpi, --checkpoint, "
+            "--resume or merge");
     if (options->shards && (options->targets_prefix || options->first_pass_prefix))
         return error_set(error, ERROR_USAGE, "--shard writes no debug pictures; give -write-... to gray merge");
     return true;

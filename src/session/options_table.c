@@ -159,7 +159,7 @@ const struct option option_table[] = {
     {OPTION_GROUP_PARTS, "--mpi", OPTION_FLAG, NULL, NO_RANGE, FIELD(mpi), NULL,
      "under mpirun: all processes render each picture together; the first one hands out tiles on demand"},
     {OPTION_GROUP_PARTS, "--farm-stall", OPTION_NUMBER, "SECONDS", 0, 1e9, FIELD(farm_stall), "30",
-     "with --mpi: kill a rendering process that could run but uses no processor time for this long; another one "
+     "with --mpi: kill a render process that could run but uses no processor time for this long; another one "
      "renders its tiles; 0: never"},
     {OPTION_GROUP_PARTS, "--farm-silence", OPTION_NUMBER, "SECONDS", 0, 1e9, FIELD(farm_silence), "60",
      "with --mpi: regard a process that sends nothing for this long as lost; others render its tiles; 0: never"},

@@ -44,7 +44,7 @@ struct error_stream {
     _Atomic uint32_t open;  /* not 0: a scene has left a line unfinished */
     _Atomic uint32_t lines; /* of the program, counted */
     _Atomic uint32_t mute;  /* not 0: another process shows what scenes write */
-    /* Lines that the rendering process has sent to the supervisor, and those that are handled. */
+    /* Lines that the render process has sent to the supervisor, and those that are handled. */
     _Atomic uint32_t sent, handled;
 };
 

@@ -246,7 +246,7 @@ void viewer_light_delete(struct viewer *viewer) {
 /* Whether there is a number for one more. */
 static bool room_for_one(struct viewer *viewer) {
     if (viewer->lights.count >= LIGHT_LIMIT)
-        viewer_show_message(viewer, "gray: the window knows no more lights than 4,096");
+        viewer_show_message(viewer, "gray: the window shows at most 4,096 lights");
     return viewer->lights.count < LIGHT_LIMIT && viewer->lights.count == viewer->lights.known;
 }
 

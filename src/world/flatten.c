@@ -296,7 +296,7 @@ static bool stand_moving(struct flattening *f, const struct node *node, const st
         return false;
     out->from_node = transform_identity();
     if (!motion_between(&parent_from_node, &end, node->velocity, &link->motion))
-        return error_set(f->error, ERROR_SCENE, "node '%.100s' moves to its mirror image: there is no way between",
+        return error_set(f->error, ERROR_SCENE, "node '%.100s' moves to its mirror image, which no rotation reaches",
                          node->name);
     return true;
 }

@@ -193,8 +193,8 @@ bool flatten_material(struct flattening *f, const struct node *node, const struc
                       by_slot ? "has faces without a material, which are shown in plain gray"
                               : "has no material and is shown in plain gray");
         if (bases[i] && bases[i]->depth + (texture != NULL) + (relief != NULL) > MATERIAL_DEPTH)
-            return error_set(f->error, ERROR_SCENE, "node '%.100s': more than %d materials are stacked on each other",
-                             node->name, MATERIAL_DEPTH);
+            return error_set(f->error, ERROR_SCENE, "node '%.100s': more than %d materials are nested", node->name,
+                             MATERIAL_DEPTH);
     }
     if ((texture || relief) && node->shape.kind == SHAPE_MESH && !mesh_has_uv(node->shape.mesh)) {
         warn_once(f, node,

@@ -1,2 +1,2 @@
--- expect: SCRIPT:2: os.exit: the script says that it failed
+-- expect: SCRIPT:2: os.exit: the script reports a failure
 os.exit(3)

@@ -1,2 +1,2 @@
--- expect: SCRIPT:2: gr.material: ior is missing: light that is refracted needs an index of refraction
+-- expect: SCRIPT:2: gr.material: ior is missing: refraction needs an index of refraction
 gr.material{kd = {1, 1, 1}, refract = 0.5}

@@ -1,4 +1,4 @@
-/* Any bytes as what a rendering process that a scene has taken over says to its supervisor: frames that are not sound
+/* Any bytes as what a render process that a scene has taken over says to its supervisor: frames that are not sound
  * are refused, sound ones begin, finish and give up pictures in a folder of their own, and nothing outside of it. Each
  * frame is a length of two bytes, little-endian, and so many bytes, the rest being zero where the kind has a fixed
  * size. */

@@ -1,2 +1,2 @@
--- expect: SCRIPT:2: leads_out: may not be read by scenes, or is no regular file
+-- expect: SCRIPT:2: leads_out: cannot be read by scenes, or is not a regular file
 assert(io.open('leads_out'))

@@ -1,2 +1,2 @@
--- expect: SCRIPT:2: *may not be read
+-- expect: SCRIPT:2: *cannot be read by scenes
 assert(io.open('leads_up/etc/passwd'))

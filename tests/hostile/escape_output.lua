@@ -1,2 +1,2 @@
--- expect: SCRIPT:2: harm.txt: scenes write no files*
+-- expect: SCRIPT:2: harm.txt: scenes cannot write files*
 io.output('harm.txt')

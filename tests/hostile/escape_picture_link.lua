@@ -1,2 +1,2 @@
--- expect: SCRIPT:2: gr.render: leads_up/tmp/harm.png: scripts have pictures written below the working directory only, and under no hidden name (-o FILE or --allow-write DIR allow other places)
+-- expect: SCRIPT:2: gr.render: leads_up/tmp/harm.png: pictures of scripts must be below the working directory, without a hidden name (-o FILE or --allow-write DIR allow other places)
 gr.render(gr.node('n'), 'leads_up/tmp/harm.png', 8, 8, {0, 0, 1}, {0, 0, -1}, {0, 1, 0}, 40, {1, 1, 1}, {})

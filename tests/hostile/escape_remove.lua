@@ -1,2 +1,2 @@
--- expect: SCRIPT:2: escape_remove.lua: scenes write no files*
+-- expect: SCRIPT:2: escape_remove.lua: scenes cannot write files*
 assert(os.remove('escape_remove.lua'))

@@ -1,2 +1,2 @@
--- expect: SCRIPT:2: escape_rename.lua: scenes write no files*
+-- expect: SCRIPT:2: escape_rename.lua: scenes cannot write files*
 assert(os.rename('escape_rename.lua', 'harm.lua'))

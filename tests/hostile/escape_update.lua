@@ -1,2 +1,2 @@
--- expect: SCRIPT:2: escape_update.lua: scenes write no files*
+-- expect: SCRIPT:2: escape_update.lua: scenes cannot write files*
 assert(io.open('escape_update.lua', 'r+'))

@@ -1,2 +1,2 @@
--- expect: SCRIPT:2: harm.txt: scenes write no files (--allow-write DIR lets them)
+-- expect: SCRIPT:2: harm.txt: scenes cannot write files (--allow-write DIR allows it)
 assert(io.open('harm.txt', 'w'))

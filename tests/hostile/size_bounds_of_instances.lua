@@ -1,4 +1,4 @@
--- expect: SCRIPT:9: node:bounds: more than 16777216 things are under this node (node 'n40')
+-- expect: SCRIPT:9: node:bounds: more than 16777216 objects are below this node (node 'n40')
 -- arguments: --script-time 30
 local node = gr.node('leaf')
 node:add_child(gr.sphere{})

@@ -1,4 +1,4 @@
-/* What a rendering process that was taken over could try with the arguments of the system calls it keeps: numbers of
+/* What a render process that was taken over could try with the arguments of the system calls it keeps: numbers of
  * which only one half passes a test, clocks and limits of other processes, threads with flags of their own. And the
  * warning where the kernel confines less. */
 #define _GNU_SOURCE
@@ -269,7 +269,7 @@ TEST(hostile_a_kernel_without_landlock_is_one_warning) {
     check_said("-q scene.lua", "");
     check_said("--verbose scene.lua", "gray: warning: no Landlock in this kernel (Function not implemented): ");
     check_said("--no-sandbox scene.lua", "gray: warning: --no-sandbox: ");
-    /* A rendering process that dies is followed by another one, which does not repeat it. */
+    /* A render process that dies is followed by another one, which does not repeat it. */
     test_write_text(test_path("dies.lua"), "string.find(string.rep('x', 200000), string.rep('x*', 8) .. 'y')");
     struct test_result result = test_gray_scene("x = 1", "--script-time 0.05 dies.lua scene.lua", NULL);
     const char *first = strstr(result.err, "no Landlock");

@@ -103,7 +103,7 @@ TEST(edits_lists_do_not_depend_on_what_was_changed_first) {
 }
 
 static void count_warning(void *context, const char *text) {
-    CHECK(strstr(text, "is left out") != NULL);
+    CHECK(strstr(text, "is skipped") != NULL);
     ++*(int *)context;
 }
 
@@ -260,7 +260,7 @@ TEST(changes_of_what_is_not_there_are_told_once_and_left_out) {
         SCENE_HEAD "gr.change_delete('no such', 77)\n" SCENE_TAIL("{0, 0, 6}", LIGHT) SCENE_TAIL("{0, 0, 6}", LIGHT),
         "scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
-    const char *told = strstr(result.err, "the node 'no such' (77) is left out");
+    const char *told = strstr(result.err, "the node 'no such' (77) is skipped");
     CHECK(told && !strstr(told + 15, "the node"));
     free(result.out);
     free(result.err);

@@ -429,7 +429,7 @@ TEST(ranks_with_another_picture_late_ones_and_those_after_a_failure_are_told) {
         begin_farm(2);
         CHECK(farm_begin(farms[0], &picture, &films[0], &already, &error));
         CHECK(!farm_begin(farms[1], &other, &films[1], &already, &error));
-        CHECK(error.kind == ERROR_SCENE && strstr(error.text, "another picture than the first one"));
+        CHECK(error.kind == ERROR_SCENE && strstr(error.text, "a different picture from the first one"));
         /* Lines of a rank that the first one has told itself are not told again; too many are cut. */
         farm_report(farms[0], "the same");
         farm_report(farms[1], "the same");

@@ -201,7 +201,7 @@ static void stop_renderer(int rank) {
         CHECK(kill(process_of(rank, true), SIGSTOP) == 0);
     CHECK_EQ_INT(await_end(farm), 0);
     char line[100];
-    (void)snprintf(line, sizeof line, "rank %d has killed its rendering process, which stood still for 0.4 s", rank);
+    (void)snprintf(line, sizeof line, "rank %d has killed its render process, which hung for 0.4 s", rank);
     expect_pictures(line, COMPARE);
 }
 
@@ -219,7 +219,7 @@ TEST(a_farm_of_one_makes_the_tiles_of_a_renderer_that_stands_still) {
     if (await_work(0, 0.1, NULL))
         CHECK(kill(process_of(0, true), SIGSTOP) == 0);
     CHECK_EQ_INT(await_end(farm), 0);
-    expect_pictures("rank 0 has killed its rendering process", COMPARE);
+    expect_pictures("rank 0 has killed its render process", COMPARE);
 }
 
 TEST(a_renderer_that_stands_still_before_its_picture_is_begun_anew) {
@@ -230,7 +230,7 @@ TEST(a_renderer_that_stands_still_before_its_picture_is_begun_anew) {
     if (await_work(1, 0.03, NULL))
         CHECK(kill(process_of(1, true), SIGSTOP) == 0);
     CHECK_EQ_INT(await_end(farm), 0);
-    expect_pictures("rank 1 has killed its rendering process", COMPARE);
+    expect_pictures("rank 1 has killed its render process", COMPARE);
 }
 
 TEST(a_slow_tile_is_no_standstill) {
@@ -241,7 +241,7 @@ TEST(a_slow_tile_is_no_standstill) {
     CHECK_EQ_INT(await_end(farm), 0);
     CHECK(clock_now() - begun > 0.5);
     expect_pictures(NULL, COMPARE);
-    CHECK(!strstr(said(), "rendering process"));
+    CHECK(!strstr(said(), "render process"));
 }
 
 TEST(a_renderer_of_the_first_rank_that_is_killed_costs_no_picture) {
@@ -251,7 +251,7 @@ TEST(a_renderer_of_the_first_rank_that_is_killed_costs_no_picture) {
     if (await_work(0, 0.07, "a.png"))
         CHECK(kill(process_of(0, true), SIGKILL) == 0);
     CHECK_EQ_INT(await_end(farm), 0);
-    expect_pictures("rank 0 has lost its rendering process, which was killed",
+    expect_pictures("rank 0 has lost its render process, which was killed",
                     "for p in a b c; do cmp $p.png whole/$p.png || exit 1; done");
 }
 
@@ -270,7 +270,7 @@ TEST(a_renderer_that_is_killed_again_and_again_is_given_up) {
     }
     CHECK_EQ_INT(await_end(farm), 0); /* of the shell that writes the status */
     CHECK_EQ_INT(shell("test \"$(cat status.txt)\" = 3"), 0);
-    CHECK(strstr(said(), "the rendering process was killed while it made out.png, which is not written"));
+    CHECK(strstr(said(), "the render process was killed while it rendered out.png, which is not written"));
 }
 
 TEST(a_rank_that_is_stopped_is_done_without) {
@@ -280,7 +280,7 @@ TEST(a_rank_that_is_stopped_is_done_without) {
     if (await_work(2, 0.03, NULL))
         CHECK(kill(process_of(2, false), SIGSTOP) == 0);
     CHECK_EQ_INT(await_end(farm), 0); /* it is woken at the end, to end with the others */
-    expect_pictures("rank 2 has been silent for 1 s, others make its tiles", COMPARE);
+    expect_pictures("rank 2 has been silent for 1 s, others render its tiles", COMPARE);
     CHECK(process_of(2, false) == 0 && process_of(2, true) == 0);
 }
 

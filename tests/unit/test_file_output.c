@@ -80,7 +80,7 @@ TEST(a_picture_replaces_pictures_and_empty_files_and_nothing_else) {
         if (written != all[i].replaced)
             test_fail(__FILE__, __LINE__, "row %zu: %s", i, error.text);
         holds(path, written ? new_picture : all[i].text);
-        CHECK(written || (error.kind == ERROR_SCENE && strstr(error.text, "a.png: is there already")));
+        CHECK(written || (error.kind == ERROR_SCENE && strstr(error.text, "a.png: exists already")));
         CHECK_EQ_INT(entries_of(test_folder()), 1);
     }
 }
@@ -151,7 +151,7 @@ TEST(a_name_that_must_be_new_replaces_nothing) {
     const struct file_rules rules = {.never_replace = true};
     struct error error = {0};
     CHECK(write_as(path, &rules, old_picture, &error));
-    CHECK(!write_as(path, &rules, new_picture, &error) && strstr(error.text, "is there already"));
+    CHECK(!write_as(path, &rules, new_picture, &error) && strstr(error.text, "exists already"));
     holds(path, old_picture);
 }
 

@@ -140,10 +140,10 @@ TEST(a_record_that_cannot_be_is_refused) {
         struct tile_file file;
         picture.record = i == 0 ? (struct film_record){FILM_RECORD_FLOATS + 1, 0} : (struct film_record){3, 2};
         CHECK(tile_file_write(FILE_AT(path), NULL, 0, &picture, &film, &error));
-        CHECK(!tile_file_read(path, &file, &error) && strstr(error.text, "the description of the picture is none"));
+        CHECK(!tile_file_read(path, &file, &error) && strstr(error.text, "the description of the picture is invalid"));
         picture.record = (struct film_record){4, 0}; /* one float less than its tiles have */
         CHECK(tile_file_write(FILE_AT(path), NULL, 0, &picture, &film, &error));
-        CHECK(!tile_file_read(path, &file, &error) && strstr(error.text, "a tile has not the size of a tile"));
+        CHECK(!tile_file_read(path, &file, &error) && strstr(error.text, "a tile has a wrong size"));
     }
     free(film.pixels);
 }

@@ -3,7 +3,7 @@
  *   -- status: N            1 when there is none
  *   -- arguments: ...       beside the standard ones below
  * Beside the line and the status: no script takes more than its limits of time and memory and a tenth, none leaves
- * anything behind, and the rendering process is confined by the kernel as it says. */
+ * anything behind, and the render process is confined by the kernel as it says. */
 #define _GNU_SOURCE
 #include "host/confine.h"
 #include "tests/harness.h"
@@ -212,7 +212,7 @@ TEST(hostile_sizes_are_one_line_before_memory_is_taken) {
     CHECK(run_scripts("size_") >= 4);
 }
 
-/* What a rendering process could try if a scene had taken it over. Each returns when it was not stopped. */
+/* What a render process could try if a scene had taken it over. Each returns when it was not stopped. */
 static void try_program(void) {
     (void)execl("/bin/true", "true", (char *)NULL);
 }

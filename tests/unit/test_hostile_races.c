@@ -146,7 +146,7 @@ struct ending {
     bool acted;
 };
 
-/* Runs the program; just before its call number `moment` about names, counted from the start of its rendering process,
+/* Runs the program; just before its call number `moment` about names, counted from the start of its render process,
  * something happens to the folder (or it is killed, where race->act is NULL). */
 static struct ending run_traced(const struct race *race, long moment, uid_t user) {
     struct ending ending = {0};

@@ -275,7 +275,7 @@ TEST(hostile_no_route_shows_what_lies_outside_or_is_hidden) {
     struct test_result result = test_gray(test_path("a/s"), "scene.lua");
     if (result.status != 1 || !strstr(result.err, "in.txt:2: ")) /* it came to its end */
         test_fail(__FILE__, __LINE__, "%d: %s", result.status, result.err);
-    CHECK(strstr(result.out, "r link: nil link: may not be read by scenes, or is no regular file 13\n"));
+    CHECK(strstr(result.out, "r link: nil link: cannot be read by scenes, or is not a regular file 13\n"));
     CHECK(strstr(result.out, "r ../../out/x: nil ../../out/x: lies outside the folders that scenes may read"));
     CHECK(strstr(result.out, "r gone/../link: nil gone/../link: No such file or directory 2\n"));
     free_result(&result);

@@ -138,9 +138,9 @@ TEST(script_asks_meshes_for_their_bounds_and_faces) {
         "lo, hi = cut:bounds()\n"
         "assert(lo[1] == 0.5 and hi[3] == 1)\n"
         "local ok, what = pcall(g.faces, g)\n"
-        "assert(not ok and what:find('is no mesh'), what)\n"
+        "assert(not ok and what:find('is not a mesh'), what)\n"
         "ok, what = pcall(function() gr.node('empty'):bounds() end)\n"
-        "assert(not ok and what:find('nothing is under this node'), what)\n"
+        "assert(not ok and what:find('no shape is below this node'), what)\n"
         "g:add_child(g)\n"
         "ok, what = pcall(g.bounds, g)\n"
         "assert(not ok and what:find('in a cycle'), what)\n";

@@ -197,12 +197,13 @@ TEST(values_outside_their_range_are_refused_with_the_range) {
     refused("--seed -1 s.lua", "--seed needs a whole number from 0 to 18446744073709551615, not '-1'");
     refused("--seed 18446744073709551616 s.lua",
             "--seed needs a whole number from 0 to 18446744073709551615, not '18446744073709551616'");
-    refused("--aov depth,dept s.lua", "--aov needs names parted by commas (depth, normal, albedo, uv, node, material, "
-                                      "cost, samples, lights) or all, not 'depth,dept'");
+    refused("--aov depth,dept s.lua",
+            "--aov needs names separated by commas (depth, normal, albedo, uv, node, material, "
+            "cost, samples, lights) or all, not 'depth,dept'");
     refused("--accel octree s.lua", "--accel needs one of auto|grid|bvh|kdtree|none, not 'octree'");
     refused("--view targe s.lua", "--view needs one of direction|target, not 'targe'");
-    refused("-o= s.lua", "-o needs a text that is not empty");
-    refused("-write-pre-aa ~ s.lua", "-write-pre-aa needs a text that is not empty");
+    refused("-o= s.lua", "-o needs a text");
+    refused("-write-pre-aa ~ s.lua", "-write-pre-aa needs a text");
     refused("-full=1 s.lua", "-full takes no value");
     refused("s.lua -ss", "-ss needs a value: N");
 }

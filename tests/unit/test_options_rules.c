@@ -58,10 +58,11 @@ TEST(options_that_do_not_go_together_are_refused_pair_by_pair) {
                       window[] = "-gui takes no --checkpoint, --resume, --shard, --mpi, --no-fork, --check or --aov",
                       watch[] = "--watch takes no --checkpoint, --resume, --shard, --mpi, --no-fork or -o -",
                       no_fork[] = "--no-fork is for debuggers: it takes no --checkpoint, --resume or --shard",
-                      aov[] = "--aov is for pictures that one process makes in one go: no --shard, --mpi, "
+                      aov[] = "--aov works only for pictures that one process renders at once: no --shard, --mpi, "
                               "--checkpoint, --resume or merge",
-                      overlay[] = "--overlay is for pictures that one process makes in one go: no --shard, --mpi, "
-                                  "--checkpoint, --resume or merge",
+                      overlay[] =
+                          "--overlay works only for pictures that one process renders at once: no --shard, --mpi, "
+                          "--checkpoint, --resume or merge",
                       debug[] = "--shard writes no debug pictures; give -write-... to gray merge";
     exclude("--pixel 1,2", "-gui|--check|--shard 1/2|--shard-pictures 1/2|--mpi|--checkpoint c|--resume|merge", pixel);
     exclude("--checkpoint c", "merge", merge);

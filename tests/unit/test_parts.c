@@ -132,11 +132,11 @@ TEST(merge_says_which_parts_are_missing_double_or_foreign) {
     gives("rm again.part; mkdir o; $gray other.lua --shard 2/4 -o o/out.png; $gray merge out.png.[134]*.part o/*.part",
           1, "the scene, or a file it reads, has changed");
     gives("$gray scene.lua -ss 2 --shard 2/4 -o o/out.png; $gray merge out.png.[134]*.part o/*.part", 1,
-          "it was made with other options");
+          "it was made with different options");
     gives("$gray scene.lua --shard 1/3; $gray merge out.png.[234]-of-4.part out.png.1-of-3.part", 1,
-          "the picture was parted otherwise");
+          "the picture was divided differently");
     gives("$gray merge nowhere.part", 1, "nowhere.part: cannot be read");
-    gives("$gray merge scene.lua", 1, "scene.lua: is no file of tiles");
+    gives("$gray merge scene.lua", 1, "scene.lua: is not a file of tiles");
     gives("$gray merge", 2, "gray: no parts to merge were given");
     CHECK(!exists("out.png"));
     gives("$gray merge out.png.[1234]-of-4.part", 0, NULL);
@@ -163,7 +163,7 @@ TEST(merge_takes_parts_in_any_order_and_counts_many_that_are_missing) {
 TEST(merge_writes_only_where_a_script_might) {
     put("scene.lua", SCENE "picture('out.png', 40, 40)\n");
     gives("mkdir in; $gray scene.lua -o ../up.png --shard 1/1; cd in; $gray merge ../../up.png.1-of-1.part", 1,
-          "../up.png: scripts have pictures written below the working directory only");
+          "../up.png: pictures of scripts must be below the working directory");
     gives("mv ../up.png.1-of-1.part .; $gray merge -o here.png up.png.1-of-1.part", 0, NULL);
     CHECK(exists("here.png"));
 }
@@ -319,10 +319,10 @@ TEST(a_checkpoint_of_something_else_is_refused_and_stays) {
     put("scene.lua", "local h = io.open('data.txt') ; h:close()\n" SCENE "picture('out.png', 330, 250)\n");
     put("data.txt", "one");
     leave_checkpoint("");
-    gives("$gray scene.lua -full -ss 9 --checkpoint c.tiles", 2, "c.tiles: this checkpoint of an earlier run is there");
+    gives("$gray scene.lua -full -ss 9 --checkpoint c.tiles", 2, "c.tiles: a checkpoint of an earlier run exists");
     gives("cp c.tiles kept; $gray scene.lua -full -ss 8 --checkpoint c.tiles --resume", 1,
-          "c.tiles: cannot be resumed: it was made with other options");
-    gives("$gray scene.lua -full -ss 9 -D x=1 --checkpoint c.tiles --resume", 1, "it was made with other options");
+          "c.tiles: cannot be resumed: it was made with different options");
+    gives("$gray scene.lua -full -ss 9 -D x=1 --checkpoint c.tiles --resume", 1, "it was made with different options");
     put("data.txt", "two");
     gives("$gray scene.lua -full -ss 9 --checkpoint c.tiles --resume", 1, "the scene, or a file it reads, has changed");
     put("data.txt", "one");
@@ -467,7 +467,7 @@ TEST(a_rank_that_falls_out_is_done_without) {
     need_mpi();
     put("scene.lua", ONE);
     gives("$gray scene.lua -q -full -ss 6 -o whole.png", 0, NULL);
-    /* The youngest rendering process is killed, not its supervisor: that one gives its tiles back. */
+    /* The youngest render process is killed, not its supervisor: that one gives its tiles back. */
     gives("export gray; sh farm.sh 3 scene.lua -full -ss 6 & pid=$!; "
           "for i in $(seq 400); do c=; for p in $(pgrep -P $pid); do c=$(pgrep -P $p | head -n 1); done; "
           "test $c && break; sleep 0.02; done; sleep 0.2; kill -9 $c; wait $pid; status=$?; "

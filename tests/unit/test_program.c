@@ -495,7 +495,7 @@ TEST(a_killed_rendering_process_leaves_the_old_picture_and_the_next_script_runs)
     holds_text("out.png", OLD_PICTURE);
     CHECK(exists("second.png"));
     CHECK_EQ_INT(leftovers(test_folder()), 0);
-    (void)wait_for("scene.lua: the rendering process was killed while it made out.png, which is not written");
+    (void)wait_for("scene.lua: the render process was killed while it rendered out.png, which is not written");
 }
 
 TEST(a_crash_is_told_in_one_line_with_its_signal) {
@@ -504,7 +504,7 @@ TEST(a_crash_is_told_in_one_line_with_its_signal) {
     CHECK_EQ_INT(finish(program), 3);
     holds_text("out.png", OLD_PICTURE);
     CHECK_EQ_INT(leftovers(test_folder()), 0);
-    (void)wait_for("scene.lua: the rendering process crashed (signal 6, Aborted) while it made out.png");
+    (void)wait_for("scene.lua: the render process crashed (signal 6, Aborted) while it rendered out.png");
 }
 
 static void interrupted_by(int signal_number) {

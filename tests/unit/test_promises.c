@@ -65,7 +65,7 @@ static pid_t child_of(pid_t process) {
     return (pid_t)child;
 }
 
-/* The rendering process of a program. */
+/* The render process of a program. */
 static pid_t wait_for_child(pid_t program) {
     pid_t child = 0;
     for (double limit = attack_now() + 20; child <= 0 && attack_now() < limit; attack_rest(0.01))

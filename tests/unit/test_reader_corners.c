@@ -119,8 +119,8 @@ static const struct corner corners[] = {
     {"a.stl", "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 ", "the file ends where a finite number must be"},
     /* PLY */
     {"a.ply", "ply\r", "the file ends before end_header"},
-    {"a.ply", "ply\nend_header\n", "stands before the format"},
-    {"a.ply", "ply\nformat ascii 1.0\nformat ascii 1.0\n", "stands here a second time"},
+    {"a.ply", "ply\nend_header\n", "comes before the format"},
+    {"a.ply", "ply\nformat ascii 1.0\nformat ascii 1.0\n", "is given a second time"},
     {"a.ply", "ply\nformat xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx 1.0\n", "is none of ascii"},
     {"a.ply", "ply\nformat\n", "'' is none of ascii"},
     {"a.ply", "ply\nformat ascii 1.0\nelement aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa 5\n",

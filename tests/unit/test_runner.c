@@ -69,7 +69,7 @@ TEST_EXAMPLE(example_finds_signals_at_their_defaults) {
 }
 
 /* A plain child, one in a session of its own, one that nobody waits for and that ignores what it can, one that is
- * stopped, and the program with its rendering process. */
+ * stopped, and the program with its render process. */
 static void leave_processes(void) {
     test_write_text(test_path("scene.lua"), "gr.render(gr.node('n'), 'out.png', 8000, 8000, {0, 0, 1}, {0, 0, -1}, "
                                             "{0, 1, 0}, 40, {1, 1, 1}, {})");

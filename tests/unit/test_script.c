@@ -262,7 +262,7 @@ TEST(os_exit_ends_the_script_and_all_is_well) {
     expect_text_done(&listener, "pcall(os.exit, true) error('not reached')", NULL);
     expect_text_done(&listener, "coroutine.wrap(function() os.exit(0) end)() error('not reached')", NULL);
     CHECK_EQ_INT(listener.renders, 1);
-    expect_text_error("os.exit(false)", "scene.lua:1: os.exit: the script says that it failed");
+    expect_text_error("os.exit(false)", "scene.lua:1: os.exit: the script reports a failure");
 }
 
 TEST(protected_calls_work_as_in_plain_lua) {

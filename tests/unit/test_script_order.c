@@ -211,9 +211,8 @@ TEST(auto_says_why_and_how_to_pin_it) {
     struct script_options options = {.transform_order = SCRIPT_ORDER_AUTO};
     struct error error;
     CHECK(listen_to_text(&listener, "local x = 1\nlocal a = unpack({1})\n", &options, &error));
-    CHECK(strstr(listener.said,
-                 "scene.lua: old transform order, because it calls unpack, not table.unpack (line 2); pin "
-                 "it with --transform-order old or gr.transform_order('old')\n"));
+    CHECK(strstr(listener.said, "scene.lua: old transform order, because it calls unpack, not table.unpack (line 2); "
+                                "set it with --transform-order old or gr.transform_order('old')\n"));
     listener = (struct listener){.renders = 0};
     CHECK(listen_to_text(&listener, "local a = gr.sphere('s')\n", &options, &error));
     CHECK_EQ_INT(listener.messages, 0);

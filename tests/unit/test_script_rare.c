@@ -22,7 +22,7 @@ static const char preparation[] =
 static const struct corner corners[] = {
     /* bounds */
     {"local n = ball for i = 1, 2001 do n = gr.inverse(n) end n:bounds()", "nested more than 2000 deep"},
-    {"gr.intersection('i', ball, gr.sphere{centre = {10, 0, 0}}):bounds()", "nothing is under this node"},
+    {"gr.intersection('i', ball, gr.sphere{centre = {10, 0, 0}}):bounds()", "no shape is below this node"},
     /* changes */
     {"for i = 1, 4097 do gr.change_delete{name = 'x', serial = i} end", "more than 4096 changes"},
     {"gr.change_look(1, 'reflect', -1)", "value of reflect must be from 0 to 1, not -1"},

@@ -48,18 +48,18 @@ TEST(stl_errors_name_the_place) {
     } cases[] = {
         {"solid a\n", "t.stl: byte 8: a binary STL file has at least 84 bytes"},
         {"solid a\n" FACET, "t.stl:9: the file ends where facet or endsolid must be"},
-        {"solid a\n" FACET "endsolid\nfacet\n", "t.stl:10: 'facet' stands where solid must be"},
+        {"solid a\n" FACET "endsolid\nfacet\n", "t.stl:10: 'facet' is found where solid must be"},
         {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid",
-         "t.stl:6: 'vertex' stands where a finite number must be"},
+         "t.stl:6: 'vertex' is found where a finite number must be"},
         {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 nan\n",
-         "t.stl:4: 'nan' stands where a finite number must be"},
+         "t.stl:4: 'nan' is found where a finite number must be"},
         {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1e999\n",
-         "t.stl:4: '1e999' stands where a finite number must be"},
+         "t.stl:4: '1e999' is found where a finite number must be"},
         {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nvertex 1 1 0\n",
-         "t.stl:7: 'vertex' stands where endloop must be"},
+         "t.stl:7: 'vertex' is found where endloop must be"},
         {"solid a\nfacet normal 0 0", "t.stl:2: the file ends where a normal must be"},
         {"solid a\nendsolid a\n", "t.stl: no faces in this file"},
-        {"solid a\nendsolid a\nxyz", "t.stl:3: 'xyz' stands where solid must be"},
+        {"solid a\nendsolid a\nxyz", "t.stl:3: 'xyz' is found where solid must be"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         check_text_refused("t.stl", cases[i].text, cases[i].message);

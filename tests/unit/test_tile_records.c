@@ -145,12 +145,12 @@ TEST(a_file_of_tiles_with_right_checks_and_wrong_pictures_is_refused) {
         begin(&m);
         add_picture(&m, &wrongs[i], "a.png");
         add_end(&m);
-        refused(&m, "the description of the picture is none");
+        refused(&m, "the description of the picture is invalid");
     }
     begin(&m);
     add_picture(&m, &right, "");
     add_end(&m);
-    refused(&m, "the picture has no proper name");
+    refused(&m, "the picture has an invalid name");
     begin(&m);
     picture_payload(&p, &right, "");
     p.size--;
@@ -166,7 +166,7 @@ TEST(a_file_of_tiles_with_right_checks_and_wrong_pictures_is_refused) {
     done_payload(&p, "a.png", 5);
     add_record(&m, 1, &p);
     free(p.bytes);
-    refused(&m, "a finished picture comes too late");
+    refused(&m, "a finished picture is out of order");
 }
 
 TEST(a_file_of_tiles_with_right_checks_and_wrong_names_is_refused) {
@@ -181,7 +181,7 @@ TEST(a_file_of_tiles_with_right_checks_and_wrong_names_is_refused) {
         add_record(&m, 1, &p);
         free(p.bytes);
         add_end(&m);
-        refused(&m, i == 3 ? "a finished picture is too short" : "a finished picture has no proper name");
+        refused(&m, i == 3 ? "a finished picture is too short" : "a finished picture has an invalid name");
     }
     free(much);
 }
@@ -200,22 +200,22 @@ TEST(a_file_of_tiles_with_right_checks_and_wrong_tiles_is_refused) {
         begin(&m);
         add_picture(&m, &right, "a.png");
         add_tile(&m, tile, 0);
-        refused(&m, "a tile is not the next one");
+        refused(&m, "a tile is out of order");
     }
     begin(&m);
     add_picture(&m, &right, "a.png");
     add_tile(&m, 1, 1);
-    refused(&m, "a tile has not the size of a tile");
+    refused(&m, "a tile has a wrong size");
     for (uint32_t tile = 2; tile <= 3; tile++) { /* the last one has 8 x 8 pixels, one of 32 x 8 comes before */
         begin(&m);
         add_picture(&m, &right, "a.png");
         add_tile(&m, 3, 8 + 64 * 12);
         add_tile(&m, tile, tile == 3 ? 8 + 64 * 12 : 32 + 256 * 12);
-        refused(&m, "a tile is not the next one");
+        refused(&m, "a tile is out of order");
     }
     begin(&m);
     add_record(&m, 77, &p);
-    refused(&m, "there is no such kind of record");
+    refused(&m, "a record has an unknown kind");
     free(p.bytes);
 }
 
@@ -234,15 +234,15 @@ TEST(a_file_of_tiles_with_a_wrong_end_is_refused) {
     begin(&m);
     add_end(&m);
     add(&m, "x", 1);
-    refused(&m, "something follows its end");
+    refused(&m, "data follow its end");
     begin(&m);
     add_end(&m);
     m.bytes[20] = 1; /* the reserved number */
-    refused(&m, "a record has a size that none can have");
+    refused(&m, "a record has an impossible size");
     begin(&m);
     add_end(&m);
     m.bytes[31] = 1; /* the size */
-    refused(&m, "a record has a size that none can have");
+    refused(&m, "a record has an impossible size");
     begin(&m);
     add_end(&m);
     m.bytes[24] = 9;
@@ -255,7 +255,7 @@ TEST(a_file_of_tiles_with_a_wrong_end_is_refused) {
     refused(&m, "is a file of tiles in another format");
     begin(&m);
     m.bytes[0] = 'g';
-    refused(&m, "is no file of tiles");
+    refused(&m, "is not a file of tiles");
     free(p.bytes);
 }
 
@@ -281,8 +281,8 @@ TEST(pictures_that_do_not_belong_together_are_told_apart_by_everything) {
         other.change;                                                                                                  \
         CHECK_TEXT(tile_picture_difference(&other, &one), words);                                                      \
     } while (0)
-    DIFFERS(key.version[0] = '2', "it was made by another version of gray");
-    DIFFERS(key.options.b = 9, "it was made with other options");
+    DIFFERS(key.version[0] = '2', "it was made by a different version of gray");
+    DIFFERS(key.options.b = 9, "it was made with different options");
     DIFFERS(key.files.a = 9, "the scene, or a file it reads, has changed");
     DIFFERS(number = 2, "it is of another picture of the run");
     DIFFERS(full_width = 9, "it is of a picture of another size");
@@ -293,11 +293,11 @@ TEST(pictures_that_do_not_belong_together_are_told_apart_by_everything) {
     DIFFERS(height = 9, "it is of a picture of another size");
     DIFFERS(record.floats = 4, "its pixels have records of another size");
     DIFFERS(record.marks = 0, "its pixels have records of another size");
-    DIFFERS(shards = 9, "the picture was parted otherwise");
-    DIFFERS(tone.exposure = 9, "its tones are others");
-    DIFFERS(tone.curve = TONE_FILMIC, "its tones are others");
-    DIFFERS(tone.srgb = true, "its tones are others");
-    DIFFERS(deep = true, "its tones are others");
+    DIFFERS(shards = 9, "the picture was divided differently");
+    DIFFERS(tone.exposure = 9, "its tone settings differ");
+    DIFFERS(tone.curve = TONE_FILMIC, "its tone settings differ");
+    DIFFERS(tone.srgb = true, "its tone settings differ");
+    DIFFERS(deep = true, "its tone settings differ");
 }
 
 /* A film with half of its tiles done, as a checkpoint would keep them. */
@@ -464,7 +464,7 @@ TEST(a_keeper_goes_on_only_with_what_is_the_same) {
             CHECK(!restored || strstr(notice, "of 4 tiles of ") != NULL);
             if (!restored)
                 CHECK(strstr(error.text,
-                             what == 5 ? "it is another part of the picture" : "it was made with other options"));
+                             what == 5 ? "it is another part of the picture" : "it was made with different options"));
         }
         /* Until the run has come as far as the one before, the file is not written again. */
         CHECK(checkpoint_update(&checkpoint, &second, &film, true, &tiles, &error));
@@ -485,10 +485,10 @@ TEST(a_keeper_refuses_the_checkpoint_of_somebody_else) {
     leave_checkpoint(path, first, &film);
     checkpoint_init(&checkpoint, &options, files_for(&options));
     CHECK(!checkpoint_open(&checkpoint, first, notice, &error));
-    CHECK(error.kind == ERROR_USAGE && strstr(error.text, "--resume goes on with it, or remove it"));
+    CHECK(error.kind == ERROR_USAGE && strstr(error.text, "continue it with --resume, or remove it"));
     options = options_for(test_path("none.tiles"), true);
     checkpoint_init(&checkpoint, &options, files_for(&options));
-    CHECK(checkpoint_open(&checkpoint, first, notice, &error) && strstr(notice, "the run starts from its beginning"));
+    CHECK(checkpoint_open(&checkpoint, first, notice, &error) && strstr(notice, "the run starts from the beginning"));
     free(film.pixels);
 }
 
