@@ -63,7 +63,7 @@ static inline bool box_tree_take(struct box_tree_walk *walk, double t_max, uint3
     return !(enter * (enter > 0 ? 1 - 0x1p-50 : 1 + 0x1p-50) > t_max) && *child != BOX_TREE_NONE;
 }
 
-/* box_tree_walk_next where a node is on top. Items that lie ready are worth no call. */
+/* box_tree_walk_next where a node is on top. Ready items are taken without a call. */
 bool box_tree_walk_down(struct box_tree_walk *walk, double t_max, uint32_t *item);
 
 static inline bool box_tree_walk_next(struct box_tree_walk *walk, double t_max, uint32_t *item) {

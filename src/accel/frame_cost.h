@@ -1,4 +1,4 @@
-/* What a frame of voxels would cost the rays that walk it, told from a sample of what it is to hold. */
+/* The cost of traversing a grid of voxels, estimated from a sample of its items. */
 #ifndef GRAY_ACCEL_FRAME_COST_H
 #define GRAY_ACCEL_FRAME_COST_H
 
@@ -12,7 +12,7 @@ enum { MESSAGE_LEVELS = 7 };
 /* Level l has cubical voxels, 2^l along the longest axis. */
 struct frame_level {
     uint32_t cells[3];
-    double filled;   /* voxels that hold something, as far as the sample tells */
+    double filled;   /* voxels that are not empty, by the sample */
     double visited;  /* voxels that a random line through the frame visits */
     double occupied; /* those of them that hold something */
     double listed;   /* entries of their lists that it passes */

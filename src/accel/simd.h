@@ -85,7 +85,7 @@ static inline float simd4_smallest_of_three(simd4 a) {
     __m128 b = _mm_min_ss(a, _mm_shuffle_ps(a, a, 1));
     return _mm_cvtss_f32(_mm_min_ss(b, _mm_movehl_ps(a, a)));
 }
-/* Adds b where a <= limit; *lanes tells where. */
+/* Adds b where a <= limit; *lanes says where. */
 static inline simd4 simd4_add_where_reached(simd4 a, simd4 limit, simd4 b, unsigned *lanes) {
     simd4 reached = _mm_cmple_ps(a, limit);
     *lanes = (unsigned)_mm_movemask_ps(reached);
@@ -556,7 +556,7 @@ static inline wide4 wide4_load_singly(const double *p) {
     __asm__("" : "+x"(low));
     return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadh_pd(low, p + 1)), _mm_load_sd(p + 2), 1);
 }
-/* Lanes in another order: halves tells for each half of the four where it comes from. */
+/* Lanes in another order: halves says where each half of the four comes from. */
 static inline wide4 wide4_permuted(wide4 a, const uint32_t halves[8]) {
     __m256i order = _mm256_load_si256((const __m256i *)(const void *)halves);
     return _mm256_castps_pd(_mm256_permutevar8x32_ps(_mm256_castpd_ps(a), order));
@@ -621,7 +621,7 @@ static inline simd4 wide4_to_single(wide4 a) {
 static inline void wide4_store_three(double *p, wide4 a) {
     _mm256_storeu_pd(p, a);
 }
-/* Lanes 0, 1, 2 turned round; lane 3 stays. */
+/* Lanes 0, 1, 2 rotated; lane 3 stays. */
 static inline wide4 wide4_cab(wide4 a) {
     return _mm256_permute4x64_pd(a, _MM_SHUFFLE(3, 1, 0, 2));
 }

@@ -2,7 +2,7 @@
  * index end here, so they cannot disagree.
  *
  * Sven Woop, Carsten Benthin, Ingo Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013: the ray becomes the z
- * axis by a shear, which takes each vertex to a point of the plane by itself, the same point for every triangle round
+ * axis by a shear, which takes each vertex to a point of the plane by itself, the same point for every triangle around
  * it. What is left is whether the origin of that plane lies inside the projected triangle, by the signs of three edge
  * functions x1 y2 - y1 x2. Two things make the answer exact for the (rounded) plane points:
  *   - rounding is monotonic, so a difference of products has the right sign or is zero; where it cancels, the

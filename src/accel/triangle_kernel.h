@@ -33,7 +33,7 @@
  * - (t - t0) det by the sum of 16 e |d_k| p_k (t - t0), where |d_k| (t - t0) <= |s_k| + l_k.
  *
  * So T is within F = sum of ((10 R + 36 |s_k| + 18 l_k) e + 4 D) p_k of (t - t0) det. What passes these comparisons
- * with E and F turned round is certainly a hit.
+ * with E and F reversed is certainly a hit.
  *
  * A certain hit ends an "any" search at once. In a "nearest" search the nearest certain hit waits, with bounds of its
  * t, until the search is over; what is not certain, or too close to say which is nearer, is decided at once. */

@@ -49,8 +49,8 @@ struct wide_node {
 
 /* Up to eight triangles: corner 0, the two edges from it, their numbers, and those of their vertices (which spares the
  * test that decides a way through memory). An unused lane holds a triangle with edges of 1/16, so far outside (each
- * coordinate of its corner) that the slack of every test is larger than its determinant: it is never a certain hit, the
- * few rays that pass near it ask the test that decides, and that knows it as a point. */
+ * coordinate of its corner) that the slack of every test is larger than its determinant: it is never a certain hit; the
+ * few rays that pass near it go to the deciding test, which treats it as a point. */
 #define UNUSED_AT 0x1p20f
 struct triangle_block {
     float corner[3][WIDTH], edge1[3][WIDTH], edge2[3][WIDTH];

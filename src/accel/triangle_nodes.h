@@ -1,5 +1,5 @@
-/* What a search does at a node once it knows where it enters and leaves each child's box: the nearest child is taken
- * up, the others go on the stack.
+/* What a search does at a node once it knows where it enters and leaves each child's box: the nearest child is visited
+ * next, the others go on the stack.
  *
  * Which child is nearest is not sorted out but read: the node lists its lanes for the octant of the direction
  * (triangle_layout.h). Then there is nothing to compare and no branch but whether any child was met; the list is right

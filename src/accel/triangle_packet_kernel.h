@@ -23,7 +23,7 @@
  *   1/4 to 1, so t <= 4 (S + 2 L).
  *
  * With E = ((13 R + 64 S + 64 L) e + 8 D) L a true hit has u, v >= -E, u + v <= |det| + 3 E, and T within 6 E L. What
- * passes with these turned round is certainly a hit.
+ * passes with these reversed is certainly a hit.
  *
  * A certain hit of a "nearest" search only waits as the ray's candidate, with bounds of its t. A nearer one takes its
  * place; where bounds overlap, and for all that is not certain, doubles decide at once. What is left at the end is

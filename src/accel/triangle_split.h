@@ -1,4 +1,4 @@
-/* Ranges of references to triangles, and how they are parted while a hierarchy is built. Private to
+/* Ranges of references to triangles, and how they are partitioned while a hierarchy is built. Private to
  * src/accel/triangle_*. */
 #ifndef GRAY_ACCEL_TRIANGLE_SPLIT_H
 #define GRAY_ACCEL_TRIANGLE_SPLIT_H
@@ -25,9 +25,9 @@ void range_measure(const struct reference *references, struct range *range);
 void split_range(struct reference *references, const struct range *range, bool halve, struct range *left,
                  struct range *right);
 
-/* Parts a floor, whose triangles have half the surface of the range each, from all that stands on it, if it is much
- * thinner; false: there is none. The surface says that this brings nothing, but rays start on floors, and those that
- * leave them miss a box that is flat. */
+/* Separates a floor, whose triangles have half the surface of the range each, from what is on it, if it is much
+ * thinner; false: there is none. The surface area heuristic sees no gain, but rays start on floors, and rays that leave
+ * a floor miss a flat box. */
 bool split_floor(struct reference *references, const struct range *range, struct range *floor, struct range *rest);
 
 #endif

@@ -1,4 +1,4 @@
-/* One error, told in one complete line. Functions that can fail return bool and fill a struct error of the caller.
+/* One error, as one complete line. Functions that can fail return bool and fill a struct error of the caller.
  * The kind decides the exit status of the program. */
 #ifndef GRAY_BASE_ERROR_H
 #define GRAY_BASE_ERROR_H
@@ -11,13 +11,13 @@ enum error_kind {
     ERROR_SCENE = 1,       /* a scene or a file was wrong */
     ERROR_USAGE = 2,       /* the command line was wrong */
     ERROR_MACHINE = 3,     /* the machine failed us: disk full, out of memory, no threads */
-    ERROR_CANCELLED = 130, /* somebody asked to stop */
+    ERROR_CANCELLED = 130, /* a request to stop */
 };
 
 struct error {
     enum error_kind kind;
     bool elsewhere; /* ERROR_SCENE: not the script is wrong but a name on the command line; no line of it is named */
-    bool limit; /* of ERROR_SCENE: a limit on what scenes may use is met, which no script may catch */
+    bool limit;     /* of ERROR_SCENE: a limit on what scenes may use is met, which no script may catch */
     char text[1024];
 };
 

@@ -60,7 +60,7 @@ struct file_read_log {
 /* From now on every file that is read is noted in `witness`, which must stay; NULL: none is. Set once, before the first
  * scene, by the thread that reads files. */
 void file_set_read_log(struct file_read_log *witness);
-/* What a file held, and when: two versions that are told apart by size and time need not be read again. */
+/* What a file held, and when: two versions with different size or time need not be read again. */
 struct file_version {
     struct file_identity identity;
     struct digest content; /* zero unless the listener wants contents */
@@ -76,7 +76,7 @@ struct file_listener {
 };
 /* As file_set_read_log. */
 void file_set_listener(const struct file_listener *listener);
-/* The version that stands under this name now; false: none that can be read. `known`, or NULL: when size and time are
+/* The version that has this name now; false: none that can be read. `known`, or NULL: when size and time are
  * its own the content is taken to be, too. */
 bool file_version_of(const char *path, const struct file_version *known, struct file_version *out);
 /* Notes the content of an open regular file without moving its position. For readers beside file_map. */
@@ -93,12 +93,12 @@ void file_read_log_destroy(struct file_read_log *witness);
 bool file_exists(const char *path);
 bool file_is_regular(const char *path);
 bool file_is_folder(const char *path);
-/* A descriptor (O_PATH) that only stands for a place in the file system; -1 when there is none. */
+/* A descriptor (O_PATH) that only names a place in the file system; -1 when there is none. */
 int file_open_place(const char *path);
 /* Standard input gives nothing from now on: a scene that waits for it would wait for ever. */
 bool file_null_input(void);
-/* Descriptors 0, 1 and 2 that whoever started us has closed are taken by something that gives nothing and takes
- * nothing: a file that is opened later must not get their place, and with it what is meant for the terminal. */
+/* If descriptors 0, 1 or 2 are closed at the start, they are replaced by one that supports neither reading nor writing:
+ * a file that is opened later must not get their number, and with it the output for the terminal. */
 void file_fill_standard(void);
 /* The canonical absolute path (realpath) into out; false when it does not exist or does not fit. */
 bool file_canonical(const char *path, char *out, size_t size);

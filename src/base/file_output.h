@@ -65,7 +65,7 @@ struct file_target {
 };
 #define FILE_AT(name) (&(const struct file_target){.path = (name)})
 
-/* Whether the file could be written now: folder, length of the name, file system, and what stands there. Creates
+/* Whether the file could be written now: folder, length of the name, file system, and the existing file. Creates
  * missing folders and nothing else. Removes leftovers of killed runs in the folder, once for each guard. */
 bool file_output_check(const struct file_target *target, struct error *error);
 /* Whether two names are one place: the same folder, however it is named, and the same last part. The folders must
@@ -79,7 +79,7 @@ bool file_output_remove(const struct file_target *target, struct file_identity i
 struct file_output {
     int descriptor, folder;
     bool open, direct;    /* direct: a pipe, a device or standard output, written in place */
-    bool nameless, named; /* how the temporary file stands in the folder; neither: it has its final name */
+    bool nameless, named; /* how the temporary file is named in the folder; neither: it has its final name */
     uint64_t written;
     const struct file_rules *rules; /* not owned */
     struct file_identity *identity; /* target->written */

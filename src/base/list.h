@@ -4,8 +4,8 @@
  *     enum tone_curve { TONE_CURVES(LIST_MEMBER) };
  *     static const char *const words[] = {TONE_CURVES(LIST_WORD)};
  *
- * The members are counted from 0 and written in full, so that a search finds them. A list with more columns
- * brings macros of its own for them. */
+ * The members are counted from 0 and written in full, so that a search finds them. A list with more columns has macros
+ * of its own for them. */
 #ifndef GRAY_BASE_LIST_H
 #define GRAY_BASE_LIST_H
 
@@ -15,7 +15,7 @@
 /* How many members a list has: a constant. */
 #define LIST_COUNT(list) (0 list(LIST_ONE))
 
-/* All words as one literal: parted by blanks, as parameters of gr functions have them, and by '|', as options have. */
+/* All words as one literal: separated by blanks, for parameters of gr functions, and by '|', for options. */
 #define LIST_BLANK_WORD(member, word) " " word
 #define LIST_BAR_WORD(member, word) "|" word
 #define LIST_BLANKS(list) (&(list(LIST_BLANK_WORD))[1])

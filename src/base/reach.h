@@ -13,8 +13,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* How a folder came into the list. Below one that nobody named, names that begin with a dot stay out of reach: the
- * folder above a scene may be somebody's home. */
+/* How a folder came into the list. Below a folder that the command line does not name, names that begin with a dot
+ * cannot be read: the parent folder of a scene may be a home. */
 enum reach_kind {
     REACH_IMPLIED, /* read; not below "/", no hidden names */
     REACH_READ,    /* read */

@@ -1,5 +1,6 @@
 /* Memory that two processes share through a descriptor, for blocks whose size is known only after the fork (the film).
- * The one that creates it passes the descriptor on; the size is sealed, so nobody can shrink it under the other's feet.
+ * The one that creates it passes the descriptor on; the size is sealed, so neither process can shrink it while the
+ * other uses it.
  */
 #ifndef GRAY_BASE_SHARE_H
 #define GRAY_BASE_SHARE_H

@@ -27,9 +27,9 @@ enum character_class character_class_of(const unsigned char *at);
 const char *scene_mark(const char *text);
 
 /* Scene-written text on its way to standard error. Ends of lines of every kind become \n, other control characters and
- * direction marks '?', so that the place where the cursor stands is known; a line that begins with "gray:", also in
- * pieces and with invisible characters in it, gets its mark. Of a line in which something was replaced every "gray:"
- * gets it. Zero value: at the beginning of a line. */
+ * direction marks '?', so that the position of the cursor is known; a line that begins with "gray:", also in pieces and
+ * with invisible characters in it, gets its mark. Of a line in which something was replaced every "gray:" gets it. Zero
+ * value: at the beginning of a line. */
 struct line_guard {
     bool open;      /* bytes stand on the line */
     bool begun;     /* something is shown on it */

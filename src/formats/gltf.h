@@ -1,4 +1,4 @@
-/* What the files of the glTF reader share; nobody else includes this. */
+/* What the files of the glTF reader share; no other file includes this. */
 #ifndef GRAY_FORMATS_GLTF_H
 #define GRAY_FORMATS_GLTF_H
 

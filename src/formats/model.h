@@ -66,7 +66,7 @@ struct model_node {
 struct model_options {
     bool smooth;               /* normals of our own instead of the file's */
     double smooth_angle;       /* degrees: faces that meet at less are one smooth surface; 0: flat */
-    bool weld, flip;           /* one vertex for each place; faces turned round */
+    bool weld, flip;           /* one vertex for each place; faces reversed */
     const struct reach *reach; /* where files may be read; NULL: everywhere */
     bool alone;                /* no other file is opened (tests of readers with strangers' bytes) */
     size_t most;               /* vertices, and corners, of a mesh; 0: as many as an index can name */
@@ -123,7 +123,7 @@ bool model_finish(struct model *model, struct error *error);
 bool ply_load(struct model *model, const uint8_t *data, size_t size, struct error *error);
 bool stl_load(struct model *model, const uint8_t *data, size_t size, bool binary, struct error *error);
 bool gltf_load(struct model *model, const uint8_t *data, size_t size, struct error *error);
-/* What --version tells of its JSON parser: "jansson 2.14" or "none". */
+/* The text of --version about its JSON parser: "jansson 2.14" or "none". */
 const char *gltf_library(void);
 bool obj_load(struct model *model, const char *text, size_t size, struct error *error);
 /* A library of materials; `line` of the model names it. */

@@ -5,8 +5,8 @@
 #include "formats/model.h"
 #include "scene/node.h"
 
-/* The model of a file, from the store or read into it. `path` is for messages, `canonical` tells files apart. *fresh:
- * it was read now, so its warnings have not been told yet. Owned by the store. */
+/* The model of a file, from the store or read into it. `path` is for messages, `canonical` identifies the file. *fresh:
+ * it was read now, so its warnings have not been reported yet. Owned by the store. */
 const struct model *model_asset(struct assets *assets, const char *path, const char *canonical,
                                 const struct model_options *options, bool *fresh, struct error *error);
 

@@ -14,7 +14,7 @@ struct names {
     struct list entries; /* struct name */
     uint32_t *table;     /* numbers by hash, open addressing, at most half full */
     size_t capacity;
-    size_t most; /* more names are told like a lack of memory */
+    size_t most; /* more names are reported as lack of memory */
 };
 /* False: no memory. *number is the one of the equal name that was there, or a new one. */
 bool names_add(struct names *names, const char *text, size_t length, uint32_t *number);

@@ -1,4 +1,4 @@
-/* Reading binary numbers that may stand anywhere, in either order of bytes. */
+/* Reading binary numbers at any address, in either byte order. */
 #ifndef GRAY_FORMATS_SCAN_H
 #define GRAY_FORMATS_SCAN_H
 

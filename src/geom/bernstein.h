@@ -7,8 +7,8 @@
 enum { BERNSTEIN_MAX_DEGREE = 12 };
 
 /* Roots inside [0, 1], ascending; at most `degree`. A coefficient of zero counts as positive, so the count is odd just
- * if exactly one of b[0] and b[degree] is negative, whatever rounding does; two roots closer than rounding can tell may
- * be missed together. */
+ * if exactly one of b[0] and b[degree] is negative, whatever rounding does; two roots closer than the rounding error
+ * may be missed together. */
 int bernstein_roots(const double *b, int degree, double *out);
 double bernstein_value(const double *b, int degree, double x);
 /* b restricted to [0, x] and [x, 1]; left[degree] and right[0] are the same number. Outputs may not alias b. */

@@ -58,7 +58,7 @@ struct mesh *mesh_create(const struct mesh_input *input, struct error *error);
 struct mesh *mesh_share(struct mesh *mesh); /* one more owner */
 void mesh_release(struct mesh *mesh);
 /* Builds what searches of this kind go through, unless it is there already. The mesh itself does not change. Call from
- * one thread while nobody searches. ACCEL_AUTO: the index whose resolution measured best, which is mostly one voxel;
+ * one thread while no search runs. ACCEL_AUTO: the index whose resolution measured best, which is mostly one voxel;
  * ACCEL_GRID: a grid of many voxels that Amanatides and Woo's steps walk through, for teaching and for doubt. Errors:
  * no memory, cancelled. */
 bool mesh_build_accel(const struct mesh *mesh, enum accel_kind kind, struct pool *pool, struct error *error);

@@ -1,4 +1,4 @@
-/* What the files of the mesh share; nobody else includes this. */
+/* What the files of the mesh share; no other file includes this. */
 #ifndef GRAY_GEOM_MESH_INTERNAL_H
 #define GRAY_GEOM_MESH_INTERNAL_H
 
@@ -6,7 +6,7 @@
 #include "accel/triangle_index.h"
 #include "geom/mesh.h"
 
-/* What searches go through, built when the first of them asks: it stands beside the tables, which never change. */
+/* What searches go through, built when the first of them asks: it is apart from the tables, which never change. */
 struct mesh_accel {
     struct triangle_index *index, *grid; /* grid: only once ACCEL_GRID was asked for */
     struct kd_triangles *kd_tree;        /* the same for ACCEL_KDTREE */
@@ -24,7 +24,7 @@ struct mesh {
     uint32_t (*uv_corners)[3];
     float (*colours)[3]; /* of the vertices, or NULL */
     uint32_t *materials; /* per triangle, or NULL */
-    /* The polygons as they came, kept only where the triangles do not tell them. */
+    /* The original polygons, stored only if the triangles do not determine them. */
     uint32_t *face_start, *face_vertex;
     char *file; /* NULL: of tables */
     uint64_t input_hash;

@@ -15,7 +15,7 @@ void mesh_tables_destroy(struct mesh_tables *tables);
 
 /* One vertex for each place that is used; the colour is that of the first vertex there. False: no memory. */
 bool mesh_input_weld(struct mesh_input *input, struct mesh_tables *own, struct error *error);
-/* Every face turned round, and its normals. */
+/* Reverses every face, and its normals. */
 bool mesh_input_flip(struct mesh_input *input, struct mesh_tables *own, struct error *error);
 /* A normal for every corner: the mean of the faces round its vertex, weighted with their angles there (Thuermer and
  * Wuethrich, "Computing Vertex Normals from Polygonal Facets", Journal of Graphics Tools 3(1), 1998), over those faces

@@ -1,4 +1,4 @@
-/* Vertices that stand in the same place, bit for bit (-0 and 0 are one place). */
+/* Vertices at the same position, bit for bit (-0 and 0 are equal). */
 #ifndef GRAY_GEOM_MESH_WELD_H
 #define GRAY_GEOM_MESH_WELD_H
 

@@ -19,7 +19,7 @@ struct curve_input {
     const double (*points)[3];
     const double *widths; /* whole widths, >= 0, interpolated by the same spline */
     uint32_t count;
-    bool flat; /* shaded as a ribbon, not as the round hair that it stands for */
+    bool flat; /* shaded as a ribbon, not as a round hair */
 };
 
 const struct curve *curve_build(struct arena *arena, const struct curve_input *input, struct error *error);

@@ -21,7 +21,7 @@ struct script_clock {
     bool out_of_time; /* the child was killed for that */
 };
 
-/* In a farm: whether the child stands still. */
+/* In a farm: whether the child hangs. */
 struct stall_check {
     double clock;   /* of the child, when it was seen to move last */
     double seconds; /* since then, in which it might have moved */
@@ -29,7 +29,7 @@ struct stall_check {
     bool found;     /* the child was killed for that */
 };
 
-/* In a farm: the script that is begun anew after its render process was killed. */
+/* In a farm: the script that starts again after its render process was killed. */
 struct script_retry {
     int count;
     uint32_t pictures_before; /* of output.pictures, when the script began */

@@ -1,4 +1,4 @@
-/* Pictures of any format that this build reads, told apart by their first bytes. */
+/* Pictures of any format that this build reads; the first bytes select the format. */
 #ifndef GRAY_IMAGE_IMAGE_FILE_H
 #define GRAY_IMAGE_IMAGE_FILE_H
 

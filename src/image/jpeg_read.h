@@ -11,7 +11,7 @@
 /* Gray, YCbCr, RGB, CMYK and YCCK, baseline and progressive; truncated and damaged files are errors. `path` is for
  * messages. In a build without libjpeg every file is an error that says so. */
 struct image *image_parse_jpeg(const char *path, const uint8_t *data, size_t size, struct error *error);
-/* What --version tells: "libjpeg 62 (libjpeg-turbo 2.1.5)" or "none". */
+/* The text of --version: "libjpeg 62 (libjpeg-turbo 2.1.5)" or "none". */
 const char *jpeg_library(void);
 
 #endif

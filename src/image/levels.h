@@ -4,8 +4,8 @@
  * Every level keeps straight (not premultiplied) RGBA, so that one colour over all of an image is exactly that colour
  * in every level. Level 0 has the file's 8 or 16 bits; the levels above always have 16, so that rounding does not add
  * up from level to level. Pictures of light have floats in every level, 1 for what is 65535 elsewhere. Everything is
- * told in "units": 0 .. 65535 for a channel, premultiplied colours and alpha in units squared (alpha times 65535). A
- * double holds all of these exactly. */
+ * measured in "units": 0 .. 65535 for a channel, premultiplied colours and alpha in units squared (alpha times 65535).
+ * A double holds all of these exactly. */
 #ifndef GRAY_IMAGE_LEVELS_H
 #define GRAY_IMAGE_LEVELS_H
 

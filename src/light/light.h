@@ -118,7 +118,7 @@ struct spherical_rectangle {
 struct light_context {
     struct vec3 point, from; /* what is shaded; where shadow rays start, next to it */
     bool single;             /* all samples of a delta light have its middle as their target */
-    bool shares_cells;       /* the cells of the unit square are parted once more among the samples of a pixel */
+    bool shares_cells;       /* the cells of the unit square are divided once more among the samples of a pixel */
     bool bounded;            /* a parallelogram holds every target: */
     struct vec3 corner, edge1, edge2;
     double weight;               /* of one target of a lamp, its cosines and distance aside */
@@ -173,7 +173,7 @@ double light_brightest(const struct light *light);
 
 /* --- what it sends --- */
 
-/* LOCAL: it stands somewhere and sends in many directions. PARALLEL: all of it goes in one direction, from infinitely
+/* LOCAL: it has a position and emits in many directions. PARALLEL: all of it goes in one direction, from infinitely
  * far. ENVIRONMENT: from infinitely far, from all sides. */
 enum light_domain { LIGHT_DOMAIN_LOCAL, LIGHT_DOMAIN_PARALLEL, LIGHT_DOMAIN_ENVIRONMENT };
 

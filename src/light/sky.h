@@ -13,7 +13,7 @@ struct sky {
     struct vec3 colour;  /* of SKY_CONSTANT */
     struct image *image; /* of SKY_CROSS: a 4 x 3 cross `#T##` / `LFRK` / `#B##`, seen from inside */
     bool mirror;
-    struct image *faces[6]; /* of SKY_FACES: -x, +x, -y, +y, -z, +z as somebody in the middle sees them */
+    struct image *faces[6]; /* of SKY_FACES: -x, +x, -y, +y, -z, +z as seen from the centre */
     /* Of SKY_STOPS: {y of the unit direction, r, g, b}, y never falling; linear between, constant beyond. */
     const double (*stops)[4];
     uint32_t stop_count;

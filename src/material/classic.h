@@ -2,7 +2,7 @@
  * with kd I (n.l) (docs/language.md 5.2); a Lambertian surface of albedo kd answers radiance L from the solid angle w
  * with kd / pi L w (n.l). So radiance L from the solid angle w is intensity L w / pi, a formula of docs/language.md 5.2
  * is pi f |cos| of a BSDF f, and a white surface that sees nothing but a light of radiance L has the radiance L. This
- * is the only place where that pi stands (docs/light.md). */
+ * is the only place with that pi (docs/light.md). */
 #ifndef GRAY_MATERIAL_CLASSIC_H
 #define GRAY_MATERIAL_CLASSIC_H
 

@@ -1,4 +1,4 @@
-/* Fog: what is seen fades with the way to it, and the fog's colour takes its place. It fills the open air, not the
+/* Fog: what a ray sees is attenuated along the ray, and the colour of the fog is added. It fills the open air, not the
  * inside of transparent solids, and dims sight only, not the light of lamps. */
 #ifndef GRAY_MATERIAL_FOG_H
 #define GRAY_MATERIAL_FOG_H
@@ -29,7 +29,7 @@ struct fog {
     const double *sums; /* of the profile: integral of the density from heights[0] to heights[i] */
     struct vec3 corner, size;
     uint32_t cells[3]; /* densities[x + cells[0] (y + cells[1] z)] */
-    bool clear_sky;    /* what lies infinitely far is seen without fog */
+    bool clear_sky;    /* the sky is seen without fog */
 };
 
 /* The share of what is `distance` away (INFINITY too) along the unit direction that is still seen; 0..1. */

@@ -35,7 +35,7 @@ enum { MATERIAL_KIND_COUNT = LIST_COUNT(MATERIAL_KINDS) };
     X(SPECULAR_BLINN, "blinn")
 enum specular_kind { SPECULAR_KINDS(LIST_MEMBER) };
 
-/* A height that is not told: white stands this much of the picture's own size on the surface above black. */
+/* The default height: white is this fraction of the size of the image on the surface above black. */
 #define RELIEF_HEIGHT 0.02
 
 /* A texture that turns the normal, over those below it. */
@@ -88,7 +88,7 @@ struct surface_look {
  * worlds hold such copies; material_emission and material_emission_bound ask for the authored one. */
 struct material material_flat(const struct material *material);
 void material_look(const struct material *material, const struct hit *hit, struct surface_look *out);
-/* The same; `told` (or NULL) hears of every material of the chain, from the base on, and its own look. */
+/* The same; `told` (or NULL) is called for every material of the chain, from the base on, with its inputs. */
 typedef void material_told(void *context, const struct material *link, const struct surface_look *look);
 void material_look_told(const struct material *material, const struct hit *hit, struct surface_look *out,
                         material_told *told, void *context);

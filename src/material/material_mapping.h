@@ -1,5 +1,5 @@
 /* Materials on shapes. What a script asks of an image ("as the shape has it", "round the sphere") depends on the shape:
- * on balls and boxes another mapping stands for it (texture_mapping_on). The world finds out once, for each material
+ * on balls and boxes it becomes another mapping (texture_mapping_on). The world finds out once, for each material
  * and each layout of the shapes that show it, so that a hit says nothing of the shape that it came from. */
 #ifndef GRAY_MATERIAL_MATERIAL_MAPPING_H
 #define GRAY_MATERIAL_MATERIAL_MAPPING_H

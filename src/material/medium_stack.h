@@ -1,5 +1,6 @@
-/* The stack of media a ray is inside of. Leaving a solid removes that solid wherever it stands; the current medium is
- * the one entered last; outside of everything the index is 1. By value: a branch of the path copies and changes it. */
+/* The stack of media a ray is inside of. Leaving a solid removes that solid wherever it is in the stack; the current
+ * medium is the one entered last; outside of everything the index is 1. By value: a branch of the path copies and
+ * changes it. */
 #ifndef GRAY_MATERIAL_MEDIUM_STACK_H
 #define GRAY_MATERIAL_MEDIUM_STACK_H
 

@@ -5,7 +5,7 @@
 #include "math/sampling.h"
 #include "math/vec3.h"
 
-/* Normal of a facet that is seen from `view` (unit, on the normal's side), for a place in the unit square. alpha is the
+/* Normal of a facet visible from `view` (unit, on the normal's side), for a point of the unit square. alpha is the
  * width of the distribution of slopes, in (0, 1]. Unit, on the side of the normal and of the view. */
 struct vec3 microfacet_normal(struct vec3 normal, struct vec3 view, double alpha, struct sample2 place);
 

@@ -13,7 +13,7 @@ struct texcoord {
     struct vec3 dpdu, dpdv;
 };
 
-/* The mapping that stands for this one on shapes of that layout. */
+/* The mapping that replaces this one on shapes of that layout. */
 enum texture_mapping texture_mapping_on(enum texture_mapping mapping, enum surface_layout layout);
 /* False: this surface has no coordinates for the mapping. */
 bool texture_coordinates(const struct texture_image *image, const struct hit *hit, struct texcoord *out);

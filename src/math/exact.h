@@ -1,4 +1,4 @@
-/* The ground that elementary functions and roots stand on: bit patterns, and arithmetic without error.
+/* The basis of elementary functions and roots: bit patterns, and arithmetic without error.
  * Sums and products of two doubles without error, as unevaluated pairs: the exact value is hi + lo, hi the nearest
  * double. T. J. Dekker, "A floating-point technique for extending the available precision", 1971; Knuth's sum; no fma.
  */

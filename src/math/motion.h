@@ -1,4 +1,4 @@
-/* Where a thing stands at a time: a pose that moves at a constant velocity, or from one pose to another between time 0
+/* The pose of an object at a time: a pose that moves at a constant velocity, or from one pose to another between time 0
  * and time 1. */
 #ifndef GRAY_MATH_MOTION_H
 #define GRAY_MATH_MOTION_H

@@ -12,7 +12,7 @@
 
 enum { NAME_LIMIT = 4096 };
 
-/* One for each run. picture_files_destroy gives back what it holds. */
+/* One for each run. picture_files_destroy releases what it holds. */
 struct picture_files {
     const struct options *options; /* not owned */
     struct reach places;           /* where scripts may have pictures written: the working directory, --allow-write */

@@ -18,7 +18,7 @@ struct terminal {
     int rows;                        /* lines the picture covers above the cursor; 0: none is there */
 };
 
-/* AUTO: kitty where the environment says so, sixel where the terminal answers that it knows it, else half blocks. */
+/* AUTO: kitty if the environment names it, sixel if the terminal reports it, else half blocks. */
 void terminal_open(struct terminal *terminal, enum terminal_graphics wanted);
 void terminal_begin(struct terminal *terminal);
 /* Without memory nothing is drawn. */

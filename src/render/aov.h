@@ -26,13 +26,13 @@ enum { AOV_COUNT = LIST_COUNT(AOVS) };
 
 const char *aov_name(enum aov aov);
 const char *aov_channels(enum aov aov); /* one to three letters, one for each number that means something */
-/* Names parted by commas, or "all", as a mask. */
+/* Names separated by commas, or "all", as a mask. */
 bool aov_parse(const char *text, uint32_t *mask);
 /* How many layers a mask has, and which one a layer is. */
 uint32_t aov_layers(uint32_t mask);
 uint32_t aov_layer(uint32_t mask, enum aov aov);
 
-/* The layers of `mask` that tell what the ray met; out[AOV_COUNT]. All zero where nothing is met. */
+/* The layers of `mask` that describe the hit of the ray; out[AOV_COUNT]. All zero where nothing is met. */
 void aov_surface(const struct world *world, const struct ray *ray, uint32_t mask, struct world_scratch *scratch,
                  float out[AOV_COUNT][3]);
 

@@ -27,7 +27,7 @@ bool camera_prepare(const struct camera *camera, const struct settings *settings
                     struct camera_frame *out, char warning[256], struct error *error);
 /* The camera at a moment. */
 struct camera camera_at(const struct camera *camera, const struct camera_motion *motion, double time);
-/* A box that holds every place where rays start. */
+/* A box around all origins of rays. */
 struct box camera_origins(const struct camera_frame *frame);
 /* The ray of a pinhole through (x, y), pixels from the upper left corner of the picture. */
 struct ray camera_ray(const struct camera_frame *frame, double x, double y);
@@ -38,7 +38,7 @@ static inline bool camera_is_plain(const struct camera_frame *frame) {
     return lens->projection == PROJECTION_PERSPECTIVE && lens->aperture == 0 && lens->stereo == STEREO_NONE &&
            lens->shift_x == 0 && lens->shift_y == 0;
 }
-/* Rays start in places that may lie in different media. */
+/* Origins of rays may be in different media. */
 static inline bool camera_spreads(const struct camera_frame *frame) {
     const struct lens *lens = &frame->lens;
     return lens->projection == PROJECTION_ORTHOGRAPHIC || lens->stereo != STEREO_NONE || lens->aperture > 0;
@@ -47,8 +47,8 @@ static inline bool camera_spreads(const struct camera_frame *frame) {
  * has it (by halves side by side, else the middle). False: nothing is shown there. */
 bool camera_ray_through(const struct camera_frame *frame, double x, double y, struct sample2 place, int eye,
                         struct ray *out);
-/* Where a point of the world is in the picture, as a pinhole sees it: the way back from camera_ray_through. Of a stereo
- * pair the middle between the eyes is told. False: nowhere. */
+/* Where a point of the world is in the picture, as a pinhole sees it: the way back from camera_ray_through. For a
+ * stereo pair, the result is the middle between the eyes. False: nowhere. */
 bool camera_project(const struct camera_frame *frame, struct vec3 point, double *x, double *y);
 
 #endif

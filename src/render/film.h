@@ -44,7 +44,7 @@ struct film {
     float (*layers)[3];
 };
 
-/* What is known of a tile. Tiles stand on the grid of the whole picture, so that a part of it has the same ones. */
+/* What is known of a tile. Tiles are aligned to the grid of the whole picture, so that a crop has the same tiles. */
 enum film_tile {
     FILM_TILE_WANTED,
     FILM_TILE_DONE,

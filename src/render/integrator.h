@@ -1,7 +1,7 @@
 /* The integrators behind one interface. A render (render.c) prepares camera, workers and tiles and hands out tiles;
- * what happens within a tile is the integrator's: which samples its pixels get, and what the film records of them. A
- * sample becomes camera rays in sample.c, which asks the integrator what they bring. Each function is one switch over
- * the kind.
+ * what happens within a tile is the integrator's: which samples its pixels get, and what the film records of them.
+ * sample.c turns a sample into camera rays and calls the integrator for their radiance. Each function is one switch
+ * over the kind.
  *
  * What holds for all of them: the same bytes for any number of threads and any order of tiles (a tile or a part of one
  * depends on nothing but the job), numbers of the sampler only, events for observers, rays counted in the worker's

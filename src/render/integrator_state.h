@@ -1,5 +1,5 @@
 /* What the integrators of a job have in common: one worker's view of the job. Direct light and the samples of pixels
- * need no more; what only one integrator needs stands in its own header. */
+ * need no more; what only one integrator needs is in its own header. */
 #ifndef GRAY_RENDER_INTEGRATOR_STATE_H
 #define GRAY_RENDER_INTEGRATOR_STATE_H
 

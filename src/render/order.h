@@ -1,4 +1,5 @@
-/* In which order tiles are made: the picture does not depend on it, what people see of it and know about it does. */
+/* In which order tiles are made: the picture does not depend on it, but the view during rendering and the time estimate
+ * do. */
 #ifndef GRAY_RENDER_ORDER_H
 #define GRAY_RENDER_ORDER_H
 

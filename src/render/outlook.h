@@ -1,5 +1,5 @@
 /* How much of the work of a picture is done, and when it will be over: not how many tiles, but what they cost
- * (render/forecast.h, docs/progress.md). Shared memory: somebody else may read while it is written. */
+ * (render/forecast.h, docs/progress.md). Shared memory: the other process may read while it is written. */
 #ifndef GRAY_RENDER_OUTLOOK_H
 #define GRAY_RENDER_OUTLOOK_H
 

@@ -11,7 +11,7 @@
 struct photon_cell {
     double until;          /* sum of the importance of all cells up to this one */
     uint32_t face, i, j;   /* of a cube round the light; of a distant light face 0 */
-    float strength, shine; /* share that the strongest specular thing there gives back; the light's own in its middle */
+    float strength, shine; /* reflectance of the strongest specular object there; the light's own in its middle */
 };
 
 /* One light, or one part of a light with an extent. */
@@ -24,7 +24,7 @@ struct photon_aim {
     uint32_t level, cell_count;     /* 2^level cells along the side of a face */
     struct photon_cell *cells;
     double total;              /* importance of all cells */
-    double flux;               /* what they send, as far as it can be told before */
+    double flux;               /* what they emit, as far as it is known before */
     uint32_t first, count;     /* photons of the whole map that are its own */
     struct medium_stack media; /* round the centre */
 };

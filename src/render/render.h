@@ -38,7 +38,7 @@ struct render_job {
     /* Called from any worker when a tile is final; may be NULL. done counts from 1. */
     void (*tile_done)(void *context, uint32_t tile, uint32_t done, uint32_t count);
     void *context;
-    struct outlook *outlook; /* or NULL; zero: says how far the work is, from an estimate made before the first tile */
+    struct outlook *outlook; /* or NULL; zero: reports the progress, from an estimate made before the first tile */
     const _Atomic int
         *enough; /* or NULL; while it is not 0 no further tile is begun, and the render counts as stopped */
 };
@@ -48,9 +48,8 @@ struct film_record integrator_record(enum integrator_kind integrator);
 /* False: cancelled or out of memory (error says which). The film then holds what was finished. */
 bool render_run(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
                 struct error *error);
-/* Makes single pixels {x, y} of the whole picture as render_run would, and has each one's story written down
- * (render/story.h) and told; it ends when `listen` returns. The film of the job is not looked at. False: as render_run,
- * or `listen` said so. */
+/* Renders single pixels {x, y} of the whole picture as render_run would, and records and reports the trace of each; it
+ * ends when `listen` returns. The film of the job is not looked at. False: as render_run, or `listen` said so. */
 typedef bool story_listener(void *context, struct story *story, struct error *error);
 bool render_pixels(const struct render_job *job, struct pool *pool, const uint32_t (*pixels)[2], uint32_t count,
                    story_listener *listen, void *context, struct error *error);

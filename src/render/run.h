@@ -1,6 +1,5 @@
-/* What the files of a render share: tiles (render.c), samples (sample.c), integrators (integrator.h), how long it will
- * take (ahead.c), pictures beside the picture (layers.c).
- * Nobody else includes it. */
+/* What the files of a render share: tiles (render.c), samples (sample.c), integrators (integrator.h), the time estimate
+ * (ahead.c), render layers (layers.c). Nobody else includes it. */
 #ifndef GRAY_RENDER_RUN_H
 #define GRAY_RENDER_RUN_H
 
@@ -32,7 +31,7 @@ struct worker {
     struct batch batch;
     int index;
     double tile_ended;                /* seconds, of the last one */
-    uint64_t tile_begun, first_ended; /* processor time, while somebody asks how long it will take */
+    uint64_t tile_begun, first_ended; /* processor time, while a time estimate is requested */
 };
 
 struct run {
@@ -43,7 +42,7 @@ struct run {
     bool timed;        /* something moves while the shutter is open */
     bool together;     /* camera rays start in one place and at one moment */
     bool media_by_ray; /* rays start in different places or moments, and solids are near */
-    uint32_t *closed;  /* the solids that the eye can stand in */
+    uint32_t *closed;  /* the solids that can contain the eye */
     uint32_t closed_count;
     struct integrator *integrator;
     struct worker *workers;
@@ -77,7 +76,7 @@ static inline bool run_stopped(const struct run *run, const struct worker *worke
     return pool_cancelled(run->pool) || worker->scratch.failed;
 }
 
-/* Before the first tile; false: stopped. Nothing happens where nobody asks how long it will take. */
+/* Before the first tile; false: stopped. Does nothing if no time estimate is requested. */
 bool run_look_ahead(struct run *run);
 void run_tile_begins(struct run *run, struct worker *worker, uint32_t tile, double share); /* that share of it */
 /* So much of its first pass (0) or its second is done. */

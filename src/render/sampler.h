@@ -17,7 +17,7 @@
 struct pixel_sample {
     int64_t x, y;
     double dx, dy;   /* within the pixel */
-    uint64_t number; /* 0: the first sample, which stands alone; 1 + k: cell k of N x N */
+    uint64_t number; /* 0: the first sample, which is alone; 1 + k: cell k of N x N */
 };
 
 /* The numbers of one sample. */
@@ -25,7 +25,7 @@ struct sampler {
     uint64_t key;       /* of the sample: the root of the keys of its rays */
     uint64_t pixel_key; /* of the strata */
     uint32_t cell;      /* of `side` x `side` samples of the pixel */
-    uint32_t side;      /* 1: the sample stands alone */
+    uint32_t side;      /* 1: the sample is alone */
 };
 
 /* Sample `number` of a pixel (counted row by row over the whole picture) of side x side. */

@@ -12,7 +12,7 @@
 
 #include <stdint.h>
 
-enum { STORY_RAYS = 100000 }; /* further ones are counted and not told */
+enum { STORY_RAYS = 100000 }; /* further ones are counted and not printed */
 
 /* One link of a material: the look as it is with it and what is below it. */
 struct story_link {
@@ -107,7 +107,7 @@ struct story {
     bool on; /* a sample of the pixel itself is under way */
     struct story_ray *ray;
     struct story_light *light;
-    uint32_t mute;      /* how many rays that are not told are under way */
+    uint32_t mute;      /* how many rays that are not printed are under way */
     enum ray_kind kind; /* of the next ray */
     struct vec3 weight; /* of the next ray */
 };

@@ -1,6 +1,6 @@
-/* Tile files: finished tiles of a picture, kept for later (checkpoints) or for somebody else (the parts of a picture
- * that several machines make). A file says what its tiles were made of, so that nothing foreign is put together, and
- * carries a check for every record and an end, so that what is torn or changed is refused. The checks are no
+/* Tile files: finished tiles of a picture, for later (checkpoints) or for merging (parts of a picture that several
+ * machines render). A file identifies the scene and options of its tiles, so that foreign tiles are never merged. Every
+ * record has a checksum, and the file has an end record, so that damaged files are refused. The checks are no
  * signatures: they find accidents, not forgers who know the format; whatever a file says, reading it is safe. */
 #ifndef GRAY_RENDER_TILE_FILE_H
 #define GRAY_RENDER_TILE_FILE_H
@@ -70,7 +70,7 @@ void tile_file_close(struct tile_file *file);
  * count in *twice and are not put again; a file that has changed since it was read gives those before the change. */
 void tile_file_restore(const struct tile_file *file, struct film *film, uint32_t *restored, uint32_t *twice);
 
-/* Why pictures with these keys and shapes do not belong together, in a few words for people, or NULL when they do.
+/* Why pictures with these keys and shapes do not belong together, as a phrase for messages, or NULL if they do.
  * Shards are not compared. */
 const char *tile_key_difference(const struct tile_key *have, const struct tile_key *want);
 const char *tile_picture_difference(const struct tile_picture *have, const struct tile_picture *want);

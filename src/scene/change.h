@@ -1,4 +1,4 @@
-/* Changes of a scene that somebody makes beside its script: in the window, and again by a file that the window wrote.
+/* Edits of a scene in addition to its script: in the window, and again by a file that the window wrote.
  * They are laid over the scene as the script left it when a picture is made, and taken off again afterwards; the same
  * changes in the same order give the same bits. Nodes and materials are known by their order of creation, nodes by
  * their name, too, lights by their number in the list of the picture. */
@@ -18,7 +18,7 @@ enum change_kind {
     CHANGE_OWN,       /* a shape gets a material of its own */
     CHANGE_MATERIAL,  /* a part of a material's base */
     CHANGE_ADD_LIGHT, /* a point light, or a copy of a light, at the end of the list */
-    CHANGE_LIGHT,     /* a light is moved, turned, sized, its colour multiplied or another */
+    CHANGE_LIGHT,     /* a light is moved, rotated, scaled, its colour multiplied or replaced */
     CHANGE_DARK,      /* a light is taken away */
     CHANGE_KINDS
 };
@@ -64,17 +64,17 @@ struct change_list {
     struct change *items;
     uint32_t count, room;
 };
-/* Two changes of the same thing: the later one takes the place of the earlier. */
+/* Two changes of the same thing: the later one replaces the earlier one. */
 bool change_same_target(const struct change *a, const struct change *b);
 /* The change is in the list (in the place of one of the same target, else in order of kind and number: the list does
  * not depend on what was changed first), or, with `present` false, no such one is. False: no memory, or too many. */
 bool change_list_set(struct change_list *list, const struct change *change, bool present);
 const struct change *change_list_find(const struct change_list *list, const struct change *like);
 void change_list_destroy(struct change_list *list);
-/* One of the changes is to be seen without the world being built anew. */
+/* One of the changes takes effect without building the world again. */
 bool change_keeps_world(const struct change *change);
 
-/* The name of what was left out is told: a node or a material that the script does not make any more. */
+/* The name of what was skipped is reported: a node or a material that the script does not make any more. */
 typedef void change_warning(void *context, const char *text);
 
 struct changed_node {

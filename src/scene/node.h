@@ -51,7 +51,7 @@ struct node {
     struct transform *separate;          /* ORDER_SEPARATE only: translation, rotation, scaling; else NULL */
     struct transform parent_from_node;
     struct vec3 velocity; /* in the parent's space, of every unit of time */
-    /* Or NULL: at time 1 this node stands where that node's own transforms would put it. */
+    /* Or NULL: at time 1 this node has the pose of that node's own transforms. */
     const struct node *moves_to;
     /* A NODE_GROUP ends here: there may be millions, and scene_node takes no memory for the rest. */
     struct {
@@ -84,7 +84,7 @@ struct asset_image {
     char *path;
     struct asset_image *next;
 };
-/* Anything else that was made of a file and is worth keeping: who made it knows what it is. */
+/* Anything else that was made from a file and is kept: who made it knows what it is. */
 struct asset_object {
     void *object;
     void (*destroy)(void *object);

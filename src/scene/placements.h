@@ -1,4 +1,4 @@
-/* Where the children of one node stand, many times over: what a node for each would say in ten times the memory. */
+/* The many placements of the children of one node: what a node for each would say in ten times the memory. */
 #ifndef GRAY_SCENE_PLACEMENTS_H
 #define GRAY_SCENE_PLACEMENTS_H
 

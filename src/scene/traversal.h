@@ -33,7 +33,7 @@ enum scene_event {
     SCENE_NO_MEMORY
 };
 
-/* Where the children of the last node of a path stand, from where it stands itself. */
+/* The placement of the children of the last node of a path, from its own placement. */
 struct transform scene_step_map(const struct scene_step *step, const struct transform *from_node);
 
 /* Set the first part, the rest to zero. */

@@ -124,7 +124,7 @@ struct image *act_find_image(struct context *context, const struct value *value,
 
 /* What node:set_texture keeps: an image as its texture says, else mip-mapped and repeated; NULL and error. */
 const struct texture_image *act_image(struct context *context, const struct value *value, struct error *error);
-/* What node:set_bump keeps: what gr.bump made, or any other picture with the height that is not told. */
+/* What node:set_bump keeps: a result of gr.bump, or any other image with the default height. */
 const struct relief *act_relief(struct context *context, const struct value *value, struct error *error);
 
 /* act_textures.c */

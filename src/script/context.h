@@ -126,7 +126,7 @@ void limits_begin(struct context *context);
 void limits_end(struct context *context);
 void *limits_allocate(void *context, void *block, size_t old_size, size_t size); /* a lua_Alloc */
 void limits_open(lua_State *L);                                                  /* sets the hook */
-void limits_check(lua_State *L); /* raises when time or memory is used up or somebody wants to stop */
+void limits_check(lua_State *L); /* raises when time or memory is used up or a stop is requested */
 _Noreturn void limits_end_for_memory(lua_State *L);
 void limits_output(lua_State *L, size_t size);                  /* so many bytes are about to be written; may raise */
 void limits_count_output(struct context *context, size_t size); /* the same without raising; the next check does */
@@ -140,7 +140,7 @@ void handle_push(lua_State *L, enum handle_type type, void *pointer);
 /* The handle at a stack index, or NULL when there is something else. */
 const struct handle *handle_at(lua_State *L, int index);
 const char *handle_words(enum handle_type type);
-const void *handle_key(enum handle_type type); /* the metatable stands in the registry under this pointer */
+const void *handle_key(enum handle_type type); /* the metatable is in the registry under this pointer */
 /* The name of what stands at an index: "a number", "a material", "nothing". */
 const char *value_words(lua_State *L, int index);
 
@@ -163,7 +163,7 @@ void suggest_offer(struct suggestion *suggestion, const char *candidate);
 void files_open(lua_State *L);
 /* Looks for a file the scene names; docs/language.md 12.3. */
 bool files_find(struct context *context, const char *name, char out[PATH_SIZE]);
-/* The same with the number in its name repaired, and with an error that tells where it was looked for. */
+/* The same with the number in its name repaired, and with an error that names the folders that were searched. */
 bool files_require(struct context *context, const char *name, char out[PATH_SIZE], struct error *error);
 /* The templates of package.path with `file` in the place of the question marks, the first that may be read. */
 bool files_on_path(const struct context *context, const char *templates, const char *file, char path[PATH_SIZE]);

@@ -72,7 +72,7 @@ struct picked {
     struct vec3 position, normal;
     bool has_box;
     struct vec3 corners[8];          /* of a box round the node: bit 0 of the number is its first axis, and so on */
-    struct affine world_from_parent; /* the space that the node stands in */
+    struct affine world_from_parent; /* the space of the node */
 };
 
 /* Zero value: none. */

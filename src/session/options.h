@@ -69,11 +69,11 @@ struct options {
     const char *checkpoint;     /* --checkpoint: a file, or "auto", or NULL */
     double checkpoint_every;    /* seconds */
     bool mpi;                   /* one of several processes that make a picture together */
-    double farm_stall;          /* seconds after which a renderer of a farm that stands still is killed; 0: never */
+    double farm_stall;          /* seconds after which a renderer of a farm that hangs is killed; 0: never */
     double farm_silence;        /* seconds after which a rank that is not heard is regarded as lost; 0: never */
     const char *display;        /* --display, or NULL */
     bool partial;               /* --partial: what an interruption leaves is written beside the picture */
-    bool resume;                /* go on with what the checkpoint holds */
+    bool resume;                /* continue from the checkpoint */
     uint32_t shard, shards;     /* --shard: this one of so many, from 1; 0 of 0: no shards */
     uint32_t shard_of_pictures; /* --shard-pictures: the same over whole pictures */
     uint32_t shards_of_pictures;
@@ -98,7 +98,7 @@ bool display_parse(const char *text, struct display_choice *out);
 /* The options with their defaults, in groups, 100 columns wide. */
 void options_print_help(FILE *stream);
 
-/* The name of picture `number` under -o: %d, %3d or %03d stands for the number, %% for a percent sign. */
+/* The name of picture `number` under -o: %d, %3d or %03d is the number, %% a percent sign. */
 bool output_name_numbered(const char *pattern);
 bool output_name(const char *pattern, unsigned number, char *out, size_t size);
 

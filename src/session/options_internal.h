@@ -9,7 +9,7 @@ enum option_kind {
     OPTION_INTEGER, /* int in low..high */
     OPTION_NUMBER,  /* double in low..high */
     OPTION_BYTES,   /* uint64_t in low..high: a size with its unit, in MiB without one */
-    OPTION_CHOICE,  /* enum or bool: the position of the word in `value`, words parted by '|' */
+    OPTION_CHOICE,  /* enum or bool: the position of the word in `value`, words separated by '|' */
     OPTION_TEXT,    /* const char *, not empty */
     OPTION_ACTION,  /* options.action; `low` says which */
     OPTION_SIZE,    /* --size */
@@ -54,7 +54,7 @@ struct piece {
     const char *text;
     size_t length;
 };
-/* The next piece of a text parted by '|'; *rest moves behind it. Empty at the end. */
+/* The next piece of a text separated by '|'; *rest moves behind it. Empty at the end. */
 struct piece option_next_piece(const char **rest);
 
 /* What can only be said of the options together; fills in what one of them says of another. */

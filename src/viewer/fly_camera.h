@@ -33,7 +33,7 @@ struct fly_camera {
 void fly_camera_begin(struct fly_camera *fly_camera, const struct camera *camera, const struct box *bounds);
 /* Speed and centre for other bounds; the camera and kept views stay. */
 void fly_camera_measure(struct fly_camera *fly_camera, const struct box *bounds);
-/* The camera of where it stands now. */
+/* The camera at its current position. */
 struct camera fly_camera_current(const struct fly_camera *fly_camera);
 /* What the held keys do in `seconds`. True: something moved. */
 bool fly_camera_step(struct fly_camera *fly_camera, double seconds);

@@ -1,4 +1,4 @@
-/* A small immediate-mode toolkit: a panel is described anew for every frame, and each part of it answers at once
+/* A small immediate-mode toolkit: the caller describes a panel again for every frame, and each part returns at once
  * whether it was used. The only state from frame to frame is which part the mouse holds. Knows no window. */
 #ifndef GRAY_VIEWER_PANEL_H
 #define GRAY_VIEWER_PANEL_H

@@ -14,7 +14,7 @@ struct stand {
     struct transform from_node; /* to the space of `above`, or to the world */
 };
 
-/* A solid that cuts open what is placed; the stand of the node that it is an operand of. */
+/* A solid that cuts open what is placed; the pose of the node that it is an operand of. */
 struct clip {
     const struct node *solid;
     struct stand stand;

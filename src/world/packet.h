@@ -14,7 +14,7 @@ struct packet_answer {
 uint64_t world_nearest_packet(const struct world *world, const struct ray_packet *rays, struct world_scratch *scratch,
                               struct packet_answer *out);
 
-/* What can stand between a point and a parallelogram, in any order; not known when there is much. */
+/* What can be between a point and a parallelogram, in any order; not known when there is much. */
 enum { BETWEEN_LIMIT = 24 };
 struct between {
     uint32_t items[BETWEEN_LIMIT], count;

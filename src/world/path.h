@@ -17,8 +17,8 @@ uint32_t world_placed_by(const struct world *world, const struct node *node, uin
 typedef bool world_path_visit(void *context, uint32_t first, uint32_t count, const struct scene_step *steps,
                               uint32_t depth);
 
-/* The tree must be the one the world was built of, unchanged. A node that is cut away entirely by one clip and not by
- * the next is told with the earlier way. False: no memory. */
+/* The tree must be the one the world was built of, unchanged. A node that one clip removes completely and the next does
+ * not is reported with the earlier path. False: no memory. */
 bool world_walk_paths(const struct world *world, const struct node *root, world_path_visit *visit, void *context,
                       struct error *error);
 
@@ -32,8 +32,8 @@ bool world_find_paths(const struct world *world, const struct node *root, const 
 
 /* Inside of combined solids (NODE_CSG): every node under one, told after what is below it. steps: the way to it,
  * without the solid; its leaves, and those of what is below it, are the ones of origin first .. end - 1
- * (csg_leaf.origin). Ways of more than OPERAND_DEPTH nodes are not told. The visit answers false: the walk may end.
- * False: no memory. */
+ * (csg_leaf.origin). Paths of more than OPERAND_DEPTH nodes are not reported. The visit answers false: the walk may
+ * end. False: no memory. */
 enum { OPERAND_DEPTH = 256 };
 typedef bool world_operand_visit(void *context, uint32_t first, uint32_t end, const struct scene_step *steps,
                                  uint32_t depth);

@@ -137,7 +137,7 @@ static inline const struct thing *placed_thing(const struct world *world, uint32
 static inline const struct geometry *placed_geometry(const struct world *world, uint32_t placed) {
     return &placed_thing(world, placed)->geometry;
 }
-/* It stands at another place at another time. */
+/* Its pose depends on time. */
 static inline bool placed_moves(const struct world *world, uint32_t placed) {
     uint32_t linear = world->primitives[placed].linear;
     return linear != LINEAR_NONE && (linear & LINEAR_MOVING) != 0;
@@ -146,7 +146,8 @@ static inline bool placed_moves(const struct world *world, uint32_t placed) {
 static inline const struct node *placed_node(const struct world *world, uint32_t placed) {
     return world->authored.nodes[world->primitives[placed].thing];
 }
-/* world_from_object at a ray's time; of what stands still the bits are those of the nodes' transforms, composed. */
+/* world_from_object at a ray's time; for what does not move, the bits are those of the composed transforms of the
+ * nodes. */
 struct transform world_placement(const struct world *world, uint32_t placed, double ray_time);
 /* The ray in the space of a primitive that moves. */
 struct ray world_ray_of_moving(const struct world *world, uint32_t placed, const struct ray *ray);

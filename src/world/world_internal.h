@@ -7,7 +7,7 @@
 /* The nearest crossing with one placed primitive, in its own space; scratch grows until it fits. */
 bool world_ask_nearest(const struct world *world, uint32_t index, const struct ray *ray_object,
                        struct world_scratch *scratch, struct crossing *out);
-/* Whether one placed primitive stands in the way. */
+/* Whether one placed primitive occludes. */
 bool world_ask_any(const struct world *world, uint32_t index, const struct ray *ray, struct world_scratch *scratch);
 
 /* The boxes of all placed primitives in the world, cut by `limits` where there are any (NULL: none), and what is
