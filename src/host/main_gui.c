@@ -101,7 +101,7 @@ static bool fit_overlay(struct sdl *sdl, int width, int height) {
     return sdl->overlay && SDL_SetTextureBlendMode(sdl->overlay, SDL_BLENDMODE_BLEND) == 0;
 }
 
-static void show_frame(void *context, const struct window_frame *frame) {
+static void show_frame(void *context, const struct window_content *frame) {
     struct sdl *sdl = context;
     SDL_Rect place = {frame->left, frame->top, frame->shown_width, frame->shown_height};
     int width = (int)frame->window_width, height = (int)frame->window_height;

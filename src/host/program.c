@@ -77,7 +77,7 @@ static int print_document(const char *text) {
 }
 
 /* Where more than one process makes a picture, only the first one talks and keeps. */
-static void help_only(struct options *options) {
+static void disable_output(struct options *options) {
     options->checkpoint = NULL;
     options->resume = false;
     options->statistics = STATISTICS_NONE;
@@ -91,7 +91,7 @@ static int render(struct options *options, const struct program_parts *parts) {
     struct program_parts wanted = {.transport = options->mpi ? parts->transport : NULL,
                                    .window = options->window ? parts->window : NULL};
     if (wanted.transport && wanted.transport->rank > 0)
-        help_only(options);
+        disable_output(options);
     return supervisor_run(options, &wanted);
 }
 
@@ -124,7 +124,7 @@ static int act(struct options *options, const struct program_parts *parts, struc
 
 /* The programs with MPI and with a window are of their own beside this one, so that others do not load their libraries.
  */
-static int become(const char *which, const char *missing, char **argv) {
+static int exec_variant(const char *which, const char *missing, char **argv) {
     char program[4096];
     size_t length = 0;
     if (file_canonical("/proc/self/exe", program, sizeof program - 8))
@@ -154,9 +154,9 @@ int program_run(int argc, char **argv, const struct program_parts *parts) {
             (void)fputs("usage: gray [options] [--] scene.lua ...; gray --help lists all options\n", stderr);
         status = (int)error.kind;
     } else if (options.mpi && options.action == ACTION_RENDER && !parts->transport) {
-        status = become("mpi", "ompi-c (Debian: libopenmpi-dev)", argv);
+        status = exec_variant("mpi", "ompi-c (Debian: libopenmpi-dev)", argv);
     } else if (options.window && options.action == ACTION_RENDER && !parts->window) {
-        status = become("gui", "sdl2 (Debian: libsdl2-dev)", argv);
+        status = exec_variant("gui", "sdl2 (Debian: libsdl2-dev)", argv);
     } else {
         status = act(&options, parts, &arena);
     }

@@ -112,7 +112,7 @@ bool supervisor_child_is_stalled(struct supervisor *supervisor) {
 
 /* In the child, after the fork: never returns. From render_process_run on this process needs the channel, the memory it
  * gets, and the files that scenes may read: confine_process takes the rest away. */
-static _Noreturn void be_child(struct supervisor *supervisor, struct channel channel, pid_t parent) {
+static _Noreturn void run_as_child(struct supervisor *supervisor, struct channel channel, pid_t parent) {
     standard_streams_end(&supervisor->streams);
     (void)close(supervisor->signals);
     watch_close(&supervisor->watch);
@@ -156,7 +156,7 @@ bool supervisor_start_child(struct supervisor *supervisor, struct error *error) 
     supervisor->channel = ends[0];
     supervisor->child = MAY_FAIL(fork());
     if (supervisor->child == 0)
-        be_child(supervisor, ends[1], parent);
+        run_as_child(supervisor, ends[1], parent);
     int saved = errno;
     supervisor->had_child = true;
     supervisor->script.used = 0;

@@ -34,7 +34,7 @@ static struct transform world_from_parent(const struct scene_step *steps, uint32
     return out;
 }
 
-void pick_words(char out[PICK_NAME], const char *text) {
+void pick_copy_name(char out[PICK_NAME], const char *text) {
     (void)snprintf(out, PICK_NAME, "%s", text);
     for (char *c = out; *c; c++)
         *c = (unsigned char)*c < 32 || *c == 127 ? '?' : *c;
@@ -163,7 +163,7 @@ static bool box_node(struct picking *p, const struct node *root, struct error *e
     return true;
 }
 
-static const char *shape_words(const struct picking *p, const struct node *node) {
+static const char *shape_description(const struct picking *p, const struct node *node) {
     if (p->depth == p->route)
         return geometry_kind_name(placed_geometry(p->world, p->placed));
     bool solid = p->depth > p->route && node->kind != NODE_GROUP && node->kind != NODE_JOINT;
@@ -180,7 +180,7 @@ static void describe_material(const struct material *material, struct picked *ou
                               link->name ? link->name : inspect_material(link));
         used = length < 0 || used + (size_t)length >= sizeof words ? sizeof words - 1 : used + (size_t)length;
     }
-    pick_words(out->material, words);
+    pick_copy_name(out->material, words);
     out->material_serial = base->serial;
     for (int part = 0; part < LOOK_PARTS; part++)
         look_part_get(base, (enum look_part)part, out->look[part]);
@@ -200,12 +200,12 @@ static bool describe(struct picking *p, const struct node *root, const struct hi
     out->serial = node->serial;
     out->route = route_hash(p->steps, p->depth);
     out->solid = p->depth > p->route ? route_hash(p->steps, p->route) : 0;
-    pick_words(out->name, node->name);
+    pick_copy_name(out->name, node->name);
     if (p->depth > 1) {
         out->parent_serial = p->steps[p->depth - 2].node->serial;
-        pick_words(out->parent_name, p->steps[p->depth - 2].node->name);
+        pick_copy_name(out->parent_name, p->steps[p->depth - 2].node->name);
     }
-    pick_words(out->shape, shape_words(p, node));
+    pick_copy_name(out->shape, shape_description(p, node));
     describe_material(p->world->authored.materials[hit->material], out);
     out->can_own = p->depth == p->whole && node->kind == NODE_GEOMETRY;
     out->world_from_parent = world_from_parent(p->steps, p->depth).forward;

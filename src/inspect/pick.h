@@ -6,7 +6,7 @@
 #include "world/path.h"
 
 /* A name cut to this size; control characters become '?'. */
-void pick_words(char out[PICK_NAME], const char *text);
+void pick_copy_name(char out[PICK_NAME], const char *text);
 
 /* A number for a route to a node: it distinguishes the routes to a node with several parents. */
 uint64_t route_hash(const struct scene_step *steps, uint32_t depth);

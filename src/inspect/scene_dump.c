@@ -103,7 +103,7 @@ static void link_json(struct text_writer *writer, const struct material *link) {
     text_writer_print(writer, link->base ? "}," : "}");
 }
 
-static void link_words(struct text_writer *writer, const struct material *link) {
+static void link_text(struct text_writer *writer, const struct material *link) {
     const struct phong *phong = &material_origin(link)->phong;
     text_writer_print(writer, "%s", inspect_material(link));
     if (link->name && link->name[0]) {
@@ -124,7 +124,7 @@ static void dump_material(const struct dump *d, uint32_t material) {
     text_writer_print(writer, d->json ? "%s{\"number\":%u,\"links\":[" : "%.0s%8u  ", d->json && number > 1 ? "," : "",
                       number);
     for (const struct material *link = last; link; link = link->base)
-        d->json ? link_json(writer, link) : link_words(writer, link);
+        d->json ? link_json(writer, link) : link_text(writer, link);
     text_writer_print(writer, d->json ? "]}" : "\n");
 }
 

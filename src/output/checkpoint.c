@@ -144,9 +144,9 @@ bool checkpoint_update(struct checkpoint *checkpoint, const struct tile_picture 
         *tiles = have;
         return true;
     }
-    bool tell = !checkpoint->failed || now;
+    bool report = !checkpoint->failed || now;
     checkpoint->failed = true;
-    return !tell;
+    return !report;
 }
 
 bool checkpoint_note_written(struct checkpoint *checkpoint, uint32_t number, const struct tile_key *key,

@@ -48,7 +48,7 @@ struct peer {
     bool joined;  /* makes tiles of the current picture */
     bool gone;
     bool silent;
-    double heard; /* when, on farm.time */
+    double last_heard; /* when, on farm.time */
     struct begin begin;
     uint32_t made;
 };
@@ -69,13 +69,13 @@ struct farm {
     char (*notes)[LINE_LIMIT];
     int note_count;
     uint8_t *message;
-    double silence; /* the limit */
-    double time;    /* seconds in which this process ran, as far as it was here often enough */
-    double clock;   /* of the transport, when it was read last */
-    double sent;    /* on `time`: when the last heartbeat was sent */
-    double heard;   /* on `time`: from the first rank */
-    bool ended;     /* the first rank has said so */
-    int silent;     /* ranks, when the farm ended */
+    double silence;    /* the limit */
+    double time;       /* seconds in which this process ran, as far as it was here often enough */
+    double clock;      /* of the transport, when it was read last */
+    double sent;       /* on `time`: when the last heartbeat was sent */
+    double last_heard; /* on `time`: from the first rank */
+    bool ended;        /* the first rank has said so */
+    int silent;        /* ranks, when the farm ended */
     void (*poll)(void *context);
     void *poll_context;
 };
@@ -200,10 +200,10 @@ static void give_slots(struct farm *farm, int rank) {
 }
 
 /* Something has come from this rank. */
-static void hear(struct farm *farm, int rank) {
+static void receive_all(struct farm *farm, int rank) {
     struct peer *peer = &farm->peers[rank];
     static const char text[] = "is heard again";
-    peer->heard = farm->time;
+    peer->last_heard = farm->time;
     if (!peer->silent)
         return;
     peer->silent = false;
@@ -217,7 +217,7 @@ static void find_silent(struct farm *farm) {
     for (int rank = 1; rank < farm->transport->size && farm->silence > 0; rank++) {
         struct peer *peer = &farm->peers[rank];
         char text[LINE_LIMIT];
-        if (peer->silent || farm->time - peer->heard < farm->silence)
+        if (peer->silent || farm->time - peer->last_heard < farm->silence)
             continue;
         peer->silent = true;
         if (peer->gone)
@@ -324,7 +324,7 @@ static void step_first(struct farm *farm) {
     size_t size;
     pass_time(farm);
     while (farm->transport->receive(farm->transport->context, &from, &kind, farm->message, &size)) {
-        hear(farm, from);
+        receive_all(farm, from);
         take_message(farm, from, kind, farm->message, size);
     }
     find_silent(farm);
@@ -368,7 +368,7 @@ static bool listen(struct farm *farm, int *kind, struct pair *pair) {
     while (farm->transport->receive(farm->transport->context, &from, kind, farm->message, &size)) {
         if (from != 0)
             continue;
-        farm->heard = farm->time;
+        farm->last_heard = farm->time;
         if (size != sizeof *pair)
             continue;
         memcpy(pair, farm->message, sizeof *pair);
@@ -381,7 +381,7 @@ static bool listen(struct farm *farm, int *kind, struct pair *pair) {
 }
 
 bool farm_is_abandoned(const struct farm *farm) {
-    return !farm_is_first(farm) && farm->silence > 0 && farm->time - farm->heard > PATIENCE * farm->silence;
+    return !farm_is_first(farm) && farm->silence > 0 && farm->time - farm->last_heard > PATIENCE * farm->silence;
 }
 
 /* After a silence a tile may be given that is still being made here: it is sent when it is finished, in any case. */

@@ -57,7 +57,7 @@ bool farm_next_note(struct farm *farm, char *line, size_t size);
 bool farm_is_abandoned(const struct farm *farm);
 /* After all scripts: the first rank waits for the others, except silent ones; the others wait for its word that the
  * farm has ended. `report` gets lines that are only of other ranks. */
-void farm_finish(struct farm *farm, bool well, void (*tell)(void *context, const char *line), void *context);
+void farm_finish(struct farm *farm, bool well, void (*report)(void *context, const char *line), void *context);
 /* How many tiles of the last picture each rank made, first rank's view: "12 9 14". */
 void farm_shares(const struct farm *farm, char *out, size_t size);
 void farm_destroy(struct farm *farm);

@@ -137,7 +137,7 @@ static bool merge_picture(struct output_session *output, const struct part *part
     return false;
 }
 
-static int tell(struct output_session *output, const struct error *error, int status) {
+static int report_error(struct output_session *output, const struct error *error, int status) {
     output_report(output, LINE_ERROR, error->text);
     return (int)error->kind > status ? (int)error->kind : status;
 }
@@ -154,12 +154,12 @@ int merge_run(const struct options *options) {
     struct part *parts = mem_alloc_zero(count, sizeof *parts);
     if (!parts) {
         (void)error_no_memory(&error, "the parts");
-        status = tell(&output, &error, status);
+        status = report_error(&output, &error, status);
         count = 0;
     }
     for (size_t i = 0; i < count; i++) {
         if (!read_part(options->scripts[i], &parts[i], &error))
-            status = tell(&output, &error, status);
+            status = report_error(&output, &error, status);
     }
     /* A part that cannot be read may be of any picture: nothing is put together without it. */
     if (status != 0)
@@ -170,10 +170,10 @@ int merge_run(const struct options *options) {
         for (end = first + 1; end < count && parts[end].picture.number == parts[first].picture.number;)
             end++;
         if (!merge_picture(&output, parts + first, end - first, &error))
-            status = tell(&output, &error, status);
+            status = report_error(&output, &error, status);
     }
     mem_free(parts);
     if (!output_finish(&output, status == 0, &error))
-        status = tell(&output, &error, status);
+        status = report_error(&output, &error, status);
     return status;
 }

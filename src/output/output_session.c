@@ -157,7 +157,7 @@ static bool make_film(struct output_session *output, struct picture *picture, st
 }
 
 /* With --resume: whether the part is there, finished, and of this very picture. */
-static bool part_is_there(const struct output_session *output, const char *name) {
+static bool part_is_written(const struct output_session *output, const char *name) {
     struct tile_file file;
     struct error ignored;
     const struct tile_picture *want = &output->current.tiles, *have = &file.picture;
@@ -210,7 +210,7 @@ bool output_begin(struct output_session *output, const struct picture_request *r
     if (!check_files(output, picture, error))
         return false;
     describe_tiles(output, picture);
-    *already = part_is_there(output, written);
+    *already = part_is_written(output, written);
     if (*already)
         return true;
     if (!checkpoint_open(&output->checkpoint, picture->name, notice, error))
@@ -252,7 +252,7 @@ static const struct picture *kept_picture(const struct output_session *output) {
 }
 
 /* True when the file was written just now. */
-static bool tick(struct output_session *output, bool now, uint32_t *tiles) {
+static bool update_checkpoint(struct output_session *output, bool now, uint32_t *tiles) {
     const struct picture *picture = kept_picture(output);
     struct error error;
     const uint32_t nothing = UINT32_MAX;
@@ -282,7 +282,7 @@ void output_write_checkpoint(struct output_session *output) {
     uint32_t tiles;
     if (!output->checkpoint.on)
         output_report(output, LINE_NOTICE, "gray: notice: SIGUSR1 writes a checkpoint only with --checkpoint FILE");
-    else if (tick(output, true, &tiles))
+    else if (update_checkpoint(output, true, &tiles))
         report_checkpoint(output, tiles);
 }
 
@@ -320,7 +320,7 @@ void output_abandon(struct output_session *output) {
     if (output->farm)
         farm_end(output->farm, true);
     if (output->current.open && !output->current.request.check &&
-        film_tiles_in(&output->current.film, FILM_TILE_DONE) > 0 && tick(output, true, &tiles))
+        film_tiles_in(&output->current.film, FILM_TILE_DONE) > 0 && update_checkpoint(output, true, &tiles))
         report_checkpoint(output, tiles);
     if (output->options->partial && output->current.open && !output->current.request.check)
         write_partial(output);
@@ -345,7 +345,7 @@ static void report_statistics(struct output_session *output, const struct pictur
 }
 
 /* True: this process only helps, and the picture is written by another one. */
-static bool leave_to_others(struct output_session *output) {
+static bool leave_to_first_rank(struct output_session *output) {
     char shares[512], line[NAME_LIMIT + 600];
     if (!output->farm)
         return false;
@@ -379,7 +379,7 @@ static void warn_of_clamped(struct output_session *output, const struct picture_
 
 bool output_done(struct output_session *output, const struct picture_report *report, struct error *error) {
     struct error gone;
-    if (leave_to_others(output))
+    if (leave_to_first_rank(output))
         return true;
     progress_hide(&output->progress);
     report_display(output, display_end(&output->display, &gone), &gone);
@@ -413,7 +413,7 @@ bool output_done(struct output_session *output, const struct picture_report *rep
 void output_show_progress(struct output_session *output) {
     uint32_t ignored, done = atomic_load(&output->control->tiles_done), count = atomic_load(&output->control->tiles);
     struct error error;
-    (void)tick(output, false, &ignored);
+    (void)update_checkpoint(output, false, &ignored);
     if (output->farm) {
         farm_step(output->farm);
         if (output->current.open && count > 0)

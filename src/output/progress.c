@@ -140,7 +140,7 @@ static void print_line(struct progress *progress, const struct state *state) {
         (void)snprintf(line, sizeof line, "%s: building the scene, %s", progress->name, elapsed);
     begin_line(progress);
     text_print_scene_line(stderr, line);
-    progress->said = true;
+    progress->printed = true;
 }
 
 static void print_json(const struct progress *progress, const char *event, const struct state *state) {
@@ -160,7 +160,7 @@ static void print_json(const struct progress *progress, const char *event, const
 
 void progress_begin(struct progress *progress, const char *name, uint32_t width, uint32_t height) {
     progress->name = name;
-    progress->said = false;
+    progress->printed = false;
     progress->share = 0;
     progress->writing = usual_writing;
     progress->tried = progress->known = false;
@@ -225,7 +225,7 @@ void progress_end(struct progress *progress, enum progress_end how) {
     progress_hide(progress);
     if (progress->mode == PROGRESS_JSON)
         print_json(progress, how == PROGRESS_WRITTEN ? "written" : "given up", &(struct state){elapsed, -1, -1, 0, 0});
-    bool reported = progress->mode == PROGRESS_BAR || (progress->mode == PROGRESS_LINES && progress->said);
+    bool reported = progress->mode == PROGRESS_BAR || (progress->mode == PROGRESS_LINES && progress->printed);
     if (reported && how == PROGRESS_WRITTEN) {
         char line[4096 + 64];
         (void)snprintf(line, sizeof line, "%s  %u x %u  %.1f s", progress->name, progress->width, progress->height,

@@ -17,7 +17,7 @@ struct progress {
     uint32_t width, height;
     int threads;
     double begun, shown; /* seconds; when the picture began, when it was last reported */
-    bool said;           /* a line was printed */
+    bool printed;        /* a line was printed */
     double writing;      /* seconds of one core for a pixel of the file */
     bool tried;          /* that was measured; else it is a guess */
     bool known;          /* that tiles have begun was reported */

@@ -78,13 +78,13 @@ void picture_film_place(const struct picture_request *request, void *block, stru
     film->full_height = request->full_height;
 }
 
-void view_overlay_buffers(const struct picture_request *request, void *block, struct view_overlay_buffers *place) {
+void view_overlay_buffers(const struct picture_request *request, void *block, struct view_overlay_buffers *buffers) {
     struct film film = {.width = request->width, .height = request->height, .record = request->record};
     size_t pixels = (size_t)request->width * request->height;
     film_place_layers(&film, block, AOV_ALL); /* any mask gives the place where layers begin */
     float *behind = film.layers[0] + pixels * aov_layers(request->layers & AOV_ALL) * 3;
-    place->lines = (float(*)[4])(void *)behind;
-    place->shows = (uint8_t *)(behind + 4 * pixels);
+    buffers->lines = (float(*)[4])(void *)behind;
+    buffers->shows = (uint8_t *)(behind + 4 * pixels);
 }
 
 struct film pass_film(const struct picture_request *request, void *block, uint32_t divide) {

@@ -242,7 +242,7 @@ bool picture_film_size(const struct picture_request *request, size_t *bytes, str
 /* The film in that memory, with its layers and the part of the picture that it is. */
 void picture_film_place(const struct picture_request *request, void *block, struct film *film);
 /* Where the overlay of a picture in a window is in that memory: behind the layers. */
-void view_overlay_buffers(const struct picture_request *request, void *block, struct view_overlay_buffers *place);
+void view_overlay_buffers(const struct picture_request *request, void *block, struct view_overlay_buffers *buffers);
 /* The film of a pass in the same memory: the rectangle of the picture, divided. */
 struct film pass_film(const struct picture_request *request, void *block, uint32_t divide);
 

@@ -415,7 +415,7 @@ struct digest options_digest(const struct options *options) {
     for (int i = 0; i < option_count; i++) {
         const struct option *option = &option_table[i];
         bool picture = option->group == OPTION_GROUP_PICTURE || option->group == OPTION_GROUP_SHADING ||
-                       option->group == OPTION_GROUP_OLD;
+                       option->group == OPTION_GROUP_COMPATIBILITY;
         bool search = option->offset == offsetof(struct options, settings.accel) ||
                       option->offset == offsetof(struct options, isa);
         bool integrator = option->offset == offsetof(struct options, settings.integrator);

@@ -132,7 +132,7 @@ void canvas_box(const struct canvas *canvas, int x, int y, int width, int height
     }
 }
 
-void canvas_frame(const struct canvas *canvas, int x, int y, int width, int height, struct canvas_colour colour) {
+void canvas_outline(const struct canvas *canvas, int x, int y, int width, int height, struct canvas_colour colour) {
     int wide = canvas->scale;
     canvas_box(canvas, x, y, width, wide, colour);
     canvas_box(canvas, x, y + height - wide, width, wide, colour);

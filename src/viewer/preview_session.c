@@ -218,7 +218,7 @@ static void describe_world(struct preview_state *work, struct preview_reply *rep
     reply->report.bounds = finite_bounds(work->preview->world);
     reply->root = root->serial;
     reply->world_from_root = node_parent_from_node(root).forward;
-    pick_words(reply->root_name, root->name);
+    pick_copy_name(reply->root_name, root->name);
     describe_lights(work, 0, reply);
     work->reported = true;
 }

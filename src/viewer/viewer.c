@@ -360,7 +360,7 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
     if (viewer->block && fly_camera_step(&viewer->fly_camera, seconds < 0.1 ? seconds : 0.1))
         viewer_change_view(viewer);
     while (viewer->action == VIEWER_NOTHING && !viewer->quit && viewer->driver->poll(viewer->driver->context, &event))
-        viewer_take_event(viewer, &event);
+        viewer_handle_event(viewer, &event);
     if (viewer->pass.state == PASS_RUNNING || viewer->pass.state == PASS_STOPPING)
         viewer_draw_tiles(viewer);
     viewer_show(viewer, now);

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double frame_pause = 0.016, figures_pause = 0.25;
+static const double redraw_pause = 0.016, figures_pause = 0.25;
 
 bool viewer_resize(struct viewer *viewer, int width, int height, double density) {
     struct window_layout *layout = &viewer->display.layout;
@@ -72,7 +72,7 @@ void viewer_redraw(struct viewer *viewer) {
 
 /* One pixel of the film is a square of the canvas. */
 static void draw_pixel(struct viewer *viewer, const struct tone *tone, uint32_t x, uint32_t y, bool red) {
-    static const uint8_t mark[3] = {255, 0, 0};
+    static const uint8_t marked_colour[3] = {255, 0, 0};
     const struct picture_request *request = &viewer->request;
     uint32_t divide = viewer->pass.view.divide;
     const float *colour = viewer->pass.film.pixels[(size_t)y * viewer->pass.film.width + x].rgb;
@@ -82,7 +82,7 @@ static void draw_pixel(struct viewer *viewer, const struct tone *tone, uint32_t 
         for (uint32_t u = x * divide; u < (x + 1) * divide && u < request->width; u++) {
             size_t pixel = (size_t)v * request->width + u;
             if (red) {
-                memcpy(viewer->display.image + 3 * pixel, mark, 3);
+                memcpy(viewer->display.image + 3 * pixel, marked_colour, 3);
                 continue;
             }
             memcpy(viewer->display.light + 3 * pixel, colour, 3 * sizeof *colour);
@@ -121,7 +121,7 @@ void viewer_draw_tiles(struct viewer *viewer) {
 
 /* Figures. */
 
-static void count_words(char *out, size_t size, double count, const char *what) {
+static void format_count(char *out, size_t size, double count, const char *what) {
     const char *unit = count >= 1e9 ? " G" : count >= 1e6 ? " M" : count >= 1e4 ? " k" : " ";
     double value = count >= 1e9 ? count * 1e-9 : count >= 1e6 ? count * 1e-6 : count >= 1e4 ? count * 1e-3 : count;
     (void)snprintf(out, size, "%.*f%s%s", count >= 1e4 && value < 100 ? 2 : 0, value, unit, what);
@@ -178,9 +178,9 @@ static void compute_figures(const struct viewer *viewer, struct figures *figures
     *figures = (struct figures){0};
     describe_state(viewer, figures, now);
     (void)snprintf(figures->size, sizeof figures->size, "%ux%u", viewer->request.width, viewer->request.height);
-    count_words(figures->rays, sizeof figures->rays, seconds > 0 ? traced / seconds : 0, "rays/s");
-    count_words(figures->triangles, sizeof figures->triangles, (double)report->triangles, "triangles");
-    count_words(figures->voxels, sizeof figures->voxels, voxels, voxels > 1 ? "voxels" : "voxel");
+    format_count(figures->rays, sizeof figures->rays, seconds > 0 ? traced / seconds : 0, "rays/s");
+    format_count(figures->triangles, sizeof figures->triangles, (double)report->triangles, "triangles");
+    format_count(figures->voxels, sizeof figures->voxels, voxels, voxels > 1 ? "voxels" : "voxel");
     (void)snprintf(figures->frames, sizeof figures->frames, seconds > 0 ? "%.*f frames/s" : "- frames/s",
                    seconds > 0.1 ? 2 : 0, seconds > 0 ? 1 / seconds : 0);
 }
@@ -197,7 +197,7 @@ void viewer_show(struct viewer *viewer, double now) {
     const struct window_driver *driver = viewer->driver;
     bool due = now - viewer->display.figures_at >= figures_pause;
     if (!viewer->display.panel.canvas.rgba || (!due && !((viewer->display.dirty || viewer->display.hud_dirty) &&
-                                                         now - viewer->display.shown_at >= frame_pause)))
+                                                         now - viewer->display.shown_at >= redraw_pause)))
         return;
     bool over = due || viewer->display.hud_dirty;
     if (over) {
@@ -210,18 +210,18 @@ void viewer_show(struct viewer *viewer, double now) {
         viewer->display.figures_at = due ? now : viewer->display.figures_at;
     }
     const struct window_layout *layout = &viewer->display.layout;
-    struct window_frame frame = {.picture = viewer->display.image,
-                                 .width = viewer->request.width,
-                                 .height = viewer->request.height,
-                                 .picture_changed = viewer->display.dirty,
-                                 .left = (int)layout->left,
-                                 .top = (int)layout->top,
-                                 .shown_width = (int)layout->shown_width,
-                                 .shown_height = (int)layout->shown_height,
-                                 .overlay = viewer->display.panel.canvas.rgba,
-                                 .window_width = (uint32_t)layout->width,
-                                 .window_height = (uint32_t)layout->height,
-                                 .overlay_changed = over};
+    struct window_content frame = {.picture = viewer->display.image,
+                                   .width = viewer->request.width,
+                                   .height = viewer->request.height,
+                                   .picture_changed = viewer->display.dirty,
+                                   .left = (int)layout->left,
+                                   .top = (int)layout->top,
+                                   .shown_width = (int)layout->shown_width,
+                                   .shown_height = (int)layout->shown_height,
+                                   .overlay = viewer->display.panel.canvas.rgba,
+                                   .window_width = (uint32_t)layout->width,
+                                   .window_height = (uint32_t)layout->height,
+                                   .overlay_changed = over};
     driver->show(driver->context, &frame);
     /* The picture that is on the screen now, coarse as it may be, is of the world that was built. */
     if (viewer->built > 0 && viewer->pass.report.threads > 0) {

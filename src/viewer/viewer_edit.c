@@ -307,9 +307,9 @@ static struct picked new_picked(const struct viewer *viewer, const struct change
     const struct material look = added_material(three(change->numbers));
     for (int part = 0; part < LOOK_PARTS; part++)
         look_part_get(&look, (enum look_part)part, picked.look[part]);
-    pick_words(picked.name, added_kind_name(change->added));
-    pick_words(picked.shape, added_kind_name(change->added));
-    pick_words(picked.material, "phong");
+    pick_copy_name(picked.name, added_kind_name(change->added));
+    pick_copy_name(picked.shape, added_kind_name(change->added));
+    pick_copy_name(picked.material, "phong");
     (void)snprintf(picked.path, sizeof picked.path, "%s#%u / %s#%u", viewer->scene.root_name, change->serial,
                    picked.name, picked.serial);
     for (int i = 0; i < 8; i++)
@@ -338,7 +338,7 @@ static void add_copy(struct viewer *viewer) {
         picked.corners[i] = viewer_moved_point(viewer, picked.corners[i]);
     picked.position = viewer_moved_point(viewer, picked.position);
     picked.serial = UINT32_MAX - change.number;
-    pick_words(picked.name, added_kind_name(ADDED_COPY));
+    pick_copy_name(picked.name, added_kind_name(ADDED_COPY));
     viewer_make_edit(viewer, &change, true, false);
     select_new(viewer, &picked);
     viewer->edit.tool = TOOL_MOVE;

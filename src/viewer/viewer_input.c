@@ -34,7 +34,7 @@ static void grab(struct viewer *viewer, bool on) {
 }
 
 /* Keys that are held. True: it was one. */
-static bool take_held_key(struct viewer *viewer, int key, bool down) {
+static bool handle_held_key(struct viewer *viewer, int key, bool down) {
     static const struct {
         int key;
         enum fly_camera_key fly_camera;
@@ -60,7 +60,7 @@ static bool take_held_key(struct viewer *viewer, int key, bool down) {
     return false;
 }
 
-static void take_view_key(struct viewer *viewer, int key, bool control) {
+static void handle_view_key(struct viewer *viewer, int key, bool control) {
     struct fly_camera *fly_camera = &viewer->fly_camera;
     if (key >= '0' && key <= '9' && control) {
         fly_camera_save(fly_camera, key - '0');
@@ -89,7 +89,7 @@ static void take_view_key(struct viewer *viewer, int key, bool control) {
 }
 
 /* True: it was one of those that need no scene. */
-static bool take_plain_key(struct viewer *viewer, int key) {
+static bool handle_plain_key(struct viewer *viewer, int key) {
     switch (key) {
     case 'q':
         viewer->quit = true;
@@ -142,7 +142,7 @@ static void clear_selection(struct viewer *viewer) {
 }
 
 /* True: it was one of those that change the scene. */
-static bool take_edit_key(struct viewer *viewer, const struct window_event *event) {
+static bool handle_edit_key(struct viewer *viewer, const struct window_event *event) {
     switch (event->key) {
     case 'z':
         if (event->control)
@@ -193,11 +193,11 @@ static bool take_edit_key(struct viewer *viewer, const struct window_event *even
     }
 }
 
-static void take_key(struct viewer *viewer, const struct window_event *event) {
+static void handle_key(struct viewer *viewer, const struct window_event *event) {
     /* Without a scene the camera does not move. */
-    if (viewer->block && take_held_key(viewer, event->key, event->down))
+    if (viewer->block && handle_held_key(viewer, event->key, event->down))
         return;
-    if (!event->down || take_plain_key(viewer, event->key) || !viewer->block || take_edit_key(viewer, event))
+    if (!event->down || handle_plain_key(viewer, event->key) || !viewer->block || handle_edit_key(viewer, event))
         return;
     switch (event->key) {
     case 'r':
@@ -219,7 +219,7 @@ static void take_key(struct viewer *viewer, const struct window_event *event) {
         grab(viewer, false);
         return;
     default:
-        take_view_key(viewer, event->key, event->control);
+        handle_view_key(viewer, event->key, event->control);
         return;
     }
 }
@@ -233,7 +233,7 @@ static bool is_drag(struct viewer *viewer) {
     return viewer->input.dragged;
 }
 
-static void take_motion(struct viewer *viewer, const struct window_event *event) {
+static void handle_motion(struct viewer *viewer, const struct window_event *event) {
     double x = event->dx / viewer->display.layout.shown_height, y = event->dy / viewer->display.layout.shown_height;
     viewer->display.panel.mouse_x = event->x;
     viewer->display.panel.mouse_y = event->y;
@@ -262,7 +262,7 @@ static void press_picture(struct viewer *viewer, const struct window_event *even
     viewer->input.press_y = event->y;
 }
 
-static void take_button(struct viewer *viewer, const struct window_event *event, bool down) {
+static void handle_button(struct viewer *viewer, const struct window_event *event, bool down) {
     struct panel *panel = &viewer->display.panel;
     bool covered = panel_covers(panel, event->x, event->y);
     if (!viewer->input.grabbed) {
@@ -284,7 +284,7 @@ static void take_button(struct viewer *viewer, const struct window_event *event,
         press_picture(viewer, event);
 }
 
-static void take_wheel(struct viewer *viewer, double steps) {
+static void handle_wheel(struct viewer *viewer, double steps) {
     if (!viewer->block)
         return;
     if (viewer->edit.tool == TOOL_MOVE && viewer->edit.selection.kind != SELECTED_NOTHING && !viewer->input.grabbed) {
@@ -295,23 +295,23 @@ static void take_wheel(struct viewer *viewer, double steps) {
     viewer_change_view(viewer);
 }
 
-void viewer_take_event(struct viewer *viewer, const struct window_event *event) {
+void viewer_handle_event(struct viewer *viewer, const struct window_event *event) {
     switch (event->kind) {
     case WINDOW_CLOSE:
         viewer->quit = true;
         return;
     case WINDOW_KEY:
-        take_key(viewer, event);
+        handle_key(viewer, event);
         return;
     case WINDOW_MOVE:
-        take_motion(viewer, event);
+        handle_motion(viewer, event);
         return;
     case WINDOW_WHEEL:
-        take_wheel(viewer, event->y);
+        handle_wheel(viewer, event->y);
         return;
     case WINDOW_PRESS:
     case WINDOW_RELEASE:
-        take_button(viewer, event, event->kind == WINDOW_PRESS);
+        handle_button(viewer, event, event->kind == WINDOW_PRESS);
         return;
     case WINDOW_LEAVE:
         memset(viewer->fly_camera.down, 0, sizeof viewer->fly_camera.down);

@@ -10,7 +10,7 @@ bool viewer_is_idle(const struct viewer *viewer);
 void viewer_note_stop(struct viewer *viewer, double seconds);
 
 /* viewer_input.c */
-void viewer_take_event(struct viewer *viewer, const struct window_event *event);
+void viewer_handle_event(struct viewer *viewer, const struct window_event *event);
 void viewer_change_view(struct viewer *viewer); /* the camera was moved */
 /* Nothing is rendered or built any more, and what is shown stays; or it goes on. */
 void viewer_halt(struct viewer *viewer, bool on);
@@ -53,8 +53,8 @@ void viewer_take_lights(struct viewer *viewer, const struct preview_reply *reply
 const struct light_info *viewer_light(const struct viewer *viewer, uint32_t number); /* NULL: nothing is known of it */
 /* Where it is marked, pixels of the window; *seen: it is there, and not only at the border on the way to it. False:
  * nowhere. */
-bool viewer_light_mark(const struct viewer *viewer, const struct camera_frame *frame, uint32_t number, double *x,
-                       double *y, bool *seen);
+bool viewer_light_marker(const struct viewer *viewer, const struct camera_frame *frame, uint32_t number, double *x,
+                         double *y, bool *seen);
 bool viewer_near_light(const struct viewer *viewer, double x, double y, uint32_t *number);
 void viewer_select_light(struct viewer *viewer, uint32_t number);
 void viewer_next_light(struct viewer *viewer, bool back);

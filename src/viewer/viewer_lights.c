@@ -72,8 +72,8 @@ static bool free_part(const struct viewer *viewer, double *left, double *top, do
 }
 
 /* Where that point is, or at the border on the way there. */
-static bool mark_point(const struct viewer *viewer, const struct camera_frame *frame, struct vec3 point, double *x,
-                       double *y, bool *seen) {
+static bool marker_point(const struct viewer *viewer, const struct camera_frame *frame, struct vec3 point, double *x,
+                         double *y, bool *seen) {
     double left, top, right, bottom;
     if (!free_part(viewer, &left, &top, &right, &bottom))
         return false;
@@ -91,16 +91,16 @@ static bool mark_point(const struct viewer *viewer, const struct camera_frame *f
     return isfinite(*x) && isfinite(*y);
 }
 
-bool viewer_light_mark(const struct viewer *viewer, const struct camera_frame *frame, uint32_t number, double *x,
-                       double *y, bool *seen) {
+bool viewer_light_marker(const struct viewer *viewer, const struct camera_frame *frame, uint32_t number, double *x,
+                         double *y, bool *seen) {
     const struct light_info *light = viewer_light(viewer, number);
     if (!light || !(largest(light->colour) > 0)) /* one that was taken away is black */
         return false;
     if (light->placed)
-        return mark_point(viewer, frame, light->position, x, y, seen);
+        return marker_point(viewer, frame, light->position, x, y, seen);
     struct vec3 from = light->properties & LIGHT_HAS_DIRECTION ? vec3_negate(light->direction) : vec3_make(0, 1, 0);
     double far = 1e6 * (1 + vec3_max_abs(frame->eye));
-    return mark_point(viewer, frame, vec3_add_scaled(frame->eye, from, far), x, y, seen);
+    return marker_point(viewer, frame, vec3_add_scaled(frame->eye, from, far), x, y, seen);
 }
 
 bool viewer_near_light(const struct viewer *viewer, double x, double y, uint32_t *number) {
@@ -110,7 +110,7 @@ bool viewer_near_light(const struct viewer *viewer, double x, double y, uint32_t
     if (!viewer_camera_frame(viewer, &frame))
         return false;
     for (uint32_t i = 1; i <= viewer->lights.known; i++) {
-        if (!viewer_light_mark(viewer, &frame, i, &u, &v, &seen))
+        if (!viewer_light_marker(viewer, &frame, i, &u, &v, &seen))
             continue;
         double apart = sqrt((u - x) * (u - x) + (v - y) * (v - y));
         if (apart < best) {

@@ -38,7 +38,7 @@ void viewer_choose_overlay(struct viewer *viewer, enum overlay overlay) {
     viewer_redraw(viewer);
 }
 
-static void take_lines(struct viewer *viewer, const struct view_overlay_buffers *layout) {
+static void take_lines(struct viewer *viewer, const struct view_overlay_buffers *buffers) {
     size_t pixels = (size_t)viewer->request.width * viewer->request.height;
     if (!viewer->overlay.lines)
         viewer->overlay.lines = mem_alloc_zero(pixels, sizeof *viewer->overlay.lines);
@@ -47,9 +47,9 @@ static void take_lines(struct viewer *viewer, const struct view_overlay_buffers 
     bool had = viewer->overlay.has_lines;
     viewer->overlay.has_lines = true;
     for (size_t i = 0; i < pixels; i++) {
-        bool other = memcmp(viewer->overlay.lines[i], layout->lines[i], sizeof viewer->overlay.lines[i]) != 0;
+        bool other = memcmp(viewer->overlay.lines[i], buffers->lines[i], sizeof viewer->overlay.lines[i]) != 0;
         if (other)
-            memcpy(viewer->overlay.lines[i], layout->lines[i], sizeof viewer->overlay.lines[i]);
+            memcpy(viewer->overlay.lines[i], buffers->lines[i], sizeof viewer->overlay.lines[i]);
         if (other || (!had && viewer->overlay.lines[i][3] < 1))
             viewer_draw_again(viewer, i);
     }
@@ -70,14 +70,15 @@ static bool add_side(struct viewer *viewer, uint32_t x, uint32_t y, bool upright
 }
 
 /* Sides between a pixel that shows the node and one that does not. At the borders of the picture there are none. */
-static void take_outline(struct viewer *viewer, const struct view_overlay_buffers *layout, struct film_rectangle area) {
+static void take_outline(struct viewer *viewer, const struct view_overlay_buffers *buffers,
+                         struct film_rectangle area) {
     uint32_t width = viewer->request.width, height = viewer->request.height;
     bool ok = true;
     viewer->overlay.side_count = 0;
     area.x1 = area.x1 < width ? area.x1 : width;
     area.y1 = area.y1 < height ? area.y1 : height;
     for (uint32_t y = area.y0; ok && y < area.y1; y++) {
-        const uint8_t *row = layout->shows + (size_t)y * width;
+        const uint8_t *row = buffers->shows + (size_t)y * width;
         for (uint32_t x = area.x0; ok && x < area.x1; x++) {
             bool left = x > area.x0 && row[x - 1], above = y > area.y0 && row[(ptrdiff_t)x - (ptrdiff_t)width];
             if (x > 0 && left != (row[x] != 0))
@@ -90,28 +91,28 @@ static void take_outline(struct viewer *viewer, const struct view_overlay_buffer
             ok = add_side(viewer, area.x1, y, true);
     }
     for (uint32_t x = area.x0; ok && area.y1 < height && area.y1 > area.y0 && x < area.x1; x++)
-        if (layout->shows[(size_t)(area.y1 - 1) * width + x])
+        if (buffers->shows[(size_t)(area.y1 - 1) * width + x])
             ok = add_side(viewer, x, area.y1, false);
     viewer->overlay.side_count = ok ? viewer->overlay.side_count : 0;
 }
 
 void viewer_take_overlay(struct viewer *viewer, const struct view_overlay_request *asked,
                          const struct view_overlay *overlay) {
-    struct view_overlay_buffers layout;
+    struct view_overlay_buffers buffers;
     struct view_overlay_request now = viewer_overlay_request(viewer, false);
     if (overlay->stopped)
         return;
     if (overlay->has_lines || overlay->has_outline)
-        view_overlay_buffers(&viewer->request, viewer->block, &layout);
+        view_overlay_buffers(&viewer->request, viewer->block, &buffers);
     if (asked->lines.kind == viewer->overlay.kind && viewer->overlay.kind != OVERLAY_NONE) {
         if (overlay->has_lines)
-            take_lines(viewer, &layout);
+            take_lines(viewer, &buffers);
         viewer->overlay.lines_fresh = asked->lines.cell == 1 && asked->lines.limit == OVERLAY_BOXES;
     }
     if (asked->outline && asked->serial == now.serial && asked->route == now.route) {
         viewer->overlay.side_count = 0;
         if (overlay->has_outline)
-            take_outline(viewer, &layout, overlay->outline);
+            take_outline(viewer, &buffers, overlay->outline);
         viewer->overlay.outline_fresh = true;
     }
     viewer->display.hud_dirty = true;
@@ -119,15 +120,15 @@ void viewer_take_overlay(struct viewer *viewer, const struct view_overlay_reques
 
 bool viewer_draw_outline(struct viewer *viewer, struct canvas_colour colour) {
     const struct canvas *canvas = &viewer->display.panel.canvas;
-    const struct window_layout *layout = &viewer->display.layout;
-    double zoom = layout->shown_width / viewer->request.width;
+    const struct window_layout *buffers = &viewer->display.layout;
+    double zoom = buffers->shown_width / viewer->request.width;
     int thick = canvas->scale + 1, long_side = (int)(zoom + 0.999);
     if (!viewer->overlay.outline_fresh || viewer->pass.outdated || viewer->edit.pending.count > 0 ||
         viewer->overlay.side_count == 0)
         return false;
     for (uint32_t i = 0; i < viewer->overlay.side_count; i++) {
         const struct outline_side *side = &viewer->overlay.sides[i];
-        int x = (int)(layout->left + side->x * zoom), y = (int)(layout->top + side->y * zoom);
+        int x = (int)(buffers->left + side->x * zoom), y = (int)(buffers->top + side->y * zoom);
         if (side->upright)
             canvas_box(canvas, x - thick / 2, y - thick / 2, thick, long_side + thick, colour);
         else

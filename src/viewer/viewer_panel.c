@@ -86,7 +86,7 @@ void viewer_draw_lights(struct viewer *viewer, const struct camera_frame *frame)
     for (uint32_t i = 1; i <= viewer->lights.known; i++) {
         bool chosen = viewer->edit.selection.kind == SELECTED_LIGHT && viewer->edit.selection.light == i, seen;
         const struct light_info *light = viewer_light(viewer, i);
-        if (!viewer_light_mark(viewer, frame, i, &x, &y, &seen))
+        if (!viewer_light_marker(viewer, frame, i, &x, &y, &seen))
             continue;
         struct canvas_colour colour = chosen ? outline : seen ? bulb : dim;
         canvas_ring(canvas, x, y, chosen ? 1.5 * r : r, colour);

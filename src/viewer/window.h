@@ -45,7 +45,7 @@ struct window_event {
     double x, y, dx, dy, density;
 };
 
-struct window_frame {
+struct window_content {
     const uint8_t *picture; /* 3 bytes a pixel, rows from the top */
     uint32_t width, height;
     bool picture_changed;
@@ -59,7 +59,7 @@ struct window_driver {
     void *context;
     /* For a picture of this size; its first event is a WINDOW_SIZE. */
     bool (*open)(void *context, uint32_t width, uint32_t height, const char *title, struct error *error);
-    void (*show)(void *context, const struct window_frame *frame);
+    void (*show)(void *context, const struct window_content *frame);
     bool (*poll)(void *context, struct window_event *event); /* false: nothing happened */
     void (*title)(void *context, const char *text);
     void (*grab)(void *context, bool on); /* the mouse looks around: hidden and kept inside */

@@ -142,7 +142,7 @@ TEST(requests_for_impossible_pictures_are_refused) {
 }
 
 /* What a child that was taken over might send: texts without an end, kinds that do not exist. */
-TEST(news_answers_and_names_without_an_end_are_refused) {
+TEST(replies_answers_and_names_without_an_end_are_refused) {
     open_channel();
     static const struct preview_reply sound;
     struct preview_reply reply = sound;

@@ -348,7 +348,7 @@ TEST(camera_projects_a_point_to_where_its_ray_goes_through) {
     }
 }
 
-TEST(picking_tells_the_way_to_a_node_its_place_and_its_box) {
+TEST(picking_returns_the_path_of_a_node_its_position_and_its_box) {
     static struct stage s;
     struct picked picked;
     stage_begin(&s, 1);

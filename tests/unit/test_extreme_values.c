@@ -650,7 +650,7 @@ static void count_floats(const char *name, size_t *not_finite, size_t *largest) 
     free(bytes);
 }
 
-static int count_words(const char *text, const char *words) {
+static int format_count(const char *text, const char *words) {
     int count = 0;
     for (; (text = strstr(text, words)); text++)
         count++;
@@ -679,7 +679,7 @@ TEST(light_beyond_the_largest_float_is_clamped_with_one_warning) {
     bright_text("x.pfm", scene, sizeof scene);
     struct test_result r = test_gray_scene(scene, "--aov all -write-pre-aa pre- scene.lua", NULL);
     CHECK_EQ_INT(r.status, 0);
-    if (count_words(r.err, clamped_words) != 1 || count_words(r.err, "x.pfm: light") != 1)
+    if (format_count(r.err, clamped_words) != 1 || format_count(r.err, "x.pfm: light") != 1)
         test_fail(__FILE__, __LINE__, "%s", r.err);
     count_floats("x.pfm", &not_finite, &largest);
     CHECK(not_finite == 0 && largest > 0);
@@ -710,8 +710,8 @@ TEST(one_warning_for_each_picture_that_is_clamped) {
     append(scene, "gr.render{node = gr.sphere('s'), file = 'dark.pfm', width = 8, height = 8, eye = {0, 0, 5}}\n");
     struct test_result r = test_gray_scene(scene, "scene.lua", NULL);
     CHECK_EQ_INT(r.status, 0);
-    CHECK_EQ_INT(count_words(r.err, clamped_words), 3);
-    CHECK_EQ_INT(count_words(r.err, "dark.pfm: light"), 0);
+    CHECK_EQ_INT(format_count(r.err, clamped_words), 3);
+    CHECK_EQ_INT(format_count(r.err, "dark.pfm: light"), 0);
     free(r.out);
     free(r.err);
 }
@@ -727,7 +727,7 @@ TEST(clamped_light_can_be_read_back_in_every_format) {
         struct test_result r =
             test_gray_scene(scene, "--exposure 100 --tone filmic --srgb --aov depth,normal scene.lua", NULL);
         CHECK_EQ_INT(r.status, 0);
-        CHECK_EQ_INT(count_words(r.err, clamped_words), 1);
+        CHECK_EQ_INT(format_count(r.err, clamped_words), 1);
         free(r.out);
         free(r.err);
         (void)snprintf(scene, sizeof scene,
@@ -767,7 +767,7 @@ TEST(numbers_of_options_are_finite) {
             test_gray_scene("gr.render{node = gr.sphere('s'), file = 'o.pfm', width = 4, height = 4, "
                             "eye = {0, 0, 5}}\n",
                             arguments, NULL);
-        if (r.status != 2 || count_words(r.err, "\n") > 2)
+        if (r.status != 2 || format_count(r.err, "\n") > 2)
             test_fail(__FILE__, __LINE__, "%s: status %d: %s", options[i], r.status, r.err);
         free(r.out);
         free(r.err);
@@ -943,7 +943,7 @@ TEST(tiles_with_colours_that_are_not_finite_are_refused) {
             mem_free(block);
             CHECK(!tile_file_read(name, &file, &error) && strstr(error.text, "a colour that is not finite"));
             r = test_gray(NULL, "merge x.png.1-of-1.part -o merged.pfm");
-            if (r.status != 1 || count_words(r.err, "\n") != 1 || !strstr(r.err, "not finite"))
+            if (r.status != 1 || format_count(r.err, "\n") != 1 || !strstr(r.err, "not finite"))
                 test_fail(__FILE__, __LINE__, "status %d: %s", r.status, r.err);
             free(r.out);
             free(r.err);

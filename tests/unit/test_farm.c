@@ -320,7 +320,7 @@ TEST(a_tile_that_is_given_again_is_not_made_by_two_at_once) {
     end_farm(2);
 }
 
-TEST(time_in_which_the_first_rank_did_not_run_is_nobody_s_silence) {
+TEST(time_in_which_the_first_rank_did_not_run_is_no_silence_of_others) {
     char line[256];
     begin_farm(2);
     begin_picture(2);
@@ -419,7 +419,7 @@ static void count_line(void *context, const char *line) {
     told++;
 }
 
-TEST(ranks_with_another_picture_late_ones_and_those_after_a_failure_are_told) {
+TEST(ranks_with_another_picture_late_ones_and_those_after_a_failure_are_answered) {
     for (int well = 0; well <= 1; well++) {
         struct error error;
         struct tile_picture picture = picture_of(1, "a.png"), other = picture_of(1, "a.png"),

@@ -10,7 +10,7 @@
 
 #define TARGETS(X)                                                                                                     \
     X(font)                                                                                                            \
-    X(frames)                                                                                                          \
+    X(messages)                                                                                                        \
     X(gltf)                                                                                                            \
     X(gz) X(jpeg) X(light) X(merge) X(mtl) X(obj) X(options) X(order) X(ply) X(png) X(resume) X(script) X(stl) X(tiles)
 

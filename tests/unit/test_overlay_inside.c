@@ -56,7 +56,7 @@ static void prepare(struct stage *s, struct test_random *random) {
     floor->shape = (struct shape){.kind = SHAPE_FLAT, .flat = flat_plane(vec3_make(0.1, 1, 0), -9)};
 }
 
-TEST(edges_round_the_camera_are_drawn_where_their_points_are) {
+TEST(edges_around_the_camera_are_drawn_where_their_points_are) {
     static float lines[WIDTH * HEIGHT][4];
     struct test_random random = {12};
     for (int turn = 0; turn < 8; turn++) {

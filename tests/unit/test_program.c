@@ -498,7 +498,7 @@ TEST(a_killed_rendering_process_leaves_the_old_picture_and_the_next_script_runs)
     (void)wait_for("scene.lua: the render process was killed while it rendered out.png, which is not written");
 }
 
-TEST(a_crash_is_told_in_one_line_with_its_signal) {
+TEST(a_crash_is_reported_in_one_line_with_its_signal) {
     pid_t program = start_endless(), child = child_of(program);
     CHECK(child > 0 && kill(child, SIGABRT) == 0);
     CHECK_EQ_INT(finish(program), 3);

@@ -363,7 +363,7 @@ TEST(a_quick_picture_has_its_size_and_one_sample_a_pixel) {
 
 /* --- telling --- */
 
-TEST(progress_as_json_tells_the_share_of_the_work_and_the_time_left) {
+TEST(progress_as_json_has_the_share_of_the_work_and_the_time_left) {
     struct test_result result =
         test_gray_scene(mirrors, "--progress=json --size 700x400 -al-samples 8 -j 1 -reflect-limit 6 scene.lua", NULL);
     double before = 0;

@@ -314,7 +314,7 @@ TEST(missing_folders_are_made_and_whole_numbers_in_names_lose_their_fraction) {
     free(result.err);
 }
 
-TEST(check_tells_every_picture_that_cannot_be_made_with_the_line_of_its_call) {
+TEST(check_reports_every_picture_that_cannot_be_made_with_the_line_of_its_call) {
     struct test_result result = test_gray_scene(
         "local flap = {{0,0,0},{1,0,0},{0,1,0}}\n"
         "local d = gr.difference('d', gr.cube('a'), gr.node('g'):add_child(gr.mesh('open', flap, {{0,1,2}})))\n"

@@ -350,7 +350,7 @@ static const struct picture_files *files_for(const struct options *options) {
     return &files;
 }
 
-TEST(a_keeper_without_a_checkpoint_or_with_check_does_nothing) {
+TEST(without_an_option_or_with_check_there_is_no_checkpoint) {
     struct options options = options_for("auto", false);
     struct checkpoint checkpoint;
     struct error error;
@@ -370,7 +370,7 @@ TEST(a_keeper_without_a_checkpoint_or_with_check_does_nothing) {
     }
 }
 
-TEST(a_keeper_tells_names_that_are_too_long_and_files_that_are_damaged) {
+TEST(a_checkpoint_reports_names_that_are_too_long_and_files_that_are_damaged) {
     struct options options = options_for("auto", true);
     struct checkpoint checkpoint;
     struct error error;
@@ -420,7 +420,7 @@ static void leave_checkpoint(const char *path, const char *first, struct film *f
     CHECK(access(path, F_OK) == 0);
 }
 
-TEST(a_keeper_goes_on_only_with_what_is_the_same) {
+TEST(a_checkpoint_resumes_only_the_same_picture) {
     const char *path = test_path("c.tiles"), *first = test_path("first.png");
     struct film film = half_film(), back = half_film();
     const struct tile_picture picture = some_picture();
@@ -475,7 +475,7 @@ TEST(a_keeper_goes_on_only_with_what_is_the_same) {
     free(back.pixels);
 }
 
-TEST(a_keeper_refuses_the_checkpoint_of_somebody_else) {
+TEST(a_checkpoint_of_another_run_is_refused) {
     const char *path = test_path("d.tiles"), *first = test_path("first.png");
     struct film film = half_film();
     struct options options = options_for(path, false);
@@ -492,7 +492,7 @@ TEST(a_keeper_refuses_the_checkpoint_of_somebody_else) {
     free(film.pixels);
 }
 
-TEST(a_checkpoint_that_cannot_be_written_is_told_once_and_again_when_asked_for) {
+TEST(a_checkpoint_that_cannot_be_written_is_reported_once_and_on_request) {
     struct options options = options_for(test_path("no/such\x01/folder/c.tiles"), false);
     const char *file = test_path("no");
     struct film film = half_film();
@@ -514,7 +514,7 @@ TEST(a_checkpoint_that_cannot_be_written_is_told_once_and_again_when_asked_for) 
     free(film.pixels);
 }
 
-TEST(any_allocation_or_call_may_fail_in_a_keeper) {
+TEST(any_allocation_or_call_may_fail_in_a_checkpoint) {
 #ifndef GRAY_FAULTS
     test_skip("failures on demand are only in builds with GRAY_FAULTS");
 #endif

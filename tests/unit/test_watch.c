@@ -44,7 +44,7 @@ static bool changed(struct output_of_tests *t) {
     return watch_changed(&t->watch, t->now);
 }
 
-TEST(watch_tells_another_content_once_and_nothing_of_the_same_content) {
+TEST(watch_reports_another_content_once_and_the_same_content_never) {
     struct output_of_tests t;
     test_write_text(at("a.lua"), "one");
     test_write_text(at("b.obj"), "two");

@@ -74,7 +74,7 @@ TEST(fly_camera_goes_as_far_in_a_hundred_steps_as_in_one) {
     CHECK_NEAR(apart(fast.pose.position, vec3_make(1, 2, 3)), 0, 0);
 }
 
-TEST(fly_camera_round_the_centre_keeps_its_distance_and_its_place_in_the_picture) {
+TEST(fly_camera_orbits_keep_the_distance_of_the_centre_and_its_position_in_the_picture) {
     struct fly_camera fly_camera = some_walk();
     struct camera before = fly_camera_current(&fly_camera);
     struct vec3 right = vec3_cross(before.view, before.up), to = vec3_sub(fly_camera.centre, before.eye);
@@ -118,7 +118,7 @@ static bool fake_open(void *context, uint32_t width, uint32_t height, const char
     CHECK(width == 100 && height == 70 && title);
     return fake->open = true;
 }
-static void fake_show(void *context, const struct window_frame *frame) {
+static void fake_show(void *context, const struct window_content *frame) {
     struct fake *fake = context;
     CHECK(frame->picture && frame->width == 100 && frame->height == 70);
     fake->shown++;
@@ -248,7 +248,7 @@ TEST(window_shows_coarse_passes_first_and_writes_the_picture_of_the_script_once)
     end(&t);
 }
 
-TEST(window_walks_in_coarse_passes_and_refines_when_still) {
+TEST(window_renders_coarse_passes_while_the_camera_moves_and_refines_after) {
     struct table t;
     begin(&t);
     go_to_the_end(&t);
@@ -270,7 +270,7 @@ TEST(window_walks_in_coarse_passes_and_refines_when_still) {
     end(&t);
 }
 
-TEST(window_stops_a_fine_pass_for_somebody_who_walks_on) {
+TEST(window_stops_a_fine_pass_when_the_camera_moves) {
     struct table t;
     begin(&t);
     finish_pass(&t, 0.02, false);
@@ -458,7 +458,7 @@ TEST(window_places_the_picture_in_its_middle_for_any_size_and_density) {
     end(&t);
 }
 
-TEST(window_tells_how_long_the_picture_will_take) {
+TEST(window_shows_how_long_the_picture_will_take) {
     struct table t;
     struct control control = {.build_step = 0};
     begin(&t);
@@ -483,7 +483,7 @@ TEST(window_tells_how_long_the_picture_will_take) {
     end(&t);
 }
 
-TEST(window_tells_how_far_building_is_and_what_went_wrong) {
+TEST(window_shows_how_far_building_is_and_errors) {
     struct table t;
     struct control control = {.build_step = 3, .build_done = 250};
     begin(&t);
@@ -507,7 +507,7 @@ TEST(window_tells_how_far_building_is_and_what_went_wrong) {
     end(&t);
 }
 
-TEST(canvas_letters_keep_inside_their_cell_and_inside_the_paper) {
+TEST(canvas_letters_stay_inside_their_cell_and_the_canvas) {
     enum { W = 40, H = 30 };
     static uint8_t rgba[4 * W * H];
     const struct canvas canvas = {rgba, W, H, 1};
@@ -629,7 +629,7 @@ static void refine(struct table *t) {
     CHECK_EQ_INT(step(t), VIEWER_NOTHING);
 }
 
-TEST(window_clicks_ask_what_stands_there_and_orbits_go_round_it) {
+TEST(window_clicks_select_and_orbits_turn_about_the_selection) {
     struct table t;
     begin(&t);
     enlarge(&t);
@@ -866,7 +866,7 @@ TEST(window_asks_for_lights_until_it_knows_them_all_and_goes_through_them_by_key
     end(&t);
 }
 
-TEST(window_asks_for_the_story_of_the_pixel_under_the_mouse) {
+TEST(window_shows_the_trace_of_the_pixel_under_the_mouse) {
     struct table t;
     begin(&t);
     enlarge(&t);
@@ -915,7 +915,7 @@ TEST(window_makes_the_picture_anew_in_another_exposure_and_does_not_write_it_as_
     end(&t);
 }
 
-TEST(window_tells_the_child_all_changes_again_when_the_scripts_run_again) {
+TEST(window_sends_all_edits_again_when_the_scripts_run_again) {
     struct table t;
     struct error error;
     begin(&t);

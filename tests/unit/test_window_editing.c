@@ -134,7 +134,7 @@ TEST(window_that_turns_a_sky_turns_what_is_seen_behind_and_saves_what_gives_the_
           "xdotool key ctrl+z; finds first.png\n");
 }
 
-TEST(window_that_has_more_lights_than_are_told_at_once_changes_the_last_one) {
+TEST(window_that_has_more_lights_than_one_message_changes_the_last_one) {
     drive(BALL "local lamps = {}\nfor i = 1, 70 do lamps[i] = gr.light({math.sin(i) * 5, 3, math.cos(i) * 5}, {0.005, "
                "0.005, 0.005}, {1, 0, 0}) end\nlamps[71] = gr.sun_light{sun={1, 2, 3}, colour={0.4, 0.4, 0.3}}\n"
                "gr.render(r, 'out.png', 320, 240, {0, 1, 6}, {0, -0.15, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2}, lamps)\n",

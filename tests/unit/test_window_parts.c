@@ -20,7 +20,7 @@ static int inked(const struct canvas *canvas) {
     return count;
 }
 
-TEST(nothing_is_drawn_beyond_the_edges_of_the_paper) {
+TEST(nothing_is_drawn_beyond_the_edges_of_the_canvas) {
     enum { WIDTH = 30, HEIGHT = 20, ROOM = 4 * WIDTH * HEIGHT, AROUND = 4096 };
     static uint8_t block[AROUND + ROOM + AROUND];
     const struct canvas canvas = {block + AROUND, WIDTH, HEIGHT, 1};
@@ -39,7 +39,7 @@ TEST(nothing_is_drawn_beyond_the_edges_of_the_paper) {
         canvas_line(&canvas, v[0], v[1], v[2], v[3], colour);
         canvas_ring(&canvas, v[0], v[1], fabs(v[2]), colour);
         canvas_box(&canvas, at[0], at[1], at[2], at[3], colour);
-        canvas_frame(&canvas, at[0], at[1], at[2], at[3], colour);
+        canvas_outline(&canvas, at[0], at[1], at[2], at[3], colour);
         canvas_text(&canvas, at[0], at[1], "Text \xC3\xA4 \x7f~!", colour);
     }
     for (int i = 0; i < AROUND; i++)
@@ -67,7 +67,7 @@ TEST(nothing_is_drawn_beyond_the_edges_of_the_paper) {
 }
 
 /* Whatever it looks at, also straight up and with an up that is no direction across. */
-TEST(a_walk_begins_where_the_camera_looks) {
+TEST(the_fly_camera_begins_where_the_camera_looks) {
     const struct box box = {{-1, -1, -1}, {1, 1, 1}}, endless = {{-INFINITY, -1, -1}, {1, 1, 1}},
                      nothing = {{1, 1, 1}, {-1, -1, -1}}, above = {{-1, -1, -1}, {1, INFINITY, 1}};
     const struct box *const boxes[] = {&box, &endless, &nothing, &above};
@@ -111,7 +111,7 @@ static bool put_until(void *context, const char *line) {
     return --*left >= 0;
 }
 
-TEST(edits_are_told_until_somebody_has_enough) {
+TEST(edits_are_written_as_lua_until_the_writer_stops) {
     struct edits edits = {0};
     struct change change = {.kind = CHANGE_GONE, .serial = 3};
     strcpy(change.name, "it's \\ a\x7f\nname");

@@ -63,7 +63,7 @@ static bool crowd_open(void *context, uint32_t width, uint32_t height, const cha
 }
 
 /* Every byte that is to be shown can be read. */
-static void crowd_show(void *context, const struct window_frame *frame) {
+static void crowd_show(void *context, const struct window_content *frame) {
     struct crowd *crowd = context;
     unsigned sum = 0;
     for (size_t i = 0; i < 3 * (size_t)frame->width * frame->height; i += 97)

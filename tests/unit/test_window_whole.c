@@ -36,7 +36,7 @@ static bool person_open(void *context, uint32_t width, uint32_t height, const ch
     CHECK(width > 0 && height > 0 && title);
     return person->open = true;
 }
-static void person_show(void *context, const struct window_frame *frame) {
+static void person_show(void *context, const struct window_content *frame) {
     struct person *person = context;
     CHECK(frame->window_width == WIDE && frame->window_height == HIGH);
     if (person->over)
