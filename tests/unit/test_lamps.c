@@ -423,7 +423,39 @@ static double irradiance(const struct sky *sky, struct vec3 normal, int steps) {
     return sum * 4 / (2.0 * steps * steps);
 }
 
-TEST(samples_of_every_sky_have_the_mean_of_its_integral) {
+/* Chi-square over cells of equal solid angle, of N samples at random places; the shares by the midpoint rule, finer
+ * than the table. */
+static void check_density(const struct sky *sky, const struct sky_table *table) {
+    enum { ROWS = 8, COLUMNS = 16, FINE = 64, N = 40000 };
+    double chi = 0, share[ROWS * COLUMNS] = {0}, all = 0;
+    int counted[ROWS * COLUMNS] = {0};
+    for (int j = 0; j < ROWS * FINE; j++) {
+        for (int i = 0; i < COLUMNS * FINE; i++) {
+            double y = 1 - 2 * (j + 0.5) / (ROWS * FINE), turn = 2 * pi * (i + 0.5) / (COLUMNS * FINE);
+            struct vec3 d = {sqrt(1 - y * y) * cos(turn), y, sqrt(1 - y * y) * sin(turn)};
+            share[j / FINE * COLUMNS + i / FINE] += sky_table_pdf(table, d) * 4 * pi / (ROWS * FINE * COLUMNS * FINE);
+        }
+    }
+    for (uint64_t k = 0; k < N; k++) {
+        struct sample2 place = {random_unit(random_combine(8, k)), random_unit(random_combine(9, k))};
+        struct sky_sample sample = sky_table_sample(sky, table, place);
+        struct vec3 d = sample.direction;
+        double turn = atan2(d.z, d.x) / (2 * pi);
+        int row = (int)fmin(ROWS - 1, (1 - d.y) / 2 * ROWS), column = (int)((turn < 0 ? turn + 1 : turn) * COLUMNS);
+        counted[row * COLUMNS + column % COLUMNS]++;
+        CHECK_NEAR(sky_table_pdf(table, d) / sample.pdf, 1, 1e-9);
+    }
+    for (int i = 0; i < ROWS * COLUMNS; i++) {
+        double expected = share[i] * N;
+        all += share[i];
+        CHECK(expected > 5); /* a part of them goes everywhere */
+        chi += (counted[i] - expected) * (counted[i] - expected) / expected;
+    }
+    CHECK_NEAR(all, 1, 1e-9);
+    CHECK(chi < ROWS * COLUMNS + 5 * sqrt(2.0 * ROWS * COLUMNS));
+}
+
+TEST(samples_of_every_sky_have_the_density_of_its_table_and_the_mean_of_its_integral) {
     enum { W = 64, H = 32, N = 300 };
     static uint8_t texels[W * H * 4];
     struct error error = {0};
@@ -435,7 +467,10 @@ TEST(samples_of_every_sky_have_the_mean_of_its_integral) {
         memset(texels, 20 + 30 * i, 16 * 16 * 4);
         six[i] = image_create("face", 16, 16, 8, texels, &error);
     }
-    struct sky skies[4] = {{.kind = SKY_GRADIENT}, {.kind = SKY_MAP, .image = map}};
+    static const double stops[3][4] = {{-1, 0.1, 0.2, 0.1}, {0, 2, 1, 1}, {1, 0, 0, 3}};
+    struct sky skies[6] = {{.kind = SKY_GRADIENT}, {.kind = SKY_MAP, .image = map}};
+    skies[4] = (struct sky){.kind = SKY_CONSTANT, .colour = {1, 2, 3}};
+    skies[5] = (struct sky){.kind = SKY_STOPS, .stops = stops, .stop_count = 3};
     skies[1].adjusted = true;
     skies[1].intensity = 3;
     skies[1].turn_sine = 0.6, skies[1].turn_cosine = 0.8;
@@ -443,7 +478,7 @@ TEST(samples_of_every_sky_have_the_mean_of_its_integral) {
     sky_make_clear(vec3_normalize(vec3_make(1, 1, -1)), 3, vec3_all(0.15), &skies[3]);
     char warning[256];
     struct pool *pool = pool_create(2, warning);
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 6; i++) {
         struct arena arena = {0};
         const struct sky_table *table = sky_table_build(&skies[i], &arena, pool);
         struct vec3 normal = vec3_normalize(vec3_make(0.3, 1, -0.2));
@@ -460,6 +495,7 @@ TEST(samples_of_every_sky_have_the_mean_of_its_integral) {
         /* The gradient is blue alone. */
         double expected = i == 0 ? 0 : irradiance(&skies[i], normal, 500);
         CHECK_NEAR(sum / (N * N), expected, 0.01 * expected + 1e-12);
+        check_density(&skies[i], table);
         if (i == 0)
             CHECK(most < 4);
         arena_destroy(&arena);
