@@ -46,7 +46,7 @@ class Map:
             scope = scope.split(',') if scope else []
             if verb == 'file' and len(fields) == 2:
                 self.files.append((fields[0].rstrip('/'), fields[1].rstrip('/')))
-            elif verb in ('word', 'part') and (len(fields) == 2 or fields[2:] == ['merge']):
+            elif verb in ('word', 'part', 'tag') and (len(fields) == 2 or fields[2:] == ['merge']):
                 if verb == 'part' and re.search(r'(^|_)%s(_|$)' % re.escape(fields[0]), fields[1]):
                     fail('%s:%d: the new name has the old one as a part' % (name, number))
                 self.rules.append((verb, scope, fields[0], fields[1], len(fields) == 3))
@@ -64,7 +64,7 @@ def in_scope(scope, paths):
 
 def apply_rule(verb, old, new, word):
     """What a rule makes of an identifier."""
-    if verb == 'word':
+    if verb in ('word', 'tag'):
         if '*' not in old:
             return new if word == old else word
         before, _, after = old.partition('*')
@@ -79,29 +79,28 @@ def apply_rule(verb, old, new, word):
 class Renamer:
     def __init__(self, maps):
         self.map = maps
-        self.tests = set()
-        self.changed = {}  # (old, new) -> paths
-        self.known = {}  # (path, word, is_test) -> new name
+        self.tests, self.known = set(), {}
+        self.changed = {}  # (old, new, merge, scoped) -> paths
 
-    def word(self, paths, word, is_test=False):
-        key = (paths[0], word, is_test)
-        if key not in self.known:
-            self.known[key] = self.find_word(paths, word, is_test)
-        return self.known[key]
+    def concerned(self, word):
+        """Some line changes this word somewhere."""
+        if word not in self.known:
+            self.known[word] = any(apply_rule(verb, old, new, word) != word for verb, _, old, new, _ in self.map.rules)
+        return self.known[word]
 
-    def find_word(self, paths, word, is_test):
-        if any(fnmatch.fnmatchcase(word, pattern) for pattern in self.map.keep):
+    def word(self, paths, word, is_test=False, is_tag=False):
+        if not self.concerned(word) or any(fnmatch.fnmatchcase(word, pattern) for pattern in self.map.keep):
             return word
         for verb, scope, old, new, merge in self.map.rules:
-            if verb == 'part' and (is_test or word in self.tests):
+            if verb == 'part' and (is_test or word in self.tests) or verb == 'tag' and not is_tag:
                 continue
-            made = apply_rule(verb, old, new, word)
-            if made != word:
-                if in_scope(scope, paths):
+            if in_scope(scope, paths):
+                made = apply_rule(verb, old, new, word)
+                if made != word:
                     # Parts may follow one another in one identifier; a word is complete.
                     if verb == 'part':
-                        made = self.word(paths, made)
-                    self.changed.setdefault((word, made, merge), set()).add(paths[0])
+                        made = self.word(paths, made, is_test, is_tag)
+                    self.changed.setdefault((word, made, merge, bool(scope)), set()).add(paths[0])
                     return made
         return word
 
@@ -109,13 +108,16 @@ class Renamer:
         """Identifiers in comments and documents: words that can be nothing else."""
         def one(match):
             word, start, end = match.group(), match.start(), match.end()
+            if not self.concerned(word):
+                return word
             before, after = text[max(0, start - 8):start], text[end:end + 6]
             if re.search(r'(gr\.|--|\w-|\$[{(]?)$', before) or re.match(r'\.(png|lua|md|sh|json|obj|[ch]\b)', after):
                 return word
             sure = '_' in word or after.startswith('(') or re.search(r'\b(struct|enum|union) $', before)
             if comment and not sure:
                 sure = (before.endswith('`') and after.startswith('`')) or after.startswith('->') or before.endswith('->')
-            return self.word(paths, word) if sure else word
+            is_tag = re.search(r'\b(struct|enum|union) $', before) is not None
+            return self.word(paths, word, False, is_tag) if sure else word
         return WORD.sub(one, text)
 
     def code(self, paths, text):
@@ -126,8 +128,9 @@ class Renamer:
             piece = match.group()
             if kind == 'word':
                 is_test = text[last:match.start()].strip() == '(' and previous.startswith('TEST')
+                is_tag = previous in ('struct', 'enum', 'union') and not text[last:match.start()].strip()
                 previous = piece
-                piece = self.word(paths, piece, is_test)
+                piece = self.word(paths, piece, is_test, is_tag)
             elif kind == 'comment':
                 piece = self.prose(paths, piece, True)
                 for verb, scope, old, new in self.map.texts:
@@ -304,20 +307,21 @@ def main():
 
     # A new name that exists would make two things one.
     identifiers = {}
-    wanted = {new for _, new, merge in renamer.changed if not merge and not force}
+    wanted = {new for _, new, merge, _ in renamer.changed if not merge and not force}
     for path, text in texts.items():
         if path.endswith(C_ENDINGS) and wanted and not wanted.isdisjoint(WORD.findall(text)):
             for match in TOKEN.finditer(text):
                 if match.lastgroup == 'word':
                     identifiers.setdefault(match.group(), set()).add(path)
     clashes = 0
-    for (old, new, merge), paths in sorted(renamer.changed.items()):
+    for (old, new, merge, scoped), paths in sorted(renamer.changed.items()):
         again = renamer.word(sorted(paths)[:1], new)
         if again != new:
             fail('%s becomes %s, which the map would rename again to %s' % (old, new, again))
-        if not merge and not force and new in identifiers:
+        there = identifiers.get(new, set()) & (paths if scoped else identifiers.get(new, set()))
+        if there and not merge and not force:
             clashes += 1
-            print('rename: %s: %s exists already, in %s' % (old, new, ' '.join(sorted(identifiers[new])[:4])), file=sys.stderr)
+            print('rename: %s: %s exists already, in %s' % (old, new, ' '.join(sorted(there)[:4])), file=sys.stderr)
     if clashes:
         fail('%d new names exist already; "merge" at the end of a line allows it' % clashes)
 
@@ -340,9 +344,9 @@ def main():
                 os.rmdir(folder)
                 folder = os.path.dirname(folder)
     print('rename: %d files moved, %d changed, %d identifiers' %
-          (sum(old in tracked for old in moves), len(results), len({old for old, _, _ in renamer.changed})))
+          (sum(old in tracked for old in moves), len(results), len({change[0] for change in renamer.changed})))
     if os.environ.get('RENAME_LIST'):
-        for (old, new, _), paths in sorted(renamer.changed.items()):
+        for (old, new, _, _), paths in sorted(renamer.changed.items()):
             print('  %s -> %s (%d)' % (old, new, len(paths)))
 
 

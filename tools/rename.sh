@@ -9,12 +9,14 @@
 # Lines of a map (tools/renames/NN-subject.map); @GLOB,GLOB behind the first word limits a line to these paths:
 #   file OLD NEW          moves a file or a folder; includes, guards and mentions of it follow
 #   word OLD NEW [merge]  an identifier; one * stands for the rest of it: word reach_* path_policy_*
+#   tag OLD NEW [merge]   the same, only behind struct, enum or union
 #   part OLD NEW [merge]  a component of identifiers between underscores, names of tests aside; capitals stay capitals
 #   keep NAME             an identifier (or pattern) that the lines above leave alone
 #   comment OLD NEW       a word in comments of C code
 #   text "OLD" "NEW"      any text, strings included
 # Identifiers are renamed in C code, not in strings; in comments and documents where they have an underscore, a
-# parenthesis behind or struct before them. NEW must not exist yet unless the line says merge.
+# parenthesis behind or struct before them. NEW must not exist yet where the line changes something (without a GLOB:
+# anywhere), unless it says merge.
 here=$(cd "$(dirname "$0")" && pwd) || exit 1
 cd "$(git rev-parse --show-toplevel)" || exit 1
 if [ "$1" != --commit ]; then
@@ -31,6 +33,6 @@ for map in "$@"; do
 "
 done
 other=$(git status --porcelain | grep -v '^A  tools/renames/')
-[ -z "$other" ] || { echo "the tree has other changes:" >&2; echo "$other" >&2; exit 1; }
+[ -z "$other" ] || { echo "the tree has other changes:" >&2; echo "$other" >&2; git reset -q -- "$@"; exit 1; }
 python3 "$here/rename.py" "$@" || { git reset -q -- "$@"; exit 1; }
 git add -A && printf '%s\n\n%s' "$subject" "$trailers" | git commit -q -F - && git show --stat --format='%h %s' HEAD | tail -1
