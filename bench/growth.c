@@ -80,10 +80,10 @@ static struct vec3 vector(const float v[3]) {
 static void camera_rays(const struct bench_scene *scene, struct ray *rays) {
     struct vec3 eye = vector(scene->eye), view = vec3_normalize(vec3_sub(vector(scene->target), eye));
     struct vec3 right = vec3_normalize(vec3_cross(view, vec3_make(0, 1, 0))), up = vec3_cross(right, view);
-    double reach = tan((double)scene->field * M_PI / 360);
+    double path_policy = tan((double)scene->field * M_PI / 360);
     for (int i = 0; i < SIDE * SIDE; i++) { /* in patches of 8 x 8 pixels */
         int patch = i / 64, x = patch % (SIDE / 8) * 8 + i % 8, y = patch / (SIDE / 8) * 8 + i / 8 % 8;
-        double a = reach * ((x + 0.5) / SIDE * 2 - 1), b = reach * (1 - (y + 0.5) / SIDE * 2);
+        double a = path_policy * ((x + 0.5) / SIDE * 2 - 1), b = path_policy * (1 - (y + 0.5) / SIDE * 2);
         rays[i] = (struct ray){.origin = eye, .t_max = INFINITY};
         rays[i].direction = vec3_add_scaled(vec3_add_scaled(view, right, a), up, b);
     }

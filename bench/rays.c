@@ -302,12 +302,12 @@ static void set_ray(struct bench_ray *ray, struct vec3 origin, struct vec3 direc
 static void camera_rays(const struct bench_scene *scene, uint32_t size, struct bench_ray *rays) {
     struct vec3 eye = load(scene->eye), view = vec3_normalize(vec3_sub(load(scene->target), eye));
     struct vec3 right = vec3_normalize(vec3_cross(view, vec3_make(0, 1, 0))), up = vec3_cross(right, view);
-    double reach = tan((double)scene->field * M_PI / 360);
+    double path_policy = tan((double)scene->field * M_PI / 360);
     uint64_t at = 0;
     for (uint32_t tile = 0; tile < size / 8 * (size / 8); tile++)
         for (uint32_t i = 0; i < 64; i++) {
             uint32_t x = tile % (size / 8) * 8 + i % 8, y = tile / (size / 8) * 8 + i / 8;
-            double a = reach * ((x + 0.5) / size * 2 - 1), b = reach * (1 - (y + 0.5) / size * 2);
+            double a = path_policy * ((x + 0.5) / size * 2 - 1), b = path_policy * (1 - (y + 0.5) / size * 2);
             set_ray(&rays[at++], eye, vec3_add_scaled(vec3_add_scaled(view, right, a), up, b), INFINITY);
         }
 }

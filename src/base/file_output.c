@@ -94,7 +94,7 @@ static bool open_folder(struct file_output *file, struct error *error) {
     if (file->leaf[0] == '\0' || strcmp(file->leaf, ".") == 0 || strcmp(file->leaf, "..") == 0)
         return error_set(error, ERROR_SCENE, "%.600s: is a folder, a picture cannot be written there", file->target);
     if (rules->places) {
-        file->folder = reach_open_folder(rules->places, file->target);
+        file->folder = path_policy_open_folder(rules->places, file->target);
     } else {
         if (!file_make_folders_for(file->target, error))
             return false;

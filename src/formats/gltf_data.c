@@ -104,7 +104,7 @@ static bool fetch(struct gltf *g, uint32_t index) {
             return false;
         if (!path)
             return gltf_fail(g, where, "the file '%.200s' is not there", name);
-        if (!reach_map(g->model->options.reach, path, FETCH_LIMIT - g->bytes, &buffer->file, g->error))
+        if (!path_policy_map(g->model->options.path_policy, path, FETCH_LIMIT - g->bytes, &buffer->file, g->error))
             return false;
         buffer->data = buffer->file.data;
         buffer->size = buffer->file.size;

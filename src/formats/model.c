@@ -104,7 +104,7 @@ bool model_find(struct model *model, const char *name, size_t length, const char
             return error_no_memory(error, model->path);
         if (attempt == 1 && plain[0] != '/')
             continue;
-        if (reach_is_readable(model->options.reach, tried)) {
+        if (path_policy_is_readable(model->options.path_policy, tried)) {
             *path = tried;
             return true;
         }
@@ -361,7 +361,7 @@ bool model_read(struct model *model, const char *path, const struct model_option
     struct file_bytes bytes;
     uint64_t refusals = mem_refusals();
     *model = (struct model){0};
-    if (!reach_map(options->reach, path, FILE_LIMIT, &bytes, error))
+    if (!path_policy_map(options->path_policy, path, FILE_LIMIT, &bytes, error))
         return false;
     return parse(model, path, &bytes, bytes.data, bytes.size, options, error) || error_of_file(error, path, refusals);
 }

@@ -7,7 +7,7 @@
 
 #include "base/arena.h"
 #include "base/error.h"
-#include "base/reach.h"
+#include "base/path_policy.h"
 #include "formats/list.h"
 #include "geom/mesh.h"
 #include "image/image.h"
@@ -64,12 +64,12 @@ struct model_node {
 
 /* The zero value: as the file has it. */
 struct model_options {
-    bool smooth;               /* normals of our own instead of the file's */
-    double smooth_angle;       /* degrees: faces that meet at less are one smooth surface; 0: flat */
-    bool weld, flip;           /* one vertex for each place; faces reversed */
-    const struct reach *reach; /* where files may be read; NULL: everywhere */
-    bool alone;                /* no other file is opened (tests of readers with strangers' bytes) */
-    size_t most;               /* vertices, and corners, of a mesh; 0: as many as an index can name */
+    bool smooth;                           /* normals of our own instead of the file's */
+    double smooth_angle;                   /* degrees: faces that meet at less are one smooth surface; 0: flat */
+    bool weld, flip;                       /* one vertex for each place; faces reversed */
+    const struct path_policy *path_policy; /* where files may be read; NULL: everywhere */
+    bool alone;                            /* no other file is opened (tests of readers with strangers' bytes) */
+    size_t most;                           /* vertices, and corners, of a mesh; 0: as many as an index can name */
 };
 
 enum { MODEL_WARNINGS = 16 };

@@ -162,7 +162,7 @@ static bool read_map(struct library *l, struct model_texture *map) {
             return error_no_memory(l->error, l->path);
         for (char *c = beside + folder; *c; c++)
             *c = *c == '\\' ? '/' : *c;
-        if (reach_is_readable(l->model->options.reach, beside)) {
+        if (path_policy_is_readable(l->model->options.path_policy, beside)) {
             map->path = beside;
             return true;
         }

@@ -304,7 +304,7 @@ static bool read_library(struct reader *reader, const char *name, size_t length,
     *found = path != NULL;
     if (!path)
         return true;
-    if (!reach_map(reader->model->options.reach, path, FILE_LIMIT, &bytes, reader->error))
+    if (!path_policy_map(reader->model->options.path_policy, path, FILE_LIMIT, &bytes, reader->error))
         return false;
     bool ok = mtl_load(reader->model, path, (const char *)bytes.data, bytes.size, reader->error);
     file_unmap(&bytes);

@@ -10,7 +10,7 @@
 
 #include "base/fault.h"
 #include "base/file.h"
-#include "base/reach.h"
+#include "base/path_policy.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -88,11 +88,12 @@ static bool add_path(int ruleset, const char *path, uint64_t rights) {
     return added;
 }
 
-static bool add_rules(int ruleset, const struct options *options, const struct reach *reach, uint64_t known) {
+static bool add_rules(int ruleset, const struct options *options, const struct path_policy *path_policy,
+                      uint64_t known) {
     bool ok = true;
-    for (size_t i = 0; i < reach->count; i++) {
-        const struct reach_folder *folder = &reach->folders[i];
-        uint64_t rights = folder->kind == REACH_WRITE ? read_rights | write_rights : read_rights;
+    for (size_t i = 0; i < path_policy->count; i++) {
+        const struct path_policy_folder *folder = &path_policy->folders[i];
+        uint64_t rights = folder->kind == PATH_POLICY_WRITE ? read_rights | write_rights : read_rights;
         ok = ok && add_rule(ruleset, folder->descriptor, rights & known);
     }
     /* A scene that is a link to somewhere else. */
@@ -110,7 +111,8 @@ static bool add_rules(int ruleset, const struct options *options, const struct r
 }
 
 /* Version of the interface that is active; 0 when the kernel has none, with the reason in errno. -1: error. */
-static long confine_files(const struct options *options, const struct reach *reach, long at_most, struct error *error) {
+static long confine_files(const struct options *options, const struct path_policy *path_policy, long at_most,
+                          struct error *error) {
     long version = MAY_FAIL(syscall(SYS_landlock_create_ruleset, NULL, 0, LANDLOCK_CREATE_RULESET_VERSION));
     if (at_most <= 0 && version > 0) {
         version = 0;
@@ -123,7 +125,7 @@ static long confine_files(const struct options *options, const struct reach *rea
     struct ruleset wanted = {known, NET_BIND | NET_CONNECT, SCOPE_ABSTRACT_SOCKET | SCOPE_SIGNAL};
     size_t size = version >= 6 ? sizeof wanted : version >= 4 ? 2 * sizeof(uint64_t) : sizeof(uint64_t);
     int ruleset = (int)MAY_FAIL(syscall(SYS_landlock_create_ruleset, &wanted, size, 0));
-    bool ok = ruleset >= 0 && add_rules(ruleset, options, reach, known) &&
+    bool ok = ruleset >= 0 && add_rules(ruleset, options, path_policy, known) &&
               MAY_FAIL(syscall(SYS_landlock_restrict_self, ruleset, 0)) == 0;
     int why = errno;
     if (ruleset >= 0)
@@ -387,16 +389,16 @@ static void close_others(int keep) {
 
 bool confine_process_as(const struct options *options, int keep, long landlock_max, char *report, size_t size,
                         struct error *error) {
-    struct reach reach = {0};
+    struct path_policy path_policy = {0};
     bool ok = true;
     close_others(keep);
     /* What the C library reads once must be read before: the time zone. */
     tzset();
     for (int i = 0; ok && i < options->script_count; i++)
-        ok = script_reach(options->scripts[i], &options->script, &reach, error);
+        ok = script_path_policy(options->scripts[i], &options->script, &path_policy, error);
     ok = ok && (MAY_FAIL(prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)) == 0 ||
                 error_set(error, ERROR_MACHINE, "gray: privileges cannot be dropped: %s", strerror(errno)));
-    long landlock = ok ? confine_files(options, &reach, landlock_max, error) : -1;
+    long landlock = ok ? confine_files(options, &path_policy, landlock_max, error) : -1;
     /* What is missing stands first; what confines the process nevertheless follows. */
     char missing[256] = "", files[64] = "checks of file names";
     const char *calls = ", seccomp";
@@ -414,12 +416,13 @@ bool confine_process_as(const struct options *options, int keep, long landlock_m
     }
     int used = snprintf(report, size, "gray: %s%s%sconfined by %s%s; scenes may read below",
                         missing[0] ? "warning: " : "", missing, missing[0] ? ": " : "", files, calls);
-    for (size_t i = 0; (size_t)used < size && i < reach.count; i++) {
-        const struct reach_folder *folder = &reach.folders[i];
-        used += snprintf(report + used, size - (size_t)used, "%s %s%s", i > 0 ? "," : "",
-                         folder->length > 0 ? folder->path : "/", folder->kind == REACH_WRITE ? " (and write)" : "");
+    for (size_t i = 0; (size_t)used < size && i < path_policy.count; i++) {
+        const struct path_policy_folder *folder = &path_policy.folders[i];
+        used +=
+            snprintf(report + used, size - (size_t)used, "%s %s%s", i > 0 ? "," : "",
+                     folder->length > 0 ? folder->path : "/", folder->kind == PATH_POLICY_WRITE ? " (and write)" : "");
     }
-    reach_destroy(&reach);
+    path_policy_destroy(&path_policy);
     return landlock >= 0;
 }
 

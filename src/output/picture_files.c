@@ -26,10 +26,10 @@ void picture_files_init(struct picture_files *files, const struct options *optio
     (void)snprintf(files->quota.words, sizeof files->quota.words,
                    "the pictures of the run take more than %s (--picture-bytes allows more)",
                    size_words(files->quota.limit, size));
-    bool ok = reach_add(&files->places, ".", REACH_WRITE, &files->places_error);
+    bool ok = path_policy_add(&files->places, ".", PATH_POLICY_WRITE, &files->places_error);
     for (int i = 0; ok && i < options->script.allow_write_count; i++)
-        ok = reach_add(&files->places, options->script.allow_write[i], REACH_WRITE, &files->places_error);
-    const struct reach *places = options->script.no_sandbox ? NULL : &files->places;
+        ok = path_policy_add(&files->places, options->script.allow_write[i], PATH_POLICY_WRITE, &files->places_error);
+    const struct path_policy *places = options->script.no_sandbox ? NULL : &files->places;
     files->picture = (struct file_rules){.may_replace = image_is_picture,
                                          .expected = "a picture",
                                          .advice = by_user ? NULL : advice,
@@ -64,7 +64,7 @@ void picture_files_init(struct picture_files *files, const struct options *optio
 }
 
 void picture_files_destroy(struct picture_files *files) {
-    reach_destroy(&files->places);
+    path_policy_destroy(&files->places);
     file_guard_destroy(&files->guard);
 }
 
@@ -117,7 +117,7 @@ static bool name_from_script(struct picture_files *files, const char *from_scrip
         return error_set(error, ERROR_SCENE, "the name '-' means standard output only on the command line (-o -)");
     if (from_script[length - 1] == '/')
         return error_set(error, ERROR_SCENE, "%.600s: is a folder, a picture cannot be written there", from_script);
-    if (!files->options->script.no_sandbox && !reach_may_create(&files->places, from_script))
+    if (!files->options->script.no_sandbox && !path_policy_may_create(&files->places, from_script))
         return error_set(error, ERROR_SCENE,
                          "%s: pictures of scripts must be below the working directory, without a hidden name "
                          "(-o FILE or --allow-write DIR allow other places)",

@@ -4,7 +4,7 @@
 #define GRAY_OUTPUT_PICTURE_FILES_H
 
 #include "base/file_output.h"
-#include "base/reach.h"
+#include "base/path_policy.h"
 #include "session/options.h"
 
 #include <stdbool.h>
@@ -15,7 +15,7 @@ enum { NAME_LIMIT = 4096 };
 /* One for each run. picture_files_destroy releases what it holds. */
 struct picture_files {
     const struct options *options; /* not owned */
-    struct reach places;           /* where scripts may have pictures written: the working directory, --allow-write */
+    struct path_policy places;     /* where scripts may have pictures written: the working directory, --allow-write */
     struct error places_error;     /* why there may be fewer */
     struct file_guard guard;
     struct file_interrupt interrupt; /* descriptor -1: none */

@@ -15,7 +15,7 @@ bool act_glyphs(struct context *context, const struct value *args, struct result
     if (!FONTS_READABLE)
         return font_layout(args[GLYPHS_FONT].text, NULL, 0, "", &context->call, text, error);
     if (!files_require(context, args[GLYPHS_FONT].text, path, error) ||
-        !reach_map(context->reach, path, FILE_LIMIT, &bytes, error))
+        !path_policy_map(context->path_policy, path, FILE_LIMIT, &bytes, error))
         return false;
     uint64_t refusals = mem_refusals();
     bool done = font_layout(path, bytes.data, bytes.size, args[GLYPHS_TEXT].text, &context->call, text, error);

@@ -20,7 +20,7 @@ static void read_options(const struct value *args, struct model_options *options
 static const struct model *model_of_file(struct context *context, const struct value *args, struct error *error) {
     const char *name = args[MESH_FILE].text;
     char path[PATH_SIZE], canonical[PATH_SIZE];
-    struct model_options options = {.reach = context->reach};
+    struct model_options options = {.path_policy = context->path_policy};
     read_options(args, &options);
     if (!files_require(context, name, path, error))
         return NULL;

@@ -9,7 +9,7 @@
 
 #include "base/list.h"
 #include "base/mem.h"
-#include "base/reach.h"
+#include "base/path_policy.h"
 #include "scene/change.h"
 #include "script/script.h"
 #include "script/table.h"
@@ -70,7 +70,7 @@ struct changed_view {
 struct context {
     lua_State *lua; /* the thread that called last */
     struct limits limits;
-    const struct reach *reach; /* what may be read and written; NULL: everything */
+    const struct path_policy *path_policy; /* what may be read and written; NULL: everything */
     const struct script_options *options;
     const struct script_host *host;
     FILE *output, *errors; /* standard output and error of the script, where they are not those of the process */

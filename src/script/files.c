@@ -13,7 +13,7 @@
 static bool try_file(const struct context *context, char out[PATH_SIZE], const char *folder, const char *between,
                      const char *name) {
     int length = snprintf(out, PATH_SIZE, "%s%s%s", folder, between, name);
-    return (size_t)length < PATH_SIZE && reach_is_readable(context->reach, out);
+    return (size_t)length < PATH_SIZE && path_policy_is_readable(context->path_policy, out);
 }
 
 bool files_find(struct context *context, const char *name, char out[PATH_SIZE]) {
@@ -82,7 +82,7 @@ bool files_require(struct context *context, const char *name, char out[PATH_SIZE
         return error_no_memory(error, "the name of a file");
     if (repaired != name && files_find(context, repaired, out))
         return true;
-    if (reach_is_outside(context->reach, name))
+    if (path_policy_is_outside(context->path_policy, name))
         return error_set(error, ERROR_SCENE,
                          "'%s' lies outside the folders that scenes may read (--allow-read DIR adds one)", name);
     if (name[0] == '/')
@@ -137,8 +137,8 @@ int files_load(lua_State *L, const char *path) {
     context->sources = source;
     struct file_bytes bytes;
     /* The scene itself was named by the user; it may be a link to anywhere. */
-    const struct reach *reach = strcmp(path, context->path) == 0 ? NULL : context->reach;
-    if (!reach_map(reach, path, FILE_LIMIT, &bytes, &error)) {
+    const struct path_policy *path_policy = strcmp(path, context->path) == 0 ? NULL : context->path_policy;
+    if (!path_policy_map(path_policy, path, FILE_LIMIT, &bytes, &error)) {
         if (error.kind != ERROR_SCENE || error.limit)
             raise_outside(L, &error);
         lua_pushstring(L, error.text);
@@ -180,7 +180,7 @@ bool files_on_path(const struct context *context, const char *templates, const c
         if (used == 0 || used >= PATH_SIZE)
             continue;
         path[used] = '\0';
-        if (reach_is_readable(context->reach, path))
+        if (path_policy_is_readable(context->path_policy, path))
             return true;
     }
     return false;

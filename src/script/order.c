@@ -9,7 +9,7 @@
 
 #include "base/arena.h"
 #include "base/file.h"
-#include "base/reach.h"
+#include "base/path_policy.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -281,7 +281,7 @@ static const struct token *required(const struct token *w, bool *is_module) {
 
 struct search {
     struct arena arena;
-    const struct reach *reach;
+    const struct path_policy *path_policy;
     char folder[PATHS], library[PATHS]; /* the scene's with its final slash; the library's canonical one */
     const char *visited[FILES];
     int visited_count;
@@ -294,7 +294,7 @@ static void scan_file(struct search *search, const char *path, int depth);
 static bool try_path(const struct search *search, char out[PATHS], const char *folder, const char *between,
                      const char *name, const char *end) {
     int length = snprintf(out, PATHS, "%s%s%s%s", folder, between, name, end);
-    return (size_t)length < PATHS && reach_is_readable(search->reach, out);
+    return (size_t)length < PATHS && path_policy_is_readable(search->path_policy, out);
 }
 
 static void follow(struct search *search, const struct token *token, bool is_module, int depth) {
@@ -351,7 +351,7 @@ static void scan_file(struct search *search, const char *path, int depth) {
     struct file_bytes bytes;
     struct error ignored;
     /* The scene itself was named by the user; it may be a link to anywhere. */
-    if (!reach_map(depth > 0 ? search->reach : NULL, path, SCENE_LIMIT, &bytes, &ignored))
+    if (!path_policy_map(depth > 0 ? search->path_policy : NULL, path, SCENE_LIMIT, &bytes, &ignored))
         return;
     scan_text(search, (const char *)bytes.data, bytes.size, depth);
     file_unmap(&bytes);
@@ -396,7 +396,7 @@ static bool ask_sibling(void *context, const char *name) {
         return true;
     struct file_bytes bytes;
     struct error ignored;
-    if (!reach_map(siblings->search->reach, path, SIBLING_LIMIT, &bytes, &ignored))
+    if (!path_policy_map(siblings->search->path_policy, path, SIBLING_LIMIT, &bytes, &ignored))
         return true;
     struct evidence before = siblings->search->evidence;
     siblings->search->evidence = (struct evidence){0};
@@ -411,9 +411,9 @@ static bool ask_sibling(void *context, const char *name) {
     return true;
 }
 
-bool order_detect(const char *path, const char *library_folder, const struct reach *reach,
+bool order_detect(const char *path, const char *library_folder, const struct path_policy *path_policy,
                   struct order_finding *finding, struct error *error) {
-    struct search search = {.reach = reach};
+    struct search search = {.path_policy = path_policy};
     const char *slash = strrchr(path, '/');
     size_t folder = slash ? (size_t)(slash - path) + 1 : 0;
     *finding = (struct order_finding){.order = ORDER_NEW};

@@ -135,7 +135,7 @@ static bool choose_order(struct context *context, struct error *error) {
     case SCRIPT_ORDER_AUTO:
         break;
     }
-    if (!order_detect(context->path, context->options->library_folder, context->reach, &finding, error))
+    if (!order_detect(context->path, context->options->library_folder, context->path_policy, &finding, error))
         return false;
     context->scene.order = finding.order;
     if (finding.order != ORDER_OLD)
@@ -148,16 +148,17 @@ static bool choose_order(struct context *context, struct error *error) {
     return true;
 }
 
-bool script_reach(const char *path, const struct script_options *options, struct reach *reach, struct error *error) {
-    bool ok = reach_add_scene(reach, path, options->library_folder, error);
+bool script_path_policy(const char *path, const struct script_options *options, struct path_policy *path_policy,
+                        struct error *error) {
+    bool ok = path_policy_add_scene(path_policy, path, options->library_folder, error);
     for (int k = 0; ok && k < options->allow_read_count; k++)
-        ok = reach_add(reach, options->allow_read[k], REACH_READ, error);
+        ok = path_policy_add(path_policy, options->allow_read[k], PATH_POLICY_READ, error);
     for (int k = 0; ok && k < options->allow_write_count; k++)
-        ok = reach_add(reach, options->allow_write[k], REACH_WRITE, error);
+        ok = path_policy_add(path_policy, options->allow_write[k], PATH_POLICY_WRITE, error);
     return ok;
 }
 
-static bool prepare(struct context *context, struct reach *reach, struct error *error) {
+static bool prepare(struct context *context, struct path_policy *path_policy, struct error *error) {
     const char *slash = strrchr(context->path, '/');
     size_t length = slash ? (size_t)(slash - context->path) + 1 : 0;
     if (strlen(context->path) >= PATH_SIZE - 64)
@@ -171,9 +172,9 @@ static bool prepare(struct context *context, struct reach *reach, struct error *
         return false;
     file_unmap(&bytes);
     if (!context->options->no_sandbox) {
-        if (!script_reach(context->path, context->options, reach, error))
+        if (!script_path_policy(context->path, context->options, path_policy, error))
             return false;
-        context->reach = reach;
+        context->path_policy = path_policy;
     }
     return choose_order(context, error);
 }
@@ -183,11 +184,11 @@ bool script_run(const char *path, const struct script_options *options, const st
     struct context context = {.options = options, .host = host, .out = arena, .path = path};
     *traceback = NULL;
     scene_init(&context.scene, assets);
-    struct reach reach = {0};
+    struct path_policy path_policy = {0};
     /* What stays where the handler of messages came to nothing. */
     error_set(&context.failure, ERROR_SCENE, "%s: an error while an error was reported", path);
     limits_begin(&context);
-    bool done = prepare(&context, &reach, error);
+    bool done = prepare(&context, &path_policy, error);
     lua_State *L = done ? lua_newstate(limits_allocate, &context) : NULL;
     if (done && !L)
         done = error_no_memory(error, "the script");
@@ -202,7 +203,7 @@ bool script_run(const char *path, const struct script_options *options, const st
         lua_close(L);
     }
     streams_close(&context);
-    reach_destroy(&reach);
+    path_policy_destroy(&path_policy);
     scene_destroy(&context.scene);
     arena_destroy(&context.call);
     arena_destroy(&context.keep);

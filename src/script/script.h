@@ -79,9 +79,10 @@ struct script_host {
 double script_time_limit(const struct script_options *options);
 /* Bytes that a script, its scene and a picture of it may hold together; UINT64_MAX: no limit. */
 uint64_t script_picture_memory(const struct script_options *options);
-struct reach;
+struct path_policy;
 /* Adds the folders that the script at `path` may read and write. */
-bool script_reach(const char *path, const struct script_options *options, struct reach *reach, struct error *error);
+bool script_path_policy(const char *path, const struct script_options *options, struct path_policy *path_policy,
+                        struct error *error);
 
 /* Runs the script at `path`. false: error.text is the complete first line, and *traceback (allocated in `arena`, lines
  * indented by two spaces, may be NULL) follows for script errors. */

@@ -1,8 +1,8 @@
 /* Reading, writing and printing within what the scene was given. Text for standard error goes to the host, which sees
  * to it that it is not taken for the program's: the stream behind io.stderr calls it (fopencookie(3)), and so does that
- * behind io.stdout and print where standard output is the picture's. Files are opened by base/reach.h: regular files
- * only, below the folders of the list. Whatever is written counts towards the limit on output, on standard output too.
- * What is refused comes back the way io.open tells of every failure: nil, a sentence, a number. */
+ * behind io.stdout and print where standard output is the picture's. Files are opened by base/path_policy.h: regular
+ * files only, below the folders of the list. Whatever is written counts towards the limit on output, on standard output
+ * too. What is refused comes back the way io.open tells of every failure: nil, a sentence, a number. */
 #define _GNU_SOURCE
 #include "script/context.h"
 
@@ -25,11 +25,11 @@ static int close_stream(lua_State *L) {
 
 /* Why a name was refused, for people. */
 static const char *refusal(const struct context *context, const char *name, bool write) {
-    if (errno != EACCES || !context->reach)
+    if (errno != EACCES || !context->path_policy)
         return strerror(errno);
     if (write)
         return "scenes cannot write files (--allow-write DIR allows it)";
-    if (reach_is_outside(context->reach, name))
+    if (path_policy_is_outside(context->path_policy, name))
         return "lies outside the folders that scenes may read (--allow-read DIR adds one)";
     return "cannot be read by scenes, or is not a regular file";
 }
@@ -61,14 +61,14 @@ static int open_stream(lua_State *L, const char *name, const char *mode) {
     char found[PATH_SIZE];
     bool write = mode[0] != 'r' || strchr(mode, '+');
     const char *path = name;
-    if (!write && !reach_is_readable(context->reach, name) && files_find(context, name, found))
+    if (!write && !path_policy_is_readable(context->path_policy, name) && files_find(context, name, found))
         path = found;
     luaL_Stream *stream = lua_newuserdatauv(L, sizeof *stream, 0);
     stream->closef = NULL; /* closed, as far as its finalizer is concerned */
     luaL_setmetatable(L, LUA_FILEHANDLE);
     if (!mem_reserve(STREAM_COST))
         limits_end_for_memory(L);
-    stream->f = reach_stream(context->reach, path, mode);
+    stream->f = path_policy_stream(context->path_policy, path, mode);
     if (!stream->f)
         mem_unreserve(STREAM_COST);
     if (stream->f) {
@@ -173,12 +173,12 @@ static int answer_change(lua_State *L, bool done, const char *name) {
 
 static int os_remove(lua_State *L) {
     const char *name = luaL_checkstring(L, 1);
-    return answer_change(L, reach_remove(context_of(L)->reach, name), name);
+    return answer_change(L, path_policy_remove(context_of(L)->path_policy, name), name);
 }
 
 static int os_rename(lua_State *L) {
     const char *from = luaL_checkstring(L, 1), *to = luaL_checkstring(L, 2);
-    return answer_change(L, reach_rename(context_of(L)->reach, from, to), from);
+    return answer_change(L, path_policy_rename(context_of(L)->path_policy, from, to), from);
 }
 
 /* package.searchpath(name, templates [, separator [, replacement]]). */

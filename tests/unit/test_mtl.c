@@ -1,6 +1,6 @@
 #include "model_makers.h"
 
-#include "base/reach.h"
+#include "base/path_policy.h"
 #include "formats/model_node.h"
 #include "geom/mesh_smooth.h"
 
@@ -149,9 +149,9 @@ TEST(mtl_and_pictures_out_of_reach_are_not_there) {
     char text[1000];
     (void)snprintf(text, sizeof text, "newmtl b\nmap_Kd ../../far.png\nmap_Ks %s\n", in_folder("far.png"));
     test_write_text(near, text);
-    struct reach reach = {0};
-    CHECK(reach_add(&reach, inner, REACH_READ, &error));
-    struct model_options options = {.reach = &reach};
+    struct path_policy path_policy = {0};
+    CHECK(path_policy_add(&path_policy, inner, PATH_POLICY_READ, &error));
+    struct model_options options = {.path_policy = &path_policy};
     struct model model;
     CHECK(model_read(&model, path, &options, &error));
     CHECK_TEXT(error.text, "");
@@ -162,7 +162,7 @@ TEST(mtl_and_pictures_out_of_reach_are_not_there) {
         model_destroy(&model);
     }
     CHECK(!model_read(&model, in_folder("a.obj"), &options, &error));
-    reach_destroy(&reach);
+    path_policy_destroy(&path_policy);
 }
 
 TEST(mtl_materials_of_faces_keep_their_slots) {

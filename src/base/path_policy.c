@@ -5,7 +5,7 @@
  * between and is refused by the kernel. On kernels without openat2 the opened descriptor is asked for its path instead.
  */
 #define _GNU_SOURCE
-#include "base/reach.h"
+#include "base/path_policy.h"
 
 #include "base/fault.h"
 #include "base/mem.h"
@@ -44,7 +44,7 @@ static bool make_plain(const char *path, char *plain, size_t size) {
 
 /* The name under which a folder was given, when it is absolute and not the canonical one: a home behind a link. Without
  * memory it is left out, and names that begin so are refused. */
-static void add_spelling(struct reach_folder *folder, const char *given) {
+static void add_spelling(struct path_policy_folder *folder, const char *given) {
     char plain[PATH_MAX], canonical[PATH_MAX];
     if (folder->spelling || given[0] != '/' || !make_plain(given, plain, sizeof plain) ||
         strcmp(plain, folder->path) == 0 || !realpath(plain, canonical) ||
@@ -55,23 +55,23 @@ static void add_spelling(struct reach_folder *folder, const char *given) {
         memcpy(folder->spelling, plain, strlen(plain) + 1);
 }
 
-static bool add_canonical(struct reach *reach, const char *given, const char *canonical, enum reach_kind kind,
-                          struct error *error) {
+static bool add_canonical(struct path_policy *path_policy, const char *given, const char *canonical,
+                          enum path_policy_kind kind, struct error *error) {
     size_t length = strlen(canonical);
     if (length == 1)
         length = 0;
-    for (size_t i = 0; i < reach->count; i++) {
-        struct reach_folder *have = &reach->folders[i];
+    for (size_t i = 0; i < path_policy->count; i++) {
+        struct path_policy_folder *have = &path_policy->folders[i];
         if (have->length == length && memcmp(have->path, canonical, length) == 0) {
             have->kind = kind > have->kind ? kind : have->kind;
             add_spelling(have, given);
             return true;
         }
     }
-    struct reach_folder *more = mem_resize_array(reach->folders, reach->count + 1, sizeof *more);
+    struct path_policy_folder *more = mem_resize_array(path_policy->folders, path_policy->count + 1, sizeof *more);
     if (!more)
         return error_no_memory(error, "the folders a scene may read");
-    reach->folders = more;
+    path_policy->folders = more;
     char *path = mem_alloc(length + 1);
     if (!path)
         return error_no_memory(error, "the folders a scene may read");
@@ -82,64 +82,67 @@ static bool add_canonical(struct reach *reach, const char *given, const char *ca
         int why = errno;
         mem_free(path);
         enum error_kind failure = error_kind_of_reading(why);
-        return (kind == REACH_IMPLIED && failure == ERROR_SCENE) ||
+        return (kind == PATH_POLICY_IMPLIED && failure == ERROR_SCENE) ||
                error_set(error, failure, "%s: cannot be opened: %s", canonical, strerror(why));
     }
-    reach->folders[reach->count] = (struct reach_folder){path, length, kind, descriptor, NULL};
-    add_spelling(&reach->folders[reach->count++], given);
+    path_policy->folders[path_policy->count] = (struct path_policy_folder){path, length, kind, descriptor, NULL};
+    add_spelling(&path_policy->folders[path_policy->count++], given);
     return true;
 }
 
-bool reach_add(struct reach *reach, const char *folder, enum reach_kind kind, struct error *error) {
+bool path_policy_add(struct path_policy *path_policy, const char *folder, enum path_policy_kind kind,
+                     struct error *error) {
     char canonical[PATH_MAX];
     bool there = realpath(folder, canonical) && file_is_folder(canonical);
-    if (kind == REACH_IMPLIED && (!there || strcmp(canonical, "/") == 0))
+    if (kind == PATH_POLICY_IMPLIED && (!there || strcmp(canonical, "/") == 0))
         return true;
     if (!there)
         return error_set(error, ERROR_USAGE, "%s: is not a folder", folder);
     /* The working directory as the shell calls it; add_spelling looks whether that is true. */
     const char *shown = strcmp(folder, ".") == 0 ? getenv("PWD") : NULL;
-    return add_canonical(reach, shown ? shown : folder, canonical, kind, error);
+    return add_canonical(path_policy, shown ? shown : folder, canonical, kind, error);
 }
 
-bool reach_add_scene(struct reach *reach, const char *scene, const char *library, struct error *error) {
+bool path_policy_add_scene(struct path_policy *path_policy, const char *scene, const char *library,
+                           struct error *error) {
     char folder[PATH_MAX + 4];
     const char *slash = strrchr(scene, '/');
     int length = slash ? (int)(slash - scene) + 1 : 0;
     if (length >= PATH_MAX)
         return error_set(error, ERROR_SCENE, "%.100s...: the path is too long", scene);
     (void)snprintf(folder, sizeof folder, "%.*s.", length, scene);
-    if (!reach_add(reach, folder, REACH_IMPLIED, error))
+    if (!path_policy_add(path_policy, folder, PATH_POLICY_IMPLIED, error))
         return false;
     (void)snprintf(folder, sizeof folder, "%.*s..", length, scene);
-    return reach_add(reach, folder, REACH_IMPLIED, error) && reach_add(reach, ".", REACH_IMPLIED, error) &&
-           (!library || reach_add(reach, library, REACH_READ, error));
+    return path_policy_add(path_policy, folder, PATH_POLICY_IMPLIED, error) &&
+           path_policy_add(path_policy, ".", PATH_POLICY_IMPLIED, error) &&
+           (!library || path_policy_add(path_policy, library, PATH_POLICY_READ, error));
 }
 
-void reach_destroy(struct reach *reach) {
-    for (size_t i = 0; i < reach->count; i++) {
-        (void)close(reach->folders[i].descriptor);
-        mem_free(reach->folders[i].path);
-        mem_free(reach->folders[i].spelling);
+void path_policy_destroy(struct path_policy *path_policy) {
+    for (size_t i = 0; i < path_policy->count; i++) {
+        (void)close(path_policy->folders[i].descriptor);
+        mem_free(path_policy->folders[i].path);
+        mem_free(path_policy->folders[i].spelling);
     }
-    mem_free(reach->folders);
-    *reach = (struct reach){0};
+    mem_free(path_policy->folders);
+    *path_policy = (struct path_policy){0};
 }
 
 /* What lies below the folder, or NULL. */
-static const char *rest_below(const struct reach_folder *folder, const char *canonical) {
+static const char *rest_below(const struct path_policy_folder *folder, const char *canonical) {
     if (memcmp(canonical, folder->path, folder->length) != 0 || canonical[folder->length] != '/')
         return NULL;
     const char *rest = canonical + folder->length + 1;
     bool hidden = rest[0] == '.' || strstr(rest, "/.");
-    return folder->kind == REACH_IMPLIED && hidden ? NULL : rest;
+    return folder->kind == PATH_POLICY_IMPLIED && hidden ? NULL : rest;
 }
 
-static const struct reach_folder *find(const struct reach *reach, const char *canonical, bool write,
-                                       const char **rest) {
-    for (size_t i = 0; i < reach->count; i++) {
-        const struct reach_folder *folder = &reach->folders[i];
-        if (strlen(canonical) <= folder->length || (write && folder->kind != REACH_WRITE))
+static const struct path_policy_folder *find(const struct path_policy *path_policy, const char *canonical, bool write,
+                                             const char **rest) {
+    for (size_t i = 0; i < path_policy->count; i++) {
+        const struct path_policy_folder *folder = &path_policy->folders[i];
+        if (strlen(canonical) <= folder->length || (write && folder->kind != PATH_POLICY_WRITE))
             continue;
         *rest = rest_below(folder, canonical);
         if (*rest)
@@ -149,10 +152,10 @@ static const struct reach_folder *find(const struct reach *reach, const char *ca
 }
 
 /* A folder of the list, or one above it: it is there, and no part of it is a link. */
-static bool leads_to_folder(const struct reach *reach, const char *canonical) {
+static bool leads_to_folder(const struct path_policy *path_policy, const char *canonical) {
     size_t length = strlen(canonical);
-    for (size_t i = 0; i < reach->count; i++) {
-        const struct reach_folder *folder = &reach->folders[i];
+    for (size_t i = 0; i < path_policy->count; i++) {
+        const struct path_policy_folder *folder = &path_policy->folders[i];
         if (length <= folder->length && memcmp(folder->path, canonical, length) == 0 &&
             (folder->path[length] == '/' || folder->path[length] == '\0'))
             return true;
@@ -161,7 +164,7 @@ static bool leads_to_folder(const struct reach *reach, const char *canonical) {
 }
 
 /* The name as an absolute one, with the canonical path of a folder in the place of what it was given as. */
-static bool make_absolute(const struct reach *reach, const char *path, char whole[2 * PATH_MAX + 2]) {
+static bool make_absolute(const struct path_policy *path_policy, const char *path, char whole[2 * PATH_MAX + 2]) {
     char here[PATH_MAX];
     size_t length = 0, begin = 0;
     if (path[0] == '\0' || strlen(path) >= PATH_MAX)
@@ -172,9 +175,9 @@ static bool make_absolute(const struct reach *reach, const char *path, char whol
         (void)snprintf(whole, 2 * PATH_MAX + 2, "%s/%s", here, path);
         return true;
     }
-    const struct reach_folder *found = NULL;
-    for (size_t i = 0; i < reach->count; i++) {
-        const struct reach_folder *folder = &reach->folders[i];
+    const struct path_policy_folder *found = NULL;
+    for (size_t i = 0; i < path_policy->count; i++) {
+        const struct path_policy_folder *folder = &path_policy->folders[i];
         length = folder->spelling ? strlen(folder->spelling) : 0;
         if (length > begin && strncmp(path, folder->spelling, length) == 0 &&
             (path[length] == '/' || path[length] == '\0')) {
@@ -220,7 +223,7 @@ static bool follow_link(struct resolution *r, const char *link, const char *rest
 
 /* One part of the name. False with errno: EACCES outside, or what the file system says of what is inside. `rest` begins
  * with the slash after the part, or is empty. */
-static bool take_part(const struct reach *reach, struct resolution *r, const char *part, size_t length,
+static bool take_part(const struct path_policy *path_policy, struct resolution *r, const char *part, size_t length,
                       const char *rest, bool follow) {
     char next[PATH_MAX];
     struct stat status;
@@ -230,8 +233,8 @@ static bool take_part(const struct reach *reach, struct resolution *r, const cha
         errno = ENAMETOOLONG;
         return false;
     }
-    bool known = leads_to_folder(reach, next);
-    if (!known && !find(reach, next, false, &below)) {
+    bool known = leads_to_folder(path_policy, next);
+    if (!known && !find(path_policy, next, false, &below)) {
         errno = EACCES;
         return false;
     }
@@ -251,11 +254,11 @@ static bool take_part(const struct reach *reach, struct resolution *r, const cha
 /* Goes as far as the parts exist. True: all of them do, `at` is the canonical path. False with errno; with ENOENT `at`
  * is what exists, inside of the list or above it, and `rest` the part that does not, with what follows. follow: a link
  * in the last place, too. */
-static bool resolve(const struct reach *reach, const char *path, bool follow, struct resolution *r) {
+static bool resolve(const struct path_policy *path_policy, const char *path, bool follow, struct resolution *r) {
     r->at[0] = '\0';
     r->links = 0;
     r->last_is_link = false;
-    if (!make_absolute(reach, path, r->rest)) {
+    if (!make_absolute(path_policy, path, r->rest)) {
         errno = strlen(path) >= PATH_MAX ? ENAMETOOLONG : path[0] == '\0' ? ENOENT : EACCES;
         return false;
     }
@@ -271,30 +274,30 @@ static bool resolve(const struct reach *reach, const char *path, bool follow, st
             if (slash)
                 *slash = '\0';
             memmove(r->rest, part + length, strlen(part + length) + 1);
-        } else if (!take_part(reach, r, part, length, part + length, follow)) {
+        } else if (!take_part(path_policy, r, part, length, part + length, follow)) {
             memmove(r->rest, part, strlen(part) + 1);
             return false;
         }
     }
 }
 
-bool reach_is_readable(const struct reach *reach, const char *path) {
+bool path_policy_is_readable(const struct path_policy *path_policy, const char *path) {
     struct resolution r;
     const char *rest;
-    if (!reach)
+    if (!path_policy)
         return file_is_regular(path);
-    return resolve(reach, path, true, &r) && find(reach, r.at, false, &rest) && file_is_regular(r.at);
+    return resolve(path_policy, path, true, &r) && find(path_policy, r.at, false, &rest) && file_is_regular(r.at);
 }
 
-bool reach_is_outside(const struct reach *reach, const char *path) {
+bool path_policy_is_outside(const struct path_policy *path_policy, const char *path) {
     char whole[2 * PATH_MAX + 2], plain[2 * PATH_MAX + 2];
     const char *rest;
-    return reach && (!make_absolute(reach, path, whole) || !make_plain(whole, plain, sizeof plain) ||
-                     !find(reach, plain, false, &rest));
+    return path_policy && (!make_absolute(path_policy, path, whole) || !make_plain(whole, plain, sizeof plain) ||
+                           !find(path_policy, plain, false, &rest));
 }
 
 /* The descriptor of a canonical path below a folder; the flags say what for. */
-static int open_below(const struct reach_folder *folder, const char *rest, const char *canonical, int flags) {
+static int open_below(const struct path_policy_folder *folder, const char *rest, const char *canonical, int flags) {
     struct open_how how = {.flags = (unsigned)flags | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW,
                            .mode = flags & O_CREAT ? 0666u : 0u,
                            .resolve = RESOLVE_BENEATH | RESOLVE_NO_SYMLINKS};
@@ -323,7 +326,7 @@ static bool is_regular(int descriptor) {
 }
 
 /* The canonical path of a name whose last part need not exist and is not followed. */
-static bool canonical_parent(const struct reach *reach, const char *path, char canonical[PATH_MAX]) {
+static bool canonical_parent(const struct path_policy *path_policy, const char *path, char canonical[PATH_MAX]) {
     char folder[PATH_MAX];
     struct resolution r;
     const char *slash = strrchr(path, '/'), *last = slash ? slash + 1 : path;
@@ -334,7 +337,7 @@ static bool canonical_parent(const struct reach *reach, const char *path, char c
     }
     memcpy(folder, path, length);
     memcpy(folder + length, ".", 2);
-    if (!resolve(reach, folder, true, &r))
+    if (!resolve(path_policy, folder, true, &r))
         return false;
     int size = snprintf(canonical, PATH_MAX, "%s/%s", r.at, last);
     if (size < PATH_MAX)
@@ -344,18 +347,18 @@ static bool canonical_parent(const struct reach *reach, const char *path, char c
 }
 
 /* A descriptor of a regular file, or -1 with errno. */
-static int open_checked(const struct reach *reach, const char *path, int flags) {
+static int open_checked(const struct path_policy *path_policy, const char *path, int flags) {
     struct resolution r;
     char canonical[PATH_MAX];
     const char *rest = NULL;
     bool write = (flags & O_ACCMODE) != O_RDONLY;
     /* A link in the last place is followed to see where it leads; one that leads nowhere is not written through. */
-    bool there = resolve(reach, path, true, &r);
-    if (!there && (errno != ENOENT || !write || r.last_is_link || !canonical_parent(reach, path, canonical)))
+    bool there = resolve(path_policy, path, true, &r);
+    if (!there && (errno != ENOENT || !write || r.last_is_link || !canonical_parent(path_policy, path, canonical)))
         return -1;
     if (there)
         memcpy(canonical, r.at, sizeof canonical);
-    const struct reach_folder *folder = find(reach, canonical, write, &rest);
+    const struct path_policy_folder *folder = find(path_policy, canonical, write, &rest);
     if (!folder) {
         errno = EACCES;
         return -1;
@@ -369,11 +372,12 @@ static int open_checked(const struct reach *reach, const char *path, int flags) 
     return descriptor;
 }
 
-bool reach_map(const struct reach *reach, const char *path, size_t limit, struct file_bytes *out, struct error *error) {
-    if (!reach)
+bool path_policy_map(const struct path_policy *path_policy, const char *path, size_t limit, struct file_bytes *out,
+                     struct error *error) {
+    if (!path_policy)
         return file_map(path, limit, out, error);
     *out = (struct file_bytes){0};
-    int descriptor = open_checked(reach, path, O_RDONLY);
+    int descriptor = open_checked(path_policy, path, O_RDONLY);
     if (descriptor < 0)
         return error_set(error, error_kind_of_reading(errno), "%s: cannot be read: %s", path, strerror(errno));
     return file_map_descriptor(descriptor, path, limit, out, error);
@@ -403,15 +407,15 @@ static void note_stream(int descriptor, const char *path, const char *mode) {
         file_note_write(descriptor, path);
 }
 
-FILE *reach_stream(const struct reach *reach, const char *path, const char *mode) {
-    if (!reach) {
+FILE *path_policy_stream(const struct path_policy *path_policy, const char *path, const char *mode) {
+    if (!path_policy) {
         FILE *open = MAY_GIVE_NULL(fopen(path, mode));
         if (open)
             note_stream(fileno(open), path, mode);
         return open;
     }
     int flags = flags_of(mode);
-    int descriptor = flags < 0 ? -1 : open_checked(reach, path, flags);
+    int descriptor = flags < 0 ? -1 : open_checked(path_policy, path, flags);
     if (descriptor < 0)
         return NULL;
     note_stream(descriptor, path, mode);
@@ -422,11 +426,11 @@ FILE *reach_stream(const struct reach *reach, const char *path, const char *mode
 }
 
 /* The folder's descriptor and the last name, for a file that may be changed. */
-static const struct reach_folder *writable(const struct reach *reach, const char *path, char canonical[PATH_MAX],
-                                           const char **rest) {
-    if (!canonical_parent(reach, path, canonical))
+static const struct path_policy_folder *writable(const struct path_policy *path_policy, const char *path,
+                                                 char canonical[PATH_MAX], const char **rest) {
+    if (!canonical_parent(path_policy, path, canonical))
         return NULL;
-    const struct reach_folder *folder = find(reach, canonical, true, rest);
+    const struct path_policy_folder *folder = find(path_policy, canonical, true, rest);
     if (!folder)
         errno = EACCES;
     return folder;
@@ -440,21 +444,21 @@ struct new_name {
 
 /* The folder below which a file of this name may be made, and the name below it, canonical. The part that exists is
  * followed, but for a link in the last place; what follows must be plain. */
-static const struct reach_folder *find_new(const struct reach *reach, const char *path, struct new_name *name,
-                                           const char **rest) {
+static const struct path_policy_folder *find_new(const struct path_policy *path_policy, const char *path,
+                                                 struct new_name *name, const char **rest) {
     struct resolution *r = &name->r;
-    bool there = resolve(reach, path, false, r);
+    bool there = resolve(path_policy, path, false, r);
     if (!there && (errno != ENOENT || r->rest[0] == '.' || strstr(r->rest, "/.")))
         return NULL;
     (void)snprintf(name->canonical, sizeof name->canonical, "%s%s%s", r->at, there ? "" : "/", there ? "" : r->rest);
-    const struct reach_folder *found = find(reach, name->canonical, true, rest);
+    const struct path_policy_folder *found = find(path_policy, name->canonical, true, rest);
     return found && (*rest)[0] != '.' && !strstr(*rest, "/.") ? found : NULL;
 }
 
-bool reach_may_create(const struct reach *reach, const char *path) {
+bool path_policy_may_create(const struct path_policy *path_policy, const char *path) {
     struct new_name *name = mem_alloc(sizeof *name);
     const char *rest;
-    bool may = name && find_new(reach, path, name, &rest);
+    bool may = name && find_new(path_policy, path, name, &rest);
     mem_free(name);
     return may;
 }
@@ -484,10 +488,10 @@ static int open_folders(int folder, const char *rest) {
     return folder;
 }
 
-int reach_open_folder(const struct reach *reach, const char *path) {
+int path_policy_open_folder(const struct path_policy *path_policy, const char *path) {
     struct new_name *name = mem_alloc(sizeof *name);
     const char *rest = NULL;
-    const struct reach_folder *found = name ? find_new(reach, path, name, &rest) : NULL;
+    const struct path_policy_folder *found = name ? find_new(path_policy, path, name, &rest) : NULL;
     int folder = -1;
     if (!found)
         errno = name ? EACCES : ENOMEM;
@@ -499,14 +503,15 @@ int reach_open_folder(const struct reach *reach, const char *path) {
     return folder;
 }
 
-bool reach_remove(const struct reach *reach, const char *path) {
+bool path_policy_remove(const struct path_policy *path_policy, const char *path) {
     char canonical[PATH_MAX];
     const char *rest;
-    return writable(reach, path, canonical, &rest) && unlink(canonical) == 0;
+    return writable(path_policy, path, canonical, &rest) && unlink(canonical) == 0;
 }
 
-bool reach_rename(const struct reach *reach, const char *from, const char *to) {
+bool path_policy_rename(const struct path_policy *path_policy, const char *from, const char *to) {
     char source[PATH_MAX], target[PATH_MAX];
     const char *rest;
-    return writable(reach, from, source, &rest) && writable(reach, to, target, &rest) && rename(source, target) == 0;
+    return writable(path_policy, from, source, &rest) && writable(path_policy, to, target, &rest) &&
+           rename(source, target) == 0;
 }

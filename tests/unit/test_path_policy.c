@@ -1,7 +1,7 @@
 /* The folders of a scene: what lies below them and what does not, by every spelling; with kernels of every age, and
  * with every call to the system failing in its turn. */
 #define _GNU_SOURCE
-#include "base/reach.h"
+#include "base/path_policy.h"
 
 #include "base/fault.h"
 #include "host/confine.h"
@@ -30,108 +30,124 @@ static void prepare(void) {
     CHECK(mkfifo(test_path("below/pipe"), 0666) == 0);
 }
 
-static bool can_open(const struct reach *reach, const char *name, const char *mode) {
-    FILE *stream = reach_stream(reach, test_path(name), mode);
+static bool can_open(const struct path_policy *path_policy, const char *name, const char *mode) {
+    FILE *stream = path_policy_stream(path_policy, test_path(name), mode);
     if (stream)
         (void)fclose(stream);
     return stream != NULL;
 }
 
 TEST(a_scene_reaches_what_lies_below_its_folders_by_any_spelling) {
-    struct reach reach = {0};
+    struct path_policy path_policy = {0};
     struct error error;
     prepare();
-    CHECK(reach_add(&reach, test_path("below"), REACH_IMPLIED, &error));
-    CHECK(reach_is_readable(&reach, test_path("below/inner.txt")));
-    CHECK(reach_is_readable(&reach, test_path("below/./sub/..//inner.txt")));
-    CHECK(reach_is_readable(&reach, test_path("below/to")));
-    CHECK(!reach_is_readable(&reach, test_path("below/.hidden")) &&
-          !reach_is_readable(&reach, test_path("below/link")));
-    CHECK(!reach_is_readable(&reach, test_path("outside.txt")) && !reach_is_readable(&reach, test_path("below2.txt")));
-    CHECK(!reach_is_readable(&reach, test_path("below")) && !reach_is_readable(&reach, test_path("below/sub")));
-    CHECK(reach_is_outside(&reach, test_path("outside.txt")) && reach_is_outside(&reach, "x") &&
-          reach_is_outside(&reach, "../../../../../../../../../../..") && !reach_is_outside(NULL, "/etc/passwd"));
-    CHECK(!reach_is_outside(&reach, test_path("below/./x/")) &&
-          !reach_is_outside(&reach, test_path("below/.x/../y")) == 1);
-    CHECK(can_open(&reach, "below/inner.txt", "r") && can_open(&reach, "below/inner.txt", "rb"));
-    CHECK(!can_open(&reach, "below/inner.txt", "w") && !can_open(&reach, "below/inner.txt", "r+"));
-    CHECK(!can_open(&reach, "below/inner.txt", "x") && errno == EINVAL);
-    CHECK(!can_open(&reach, "below/pipe", "r") && !can_open(&reach, "below/missing", "r"));
-    CHECK(!can_open(&reach, "below/sub", "r") && !can_open(&reach, "below/link", "r"));
+    CHECK(path_policy_add(&path_policy, test_path("below"), PATH_POLICY_IMPLIED, &error));
+    CHECK(path_policy_is_readable(&path_policy, test_path("below/inner.txt")));
+    CHECK(path_policy_is_readable(&path_policy, test_path("below/./sub/..//inner.txt")));
+    CHECK(path_policy_is_readable(&path_policy, test_path("below/to")));
+    CHECK(!path_policy_is_readable(&path_policy, test_path("below/.hidden")) &&
+          !path_policy_is_readable(&path_policy, test_path("below/link")));
+    CHECK(!path_policy_is_readable(&path_policy, test_path("outside.txt")) &&
+          !path_policy_is_readable(&path_policy, test_path("below2.txt")));
+    CHECK(!path_policy_is_readable(&path_policy, test_path("below")) &&
+          !path_policy_is_readable(&path_policy, test_path("below/sub")));
+    CHECK(path_policy_is_outside(&path_policy, test_path("outside.txt")) && path_policy_is_outside(&path_policy, "x") &&
+          path_policy_is_outside(&path_policy, "../../../../../../../../../../..") &&
+          !path_policy_is_outside(NULL, "/etc/passwd"));
+    CHECK(!path_policy_is_outside(&path_policy, test_path("below/./x/")) &&
+          !path_policy_is_outside(&path_policy, test_path("below/.x/../y")) == 1);
+    CHECK(can_open(&path_policy, "below/inner.txt", "r") && can_open(&path_policy, "below/inner.txt", "rb"));
+    CHECK(!can_open(&path_policy, "below/inner.txt", "w") && !can_open(&path_policy, "below/inner.txt", "r+"));
+    CHECK(!can_open(&path_policy, "below/inner.txt", "x") && errno == EINVAL);
+    CHECK(!can_open(&path_policy, "below/pipe", "r") && !can_open(&path_policy, "below/missing", "r"));
+    CHECK(!can_open(&path_policy, "below/sub", "r") && !can_open(&path_policy, "below/link", "r"));
     char *much = malloc(6000);
     memset(much, 'x', 5999);
     much[5999] = '\0';
-    CHECK(reach_is_outside(&reach, much) && !reach_is_readable(&reach, much));
+    CHECK(path_policy_is_outside(&path_policy, much) && !path_policy_is_readable(&path_policy, much));
     free(much);
-    reach_destroy(&reach);
+    path_policy_destroy(&path_policy);
 }
 
 TEST(a_folder_that_may_be_written_takes_files_and_gives_none_away) {
-    struct reach reach = {0};
+    struct path_policy path_policy = {0};
     struct error error;
     prepare();
-    CHECK(reach_add(&reach, test_path("below"), REACH_WRITE, &error));
-    CHECK(reach_add(&reach, test_path("below/sub/.."), REACH_IMPLIED, &error) && reach.count == 1);
-    CHECK(can_open(&reach, "below/new.txt", "w") && can_open(&reach, "below/new.txt", "a+"));
-    CHECK(can_open(&reach, "below/sub/x.txt", "w+") && can_open(&reach, "below/to", "r+"));
-    CHECK(!can_open(&reach, "below/link", "w") && !can_open(&reach, "below/gone", "w"));
-    CHECK(!can_open(&reach, "below/", "w") && !can_open(&reach, "below/.", "w") && !can_open(&reach, "below/..", "w"));
-    CHECK(!can_open(&reach, "below/no/x", "w") && !can_open(&reach, "outside.txt", "w"));
+    CHECK(path_policy_add(&path_policy, test_path("below"), PATH_POLICY_WRITE, &error));
+    CHECK(path_policy_add(&path_policy, test_path("below/sub/.."), PATH_POLICY_IMPLIED, &error) &&
+          path_policy.count == 1);
+    CHECK(can_open(&path_policy, "below/new.txt", "w") && can_open(&path_policy, "below/new.txt", "a+"));
+    CHECK(can_open(&path_policy, "below/sub/x.txt", "w+") && can_open(&path_policy, "below/to", "r+"));
+    CHECK(!can_open(&path_policy, "below/link", "w") && !can_open(&path_policy, "below/gone", "w"));
+    CHECK(!can_open(&path_policy, "below/", "w") && !can_open(&path_policy, "below/.", "w") &&
+          !can_open(&path_policy, "below/..", "w"));
+    CHECK(!can_open(&path_policy, "below/no/x", "w") && !can_open(&path_policy, "outside.txt", "w"));
     char *much = malloc(6000);
     (void)snprintf(much, 6000, "%s/below/%0200d", test_folder(), 7);
     while (strlen(much) + 3 < PATH_MAX)
         (void)strcat(much, "x/");
-    CHECK(!reach_stream(&reach, much, "w"));
+    CHECK(!path_policy_stream(&path_policy, much, "w"));
     (void)snprintf(much, 6000, "%s/below/%04000d", test_folder(), 7);
-    CHECK(!reach_stream(&reach, much, "w"));
+    CHECK(!path_policy_stream(&path_policy, much, "w"));
     (void)snprintf(much, 6000, "%s", "./");
     memset(much + 2, 'y', 4090);
     much[4092] = '\0';
-    CHECK(!reach_remove(&reach, much) && !reach_may_create(&reach, strcat(much, "yyyyyyyyyyyyyyyy")));
+    CHECK(!path_policy_remove(&path_policy, much) &&
+          !path_policy_may_create(&path_policy, strcat(much, "yyyyyyyyyyyyyyyy")));
     free(much);
-    CHECK(reach_rename(&reach, test_path("below/new.txt"), test_path("below/other.txt")));
-    CHECK(!reach_rename(&reach, test_path("below/other.txt"), test_path("outside.txt")));
-    CHECK(!reach_rename(&reach, test_path("outside.txt"), test_path("below/x")));
-    CHECK(!reach_rename(&reach, test_path("below/missing"), test_path("below/x")));
-    CHECK(reach_remove(&reach, test_path("below/other.txt")) && !reach_remove(&reach, test_path("below/other.txt")));
-    CHECK(!reach_remove(&reach, test_path("outside.txt")) && !reach_remove(&reach, test_path("no/such")));
-    CHECK(!reach_remove(&reach, test_path("below/")) && errno == EINVAL);
-    CHECK(!reach_remove(&reach, test_path("below/.")) && errno == EINVAL);
-    CHECK(!reach_remove(&reach, test_path("below/..")) && errno == EINVAL);
-    CHECK(reach_may_create(&reach, test_path("below/a/b/c.png")) && reach_may_create(&reach, test_path("below/x.png")));
-    CHECK(!reach_may_create(&reach, test_path("below/.x.png")) && !reach_may_create(&reach, test_path("below/a/../x")));
-    CHECK(!reach_may_create(&reach, test_path("below/a/.x")) && !reach_may_create(&reach, test_path("x.png")));
-    CHECK(!reach_may_create(&reach, test_path("below/no/../../x")) && !reach_may_create(&reach, "../x"));
-    CHECK(!reach_may_create(&reach, test_path("below/inner.txt/x")) && !reach_may_create(&reach, "/x"));
-    CHECK(!reach_may_create(&reach, test_path("below/a/..")) && !reach_may_create(&reach, "x"));
+    CHECK(path_policy_rename(&path_policy, test_path("below/new.txt"), test_path("below/other.txt")));
+    CHECK(!path_policy_rename(&path_policy, test_path("below/other.txt"), test_path("outside.txt")));
+    CHECK(!path_policy_rename(&path_policy, test_path("outside.txt"), test_path("below/x")));
+    CHECK(!path_policy_rename(&path_policy, test_path("below/missing"), test_path("below/x")));
+    CHECK(path_policy_remove(&path_policy, test_path("below/other.txt")) &&
+          !path_policy_remove(&path_policy, test_path("below/other.txt")));
+    CHECK(!path_policy_remove(&path_policy, test_path("outside.txt")) &&
+          !path_policy_remove(&path_policy, test_path("no/such")));
+    CHECK(!path_policy_remove(&path_policy, test_path("below/")) && errno == EINVAL);
+    CHECK(!path_policy_remove(&path_policy, test_path("below/.")) && errno == EINVAL);
+    CHECK(!path_policy_remove(&path_policy, test_path("below/..")) && errno == EINVAL);
+    CHECK(path_policy_may_create(&path_policy, test_path("below/a/b/c.png")) &&
+          path_policy_may_create(&path_policy, test_path("below/x.png")));
+    CHECK(!path_policy_may_create(&path_policy, test_path("below/.x.png")) &&
+          !path_policy_may_create(&path_policy, test_path("below/a/../x")));
+    CHECK(!path_policy_may_create(&path_policy, test_path("below/a/.x")) &&
+          !path_policy_may_create(&path_policy, test_path("x.png")));
+    CHECK(!path_policy_may_create(&path_policy, test_path("below/no/../../x")) &&
+          !path_policy_may_create(&path_policy, "../x"));
+    CHECK(!path_policy_may_create(&path_policy, test_path("below/inner.txt/x")) &&
+          !path_policy_may_create(&path_policy, "/x"));
+    CHECK(!path_policy_may_create(&path_policy, test_path("below/a/..")) && !path_policy_may_create(&path_policy, "x"));
     /* hidden folders that are there */
     CHECK(mkdir(test_path("below/.own"), 0777) == 0 && mkdir(test_path("below/sub/.own"), 0777) == 0);
-    CHECK(!reach_may_create(&reach, test_path("below/.own/x")) &&
-          !reach_may_create(&reach, test_path("below/sub/.own/x")));
-    FILE *everywhere = reach_stream(NULL, test_path("outside2.txt"), "w");
+    CHECK(!path_policy_may_create(&path_policy, test_path("below/.own/x")) &&
+          !path_policy_may_create(&path_policy, test_path("below/sub/.own/x")));
+    FILE *everywhere = path_policy_stream(NULL, test_path("outside2.txt"), "w");
     CHECK(everywhere && fclose(everywhere) == 0);
-    reach_destroy(&reach);
+    path_policy_destroy(&path_policy);
 }
 
 TEST(folders_that_are_none_are_told_or_left_out) {
-    struct reach reach = {0};
+    struct path_policy path_policy = {0};
     struct error error = {0};
     char *much = malloc(6000);
     prepare();
-    CHECK(reach_add(&reach, test_path("nothing"), REACH_IMPLIED, &error) && reach.count == 0);
-    CHECK(reach_add(&reach, "/", REACH_IMPLIED, &error) && reach.count == 0);
-    CHECK(!reach_add(&reach, test_path("nothing"), REACH_READ, &error) && error.kind == ERROR_USAGE);
-    CHECK(!reach_add(&reach, test_path("outside.txt"), REACH_READ, &error) && error.kind == ERROR_USAGE);
-    CHECK(reach_add(&reach, "/", REACH_READ, &error) && reach.count == 1 && reach.folders[0].length == 0);
-    CHECK(reach_is_readable(&reach, test_path("outside.txt")) && reach_is_readable(&reach, test_path("below/.hidden")));
+    CHECK(path_policy_add(&path_policy, test_path("nothing"), PATH_POLICY_IMPLIED, &error) && path_policy.count == 0);
+    CHECK(path_policy_add(&path_policy, "/", PATH_POLICY_IMPLIED, &error) && path_policy.count == 0);
+    CHECK(!path_policy_add(&path_policy, test_path("nothing"), PATH_POLICY_READ, &error) && error.kind == ERROR_USAGE);
+    CHECK(!path_policy_add(&path_policy, test_path("outside.txt"), PATH_POLICY_READ, &error) &&
+          error.kind == ERROR_USAGE);
+    CHECK(path_policy_add(&path_policy, "/", PATH_POLICY_READ, &error) && path_policy.count == 1 &&
+          path_policy.folders[0].length == 0);
+    CHECK(path_policy_is_readable(&path_policy, test_path("outside.txt")) &&
+          path_policy_is_readable(&path_policy, test_path("below/.hidden")));
     memset(much, 'x', 5000);
     strcpy(much + 5000, "/scene.lua");
-    CHECK(!reach_add_scene(&reach, much, NULL, &error) && strstr(error.text, "the path is too long"));
-    CHECK(!reach_add_scene(&reach, "scene.lua", test_path("nothing"), &error));
-    CHECK(reach_add_scene(&reach, test_path("below/scene.lua"), NULL, &error));
-    CHECK(reach_is_readable(NULL, test_path("outside.txt")));
+    CHECK(!path_policy_add_scene(&path_policy, much, NULL, &error) && strstr(error.text, "the path is too long"));
+    CHECK(!path_policy_add_scene(&path_policy, "scene.lua", test_path("nothing"), &error));
+    CHECK(path_policy_add_scene(&path_policy, test_path("below/scene.lua"), NULL, &error));
+    CHECK(path_policy_is_readable(NULL, test_path("outside.txt")));
     free(much);
-    reach_destroy(&reach);
+    path_policy_destroy(&path_policy);
 }
 
 TEST(any_allocation_or_call_may_fail_while_files_are_reached) {
@@ -141,30 +157,30 @@ TEST(any_allocation_or_call_may_fail_while_files_are_reached) {
     prepare();
     for (int kind = 0; kind < 2; kind++)
         for (uint64_t k = 1, over = 0; !over; k++) {
-            struct reach reach = {0};
+            struct path_policy path_policy = {0};
             struct error error = {0};
             struct file_bytes bytes;
             uint64_t before = fault_count((enum fault_kind)kind);
             fault_at((enum fault_kind)kind, k);
-            bool ok = reach_add_scene(&reach, test_path("below/scene.lua"), "lua", &error) &&
-                      reach_add(&reach, test_path("below"), REACH_WRITE, &error);
+            bool ok = path_policy_add_scene(&path_policy, test_path("below/scene.lua"), "lua", &error) &&
+                      path_policy_add(&path_policy, test_path("below"), PATH_POLICY_WRITE, &error);
             CHECK(ok || error.text[0]);
-            if (ok && reach_map(&reach, test_path("below/inner.txt"), 100, &bytes, &error))
+            if (ok && path_policy_map(&path_policy, test_path("below/inner.txt"), 100, &bytes, &error))
                 file_unmap(&bytes);
-            (void)can_open(&reach, "below/new.txt", "w");
+            (void)can_open(&path_policy, "below/new.txt", "w");
             (void)can_open(NULL, "below/new.txt", "r");
             fault_at((enum fault_kind)kind, 0);
             over = fault_count((enum fault_kind)kind) - before < k;
-            reach_destroy(&reach);
+            path_policy_destroy(&path_policy);
         }
 }
 
 /* In a folder that has been removed nothing has a place. */
 TEST(a_working_directory_that_is_gone_holds_nothing) {
-    struct reach reach = {0};
+    struct path_policy path_policy = {0};
     struct error error;
     prepare();
-    CHECK(reach_add(&reach, test_path("below"), REACH_WRITE, &error));
+    CHECK(path_policy_add(&path_policy, test_path("below"), PATH_POLICY_WRITE, &error));
     CHECK(mkdir(test_path("gone"), 0777) == 0);
     fflush(stdout);
     pid_t child = fork();
@@ -172,11 +188,11 @@ TEST(a_working_directory_that_is_gone_holds_nothing) {
         const char *gone = test_path("gone");
         if (chdir(gone) != 0 || rmdir(gone) != 0)
             _exit(1);
-        _exit(reach_is_outside(&reach, "x") && !reach_may_create(&reach, "x") ? 0 : 2);
+        _exit(path_policy_is_outside(&path_policy, "x") && !path_policy_may_create(&path_policy, "x") ? 0 : 2);
     }
     int how = 0;
     CHECK(waitpid(child, &how, 0) == child && WIFEXITED(how) && WEXITSTATUS(how) == 0);
-    reach_destroy(&reach);
+    path_policy_destroy(&path_policy);
 }
 
 #ifdef GRAY_FAULTS
@@ -191,10 +207,10 @@ static void change_places(void) {
 /* In below/sub or outer, which have names of the same length or not, with the kernel's openat2 refused for that reason
  * (0: it is there). */
 static void race(const char *outer, const char *mode, int number) {
-    struct reach reach = {0};
+    struct path_policy path_policy = {0};
     struct error error;
     char line[600];
-    CHECK(reach_add(&reach, test_path("below"), REACH_WRITE, &error));
+    CHECK(path_policy_add(&path_policy, test_path("below"), PATH_POLICY_WRITE, &error));
     CHECK(mkdir(test_path("below/sub"), 0777) == 0 || errno == EEXIST);
     CHECK(mkdir(test_path(outer), 0777) == 0 || errno == EEXIST);
     test_write_text(test_path("below/sub/f"), "inside");
@@ -207,7 +223,7 @@ static void race(const char *outer, const char *mode, int number) {
     int before = fault_errno(number);
     fault_at(FAULT_OF_CALL, number ? 1 : 0);
     fault_before(number ? 2 : 1, change_places);
-    FILE *stream = reach_stream(&reach, test_path("below/sub/f"), mode);
+    FILE *stream = path_policy_stream(&path_policy, test_path("below/sub/f"), mode);
     int why = errno;
     fault_at(FAULT_OF_CALL, 0);
     fault_before(0, change_places);
@@ -219,7 +235,7 @@ static void race(const char *outer, const char *mode, int number) {
     char *text = test_read_file(line, NULL);
     CHECK_TEXT(text, "outside"); /* nor was it emptied */
     free(text);
-    reach_destroy(&reach);
+    path_policy_destroy(&path_policy);
 }
 #endif
 
@@ -249,26 +265,26 @@ TEST(any_call_may_fail_where_the_kernel_opens_no_file_below_a_folder) {
         static const char *const scripts[] = {"tests/hostile/time_loop.lua"};
         const char *const folders[] = {test_path("below")};
         struct options options = {.scripts = scripts, .script_count = 1};
-        struct reach reach = {0};
+        struct path_policy path_policy = {0};
         struct error error = {0};
         char report[4096] = "";
         int opened = 0;
         options.script.allow_write = folders;
         options.script.allow_write_count = 1;
-        if (!reach_add(&reach, folders[0], REACH_WRITE, &error) ||
+        if (!path_policy_add(&path_policy, folders[0], PATH_POLICY_WRITE, &error) ||
             !confine_process_as(&options, 2, 0, report, sizeof report, &error))
             _exit(64);
         if (!strstr(report, ", seccomp; "))
             _exit(77);
-        reach.folders[0].descriptor = open(folders[0], O_PATH | O_DIRECTORY); /* the others were closed */
+        path_policy.folders[0].descriptor = open(folders[0], O_PATH | O_DIRECTORY); /* the others were closed */
         for (uint64_t k = 1; k <= 8; k++) {
             fault_at(FAULT_OF_CALL, k);
-            opened += can_open(&reach, "below/inner.txt", k % 2 ? "w" : "r");
+            opened += can_open(&path_policy, "below/inner.txt", k % 2 ? "w" : "r");
             fault_at(FAULT_OF_CALL, k);
-            opened += can_open(&reach, "below/inner.txt", k % 2 ? "r" : "w");
+            opened += can_open(&path_policy, "below/inner.txt", k % 2 ? "r" : "w");
         }
         fault_at(FAULT_OF_CALL, 0);
-        _exit(opened > 0 && opened < 16 && can_open(&reach, "below/inner.txt", "w") ? 0 : 1);
+        _exit(opened > 0 && opened < 16 && can_open(&path_policy, "below/inner.txt", "w") ? 0 : 1);
     }
     int how = 0;
     CHECK(waitpid(child, &how, 0) == child && WIFEXITED(how));
@@ -284,7 +300,7 @@ static int status_of_confined(long version, const char *allowed, size_t report_s
     const char *folders[] = {allowed};
     static const char *const scripts[] = {"tests/hostile/time_loop.lua", "no/such.lua"};
     struct options options = {.scripts = scripts, .script_count = 2};
-    struct reach reach = {0};
+    struct path_policy path_policy = {0};
     struct error error = {0};
     fflush(stdout);
     pid_t child = fork();
@@ -292,17 +308,17 @@ static int status_of_confined(long version, const char *allowed, size_t report_s
         int bad = 0;
         options.script.allow_write = folders;
         options.script.allow_write_count = 1;
-        (void)reach_add(&reach, allowed, REACH_WRITE, &error);
+        (void)path_policy_add(&path_policy, allowed, PATH_POLICY_WRITE, &error);
         if (!confine_process_as(&options, 2, version, report, report_size, &error))
             _exit(64);
         bool calls = strstr(report, ", seccomp; ") != NULL;
         if (report_size == sizeof report)
             bad |= !strstr(report, version <= 0 ? "no Landlock in this kernel" : "Landlock (version ") ? 1 : 0;
-        for (size_t i = 0; i < reach.count; i++)
-            reach.folders[i].descriptor = open(allowed, O_PATH | O_DIRECTORY); /* the others were closed */
-        bad |= reach.count != 1 || !can_open(&reach, "below/inner.txt", "r") ? 2 : 0;
-        bad |= !can_open(&reach, "below/new.txt", "w") || !can_open(&reach, "below/new.txt", "r+") ? 4 : 0;
-        bad |= can_open(&reach, "below/link", "r") || can_open(&reach, "outside.txt", "r") ? 8 : 0;
+        for (size_t i = 0; i < path_policy.count; i++)
+            path_policy.folders[i].descriptor = open(allowed, O_PATH | O_DIRECTORY); /* the others were closed */
+        bad |= path_policy.count != 1 || !can_open(&path_policy, "below/inner.txt", "r") ? 2 : 0;
+        bad |= !can_open(&path_policy, "below/new.txt", "w") || !can_open(&path_policy, "below/new.txt", "r+") ? 4 : 0;
+        bad |= can_open(&path_policy, "below/link", "r") || can_open(&path_policy, "outside.txt", "r") ? 8 : 0;
         _exit(bad | (calls || report_size < 200 ? 0 : 128));
     }
     int how = 0;
