@@ -433,8 +433,8 @@ static bool render_job_run(struct render_process *process, const struct render_r
         return false;
     if (already)
         return true;
-    if (atomic_load(&control->outlook.begun) == OUTLOOK_WANTED)
-        work.job.outlook = &control->outlook;
+    if (atomic_load(&control->progress_estimate.begun) == PROGRESS_ESTIMATE_WANTED)
+        work.job.progress_estimate = &control->progress_estimate;
     work.job.handout = atomic_load(&control->handout) != HANDOUT_NONE ? &control->handout : NULL;
     bool ok = make_picture(&work, error);
     if (ok && !work.asked.check)

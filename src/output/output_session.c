@@ -228,8 +228,8 @@ bool output_begin(struct output_session *output, const struct picture_request *r
     atomic_store(&output->control->tiles, 0);
     atomic_store(&output->control->tiles_done, 0);
     bool helps = output->farm && !farm_is_first(output->farm);
-    outlook_reset(&output->control->outlook,
-                  progress_wants_outlook(&output->progress) && !request->in_window && !helps);
+    progress_estimate_reset(&output->control->progress_estimate,
+                            progress_wants_outlook(&output->progress) && !request->in_window && !helps);
     (void)wait_for_text(output);
     progress_begin(&output->progress, picture->name, request->width, request->height);
     struct tone tone = picture_tone(request);
@@ -422,7 +422,7 @@ void output_show_progress(struct output_session *output) {
     if (display_draws(&output->display, progress_clock()))
         progress_hide(&output->progress);
     report_display(output, display_step(&output->display, progress_clock(), &error), &error);
-    progress_update(&output->progress, done, count, &output->control->outlook);
+    progress_update(&output->progress, done, count, &output->control->progress_estimate);
     if (output->current.open && !output->current.request.in_window && progress_wants_packing_time(&output->progress)) {
         uint32_t pixels;
         double seconds = picture_packing_time(&output->current, &pixels);

@@ -1,5 +1,5 @@
-/* The time left is that until the end that the render foretells (render/outlook.h), and that of writing. The bar is
- * erased with blanks, not with escape sequences, so that any terminal shows it. */
+/* The time left is that until the end that the render foretells (render/progress_estimate.h), and that of writing. The
+ * bar is erased with blanks, not with escape sequences, so that any terminal shows it. */
 #define _GNU_SOURCE
 #include "output/progress.h"
 
@@ -63,19 +63,19 @@ struct state {
 };
 
 static struct state state_of(struct progress *progress, double now, uint32_t done, uint32_t count,
-                             const struct outlook *outlook) {
+                             const struct progress_estimate *progress_estimate) {
     struct state state = {now - progress->begun, -1, -1, done, count};
-    bool asked = outlook_is_asked(outlook);
+    bool asked = progress_estimate_is_wanted(progress_estimate);
     if (count == 0)
         return state;
-    state.share = asked ? outlook_share(outlook) : (double)done / (double)count;
-    state.left = asked             ? outlook_left(outlook, now)
+    state.share = asked ? progress_estimate_share(progress_estimate) : (double)done / (double)count;
+    state.left = asked             ? progress_estimate_left(progress_estimate, now)
                  : state.share > 0 ? state.elapsed / state.share - state.elapsed
                                    : -1;
     if (asked && state.share > 0 && state.left >= 0) {
         /* The file is written by all threads, after the last tile. */
         double pixels = (double)progress->width * progress->height;
-        double last = progress->writing * outlook_pace(outlook) * pixels / progress->threads;
+        double last = progress->writing * progress_estimate_pace(progress_estimate) * pixels / progress->threads;
         double whole = state.elapsed + state.left;
         state.share = fmax(progress->share, state.share * whole / (whole + last));
         progress->share = state.share;
@@ -202,13 +202,14 @@ static double pause_of(const struct progress *progress, double now) {
     return HUGE_VAL;
 }
 
-void progress_update(struct progress *progress, uint32_t done, uint32_t count, const struct outlook *outlook) {
+void progress_update(struct progress *progress, uint32_t done, uint32_t count,
+                     const struct progress_estimate *progress_estimate) {
     double now = progress_clock();
-    bool first = progress->mode == PROGRESS_JSON && !progress->known && outlook_share(outlook) >= 0;
+    bool first = progress->mode == PROGRESS_JSON && !progress->known && progress_estimate_share(progress_estimate) >= 0;
     if (!progress->name || (now - progress->shown < pause_of(progress, now) && !first) || !text_stderr_is_ready())
         return;
     progress->known = progress->known || first;
-    struct state state = state_of(progress, now, done, count, outlook);
+    struct state state = state_of(progress, now, done, count, progress_estimate);
     progress->shown = now;
     if (progress->mode == PROGRESS_BAR)
         draw_bar(progress, &state);

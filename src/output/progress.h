@@ -3,7 +3,7 @@
 #ifndef GRAY_OUTPUT_PROGRESS_H
 #define GRAY_OUTPUT_PROGRESS_H
 
-#include "render/outlook.h"
+#include "render/progress_estimate.h"
 #include "session/options.h"
 #include "session/standard_streams.h"
 
@@ -34,7 +34,8 @@ void progress_init(struct progress *progress, enum progress_mode mode, bool quie
 /* `name` must stay until progress_end. */
 void progress_begin(struct progress *progress, const char *name, uint32_t width, uint32_t height);
 /* count 0: the scene is still being built. Reports at most ten times a second. */
-void progress_update(struct progress *progress, uint32_t done, uint32_t count, const struct outlook *outlook);
+void progress_update(struct progress *progress, uint32_t done, uint32_t count,
+                     const struct progress_estimate *progress_estimate);
 /* It is time to measure what writing the file will take: enough of it is there, and an estimate is shown. */
 bool progress_wants_packing_time(const struct progress *progress);
 /* Processor seconds for so many pixels; negative: it could not be measured. */

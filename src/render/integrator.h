@@ -28,7 +28,7 @@ struct vec3 integrator_radiance(struct run *run, struct worker *worker, const st
 /* The same for a ray that went with a packet: what it has met, or NULL. */
 struct vec3 integrator_radiance_met(struct run *run, struct worker *worker, const struct ray *ray,
                                     const struct packet_answer *met, uint64_t key);
-/* For the forecast: whether pixels between two samples of these colours are to get more samples than others. */
+/* For the time estimate: whether pixels between two samples of these colours are to get more samples than others. */
 bool integrator_refines(const struct run *run, struct vec3 a, struct vec3 b);
 /* Traces the samples of a finished pixel once more, one by one, for layers that measure what they cost. */
 void integrator_repeat(struct run *run, struct worker *worker, int64_t x, int64_t y);

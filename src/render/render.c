@@ -147,8 +147,8 @@ static void handout_item(void *context, uint32_t item, int index) {
             return;
         else
             (void)nanosleep(&pause, NULL);
-        if (run->foretold)
-            run_tell_outlook(run);
+        if (run->estimated)
+            run_report_estimate(run);
     }
 }
 
@@ -279,7 +279,7 @@ static void end_run(struct run *run, int workers) {
     mem_free(run->closed);
     mem_free(run->order);
     mem_free(run->quarters);
-    forecast_destroy(&run->forecast);
+    time_estimate_destroy(&run->time_estimate);
 }
 
 /* The part is one pixel. */
@@ -329,7 +329,8 @@ bool render_pixels(const struct render_job *job, struct pool *pool, const uint32
 static bool order_tiles(struct run *run) {
     const struct film *film = run->job->film;
     uint32_t count = film_tile_count(film);
-    if (run->job->outlook && !forecast_create(&run->forecast, count, film_tiles_across(film), pool_workers(run->pool)))
+    if (run->job->progress_estimate &&
+        !time_estimate_create(&run->time_estimate, count, film_tiles_across(film), pool_workers(run->pool)))
         return false;
     run->whole_tiles = count;
     if (run->job->handout)
@@ -351,9 +352,9 @@ static bool make_tiles(struct run *run, struct render_statistics *statistics, st
     if (!order_tiles(run))
         return error_no_memory(error, "the order of the tiles");
     count_tiles(run);
-    bool whole = run_look_ahead(run) && run_tiles(run, statistics) && !(run_is_enough(run) && is_unfinished(run));
-    if (whole && run->job->outlook)
-        run_tell_end(run);
+    bool whole = run_cost_prepass(run) && run_tiles(run, statistics) && !(run_is_enough(run) && is_unfinished(run));
+    if (whole && run->job->progress_estimate)
+        run_report_end(run);
     if (!atomic_load(&run->failed))
         return whole || error_set(error, ERROR_CANCELLED, "stopped while rendering");
     if (!whole)

@@ -7,7 +7,7 @@
 #include "base/pool.h"
 #include "material/fog.h"
 #include "render/film.h"
-#include "render/outlook.h"
+#include "render/progress_estimate.h"
 #include "render/settings.h"
 #include "world/world.h"
 
@@ -38,7 +38,8 @@ struct render_job {
     /* Called from any worker when a tile is final; may be NULL. done counts from 1. */
     void (*tile_done)(void *context, uint32_t tile, uint32_t done, uint32_t count);
     void *context;
-    struct outlook *outlook; /* or NULL; zero: reports the progress, from an estimate made before the first tile */
+    struct progress_estimate
+        *progress_estimate; /* or NULL; zero: reports the progress, from an estimate made before the first tile */
     const _Atomic int
         *enough; /* or NULL; while it is not 0 no further tile is begun, and the render counts as stopped */
 };

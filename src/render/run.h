@@ -1,13 +1,13 @@
 /* What the files of a render share: tiles (render.c), samples (sample.c), integrators (integrator.h), the time estimate
- * (ahead.c), render layers (layers.c). Nobody else includes it. */
+ * (cost_prepass.c), render layers (layers.c). Nobody else includes it. */
 #ifndef GRAY_RENDER_RUN_H
 #define GRAY_RENDER_RUN_H
 
 #include "render/camera.h"
-#include "render/forecast.h"
 #include "render/integrator_state.h"
 #include "render/media.h"
 #include "render/render.h"
+#include "render/time_estimate.h"
 #include "world/packet.h"
 
 #include <stdatomic.h>
@@ -51,10 +51,10 @@ struct run {
     uint32_t *order;           /* of the tiles; NULL: as they are numbered */
     uint32_t whole_tiles;      /* so many are made as a whole, the others of the order in quarters */
     _Atomic uint8_t *quarters; /* of each of the others, how many are done; and QUARTER_FAILED */
-    bool foretold;             /* the tiles have been looked at */
-    struct forecast forecast;
-    uint64_t worked;       /* processor time when the first tile began */
-    _Atomic uint64_t told; /* when the outlook was told, nanoseconds */
+    bool estimated;            /* the tiles have been looked at */
+    struct time_estimate time_estimate;
+    uint64_t worked;           /* processor time when the first tile began */
+    _Atomic uint64_t reported; /* when the progress estimate was told, nanoseconds */
     _Atomic uint32_t done;
     _Atomic bool failed;
 };
@@ -77,13 +77,13 @@ static inline bool run_stopped(const struct run *run, const struct worker *worke
 }
 
 /* Before the first tile; false: stopped. Does nothing if no time estimate is requested. */
-bool run_look_ahead(struct run *run);
+bool run_cost_prepass(struct run *run);
 void run_tile_begins(struct run *run, struct worker *worker, uint32_t tile, double share); /* that share of it */
 /* So much of its first pass (0) or its second is done. */
 void run_tile_goes_on(struct run *run, struct worker *worker, int pass, double part);
 void run_tile_ends(struct run *run, struct worker *worker);
-void run_tell_outlook(struct run *run);
-void run_tell_end(struct run *run); /* all tiles are done */
+void run_report_estimate(struct run *run);
+void run_report_end(struct run *run); /* all tiles are done */
 
 /* No further tile is to be begun. */
 bool run_is_enough(const struct run *run);

@@ -3,7 +3,7 @@
 #ifndef GRAY_SESSION_CONTROL_H
 #define GRAY_SESSION_CONTROL_H
 
-#include "render/outlook.h"
+#include "render/progress_estimate.h"
 #include "session/standard_streams.h"
 
 #include <stdatomic.h>
@@ -15,15 +15,15 @@ enum handout { HANDOUT_NONE, HANDOUT_OPEN, HANDOUT_CLOSED };
 enum cancel { CANCEL_NOTHING, CANCEL_ALL /* give up the picture, end the script */, CANCEL_PASS /* of a window */ };
 
 struct control {
-    _Atomic int cancel;          /* an enum cancel, set by the supervisor */
-    _Atomic uint32_t tiles_done; /* of the picture being made */
-    _Atomic uint32_t tiles;      /* 0 until its scene is built */
-    _Atomic uint32_t handout;    /* an enum handout */
-    _Atomic int enough;          /* not 0: finish the tiles under way, begin no others */
-    struct outlook outlook;      /* the progress of the picture, where it is wanted */
-    _Atomic uint32_t build_step; /* of building the world, from 1; 0: it is built */
-    _Atomic uint32_t build_done; /* thousandths of that step */
-    _Atomic uint32_t lost;       /* not 0: the render process could not write all of its standard output */
+    _Atomic int cancel;                         /* an enum cancel, set by the supervisor */
+    _Atomic uint32_t tiles_done;                /* of the picture being made */
+    _Atomic uint32_t tiles;                     /* 0 until its scene is built */
+    _Atomic uint32_t handout;                   /* an enum handout */
+    _Atomic int enough;                         /* not 0: finish the tiles under way, begin no others */
+    struct progress_estimate progress_estimate; /* the progress of the picture, where it is wanted */
+    _Atomic uint32_t build_step;                /* of building the world, from 1; 0: it is built */
+    _Atomic uint32_t build_done;                /* thousandths of that step */
+    _Atomic uint32_t lost; /* not 0: the render process could not write all of its standard output */
     struct error_stream error_stream;
 };
 

@@ -73,10 +73,10 @@ static bool make_pass(struct preview_state *work, struct picture_report *report,
     double begun = progress_clock();
     set_pass(&job, preview->job, &work->view, preview->asked, &film, preview->job->film->pixels);
     /* A coarse pass needs no time estimate. */
-    struct outlook *outlook = &preview->services->control->outlook;
+    struct progress_estimate *progress_estimate = &preview->services->control->progress_estimate;
     bool fine = work->view.divide <= 1 && !work->view.plain;
-    outlook_reset(outlook, fine);
-    job.outlook = fine ? outlook : NULL;
+    progress_estimate_reset(progress_estimate, fine);
+    job.progress_estimate = fine ? progress_estimate : NULL;
     report->rays = (struct render_statistics){.build_seconds = work->build_seconds};
     bool ok = render_run(&job, preview->pool, &report->rays, error);
     report->stopped = !ok && preview_was_stopped(preview->services->control, error);

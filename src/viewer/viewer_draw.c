@@ -131,11 +131,14 @@ static uint32_t building_step(const struct viewer *viewer) {
     return viewer->control ? atomic_load_explicit(&viewer->control->build_step, memory_order_relaxed) : 0;
 }
 
-/* The picture itself by its work, with the time left once it is known (render/outlook.h); coarse ones by their tiles.
+/* The picture itself by its work, with the time left once it is known (render/progress_estimate.h); coarse ones by
+ * their tiles.
  */
 static void describe_pass(const struct viewer *viewer, struct figures *figures, double now) {
-    const struct outlook *outlook = viewer->control && !viewer->pass.view.plain ? &viewer->control->outlook : NULL;
-    double share = outlook ? outlook_share(outlook) : -1, left = outlook ? outlook_left(outlook, now) : -1;
+    const struct progress_estimate *progress_estimate =
+        viewer->control && !viewer->pass.view.plain ? &viewer->control->progress_estimate : NULL;
+    double share = progress_estimate ? progress_estimate_share(progress_estimate) : -1,
+           left = progress_estimate ? progress_estimate_left(progress_estimate, now) : -1;
     char time[48];
     figures->share = share >= 0 ? share : figures->share;
     text_duration(left > 0 ? left : 0, time, sizeof time);

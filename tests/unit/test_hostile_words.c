@@ -634,7 +634,7 @@ TEST(hostile_the_bar_of_a_picture_does_not_look_like_a_line_of_the_program) {
     const char *path = test_path("said");
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         for (size_t from = 0; from < strlen(names[i]); from++) {
-            struct outlook outlook = {.begun = 0};
+            struct progress_estimate progress_estimate = {.begun = 0};
             struct progress progress;
             int kept = dup(2), file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
             (void)dup2(file, 2);
@@ -642,7 +642,7 @@ TEST(hostile_the_bar_of_a_picture_does_not_look_like_a_line_of_the_program) {
             progress_begin(&progress, names[i] + from, 10, 10);
             for (uint32_t count = 0; count <= 10; count += 10) {
                 progress.shown = -1;
-                progress_update(&progress, 5, count, &outlook);
+                progress_update(&progress, 5, count, &progress_estimate);
             }
             progress_end(&progress, PROGRESS_WRITTEN);
             (void)dup2(kept, 2);

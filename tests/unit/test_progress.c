@@ -2,9 +2,9 @@
 #include "tests/harness.h"
 
 #include "base/random.h"
-#include "render/forecast.h"
 #include "render/order.h"
-#include "render/outlook.h"
+#include "render/progress_estimate.h"
+#include "render/time_estimate.h"
 #include "tests/stage.h"
 
 #include <math.h>
@@ -82,8 +82,8 @@ TEST(the_order_of_tiles_changes_no_byte) {
 }
 
 /* A job over a film of its own, with or without somebody who asks how far it is. */
-static bool run_job(struct stage *s, struct film *film, struct outlook *outlook, const _Atomic int *enough,
-                    struct render_statistics *statistics) {
+static bool run_job(struct stage *s, struct film *film, struct progress_estimate *progress_estimate,
+                    const _Atomic int *enough, struct render_statistics *statistics) {
     struct render_job job = {.world = &s->world,
                              .camera = s->camera,
                              .settings = s->settings,
@@ -91,7 +91,7 @@ static bool run_job(struct stage *s, struct film *film, struct outlook *outlook,
                              .height = film->height,
                              .ambient = vec3_all(0.3),
                              .film = film,
-                             .outlook = outlook,
+                             .progress_estimate = progress_estimate,
                              .enough = enough};
     return render_run(&job, s->pool, statistics, &s->error);
 }
@@ -99,7 +99,7 @@ static bool run_job(struct stage *s, struct film *film, struct outlook *outlook,
 TEST(what_is_foretold_is_done_in_the_end_and_counts_for_nothing) {
     struct stage s;
     struct render_statistics plain = {0}, asked = {0};
-    struct outlook outlook = {0};
+    struct progress_estimate progress_estimate = {0};
     stage_begin(&s, 2);
     stage_sphere(&s, s.root, stage_glass(&s, 0.3, 0.6, 1.4));
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
@@ -109,11 +109,11 @@ TEST(what_is_foretold_is_done_in_the_end_and_counts_for_nothing) {
     struct film films[2] = {film_of(200, 150), film_of(200, 150)};
     for (int i = 0; i < 2; i++)
         film_place(&films[i], blocks[i], 200, 150, integrator_record(INTEGRATOR_WHITTED));
-    CHECK(outlook_share(&outlook) < 0 && outlook_left(&outlook, 1) < 0);
+    CHECK(progress_estimate_share(&progress_estimate) < 0 && progress_estimate_left(&progress_estimate, 1) < 0);
     CHECK(run_job(&s, &films[0], NULL, NULL, &plain));
-    CHECK(run_job(&s, &films[1], &outlook, NULL, &asked));
-    CHECK(outlook_share(&outlook) == 1);
-    CHECK(outlook_left(&outlook, 1e9) == 0);
+    CHECK(run_job(&s, &films[1], &progress_estimate, NULL, &asked));
+    CHECK(progress_estimate_share(&progress_estimate) == 1);
+    CHECK(progress_estimate_left(&progress_estimate, 1e9) == 0);
     CHECK(memcmp(films[0].pixels, films[1].pixels, (size_t)200 * 150 * film_record_size(films[0].record)) == 0);
     CHECK_EQ_INT(plain.camera_rays, asked.camera_rays);
     CHECK_EQ_INT(plain.refracted_rays, asked.refracted_rays);
@@ -125,24 +125,24 @@ TEST(what_is_foretold_is_done_in_the_end_and_counts_for_nothing) {
 }
 
 TEST(the_time_left_is_the_time_so_far_over_the_work_that_is_missing) {
-    struct outlook outlook;
+    struct progress_estimate progress_estimate;
     const uint64_t second = 1000000000;
-    outlook_reset(&outlook, true);
-    CHECK(outlook_is_asked(&outlook));
-    CHECK(outlook_share(&outlook) < 0 && outlook_left(&outlook, 7) < 0);
-    atomic_store(&outlook.begun, 5 * second);
-    outlook_tell(&outlook, 0, 1, 5 * second);
-    CHECK(outlook_share(&outlook) == 0 && outlook_left(&outlook, 7) < 0);
-    outlook_tell(&outlook, 25, 75, 7 * second);
-    CHECK_NEAR(outlook_share(&outlook), 0.25, 1e-8);
-    CHECK_NEAR(outlook_left(&outlook, 7), 6, 1e-6);
-    CHECK_NEAR(outlook_left(&outlook, 9.5), 3.5, 1e-6); /* it falls with the clock */
-    CHECK_NEAR(outlook_left(&outlook, 20), 0, 0);
-    outlook_tell(&outlook, 20, 80, 7 * second); /* the share never falls, what is left may grow */
-    CHECK_NEAR(outlook_share(&outlook), 0.25, 1e-8);
-    CHECK_NEAR(outlook_left(&outlook, 7), 8, 1e-6);
-    outlook_reset(&outlook, false);
-    CHECK(!outlook_is_asked(&outlook) && outlook_left(&outlook, 7) < 0);
+    progress_estimate_reset(&progress_estimate, true);
+    CHECK(progress_estimate_is_wanted(&progress_estimate));
+    CHECK(progress_estimate_share(&progress_estimate) < 0 && progress_estimate_left(&progress_estimate, 7) < 0);
+    atomic_store(&progress_estimate.begun, 5 * second);
+    progress_estimate_report(&progress_estimate, 0, 1, 5 * second);
+    CHECK(progress_estimate_share(&progress_estimate) == 0 && progress_estimate_left(&progress_estimate, 7) < 0);
+    progress_estimate_report(&progress_estimate, 25, 75, 7 * second);
+    CHECK_NEAR(progress_estimate_share(&progress_estimate), 0.25, 1e-8);
+    CHECK_NEAR(progress_estimate_left(&progress_estimate, 7), 6, 1e-6);
+    CHECK_NEAR(progress_estimate_left(&progress_estimate, 9.5), 3.5, 1e-6); /* it falls with the clock */
+    CHECK_NEAR(progress_estimate_left(&progress_estimate, 20), 0, 0);
+    progress_estimate_report(&progress_estimate, 20, 80, 7 * second); /* the share never falls, what is left may grow */
+    CHECK_NEAR(progress_estimate_share(&progress_estimate), 0.25, 1e-8);
+    CHECK_NEAR(progress_estimate_left(&progress_estimate, 7), 8, 1e-6);
+    progress_estimate_reset(&progress_estimate, false);
+    CHECK(!progress_estimate_is_wanted(&progress_estimate) && progress_estimate_left(&progress_estimate, 7) < 0);
 }
 
 /* A picture of 20 x 10 tiles whose left half costs ten times the right one, made row by row or column by column, with
@@ -155,33 +155,33 @@ static double scatter(uint32_t tile, double width) {
     return 1 + width * (2 * random_unit(random_combine(7, tile)) - 1);
 }
 
-static void look_at_halves(struct forecast *forecast, double told, double width) {
+static void look_at_halves(struct time_estimate *time_estimate, double told, double width) {
     for (uint32_t tile = 0; tile < 200; tile++)
-        forecast_look(forecast, tile, 1024, (told * cost_of(tile) + (1 - told) * 500) * 0.01 * scatter(tile, width),
-                      0.1);
-    forecast_settle(forecast);
+        time_estimate_probe(time_estimate, tile, 1024,
+                            (told * cost_of(tile) + (1 - told) * 500) * 0.01 * scatter(tile, width), 0.1);
+    time_estimate_begin_tiles(time_estimate);
 }
 
 /* The largest error of what is left, of itself, from `from` tiles on until `until`. */
-static double worst_error(struct forecast *forecast, const uint32_t *order, int from, int until) {
+static double worst_error(struct time_estimate *time_estimate, const uint32_t *order, int from, int until) {
     double left = 0, done = 0, worst = 0;
     for (int i = 0; i < 200; i++)
         left += cost_of(order[i]);
     for (int i = 0; i < until; i++) {
-        forecast_begin(forecast, i % forecast->workers, order[i], 1);
-        forecast_done(forecast, i % forecast->workers, cost_of(order[i]), 0.3 * cost_of(order[i]));
+        time_estimate_begin(time_estimate, i % time_estimate->workers, order[i], 1);
+        time_estimate_done(time_estimate, i % time_estimate->workers, cost_of(order[i]), 0.3 * cost_of(order[i]));
         left -= cost_of(order[i]);
         done += cost_of(order[i]);
-        struct forecast_work work = forecast_work(forecast, NULL);
+        struct time_estimate_work work = time_estimate_work(time_estimate, NULL);
         if (i + 1 >= from)
             worst = fmax(worst, fabs(done * work.left / work.done - left) / left);
     }
     return worst;
 }
 
-TEST(forecast_of_a_picture_whose_left_half_costs_ten_times_the_right_one) {
+TEST(time_estimate_of_a_picture_whose_left_half_costs_ten_times_the_right_one) {
     struct film film = film_of(20 * 32, 10 * 32);
-    struct forecast forecast;
+    struct time_estimate time_estimate;
     uint32_t rows[200], columns[200], spread[200];
     for (uint32_t i = 0; i < 200; i++) {
         rows[i] = i;
@@ -193,80 +193,81 @@ TEST(forecast_of_a_picture_whose_left_half_costs_ten_times_the_right_one) {
     for (int workers = 1; workers <= 3; workers++) {
         const uint32_t *orders[3] = {rows, columns, spread};
         for (int i = 0; i < 3; i++) {
-            CHECK(forecast_create(&forecast, 200, 20, workers));
-            look_at_halves(&forecast, 1, 0);
-            CHECK(worst_error(&forecast, orders[i], 10, 199) < (i == 1 ? 1 : 0.1));
-            forecast_destroy(&forecast);
+            CHECK(time_estimate_create(&time_estimate, 200, 20, workers));
+            look_at_halves(&time_estimate, 1, 0);
+            CHECK(worst_error(&time_estimate, orders[i], 10, 199) < (i == 1 ? 1 : 0.1));
+            time_estimate_destroy(&time_estimate);
         }
     }
     /* Rays that tell nothing: tiles that are spread stand for the others. */
-    CHECK(forecast_create(&forecast, 200, 20, 2));
-    look_at_halves(&forecast, 0, 0);
-    CHECK(worst_error(&forecast, spread, 66, 180) < 0.2);
-    forecast_destroy(&forecast);
+    CHECK(time_estimate_create(&time_estimate, 200, 20, 2));
+    look_at_halves(&time_estimate, 0, 0);
+    CHECK(worst_error(&time_estimate, spread, 66, 180) < 0.2);
+    time_estimate_destroy(&time_estimate);
     /* Half of each: the model learns what the rays left out. */
-    CHECK(forecast_create(&forecast, 200, 20, 2));
-    look_at_halves(&forecast, 0.5, 0);
-    CHECK(worst_error(&forecast, spread, 66, 190) < 0.1);
-    forecast_destroy(&forecast);
+    CHECK(time_estimate_create(&time_estimate, 200, 20, 2));
+    look_at_halves(&time_estimate, 0.5, 0);
+    CHECK(worst_error(&time_estimate, spread, 66, 190) < 0.1);
+    time_estimate_destroy(&time_estimate);
     /* Each tile's rays wrong by up to half. */
-    CHECK(forecast_create(&forecast, 200, 20, 2));
-    look_at_halves(&forecast, 1, 0.5);
-    CHECK(worst_error(&forecast, spread, 66, 180) < 0.15);
-    forecast_destroy(&forecast);
+    CHECK(time_estimate_create(&time_estimate, 200, 20, 2));
+    look_at_halves(&time_estimate, 1, 0.5);
+    CHECK(worst_error(&time_estimate, spread, 66, 180) < 0.15);
+    time_estimate_destroy(&time_estimate);
 }
 
 /* A cost that rays cannot time: tiles cost by their edges alone. */
-TEST(forecast_learns_what_edges_cost) {
-    struct forecast forecast;
+TEST(time_estimate_learns_what_edges_cost) {
+    struct time_estimate time_estimate;
     double left = 0, done = 0;
-    CHECK(forecast_create(&forecast, 400, 20, 1));
+    CHECK(time_estimate_create(&time_estimate, 400, 20, 1));
     for (uint32_t tile = 0; tile < 400; tile++) {
         double edges = tile % 7 == 0 ? 0.8 : 0.05;
-        forecast_look(&forecast, tile, 1024, 10, edges);
+        time_estimate_probe(&time_estimate, tile, 1024, 10, edges);
         left += 1 + 20 * edges;
     }
-    forecast_settle(&forecast);
+    time_estimate_begin_tiles(&time_estimate);
     for (uint32_t tile = 0; tile < 390; tile++) { /* in rows of 20 */
         double cost = 1 + 20 * (tile % 7 == 0 ? 0.8 : 0.05);
-        forecast_begin(&forecast, 0, tile, 1);
-        forecast_done(&forecast, 0, cost, 1);
+        time_estimate_begin(&time_estimate, 0, tile, 1);
+        time_estimate_done(&time_estimate, 0, cost, 1);
         left -= cost;
         done += cost;
-        struct forecast_work work = forecast_work(&forecast, NULL);
+        struct time_estimate_work work = time_estimate_work(&time_estimate, NULL);
         CHECK(tile < 130 || fabs(done * work.left / work.done - left) < 0.05 * left);
     }
-    forecast_destroy(&forecast);
+    time_estimate_destroy(&time_estimate);
 }
 
-TEST(forecast_counts_tiles_under_way_and_those_of_others) {
+TEST(time_estimate_counts_tiles_under_way_and_those_of_others) {
     struct film film = film_of(4 * 32, 32);
     size_t bytes;
     struct error error;
-    struct forecast forecast;
+    struct time_estimate time_estimate;
     CHECK(film_size(128, 32, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
     void *block = calloc(1, bytes);
     film_place(&film, block, 128, 32, integrator_record(INTEGRATOR_WHITTED));
-    CHECK(forecast_create(&forecast, 4, 4, 1));
+    CHECK(time_estimate_create(&time_estimate, 4, 4, 1));
     for (uint32_t tile = 0; tile < 4; tile++)
-        forecast_look(&forecast, tile, 1024, 10, 0);
-    forecast_settle(&forecast);
+        time_estimate_probe(&time_estimate, tile, 1024, 10, 0);
+    time_estimate_begin_tiles(&time_estimate);
     for (int quarter = 0; quarter < 4; quarter++) {
-        forecast_begin(&forecast, 0, 0, 0.25);
-        forecast_done(&forecast, 0, 25, 10);
+        time_estimate_begin(&time_estimate, 0, 0, 0.25);
+        time_estimate_done(&time_estimate, 0, 25, 10);
     }
-    struct forecast_work work = forecast_work(&forecast, NULL);
+    struct time_estimate_work work = time_estimate_work(&time_estimate, NULL);
     CHECK_NEAR(work.left / work.done, 3, 1e-6);
-    forecast_begin(&forecast, 0, 1, 1);
-    forecast_part(&forecast, 0, 0, 1); /* all of the first pass, which is 0.4 of a tile, and half of the second */
-    forecast_part(&forecast, 0, 1, 0.5);
-    work = forecast_work(&forecast, NULL);
+    time_estimate_begin(&time_estimate, 0, 1, 1);
+    time_estimate_part(&time_estimate, 0, 0,
+                       1); /* all of the first pass, which is 0.4 of a tile, and half of the second */
+    time_estimate_part(&time_estimate, 0, 1, 0.5);
+    work = time_estimate_work(&time_estimate, NULL);
     CHECK_NEAR(work.left / work.done, (4 - 1.7) / 1.7, 1e-6);
     atomic_store(&film.tiles[0], FILM_TILE_DONE);
     atomic_store(&film.tiles[3], FILM_TILE_DONE); /* made elsewhere */
-    work = forecast_work(&forecast, &film);
+    work = time_estimate_work(&time_estimate, &film);
     CHECK_NEAR(work.left / work.done, (4 - 2.7) / 2.7, 1e-6);
-    forecast_destroy(&forecast);
+    time_estimate_destroy(&time_estimate);
     free(block);
 }
 

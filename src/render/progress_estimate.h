@@ -1,31 +1,31 @@
 /* How much of the work of a picture is done, and when it will be over: not how many tiles, but what they cost
- * (render/forecast.h, docs/progress.md). Shared memory: the other process may read while it is written. */
-#ifndef GRAY_RENDER_OUTLOOK_H
-#define GRAY_RENDER_OUTLOOK_H
+ * (render/time_estimate.h, docs/progress.md). Shared memory: the other process may read while it is written. */
+#ifndef GRAY_RENDER_PROGRESS_ESTIMATE_H
+#define GRAY_RENDER_PROGRESS_ESTIMATE_H
 
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
 
-struct outlook {
+struct progress_estimate {
     _Atomic uint64_t share; /* billionths of the work, and 1; 0: nothing is known yet */
     _Atomic uint64_t ends;  /* nanoseconds of the clock that never jumps; 0: not known yet */
     _Atomic uint64_t pace;  /* thousandths of the clock's time that a second of work took, 0: not known yet */
     _Atomic uint64_t begun; /* when the first tile began, by that clock; or: */
 };
-#define OUTLOOK_WANTED UINT64_MAX /* before the render: somebody will ask */
+#define PROGRESS_ESTIMATE_WANTED UINT64_MAX /* before the render: somebody will ask */
 
 /* Nothing is known; somebody will ask, or nobody. */
-void outlook_reset(struct outlook *outlook, bool wanted);
+void progress_estimate_reset(struct progress_estimate *progress_estimate, bool wanted);
 /* Whether somebody asked before the render that is told of. */
-bool outlook_is_asked(const struct outlook *outlook);
+bool progress_estimate_is_wanted(const struct progress_estimate *progress_estimate);
 /* So much is done, out of the same unit so much is left; the share never falls. */
-void outlook_tell(struct outlook *outlook, double done, double left, uint64_t now);
+void progress_estimate_report(struct progress_estimate *progress_estimate, double done, double left, uint64_t now);
 /* Seconds by the clock that a second of work takes where other programs want the processor, too; 1 while unknown. */
-double outlook_pace(const struct outlook *outlook);
+double progress_estimate_pace(const struct progress_estimate *progress_estimate);
 /* 0..1; negative while nothing is known. */
-double outlook_share(const struct outlook *outlook);
+double progress_estimate_share(const struct progress_estimate *progress_estimate);
 /* Seconds left at a time of that clock; negative: not known yet. */
-double outlook_left(const struct outlook *outlook, double now);
+double progress_estimate_left(const struct progress_estimate *progress_estimate, double now);
 
 #endif

@@ -1,6 +1,6 @@
 /* Looking ahead, where somebody asks how long a picture will take: SIDE x SIDE rays through each tile before the first
- * one, about 1 % of the work, and from then on the forecast (render/forecast.h) a hundred times a second, told by
- * whichever worker comes by. Processor time, so that what else the machine does counts for nothing. */
+ * one, about 1 % of the work, and from then on the time estimate (render/time_estimate.h) a hundred times a second,
+ * told by whichever worker comes by. Processor time, so that what else the machine does counts for nothing. */
 #include "render/integrator.h"
 
 #include <string.h>
@@ -27,7 +27,7 @@ static uint32_t edges_between(const struct run *run, const struct vec3 *colours)
 }
 
 /* Tiles that others will make, of a farm, are looked at, too. */
-static void look_item(void *context, uint32_t tile, int index) {
+static void probe_tile(void *context, uint32_t tile, int index) {
     struct run *run = context;
     struct worker *worker = &run->workers[index];
     const struct film *film = run->job->film;
@@ -45,8 +45,8 @@ static void look_item(void *context, uint32_t tile, int index) {
         colours[i] = run_sample(run, worker, &place);
     }
     uint64_t took = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID) - begun;
-    forecast_look(&run->forecast, tile, (double)(r.x1 - r.x0) * (r.y1 - r.y0), 1 + (double)took,
-                  (double)edges_between(run, colours) / PAIRS);
+    time_estimate_probe(&run->time_estimate, tile, (double)(r.x1 - r.x0) * (r.y1 - r.y0), 1 + (double)took,
+                        (double)edges_between(run, colours) / PAIRS);
 }
 
 /* What was looked at is no part of the picture's statistics. */
@@ -63,61 +63,62 @@ static void forget_counts(struct run *run) {
     }
 }
 
-bool run_look_ahead(struct run *run) {
-    struct outlook *outlook = run->job->outlook;
+bool run_cost_prepass(struct run *run) {
+    struct progress_estimate *progress_estimate = run->job->progress_estimate;
     const struct film *film = run->job->film;
-    if (!outlook)
+    if (!progress_estimate)
         return true;
     /* Others of a farm have begun already. */
     uint64_t begun = nanoseconds_of(CLOCK_MONOTONIC);
-    if (!pool_run(run->pool, film_tile_count(film), look_item, run))
+    if (!pool_run(run->pool, film_tile_count(film), probe_tile, run))
         return false;
     forget_counts(run);
-    forecast_settle(&run->forecast);
-    run->foretold = true;
-    atomic_store(&outlook->begun, run->job->handout ? begun : nanoseconds_of(CLOCK_MONOTONIC));
-    outlook_tell(outlook, 0, 1, 0);
+    time_estimate_begin_tiles(&run->time_estimate);
+    run->estimated = true;
+    atomic_store(&progress_estimate->begun, run->job->handout ? begun : nanoseconds_of(CLOCK_MONOTONIC));
+    progress_estimate_report(progress_estimate, 0, 1, 0);
     run->worked = nanoseconds_of(CLOCK_PROCESS_CPUTIME_ID);
     return true;
 }
 
-void run_tell_outlook(struct run *run) {
-    uint64_t now = nanoseconds_of(CLOCK_MONOTONIC), told = atomic_load_explicit(&run->told, memory_order_relaxed);
-    if (now - told < pause || !atomic_compare_exchange_strong(&run->told, &told, now))
+void run_report_estimate(struct run *run) {
+    uint64_t now = nanoseconds_of(CLOCK_MONOTONIC),
+             reported = atomic_load_explicit(&run->reported, memory_order_relaxed);
+    if (now - reported < pause || !atomic_compare_exchange_strong(&run->reported, &reported, now))
         return;
-    struct outlook *outlook = run->job->outlook;
-    struct forecast_work work = forecast_work(&run->forecast, run->job->handout ? run->job->film : NULL);
+    struct progress_estimate *progress_estimate = run->job->progress_estimate;
+    struct time_estimate_work work = time_estimate_work(&run->time_estimate, run->job->handout ? run->job->film : NULL);
     uint64_t worked = nanoseconds_of(CLOCK_PROCESS_CPUTIME_ID) - run->worked + 1;
-    double passed = (double)(now - atomic_load(&outlook->begun)) * pool_workers(run->pool);
-    atomic_store_explicit(&outlook->pace, (uint64_t)(1000 * passed / (double)worked), memory_order_relaxed);
-    outlook_tell(outlook, work.done, work.left, now);
+    double passed = (double)(now - atomic_load(&progress_estimate->begun)) * pool_workers(run->pool);
+    atomic_store_explicit(&progress_estimate->pace, (uint64_t)(1000 * passed / (double)worked), memory_order_relaxed);
+    progress_estimate_report(progress_estimate, work.done, work.left, now);
 }
 
-void run_tell_end(struct run *run) {
-    outlook_tell(run->job->outlook, 1, 0, nanoseconds_of(CLOCK_MONOTONIC));
+void run_report_end(struct run *run) {
+    progress_estimate_report(run->job->progress_estimate, 1, 0, nanoseconds_of(CLOCK_MONOTONIC));
 }
 
 void run_tile_begins(struct run *run, struct worker *worker, uint32_t tile, double share) {
-    if (!run->foretold)
+    if (!run->estimated)
         return;
     worker->tile_begun = worker->first_ended = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID);
-    forecast_begin(&run->forecast, worker->index, tile, share);
+    time_estimate_begin(&run->time_estimate, worker->index, tile, share);
 }
 
 void run_tile_goes_on(struct run *run, struct worker *worker, int pass, double part) {
-    if (!run->foretold)
+    if (!run->estimated)
         return;
     if (pass == 0 && part >= 1)
         worker->first_ended = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID);
-    forecast_part(&run->forecast, worker->index, pass, part);
-    run_tell_outlook(run);
+    time_estimate_part(&run->time_estimate, worker->index, pass, part);
+    run_report_estimate(run);
 }
 
 void run_tile_ends(struct run *run, struct worker *worker) {
-    if (!run->foretold)
+    if (!run->estimated)
         return;
     uint64_t now = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID);
-    forecast_done(&run->forecast, worker->index, (double)(now - worker->tile_begun),
-                  (double)(worker->first_ended - worker->tile_begun));
-    run_tell_outlook(run);
+    time_estimate_done(&run->time_estimate, worker->index, (double)(now - worker->tile_begun),
+                       (double)(worker->first_ended - worker->tile_begun));
+    run_report_estimate(run);
 }

@@ -1,0 +1,242 @@
+/* A linear model of a tile's cost with six terms: its pixels; the time of its rays; that time by the share of edges,
+ * which is what will be sampled again; the mean of the last two over the tile and its eight neighbours, since few rays
+ * tell little; edges alone. Terms are scaled to a mean of 1 over the picture. Coefficients are those of least squares
+ * (a tile counts less the more it is expected to cost, as its deviation grows with it), drawn towards what is believed
+ * before by the weight of RIDGE tiles, so that the first few tiles do not decide, and not negative: a term that would
+ * be is left out. A tile that is done changes sums only, so a time estimate costs the same however many tiles there
+ * are. */
+#include "render/time_estimate.h"
+
+#include "base/mem.h"
+
+#include <math.h>
+
+enum { PIXELS, TIME, EDGE_TIME, TIME_AROUND, EDGE_TIME_AROUND, EDGES };
+enum { RIDGE = 10 };
+
+static const double believed[TIME_ESTIMATE_TERMS] = {
+    [PIXELS] = 0.1, [TIME] = 0.4, [EDGE_TIME] = 0.1, [TIME_AROUND] = 0.3, [EDGE_TIME_AROUND] = 0.1};
+
+static double get(const _Atomic double *value) {
+    return atomic_load_explicit(value, memory_order_relaxed);
+}
+
+/* Only one thread writes it. */
+static void set(_Atomic double *value, double to) {
+    atomic_store_explicit(value, to, memory_order_relaxed);
+}
+
+static void add(_Atomic double *value, double more) {
+    set(value, get(value) + more);
+}
+
+bool time_estimate_create(struct time_estimate *time_estimate, uint32_t count, uint32_t across, int workers) {
+    *time_estimate = (struct time_estimate){.count = count, .across = across, .workers = workers};
+    time_estimate->terms = mem_alloc_zero(count, sizeof *time_estimate->terms);
+    time_estimate->sums = mem_alloc_zero((size_t)workers, sizeof *time_estimate->sums);
+    for (int i = 0; time_estimate->sums && i < workers; i++)
+        atomic_store(&time_estimate->sums[i].tile, TIME_ESTIMATE_NO_TILE);
+    return time_estimate->terms && time_estimate->sums;
+}
+
+void time_estimate_destroy(struct time_estimate *time_estimate) {
+    mem_free(time_estimate->terms);
+    mem_free(time_estimate->sums);
+    *time_estimate = (struct time_estimate){0};
+}
+
+/* --- what the rays saw --- */
+
+void time_estimate_probe(struct time_estimate *time_estimate, uint32_t tile, double pixels, double cost, double edges) {
+    float *terms = time_estimate->terms[tile];
+    terms[PIXELS] = (float)pixels;
+    terms[TIME] = (float)cost;
+    terms[EDGE_TIME] = (float)(cost * edges);
+    terms[EDGES] = (float)(pixels * edges);
+}
+
+static void neighbouring_terms(struct time_estimate *time_estimate, uint32_t tile) {
+    uint32_t x = tile % time_estimate->across, y = tile / time_estimate->across,
+             rows = time_estimate->count / time_estimate->across;
+    double time = 0, edge_time = 0, tiles = 0;
+    for (uint32_t v = y > 0 ? y - 1 : 0; v <= y + 1 && v < rows; v++) {
+        for (uint32_t u = x > 0 ? x - 1 : 0; u <= x + 1 && u < time_estimate->across; u++) {
+            const float *other = time_estimate->terms[v * time_estimate->across + u];
+            time += (double)other[TIME];
+            edge_time += (double)other[EDGE_TIME];
+            tiles += other[PIXELS] > 0;
+        }
+    }
+    time_estimate->terms[tile][TIME_AROUND] = (float)(time / tiles);
+    time_estimate->terms[tile][EDGE_TIME_AROUND] = (float)(edge_time / tiles);
+}
+
+void time_estimate_begin_tiles(struct time_estimate *time_estimate) {
+    double wanted = 0;
+    for (uint32_t tile = 0; tile < time_estimate->count; tile++) {
+        float *terms = time_estimate->terms[tile];
+        if (!(terms[PIXELS] > 0))
+            continue;
+        neighbouring_terms(time_estimate, tile);
+        wanted++;
+        for (int i = 0; i < TIME_ESTIMATE_TERMS; i++)
+            time_estimate->all[i] += (double)terms[i];
+    }
+    for (int i = 0; i < TIME_ESTIMATE_TERMS; i++) {
+        double mean = time_estimate->all[i] / wanted;
+        for (uint32_t tile = 0; tile < time_estimate->count && mean > 0; tile++)
+            time_estimate->terms[tile][i] = (float)((double)time_estimate->terms[tile][i] / mean);
+        time_estimate->all[i] = mean > 0 ? wanted : 0;
+    }
+}
+
+/* --- what tiles took --- */
+
+void time_estimate_begin(struct time_estimate *time_estimate, int worker, uint32_t tile, double share) {
+    struct time_estimate_sums *sums = &time_estimate->sums[worker];
+    set(&sums->share, share);
+    set(&sums->part[0], 0);
+    set(&sums->part[1], 0);
+    atomic_store_explicit(&sums->tile, tile, memory_order_relaxed);
+}
+
+void time_estimate_part(struct time_estimate *time_estimate, int worker, int pass, double part) {
+    set(&time_estimate->sums[worker].part[pass], part);
+}
+
+void time_estimate_done(struct time_estimate *time_estimate, int worker, double cost, double first_pass_cost) {
+    struct time_estimate_sums *sums = &time_estimate->sums[worker];
+    const float *of_tile = time_estimate->terms[atomic_load_explicit(&sums->tile, memory_order_relaxed)];
+    double terms[TIME_ESTIMATE_TERMS], expected = 0, share = get(&sums->share);
+    for (int i = 0; i < TIME_ESTIMATE_TERMS; i++) {
+        terms[i] = share * (double)of_tile[i];
+        expected += terms[i] * believed[i];
+    }
+    double weight = 1 / fmax(expected, 0.1);
+    atomic_store_explicit(&sums->tile, TIME_ESTIMATE_NO_TILE, memory_order_relaxed);
+    for (int i = 0; i < TIME_ESTIMATE_TERMS; i++) {
+        for (int k = 0; k < TIME_ESTIMATE_TERMS; k++)
+            add(&sums->products[i][k], weight * terms[i] * terms[k]);
+        add(&sums->costs[i], weight * terms[i] * cost);
+        add(&sums->done[i], terms[i]);
+    }
+    add(&sums->weight, expected);
+    add(&sums->cost, cost);
+    add(&sums->first_cost, first_pass_cost);
+}
+
+/* --- what the rest will take --- */
+
+struct totals {
+    double products[TIME_ESTIMATE_TERMS][TIME_ESTIMATE_TERMS], costs[TIME_ESTIMATE_TERMS], done[TIME_ESTIMATE_TERMS];
+    double weight, cost, first_cost;
+};
+
+static struct totals add_up(const struct time_estimate *time_estimate) {
+    struct totals all = {0};
+    for (int w = 0; w < time_estimate->workers; w++) {
+        const struct time_estimate_sums *sums = &time_estimate->sums[w];
+        for (int i = 0; i < TIME_ESTIMATE_TERMS; i++) {
+            for (int k = 0; k < TIME_ESTIMATE_TERMS; k++)
+                all.products[i][k] += get(&sums->products[i][k]);
+            all.costs[i] += get(&sums->costs[i]);
+            all.done[i] += get(&sums->done[i]);
+        }
+        all.weight += get(&sums->weight);
+        all.cost += get(&sums->cost);
+        all.first_cost += get(&sums->first_cost);
+    }
+    return all;
+}
+
+/* Cholesky's decomposition of the rows and columns that take part; the ridge keeps it positive. */
+static void solve(double matrix[TIME_ESTIMATE_TERMS][TIME_ESTIMATE_TERMS], const double right[TIME_ESTIMATE_TERMS],
+                  const bool takes_part[TIME_ESTIMATE_TERMS], double out[TIME_ESTIMATE_TERMS]) {
+    double lower[TIME_ESTIMATE_TERMS][TIME_ESTIMATE_TERMS] = {{0}};
+    for (int i = 0; i < TIME_ESTIMATE_TERMS; i++) {
+        out[i] = 0;
+        for (int k = 0; k <= i && takes_part[i]; k++) {
+            double sum = matrix[i][k];
+            if (!takes_part[k])
+                continue;
+            for (int j = 0; j < k; j++)
+                sum -= lower[i][j] * lower[k][j];
+            lower[i][k] = i == k ? sqrt(sum) : sum / lower[k][k];
+        }
+        double sum = right[i];
+        for (int j = 0; j < i; j++)
+            sum -= lower[i][j] * out[j];
+        out[i] = takes_part[i] ? sum / lower[i][i] : 0;
+    }
+    for (int i = TIME_ESTIMATE_TERMS - 1; i >= 0; i--) {
+        double sum = out[i];
+        for (int j = i + 1; j < TIME_ESTIMATE_TERMS; j++)
+            sum -= lower[j][i] * out[j];
+        out[i] = takes_part[i] ? sum / lower[i][i] : 0;
+    }
+}
+
+static void fit(const struct totals *totals, double out[TIME_ESTIMATE_TERMS]) {
+    double matrix[TIME_ESTIMATE_TERMS][TIME_ESTIMATE_TERMS], right[TIME_ESTIMATE_TERMS];
+    bool takes_part[TIME_ESTIMATE_TERMS];
+    double scale = totals->weight > 0 ? totals->cost / totals->weight : 1;
+    for (int i = 0; i < TIME_ESTIMATE_TERMS; i++) {
+        takes_part[i] = true;
+        for (int k = 0; k < TIME_ESTIMATE_TERMS; k++)
+            matrix[i][k] = totals->products[i][k] + (i == k ? RIDGE : 0);
+        right[i] = totals->costs[i] + RIDGE * scale * believed[i];
+    }
+    for (int left = TIME_ESTIMATE_TERMS; left > 0; left--) {
+        int lowest = 0;
+        solve(matrix, right, takes_part, out);
+        for (int i = 1; i < TIME_ESTIMATE_TERMS; i++)
+            lowest = out[i] < out[lowest] ? i : lowest;
+        if (out[lowest] >= 0)
+            return;
+        takes_part[lowest] = false;
+    }
+    for (int i = 0; i < TIME_ESTIMATE_TERMS; i++)
+        out[i] = scale * believed[i];
+}
+
+static double combined(const double terms[TIME_ESTIMATE_TERMS], const double factors[TIME_ESTIMATE_TERMS]) {
+    double sum = 0;
+    for (int i = 0; i < TIME_ESTIMATE_TERMS; i++)
+        sum += terms[i] * factors[i];
+    return sum;
+}
+
+/* Tiles under way, by the share that first passes had of the cost so far. */
+static void add_parts(const struct time_estimate *time_estimate, const struct totals *totals,
+                      double done[TIME_ESTIMATE_TERMS]) {
+    double first = totals->cost > 0 ? totals->first_cost / totals->cost : 0.5;
+    for (int w = 0; w < time_estimate->workers; w++) {
+        const struct time_estimate_sums *sums = &time_estimate->sums[w];
+        uint32_t tile = atomic_load_explicit(&sums->tile, memory_order_relaxed);
+        double part = get(&sums->share) * (first * get(&sums->part[0]) + (1 - first) * get(&sums->part[1]));
+        for (int i = 0; tile < time_estimate->count && i < TIME_ESTIMATE_TERMS; i++)
+            done[i] += part * (double)time_estimate->terms[tile][i];
+    }
+}
+
+static void add_finished(const struct time_estimate *time_estimate, const struct film *film,
+                         double done[TIME_ESTIMATE_TERMS]) {
+    for (uint32_t tile = 0; tile < time_estimate->count; tile++) {
+        bool finished = atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) == FILM_TILE_DONE;
+        for (int i = 0; finished && i < TIME_ESTIMATE_TERMS; i++)
+            done[i] += (double)time_estimate->terms[tile][i];
+    }
+}
+
+struct time_estimate_work time_estimate_work(const struct time_estimate *time_estimate, const struct film *film) {
+    struct totals totals = add_up(time_estimate);
+    double factors[TIME_ESTIMATE_TERMS], done[TIME_ESTIMATE_TERMS] = {0};
+    fit(&totals, factors);
+    if (film)
+        add_finished(time_estimate, film, done);
+    for (int i = 0; i < TIME_ESTIMATE_TERMS && !film; i++)
+        done[i] = totals.done[i];
+    add_parts(time_estimate, &totals, done);
+    double all = combined(time_estimate->all, factors), made = fmin(combined(done, factors), all);
+    return (struct time_estimate_work){made, all - made};
+}

@@ -1,0 +1,54 @@
+/* What the tiles that are not made yet will take, learned from those that are. Before the first tile a few rays go
+ * through each (time_estimate_probe); afterwards a tile that is done says what it took (time_estimate_done), and the
+ * time estimate is the combination of what the rays saw that fits these tiles best. Costs are in any unit, say
+ * nanoseconds. */
+#ifndef GRAY_RENDER_TIME_ESTIMATE_H
+#define GRAY_RENDER_TIME_ESTIMATE_H
+
+#include "render/film.h"
+
+enum { TIME_ESTIMATE_TERMS = 6 };
+
+/* One worker's sums: it alone writes them, anybody reads. */
+struct time_estimate_sums {
+    _Atomic double products[TIME_ESTIMATE_TERMS][TIME_ESTIMATE_TERMS],
+        costs[TIME_ESTIMATE_TERMS]; /* weighted, of tiles done */
+    _Atomic double done[TIME_ESTIMATE_TERMS];
+    _Atomic double weight, cost, first_cost;
+    _Atomic uint32_t tile;  /* under way, or TIME_ESTIMATE_NO_TILE */
+    _Atomic double share;   /* of the tile, that this worker makes */
+    _Atomic double part[2]; /* of its first pass and of the second, 0..1 */
+};
+#define TIME_ESTIMATE_NO_TILE UINT32_MAX
+
+struct time_estimate {
+    uint32_t count, across;
+    int workers;
+    float (*terms)[TIME_ESTIMATE_TERMS]; /* of each tile; all 0: not looked at, not to be made */
+    double all[TIME_ESTIMATE_TERMS];     /* their sums */
+    struct time_estimate_sums *sums;     /* of each worker */
+};
+
+/* Tiles are numbered row by row, `across` in a row. False: no memory; time_estimate_destroy is fine in any case. */
+bool time_estimate_create(struct time_estimate *time_estimate, uint32_t count, uint32_t across, int workers);
+void time_estimate_destroy(struct time_estimate *time_estimate);
+
+/* pixels > 0; cost: of the rays; edges: between how many of neighbouring rays the picture changes, 0..1. Tiles may be
+ * looked at by several threads at once, each tile once. */
+void time_estimate_probe(struct time_estimate *time_estimate, uint32_t tile, double pixels, double cost, double edges);
+/* After the last look, before the first tile. */
+void time_estimate_begin_tiles(struct time_estimate *time_estimate);
+
+/* The worker begins a tile, or that share of it; is so far with its first or second pass; has done it. */
+void time_estimate_begin(struct time_estimate *time_estimate, int worker, uint32_t tile, double share);
+void time_estimate_part(struct time_estimate *time_estimate, int worker, int pass, double part);
+void time_estimate_done(struct time_estimate *time_estimate, int worker, double cost, double first_pass_cost);
+
+/* Work that is done and that is left, in a unit of its own: with what was done in a time, the rest takes that time
+ * times left / done. film: what others have made counts, too (a farm); else NULL. At any time, from any thread. */
+struct time_estimate_work {
+    double done, left;
+};
+struct time_estimate_work time_estimate_work(const struct time_estimate *time_estimate, const struct film *film);
+
+#endif
