@@ -58,14 +58,14 @@ const char *trace_path(const struct trace_report *report, uint32_t placed) {
 }
 
 /* All primitives that the rays of a list and below have met: counts them, or notes them too. */
-static size_t note_placed(const struct story_ray *ray, uint64_t *out, size_t count) {
+static size_t note_placed(const struct pixel_trace_ray *ray, uint64_t *out, size_t count) {
     for (; ray; ray = ray->next) {
         if (ray->met) {
             if (out)
                 out[count] = ray->hit.placed;
             count++;
         }
-        for (const struct story_light *light = ray->lights; light; light = light->next) {
+        for (const struct pixel_trace_light *light = ray->lights; light; light = light->next) {
             if (!light->has_blocker)
                 continue;
             if (out)
@@ -77,23 +77,23 @@ static size_t note_placed(const struct story_ray *ray, uint64_t *out, size_t cou
     return count;
 }
 
-static bool find_names(struct story *story, const struct inspected *picture, struct trace_names *names,
+static bool find_names(struct pixel_trace *pixel_trace, const struct inspected *picture, struct trace_names *names,
                        struct error *error) {
     size_t count = 0, at = 0;
-    for (const struct story_sample *sample = story->sample; sample; sample = sample->next)
+    for (const struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next)
         count += note_placed(sample->first, NULL, 0);
-    uint64_t *all = arena_alloc_array(&story->arena, count + 1, sizeof *all);
-    names->primitives = arena_alloc_array(&story->arena, count + 1, sizeof *names->primitives);
-    names->paths = arena_alloc_array(&story->arena, count + 1, sizeof *names->paths);
+    uint64_t *all = arena_alloc_array(&pixel_trace->arena, count + 1, sizeof *all);
+    names->primitives = arena_alloc_array(&pixel_trace->arena, count + 1, sizeof *names->primitives);
+    names->paths = arena_alloc_array(&pixel_trace->arena, count + 1, sizeof *names->paths);
     if (!all || !names->primitives || !names->paths)
         return error_no_memory(error, "the trace of a pixel");
-    for (const struct story_sample *sample = story->sample; sample; sample = sample->next)
+    for (const struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next)
         at = note_placed(sample->first, all, at);
     sort_words(all, count);
     for (size_t i = 0; i < count; i++)
         if (i == 0 || all[i] != all[i - 1])
             names->primitives[names->count++] = (uint32_t)all[i];
-    return world_find_paths(picture->job->world, picture->root, names->primitives, names->count, &story->arena,
+    return world_find_paths(picture->job->world, picture->root, names->primitives, names->count, &pixel_trace->arena,
                             names->paths, error);
 }
 
@@ -102,10 +102,10 @@ struct trace_context {
     struct text_writer *writer;
 };
 
-static bool report_pixel(void *context, struct story *story, struct error *error) {
+static bool report_pixel(void *context, struct pixel_trace *pixel_trace, struct error *error) {
     const struct trace_context *trace_context = context;
-    struct trace_report report = {trace_context->picture, story, {0}};
-    if (!find_names(story, trace_context->picture, &report.names, error))
+    struct trace_report report = {trace_context->picture, pixel_trace, {0}};
+    if (!find_names(pixel_trace, trace_context->picture, &report.names, error))
         return false;
     if (trace_context->picture->json)
         pixel_trace_print_json(&report, trace_context->writer);

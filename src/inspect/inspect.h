@@ -3,8 +3,8 @@
 #ifndef GRAY_INSPECT_INSPECT_H
 #define GRAY_INSPECT_INSPECT_H
 
+#include "render/pixel_trace.h"
 #include "render/render.h"
-#include "render/story.h"
 #include "session/text.h"
 #include "world/path.h"
 
@@ -32,7 +32,7 @@ struct trace_names {
 };
 struct trace_report {
     const struct inspected *picture;
-    const struct story *story;
+    const struct pixel_trace *pixel_trace;
     struct trace_names names;
 };
 const char *trace_path(const struct trace_report *report, uint32_t placed); /* never NULL */

@@ -22,7 +22,7 @@ static void text(struct text_writer *writer, const char *name, const char *value
     text_writer_json(writer, value);
 }
 
-static void json_link(struct text_writer *writer, const struct story_link *link) {
+static void json_link(struct text_writer *writer, const struct pixel_trace_link *link) {
     const struct surface_look *look = &link->look;
     text_writer_print(writer, "{\"kind\":\"%s\"", inspect_material(link->material));
     if (link->material->name && link->material->name[0])
@@ -55,17 +55,18 @@ static void json_lobes(struct text_writer *writer, const struct bsdf *bsdf) {
     }
 }
 
-static void json_light(const struct trace_report *report, struct text_writer *writer, const struct story_light *light) {
+static void json_light(const struct trace_report *report, struct text_writer *writer,
+                       const struct pixel_trace_light *light) {
     static const char *const lit[] = {
-        [STORY_LIGHT_REACHES] = "reaches",
-        [STORY_LIGHT_BLOCKED] = "blocked",
-        [STORY_LIGHT_NOT_OURS] = "excluded",
-        [STORY_LIGHT_NO_EFFECT] = "no effect",
+        [PIXEL_TRACE_LIGHT_REACHES] = "reaches",
+        [PIXEL_TRACE_LIGHT_BLOCKED] = "blocked",
+        [PIXEL_TRACE_LIGHT_NOT_OURS] = "excluded",
+        [PIXEL_TRACE_LIGHT_NO_EFFECT] = "no effect",
     };
     text_writer_print(writer, "{\"light\":%u,\"kind\":\"%s\",\"lit\":\"%s\"", light->number + 1,
                       light_kind_name(light->light->kind), lit[light->lit]);
     vector(writer, "of", light->light->colour);
-    if (!light->lamp && light->lit != STORY_LIGHT_NOT_OURS) {
+    if (!light->lamp && light->lit != PIXEL_TRACE_LIGHT_NOT_OURS) {
         number(writer, "distance", light->distance);
         number(writer, "strength", light->strength);
         vector(writer, "to_light", light->to_light);
@@ -78,7 +79,7 @@ static void json_light(const struct trace_report *report, struct text_writer *wr
     text_writer_print(writer, "}");
 }
 
-static void json_hit(const struct trace_report *report, struct text_writer *writer, const struct story_ray *ray) {
+static void json_hit(const struct trace_report *report, struct text_writer *writer, const struct pixel_trace_ray *ray) {
     const struct world *world = report->picture->job->world;
     const struct hit *hit = &ray->hit;
     const struct geometry *geometry = placed_geometry(world, hit->placed);
@@ -103,7 +104,7 @@ static void json_hit(const struct trace_report *report, struct text_writer *writ
         text_writer_print(writer, "]");
     }
     text_writer_print(writer, ",\"material\":%u,\"links\":[", world->material_numbers[hit->material] + 1);
-    for (const struct story_link *link = ray->links; link; link = link->next) {
+    for (const struct pixel_trace_link *link = ray->links; link; link = link->next) {
         json_link(writer, link);
         text_writer_print(writer, link->next ? "," : "");
     }
@@ -124,7 +125,7 @@ static void json_hit(const struct trace_report *report, struct text_writer *writ
     number(writer, "alpha", ray->bsdf.alpha);
     vector(writer, "ambient", ray->ambient);
     text_writer_print(writer, ",\"lights\":[");
-    for (const struct story_light *light = ray->lights; light; light = light->next) {
+    for (const struct pixel_trace_light *light = ray->lights; light; light = light->next) {
         json_light(report, writer, light);
         text_writer_print(writer, light->next ? "," : "");
     }
@@ -134,9 +135,9 @@ static void json_hit(const struct trace_report *report, struct text_writer *writ
     vector(writer, "emission", ray->bsdf.emission);
 }
 
-static void json_rays(const struct trace_report *report, struct text_writer *writer, const struct story_ray *ray);
+static void json_rays(const struct trace_report *report, struct text_writer *writer, const struct pixel_trace_ray *ray);
 
-static void json_ray(const struct trace_report *report, struct text_writer *writer, const struct story_ray *ray) {
+static void json_ray(const struct trace_report *report, struct text_writer *writer, const struct pixel_trace_ray *ray) {
     static const char *const cut[] = {[RAY_FOLLOWED] = "no", [RAY_OVER_LIMIT] = "limit", [RAY_TOO_WEAK] = "cutoff"};
     text_writer_print(writer, "{\"ray\":%u,\"kind\":\"%s\",\"cut\":\"%s\"", ray->number, inspect_ray(ray->kind),
                       cut[ray->cut]);
@@ -164,7 +165,8 @@ static void json_ray(const struct trace_report *report, struct text_writer *writ
     text_writer_print(writer, "}");
 }
 
-static void json_rays(const struct trace_report *report, struct text_writer *writer, const struct story_ray *ray) {
+static void json_rays(const struct trace_report *report, struct text_writer *writer,
+                      const struct pixel_trace_ray *ray) {
     for (; ray; ray = ray->next) {
         json_ray(report, writer, ray);
         text_writer_print(writer, ray->next ? "," : "");
@@ -173,11 +175,12 @@ static void json_rays(const struct trace_report *report, struct text_writer *wri
 
 static void json_sum(const struct trace_report *report, struct text_writer *writer) {
     const struct settings *settings = &report->picture->job->settings;
-    const struct story *story = report->story;
+    const struct pixel_trace *pixel_trace = report->pixel_trace;
     double toned[3];
     for (int c = 0; c < 3; c++)
-        toned[c] = tone_apply(&settings->tone, (double)story->rgb[c]);
-    vector(writer, "film", vec3_make((double)story->rgb[0], (double)story->rgb[1], (double)story->rgb[2]));
+        toned[c] = tone_apply(&settings->tone, (double)pixel_trace->rgb[c]);
+    vector(writer, "film",
+           vec3_make((double)pixel_trace->rgb[0], (double)pixel_trace->rgb[1], (double)pixel_trace->rgb[2]));
     number(writer, "exposure", settings->tone.exposure);
     text_writer_print(writer, ",\"tone\":%d", (int)settings->tone.curve);
     flag(writer, "srgb", settings->tone.srgb);
@@ -190,18 +193,18 @@ static void json_sum(const struct trace_report *report, struct text_writer *writ
 }
 
 void pixel_trace_print_json(const struct trace_report *report, struct text_writer *writer) {
-    const struct story *story = report->story;
+    const struct pixel_trace *pixel_trace = report->pixel_trace;
     const struct render_job *job = report->picture->job;
     text_writer_print(writer, "{\"picture\":");
     text_writer_json(writer, report->picture->file);
     text_writer_print(writer, ",\"width\":%u,\"height\":%u,\"x\":%u,\"y\":%u,\"marked\":%s,\"full\":%s", job->width,
-                      job->height, story->x, story->y, story->marked ? "true" : "false",
-                      story->full ? "true" : "false");
-    if (story->marked && !story->full)
-        text_writer_print(writer, ",\"differs_from\":[%d,%d],\"by\":%.17g,\"tolerance\":%.17g", story->mark_x,
-                          story->mark_y, story->mark_distance, story->mark_tolerance);
+                      job->height, pixel_trace->x, pixel_trace->y, pixel_trace->marked ? "true" : "false",
+                      pixel_trace->full ? "true" : "false");
+    if (pixel_trace->marked && !pixel_trace->full)
+        text_writer_print(writer, ",\"differs_from\":[%d,%d],\"by\":%.17g,\"tolerance\":%.17g", pixel_trace->mark_x,
+                          pixel_trace->mark_y, pixel_trace->mark_distance, pixel_trace->mark_tolerance);
     text_writer_print(writer, ",\"samples\":[");
-    for (const struct story_sample *sample = story->sample; sample; sample = sample->next) {
+    for (const struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next) {
         text_writer_print(writer, "{\"sample\":%u,\"x\":%.17g,\"y\":%.17g", (unsigned)sample->number, sample->x,
                           sample->y);
         flag(writer, "counts", sample->counts);
@@ -211,7 +214,7 @@ void pixel_trace_print_json(const struct trace_report *report, struct text_write
         vector(writer, "colour", sample->colour);
         text_writer_print(writer, sample->next ? "}," : "}");
     }
-    text_writer_print(writer, "],\"untold\":%u", story->untold);
+    text_writer_print(writer, "],\"untold\":%u", pixel_trace->omitted);
     json_sum(report, writer);
     text_writer_print(writer, "}\n");
 }

@@ -47,7 +47,7 @@ static void changed_flag(struct text_state *t, const char *name, bool now, bool 
 }
 
 /* One link: what it has changed. */
-static void print_link(struct text_state *t, const struct story_link *link, const struct surface_look *before) {
+static void print_link(struct text_state *t, const struct pixel_trace_link *link, const struct surface_look *before) {
     const struct surface_look *look = &link->look;
     indent(t, 1);
     text_writer_print(t->writer, "%s", inspect_material(link->material));
@@ -75,7 +75,7 @@ static void print_link(struct text_state *t, const struct story_link *link, cons
     text_writer_print(t->writer, !t->changed ? " changes nothing here\n" : "\n");
 }
 
-static void print_shading(const struct text_state *t, const struct story_ray *ray) {
+static void print_shading(const struct text_state *t, const struct pixel_trace_ray *ray) {
     indent(t, 1);
     text_writer_print(t->writer, "shading:");
     for (int i = 0; i < ray->bsdf.count; i++) {
@@ -102,7 +102,7 @@ static void print_shading(const struct text_state *t, const struct story_ray *ra
     }
 }
 
-static void print_light(const struct text_state *t, const struct story_light *light) {
+static void print_light(const struct text_state *t, const struct pixel_trace_light *light) {
     indent(t, 1);
     text_writer_print(t->writer, "light %u, %s", light->number + 1, light_kind_name(light->light->kind));
     unsigned has = light_properties(light->light);
@@ -112,14 +112,14 @@ static void print_light(const struct text_state *t, const struct story_light *li
         triple(t, " along ", light->light->direction);
     triple(t, " of ", light->light->colour);
     switch (light->lit) {
-    case STORY_LIGHT_NOT_OURS:
+    case PIXEL_TRACE_LIGHT_NOT_OURS:
         text_writer_print(t->writer, ": does not light this\n");
         return;
-    case STORY_LIGHT_NO_EFFECT:
+    case PIXEL_TRACE_LIGHT_NO_EFFECT:
         text_writer_print(t->writer, ": nothing of it is reflected this way\n");
         return;
-    case STORY_LIGHT_REACHES:
-    case STORY_LIGHT_BLOCKED:
+    case PIXEL_TRACE_LIGHT_REACHES:
+    case PIXEL_TRACE_LIGHT_BLOCKED:
         break;
     }
     if (!light->lamp && light->distance < INFINITY)
@@ -138,7 +138,7 @@ static void print_light(const struct text_state *t, const struct story_light *li
     text_writer_print(t->writer, "\n");
 }
 
-static void print_hit(const struct text_state *t, const struct story_ray *ray) {
+static void print_hit(const struct text_state *t, const struct pixel_trace_ray *ray) {
     const struct world *world = t->report->picture->job->world;
     const struct hit *hit = &ray->hit;
     const struct geometry *geometry = placed_geometry(world, hit->placed);
@@ -163,14 +163,14 @@ static void print_hit(const struct text_state *t, const struct story_ray *ray) {
                       world->material_number_count);
 }
 
-static void print_ray(struct text_state *t, const struct story_ray *ray);
+static void print_ray(struct text_state *t, const struct pixel_trace_ray *ray);
 
 /* The parts of what the surface shows, in the order in which they are added. */
-static void print_surface(struct text_state *t, const struct story_ray *ray) {
+static void print_surface(struct text_state *t, const struct pixel_trace_ray *ray) {
     struct surface_look nothing = {.opacity = 1, .normal = ray->hit.normal};
     const struct surface_look *before = &nothing;
     print_hit(t, ray);
-    for (const struct story_link *link = ray->links; link; link = link->next) {
+    for (const struct pixel_trace_link *link = ray->links; link; link = link->next) {
         print_link(t, link, before);
         before = &link->look;
     }
@@ -181,7 +181,7 @@ static void print_surface(struct text_state *t, const struct story_ray *ray) {
         triple(t, " times ", ray->bsdf.ambient);
         triple(t, ": ", ray->ambient);
         text_writer_print(t->writer, "\n");
-        for (const struct story_light *light = ray->lights; light; light = light->next)
+        for (const struct pixel_trace_light *light = ray->lights; light; light = light->next)
             print_light(t, light);
         if (ray->has_photons) {
             indent(t, 1);
@@ -195,7 +195,7 @@ static void print_surface(struct text_state *t, const struct story_ray *ray) {
         }
     }
     t->depth++;
-    for (const struct story_ray *child = ray->first; child; child = child->next)
+    for (const struct pixel_trace_ray *child = ray->first; child; child = child->next)
         print_ray(t, child);
     t->depth--;
     if (ray->opacity < 1) {
@@ -205,7 +205,7 @@ static void print_surface(struct text_state *t, const struct story_ray *ray) {
     }
 }
 
-static void print_met(struct text_state *t, const struct story_ray *ray) {
+static void print_met(struct text_state *t, const struct pixel_trace_ray *ray) {
     if (ray->cut == RAY_TOO_WEAK) {
         indent(t, 1);
         text_writer_print(t->writer, "what it meets at distance %.6g could not change the pixel any more (--cutoff)\n",
@@ -223,7 +223,7 @@ static void print_met(struct text_state *t, const struct story_ray *ray) {
     }
 }
 
-static void print_ray(struct text_state *t, const struct story_ray *ray) {
+static void print_ray(struct text_state *t, const struct pixel_trace_ray *ray) {
     indent(t, 0);
     text_writer_print(t->writer, "ray %u, %s", ray->number,
                       ray->kind == RAY_HOLE ? "through the hole" : inspect_ray(ray->kind));
@@ -263,43 +263,45 @@ static const char *direction(int x, int y) {
 }
 
 static void print_samples(struct text_state *t) {
-    const struct story *story = t->report->story;
+    const struct pixel_trace *pixel_trace = t->report->pixel_trace;
     text_writer_print(t->writer, "%s",
-                      story->marked ? "" : "one sample: no neighbour differs by more than the tolerances\n");
-    if (story->marked && story->full)
-        text_writer_print(t->writer, "%d x %d samples, as all pixels have (-full, a lens or motion)\n", story->samples,
-                          story->samples);
-    else if (story->marked)
+                      pixel_trace->marked ? "" : "one sample: no neighbour differs by more than the tolerances\n");
+    if (pixel_trace->marked && pixel_trace->full)
+        text_writer_print(t->writer, "%d x %d samples, as all pixels have (-full, a lens or motion)\n",
+                          pixel_trace->samples, pixel_trace->samples);
+    else if (pixel_trace->marked)
         text_writer_print(t->writer, "%d x %d samples: the first one differs from the %s neighbour's by %.6g > %g\n",
-                          story->samples, story->samples, direction(story->mark_x, story->mark_y), story->mark_distance,
-                          story->mark_tolerance);
-    for (const struct story_sample *sample = story->sample; sample; sample = sample->next) {
+                          pixel_trace->samples, pixel_trace->samples,
+                          direction(pixel_trace->mark_x, pixel_trace->mark_y), pixel_trace->mark_distance,
+                          pixel_trace->mark_tolerance);
+    for (const struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next) {
         text_writer_print(t->writer, "\nsample %u at %.6f, %.6f%s\n", (unsigned)sample->number, sample->x, sample->y,
                           sample->counts ? "" : " (only to find out whether the pixel is sampled again)");
         t->depth = 1;
-        for (const struct story_ray *ray = sample->first; ray; ray = ray->next)
+        for (const struct pixel_trace_ray *ray = sample->first; ray; ray = ray->next)
             print_ray(t, ray);
         triple(t, "  colour ", sample->colour);
         text_writer_print(t->writer, "\n");
     }
-    if (story->untold > 0)
-        text_writer_print(t->writer, "\n%u more rays are not shown\n", story->untold);
+    if (pixel_trace->omitted > 0)
+        text_writer_print(t->writer, "\n%u more rays are not shown\n", pixel_trace->omitted);
 }
 
 /* How the colour is the sum, and what becomes of it in the file. */
 static void print_sum(struct text_state *t) {
-    const struct story *story = t->report->story;
+    const struct pixel_trace *pixel_trace = t->report->pixel_trace;
     const struct settings *settings = &t->report->picture->job->settings;
     const struct tone *tone = &settings->tone;
     static const char *const curves[] = {TONE_CURVES(LIST_WORD)};
     unsigned count = 0;
     double toned[3];
-    for (const struct story_sample *sample = story->sample; sample; sample = sample->next)
+    for (const struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next)
         count += sample->counts;
     text_writer_print(t->writer, "\nthe mean of %u sample%s, in single precision: (%.9g, %.9g, %.9g)\n", count,
-                      count == 1 ? "" : "s", (double)story->rgb[0], (double)story->rgb[1], (double)story->rgb[2]);
+                      count == 1 ? "" : "s", (double)pixel_trace->rgb[0], (double)pixel_trace->rgb[1],
+                      (double)pixel_trace->rgb[2]);
     for (int c = 0; c < 3; c++)
-        toned[c] = tone_apply(tone, (double)story->rgb[c]);
+        toned[c] = tone_apply(tone, (double)pixel_trace->rgb[c]);
     if (!tone_is_plain(tone))
         text_writer_print(t->writer, "exposure %g, tone %s%s: (%.9g, %.9g, %.9g)\n", tone->exposure,
                           curves[tone->curve], tone->srgb ? ", sRGB" : "", toned[0], toned[1], toned[2]);
@@ -315,7 +317,7 @@ void pixel_trace_print(const struct trace_report *report, struct text_writer *wr
     struct text_state t = {.report = report, .writer = writer};
     const struct render_job *job = report->picture->job;
     text_writer_name(writer, report->picture->file);
-    text_writer_print(writer, ", pixel %u,%u of %u x %u: ", report->story->x, report->story->y, job->width,
+    text_writer_print(writer, ", pixel %u,%u of %u x %u: ", report->pixel_trace->x, report->pixel_trace->y, job->width,
                       job->height);
     print_samples(&t);
     print_sum(&t);

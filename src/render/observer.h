@@ -1,7 +1,7 @@
 /* What an integrator shows of its work: events at its stages, in the order in which they happen. The stages call the
  * functions below whether anything listens or not; without an observer a call is one test of a pointer. An observer
  * keeps its own state and cannot change what it sees: a number in an event is the number that goes into the picture.
- * The pixel trace (render/story.h) is an observer. */
+ * The pixel trace (render/pixel_trace.h) is an observer. */
 #ifndef GRAY_RENDER_OBSERVER_H
 #define GRAY_RENDER_OBSERVER_H
 

@@ -4,8 +4,8 @@
 
 #include "base/mem.h"
 #include "render/order.h"
+#include "render/pixel_trace.h"
 #include "render/shard.h"
-#include "render/story.h"
 
 #include <math.h>
 #include <stdatomic.h>
@@ -283,20 +283,20 @@ static void end_run(struct run *run, int workers) {
 }
 
 /* The part is one pixel. */
-static bool tell_pixel(struct run *run, struct film *film, struct story *story, struct error *error) {
+static bool record_pixel(struct run *run, struct film *film, struct pixel_trace *pixel_trace, struct error *error) {
     struct worker *worker = &run->workers[0];
-    struct rectangle tile = {story->x, story->y, (int64_t)story->x + 1, (int64_t)story->y + 1};
-    film->x0 = story->x;
-    film->y0 = story->y;
-    worker->state.observer = &story->observer;
+    struct rectangle tile = {pixel_trace->x, pixel_trace->y, (int64_t)pixel_trace->x + 1, (int64_t)pixel_trace->y + 1};
+    film->x0 = pixel_trace->x;
+    film->y0 = pixel_trace->y;
+    worker->state.observer = &pixel_trace->observer;
     if (!integrator_render(run, worker, &tile) || run_stopped(run, worker))
         return worker->scratch.failed ? error_no_memory(error, "the crossings of a ray")
                                       : error_set(error, ERROR_CANCELLED, "stopped while rendering");
-    return !story->failed || error_no_memory(error, "the trace of a pixel");
+    return !pixel_trace->failed || error_no_memory(error, "the trace of a pixel");
 }
 
 bool render_pixels(const struct render_job *job, struct pool *pool, const uint32_t (*pixels)[2], uint32_t count,
-                   story_listener *listen, void *context, struct error *error) {
+                   pixel_trace_listener *listen, void *context, struct error *error) {
     struct film_pixel pixel = {0};
     float floats[FILM_RECORD_FLOATS] = {0};
     uint8_t marked = 0;
@@ -316,10 +316,10 @@ bool render_pixels(const struct render_job *job, struct pool *pool, const uint32
     bool ok = begin_run(&run, pool_workers(pool), &statistics, error);
     run.together = false; /* each sample tells for itself */
     for (uint32_t i = 0; ok && i < count; i++) {
-        struct story story;
-        story_init(&story, pixels[i][0], pixels[i][1]);
-        ok = tell_pixel(&run, &film, &story, error) && listen(context, &story, error);
-        story_destroy(&story);
+        struct pixel_trace pixel_trace;
+        pixel_trace_init(&pixel_trace, pixels[i][0], pixels[i][1]);
+        ok = record_pixel(&run, &film, &pixel_trace, error) && listen(context, &pixel_trace, error);
+        pixel_trace_destroy(&pixel_trace);
     }
     end_run(&run, pool_workers(pool));
     return ok;

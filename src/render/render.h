@@ -11,7 +11,7 @@
 #include "render/settings.h"
 #include "world/world.h"
 
-struct story;
+struct pixel_trace;
 
 struct render_statistics {
     uint64_t camera_rays, reflected_rays, refracted_rays, shadow_rays;
@@ -51,9 +51,9 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
                 struct error *error);
 /* Renders single pixels {x, y} of the whole picture as render_run would, and records and reports the trace of each; it
  * ends when `listen` returns. The film of the job is not looked at. False: as render_run, or `listen` said so. */
-typedef bool story_listener(void *context, struct story *story, struct error *error);
+typedef bool pixel_trace_listener(void *context, struct pixel_trace *pixel_trace, struct error *error);
 bool render_pixels(const struct render_job *job, struct pool *pool, const uint32_t (*pixels)[2], uint32_t count,
-                   story_listener *listen, void *context, struct error *error);
+                   pixel_trace_listener *listen, void *context, struct error *error);
 /* Checks picture size, crop, camera; fills the film rectangle. First call of a job. Warnings: up parallel to view. */
 bool render_prepare(struct render_job *job, uint32_t *x0, uint32_t *y0, uint32_t *width, uint32_t *height,
                     char warning[256], struct error *error);

@@ -132,7 +132,7 @@ static int draw_figures(struct viewer *viewer, const struct figures *figures, in
 }
 
 /* The trace of a pixel, from the line on that was scrolled to; after its end it begins again. */
-static void draw_story(struct viewer *viewer, int top) {
+static void draw_pixel_trace(struct viewer *viewer, int top) {
     struct panel *panel = &viewer->display.panel;
     int scale = panel->canvas.scale, line = panel_line_height(panel), y = top + 2 * scale;
     const char *at = viewer->trace.text;
@@ -188,7 +188,7 @@ void viewer_draw_hud(struct viewer *viewer, const struct figures *figures) {
             viewer_draw_selection_panel(viewer, top);
         if (viewer->block && viewer->trace.text[0] == '\0')
             viewer_draw_light_list(viewer, below + viewer->display.panel.canvas.scale);
-        draw_story(viewer, below + viewer->display.panel.canvas.scale);
+        draw_pixel_trace(viewer, below + viewer->display.panel.canvas.scale);
     }
     draw_message(viewer);
     panel_end(&viewer->display.panel);

@@ -1,6 +1,6 @@
 /* What holds for every integrator, by construction: these tests go over the list of them. */
 #include "base/list.h"
-#include "render/story.h"
+#include "render/pixel_trace.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 
@@ -86,13 +86,14 @@ TEST(every_integrator_goes_on_where_a_film_has_stopped) {
 }
 
 /* Observers see the final colour of the pixel, and its samples with a ray each. */
-static bool check_story(void *context, struct story *story, struct error *error) {
+static bool check_pixel_trace(void *context, struct pixel_trace *pixel_trace, struct error *error) {
     const struct stage *s = context;
-    struct vec3 want = stage_pixel(s, story->x, story->y);
+    struct vec3 want = stage_pixel(s, pixel_trace->x, pixel_trace->y);
     int samples = 0;
     (void)error;
-    CHECK(story->rgb[0] == (float)want.x && story->rgb[1] == (float)want.y && story->rgb[2] == (float)want.z);
-    for (const struct story_sample *sample = story->sample; sample; sample = sample->next, samples++)
+    CHECK(pixel_trace->rgb[0] == (float)want.x && pixel_trace->rgb[1] == (float)want.y &&
+          pixel_trace->rgb[2] == (float)want.z);
+    for (const struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next, samples++)
         CHECK(sample->first && sample->first->begun && sample->first->kind == RAY_CAMERA);
     CHECK(samples > 0);
     return true;
@@ -105,7 +106,7 @@ TEST(every_integrator_shows_observers_the_pixels_that_it_makes) {
         begin(&s, 1, (enum integrator_kind)kind);
         CHECK(stage_render(&s, WIDTH, HEIGHT));
         struct render_job job = stage_job(&s, WIDTH, HEIGHT);
-        CHECK(render_pixels(&job, s.pool, pixels, 5, check_story, &s, &s.error));
+        CHECK(render_pixels(&job, s.pool, pixels, 5, check_pixel_trace, &s, &s.error));
         stage_end(&s);
     }
 }

@@ -1,10 +1,10 @@
-/* The story of a pixel: what happened on the way to its colour, written down by an observer (render/observer.h) of the
- * integrator while that works. Nothing is worked out a second time: a number in a story is the number that went into
+/* The trace of a pixel: what happened on the way to its colour, written down by an observer (render/observer.h) of the
+ * integrator while that works. Nothing is worked out a second time: a number in a trace is the number that went into
  * the picture.
  *
- * Everything lives in the arena of the story. It holds pointers into the world and dies before it. */
-#ifndef GRAY_RENDER_STORY_H
-#define GRAY_RENDER_STORY_H
+ * Everything lives in the arena of the trace. It holds pointers into the world and dies before it. */
+#ifndef GRAY_RENDER_PIXEL_TRACE_H
+#define GRAY_RENDER_PIXEL_TRACE_H
 
 #include "base/arena.h"
 #include "render/observer.h"
@@ -12,28 +12,29 @@
 
 #include <stdint.h>
 
-enum { STORY_RAYS = 100000 }; /* further ones are counted and not printed */
+enum { PIXEL_TRACE_RAYS = 100000 }; /* further ones are counted and not printed */
 
 /* One link of a material: the look as it is with it and what is below it. */
-struct story_link {
+struct pixel_trace_link {
     const struct material *material;
     struct surface_look look;
-    struct story_link *next;
+    struct pixel_trace_link *next;
 };
 
-enum story_lit {
-    STORY_LIGHT_REACHES,
-    STORY_LIGHT_BLOCKED,   /* no shadow ray arrives */
-    STORY_LIGHT_NOT_OURS,  /* include or exclude leave the surface out */
-    STORY_LIGHT_NO_EFFECT, /* nothing of it would be reflected this way, or it has faded away: shadows are not asked */
+enum pixel_trace_lit {
+    PIXEL_TRACE_LIGHT_REACHES,
+    PIXEL_TRACE_LIGHT_BLOCKED,   /* no shadow ray arrives */
+    PIXEL_TRACE_LIGHT_NOT_OURS,  /* include or exclude leave the surface out */
+    PIXEL_TRACE_LIGHT_NO_EFFECT, /* nothing of it would be reflected this way, or it has faded away: shadows are not
+                                    asked */
 };
 
 /* What a light brings to a hit. Of lamps `reflected`, `strength` and `distance` are not set: every shadow ray has its
  * own. */
-struct story_light {
+struct pixel_trace_light {
     uint32_t number; /* in the world, from 0 */
     const struct light *light;
-    enum story_lit lit;
+    enum pixel_trace_lit lit;
     bool lamp;
     double distance, strength; /* fading times the cone of a spot */
     struct vec3 to_light;      /* unit */
@@ -42,10 +43,10 @@ struct story_light {
     bool has_blocker;          /* a single shadow ray was stopped */
     uint32_t blocker;          /* by this placed primitive */
     struct vec3 colour;        /* of all this in what the surface shows */
-    struct story_light *next;
+    struct pixel_trace_light *next;
 };
 
-struct story_ray {
+struct pixel_trace_ray {
     enum ray_kind kind;
     enum ray_cut cut;
     bool begun;      /* it was sent; else only kind and weight are set */
@@ -62,30 +63,30 @@ struct story_ray {
     const struct light *lamp;
     double distance; /* of either, world units; infinite */
     /* The surface. */
-    struct story_link *links;
+    struct pixel_trace_link *links;
     double opacity;
     bool shaded; /* bsdf is set */
     struct bsdf bsdf;
     struct vec3 ambient_light, ambient, photons, direct; /* direct: ambient, photons and lights together */
     bool has_photons;
-    struct story_light *lights, *last_light;
-    struct story_ray *first, *last; /* those that it sent on */
-    double part;                    /* of their weight, where several share one */
+    struct pixel_trace_light *lights, *last_light;
+    struct pixel_trace_ray *first, *last; /* those that it sent on */
+    double part;                          /* of their weight, where several share one */
     /* What it brings: left * seen + veil. */
     struct vec3 seen, left, veil, brings;
-    struct story_ray *parent, *next;
+    struct pixel_trace_ray *parent, *next;
 };
 
-struct story_sample {
+struct pixel_trace_sample {
     double x, y;     /* in the picture, pixels */
     uint64_t number; /* 0: the first one */
     bool counts;     /* it is part of the mean */
     struct vec3 colour;
-    struct story_ray *first, *last;
-    struct story_sample *next;
+    struct pixel_trace_ray *first, *last;
+    struct pixel_trace_sample *next;
 };
 
-struct story {
+struct pixel_trace {
     struct observer observer; /* of the integrator that makes the pixel */
     struct arena arena;
     uint32_t x, y; /* the pixel of the whole picture */
@@ -99,21 +100,21 @@ struct story {
     int mark_x, mark_y;
     double mark_distance, mark_tolerance;
     int samples; /* N of N x N */
-    struct story_sample *sample, *last_sample;
+    struct pixel_trace_sample *sample, *last_sample;
     float rgb[3]; /* in the film */
-    uint32_t rays, untold;
+    uint32_t rays, omitted;
     bool failed; /* no memory */
     /* While it is written. */
     bool on; /* a sample of the pixel itself is under way */
-    struct story_ray *ray;
-    struct story_light *light;
+    struct pixel_trace_ray *ray;
+    struct pixel_trace_light *light;
     uint32_t mute;      /* how many rays that are not printed are under way */
     enum ray_kind kind; /* of the next ray */
     struct vec3 weight; /* of the next ray */
 };
 
-/* The story stays where it is until it is destroyed: its observer points to it. */
-void story_init(struct story *story, uint32_t x, uint32_t y);
-void story_destroy(struct story *story);
+/* The trace stays where it is until it is destroyed: its observer points to it. */
+void pixel_trace_init(struct pixel_trace *pixel_trace, uint32_t x, uint32_t y);
+void pixel_trace_destroy(struct pixel_trace *pixel_trace);
 
 #endif

@@ -1,7 +1,7 @@
 /* The story of a pixel: what is told is what was computed, and the parts are the sum. */
 #include "material/material_inputs.h"
 #include "render/aov.h"
-#include "render/story.h"
+#include "render/pixel_trace.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "world/path.h"
@@ -24,7 +24,7 @@ struct tally {
     int rays, kinds[4], limits, blocked, reached, excluded, fogged, absorbed, holes, links, neighbours;
 };
 
-static void check_ray(struct tally *tally, const struct story_ray *ray) {
+static void check_ray(struct tally *tally, const struct pixel_trace_ray *ray) {
     tally->rays++;
     tally->kinds[ray->kind]++;
     tally->limits += ray->cut == RAY_OVER_LIMIT;
@@ -35,20 +35,20 @@ static void check_ray(struct tally *tally, const struct story_ray *ray) {
     tally->fogged += ray->veil.x != 0;
     tally->absorbed += ray->left.x < 1 && ray->veil.x == 0;
     struct vec3 holes = {0, 0, 0}, surface = vec3_add(ray->direct, ray->bsdf.emission), lights = ray->ambient;
-    for (const struct story_light *light = ray->lights; light; light = light->next) {
+    for (const struct pixel_trace_light *light = ray->lights; light; light = light->next) {
         lights = vec3_add(lights, light->colour);
-        tally->blocked += light->lit == STORY_LIGHT_BLOCKED;
-        tally->reached += light->lit == STORY_LIGHT_REACHES;
-        tally->excluded += light->lit == STORY_LIGHT_NOT_OURS;
-        if (light->lit == STORY_LIGHT_REACHES && !light->lamp) {
+        tally->blocked += light->lit == PIXEL_TRACE_LIGHT_BLOCKED;
+        tally->reached += light->lit == PIXEL_TRACE_LIGHT_REACHES;
+        tally->excluded += light->lit == PIXEL_TRACE_LIGHT_NOT_OURS;
+        if (light->lit == PIXEL_TRACE_LIGHT_REACHES && !light->lamp) {
             struct vec3 own = vec3_mul(vec3_scale(light->light->colour, light->strength), light->reflected);
             own = vec3_scale(own, (double)light->arrived / (double)light->asked);
             tally->worst = fmax(tally->worst, difference(own, light->colour));
         }
     }
-    for (const struct story_link *link = ray->links; link; link = link->next)
+    for (const struct pixel_trace_link *link = ray->links; link; link = link->next)
         tally->links++;
-    for (const struct story_ray *child = ray->first; child; child = child->next) {
+    for (const struct pixel_trace_ray *child = ray->first; child; child = child->next) {
         struct vec3 part = vec3_mul(child->weight, child->brings);
         if (child->kind == RAY_HOLE)
             holes = vec3_add(holes, part);
@@ -71,14 +71,14 @@ struct check {
     int pixels, wrong, marked;
 };
 
-static bool check_story(void *context, struct story *story, struct error *error) {
+static bool check_pixel_trace(void *context, struct pixel_trace *pixel_trace, struct error *error) {
     struct check *check = context;
     struct vec3 sum = {0, 0, 0};
     double count = 0;
     (void)error;
     check->pixels++;
-    check->marked += story->marked;
-    for (const struct story_sample *sample = story->sample; sample; sample = sample->next) {
+    check->marked += pixel_trace->marked;
+    for (const struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next) {
         if (sample->counts) {
             sum = vec3_add(sum, sample->colour);
             count++;
@@ -86,8 +86,8 @@ static bool check_story(void *context, struct story *story, struct error *error)
         check->tally.worst = fmax(check->tally.worst, difference(sample->first->brings, sample->colour));
         check_ray(&check->tally, sample->first);
     }
-    struct vec3 told = {(double)story->rgb[0], (double)story->rgb[1], (double)story->rgb[2]};
-    struct vec3 have = stage_pixel(check->stage, story->x, story->y);
+    struct vec3 told = {(double)pixel_trace->rgb[0], (double)pixel_trace->rgb[1], (double)pixel_trace->rgb[2]};
+    struct vec3 have = stage_pixel(check->stage, pixel_trace->x, pixel_trace->y);
     check->wrong += told.x != have.x || told.y != have.y || told.z != have.z;
     check->wrong += difference(vec3_scale(sum, 1 / count), told) > 1e-6; /* the film is single precision */
     return true;
@@ -111,7 +111,7 @@ static struct check tell_picture(struct stage *s, uint32_t width, uint32_t heigh
                              .height = height,
                              .ambient = s->ambient,
                              .fog = s->fog};
-    CHECK(render_pixels(&job, s->pool, (const uint32_t(*)[2])pixels, count, check_story, &check, &s->error));
+    CHECK(render_pixels(&job, s->pool, (const uint32_t(*)[2])pixels, count, check_pixel_trace, &check, &s->error));
     CHECK_EQ_INT(check.pixels, count);
     CHECK_EQ_INT(check.wrong, 0);
     CHECK(check.marked > 0);
@@ -191,26 +191,26 @@ TEST(the_story_of_fog_lamps_and_blurred_lenses_is_the_picture) {
 /* Paths that split without end: rays beyond the limit are counted, and the colour is still the picture's. */
 TEST(a_story_that_is_too_long_counts_what_it_leaves_out) {
     struct stage s;
-    struct story story;
+    struct pixel_trace pixel_trace;
     stage_begin(&s, 1);
     stage_sphere(&s, s.root, stage_glass(&s, 0.5, 0.5, 1.5));
-    story_init(&story, 0, 0);
+    pixel_trace_init(&pixel_trace, 0, 0);
     struct pixel_sample place = {0, 0, 0.5, 0.5, 0};
     struct ray ray = {.direction = {0, 0, -1}};
     struct observed_end end = {true, vec3_all(1), vec3_all(1), vec3_all(0), vec3_all(1)};
-    observe_sample_begin(&story.observer, &place);
-    for (int i = 0; i < STORY_RAYS + 10; i++) {
-        observe_ray_sent(&story.observer, RAY_CAMERA, vec3_all(1), RAY_FOLLOWED);
-        observe_ray_begin(&story.observer, &ray, NULL, NULL, INFINITY, 1);
-        observe_ray_sent(&story.observer, RAY_REFLECTED, vec3_all(1), RAY_FOLLOWED);
-        CHECK_EQ_INT(story.mute, i >= STORY_RAYS);
-        observe_ray_end(&story.observer, &end);
+    observe_sample_begin(&pixel_trace.observer, &place);
+    for (int i = 0; i < PIXEL_TRACE_RAYS + 10; i++) {
+        observe_ray_sent(&pixel_trace.observer, RAY_CAMERA, vec3_all(1), RAY_FOLLOWED);
+        observe_ray_begin(&pixel_trace.observer, &ray, NULL, NULL, INFINITY, 1);
+        observe_ray_sent(&pixel_trace.observer, RAY_REFLECTED, vec3_all(1), RAY_FOLLOWED);
+        CHECK_EQ_INT(pixel_trace.mute, i >= PIXEL_TRACE_RAYS);
+        observe_ray_end(&pixel_trace.observer, &end);
     }
-    observe_sample_end(&story.observer, &place, vec3_all(1));
-    CHECK_EQ_INT(story.rays, STORY_RAYS);
-    CHECK_EQ_INT(story.untold, 10);
-    CHECK(!story.failed);
-    story_destroy(&story);
+    observe_sample_end(&pixel_trace.observer, &place, vec3_all(1));
+    CHECK_EQ_INT(pixel_trace.rays, PIXEL_TRACE_RAYS);
+    CHECK_EQ_INT(pixel_trace.omitted, 10);
+    CHECK(!pixel_trace.failed);
+    pixel_trace_destroy(&pixel_trace);
     stage_end(&s);
 }
 
