@@ -38,14 +38,14 @@ bool beam_make(struct beam *out, const struct ray_packet *rays) {
     return isfinite(out->slack);
 }
 
-void beam_walk_begin(struct beam_walk *walk, const struct box_tree *tree, const struct beam *beam) {
-    walk->tree = tree;
-    walk->beam = beam;
-    walk->steps = 0;
-    walk->top = 0;
+void beam_traversal_begin(struct beam_traversal *traversal, const struct box_tree *tree, const struct beam *beam) {
+    traversal->tree = tree;
+    traversal->beam = beam;
+    traversal->steps = 0;
+    traversal->top = 0;
     if (tree->item_count > 0) {
-        walk->child[walk->top] = 0;
-        walk->enter[walk->top++] = 0;
+        traversal->child[traversal->top] = 0;
+        traversal->enter[traversal->top++] = 0;
     }
 }
 
@@ -73,32 +73,32 @@ static unsigned meet_children(const struct beam *b, const struct box_tree_node *
     return met;
 }
 
-bool beam_walk_next(struct beam_walk *walk, double t_max, uint32_t *item) {
-    while (walk->top > 0) {
-        uint32_t child = walk->child[--walk->top];
-        if (walk->enter[walk->top] > t_max)
+bool beam_traversal_next(struct beam_traversal *traversal, double t_max, uint32_t *item) {
+    while (traversal->top > 0) {
+        uint32_t child = traversal->child[--traversal->top];
+        if (traversal->enter[traversal->top] > t_max)
             continue;
         if (child & BOX_TREE_ITEM) {
             *item = child & ~BOX_TREE_ITEM;
             return true;
         }
-        const struct box_tree_node *node = &walk->tree->nodes[child];
+        const struct box_tree_node *node = &traversal->tree->nodes[child];
         double ahead[BOX_TREE_WIDTH], behind[BOX_TREE_WIDTH], order[BOX_TREE_WIDTH];
-        unsigned met = meet_children(walk->beam, node, ahead, behind);
-        walk->steps++;
-        int base = walk->top;
+        unsigned met = meet_children(traversal->beam, node, ahead, behind);
+        traversal->steps++;
+        int base = traversal->top;
         for (; met; met &= met - 1) {
-            int i = __builtin_ctz(met), at = walk->top++;
-            double enter = ahead[i] > 0 ? ahead[i] * walk->beam->soonest : 0;
-            /* What ends first comes first, as in box_tree_walk_next. */
+            int i = __builtin_ctz(met), at = traversal->top++;
+            double enter = ahead[i] > 0 ? ahead[i] * traversal->beam->soonest : 0;
+            /* What ends first comes first, as in box_tree_traversal_next. */
             for (; at > base && order[at - 1 - base] < behind[i]; at--) {
                 order[at - base] = order[at - 1 - base];
-                walk->enter[at] = walk->enter[at - 1];
-                walk->child[at] = walk->child[at - 1];
+                traversal->enter[at] = traversal->enter[at - 1];
+                traversal->child[at] = traversal->child[at - 1];
             }
             order[at - base] = behind[i];
-            walk->enter[at] = enter;
-            walk->child[at] = node->child[i];
+            traversal->enter[at] = enter;
+            traversal->child[at] = node->child[i];
         }
     }
     return false;

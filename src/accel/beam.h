@@ -18,9 +18,9 @@ struct beam {
 bool beam_make(struct beam *out, const struct ray_packet *rays);
 
 /* Items whose box the beam meets, nearest boxes first:
- *   beam_walk_begin(&walk, tree, &beam); while (beam_walk_next(&walk, t_max, &item)) ...
+ *   beam_traversal_begin(&traversal, tree, &beam); while (beam_traversal_next(&traversal, t_max, &item)) ...
  * t_max: beyond it no ray wants anything; it may shrink between calls. */
-struct beam_walk {
+struct beam_traversal {
     const struct box_tree *tree;
     const struct beam *beam;
     uint32_t steps;
@@ -28,7 +28,7 @@ struct beam_walk {
     uint32_t child[BOX_TREE_STACK];
     double enter[BOX_TREE_STACK];
 };
-void beam_walk_begin(struct beam_walk *walk, const struct box_tree *tree, const struct beam *beam);
-bool beam_walk_next(struct beam_walk *walk, double t_max, uint32_t *item);
+void beam_traversal_begin(struct beam_traversal *traversal, const struct box_tree *tree, const struct beam *beam);
+bool beam_traversal_next(struct beam_traversal *traversal, double t_max, uint32_t *item);
 
 #endif

@@ -227,7 +227,8 @@ static void set_child(struct box_tree_node *node, int slot, const struct box *bo
 }
 
 /* Sizes that shrink geometrically make splits by area lop off one item at a time. Below this depth runs are halved by
- * count, so a tree of 2^31 items is at most DEEP + 16 deep, and a walk's stack (3 entries a level) always suffices. */
+ * count, so a tree of 2^31 items is at most DEEP + 16 deep, and a traversal's stack (3 entries a level) always
+ * suffices. */
 enum { DEEP = 64 };
 _Static_assert((DEEP + 16) * (BOX_TREE_WIDTH - 1) + BOX_TREE_WIDTH <= BOX_TREE_STACK, "the walk's stack is too small");
 
@@ -285,7 +286,7 @@ static uint32_t leave_run(struct part *part, const struct run *run, uint32_t dep
 
 static void build_part(struct builder *b, struct part *part, struct run root, uint32_t root_depth) {
     struct box nothing = box_empty();
-    struct task tasks[BOX_TREE_STACK]; /* as deep as a walk's */
+    struct task tasks[BOX_TREE_STACK]; /* as deep as a traversal's */
     uint32_t waiting = 0;
     tasks[waiting++] = (struct task){root, add_node(part), root_depth};
     while (waiting > 0 && !part->cancelled && !part->failed) {
@@ -434,38 +435,39 @@ size_t box_tree_memory(const struct box_tree *tree) {
 
 /* --- walking --- */
 
-void box_tree_walk_begin(struct box_tree_walk *walk, const struct box_tree *tree, const struct ray *ray) {
-    walk->tree = tree;
-    walk->origin[0] = ray->origin.x;
-    walk->origin[1] = ray->origin.y;
-    walk->origin[2] = ray->origin.z;
-    walk->inverse[0] = 1 / ray->direction.x;
-    walk->inverse[1] = 1 / ray->direction.y;
-    walk->inverse[2] = 1 / ray->direction.z;
+void box_tree_traversal_begin(struct box_tree_traversal *traversal, const struct box_tree *tree,
+                              const struct ray *ray) {
+    traversal->tree = tree;
+    traversal->origin[0] = ray->origin.x;
+    traversal->origin[1] = ray->origin.y;
+    traversal->origin[2] = ray->origin.z;
+    traversal->inverse[0] = 1 / ray->direction.x;
+    traversal->inverse[1] = 1 / ray->direction.y;
+    traversal->inverse[2] = 1 / ray->direction.z;
     for (int i = 0; i < 3; i++)
-        walk->near_side[i] = walk->inverse[i] < 0;
-    walk->t_min = ray->t_min;
-    walk->isa = accel_isa();
-    walk->steps = 0;
-    walk->top = 0;
+        traversal->near_side[i] = traversal->inverse[i] < 0;
+    traversal->t_min = ray->t_min;
+    traversal->isa = accel_isa();
+    traversal->steps = 0;
+    traversal->top = 0;
     if (tree->item_count > 0) {
-        walk->child[walk->top] = 0;
-        walk->enter[walk->top++] = -INFINITY;
+        traversal->child[traversal->top] = 0;
+        traversal->enter[traversal->top++] = -INFINITY;
     }
 }
 
-bool box_tree_walk_down(struct box_tree_walk *walk, double t_max, uint32_t *item) {
+bool box_tree_traversal_down(struct box_tree_traversal *traversal, double t_max, uint32_t *item) {
 #if defined(__x86_64__)
-    if (walk->isa != ACCEL_ISA_BASE)
-        return box_tree_walk_down_avx2(walk, t_max, item);
+    if (traversal->isa != ACCEL_ISA_BASE)
+        return box_tree_traversal_down_avx2(traversal, t_max, item);
 #endif
-    return box_tree_walk_down_base(walk, t_max, item);
+    return box_tree_traversal_down_base(traversal, t_max, item);
 }
 
-bool box_tree_walk_any(struct box_tree_walk *walk, double t_max, uint32_t *item) {
+bool box_tree_traversal_any(struct box_tree_traversal *traversal, double t_max, uint32_t *item) {
 #if defined(__x86_64__)
-    if (walk->isa != ACCEL_ISA_BASE)
-        return box_tree_walk_any_avx2(walk, t_max, item);
+    if (traversal->isa != ACCEL_ISA_BASE)
+        return box_tree_traversal_any_avx2(traversal, t_max, item);
 #endif
-    return box_tree_walk_any_base(walk, t_max, item);
+    return box_tree_traversal_any_base(traversal, t_max, item);
 }

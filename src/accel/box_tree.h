@@ -41,9 +41,9 @@ void box_tree_destroy(struct box_tree *tree);
 size_t box_tree_memory(const struct box_tree *tree);
 
 /* Items whose box the ray's interval meets, nearest boxes first:
- *   box_tree_walk_begin(&walk, tree, ray); while (box_tree_walk_next(&walk, t_max, &item)) ...
+ *   box_tree_traversal_begin(&traversal, tree, ray); while (box_tree_traversal_next(&traversal, t_max, &item)) ...
  * t_max may shrink between calls. Boxes that begin at t <= t_max are never left out by rounding. */
-struct box_tree_walk {
+struct box_tree_traversal {
     const struct box_tree *tree;
     double origin[3], inverse[3];
     int near_side[3];
@@ -54,24 +54,24 @@ struct box_tree_walk {
     uint32_t child[BOX_TREE_STACK];
     double enter[BOX_TREE_STACK];
 };
-void box_tree_walk_begin(struct box_tree_walk *walk, const struct box_tree *tree, const struct ray *ray);
-/* Takes what is on top of a walk. False: t_max ends before it, or it is nothing, which is met by rays that are not
+void box_tree_traversal_begin(struct box_tree_traversal *traversal, const struct box_tree *tree, const struct ray *ray);
+/* Takes what is on top of a traversal. False: t_max ends before it, or it is nothing, which is met by rays that are not
  * finite (of NaN nothing can be said). */
-static inline bool box_tree_take(struct box_tree_walk *walk, double t_max, uint32_t *child) {
-    *child = walk->child[--walk->top];
-    double enter = walk->enter[walk->top];
+static inline bool box_tree_take(struct box_tree_traversal *traversal, double t_max, uint32_t *child) {
+    *child = traversal->child[--traversal->top];
+    double enter = traversal->enter[traversal->top];
     return !(enter * (enter > 0 ? 1 - 0x1p-50 : 1 + 0x1p-50) > t_max) && *child != BOX_TREE_NONE;
 }
 
-/* box_tree_walk_next where a node is on top. Ready items are taken without a call. */
-bool box_tree_walk_down(struct box_tree_walk *walk, double t_max, uint32_t *item);
+/* box_tree_traversal_next where a node is on top. Ready items are taken without a call. */
+bool box_tree_traversal_down(struct box_tree_traversal *traversal, double t_max, uint32_t *item);
 
-static inline bool box_tree_walk_next(struct box_tree_walk *walk, double t_max, uint32_t *item) {
-    while (walk->top > 0) {
-        if (!(walk->child[walk->top - 1] & BOX_TREE_ITEM))
-            return box_tree_walk_down(walk, t_max, item);
+static inline bool box_tree_traversal_next(struct box_tree_traversal *traversal, double t_max, uint32_t *item) {
+    while (traversal->top > 0) {
+        if (!(traversal->child[traversal->top - 1] & BOX_TREE_ITEM))
+            return box_tree_traversal_down(traversal, t_max, item);
         uint32_t child;
-        if (box_tree_take(walk, t_max, &child)) {
+        if (box_tree_take(traversal, t_max, &child)) {
             *item = child & ~BOX_TREE_ITEM;
             return true;
         }
@@ -80,13 +80,13 @@ static inline bool box_tree_walk_next(struct box_tree_walk *walk, double t_max, 
 }
 
 /* The same without order, for questions that any item may answer. */
-bool box_tree_walk_any(struct box_tree_walk *walk, double t_max, uint32_t *item);
+bool box_tree_traversal_any(struct box_tree_traversal *traversal, double t_max, uint32_t *item);
 
 /* Both in each instruction set. */
-bool box_tree_walk_down_base(struct box_tree_walk *walk, double t_max, uint32_t *item);
-bool box_tree_walk_any_base(struct box_tree_walk *walk, double t_max, uint32_t *item);
-bool box_tree_walk_down_avx2(struct box_tree_walk *walk, double t_max, uint32_t *item);
-bool box_tree_walk_any_avx2(struct box_tree_walk *walk, double t_max, uint32_t *item);
+bool box_tree_traversal_down_base(struct box_tree_traversal *traversal, double t_max, uint32_t *item);
+bool box_tree_traversal_any_base(struct box_tree_traversal *traversal, double t_max, uint32_t *item);
+bool box_tree_traversal_down_avx2(struct box_tree_traversal *traversal, double t_max, uint32_t *item);
+bool box_tree_traversal_any_avx2(struct box_tree_traversal *traversal, double t_max, uint32_t *item);
 
 /* The shaft from one point to a parallelogram (Haines and Wallace, "Shaft Culling for Efficient Ray-Traced Radiosity",
  * 1991): every segment from the point to the parallelogram lies inside. */

@@ -18,8 +18,8 @@
 #define LIST_COST 0.3  /* an entry of a list: its box */
 #define OVERLAP 1.5    /* nodes over boxes that overlap, and are not full, for those that would do */
 #define START_COST 1.2 /* of a hierarchy in a voxel */
-/* Of a ray that walks voxels over a mesh, once: it is brought to the frame and less sure of its hits (2.5), and goes
- * alone where rays of one origin go together (a third of them, at half the price: 1.5). */
+/* Of a ray that traverses voxels over a mesh, once: it is brought to the frame and less sure of its hits (2.5), and
+ * goes alone where rays of one origin go together (a third of them, at half the price: 1.5). */
 #define FLY_COST 4.0
 
 enum { BIG_ITEM = 64 /* voxels */, ENOUGH = 4 /* samples to an occupied voxel */ };
@@ -155,14 +155,14 @@ struct frame_of_mesh frame_over_mesh(const struct frame_census *census) {
     uint32_t last = census->level_count - 1;
     for (uint32_t l = 0; l <= last; l++) {
         const struct frame_level *at = &census->levels[l];
-        double walk = l > 0 ? FLY_COST + STEP_COST * at->visited : 0, starts = START_COST * at->occupied;
+        double traversal = l > 0 ? FLY_COST + STEP_COST * at->visited : 0, starts = START_COST * at->occupied;
         double across = 0, depth = 0;
         for (uint32_t below = l + 1; below <= last; below++) {
             double nodes = growth(census, below, 8);
             across += OVERLAP * nodes * census->levels[below - 1].occupied;
             depth += nodes;
         }
-        frame.costs[l] = walk + starts + (across + depth) / 2;
+        frame.costs[l] = traversal + starts + (across + depth) / 2;
         if (frame.costs[l] < frame.costs[frame.level])
             frame.level = l;
     }

@@ -1,16 +1,16 @@
 /* The grid. Three numbers per voxel boundary are not the same in exact arithmetic: where the builder thinks the
- * boundary is, where the walk thinks the ray crosses it, and where the ray meets an item. The invariant that makes the
- * walk safe:
+ * boundary is, where the traversal thinks the ray crosses it, and where the ray meets an item. The invariant that makes
+ * the traversal safe:
  *
  *   Every item is listed in every voxel that its box, grown by `slack` on each axis, touches; and whenever the ray is
- * at q inside an item's box, the walk stands, at that t, in a voxel whose distance from q is below the slack on each
- * axis.
+ * at q inside an item's box, the traversal stands, at that t, in a voxel whose distance from q is below the slack on
+ * each axis.
  *
- * Per axis the walk's index at t is the start index plus the number of boundaries whose t_next is <= t. It is wrong
- * only while q is within d of a boundary, d being the error of t_next times the speed: at most (steps + 8) 2^-53
+ * Per axis the traversal's index at t is the start index plus the number of boundaries whose t_next is <= t. It is
+ * wrong only while q is within d of a boundary, d being the error of t_next times the speed: at most (steps + 8) 2^-53
  * (|origin| + |q|) on that axis, the steps because t_next is a running sum. With at most 2^12 steps and a slack of
- * 2^-12 of a voxel, d < slack as long as |origin| < 2^26 voxels. Rays from farther away do not walk: they are given all
- * items at once. Worlds far from the origin get voxels so large that the same holds for their coordinates.
+ * 2^-12 of a voxel, d < slack as long as |origin| < 2^26 voxels. Rays from farther away do not traversal: they are
+ * given all items at once. Worlds far from the origin get voxels so large that the same holds for their coordinates.
  *
  * Everything is relative to the boxes, so scaling by a power of two changes no index and no step. */
 #include "accel/grid.h"
@@ -235,34 +235,34 @@ size_t grid_memory(const struct grid *grid) {
 
 /* ---- walking ---- */
 
-/* Puts the walk on the voxel where the ray comes in; false when it misses the grid. */
-static bool enter_grid(struct grid_walk *walk, const struct grid *grid, const struct ray *ray) {
+/* Puts the traversal on the voxel where the ray comes in; false when it misses the grid. */
+static bool enter_grid(struct grid_traversal *traversal, const struct grid *grid, const struct ray *ray) {
     double t_enter, t_exit;
     if (!grid->cell_start || !box_clip(&grid->bounds, ray, &t_enter, &t_exit))
         return false;
-    walk->state = FLY_VOXELS;
-    walk->t_end = t_exit;
-    walk->cell = 0;
+    traversal->state = FLY_VOXELS;
+    traversal->t_end = t_exit;
+    traversal->cell = 0;
     int64_t stride = 1;
     for (int i = 0; i < 3; i++) {
         double o = vec3_get(ray->origin, i), d = vec3_get(ray->direction, i);
         double cell = vec3_get(grid->cell_size, i);
         uint32_t cells = grid->cells[i];
-        walk->t_next[i] = INFINITY;
-        walk->t_step[i] = 0;
-        walk->cell_step[i] = 0;
-        walk->left[i] = 0;
+        traversal->t_next[i] = INFINITY;
+        traversal->t_step[i] = 0;
+        traversal->cell_step[i] = 0;
+        traversal->left[i] = 0;
         if (cells > 1) {
             if (!(fabs(o) < cell * FAR_AWAY))
-                walk->state = FLY_EVERYTHING;
+                traversal->state = FLY_EVERYTHING;
             uint32_t index = voxel_index(grid, i, d != 0 ? o + t_enter * d : o);
-            walk->cell += stride * (int64_t)index;
+            traversal->cell += stride * (int64_t)index;
             if (d != 0) {
                 double boundary = vec3_get(grid->bounds.min, i) + cell * (double)(d > 0 ? index + 1 : index);
-                walk->t_next[i] = (boundary - o) / d;
-                walk->t_step[i] = cell / fabs(d);
-                walk->cell_step[i] = d > 0 ? stride : -stride;
-                walk->left[i] = d > 0 ? cells - 1 - index : index;
+                traversal->t_next[i] = (boundary - o) / d;
+                traversal->t_step[i] = cell / fabs(d);
+                traversal->cell_step[i] = d > 0 ? stride : -stride;
+                traversal->left[i] = d > 0 ? cells - 1 - index : index;
             }
         }
         stride *= cells;
@@ -271,72 +271,72 @@ static bool enter_grid(struct grid_walk *walk, const struct grid *grid, const st
 }
 
 /* Stands on a voxel: offers its list. */
-static bool offer(struct grid_walk *walk) {
-    const uint32_t *start = walk->grid->cell_start + walk->cell;
-    walk->items = walk->grid->cell_items + start[0];
-    walk->count = start[1] - start[0];
-    return walk->count > 0;
+static bool offer(struct grid_traversal *traversal) {
+    const uint32_t *start = traversal->grid->cell_start + traversal->cell;
+    traversal->items = traversal->grid->cell_items + start[0];
+    traversal->count = start[1] - start[0];
+    return traversal->count > 0;
 }
 
 /* The axis whose boundary comes next. */
-static int next_axis(const struct grid_walk *walk) {
-    double x = walk->t_next[0], y = walk->t_next[1], z = walk->t_next[2];
+static int next_axis(const struct grid_traversal *traversal) {
+    double x = traversal->t_next[0], y = traversal->t_next[1], z = traversal->t_next[2];
     return x <= y ? (x <= z ? 0 : 2) : (y <= z ? 1 : 2);
 }
 
 /* Steps until a voxel has items. */
-static bool fly_camera_on(struct grid_walk *walk, bool step_first) {
+static bool fly_camera_on(struct grid_traversal *traversal, bool step_first) {
     for (;;) {
-        int axis = next_axis(walk);
+        int axis = next_axis(traversal);
         if (step_first) {
-            if (!(walk->t_next[axis] <= walk->t_end) || walk->left[axis] == 0)
+            if (!(traversal->t_next[axis] <= traversal->t_end) || traversal->left[axis] == 0)
                 break;
-            walk->left[axis]--;
-            walk->cell += walk->cell_step[axis];
-            walk->t_next[axis] += walk->t_step[axis];
-            axis = next_axis(walk);
+            traversal->left[axis]--;
+            traversal->cell += traversal->cell_step[axis];
+            traversal->t_next[axis] += traversal->t_step[axis];
+            axis = next_axis(traversal);
         }
         step_first = true;
-        walk->voxels++;
-        if (offer(walk)) {
-            walk->t_exit = walk->t_next[axis];
+        traversal->voxels++;
+        if (offer(traversal)) {
+            traversal->t_exit = traversal->t_next[axis];
             return true;
         }
     }
-    walk->state = FLY_DONE;
+    traversal->state = FLY_DONE;
     return false;
 }
 
-static bool offer_everything(struct grid_walk *walk) {
-    const struct grid *grid = walk->grid;
-    walk->state = FLY_DONE;
-    walk->items = grid->cell_items;
-    walk->count = grid->cell_start[(size_t)grid->cells[0] * grid->cells[1] * grid->cells[2]];
-    walk->t_exit = -INFINITY;
-    walk->voxels++;
-    return walk->count > 0;
+static bool offer_everything(struct grid_traversal *traversal) {
+    const struct grid *grid = traversal->grid;
+    traversal->state = FLY_DONE;
+    traversal->items = grid->cell_items;
+    traversal->count = grid->cell_start[(size_t)grid->cells[0] * grid->cells[1] * grid->cells[2]];
+    traversal->t_exit = -INFINITY;
+    traversal->voxels++;
+    return traversal->count > 0;
 }
 
-bool grid_walk_begin(struct grid_walk *walk, const struct grid *grid, const struct ray *ray) {
-    walk->grid = grid;
-    walk->voxels = 0;
-    walk->state = FLY_DONE;
-    bool inside = enter_grid(walk, grid, ray);
+bool grid_traversal_begin(struct grid_traversal *traversal, const struct grid *grid, const struct ray *ray) {
+    traversal->grid = grid;
+    traversal->voxels = 0;
+    traversal->state = FLY_DONE;
+    bool inside = enter_grid(traversal, grid, ray);
     if (grid->unbounded_count > 0) {
-        walk->items = grid->unbounded;
-        walk->count = grid->unbounded_count;
-        walk->t_exit = -INFINITY;
-        return true; /* voxels == 0 tells grid_walk_next that the first voxel is still to be offered */
+        traversal->items = grid->unbounded;
+        traversal->count = grid->unbounded_count;
+        traversal->t_exit = -INFINITY;
+        return true; /* voxels == 0 tells grid_traversal_next that the first voxel is still to be offered */
     }
     if (!inside)
         return false;
-    return walk->state == FLY_EVERYTHING ? offer_everything(walk) : fly_camera_on(walk, false);
+    return traversal->state == FLY_EVERYTHING ? offer_everything(traversal) : fly_camera_on(traversal, false);
 }
 
-bool grid_walk_next(struct grid_walk *walk) {
-    if (walk->state == FLY_DONE)
+bool grid_traversal_next(struct grid_traversal *traversal) {
+    if (traversal->state == FLY_DONE)
         return false;
-    if (walk->state == FLY_EVERYTHING)
-        return offer_everything(walk);
-    return fly_camera_on(walk, walk->voxels > 0);
+    if (traversal->state == FLY_EVERYTHING)
+        return offer_everything(traversal);
+    return fly_camera_on(traversal, traversal->voxels > 0);
 }

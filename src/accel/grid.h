@@ -28,10 +28,10 @@ bool grid_build(struct grid *grid, const struct box *boxes, uint32_t count, stru
 void grid_destroy(struct grid *grid);
 size_t grid_memory(const struct grid *grid);
 
-/* for (ok = grid_walk_begin(&w, grid, ray); ok; ok = grid_walk_next(&w)) { w.items[0 .. w.count-1]; if (best t <=
- * w.t_exit) stop }: visits the unbounded list first (t_exit = -infinity), then voxels in order along the ray; empty
- * voxels are skipped. w.t_exit is where the ray leaves the voxel: an answer with t <= t_exit is final. */
-struct grid_walk {
+/* for (ok = grid_traversal_begin(&w, grid, ray); ok; ok = grid_traversal_next(&w)) { w.items[0 .. w.count-1]; if (best
+ * t <= w.t_exit) stop }: visits the unbounded list first (t_exit = -infinity), then voxels in order along the ray;
+ * empty voxels are skipped. w.t_exit is where the ray leaves the voxel: an answer with t <= t_exit is final. */
+struct grid_traversal {
     const uint32_t *items;
     uint32_t count;
     double t_exit;
@@ -42,7 +42,7 @@ struct grid_walk {
     uint32_t voxels; /* visited so far, empty ones too */
     int state;
 };
-bool grid_walk_begin(struct grid_walk *walk, const struct grid *grid, const struct ray *ray);
-bool grid_walk_next(struct grid_walk *walk);
+bool grid_traversal_begin(struct grid_traversal *traversal, const struct grid *grid, const struct ray *ray);
+bool grid_traversal_next(struct grid_traversal *traversal);
 
 #endif

@@ -46,10 +46,11 @@ void kd_tree_destroy(struct kd_tree *tree);
 size_t kd_tree_memory(const struct kd_tree *tree);
 
 /* Leaves along a ray, in the order of the ray:
- *   kd_walk_begin(&walk, tree, ray, slack); while (kd_walk_next(&walk, t_max)) ... walk.items[0 .. walk.count - 1] ...
- * t_max may shrink between calls. An item whose part is nearer than `slack` (a length) to a point of the ray at t <=
- * t_max is offered, whatever is rounded on the way. An item may be offered several times. */
-struct kd_walk {
+ *   kd_traversal_begin(&traversal, tree, ray, slack); while (kd_traversal_next(&traversal, t_max)) ...
+ * traversal.items[0 .. traversal.count - 1] ... t_max may shrink between calls. An item whose part is nearer than
+ * `slack` (a length) to a point of the ray at t <= t_max is offered, whatever is rounded on the way. An item may be
+ * offered several times. */
+struct kd_traversal {
     const uint32_t *items;
     uint32_t count;
     uint32_t steps, leaves; /* inner nodes and leaves visited so far */
@@ -62,7 +63,8 @@ struct kd_walk {
     } stack[KD_DEPTH + 2];
     bool unbounded_next;
 };
-void kd_walk_begin(struct kd_walk *walk, const struct kd_tree *tree, const struct ray *ray, double slack);
-bool kd_walk_next(struct kd_walk *walk, double t_max);
+void kd_traversal_begin(struct kd_traversal *traversal, const struct kd_tree *tree, const struct ray *ray,
+                        double slack);
+bool kd_traversal_next(struct kd_traversal *traversal, double t_max);
 
 #endif

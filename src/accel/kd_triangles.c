@@ -3,8 +3,8 @@
  *
  * The point where a ray meets a triangle, as computed, is off the triangle by some 2^-49 of the coordinates involved:
  * the test of triangle.h takes t as a mean of the corners' z with weights of one sign, so it lies among them, and x and
- * y are wrong by the rounding of corner - origin and of the weights. The walk is given 2^-46 of origin and mesh as its
- * slack. Clipping is done against cells larger by 2^-44 of the mesh, so that its own rounding loses nothing. */
+ * y are wrong by the rounding of corner - origin and of the weights. The traversal is given 2^-46 of origin and mesh as
+ * its slack. Clipping is done against cells larger by 2^-44 of the mesh, so that its own rounding loses nothing. */
 #include "accel/kd_triangles.h"
 
 #include "accel/kd_tree.h"
@@ -108,7 +108,7 @@ size_t kd_triangles_memory(const struct kd_triangles *index) {
 /* --- searching --- */
 
 struct search {
-    struct kd_walk walk;
+    struct kd_traversal traversal;
     struct triangle_ray sheared;
     const struct triangle_set *set;
     uint32_t seen[MAILBOX]; /* triangles tried last: one may stand in many leaves */
@@ -122,14 +122,14 @@ static bool search_begin(struct search *s, const struct kd_triangles *index, con
     s->set = set;
     s->tests = 0;
     memset(s->seen, 0xff, sizeof s->seen);
-    kd_walk_begin(&s->walk, &index->tree, ray, FLY_SLACK * (index->reach + vec3_max_abs(ray->origin)));
+    kd_traversal_begin(&s->traversal, &index->tree, ray, FLY_SLACK * (index->reach + vec3_max_abs(ray->origin)));
     return true;
 }
 
 static void search_end(const struct search *s, struct triangle_cost *cost) {
     cost->triangle_tests += s->tests;
-    cost->hierarchy_steps += s->walk.steps;
-    cost->voxels += s->walk.leaves;
+    cost->hierarchy_steps += s->traversal.steps;
+    cost->voxels += s->traversal.leaves;
 }
 
 static bool try_triangle(struct search *s, uint32_t triangle, struct triangle_hit *hit) {
@@ -152,9 +152,9 @@ bool kd_triangles_nearest(const struct kd_triangles *index, const struct triangl
     double best = ray->t_max;
     bool found = false;
     struct triangle_hit candidate;
-    while (kd_walk_next(&s.walk, best))
-        for (uint32_t i = 0; i < s.walk.count; i++) {
-            uint32_t triangle = s.walk.items[i];
+    while (kd_traversal_next(&s.traversal, best))
+        for (uint32_t i = 0; i < s.traversal.count; i++) {
+            uint32_t triangle = s.traversal.items[i];
             if (!try_triangle(&s, triangle, &candidate) || !(candidate.t > ray->t_min) || candidate.t > best)
                 continue;
             if (candidate.t == best && (!found || triangle > hit->triangle))
@@ -174,10 +174,10 @@ bool kd_triangles_any(const struct kd_triangles *index, const struct triangle_se
         return false;
     bool found = false;
     struct triangle_hit candidate;
-    while (!found && kd_walk_next(&s.walk, ray->t_max))
-        for (uint32_t i = 0; i < s.walk.count && !found; i++)
-            found =
-                try_triangle(&s, s.walk.items[i], &candidate) && candidate.t > ray->t_min && candidate.t < ray->t_max;
+    while (!found && kd_traversal_next(&s.traversal, ray->t_max))
+        for (uint32_t i = 0; i < s.traversal.count && !found; i++)
+            found = try_triangle(&s, s.traversal.items[i], &candidate) && candidate.t > ray->t_min &&
+                    candidate.t < ray->t_max;
     search_end(&s, cost);
     return found;
 }
@@ -191,9 +191,9 @@ void kd_triangles_all(const struct kd_triangles *index, const struct triangle_se
     if (!search_begin(&s, index, set, &line))
         return;
     struct triangle_hit hit;
-    while (kd_walk_next(&s.walk, INFINITY))
-        for (uint32_t i = 0; i < s.walk.count; i++)
-            if (try_triangle(&s, s.walk.items[i], &hit))
+    while (kd_traversal_next(&s.traversal, INFINITY))
+        for (uint32_t i = 0; i < s.traversal.count; i++)
+            if (try_triangle(&s, s.traversal.items[i], &hit))
                 visit(context, &hit);
     search_end(&s, cost);
 }

@@ -537,7 +537,7 @@ static inline __attribute__((always_inline)) bool fly_camera_voxels(struct searc
 }
 
 /* Rays that have been brought to the frame. */
-static inline __attribute__((always_inline)) bool walk(struct search *s, const enum triangle_search kind) {
+static inline __attribute__((always_inline)) bool traversal(struct search *s, const enum triangle_search kind) {
     const bool many = kind == TRIANGLE_NEAREST && s->set->count > MANY_TRIANGLES;
     if (s->index->only == REF_EMPTY)
         return fly_camera_voxels(s, kind, many);
@@ -546,11 +546,11 @@ static inline __attribute__((always_inline)) bool walk(struct search *s, const e
 
 /* Apart from the kernel of the others, which needs its registers. */
 static __attribute__((noinline)) bool fly_camera_nearest_apart(struct search *s) {
-    return walk(s, TRIANGLE_NEAREST);
+    return traversal(s, TRIANGLE_NEAREST);
 }
 
 static __attribute__((noinline)) bool fly_camera_any_apart(struct search *s) {
-    return walk(s, TRIANGLE_ANY);
+    return traversal(s, TRIANGLE_ANY);
 }
 
 static inline double power_of_two(uint64_t exponent_bits) {
@@ -701,5 +701,5 @@ void KERNEL(all)(const struct triangle_index *index, const struct triangle_set *
         triangle_brute_all(set, &line, visit, context, cost);
     if (beginning != RAY_INSIDE)
         return;
-    walk(&s, TRIANGLE_ALL);
+    traversal(&s, TRIANGLE_ALL);
 }

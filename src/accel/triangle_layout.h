@@ -21,7 +21,8 @@ enum {
     STACK_ENTRIES = MOST_BRANCH_DEPTH * (WIDTH - 1) + WIDTH /* what a search can have waiting */
 };
 
-/* Local units. The rounding of a walk is below 2^-16 (a few hundred steps at most, each off by 2^-24 of 4 or so). */
+/* Local units. The rounding of a traversal is below 2^-16 (a few hundred steps at most, each off by 2^-24 of 4 or so).
+ */
 #define VOXEL_MARGIN 0x1p-13f
 
 /* Boxes in nodes are larger by this on every side, local units. It covers what rounding to single precision does to the

@@ -1,7 +1,7 @@
 /* The packet search, compiled once per instruction set: a file defines PACKET(name) and includes this one.
  *
- * Up to 64 rays of one origin walk one hierarchy together. A node is first tried against the beam that holds all of
- * them, eight children at once: the slopes of the rays over their longest axis bound it by four planes through the
+ * Up to 64 rays of one origin traversal one hierarchy together. A node is first tried against the beam that holds all
+ * of them, eight children at once: the slopes of the rays over their longest axis bound it by four planes through the
  * origin (as in Reshetov, Soupikov, Hurley, "Multi-Level Ray Tracing Algorithm", SIGGRAPH 2005). A child that the beam
  * meets waits on the stack with its box and the set of rays that met its parent; when it is its turn the box is tried
  * against these rays, a vector of them at a time, with what they have found until then.
@@ -466,7 +466,7 @@ static inline __attribute__((always_inline)) void fly_camera_all(struct packet *
     }
 }
 
-static void walk(struct packet *p, uint32_t root, const bool any) {
+static void traversal(struct packet *p, uint32_t root, const bool any) {
     if (any && p->mixed)
         fly_camera_all(p, root, true, true);
     else if (any)
@@ -620,9 +620,9 @@ static bool begin(struct packet *p, uint64_t active) {
 static void search(struct packet *p, struct triangle_cost *cost, const bool any) {
     const struct triangle_index *index = p->index;
     if (index->big)
-        walk(p, index->big, any);
+        traversal(p, index->big, any);
     if (index->only != REF_EMPTY)
-        walk(p, index->only, any);
+        traversal(p, index->only, any);
     cost->triangle_tests += p->tests;
     cost->hierarchy_steps += p->nodes;
 }

@@ -157,7 +157,7 @@ static bool box_node(struct picking *p, const struct node *root, struct error *e
         return box_operand(p, p->steps[p->depth - 1].node, &above) || error_no_memory(error, "the box of a node");
     }
     p->box = box_empty();
-    if (!world_walk_paths(p->world, root, join_boxes, p, error))
+    if (!world_visit_paths(p->world, root, join_boxes, p, error))
         return false;
     set_corners(p->out, &p->box, NULL);
     return true;
@@ -189,7 +189,7 @@ static void describe_material(const struct material *material, struct picked *ou
 static bool describe(struct picking *p, const struct node *root, const struct hit *hit, int32_t up,
                      struct error *error) {
     struct picked *out = p->out;
-    if (!world_walk_paths(p->world, root, find_route, p, error))
+    if (!world_visit_paths(p->world, root, find_route, p, error))
         return false;
     out->hit = p->route > 0;
     if (!out->hit)

@@ -180,7 +180,7 @@ bool inspect_world(const struct inspected *picture, struct text_writer *writer, 
                           world->placed_count, (unsigned long long)world->triangles, world->material_number_count,
                           world->light_count, inspect_sky(world->sky.kind));
     }
-    bool ok = world_walk_paths(world, picture->root, dump_placed, &d, error);
+    bool ok = world_visit_paths(world, picture->root, dump_placed, &d, error);
     if (ok)
         dump_rest(&d);
     text_writer_flush(writer);

@@ -45,7 +45,7 @@ static bool note_members(void *context, uint32_t first, uint32_t count, const st
     if (below) {
         s->to_solid = steps;
         s->depth = depth;
-        s->no_memory = s->no_memory || !world_walk_operands(steps[depth - 1].node, note_leaves, s);
+        s->no_memory = s->no_memory || !world_visit_operands(steps[depth - 1].node, note_leaves, s);
     }
     for (uint32_t i = 0; i < depth && !below && s->request->solid == 0; i++)
         below = steps[i].node->serial == s->request->serial &&
@@ -153,7 +153,7 @@ static bool make_outline(const struct view_overlay_scene *scene, const struct vi
     members.member = mem_alloc_zero((size_t)job->world->placed_count + 1, 1);
     if (!members.member)
         return error_no_memory(error, "the outline of a node");
-    bool ok = world_walk_paths(job->world, scene->root, note_members, &members, error) &&
+    bool ok = world_visit_paths(job->world, scene->root, note_members, &members, error) &&
               (!members.no_memory || error_no_memory(error, "the outline of a node"));
     if (ok && !box_is_empty(&members.box)) {
         struct outline_job o = {

@@ -183,11 +183,11 @@ uint64_t world_nearest_packet(const struct world *world, const struct ray_packet
         s.limit[i] = rays->t_max[i];
     }
     scratch->rays += rays->count;
-    struct beam_walk walk;
+    struct beam_traversal traversal;
     uint32_t index;
     double limit = farthest(&s);
-    beam_walk_begin(&walk, tree, &beam);
-    while (beam_walk_next(&walk, limit, &index)) {
+    beam_traversal_begin(&traversal, tree, &beam);
+    while (beam_traversal_next(&traversal, limit, &index)) {
         uint64_t active = meet_box(&s, &world->boxes[index]);
         if (!active)
             continue;
@@ -197,7 +197,7 @@ uint64_t world_nearest_packet(const struct world *world, const struct ray_packet
             try_shape(&s, index, active);
         limit = s.found == ray_packet_all(rays) ? farthest(&s) : limit;
     }
-    scratch->geom.cost.hierarchy_steps += walk.steps;
+    scratch->geom.cost.hierarchy_steps += traversal.steps;
     return s.found;
 }
 

@@ -15,8 +15,8 @@ uint32_t world_placed_by(const struct world *world, const struct node *node, uin
     return places ? placed_thing(world, next)->parts : 0;
 }
 
-bool world_walk_paths(const struct world *world, const struct node *root, world_path_visit *visit, void *context,
-                      struct error *error) {
+bool world_visit_paths(const struct world *world, const struct node *root, world_path_visit *visit, void *context,
+                       struct error *error) {
     struct scene_traversal t = world_traversal(world, root, 0);
     enum scene_event event = SCENE_END;
     uint32_t next = 0;
@@ -80,14 +80,14 @@ bool world_find_paths(const struct world *world, const struct node *root, const 
         out[i] = NULL;
     if (count == 0)
         return true;
-    if (!world_walk_paths(world, root, keep_path, &paths, error))
+    if (!world_visit_paths(world, root, keep_path, &paths, error))
         return false;
     return !paths.failed || error_no_memory(error, "the ways to the nodes");
 }
 
 /* --- inside of combined solids --- */
 
-bool world_walk_operands(const struct node *solid, world_operand_visit *visit, void *context) {
+bool world_visit_operands(const struct node *solid, world_operand_visit *visit, void *context) {
     struct scene_traversal t = {.operands = OPERANDS_OF_SOLIDS, .inside = true, .frame_size = sizeof(uint32_t)};
     enum scene_event event = SCENE_END;
     uint32_t met = 0; /* shapes so far */
@@ -128,7 +128,7 @@ static bool keep_operand(void *context, uint32_t first, uint32_t end, const stru
 bool world_operand_way(const struct node *solid, uint32_t origin, struct scene_step *steps, uint32_t capacity,
                        uint32_t *length) {
     struct wanted_operand wanted = {.steps = steps, .capacity = capacity, .origin = origin};
-    bool ok = world_walk_operands(solid, keep_operand, &wanted);
+    bool ok = world_visit_operands(solid, keep_operand, &wanted);
     *length = wanted.depth;
     return ok;
 }

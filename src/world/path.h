@@ -19,8 +19,8 @@ typedef bool world_path_visit(void *context, uint32_t first, uint32_t count, con
 
 /* The tree must be the one the world was built of, unchanged. A node that one clip removes completely and the next does
  * not is reported with the earlier path. False: no memory. */
-bool world_walk_paths(const struct world *world, const struct node *root, world_path_visit *visit, void *context,
-                      struct error *error);
+bool world_visit_paths(const struct world *world, const struct node *root, world_path_visit *visit, void *context,
+                       struct error *error);
 
 /* "root#0 / tree#7 [3] / leaf#9": names with their order of creation, and which placement. Control characters become
  * '?'. Cut at `size`; returns the length it would have. */
@@ -37,7 +37,7 @@ bool world_find_paths(const struct world *world, const struct node *root, const 
 enum { OPERAND_DEPTH = 256 };
 typedef bool world_operand_visit(void *context, uint32_t first, uint32_t end, const struct scene_step *steps,
                                  uint32_t depth);
-bool world_walk_operands(const struct node *solid, world_operand_visit *visit, void *context);
+bool world_visit_operands(const struct node *solid, world_operand_visit *visit, void *context);
 /* The way down to the shape that a leaf was made of; steps has room for `capacity`. length: 0: there is none, or
  * it is longer. False: no memory. */
 bool world_operand_way(const struct node *solid, uint32_t origin, struct scene_step *steps, uint32_t capacity,

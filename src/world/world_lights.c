@@ -503,20 +503,21 @@ double world_lights_pdf_of_hit(const struct world_lights *lights, const struct l
 
 /* --- lamps --- */
 
-void world_lights_met_begin(struct world_lights_walk *walk, const struct world_lights *lights, const struct ray *ray) {
-    walk->lights = lights;
-    walk->ray = ray;
-    walk->tree.top = 0;
+void world_lights_met_begin(struct world_lights_traversal *traversal, const struct world_lights *lights,
+                            const struct ray *ray) {
+    traversal->lights = lights;
+    traversal->ray = ray;
+    traversal->tree.top = 0;
     if (lights->lamp_count > 0)
-        box_tree_walk_begin(&walk->tree, &lights->surfaces, ray);
+        box_tree_traversal_begin(&traversal->tree, &lights->surfaces, ray);
 }
 
-bool world_lights_met_next(struct world_lights_walk *walk, uint32_t *light, struct light_hit *hit) {
+bool world_lights_met_next(struct world_lights_traversal *traversal, uint32_t *light, struct light_hit *hit) {
     uint32_t item;
-    while (box_tree_walk_next(&walk->tree, walk->ray->t_max, &item)) {
-        *light = walk->lights->lamps[item];
-        const struct light *lamp = &walk->lights->lights[*light];
-        if (!light_is_delta(lamp) && light_meets_ray(lamp, walk->ray, hit))
+    while (box_tree_traversal_next(&traversal->tree, traversal->ray->t_max, &item)) {
+        *light = traversal->lights->lamps[item];
+        const struct light *lamp = &traversal->lights->lights[*light];
+        if (!light_is_delta(lamp) && light_meets_ray(lamp, traversal->ray, hit))
             return true;
     }
     return false;
@@ -524,15 +525,15 @@ bool world_lights_met_next(struct world_lights_walk *walk, uint32_t *light, stru
 
 bool world_lights_seen(const struct world_lights *lights, const struct ray *ray, uint32_t *light,
                        struct light_hit *hit) {
-    struct box_tree_walk walk;
+    struct box_tree_traversal traversal;
     struct ray limited = *ray;
     struct light_hit met;
     uint32_t item;
     bool found = false;
     if (lights->lamp_count == 0)
         return false;
-    box_tree_walk_begin(&walk, &lights->surfaces, ray);
-    while (box_tree_walk_next(&walk, limited.t_max, &item)) {
+    box_tree_traversal_begin(&traversal, &lights->surfaces, ray);
+    while (box_tree_traversal_next(&traversal, limited.t_max, &item)) {
         uint32_t number = lights->lamps[item];
         if (!lights->lights[number].visible || !light_meets_ray(&lights->lights[number], &limited, &met))
             continue;

@@ -94,13 +94,14 @@ double world_lights_pdf_of_hit(const struct world_lights *lights, const struct l
  *     world_lights_met_begin(&walk, lights, &ray);
  *     while (world_lights_met_next(&walk, &light, &hit)) ...
  * Their radiance is light_emitted. */
-struct world_lights_walk {
+struct world_lights_traversal {
     const struct world_lights *lights;
     const struct ray *ray;
-    struct box_tree_walk tree;
+    struct box_tree_traversal tree;
 };
-void world_lights_met_begin(struct world_lights_walk *walk, const struct world_lights *lights, const struct ray *ray);
-bool world_lights_met_next(struct world_lights_walk *walk, uint32_t *light, struct light_hit *hit);
+void world_lights_met_begin(struct world_lights_traversal *traversal, const struct world_lights *lights,
+                            const struct ray *ray);
+bool world_lights_met_next(struct world_lights_traversal *traversal, uint32_t *light, struct light_hit *hit);
 /* The nearest of them that shows itself (light->visible); it hides what lies behind. False: none. */
 bool world_lights_seen(const struct world_lights *lights, const struct ray *ray, uint32_t *light,
                        struct light_hit *hit);

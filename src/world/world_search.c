@@ -109,26 +109,27 @@ static void search_grid(struct search *s) {
     struct mailbox mailbox;
     memset(&mailbox, 0xff, sizeof mailbox);
     s->probe = box_probe_make(s->ray);
-    struct grid_walk walk = {0};
-    for (bool go_on = grid_walk_begin(&walk, &s->world->accel.grid, s->ray); go_on; go_on = grid_walk_next(&walk)) {
-        for (uint32_t i = 0; i < walk.count; i++) {
-            if (mailbox_first(&mailbox, walk.items[i]))
-                try_boxed(s, walk.items[i]);
+    struct grid_traversal traversal = {0};
+    for (bool go_on = grid_traversal_begin(&traversal, &s->world->accel.grid, s->ray); go_on;
+         go_on = grid_traversal_next(&traversal)) {
+        for (uint32_t i = 0; i < traversal.count; i++) {
+            if (mailbox_first(&mailbox, traversal.items[i]))
+                try_boxed(s, traversal.items[i]);
         }
         /* Strictly before the end of the voxel: an equal t may still wait in the next one. */
-        if (s->found && s->best->t < walk.t_exit)
+        if (s->found && s->best->t < traversal.t_exit)
             break;
     }
-    s->scratch->geom.cost.voxels += walk.voxels;
+    s->scratch->geom.cost.voxels += traversal.voxels;
 }
 
 static void search_tree(struct search *s) {
-    struct box_tree_walk walk;
+    struct box_tree_traversal traversal;
     uint32_t index;
-    box_tree_walk_begin(&walk, &s->world->accel.tree, s->ray);
-    while (box_tree_walk_next(&walk, s->limited.t_max, &index))
+    box_tree_traversal_begin(&traversal, &s->world->accel.tree, s->ray);
+    while (box_tree_traversal_next(&traversal, s->limited.t_max, &index))
         try_placed(s, index);
-    s->scratch->geom.cost.hierarchy_steps += walk.steps;
+    s->scratch->geom.cost.hierarchy_steps += traversal.steps;
 }
 
 /* Boxes are padded, so that the points of their primitives as they are computed lie inside: no slack is needed. */
@@ -136,16 +137,16 @@ static void search_kd_tree(struct search *s) {
     struct mailbox mailbox;
     memset(&mailbox, 0xff, sizeof mailbox);
     s->probe = box_probe_make(s->ray);
-    struct kd_walk walk;
-    kd_walk_begin(&walk, &s->world->accel.kd_tree, s->ray, 0);
-    while (kd_walk_next(&walk, s->limited.t_max)) {
-        for (uint32_t i = 0; i < walk.count; i++) {
-            if (mailbox_first(&mailbox, walk.items[i]))
-                try_boxed(s, walk.items[i]);
+    struct kd_traversal traversal;
+    kd_traversal_begin(&traversal, &s->world->accel.kd_tree, s->ray, 0);
+    while (kd_traversal_next(&traversal, s->limited.t_max)) {
+        for (uint32_t i = 0; i < traversal.count; i++) {
+            if (mailbox_first(&mailbox, traversal.items[i]))
+                try_boxed(s, traversal.items[i]);
         }
     }
-    s->scratch->geom.cost.hierarchy_steps += walk.steps;
-    s->scratch->geom.cost.voxels += walk.leaves;
+    s->scratch->geom.cost.hierarchy_steps += traversal.steps;
+    s->scratch->geom.cost.voxels += traversal.leaves;
 }
 
 static void search_all(struct search *s) {
@@ -253,11 +254,12 @@ static bool any_in_grid(const struct world *world, const struct ray *ray, const 
     struct mailbox mailbox;
     memset(&mailbox, 0xff, sizeof mailbox);
     (void)mailbox_first(&mailbox, scratch->blockers[scratch->light]);
-    struct grid_walk walk = {0};
+    struct grid_traversal traversal = {0};
     bool found = false;
-    for (bool go_on = grid_walk_begin(&walk, &world->accel.grid, ray); go_on && !found; go_on = grid_walk_next(&walk)) {
-        for (uint32_t i = 0; i < walk.count && !found; i++) {
-            uint32_t index = walk.items[i];
+    for (bool go_on = grid_traversal_begin(&traversal, &world->accel.grid, ray); go_on && !found;
+         go_on = grid_traversal_next(&traversal)) {
+        for (uint32_t i = 0; i < traversal.count && !found; i++) {
+            uint32_t index = traversal.items[i];
             found = mailbox_first(&mailbox, index) && any_boxed(world, index, ray, probe, scratch);
             if (found)
                 scratch->blockers[scratch->light] = index;
@@ -265,21 +267,21 @@ static bool any_in_grid(const struct world *world, const struct ray *ray, const 
         if (found)
             break;
     }
-    scratch->geom.cost.voxels += walk.voxels;
+    scratch->geom.cost.voxels += traversal.voxels;
     return found;
 }
 
 static bool any_in_tree(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
-    struct box_tree_walk walk;
+    struct box_tree_traversal traversal;
     uint32_t index, asked = scratch->blockers[scratch->light];
     bool found = false;
-    box_tree_walk_begin(&walk, &world->accel.tree, ray);
-    while (!found && box_tree_walk_any(&walk, ray->t_max, &index)) {
+    box_tree_traversal_begin(&traversal, &world->accel.tree, ray);
+    while (!found && box_tree_traversal_any(&traversal, ray->t_max, &index)) {
         found = index != asked && world_ask_any(world, index, ray, scratch);
         if (found)
             scratch->blockers[scratch->light] = index;
     }
-    scratch->geom.cost.hierarchy_steps += walk.steps;
+    scratch->geom.cost.hierarchy_steps += traversal.steps;
     return found;
 }
 
@@ -288,19 +290,19 @@ static bool any_in_kd_tree(const struct world *world, const struct ray *ray, con
     struct mailbox mailbox;
     memset(&mailbox, 0xff, sizeof mailbox);
     (void)mailbox_first(&mailbox, scratch->blockers[scratch->light]);
-    struct kd_walk walk;
+    struct kd_traversal traversal;
     bool found = false;
-    kd_walk_begin(&walk, &world->accel.kd_tree, ray, 0);
-    while (!found && kd_walk_next(&walk, ray->t_max)) {
-        for (uint32_t i = 0; i < walk.count && !found; i++) {
-            uint32_t index = walk.items[i];
+    kd_traversal_begin(&traversal, &world->accel.kd_tree, ray, 0);
+    while (!found && kd_traversal_next(&traversal, ray->t_max)) {
+        for (uint32_t i = 0; i < traversal.count && !found; i++) {
+            uint32_t index = traversal.items[i];
             found = mailbox_first(&mailbox, index) && any_boxed(world, index, ray, probe, scratch);
             if (found)
                 scratch->blockers[scratch->light] = index;
         }
     }
-    scratch->geom.cost.hierarchy_steps += walk.steps;
-    scratch->geom.cost.voxels += walk.leaves;
+    scratch->geom.cost.hierarchy_steps += traversal.steps;
+    scratch->geom.cost.voxels += traversal.leaves;
     return found;
 }
 

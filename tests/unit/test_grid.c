@@ -41,9 +41,9 @@ static struct answer brute_force(const struct box *boxes, uint32_t count, const 
 static struct answer through_grid(const struct grid *grid, const struct box *boxes, const struct ray *ray,
                                   uint32_t *voxels) {
     struct answer best = {0};
-    struct grid_walk w;
+    struct grid_traversal w;
     double last_exit = -INFINITY;
-    for (bool ok = grid_walk_begin(&w, grid, ray); ok; ok = grid_walk_next(&w)) {
+    for (bool ok = grid_traversal_begin(&w, grid, ray); ok; ok = grid_traversal_next(&w)) {
         CHECK(w.t_exit >= last_exit && w.count > 0);
         last_exit = w.t_exit;
         for (uint32_t i = 0; i < w.count; i++)
@@ -174,13 +174,13 @@ TEST(grid_steps_are_the_same_after_scaling_by_powers_of_two) {
                 struct ray ray = random_ray(&random, boxes, count), big_ray = ray;
                 big_ray.origin = vec3_scale(ray.origin, s);
                 big_ray.direction = vec3_scale(ray.direction, s);
-                struct grid_walk a, b;
-                bool in_a = grid_walk_begin(&a, &grid, &ray), in_b = grid_walk_begin(&b, &big, &big_ray);
+                struct grid_traversal a, b;
+                bool in_a = grid_traversal_begin(&a, &grid, &ray), in_b = grid_traversal_begin(&b, &big, &big_ray);
                 while (in_a && in_b) {
                     CHECK(a.t_exit == b.t_exit && a.count == b.count && a.voxels == b.voxels);
                     CHECK(a.items - grid.cell_items == b.items - big.cell_items);
-                    in_a = grid_walk_next(&a);
-                    in_b = grid_walk_next(&b);
+                    in_a = grid_traversal_next(&a);
+                    in_b = grid_traversal_next(&b);
                 }
                 CHECK(in_a == in_b && a.voxels == b.voxels);
             }
@@ -196,8 +196,8 @@ static struct ray plain_ray(struct vec3 origin, struct vec3 direction) {
 
 /* Every item whose box the ray meets is offered. */
 static bool offers(const struct grid *grid, const struct ray *ray, uint32_t item) {
-    struct grid_walk w;
-    for (bool ok = grid_walk_begin(&w, grid, ray); ok; ok = grid_walk_next(&w))
+    struct grid_traversal w;
+    for (bool ok = grid_traversal_begin(&w, grid, ray); ok; ok = grid_traversal_next(&w))
         for (uint32_t i = 0; i < w.count; i++)
             if (w.items[i] == item)
                 return true;
@@ -209,12 +209,12 @@ TEST(grid_of_nothing_offers_nothing) {
     struct error error;
     struct box empty[3] = {box_empty(), box_empty(), box_empty()};
     struct ray ray = plain_ray(vec3_all(0), vec3_make(0, 0, 1));
-    struct grid_walk w;
+    struct grid_traversal w;
     CHECK(grid_build(&grid, NULL, 0, NULL, &error));
-    CHECK(!grid_walk_begin(&w, &grid, &ray));
+    CHECK(!grid_traversal_begin(&w, &grid, &ray));
     grid_destroy(&grid);
     CHECK(grid_build(&grid, empty, 3, NULL, &error));
-    CHECK(!grid_walk_begin(&w, &grid, &ray) && grid.cells[0] == 0);
+    CHECK(!grid_traversal_begin(&w, &grid, &ray) && grid.cells[0] == 0);
     grid_destroy(&grid);
 }
 
@@ -268,11 +268,11 @@ TEST(unbounded_items_are_offered_first_to_every_ray) {
     CHECK(grid_build(&grid, boxes, 6, NULL, &error));
     CHECK_EQ_INT(grid.unbounded_count, 2);
     struct ray miss = plain_ray(vec3_all(-10), vec3_make(0, -1, 0)), hit = plain_ray(vec3_all(-1), vec3_all(1));
-    struct grid_walk w;
-    CHECK(grid_walk_begin(&w, &grid, &miss) && w.count == 2 && w.items[0] == 1 && w.items[1] == 4);
-    CHECK(w.t_exit == -INFINITY && !grid_walk_next(&w));
-    CHECK(grid_walk_begin(&w, &grid, &hit) && w.count == 2);
-    CHECK(grid_walk_next(&w) && w.items[0] == 0);
+    struct grid_traversal w;
+    CHECK(grid_traversal_begin(&w, &grid, &miss) && w.count == 2 && w.items[0] == 1 && w.items[1] == 4);
+    CHECK(w.t_exit == -INFINITY && !grid_traversal_next(&w));
+    CHECK(grid_traversal_begin(&w, &grid, &hit) && w.count == 2);
+    CHECK(grid_traversal_next(&w) && w.items[0] == 0);
     CHECK(offers(&grid, &hit, 2) && offers(&grid, &hit, 3) && !offers(&grid, &hit, 5));
     grid_destroy(&grid);
 }
@@ -308,8 +308,8 @@ TEST(grid_of_small_items_has_short_lists_and_short_walks) {
     uint64_t looked = 0, voxels = 0;
     for (int i = 0; i < 10000; i++) {
         struct ray ray = plain_ray(random_vec3(&random, 1), random_vec3(&random, 1));
-        struct grid_walk w;
-        for (bool ok = grid_walk_begin(&w, &grid, &ray); ok; ok = grid_walk_next(&w))
+        struct grid_traversal w;
+        for (bool ok = grid_traversal_begin(&w, &grid, &ray); ok; ok = grid_traversal_next(&w))
             looked += w.count;
         voxels += w.voxels;
     }

@@ -22,11 +22,11 @@ static struct ray ray_to(struct vec3 from, struct vec3 to) {
 }
 
 static bool offers(const struct kd_tree *tree, const struct ray *ray, uint32_t item) {
-    struct kd_walk walk;
-    kd_walk_begin(&walk, tree, ray, 0);
-    while (kd_walk_next(&walk, ray->t_max))
-        for (uint32_t i = 0; i < walk.count; i++)
-            if (walk.items[i] == item)
+    struct kd_traversal traversal;
+    kd_traversal_begin(&traversal, tree, ray, 0);
+    while (kd_traversal_next(&traversal, ray->t_max))
+        for (uint32_t i = 0; i < traversal.count; i++)
+            if (traversal.items[i] == item)
                 return true;
     return false;
 }
@@ -36,11 +36,11 @@ TEST(kd_tree_of_nothing_offers_nothing) {
     struct error error;
     struct box empty[3] = {box_empty(), box_empty(), box_empty()};
     struct ray ray = ray_to(vec3_all(0), vec3_make(0, 0, 1));
-    struct kd_walk walk;
+    struct kd_traversal traversal;
     for (uint32_t count = 0; count <= 3; count += 3) {
         CHECK(kd_tree_build(&tree, empty, count, NULL, NULL, NULL, &error));
-        kd_walk_begin(&walk, &tree, &ray, 0);
-        CHECK(!kd_walk_next(&walk, INFINITY));
+        kd_traversal_begin(&traversal, &tree, &ray, 0);
+        CHECK(!kd_traversal_next(&traversal, INFINITY));
         kd_tree_destroy(&tree);
     }
 }
@@ -104,11 +104,11 @@ TEST(kd_tree_of_small_items_offers_few_of_them) {
     for (int i = 0; i < RAYS; i++) {
         struct vec3 from = small_box(&random, 30, 1).min, to = small_box(&random, 10, 1).min;
         struct ray ray = ray_to(from, to);
-        struct kd_walk walk;
-        kd_walk_begin(&walk, &tree, &ray, 0);
-        while (kd_walk_next(&walk, INFINITY))
-            offered += walk.count;
-        steps += walk.steps;
+        struct kd_traversal traversal;
+        kd_traversal_begin(&traversal, &tree, &ray, 0);
+        while (kd_traversal_next(&traversal, INFINITY))
+            offered += traversal.count;
+        steps += traversal.steps;
     }
     /* A ray of length 20 meets about 20000 * 0.01 / 400 * 20 boxes' surroundings. */
     CHECK(offered < (uint64_t)RAYS * 60);

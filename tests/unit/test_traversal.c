@@ -172,7 +172,7 @@ static void check_forest(struct forest *f, uint32_t *placed, uint32_t *shared) {
     static uint8_t listed[PATHS];
     CHECK(world->placed_count <= PATHS);
     memset(listed, 0, sizeof listed);
-    CHECK(world_walk_paths(world, f->stage.root, note_texts, texts, &f->stage.error));
+    CHECK(world_visit_paths(world, f->stage.root, note_texts, texts, &f->stage.error));
     CHECK(light_lists_mark(world, f->list, 3, listed, 1, f->stage.root));
     uint32_t next = 0;
     for (uint32_t i = 0; i < f->expected_count; i++) {
@@ -223,7 +223,7 @@ TEST(picking_names_the_path_of_what_a_ray_meets_and_no_ray_meets_anything_outsid
         if (!plant(&f, seed))
             continue;
         CHECK(node_bounds(s->root, &bounds, &s->error));
-        CHECK(world_walk_paths(&s->world, s->root, note_texts, texts, &s->error));
+        CHECK(world_visit_paths(&s->world, s->root, note_texts, texts, &s->error));
         CHECK(world_scratch_init(&scratch, &s->world));
         const struct render_job job = {
             .world = &s->world, .camera = s->camera, .settings = s->settings, .width = 64, .height = 64};

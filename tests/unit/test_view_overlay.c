@@ -32,7 +32,7 @@ TEST(a_node_shows_where_the_ray_through_the_middle_of_a_pixel_meets_it_first) {
     struct render_job job = stage_job(&s, WIDTH, HEIGHT);
     struct view_overlay_buffers place = {.shows = shows};
     uint64_t route = 0;
-    CHECK(world_walk_paths(&s.world, s.root, way_of_second, &route, &s.error));
+    CHECK(world_visit_paths(&s.world, s.root, way_of_second, &route, &s.error));
     for (int by_way = 0; by_way < 2; by_way++) {
         const struct view_overlay_request request = {
             .outline = true, .serial = behind->serial, .route = by_way ? route : 0};

@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static struct fly_camera some_walk(void) {
+static struct fly_camera some_traversal(void) {
     struct fly_camera fly_camera;
     const struct camera camera = {{1, 2, 3}, {1, -0.5, -2}, {0, 1, 0}, 50};
     const struct box bounds = {{-4, -4, -4}, {4, 4, 4}};
@@ -26,7 +26,7 @@ static double apart(struct vec3 a, struct vec3 b) {
 }
 
 TEST(fly_camera_begins_with_the_camera_of_the_script) {
-    struct fly_camera fly_camera = some_walk();
+    struct fly_camera fly_camera = some_traversal();
     struct camera camera = fly_camera_current(&fly_camera);
     CHECK_NEAR(apart(camera.eye, vec3_make(1, 2, 3)), 0, 0);
     CHECK_NEAR(apart(camera.view, vec3_normalize(vec3_make(1, -0.5, -2))), 0, 1e-15);
@@ -36,7 +36,7 @@ TEST(fly_camera_begins_with_the_camera_of_the_script) {
 }
 
 TEST(fly_camera_keeps_a_proper_orientation_through_a_million_turns) {
-    struct fly_camera fly_camera = some_walk();
+    struct fly_camera fly_camera = some_traversal();
     struct test_random random = {3};
     for (int i = 0; i < 1000000; i++)
         fly_camera_turn(&fly_camera, test_uniform(&random, -0.2, 0.2), test_uniform(&random, -0.2, 0.2));
@@ -59,14 +59,14 @@ TEST(fly_camera_looks_straight_up_and_over_without_trouble) {
 }
 
 TEST(fly_camera_goes_as_far_in_a_hundred_steps_as_in_one) {
-    struct fly_camera fine = some_walk(), coarse = some_walk();
+    struct fly_camera fine = some_traversal(), coarse = some_traversal();
     fine.down[FLY_FORWARD] = fine.down[FLY_RIGHT] = coarse.down[FLY_FORWARD] = coarse.down[FLY_RIGHT] = true;
     for (int i = 0; i < 100; i++)
         CHECK(fly_camera_step(&fine, 0.01));
     CHECK(fly_camera_step(&coarse, 1));
     CHECK_NEAR(apart(fine.pose.position, coarse.pose.position), 0, 1e-12);
     CHECK_NEAR(apart(coarse.pose.position, coarse.home.position), coarse.speed, 1e-12);
-    struct fly_camera fast = some_walk();
+    struct fly_camera fast = some_traversal();
     fast.down[FLY_FORWARD] = fast.down[FLY_FAST] = true;
     CHECK(fly_camera_step(&fast, 1));
     CHECK_NEAR(apart(fast.pose.position, fast.home.position), 4 * fast.speed, 1e-12);
@@ -75,7 +75,7 @@ TEST(fly_camera_goes_as_far_in_a_hundred_steps_as_in_one) {
 }
 
 TEST(fly_camera_orbits_keep_the_distance_of_the_centre_and_its_position_in_the_picture) {
-    struct fly_camera fly_camera = some_walk();
+    struct fly_camera fly_camera = some_traversal();
     struct camera before = fly_camera_current(&fly_camera);
     struct vec3 right = vec3_cross(before.view, before.up), to = vec3_sub(fly_camera.centre, before.eye);
     for (int i = 0; i < 50; i++)
@@ -89,7 +89,7 @@ TEST(fly_camera_orbits_keep_the_distance_of_the_centre_and_its_position_in_the_p
 }
 
 TEST(fly_camera_levels_the_horizon_and_keeps_where_it_looks) {
-    struct fly_camera fly_camera = some_walk();
+    struct fly_camera fly_camera = some_traversal();
     fly_camera_roll(&fly_camera, 40);
     struct vec3 view = fly_camera_current(&fly_camera).view;
     CHECK(fabs(vec3_cross(view, fly_camera_current(&fly_camera).up).y) > 0.1);

@@ -128,11 +128,11 @@ static void compare(struct room *r, const struct light_receiver *at, uint64_t n,
             weighted += shown / (of_scattered + pdf);
             ray.t_max = hit.t;
         }
-        struct world_lights_walk walk;
+        struct world_lights_traversal traversal;
         struct light_hit lamp;
         uint32_t light;
-        world_lights_met_begin(&walk, &r->lights, &ray);
-        while (world_lights_met_next(&walk, &light, &lamp)) {
+        world_lights_met_begin(&traversal, &r->lights, &ray);
+        while (world_lights_met_next(&traversal, &light, &lamp)) {
             if (!world_lights_reach(&r->lights, light, at->placed))
                 continue;
             double shown = light_emitted(&r->lights.lights[light], &ray, &lamp).y * cosine;
@@ -371,14 +371,14 @@ TEST(camera_rays_see_the_nearest_lamp_that_shows_itself) {
     room_build(&r, false);
     struct ray up = {.direction = {0, 1, 0}, .t_max = INFINITY};
     struct light_hit hit;
-    struct world_lights_walk walk;
+    struct world_lights_traversal traversal;
     uint32_t light;
     int met = 0;
     CHECK(world_lights_seen(&r.lights, &up, &light, &hit));
     CHECK_EQ_INT(light, 1);
     CHECK_NEAR(hit.t, 5, 1e-9);
-    world_lights_met_begin(&walk, &r.lights, &up);
-    while (world_lights_met_next(&walk, &light, &hit))
+    world_lights_met_begin(&traversal, &r.lights, &up);
+    while (world_lights_met_next(&traversal, &light, &hit))
         met++;
     CHECK_EQ_INT(met, 4);
     up.t_max = 4;

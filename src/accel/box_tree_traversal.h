@@ -1,5 +1,5 @@
-/* The walk of box_tree.h, compiled once per instruction set: a file defines WALK(name) and includes this one. The same
- * operations in each, nothing fused, so the same items in the same order. */
+/* The traversal of box_tree.h, compiled once per instruction set: a file defines TRAVERSAL(name) and includes this one.
+ * The same operations in each, nothing fused, so the same items in the same order. */
 #include "accel/box_tree.h"
 
 #if defined(__SSE2__)
@@ -8,13 +8,13 @@
 
 /* Where the ray enters each child, and which children it meets before t_max (bit i for child i). */
 #if defined(__AVX__)
-static inline unsigned meet_children(const struct box_tree_walk *walk, const struct box_tree_node *node, double t_max,
-                                     double enter_out[BOX_TREE_WIDTH], double leave_out[BOX_TREE_WIDTH]) {
-    __m256d enter = _mm256_set1_pd(walk->t_min), leave = _mm256_set1_pd(t_max);
+static inline unsigned meet_children(const struct box_tree_traversal *traversal, const struct box_tree_node *node,
+                                     double t_max, double enter_out[BOX_TREE_WIDTH], double leave_out[BOX_TREE_WIDTH]) {
+    __m256d enter = _mm256_set1_pd(traversal->t_min), leave = _mm256_set1_pd(t_max);
     for (int axis = 0; axis < 3; axis++) {
-        __m256d origin = _mm256_set1_pd(walk->origin[axis]), inverse = _mm256_set1_pd(walk->inverse[axis]);
-        __m256d near = _mm256_load_pd(node->planes[axis][walk->near_side[axis]]);
-        __m256d far = _mm256_load_pd(node->planes[axis][!walk->near_side[axis]]);
+        __m256d origin = _mm256_set1_pd(traversal->origin[axis]), inverse = _mm256_set1_pd(traversal->inverse[axis]);
+        __m256d near = _mm256_load_pd(node->planes[axis][traversal->near_side[axis]]);
+        __m256d far = _mm256_load_pd(node->planes[axis][!traversal->near_side[axis]]);
         /* max and min give their second operand when the first is NaN. */
         enter = _mm256_max_pd(_mm256_mul_pd(_mm256_sub_pd(near, origin), inverse), enter);
         leave = _mm256_min_pd(_mm256_mul_pd(_mm256_sub_pd(far, origin), inverse), leave);
@@ -28,15 +28,15 @@ static inline unsigned meet_children(const struct box_tree_walk *walk, const str
     return (unsigned)_mm256_movemask_pd(_mm256_cmp_pd(early, late, _CMP_LE_OQ));
 }
 #elif defined(__SSE2__)
-static unsigned meet_children(const struct box_tree_walk *walk, const struct box_tree_node *node, double t_max,
-                              double enter_out[BOX_TREE_WIDTH], double leave_out[BOX_TREE_WIDTH]) {
+static unsigned meet_children(const struct box_tree_traversal *traversal, const struct box_tree_node *node,
+                              double t_max, double enter_out[BOX_TREE_WIDTH], double leave_out[BOX_TREE_WIDTH]) {
     unsigned met = 0;
     for (int half = 0; half < BOX_TREE_WIDTH; half += 2) {
-        __m128d enter = _mm_set1_pd(walk->t_min), leave = _mm_set1_pd(t_max);
+        __m128d enter = _mm_set1_pd(traversal->t_min), leave = _mm_set1_pd(t_max);
         for (int axis = 0; axis < 3; axis++) {
-            const double *near_planes = node->planes[axis][walk->near_side[axis]] + half;
-            const double *far_planes = node->planes[axis][!walk->near_side[axis]] + half;
-            __m128d origin = _mm_set1_pd(walk->origin[axis]), inverse = _mm_set1_pd(walk->inverse[axis]);
+            const double *near_planes = node->planes[axis][traversal->near_side[axis]] + half;
+            const double *far_planes = node->planes[axis][!traversal->near_side[axis]] + half;
+            __m128d origin = _mm_set1_pd(traversal->origin[axis]), inverse = _mm_set1_pd(traversal->inverse[axis]);
             /* max and min give their second operand when the first is NaN. */
             enter = _mm_max_pd(_mm_mul_pd(_mm_sub_pd(_mm_loadu_pd(near_planes), origin), inverse), enter);
             leave = _mm_min_pd(_mm_mul_pd(_mm_sub_pd(_mm_loadu_pd(far_planes), origin), inverse), leave);
@@ -52,14 +52,16 @@ static unsigned meet_children(const struct box_tree_walk *walk, const struct box
     return met;
 }
 #else
-static unsigned meet_children(const struct box_tree_walk *walk, const struct box_tree_node *node, double t_max,
-                              double enter_out[BOX_TREE_WIDTH], double leave_out[BOX_TREE_WIDTH]) {
+static unsigned meet_children(const struct box_tree_traversal *traversal, const struct box_tree_node *node,
+                              double t_max, double enter_out[BOX_TREE_WIDTH], double leave_out[BOX_TREE_WIDTH]) {
     unsigned met = 0;
     for (int i = 0; i < BOX_TREE_WIDTH; i++) {
-        double enter = walk->t_min, leave = t_max;
+        double enter = traversal->t_min, leave = t_max;
         for (int axis = 0; axis < 3; axis++) {
-            double near = (node->planes[axis][walk->near_side[axis]][i] - walk->origin[axis]) * walk->inverse[axis];
-            double far = (node->planes[axis][!walk->near_side[axis]][i] - walk->origin[axis]) * walk->inverse[axis];
+            double near = (node->planes[axis][traversal->near_side[axis]][i] - traversal->origin[axis]) *
+                          traversal->inverse[axis];
+            double far = (node->planes[axis][!traversal->near_side[axis]][i] - traversal->origin[axis]) *
+                         traversal->inverse[axis];
             enter = near > enter ? near : enter;
             leave = far < leave ? far : leave;
         }
@@ -73,53 +75,53 @@ static unsigned meet_children(const struct box_tree_walk *walk, const struct box
 }
 #endif
 
-bool WALK(down)(struct box_tree_walk *walk, double t_max, uint32_t *item) {
-    while (walk->top > 0) {
+bool TRAVERSAL(down)(struct box_tree_traversal *traversal, double t_max, uint32_t *item) {
+    while (traversal->top > 0) {
         uint32_t child;
-        if (!box_tree_take(walk, t_max, &child))
+        if (!box_tree_take(traversal, t_max, &child))
             continue;
         if (child & BOX_TREE_ITEM) {
             *item = child & ~BOX_TREE_ITEM;
             return true;
         }
-        const struct box_tree_node *node = &walk->tree->nodes[child];
+        const struct box_tree_node *node = &traversal->tree->nodes[child];
         double enter[BOX_TREE_WIDTH], leave[BOX_TREE_WIDTH], order[BOX_TREE_WIDTH];
-        unsigned met = meet_children(walk, node, t_max, enter, leave);
-        walk->steps++;
+        unsigned met = meet_children(traversal, node, t_max, enter, leave);
+        traversal->steps++;
         /* The first one left must be on top: insertion into the few that were met, the last at the bottom. Where boxes
          * are apart that is the order in which they are entered; of two one in the other the inner one comes first, and
          * what it finds shortens the ray through the outer one (a teapot in a stadium). */
-        int base = walk->top;
+        int base = traversal->top;
         for (; met; met &= met - 1) {
-            int i = __builtin_ctz(met), at = walk->top++;
+            int i = __builtin_ctz(met), at = traversal->top++;
             for (; at > base && order[at - 1 - base] < leave[i]; at--) {
                 order[at - base] = order[at - 1 - base];
-                walk->enter[at] = walk->enter[at - 1];
-                walk->child[at] = walk->child[at - 1];
+                traversal->enter[at] = traversal->enter[at - 1];
+                traversal->child[at] = traversal->child[at - 1];
             }
             order[at - base] = leave[i];
-            walk->enter[at] = enter[i];
-            walk->child[at] = node->child[i];
+            traversal->enter[at] = enter[i];
+            traversal->child[at] = node->child[i];
         }
     }
     return false;
 }
 
-bool WALK(any)(struct box_tree_walk *walk, double t_max, uint32_t *item) {
-    while (walk->top > 0) {
-        uint32_t child = walk->child[--walk->top];
+bool TRAVERSAL(any)(struct box_tree_traversal *traversal, double t_max, uint32_t *item) {
+    while (traversal->top > 0) {
+        uint32_t child = traversal->child[--traversal->top];
         if (child & BOX_TREE_ITEM) {
             if (child == BOX_TREE_NONE) /* met by rays that are not finite: of NaN nothing can be said */
                 continue;
             *item = child & ~BOX_TREE_ITEM;
             return true;
         }
-        const struct box_tree_node *node = &walk->tree->nodes[child];
+        const struct box_tree_node *node = &traversal->tree->nodes[child];
         double enter[BOX_TREE_WIDTH], leave[BOX_TREE_WIDTH];
-        unsigned met = meet_children(walk, node, t_max, enter, leave);
-        walk->steps++;
+        unsigned met = meet_children(traversal, node, t_max, enter, leave);
+        traversal->steps++;
         for (; met; met &= met - 1)
-            walk->child[walk->top++] = node->child[__builtin_ctz(met)];
+            traversal->child[traversal->top++] = node->child[__builtin_ctz(met)];
     }
     return false;
 }

@@ -1,8 +1,0 @@
-/* The walk with four doubles to a vector. This file is compiled for AVX2, and nothing in it runs before isa.c has asked
- * the processor. */
-#if defined(__AVX2__)
-#define WALK(name) box_tree_walk_##name##_avx2
-#include "accel/box_tree_walk.h"
-#else
-#include "accel/box_tree.h"
-#endif
