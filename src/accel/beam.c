@@ -7,16 +7,16 @@ bool beam_make(struct beam *out, const struct ray_packet *rays) {
     const double first[3] = {fabs(rays->direction[0][0]), fabs(rays->direction[1][0]), fabs(rays->direction[2][0])};
     int z = first[1] > first[0];
     z = first[2] > first[z] ? 2 : z;
-    out->ahead = z;
+    out->forward = z;
     out->side[0] = (z + 1) % 3;
     out->side[1] = (z + 2) % 3;
     out->backwards = rays->direction[z][0] < 0;
     double least = INFINITY, most = 0, low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     double sign = out->backwards ? -1 : 1;
     for (uint32_t i = 0; i < rays->count; i++) {
-        double way = rays->direction[z][i] * sign, over = 1 / way;
-        least = way < least ? way : least;
-        most = way > most ? way : most;
+        double main_slope = rays->direction[z][i] * sign, over = 1 / main_slope;
+        least = main_slope < least ? main_slope : least;
+        most = main_slope > most ? main_slope : most;
         for (int k = 0; k < 2; k++) {
             double slope = rays->direction[out->side[k]][i] * over;
             low[k] = slope < low[k] ? slope : low[k];
@@ -50,12 +50,12 @@ void beam_traversal_begin(struct beam_traversal *traversal, const struct box_tre
 }
 
 /* Which children the beam meets, and how far ahead each begins. A NaN, of infinite sides, is never outside. */
-static unsigned meet_children(const struct beam *b, const struct box_tree_node *node, double ahead[BOX_TREE_WIDTH],
+static unsigned meet_children(const struct beam *b, const struct box_tree_node *node, double forward[BOX_TREE_WIDTH],
                               double behind[BOX_TREE_WIDTH]) {
     unsigned met = 0;
-    const double *near_planes = node->planes[b->ahead][b->backwards],
-                 *far_planes = node->planes[b->ahead][!b->backwards];
-    double sign = b->backwards ? -1 : 1, origin = b->origin[b->ahead];
+    const double *near_planes = node->planes[b->forward][b->backwards],
+                 *far_planes = node->planes[b->forward][!b->backwards];
+    double sign = b->backwards ? -1 : 1, origin = b->origin[b->forward];
     for (int i = 0; i < BOX_TREE_WIDTH; i++) {
         double near = (near_planes[i] - origin) * sign - b->slack, far = (far_planes[i] - origin) * sign + b->slack;
         bool outside = far < 0;
@@ -66,7 +66,7 @@ static unsigned meet_children(const struct beam *b, const struct box_tree_node *
             outside |= low > b->slope_max[k] * (b->slope_max[k] > 0 ? far : near);
             outside |= high < b->slope_min[k] * (b->slope_min[k] > 0 ? near : far);
         }
-        ahead[i] = near;
+        forward[i] = near;
         behind[i] = far;
         met |= (unsigned)(!outside && node->child[i] != BOX_TREE_NONE) << i;
     }
@@ -83,13 +83,13 @@ bool beam_traversal_next(struct beam_traversal *traversal, double t_max, uint32_
             return true;
         }
         const struct box_tree_node *node = &traversal->tree->nodes[child];
-        double ahead[BOX_TREE_WIDTH], behind[BOX_TREE_WIDTH], order[BOX_TREE_WIDTH];
-        unsigned met = meet_children(traversal->beam, node, ahead, behind);
+        double forward[BOX_TREE_WIDTH], behind[BOX_TREE_WIDTH], order[BOX_TREE_WIDTH];
+        unsigned met = meet_children(traversal->beam, node, forward, behind);
         traversal->steps++;
         int base = traversal->top;
         for (; met; met &= met - 1) {
             int i = __builtin_ctz(met), at = traversal->top++;
-            double enter = ahead[i] > 0 ? ahead[i] * traversal->beam->soonest : 0;
+            double enter = forward[i] > 0 ? forward[i] * traversal->beam->soonest : 0;
             /* What ends first comes first, as in box_tree_traversal_next. */
             for (; at > base && order[at - 1 - base] < behind[i]; at--) {
                 order[at - base] = order[at - 1 - base];

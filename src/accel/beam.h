@@ -8,9 +8,9 @@
 
 struct beam {
     double origin[3], slack; /* slack: world units, for the rounding of differences from the origin */
-    int ahead, side[2];
+    int forward, side[2];
     bool backwards;
-    double slope_min[2], slope_max[2]; /* of coordinate / |ahead| */
+    double slope_min[2], slope_max[2]; /* of coordinate / |forward| */
     double soonest;                    /* 1 / the largest |direction| ahead: t is at least way ahead times this */
 };
 

@@ -287,10 +287,10 @@ static uint32_t leave_run(struct part *part, const struct run *run, uint32_t dep
 static void build_part(struct builder *b, struct part *part, struct run root, uint32_t root_depth) {
     struct box nothing = box_empty();
     struct task tasks[BOX_TREE_STACK]; /* as deep as a traversal's */
-    uint32_t waiting = 0;
-    tasks[waiting++] = (struct task){root, add_node(part), root_depth};
-    while (waiting > 0 && !part->cancelled && !part->failed) {
-        struct task task = tasks[--waiting];
+    uint32_t pending = 0;
+    tasks[pending++] = (struct task){root, add_node(part), root_depth};
+    while (pending > 0 && !part->cancelled && !part->failed) {
+        struct task task = tasks[--pending];
         struct run children[BOX_TREE_WIDTH];
         int count = children_of(b, &task.run, task.depth >= DEEP, children);
         for (int i = 0; i < BOX_TREE_WIDTH && !part->failed; i++) {
@@ -301,7 +301,7 @@ static void build_part(struct builder *b, struct part *part, struct run root, ui
                 child = LEFT_OVER | leave_run(part, &children[i], task.depth + 1);
             } else if (i < count) {
                 child = add_node(part);
-                tasks[waiting++] = (struct task){children[i], child, task.depth + 1};
+                tasks[pending++] = (struct task){children[i], child, task.depth + 1};
             }
             if (!part->failed)
                 set_child(&part->nodes[task.node], i, i < count ? &children[i].box : &nothing, child);

@@ -114,9 +114,9 @@ static void set_resolution(struct grid *grid, double wanted, double largest_coor
     }
 }
 
-static uint64_t count_entries(const struct grid *grid, const struct box *boxes, uint32_t count, uint64_t enough) {
+static uint64_t count_entries(const struct grid *grid, const struct box *boxes, uint32_t count, uint64_t max_entries) {
     uint64_t entries = 0;
-    for (uint32_t i = 0; i < count && entries <= enough; i++) {
+    for (uint32_t i = 0; i < count && entries <= max_entries; i++) {
         if (box_is_empty(&boxes[i]) || !is_bounded(&boxes[i]))
             continue;
         struct voxel_range r = item_range(grid, &boxes[i]);

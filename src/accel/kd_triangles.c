@@ -19,7 +19,7 @@ enum { CORNERS = 9 /* three, and one more for each of six planes */, MAILBOX = 6
 
 struct kd_triangles {
     struct kd_tree tree;
-    double reach; /* largest coordinate */
+    double extent; /* largest coordinate */
 };
 
 struct clip_job {
@@ -81,8 +81,8 @@ bool kd_triangles_build(struct kd_triangles **out, const struct triangle_set *se
         }
     }
     if (ok && set->count > 0) {
-        index->reach = fmax(vec3_max_abs(set->bounds.min), vec3_max_abs(set->bounds.max));
-        struct clip_job job = {set, index->reach * CLIP_SLACK};
+        index->extent = fmax(vec3_max_abs(set->bounds.min), vec3_max_abs(set->bounds.max));
+        struct clip_job job = {set, index->extent * CLIP_SLACK};
         ok = kd_tree_build(&index->tree, boxes, set->count, clip_triangle, &job, pool, error);
     }
     mem_free(boxes);
@@ -122,7 +122,7 @@ static bool search_begin(struct search *s, const struct kd_triangles *index, con
     s->set = set;
     s->tests = 0;
     memset(s->seen, 0xff, sizeof s->seen);
-    kd_traversal_begin(&s->traversal, &index->tree, ray, FLY_SLACK * (index->reach + vec3_max_abs(ray->origin)));
+    kd_traversal_begin(&s->traversal, &index->tree, ray, FLY_SLACK * (index->extent + vec3_max_abs(ray->origin)));
     return true;
 }
 

@@ -1,6 +1,6 @@
 /* The index of a mesh: frame, voxels, searches.
  *
- * How many voxels? The caller says, or the cost model of frame_cost.c, which looks at a sample of the triangles. A
+ * How many voxels? The caller says, or the cost model of accel_cost.c, which looks at a sample of the triangles. A
  * voxel spares a ray the upper levels of the hierarchy and costs it a step (about a third of a node visit), every
  * occupied voxel on its way the start of a hierarchy (about one), and memory for what lies in several. With eight
  * children to a node the levels spared are log8 of the number of occupied voxels, at best, that is, if all are filled
@@ -11,7 +11,7 @@
  * the model says, and the times of 8 to 4,096 voxels). The frame is then only the box every ray is cut to. */
 #include "accel/triangle_index.h"
 
-#include "accel/frame_cost.h"
+#include "accel/accel_cost.h"
 #include "accel/isa.h"
 #include "accel/triangle_build.h"
 #include "accel/triangle_kernels.h"
@@ -178,12 +178,12 @@ static bool fill_voxels(struct triangle_index *index, const struct triangle_set 
     struct hierarchy *lists = mem_alloc_zero(index->voxel_count + 1, sizeof *lists);
     struct reference *references = NULL;
     index->voxels = mem_alloc(index->voxel_count * sizeof *index->voxels);
-    bool enough = lists && index->voxels;
+    bool is_complete = lists && index->voxels;
     uint32_t low[3], high[3];
     uint64_t total = 0;
     struct hierarchy *big = lists + (lists ? index->voxel_count : 0);
     bool go_on = true;
-    for (uint32_t i = 0; enough && go_on && i < set->count; i++) {
+    for (uint32_t i = 0; is_complete && go_on && i < set->count; i++) {
         go_on = !is_time_to_stop(pool, i);
         struct reference r = whole_reference(index, set, i);
         if (touched(index, &r, low, high) > BIG_VOXELS) {
@@ -195,16 +195,16 @@ static bool fill_voxels(struct triangle_index *index, const struct triangle_set 
                 for (uint32_t x = low[0]; x <= high[0]; x++)
                     lists[voxel_at(index, x, y, z)].count++;
     }
-    for (size_t v = 0; enough && v <= index->voxel_count; v++) {
+    for (size_t v = 0; is_complete && v <= index->voxel_count; v++) {
         lists[v].first = (uint32_t)total;
         total += lists[v].count;
         lists[v].count = 0;
     }
-    enough = enough && total < UINT32_MAX;
-    if (enough)
+    is_complete = is_complete && total < UINT32_MAX;
+    if (is_complete)
         references = mem_alloc_aligned(64, total * sizeof *references);
-    enough = enough && references;
-    for (uint32_t i = 0; enough && go_on && i < set->count; i++) {
+    is_complete = is_complete && references;
+    for (uint32_t i = 0; is_complete && go_on && i < set->count; i++) {
         go_on = !is_time_to_stop(pool, i);
         struct reference r = whole_reference(index, set, i);
         if (touched(index, &r, low, high) > BIG_VOXELS) {
@@ -219,14 +219,14 @@ static bool fill_voxels(struct triangle_index *index, const struct triangle_set 
                     references[list->first + list->count++] = cut(index, &r, at);
                 }
     }
-    if (enough && !go_on) {
+    if (is_complete && !go_on) {
         mem_free(lists);
         mem_free(references);
         return error_set(error, ERROR_CANCELLED, "cancelled while indexing a mesh");
     }
     bool complete =
-        enough ? hierarchies_build(index, set, references, lists, (uint32_t)index->voxel_count + 1, pool, error)
-               : error_no_memory(error, "the index of a mesh");
+        is_complete ? hierarchies_build(index, set, references, lists, (uint32_t)index->voxel_count + 1, pool, error)
+                    : error_no_memory(error, "the index of a mesh");
     if (complete) {
         for (size_t v = 0; v < index->voxel_count; v++)
             index->voxels[v] = REF_OUTSIDE;
@@ -255,9 +255,9 @@ static struct box box_of_triangle(const void *context, uint32_t i) {
 
 static uint32_t voxels_by_cost(const struct triangle_set *set) {
     enum { SAMPLES = 512, LEVELS = 5 };
-    struct frame_census census;
-    frame_census_take(&census, &set->bounds, box_of_triangle, set, set->count, SAMPLES, LEVELS);
-    const uint32_t *cells = census.levels[frame_over_mesh(&census).level].cells;
+    struct cost_sample cost_sample;
+    cost_sample_take(&cost_sample, &set->bounds, box_of_triangle, set, set->count, SAMPLES, LEVELS);
+    const uint32_t *cells = cost_sample.levels[accel_over_mesh(&cost_sample).level].cells;
     return cells[0] * cells[1] * cells[2];
 }
 

@@ -25,7 +25,7 @@ struct triangle_cost {
     uint64_t triangle_tests, voxels, hierarchy_steps;
 };
 
-/* `voxels`: about how many the frame is to have; 0: as many as the cost model of frame_cost.h says. Owner: the caller,
+/* `voxels`: about how many the frame is to have; 0: as many as the cost model of accel_cost.h says. Owner: the caller,
  * triangle_index_destroy. False: no memory or cancelled. pool may be NULL; the bytes of the index do not depend on it.
  */
 bool triangle_index_build(struct triangle_index **out, const struct triangle_set *set, uint32_t voxels,

@@ -60,7 +60,7 @@
  * that the products they are differences of do not cancel: their sizes are below 4 (S + L)^2 and doubts begin at 2^-49,
  * but of the difference 95 (S + L) L e is left. (What the double arithmetic takes of it, 2^-48 (S + L) times the
  * distance of the origin, is little: with 2 L^2 M >= |det| >= 5 E that distance is less than 2^19 L.) */
-#define LEAST_REACH 0x1p-24f
+#define LEAST_EXTENT 0x1p-24f
 
 /* The vertices of so few are at hand, and the index of so many is not. */
 enum { FEW_TRIANGLES = 50000, MANY_TRIANGLES = 400000 };
@@ -73,7 +73,8 @@ static inline __attribute__((always_inline)) void fetch_vertex_numbers(const str
 }
 
 /* What is next on the stack, while something else is tried. */
-static inline __attribute__((always_inline)) void fetch_ahead(const struct triangle_index *index, uint32_t reference) {
+static inline __attribute__((always_inline)) void prefetch_block(const struct triangle_index *index,
+                                                                 uint32_t reference) {
     const char *place = reference & REF_LEAF ? (const char *)(index->blocks + (reference & ~REF_LEAF))
                                              : (const char *)(index->nodes + reference);
     for (int i = 0; i < 5; i++)
@@ -138,9 +139,9 @@ struct search {
     struct triangle_cost *cost;
     struct sheared_ray sheared; /* if it is ready */
     /* A hit that is certain and the nearest so far, with bounds of its local t; NULL: none waits. */
-    const struct triangle_block *waiting;
-    unsigned waiting_lane;
-    float waiting_from;
+    const struct triangle_block *pending;
+    unsigned pending_lane;
+    float pending_from;
 };
 
 /* Rows of a node in which a ray of the octant meets the near and the far sides of boxes, in bytes. */
@@ -270,12 +271,12 @@ static inline void make_ready(struct search *s) {
 }
 
 /* The end of a "nearest" search. A hit that is certain, when nothing else has been found, is what it is: only its
- * numbers are left to be worked out, and none of its edge functions is anywhere near zero (LEAST_REACH). */
+ * numbers are left to be worked out, and none of its edge functions is anywhere near zero (LEAST_EXTENT). */
 static inline bool decide_last(struct search *s) {
-    const struct triangle_block *block = s->waiting;
+    const struct triangle_block *block = s->pending;
     if (!block)
         return s->found;
-    unsigned lane = s->waiting_lane;
+    unsigned lane = s->pending_lane;
     const double(*vertices)[3] = s->set->vertices;
     if (__builtin_expect(s->found, 0)) {
         struct triangle_hit h;
@@ -305,21 +306,21 @@ static __attribute__((noinline)) bool decide_lanes(struct search *s, const struc
     return false;
 }
 
-static inline void decide_waiting(struct search *s) {
-    if (!s->waiting)
+static inline void decide_pending(struct search *s) {
+    if (!s->pending)
         return;
     make_ready(s);
-    (void)decide(s, s->waiting, s->waiting_lane);
-    s->waiting = NULL;
+    (void)decide(s, s->pending, s->pending_lane);
+    s->pending = NULL;
 }
 
 /* The nearest hit so far, certain and with bounds of its t, waits: where the search may end is known well enough to go
  * on, and its vertices are on their way when it is over. */
 static inline __attribute__((always_inline)) void keep(struct search *s, const struct triangle_block *block,
                                                        unsigned lane, float from, float to) {
-    s->waiting = block;
-    s->waiting_lane = lane;
-    s->waiting_from = from;
+    s->pending = block;
+    s->pending_lane = lane;
+    s->pending_from = from;
     if (s->set->count > FEW_TRIANGLES)
         for (int j = 0; j < 3; j++)
             __builtin_prefetch(s->set->vertices[block->vertices[j][lane]]);
@@ -339,8 +340,8 @@ static __attribute__((noinline)) void keep_lanes(struct search *s, const struct 
         lanes &= lanes - 1;
         if (froms[lane] > s->limit)
             continue;
-        if (s->waiting && !(tos[lane] < s->waiting_from)) { /* too close to say which is nearer */
-            decide_waiting(s);
+        if (s->pending && !(tos[lane] < s->pending_from)) { /* too close to say which is nearer */
+            decide_pending(s);
             (void)decide_lanes(s, block, 1u << lane);
             continue;
         }
@@ -384,12 +385,12 @@ static inline __attribute__((always_inline)) bool try_block(struct search *s, ui
     v = simd8_flip(v, sign);
     t = simd8_flip(t, sign);
     simd8 lx = simd8_max_size(e1x, e2x), ly = simd8_max_size(e1y, e2y), lz = simd8_max_size(e1z, e2z);
-    simd8 reach = simd8_max(simd8_max(lx, ly), lz);
-    reach = simd8_max(reach, simd8_all(LEAST_REACH)); /* no slack at all would make points certain hits */
+    simd8 extent = simd8_max(simd8_max(lx, ly), lz);
+    extent = simd8_max(extent, simd8_all(LEAST_EXTENT)); /* no slack at all would make points certain hits */
     simd8 ax = simd8_size(sx), ay = simd8_size(sy), az = simd8_size(sz);
-    simd8 w = simd8_multiply_add(reach, simd8_all(180 * 0x1p-24f), simd8_all(error));
+    simd8 w = simd8_multiply_add(extent, simd8_all(180 * 0x1p-24f), simd8_all(error));
     simd8 e = simd8_multiply_add(simd8_max(simd8_max(ax, ay), az), simd8_all(146 * 0x1p-24f), w);
-    e = simd8_mul(simd8_mul(e, reach), simd8_all(s->longest));
+    e = simd8_mul(simd8_mul(e, extent), simd8_all(s->longest));
     simd8 yz = simd8_mul(ly, lz), zx = simd8_mul(lz, lx), xy = simd8_mul(lx, ly);
     simd8 least = simd8_all(error / 2), each = simd8_all(36 * 0x1p-24f);
     simd8 slack = simd8_mul(simd8_multiply_add(lx, simd8_all(54 * 0x1p-24f), simd8_multiply_add(ax, each, least)), yz);
@@ -416,7 +417,7 @@ static inline __attribute__((always_inline)) bool try_block(struct search *s, ui
             simd8 r = simd8_div(simd8_all(1), det);
             simd8 from = simd8_mul(simd8_multiply_add(f, r, moved), simd8_all(1 - 0x1p-20f));
             simd8 to = simd8_mul(simd8_multiply_add(simd8_add(t, slack), r, moved), simd8_all(1 + 0x1p-20f));
-            if (__builtin_expect(!(certain & (certain - 1)) && !s->waiting, 1)) {
+            if (__builtin_expect(!(certain & (certain - 1)) && !s->pending, 1)) {
                 unsigned lane = (unsigned)__builtin_ctz(certain);
                 keep(s, b, lane, simd8_pick(from, lane), simd8_pick(to, lane));
             } else {
@@ -472,7 +473,7 @@ descend(struct search *s, uint32_t reference, const enum triangle_search kind, c
             if (kind == TRIANGLE_NEAREST ? node_take_nearest(n, octant, enter, leave, &stack, &top, &reference)
                                          : node_take_any(n, enter, leave, &stack, &top, &reference)) {
                 if (many && top)
-                    fetch_ahead(s->index, stack.reference[top - 1]);
+                    prefetch_block(s->index, stack.reference[top - 1]);
                 continue;
             }
         } else {
@@ -570,7 +571,7 @@ static inline void search_start(struct search *s, simd4 origin, simd4 direction,
     s->limit = last * (1 + 0x1p-20f) + s->blur;
     s->certain = last * (1 - 0x1p-20f) - s->blur;
     s->found = s->sheared_ready = false;
-    s->waiting = NULL;
+    s->pending = NULL;
     s->best = s->ray->t_max;
 }
 
@@ -635,9 +636,9 @@ static inline __attribute__((always_inline)) enum beginning search_begin(struct 
     simd4 r4 = simd4_div(simd4_all(1), d4), half = simd4_load(index->half_single);
     float last = (float)(ray->t_max < 0x1p60 ? ray->t_max : 0x1p60);
     if (simd4_any_of_three_below(half, simd8_low(sizes))) { /* from outside many rays miss the frame */
-        simd4 middle = simd4_mul(o4, r4), reach = simd4_mul(half, simd4_size(r4));
-        float enter = simd4_largest_of_three(simd4_sub(simd4_sub(simd4_all(0), middle), reach));
-        float leave = simd4_smallest_of_three(simd4_sub(reach, middle));
+        simd4 middle = simd4_mul(o4, r4), extent = simd4_mul(half, simd4_size(r4));
+        float enter = simd4_largest_of_three(simd4_sub(simd4_sub(simd4_all(0), middle), extent));
+        float leave = simd4_smallest_of_three(simd4_sub(extent, middle));
         if (!(enter <= leave && leave >= 0 && enter <= last))
             return RAY_MISSES;
     }

@@ -52,10 +52,10 @@ struct packet {
     float origin[3];
     float error; /* 13 R e + 8 D */
     float begun; /* local t from which the rays' interval surely has begun */
-    /* The beam: over the axis `ahead`, on which all rays go the same way. */
-    int ahead, side[2];
+    /* The beam: over the axis `forward`, on which all rays go the same way. */
+    int forward, side[2];
     bool backwards, mixed;                     /* mixed: the signs of the rays differ along other axes */
-    float slope_min[2], slope_max[2], soonest; /* of coordinate / |ahead|; 1 / the largest |d| ahead */
+    float slope_min[2], slope_max[2], soonest; /* of coordinate / |forward|; 1 / the largest |d| ahead */
     bool negative[3];
     double t_to_local;
     const struct triangle_index *index;
@@ -64,11 +64,11 @@ struct packet {
     struct packet_hits *hits;
     unsigned groups; /* vectors of rays in use */
     int axes;        /* x, y, z of triangle_ray_set as base-4 digits where all rays have the same, else -1 */
-    uint64_t alive, found, waiting; /* rays that search; that have an answer; that have a candidate */
+    uint64_t alive, found, pending; /* rays that search; that have an answer; that have a candidate */
     uint64_t tests, nodes;
 };
 
-struct waiting_box {
+struct pending_box {
     float bounds[6]; /* about the origin, grown */
     uint32_t reference;
     uint64_t rays;
@@ -107,9 +107,9 @@ static __attribute__((noinline)) void decide(struct packet *p, unsigned i, uint3
 /* A hit that is certain, at a local t between `from` and `to`. */
 static inline void keep(struct packet *p, unsigned i, uint32_t triangle, float from, float to) {
     uint64_t bit = UINT64_C(1) << i;
-    if ((p->waiting & bit) && !(to < p->nearer[i]))
+    if ((p->pending & bit) && !(to < p->nearer[i]))
         decide(p, i, p->candidate[i], false);
-    p->waiting |= bit;
+    p->pending |= bit;
     p->candidate[i] = triangle;
     p->nearer[i] = from;
     if (to < p->limit[i])
@@ -120,7 +120,7 @@ enum { BATCH = 8 };
 
 /* triangle_cross for the candidates of eight rays at once: the same operations in the same order, so the same bits.
  * Where an edge function cancels triangle_cross itself is asked. */
-static inline __attribute__((always_inline)) void decide_batch(struct packet *p, unsigned first, unsigned waiting,
+static inline __attribute__((always_inline)) void decide_batch(struct packet *p, unsigned first, unsigned pending,
                                                                const int x, const int y, const int z) {
     _Alignas(64) double a[3][BATCH], b[3][BATCH], c[3][BATCH], t[BATCH], hit_u[BATCH], hit_v[BATCH], sums[BATCH];
     int64_t clear[BATCH];
@@ -129,7 +129,7 @@ static inline __attribute__((always_inline)) void decide_batch(struct packet *p,
     const double origin[3] = {p->rays->origin.x, p->rays->origin.y, p->rays->origin.z};
     const double ox = origin[x], oy = origin[y], oz = origin[z];
     for (unsigned k = 0; k < BATCH; k++) {
-        const uint32_t *corner = p->set->corners[waiting >> k & 1 ? p->candidate[first + k] : 0];
+        const uint32_t *corner = p->set->corners[pending >> k & 1 ? p->candidate[first + k] : 0];
         const double *va = p->set->vertices[corner[0]], *vb = p->set->vertices[corner[1]],
                      *vc = p->set->vertices[corner[2]];
         a[0][k] = va[x];
@@ -161,8 +161,8 @@ static inline __attribute__((always_inline)) void decide_batch(struct packet *p,
         hit_u[k] = v / sum;
         hit_v[k] = w / sum;
     }
-    for (; waiting; waiting &= waiting - 1) {
-        unsigned k = (unsigned)__builtin_ctz(waiting), i = first + k;
+    for (; pending; pending &= pending - 1) {
+        unsigned k = (unsigned)__builtin_ctz(pending), i = first + k;
         if (!clear[k]) {
             decide(p, i, p->candidate[i], false);
             continue;
@@ -174,31 +174,31 @@ static inline __attribute__((always_inline)) void decide_batch(struct packet *p,
 
 static void decide_candidates(struct packet *p) {
     for (unsigned first = 0; first < PACKET_RAYS; first += BATCH) {
-        unsigned waiting = (unsigned)(p->waiting >> first & 255);
-        if (!waiting)
+        unsigned pending = (unsigned)(p->pending >> first & 255);
+        if (!pending)
             continue;
         switch (p->axes) {
         case 0:
-            decide_batch(p, first, waiting, 1, 2, 0);
+            decide_batch(p, first, pending, 1, 2, 0);
             break;
         case 1:
-            decide_batch(p, first, waiting, 2, 0, 1);
+            decide_batch(p, first, pending, 2, 0, 1);
             break;
         case 2:
-            decide_batch(p, first, waiting, 0, 1, 2);
+            decide_batch(p, first, pending, 0, 1, 2);
             break;
         case 3:
-            decide_batch(p, first, waiting, 2, 1, 0);
+            decide_batch(p, first, pending, 2, 1, 0);
             break;
         case 4:
-            decide_batch(p, first, waiting, 0, 2, 1);
+            decide_batch(p, first, pending, 0, 2, 1);
             break;
         case 5:
-            decide_batch(p, first, waiting, 1, 0, 2);
+            decide_batch(p, first, pending, 1, 0, 2);
             break;
         default:
-            for (; waiting; waiting &= waiting - 1) {
-                unsigned i = first + (unsigned)__builtin_ctz(waiting);
+            for (; pending; pending &= pending - 1) {
+                unsigned i = first + (unsigned)__builtin_ctz(pending);
                 decide(p, i, p->candidate[i], false);
             }
         }
@@ -237,14 +237,14 @@ static inline __attribute__((always_inline)) void split_block(const struct packe
     simd8_store(out->q[1], qy);
     simd8_store(out->q[2], qz);
     simd8_store(out->t, simd8_multiply_add(e2x, qx, simd8_multiply_add(e2y, qy, simd8_mul(e2z, qz))));
-    simd8 reach = simd8_max(simd8_max(simd8_size(e1x), simd8_size(e1y)), simd8_max(simd8_size(e1z), simd8_size(e2x)));
-    reach = simd8_max(reach, simd8_max(simd8_size(e2y), simd8_size(e2z)));
-    reach = simd8_max(reach, simd8_all(0x1p-40f)); /* no slack at all would make points certain hits */
+    simd8 extent = simd8_max(simd8_max(simd8_size(e1x), simd8_size(e1y)), simd8_max(simd8_size(e1z), simd8_size(e2x)));
+    extent = simd8_max(extent, simd8_max(simd8_size(e2y), simd8_size(e2z)));
+    extent = simd8_max(extent, simd8_all(0x1p-40f)); /* no slack at all would make points certain hits */
     simd8 distance = simd8_max(simd8_size(sx), simd8_max(simd8_size(sy), simd8_size(sz)));
-    simd8 e = simd8_multiply_add(simd8_add(reach, distance), simd8_all(64 * 0x1p-24f), simd8_all(p->error));
-    e = simd8_mul(e, reach);
+    simd8 e = simd8_multiply_add(simd8_add(extent, distance), simd8_all(64 * 0x1p-24f), simd8_all(p->error));
+    e = simd8_mul(e, extent);
     simd8_store(out->e, e);
-    simd8_store(out->slack, simd8_mul(simd8_mul(e, reach), simd8_all(6)));
+    simd8_store(out->slack, simd8_mul(simd8_mul(e, extent), simd8_all(6)));
     out->ids = b->ids;
     out->used = simd8_at_most(simd8_load(b->corner[0]), simd8_all(4)); /* an unused lane is outside of the frame */
 }
@@ -396,7 +396,7 @@ static inline __attribute__((always_inline)) uint64_t meet_box(const struct pack
 
 /* The children of a node that the beam meets, the farthest first on the stack. */
 static inline __attribute__((always_inline)) uint32_t push_children(struct packet *p, uint32_t number, uint64_t rays,
-                                                                    struct waiting_box *stack, uint32_t top) {
+                                                                    struct pending_box *stack, uint32_t top) {
     const struct wide_node *n = p->index->nodes + number;
     _Alignas(32) float box[6][WIDTH], t[WIDTH];
     simd8 rows[6];
@@ -404,7 +404,7 @@ static inline __attribute__((always_inline)) uint32_t push_children(struct packe
         rows[i] = simd8_sub(simd8_load(n->bounds[i]), simd8_all(p->shifted[i]));
         simd8_store(box[i], rows[i]);
     }
-    simd8 zero = simd8_all(0), near = rows[2 * p->ahead], far = rows[2 * p->ahead + 1];
+    simd8 zero = simd8_all(0), near = rows[2 * p->forward], far = rows[2 * p->forward + 1];
     if (p->backwards) {
         simd8 swap = simd8_sub(zero, near);
         near = simd8_sub(zero, far);
@@ -435,7 +435,7 @@ static inline __attribute__((always_inline)) uint32_t push_children(struct packe
     }
     for (unsigned k = 0; k < count; k++) {
         unsigned i = (unsigned)order[k] & (WIDTH - 1);
-        struct waiting_box *w = &stack[top++];
+        struct pending_box *w = &stack[top++];
         for (int j = 0; j < 6; j++)
             w->bounds[j] = box[j][i];
         w->reference = n->child[i];
@@ -446,7 +446,7 @@ static inline __attribute__((always_inline)) uint32_t push_children(struct packe
 
 static inline __attribute__((always_inline)) void fly_camera_all(struct packet *p, uint32_t root, const bool any,
                                                                  const bool mixed) {
-    struct waiting_box stack[STACK_ENTRIES];
+    struct pending_box stack[STACK_ENTRIES];
     uint32_t top = 0;
     if (root & REF_LEAF) {
         try_block(p, root & ~REF_LEAF, p->alive, any);
@@ -454,7 +454,7 @@ static inline __attribute__((always_inline)) void fly_camera_all(struct packet *
     }
     top = push_children(p, root, p->alive, stack, top);
     while (top > 0 && p->alive) {
-        const struct waiting_box *w = &stack[--top];
+        const struct pending_box *w = &stack[--top];
         uint64_t rays = meet_box(p, w->bounds, w->rays & p->alive, mixed);
         uint32_t reference = w->reference;
         if (!rays)
@@ -484,7 +484,7 @@ static bool set_beam(struct packet *p) {
     const float *d[3] = {p->dx, p->dy, p->dz};
     int z = fabsf(d[1][0]) > fabsf(d[0][0]);
     z = fabsf(d[2][0]) > fabsf(d[z][0]) ? 2 : z;
-    p->ahead = z;
+    p->forward = z;
     p->side[0] = (z + 1) % 3;
     p->side[1] = (z + 2) % 3;
     p->backwards = d[z][0] < 0;
@@ -613,7 +613,7 @@ static bool begin(struct packet *p, uint64_t active) {
     }
     p->error = (float)(away * 13 * 0x1p-24 + far * 8 * 0x1p-46);
     p->alive = active;
-    p->found = p->waiting = p->tests = p->nodes = 0;
+    p->found = p->pending = p->tests = p->nodes = 0;
     return true;
 }
 

@@ -20,12 +20,12 @@
 #include <string.h>
 
 enum {
-    HALVE_DEPTH = 60, /* below so many branches ranges are halved, so 31 more are the most */
-    FLOOR_STEP = 3,   /* a floor is looked for at every third branch: where nodes of eight would begin */
-    PASSES = 2,       /* of reinsertion, */
-    PASS_SHARE = 7,   /* each over a seventh of all branches */
-    KEY_BITS = 12,    /* of a promise, in which it is counted */
-    POLL_COUNT = 2000 /* references that are split without asking whether to stop */
+    HALVE_DEPTH = 60,       /* below so many branches ranges are halved, so 31 more are the most */
+    FLOOR_STEP = 3,         /* a floor is looked for at every third branch: where nodes of eight would begin */
+    REINSERTION_ROUNDS = 2, /* of reinsertion, */
+    PASS_SHARE = 7,         /* each over a seventh of all branches */
+    KEY_BITS = 12,          /* of a promise, in which it is counted */
+    POLL_COUNT = 2000       /* references that are split without asking whether to stop */
 };
 
 /* What a ray pays for a node and for a block that it meets, the time of a node (docs/performance-notebook.md: 30
@@ -199,7 +199,7 @@ static uint32_t promise(const struct tree *tree, uint32_t number) {
 
 /* The branches that promise most, about `wanted`, the best first: words whose lower half is a branch. NULL: no memory.
  */
-static uint64_t *most_promising(const struct tree *tree, uint32_t wanted, uint32_t *count) {
+static uint64_t *best_candidate(const struct tree *tree, uint32_t wanted, uint32_t *count) {
     uint32_t number_of[1 << KEY_BITS] = {0}, least = (1 << KEY_BITS) - 1, found = 0;
     for (uint32_t i = 0; i < tree->count; i++)
         number_of[promise(tree, i) >> (32 - KEY_BITS)]++;
@@ -219,9 +219,9 @@ static uint64_t *most_promising(const struct tree *tree, uint32_t wanted, uint32
 }
 
 bool tree_improve(struct tree *tree, const struct pool *pool) {
-    for (int pass = 0; pass < PASSES; pass++) {
+    for (int pass = 0; pass < REINSERTION_ROUNDS; pass++) {
         uint32_t count;
-        uint64_t *words = most_promising(tree, tree->count / PASS_SHARE, &count);
+        uint64_t *words = best_candidate(tree, tree->count / PASS_SHARE, &count);
         bool go_on = words != NULL;
         for (uint32_t i = 0; go_on && i < count; i++) {
             uint32_t number = (uint32_t)words[i];

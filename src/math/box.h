@@ -95,8 +95,8 @@ static inline struct box_span box_probe_span(const struct box_probe *probe, cons
     __m128d most = _mm_set1_pd(-INFINITY);
     for (int i = 0; i < 3; i++) {
         __m128d plane = _mm_loadh_pd(_mm_load_sd(&planes[probe->near[i]]), &planes[probe->far[i]]);
-        __m128d way = _mm_sub_pd(plane, _mm_loadu_pd(probe->origin[i]));
-        most = _mm_max_pd(_mm_mul_pd(way, _mm_loadu_pd(probe->inverse[i])), most);
+        __m128d sense = _mm_sub_pd(plane, _mm_loadu_pd(probe->origin[i]));
+        most = _mm_max_pd(_mm_mul_pd(sense, _mm_loadu_pd(probe->inverse[i])), most);
     }
     __m128d less = _mm_mul_pd(most, _mm_set1_pd(1 - 0x1p-49)), more = _mm_mul_pd(most, _mm_set1_pd(1 + 0x1p-49));
     __m128d wide = _mm_min_pd(less, more);

@@ -241,9 +241,9 @@ static int choose_shift(const double *c, int degree, double lo, double hi) {
         if (share + 1 > shift)
             shift = share + 1;
     }
-    double reach = fmax(fabs(lo), fabs(hi));
-    if (isfinite(reach) && reach > 0.0 && exponent_of(reach) < shift)
-        shift = exponent_of(reach);
+    double extent = fmax(fabs(lo), fabs(hi));
+    if (isfinite(extent) && extent > 0.0 && exponent_of(extent) < shift)
+        shift = exponent_of(extent);
     return shift > 1023 ? 1023 : shift;
 }
 

@@ -2,13 +2,13 @@
  * step. In a cloud of alike primitives without anything round it, with three voxels to each of them, steps win by a
  * tenth (10,000 spheres) to a fifth (200,000) of the whole picture. But one floor round the cloud makes voxels of the
  * floor's size, which hold everything at once: 25 times slower at 10,000, 190 times at 200,000. No resolution that is
- * the same everywhere suits both. ACCEL_AUTO asks the cost model of accel/frame_cost.c, which knows from a sample of
+ * the same everywhere suits both. ACCEL_AUTO asks the cost model of accel/accel_cost.c, which knows from a sample of
  * the boxes how many voxels a line visits, how long their lists are, and how long for somebody who looks at the
  * crowd: voxels with lists where they cost clearly less, else one voxel with the hierarchy of box_tree.c in it, which
  * also lets packets and shafts through. ACCEL_GRID and ACCEL_BVH pin it. docs/performance.md has the measurements. */
 #include "world/scene_accel.h"
 
-#include "accel/frame_cost.h"
+#include "accel/accel_cost.h"
 
 static struct box box_of(const void *context, uint32_t i) {
     return ((const struct box *)context)[i];
@@ -28,9 +28,9 @@ static enum accel_kind choose(const struct box *boxes, uint32_t count) {
     }
     if (box_is_empty(&bounds))
         return ACCEL_BVH;
-    struct frame_census census;
-    frame_census_take(&census, &bounds, box_of, boxes, count, SAMPLES, MESSAGE_LEVELS);
-    struct frame_choice cost = frame_lists_or_hierarchy(&census);
+    struct cost_sample cost_sample;
+    cost_sample_take(&cost_sample, &bounds, box_of, boxes, count, SAMPLES, MESSAGE_LEVELS);
+    struct accel_scene_cost cost = accel_lists_or_hierarchy(&cost_sample);
     return cost.lists < clear * cost.hierarchy ? ACCEL_GRID : ACCEL_BVH;
 }
 

@@ -8,7 +8,7 @@
  * it needs log(growth of their number) / log(children) nodes on top of each other. With lists in the voxels nothing has
  * to be started, and in clouds of like things a step, about 0.35 visits of a node, spares more than it costs; but one
  * crowded voxel (a heap on a wide floor) costs whoever looks at it all that it holds. */
-#include "accel/frame_cost.h"
+#include "accel/accel_cost.h"
 
 #include "base/mem.h"
 #include "math/elementary.h"
@@ -22,13 +22,13 @@
  * goes alone where rays of one origin go together (a third of them, at half the price: 1.5). */
 #define FLY_COST 4.0
 
-enum { BIG_ITEM = 64 /* voxels */, ENOUGH = 4 /* samples to an occupied voxel */ };
+enum { BIG_ITEM = 64 /* voxels */, SAMPLE_LIMIT = 4 /* samples to an occupied voxel */ };
 
 static double half_surface(struct vec3 size) {
     return size.x * size.y + size.y * size.z + size.z * size.x;
 }
 
-static void level_shape(struct frame_level *level, struct vec3 size, uint32_t along) {
+static void level_shape(struct cost_level *level, struct vec3 size, uint32_t along) {
     double longest = vec3_max_abs(size);
     for (int k = 0; k < 3; k++) {
         double cells = floor(vec3_get(size, k) / longest * along + 0.5);
@@ -37,7 +37,7 @@ static void level_shape(struct frame_level *level, struct vec3 size, uint32_t al
 }
 
 /* The voxels that a box touches along one axis. */
-static uint32_t cells_along(const struct frame_level *level, const struct box *bounds, const struct box *box, int axis,
+static uint32_t cells_along(const struct cost_level *level, const struct box *bounds, const struct box *box, int axis,
                             uint32_t *first) {
     double scale = level->cells[axis] / (vec3_get(bounds->max, axis) - vec3_get(bounds->min, axis));
     double low = (vec3_get(box->min, axis) - vec3_get(bounds->min, axis)) * scale;
@@ -55,7 +55,7 @@ struct sample {
 };
 
 /* False: the sample is too small for the level. */
-static bool count_level(struct frame_level *level, const struct box *bounds, const struct sample *sample,
+static bool count_level(struct cost_level *level, const struct box *bounds, const struct sample *sample,
                         uint32_t *counts) {
     const uint32_t *cells = level->cells;
     size_t all = (size_t)cells[0] * cells[1] * cells[2];
@@ -87,18 +87,18 @@ static bool count_level(struct frame_level *level, const struct box *bounds, con
     level->listed = listed * sample->each * share;
     /* One of them is the thing itself; the others stand for as many more. */
     level->around = entries > 0 ? 1 + (squares / entries - 1) * sample->each : 0;
-    return sample->each == 1 || entries >= ENOUGH * occupied;
+    return sample->each == 1 || entries >= SAMPLE_LIMIT * occupied;
 }
 
 static bool is_usable(const struct box *box) {
     return !box_is_empty(box) && vec3_finite(box->min) && vec3_finite(box->max);
 }
 
-void frame_census_take(struct frame_census *census, const struct box *bounds, frame_box *box_of, const void *context,
-                       uint32_t count, uint32_t samples, uint32_t levels) {
+void cost_sample_take(struct cost_sample *cost_sample, const struct box *bounds, cost_box *box_of, const void *context,
+                      uint32_t count, uint32_t samples, uint32_t levels) {
     struct vec3 size = vec3_sub(bounds->max, bounds->min);
-    *census = (struct frame_census){.level_count = 1, .items = count};
-    census->levels[0] = (struct frame_level){
+    *cost_sample = (struct cost_sample){.level_count = 1, .items = count};
+    cost_sample->levels[0] = (struct cost_level){
         .cells = {1, 1, 1}, .filled = 1, .visited = 1, .occupied = 1, .listed = count, .around = count};
     double surface = half_surface(size), longest = vec3_max_abs(size);
     if (count == 0 || !(surface > 0x1p-900) || !(surface < 0x1p900) || !(longest > 0))
@@ -116,50 +116,50 @@ void frame_census_take(struct frame_census *census, const struct box *bounds, fr
     }
     struct sample sample = {boxes, kept, stride};
     for (uint32_t l = 1; boxes && counts && l < most; l++) {
-        struct frame_level *level = &census->levels[l];
+        struct cost_level *level = &cost_sample->levels[l];
         level_shape(level, size, UINT32_C(1) << l);
         for (size_t v = 0; v < largest; v++)
             counts[v] = 0;
         /* Of finer levels a sample would find too few that are occupied. */
         if (!count_level(level, bounds, &sample, counts))
             break;
-        census->level_count = l + 1;
+        cost_sample->level_count = l + 1;
     }
     mem_free(boxes);
     mem_free(counts);
 }
 
 /* Levels of a hierarchy with so many children to a node that part what is in level - 1 into what is in level. */
-static double growth(const struct frame_census *census, uint32_t level, uint32_t children) {
-    double before = census->levels[level - 1].filled, after = census->levels[level].filled;
+static double growth(const struct cost_sample *cost_sample, uint32_t level, uint32_t children) {
+    double before = cost_sample->levels[level - 1].filled, after = cost_sample->levels[level].filled;
     return after > before ? el_log(after / before) / el_log(children) : 0;
 }
 
-struct frame_choice frame_lists_or_hierarchy(const struct frame_census *census) {
-    /* The level of three voxels to an item, which may be finer than the census is. */
-    double wanted = el_log(3 * census->items) / el_log(8);
-    uint32_t last = census->level_count - 1, level = wanted < last ? (uint32_t)(wanted + 0.5) : last;
+struct accel_scene_cost accel_lists_or_hierarchy(const struct cost_sample *cost_sample) {
+    /* The level of three voxels to an item, which may be finer than the cost sample is. */
+    double wanted = el_log(3 * cost_sample->items) / el_log(8);
+    uint32_t last = cost_sample->level_count - 1, level = wanted < last ? (uint32_t)(wanted + 0.5) : last;
     double beyond = wanted > level ? wanted - level : 0, finer = el_exp2(beyond);
-    const struct frame_level *at = &census->levels[level];
+    const struct cost_level *at = &cost_sample->levels[level];
     double steps = STEP_COST * at->visited * finer, nodes = at->occupied;
     for (uint32_t l = 1; l <= level; l++)
-        nodes += OVERLAP * growth(census, l, 4) * census->levels[l - 1].occupied;
-    double crowd = at->around / (finer * finer * finer), depth = el_log(census->items) / el_log(4);
+        nodes += OVERLAP * growth(cost_sample, l, 4) * cost_sample->levels[l - 1].occupied;
+    double crowd = at->around / (finer * finer * finer), depth = el_log(cost_sample->items) / el_log(4);
     double lists = 2 * steps + LIST_COST * (at->listed / (finer * finer) + (crowd > 1 ? crowd : 1));
-    return (struct frame_choice){.lists = lists / 2, .hierarchy = (nodes + depth) / 2};
+    return (struct accel_scene_cost){.lists = lists / 2, .hierarchy = (nodes + depth) / 2};
 }
 
 /* Both kinds of rays; the one that looks at a thing goes through all levels above it. */
-struct frame_of_mesh frame_over_mesh(const struct frame_census *census) {
-    struct frame_of_mesh frame = {.level = 0};
-    uint32_t last = census->level_count - 1;
+struct accel_mesh_cost accel_over_mesh(const struct cost_sample *cost_sample) {
+    struct accel_mesh_cost frame = {.level = 0};
+    uint32_t last = cost_sample->level_count - 1;
     for (uint32_t l = 0; l <= last; l++) {
-        const struct frame_level *at = &census->levels[l];
+        const struct cost_level *at = &cost_sample->levels[l];
         double traversal = l > 0 ? FLY_COST + STEP_COST * at->visited : 0, starts = START_COST * at->occupied;
         double across = 0, depth = 0;
         for (uint32_t below = l + 1; below <= last; below++) {
-            double nodes = growth(census, below, 8);
-            across += OVERLAP * nodes * census->levels[below - 1].occupied;
+            double nodes = growth(cost_sample, below, 8);
+            across += OVERLAP * nodes * cost_sample->levels[below - 1].occupied;
             depth += nodes;
         }
         frame.costs[l] = traversal + starts + (across + depth) / 2;

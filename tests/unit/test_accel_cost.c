@@ -1,8 +1,8 @@
 /* The cost model of the frame beside what is counted when frames of many sizes are walked. */
 #include "tests/harness.h"
 
+#include "accel/accel_cost.h"
 #include "accel/box_tree.h"
-#include "accel/frame_cost.h"
 #include "accel/grid.h"
 #include "accel/triangle_index.h"
 #include "base/mem_peak.h"
@@ -10,7 +10,7 @@
 
 #include <stdlib.h>
 
-/* In visits of a node, as frame_cost.c counts: a triangle of a block of eight 0.2, a voxel with the start of its
+/* In visits of a node, as accel_cost.c counts: a triangle of a block of eight 0.2, a voxel with the start of its
  * hierarchy 1.2 (most of those that are visited hold something), a box 0.3. */
 static double cost_of(double nodes, double triangles, double voxels) {
     return nodes + 0.2 * triangles + 1.2 * voxels;
@@ -135,13 +135,13 @@ TEST(frames_of_meshes_have_the_voxels_that_the_model_finds_cheapest) {
     struct test_random random = {3};
     for (int form = 0; form < FORMS; form++) {
         struct soup s = make_soup(form, &random);
-        struct frame_census census;
-        frame_census_take(&census, &s.bounds, soup_box, &s, s.count, 512, 5);
-        struct frame_of_mesh frame = frame_over_mesh(&census);
-        CHECK(census.level_count > 1);
-        for (uint32_t l = 0; l < census.level_count; l++)
+        struct cost_sample cost_sample;
+        cost_sample_take(&cost_sample, &s.bounds, soup_box, &s, s.count, 512, 5);
+        struct accel_mesh_cost frame = accel_over_mesh(&cost_sample);
+        CHECK(cost_sample.level_count > 1);
+        for (uint32_t l = 0; l < cost_sample.level_count; l++)
             CHECK(frame.costs[frame.level] <= frame.costs[l]);
-        const uint32_t *cells = census.levels[frame.level].cells;
+        const uint32_t *cells = cost_sample.levels[frame.level].cells;
         CHECK(counted(&s, 0) == counted(&s, cells[0] * cells[1] * cells[2]));
         free(s.vertices);
         free(s.corners);
@@ -150,15 +150,15 @@ TEST(frames_of_meshes_have_the_voxels_that_the_model_finds_cheapest) {
 
 /* Of a made-up mesh: a million voxels that hold something, of which a ray meets one. */
 TEST(a_mesh_whose_voxels_spare_more_than_the_walk_costs_gets_them) {
-    struct frame_census census = {.level_count = 4, .items = 1e6};
+    struct cost_sample cost_sample = {.level_count = 4, .items = 1e6};
     for (uint32_t l = 0; l < 4; l++)
-        census.levels[l] = (struct frame_level){
-            .cells = {1, 1, 1}, .filled = 1, .visited = 1, .occupied = 1, .listed = 1, .around = 1};
-    CHECK_EQ_INT(frame_over_mesh(&census).level, 0);
-    census.levels[3].filled = 1e6;
-    CHECK_EQ_INT(frame_over_mesh(&census).level, 3);
-    census.levels[3].visited = 1000;
-    CHECK_EQ_INT(frame_over_mesh(&census).level, 0);
+        cost_sample.levels[l] =
+            (struct cost_level){.cells = {1, 1, 1}, .filled = 1, .visited = 1, .occupied = 1, .listed = 1, .around = 1};
+    CHECK_EQ_INT(accel_over_mesh(&cost_sample).level, 0);
+    cost_sample.levels[3].filled = 1e6;
+    CHECK_EQ_INT(accel_over_mesh(&cost_sample).level, 3);
+    cost_sample.levels[3].visited = 1000;
+    CHECK_EQ_INT(accel_over_mesh(&cost_sample).level, 0);
 }
 
 /* --- over placed primitives --- */
