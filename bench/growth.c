@@ -16,7 +16,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { SIDE = 320, ROUNDS = 3, MOST_ROWS = 64 };
+enum { SIDE = 320, ROUNDS = 3, MAX_ROWS = 64 };
 
 /* One line of the table. Per ray: nanoseconds, triangles tested, nodes of hierarchies visited. */
 struct row {
@@ -26,9 +26,9 @@ struct row {
 };
 
 struct bench {
-    struct row rows[MOST_ROWS];
+    struct row rows[MAX_ROWS];
     int count, threads;
-    double most;
+    double max;
     const char *models, *svg;
     struct pool *pool;
 };
@@ -204,7 +204,7 @@ static void finish_row(struct bench *bench, struct stand *stand, const struct be
     printf("%-12s %10.0f %10.3f %8.1f %9.1f %9.1f %9.1f %8.1f\n", row->series, row->things, row->build_seconds,
            row->bytes_each, row->camera_ns, row->chord_ns, row->tests, row->steps);
     fflush(stdout);
-    if (bench->count < MOST_ROWS)
+    if (bench->count < MAX_ROWS)
         bench->rows[bench->count++] = *row;
 }
 
@@ -223,13 +223,13 @@ static void measure_mesh(struct bench *bench, const char *series, const struct b
 }
 
 static void grow_triangles(struct bench *bench) {
-    for (int depth = 1; 4 * pow(4, depth) <= bench->most; depth++) {
+    for (int depth = 1; 4 * pow(4, depth) <= bench->max; depth++) {
         struct bench_scene scene = {.name = "sierpinski"};
         bench_sierpinski(&scene, depth);
         measure_mesh(bench, "sierpinski", &scene);
         bench_scene_free(&scene);
     }
-    for (double wanted = 10; wanted <= bench->most; wanted *= 10) {
+    for (double wanted = 10; wanted <= bench->max; wanted *= 10) {
         struct bench_scene scene = {.name = "terrain"};
         bench_terrain(&scene, (int)(sqrt(wanted / 2) + 1.5));
         measure_mesh(bench, "terrain", &scene);
@@ -242,7 +242,7 @@ static void grow_instances(struct bench *bench) {
     struct bench_scene scene = {.name = "sierpinski"};
     bench_sierpinski(&scene, 4);
     struct mesh *mesh = mesh_of(&scene, 0, scene.triangle_count);
-    for (double count = 1; count <= bench->most; count *= 10) {
+    for (double count = 1; count <= bench->max; count *= 10) {
         uint32_t side = (uint32_t)ceil(sqrt(count));
         double(*at)[3] = malloc((size_t)count * sizeof *at);
         if (!at)
@@ -405,7 +405,7 @@ static void draw(const struct bench *bench) {
 }
 
 int main(int argc, char **argv) {
-    struct bench bench = {.most = 1e7, .threads = 0};
+    struct bench bench = {.max = 1e7, .threads = 0};
     bool triangles = false, instances = false, in_stadium = false;
     for (int i = 1; i < argc; i++) {
         const char *word = argv[i], *value = i + 1 < argc ? argv[i + 1] : NULL;
@@ -416,7 +416,7 @@ int main(int argc, char **argv) {
         } else if (strcmp(word, "stadium") == 0) {
             in_stadium = true;
         } else if (value && strcmp(word, "--most") == 0) {
-            bench.most = atof(argv[++i]);
+            bench.max = atof(argv[++i]);
         } else if (value && strcmp(word, "--threads") == 0) {
             bench.threads = atoi(argv[++i]);
         } else if (value && strcmp(word, "--models") == 0) {

@@ -31,7 +31,7 @@
 #include <xmmintrin.h>
 #endif
 
-enum { KINDS = 3, MOST_REPS = 51, MOST_SCENES = 64 };
+enum { KINDS = 3, MAX_REPS = 51, MAX_SCENES = 64 };
 static const char *const kind_names[KINDS] = {"camera", "shadow", "bounce"};
 
 struct bench_ray {
@@ -355,7 +355,7 @@ static void explain(const struct bench_scene *scene, const char *kind, const str
 /* Rays on threads */
 
 enum tracer { GRAY_ALONE, GRAY_PACKETS, EMBREE_ALONE, EMBREE_PACKETS };
-enum { TURN = 4096, MOST_THREADS = 64 };
+enum { TURN = 4096, MAX_THREADS = 64 };
 
 struct work {
     enum tracer tracer;
@@ -419,7 +419,7 @@ static void *trace_share(void *argument) {
 
 /* Seconds of the thread that takes longest. */
 static double trace(const struct work *work, struct share *shares, int threads) {
-    pthread_t thread[MOST_THREADS];
+    pthread_t thread[MAX_THREADS];
     double longest = 0;
     for (int i = 0; i < threads; i++) {
         shares[i].work = work;
@@ -502,7 +502,7 @@ static void trace_batches(struct batches *b, const struct bench_ray *source, uin
 
 static void measure_batches(struct mesh *mesh, const struct bench_ray *rays, uint64_t count, int reps,
                             struct result *result) {
-    double seconds[2][MOST_REPS], ratio[MOST_REPS];
+    double seconds[2][MAX_REPS], ratio[MAX_REPS];
     struct batches batches;
     batches_begin(&batches, mesh);
     for (int rep = 0; rep < reps; rep++) {
@@ -522,7 +522,7 @@ static void measure(const struct bench_scene *scene, const struct options *optio
     *result = (struct result){.triangles = scene->triangle_count};
     snprintf(result->name, sizeof result->name, "%s", scene->name);
     int threads = options->threads;
-    struct share shares[MOST_THREADS];
+    struct share shares[MAX_THREADS];
     for (int i = 0; i < threads; i++) {
         shares[i] = (struct share){.number = i, .threads = threads};
         if (!geom_scratch_init(&shares[i].scratch, 1024))
@@ -547,7 +547,7 @@ static void measure(const struct bench_scene *scene, const struct options *optio
     result->rays[0] = pixels;
     result->rays[2] = result->rays[1];
     for (int kind = 0; kind < KINDS; kind++) {
-        double seconds[2][MOST_REPS], ratio[MOST_REPS], packet[2][MOST_REPS], packet_ratio[MOST_REPS];
+        double seconds[2][MAX_REPS], ratio[MAX_REPS], packet[2][MAX_REPS], packet_ratio[MAX_REPS];
         uint64_t count = result->rays[kind];
         if (count == 0)
             continue;
@@ -667,7 +667,7 @@ static void print_summary(const struct result *results, int count) {
 
 struct bench {
     struct options options;
-    struct result results[MOST_SCENES];
+    struct result results[MAX_SCENES];
     int count;
 };
 
@@ -805,9 +805,9 @@ int main(int argc, char **argv) {
             return 2;
         }
     }
-    if (bench.options.reps < 1 || bench.options.reps > MOST_REPS || bench.options.size < 8 ||
-        bench.options.threads < 1 || bench.options.threads > MOST_THREADS) {
-        fprintf(stderr, "rays: --reps is 1 to %d, --threads 1 to %d, --size at least 8\n", MOST_REPS, MOST_THREADS);
+    if (bench.options.reps < 1 || bench.options.reps > MAX_REPS || bench.options.size < 8 ||
+        bench.options.threads < 1 || bench.options.threads > MAX_THREADS) {
+        fprintf(stderr, "rays: --reps is 1 to %d, --threads 1 to %d, --size at least 8\n", MAX_REPS, MAX_THREADS);
         return 2;
     }
     run_all(&bench);

@@ -170,12 +170,12 @@ static bool is_wanted(int argc, char **argv, const char *name) {
 
 /* Shapes of many parts, each once small and once large. */
 static void measure_swept(int argc, char **argv, struct arena *arena, struct geom_scratch *scratch) {
-    enum { MOST = 1001, SIDE = 513 };
-    static double profile[MOST][2], outline[2 * MOST][2], helix[MOST][3], sizes[MOST], heights[SIDE * SIDE];
+    enum { MAX = 1001, SIDE = 513 };
+    static double profile[MAX][2], outline[2 * MAX][2], helix[MAX][3], sizes[MAX], heights[SIDE * SIDE];
     static struct blob_element elements[200];
     struct error error = {0};
     for (int many = 0; many < 2; many++) {
-        int count = many ? MOST : 9;
+        int count = many ? MAX : 9;
         uint64_t state = 5;
         for (int i = 0; i < count; i++) {
             double x = (double)i / (count - 1), turn = 6.283185307179586 * i / count, size = 0.8 + 0.2 * cos(8 * turn);

@@ -185,7 +185,7 @@ static void execute(const struct attack *attack) {
 }
 
 /* 128 + signal; -1: it had to be ended. */
-static int wait_at_most(pid_t program, double seconds) {
+static int wait_up_to(pid_t program, double seconds) {
     int how = 0;
     double limit = attack_now() + seconds;
     while (waitpid(program, &how, WNOHANG) == 0) {
@@ -221,7 +221,7 @@ static struct run run_attack(struct attack_stand *stand) {
         execute(stand->attack);
     }
     (void)setpgid(child, child);
-    struct run run = {.status = wait_at_most(child, SECONDS)};
+    struct run run = {.status = wait_up_to(child, SECONDS)};
     run.out = bytes_of_descriptor(out);
     run.err = bytes_of_descriptor(err);
     return run;
@@ -535,7 +535,7 @@ pid_t attack_start_traced(const char *in, const char *words, uid_t user) {
 }
 
 int attack_wait(pid_t program, double seconds) {
-    return wait_at_most(program, seconds);
+    return wait_up_to(program, seconds);
 }
 
 char *attack_output(const char *name) {

@@ -91,7 +91,7 @@ static bool make_terminal(struct attack_stand *stand, const char *path) {
         return false;
     if (stand && stand->user && getuid() == 0 && chown(name, stand->user, stand->user) != 0)
         return false;
-    if (stand && stand->terminal_count < MOST_STREAMS)
+    if (stand && stand->terminal_count < MAX_STREAMS)
         stand->terminals[stand->terminal_count++] = master;
     return symlink(name, path) == 0;
 }
@@ -151,7 +151,7 @@ static bool made_special(struct attack_stand *stand, const char *verb, const cha
         *ok = mknod(path, S_IFBLK | 0666, makedev(1, 250)) == 0;
     else if (strcmp(verb, "tty") == 0)
         *ok = make_terminal(stand, path);
-    else if (strcmp(verb, "reader") == 0 && stand && stand->reader_count < MOST_STREAMS)
+    else if (strcmp(verb, "reader") == 0 && stand && stand->reader_count < MAX_STREAMS)
         *ok = (stand->readers[stand->reader_count++] = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC)) >= 0;
     else
         return false;

@@ -6,7 +6,7 @@
 
 #include <sys/stat.h>
 
-enum { MOST_STREAMS = 16 };
+enum { MAX_STREAMS = 16 };
 
 /* The preparation of a row. */
 struct attack_stand {
@@ -15,7 +15,7 @@ struct attack_stand {
     char root[512], in[600];
     int failures;
     char reason[1200];
-    int readers[MOST_STREAMS], terminals[MOST_STREAMS], reader_count, terminal_count;
+    int readers[MAX_STREAMS], terminals[MAX_STREAMS], reader_count, terminal_count;
 };
 
 /* A walk over the row's folders. */

@@ -103,11 +103,11 @@ void cost_sample_take(struct cost_sample *cost_sample, const struct box *bounds,
     double surface = half_surface(size), longest = vec3_max_abs(size);
     if (count == 0 || !(surface > 0x1p-900) || !(surface < 0x1p900) || !(longest > 0))
         return;
-    uint32_t stride = count > samples ? count / samples : 1, most = 2, kept = 0;
-    while (most < levels && (double)(UINT64_C(1) << 3 * (most - 1)) < count)
-        most++;
-    most = most < MESSAGE_LEVELS ? most : MESSAGE_LEVELS;
-    size_t largest = (size_t)1 << 3 * (most - 1);
+    uint32_t stride = count > samples ? count / samples : 1, max = 2, kept = 0;
+    while (max < levels && (double)(UINT64_C(1) << 3 * (max - 1)) < count)
+        max++;
+    max = max < MESSAGE_LEVELS ? max : MESSAGE_LEVELS;
+    size_t largest = (size_t)1 << 3 * (max - 1);
     struct box *boxes = mem_alloc(((size_t)count / stride + 1) * sizeof *boxes);
     uint32_t *counts = mem_alloc(largest * sizeof *counts);
     for (uint32_t i = 0; boxes && i < count; i += stride) {
@@ -115,7 +115,7 @@ void cost_sample_take(struct cost_sample *cost_sample, const struct box *bounds,
         kept += is_usable(&boxes[kept]);
     }
     struct sample sample = {boxes, kept, stride};
-    for (uint32_t l = 1; boxes && counts && l < most; l++) {
+    for (uint32_t l = 1; boxes && counts && l < max; l++) {
         struct cost_level *level = &cost_sample->levels[l];
         level_shape(level, size, UINT32_C(1) << l);
         for (size_t v = 0; v < largest; v++)

@@ -11,12 +11,12 @@ bool beam_make(struct beam *out, const struct ray_packet *rays) {
     out->side[0] = (z + 1) % 3;
     out->side[1] = (z + 2) % 3;
     out->backwards = rays->direction[z][0] < 0;
-    double least = INFINITY, most = 0, low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    double min = INFINITY, max = 0, low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     double sign = out->backwards ? -1 : 1;
     for (uint32_t i = 0; i < rays->count; i++) {
         double main_slope = rays->direction[z][i] * sign, over = 1 / main_slope;
-        least = main_slope < least ? main_slope : least;
-        most = main_slope > most ? main_slope : most;
+        min = main_slope < min ? main_slope : min;
+        max = main_slope > max ? main_slope : max;
         for (int k = 0; k < 2; k++) {
             double slope = rays->direction[out->side[k]][i] * over;
             low[k] = slope < low[k] ? slope : low[k];
@@ -24,13 +24,13 @@ bool beam_make(struct beam *out, const struct ray_packet *rays) {
         }
     }
     double spread = fmax(fmax(-low[0], high[0]), fmax(-low[1], high[1]));
-    if (!(least > 0 && most < 0x1p900 && least > 0x1p-900 && spread < 0x1p5))
+    if (!(min > 0 && max < 0x1p900 && min > 0x1p-900 && spread < 0x1p5))
         return false;
     for (int k = 0; k < 2; k++) {
         out->slope_min[k] = low[k] - (fabs(low[k]) + 1) * 0x1p-40;
         out->slope_max[k] = high[k] + (fabs(high[k]) + 1) * 0x1p-40;
     }
-    out->soonest = (1 - 0x1p-50) / most;
+    out->soonest = (1 - 0x1p-50) / max;
     out->origin[0] = rays->origin.x;
     out->origin[1] = rays->origin.y;
     out->origin[2] = rays->origin.z;

@@ -126,10 +126,10 @@ static bool lists_make(struct event_list lists[3], size_t items) {
 }
 
 static bool lists_sort(struct event_list lists[3]) {
-    size_t most = 0;
+    size_t max = 0;
     for (int axis = 0; axis < 3; axis++)
-        most = lists[axis].count > most ? lists[axis].count : most;
-    struct event *spare = mem_resize_array(NULL, most, sizeof *spare);
+        max = lists[axis].count > max ? lists[axis].count : max;
+    struct event *spare = mem_resize_array(NULL, max, sizeof *spare);
     for (int axis = 0; axis < 3 && spare; axis++)
         sort_events(lists[axis].events, spare, lists[axis].count);
     mem_free(spare);

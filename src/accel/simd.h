@@ -249,7 +249,7 @@ static inline simd8 simd8_max(simd8 a, simd8 b) {
     return _mm256_max_ps(a, b);
 }
 /* One bit per lane where a <= b. */
-static inline unsigned simd8_at_most(simd8 a, simd8 b) {
+static inline unsigned simd8_at_max(simd8 a, simd8 b) {
     return (unsigned)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LE_OQ));
 }
 #if defined(__AVX2__)
@@ -261,12 +261,12 @@ static inline simd8 simd8_min_bits(simd8 a, simd8 b) {
 static inline simd8 simd8_max_bits(simd8 a, simd8 b) {
     return _mm256_castsi256_ps(_mm256_max_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b)));
 }
-/* The largest of three, or, if all are negative, the one farthest below 0, which simd8_at_most_bits takes for more than
+/* The largest of three, or, if all are negative, the one farthest below 0, which simd8_at_max_bits takes for more than
  * any negative number that is nearer to 0. (Without integers: 0.) */
 static inline simd8 simd8_latest_bits(simd8 a, simd8 b, simd8 c) {
     return simd8_max_bits(simd8_max_bits(a, b), c);
 }
-static inline unsigned simd8_at_most_bits(simd8 a, simd8 b) {
+static inline unsigned simd8_at_max_bits(simd8 a, simd8 b) {
 #if defined(__AVX512VL__)
     return _mm256_cmple_epi32_mask(_mm256_castps_si256(a), _mm256_castps_si256(b));
 #else
@@ -361,7 +361,7 @@ static inline simd8 simd8_min(simd8 a, simd8 b) {
 static inline simd8 simd8_max(simd8 a, simd8 b) {
     return (simd8){_mm_max_ps(a.low, b.low), _mm_max_ps(a.high, b.high)};
 }
-static inline unsigned simd8_at_most(simd8 a, simd8 b) {
+static inline unsigned simd8_at_max(simd8 a, simd8 b) {
     return (unsigned)_mm_movemask_ps(_mm_cmple_ps(a.low, b.low)) |
            (unsigned)_mm_movemask_ps(_mm_cmple_ps(a.high, b.high)) << 4;
 }
@@ -462,7 +462,7 @@ static inline unsigned simd8_negative(simd8 a) {
         bits |= (unsigned)(signbit(a.lane[i]) != 0) << i;
     return bits;
 }
-static inline unsigned simd8_at_most(simd8 a, simd8 b) {
+static inline unsigned simd8_at_max(simd8 a, simd8 b) {
     unsigned bits = 0;
     for (int i = 0; i < 8; i++)
         bits |= (unsigned)(a.lane[i] <= b.lane[i]) << i;
@@ -497,8 +497,8 @@ static inline simd8 simd8_max_bits(simd8 a, simd8 b) {
 static inline simd8 simd8_latest_bits(simd8 a, simd8 b, simd8 c) {
     return simd8_max(simd8_max(a, b), simd8_max(c, simd8_all(0)));
 }
-static inline unsigned simd8_at_most_bits(simd8 a, simd8 b) {
-    return simd8_at_most(a, b);
+static inline unsigned simd8_at_max_bits(simd8 a, simd8 b) {
+    return simd8_at_max(a, b);
 }
 #endif
 

@@ -43,7 +43,7 @@ static inline lanes lanes_multiply_add(lanes a, lanes b, lanes c) {
 static inline lanes lanes_multiply_sub(lanes a, lanes b, lanes c) {
     return _mm512_fmsub_ps(a, b, c);
 }
-static inline unsigned lanes_at_most(lanes a, lanes b) {
+static inline unsigned lanes_at_max(lanes a, lanes b) {
     return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ);
 }
 static inline unsigned lanes_not_negative(lanes a) {
@@ -80,7 +80,7 @@ typedef simd8 lanes;
 #define lanes_max simd8_max
 #define lanes_multiply_add simd8_multiply_add
 #define lanes_multiply_sub simd8_multiply_sub
-#define lanes_at_most simd8_at_most
+#define lanes_at_max simd8_at_max
 #define lanes_not_negative simd8_not_negative
 #define lanes_sign simd8_sign
 #define lanes_size simd8_size

@@ -21,7 +21,7 @@
 
 #include <string.h>
 
-enum { MOST_CELLS = 128 /* along one axis */, BIG_VOXELS = 8 /* a triangle in more of them is kept apart */ };
+enum { MAX_CELLS = 128 /* along one axis */, BIG_VOXELS = 8 /* a triangle in more of them is kept apart */ };
 
 static void set_space(struct triangle_index *index, const struct triangle_set *set) {
     struct vec3 extent = vec3_sub(set->bounds.max, set->bounds.min);
@@ -55,7 +55,7 @@ static void set_cells(struct triangle_index *index, double wanted) {
     }
     for (int k = 0; k < 3; k++) {
         double cells = floor(2 * index->half[k] / side + 0.5);
-        index->cells[k] = cells < 1 ? 1 : cells > MOST_CELLS ? MOST_CELLS : (uint32_t)cells;
+        index->cells[k] = cells < 1 ? 1 : cells > MAX_CELLS ? MAX_CELLS : (uint32_t)cells;
         index->cell[k] = (float)(2 * index->half[k] / index->cells[k]);
         index->inverse_cell[k] = 1 / index->cell[k];
         index->half_single[k] = (float)index->half[k];

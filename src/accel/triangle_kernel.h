@@ -60,7 +60,7 @@
  * that the products they are differences of do not cancel: their sizes are below 4 (S + L)^2 and doubts begin at 2^-49,
  * but of the difference 95 (S + L) L e is left. (What the double arithmetic takes of it, 2^-48 (S + L) times the
  * distance of the origin, is little: with 2 L^2 M >= |det| >= 5 E that distance is less than 2^19 L.) */
-#define LEAST_EXTENT 0x1p-24f
+#define MIN_EXTENT 0x1p-24f
 
 /* The vertices of so few are at hand, and the index of so many is not. */
 enum { FEW_TRIANGLES = 50000, MANY_TRIANGLES = 400000 };
@@ -271,7 +271,7 @@ static inline void make_ready(struct search *s) {
 }
 
 /* The end of a "nearest" search. A hit that is certain, when nothing else has been found, is what it is: only its
- * numbers are left to be worked out, and none of its edge functions is anywhere near zero (LEAST_EXTENT). */
+ * numbers are left to be worked out, and none of its edge functions is anywhere near zero (MIN_EXTENT). */
 static inline bool decide_last(struct search *s) {
     const struct triangle_block *block = s->pending;
     if (!block)
@@ -386,16 +386,16 @@ static inline __attribute__((always_inline)) bool try_block(struct search *s, ui
     t = simd8_flip(t, sign);
     simd8 lx = simd8_max_size(e1x, e2x), ly = simd8_max_size(e1y, e2y), lz = simd8_max_size(e1z, e2z);
     simd8 extent = simd8_max(simd8_max(lx, ly), lz);
-    extent = simd8_max(extent, simd8_all(LEAST_EXTENT)); /* no slack at all would make points certain hits */
+    extent = simd8_max(extent, simd8_all(MIN_EXTENT)); /* no slack at all would make points certain hits */
     simd8 ax = simd8_size(sx), ay = simd8_size(sy), az = simd8_size(sz);
     simd8 w = simd8_multiply_add(extent, simd8_all(180 * 0x1p-24f), simd8_all(error));
     simd8 e = simd8_multiply_add(simd8_max(simd8_max(ax, ay), az), simd8_all(146 * 0x1p-24f), w);
     e = simd8_mul(simd8_mul(e, extent), simd8_all(s->longest));
     simd8 yz = simd8_mul(ly, lz), zx = simd8_mul(lz, lx), xy = simd8_mul(lx, ly);
-    simd8 least = simd8_all(error / 2), each = simd8_all(36 * 0x1p-24f);
-    simd8 slack = simd8_mul(simd8_multiply_add(lx, simd8_all(54 * 0x1p-24f), simd8_multiply_add(ax, each, least)), yz);
-    slack = simd8_multiply_add(simd8_multiply_add(ay, each, least), zx, slack);
-    slack = simd8_multiply_add(simd8_multiply_add(az, each, least), xy, slack);
+    simd8 min = simd8_all(error / 2), each = simd8_all(36 * 0x1p-24f);
+    simd8 slack = simd8_mul(simd8_multiply_add(lx, simd8_all(54 * 0x1p-24f), simd8_multiply_add(ax, each, min)), yz);
+    slack = simd8_multiply_add(simd8_multiply_add(ay, each, min), zx, slack);
+    slack = simd8_multiply_add(simd8_multiply_add(az, each, min), xy, slack);
     simd8 smaller = simd8_min(u, v), rest = simd8_sub(det, simd8_add(u, v));
     simd8 a = simd8_add(smaller, e), c = simd8_multiply_add(e, simd8_all(3), rest);
     simd8 f = simd8_add(t, slack);

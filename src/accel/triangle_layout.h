@@ -17,8 +17,8 @@
 
 enum {
     WIDTH = 8,
-    MOST_BRANCH_DEPTH = 96, /* of the binary hierarchy that a hierarchy is made from, so no node lies deeper */
-    STACK_ENTRIES = MOST_BRANCH_DEPTH * (WIDTH - 1) + WIDTH /* what a search can have waiting */
+    MAX_BRANCH_DEPTH = 96, /* of the binary hierarchy that a hierarchy is made from, so no node lies deeper */
+    STACK_ENTRIES = MAX_BRANCH_DEPTH * (WIDTH - 1) + WIDTH /* what a search can have waiting */
 };
 
 /* Local units. The rounding of a traversal is below 2^-16 (a few hundred steps at most, each off by 2^-24 of 4 or so).

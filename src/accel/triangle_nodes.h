@@ -74,7 +74,7 @@ static inline bool node_take_nearest(const struct wide_node *node, uint32_t octa
     _mm256_store_si256((__m256i *)(void *)child, children);
     enter = _mm256_permutevar8x32_ps(enter, order);
     leave = _mm256_permutevar8x32_ps(leave, order);
-    unsigned lanes = simd8_at_most_bits(enter, leave);
+    unsigned lanes = simd8_at_max_bits(enter, leave);
     if (!lanes)
         return false;
     /* With the first, which comes to lie above the top. */
@@ -103,7 +103,7 @@ static inline bool node_take_any(const struct wide_node *node, simd8 enter, simd
 
 static inline bool node_take_nearest(const struct wide_node *node, uint32_t octant, simd8 enter, simd8 leave,
                                      struct node_stack *stack, size_t *top, uint32_t *reference) {
-    unsigned lanes = simd8_at_most_bits(enter, leave);
+    unsigned lanes = simd8_at_max_bits(enter, leave);
     if (!lanes)
         return false;
     _Alignas(32) float t[WIDTH];
@@ -126,7 +126,7 @@ static inline bool node_take_nearest(const struct wide_node *node, uint32_t octa
 
 static inline bool node_take_any(const struct wide_node *node, simd8 enter, simd8 leave, struct node_stack *stack,
                                  size_t *top, uint32_t *reference) {
-    unsigned lanes = simd8_at_most_bits(enter, leave);
+    unsigned lanes = simd8_at_max_bits(enter, leave);
     if (!lanes)
         return false;
     *reference = node->child[__builtin_ctz(lanes)];

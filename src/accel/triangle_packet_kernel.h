@@ -246,7 +246,7 @@ static inline __attribute__((always_inline)) void split_block(const struct packe
     simd8_store(out->e, e);
     simd8_store(out->slack, simd8_mul(simd8_mul(e, extent), simd8_all(6)));
     out->ids = b->ids;
-    out->used = simd8_at_most(simd8_load(b->corner[0]), simd8_all(4)); /* an unused lane is outside of the frame */
+    out->used = simd8_at_max(simd8_load(b->corner[0]), simd8_all(4)); /* an unused lane is outside of the frame */
 }
 
 /* One ray, eight triangles. */
@@ -264,13 +264,13 @@ static inline __attribute__((always_inline)) void try_ray(struct packet *p, cons
     u = simd8_flip(u, sign);
     v = simd8_flip(v, sign);
     simd8 e = simd8_load(b->e), e3 = simd8_mul(e, simd8_all(3)), slack = simd8_load(b->slack);
-    simd8 least = simd8_min(u, v), rest = simd8_sub(det, simd8_add(u, v));
+    simd8 min = simd8_min(u, v), rest = simd8_sub(det, simd8_add(u, v));
     simd8 before = simd8_sub(simd8_multiply_add(det, simd8_all(p->limit[i]), slack), t);
-    simd8 inside = simd8_min(simd8_add(least, e), simd8_add(rest, e3));
+    simd8 inside = simd8_min(simd8_add(min, e), simd8_add(rest, e3));
     unsigned met = b->used & simd8_not_negative(simd8_min(inside, simd8_min(simd8_add(t, slack), before)));
     if (!met)
         return;
-    inside = simd8_min(simd8_sub(least, e), simd8_sub(rest, e3));
+    inside = simd8_min(simd8_sub(min, e), simd8_sub(rest, e3));
     simd8 ends = simd8_sub(simd8_multiply_sub(det, simd8_all(p->certain[i]), slack), t);
     simd8 begins = simd8_sub(simd8_sub(t, slack), simd8_mul(det, simd8_all(p->begun)));
     unsigned certain = met & simd8_not_negative(simd8_min(inside, simd8_min(begins, ends)));
@@ -313,13 +313,13 @@ static inline __attribute__((always_inline)) void try_group(struct packet *p, co
     u = lanes_flip(u, sign);
     v = lanes_flip(v, sign);
     lanes e = lanes_all(b->e[k]), e3 = lanes_mul(e, lanes_all(3)), slack = lanes_all(b->slack[k]);
-    lanes least = lanes_min(u, v), rest = lanes_sub(det, lanes_add(u, v));
+    lanes min = lanes_min(u, v), rest = lanes_sub(det, lanes_add(u, v));
     lanes before = lanes_sub(lanes_multiply_add(det, lanes_load(p->limit + first), slack), t);
-    lanes inside = lanes_min(lanes_add(least, e), lanes_add(rest, e3));
+    lanes inside = lanes_min(lanes_add(min, e), lanes_add(rest, e3));
     unsigned met = active & lanes_not_negative(lanes_min(inside, lanes_min(lanes_add(t, slack), before)));
     if (!met)
         return;
-    inside = lanes_min(lanes_sub(least, e), lanes_sub(rest, e3));
+    inside = lanes_min(lanes_sub(min, e), lanes_sub(rest, e3));
     lanes ends = lanes_sub(lanes_multiply_sub(det, lanes_load(p->certain + first), slack), t);
     lanes begins = lanes_sub(lanes_sub(t, slack), lanes_mul(det, lanes_all(p->begun)));
     unsigned certain = met & lanes_not_negative(lanes_min(inside, lanes_min(begins, ends)));
@@ -389,7 +389,7 @@ static inline __attribute__((always_inline)) uint64_t meet_box(const struct pack
             enter = lanes_max(lanes_max(ax, ay), lanes_max(az, lanes_all(0)));
             leave = lanes_min(lanes_min(bx, by), lanes_min(bz, lanes_load(p->limit + first)));
         }
-        met |= active & (uint64_t)lanes_at_most(enter, leave) << first;
+        met |= active & (uint64_t)lanes_at_max(enter, leave) << first;
     }
     return met;
 }
@@ -413,11 +413,11 @@ static inline __attribute__((always_inline)) uint32_t push_children(struct packe
     simd8 outside = simd8_sub(zero, far);
     for (int i = 0; i < 2; i++) {
         simd8 low = rows[2 * p->side[i]], high = rows[2 * p->side[i] + 1];
-        simd8 most = simd8_mul(p->slope_max[i] > 0 ? far : near, simd8_all(p->slope_max[i]));
-        simd8 least = simd8_mul(p->slope_min[i] > 0 ? near : far, simd8_all(p->slope_min[i]));
-        outside = simd8_max(outside, simd8_max(simd8_sub(low, most), simd8_sub(least, high)));
+        simd8 max = simd8_mul(p->slope_max[i] > 0 ? far : near, simd8_all(p->slope_max[i]));
+        simd8 min = simd8_mul(p->slope_min[i] > 0 ? near : far, simd8_all(p->slope_min[i]));
+        outside = simd8_max(outside, simd8_max(simd8_sub(low, max), simd8_sub(min, high)));
     }
-    unsigned met = simd8_at_most(outside, zero);
+    unsigned met = simd8_at_max(outside, zero);
     p->nodes++;
     if (!met)
         return top;
@@ -488,7 +488,7 @@ static bool set_beam(struct packet *p) {
     p->side[0] = (z + 1) % 3;
     p->side[1] = (z + 2) % 3;
     p->backwards = d[z][0] < 0;
-    lanes least = lanes_all(INFINITY), slope_min[2], slope_max[2];
+    lanes min = lanes_all(INFINITY), slope_min[2], slope_max[2];
     for (int k = 0; k < 2; k++) {
         slope_min[k] = lanes_all(INFINITY);
         slope_max[k] = lanes_all(-INFINITY);
@@ -496,7 +496,7 @@ static bool set_beam(struct packet *p) {
     lanes turn = lanes_all(p->backwards ? -0.0f : 0.0f);
     const float *inverse[3] = {p->rx, p->ry, p->rz};
     for (unsigned g = 0; g < p->groups; g++) {
-        least = lanes_min(least, lanes_flip(lanes_load(d[z] + g * LANES), turn));
+        min = lanes_min(min, lanes_flip(lanes_load(d[z] + g * LANES), turn));
         lanes over = lanes_flip(lanes_load(inverse[z] + g * LANES), turn);
         for (int k = 0; k < 2; k++) {
             lanes slope = lanes_mul(lanes_load(d[p->side[k]] + g * LANES), over);
@@ -504,7 +504,7 @@ static bool set_beam(struct packet *p) {
             slope_max[k] = lanes_max(slope_max[k], slope);
         }
     }
-    if (!(lanes_smallest(least) >= 0x1p-5f))
+    if (!(lanes_smallest(min) >= 0x1p-5f))
         return false;
     for (int k = 0; k < 2; k++) {
         p->slope_min[k] = lanes_smallest(slope_min[k]) - 0x1p-20f;
@@ -533,18 +533,18 @@ static double power_of_two(uint64_t exponent_bits) {
 
 /* The largest component of the longest and of the shortest direction. False: one is not finite. */
 static bool measure_rays(const struct ray_packet *rays, unsigned count, double *longest, double *shortest) {
-    double most = 0, least = INFINITY;
+    double max = 0, min = INFINITY;
     int bad = 0;
     for (unsigned i = 0; i < count; i++) {
         double x = fabs(rays->direction[0][i]), y = fabs(rays->direction[1][i]), z = fabs(rays->direction[2][i]);
         double size = x > y ? x : y;
         size = z > size ? z : size;
-        most = size > most ? size : most;
-        least = size < least ? size : least;
+        max = size > max ? size : max;
+        min = size < min ? size : min;
         bad |= !(x + y + z < INFINITY);
     }
-    *longest = most;
-    *shortest = least;
+    *longest = max;
+    *shortest = min;
     return !bad;
 }
 

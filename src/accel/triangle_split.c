@@ -152,10 +152,10 @@ void split_range(struct reference *references, const struct range *range, bool h
 }
 
 bool split_floor(struct reference *references, const struct range *range, struct range *floor, struct range *rest) {
-    float least = half_area(range->min, range->max) / 2;
+    float min = half_area(range->min, range->max) / 2;
     uint32_t end = range->first;
     for (uint32_t i = range->first; i < range->first + range->count; i++) {
-        if (half_area(reference_min(&references[i]), reference_max(&references[i])) < least)
+        if (half_area(reference_min(&references[i]), reference_max(&references[i])) < min)
             continue;
         struct reference swap = references[i];
         references[i] = references[end];

@@ -34,7 +34,7 @@ enum {
 #define BLOCK_COST 2.0f
 
 /* A move must bring that much of the surface of the parent: less is rounding, or not worth its time. */
-#define LEAST_GAIN 1e-3f
+#define MIN_GAIN 1e-3f
 
 static void set_box(struct branch *branch, simd4 min, simd4 max) {
     float lo[4], hi[4];
@@ -124,12 +124,12 @@ static uint32_t best_place(const struct branch *branches, uint32_t number) {
     struct {
         uint32_t number;
         float gain;
-    } stack[MOST_BRANCH_DEPTH + 2];
+    } stack[MAX_BRANCH_DEPTH + 2];
     const struct branch *moved = &branches[number];
     const simd4 lo = branch_min(moved), hi = branch_max(moved);
     const uint32_t parent = moved->parent;
     uint32_t pivot = parent, sibling = sibling_of(branches, number), best = NO_BRANCH;
-    float best_gain = branches[parent].area * LEAST_GAIN;
+    float best_gain = branches[parent].area * MIN_GAIN;
     float shrunk = branches[parent].area; /* by which all surfaces up to the pivot become smaller without it */
     simd4 rest_lo = branch_min(&branches[sibling]),
           rest_hi = branch_max(&branches[sibling]); /* the pivot's without it */
@@ -172,7 +172,7 @@ static void reinsert(struct tree *tree, uint32_t number) {
     if (place == NO_BRANCH || place == sibling)
         return;
     uint8_t here = branches[number].height, there = branches[place].height;
-    if (depth_of(branches, place) + 1 + (here > there ? here : there) > MOST_BRANCH_DEPTH)
+    if (depth_of(branches, place) + 1 + (here > there ? here : there) > MAX_BRANCH_DEPTH)
         return;
     uint32_t above = branches[parent].parent;
     put_child(branches, above, parent, sibling);
@@ -200,17 +200,17 @@ static uint32_t promise(const struct tree *tree, uint32_t number) {
 /* The branches that promise most, about `wanted`, the best first: words whose lower half is a branch. NULL: no memory.
  */
 static uint64_t *best_candidate(const struct tree *tree, uint32_t wanted, uint32_t *count) {
-    uint32_t number_of[1 << KEY_BITS] = {0}, least = (1 << KEY_BITS) - 1, found = 0;
+    uint32_t number_of[1 << KEY_BITS] = {0}, min = (1 << KEY_BITS) - 1, found = 0;
     for (uint32_t i = 0; i < tree->count; i++)
         number_of[promise(tree, i) >> (32 - KEY_BITS)]++;
-    for (; least > 0 && found + number_of[least] <= wanted; least--)
-        found += number_of[least];
-    least++; /* the last number that could be counted whole */
+    for (; min > 0 && found + number_of[min] <= wanted; min--)
+        found += number_of[min];
+    min++; /* the last number that could be counted whole */
     uint64_t *words = mem_alloc(((size_t)found + 1) * sizeof *words);
     *count = 0;
     for (uint32_t i = 0; words && i < tree->count; i++) {
         uint32_t bits = promise(tree, i);
-        if (bits >> (32 - KEY_BITS) >= least)
+        if (bits >> (32 - KEY_BITS) >= min)
             words[(*count)++] = (uint64_t)~bits << 32 | i;
     }
     if (words)

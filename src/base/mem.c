@@ -75,12 +75,12 @@ void mem_unreserve(uint64_t size) {
 
 #ifdef GRAY_FAULTS
 /* What blocks hold now, and at most since mem_peak_begin; only builds that inject faults count, and only tests read. */
-static _Atomic uint64_t bytes_held, bytes_most;
+static _Atomic uint64_t bytes_held, bytes_max;
 
 static void *taken(void *block) {
     uint64_t held = atomic_fetch_add(&bytes_held, block ? malloc_usable_size(block) : 0);
-    uint64_t now = held + (block ? malloc_usable_size(block) : 0), most = atomic_load(&bytes_most);
-    while (now > most && !atomic_compare_exchange_weak(&bytes_most, &most, now))
+    uint64_t now = held + (block ? malloc_usable_size(block) : 0), max = atomic_load(&bytes_max);
+    while (now > max && !atomic_compare_exchange_weak(&bytes_max, &max, now))
         continue;
     return block;
 }
@@ -92,12 +92,12 @@ static void given_back(void *block) {
 
 uint64_t mem_peak_begin(void) {
     uint64_t held = atomic_load(&bytes_held);
-    atomic_store(&bytes_most, held);
+    atomic_store(&bytes_max, held);
     return held;
 }
 
 uint64_t mem_peak(void) {
-    return atomic_load(&bytes_most);
+    return atomic_load(&bytes_max);
 }
 #else
 static void *taken(void *block) {

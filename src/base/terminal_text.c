@@ -10,7 +10,7 @@
 static const char own[] = "gray:", mark[] = "scene: ";
 
 size_t utf8_length(const unsigned char *at) {
-    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+    static const uint32_t min[] = {0, 0, 0x80, 0x800, 0x10000};
     size_t length = at[0] < 0x80 ? 1 : at[0] >> 5 == 6 ? 2 : at[0] >> 4 == 14 ? 3 : at[0] >> 3 == 30 ? 4 : 0;
     if (length < 2)
         return length;
@@ -20,7 +20,7 @@ size_t utf8_length(const unsigned char *at) {
             return 0;
         code = code << 6 | (at[i] & 0x3fu);
     }
-    return code < least[length] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000) ? 0 : length;
+    return code < min[length] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000) ? 0 : length;
 }
 
 uint32_t utf8_code(const unsigned char *at, size_t length) {

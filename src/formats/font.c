@@ -186,7 +186,7 @@ static bool outline_of(struct setting *s, FT_UInt index, struct font_glyph *glyp
 
 /* The next letter of UTF-8 (RFC 3629); false for what is none. */
 static bool next_letter(const uint8_t **text, uint32_t *code) {
-    static const uint32_t least[] = {0, 0x80, 0x800, 0x10000};
+    static const uint32_t min[] = {0, 0x80, 0x800, 0x10000};
     const uint8_t *p = *text;
     int more = *p < 0x80                 ? 0
                : *p >= 0xc2 && *p < 0xe0 ? 1
@@ -203,7 +203,7 @@ static bool next_letter(const uint8_t **text, uint32_t *code) {
     }
     *code = c;
     *text = p + more + 1;
-    return c >= least[more] && c <= 0x10ffff && (c < 0xd800 || c > 0xdfff);
+    return c >= min[more] && c <= 0x10ffff && (c < 0xd800 || c > 0xdfff);
 }
 
 static bool count_letters(struct setting *s, const char *text, uint32_t *count) {

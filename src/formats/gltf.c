@@ -143,27 +143,27 @@ static bool read_corners(struct gltf *g, const struct primitive *p, uint64_t ava
         return error_no_memory(g->error, g->path);
     if (!gltf_accessor_read_whole(g, p->indices, &a, out->index))
         return false;
-    uint32_t least = UINT32_MAX, most = 0;
+    uint32_t min = UINT32_MAX, max = 0;
     for (uint64_t i = 0; i < a.count; i++) {
-        least = out->index[i] < least ? out->index[i] : least;
-        most = out->index[i] > most ? out->index[i] : most;
+        min = out->index[i] < min ? out->index[i] : min;
+        max = out->index[i] > max ? out->index[i] : max;
     }
-    if (a.count && most >= available)
-        return gltf_fail(g, p->where, "vertex %u, but there are only %llu, counted from 0", most,
+    if (a.count && max >= available)
+        return gltf_fail(g, p->where, "vertex %u, but there are only %llu, counted from 0", max,
                          (unsigned long long)available);
-    out->first = a.count ? least : 0;
-    out->vertices = a.count ? (uint64_t)most - least + 1 : 0;
+    out->first = a.count ? min : 0;
+    out->vertices = a.count ? (uint64_t)max - min + 1 : 0;
     return produce(g, out->vertices, p->where);
 }
 
 /* The numbers of one attribute for the vertices of the primitive, `kept` of each. */
 static bool read_attribute(struct gltf *g, const struct primitive *p, uint32_t accessor, const struct corners *corners,
-                           int least, uint64_t available, double **out, int *components) {
+                           int min, uint64_t available, double **out, int *components) {
     struct gltf_accessor a;
     if (!gltf_accessor(g, accessor, &a))
         return false;
-    if (a.components < least || a.components > 4)
-        return gltf_fail(g, p->where, "accessors[%u] has %d numbers an element, not %d", accessor, a.components, least);
+    if (a.components < min || a.components > 4)
+        return gltf_fail(g, p->where, "accessors[%u] has %d numbers an element, not %d", accessor, a.components, min);
     if (a.count != available)
         return gltf_fail(g, p->where, "accessors[%u] has %llu elements for %llu vertices", accessor,
                          (unsigned long long)a.count, (unsigned long long)available);
@@ -214,7 +214,7 @@ static bool add_vertices(struct gltf *g, const struct primitive *p, const struct
                          const struct mesh_plan *plan, struct model_mesh *mesh) {
     const struct {
         uint32_t accessor;
-        int least, kept;
+        int min, kept;
         struct list *list;
         bool colour;
     } tables[] = {{p->position, 3, 3, &mesh->vertices, false},
@@ -228,7 +228,7 @@ static bool add_vertices(struct gltf *g, const struct primitive *p, const struct
         if (!given && !(tables[t].colour && plan->colours))
             continue;
         bool ok = !given ||
-                  read_attribute(g, p, tables[t].accessor, corners, tables[t].least, available, &numbers, &components);
+                  read_attribute(g, p, tables[t].accessor, corners, tables[t].min, available, &numbers, &components);
         for (uint64_t i = 0; ok && t == 2 && i < corners->vertices; i++) /* v from below */
             numbers[i * (uint64_t)components + 1] = 1 - numbers[i * (uint64_t)components + 1];
         ok = ok &&
@@ -301,7 +301,7 @@ static bool add_primitive(struct gltf *g, const struct primitive *p, const struc
                           p->normal == MODEL_NONE ? MODEL_NONE : (uint32_t)mesh->normals.count,
                           p->uv == MODEL_NONE ? MODEL_NONE : (uint32_t)mesh->uvs.count};
     bool ok = read_corners(g, p, a.count, &corners);
-    if (ok && mesh->vertices.count + corners.vertices > model_most(g->model))
+    if (ok && mesh->vertices.count + corners.vertices > model_max(g->model))
         ok = gltf_fail(g, p->where, "too many vertices");
     ok = ok && add_vertices(g, p, &corners, a.count, plan, mesh) &&
          add_triangles(g, p, &corners, plan, &bases, slot, mesh);

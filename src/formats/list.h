@@ -17,12 +17,12 @@ struct list {
 /* Room for `more` items of `size` bytes behind the last one; NULL without memory. The caller raises count. */
 static inline void *list_room(struct list *list, size_t more, size_t size) {
     if (!list->items || list->capacity - list->count < more) {
-        size_t least, capacity = list->capacity + list->capacity / 2 + 64;
-        bool beyond = __builtin_add_overflow(list->count, more, &least);
+        size_t min, capacity = list->capacity + list->capacity / 2 + 64;
+        bool beyond = __builtin_add_overflow(list->count, more, &min);
         assert(!beyond); /* both are bounded by the bytes of a file */
         (void)beyond;
-        if (capacity < least)
-            capacity = least;
+        if (capacity < min)
+            capacity = min;
         void *items = mem_resize_array(list->items, capacity, size);
         if (!items)
             return NULL;

@@ -149,8 +149,8 @@ static struct mesh_input tables_input(const struct model_mesh *m) {
 }
 
 static bool finish_mesh(struct model *model, struct model_mesh *m, struct error *error) {
-    if (m->vertices.count > model_most(model) || m->vertex_index.count > model_most(model))
-        return error_set(error, ERROR_SCENE, "%s: more than %zu vertices or corners", model->path, model_most(model));
+    if (m->vertices.count > model_max(model) || m->vertex_index.count > model_max(model))
+        return error_set(error, ERROR_SCENE, "%s: more than %zu vertices or corners", model->path, model_max(model));
     assert(m->starts.count <= m->vertex_index.count); /* no face without corners */
     uint32_t *start = list_room(&m->starts, 1, sizeof *start);
     if (!start)

@@ -69,7 +69,7 @@ struct model_options {
     bool weld, flip;                       /* one vertex for each place; faces reversed */
     const struct path_policy *path_policy; /* where files may be read; NULL: everywhere */
     bool alone;                            /* no other file is opened (tests of readers with strangers' bytes) */
-    size_t most;                           /* vertices, and corners, of a mesh; 0: as many as an index can name */
+    size_t max;                            /* vertices, and corners, of a mesh; 0: as many as an index can name */
 };
 
 enum { MODEL_WARNINGS = 16 };
@@ -85,8 +85,8 @@ struct model {
 };
 
 /* How many vertices, and how many corners, a mesh may have: some numbers of 32 bits are kept for other meanings. */
-static inline size_t model_most(const struct model *model) {
-    return model->options.most ? model->options.most : MODEL_NONE - 8;
+static inline size_t model_max(const struct model *model) {
+    return model->options.max ? model->options.max : MODEL_NONE - 8;
 }
 
 /* Reads the file; meshes are made with the options. Errors are one line: FILE:LINE: what, or FILE: byte N: what. */

@@ -94,8 +94,8 @@ static const char *rest(struct library *l, size_t *length) {
 }
 
 /* Up to three numbers behind an option; those that are given replace what is in `out`. */
-static void option_numbers(struct library *l, double out[3], int most) {
-    for (int i = 0; i < most; i++) {
+static void option_numbers(struct library *l, double out[3], int max) {
+    for (int i = 0; i < max; i++) {
         size_t length = next_word(l);
         double value;
         if (!word_is_number(l, length, &value))

@@ -41,7 +41,7 @@ bool names_add(struct names *names, const char *text, size_t length, uint32_t *n
     size_t at = place_of(names, text, length);
     if (names->table[at] == EMPTY) {
         struct name *name = list_room(&names->entries, 1, sizeof *name);
-        if (!name || names->entries.count >= names->most)
+        if (!name || names->entries.count >= names->max)
             return false;
         *name = (struct name){text, length};
         names->table[at] = (uint32_t)names->entries.count++;

@@ -9,12 +9,12 @@ struct name {
     size_t length;
 };
 
-/* Owner: the caller, names_destroy. Zero value but for `most`: none. */
+/* Owner: the caller, names_destroy. Zero value but for `max`: none. */
 struct names {
     struct list entries; /* struct name */
     uint32_t *table;     /* numbers by hash, open addressing, at most half full */
     size_t capacity;
-    size_t most; /* more names are reported as lack of memory */
+    size_t max; /* more names are reported as lack of memory */
 };
 /* False: no memory. *number is the one of the equal name that was there, or a new one. */
 bool names_add(struct names *names, const char *text, size_t length, uint32_t *number);

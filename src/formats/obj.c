@@ -149,9 +149,9 @@ static bool read_number(struct reader *reader, double *out) {
     return true;
 }
 
-/* The numbers of a v, vt or vn: at least `least`, the first `kept` of them into a new element (0 where missing); what
+/* The numbers of a v, vt or vn: at least `min`, the first `kept` of them into a new element (0 where missing); what
  * follows (weights, vertex colours, a third texture coordinate) must be numbers too. */
-static bool read_element(struct reader *reader, int kind, int least, int kept) {
+static bool read_element(struct reader *reader, int kind, int min, int kept) {
     double *element = room(reader, &reader->elements[kind], 1, (size_t)kept * sizeof *element);
     if (!element)
         return false;
@@ -165,10 +165,10 @@ static bool read_element(struct reader *reader, int kind, int least, int kept) {
         if (count < kept)
             element[count] = value;
     }
-    if (count < least)
+    if (count < min)
         return error_set(reader->error, ERROR_SCENE, "%s:%zu: %s needs %d number%s, not %d", reader->path, reader->line,
-                         kind == VERTEX ? "v" : kind_names[kind], least, least == 1 ? "" : "s", count);
-    if (++reader->elements[kind].count > model_most(reader->model))
+                         kind == VERTEX ? "v" : kind_names[kind], min, min == 1 ? "" : "s", count);
+    if (++reader->elements[kind].count > model_max(reader->model))
         return fail(reader, "more elements than an index can name");
     return true;
 }
@@ -228,7 +228,7 @@ static bool read_corner(struct reader *reader, uint32_t corner[KINDS]) {
 /* One more corner in the index lists; those of uvs and normals come into being with the first index that they hold. */
 static bool add_corner(struct reader *reader, const uint32_t corner[KINDS]) {
     size_t before = reader->indices[VERTEX].count;
-    if (before >= model_most(reader->model))
+    if (before >= model_max(reader->model))
         return fail(reader, "more corners than an index can name");
     for (int kind = VERTEX; kind < KINDS; kind++) {
         struct list *list = &reader->indices[kind];
@@ -429,7 +429,7 @@ static bool check_indices(const struct reader *reader) {
 static bool make_slots(struct reader *reader, struct model_mesh *mesh) {
     bool by_material = reader->materials.names.entries.count > 0;
     struct slotting *used = by_material ? &reader->materials : &reader->groups;
-    struct names known = {.most = model_most(reader->model)};
+    struct names known = {.max = model_max(reader->model)};
     struct list last = {0}; /* uint32_t: the material of a known name */
     bool ok = true;
     for (uint32_t i = 0; ok && i < reader->model->materials.count; i++) {
@@ -489,8 +489,8 @@ bool obj_load(struct model *model, const char *text, size_t size, struct error *
                             .model = model,
                             .materials.current = UNNAMED,
                             .groups.current = UNNAMED,
-                            .materials.names.most = model_most(model),
-                            .groups.names.most = model_most(model)};
+                            .materials.names.max = model_max(model),
+                            .groups.names.max = model_max(model)};
     if (size >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0))
         return fail(&reader, "this is UTF-16 text; an OBJ file is plain ASCII or UTF-8");
     if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0)

@@ -30,7 +30,7 @@ struct element {
     enum element_kind kind;
     uint64_t count;
     int first, property_count; /* in ply.properties */
-    uint64_t least;            /* bytes of the smallest row */
+    uint64_t min;              /* bytes of the smallest row */
 };
 
 enum format { ASCII, LITTLE, BIG };
@@ -192,7 +192,7 @@ static bool read_property(struct ply *ply, const struct words *words) {
     ply->properties[ply->property_count++] = p;
     element->property_count++;
     /* In text every number is a digit and a blank or line end at least. */
-    element->least += ply->format == ASCII ? 2 : number_size(p.is_list ? p.count_type : p.type);
+    element->min += ply->format == ASCII ? 2 : number_size(p.is_list ? p.count_type : p.type);
     return true;
 }
 
@@ -425,7 +425,7 @@ static bool add_face(struct ply *ply, const uint32_t *corners, uint32_t count) {
     uint32_t *index = start ? list_room(&mesh->vertex_index, count, sizeof *index) : NULL;
     if (!index)
         return no_memory(ply);
-    if (mesh->vertex_index.count + count > model_most(ply->model))
+    if (mesh->vertex_index.count + count > model_max(ply->model))
         return fail(ply, "more corners than an index can name");
     *start = (uint32_t)mesh->vertex_index.count;
     mesh->starts.count++;
@@ -612,7 +612,7 @@ static bool read_rows(struct ply *ply, const struct element *element) {
     if (element->property_count == 0)
         return true;
     /* The last line of a text needs no line end. */
-    if (element->count > (left + 1) / element->least)
+    if (element->count > (left + 1) / element->min)
         return error_set(ply->error, ERROR_SCENE,
                          ply->format == ASCII
                              ? "%s:%zu: the header promises %llu of '%s', but the file is too short for them"
@@ -620,9 +620,9 @@ static bool read_rows(struct ply *ply, const struct element *element) {
                          ply->path, ply->format == ASCII ? ply->line : (size_t)(ply->at - ply->data),
                          (unsigned long long)element->count, element->name);
     if (skip_at_once(ply, element)) {
-        if (element->count > left / element->least)
+        if (element->count > left / element->min)
             return fail(ply, "the file ends too early");
-        ply->at += element->count * element->least;
+        ply->at += element->count * element->min;
         return true;
     }
     if (!reserve(ply, element))

@@ -50,7 +50,7 @@ static bool load_binary(struct model *model, struct model_mesh *mesh, const uint
     if (count > (size - HEADER) / FACET)
         return error_set(error, ERROR_SCENE, "%s: byte 80: %u triangles need %llu bytes, but the file has only %zu",
                          model->path, count, (unsigned long long)count * FACET + HEADER, size);
-    if (3 * (size_t)count > model_most(model))
+    if (3 * (size_t)count > model_max(model))
         return error_set(error, ERROR_SCENE, "%s: byte 80: %u triangles are too many", model->path, count);
     double(*vertices)[3] = list_room(&mesh->vertices, 3 * (size_t)count, sizeof *vertices);
     if (!vertices)
@@ -171,7 +171,7 @@ static bool load_text(struct model *model, struct model_mesh *mesh, const char *
         } else {
             return fail(&t, length, inside ? "facet or endsolid" : "solid");
         }
-        if (mesh->vertices.count > model_most(model))
+        if (mesh->vertices.count > model_max(model))
             return error_set(error, ERROR_SCENE, "%s:%zu: too many triangles", model->path, t.line);
     }
     if (inside)

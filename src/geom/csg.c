@@ -79,10 +79,10 @@ static void sort_crossings(struct crossing *items, uint32_t sorted, uint32_t cou
 /* Leaves whose boxes the line meets, and where it enters them. Before that a leaf cannot change anything, so it is
  * asked only when the sweep comes there; the nearest surface is mostly found before all are. Of more than these all are
  * asked at once. */
-enum { WAITING_MOST = 16 };
+enum { WAITING_MAX = 16 };
 struct waiting {
-    double enter[WAITING_MOST];
-    uint32_t leaf[WAITING_MOST];
+    double enter[WAITING_MAX];
+    uint32_t leaf[WAITING_MAX];
     uint32_t count;
 };
 
@@ -382,7 +382,7 @@ static bool add_leaf(struct sweep *s, uint32_t leaf, double enter) {
     struct waiting *w = s->waiting;
     if (!w)
         return ask_leaf(s, leaf);
-    if (w->count < WAITING_MOST) {
+    if (w->count < WAITING_MAX) {
         w->enter[w->count] = enter;
         w->leaf[w->count++] = leaf;
         return true;

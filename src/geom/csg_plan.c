@@ -261,7 +261,7 @@ static void select_middle(const struct csg_plan *plan, uint32_t *order, uint32_t
 }
 
 /* Halving 65535 leaves goes 14 calls deep. */
-static void build_bounds(struct csg_plan *plan, uint32_t first, uint32_t count, uint32_t most) {
+static void build_bounds(struct csg_plan *plan, uint32_t first, uint32_t count, uint32_t max) {
     struct csg_bound *bound = &plan->bounds[plan->bound_count++];
     *bound = (struct csg_bound){.box = box_empty(), .first = first};
     struct box middles = box_empty();
@@ -270,15 +270,15 @@ static void build_bounds(struct csg_plan *plan, uint32_t first, uint32_t count, 
         bound->box = box_join(bound->box, *b);
         middles = box_add_point(middles, vec3_make(box_middle(b, 0), box_middle(b, 1), box_middle(b, 2)));
     }
-    if (count <= most) {
+    if (count <= max) {
         bound->count = count;
     } else {
         struct vec3 size = vec3_sub(middles.max, middles.min);
         int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
         uint32_t half = count / 2;
         select_middle(plan, plan->order + first, count, half, axis);
-        build_bounds(plan, first, half, most);
-        build_bounds(plan, first + half, count - half, most);
+        build_bounds(plan, first, half, max);
+        build_bounds(plan, first + half, count - half, max);
     }
     bound->skip = plan->bound_count;
 }
@@ -398,8 +398,8 @@ const struct csg *csg_build_clipped(struct arena *arena, const struct csg_leaf *
     }
     /* n leaves, n - 1 operations (or n - 2 and a clip), inverses of each of them; this also bounds what is allocated */
     bool clipped = solid_length < program_length;
-    uint32_t least = 2 * leaf_count - (clipped ? 2 : 1);
-    if (leaf_count == 0 || solid_length == 0 || program_length < least || program_length > 2 * least) {
+    uint32_t min = 2 * leaf_count - (clipped ? 2 : 1);
+    if (leaf_count == 0 || solid_length == 0 || program_length < min || program_length > 2 * min) {
         error_set(error, ERROR_SCENE, "CSG: malformed program");
         return NULL;
     }

@@ -71,8 +71,8 @@ struct hit {
  * origin along normal_geometric), where nothing more of its primitive is, does not meet it again. Directions within
  * 2^-20 of the surface are left to the search, which knows what rounding does. */
 static inline uint32_t hit_passes_from(const struct hit *hit, double side, struct vec3 direction) {
-    double rise = vec3_dot(direction, hit->normal_geometric), least = 0x1p-20 * vec3_max_abs(direction);
-    bool apart = hit->hull == HULL_BEHIND ? rise > least : hit->hull == HULL_FLAT && (side < 0 ? -rise : rise) > least;
+    double rise = vec3_dot(direction, hit->normal_geometric), min = 0x1p-20 * vec3_max_abs(direction);
+    bool apart = hit->hull == HULL_BEHIND ? rise > min : hit->hull == HULL_FLAT && (side < 0 ? -rise : rise) > min;
     return apart ? hit->placed + 1 : 0;
 }
 /* The same of a ray that starts on the side where it goes. */

@@ -36,9 +36,9 @@ void mesh_release(struct mesh *mesh) {
 }
 
 static uint32_t grid_voxels(const struct mesh *mesh) {
-    enum { TRIANGLES_PER_VOXEL = 8, MOST_VOXELS = 1 << 18 };
+    enum { TRIANGLES_PER_VOXEL = 8, MAX_VOXELS = 1 << 18 };
     uint32_t voxels = mesh->set.count / TRIANGLES_PER_VOXEL;
-    return voxels < 1 ? 1 : voxels > MOST_VOXELS ? MOST_VOXELS : voxels;
+    return voxels < 1 ? 1 : voxels > MAX_VOXELS ? MAX_VOXELS : voxels;
 }
 
 bool mesh_build_accel(const struct mesh *mesh, enum accel_kind kind, struct pool *pool, struct error *error) {

@@ -202,13 +202,13 @@ static void gather_edges(struct smoothing *s) {
     }
 }
 
-static void unite_across(struct smoothing *s, uint32_t c, uint32_t d, double least_cosine) {
+static void unite_across(struct smoothing *s, uint32_t c, uint32_t d, double min_cosine) {
     const struct mesh_input *input = s->input;
     uint32_t c_next = next_corner(s, c), d_next = next_corner(s, d);
     bool opposite = s->same[input->vertex_index[c]] == s->same[input->vertex_index[d_next]] &&
                     s->same[input->vertex_index[c_next]] == s->same[input->vertex_index[d]];
     struct vec3 n = s->normals[s->face_of[c]], m = s->normals[s->face_of[d]];
-    if (!opposite || s->face_of[c] == s->face_of[d] || !(vec3_dot(n, m) >= least_cosine))
+    if (!opposite || s->face_of[c] == s->face_of[d] || !(vec3_dot(n, m) >= min_cosine))
         return;
     unite(s->set, c, d_next);
     unite(s->set, c_next, d);
@@ -216,7 +216,7 @@ static void unite_across(struct smoothing *s, uint32_t c, uint32_t d, double lea
 
 static void unite_smooth_edges(struct smoothing *s, double degrees) {
     /* A little more than the angle, so that rounding splits no edge that has it exactly; 180 takes everything. */
-    double least = degrees >= 180 ? -2 : el_cos(degrees * (3.14159265358979323846 / 180)) - 0x1p-40;
+    double min = degrees >= 180 ? -2 : el_cos(degrees * (3.14159265358979323846 / 180)) - 0x1p-40;
     for (uint32_t v = 0; v < s->input->vertex_count; v++) {
         uint64_t *uses = s->uses + s->start[v];
         size_t count = s->start[v + 1] - s->start[v], end;
@@ -225,7 +225,7 @@ static void unite_smooth_edges(struct smoothing *s, double degrees) {
             for (end = i + 1; end < count && uses[end] >> 32 == uses[i] >> 32; end++)
                 continue;
             if (end == i + 2 && uses[i] >> 32 != v)
-                unite_across(s, (uint32_t)uses[i], (uint32_t)uses[i + 1], least);
+                unite_across(s, (uint32_t)uses[i], (uint32_t)uses[i + 1], min);
         }
     }
 }

@@ -10,7 +10,7 @@
 #include <string.h>
 
 enum { FINEST = 1024 };
-#define MOST_CELLS 8.0e6
+#define MAX_CELLS 8.0e6
 
 static struct vec3 point_of(const double (*points)[3], int i) {
     return vec3_make(points[i][0], points[i][1], points[i][2]);
@@ -133,7 +133,7 @@ bool patch_tessellate(struct arena *arena, const struct patch_input *in, struct 
     for (uint32_t k = 0; k < in->count; k++)
         steps = fmax(steps, steps_needed(in->points + 16 * (size_t)k, tolerance));
     steps = ceil(steps);
-    if (!(steps <= FINEST && steps * steps * in->count <= MOST_CELLS))
+    if (!(steps <= FINEST && steps * steps * in->count <= MAX_CELLS))
         return error_set(error, ERROR_SCENE,
                          "%s: a tolerance of %g would cut each of %u patches into %.0f x %.0f cells; that is too many",
                          in->name, tolerance, in->count, steps, steps);

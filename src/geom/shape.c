@@ -14,7 +14,7 @@
 /* What a mesh is expected to put on the scratch; when it is more the scratch grows between rays. */
 #define MESH_CROSSINGS_GUESS 256
 /* The most crossings that the shapes answered by analytic_crossings can have. */
-enum { ANALYTIC_MOST = SUPERELLIPSOID_MOST };
+enum { ANALYTIC_MAX = SUPERELLIPSOID_MAX };
 
 const char *shape_kind_name(enum shape_kind kind) {
     static const char *const names[] = {SHAPE_KINDS(LIST_WORD)};
@@ -323,7 +323,7 @@ const char *shape_why_open(const struct shape *shape) {
 }
 
 /* All crossings of the whole line in order with a shape that has only a few. */
-static int analytic_crossings(const struct shape *shape, const struct ray *ray, struct crossing out[ANALYTIC_MOST]) {
+static int analytic_crossings(const struct shape *shape, const struct ray *ray, struct crossing out[ANALYTIC_MAX]) {
     switch (shape->kind) {
     case SHAPE_SPHERE:
         return sphere_crossings(shape->sphere.centre, shape->sphere.radius, ray, out) ? 2 : 0;
@@ -354,7 +354,7 @@ static int analytic_crossings(const struct shape *shape, const struct ray *ray, 
 }
 
 static bool analytic_nearest(const struct shape *shape, const struct ray *ray, struct crossing *out) {
-    struct crossing all[ANALYTIC_MOST];
+    struct crossing all[ANALYTIC_MAX];
     int count = analytic_crossings(shape, ray, all);
     for (int i = 0; i < count; i++)
         if (all[i].t > ray->t_min && all[i].t < ray->t_max) {
@@ -508,9 +508,9 @@ bool shape_crossings(const struct shape *shape, const struct ray *ray, struct ge
     case SHAPE_TORUS:
     case SHAPE_SUPERELLIPSOID:
     case SHAPE_FLAT: {
-        struct crossing all[ANALYTIC_MOST];
+        struct crossing all[ANALYTIC_MAX];
         scratch->shape_tests++;
-        if (scratch->capacity - scratch->used >= ANALYTIC_MOST) { /* nearly always */
+        if (scratch->capacity - scratch->used >= ANALYTIC_MAX) { /* nearly always */
             uint32_t found = (uint32_t)analytic_crossings(shape, ray, &scratch->items[scratch->used]);
             *out = (struct crossing_list){scratch->used, found};
             scratch->used += found;
@@ -659,7 +659,7 @@ uint32_t shape_scratch_need(const struct shape *shape) {
     case SHAPE_TORUS:
         return 4;
     case SHAPE_SUPERELLIPSOID:
-        return SUPERELLIPSOID_MOST;
+        return SUPERELLIPSOID_MAX;
     case SHAPE_LATHE:
         return lathe_scratch_need(shape->lathe);
     case SHAPE_PRISM:

@@ -82,8 +82,8 @@ static unsigned front(struct vec3 g) {
 /* Cells that lie behind what was found are left out, and so are those in which the sum cannot attain the threshold; the
  * cells in front come first. A cell of the last level, or any when the search has taken too long, counts as full. */
 static void reach_along(struct reach *search, const struct box *cell, int depth) {
-    double most = vec3_dot(search->g, corner(cell, front(search->g)));
-    if (most <= search->furthest)
+    double max = vec3_dot(search->g, corner(cell, front(search->g)));
+    if (max <= search->furthest)
         return;
     if (search->work < CELL_WORK) {
         if (!may_be_inside(search, cell))
@@ -98,7 +98,7 @@ static void reach_along(struct reach *search, const struct box *cell, int depth)
             return;
         }
     }
-    search->furthest = most;
+    search->furthest = max;
 }
 
 /* k (1 - x^2)^2 = threshold. */
@@ -273,13 +273,13 @@ static uint32_t strongest(const struct blob *blob, const struct line *line, cons
                           uint32_t count, double s) {
     struct vec3 p = line_at(line, s);
     uint32_t best = UINT32_MAX;
-    double most = -INFINITY;
+    double max = -INFINITY;
     for (uint32_t i = 0; i < count; i++) {
         uint32_t index = acting[i].part / REGIONS;
         const struct blob_element *e = &blob->elements[index];
         double f = field(e, vec3_length(vec3_sub(p, axis_point(e, p))));
-        if (f > most || (f == most && index < best)) {
-            most = f;
+        if (f > max || (f == max && index < best)) {
+            max = f;
             best = index;
         }
     }
@@ -399,10 +399,10 @@ void blob_describe(const struct blob *blob, const struct ray *ray, const struct 
                    struct surface *out) {
     struct vec3 point = ray_at(ray, crossing->t), gradient;
     double off = field_at(blob, point, &gradient), steep = vec3_length(gradient);
-    double least = 0x1p-20 * blob->threshold / blob->elements[crossing->part].radius;
+    double min = 0x1p-20 * blob->threshold / blob->elements[crossing->part].radius;
     /* One step along the gradient takes off what the ray's rounding left, unless the field is flat here. */
     double error = 0x1p-46 * blob->size;
-    if (steep > least && fabs(off) < 0x1p-20 * blob->threshold)
+    if (steep > min && fabs(off) < 0x1p-20 * blob->threshold)
         point = vec3_add_scaled(point, gradient, -off / (steep * steep));
     else
         error = 0x1p-22 * blob->size;

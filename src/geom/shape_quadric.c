@@ -78,7 +78,7 @@ static struct centred centred(const struct quadric *q) {
     double cx = yy * zz - yz * yz, cy = xx * zz - xz * xz, cz = xx * yy - xy * xy;
     double kxy = xz * yz - xy * zz, kxz = xy * yz - xz * yy, kyz = xy * xz - yz * xx;
     double det = xx * cx + xy * kxy + xz * kxz;
-    double size = fabs(xx) + fabs(yy) + fabs(zz) + fabs(xy) + fabs(xz) + fabs(yz), least = 0x1p-30 * size * size * size;
+    double size = fabs(xx) + fabs(yy) + fabs(zz) + fabs(xy) + fabs(xz) + fabs(yz), min = 0x1p-30 * size * size * size;
     struct vec3 g = {-c[6] / (2 * det), -c[7] / (2 * det), -c[8] / (2 * det)};
     return (struct centred){.cx = cx,
                             .cy = cy,
@@ -89,8 +89,8 @@ static struct centred centred(const struct quadric *q) {
                             .det = det,
                             .centre = {cx * g.x + kxy * g.y + kxz * g.z, kxy * g.x + cy * g.y + kyz * g.z,
                                        kxz * g.x + kyz * g.y + cz * g.z},
-                            .has_centre = fabs(det) > least,
-                            .definite = xx > 0 && cz > 0 && det > least};
+                            .has_centre = fabs(det) > min,
+                            .definite = xx > 0 && cz > 0 && det > min};
 }
 
 /* Of a positive definite one whose solid is not empty the reach along g is the square root of g . M g, M the inverse
@@ -142,15 +142,15 @@ bool quadric_extent(const struct quadric *q, struct vec3 g, double *lo, double *
 
 /* ---- image coordinates ---- */
 
-static int sign_of(double a, double least) {
-    return a > least ? 1 : a < -least ? -1 : 0;
+static int sign_of(double a, double min) {
+    return a > min ? 1 : a < -min ? -1 : 0;
 }
 
 /* The axis whose square differs in sign from the other two: that of a cylinder, cone, paraboloid or hyperboloid. When
  * all differ the one without a square; else y. */
 static int axis_of(const struct quadric *q) {
-    const double *c = q->c, least = 0x1p-30 * (fabs(c[0]) + fabs(c[1]) + fabs(c[2]));
-    int x = sign_of(c[0], least), y = sign_of(c[1], least), z = sign_of(c[2], least);
+    const double *c = q->c, min = 0x1p-30 * (fabs(c[0]) + fabs(c[1]) + fabs(c[2]));
+    int x = sign_of(c[0], min), y = sign_of(c[1], min), z = sign_of(c[2], min);
     if (x == z)
         return 1;
     if (y == z)

@@ -23,14 +23,14 @@ struct norm {
 };
 
 static struct norm norm_of(double a, double b, double p) {
-    double most = fmax(a, b), least = fmin(a, b);
-    if (!(most > 0))
+    double max = fmax(a, b), min = fmin(a, b);
+    if (!(max > 0))
         return (struct norm){0, 1, 1};
-    double ratio = least / most, power = ratio > 0 ? el_pow(ratio, p) : 0, sum = 1 + power;
-    double factor = el_pow(sum, 1 / p), d_most = factor / sum;
-    double d_least = ratio > 0 ? d_most * power / ratio : p > 1 ? 0 : p < 1 ? INFINITY : 1;
-    bool a_is_most = a >= b;
-    return (struct norm){most * factor, a_is_most ? d_most : d_least, a_is_most ? d_least : d_most};
+    double ratio = min / max, power = ratio > 0 ? el_pow(ratio, p) : 0, sum = 1 + power;
+    double factor = el_pow(sum, 1 / p), d_max = factor / sum;
+    double d_min = ratio > 0 ? d_max * power / ratio : p > 1 ? 0 : p < 1 ? INFINITY : 1;
+    bool a_is_max = a >= b;
+    return (struct norm){max * factor, a_is_max ? d_max : d_min, a_is_max ? d_min : d_max};
 }
 
 static double value_at(const struct superellipsoid *s, struct vec3 p) {
@@ -138,7 +138,7 @@ static struct range range_add_scaled(struct range sum, struct range a, double sc
 struct search {
     const struct superellipsoid *s;
     const struct measured_line *line;
-    double roots[SUPERELLIPSOID_MOST];
+    double roots[SUPERELLIPSOID_MAX];
     int count;
 };
 
@@ -147,7 +147,7 @@ static double value_on(const struct search *f, double t) {
 }
 
 static void bisect(struct search *f, double lo, double hi, bool rising) {
-    if (f->count == SUPERELLIPSOID_MOST)
+    if (f->count == SUPERELLIPSOID_MAX)
         return;
     double below = lo, above = hi;
     for (int step = 0; step < 80; step++) {
@@ -218,11 +218,11 @@ static int folded_crossings(const struct superellipsoid *s, const struct measure
 /* ---- the shape ---- */
 
 int superellipsoid_crossings(const struct superellipsoid *s, const struct ray *ray,
-                             struct crossing out[SUPERELLIPSOID_MOST]) {
+                             struct crossing out[SUPERELLIPSOID_MAX]) {
     struct measured_line line;
     if (!line_in_box(ray, &line))
         return 0;
-    double roots[SUPERELLIPSOID_MOST];
+    double roots[SUPERELLIPSOID_MAX];
     bool convex = s->e <= 2 && s->n <= 2;
     int count = convex ? convex_crossings(s, &line, roots) : folded_crossings(s, &line, roots);
     for (int i = 0; i < count; i++)
@@ -237,9 +237,9 @@ bool superellipsoid_contains(const struct superellipsoid *s, struct vec3 point) 
 /* The gradient without infinities: at a crease its largest parts are all that counts. */
 static struct vec3 outward(const struct superellipsoid *s, struct vec3 p) {
     struct norm flat = norm_of(fabs(p.x), fabs(p.z), 2 / s->e), all = norm_of(flat.value, fabs(p.y), 2 / s->n);
-    double least = 0x1p-200, most = 0x1p200;
-    double gx = fmin(fmax(all.da, least), most) * fmin(fmax(flat.da, least), most), gy = fmin(all.db, most * most);
-    double gz = fmin(fmax(all.da, least), most) * fmin(fmax(flat.db, least), most);
+    double min = 0x1p-200, max = 0x1p200;
+    double gx = fmin(fmax(all.da, min), max) * fmin(fmax(flat.da, min), max), gy = fmin(all.db, max * max);
+    double gz = fmin(fmax(all.da, min), max) * fmin(fmax(flat.db, min), max);
     return vec3_normalize(vec3_make(copysign(gx, p.x), copysign(gy, p.y), copysign(gz, p.z)));
 }
 

@@ -11,11 +11,11 @@ struct superellipsoid {
     double e, n;
 };
 
-enum { SUPERELLIPSOID_MOST = 16 };
+enum { SUPERELLIPSOID_MAX = 16 };
 
 /* All crossings of the whole line in order, an even number. Those of a solid with e, n <= 2 are two or none. */
 int superellipsoid_crossings(const struct superellipsoid *s, const struct ray *ray,
-                             struct crossing out[SUPERELLIPSOID_MOST]);
+                             struct crossing out[SUPERELLIPSOID_MAX]);
 bool superellipsoid_contains(const struct superellipsoid *s, struct vec3 point);
 void superellipsoid_describe(const struct superellipsoid *s, const struct ray *ray, const struct crossing *crossing,
                              struct surface *out);

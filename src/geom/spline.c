@@ -27,14 +27,14 @@ static const double *point_at(const struct spline_input *in, int64_t i, double m
 
 bool spline_build(struct arena *arena, const struct spline_input *in, struct spline_segment **segments, uint32_t *count,
                   struct error *error) {
-    uint32_t least = in->closed ? 3 : 2, n = in->closed ? in->count : in->count - 1;
+    uint32_t min = in->closed ? 3 : 2, n = in->closed ? in->count : in->count - 1;
     if (in->kind == SPLINE_BEZIER) {
         if (in->count < 4 - (in->closed ? 1 : 0) || in->count % 3 != (in->closed ? 0 : 1))
             return error_set(error, ERROR_SCENE, "a Bezier spline%s needs 3 n%s points, not %u",
                              in->closed ? " that is closed" : "", in->closed ? "" : " + 1", in->count);
         n = in->count / 3;
-    } else if (in->count < least) {
-        return error_set(error, ERROR_SCENE, "at least %u points are needed, not %u", least, in->count);
+    } else if (in->count < min) {
+        return error_set(error, ERROR_SCENE, "at least %u points are needed, not %u", min, in->count);
     }
     bool uniform = in->kind == SPLINE_B_SPLINE;
     int64_t start = 0;

@@ -111,14 +111,14 @@ static bool add_rules(int ruleset, const struct options *options, const struct p
 }
 
 /* Version of the interface that is active; 0 when the kernel has none, with the reason in errno. -1: error. */
-static long confine_files(const struct options *options, const struct path_policy *path_policy, long at_most,
+static long confine_files(const struct options *options, const struct path_policy *path_policy, long max_version,
                           struct error *error) {
     long version = MAY_FAIL(syscall(SYS_landlock_create_ruleset, NULL, 0, LANDLOCK_CREATE_RULESET_VERSION));
-    if (at_most <= 0 && version > 0) {
+    if (max_version <= 0 && version > 0) {
         version = 0;
         errno = ENOSYS;
     }
-    version = version < at_most ? version : at_most;
+    version = version < max_version ? version : max_version;
     if (version <= 0)
         return 0;
     uint64_t known = known_rights(version);

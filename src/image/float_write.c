@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { HDR_LEAST = 8, HDR_MOST = 32767, RUN_LEAST = 3, RUN_MOST = 127, LITERAL_MOST = 128 };
+enum { HDR_MIN = 8, HDR_MAX = 32767, RUN_MIN = 3, RUN_MAX = 127, LITERAL_MAX = 128 };
 
 struct writing {
     struct file_output output;
@@ -64,16 +64,16 @@ bool pfm_write(const struct file_target *target, uint32_t width, uint32_t height
 }
 
 void hdr_pixel(const float rgb[3], uint8_t out[4]) {
-    double c[3], most = 0;
+    double c[3], max = 0;
     for (int i = 0; i < 3; i++) {
         c[i] = rgb[i] > 0 ? fmin((double)rgb[i], 0x1p126) : 0; /* NaN is 0, infinity the largest there is */
-        most = fmax(most, c[i]);
+        max = fmax(max, c[i]);
     }
     memset(out, 0, 4);
-    if (most < 0x1p-126)
+    if (max < 0x1p-126)
         return;
     int exponent;
-    (void)frexp(most, &exponent);
+    (void)frexp(max, &exponent);
     for (int i = 0; i < 3; i++)
         out[i] = (uint8_t)floor(ldexp(c[i], 8 - exponent));
     out[3] = (uint8_t)(exponent + 128);
@@ -85,11 +85,11 @@ static size_t code_channel(const uint8_t *bytes, uint32_t width, uint8_t *out) {
     for (uint32_t at = 0; at < width;) {
         uint32_t begun = at, run = 0;
         /* Literal bytes up to the next run that is worth its two bytes. */
-        while (at < width && at - begun < LITERAL_MOST) {
+        while (at < width && at - begun < LITERAL_MAX) {
             run = 1;
-            while (run < RUN_MOST && at + run < width && bytes[4 * (at + run)] == bytes[4 * at])
+            while (run < RUN_MAX && at + run < width && bytes[4 * (at + run)] == bytes[4 * at])
                 run++;
-            if (run >= RUN_LEAST)
+            if (run >= RUN_MIN)
                 break;
             at++;
             run = 0;
@@ -99,7 +99,7 @@ static size_t code_channel(const uint8_t *bytes, uint32_t width, uint8_t *out) {
             for (uint32_t i = begun; i < at; i++)
                 out[used++] = bytes[4 * i];
         }
-        if (run >= RUN_LEAST) {
+        if (run >= RUN_MIN) {
             out[used++] = (uint8_t)(128 + run);
             out[used++] = bytes[4 * at];
             at += run;
@@ -119,7 +119,7 @@ bool hdr_write(const struct file_target *target, uint32_t width, uint32_t height
         rows(context, y, writing.line);
         for (uint32_t x = 0; x < width; x++)
             hdr_pixel(writing.line + 3 * (size_t)x, writing.bytes + 4 * (size_t)x);
-        if (width < HDR_LEAST || width > HDR_MOST) {
+        if (width < HDR_MIN || width > HDR_MAX) {
             ok = file_output_write(&writing.output, writing.bytes, (size_t)width * 4, error);
             continue;
         }

@@ -223,10 +223,10 @@ double image_brightest(const struct image *image) {
         return 1;
     const float *texels = image->levels[0].texels;
     size_t count = (size_t)image->levels[0].width * image->levels[0].height * 4;
-    float most = 0;
+    float max = 0;
     for (size_t i = 0; i < count; i++)
-        most = (i & 3) < 3 && texels[i] > most ? texels[i] : most;
-    return (double)most;
+        max = (i & 3) < 3 && texels[i] > max ? texels[i] : max;
+    return (double)max;
 }
 
 struct rgba image_texel(const struct image *image, uint32_t x, uint32_t y) {

@@ -310,22 +310,22 @@ struct vec3 light_emitted(const struct light *light, const struct ray *ray, cons
 }
 
 static double largest(struct vec3 c) {
-    double most = c.x > c.y ? c.x : c.y;
-    return c.z > most ? c.z : most;
+    double max = c.x > c.y ? c.x : c.y;
+    return c.z > max ? c.z : max;
 }
 
 static double mesh_brightest(const struct light_mesh *mesh) {
-    double most = 0;
+    double max = 0;
     for (uint32_t i = 0; i < mesh->count; i++)
-        most = fmax(most, largest(light_triangle_radiance(&mesh->triangles[i])));
-    return most;
+        max = fmax(max, largest(light_triangle_radiance(&mesh->triangles[i])));
+    return max;
 }
 
 double light_brightest(const struct light *light) {
-    double most = largest(light->colour);
+    double max = largest(light->colour);
     switch (light->kind) {
     case LIGHT_SKY:
-        return most * sky_brightest(light->sky);
+        return max * sky_brightest(light->sky);
     case LIGHT_MESH:
         return mesh_brightest(light->mesh);
     case LIGHT_POINT:
@@ -336,7 +336,7 @@ double light_brightest(const struct light *light) {
     case LIGHT_SPHERE:
         break;
     }
-    return most;
+    return max;
 }
 
 bool light_surface_box(const struct light *light, struct box *out) {

@@ -8,9 +8,9 @@
 static const double pi = 3.14159265358979323846;
 
 /* Sums over many lights and products with distances stay finite. */
-static const double most = 1e200;
+static const double max = 1e200;
 
-static const double least_cosine = 1.0 / 32;
+static const double min_cosine = 1.0 / 32;
 
 static double larger(double a, double b) {
     return a > b ? a : b;
@@ -29,8 +29,8 @@ static void work_out(struct light_bounds *b) {
 }
 
 bool light_bounds_finish(struct light_bounds *b) {
-    b->steady = fmin(b->steady, most);
-    b->fading = fmin(b->fading, most);
+    b->steady = fmin(b->steady, max);
+    b->fading = fmin(b->fading, max);
     work_out(b);
     return b->steady + b->fading > 0 && vec3_finite(b->box.min) && vec3_finite(b->box.max);
 }
@@ -70,8 +70,8 @@ struct light_bounds light_bounds_join(const struct light_bounds *a, const struct
     struct light_bounds out = {.box = box_join(a->box, b->box),
                                .cos_theta_e = fmin(a->cos_theta_e, b->cos_theta_e),
                                .two_sided = a->two_sided || b->two_sided,
-                               .steady = fmin(a->steady + b->steady, most),
-                               .fading = fmin(a->fading + b->fading, most),
+                               .steady = fmin(a->steady + b->steady, max),
+                               .fading = fmin(a->fading + b->fading, max),
                                .range = fmax(a->range, b->range)};
     struct vec3 axis_b = b->axis;
     if (a->two_sided && b->two_sided && vec3_dot(a->axis, b->axis) < 0)
@@ -91,7 +91,7 @@ static double cos_less(double sin_a, double cos_a, double sin_b, double cos_b) {
     return cos_a > cos_b ? 1 : cos_a * cos_b + sin_a * sin_b;
 }
 
-static double least_distance(const struct box *box, struct vec3 point) {
+static double min_distance(const struct box *box, struct vec3 point) {
     struct vec3 inside = vec3_min(vec3_max(point, box->min), box->max);
     return vec3_length(vec3_sub(point, inside));
 }
@@ -100,7 +100,7 @@ static double least_distance(const struct box *box, struct vec3 point) {
 static double strength_at(const struct light_bounds *b, struct vec3 point, double distance) {
     double steady = b->steady;
     if (b->range < INFINITY) {
-        double nearest = least_distance(&b->box, point);
+        double nearest = min_distance(&b->box, point);
         if (nearest >= b->range)
             return 0;
         steady *= 1 - nearest / b->range;
@@ -108,7 +108,7 @@ static double strength_at(const struct light_bounds *b, struct vec3 point, doubl
     if (!(b->fading > 0))
         return steady;
     double fall = b->falloff[0] + b->falloff[1] * distance + b->falloff[2] * distance * distance;
-    return steady + number_clamped(b->fading / fall, most);
+    return steady + number_clamped(b->fading / fall, max);
 }
 
 double light_bounds_importance(const struct light_bounds *b, struct vec3 point, struct vec3 normal) {
@@ -135,5 +135,5 @@ double light_bounds_importance(const struct light_bounds *b, struct vec3 point, 
         return strength;
     /* Highlights of classic materials know no cosine: light that grazes the surface keeps a chance. */
     double cos_i = fabs(vec3_dot(away, normal)) * inverse;
-    return cos_i > cos_b ? strength : strength * larger(least_cosine, cos_i * cos_b + sine_of(cos_i) * sin_b);
+    return cos_i > cos_b ? strength : strength * larger(min_cosine, cos_i * cos_b + sine_of(cos_i) * sin_b);
 }

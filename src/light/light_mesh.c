@@ -152,7 +152,7 @@ struct light_photon light_mesh_photon(const struct light_mesh *mesh, struct vec3
  * the sum of their vectors, and a quarter of their area (Cauchy), a half where both sides shine, on average. */
 void light_mesh_bounds(const struct light_mesh *mesh, struct light_bounds *out) {
     struct vec3 sum = {0, 0, 0};
-    double all = 0, least = 1;
+    double all = 0, min = 1;
     out->box = box_empty();
     for (uint32_t i = 0; i < mesh->count; i++) {
         const struct light_triangle *t = &mesh->triangles[i];
@@ -166,9 +166,9 @@ void light_mesh_bounds(const struct light_mesh *mesh, struct light_bounds *out) 
     out->axis = vec3_normalize(sum);
     bool directed = vec3_length(sum) > 0x1p-20 * all;
     for (uint32_t i = 0; i < mesh->count && directed; i++)
-        least = fmin(least, vec3_dot(out->axis, mesh->triangles[i].normal));
+        min = fmin(min, vec3_dot(out->axis, mesh->triangles[i].normal));
     light_bounds_emit(intensity_of(fmax(vec3_length(sum), all / (mesh->one_sided ? 4 : 2))), out);
-    out->cos_theta_o = directed ? fmax(-1, least - 0x1p-40) : -1;
+    out->cos_theta_o = directed ? fmax(-1, min - 0x1p-40) : -1;
     out->cos_theta_e = 0;
     out->two_sided = !mesh->one_sided;
     if (!directed)

@@ -8,7 +8,7 @@
 
 static const double pi = 3.14159265358979323846;
 /* Below this solid angle the excess has lost half of its digits, and samples by area are as good. */
-static const double least_angle = 0x1p-12;
+static const double min_angle = 0x1p-12;
 
 static double limited(double x, double low, double high) {
     return x < low ? low : x > high ? high : x;
@@ -49,7 +49,7 @@ bool spherical_rectangle_make(struct vec3 corner, struct vec3 edge1, struct vec3
     out->b1 = n2.z;
     out->k = 2 * pi - g2 - g3;
     out->angle = g0 + g1 - out->k;
-    return out->angle > least_angle;
+    return out->angle > min_angle;
 }
 
 struct vec3 spherical_rectangle_point(const struct spherical_rectangle *seen, struct sample2 place) {

@@ -212,12 +212,12 @@ static struct vec3 unturned_colour(const struct sky *sky, struct vec3 direction,
 }
 
 static double largest(struct vec3 c) {
-    double most = c.x > c.y ? c.x : c.y;
-    return c.z > most ? c.z : most;
+    double max = c.x > c.y ? c.x : c.y;
+    return c.z > max ? c.z : max;
 }
 
 static double unturned_brightest(const struct sky *sky) {
-    double most = 0;
+    double max = 0;
     switch (sky->kind) {
     case SKY_GRADIENT:
         return 1;
@@ -228,18 +228,18 @@ static double unturned_brightest(const struct sky *sky) {
         return image_brightest(sky->image);
     case SKY_FACES:
         for (int i = 0; i < 6; i++)
-            most = fmax(most, image_brightest(sky->faces[i]));
-        return most;
+            max = fmax(max, image_brightest(sky->faces[i]));
+        return max;
     case SKY_STOPS:
         for (uint32_t i = 0; i < sky->stop_count; i++)
-            most = fmax(most, largest(vec3_make(sky->stops[i][1], sky->stops[i][2], sky->stops[i][3])));
-        return most;
+            max = fmax(max, largest(vec3_make(sky->stops[i][1], sky->stops[i][2], sky->stops[i][3])));
+        return max;
     case SKY_CLEAR:
         /* Brightest at the sun or at the horizon below it. */
-        most = largest(sky_clear_colour(&sky->clear, sky->clear.sun));
-        most = fmax(most, largest(sky_clear_colour(&sky->clear,
-                                                   vec3_normalize(vec3_make(sky->clear.sun.x, 0, sky->clear.sun.z)))));
-        return fmax(most, largest(sky->clear.ground));
+        max = largest(sky_clear_colour(&sky->clear, sky->clear.sun));
+        max = fmax(max, largest(sky_clear_colour(&sky->clear,
+                                                 vec3_normalize(vec3_make(sky->clear.sun.x, 0, sky->clear.sun.z)))));
+        return fmax(max, largest(sky->clear.ground));
     }
     return 1;
 }

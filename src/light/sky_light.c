@@ -11,7 +11,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-enum { LEAST_COLUMNS = 128, MOST_COLUMNS = 512, PROBES = 2 };
+enum { MIN_COLUMNS = 128, MAX_COLUMNS = 512, PROBES = 2 };
 static const double everywhere = 1.0 / 16; /* the part that goes everywhere */
 
 /* Texels of a picture of the sky all around. */
@@ -28,12 +28,12 @@ static uint32_t texels_around(const struct sky *sky) {
     case SKY_CLEAR:
         break;
     }
-    return LEAST_COLUMNS;
+    return MIN_COLUMNS;
 }
 
 static uint32_t columns_for(const struct sky *sky) {
     uint32_t columns = texels_around(sky);
-    return columns < LEAST_COLUMNS ? LEAST_COLUMNS : columns > MOST_COLUMNS ? MOST_COLUMNS : columns;
+    return columns < MIN_COLUMNS ? MIN_COLUMNS : columns > MAX_COLUMNS ? MAX_COLUMNS : columns;
 }
 
 /* Row 0 is at the top; a place's y and x run from 0 to 1 down and round. */
@@ -92,11 +92,11 @@ const struct sky_table *sky_table_build(const struct sky *sky, struct arena *are
     double total = 0;
     for (size_t i = 0; i < (size_t)rows * columns; i++)
         total += until[i];
-    double least = total / ((double)rows * columns) * everywhere;
+    double min = total / ((double)rows * columns) * everywhere;
     for (uint32_t row = 0; row < rows; row++) {
         double *cells = &until[(size_t)row * columns];
         for (uint32_t column = 0; column < columns; column++)
-            cells[column] = (1 - everywhere) * cells[column] + least;
+            cells[column] = (1 - everywhere) * cells[column] + min;
         row_until[row] = running_shares(cells, columns);
     }
     (void)running_shares(row_until, rows);

@@ -107,9 +107,9 @@ struct transform transform_rotate_about(struct vec3 axis, double degrees) {
 /* Euler and Rodrigues; W. R. Hamilton, "On Quaternions", 1844. Divided by the square of the length, so that the length
  * of q has no say in it. */
 struct transform transform_rotate_quaternion(double w, struct vec3 v) {
-    double most = fmax(fabs(w), vec3_max_abs(v));
+    double max = fmax(fabs(w), vec3_max_abs(v));
     int exponent;
-    (void)frexp(most, &exponent);
+    (void)frexp(max, &exponent);
     w = ldexp(w, -exponent);
     v = vec3_make(ldexp(v.x, -exponent), ldexp(v.y, -exponent), ldexp(v.z, -exponent));
     double s = 2 / (w * w + vec3_dot(v, v));

@@ -74,15 +74,15 @@ struct box_span {
 
 static inline struct box_span box_probe_span_plain(const struct box_probe *probe, const struct box *b) {
     const double *planes = (const double *)(const void *)b;
-    double near_most = -INFINITY, far_least = INFINITY;
+    double near_max = -INFINITY, far_min = INFINITY;
     for (int i = 0; i < 3; i++) {
         double near = (planes[probe->near[i]] - probe->origin[i][0]) * probe->inverse[i][0];
         double far = (planes[probe->far[i]] - probe->origin[i][0]) * probe->inverse[i][0];
-        near_most = near > near_most ? near : near_most;
-        far_least = far < far_least ? far : far_least;
+        near_max = near > near_max ? near : near_max;
+        far_min = far < far_min ? far : far_min;
     }
-    const double near_less = near_most * (1 - 0x1p-49), near_more = near_most * (1 + 0x1p-49); /* infinities stay */
-    const double far_less = far_least * (1 - 0x1p-49), far_more = far_least * (1 + 0x1p-49);
+    const double near_less = near_max * (1 - 0x1p-49), near_more = near_max * (1 + 0x1p-49); /* infinities stay */
+    const double far_less = far_min * (1 - 0x1p-49), far_more = far_min * (1 + 0x1p-49);
     return (struct box_span){near_less < near_more ? near_less : near_more, far_less > far_more ? far_less : far_more};
 }
 
@@ -92,13 +92,13 @@ static inline struct box_span box_probe_span(const struct box_probe *probe, cons
     _Static_assert(sizeof(struct box) == 6 * sizeof(double), "a box is its six numbers");
 #ifdef __SSE2__
     const double *planes = (const double *)(const void *)b;
-    __m128d most = _mm_set1_pd(-INFINITY);
+    __m128d max = _mm_set1_pd(-INFINITY);
     for (int i = 0; i < 3; i++) {
         __m128d plane = _mm_loadh_pd(_mm_load_sd(&planes[probe->near[i]]), &planes[probe->far[i]]);
         __m128d sense = _mm_sub_pd(plane, _mm_loadu_pd(probe->origin[i]));
-        most = _mm_max_pd(_mm_mul_pd(sense, _mm_loadu_pd(probe->inverse[i])), most);
+        max = _mm_max_pd(_mm_mul_pd(sense, _mm_loadu_pd(probe->inverse[i])), max);
     }
-    __m128d less = _mm_mul_pd(most, _mm_set1_pd(1 - 0x1p-49)), more = _mm_mul_pd(most, _mm_set1_pd(1 + 0x1p-49));
+    __m128d less = _mm_mul_pd(max, _mm_set1_pd(1 - 0x1p-49)), more = _mm_mul_pd(max, _mm_set1_pd(1 + 0x1p-49));
     __m128d wide = _mm_min_pd(less, more);
     return (struct box_span){_mm_cvtsd_f64(wide), -_mm_cvtsd_f64(_mm_unpackhi_pd(wide, wide))};
 #else

@@ -45,8 +45,8 @@ static inline double vec3_length_squared(struct vec3 a) {
     return vec3_dot(a, a);
 }
 static inline double vec3_max_abs(struct vec3 a) {
-    double x = fabs(a.x), y = fabs(a.y), z = fabs(a.z), most = x > y ? x : y;
-    return most > z ? most : z;
+    double x = fabs(a.x), y = fabs(a.y), z = fabs(a.z), max = x > y ? x : y;
+    return max > z ? max : z;
 }
 /* By comparison, which is one instruction; fmin and fmax are calls because of NaN. */
 static inline struct vec3 vec3_min(struct vec3 a, struct vec3 b) {

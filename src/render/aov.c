@@ -110,7 +110,7 @@ struct aov_scale aov_scale(enum aov aov, const float (*values)[3], size_t count)
     for (size_t i = 0; i < count && (aov == AOV_DEPTH || aov == AOV_SAMPLES); i++) {
         double value = (double)values[i][0];
         scale.nearest = value > 0 && value < scale.nearest ? value : scale.nearest;
-        scale.most = value > scale.most ? value : scale.most;
+        scale.max = value > scale.max ? value : scale.max;
     }
     return scale;
 }
@@ -157,7 +157,7 @@ void aov_colour(enum aov aov, const struct aov_scale *scale, const float value[3
         heat(v[0] > 0 ? el_log(v[0]) / (20 * 0.69314718055994530942) : 0, rgb);
         break;
     case AOV_SAMPLES:
-        rgb[0] = rgb[1] = rgb[2] = v[0] / scale->most;
+        rgb[0] = rgb[1] = rgb[2] = v[0] / scale->max;
         break;
     case AOV_ALBEDO:
     case AOV_LIGHTS:

@@ -38,7 +38,7 @@ void aov_surface(const struct world *world, const struct ray *ray, uint32_t mask
 
 /* The colour of a value. nearest: the smallest depth of the picture; most: its largest number of samples. */
 struct aov_scale {
-    double nearest, most;
+    double nearest, max;
 };
 struct aov_scale aov_scale(enum aov aov, const float (*values)[3], size_t count);
 void aov_colour(enum aov aov, const struct aov_scale *scale, const float value[3], double rgb[3]);

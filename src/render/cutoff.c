@@ -6,22 +6,22 @@
 #include "math/elementary.h"
 
 static double largest(struct vec3 c) {
-    double most = c.x > c.y ? c.x : c.y;
-    return c.z > most ? c.z : most;
+    double max = c.x > c.y ? c.x : c.y;
+    return c.z > max ? c.z : max;
 }
 
 static double brightest_of_scene(const struct render_job *job) {
     const struct world *world = job->world;
-    double most = sky_brightest(&world->sky), lit = largest(job->ambient);
+    double max = sky_brightest(&world->sky), lit = largest(job->ambient);
     for (uint32_t i = 0; i < world->light_count; i++) {
         const struct light *light = &world->lights[i];
         double own = light_brightest(light);
         lit += own;
-        if (light->visible && own > most)
-            most = own;
+        if (light->visible && own > max)
+            max = own;
     }
-    most = fmax(most, lit + world->emission_bound);
-    return job->fog ? fmax(most, largest(job->fog->colour)) : most;
+    max = fmax(max, lit + world->emission_bound);
+    return job->fog ? fmax(max, largest(job->fog->colour)) : max;
 }
 
 double cutoff_weight(const struct render_job *job) {

@@ -10,7 +10,7 @@
 #include <string.h>
 
 /* However the part lies on the grid of tiles. */
-static size_t tiles_at_most(uint32_t width, uint32_t height) {
+static size_t max_tiles(uint32_t width, uint32_t height) {
     return ((size_t)width / FILM_TILE + 2) * ((size_t)height / FILM_TILE + 2);
 }
 
@@ -19,8 +19,7 @@ bool film_size(uint32_t width, uint32_t height, struct film_record record, size_
     if (width == 0 || height == 0 || !checked_mul(width, height, &pixels) || pixels > (size_t)1 << 31)
         return error_set(error, ERROR_SCENE, "a picture of %u x %u pixels is more than gray can hold (2^31 pixels)",
                          width, height);
-    if (!checked_mul(pixels, film_record_size(record), &size) ||
-        !checked_add(size, tiles_at_most(width, height), &size))
+    if (!checked_mul(pixels, film_record_size(record), &size) || !checked_add(size, max_tiles(width, height), &size))
         return error_no_memory(error, "the picture");
     *bytes = size;
     return true;

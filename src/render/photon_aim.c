@@ -24,10 +24,10 @@
 
 enum {
     BUDGET = 16384,
-    LEAST_BUDGET = 128,
+    MIN_BUDGET = 128,
     PHOTONS_PER_CELL = 16,
-    LEVEL_LEAST = 3,
-    LEVEL_MOST = 14,
+    LEVEL_MIN = 3,
+    LEVEL_MAX = 14,
     PARTS = 4,
     CANCEL_EVERY = 256
 };
@@ -55,16 +55,16 @@ struct casters {
 static double placed_strength(const struct world *world, uint32_t index) {
     const struct thing *thing = placed_thing(world, index);
     const struct csg *csg = thing->geometry.csg;
-    double most = 0;
+    double max = 0;
     for (uint32_t leaf = 0; leaf < (csg ? csg->leaf_count : 1); leaf++) {
         uint32_t material = csg ? csg->leaves[leaf].material : thing->material;
         uint32_t slots = csg ? csg->leaves[leaf].slot_count : thing->slot_count;
         for (uint32_t slot = 0; slot < (slots > 1 ? slots : 1); slot++) {
             double strength = material_specular(&world->materials[material + slot]);
-            most = strength > most ? strength : most;
+            max = strength > max ? strength : max;
         }
     }
-    return most < 1 ? most : 1;
+    return max < 1 ? max : 1;
 }
 
 static bool is_finite(const struct box *box) {
@@ -197,17 +197,17 @@ static void pyramid_fence(const struct photon_aim *aim, uint32_t face, uint32_t 
     }
 }
 
-static double box_least(const struct box *box, struct vec3 n) {
+static double box_min(const struct box *box, struct vec3 n) {
     return n.x * (n.x > 0 ? box->min.x : box->max.x) + n.y * (n.y > 0 ? box->min.y : box->max.y) +
            n.z * (n.z > 0 ? box->min.z : box->max.z);
 }
 
 static bool fence_meets(const struct fence *fence, const struct caster *caster) {
     for (int k = 0; k < fence->count; k++) {
-        double by_box = box_least(&caster->box, fence->normal[k]);
+        double by_box = box_min(&caster->box, fence->normal[k]);
         double by_ball = vec3_dot(fence->normal[k], caster->middle) - caster->radius;
-        double least = by_box > by_ball ? by_box : by_ball;
-        if (least > fence->reach[k] + fabs(fence->reach[k]) * 0x1p-40)
+        double min = by_box > by_ball ? by_box : by_ball;
+        if (min > fence->reach[k] + fabs(fence->reach[k]) * 0x1p-40)
             return false;
     }
     return true;
@@ -238,18 +238,18 @@ static double cell_shine(const struct photon_aim *aim, uint32_t face, uint32_t i
     double width = ldexp(2, -(int)aim->level), a = -1 + width * (i + 0.5), b = -1 + width * (j + 0.5), density;
     struct vec3 middle = vec3_normalize(face_direction(face, a, b, solid_angle));
     *solid_angle *= width * width;
-    double own = light_emitter_shine(&aim->emitter, middle), most = own, cos_half = 1;
+    double own = light_emitter_shine(&aim->emitter, middle), max = own, cos_half = 1;
     for (int k = 0; k < 4; k++) {
         struct vec3 corner =
             face_direction(face, a + width * (k & 1 ? 0.5 : -0.5), b + width * (k & 2 ? 0.5 : -0.5), &density);
         corner = vec3_normalize(corner);
         double at_corner = light_emitter_shine(&aim->emitter, corner), cosine = vec3_dot(corner, middle);
-        most = at_corner > most ? at_corner : most;
+        max = at_corner > max ? at_corner : max;
         cos_half = cosine < cos_half ? cosine : cos_half;
     }
-    if (most == 0)
-        most = light_emitter_shines_near(&aim->emitter, middle, cos_half) ? 1 : 0;
-    return most > 0 && own < 0.05 ? 0.05 : own;
+    if (max == 0)
+        max = light_emitter_shines_near(&aim->emitter, middle, cos_half) ? 1 : 0;
+    return max > 0 && own < 0.05 ? 0.05 : own;
 }
 
 /* --- the search for cells that count --- */
@@ -320,13 +320,13 @@ static bool search_level(struct search *s, uint32_t level) {
 
 /* The finest level whose cells are within the budget. */
 static bool find_cells(struct search *s, uint32_t budget, struct arena *arena) {
-    uint32_t level = LEVEL_LEAST, cells = 0;
+    uint32_t level = LEVEL_MIN, cells = 0;
     s->keep = false;
     s->limit = UINT32_MAX;
-    for (uint32_t next = LEVEL_LEAST; next <= LEVEL_MOST; next++) {
+    for (uint32_t next = LEVEL_MIN; next <= LEVEL_MAX; next++) {
         if (!search_level(s, next))
             return true;
-        if (next > LEVEL_LEAST && s->found > budget)
+        if (next > LEVEL_MIN && s->found > budget)
             break;
         level = next;
         cells = s->found;
@@ -354,18 +354,18 @@ static void place_distant(struct photon_aim *aim, const struct casters *casters)
         const struct box *box = &casters->list[i].box;
         for (int k = 0; k < 2; k++) {
             struct vec3 axis = k == 0 ? aim->emitter.right : aim->emitter.up;
-            double least = box_least(box, axis), most = -box_least(box, vec3_negate(axis));
-            low[k] = least < low[k] ? least : low[k];
-            high[k] = most > high[k] ? most : high[k];
+            double min = box_min(box, axis), max = -box_min(box, vec3_negate(axis));
+            low[k] = min < low[k] ? min : low[k];
+            high[k] = max > high[k] ? max : high[k];
         }
     }
     aim->size = fmax(high[0] - low[0], high[1] - low[1]);
     aim->corner[0] = low[0];
     aim->corner[1] = low[1];
     double depth = vec3_length(vec3_sub(casters->scene.max, casters->scene.min));
-    aim->behind = box_least(&casters->scene, direction) - depth * 0x1p-6;
+    aim->behind = box_min(&casters->scene, direction) - depth * 0x1p-6;
     for (uint32_t i = 0; i < casters->count; i++)
-        aim->behind = fmin(aim->behind, box_least(&casters->list[i].box, direction) - depth * 0x1p-6);
+        aim->behind = fmin(aim->behind, box_min(&casters->list[i].box, direction) - depth * 0x1p-6);
 }
 
 static void estimate_flux(struct photon_aim *aim, const struct casters *casters) {
@@ -410,10 +410,10 @@ static struct light_photon start_around(const struct photon_aim *aim, struct sam
     struct vec3 axes[2], direction = photon.direction;
     frame_tangents(direction, &axes[0], &axes[1]);
     const double at[2] = {place.x, place.y};
-    double area = 1, before = fmin(box_least(&aim->across, direction), box_least(&aim->scene, direction));
+    double area = 1, before = fmin(box_min(&aim->across, direction), box_min(&aim->scene, direction));
     photon.origin = vec3_scale(direction, before - aim->size * 0x1p-6);
     for (int k = 0; k < 2; k++) {
-        double low = box_least(&aim->across, axes[k]), width = -box_least(&aim->across, vec3_negate(axes[k])) - low;
+        double low = box_min(&aim->across, axes[k]), width = -box_min(&aim->across, vec3_negate(axes[k])) - low;
         area *= width;
         photon.origin = vec3_add_scaled(photon.origin, axes[k], low + width * at[k]);
     }
@@ -523,8 +523,8 @@ bool photon_aims_make(struct photon_aims *out, const struct world *world, uint32
     uint32_t by_photons = photons / PHOTONS_PER_CELL / world->light_count, by_time = BUDGET * 8 / world->light_count;
     search.budget = by_photons < BUDGET ? by_photons : BUDGET;
     search.budget = by_time < search.budget ? by_time : search.budget;
-    search.budget = search.budget > LEAST_BUDGET ? search.budget : LEAST_BUDGET;
-    search.stack = arena_alloc_array(arena, casters.count, (LEVEL_MOST + 2) * sizeof *search.stack);
+    search.budget = search.budget > MIN_BUDGET ? search.budget : MIN_BUDGET;
+    search.stack = arena_alloc_array(arena, casters.count, (LEVEL_MAX + 2) * sizeof *search.stack);
     out->aims = arena_alloc_array(arena, world->light_count, PARTS * PARTS * sizeof *out->aims);
     bool ok = search.stack && out->aims;
     for (uint32_t i = 0; ok && i < world->light_count && !search.stopped; i++)

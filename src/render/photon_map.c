@@ -70,8 +70,8 @@ struct builder {
     double *powers;    /* the largest of each chunk */
     struct entry *entries;
     struct pool *pool;
-    uint32_t level;     /* that is made */
-    float radius, most; /* of all photons, 0: by density; largest radius */
+    uint32_t level;    /* that is made */
+    float radius, max; /* of all photons, 0: by density; largest radius */
 };
 
 static uint32_t node_first(const struct photon_map *map, uint32_t level, uint32_t k) {
@@ -87,20 +87,20 @@ static void measure_chunk(void *context, uint32_t chunk, int worker) {
     (void)worker;
     struct builder *b = context;
     uint32_t landed = 0;
-    double most = 0;
+    double max = 0;
     struct box box = box_empty();
     for (uint32_t i = chunk * CHUNK; i < chunk_end(b, chunk); i++) {
         const struct photon *photon = &b->photons[i];
         if (photon->light == PHOTON_NOWHERE)
             continue;
         double power = vec3_max_abs(photon->power);
-        most = power > most ? power : most;
+        max = power > max ? power : max;
         box = box_add_point(box, photon->place);
         landed++;
     }
     b->firsts[chunk] = landed;
     b->boxes[chunk] = box;
-    b->powers[chunk] = most;
+    b->powers[chunk] = max;
 }
 
 static void enter_chunk(void *context, uint32_t chunk, int worker) {
@@ -370,7 +370,7 @@ static void find_radii(void *context, uint32_t chunk, int worker) {
     }
 }
 
-/* No radius is larger than `most`, none smaller than the grain of the coordinates. */
+/* No radius is larger than `max`, none smaller than the grain of the coordinates. */
 static const float grain = 0x1p-18F;
 
 static void limit_chunk(void *context, uint32_t chunk, int worker) {
@@ -379,12 +379,12 @@ static void limit_chunk(void *context, uint32_t chunk, int worker) {
     uint64_t end = ((uint64_t)chunk + 1) * CHUNK;
     for (uint32_t i = chunk * CHUNK; i < end && i < b->map->count; i++) {
         float *radius = &b->map->spots[i].radius;
-        *radius = *radius > b->most ? b->most : *radius < grain ? grain : *radius;
+        *radius = *radius > b->max ? b->max : *radius < grain ? grain : *radius;
     }
 }
 
 /* The largest radius that counts, from a few thousand of them. */
-static void choose_most(struct builder *b) {
+static void choose_max_radius(struct builder *b) {
     enum { SAMPLES = 4096 };
     uint64_t words[SAMPLES];
     struct photon_map *map = b->map;
@@ -396,8 +396,8 @@ static void choose_most(struct builder *b) {
     }
     sort_words(words, samples);
     uint32_t bits = (uint32_t)words[(uint64_t)samples * 95 / 100];
-    memcpy(&b->most, &bits, sizeof bits);
-    b->most = b->most > grain ? b->most : grain;
+    memcpy(&b->max, &bits, sizeof bits);
+    b->max = b->max > grain ? b->max : grain;
 }
 
 /* --- building --- */
@@ -415,20 +415,20 @@ static bool measure(struct builder *b, uint32_t chunks) {
     if (!pool_run(b->pool, chunks, measure_chunk, b))
         return false;
     struct box box = box_empty();
-    double most = 0;
+    double max = 0;
     for (uint32_t i = 0; i < chunks; i++) {
         uint32_t landed = b->firsts[i];
         b->firsts[i] = map->count;
         map->count += landed;
         box = box_join(box, b->boxes[i]);
-        most = b->powers[i] > most ? b->powers[i] : most;
+        max = b->powers[i] > max ? b->powers[i] : max;
     }
     if (map->count == 0)
         return true;
     struct vec3 half = vec3_scale(vec3_sub(box.max, box.min), 0.5);
     map->origin = vec3_add(box.min, half);
     map->unit = unit_of(vec3_max_abs(half));
-    map->power_unit = unit_of(most);
+    map->power_unit = unit_of(max);
     while (map->count >> map->levels > LEAF)
         map->levels++;
     return true;
@@ -450,7 +450,7 @@ static bool make_tree(struct builder *b, uint32_t chunks, double radius, struct 
     if (ok && radius == 0) {
         ok = pool_run(b->pool, (map->count + CHUNK / 16 - 1) / (CHUNK / 16), find_radii, b);
         if (ok)
-            choose_most(b);
+            choose_max_radius(b);
         ok = ok && pool_run(b->pool, landed_chunks, limit_chunk, b) && make_boxes(b);
     }
     return ok || error_set(error, ERROR_CANCELLED, "stopped while making the photon map");

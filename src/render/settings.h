@@ -52,10 +52,10 @@ struct camera_motion {
 
 /* A photon map of the light that specular things throw (docs/light.md). */
 struct caustics {
-    int photons;   /* sent; 0: no caustics; at most PHOTONS_MOST */
+    int photons;   /* sent; 0: no caustics; at most PHOTONS_MAX */
     double radius; /* of what one photon lights, world units; 0: by their density */
 };
-enum { PHOTONS_MOST = 100000000, PHOTONS_USUAL = 200000 };
+enum { PHOTONS_MAX = 100000000, PHOTONS_USUAL = 200000 };
 
 /* How light becomes a picture; render/integrator.c switches over them. */
 #define INTEGRATORS(X) X(INTEGRATOR_WHITTED, "whitted")

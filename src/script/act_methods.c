@@ -84,9 +84,9 @@ bool act_moves_to(struct context *context, const struct value *args, struct resu
 bool act_scale(struct context *context, const struct value *args, struct result *result, struct error *error) {
     (void)result;
     struct vec3 factors = step_of(args);
-    double least = fmin(fmin(fabs(factors.x), fabs(factors.y)), fabs(factors.z));
-    if (!isfinite(1 / least)) {
-        context_warn_once(context, WARNED_OTHER, "a factor is %g, so nothing under this node is drawn", least);
+    double min = fmin(fmin(fabs(factors.x), fabs(factors.y)), fabs(factors.z));
+    if (!isfinite(1 / min)) {
+        context_warn_once(context, WARNED_OTHER, "a factor is %g, so nothing under this node is drawn", min);
         args[SELF].node->singular = true;
         return true;
     }

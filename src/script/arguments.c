@@ -400,7 +400,7 @@ static void read_rows(struct context *c, int index, struct place place, bool pai
 /* How the photons of caustics are asked for: a number of them, or a table of its own. */
 static void read_caustics(struct context *c, int index, const struct place *place, struct value *value) {
     static const struct parameter photons = {
-        .name = "caustics.photons", .kind = KIND_WHOLE, .low = 0, .high = PHOTONS_MOST};
+        .name = "caustics.photons", .kind = KIND_WHOLE, .low = 0, .high = PHOTONS_MAX};
     static const struct parameter radius = {
         .name = "caustics.radius", .kind = KIND_NUMBER, .flags = LOW_OPEN, .low = 0, .high = (double)INFINITY};
     lua_State *L = c->lua;

@@ -47,7 +47,7 @@ const struct option option_table[] = {
      "at total internal reflection, add the refracted amount to the reflected one; without it, that light is lost"},
     {OPTION_GROUP_PICTURE, "-al-samples|alsamples", OPTION_INTEGER, "N", 1, 64, FIELD(settings.area_samples), "4",
      "N x N shadow rays for each area light"},
-    {OPTION_GROUP_PICTURE, "--caustics", OPTION_INTEGER, "N", 0, PHOTONS_MOST, FIELD(settings.caustics.photons), "0",
+    {OPTION_GROUP_PICTURE, "--caustics", OPTION_INTEGER, "N", 0, PHOTONS_MAX, FIELD(settings.caustics.photons), "0",
      "trace N photons for caustics, the light that glass and mirrors focus; 0: none"},
     {OPTION_GROUP_PICTURE, "--cutoff", OPTION_NUMBER, "X", 0, 1, FIELD(settings.cutoff), "0.0001",
      "do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays"},

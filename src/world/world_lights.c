@@ -348,9 +348,9 @@ static bool allocate(struct building *b) {
         b->of_primitive[i] = LIGHT_NONE;
         emitting += b->of_thing[world->primitives[i].thing].emits;
     }
-    size_t most = (size_t)world->light_count + emitting + 1;
-    b->lights = arena_alloc_array(b->arena, most, sizeof *b->lights);
-    b->emitters = arena_alloc_array(b->arena, most, sizeof *b->emitters);
+    size_t max = (size_t)world->light_count + emitting + 1;
+    b->lights = arena_alloc_array(b->arena, max, sizeof *b->lights);
+    b->emitters = arena_alloc_array(b->arena, max, sizeof *b->emitters);
     return b->lights && b->emitters;
 }
 

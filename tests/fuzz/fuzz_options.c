@@ -20,7 +20,7 @@ static void check_ranges(const struct options *options) {
     demand(s->samples >= 1 && s->samples <= 64 && s->area_samples >= 1 && s->area_samples <= 64);
     demand(s->reflect_limit >= 0 && s->reflect_limit <= 1000 && s->refract_limit >= 0 && s->refract_limit <= 1000);
     demand(s->side_tolerance >= 0 && s->corner_tolerance >= 0 && s->cutoff >= 0 && s->cutoff <= 1);
-    demand(s->caustics.photons >= 0 && s->caustics.photons <= PHOTONS_MOST);
+    demand(s->caustics.photons >= 0 && s->caustics.photons <= PHOTONS_MAX);
     demand(fabs(s->tone.exposure) <= 100 && s->tone.curve <= TONE_FILMIC);
     demand(options->width >= 0 && options->width <= 1 << 20 && options->height >= 0 && options->height <= 1 << 20);
     demand((options->width > 0) == (options->height > 0));

@@ -80,13 +80,13 @@ static void say_tuple(struct grammar *g, const struct parameter *p, unsigned cou
     say(g, count ? "}" : "{}");
 }
 
-/* {tuple, tuple ...}, each of `least` to `most` numbers. */
-static void say_tuples(struct grammar *g, unsigned limit, unsigned least, unsigned most) {
-    unsigned count = next(g) % (limit + 1), length = least + next(g) % (most - least + 1);
+/* {tuple, tuple ...}, each of `min` to `max` numbers. */
+static void say_tuples(struct grammar *g, unsigned limit, unsigned min, unsigned max) {
+    unsigned count = next(g) % (limit + 1), length = min + next(g) % (max - min + 1);
     say(g, "{");
     for (unsigned i = 0; i < count; i++) {
         bool other = next(g) < 8;
-        say_tuple(g, NULL, other ? next(g) % (most + 2) : length);
+        say_tuple(g, NULL, other ? next(g) % (max + 2) : length);
         say(g, ", ");
     }
     say(g, "}");

@@ -113,8 +113,8 @@ static inline struct shape random_sweep(struct arena *arena, struct test_random 
     return shape;
 }
 
-static inline struct shape random_height_field(struct arena *arena, struct test_random *random, uint32_t most) {
-    uint32_t columns = 2 + (uint32_t)test_uniform(random, 0, most), rows = 2 + (uint32_t)test_uniform(random, 0, most);
+static inline struct shape random_height_field(struct arena *arena, struct test_random *random, uint32_t max) {
+    uint32_t columns = 2 + (uint32_t)test_uniform(random, 0, max), rows = 2 + (uint32_t)test_uniform(random, 0, max);
     double *heights = arena_alloc_array(arena, (size_t)columns * rows, sizeof *heights);
     for (uint32_t i = 0; i < columns * rows; i++)
         heights[i] = test_uniform(random, 0, 0.3) + 0.2 * sin(7.0 * (i % columns) / columns) + 0.2;

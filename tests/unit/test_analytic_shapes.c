@@ -231,8 +231,8 @@ static struct vec3 target_at(const struct shape *s, double size, struct test_ran
         return vec3_make(x, test_uniform(random, -1, 1) * s->torus.minor, z);
     }
     if (s->kind == SHAPE_FLAT && s->flat.kind != FLAT_PLANE) {
-        double least = s->flat.kind == FLAT_DISC ? -1.1 : -0.1;
-        double a = test_uniform(random, least, 1.1), b = test_uniform(random, least, 1.1);
+        double min = s->flat.kind == FLAT_DISC ? -1.1 : -0.1;
+        double a = test_uniform(random, min, 1.1), b = test_uniform(random, min, 1.1);
         return vec3_add_scaled(vec3_add_scaled(s->flat.origin, s->flat.u, a), s->flat.v, b);
     }
     return p;
@@ -868,7 +868,7 @@ TEST(polygons_that_are_none_are_refused_with_the_reason) {
 /* ---- CSG ---- */
 
 TEST(csg_of_all_analytic_solids_equals_point_by_point_evaluation) {
-    enum { MOST = 8 };
+    enum { MAX = 8 };
     struct test_random random = {10};
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 1000));
@@ -876,9 +876,9 @@ TEST(csg_of_all_analytic_solids_equals_point_by_point_evaluation) {
     for (int tree = 0; tree < 400; tree++) {
         struct arena arena = {0};
         struct error error = {0};
-        struct csg_leaf leaves[MOST];
-        struct csg_token program[2 * MOST];
-        uint32_t count = 1 + (uint32_t)test_uniform(&random, 0, MOST - 0.001);
+        struct csg_leaf leaves[MAX];
+        struct csg_token program[2 * MAX];
+        uint32_t count = 1 + (uint32_t)test_uniform(&random, 0, MAX - 0.001);
         for (uint32_t i = 0; i < count;) {
             enum form form = (enum form)test_uniform(&random, 0, FORMS - 0.001);
             struct shape s = random_shape(form, &random, &arena);

@@ -101,16 +101,16 @@ static void check_segments(const struct csg *csg, const struct ray *ray, struct 
 }
 
 TEST(csg_segments_equal_point_by_point_evaluation_on_a_million_rays) {
-    enum { MOST = 24 };
+    enum { MAX = 24 };
     struct test_random random = {1};
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 1000));
     struct tally tally = {0};
     for (int tree = 0; tree < 1000; tree++) {
         struct arena arena = {0};
-        struct csg_leaf leaves[MOST];
-        struct csg_token program[2 * MOST];
-        uint32_t count = 1 + (uint32_t)test_uniform(&random, 0, tree % 10 == 0 ? MOST - 0.001 : 7.999);
+        struct csg_leaf leaves[MAX];
+        struct csg_token program[2 * MAX];
+        uint32_t count = 1 + (uint32_t)test_uniform(&random, 0, tree % 10 == 0 ? MAX - 0.001 : 7.999);
         for (uint32_t i = 0; i < count; i++)
             leaves[i] =
                 leaf_of(test_uniform(&random, 0, 1) < 0.5 ? SHAPE_SPHERE : SHAPE_BOX, random_transform(&random, 1));

@@ -5,7 +5,7 @@
 #include "tests/unit/shape_makers.h"
 #include "tests/unit/swept_makers.h"
 
-enum { MOST = 10 };
+enum { MAX = 10 };
 
 /* ---- makers ---- */
 
@@ -126,9 +126,9 @@ static struct counts check_trees(uint64_t seed, int trees, int rays) {
     CHECK(geom_scratch_init(&scratch, 4000));
     for (int tree = 0; tree < trees; tree++) {
         struct arena arena = {0};
-        struct csg_leaf leaves[MOST];
-        struct csg_token program[4 * MOST];
-        uint32_t count = 1 + (uint32_t)test_uniform(&random, 0, MOST - 0.001);
+        struct csg_leaf leaves[MAX];
+        struct csg_token program[4 * MAX];
+        uint32_t count = 1 + (uint32_t)test_uniform(&random, 0, MAX - 0.001);
         for (uint32_t i = 0; i < count; i++)
             leaves[i] = random_leaf(&random, &makers);
         const struct csg *csg = build(&arena, leaves, count, program, random_program(&random, 0, count, 0.12, program));
@@ -307,8 +307,8 @@ TEST(csg_clipped_solids_are_their_surface_inside_of_the_clip) {
     CHECK(geom_scratch_init(&scratch, 4000));
     for (int tree = 0; tree < 700; tree++) {
         struct arena arena = {0};
-        struct csg_leaf leaves[2 * MOST];
-        struct csg_token program[8 * MOST], own[8 * MOST];
+        struct csg_leaf leaves[2 * MAX];
+        struct csg_token program[8 * MAX], own[8 * MAX];
         struct error error = {0};
         uint32_t count = 1 + (uint32_t)test_uniform(&random, 0, 3.999);
         uint32_t behind = 1 + (uint32_t)test_uniform(&random, 0, 2.999);

@@ -40,10 +40,10 @@ static uint32_t differing(const char *name_a, const char *name_b, int levels) {
     CHECK(a.rgb && b.rgb && a.width == b.width && a.height == b.height);
     for (uint32_t i = 0; a.rgb && b.rgb && i < size; i++) {
         const uint8_t *in_a = &a.rgb[3 * i], *in_b = &b.rgb[3 * i];
-        int most = 0;
+        int max = 0;
         for (int k = 0; k < 3; k++)
-            most = abs(in_a[k] - in_b[k]) > most ? abs(in_a[k] - in_b[k]) : most;
-        count += most > levels;
+            max = abs(in_a[k] - in_b[k]) > max ? abs(in_a[k] - in_b[k]) : max;
+        count += max > levels;
     }
     free(a.rgb);
     free(b.rgb);

@@ -15,7 +15,7 @@
 /* --- a receiver in place of tev --- */
 
 struct receiver {
-    int listening, most; /* most: it closes the connection after so many bytes; 0: never */
+    int listening, max; /* most: it closes the connection after so many bytes; 0: never */
     unsigned port;
     uint8_t *bytes;
     size_t size;
@@ -29,7 +29,7 @@ static void *receive(void *context) {
     r->bytes = malloc(room);
     for (ssize_t got; r->bytes && (got = read(peer, r->bytes + r->size, room - r->size)) > 0;) {
         r->size += (size_t)got;
-        if (r->most > 0 && r->size >= (size_t)r->most)
+        if (r->max > 0 && r->size >= (size_t)r->max)
             break;
         if (r->size == room)
             r->bytes = realloc(r->bytes, room *= 2);
@@ -38,10 +38,10 @@ static void *receive(void *context) {
     return NULL;
 }
 
-static bool receiver_begin(struct receiver *r, int most) {
+static bool receiver_begin(struct receiver *r, int max) {
     struct sockaddr_in address = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
     socklen_t length = sizeof address;
-    *r = (struct receiver){.most = most};
+    *r = (struct receiver){.max = max};
     r->listening = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     bool ok = bind(r->listening, (struct sockaddr *)&address, length) == 0 && listen(r->listening, 1) == 0 &&
               getsockname(r->listening, (struct sockaddr *)&address, &length) == 0;

@@ -21,7 +21,7 @@ struct gallery {
     struct pool *pool;
     struct assets assets;
     int pictures;
-    int most; /* numbers of an argument that are tried one by one */
+    int max; /* numbers of an argument that are tried one by one */
     bool finite, clamped;
     char first[160]; /* where the first number that is not finite is */
 };
@@ -496,7 +496,7 @@ static void try_everywhere(struct gallery *gallery, const char *value, bool must
             if (!is_numeric(function->parameters[p].kind) || !goes_with_the_others(function, p))
                 continue;
             right_text(&function->parameters[p], right, sizeof right);
-            for (int which = -1; which < gallery->most && replace_number(right, which, value, with, sizeof with);
+            for (int which = -1; which < gallery->max && replace_number(right, which, value, with, sizeof with);
                  which++) {
                 if (has_table_form(function)) {
                     table_call(function, p, with, call);
@@ -524,7 +524,7 @@ static void try_combinations(struct gallery *gallery, const char *value) {
 static void try_values(const char *const *values, bool must_refuse, bool combinations_too, bool is_long) {
     struct gallery gallery;
     open_gallery(&gallery);
-    gallery.most = is_long ? 9 : 3;
+    gallery.max = is_long ? 9 : 3;
     for (; *values; values++) {
         try_everywhere(&gallery, *values, must_refuse);
         if (combinations_too)

@@ -56,10 +56,10 @@ TEST(radiance_and_pfm_pictures_are_read_as_they_were_written) {
         for (uint32_t p = 0; p < width * H; p++) {
             uint32_t x = p % width, y = p / width;
             struct rgba c = image_texel(image, x, y);
-            double most = fmax(light(x, y, 0), fmax(light(x, y, 1), light(x, y, 2)));
+            double max = fmax(light(x, y, 0), fmax(light(x, y, 1), light(x, y, 2)));
             const double got[3] = {c.r, c.g, c.b};
             for (uint32_t k = 0; k < 3; k++)
-                CHECK_NEAR(got[k], (double)light(x, y, k), i % 2 ? 0 : most / 256);
+                CHECK_NEAR(got[k], (double)light(x, y, k), i % 2 ? 0 : max / 256);
             CHECK_NEAR(c.a, 1, 0);
         }
         image_release(image);

@@ -65,7 +65,7 @@ static double seconds_of_children(void) {
            1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
 
-static long most_memory(void) {
+static long max_memory(void) {
     struct rusage usage;
     (void)getrusage(RUSAGE_CHILDREN, &usage);
     return usage.ru_maxrss;
@@ -81,7 +81,7 @@ static void check_script(const char *folder, const char *name) {
     struct test_result result = test_gray(folder, arguments);
     double used = seconds_of_children() - before;
     if (getenv("GRAY_TEST_TELL"))
-        printf("    %s: %.3f s, %ld KiB at most so far: %.300s\n", name, used, most_memory(), result.err);
+        printf("    %s: %.3f s, %ld KiB at most so far: %.300s\n", name, used, max_memory(), result.err);
     char *line = result.err, first[2048];
     line += strspn(line, "x"); /* of those that write to standard error */
     (void)snprintf(first, sizeof first, "%.*s", (int)strcspn(line, "\n"), line);
@@ -189,10 +189,10 @@ TEST(hostile_no_script_takes_more_than_its_memory_and_a_tenth) {
     CHECK_EQ_INT(plain.status, 0);
     free(plain.out);
     free(plain.err);
-    long without = most_memory();
+    long without = max_memory();
     CHECK(run_scripts("memory_") >= 15);
-    if (!test_has_sanitizer() && most_memory() - without > memory_limit * 11 / 10)
-        test_fail(__FILE__, __LINE__, "%ld KiB over the %ld of an empty script", most_memory() - without, without);
+    if (!test_has_sanitizer() && max_memory() - without > memory_limit * 11 / 10)
+        test_fail(__FILE__, __LINE__, "%ld KiB over the %ld of an empty script", max_memory() - without, without);
     free(path);
 }
 

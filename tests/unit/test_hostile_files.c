@@ -9,7 +9,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { ROWS_MOST = 400 };
+enum { ROWS_MAX = 400 };
 
 struct row {
     char *how, *file, *line;
@@ -18,7 +18,7 @@ struct row {
 
 static char folder[512];
 static char *table_text;
-static struct row rows[ROWS_MOST];
+static struct row rows[ROWS_MAX];
 static int row_count;
 
 static void copy_files(void) {
@@ -56,7 +56,7 @@ static void read_table(void) {
         char *status = strsep(&line, "\t");
         row->status = status ? atoi(status) : -1;
         row->line = line;
-        CHECK(row->file && row->line && row_count < ROWS_MOST - 1);
+        CHECK(row->file && row->line && row_count < ROWS_MAX - 1);
         row_count++;
     }
 }

@@ -35,12 +35,12 @@ TEST(every_integrator_fills_the_film_with_the_same_bytes_for_any_number_of_threa
         CHECK(memcmp(one.film.pixels, four.film.pixels, film_bytes(&one.film)) == 0);
         CHECK_EQ_INT(film_tiles_in(&one.film, FILM_TILE_DONE), film_tile_count(&one.film));
         CHECK(one.statistics.camera_rays >= WIDTH * HEIGHT && one.statistics.samples >= WIDTH * HEIGHT);
-        double least = INFINITY, most = 0;
+        double min = INFINITY, max = 0;
         for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
-            least = fmin(least, (double)one.film.pixels[i].rgb[0]);
-            most = fmax(most, (double)one.film.pixels[i].rgb[0]);
+            min = fmin(min, (double)one.film.pixels[i].rgb[0]);
+            max = fmax(max, (double)one.film.pixels[i].rgb[0]);
         }
-        CHECK(isfinite(least) && isfinite(most) && most > least + 0.1);
+        CHECK(isfinite(min) && isfinite(max) && max > min + 0.1);
         stage_end(&one);
         stage_end(&four);
     }

@@ -482,7 +482,7 @@ TEST(samples_of_every_sky_have_the_density_of_its_table_and_the_mean_of_its_inte
         struct arena arena = {0};
         const struct sky_table *table = sky_table_build(&skies[i], &arena, pool);
         struct vec3 normal = vec3_normalize(vec3_make(0.3, 1, -0.2));
-        double sum = 0, most = 0;
+        double sum = 0, max = 0;
         for (int k = 0; k < N * N; k++) {
             struct sample2 place = {(k % N + 0.5) / N, ((k - k % N) / N + 0.5) / N};
             struct sky_sample sample = sky_table_sample(&skies[i], table, place);
@@ -490,14 +490,14 @@ TEST(samples_of_every_sky_have_the_density_of_its_table_and_the_mean_of_its_inte
             CHECK_NEAR(vec3_length(d), 1, 1e-12);
             double cosine = vec3_dot(d, normal);
             sum += cosine > 0 ? cosine * light.y : 0;
-            most = fmax(most, light.z);
+            max = fmax(max, light.z);
         }
         /* The gradient is blue alone. */
         double expected = i == 0 ? 0 : irradiance(&skies[i], normal, 500);
         CHECK_NEAR(sum / (N * N), expected, 0.01 * expected + 1e-12);
         check_density(&skies[i], table);
         if (i == 0)
-            CHECK(most < 4);
+            CHECK(max < 4);
         arena_destroy(&arena);
     }
     pool_destroy(pool);

@@ -391,8 +391,8 @@ TEST(photons_of_the_parts_of_a_light_are_those_of_the_whole) {
         struct example e;
         double units[2] = {0, 0};
         example_begin(&e, (enum light_kind)kind, true, 1);
-        uint32_t most = light_divided_extent(&e.light) > 0 ? 2 : 1;
-        for (uint32_t parts = 1; parts <= most; parts++) {
+        uint32_t max = light_divided_extent(&e.light) > 0 ? 2 : 1;
+        for (uint32_t parts = 1; parts <= max; parts++) {
             for (uint32_t part = 0; part < parts * parts; part++) {
                 struct light_emitter emitter;
                 CHECK(light_emitter_make(&e.light, part % parts, part / parts, parts, &emitter));
@@ -403,7 +403,7 @@ TEST(photons_of_the_parts_of_a_light_are_those_of_the_whole) {
                 }
             }
         }
-        CHECK(most == 1 || fabs(units[1] / units[0] - 1) < 1e-12);
+        CHECK(max == 1 || fabs(units[1] / units[0] - 1) < 1e-12);
         example_end(&e);
     }
 }

@@ -123,15 +123,15 @@ TEST(lights_are_chosen_as_often_as_their_probability_says) {
 /* The brightest classic intensity times cosine that any of its samples brings to a surface. */
 static double brings(const struct light *light, struct vec3 point, struct vec3 normal) {
     struct light_context context;
-    double most = 0;
+    double max = 0;
     if (!light_context_make(light, point, point, &context))
         return 0;
     for (uint64_t i = 0; i < 16; i++) {
         struct sample2 place = {random_unit(random_combine(5, i)), random_unit(random_combine(6, i))};
         struct light_sample sample = light_sample(light, &context, place);
-        most = fmax(most, vec3_max_abs(sample.intensity) * fabs(vec3_dot(sample.direction, normal)));
+        max = fmax(max, vec3_max_abs(sample.intensity) * fabs(vec3_dot(sample.direction, normal)));
     }
-    return most;
+    return max;
 }
 
 TEST(every_light_that_reaches_a_point_has_a_chance) {

@@ -30,7 +30,7 @@
 enum { KIB_OF_LIMIT = 16 << 10 };
 
 /* The most that any child has taken, in KiB. */
-static long most_memory(void) {
+static long max_memory(void) {
     struct rusage usage;
     (void)getrusage(RUSAGE_CHILDREN, &usage);
     return usage.ru_maxrss;
@@ -55,11 +55,11 @@ static long memory_of_nothing(void) {
     struct test_result plain = test_gray_scene("local x = 1", "scene.lua", NULL);
     CHECK_EQ_INT(plain.status, 0);
     forget(plain);
-    return most_memory();
+    return max_memory();
 }
 
 static void check_memory(const char *what, long without, long limit) {
-    long more = most_memory() - without;
+    long more = max_memory() - without;
     if (!test_has_sanitizer() && more > limit * 11 / 10)
         test_fail(__FILE__, __LINE__, "%s: %ld KiB over an empty script for a limit of %ld", what, more, limit);
 }

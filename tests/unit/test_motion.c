@@ -25,11 +25,11 @@ static struct transform random_pose(struct test_random *random) {
 }
 
 static double difference(const struct affine *a, const struct affine *b) {
-    double most = 0;
+    double max = 0;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 4; j++)
-            most = fmax(most, fabs(a->m[i][j] - b->m[i][j]));
-    return most;
+            max = fmax(max, fabs(a->m[i][j] - b->m[i][j]));
+    return max;
 }
 
 TEST(a_motion_begins_and_ends_at_its_poses_and_its_inverse_is_one) {
@@ -192,7 +192,7 @@ static void moving_stage(struct stage *s, int threads, double unit) {
 }
 
 /* A blurred picture is the mean of sharp ones. */
-static void compare_with_mean(struct stage *s, uint32_t width, uint32_t height, double most_rms) {
+static void compare_with_mean(struct stage *s, uint32_t width, uint32_t height, double max_rms) {
     enum { FRAMES = 48 };
     struct vec3 *mean = calloc((size_t)width * height, sizeof *mean);
     struct shutter shutter = s->settings.shutter;
@@ -215,7 +215,7 @@ static void compare_with_mean(struct stage *s, uint32_t width, uint32_t height, 
         sum += vec3_dot(d, d) / 3;
         worst = fmax(worst, vec3_max_abs(d));
     }
-    CHECK_NEAR(sqrt(sum / (width * height)), 0, most_rms);
+    CHECK_NEAR(sqrt(sum / (width * height)), 0, max_rms);
     CHECK_NEAR(worst, 0, 0.15);
     free(mean);
 }

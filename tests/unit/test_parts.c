@@ -105,7 +105,7 @@ TEST(shards_of_several_pictures_are_merged_picture_by_picture) {
 TEST(shards_have_tiles_of_about_the_same_number) {
     put("scene.lua", ONE);
     gives("for i in 1 2 3 4 5; do $gray scene.lua --shard $i/5; done", 0, NULL);
-    size_t least = SIZE_MAX, most = 0;
+    size_t min = SIZE_MAX, max = 0;
     for (int i = 1; i <= 5; i++) {
         char name[64];
         (void)snprintf(name, sizeof name, "out.png.%d-of-5.part", i);
@@ -113,13 +113,13 @@ TEST(shards_have_tiles_of_about_the_same_number) {
         struct tile_file file;
         struct error error;
         CHECK(tile_file_read(path, &file, &error));
-        least = file.tiles < least ? file.tiles : least;
-        most = file.tiles > most ? file.tiles : most;
+        min = file.tiles < min ? file.tiles : min;
+        max = file.tiles > max ? file.tiles : max;
         tile_file_close(&file);
         free(path);
     }
-    CHECK_EQ_INT(least, 17); /* 11 x 8 tiles */
-    CHECK_EQ_INT(most, 18);
+    CHECK_EQ_INT(min, 17); /* 11 x 8 tiles */
+    CHECK_EQ_INT(max, 18);
 }
 
 TEST(merge_says_which_parts_are_missing_double_or_foreign) {

@@ -95,12 +95,12 @@ static bool check_pixel_trace(void *context, struct pixel_trace *pixel_trace, st
 
 /* Tells every seventh pixel of the picture and holds it against the film. */
 static struct check tell_picture(struct stage *s, uint32_t width, uint32_t height) {
-    enum { MOST = 2000 };
-    static uint32_t pixels[MOST][2];
+    enum { MAX = 2000 };
+    static uint32_t pixels[MAX][2];
     uint32_t count = 0;
     struct check check = {.stage = s};
     CHECK(stage_render(s, width, height));
-    for (uint32_t i = 0; i < width * height && count < MOST; i += 7, count++) {
+    for (uint32_t i = 0; i < width * height && count < MAX; i += 7, count++) {
         pixels[count][0] = i % width;
         pixels[count][1] = i / width;
     }

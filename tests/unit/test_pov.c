@@ -19,7 +19,7 @@
 #define FACET_TOLERANCE 2e-3
 #define EDGE_DEPTH 0.15
 /* No scene may hide behind its edges. */
-#define MOST_EDGES 0.15
+#define MAX_EDGES 0.15
 
 struct view {
     int width, height;
@@ -28,12 +28,12 @@ struct view {
 };
 
 static void take(struct view *view, int at, const double rgb[3]) {
-    double most = fmax(rgb[0], fmax(rgb[1], rgb[2]));
-    bool seen = most > 1e-3;
+    double max = fmax(rgb[0], fmax(rgb[1], rgb[2]));
+    bool seen = max > 1e-3;
     view->colour[at] = 0;
     for (int k = 0; k < 3 && seen; k++)
-        view->colour[at] |= (rgb[k] > most / 2) << k;
-    view->depth[at] = seen ? -log(most) / DENSITY : 1e3;
+        view->colour[at] |= (rgb[k] > max / 2) << k;
+    view->depth[at] = seen ? -log(max) / DENSITY : 1e3;
 }
 
 static bool begin_view(struct view *view, int width, int height) {
@@ -75,11 +75,11 @@ static char *header_number(char *at, int *number) {
 static bool read_pov(const char *path, struct view *view) {
     size_t size;
     char *data = test_read_file(path, &size), *at = data && strncmp(data, "P6", 2) == 0 ? data + 2 : NULL;
-    int width = 0, height = 0, most = 0;
+    int width = 0, height = 0, max = 0;
     at = at ? header_number(at, &width) : NULL;
     at = at ? header_number(at, &height) : NULL;
-    at = at ? header_number(at, &most) : NULL;
-    bool ok = at && most == 65535 && size == (size_t)(at + 1 - data) + 6 * (size_t)width * (size_t)height &&
+    at = at ? header_number(at, &max) : NULL;
+    bool ok = at && max == 65535 && size == (size_t)(at + 1 - data) + 6 * (size_t)width * (size_t)height &&
               begin_view(view, width, height);
     for (int i = 0; ok && i < width * height; i++) {
         const uint8_t *p = (const uint8_t *)at + 1 + 6 * i;
@@ -120,7 +120,7 @@ static void compare(const char *name, const struct view *gray, const struct view
         largest = fmax(largest, difference);
         far += difference > tolerance;
     }
-    if (other > 0 || far > 0 || seen < count / 40 || edges > MOST_EDGES * count)
+    if (other > 0 || far > 0 || seen < count / 40 || edges > MAX_EDGES * count)
         test_fail(__FILE__, __LINE__, "%s: %d pixels show something else, %d are elsewhere (%g); %d seen, %d at edges",
                   name, other, far, largest, seen, edges);
 }

@@ -264,15 +264,15 @@ TEST(any_allocation_may_fail_while_nodes_are_read) {
 #endif
 
 /* What a test says of how many there may be stands for the numbers that an index of 32 bits cannot name. */
-static void expect_most(const char *name, const void *data, size_t size, size_t most, const char *words) {
+static void expect_max(const char *name, const void *data, size_t size, size_t max, const char *words) {
     char path[512];
     struct model model;
     struct error error;
-    struct model_options options = {.most = most};
+    struct model_options options = {.max = max};
     (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
     bool ok = parse_model(&model, path, data, size, &options, &error);
     if (ok != !words || (words && !strstr(error.text, words)))
-        test_fail(__FILE__, __LINE__, "%s, at most %zu: %s, not '%s'", name, most, ok ? "is read" : error.text,
+        test_fail(__FILE__, __LINE__, "%s, at most %zu: %s, not '%s'", name, max, ok ? "is read" : error.text,
                   words ? words : "read");
     if (ok)
         model_destroy(&model);
@@ -289,23 +289,23 @@ TEST(more_than_an_index_can_name_is_told_by_every_reader) {
                                 "end_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n4 0 1 2 3\n";
     static const char stl[] = "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
                               "endloop\nendfacet\nendsolid\n";
-    expect_most("t.obj", obj, strlen(obj), 6, NULL);
-    expect_most("t.obj", obj, strlen(obj), 5, "t.obj:8: more corners than an index can name");
-    expect_most("t.obj", obj, strlen(obj), 3, "t.obj:4: more elements than an index can name");
-    expect_most("t.obj", names, strlen(names), 4, NULL);
-    expect_most("t.obj", names, strlen(names), 3, "out of memory");
-    expect_most("t.ply", ply, strlen(ply), 6, NULL);
-    expect_most("t.ply", ply, strlen(ply), 5, "more corners than an index can name");
-    expect_most("t.ply", ply, strlen(ply), 2, "more corners than an index can name");
-    expect_most("t.ply", strip, strlen(strip), 6, NULL);
-    expect_most("t.ply", strip, strlen(strip), 5, "more corners than an index can name");
-    expect_most("t.stl", stl, strlen(stl), 3, NULL);
-    expect_most("t.stl", stl, strlen(stl), 2, "t.stl:8: too many triangles");
+    expect_max("t.obj", obj, strlen(obj), 6, NULL);
+    expect_max("t.obj", obj, strlen(obj), 5, "t.obj:8: more corners than an index can name");
+    expect_max("t.obj", obj, strlen(obj), 3, "t.obj:4: more elements than an index can name");
+    expect_max("t.obj", names, strlen(names), 4, NULL);
+    expect_max("t.obj", names, strlen(names), 3, "out of memory");
+    expect_max("t.ply", ply, strlen(ply), 6, NULL);
+    expect_max("t.ply", ply, strlen(ply), 5, "more corners than an index can name");
+    expect_max("t.ply", ply, strlen(ply), 2, "more corners than an index can name");
+    expect_max("t.ply", strip, strlen(strip), 6, NULL);
+    expect_max("t.ply", strip, strlen(strip), 5, "more corners than an index can name");
+    expect_max("t.stl", stl, strlen(stl), 3, NULL);
+    expect_max("t.stl", stl, strlen(stl), 2, "t.stl:8: too many triangles");
     struct maker m = {0};
     struct bytes b = {0};
     maker_sphere(&m, 3);
     write_stl(&b, &m, true, "ball");
-    expect_most("t.stl", b.data, b.size, 5, "triangles are too many");
+    expect_max("t.stl", b.data, b.size, 5, "triangles are too many");
     bytes_free(&b);
     /* More vertices than corners, which no reader needs to count by itself. */
     bytes_print(&b, "ply\nformat ascii 1.0\nelement vertex 7\nproperty float x\nproperty float y\nproperty float z\n"
@@ -313,12 +313,12 @@ TEST(more_than_an_index_can_name_is_told_by_every_reader) {
     for (int i = 0; i < 7; i++)
         bytes_print(&b, "%d %d 0\n", i, i * i);
     bytes_print(&b, "3 0 1 2\n");
-    expect_most("t.ply", b.data, b.size, 6, "more than 6 vertices or corners");
+    expect_max("t.ply", b.data, b.size, 6, "more than 6 vertices or corners");
     bytes_free(&b);
 #ifdef HAVE_JANSSON
     static const char gltf[] = HEAD TRIANGLE "\"meshes\":[{\"primitives\":[" ONE "," ONE "]}]}";
-    expect_most("t.gltf", gltf, strlen(gltf), 6, NULL);
-    expect_most("t.gltf", gltf, strlen(gltf), 5, "too many vertices");
+    expect_max("t.gltf", gltf, strlen(gltf), 6, NULL);
+    expect_max("t.gltf", gltf, strlen(gltf), 5, "too many vertices");
     /* three vertices, each of them twice */
     bytes_print(&b, "%s",
                 HEAD
@@ -326,8 +326,8 @@ TEST(more_than_an_index_can_name_is_told_by_every_reader) {
                 "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,"
                 "\"byteLength\":6}],\"accessors\":[" POINTS
                 ",{\"bufferView\":1,\"componentType\":5121,\"count\":6,\"type\":\"SCALAR\"}]," MESH "}");
-    expect_most("t.gltf", b.data, b.size, 6, NULL);
-    expect_most("t.gltf", b.data, b.size, 5, "more than 5 vertices or corners");
+    expect_max("t.gltf", b.data, b.size, 6, NULL);
+    expect_max("t.gltf", b.data, b.size, 5, "more than 5 vertices or corners");
     bytes_free(&b);
 #endif
     maker_free(&m);

@@ -249,7 +249,7 @@ TEST(bumps_on_a_ball_are_the_normals_of_the_ball_with_those_heights) {
     stage_begin(&s, 1);
     (void)stage_sphere(&s, s.root, relief_over(&s, MATERIAL_BUMP, image, height));
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
-    double most = 0;
+    double max = 0;
     for (int i = 0; i < 300; i++) {
         double a = 0.4 + 2.3 * i / 300, b = -0.9 + 1.8 * ((i * 37) % 300) / 300;
         struct vec3 direction = {sin(b) * sin(a), cos(a), cos(b) * sin(a)};
@@ -266,10 +266,10 @@ TEST(bumps_on_a_ball_are_the_normals_of_the_ball_with_those_heights) {
         }
         struct vec3 real = vec3_normalize(vec3_cross(vec3_sub(p[0], p[1]), vec3_sub(p[2], p[3])));
         real = vec3_dot(real, direction) < 0 ? vec3_negate(real) : real;
-        most = fmax(most, vec3_length(vec3_sub(real, direction)));
+        max = fmax(max, vec3_length(vec3_sub(real, direction)));
         check_vector(normal, real, 2e-5);
     }
-    CHECK(most > 1e-3);
+    CHECK(max > 1e-3);
     stage_end(&s);
     image_release(image);
 }

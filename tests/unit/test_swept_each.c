@@ -195,7 +195,7 @@ TEST(sweep_of_one_straight_piece_is_a_capsule_or_a_rounded_cone) {
         for (uint32_t k = 0; k < list.count; k++) {
             /* The deepest ball at the crossing just touches it: least of |p - c(x)| - r(x) by ternary search. */
             struct vec3 p = ray_at(&ray, scratch.items[k].t);
-            double lo = 0, hi = 1, least = INFINITY;
+            double lo = 0, hi = 1, min = INFINITY;
             for (int n = 0; n < 120; n++) {
                 double x[2] = {lo + (hi - lo) / 3, hi - (hi - lo) / 3}, depth[2];
                 for (int j = 0; j < 2; j++) {
@@ -203,7 +203,7 @@ TEST(sweep_of_one_straight_piece_is_a_capsule_or_a_rounded_cone) {
                                      points[0][1] + x[j] * (points[1][1] - points[0][1]),
                                      points[0][2] + x[j] * (points[1][2] - points[0][2])};
                     depth[j] = vec3_length(vec3_sub(p, c)) - (radii[0] + x[j] * (radii[1] - radii[0]));
-                    least = fmin(least, depth[j]);
+                    min = fmin(min, depth[j]);
                 }
                 if (depth[0] < depth[1])
                     hi = x[1];
@@ -211,7 +211,7 @@ TEST(sweep_of_one_straight_piece_is_a_capsule_or_a_rounded_cone) {
                     lo = x[0];
             }
             crossed++;
-            wrong += fabs(least) > 1e-12;
+            wrong += fabs(min) > 1e-12;
         }
     }
     CHECK(crossed > 20000);

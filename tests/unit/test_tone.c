@@ -124,13 +124,13 @@ TEST(radiance_pictures_read_back_within_their_mantissa) {
         read_hdr((const uint8_t *)file + start, size - start, width, pixels);
         for (uint32_t p = 0; p < width * H; p++) {
             const uint8_t *rgbe = pixels + 4 * (size_t)p;
-            double most = 0;
+            double max = 0;
             for (int c = 0; c < 3; c++)
-                most = fmax(most, (double)light(p % width, p / width, c));
+                max = fmax(max, (double)light(p % width, p / width, c));
             for (int c = 0; c < 3; c++) {
                 double value = rgbe[3] ? ldexp(rgbe[c], rgbe[3] - 136) : 0,
                        wanted = (double)light(p % width, p / width, c);
-                CHECK(value <= wanted && wanted - value <= most / 128);
+                CHECK(value <= wanted && wanted - value <= max / 128);
             }
         }
         free(pixels);

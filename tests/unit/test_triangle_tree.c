@@ -68,7 +68,7 @@ static uint32_t check_whole(const struct tree *tree, const struct reference *ref
     CHECK(x->parent == number && y->parent == number);
     CHECK_EQ_INT(b->count, x->count + y->count);
     CHECK_EQ_INT(b->height, 1 + (x->height > y->height ? x->height : y->height));
-    CHECK(b->height <= MOST_BRANCH_DEPTH);
+    CHECK(b->height <= MAX_BRANCH_DEPTH);
     for (int k = 0; k < 3; k++)
         CHECK(b->min[k] == fminf(x->min[k], y->min[k]) && b->max[k] == fmaxf(x->max[k], y->max[k]));
     return check_whole(tree, references, b->child[0], seen) + check_whole(tree, references, b->child[1], seen);
