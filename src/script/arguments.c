@@ -14,7 +14,7 @@
 
 /* Where a value stands, for messages: name, name[i], name[i][j]. */
 struct place {
-    const struct parameter *parameter;
+    const struct script_parameter *parameter;
     lua_Integer i, j; /* 0 = none */
 };
 
@@ -29,14 +29,14 @@ static const char *place_words(const struct place *place, char out[128]) {
     return out;
 }
 
-_Noreturn static void wrong_type(struct context *c, const struct place *place, const char *wanted, int index) {
+_Noreturn static void wrong_type(struct script_context *c, const struct place *place, const char *wanted, int index) {
     char words[128];
     const char *given = value_words(c->lua, index);
     context_raise(c, "%s must be %s, not %s", place_words(place, words), wanted, given);
 }
 
 /* "a > 0 and b < 180" in words. */
-static void range_words(const struct parameter *p, char out[128]) {
+static void range_words(const struct script_parameter *p, char out[128]) {
     const char *above = p->flags & LOW_OPEN ? ">" : ">=", *below = p->flags & HIGH_OPEN ? "<" : "<=";
     assert(isfinite(p->low)); /* every range has a beginning; a test looks at all of them */
     if (!isfinite(p->high))
@@ -47,16 +47,16 @@ static void range_words(const struct parameter *p, char out[128]) {
         snprintf(out, 128, "between %.15g and %.15g", p->low, p->high);
 }
 
-_Noreturn static void out_of_range(struct context *c, const struct place *place) {
+_Noreturn static void out_of_range(struct script_context *c, const struct place *place) {
     char words[128], range[128];
     range_words(place->parameter, range);
     context_raise(c, "%s must be %s", place_words(place, words), range);
 }
 
-static double read_number(struct context *c, int index, const struct place *place) {
+static double read_number(struct script_context *c, int index, const struct place *place) {
     int is_number;
     double x = lua_tonumberx(c->lua, index, &is_number);
-    const struct parameter *p = place->parameter;
+    const struct script_parameter *p = place->parameter;
     if (!is_number)
         wrong_type(c, place, place->i ? "a number" : kind_words(p->kind), index);
     char words[128];
@@ -76,7 +76,7 @@ static double read_number(struct context *c, int index, const struct place *plac
     return x;
 }
 
-static double read_whole(struct context *c, int index, const struct place *place) {
+static double read_whole(struct script_context *c, int index, const struct place *place) {
     double x = read_number(c, index, place);
     char words[128];
     if (x != floor(x))
@@ -85,7 +85,7 @@ static double read_whole(struct context *c, int index, const struct place *place
 }
 
 /* The `count` numbers of the table at `index` (absolute). place->i is set for a table inside a list. */
-static void read_tuple(struct context *c, int index, struct place place, int count, double *out) {
+static void read_tuple(struct script_context *c, int index, struct place place, int count, double *out) {
     lua_State *L = c->lua;
     char words[128];
     lua_Unsigned length = lua_rawlen(L, index);
@@ -106,19 +106,19 @@ static void read_tuple(struct context *c, int index, struct place place, int cou
 }
 
 /* An argument that is a table of `count` numbers. */
-static void read_row(struct context *c, int index, const struct place *place, int count, double *out) {
+static void read_row(struct script_context *c, int index, const struct place *place, int count, double *out) {
     if (!lua_istable(c->lua, index))
         wrong_type(c, place, kind_words(place->parameter->kind), index);
     read_tuple(c, index, *place, count, out);
 }
 
-static struct vec3 read_vector(struct context *c, int index, const struct place *place) {
+static struct vec3 read_vector(struct script_context *c, int index, const struct place *place) {
     double x[3];
     read_row(c, index, place, 3, x);
     return (struct vec3){x[0], x[1], x[2]};
 }
 
-static struct vec3 read_interval(struct context *c, int index, const struct place *place) {
+static struct vec3 read_interval(struct script_context *c, int index, const struct place *place) {
     double x[2];
     char words[128];
     read_row(c, index, place, 2, x);
@@ -129,7 +129,7 @@ static struct vec3 read_interval(struct context *c, int index, const struct plac
 
 /* Strings stay where they are: on the stack or in the table of the call. Numbers count as text, as everywhere in Lua.
  */
-static const char *read_text(struct context *c, int index, const struct place *place) {
+static const char *read_text(struct script_context *c, int index, const struct place *place) {
     lua_State *L = c->lua;
     char words[128];
     if (lua_type(L, index) == LUA_TNUMBER) {
@@ -148,7 +148,7 @@ static const char *read_text(struct context *c, int index, const struct place *p
     return text;
 }
 
-static const char *read_file_name(struct context *c, int index, const struct place *place) {
+static const char *read_file_name(struct script_context *c, int index, const struct place *place) {
     const char *text = read_text(c, index, place);
     char words[128];
     if (text[0] == '\0')
@@ -157,8 +157,8 @@ static const char *read_file_name(struct context *c, int index, const struct pla
 }
 
 /* Index of the word among the choices, letters compared as they are (axes: in either case). */
-static int read_choice(struct context *c, int index, const struct place *place) {
-    const struct parameter *p = place->parameter;
+static int read_choice(struct script_context *c, int index, const struct place *place) {
+    const struct script_parameter *p = place->parameter;
     const char *text = read_text(c, index, place), *word = p->choices;
     char lowered[2] = {(char)(text[0] | ' '), '\0'}, words[128];
     if (p->kind == KIND_AXIS && text[0] != '\0' && text[1] == '\0')
@@ -182,7 +182,7 @@ static int read_choice(struct context *c, int index, const struct place *place) 
 }
 
 /* The handle of that type, or NULL for a ghost. */
-static void *read_handle(struct context *c, int index, const struct place *place, enum handle_type type) {
+static void *read_handle(struct script_context *c, int index, const struct place *place, enum handle_type type) {
     const struct handle *handle = handle_at(c->lua, index);
     if (handle && handle->type == HANDLE_GHOST)
         return NULL;
@@ -191,7 +191,7 @@ static void *read_handle(struct context *c, int index, const struct place *place
     return handle->pointer;
 }
 
-static uint32_t list_length(struct context *c, int index, const struct place *place) {
+static uint32_t list_length(struct script_context *c, int index, const struct place *place) {
     if (!lua_istable(c->lua, index))
         wrong_type(c, place, kind_words(place->parameter->kind), index);
     lua_Unsigned length = lua_rawlen(c->lua, index);
@@ -201,7 +201,7 @@ static uint32_t list_length(struct context *c, int index, const struct place *pl
     return (uint32_t)length;
 }
 
-static void *call_array(struct context *c, size_t count, size_t size) {
+static void *call_array(struct script_context *c, size_t count, size_t size) {
     void *array = arena_alloc_array(&c->call, count > 0 ? count : 1, size);
     if (!array)
         context_raise_no_memory(c);
@@ -209,7 +209,7 @@ static void *call_array(struct context *c, size_t count, size_t size) {
 }
 
 /* `{a, nil, b}` may count as one entry or as three: an entry beyond a hole is found and the hole named. */
-static void check_holes(struct context *c, int index, const struct place *place, uint32_t length) {
+static void check_holes(struct script_context *c, int index, const struct place *place, uint32_t length) {
     lua_State *L = c->lua;
     for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1)) {
         if (lua_isinteger(L, -2) && lua_tointeger(L, -2) > (lua_Integer)length)
@@ -217,7 +217,7 @@ static void check_holes(struct context *c, int index, const struct place *place,
     }
 }
 
-static void read_list_of_handles(struct context *c, int index, struct place place, struct value *value) {
+static void read_list_of_handles(struct script_context *c, int index, struct place place, struct script_value *value) {
     lua_State *L = c->lua;
     uint32_t length = list_length(c, index, &place);
     check_holes(c, index, &place, length);
@@ -240,7 +240,8 @@ static void read_list_of_handles(struct context *c, int index, struct place plac
     }
 }
 
-static void read_tuples(struct context *c, int index, struct place place, int width, double *out, uint32_t length) {
+static void read_tuples(struct script_context *c, int index, struct place place, int width, double *out,
+                        uint32_t length) {
     lua_State *L = c->lua;
     int top = lua_gettop(L) + 1;
     for (uint32_t k = 0; k < length; k++) {
@@ -257,7 +258,7 @@ static void read_tuples(struct context *c, int index, struct place place, int wi
 }
 
 /* The pairs of one curve in a list of curves; messages name the curve and the pair. */
-static void read_curve(struct context *c, int index, struct place place, double *out, uint32_t length) {
+static void read_curve(struct script_context *c, int index, struct place place, double *out, uint32_t length) {
     lua_State *L = c->lua;
     for (uint32_t k = 0; k < length; k++) {
         place.j = (lua_Integer)k + 1;
@@ -275,7 +276,7 @@ static void read_curve(struct context *c, int index, struct place place, double 
 enum { MATERIAL_NAMES = 1000 };
 
 /* Materials by name, or a list of them. Names are read in byte order, so that the first wrong one is told. */
-static void read_materials(struct context *c, int index, struct place place, struct value *value) {
+static void read_materials(struct script_context *c, int index, struct place place, struct script_value *value) {
     lua_State *L = c->lua;
     uint32_t length = list_length(c, index, &place), count = 0;
     if (length == 0)
@@ -317,7 +318,7 @@ static void read_materials(struct context *c, int index, struct place place, str
 }
 
 /* Two passes: count the corners, then fill arrays of the right size. */
-static void read_faces(struct context *c, int index, struct place place, struct value *value) {
+static void read_faces(struct script_context *c, int index, struct place place, struct script_value *value) {
     lua_State *L = c->lua;
     uint32_t length = list_length(c, index, &place), *starts = call_array(c, (size_t)length + 1, sizeof *starts);
     uint64_t corners = 0;
@@ -354,7 +355,7 @@ static void read_faces(struct context *c, int index, struct place place, struct 
 }
 
 /* Numbers of any count from the list at `index` (absolute). */
-static void read_numbers(struct context *c, int index, struct place place, double *out, uint32_t length) {
+static void read_numbers(struct script_context *c, int index, struct place place, double *out, uint32_t length) {
     for (uint32_t k = 0; k < length; k++) {
         struct place inner = place;
         *(place.i ? &inner.j : &inner.i) = (lua_Integer)k + 1;
@@ -365,7 +366,7 @@ static void read_numbers(struct context *c, int index, struct place place, doubl
 }
 
 /* Lists of numbers, or of pairs, of any lengths, one after the other: count first, then fill. */
-static void read_rows(struct context *c, int index, struct place place, bool pairs, struct value *value) {
+static void read_rows(struct script_context *c, int index, struct place place, bool pairs, struct script_value *value) {
     lua_State *L = c->lua;
     uint32_t length = list_length(c, index, &place), *starts = call_array(c, (size_t)length + 1, sizeof *starts);
     uint64_t total = 0;
@@ -398,10 +399,10 @@ static void read_rows(struct context *c, int index, struct place place, bool pai
 }
 
 /* How the photons of caustics are asked for: a number of them, or a table of its own. */
-static void read_caustics(struct context *c, int index, const struct place *place, struct value *value) {
-    static const struct parameter photons = {
+static void read_caustics(struct script_context *c, int index, const struct place *place, struct script_value *value) {
+    static const struct script_parameter photons = {
         .name = "caustics.photons", .kind = KIND_WHOLE, .low = 0, .high = PHOTONS_MAX};
-    static const struct parameter radius = {
+    static const struct script_parameter radius = {
         .name = "caustics.radius", .kind = KIND_NUMBER, .flags = LOW_OPEN, .low = 0, .high = (double)INFINITY};
     lua_State *L = c->lua;
     value->number = PHOTONS_USUAL;
@@ -438,7 +439,8 @@ static struct image *image_of(const struct relief *texture) {
 }
 
 /* One argument at an absolute stack index. False: it is a ghost. */
-static bool read_value(struct context *c, int index, const struct parameter *p, struct value *value) {
+static bool read_value(struct script_context *c, int index, const struct script_parameter *p,
+                       struct script_value *value) {
     struct place place = {.parameter = p};
     lua_State *L = c->lua;
     char words[128];
@@ -595,10 +597,11 @@ static bool read_value(struct context *c, int index, const struct parameter *p, 
 }
 
 /* Reads one parameter unless it is nil. False: the whole call is to be left undone. */
-static bool read_parameter(struct context *c, int index, const struct parameter *p, struct value *value) {
+static bool read_parameter(struct script_context *c, int index, const struct script_parameter *p,
+                           struct script_value *value) {
     if (lua_isnoneornil(c->lua, index) || read_value(c, index, p, value))
         return true;
-    *value = (struct value){0};
+    *value = (struct script_value){0};
     return (p->flags & GHOST_IS_NONE) != 0;
 }
 
@@ -665,7 +668,7 @@ struct fit {
     int leading, difference;
 };
 
-static struct fit form_fit(lua_State *L, const struct function *function, const char *form, int first) {
+static struct fit form_fit(lua_State *L, const struct script_function *function, const char *form, int first) {
     struct fit fit = {0, 0};
     int count = 0, given = lua_gettop(L) - first + 1, index;
     bool optional;
@@ -683,14 +686,14 @@ static bool fits_better(struct fit a, struct fit b) {
 }
 
 /* The first argument fits no form: say what any of them would take. */
-_Noreturn static void no_form_fits(struct context *c, const struct function *function, int first) {
+_Noreturn static void no_form_fits(struct script_context *c, const struct script_function *function, int first) {
     char names[256] = "", words[512] = "";
     for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
         const char *form = function->forms[k];
         int index = 0;
         bool optional, known = false;
         form_next(function, &form, &index, &optional);
-        const struct parameter *p = &function->parameters[index];
+        const struct script_parameter *p = &function->parameters[index];
         for (int earlier = 0; earlier < k; earlier++) {
             const char *other = function->forms[earlier];
             int other_index = 0;
@@ -709,7 +712,7 @@ _Noreturn static void no_form_fits(struct context *c, const struct function *fun
 }
 
 /* The parameter that takes whatever number of nodes, or NULL; its place among the parameters. */
-static const struct parameter *rest_of(const struct function *function, int *index) {
+static const struct script_parameter *rest_of(const struct script_function *function, int *index) {
     for (*index = 0; *index < function->parameter_count; (*index)++)
         if (function->parameters[*index].flags & REST)
             return &function->parameters[*index];
@@ -717,7 +720,8 @@ static const struct parameter *rest_of(const struct function *function, int *ind
 }
 
 /* Nodes behind a positional form. Returns the place of the first argument that is none. */
-static int read_rest(struct context *c, const struct parameter *p, int place, struct value *value) {
+static int read_rest(struct script_context *c, const struct script_parameter *p, int place,
+                     struct script_value *value) {
     lua_State *L = c->lua;
     int end = place;
     while (end <= lua_gettop(L) && (lua_isnil(L, end) || looks_like(L, end, KIND_NODE, 0)))
@@ -735,7 +739,8 @@ static int read_rest(struct context *c, const struct parameter *p, int place, st
     return end;
 }
 
-static bool read_positional(struct context *c, const struct function *function, int first, struct value *args) {
+static bool read_positional(struct script_context *c, const struct script_function *function, int first,
+                            struct script_value *args) {
     lua_State *L = c->lua;
     const char *best = function->forms[0];
     struct fit best_fit = form_fit(L, function, best, first);
@@ -757,14 +762,14 @@ static bool read_positional(struct context *c, const struct function *function, 
         no_form_fits(c, function, first);
     place = first;
     for (const char *form = best; form_next(function, &form, &index, &optional); place++) {
-        const struct parameter *p = &function->parameters[index];
+        const struct script_parameter *p = &function->parameters[index];
         if (!optional && lua_isnoneornil(L, place))
             context_raise(c, "%s is missing", p->name);
         if (!read_parameter(c, place, p, &args[index]))
             return false;
     }
     int rest_index;
-    const struct parameter *rest = rest_of(function, &rest_index);
+    const struct script_parameter *rest = rest_of(function, &rest_index);
     if (rest)
         place = read_rest(c, rest, place, &args[rest_index]);
     if (lua_gettop(L) >= place)
@@ -773,7 +778,7 @@ static bool read_positional(struct context *c, const struct function *function, 
 }
 
 /* An unknown field is an error: the first in byte order, so that the message is the same every time. */
-static void check_fields(struct context *c, const struct function *function, int table) {
+static void check_fields(struct script_context *c, const struct script_function *function, int table) {
     lua_State *L = c->lua;
     const char *unknown = NULL;
     int skip = function->owner == OWNER_NODE; /* `self` is no field */
@@ -802,9 +807,10 @@ static void check_fields(struct context *c, const struct function *function, int
 }
 
 /* Entries without names, if there are any. */
-static bool read_unnamed(struct context *c, const struct function *function, int table, struct value *args) {
+static bool read_unnamed(struct script_context *c, const struct script_function *function, int table,
+                         struct script_value *args) {
     int index;
-    const struct parameter *rest = rest_of(function, &index);
+    const struct script_parameter *rest = rest_of(function, &index);
     struct place place = {.parameter = rest};
     if (!rest)
         return false;
@@ -821,11 +827,12 @@ static bool read_unnamed(struct context *c, const struct function *function, int
     return true;
 }
 
-static bool read_named(struct context *c, const struct function *function, int table, struct value *args) {
+static bool read_named(struct script_context *c, const struct script_function *function, int table,
+                       struct script_value *args) {
     lua_State *L = c->lua;
     int value = lua_gettop(L) + 1;
     for (int k = 0; k < function->parameter_count; k++) {
-        const struct parameter *p = &function->parameters[k];
+        const struct script_parameter *p = &function->parameters[k];
         if (p->kind != KIND_TEXT)
             continue;
         lua_pushstring(L, p->name);
@@ -836,7 +843,7 @@ static bool read_named(struct context *c, const struct function *function, int t
     check_fields(c, function, table);
     bool listed = read_unnamed(c, function, table, args);
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
-        const struct parameter *p = &function->parameters[k];
+        const struct script_parameter *p = &function->parameters[k];
         lua_pushstring(L, p->name);
         bool may_miss = (p->flags & OPTIONAL) || listed; /* nodes in a list: none needs a name of its own */
         if (lua_rawget(L, table) == LUA_TNIL && !may_miss)
@@ -850,7 +857,7 @@ static bool read_named(struct context *c, const struct function *function, int t
 
 /* One plain table without an entry 1 holds named fields. Of the methods only node:render has that form: the others take
  * tuples or handles. */
-static bool is_table_form(lua_State *L, const struct function *function, int first) {
+static bool is_table_form(lua_State *L, const struct script_function *function, int first) {
     if (lua_gettop(L) != first || !lua_istable(L, first))
         return false;
     if (function->owner == OWNER_NODE && function->result != RESULT_NOTHING)
@@ -861,7 +868,8 @@ static bool is_table_form(lua_State *L, const struct function *function, int fir
     return named;
 }
 
-bool arguments_read(struct context *context, const struct function *function, int first, struct value *args) {
+bool arguments_read(struct script_context *context, const struct script_function *function, int first,
+                    struct script_value *args) {
     if (is_table_form(context->lua, function, first))
         return read_named(context, function, first, args);
     return read_positional(context, function, first, args);

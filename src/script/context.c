@@ -8,11 +8,11 @@
 #include <stdio.h>
 #include <string.h>
 
-struct context *context_of(lua_State *L) {
-    return *(struct context **)lua_getextraspace(L);
+struct script_context *context_of(lua_State *L) {
+    return *(struct script_context **)lua_getextraspace(L);
 }
 
-void context_where(const struct context *context, char *out, size_t size) {
+void context_where(const struct script_context *context, char *out, size_t size) {
     lua_Debug place;
     for (int level = 0; lua_getstack(context->lua, level, &place); level++) {
         lua_getinfo(context->lua, "Sl", &place);
@@ -25,13 +25,13 @@ void context_where(const struct context *context, char *out, size_t size) {
     snprintf(out, size, "%s: ", context->path);
 }
 
-const char *function_title(const struct function *function, char out[96]) {
+const char *function_title(const struct script_function *function, char out[96]) {
     snprintf(out, 96, "%s%s", function->owner == OWNER_GR ? "gr." : "node:", function->name);
     return out;
 }
 
 /* "gr.sphere: TEXT (node 'eye')", one line whatever names say. */
-static void compose(const struct context *context, const char *text, char *out, size_t size) {
+static void compose(const struct script_context *context, const char *text, char *out, size_t size) {
     char title[96] = "";
     if (context->function)
         function_title(context->function, title);
@@ -43,7 +43,7 @@ static void compose(const struct context *context, const char *text, char *out, 
         *end = '?';
 }
 
-static void warn(struct context *context, const char *format, va_list arguments) {
+static void warn(struct script_context *context, const char *format, va_list arguments) {
     char text[1024], where[PATH_SIZE + 32], line[1536], message[PATH_SIZE + 2048];
     vsnprintf(text, sizeof text, format, arguments);
     compose(context, text, line, sizeof line);
@@ -53,14 +53,14 @@ static void warn(struct context *context, const char *format, va_list arguments)
     context->host->message(context->host->context, SCRIPT_WARNING, message);
 }
 
-void context_warn(struct context *context, const char *format, ...) {
+void context_warn(struct script_context *context, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
     warn(context, format, arguments);
     va_end(arguments);
 }
 
-void context_warn_once(struct context *context, unsigned bit, const char *format, ...) {
+void context_warn_once(struct script_context *context, unsigned bit, const char *format, ...) {
     uint8_t *bits = &context->warned[function_index(context->function)];
     if (*bits & bit)
         return;
@@ -71,7 +71,7 @@ void context_warn_once(struct context *context, unsigned bit, const char *format
     va_end(arguments);
 }
 
-_Noreturn static void raise_text(struct context *context, const char *text) {
+_Noreturn static void raise_text(struct script_context *context, const char *text) {
     char where[PATH_SIZE + 32];
     context_where(context, where, sizeof where);
     lua_pushfstring(context->lua, "%s%s", where, text);
@@ -79,7 +79,7 @@ _Noreturn static void raise_text(struct context *context, const char *text) {
     __builtin_unreachable();
 }
 
-void context_raise(struct context *context, const char *format, ...) {
+void context_raise(struct script_context *context, const char *format, ...) {
     char text[1024], line[1536];
     va_list arguments;
     va_start(arguments, format);
@@ -96,7 +96,7 @@ void context_raise_fatal(lua_State *L) {
     __builtin_unreachable();
 }
 
-void context_raise_error(struct context *context, const struct error *error) {
+void context_raise_error(struct script_context *context, const struct error *error) {
     if (error->kind == ERROR_SCENE && !error->elsewhere && !error->limit)
         context_raise(context, "%s", error->text);
     context->fatal = *error;
@@ -109,7 +109,7 @@ void context_raise_error(struct context *context, const struct error *error) {
     context_raise_fatal(context->lua);
 }
 
-void context_raise_no_memory(struct context *context) {
+void context_raise_no_memory(struct script_context *context) {
     struct error error;
     error_no_memory(&error, context->function->name);
     context_raise_error(context, &error);

@@ -67,7 +67,7 @@ struct changed_view {
     struct changed_view *next;
 };
 
-struct context {
+struct script_context {
     lua_State *lua; /* the thread that called last */
     struct limits limits;
     const struct path_policy *path_policy; /* what may be read and written; NULL: everything */
@@ -83,10 +83,10 @@ struct context {
     struct source_name *sources;
     const void *metatables[HANDLE_TYPES];
     uint32_t handle_count;
-    const struct function *function; /* the one that runs */
-    const char *subject;             /* the node it is about, or NULL */
-    uint8_t *warned;                 /* WARNED_ bits by row of the table */
-    struct change *changes;          /* gr.change_node and its like, in order; in `keep` */
+    const struct script_function *function; /* the one that runs */
+    const char *subject;                    /* the node it is about, or NULL */
+    uint8_t *warned;                        /* WARNED_ bits by row of the table */
+    struct change *changes;                 /* gr.change_node and its like, in order; in `keep` */
     uint32_t change_count, change_room, added, owned;
     struct changed_view *views; /* the newest first */
     bool changes_told;          /* what was left out */
@@ -99,40 +99,42 @@ struct context {
 
 enum { WARNED_EXTRA = 1, WARNED_OTHER = 2 };
 
-struct context *context_of(lua_State *L);
+struct script_context *context_of(lua_State *L);
 
 /* "scene.lua:12: " of the nearest Lua function on the stack, or "scene.lua: ". */
-void context_where(const struct context *context, char *out, size_t size);
+void context_where(const struct script_context *context, char *out, size_t size);
 /* "scene.lua:12: warning: gr.sphere: TEXT (node 'x')" to the host. */
-void context_warn(struct context *context, const char *format, ...) __attribute__((format(printf, 2, 3)));
-void context_warn_once(struct context *context, unsigned bit, const char *format, ...)
+void context_warn(struct script_context *context, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void context_warn_once(struct script_context *context, unsigned bit, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* "gr.sphere" or "node:scale". */
-const char *function_title(const struct function *function, char out[96]);
+const char *function_title(const struct script_function *function, char out[96]);
 
 /* Raise "scene.lua:12: gr.sphere: TEXT (node 'x')". */
-_Noreturn void context_raise(struct context *context, const char *format, ...) __attribute__((format(printf, 2, 3)));
+_Noreturn void context_raise(struct script_context *context, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 /* Raises an error of the middle paragraph: script errors as above, others so that no script catches them. */
-_Noreturn void context_raise_error(struct context *context, const struct error *error);
+_Noreturn void context_raise_error(struct script_context *context, const struct error *error);
 _Noreturn void context_raise_fatal(lua_State *L);
-_Noreturn void context_raise_no_memory(struct context *context); /* in the call of a gr function */
+_Noreturn void context_raise_no_memory(struct script_context *context); /* in the call of a gr function */
 
-/* act_changes.c: what gr.change_... has said is laid over a picture about to be made, and taken off again. */
-bool changes_begin(struct context *context, struct render_request *request, struct changed_scene *changed,
+/* gr_changes.c: what gr.change_... has said is laid over a picture about to be made, and taken off again. */
+bool changes_begin(struct script_context *context, struct render_request *request, struct changed_scene *changed,
                    struct error *error);
 
 /* limits.c */
-void limits_begin(struct context *context);
-void limits_end(struct context *context);
+void limits_begin(struct script_context *context);
+void limits_end(struct script_context *context);
 void *limits_allocate(void *context, void *block, size_t old_size, size_t size); /* a lua_Alloc */
 void limits_open(lua_State *L);                                                  /* sets the hook */
 void limits_check(lua_State *L); /* raises when time or memory is used up or a stop is requested */
 _Noreturn void limits_end_for_memory(lua_State *L);
-void limits_output(lua_State *L, size_t size);                  /* so many bytes are about to be written; may raise */
-void limits_count_output(struct context *context, size_t size); /* the same without raising; the next check does */
+void limits_output(lua_State *L, size_t size); /* so many bytes are about to be written; may raise */
+void limits_count_output(struct script_context *context,
+                         size_t size); /* the same without raising; the next check does */
 /* Around what is not the script's own work. */
-void limits_pause(struct context *context);
-void limits_resume(struct context *context);
+void limits_pause(struct script_context *context);
+void limits_resume(struct script_context *context);
 
 /* handles.c */
 void handles_open(lua_State *L);
@@ -149,7 +151,8 @@ void dispatch_open(lua_State *L); /* the global gr */
 
 /* arguments.c: the first paragraph; may raise. Reads into args[0 .. parameter_count-1]. False: an argument is a ghost,
  * so the call is left undone. `first` is the stack index of the first argument. */
-bool arguments_read(struct context *context, const struct function *function, int first, struct value *args);
+bool arguments_read(struct script_context *context, const struct script_function *function, int first,
+                    struct script_value *args);
 
 /* suggest.c: the nearest of the words by Damerau-Levenshtein distance when it is near enough, else NULL. */
 struct suggestion {
@@ -162,23 +165,23 @@ void suggest_offer(struct suggestion *suggestion, const char *candidate);
 /* files.c */
 void files_open(lua_State *L);
 /* Looks for a file the scene names; docs/language.md 12.3. */
-bool files_find(struct context *context, const char *name, char out[PATH_SIZE]);
+bool files_find(struct script_context *context, const char *name, char out[PATH_SIZE]);
 /* The same with the number in its name repaired, and with an error that names the folders that were searched. */
-bool files_require(struct context *context, const char *name, char out[PATH_SIZE], struct error *error);
+bool files_require(struct script_context *context, const char *name, char out[PATH_SIZE], struct error *error);
 /* The templates of package.path with `file` in the place of the question marks, the first that may be read. */
-bool files_on_path(const struct context *context, const char *templates, const char *file, char path[PATH_SIZE]);
+bool files_on_path(const struct script_context *context, const char *templates, const char *file, char path[PATH_SIZE]);
 /* Drops the ".0" of whole numbers. The same pointer when there was none; NULL without memory. */
-const char *files_repair_number(struct context *context, const char *name);
+const char *files_repair_number(struct script_context *context, const char *name);
 /* Loads a Lua file as text: pushes the chunk or a message and answers with the status. Raises what cannot be caught. */
 int files_load(lua_State *L, const char *path);
 /* The names Lua shortened are written out again at the start of a message. */
-const char *files_unshorten(struct context *context, const char *message); /* NULL without memory */
+const char *files_unshorten(struct script_context *context, const char *message); /* NULL without memory */
 
 /* Others that add to a fresh state. All run protected and may raise. */
-void sandbox_open(lua_State *L);             /* sandbox.c: the libraries, less what a stranger's script must not have */
-void streams_open(lua_State *L);             /* streams.c: files and printing within what the scene was given */
-void streams_close(struct context *context); /* after the state */
-void protect_open(lua_State *L);             /* protect.c */
+void sandbox_open(lua_State *L); /* sandbox.c: the libraries, less what a stranger's script must not have */
+void streams_open(lua_State *L); /* streams.c: files and printing within what the scene was given */
+void streams_close(struct script_context *context); /* after the state */
+void protect_open(lua_State *L);                    /* protect.c */
 /* Puts `function` in the place of library.name; its upvalue is what was there. */
 void wrap_function(lua_State *L, const char *library, const char *name, lua_CFunction function);
 void compat_open(lua_State *L);   /* compat.c: old Lua */

@@ -89,7 +89,7 @@ static int answer_glyphs(lua_State *L, const struct font_text *text) {
 }
 _Static_assert(RESULT_GLYPHS == 10, "a new result kind needs its line in answer()");
 
-static int answer(lua_State *L, const struct function *function, const struct result *result) {
+static int answer(lua_State *L, const struct script_function *function, const struct script_result *result) {
     switch (function->result) {
     case RESULT_NOTHING:
         return 0;
@@ -124,7 +124,7 @@ static int answer(lua_State *L, const struct function *function, const struct re
     return 0;
 }
 
-static int answer_ghost(lua_State *L, const struct function *function) {
+static int answer_ghost(lua_State *L, const struct script_function *function) {
     if (function->result == RESULT_NOTHING)
         return 0;
     if (function->result == RESULT_SELF)
@@ -135,7 +135,7 @@ static int answer_ghost(lua_State *L, const struct function *function) {
 }
 
 /* The node in front of the colon; NULL for a ghost. */
-static struct node *self_of(struct context *c, const struct function *function) {
+static struct node *self_of(struct script_context *c, const struct script_function *function) {
     const struct handle *handle = handle_at(c->lua, 1);
     if (handle && handle->type == HANDLE_GHOST)
         return NULL;
@@ -150,9 +150,9 @@ static struct node *self_of(struct context *c, const struct function *function) 
 }
 
 static int dispatch(lua_State *L) {
-    const struct function *function = lua_touserdata(L, lua_upvalueindex(1));
-    struct context *c = context_of(L);
-    struct value args[PARAMETER_LIMIT];
+    const struct script_function *function = lua_touserdata(L, lua_upvalueindex(1));
+    struct script_context *c = context_of(L);
+    struct script_value args[PARAMETER_LIMIT];
     if (c->ended || c->fatal.kind != ERROR_NONE) /* a finalizer of the script, after its end */
         context_raise_fatal(L);
     memset(args, 0, (size_t)function->parameter_count * sizeof *args);
@@ -166,14 +166,14 @@ static int dispatch(lua_State *L) {
         struct node *node = self_of(c, function);
         if (!node)
             return answer_ghost(L, function);
-        args[0] = (struct value){.given = true, .node = node};
+        args[0] = (struct script_value){.given = true, .node = node};
         c->subject = node->name;
         first = 2;
     }
     if (!arguments_read(c, function, first, args))
         return answer_ghost(L, function);
 
-    struct result result = {0};
+    struct script_result result = {0};
     struct error error = {0};
     if (!function->run(c, args, &result, &error))
         context_raise_error(c, &error);
@@ -190,7 +190,7 @@ static int ghost_call(lua_State *L) {
     return 1;
 }
 
-static void no_such_name(struct context *c, enum owner owner, const char *name) {
+static void no_such_name(struct script_context *c, enum owner owner, const char *name) {
     const char *before = owner == OWNER_GR ? "gr." : "node:";
     c->function = NULL;
     if (c->options->lenient) {
@@ -209,7 +209,7 @@ static void no_such_name(struct context *c, enum owner owner, const char *name) 
 
 /* gr.NAME where there is none. With --lenient the ghost is kept in the table, so the warning comes once. */
 static int missing_function(lua_State *L) {
-    struct context *c = context_of(L);
+    struct script_context *c = context_of(L);
     c->lua = L;
     c->subject = NULL;
     if (lua_type(L, 2) != LUA_TSTRING) {
@@ -232,7 +232,7 @@ static int node_index(lua_State *L) {
     lua_pushvalue(L, 2);
     if (lua_rawget(L, lua_upvalueindex(1)) != LUA_TNIL)
         return 1;
-    struct context *c = context_of(L);
+    struct script_context *c = context_of(L);
     c->lua = L;
     const struct handle *handle = handle_at(L, 1);
     assert(handle && handle->type == HANDLE_NODE); /* no script gets at the metatable */

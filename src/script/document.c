@@ -66,7 +66,7 @@ static void add_filled(struct document *document, int indent, int column, const 
 }
 
 /* "> 0 and < 180", or "". */
-static void range_words(const struct parameter *p, char *out, size_t size) {
+static void range_words(const struct script_parameter *p, char *out, size_t size) {
     out[0] = '\0';
     if (p->low == 0 && p->high == 0) {
         snprintf(out, size, "%s", p->flags & NOT_ZERO ? "not 0" : "");
@@ -82,7 +82,7 @@ static void range_words(const struct parameter *p, char *out, size_t size) {
         snprintf(out, size, "%s %.15g", p->flags & LOW_OPEN ? ">" : ">=", p->low);
 }
 
-static void choices_words(const struct parameter *p, char separator, char *out, size_t size) {
+static void choices_words(const struct script_parameter *p, char separator, char *out, size_t size) {
     size_t used = 0;
     out[0] = '\0';
     for (const char *word = p->choices; word && *word;) {
@@ -94,7 +94,7 @@ static void choices_words(const struct parameter *p, char separator, char *out, 
 }
 
 /* "radius (a number, > 0; default 1): Radius." */
-static void describe_parameter(const struct parameter *p, char out[LINE_SIZE]) {
+static void describe_parameter(const struct script_parameter *p, char out[LINE_SIZE]) {
     char range[96], choices[200];
     range_words(p, range, sizeof range);
     choices_words(p, '|', choices, sizeof choices);
@@ -113,19 +113,19 @@ static void describe_parameter(const struct parameter *p, char out[LINE_SIZE]) {
     snprintf(out + used, LINE_SIZE - used, "): %s", p->help);
 }
 
-static bool has_table_form(const struct function *function) {
+static bool has_table_form(const struct script_function *function) {
     return function->owner == OWNER_GR || function->result == RESULT_NOTHING;
 }
 
 /* A form may go on with any number of nodes. */
-static bool takes_more(const struct function *function) {
+static bool takes_more(const struct script_function *function) {
     for (int k = 0; k < function->parameter_count; k++)
         if (function->parameters[k].flags & REST)
             return true;
     return false;
 }
 
-static void write_function(struct document *document, const struct function *function) {
+static void write_function(struct document *document, const struct script_function *function) {
     char title[96];
     function_title(function, title);
     for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
@@ -159,7 +159,7 @@ const char *script_manual(struct arena *arena) {
     return document.failed ? NULL : document.text;
 }
 
-static const char *annotation_kind(const struct parameter *p, char out[200]) {
+static const char *annotation_kind(const struct script_parameter *p, char out[200]) {
     switch (p->kind) {
     case KIND_NUMBER:
         return "number";
@@ -226,7 +226,7 @@ static const char *annotation_kind(const struct parameter *p, char out[200]) {
     UNREACHABLE("a parameter of no kind");
 }
 
-static const char *annotation_type(const struct parameter *p, char out[200]) {
+static const char *annotation_type(const struct script_parameter *p, char out[200]) {
     const char *type = annotation_kind(p, out);
     if (!(p->flags & OR_TEXTURE) || p->kind == KIND_IMAGE)
         return type;
@@ -234,7 +234,7 @@ static const char *annotation_type(const struct parameter *p, char out[200]) {
     return out;
 }
 
-static const char *annotation_result(const struct function *function) {
+static const char *annotation_result(const struct script_function *function) {
     switch (function->result) {
     case RESULT_NOTHING:
         return NULL;
@@ -261,10 +261,10 @@ static const char *annotation_result(const struct function *function) {
     UNREACHABLE("a result of no kind");
 }
 
-static void annotate_fields(struct document *document, const struct function *function) {
+static void annotate_fields(struct document *document, const struct script_function *function) {
     add(document, "---@class gr.%s.fields\n", function->name);
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
-        const struct parameter *p = &function->parameters[k];
+        const struct script_parameter *p = &function->parameters[k];
         char type[200], line[LINE_SIZE];
         describe_parameter(p, line);
         add(document, "---@field %s%s %s %s\n", p->name, p->flags & OPTIONAL ? "?" : "", annotation_type(p, type),
@@ -274,13 +274,13 @@ static void annotate_fields(struct document *document, const struct function *fu
 }
 
 /* ": gr.node", where a function answers something. */
-static void add_result(struct document *document, const struct function *function) {
+static void add_result(struct document *document, const struct script_function *function) {
     const char *result = annotation_result(function);
     if (result)
         add(document, ": %s", result);
 }
 
-static void annotate_overload(struct document *document, const struct function *function, const char *form) {
+static void annotate_overload(struct document *document, const struct script_function *function, const char *form) {
     const char *separator = "";
     int index;
     bool optional;
@@ -291,7 +291,7 @@ static void annotate_overload(struct document *document, const struct function *
     }
     while (form_next(function, &form, &index, &optional)) {
         char type[200];
-        const struct parameter *p = &function->parameters[index];
+        const struct script_parameter *p = &function->parameters[index];
         add(document, "%s%s%s: %s", separator, p->name, optional ? "?" : "", annotation_type(p, type));
         separator = ", ";
     }
@@ -300,7 +300,7 @@ static void annotate_overload(struct document *document, const struct function *
     add(document, "\n");
 }
 
-static void annotate_function(struct document *document, const struct function *function) {
+static void annotate_function(struct document *document, const struct script_function *function) {
     const char *form = function->forms[0], *result = annotation_result(function), *separator = "";
     bool table_form = has_table_form(function), optional;
     int index;
@@ -308,7 +308,7 @@ static void annotate_function(struct document *document, const struct function *
     add(document, "---%s\n", function->help);
     while (form_next(function, &form, &index, &optional)) {
         char type[200], line[LINE_SIZE];
-        const struct parameter *p = &function->parameters[index];
+        const struct script_parameter *p = &function->parameters[index];
         describe_parameter(p, line);
         add(document, "---@param %s%s %s %s\n", p->name, optional ? "?" : "", annotation_type(p, type), line);
         size_t used = strlen(names);
@@ -344,7 +344,7 @@ const char *script_annotations(struct arena *arena) {
         "gr.sky\n---@class gr.node\n"
         "local node = {}\n\ngr = {}\n\n---The version of the renderer.\ngr.version = ''\n\n");
     for (int k = 0; k < function_count(); k++) {
-        const struct function *function = function_at(k);
+        const struct script_function *function = function_at(k);
         if (function->owner == OWNER_GR)
             annotate_fields(&document, function);
         annotate_function(&document, function);

@@ -10,13 +10,13 @@
 #include <stdio.h>
 #include <string.h>
 
-static bool try_file(const struct context *context, char out[PATH_SIZE], const char *folder, const char *between,
+static bool try_file(const struct script_context *context, char out[PATH_SIZE], const char *folder, const char *between,
                      const char *name) {
     int length = snprintf(out, PATH_SIZE, "%s%s%s", folder, between, name);
     return (size_t)length < PATH_SIZE && path_policy_is_readable(context->path_policy, out);
 }
 
-bool files_find(struct context *context, const char *name, char out[PATH_SIZE]) {
+bool files_find(struct script_context *context, const char *name, char out[PATH_SIZE]) {
     if (name[0] == '/')
         return try_file(context, out, "", "", name);
     const char *folder = context->folder, *slash = strrchr(name, '/');
@@ -31,7 +31,7 @@ static bool is_tail(const char *start, const char *dot) {
     return digits && dot[0] == '.' && dot[1] == '0' && !(dot[2] >= '0' && dot[2] <= '9');
 }
 
-const char *files_repair_number(struct context *context, const char *name) {
+const char *files_repair_number(struct script_context *context, const char *name) {
     const char *dot = name;
     while (*dot && !is_tail(name, dot))
         dot++;
@@ -72,7 +72,7 @@ static bool name_fits(const char *name, struct error *error) {
     return true;
 }
 
-bool files_require(struct context *context, const char *name, char out[PATH_SIZE], struct error *error) {
+bool files_require(struct script_context *context, const char *name, char out[PATH_SIZE], struct error *error) {
     if (!name_fits(name, error))
         return false;
     if (files_find(context, name, out))
@@ -96,7 +96,7 @@ bool files_require(struct context *context, const char *name, char out[PATH_SIZE
 }
 
 /* Lua shortens a long file name to "..." and its tail, LUA_IDSIZE - 1 characters in all. */
-const char *files_unshorten(struct context *context, const char *message) {
+const char *files_unshorten(struct script_context *context, const char *message) {
     enum { TAIL = LUA_IDSIZE - 4 };
     if (strncmp(message, "...", 3) != 0)
         return message;
@@ -112,7 +112,7 @@ const char *files_unshorten(struct context *context, const char *message) {
 
 /* Raises an error that no gr function has made. */
 _Noreturn static void raise_outside(lua_State *L, const struct error *error) {
-    struct context *context = context_of(L);
+    struct script_context *context = context_of(L);
     context->lua = L;
     context->function = NULL;
     context->subject = NULL;
@@ -122,7 +122,7 @@ _Noreturn static void raise_outside(lua_State *L, const struct error *error) {
 /* Pushes the chunk, or a message. Raises only before the file is mapped; nothing after that does, so it is unmapped. A
  * first line that starts with # is left out, but not its end, so that line numbers stay right. */
 int files_load(lua_State *L, const char *path) {
-    struct context *context = context_of(L);
+    struct script_context *context = context_of(L);
     struct source_name *source = arena_alloc(&context->keep, sizeof *source);
     char *name = source ? arena_format(&context->keep, "@%s", path) : NULL;
     struct error error = {0};
@@ -167,7 +167,8 @@ static const char *plain_path(const char *path) {
     return path[0] == '.' && path[1] == '/' ? path + 2 : path;
 }
 
-bool files_on_path(const struct context *context, const char *templates, const char *file, char path[PATH_SIZE]) {
+bool files_on_path(const struct script_context *context, const char *templates, const char *file,
+                   char path[PATH_SIZE]) {
     for (const char *template = templates; *template;) {
         size_t length = strcspn(template, ";"), used = 0;
         for (size_t k = 0; k < length && used < PATH_SIZE; k++) {
@@ -189,7 +190,7 @@ bool files_on_path(const struct context *context, const char *templates, const c
 /* package.searchers[2]: Lua files along package.path. Upvalue 1: the package table. In the days of Lua 5.0 people wrote
  * the .lua as well. */
 static int search_module(lua_State *L) {
-    struct context *context = context_of(L);
+    struct script_context *context = context_of(L);
     context->lua = L;
     context->function = NULL;
     context->subject = NULL;
@@ -222,7 +223,7 @@ static int search_module(lua_State *L) {
 
 /* Index 1 holds a file name: finds it and loads it. */
 static int load_named(lua_State *L) {
-    struct context *context = context_of(L);
+    struct script_context *context = context_of(L);
     context->lua = L;
     context->function = NULL;
     context->subject = NULL;
@@ -270,7 +271,7 @@ static int file_load(lua_State *L) {
 }
 
 void files_open(lua_State *L) {
-    struct context *context = context_of(L);
+    struct script_context *context = context_of(L);
     lua_getglobal(L, "package");
     lua_createtable(L, 2, 0);
     lua_getfield(L, -2, "searchers");

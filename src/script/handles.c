@@ -20,7 +20,7 @@ const void *handle_key(enum handle_type type) {
 }
 
 void handle_push(lua_State *L, enum handle_type type, void *pointer) {
-    struct context *context = context_of(L);
+    struct script_context *context = context_of(L);
     struct handle *handle = lua_newuserdatauv(L, sizeof *handle, 0);
     *handle = (struct handle){.type = type, .serial = context->handle_count++, .pointer = pointer};
     lua_rawgetp(L, LUA_REGISTRYINDEX, type_names[type]);
@@ -37,7 +37,7 @@ const struct handle *handle_at(lua_State *L, int index) {
     (void)has_metatable;
     const void *metatable = lua_topointer(L, -1);
     lua_pop(L, 1);
-    const struct context *context = context_of(L);
+    const struct script_context *context = context_of(L);
     for (int type = 0; type < HANDLE_TYPES; type++)
         if (context->metatables[type] == metatable)
             return handle;
@@ -82,7 +82,7 @@ static int handle_text(lua_State *L) {
 }
 
 void handles_open(lua_State *L) {
-    struct context *context = context_of(L);
+    struct script_context *context = context_of(L);
     for (int type = 0; type < HANDLE_TYPES; type++) {
         lua_createtable(L, 0, 4);
         lua_pushstring(L, type_names[type]);

@@ -17,7 +17,7 @@ static const char hidden = 0; /* likewise: our modules whose names the script's 
 
 /* The file of one of our modules, when `require` of the script would find another one first. */
 static bool is_hidden(lua_State *L, const char *name, char file[PATH_SIZE]) {
-    const struct context *context = context_of(L);
+    const struct script_context *context = context_of(L);
     const char *folder = context->options->library_folder;
     char found[PATH_SIZE], other[PATH_SIZE], own[PATH_SIZE];
     assert(folder); /* nobody else has this `require` */

@@ -45,7 +45,7 @@ uint64_t script_picture_memory(const struct script_options *options) {
     return limit > 0 ? limit + limit / 4 * 3 : UINT64_MAX;
 }
 
-void limits_begin(struct context *context) {
+void limits_begin(struct script_context *context) {
     const struct script_options *options = context->options;
     struct limits *limits = &context->limits;
     *limits = (struct limits){
@@ -62,7 +62,7 @@ void limits_begin(struct context *context) {
 }
 
 /* What is still held are the assets. */
-void limits_end(struct context *context) {
+void limits_end(struct script_context *context) {
     int64_t left = context->limits.account.held;
     context->scene.assets->memory += left > 0 ? (uint64_t)left : 0;
     (void)mem_charge(context->limits.charged_before);
@@ -72,7 +72,7 @@ void limits_end(struct context *context) {
  * it: that comes at once, so whoever looks at `memory_out` later sees what became of it. What is asked for later, by
  * whoever handles the error, changes nothing, even if it is of the same size. */
 void *limits_allocate(void *user, void *block, size_t old_size, size_t size) {
-    struct limits *limits = &((struct context *)user)->limits;
+    struct limits *limits = &((struct script_context *)user)->limits;
     bool grows = !block || size > old_size;
     if (size == 0)
         return mem_resize_known(block, old_size, 0);
@@ -95,7 +95,7 @@ void *limits_allocate(void *user, void *block, size_t old_size, size_t size) {
 }
 
 _Noreturn static void end_script(lua_State *L, enum error_kind kind, const char *what) {
-    struct context *context = context_of(L);
+    struct script_context *context = context_of(L);
     char where[PATH_SIZE + 32];
     context->lua = L;
     context_where(context, where, sizeof where);
@@ -108,7 +108,7 @@ void limits_end_for_memory(lua_State *L) {
 }
 
 void limits_check(lua_State *L) {
-    struct context *context = context_of(L);
+    struct script_context *context = context_of(L);
     struct limits *limits = &context->limits;
     if (context->ended || context->fatal.kind != ERROR_NONE)
         context_raise_fatal(L);
@@ -128,7 +128,7 @@ void limits_check(lua_State *L) {
 
 static void hook(lua_State *L, lua_Debug *place) {
     (void)place;
-    const struct context *context = context_of(L);
+    const struct script_context *context = context_of(L);
     if (context->ended || context->fatal.kind != ERROR_NONE)
         lua_sethook(L, hook, LUA_MASKCOUNT, 1);
     limits_check(L);
@@ -138,7 +138,7 @@ void limits_open(lua_State *L) {
     lua_sethook(L, hook, LUA_MASKCOUNT, HOOK_STEPS);
 }
 
-void limits_count_output(struct context *context, size_t size) {
+void limits_count_output(struct script_context *context, size_t size) {
     context->limits.output += size;
 }
 
@@ -153,10 +153,10 @@ void limits_output(lua_State *L, size_t size) {
     end_script(L, ERROR_SCENE, what);
 }
 
-void limits_pause(struct context *context) {
+void limits_pause(struct script_context *context) {
     context->limits.time_begun -= processor_time();
 }
 
-void limits_resume(struct context *context) {
+void limits_resume(struct script_context *context) {
     context->limits.time_begun += processor_time();
 }

@@ -9,7 +9,7 @@
 #include <lauxlib.h>
 
 static void pass_on_fatal(lua_State *L) {
-    const struct context *context = context_of(L);
+    const struct script_context *context = context_of(L);
     if (context->ended || context->fatal.kind != ERROR_NONE || context->limits.memory_out)
         limits_check(L);
 }
@@ -35,7 +35,7 @@ static int protected_call(lua_State *L) {
 
 /* Upvalue 1: the script's handler. */
 static int guarded_handler(lua_State *L) {
-    const struct context *context = context_of(L);
+    const struct script_context *context = context_of(L);
     if (context->ended || context->fatal.kind != ERROR_NONE || context->limits.memory_out)
         return 1;
     lua_pushvalue(L, lua_upvalueindex(1));

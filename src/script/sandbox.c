@@ -14,7 +14,7 @@
 
 /* os.exit ends the script, not the program: pictures that are finished stay, the next script runs. */
 static int end_script(lua_State *L) {
-    struct context *context = context_of(L);
+    struct script_context *context = context_of(L);
     context->lua = L;
     bool well = lua_isnoneornil(L, 1) || (lua_isboolean(L, 1) ? lua_toboolean(L, 1) : luaL_checkinteger(L, 1) == 0);
     if (!well) {

@@ -13,7 +13,7 @@
 
 /* The length of the place a message begins with, "scene.lua:12: " or that of a chunk from a string; 0 when it has none.
  */
-static size_t place_length(const struct context *context, const char *message) {
+static size_t place_length(const struct script_context *context, const char *message) {
     size_t length = strncmp(message, "[string \"", 9) == 0 ? strcspn(message, "]") + 1 : 0;
     for (const struct source_name *source = context->sources; source && length == 0; source = source->next) {
         size_t name = strlen(source->path);
@@ -27,7 +27,7 @@ static size_t place_length(const struct context *context, const char *message) {
 
 /* The message from its place on: coroutine.wrap and error put another one in front, and the innermost tells most. Whole
  * paths are written where Lua shortened them. NULL without memory. */
-static const char *innermost(struct context *context, const char *message, bool *has_place) {
+static const char *innermost(struct script_context *context, const char *message, bool *has_place) {
     message = files_unshorten(context, message);
     size_t outer = message ? place_length(context, message) : 0;
     *has_place = outer > 0;
@@ -58,7 +58,7 @@ static const char *indent(struct arena *arena, const char *text) {
 
 /* The message handler: makes the complete first line and the traceback while the stack is still there. */
 static int describe_error(lua_State *L) {
-    struct context *context = context_of(L);
+    struct script_context *context = context_of(L);
     if (context->ended || context->fatal.kind != ERROR_NONE) /* the context knows the error */
         return 1;
     context->lua = L;
@@ -85,7 +85,7 @@ static int describe_error(lua_State *L) {
 }
 
 static int run_scene(lua_State *L) {
-    struct context *context = context_of(L);
+    struct script_context *context = context_of(L);
     sandbox_open(L);
     protect_open(L);
     files_open(L);
@@ -105,7 +105,7 @@ static int run_scene(lua_State *L) {
 }
 
 /* What the protected call came to, as one error. */
-static bool conclude(struct context *context, int status, struct error *error) {
+static bool conclude(struct script_context *context, int status, struct error *error) {
     if (context->fatal.kind != ERROR_NONE) {
         *error = context->fatal;
         return false;
@@ -120,7 +120,7 @@ static bool conclude(struct context *context, int status, struct error *error) {
     return false;
 }
 
-static bool choose_order(struct context *context, struct error *error) {
+static bool choose_order(struct script_context *context, struct error *error) {
     struct order_finding finding;
     switch (context->options->transform_order) {
     case SCRIPT_ORDER_NEW:
@@ -158,7 +158,7 @@ bool script_path_policy(const char *path, const struct script_options *options, 
     return ok;
 }
 
-static bool prepare(struct context *context, struct path_policy *path_policy, struct error *error) {
+static bool prepare(struct script_context *context, struct path_policy *path_policy, struct error *error) {
     const char *slash = strrchr(context->path, '/');
     size_t length = slash ? (size_t)(slash - context->path) + 1 : 0;
     if (strlen(context->path) >= PATH_SIZE - 64)
@@ -181,7 +181,7 @@ static bool prepare(struct context *context, struct path_policy *path_policy, st
 
 bool script_run(const char *path, const struct script_options *options, const struct script_host *host,
                 struct assets *assets, struct arena *arena, const char **traceback, struct error *error) {
-    struct context context = {.options = options, .host = host, .out = arena, .path = path};
+    struct script_context context = {.options = options, .host = host, .out = arena, .path = path};
     *traceback = NULL;
     scene_init(&context.scene, assets);
     struct path_policy path_policy = {0};
@@ -193,7 +193,7 @@ bool script_run(const char *path, const struct script_options *options, const st
     if (done && !L)
         done = error_no_memory(error, "the script");
     if (L) {
-        *(struct context **)lua_getextraspace(L) = &context;
+        *(struct script_context **)lua_getextraspace(L) = &context;
         context.lua = L;
         lua_pushcfunction(L, describe_error);
         lua_pushcfunction(L, run_scene);

@@ -24,7 +24,7 @@ static int close_stream(lua_State *L) {
 }
 
 /* Why a name was refused, for people. */
-static const char *refusal(const struct context *context, const char *name, bool write) {
+static const char *refusal(const struct script_context *context, const char *name, bool write) {
     if (errno != EACCES || !context->path_policy)
         return strerror(errno);
     if (write)
@@ -57,7 +57,7 @@ static void push_failure(lua_State *L, const char *name, const char *why) {
 /* Pushes the stream, or nil, a sentence and a number. Reading looks in the working directory first, as always, then
  * where meshes and images are looked for. */
 static int open_stream(lua_State *L, const char *name, const char *mode) {
-    struct context *context = context_of(L);
+    struct script_context *context = context_of(L);
     char found[PATH_SIZE];
     bool write = mode[0] != 'r' || strchr(mode, '+');
     const char *path = name;
@@ -143,7 +143,7 @@ static int counted_write(lua_State *L) {
 }
 
 static int print(lua_State *L) {
-    const struct context *context = context_of(L);
+    const struct script_context *context = context_of(L);
     FILE *out = context->output ? context->output : stdout;
     int count = lua_gettop(L);
     for (int k = 1; k <= count; k++) {
@@ -207,7 +207,7 @@ static void replace(lua_State *L, const char *name, lua_CFunction function, cons
 }
 
 static ssize_t write_to_host(void *cookie, const char *text, size_t size) {
-    const struct context *context = cookie;
+    const struct script_context *context = cookie;
     context->host->error_text(context->host->context, text, size);
     return (ssize_t)size;
 }
@@ -215,7 +215,7 @@ static ssize_t write_to_host(void *cookie, const char *text, size_t size) {
 /* Puts a stream to the host in the place of the process's own one of that name in the table io, which is on top. It has
  * no buffer, so that what is written stands before what the program says next. */
 static FILE *redirect(lua_State *L, const char *name) {
-    struct context *context = context_of(L);
+    struct script_context *context = context_of(L);
     FILE *stream = MAY_GIVE_NULL(fopencookie(context, "w", (cookie_io_functions_t){.write = write_to_host}));
     if (!stream) {
         error_no_memory(&context->fatal, "the streams of the script");
@@ -229,7 +229,7 @@ static FILE *redirect(lua_State *L, const char *name) {
     return stream;
 }
 
-void streams_close(struct context *context) {
+void streams_close(struct script_context *context) {
     if (context->output)
         (void)fclose(context->output);
     if (context->errors)
@@ -237,7 +237,7 @@ void streams_close(struct context *context) {
 }
 
 void streams_open(lua_State *L) {
-    struct context *context = context_of(L);
+    struct script_context *context = context_of(L);
     lua_getglobal(L, "io");
     if (context->host->error_text && !context->options->no_sandbox)
         context->errors = redirect(L, "stderr");

@@ -13,12 +13,12 @@
 #define CHILDREN                                                                                                       \
     { "children", KIND_NODES, OPTIONAL, ANY, NULL, "{}", "Child nodes." }
 
-static const struct parameter group_parameters[] = {
+static const struct script_parameter group_parameters[] = {
     [GROUP_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'node'", NAME_HELP},
     [GROUP_CHILDREN] = CHILDREN,
 };
 
-static const struct parameter instances_parameters[] = {
+static const struct script_parameter instances_parameters[] = {
     [INSTANCES_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'instances'", NAME_HELP},
     [INSTANCES_OF] = {"of", KIND_NODE, 0, ANY, NULL, NULL, "The node to place."},
     [INSTANCES_AT] = {"at", KIND_ROWS, 0, ANY, NULL, NULL,
@@ -31,7 +31,7 @@ static const struct parameter instances_parameters[] = {
                         "Scale factor, applied first; one for each position, or one for all."},
 };
 
-static const struct parameter joint_parameters[] = {
+static const struct script_parameter joint_parameters[] = {
     [JOINT_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'joint'", NAME_HELP},
     [JOINT_X] = {"x", KIND_TRIPLE, 0, ANY, "degrees", NULL,
                  "Smallest, initial and largest angle about x; gray draws the initial one."},
@@ -39,14 +39,14 @@ static const struct parameter joint_parameters[] = {
     [JOINT_CHILDREN] = CHILDREN,
 };
 
-static const struct parameter sphere_parameters[] = {
+static const struct script_parameter sphere_parameters[] = {
     [SPHERE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'sphere'", NAME_HELP},
     [SPHERE_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP},
     [SPHERE_CENTRE] = {"centre", KIND_POINT, OPTIONAL, ANY, NULL, "{0, 0, 0}", "Centre."},
     [SPHERE_RADIUS] = {"radius", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "1", "Radius."},
 };
 
-static const struct parameter cube_parameters[] = {
+static const struct script_parameter cube_parameters[] = {
     [CUBE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'cube'", NAME_HELP},
     [CUBE_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP},
     [CUBE_CORNER] = {"corner", KIND_POINT, OPTIONAL, ANY, NULL, "{0, 0, 0}",
@@ -55,7 +55,7 @@ static const struct parameter cube_parameters[] = {
                    "Length of the edges, one number or three; a negative length extends in the negative direction."},
 };
 
-static const struct parameter mesh_parameters[] = {
+static const struct script_parameter mesh_parameters[] = {
     [MESH_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'mesh'", NAME_HELP},
     [MESH_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP},
     [MESH_FILE] = {"file", KIND_FILE, OPTIONAL, ANY, NULL, NULL,
@@ -88,7 +88,7 @@ static const struct parameter mesh_parameters[] = {
 #define SERIALS BETWEEN(0, 4294967295.0)
 #define PICTURE_HELP "The file name that gr.render has for the picture."
 
-static const struct parameter change_node_parameters[] = {
+static const struct script_parameter change_node_parameters[] = {
     [CHANGENODE_NAME] = {"name", KIND_TEXT, 0, ANY, NULL, NULL, CHANGED_NAME},
     [CHANGENODE_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL, SERIAL_HELP},
     [CHANGENODE_MATRIX] =
@@ -96,12 +96,12 @@ static const struct parameter change_node_parameters[] = {
          "Three rows of a matrix, 12 numbers, applied after its own transforms, in the space of its parent."},
 };
 
-static const struct parameter change_delete_parameters[] = {
+static const struct script_parameter change_delete_parameters[] = {
     [CHANGEGONE_NAME] = {"name", KIND_TEXT, 0, ANY, NULL, NULL, CHANGED_NAME},
     [CHANGEGONE_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL, SERIAL_HELP},
 };
 
-static const struct parameter change_add_parameters[] = {
+static const struct script_parameter change_add_parameters[] = {
     [CHANGEADD_NAME] = {"name", KIND_TEXT, 0, ANY, NULL, NULL, "Name of the parent node."},
     [CHANGEADD_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL, SERIAL_HELP},
     [CHANGEADD_SHAPE] = {"shape", KIND_CHOICE, 0, 0, 0, LIST_BLANKS(ADDED), NULL, NULL,
@@ -111,13 +111,13 @@ static const struct parameter change_add_parameters[] = {
                           "For a copy: the number of the node to copy."},
 };
 
-static const struct parameter change_material_parameters[] = {
+static const struct script_parameter change_material_parameters[] = {
     [CHANGEMATERIAL_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL,
                                "Number of the material in order of creation, from 1."},
     [CHANGEMATERIAL_COLOUR] = {"colour", KIND_COLOUR, 0, ANY, NULL, NULL, "New kd of its base material."},
 };
 
-static const struct parameter change_look_parameters[] = {
+static const struct script_parameter change_look_parameters[] = {
     [CHANGELOOK_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL,
                            "Number of the material in order of creation, from 1."},
     [CHANGELOOK_PART] = {"part", KIND_CHOICE, 0, 0, 0, LIST_BLANKS(LOOK_PART_LIST), NULL, NULL,
@@ -126,14 +126,14 @@ static const struct parameter change_look_parameters[] = {
                           "New value: three numbers for a colour, else one."},
 };
 
-static const struct parameter change_own_parameters[] = {
+static const struct script_parameter change_own_parameters[] = {
     [CHANGEOWN_NAME] = {"name", KIND_TEXT, 0, ANY, NULL, NULL, CHANGED_NAME},
     [CHANGEOWN_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL, SERIAL_HELP},
     [CHANGEOWN_LIKE] = {"like", KIND_WHOLE, OPTIONAL, SERIALS, NULL, "0",
                         "For a shape without a material: number of the material to copy; 0: plain gray."},
 };
 
-static const struct parameter change_light_parameters[] = {
+static const struct script_parameter change_light_parameters[] = {
     [CHANGELIGHT_NUMBER] = {"number", KIND_WHOLE, 0, 1, 4294967295.0, NULL, NULL, NULL,
                             "Index in the list of lights of gr.render, from 1."},
     [CHANGELIGHT_MOVE] = {"move", KIND_TRIPLE, 0, ANY, NULL, NULL, "Translation."},
@@ -143,17 +143,17 @@ static const struct parameter change_light_parameters[] = {
     [CHANGELIGHT_COLOUR] = {"colour", KIND_COLOUR, OPTIONAL, ANY, NULL, "its own", "New colour, before the factor."},
 };
 
-static const struct parameter change_delete_light_parameters[] = {
+static const struct script_parameter change_delete_light_parameters[] = {
     [CHANGEDARK_NUMBER] = {"number", KIND_WHOLE, 0, 1, 4294967295.0, NULL, NULL, NULL,
                            "Index in the list of lights of gr.render, from 1."},
 };
 
-static const struct parameter change_add_light_parameters[] = {
+static const struct script_parameter change_add_light_parameters[] = {
     [CHANGENEWLIGHT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Where it is."},
     [CHANGENEWLIGHT_COLOUR] = {"colour", KIND_COLOUR, 0, ANY, NULL, NULL, "Its colour."},
 };
 
-static const struct parameter change_copy_light_parameters[] = {
+static const struct script_parameter change_copy_light_parameters[] = {
     [CHANGECOPYLIGHT_NUMBER] = {"number", KIND_WHOLE, 0, 1, 4294967295.0, NULL, NULL, NULL,
                                 "Index in the list of lights of gr.render, from 1."},
     [CHANGECOPYLIGHT_MOVE] = {"move", KIND_TRIPLE, 0, ANY, NULL, NULL, "Translation of the copy."},
@@ -161,7 +161,7 @@ static const struct parameter change_copy_light_parameters[] = {
                                 "Factor of the colour of the copy."},
 };
 
-static const struct parameter change_view_parameters[] = {
+static const struct script_parameter change_view_parameters[] = {
     [CHANGEVIEW_PICTURE] = {"picture", KIND_TEXT, 0, ANY, NULL, NULL, PICTURE_HELP},
     [CHANGEVIEW_EYE] = {"eye", KIND_POINT, 0, ANY, NULL, NULL, "Position of the camera."},
     [CHANGEVIEW_VIEW] = {"view", KIND_DIRECTION, 0, ANY, NULL, NULL, "Direction of view."},
@@ -170,21 +170,21 @@ static const struct parameter change_view_parameters[] = {
                         "Full vertical angle of view."},
 };
 
-static const struct parameter change_exposure_parameters[] = {
+static const struct script_parameter change_exposure_parameters[] = {
     [CHANGEEXPOSURE_PICTURE] = {"picture", KIND_TEXT, 0, ANY, NULL, NULL, PICTURE_HELP},
     [CHANGEEXPOSURE_STOPS] = {"stops", KIND_NUMBER, 0, BETWEEN(-100, 100), "stops", NULL, "New exposure."},
 };
 
-static const struct parameter self_parameters[] = {{"self", KIND_NODE, 0, ANY, NULL, NULL, "The node."}};
+static const struct script_parameter self_parameters[] = {{"self", KIND_NODE, 0, ANY, NULL, NULL, "The node."}};
 
-static const struct parameter geometry_parameters[] = {
+static const struct script_parameter geometry_parameters[] = {
     [GEOMETRY_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'geometry'", NAME_HELP},
     [GEOMETRY_PRIMITIVE] = {"primitive", KIND_NODE, 0, ANY, NULL, NULL, "A primitive, for instance gr.sphere(mat)."},
     [GEOMETRY_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "the primitive's",
                            MATERIAL_HELP},
 };
 
-static const struct parameter csg_parameters[] = {
+static const struct script_parameter csg_parameters[] = {
     [CSG_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'csg'", NAME_HELP},
     [CSG_A] = {"a", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL,
                "A closed solid; a group is the union of the solids below it."},
@@ -194,13 +194,13 @@ static const struct parameter csg_parameters[] = {
                       "may be left out then."},
 };
 
-static const struct parameter inverse_parameters[] = {
+static const struct script_parameter inverse_parameters[] = {
     [INVERSE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'inverse'", NAME_HELP},
     [INVERSE_A] = {"a", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL,
                    "A closed solid; a group is the union of the solids below it."},
 };
 
-static const struct parameter clipped_parameters[] = {
+static const struct script_parameter clipped_parameters[] = {
     [CLIPPED_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'clipped'", NAME_HELP},
     [CLIPPED_OBJECT] = {"object", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL,
                         "The visible object: a shape or a group of shapes."},
@@ -208,7 +208,7 @@ static const struct parameter clipped_parameters[] = {
                     "A closed solid; the part of the object inside it remains."},
 };
 
-static const struct parameter bounded_parameters[] = {
+static const struct script_parameter bounded_parameters[] = {
     [CLIPPED_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'bounded'", NAME_HELP},
     [CLIPPED_OBJECT] = {"object", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL,
                         "The visible object: a shape or a group of shapes."},
@@ -217,7 +217,7 @@ static const struct parameter bounded_parameters[] = {
                     "be visible."},
 };
 
-static const struct parameter order_parameters[] = {
+static const struct script_parameter order_parameters[] = {
     {"order", KIND_CHOICE, 0, 0, 0, LIST_BLANKS(TRANSFORM_ORDERS), NULL, NULL,
      "new: calls act in the order in which they are written; old: the last call acts first; separate: scale, then "
      "rotate, then translate."},
@@ -225,28 +225,28 @@ static const struct parameter order_parameters[] = {
 
 #define SELF_PARAMETER [SELF] = {"self", KIND_NODE, 0, ANY, NULL, NULL, "The node."}
 
-static const struct parameter child_parameters[] = {
+static const struct script_parameter child_parameters[] = {
     SELF_PARAMETER,
     [CHILD_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL, "The child; a node under several parents is an instance."},
 };
 
-static const struct parameter set_material_parameters[] = {
+static const struct script_parameter set_material_parameters[] = {
     SELF_PARAMETER,
     [SET_MATERIAL] = {"material", KIND_MATERIAL, 0, ANY, NULL, NULL, MATERIAL_HELP},
 };
 
-static const struct parameter set_texture_parameters[] = {
+static const struct script_parameter set_texture_parameters[] = {
     SELF_PARAMETER,
     [SET_TEXTURE] = {"texture", KIND_IMAGE, 0, ANY, NULL, NULL, "A texture, or the name of a PNG or JPEG file."},
 };
 
-static const struct parameter set_bump_parameters[] = {
+static const struct script_parameter set_bump_parameters[] = {
     SELF_PARAMETER,
     [SET_BUMP] = {"bump", KIND_IMAGE, OR_TEXTURE, ANY, NULL, NULL,
                   "A result of gr.bump, or the name of a PNG or JPEG file."},
 };
 
-static const struct parameter translate_parameters[] = {
+static const struct script_parameter translate_parameters[] = {
     SELF_PARAMETER,
     [STEP_X] = {"x", KIND_NUMBER, 0, ANY, NULL, NULL, "Distance along x."},
     [STEP_Y] = {"y", KIND_NUMBER, 0, ANY, NULL, NULL, "Distance along y."},
@@ -254,7 +254,7 @@ static const struct parameter translate_parameters[] = {
     [STEP_VECTOR] = {"vector", KIND_TRIPLE, 0, ANY, NULL, NULL, "The three numbers as a table."},
 };
 
-static const struct parameter velocity_parameters[] = {
+static const struct script_parameter velocity_parameters[] = {
     SELF_PARAMETER,
     [STEP_X] = {"x", KIND_NUMBER, 0, ANY, NULL, NULL, "Distance along x per unit of time, in the space of the parent."},
     [STEP_Y] = {"y", KIND_NUMBER, 0, ANY, NULL, NULL, "Distance along y."},
@@ -262,13 +262,13 @@ static const struct parameter velocity_parameters[] = {
     [STEP_VECTOR] = {"vector", KIND_TRIPLE, 0, ANY, NULL, NULL, "The three numbers as a table."},
 };
 
-static const struct parameter moves_to_parameters[] = {
+static const struct script_parameter moves_to_parameters[] = {
     SELF_PARAMETER,
     [MOVES_TO_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL,
                        "A node whose own transforms are the pose of this one at time 1; it need not be in the scene."},
 };
 
-static const struct parameter scale_parameters[] = {
+static const struct script_parameter scale_parameters[] = {
     SELF_PARAMETER,
     [STEP_X] = {"x", KIND_NUMBER, 0, ANY, NULL, NULL, "Factor along x."},
     [STEP_Y] = {"y", KIND_NUMBER, 0, ANY, NULL, NULL, "Factor along y."},
@@ -276,21 +276,21 @@ static const struct parameter scale_parameters[] = {
     [STEP_VECTOR] = {"vector", KIND_TRIPLE, 0, ANY, NULL, NULL, "The three numbers as a table."},
 };
 
-static const struct parameter rotate_parameters[] = {
+static const struct script_parameter rotate_parameters[] = {
     SELF_PARAMETER,
     [ROTATE_AXIS] = {"axis", KIND_AXIS, 0, 0, 0, "x y z", NULL, NULL, "The axis, in either case."},
     [ROTATE_ANGLE] = {"angle", KIND_NUMBER, 0, ANY, "degrees", NULL,
                       "Angle, counterclockwise when the axis points to the viewer."},
 };
 
-static const struct parameter rotate_axis_parameters[] = {
+static const struct script_parameter rotate_axis_parameters[] = {
     SELF_PARAMETER,
     [ROTATE_AXIS] = {"axis", KIND_DIRECTION, 0, ANY, NULL, NULL, "The axis, of any length except 0."},
     [ROTATE_ANGLE] = {"angle", KIND_NUMBER, 0, ANY, "degrees", NULL,
                       "Angle, counterclockwise when the axis points to the viewer."},
 };
 
-static const struct parameter rotate_quat_parameters[] = {
+static const struct script_parameter rotate_quat_parameters[] = {
     SELF_PARAMETER,
     [QUAT_W] = {"w", KIND_NUMBER, 0, ANY, NULL, NULL, "Cosine of half the angle; gray normalises the quaternion."},
     [QUAT_X] = {"x", KIND_NUMBER, 0, ANY, NULL, NULL, "x of the unit axis, times the sine of half the angle."},
@@ -373,7 +373,7 @@ static const struct parameter rotate_quat_parameters[] = {
                     "none",                                                                                            \
                     "Heights: a result of gr.bump, a file or a texture."}
 
-static const struct parameter material_parameters[] = {
+static const struct script_parameter material_parameters[] = {
     [PHONG_KD] = KD,
     [PHONG_KS] = KS,
     [PHONG_SHININESS] = SHININESS,
@@ -386,7 +386,7 @@ static const struct parameter material_parameters[] = {
     SURFACE_FIELDS,
 };
 
-static const struct parameter rr_parameters[] = {
+static const struct script_parameter rr_parameters[] = {
     [PHONG_KD] = KD,
     [PHONG_KS] = KS,
     [PHONG_SHININESS] = SHININESS,
@@ -406,7 +406,7 @@ static const struct parameter rr_parameters[] = {
 #define MIX                                                                                                            \
     { "mix", KIND_COLOUR, 0, ANY, NULL, NULL, "Colour to mix with kd." }
 
-static const struct parameter marble_parameters[] = {
+static const struct script_parameter marble_parameters[] = {
     [MARBLE_MATERIAL] = BASE,
     [MARBLE_F] = {"f", KIND_NUMBER, 0, ANY, NULL, NULL, "Factor of the point before the noise."},
     [MARBLE_MULTIPLIER] = {"multiplier", KIND_NUMBER, 0, ANY, NULL, NULL, "Strength of the noise in the veins."},
@@ -415,7 +415,7 @@ static const struct parameter marble_parameters[] = {
     [MARBLE_MIX] = MIX,
 };
 
-static const struct parameter wood_parameters[] = {
+static const struct script_parameter wood_parameters[] = {
     [WOOD_MATERIAL] = BASE,
     [WOOD_F] = {"f", KIND_NUMBER, 0, ANY, NULL, NULL, "Factor of the point before the noise."},
     [WOOD_DENSITY] = {"density", KIND_NUMBER, 0, ANY, NULL, NULL, "Density of the grain."},
@@ -430,7 +430,7 @@ static const struct parameter wood_parameters[] = {
 #define FLIP_U                                                                                                         \
     { "flip_u", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the image is mirrored from left to right." }
 
-static const struct parameter image_parameters[] = {
+static const struct script_parameter image_parameters[] = {
     [IMAGE_MATERIAL] = BASE,
     [IMAGE_PNG] = {"png", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file, or a texture."},
     [IMAGE_FILTER] = FILTER,
@@ -445,7 +445,7 @@ static const struct parameter image_parameters[] = {
     [first + LOOKUP_FILTER] = FILTER, [first + LOOKUP_WRAP] = WRAP, [first + LOOKUP_FLIP_U] = FLIP_U,                  \
              [first + LOOKUP_TILES] = TILES, [first + LOOKUP_OFFSET] = OFFSET
 
-static const struct parameter texture_parameters[] = {
+static const struct script_parameter texture_parameters[] = {
     [TEXTURE_FILE] = {"file", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file."},
     LOOKUP_FIELDS(TEXTURE_LOOKUP),
 };
@@ -461,14 +461,14 @@ static const struct parameter texture_parameters[] = {
             "Contents: heights, or normals as colours (x right, y up, z outwards)."                                    \
     }
 
-static const struct parameter bump_parameters[] = {
+static const struct script_parameter bump_parameters[] = {
     [RELIEF_FILE] = {"file", KIND_IMAGE, OR_TEXTURE, ANY, NULL, NULL, "A PNG or JPEG file, or any texture."},
     LOOKUP_FIELDS(RELIEF_LOOKUP),
     [RELIEF_AMOUNT] = RELIEF_AMOUNT_FIELD,
     [RELIEF_KIND] = RELIEF_KIND_FIELD,
 };
 
-static const struct parameter image_over_parameters[] = {
+static const struct script_parameter image_over_parameters[] = {
     [OVER_MATERIAL] = BASE,
     [OVER_IMAGE] = {"image", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file, or a texture."},
     LOOKUP_FIELDS(OVER_LOOKUP),
@@ -476,7 +476,7 @@ static const struct parameter image_over_parameters[] = {
                       "The input that the image replaces; where opacity is below 1, the surface has holes."},
 };
 
-static const struct parameter bump_over_parameters[] = {
+static const struct script_parameter bump_over_parameters[] = {
     [OVER_MATERIAL] = BASE,
     [OVER_IMAGE] = {"image", KIND_IMAGE, OR_TEXTURE, ANY, NULL, NULL, "A PNG or JPEG file, or a result of gr.bump."},
     LOOKUP_FIELDS(OVER_LOOKUP),
@@ -484,7 +484,7 @@ static const struct parameter bump_over_parameters[] = {
     [RELIEF_OVER_KIND] = RELIEF_KIND_FIELD,
 };
 
-static const struct parameter fresnel_parameters[] = {[FRESNEL_MATERIAL] = BASE};
+static const struct script_parameter fresnel_parameters[] = {[FRESNEL_MATERIAL] = BASE};
 
 #define SKY_FIELDS                                                                                                     \
     [SKY_INTENSITY] = {"intensity", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1", "Factor of its brightness."},          \
@@ -516,7 +516,7 @@ static const struct parameter fresnel_parameters[] = {[FRESNEL_MATERIAL] = BASE}
                                 "0",                                                                                   \
                                 "Difference of the local time to Greenwich; positive is east."}
 
-static const struct parameter sky_faces_parameters[] = {
+static const struct script_parameter sky_faces_parameters[] = {
     SKY_FIELDS,
     [FACES_FRONT] = SKY_FACE("front"),
     [FACES_RIGHT] = SKY_FACE("right"),
@@ -526,26 +526,26 @@ static const struct parameter sky_faces_parameters[] = {
     [FACES_BOTTOM] = SKY_FACE("bottom"),
 };
 
-static const struct parameter sky_cross_parameters[] = {
+static const struct script_parameter sky_cross_parameters[] = {
     SKY_FIELDS,
     [CROSS_IMAGE] = {"image", KIND_IMAGE, 0, ANY, NULL, NULL, "A picture file with six views in a 4 x 3 cross."},
     [CROSS_MIRROR] = {"mirror", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the cross is mirrored."},
 };
 
-static const struct parameter sky_map_parameters[] = {
+static const struct script_parameter sky_map_parameters[] = {
     SKY_FIELDS,
     [MAP_IMAGE] = {"image", KIND_IMAGE, 0, ANY, NULL, NULL,
                    "Picture of the whole sphere, longitude by latitude, with -z in the middle and +x to the right. "
                    "Radiance HDR, PFM and EXR files hold values above 1."},
 };
 
-static const struct parameter sky_gradient_parameters[] = {
+static const struct script_parameter sky_gradient_parameters[] = {
     SKY_FIELDS,
     [GRADIENT_STOPS] = {"stops", KIND_STOPS, 0, ANY, NULL, NULL,
                         "Colours by height, {y, r, g, b}; y of the unit direction, from -1 to 1; linear between."},
 };
 
-static const struct parameter clear_sky_parameters[] = {
+static const struct script_parameter clear_sky_parameters[] = {
     SKY_FIELDS,
     SUN(CLEAR_SUN),
     [CLEAR_TURBIDITY] = {"turbidity", KIND_NUMBER, OPTIONAL, BETWEEN(1.7, 10), NULL, "2.5",
@@ -553,7 +553,7 @@ static const struct parameter clear_sky_parameters[] = {
     [CLEAR_GROUND] = {"ground", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0.15, 0.15, 0.15}", "Colour below the horizon."},
 };
 
-static const struct parameter sun_light_parameters[] = {
+static const struct script_parameter sun_light_parameters[] = {
     LIGHT_FIELDS(0),
     SUN(SUNLIGHT_SUN),
 };
@@ -564,20 +564,20 @@ static const struct parameter sun_light_parameters[] = {
         "clear_sky", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the fog leaves the sky unchanged."}
 #define FOG_DENSITY(text) [FOG_AMOUNT] = {"density", KIND_NUMBER, 0, ABOVE(0), NULL, NULL, text}
 
-static const struct parameter fog_parameters[] = {
+static const struct script_parameter fog_parameters[] = {
     FOG_FIELDS,
     FOG_DENSITY("Transmittance over distance d is exp(-density d)."),
     [FOG_IS_SQUARED] = {"squared", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
                         "Transmittance is exp(-(density d)^2) instead."},
 };
 
-static const struct parameter linear_fog_parameters[] = {
+static const struct script_parameter linear_fog_parameters[] = {
     FOG_FIELDS,
     [FOG_NEAR] = {"near", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0", "Distance where the fog begins."},
     [FOG_FAR] = {"far", KIND_NUMBER, LOW_OPEN, ABOVE(0), NULL, NULL, "Distance where the transmittance is 0."},
 };
 
-static const struct parameter height_fog_parameters[] = {
+static const struct script_parameter height_fog_parameters[] = {
     FOG_FIELDS,
     FOG_DENSITY("Density at the base."),
     [FOG_BASE] = {"base", KIND_NUMBER, OPTIONAL, ANY, NULL, "0", "Height y of the base."},
@@ -585,13 +585,13 @@ static const struct parameter height_fog_parameters[] = {
                    "Height over which the density falls by the factor e."},
 };
 
-static const struct parameter fog_profile_parameters[] = {
+static const struct script_parameter fog_profile_parameters[] = {
     FOG_FIELDS,
     [FOG_PROFILE_TABLE] = {"profile", KIND_PAIRS, 0, ANY, NULL, NULL,
                            "Densities by height, {y, density}; linear between the entries, constant beyond them."},
 };
 
-static const struct parameter fog_grid_parameters[] = {
+static const struct script_parameter fog_grid_parameters[] = {
     FOG_FIELDS,
     [FOG_CORNER] = {"corner", KIND_POINT, 0, ANY, NULL, NULL, "The corner with the smallest coordinates."},
     [FOG_SIZE] = {"size", KIND_SIZE, LOW_OPEN, ABOVE(0), NULL, NULL, "Length of the edges, one number or three."},
@@ -600,7 +600,7 @@ static const struct parameter fog_grid_parameters[] = {
                        "Density of each cell; x varies fastest, then y, then z."},
 };
 
-static const struct parameter render_parameters[] = {
+static const struct script_parameter render_parameters[] = {
     [RENDER_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL, "Root node of the picture."},
     [RENDER_FILE] = {"file", KIND_OUTPUT, 0, ANY, NULL, NULL,
                      "Picture file: .png, or .pfm, .hdr or .exr for linear light; gray creates missing folders."},
@@ -686,7 +686,7 @@ static const struct parameter render_parameters[] = {
     [RENDER_UP_TO] = {"up_to", KIND_DIRECTION, OPTIONAL, ANY, NULL, "up", "Its up direction at time 1."},
 };
 
-static const struct parameter glyphs_parameters[] = {
+static const struct script_parameter glyphs_parameters[] = {
     [GLYPHS_FONT] = {"font", KIND_FILE, 0, ANY, NULL, NULL, "A font file: TrueType, OpenType or Type 1."},
     [GLYPHS_TEXT] = {"text", KIND_TEXT, 0, ANY, NULL, NULL, "One line of text, in UTF-8."},
 };
@@ -694,167 +694,166 @@ static const struct parameter glyphs_parameters[] = {
 #define VN_FORM(first) first " verts normals faces face_normals"
 #define RENDER_TAIL " width height eye view up fov ambient lights"
 
-static const struct function node_rows[] = {
-    GR("node", group_parameters, RESULT_NODE, act_node, "A node with children and a transform.", "name?"),
-    GR("instances", instances_parameters, RESULT_NODE, act_instances,
+static const struct script_function node_rows[] = {
+    GR("node", group_parameters, RESULT_NODE, gr_node, "A node with children and a transform.", "name?"),
+    GR("instances", instances_parameters, RESULT_NODE, gr_instances,
        "A node at many positions; each position costs a tenth of the memory of a node.", "of at"),
-    GR("joint", joint_parameters, RESULT_NODE, act_joint, "A node with limited angles about x and y.", "name x y"),
-    GR("sphere", sphere_parameters, RESULT_NODE, act_sphere, "A sphere; by default of radius 1 at the origin.",
+    GR("joint", joint_parameters, RESULT_NODE, gr_joint, "A node with limited angles about x and y.", "name x y"),
+    GR("sphere", sphere_parameters, RESULT_NODE, gr_sphere, "A sphere; by default of radius 1 at the origin.",
        "material", "name"),
-    GR("cube", cube_parameters, RESULT_NODE, act_cube, "A cube; by default from (0,0,0) to (1,1,1).", "material",
+    GR("cube", cube_parameters, RESULT_NODE, gr_cube, "A cube; by default from (0,0,0) to (1,1,1).", "material",
        "name"),
-    GR("nh_sphere", sphere_parameters, RESULT_NODE, act_sphere, "A sphere with centre and radius.",
-       "name centre radius", "material centre radius"),
-    GR("nh_box", cube_parameters, RESULT_NODE, act_cube, "A cube with corner and size.", "name corner size",
+    GR("nh_sphere", sphere_parameters, RESULT_NODE, gr_sphere, "A sphere with centre and radius.", "name centre radius",
+       "material centre radius"),
+    GR("nh_box", cube_parameters, RESULT_NODE, gr_cube, "A cube with corner and size.", "name corner size",
        "material corner size"),
-    GR("mesh", mesh_parameters, RESULT_NODE, act_mesh, "A mesh of polygons, flat or with vertex normals.",
+    GR("mesh", mesh_parameters, RESULT_NODE, gr_mesh, "A mesh of polygons, flat or with vertex normals.",
        "material verts faces", "name file", "name verts faces", "material file"),
-    GR("fast_mesh", mesh_parameters, RESULT_NODE, act_mesh, "The same as gr.mesh: every mesh is fast.",
+    GR("fast_mesh", mesh_parameters, RESULT_NODE, gr_mesh, "The same as gr.mesh: every mesh is fast.",
        "material verts faces", "name verts faces"),
-    GR("vn_mesh", mesh_parameters, RESULT_NODE, act_mesh, "A mesh with vertex normals.", VN_FORM("material"),
+    GR("vn_mesh", mesh_parameters, RESULT_NODE, gr_mesh, "A mesh with vertex normals.", VN_FORM("material"),
        VN_FORM("name")),
-    GR("fast_vn_mesh", mesh_parameters, RESULT_NODE, act_mesh, "The same as gr.vn_mesh.", VN_FORM("material"),
+    GR("fast_vn_mesh", mesh_parameters, RESULT_NODE, gr_mesh, "The same as gr.vn_mesh.", VN_FORM("material"),
        VN_FORM("name")),
-    GR("geometry", geometry_parameters, RESULT_NODE, act_geometry, "A node with the shape and material of a primitive.",
+    GR("geometry", geometry_parameters, RESULT_NODE, gr_geometry, "A node with the shape and material of a primitive.",
        "name primitive"),
-    GR("csg_union", csg_parameters, RESULT_NODE, act_union,
+    GR("csg_union", csg_parameters, RESULT_NODE, gr_union,
        "The union of solids: points in any operand. It has no inner walls.", "name a b", "a b"),
-    GR("csg_difference", csg_parameters, RESULT_NODE, act_difference,
+    GR("csg_difference", csg_parameters, RESULT_NODE, gr_difference,
        "The difference of solids: points in the first operand and in none of the others.", "name a b", "a b"),
-    GR("csg_intersection", csg_parameters, RESULT_NODE, act_intersection,
+    GR("csg_intersection", csg_parameters, RESULT_NODE, gr_intersection,
        "The intersection of solids: points in all operands.", "name a b", "a b"),
-    GR("csg_merge", csg_parameters, RESULT_NODE, act_union,
+    GR("csg_merge", csg_parameters, RESULT_NODE, gr_union,
        "The same as gr.csg_union, which has no inner walls either; a plain node keeps them.", "name a b", "a b"),
-    GR("csg_inverse", inverse_parameters, RESULT_NODE, act_inverse,
+    GR("csg_inverse", inverse_parameters, RESULT_NODE, gr_inverse,
        "The complement of a solid: the same surface, turned inside out.", "name a", "a"),
-    GR("union", csg_parameters, RESULT_NODE, act_union, "The same as gr.csg_union.", "name a b", "a b"),
-    GR("difference", csg_parameters, RESULT_NODE, act_difference, "The same as gr.csg_difference.", "name a b", "a b"),
-    GR("intersection", csg_parameters, RESULT_NODE, act_intersection, "The same as gr.csg_intersection.", "name a b",
+    GR("union", csg_parameters, RESULT_NODE, gr_union, "The same as gr.csg_union.", "name a b", "a b"),
+    GR("difference", csg_parameters, RESULT_NODE, gr_difference, "The same as gr.csg_difference.", "name a b", "a b"),
+    GR("intersection", csg_parameters, RESULT_NODE, gr_intersection, "The same as gr.csg_intersection.", "name a b",
        "a b"),
-    GR("merge", csg_parameters, RESULT_NODE, act_union, "The same as gr.csg_merge.", "name a b", "a b"),
-    GR("inverse", inverse_parameters, RESULT_NODE, act_inverse, "The same as gr.csg_inverse.", "name a", "a"),
-    GR("clipped_by", clipped_parameters, RESULT_NODE, act_clipped_by,
+    GR("merge", csg_parameters, RESULT_NODE, gr_union, "The same as gr.csg_merge.", "name a b", "a b"),
+    GR("inverse", inverse_parameters, RESULT_NODE, gr_inverse, "The same as gr.csg_inverse.", "name a", "a"),
+    GR("clipped_by", clipped_parameters, RESULT_NODE, gr_clipped_by,
        "The part of the surfaces of an object that is inside a solid: cut open, without caps. It is not a CSG operand.",
        "name object by", "object by"),
-    GR("bounded_by", bounded_parameters, RESULT_NODE, act_bounded_by,
+    GR("bounded_by", bounded_parameters, RESULT_NODE, gr_bounded_by,
        "The object, with the hint that a solid contains it; faster where the bounding box of the object is large.",
        "name object by", "object by"),
 };
 
-static const struct function material_rows[] = {
-    GR("material", material_parameters, RESULT_MATERIAL, act_material, "A Phong material.", "kd ks shininess"),
-    GR("rr_material", rr_parameters, RESULT_MATERIAL, act_rr_material, "A Phong material that reflects and refracts.",
+static const struct script_function material_rows[] = {
+    GR("material", material_parameters, RESULT_MATERIAL, gr_material, "A Phong material.", "kd ks shininess"),
+    GR("rr_material", rr_parameters, RESULT_MATERIAL, gr_rr_material, "A Phong material that reflects and refracts.",
        "kd ks shininess reflect refract ior"),
-    GR("marble_pnd_material", marble_parameters, RESULT_MATERIAL, act_marble, "Marble over another material.",
+    GR("marble_pnd_material", marble_parameters, RESULT_MATERIAL, gr_marble, "Marble over another material.",
        "material f multiplier vein_frequency interp mix"),
-    GR("wood_pnd_material", wood_parameters, RESULT_MATERIAL, act_wood, "Wood over another material.",
+    GR("wood_pnd_material", wood_parameters, RESULT_MATERIAL, gr_wood, "Wood over another material.",
        "material f density interp mix"),
-    GR("td_cube_material", image_parameters, RESULT_MATERIAL, act_td_cube,
+    GR("td_cube_material", image_parameters, RESULT_MATERIAL, gr_td_cube,
        "An image on each side of the unit cube, over another material.", "material png"),
-    GR("td_sphere_material", image_parameters, RESULT_MATERIAL, act_td_sphere,
+    GR("td_sphere_material", image_parameters, RESULT_MATERIAL, gr_td_sphere,
        "An image around the unit sphere, over another material.", "material png"),
-    GR("difresnel_material", fresnel_parameters, RESULT_MATERIAL, act_fresnel,
+    GR("difresnel_material", fresnel_parameters, RESULT_MATERIAL, gr_fresnel,
        "A dielectric: reflects and refracts by Fresnel's equations.", "material"),
-    GR("difresneld_material", fresnel_parameters, RESULT_MATERIAL, act_fresnel, "The same as gr.difresnel_material.",
+    GR("difresneld_material", fresnel_parameters, RESULT_MATERIAL, gr_fresnel, "The same as gr.difresnel_material.",
        "material"),
-    GR("texture", texture_parameters, RESULT_TEXTURE, act_texture,
+    GR("texture", texture_parameters, RESULT_TEXTURE, gr_texture,
        "An image texture for node:set_texture and for inputs of gr.material.", "file"),
-    GR("bump", bump_parameters, RESULT_TEXTURE, act_bump, "A bump map or normal map for node:set_bump.",
-       "file height?"),
-    GR("image_material", image_over_parameters, RESULT_MATERIAL, act_image_material,
+    GR("bump", bump_parameters, RESULT_TEXTURE, gr_bump, "A bump map or normal map for node:set_bump.", "file height?"),
+    GR("image_material", image_over_parameters, RESULT_MATERIAL, gr_image_material,
        "An image mapped by the texture coordinates of the shape, over another material.", "material image"),
-    GR("bump_material", bump_over_parameters, RESULT_MATERIAL, act_bump_material,
+    GR("bump_material", bump_over_parameters, RESULT_MATERIAL, gr_bump_material,
        "A bump map or normal map over another material.", "material image height?"),
-    GR("glyphs", glyphs_parameters, RESULT_GLYPHS, act_glyphs,
+    GR("glyphs", glyphs_parameters, RESULT_GLYPHS, gr_glyphs,
        "Outlines of a line of text, in ems: a list of letters with code, x, advance, missing and contours (cubic, for "
        "gr.prism), and the fields width, ascender, descender and line.",
        "font text"),
 
 };
 
-static const struct function other_rows[] = {
-    GR("change_node", change_node_parameters, RESULT_NOTHING, act_change_node,
+static const struct script_function other_rows[] = {
+    GR("change_node", change_node_parameters, RESULT_NOTHING, gr_change_node,
        "Transforms a node in all later pictures. The window saves edits as a file of such calls for require.",
        "name serial matrix"),
-    GR("change_delete", change_delete_parameters, RESULT_NOTHING, act_change_delete,
+    GR("change_delete", change_delete_parameters, RESULT_NOTHING, gr_change_delete,
        "Removes a node and its children from all later pictures.", "name serial"),
-    GR("change_add", change_add_parameters, RESULT_NOTHING, act_change_add,
+    GR("change_add", change_add_parameters, RESULT_NOTHING, gr_change_add,
        "Adds a node to all later pictures; gr.change_node places it.", "name serial shape colour? source?"),
-    GR("change_material", change_material_parameters, RESULT_NOTHING, act_change_material,
+    GR("change_material", change_material_parameters, RESULT_NOTHING, gr_change_material,
        "Changes the colour of a material in all later pictures.", "serial colour"),
-    GR("change_look", change_look_parameters, RESULT_NOTHING, act_change_look,
+    GR("change_look", change_look_parameters, RESULT_NOTHING, gr_change_look,
        "Changes an input of a base material in all later pictures.", "serial part value"),
-    GR("change_own", change_own_parameters, RESULT_NOTHING, act_change_own,
+    GR("change_own", change_own_parameters, RESULT_NOTHING, gr_change_own,
        "Gives a shape its own copy of its material in all later pictures. The copies are numbered 2147483647, "
        "2147483646 and so on.",
        "name serial like?"),
-    GR("change_light", change_light_parameters, RESULT_NOTHING, act_change_light,
+    GR("change_light", change_light_parameters, RESULT_NOTHING, gr_change_light,
        "Moves, rotates, scales or recolours a light in all later pictures.", "number move factor? linear? colour?"),
-    GR("change_delete_light", change_delete_light_parameters, RESULT_NOTHING, act_change_delete_light,
+    GR("change_delete_light", change_delete_light_parameters, RESULT_NOTHING, gr_change_delete_light,
        "Removes a light from all later pictures.", "number"),
-    GR("change_add_light", change_add_light_parameters, RESULT_NOTHING, act_change_add_light,
+    GR("change_add_light", change_add_light_parameters, RESULT_NOTHING, gr_change_add_light,
        "Adds a point light to all later pictures.", "position colour"),
-    GR("change_copy_light", change_copy_light_parameters, RESULT_NOTHING, act_change_copy_light,
+    GR("change_copy_light", change_copy_light_parameters, RESULT_NOTHING, gr_change_copy_light,
        "Adds a copy of a light to all later pictures.", "number move factor?"),
-    GR("change_view", change_view_parameters, RESULT_NOTHING, act_change_view, "Changes the camera of a picture.",
+    GR("change_view", change_view_parameters, RESULT_NOTHING, gr_change_view, "Changes the camera of a picture.",
        "picture eye view up fov"),
-    GR("change_exposure", change_exposure_parameters, RESULT_NOTHING, act_change_exposure,
+    GR("change_exposure", change_exposure_parameters, RESULT_NOTHING, gr_change_exposure,
        "Changes the exposure of a picture.", "picture stops"),
 
-    GR("sun_light", sun_light_parameters, RESULT_LIGHT, act_sun_light,
+    GR("sun_light", sun_light_parameters, RESULT_LIGHT, gr_sun_light,
        "A directional light from the position of the sun.", "sun colour"),
-    GR("sky_faces", sky_faces_parameters, RESULT_SKY, act_sky_faces,
+    GR("sky_faces", sky_faces_parameters, RESULT_SKY, gr_sky_faces,
        "A sky of six pictures on a cube: front is +z, right is -x, back is -z, left is +x.",
        "front right back left top bottom"),
-    GR("sky_cross", sky_cross_parameters, RESULT_SKY, act_sky_cross, "A sky from a 4 x 3 cross of images.", "image"),
-    GR("sky_map", sky_map_parameters, RESULT_SKY, act_sky_map, "A sky from one picture of the whole sphere.", "image"),
-    GR("sky_gradient", sky_gradient_parameters, RESULT_SKY, act_sky_gradient, "A sky with colours by height.", "stops"),
-    GR("clear_sky", clear_sky_parameters, RESULT_SKY, act_clear_sky,
+    GR("sky_cross", sky_cross_parameters, RESULT_SKY, gr_sky_cross, "A sky from a 4 x 3 cross of images.", "image"),
+    GR("sky_map", sky_map_parameters, RESULT_SKY, gr_sky_map, "A sky from one picture of the whole sphere.", "image"),
+    GR("sky_gradient", sky_gradient_parameters, RESULT_SKY, gr_sky_gradient, "A sky with colours by height.", "stops"),
+    GR("clear_sky", clear_sky_parameters, RESULT_SKY, gr_clear_sky,
        "The clear sky model of Preetham, Shirley and Smits (1999).", "sun turbidity?"),
 
-    GR("uniform_fog", fog_parameters, RESULT_FOG, act_fog, "Fog of constant density.", "density colour?"),
-    GR("linear_fog", linear_fog_parameters, RESULT_FOG, act_linear_fog,
+    GR("uniform_fog", fog_parameters, RESULT_FOG, gr_fog, "Fog of constant density.", "density colour?"),
+    GR("linear_fog", linear_fog_parameters, RESULT_FOG, gr_linear_fog,
        "Fog whose transmittance falls linearly with distance.", "near far colour?"),
-    GR("height_fog", height_fog_parameters, RESULT_FOG, act_height_fog,
+    GR("height_fog", height_fog_parameters, RESULT_FOG, gr_height_fog,
        "Fog whose density falls exponentially with height.", "density base scale colour?"),
-    GR("fog_profile", fog_profile_parameters, RESULT_FOG, act_fog_profile, "Fog with a density by height.",
+    GR("fog_profile", fog_profile_parameters, RESULT_FOG, gr_fog_profile, "Fog with a density by height.",
        "profile colour?"),
-    GR("fog_grid", fog_grid_parameters, RESULT_FOG, act_fog_grid, "Fog in the cells of a box; no fog outside.",
+    GR("fog_grid", fog_grid_parameters, RESULT_FOG, gr_fog_grid, "Fog in the cells of a box; no fog outside.",
        "corner size cells densities colour?"),
 
-    GR("render", render_parameters, RESULT_NOTHING, act_render, "Renders a picture into a file.",
+    GR("render", render_parameters, RESULT_NOTHING, gr_render, "Renders a picture into a file.",
        "node file" RENDER_TAIL),
-    GR("render_skybox", render_parameters, RESULT_NOTHING, act_render, "The same as gr.render, with a sky picture.",
+    GR("render_skybox", render_parameters, RESULT_NOTHING, gr_render, "The same as gr.render, with a sky picture.",
        "node file sky" RENDER_TAIL),
-    GR("transform_order", order_parameters, RESULT_NOTHING, act_transform_order,
+    GR("transform_order", order_parameters, RESULT_NOTHING, gr_transform_order,
        "Selects how scale, rotate and translate compose in this script.", "order"),
 
-    NODE("add_child", child_parameters, RESULT_SELF, act_add_child, "Adds a child to this node.", "node"),
-    NODE("bounds", self_parameters, RESULT_BOUNDS, act_bounds,
+    NODE("add_child", child_parameters, RESULT_SELF, gr_add_child, "Adds a child to this node.", "node"),
+    NODE("bounds", self_parameters, RESULT_BOUNDS, gr_bounds,
          "Returns the bounding box of this node and its children, with its own transforms: smallest and largest x, y, "
          "z.",
          ""),
-    NODE("faces", self_parameters, RESULT_FACES, act_faces,
+    NODE("faces", self_parameters, RESULT_FACES, gr_faces,
          "Returns the vertices and faces of a mesh, in object space, as gr.mesh accepts them.", ""),
-    NODE("set_material", set_material_parameters, RESULT_SELF, act_set_material, "Sets the material of a shape.",
+    NODE("set_material", set_material_parameters, RESULT_SELF, gr_set_material, "Sets the material of a shape.",
          "material"),
-    NODE("set_texture", set_texture_parameters, RESULT_SELF, act_set_texture, "Replaces kd of a shape by an image.",
+    NODE("set_texture", set_texture_parameters, RESULT_SELF, gr_set_texture, "Replaces kd of a shape by an image.",
          "texture"),
-    NODE("set_bump", set_bump_parameters, RESULT_SELF, act_set_bump, "Sets the bump map of a shape.", "bump"),
-    NODE("scale", scale_parameters, RESULT_SELF, act_scale, "Scales this node.", "x y z", "vector"),
-    NODE("rotate", rotate_parameters, RESULT_SELF, act_rotate, "Rotates this node about an axis.", "axis angle"),
-    NODE("velocity", velocity_parameters, RESULT_SELF, act_velocity,
+    NODE("set_bump", set_bump_parameters, RESULT_SELF, gr_set_bump, "Sets the bump map of a shape.", "bump"),
+    NODE("scale", scale_parameters, RESULT_SELF, gr_scale, "Scales this node.", "x y z", "vector"),
+    NODE("rotate", rotate_parameters, RESULT_SELF, gr_rotate, "Rotates this node about an axis.", "axis angle"),
+    NODE("velocity", velocity_parameters, RESULT_SELF, gr_velocity,
          "Sets the velocity of this node while the shutter is open; its transforms are its pose at time 0.", "x y z",
          "vector"),
-    NODE("moves_to", moves_to_parameters, RESULT_SELF, act_moves_to,
+    NODE("moves_to", moves_to_parameters, RESULT_SELF, gr_moves_to,
          "Moves this node from its own pose at time 0 to the pose of another node at time 1, on the shorter rotation.",
          "node"),
-    NODE("rotate_axis", rotate_axis_parameters, RESULT_SELF, act_rotate_axis, "Rotates this node about any direction.",
+    NODE("rotate_axis", rotate_axis_parameters, RESULT_SELF, gr_rotate_axis, "Rotates this node about any direction.",
          "axis angle"),
-    NODE("rotate_quat", rotate_quat_parameters, RESULT_SELF, act_rotate_quat, "Rotates this node by a quaternion.",
+    NODE("rotate_quat", rotate_quat_parameters, RESULT_SELF, gr_rotate_quat, "Rotates this node by a quaternion.",
          "w x y z", "quaternion"),
-    NODE("translate", translate_parameters, RESULT_SELF, act_translate, "Translates this node.", "x y z", "vector"),
-    NODE("render", render_parameters, RESULT_NOTHING, act_render, "The same as gr.render with this node.",
+    NODE("translate", translate_parameters, RESULT_SELF, gr_translate, "Translates this node.", "x y z", "vector"),
+    NODE("render", render_parameters, RESULT_NOTHING, gr_render, "The same as gr.render with this node.",
          "file" RENDER_TAIL),
 };
 
@@ -873,30 +872,30 @@ int function_count(void) {
     return count;
 }
 
-const struct function *function_at(int index) {
+const struct script_function *function_at(int index) {
     int part = 0;
     for (; index >= parts[part]->count; part++)
         index -= parts[part]->count;
     return &parts[part]->rows[index];
 }
 
-int function_index(const struct function *function) {
+int function_index(const struct script_function *function) {
     int index = 0;
     while (function_at(index) != function)
         index++;
     return index;
 }
 
-const struct function *function_find(enum owner owner, const char *name) {
+const struct script_function *function_find(enum owner owner, const char *name) {
     for (int i = 0; i < function_count(); i++) {
-        const struct function *function = function_at(i);
+        const struct script_function *function = function_at(i);
         if (function->owner == owner && strcmp(function->name, name) == 0)
             return function;
     }
     return NULL;
 }
 
-bool form_next(const struct function *function, const char **form, int *index, bool *optional) {
+bool form_next(const struct script_function *function, const char **form, int *index, bool *optional) {
     const char *word = *form;
     while (*word == ' ')
         word++;

@@ -16,9 +16,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-struct context;
+struct script_context;
 
-/* What an argument may be. The plain C form is in struct value. */
+/* What an argument may be. The plain C form is in struct script_value. */
 enum kind {
     KIND_NUMBER,     /* number */
     KIND_WHOLE,      /* number: a float with a whole value is fine */
@@ -56,7 +56,7 @@ enum kind {
 };
 
 /* One argument in plain C. Text belongs to Lua and lives as long as the call, arrays to the call's arena. */
-struct value {
+struct script_value {
     bool given;
     bool boolean;
     int choice;
@@ -93,7 +93,7 @@ enum {
     GHOST_IS_NONE = 16 /* with --lenient: something that does not exist yet counts as left out, the call goes on */
 };
 
-struct parameter {
+struct script_parameter {
     const char *name;
     enum kind kind;
     unsigned flags;
@@ -119,7 +119,7 @@ enum result_kind {
     RESULT_GLYPHS
 };
 
-struct result {
+struct script_result {
     void *pointer;           /* what the result kind says; owned by the scene or the assets */
     const struct mesh *mesh; /* RESULT_FACES, in its place */
 };
@@ -127,35 +127,36 @@ struct result {
 enum { FORM_LIMIT = 4, PARAMETER_LIMIT = 64 };
 
 /* `run` is the middle paragraph of a binding function: plain C that cannot raise. args[i] belongs to parameters[i]. */
-struct function {
+struct script_function {
     const char *name;
     enum owner owner;
-    const struct parameter *parameters;
+    const struct script_parameter *parameters;
     int parameter_count;
     /* The positional forms: parameter names in their order, separated by blanks; "name?" may be left out at the end.
      * The form whose types fit the arguments best is taken. Parameters in no form exist in the table form only. */
     const char *forms[FORM_LIMIT];
     enum result_kind result;
-    bool (*run)(struct context *context, const struct value *args, struct result *result, struct error *error);
+    bool (*run)(struct script_context *context, const struct script_value *args, struct script_result *result,
+                struct error *error);
     const char *help;
 };
 
 /* The rows of one file. The table is these one after the other. */
 struct function_rows {
-    const struct function *rows;
+    const struct script_function *rows;
     int count;
 };
 extern const struct function_rows shape_functions, swept_functions, texture_functions, light_functions;
 
 int function_count(void);
 /* index: 0 to function_count() - 1. */
-const struct function *function_at(int index);
-int function_index(const struct function *function);
+const struct script_function *function_at(int index);
+int function_index(const struct script_function *function);
 
 /* The row of that name, or NULL. */
-const struct function *function_find(enum owner owner, const char *name);
+const struct script_function *function_find(enum owner owner, const char *name);
 /* Takes the next name off a form: false at its end. *index is its parameter. */
-bool form_next(const struct function *function, const char **form, int *index, bool *optional);
+bool form_next(const struct script_function *function, const char **form, int *index, bool *optional);
 /* What a script must give: "a number", "a colour {r, g, b}". */
 const char *kind_words(enum kind kind);
 

@@ -2,7 +2,7 @@
 #ifndef GRAY_SCRIPT_TABLE_ROWS_H
 #define GRAY_SCRIPT_TABLE_ROWS_H
 
-#include "script/actions.h"
+#include "script/bindings_internal.h"
 
 #include <math.h>
 

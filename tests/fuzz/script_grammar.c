@@ -52,7 +52,7 @@ __attribute__((format(printf, 2, 3))) static void say(struct grammar *g, const c
         g->used += (size_t)length < SCRIPT_GRAMMAR_SIZE - g->used ? (size_t)length : SCRIPT_GRAMMAR_SIZE - 1 - g->used;
 }
 
-static void say_number(struct grammar *g, const struct parameter *p) {
+static void say_number(struct grammar *g, const struct script_parameter *p) {
     static const char *const odd[] = {"0",     "1",     "-1",     "0.5",   "1e-9",   "1e-300", "5e-324", "-1e-5",
                                       "1e9",   "1e150", "-1e150", "1e300", "0/0",    "1/0",    "-1/0",   "-0.0",
                                       "2^53",  "2^31",  "1e5",    "90",    "180",    "360",    "1e-5",   "1e-30",
@@ -72,7 +72,7 @@ static void say_number(struct grammar *g, const struct parameter *p) {
     }
 }
 
-static void say_tuple(struct grammar *g, const struct parameter *p, unsigned count) {
+static void say_tuple(struct grammar *g, const struct script_parameter *p, unsigned count) {
     for (unsigned i = 0; i < count; i++) {
         say(g, i ? ", " : "{");
         say_number(g, p);
@@ -128,7 +128,7 @@ static const char *one_of(struct grammar *g, const char *const *list, size_t cou
 #define ONE_OF(g, ...)                                                                                                 \
     one_of(g, (const char *const[]){__VA_ARGS__}, sizeof((const char *const[]){__VA_ARGS__}) / sizeof(const char *))
 
-static void say_argument(struct grammar *g, const struct parameter *p) {
+static void say_argument(struct grammar *g, const struct script_parameter *p) {
     if (next(g) < 12) {
         say(g, "w(%u)", next(g));
         return;
@@ -284,7 +284,7 @@ static const char *list_of(enum result_kind result) {
 }
 
 static void say_statement(struct grammar *g) {
-    const struct function *function = function_at((int)(next(g) % (unsigned)function_count()));
+    const struct script_function *function = function_at((int)(next(g) % (unsigned)function_count()));
     bool method = function->owner == OWNER_NODE, coroutine = next(g) < 8;
     unsigned how = next(g), self = method ? next(g) : 0;
     say(g, "k(%s, pcall(%s", list_of(function->result), coroutine ? "coroutine.wrap(" : "");
@@ -306,7 +306,7 @@ static void say_statement(struct grammar *g) {
     } else {
         say(g, ", {");
         for (int p = method; p < function->parameter_count; p++) {
-            const struct parameter *parameter = &function->parameters[p];
+            const struct script_parameter *parameter = &function->parameters[p];
             if ((parameter->flags & OPTIONAL) && next(g) < 128)
                 continue;
             say(g, "%s = ", parameter->name);

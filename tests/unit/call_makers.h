@@ -32,7 +32,7 @@ static inline void write_files(void) {
 }
 
 /* Functions that need a library this build is without say so and no more. */
-static inline bool can_run(const struct function *function) {
+static inline bool can_run(const struct script_function *function) {
     return strcmp(function->name, "glyphs") != 0 || strcmp(font_library(), "none") != 0;
 }
 
@@ -41,7 +41,7 @@ static inline bool function_is_square(const char *help) {
 }
 
 /* A right argument, as Lua text. */
-static inline void right_text(const struct parameter *p, char *out, size_t size) {
+static inline void right_text(const struct script_parameter *p, char *out, size_t size) {
     bool bounded = p->low != 0 || p->high != 0;
     double middle = !bounded ? 1 : isfinite(p->high) ? floor(p->low / 2 + p->high / 2) : p->low + 1;
     const char *text = "nil";
@@ -150,7 +150,7 @@ static inline void right_text(const struct parameter *p, char *out, size_t size)
     (void)snprintf(out, size, "%s", text);
 }
 
-static inline void begin_call(const struct function *function, char call[CALL_SIZE]) {
+static inline void begin_call(const struct script_function *function, char call[CALL_SIZE]) {
     (void)snprintf(call, CALL_SIZE, "%s%s",
                    function->owner == OWNER_GR        ? "gr."
                    : function->result == RESULT_FACES ? "sheet:"
@@ -164,8 +164,8 @@ static inline void append(char call[CALL_SIZE], const char *text) {
 }
 
 /* A call in that form; argument `wrong` (a parameter's index, or -1) is replaced. */
-static inline void positional_call(const struct function *function, const char *form, int wrong, const char *with,
-                                   char call[CALL_SIZE]) {
+static inline void positional_call(const struct script_function *function, const char *form, int wrong,
+                                   const char *with, char call[CALL_SIZE]) {
     int index;
     bool optional;
     const char *separator = "(";
@@ -181,8 +181,8 @@ static inline void positional_call(const struct function *function, const char *
 }
 
 /* What the table form must have, less `wrong`. Meshes want vertices and faces, or a file. */
-static inline bool is_needed(const struct function *function, int index) {
-    const struct parameter *p = &function->parameters[index];
+static inline bool is_needed(const struct script_function *function, int index) {
+    const struct script_parameter *p = &function->parameters[index];
     bool mesh_table = strcmp(p->name, "verts") == 0 || strcmp(p->name, "faces") == 0;
     bool partner = (strcmp(p->name, "normals") == 0 || strcmp(p->name, "uvs") == 0) && p->kind != KIND_FACES;
     bool one_of = strcmp(p->name, "heights") == 0 || strcmp(p->name, "spheres") == 0;
@@ -190,7 +190,8 @@ static inline bool is_needed(const struct function *function, int index) {
     return !(p->flags & OPTIONAL) || mesh_table || partner || one_of || lamp_colour;
 }
 
-static inline void table_call(const struct function *function, int wrong, const char *with, char call[CALL_SIZE]) {
+static inline void table_call(const struct script_function *function, int wrong, const char *with,
+                              char call[CALL_SIZE]) {
     const char *separator = "{";
     begin_call(function, call);
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
@@ -207,12 +208,12 @@ static inline void table_call(const struct function *function, int wrong, const 
     append(call, separator[0] == '{' ? "{}" : "}");
 }
 
-static inline bool has_table_form(const struct function *function) {
+static inline bool has_table_form(const struct script_function *function) {
     return function->owner == OWNER_GR || function->result == RESULT_NOTHING;
 }
 
 /* Some fields exclude or need others. */
-static inline bool goes_with_the_others(const struct function *function, int p) {
+static inline bool goes_with_the_others(const struct script_function *function, int p) {
     const char *name = function->parameters[p].name;
     bool excludes = strcmp(name, "file") == 0 && !(function->parameters[p].kind == KIND_OUTPUT);
     excludes = excludes || strcmp(name, "image") == 0;

@@ -6,7 +6,7 @@
 #include "tests/unit/script_host.h"
 
 /* Wrong arguments, until NULL. `which` counts from 0. */
-static const char *wrong_text(const struct parameter *p, int which, char *out, size_t size) {
+static const char *wrong_text(const struct script_parameter *p, int which, char *out, size_t size) {
     const char *list[16] = {NULL};
     int count = 0;
     bool number = p->kind == KIND_NUMBER || p->kind == KIND_WHOLE || p->kind == KIND_SIZE || p->kind == KIND_PAIR;
@@ -136,7 +136,7 @@ static bool run_call(const char *call, struct error *error) {
     return listen_to_text(&listener, text, NULL, error);
 }
 
-static void expect_named(const struct function *function, const struct parameter *p, const char *call) {
+static void expect_named(const struct script_function *function, const struct script_parameter *p, const char *call) {
     struct error error;
     char title[96];
     (void)snprintf(title, sizeof title, "%s%s", function->owner == OWNER_GR ? "gr." : "node:", function->name);
@@ -153,7 +153,7 @@ static void expect_named(const struct function *function, const struct parameter
 TEST(every_form_of_every_function_runs_with_right_arguments) {
     write_files();
     for (int f = 0; f < function_count(); f++) {
-        const struct function *function = function_at(f);
+        const struct script_function *function = function_at(f);
         if (!can_run(function))
             continue;
         for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
@@ -196,7 +196,7 @@ TEST(every_kind_of_shape_is_made_by_a_function) {
     write_files();
     struct kinds kinds = {.listener = {.seen = note_kinds}};
     for (int f = 0; f < function_count(); f++) {
-        const struct function *function = function_at(f);
+        const struct script_function *function = function_at(f);
         if (function->owner != OWNER_GR || function->result != RESULT_NODE)
             continue;
         char call[CALL_SIZE], text[CALL_SIZE + 512];
@@ -243,7 +243,7 @@ TEST(every_kind_of_material_is_made_by_a_function) {
     write_files();
     struct material_kinds kinds = {.listener = {.seen = note_materials}};
     for (int f = 0; f < function_count(); f++) {
-        const struct function *function = function_at(f);
+        const struct script_function *function = function_at(f);
         char call[CALL_SIZE], word[61];
         if (function->owner != OWNER_GR || function->result != RESULT_MATERIAL)
             continue;
@@ -290,7 +290,7 @@ TEST(memory_may_end_in_every_form_of_every_function) {
 #endif
     write_files();
     for (int f = 0; f < function_count(); f++) {
-        const struct function *function = function_at(f);
+        const struct script_function *function = function_at(f);
         char call[CALL_SIZE], text[256];
         if (!can_run(function))
             continue;
@@ -311,7 +311,7 @@ TEST(memory_may_end_in_every_form_of_every_function) {
 TEST(every_missing_argument_is_named) {
     write_files();
     for (int f = 0; f < function_count(); f++) {
-        const struct function *function = function_at(f);
+        const struct script_function *function = function_at(f);
         for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
             const char *form = function->forms[k];
             int index;
@@ -335,7 +335,7 @@ TEST(every_missing_argument_is_named) {
 TEST(every_wrong_positional_argument_is_named) {
     write_files();
     for (int f = 0; f < function_count(); f++) {
-        const struct function *function = function_at(f);
+        const struct script_function *function = function_at(f);
         for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
             const char *form = function->forms[k], *with;
             int index;
@@ -354,7 +354,7 @@ TEST(every_wrong_positional_argument_is_named) {
 TEST(every_wrong_named_field_is_named) {
     write_files();
     for (int f = 0; f < function_count(); f++) {
-        const struct function *function = function_at(f);
+        const struct script_function *function = function_at(f);
         const char *with;
         for (int p = function->owner == OWNER_NODE; p < function->parameter_count && has_table_form(function); p++) {
             char call[CALL_SIZE], buffer[64];
@@ -368,7 +368,7 @@ TEST(every_wrong_named_field_is_named) {
 
 TEST(names_in_the_forms_are_parameters) {
     for (int f = 0; f < function_count(); f++) {
-        const struct function *function = function_at(f);
+        const struct script_function *function = function_at(f);
         CHECK(function->parameter_count <= PARAMETER_LIMIT);
         CHECK(function_find(function->owner, function->name) == function);
         for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {

@@ -185,7 +185,7 @@ static const char preparation[] =
     "if not t.view then t.target = t.target or {0, 0, 0} end t.lights = t.lights or {lamp} gr.render(t) end\n";
 
 /* What is done with the answer of the call, X. */
-static const char *use_of(const struct function *function) {
+static const char *use_of(const struct script_function *function) {
     switch (function->result) {
     case RESULT_NODE:
         return "root:add_child(X) show{caustics = 50}";
@@ -476,12 +476,13 @@ static void try_scene(struct gallery *gallery, const char *label, const char *sc
 }
 
 /* The call, and what is done with its answer; the only thing that must be a mesh is a mesh light. */
-static void scene_of(const struct function *function, const char *call, char *out, size_t size) {
+static void scene_of(const struct script_function *function, const char *call, char *out, size_t size) {
     bool mesh = strcmp(function->name, "mesh_light") == 0;
     (void)snprintf(out, size, "%sX = %s\n%s", mesh ? "ball = sheet " : "", call, use_of(function));
 }
 
-static void try_call(struct gallery *gallery, const struct function *function, const char *call, bool must_refuse) {
+static void try_call(struct gallery *gallery, const struct script_function *function, const char *call,
+                     bool must_refuse) {
     char scene[CALL_SIZE + 512];
     scene_of(function, call, scene, sizeof scene);
     try_scene(gallery, call, scene, must_refuse);
@@ -490,7 +491,7 @@ static void try_call(struct gallery *gallery, const struct function *function, c
 /* In every numeric argument of every function: in all numbers of it, and in each of the first ones. */
 static void try_everywhere(struct gallery *gallery, const char *value, bool must_refuse) {
     for (int f = 0; f < function_count(); f++) {
-        const struct function *function = function_at(f);
+        const struct script_function *function = function_at(f);
         for (int p = function->owner == OWNER_NODE; p < function->parameter_count; p++) {
             char call[CALL_SIZE], right[256], with[512];
             if (!is_numeric(function->parameters[p].kind) || !goes_with_the_others(function, p))
@@ -575,7 +576,7 @@ TEST(every_colour_may_be_as_large_as_1e30_in_either_direction) {
     struct gallery gallery;
     open_gallery(&gallery);
     for (int f = 0; f < function_count(); f++) {
-        const struct function *function = function_at(f);
+        const struct script_function *function = function_at(f);
         for (int p = 0; p < function->parameter_count && has_table_form(function); p++) {
             char call[CALL_SIZE];
             struct error error;

@@ -17,7 +17,8 @@ static bool is_quoted_in(const char *begin, const char *end, const char *word) {
 }
 
 /* The chapter ("## ...") in which the call "gr.NAME(" or "node:NAME(" begins a line; false: it is not listed. */
-static bool find_chapter(const char *page, const struct function *function, const char **begin, const char **end) {
+static bool find_chapter(const char *page, const struct script_function *function, const char **begin,
+                         const char **end) {
     static const char *const owners[] = {[OWNER_GR] = "gr.", [OWNER_NODE] = "node:"};
     char call[80];
     (void)snprintf(call, sizeof call, "\n`%s%s(", owners[function->owner], function->name);
@@ -39,7 +40,7 @@ TEST(language_page_lists_every_function_with_all_its_arguments) {
     if (!page)
         return;
     for (int i = 0; i < function_count(); i++) {
-        const struct function *function = function_at(i);
+        const struct script_function *function = function_at(i);
         const char *begin, *end;
         if (!find_chapter(page, function, &begin, &end)) {
             test_fail(__FILE__, __LINE__, "%s is not in docs/language.md", function->name);

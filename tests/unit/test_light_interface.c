@@ -480,7 +480,7 @@ TEST(every_kind_of_light_has_a_function_of_the_language) {
     write_files();
     kinds_made = 0;
     for (int f = 0; f < function_count(); f++) {
-        const struct function *function = function_at(f);
+        const struct script_function *function = function_at(f);
         char call[CALL_SIZE], text[CALL_SIZE + 512];
         struct listener listener = {.seen = note_kinds};
         struct error error;

@@ -214,7 +214,7 @@ TEST(warnings_count_as_output_too) {
 
 /* Lua asks again for the same after it has collected its garbage; getting anything else does not undo the refusal. */
 TEST(memory_that_was_refused_is_forgotten_only_when_it_is_got_after_all) {
-    struct context context = {.limits = {.account = {.limit = 10000}}};
+    struct script_context context = {.limits = {.account = {.limit = 10000}}};
     (void)mem_charge(&context.limits.account);
     char *kept = limits_allocate(&context, NULL, 0, 100), *large = limits_allocate(&context, NULL, 0, 9000);
     CHECK(kept && large && !context.limits.memory_out);

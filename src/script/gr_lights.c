@@ -51,7 +51,7 @@ enum { SKYLIGHT_SKY = LIGHT_EXCLUDE + 1, SKYLIGHT_SAMPLES, SKYLIGHT_COUNT };
             "Whether it emits, and is visible, only on the side of " text "."                                          \
     }
 
-static const struct parameter light_parameters[] = {
+static const struct script_parameter light_parameters[] = {
     LIGHT_FIELDS(0),
     FADING_FIELDS,
     [POINT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Position."},
@@ -60,7 +60,7 @@ static const struct parameter light_parameters[] = {
 #define SAMPLES_FIELD                                                                                                  \
     { "samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "area_samples", "N x N shadow rays for this light." }
 
-static const struct parameter mesh_light_parameters[] = {
+static const struct script_parameter mesh_light_parameters[] = {
     LIGHT_FIELDS(OPTIONAL),
     [MESHLIGHT_EMISSION] = {"emission", KIND_COLOUR, OPTIONAL, ANY, NULL, "its materials'",
                             "Radiance of its surface, multiplied by colour."},
@@ -70,18 +70,18 @@ static const struct parameter mesh_light_parameters[] = {
                         "is not in the scene, it emits invisibly at its own transforms."},
 };
 
-static const struct parameter sky_light_parameters[] = {
+static const struct script_parameter sky_light_parameters[] = {
     LIGHT_FIELDS(OPTIONAL),
     [SKYLIGHT_SKY] = {"sky", KIND_BACKGROUND, 0, ANY, NULL, NULL, "A sky, a colour, or 'gradient'."},
     [SKYLIGHT_SAMPLES] = SAMPLES_FIELD,
 };
 
-static const struct parameter directional_parameters[] = {
+static const struct script_parameter directional_parameters[] = {
     LIGHT_FIELDS(0),
     [DISTANT_DIRECTION] = {"direction", KIND_DIRECTION, 0, ANY, NULL, NULL, "Direction in which the light travels."},
 };
 
-static const struct parameter spot_parameters[] = {
+static const struct script_parameter spot_parameters[] = {
     LIGHT_FIELDS(0),
     FADING_FIELDS,
     [SPOT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Position."},
@@ -93,7 +93,7 @@ static const struct parameter spot_parameters[] = {
                     "30, or inner if that is more", "Angle from the axis where the light ends."},
 };
 
-static const struct parameter area_parameters[] = {
+static const struct script_parameter area_parameters[] = {
     LIGHT_FIELDS(OPTIONAL),
     FADING_FIELDS,
     LAMP_FIELDS,
@@ -103,7 +103,7 @@ static const struct parameter area_parameters[] = {
     [AREA_ONE_SIDED] = ONE_SIDED("v1 x v2"),
 };
 
-static const struct parameter ball_light_parameters[] = {
+static const struct script_parameter ball_light_parameters[] = {
     LIGHT_FIELDS(OPTIONAL),
     FADING_FIELDS,
     LAMP_FIELDS,
@@ -111,7 +111,7 @@ static const struct parameter ball_light_parameters[] = {
     [BALL_RADIUS] = {"radius", KIND_NUMBER, LOW_OPEN, ABOVE(0), NULL, NULL, "Its radius."},
 };
 
-static const struct parameter disc_light_parameters[] = {
+static const struct script_parameter disc_light_parameters[] = {
     LIGHT_FIELDS(OPTIONAL),
     FADING_FIELDS,
     LAMP_FIELDS,
@@ -122,8 +122,8 @@ static const struct parameter disc_light_parameters[] = {
 };
 
 /* The nodes of a list, kept as long as the scene. */
-static bool keep_nodes(struct context *context, const struct value *value, const struct node *const **nodes,
-                       uint32_t *count) {
+static bool keep_nodes(struct script_context *context, const struct script_value *value,
+                       const struct node *const **nodes, uint32_t *count) {
     *nodes = NULL;
     *count = value->count;
     if (!value->given)
@@ -136,8 +136,8 @@ static bool keep_nodes(struct context *context, const struct value *value, const
 }
 
 /* What every light has, and the light itself into the arena of the scene. */
-static bool give_light(struct context *context, struct light *light, const struct value *args, struct result *result,
-                       struct error *error) {
+static bool give_light(struct script_context *context, struct light *light, const struct script_value *args,
+                       struct script_result *result, struct error *error) {
     struct light *kept = arena_alloc(&context->scene.arena, sizeof *kept);
     light->colour = args[LIGHT_COLOUR].vector;
     if (!kept || !keep_nodes(context, &args[LIGHT_INCLUDE], &light->include, &light->include_count) ||
@@ -148,7 +148,7 @@ static bool give_light(struct context *context, struct light *light, const struc
     return true;
 }
 
-static bool set_fading(struct light *light, const struct value *args, struct error *error) {
+static bool set_fading(struct light *light, const struct script_value *args, struct error *error) {
     struct vec3 c = args[LIGHT_FALLOFF].given ? args[LIGHT_FALLOFF].vector : (struct vec3){1, 0, 0};
     if (args[LIGHT_FALLOFF].given + args[LIGHT_RANGE].given + args[LIGHT_INTENSITY].given > 1)
         return error_set(error, ERROR_SCENE, "falloff, range and intensity exclude each other");
@@ -164,9 +164,9 @@ static bool set_fading(struct light *light, const struct value *args, struct err
 }
 
 /* A light with an extent: fading as from its centre, or a lamp whose surface emits. */
-static bool give_lamp(struct context *context, struct light *light, const struct value *args, struct result *result,
-                      struct error *error) {
-    struct value lamp[LIGHT_OWN];
+static bool give_lamp(struct script_context *context, struct light *light, const struct script_value *args,
+                      struct script_result *result, struct error *error) {
+    struct script_value lamp[LIGHT_OWN];
     for (int i = 0; i < LIGHT_OWN; i++)
         lamp[i] = args[i];
     light->emits = args[LIGHT_EMISSION].given;
@@ -190,22 +190,23 @@ static bool set_direction(struct light *light, struct vec3 direction, const char
     return true;
 }
 
-static bool act_light(struct context *context, const struct value *args, struct result *result, struct error *error) {
+static bool gr_light(struct script_context *context, const struct script_value *args, struct script_result *result,
+                     struct error *error) {
     struct light light = {.kind = LIGHT_POINT, .position = args[POINT_POSITION].vector};
     return set_fading(&light, args, error) && give_light(context, &light, args, result, error);
 }
 
-bool act_directional_light(struct context *context, const struct value *args, struct result *result,
-                           struct error *error) {
+bool gr_directional_light(struct script_context *context, const struct script_value *args, struct script_result *result,
+                          struct error *error) {
     struct light light = {.kind = LIGHT_DIRECTIONAL};
     return set_direction(&light, args[DISTANT_DIRECTION].vector, "direction", error) &&
            give_light(context, &light, args, result, error);
 }
 
-static bool act_spot_light(struct context *context, const struct value *args, struct result *result,
-                           struct error *error) {
+static bool gr_spot_light(struct script_context *context, const struct script_value *args, struct script_result *result,
+                          struct error *error) {
     struct light light = {.kind = LIGHT_SPOT, .position = args[SPOT_POSITION].vector};
-    const struct value *inner = &args[SPOT_INNER], *outer = &args[SPOT_OUTER];
+    const struct script_value *inner = &args[SPOT_INNER], *outer = &args[SPOT_OUTER];
     if (args[SPOT_DIRECTION].given && args[SPOT_TARGET].given)
         return error_set(error, ERROR_SCENE, "direction and target exclude each other");
     double outer_angle = outer->given ? outer->number : inner->given && inner->number > 30 ? inner->number : 30;
@@ -222,8 +223,8 @@ static bool act_spot_light(struct context *context, const struct value *args, st
            set_fading(&light, args, error) && give_light(context, &light, args, result, error);
 }
 
-static bool act_area_light(struct context *context, const struct value *args, struct result *result,
-                           struct error *error) {
+static bool gr_area_light(struct script_context *context, const struct script_value *args, struct script_result *result,
+                          struct error *error) {
     struct light light = {.kind = LIGHT_PARALLELOGRAM,
                           .corner = args[AREA_CORNER].vector,
                           .edge1 = args[AREA_V1].vector,
@@ -237,15 +238,15 @@ static bool act_area_light(struct context *context, const struct value *args, st
     return give_lamp(context, &light, args, result, error);
 }
 
-static bool act_spherical_light(struct context *context, const struct value *args, struct result *result,
-                                struct error *error) {
+static bool gr_spherical_light(struct script_context *context, const struct script_value *args,
+                               struct script_result *result, struct error *error) {
     struct light light = {
         .kind = LIGHT_SPHERE, .position = args[BALL_POSITION].vector, .radius = args[BALL_RADIUS].number};
     return give_lamp(context, &light, args, result, error);
 }
 
-static bool act_disc_light(struct context *context, const struct value *args, struct result *result,
-                           struct error *error) {
+static bool gr_disc_light(struct script_context *context, const struct script_value *args, struct script_result *result,
+                          struct error *error) {
     struct light light = {.kind = LIGHT_DISC,
                           .position = args[PANEL_POSITION].vector,
                           .radius = args[PANEL_RADIUS].number,
@@ -254,15 +255,15 @@ static bool act_disc_light(struct context *context, const struct value *args, st
            give_lamp(context, &light, args, result, error);
 }
 
-static bool act_mesh_light(struct context *context, const struct value *args, struct result *result,
-                           struct error *error) {
+static bool gr_mesh_light(struct script_context *context, const struct script_value *args, struct script_result *result,
+                          struct error *error) {
     struct light light = {.kind = LIGHT_MESH,
                           .emits = true,
                           .node = args[MESHLIGHT_MESH].node,
                           .samples = (int)args[MESHLIGHT_SAMPLES].number,
                           .has_emission = args[MESHLIGHT_EMISSION].given,
                           .emission = args[MESHLIGHT_EMISSION].vector};
-    struct value lamp[MESHLIGHT_COUNT];
+    struct script_value lamp[MESHLIGHT_COUNT];
     for (int i = 0; i < MESHLIGHT_COUNT; i++)
         lamp[i] = args[i];
     if (!args[LIGHT_COLOUR].given)
@@ -270,11 +271,11 @@ static bool act_mesh_light(struct context *context, const struct value *args, st
     return give_light(context, &light, lamp, result, error);
 }
 
-static bool act_sky_light(struct context *context, const struct value *args, struct result *result,
-                          struct error *error) {
+static bool gr_sky_light(struct script_context *context, const struct script_value *args, struct script_result *result,
+                         struct error *error) {
     struct light light = {.kind = LIGHT_SKY, .emits = true, .samples = (int)args[SKYLIGHT_SAMPLES].number};
     struct sky *sky = arena_alloc(&context->scene.arena, sizeof *sky);
-    struct value lamp[SKYLIGHT_COUNT];
+    struct script_value lamp[SKYLIGHT_COUNT];
     if (!sky)
         return error_no_memory(error, "a sky");
     *sky = (struct sky){.kind = SKY_GRADIENT};
@@ -291,22 +292,22 @@ static bool act_sky_light(struct context *context, const struct value *args, str
 }
 
 /* The rows of the table. */
-static const struct function rows[] = {
-    GR("light", light_parameters, RESULT_LIGHT, act_light, "A point light.", "position colour falloff?"),
-    GR("area_light", area_parameters, RESULT_LIGHT, act_area_light, "A parallelogram as a light, with soft shadows.",
+static const struct script_function rows[] = {
+    GR("light", light_parameters, RESULT_LIGHT, gr_light, "A point light.", "position colour falloff?"),
+    GR("area_light", area_parameters, RESULT_LIGHT, gr_area_light, "A parallelogram as a light, with soft shadows.",
        "corner v1 v2 colour falloff?"),
-    GR("spherical_light", ball_light_parameters, RESULT_LIGHT, act_spherical_light,
+    GR("spherical_light", ball_light_parameters, RESULT_LIGHT, gr_spherical_light,
        "A sphere as a light, with soft shadows.", "position colour falloff radius"),
-    GR("disc_light", disc_light_parameters, RESULT_LIGHT, act_disc_light, "A disc as a light, with soft shadows.",
+    GR("disc_light", disc_light_parameters, RESULT_LIGHT, gr_disc_light, "A disc as a light, with soft shadows.",
        "position normal radius colour falloff?"),
-    GR("directional_light", directional_parameters, RESULT_LIGHT, act_directional_light,
+    GR("directional_light", directional_parameters, RESULT_LIGHT, gr_directional_light,
        "A light at infinity: all its rays are parallel.", "direction colour"),
-    GR("spot_light", spot_parameters, RESULT_LIGHT, act_spot_light, "A point light that shines into a cone.",
+    GR("spot_light", spot_parameters, RESULT_LIGHT, gr_spot_light, "A point light that shines into a cone.",
        "position direction colour inner outer falloff?"),
 
-    GR("mesh_light", mesh_light_parameters, RESULT_LIGHT, act_mesh_light, "The triangles of a mesh as a light.",
+    GR("mesh_light", mesh_light_parameters, RESULT_LIGHT, gr_mesh_light, "The triangles of a mesh as a light.",
        "mesh emission?"),
-    GR("sky_light", sky_light_parameters, RESULT_LIGHT, act_sky_light,
+    GR("sky_light", sky_light_parameters, RESULT_LIGHT, gr_sky_light,
        "A sky as a light; bright parts get more shadow rays.", "sky"),
 };
 

@@ -13,9 +13,9 @@
 
 #include <string.h>
 
-static bool give_node(struct context *context, const struct value *args, const char *otherwise,
-                      const struct shape *shape, struct result *result, struct error *error) {
-    const struct value *name = &args[SHAPE_NAME];
+static bool give_node(struct script_context *context, const struct script_value *args, const char *otherwise,
+                      const struct shape *shape, struct script_result *result, struct error *error) {
+    const struct script_value *name = &args[SHAPE_NAME];
     struct node *node = scene_node(&context->scene, NODE_GEOMETRY, name->given ? name->text : otherwise, error);
     if (!node)
         return false;
@@ -25,12 +25,12 @@ static bool give_node(struct context *context, const struct value *args, const c
     return true;
 }
 
-static enum spline_kind spline_or(const struct value *value, enum spline_kind otherwise) {
+static enum spline_kind spline_or(const struct script_value *value, enum spline_kind otherwise) {
     return value->given ? (enum spline_kind)value->choice : otherwise;
 }
 
 /* One number for each of `count` points, or one for all of them. */
-static bool one_each(struct context *context, const struct value *value, const char *name, uint32_t count,
+static bool one_each(struct script_context *context, const struct script_value *value, const char *name, uint32_t count,
                      const double **out, struct error *error) {
     double *all = arena_alloc_array(&context->call, count, sizeof *all);
     if (!all)
@@ -48,7 +48,7 @@ enum { LATHE_POINTS = SHAPE_FIRST, LATHE_SPLINE, LATHE_LOOP, LATHE_OPEN };
     { "spline", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(SPLINE_KINDS), NULL, "'" otherwise "'", help }
 #define SPLINE_HELP "Kind of spline through the points; bezier needs 3 n + 1 points."
 
-static const struct parameter lathe_parameters[] = {
+static const struct script_parameter lathe_parameters[] = {
     SHAPE("lathe"),
     [LATHE_POINTS] = {"points", KIND_PAIRS, 0, ANY, NULL, NULL, "The profile: pairs of radius and y."},
     [LATHE_SPLINE] = SPLINE("linear", SPLINE_HELP),
@@ -56,7 +56,8 @@ static const struct parameter lathe_parameters[] = {
     [LATHE_OPEN] = {"open", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether ends off the axis have no discs."},
 };
 
-static bool act_lathe(struct context *context, const struct value *args, struct result *result, struct error *error) {
+static bool gr_lathe(struct script_context *context, const struct script_value *args, struct script_result *result,
+                     struct error *error) {
     struct lathe_input in = {.kind = spline_or(&args[LATHE_SPLINE], SPLINE_LINEAR),
                              .points = args[LATHE_POINTS].pairs,
                              .count = args[LATHE_POINTS].count,
@@ -69,7 +70,7 @@ static bool act_lathe(struct context *context, const struct value *args, struct 
 }
 
 enum { PRISM_OUTLINE = SHAPE_FIRST, PRISM_HOLES, PRISM_FROM, PRISM_TO, PRISM_SPLINE };
-static const struct parameter prism_parameters[] = {
+static const struct script_parameter prism_parameters[] = {
     SHAPE("prism"),
     [PRISM_OUTLINE] = {"outline", KIND_PAIRS, 0, ANY, NULL, NULL, "A closed curve: pairs of x and z."},
     [PRISM_HOLES] = {"holes", KIND_CURVES, OPTIONAL, ANY, NULL, "none",
@@ -79,8 +80,9 @@ static const struct parameter prism_parameters[] = {
     [PRISM_SPLINE] = SPLINE("linear", "Kind of spline through the points; bezier needs 3 n points."),
 };
 
-static bool act_prism(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    const struct value *outline = &args[PRISM_OUTLINE], *holes = &args[PRISM_HOLES];
+static bool gr_prism(struct script_context *context, const struct script_value *args, struct script_result *result,
+                     struct error *error) {
+    const struct script_value *outline = &args[PRISM_OUTLINE], *holes = &args[PRISM_HOLES];
     uint32_t hole_points = holes->given ? holes->starts[holes->count] : 0,
              curves = 1 + (holes->given ? holes->count : 0);
     double(*points)[2] = arena_alloc_array(&context->call, (size_t)outline->count + hole_points + 1, sizeof *points);
@@ -103,7 +105,7 @@ static bool act_prism(struct context *context, const struct value *args, struct 
 }
 
 enum { SWEEP_POINTS = SHAPE_FIRST, SWEEP_RADII, SWEEP_SPLINE, SWEEP_LOOP };
-static const struct parameter sweep_parameters[] = {
+static const struct script_parameter sweep_parameters[] = {
     SHAPE("sweep"),
     [SWEEP_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL, "Path of the centre of the ball."},
     [SWEEP_RADII] = {"radii", KIND_NUMBERS, 0, ABOVE(0), NULL, NULL, "Radius at each point, or one for all."},
@@ -111,7 +113,8 @@ static const struct parameter sweep_parameters[] = {
     [SWEEP_LOOP] = {"loop", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the path is closed."},
 };
 
-static bool act_sweep(struct context *context, const struct value *args, struct result *result, struct error *error) {
+static bool gr_sweep(struct script_context *context, const struct script_value *args, struct script_result *result,
+                     struct error *error) {
     struct sweep_input in = {.kind = spline_or(&args[SWEEP_SPLINE], SPLINE_CATMULL_ROM),
                              .points = args[SWEEP_POINTS].points,
                              .count = args[SWEEP_POINTS].count,
@@ -125,7 +128,7 @@ static bool act_sweep(struct context *context, const struct value *args, struct 
 }
 
 enum { CURVE_POINTS = SHAPE_FIRST, CURVE_WIDTHS, CURVE_SPLINE, CURVE_FLAT };
-static const struct parameter curve_parameters[] = {
+static const struct script_parameter curve_parameters[] = {
     SHAPE("curve"),
     [CURVE_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL, "Path of the curve."},
     [CURVE_WIDTHS] = {"widths", KIND_NUMBERS, 0, ABOVE(0), NULL, NULL, "Width at each point, or one for all."},
@@ -134,7 +137,8 @@ static const struct parameter curve_parameters[] = {
                     "Whether it is shaded as a flat ribbon instead of a round hair."},
 };
 
-static bool act_curve(struct context *context, const struct value *args, struct result *result, struct error *error) {
+static bool gr_curve(struct script_context *context, const struct script_value *args, struct script_result *result,
+                     struct error *error) {
     struct curve_input in = {.kind = spline_or(&args[CURVE_SPLINE], SPLINE_CATMULL_ROM),
                              .points = args[CURVE_POINTS].points,
                              .count = args[CURVE_POINTS].count,
@@ -148,7 +152,7 @@ static bool act_curve(struct context *context, const struct value *args, struct 
 }
 
 /* Heights from rows of numbers, which must be equally long. */
-static bool heights_of_rows(const struct value *rows, struct height_field_input *in, struct error *error) {
+static bool heights_of_rows(const struct script_value *rows, struct height_field_input *in, struct error *error) {
     in->rows = rows->count;
     in->columns = rows->count > 0 ? rows->starts[1] : 0;
     for (uint32_t j = 0; j < rows->count; j++) {
@@ -164,9 +168,9 @@ static bool heights_of_rows(const struct value *rows, struct height_field_input 
 }
 
 /* Heights 0 to 1 from the mean of red, green and blue; the picture's upper edge is z = 0. */
-static bool heights_of_image(struct context *context, const struct value *value, struct height_field_input *in,
-                             struct error *error) {
-    struct image *image = act_find_image(context, value, error);
+static bool heights_of_image(struct script_context *context, const struct script_value *value,
+                             struct height_field_input *in, struct error *error) {
+    struct image *image = gr_find_image(context, value, error);
     if (!image)
         return false;
     in->columns = image_width(image);
@@ -184,7 +188,7 @@ static bool heights_of_image(struct context *context, const struct value *value,
 }
 
 enum { FIELD_HEIGHTS = SHAPE_FIRST, FIELD_IMAGE, FIELD_FLOOR, FIELD_OPEN, FIELD_SMOOTH };
-static const struct parameter field_parameters[] = {
+static const struct script_parameter field_parameters[] = {
     SHAPE("height field"),
     [FIELD_HEIGHTS] = {"heights", KIND_ROWS, OPTIONAL, ANY, NULL, NULL,
                        "Rows of heights, all of one length; x varies within a row, z from row to row."},
@@ -196,9 +200,9 @@ static const struct parameter field_parameters[] = {
     [FIELD_SMOOTH] = {"smooth", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether normals are interpolated."},
 };
 
-static bool act_height_field(struct context *context, const struct value *args, struct result *result,
-                             struct error *error) {
-    const struct value *rows = &args[FIELD_HEIGHTS], *image = &args[FIELD_IMAGE];
+static bool gr_height_field(struct script_context *context, const struct script_value *args,
+                            struct script_result *result, struct error *error) {
+    const struct script_value *rows = &args[FIELD_HEIGHTS], *image = &args[FIELD_IMAGE];
     struct height_field_input in = {.open = args[FIELD_OPEN].boolean, .smooth = args[FIELD_SMOOTH].boolean};
     if (rows->given && image->given)
         return error_set(error, ERROR_SCENE, "heights and image exclude each other");
@@ -218,7 +222,7 @@ static bool act_height_field(struct context *context, const struct value *args, 
 }
 
 /* Row k of a list of balls or cylinders: `width` numbers and perhaps the strength. */
-static bool blob_rows(const struct value *rows, const char *name, uint32_t width, struct blob_element *out,
+static bool blob_rows(const struct script_value *rows, const char *name, uint32_t width, struct blob_element *out,
                       struct error *error) {
     for (uint32_t k = 0; k < rows->count; k++) {
         const double *row = rows->numbers + rows->starts[k];
@@ -239,7 +243,7 @@ static bool blob_rows(const struct value *rows, const char *name, uint32_t width
 }
 
 enum { BLOB_SPHERES = SHAPE_FIRST, BLOB_CYLINDERS, BLOB_THRESHOLD };
-static const struct parameter blob_parameters[] = {
+static const struct script_parameter blob_parameters[] = {
     SHAPE("blob"),
     [BLOB_SPHERES] = {"spheres", KIND_ROWS, OPTIONAL, ANY, NULL, "{}",
                       "Balls {x, y, z, radius, strength}; the default strength is 1."},
@@ -250,8 +254,9 @@ static const struct parameter blob_parameters[] = {
          "The surface is where the sum of the fields strength (1 - (distance/radius)^2)^2 has this value."},
 };
 
-static bool act_blob(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    const struct value *balls = &args[BLOB_SPHERES], *rods = &args[BLOB_CYLINDERS];
+static bool gr_blob(struct script_context *context, const struct script_value *args, struct script_result *result,
+                    struct error *error) {
+    const struct script_value *balls = &args[BLOB_SPHERES], *rods = &args[BLOB_CYLINDERS];
     struct blob_input in = {.count = balls->count + rods->count, .threshold = 0.5};
     struct blob_element *elements = arena_alloc_array(&context->call, (size_t)in.count + 1, sizeof *elements);
     if (!elements)
@@ -269,7 +274,7 @@ static bool act_blob(struct context *context, const struct value *args, struct r
 }
 
 enum { PATCH_POINTS = SHAPE_FIRST, PATCH_PATCHES, PATCH_TOLERANCE, PATCH_FLIP };
-static const struct parameter patch_parameters[] = {
+static const struct script_parameter patch_parameters[] = {
     SHAPE("patch"),
     [PATCH_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL, "Control points, 16 for each patch, in 4 rows of 4."},
     [PATCH_PATCHES] = {"patches", KIND_FACES, OPTIONAL, ANY, NULL, "16 points each, in order",
@@ -279,8 +284,9 @@ static const struct parameter patch_parameters[] = {
     [PATCH_FLIP] = {"flip", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the front is reversed."},
 };
 
-static bool act_patch(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    const struct value *points = &args[PATCH_POINTS], *patches = &args[PATCH_PATCHES];
+static bool gr_patch(struct script_context *context, const struct script_value *args, struct script_result *result,
+                     struct error *error) {
+    const struct script_value *points = &args[PATCH_POINTS], *patches = &args[PATCH_PATCHES];
     const char *name = args[SHAPE_NAME].given ? args[SHAPE_NAME].text : "patch";
     struct patch_input in = {.name = name, .points = points->points, .flip = args[PATCH_FLIP].boolean};
     in.tolerance = args[PATCH_TOLERANCE].number;
@@ -316,24 +322,23 @@ static bool act_patch(struct context *context, const struct value *args, struct 
 }
 
 /* The rows of the table. */
-static const struct function rows[] = {
-    GR("lathe", lathe_parameters, RESULT_NODE, act_lathe,
-       "A surface of revolution: a profile rotated about the y axis.", "material points spline?",
-       "name points spline?"),
-    GR("prism", prism_parameters, RESULT_NODE, act_prism, "An extrusion: an outline along y, with holes.",
+static const struct script_function rows[] = {
+    GR("lathe", lathe_parameters, RESULT_NODE, gr_lathe, "A surface of revolution: a profile rotated about the y axis.",
+       "material points spline?", "name points spline?"),
+    GR("prism", prism_parameters, RESULT_NODE, gr_prism, "An extrusion: an outline along y, with holes.",
        "material outline", "name outline"),
-    GR("sweep", sweep_parameters, RESULT_NODE, act_sweep,
+    GR("sweep", sweep_parameters, RESULT_NODE, gr_sweep,
        "A sphere sweep: the volume of a ball that moves along a spline.", "material points radii spline?",
        "name points radii spline?"),
-    GR("height_field", field_parameters, RESULT_NODE, act_height_field,
+    GR("height_field", field_parameters, RESULT_NODE, gr_height_field,
        "A height field over the square from 0 to 1 in x and z, solid down to its floor.", "material heights",
        "name heights"),
-    GR("blob", blob_parameters, RESULT_NODE, act_blob,
+    GR("blob", blob_parameters, RESULT_NODE, gr_blob,
        "A blob (metaballs): the isosurface of the fields of balls and rods.", "material spheres cylinders? threshold?",
        "name spheres cylinders? threshold?"),
-    GR("curve", curve_parameters, RESULT_NODE, act_curve, "A hair: a ribbon along a spline that faces each ray.",
+    GR("curve", curve_parameters, RESULT_NODE, gr_curve, "A hair: a ribbon along a spline that faces each ray.",
        "material points widths spline?", "name points widths spline?"),
-    GR("patch", patch_parameters, RESULT_NODE, act_patch, "Bicubic Bezier patches, as a mesh.",
+    GR("patch", patch_parameters, RESULT_NODE, gr_patch, "Bicubic Bezier patches, as a mesh.",
        "material points patches?", "name points patches?"),
 };
 const struct function_rows swept_functions = {rows, COUNT(rows)};

@@ -1,10 +1,10 @@
 /* Skies, and the light of the sun. */
 #include "math/elementary.h"
-#include "script/actions.h"
+#include "script/bindings_internal.h"
 #include "script/context.h"
 
-static bool give_sky(struct context *context, struct sky *sky, const struct value *args, struct result *result,
-                     struct error *error) {
+static bool give_sky(struct script_context *context, struct sky *sky, const struct script_value *args,
+                     struct script_result *result, struct error *error) {
     struct sky *kept = arena_alloc(&context->scene.arena, sizeof *kept);
     if (!kept)
         return error_no_memory(error, "a sky");
@@ -16,32 +16,36 @@ static bool give_sky(struct context *context, struct sky *sky, const struct valu
     return true;
 }
 
-bool act_sky_faces(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_sky_faces(struct script_context *context, const struct script_value *args, struct script_result *result,
+                  struct error *error) {
     static const int fields[6] = {FACES_RIGHT, FACES_LEFT, FACES_BOTTOM, FACES_TOP, FACES_BACK, FACES_FRONT};
     struct image *images[6];
     struct sky sky;
     for (int i = 0; i < 6; i++) {
-        images[i] = act_find_image(context, &args[fields[i]], error);
+        images[i] = gr_find_image(context, &args[fields[i]], error);
         if (!images[i])
             return false;
     }
     return sky_from_faces(images, &sky, error) && give_sky(context, &sky, args, result, error);
 }
 
-bool act_sky_cross(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    struct image *image = act_find_image(context, &args[CROSS_IMAGE], error);
+bool gr_sky_cross(struct script_context *context, const struct script_value *args, struct script_result *result,
+                  struct error *error) {
+    struct image *image = gr_find_image(context, &args[CROSS_IMAGE], error);
     struct sky sky;
     return image && sky_from_cross(image, args[CROSS_MIRROR].boolean, &sky, error) &&
            give_sky(context, &sky, args, result, error);
 }
 
-bool act_sky_map(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    struct sky sky = {.kind = SKY_MAP, .image = act_find_image(context, &args[MAP_IMAGE], error)};
+bool gr_sky_map(struct script_context *context, const struct script_value *args, struct script_result *result,
+                struct error *error) {
+    struct sky sky = {.kind = SKY_MAP, .image = gr_find_image(context, &args[MAP_IMAGE], error)};
     return sky.image && give_sky(context, &sky, args, result, error);
 }
 
-bool act_sky_gradient(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    const struct value *given = &args[GRADIENT_STOPS];
+bool gr_sky_gradient(struct script_context *context, const struct script_value *args, struct script_result *result,
+                     struct error *error) {
+    const struct script_value *given = &args[GRADIENT_STOPS];
     double(*stops)[4] = arena_alloc_array(&context->scene.arena, (size_t)given->count + 1, sizeof *stops);
     if (!stops)
         return error_no_memory(error, "a sky");
@@ -58,7 +62,7 @@ bool act_sky_gradient(struct context *context, const struct value *args, struct 
 }
 
 /* The unit direction to the sun, from a direction or from time and place. `sun` points at the first of the fields. */
-static bool find_sun(const struct value *sun, struct vec3 *out, struct error *error) {
+static bool find_sun(const struct script_value *sun, struct vec3 *out, struct error *error) {
     bool by_time = sun[SUN_HOUR].given || sun[SUN_DAY].given || sun[SUN_LATITUDE].given || sun[SUN_LONGITUDE].given ||
                    sun[SUN_ZONE].given;
     if (sun[SUN_DIRECTION].given && by_time)
@@ -75,7 +79,8 @@ static bool find_sun(const struct value *sun, struct vec3 *out, struct error *er
     return true;
 }
 
-bool act_clear_sky(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_clear_sky(struct script_context *context, const struct script_value *args, struct script_result *result,
+                  struct error *error) {
     struct vec3 sun;
     struct sky sky;
     if (!find_sun(&args[CLEAR_SUN], &sun, error))
@@ -85,12 +90,13 @@ bool act_clear_sky(struct context *context, const struct value *args, struct res
     return give_sky(context, &sky, args, result, error);
 }
 
-bool act_sun_light(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    struct value distant[DISTANT_COUNT];
+bool gr_sun_light(struct script_context *context, const struct script_value *args, struct script_result *result,
+                  struct error *error) {
+    struct script_value distant[DISTANT_COUNT];
     if (!find_sun(&args[SUNLIGHT_SUN], &distant[DISTANT_DIRECTION].vector, error))
         return false;
     for (int i = 0; i < DISTANT_DIRECTION; i++)
         distant[i] = args[i];
     distant[DISTANT_DIRECTION].vector = vec3_negate(distant[DISTANT_DIRECTION].vector);
-    return act_directional_light(context, distant, result, error);
+    return gr_directional_light(context, distant, result, error);
 }

@@ -1,13 +1,13 @@
 /* What somebody has changed in a window, as calls: they are noted, and laid over every picture that is made afterwards.
  * Nothing of the script's own tree is changed for good. */
-#include "script/actions.h"
+#include "script/bindings_internal.h"
 #include "script/context.h"
 
 #include <math.h>
 #include <string.h>
 
 /* Room for one more; zeroed. */
-static struct change *note(struct context *context, enum change_kind kind, const char *name, double serial,
+static struct change *note(struct script_context *context, enum change_kind kind, const char *name, double serial,
                            struct error *error) {
     if (context->change_count == context->change_room) {
         uint32_t room = context->change_room ? 2 * context->change_room : 16;
@@ -37,9 +37,10 @@ static void put(double *numbers, struct vec3 v) {
     numbers[2] = v.z;
 }
 
-bool act_change_node(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_change_node(struct script_context *context, const struct script_value *args, struct script_result *result,
+                    struct error *error) {
     (void)result;
-    const struct value *matrix = &args[CHANGENODE_MATRIX];
+    const struct script_value *matrix = &args[CHANGENODE_MATRIX];
     struct affine map;
     struct transform ignored;
     if (matrix->count != 12)
@@ -54,12 +55,14 @@ bool act_change_node(struct context *context, const struct value *args, struct r
     return change != NULL;
 }
 
-bool act_change_delete(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_change_delete(struct script_context *context, const struct script_value *args, struct script_result *result,
+                      struct error *error) {
     (void)result;
     return note(context, CHANGE_GONE, args[CHANGEGONE_NAME].text, args[CHANGEGONE_SERIAL].number, error) != NULL;
 }
 
-bool act_change_add(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_change_add(struct script_context *context, const struct script_value *args, struct script_result *result,
+                   struct error *error) {
     (void)result;
     struct change *change = note(context, CHANGE_ADD, args[CHANGEADD_NAME].text, args[CHANGEADD_SERIAL].number, error);
     if (!change)
@@ -71,8 +74,8 @@ bool act_change_add(struct context *context, const struct value *args, struct re
     return true;
 }
 
-bool act_change_material(struct context *context, const struct value *args, struct result *result,
-                         struct error *error) {
+bool gr_change_material(struct script_context *context, const struct script_value *args, struct script_result *result,
+                        struct error *error) {
     (void)result;
     struct change *change = note(context, CHANGE_MATERIAL, NULL, args[CHANGEMATERIAL_SERIAL].number, error);
     if (change)
@@ -80,10 +83,11 @@ bool act_change_material(struct context *context, const struct value *args, stru
     return change != NULL;
 }
 
-bool act_change_look(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_change_look(struct script_context *context, const struct script_value *args, struct script_result *result,
+                    struct error *error) {
     (void)result;
     enum look_part part = (enum look_part)args[CHANGELOOK_PART].choice;
-    const struct value *value = &args[CHANGELOOK_VALUE];
+    const struct script_value *value = &args[CHANGELOOK_VALUE];
     uint32_t wanted = (uint32_t)look_part_count(part);
     double low, high;
     look_part_range(part, &low, &high);
@@ -103,7 +107,8 @@ bool act_change_look(struct context *context, const struct value *args, struct r
     return true;
 }
 
-bool act_change_own(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_change_own(struct script_context *context, const struct script_value *args, struct script_result *result,
+                   struct error *error) {
     (void)result;
     struct change *change = note(context, CHANGE_OWN, args[CHANGEOWN_NAME].text, args[CHANGEOWN_SERIAL].number, error);
     if (!change)
@@ -113,9 +118,10 @@ bool act_change_own(struct context *context, const struct value *args, struct re
     return true;
 }
 
-bool act_change_light(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_change_light(struct script_context *context, const struct script_value *args, struct script_result *result,
+                     struct error *error) {
     (void)result;
-    const struct value *turn = &args[CHANGELIGHT_TURN], *colour = &args[CHANGELIGHT_COLOUR];
+    const struct script_value *turn = &args[CHANGELIGHT_TURN], *colour = &args[CHANGELIGHT_COLOUR];
     if (turn->given && turn->count != TURN_NUMBERS)
         return error_set(error, ERROR_SCENE, "linear has %u numbers, not %d", turn->count, TURN_NUMBERS);
     if (turn->given && !(fabs(light_turn_volume(turn->numbers)) > 0))
@@ -134,14 +140,14 @@ bool act_change_light(struct context *context, const struct value *args, struct 
     return true;
 }
 
-bool act_change_delete_light(struct context *context, const struct value *args, struct result *result,
-                             struct error *error) {
+bool gr_change_delete_light(struct script_context *context, const struct script_value *args,
+                            struct script_result *result, struct error *error) {
     (void)result;
     return note(context, CHANGE_DARK, NULL, args[CHANGEDARK_NUMBER].number, error) != NULL;
 }
 
-bool act_change_add_light(struct context *context, const struct value *args, struct result *result,
-                          struct error *error) {
+bool gr_change_add_light(struct script_context *context, const struct script_value *args, struct script_result *result,
+                         struct error *error) {
     (void)result;
     struct change *change = note(context, CHANGE_ADD_LIGHT, NULL, 0, error);
     if (!change)
@@ -151,9 +157,9 @@ bool act_change_add_light(struct context *context, const struct value *args, str
     return true;
 }
 
-bool act_change_copy_light(struct context *context, const struct value *args, struct result *result,
-                           struct error *error) {
-    const struct value *factor = &args[CHANGECOPYLIGHT_FACTOR];
+bool gr_change_copy_light(struct script_context *context, const struct script_value *args, struct script_result *result,
+                          struct error *error) {
+    const struct script_value *factor = &args[CHANGECOPYLIGHT_FACTOR];
     (void)result;
     struct change *change = note(context, CHANGE_ADD_LIGHT, NULL, 0, error);
     if (!change)
@@ -164,7 +170,7 @@ bool act_change_copy_light(struct context *context, const struct value *args, st
     return true;
 }
 
-static struct changed_view *note_view(struct context *context, const char *picture, struct error *error) {
+static struct changed_view *note_view(struct script_context *context, const char *picture, struct error *error) {
     struct changed_view *view = arena_alloc(&context->keep, sizeof *view);
     const char *name = arena_copy_text(&context->keep, picture, strlen(picture));
     if (!view || !name) {
@@ -176,7 +182,8 @@ static struct changed_view *note_view(struct context *context, const char *pictu
     return view;
 }
 
-bool act_change_view(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_change_view(struct script_context *context, const struct script_value *args, struct script_result *result,
+                    struct error *error) {
     (void)result;
     struct changed_view *view = note_view(context, args[CHANGEVIEW_PICTURE].text, error);
     if (!view)
@@ -187,8 +194,8 @@ bool act_change_view(struct context *context, const struct value *args, struct r
     return true;
 }
 
-bool act_change_exposure(struct context *context, const struct value *args, struct result *result,
-                         struct error *error) {
+bool gr_change_exposure(struct script_context *context, const struct script_value *args, struct script_result *result,
+                        struct error *error) {
     (void)result;
     struct changed_view *view = note_view(context, args[CHANGEEXPOSURE_PICTURE].text, error);
     if (!view)
@@ -199,7 +206,7 @@ bool act_change_exposure(struct context *context, const struct value *args, stru
 }
 
 /* The newest of each kind counts. */
-static void change_views(const struct context *context, struct render_request *request) {
+static void change_views(const struct script_context *context, struct render_request *request) {
     bool camera = false, exposure = false;
     for (const struct changed_view *view = context->views; view; view = view->next) {
         if (strcmp(view->picture, request->file) != 0)
@@ -217,12 +224,12 @@ static void change_views(const struct context *context, struct render_request *r
 }
 
 static void warn_once(void *user, const char *text) {
-    struct context *context = user;
+    struct script_context *context = user;
     if (!context->changes_told)
         context_warn(context, "%s", text);
 }
 
-bool changes_begin(struct context *context, struct render_request *request, struct changed_scene *changed,
+bool changes_begin(struct script_context *context, struct render_request *request, struct changed_scene *changed,
                    struct error *error) {
     *changed = (struct changed_scene){0};
     request->added = context->added;

@@ -1,9 +1,10 @@
 /* node:bounds(). */
 #include "scene/node_bounds.h"
-#include "script/actions.h"
+#include "script/bindings_internal.h"
 #include "script/context.h"
 
-bool act_bounds(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_bounds(struct script_context *context, const struct script_value *args, struct script_result *result,
+               struct error *error) {
     struct box *box = arena_alloc(&context->call, sizeof *box);
     if (!box)
         return error_no_memory(error, "a box");

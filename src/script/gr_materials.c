@@ -1,5 +1,5 @@
 /* Materials, their decorators, and textures. */
-#include "script/actions.h"
+#include "script/bindings_internal.h"
 #include "script/context.h"
 
 #include "base/file.h"
@@ -7,20 +7,21 @@
 
 #include <string.h>
 
-static bool give(struct result *result, struct material *material) {
+static bool give(struct script_result *result, struct material *material) {
     result->pointer = material;
     return material != NULL;
 }
 
-static const struct texture *number_or_texture(struct context *context, const struct value *value,
+static const struct texture *number_or_texture(struct script_context *context, const struct script_value *value,
                                                struct error *error) {
-    struct value own = *value;
+    struct script_value own = *value;
     own.vector = vec3_all(value->number);
-    return act_texture_of(context, &own, error);
+    return gr_texture_of(context, &own, error);
 }
 
 /* The inputs that a script gave textures for: the texture times the number, which is 1. */
-static bool with_textures(struct context *context, struct material *m, const struct value *args, struct error *error) {
+static bool with_textures(struct script_context *context, struct material *m, const struct script_value *args,
+                          struct error *error) {
     static const struct {
         int field;
         enum material_input input;
@@ -35,7 +36,7 @@ static bool with_textures(struct context *context, struct material *m, const str
                   {PHONG_OPACITY, INPUT_OPACITY, true}};
     struct arena *arena = &context->scene.arena;
     for (size_t i = 0; i < sizeof inputs / sizeof inputs[0]; i++) {
-        const struct value *value = &args[inputs[i].field];
+        const struct script_value *value = &args[inputs[i].field];
         bool is_hole = inputs[i].input == INPUT_OPACITY && value->given && value->number < 1;
         if (!value->texture && !is_hole)
             continue;
@@ -45,7 +46,7 @@ static bool with_textures(struct context *context, struct material *m, const str
         if (!texture || !material_multiply(m, inputs[i].input, texture, arena, error))
             return false;
     }
-    const struct value *metalness = &args[PHONG_METALNESS];
+    const struct script_value *metalness = &args[PHONG_METALNESS];
     if (metalness->texture || metalness->number > 0) {
         const struct texture *texture = number_or_texture(context, metalness, error);
         texture = texture ? texture_keep(arena, texture_map(texture, FUNCTION_SATURATE, 0), error) : NULL;
@@ -54,11 +55,11 @@ static bool with_textures(struct context *context, struct material *m, const str
     }
     if (!args[PHONG_BUMP].given)
         return true;
-    const struct relief *relief = act_relief(context, &args[PHONG_BUMP], error);
+    const struct relief *relief = gr_relief(context, &args[PHONG_BUMP], error);
     return relief && material_raise(m, relief, arena, error);
 }
 
-static struct material *phong(struct context *context, const struct value *args, struct error *error) {
+static struct material *phong(struct script_context *context, const struct script_value *args, struct error *error) {
     struct material *m = scene_material(&context->scene, MATERIAL_PHONG, NULL, error);
     if (!m)
         return NULL;
@@ -81,13 +82,15 @@ static struct material *phong(struct context *context, const struct value *args,
     return with_textures(context, m, args, error) ? m : NULL;
 }
 
-bool act_material(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_material(struct script_context *context, const struct script_value *args, struct script_result *result,
+                 struct error *error) {
     if (args[PHONG_REFRACT].number > 0 && !args[PHONG_IOR].given)
         return error_set(error, ERROR_SCENE, "ior is missing: refraction needs an index of refraction");
     return give(result, phong(context, args, error));
 }
 
-bool act_rr_material(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_rr_material(struct script_context *context, const struct script_value *args, struct script_result *result,
+                    struct error *error) {
     struct material *m = phong(context, args, error);
     if (m)
         m->phong.has_ior = true;
@@ -95,33 +98,36 @@ bool act_rr_material(struct context *context, const struct value *args, struct r
 }
 
 /* The pattern mixes kd with another colour. */
-static bool pattern_over(struct context *context, enum material_kind kind, const struct material *base,
-                         struct texture pattern, struct vec3 mix, struct result *result, struct error *error) {
+static bool pattern_over(struct script_context *context, enum material_kind kind, const struct material *base,
+                         struct texture pattern, struct vec3 mix, struct script_result *result, struct error *error) {
     struct material *m = scene_material(&context->scene, kind, base, error);
     return m && material_mix_kd(m, pattern, mix, &context->scene.arena, error) && give(result, m);
 }
 
-bool act_marble(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_marble(struct script_context *context, const struct script_value *args, struct script_result *result,
+               struct error *error) {
     struct texture pattern = texture_marble(args[MARBLE_F].number, args[MARBLE_MULTIPLIER].number,
                                             args[MARBLE_VEIN].number, (int)args[MARBLE_INTERP].number);
     return pattern_over(context, MATERIAL_MARBLE, args[MARBLE_MATERIAL].material, pattern, args[MARBLE_MIX].vector,
                         result, error);
 }
 
-bool act_wood(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_wood(struct script_context *context, const struct script_value *args, struct script_result *result,
+             struct error *error) {
     struct texture pattern =
         texture_wood(args[WOOD_F].number, args[WOOD_DENSITY].number, (int)args[WOOD_INTERP].number);
     return pattern_over(context, MATERIAL_WOOD, args[WOOD_MATERIAL].material, pattern, args[WOOD_MIX].vector, result,
                         error);
 }
 
-bool act_fresnel(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_fresnel(struct script_context *context, const struct script_value *args, struct script_result *result,
+                struct error *error) {
     if (!material_has_ior(args[FRESNEL_MATERIAL].material))
         return error_set(error, ERROR_SCENE, "material has no index of refraction; give it one with gr.rr_material");
     return give(result, scene_material(&context->scene, MATERIAL_FRESNEL, args[FRESNEL_MATERIAL].material, error));
 }
 
-struct image *act_find_image(struct context *context, const struct value *value, struct error *error) {
+struct image *gr_find_image(struct script_context *context, const struct script_value *value, struct error *error) {
     if (value->image)
         return value->image;
     char path[PATH_SIZE], canonical[PATH_SIZE];
@@ -141,16 +147,16 @@ struct image *act_find_image(struct context *context, const struct value *value,
     return image;
 }
 
-static void image_defaults(struct texture_image *out, const struct value *value, struct image *image) {
+static void image_defaults(struct texture_image *out, const struct script_value *value, struct image *image) {
     const struct texture_image *from = value->texture ? texture_as_image(value->texture->texture) : NULL;
     *out = from ? *from : (struct texture_image){.filter = IMAGE_MIPMAP, .wrap = IMAGE_REPEAT};
     out->image = image;
 }
 
 /* `lookup` are the fields counted from LOOKUP_FILTER. */
-static bool read_image(struct context *context, const struct value *value, const struct value *lookup,
-                       struct texture_image *out, struct error *error) {
-    struct image *image = act_find_image(context, value, error);
+static bool read_image(struct script_context *context, const struct script_value *value,
+                       const struct script_value *lookup, struct texture_image *out, struct error *error) {
+    struct image *image = gr_find_image(context, value, error);
     if (!image)
         return false;
     image_defaults(out, value, image);
@@ -161,7 +167,7 @@ static bool read_image(struct context *context, const struct value *value, const
         out->wrap = out->wrap_v = (enum image_wrap)lookup[LOOKUP_WRAP].choice;
     if (lookup[LOOKUP_FLIP_U].given)
         out->flip_u = lookup[LOOKUP_FLIP_U].boolean;
-    const struct value *tiles = &lookup[LOOKUP_TILES], *offset = &lookup[LOOKUP_OFFSET];
+    const struct script_value *tiles = &lookup[LOOKUP_TILES], *offset = &lookup[LOOKUP_OFFSET];
     if ((tiles->given || offset->given) && !out->apart) {
         out->apart = true;
         out->scale[0] = out->scale[1] = 1;
@@ -176,8 +182,8 @@ static bool read_image(struct context *context, const struct value *value, const
 }
 
 /* The image alone, as a texture. NULL and error: it cannot be read. */
-static const struct texture *read_texture(struct context *context, const struct value *value,
-                                          const struct value *lookup, struct error *error) {
+static const struct texture *read_texture(struct script_context *context, const struct script_value *value,
+                                          const struct script_value *lookup, struct error *error) {
     struct texture_image image;
     return read_image(context, value, lookup, &image, error)
                ? texture_keep(&context->scene.arena, texture_image(&image, NULL), error)
@@ -185,8 +191,8 @@ static const struct texture *read_texture(struct context *context, const struct 
 }
 
 /* The image over an input of the material below. */
-static bool image_over(struct context *context, const struct texture_image *image, enum material_input input,
-                       const struct material *base, struct result *result, struct error *error) {
+static bool image_over(struct script_context *context, const struct texture_image *image, enum material_input input,
+                       const struct material *base, struct script_result *result, struct error *error) {
     struct arena *arena = &context->scene.arena;
     struct material *m = scene_material(&context->scene, MATERIAL_IMAGE, base, error);
     if (!m)
@@ -196,9 +202,10 @@ static bool image_over(struct context *context, const struct texture_image *imag
     return ok && give(result, m);
 }
 
-static bool td_material(struct context *context, const struct value *args, enum texture_mapping mapping,
-                        struct result *result, struct error *error) {
-    struct value lookup[LOOKUP_COUNT] = {[LOOKUP_FILTER] = args[IMAGE_FILTER], [LOOKUP_FLIP_U] = args[IMAGE_FLIP_U]};
+static bool td_material(struct script_context *context, const struct script_value *args, enum texture_mapping mapping,
+                        struct script_result *result, struct error *error) {
+    struct script_value lookup[LOOKUP_COUNT] = {
+        [LOOKUP_FILTER] = args[IMAGE_FILTER], [LOOKUP_FLIP_U] = args[IMAGE_FLIP_U]};
     struct texture_image image;
     if (!read_image(context, &args[IMAGE_PNG], lookup, &image, error))
         return false;
@@ -206,15 +213,18 @@ static bool td_material(struct context *context, const struct value *args, enum 
     return image_over(context, &image, INPUT_KD, args[IMAGE_MATERIAL].material, result, error);
 }
 
-bool act_td_cube(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_td_cube(struct script_context *context, const struct script_value *args, struct script_result *result,
+                struct error *error) {
     return td_material(context, args, MAPPING_CUBE, result, error);
 }
 
-bool act_td_sphere(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_td_sphere(struct script_context *context, const struct script_value *args, struct script_result *result,
+                  struct error *error) {
     return td_material(context, args, MAPPING_SPHERE, result, error);
 }
 
-bool act_image_material(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_image_material(struct script_context *context, const struct script_value *args, struct script_result *result,
+                       struct error *error) {
     static const enum material_input channels[] = {IMAGE_CHANNELS(LIST_MEMBER)};
     struct texture_image image;
     return read_image(context, &args[OVER_IMAGE], &args[OVER_LOOKUP], &image, error) &&
@@ -224,8 +234,9 @@ bool act_image_material(struct context *context, const struct value *args, struc
 
 /* How an image or another texture stands on a surface. The amount and the kind are args[0] and args[1]; a bump map
  * keeps what its template says. */
-static bool read_relief(struct context *context, const struct value *value, const struct value *lookup,
-                        const struct value *args, struct relief *out, struct error *error) {
+static bool read_relief(struct script_context *context, const struct script_value *value,
+                        const struct script_value *lookup, const struct script_value *args, struct relief *out,
+                        struct error *error) {
     const struct relief *from = value->texture;
     bool known = from && from->kind != MATERIAL_IMAGE;
     bool is_image = !from || texture_as_image(from->texture);
@@ -247,22 +258,25 @@ static bool read_relief(struct context *context, const struct value *value, cons
     return true;
 }
 
-bool act_texture(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_texture(struct script_context *context, const struct script_value *args, struct script_result *result,
+                struct error *error) {
     struct relief texture = {.kind = MATERIAL_IMAGE};
     texture.texture = read_texture(context, &args[TEXTURE_FILE], &args[TEXTURE_LOOKUP], error);
-    result->pointer = texture.texture ? act_keep_texture(context, &texture, error) : NULL;
+    result->pointer = texture.texture ? gr_keep_texture(context, &texture, error) : NULL;
     return result->pointer != NULL;
 }
 
-bool act_bump(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_bump(struct script_context *context, const struct script_value *args, struct script_result *result,
+             struct error *error) {
     struct relief relief;
     if (!read_relief(context, &args[RELIEF_FILE], &args[RELIEF_LOOKUP], &args[RELIEF_AMOUNT], &relief, error))
         return false;
-    result->pointer = act_keep_texture(context, &relief, error);
+    result->pointer = gr_keep_texture(context, &relief, error);
     return result->pointer != NULL;
 }
 
-bool act_bump_material(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_bump_material(struct script_context *context, const struct script_value *args, struct script_result *result,
+                      struct error *error) {
     struct relief relief;
     if (!read_relief(context, &args[OVER_IMAGE], &args[OVER_LOOKUP], &args[RELIEF_OVER_AMOUNT], &relief, error))
         return false;
@@ -270,21 +284,22 @@ bool act_bump_material(struct context *context, const struct value *args, struct
     return m && material_raise(m, &relief, &context->scene.arena, error) && give(result, m);
 }
 
-const struct relief *act_relief(struct context *context, const struct value *value, struct error *error) {
-    static const struct value nothing[LOOKUP_COUNT];
+const struct relief *gr_relief(struct script_context *context, const struct script_value *value, struct error *error) {
+    static const struct script_value nothing[LOOKUP_COUNT];
     struct relief relief;
-    return read_relief(context, value, nothing, nothing, &relief, error) ? act_keep_texture(context, &relief, error)
+    return read_relief(context, value, nothing, nothing, &relief, error) ? gr_keep_texture(context, &relief, error)
                                                                          : NULL;
 }
 
-const struct texture_image *act_image(struct context *context, const struct value *value, struct error *error) {
-    struct image *image = act_find_image(context, value, error);
+const struct texture_image *gr_image(struct script_context *context, const struct script_value *value,
+                                     struct error *error) {
+    struct image *image = gr_find_image(context, value, error);
     struct texture_image *kept = image ? arena_alloc(&context->scene.arena, sizeof *kept) : NULL;
     if (image && !kept)
         error_no_memory(error, "a texture");
     if (!kept)
         return NULL;
     image_defaults(kept, value, image);
-    context->scene.material_count++; /* as act_keep_texture does */
+    context->scene.material_count++; /* as gr_keep_texture does */
     return kept;
 }

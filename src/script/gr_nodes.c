@@ -1,20 +1,20 @@
 /* Nodes and primitives. A primitive is a geometry node: whatever can be placed is a node. */
-#include "script/actions.h"
+#include "script/bindings_internal.h"
 #include "script/context.h"
 
 #include <string.h>
 
 /* The middle paragraphs answer true with a result, or false with an error of the callee. */
-static bool give(struct result *result, void *pointer) {
+static bool give(struct script_result *result, void *pointer) {
     result->pointer = pointer;
     return pointer != NULL;
 }
 
-static const char *text_or(const struct value *value, const char *otherwise) {
+static const char *text_or(const struct script_value *value, const char *otherwise) {
     return value->given ? value->text : otherwise;
 }
 
-static bool add_children(struct context *context, struct node *node, const struct value *children,
+static bool add_children(struct script_context *context, struct node *node, const struct script_value *children,
                          struct error *error) {
     for (uint32_t k = 0; k < children->count; k++)
         if (!node_add_child(&context->scene, node, children->nodes[k], error))
@@ -22,14 +22,15 @@ static bool add_children(struct context *context, struct node *node, const struc
     return true;
 }
 
-bool act_node(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_node(struct script_context *context, const struct script_value *args, struct script_result *result,
+             struct error *error) {
     struct node *node = scene_node(&context->scene, NODE_GROUP, text_or(&args[GROUP_NAME], "node"), error);
     return give(result, node) && add_children(context, node, &args[GROUP_CHILDREN], error);
 }
 
 /* A list with one number for each place, or one for all; copied, since arguments end with the call. */
-static bool keep_numbers(struct context *context, const struct value *given, const char *name, uint32_t places,
-                         const double **out, bool *one, struct error *error) {
+static bool keep_numbers(struct script_context *context, const struct script_value *given, const char *name,
+                         uint32_t places, const double **out, bool *one, struct error *error) {
     if (!given->given)
         return true;
     if (!given->single && given->count != places)
@@ -45,7 +46,7 @@ static bool keep_numbers(struct context *context, const struct value *given, con
 
 enum { PLACE_NUMBERS = 3, MATRIX_NUMBERS = 12 };
 
-static bool check_rows(const struct value *at, uint32_t length, struct error *error) {
+static bool check_rows(const struct script_value *at, uint32_t length, struct error *error) {
     for (uint32_t i = 0; i < at->count; i++) {
         uint32_t found = at->starts[i + 1] - at->starts[i];
         if (found != length)
@@ -63,8 +64,9 @@ static bool check_rows(const struct value *at, uint32_t length, struct error *er
     return true;
 }
 
-bool act_instances(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    const struct value *at = &args[INSTANCES_AT];
+bool gr_instances(struct script_context *context, const struct script_value *args, struct script_result *result,
+                  struct error *error) {
+    const struct script_value *at = &args[INSTANCES_AT];
     bool matrices = at->count > 0 && at->starts[1] == MATRIX_NUMBERS;
     if (!check_rows(at, matrices ? MATRIX_NUMBERS : PLACE_NUMBERS, error))
         return false;
@@ -91,7 +93,8 @@ bool act_instances(struct context *context, const struct value *args, struct res
            node_add_child(&context->scene, node, args[INSTANCES_OF].node, error);
 }
 
-bool act_joint(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_joint(struct script_context *context, const struct script_value *args, struct script_result *result,
+              struct error *error) {
     struct node *node = scene_node(&context->scene, NODE_JOINT, text_or(&args[JOINT_NAME], "joint"), error);
     if (!node)
         return false;
@@ -102,7 +105,8 @@ bool act_joint(struct context *context, const struct value *args, struct result 
     return add_children(context, node, &args[JOINT_CHILDREN], error);
 }
 
-bool act_sphere(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_sphere(struct script_context *context, const struct script_value *args, struct script_result *result,
+               struct error *error) {
     struct node *node = scene_node(&context->scene, NODE_GEOMETRY, text_or(&args[SPHERE_NAME], "sphere"), error);
     if (!node)
         return false;
@@ -113,7 +117,8 @@ bool act_sphere(struct context *context, const struct value *args, struct result
     return give(result, node);
 }
 
-bool act_cube(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_cube(struct script_context *context, const struct script_value *args, struct script_result *result,
+             struct error *error) {
     struct node *node = scene_node(&context->scene, NODE_GEOMETRY, text_or(&args[CUBE_NAME], "cube"), error);
     if (!node)
         return false;
@@ -128,7 +133,8 @@ bool act_cube(struct context *context, const struct value *args, struct result *
     return give(result, node);
 }
 
-bool act_geometry(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_geometry(struct script_context *context, const struct script_value *args, struct script_result *result,
+                 struct error *error) {
     const struct node *primitive = args[GEOMETRY_PRIMITIVE].node;
     if (primitive->kind != NODE_GEOMETRY && primitive->kind != NODE_CSG)
         return error_set(error, ERROR_SCENE, "primitive must be a shape, not the plain node '%s'", primitive->name);
@@ -184,7 +190,7 @@ static bool check_operand(const struct node *operand, struct error *error) {
 
 /* With --lenient an operand may be something that does not exist yet, and what can be shown is the others, unless they
  * were to be subtracted from it: a plain node over the one that is left, or nothing. */
-static bool show_rest(struct context *context, const char *name, struct node *rest, struct result *result,
+static bool show_rest(struct script_context *context, const char *name, struct node *rest, struct script_result *result,
                       struct error *error) {
     struct node *node = scene_node(&context->scene, NODE_GROUP, name, error);
     if (!node || (rest && !node_add_child(&context->scene, node, rest, error)))
@@ -193,8 +199,8 @@ static bool show_rest(struct context *context, const char *name, struct node *re
 }
 
 /* a and b where they are given (as ghosts, they are not), and those of the list, which has NULL for ghosts. */
-static struct node **list_operands(struct context *context, const struct value *args, uint32_t *count) {
-    const struct value *list = &args[CSG_OPERANDS];
+static struct node **list_operands(struct script_context *context, const struct script_value *args, uint32_t *count) {
+    const struct script_value *list = &args[CSG_OPERANDS];
     bool named = !list->given || list->single || args[CSG_A].given || args[CSG_B].given;
     struct node **operands = arena_alloc_array(&context->call, (size_t)list->count + 2, sizeof *operands);
     *count = 0;
@@ -207,8 +213,8 @@ static struct node **list_operands(struct context *context, const struct value *
     return operands;
 }
 
-static bool combine(struct context *context, enum node_csg operation, const struct value *args, struct result *result,
-                    struct error *error) {
+static bool combine(struct script_context *context, enum node_csg operation, const struct script_value *args,
+                    struct script_result *result, struct error *error) {
     uint32_t count, known = 0;
     const char *name = text_or(&args[CSG_NAME], "csg");
     struct node **operands = list_operands(context, args, &count);
@@ -228,19 +234,23 @@ static bool combine(struct context *context, enum node_csg operation, const stru
     return give(result, scene_combine(&context->scene, name, operation, operands, known, error));
 }
 
-bool act_union(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_union(struct script_context *context, const struct script_value *args, struct script_result *result,
+              struct error *error) {
     return combine(context, NODE_UNION, args, result, error);
 }
 
-bool act_difference(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_difference(struct script_context *context, const struct script_value *args, struct script_result *result,
+                   struct error *error) {
     return combine(context, NODE_DIFFERENCE, args, result, error);
 }
 
-bool act_intersection(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_intersection(struct script_context *context, const struct script_value *args, struct script_result *result,
+                     struct error *error) {
     return combine(context, NODE_INTERSECTION, args, result, error);
 }
 
-bool act_inverse(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_inverse(struct script_context *context, const struct script_value *args, struct script_result *result,
+                struct error *error) {
     struct node *solid = args[INVERSE_A].node;
     const char *name = text_or(&args[INVERSE_NAME], "inverse");
     if (!solid)
@@ -249,8 +259,8 @@ bool act_inverse(struct context *context, const struct value *args, struct resul
            give(result, scene_combine(&context->scene, name, NODE_INVERSE, &solid, 1, error));
 }
 
-static bool enclose(struct context *context, enum node_csg operation, const char *name, const struct value *args,
-                    struct result *result, struct error *error) {
+static bool enclose(struct script_context *context, enum node_csg operation, const char *name,
+                    const struct script_value *args, struct script_result *result, struct error *error) {
     struct node *operands[2] = {args[CLIPPED_OBJECT].node, args[CLIPPED_BY].node};
     if (!operands[0] || !operands[1])
         return show_rest(context, name, operands[0], result, error);
@@ -258,16 +268,18 @@ static bool enclose(struct context *context, enum node_csg operation, const char
            give(result, scene_combine(&context->scene, name, operation, operands, 2, error));
 }
 
-bool act_clipped_by(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_clipped_by(struct script_context *context, const struct script_value *args, struct script_result *result,
+                   struct error *error) {
     return enclose(context, NODE_CLIPPED, text_or(&args[CLIPPED_NAME], "clipped"), args, result, error);
 }
 
-bool act_bounded_by(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_bounded_by(struct script_context *context, const struct script_value *args, struct script_result *result,
+                   struct error *error) {
     return enclose(context, NODE_BOUNDED, text_or(&args[CLIPPED_NAME], "bounded"), args, result, error);
 }
 
-bool act_transform_order(struct context *context, const struct value *args, struct result *result,
-                         struct error *error) {
+bool gr_transform_order(struct script_context *context, const struct script_value *args, struct script_result *result,
+                        struct error *error) {
     (void)result;
     (void)error;
     context->scene.order = (enum transform_order)args[0].choice;

@@ -1,16 +1,17 @@
 /* Methods of nodes. args[SELF] is the node in front of the colon. */
-#include "script/actions.h"
+#include "script/bindings_internal.h"
 #include "script/context.h"
 
 #include <math.h>
 
-bool act_add_child(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_add_child(struct script_context *context, const struct script_value *args, struct script_result *result,
+                  struct error *error) {
     (void)result;
     return node_add_child(&context->scene, args[SELF].node, args[CHILD_NODE].node, error);
 }
 
 /* What only shapes can have: an error on plain nodes, with --lenient a warning. */
-static bool is_shape(struct context *context, const struct node *node, const char *what, struct error *error) {
+static bool is_shape(struct script_context *context, const struct node *node, const char *what, struct error *error) {
     if (node->kind == NODE_GEOMETRY || node->kind == NODE_CSG)
         return true;
     if (!context->options->lenient)
@@ -25,7 +26,8 @@ static bool unless_warned(const struct error *error) {
 }
 
 /* On a CSG node it is the material of the operands that have none of their own; the world sees to that. */
-bool act_set_material(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_set_material(struct script_context *context, const struct script_value *args, struct script_result *result,
+                     struct error *error) {
     (void)result;
     if (!is_shape(context, args[SELF].node, "material", error))
         return unless_warned(error);
@@ -34,54 +36,59 @@ bool act_set_material(struct context *context, const struct value *args, struct 
 }
 
 /* Where the image goes depends on the shape (docs/language.md 6.2); that is decided when the scene is flattened. */
-bool act_set_texture(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_set_texture(struct script_context *context, const struct script_value *args, struct script_result *result,
+                    struct error *error) {
     (void)result;
     struct node *node = args[SELF].node;
     if (!is_shape(context, node, "texture", error))
         return unless_warned(error);
     if (node->kind == NODE_CSG)
         return error_set(error, ERROR_SCENE, "a combined solid has no texture; set those of its operands");
-    node->texture = act_image(context, &args[SET_TEXTURE], error);
+    node->texture = gr_image(context, &args[SET_TEXTURE], error);
     return node->texture != NULL;
 }
 
 /* Likewise. */
-bool act_set_bump(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_set_bump(struct script_context *context, const struct script_value *args, struct script_result *result,
+                 struct error *error) {
     (void)result;
     struct node *node = args[SELF].node;
     if (!is_shape(context, node, "bump map", error))
         return unless_warned(error);
     if (node->kind == NODE_CSG)
         return error_set(error, ERROR_SCENE, "a combined solid has no bump map; set those of its operands");
-    node->relief = act_relief(context, &args[SET_BUMP], error);
+    node->relief = gr_relief(context, &args[SET_BUMP], error);
     return node->relief != NULL;
 }
 
-static bool step(struct context *context, const struct value *args, enum node_step kind, const struct transform *by,
-                 struct error *error) {
+static bool step(struct script_context *context, const struct script_value *args, enum node_step kind,
+                 const struct transform *by, struct error *error) {
     return node_transform(&context->scene, args[SELF].node, kind, by) || error_no_memory(error, "a transform");
 }
 
-static struct vec3 step_of(const struct value *args) {
+static struct vec3 step_of(const struct script_value *args) {
     if (args[STEP_VECTOR].given)
         return args[STEP_VECTOR].vector;
     return (struct vec3){args[STEP_X].number, args[STEP_Y].number, args[STEP_Z].number};
 }
 
-bool act_velocity(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_velocity(struct script_context *context, const struct script_value *args, struct script_result *result,
+                 struct error *error) {
     (void)context, (void)result, (void)error;
     args[SELF].node->velocity = step_of(args);
     return true;
 }
 
 /* Only the other node's own transforms count, as they are when the picture is made. */
-bool act_moves_to(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_moves_to(struct script_context *context, const struct script_value *args, struct script_result *result,
+                 struct error *error) {
     (void)context, (void)result, (void)error;
     args[SELF].node->moves_to = args[MOVES_TO_NODE].node;
     return true;
 }
 
-bool act_scale(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_scale(struct script_context *context, const struct script_value *args, struct script_result *result,
+              struct error *error) {
     (void)result;
     struct vec3 factors = step_of(args);
     double min = fmin(fmin(fabs(factors.x), fabs(factors.y)), fabs(factors.z));
@@ -94,13 +101,15 @@ bool act_scale(struct context *context, const struct value *args, struct result 
     return step(context, args, NODE_SCALE, &by, error);
 }
 
-bool act_rotate(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_rotate(struct script_context *context, const struct script_value *args, struct script_result *result,
+               struct error *error) {
     (void)result;
     struct transform by = transform_rotate(args[ROTATE_AXIS].choice, args[ROTATE_ANGLE].number);
     return step(context, args, NODE_ROTATE, &by, error);
 }
 
-bool act_rotate_axis(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_rotate_axis(struct script_context *context, const struct script_value *args, struct script_result *result,
+                    struct error *error) {
     (void)result;
     if (vec3_max_abs(args[ROTATE_AXIS].vector) == 0)
         return error_set(error, ERROR_SCENE, "axis has length 0");
@@ -108,9 +117,10 @@ bool act_rotate_axis(struct context *context, const struct value *args, struct r
     return step(context, args, NODE_ROTATE, &by, error);
 }
 
-bool act_rotate_quat(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_rotate_quat(struct script_context *context, const struct script_value *args, struct script_result *result,
+                    struct error *error) {
     (void)result;
-    const struct value *table = &args[QUAT_TABLE];
+    const struct script_value *table = &args[QUAT_TABLE];
     double w = table->given ? table->number : args[QUAT_W].number;
     struct vec3 xyz = {args[QUAT_X].number, args[QUAT_Y].number, args[QUAT_Z].number};
     if (table->given)
@@ -121,7 +131,8 @@ bool act_rotate_quat(struct context *context, const struct value *args, struct r
     return step(context, args, NODE_ROTATE, &by, error);
 }
 
-bool act_translate(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_translate(struct script_context *context, const struct script_value *args, struct script_result *result,
+                  struct error *error) {
     (void)result;
     struct transform by = transform_translate(step_of(args));
     return step(context, args, NODE_TRANSLATE, &by, error);

@@ -1,6 +1,6 @@
 /* Meshes from tables and from files. Both are assets: the same tables, or the same file, are one mesh, so that a
  * script that builds its scene again for every picture builds no mesh again. */
-#include "script/actions.h"
+#include "script/bindings_internal.h"
 #include "script/context.h"
 
 #include "base/file.h"
@@ -10,14 +10,15 @@
 #include <math.h>
 #include <string.h>
 
-static void read_options(const struct value *args, struct model_options *options) {
+static void read_options(const struct script_value *args, struct model_options *options) {
     options->smooth = args[MESH_SMOOTH].given;
     options->smooth_angle = args[MESH_SMOOTH].number;
     options->weld = args[MESH_WELD].boolean;
     options->flip = args[MESH_FLIP].boolean;
 }
 
-static const struct model *model_of_file(struct context *context, const struct value *args, struct error *error) {
+static const struct model *model_of_file(struct script_context *context, const struct script_value *args,
+                                         struct error *error) {
     const char *name = args[MESH_FILE].text;
     char path[PATH_SIZE], canonical[PATH_SIZE];
     struct model_options options = {.path_policy = context->path_policy};
@@ -36,7 +37,7 @@ static const struct model *model_of_file(struct context *context, const struct v
 }
 
 /* Every index below count, every face with three corners or more. Places count from 1, as Lua does. */
-static bool check_faces(const struct value *faces, const char *name, uint32_t count, const char *of,
+static bool check_faces(const struct script_value *faces, const char *name, uint32_t count, const char *of,
                         struct error *error) {
     for (uint32_t f = 0; f < faces->count; f++) {
         uint32_t corners = faces->starts[f + 1] - faces->starts[f];
@@ -56,9 +57,9 @@ static bool check_faces(const struct value *faces, const char *name, uint32_t co
 }
 
 /* The indices of the corners into normals or uvs: those of `own`, or the vertices' when there are none. */
-static bool corner_indices(const struct value *faces, const struct value *own, const char *own_name, uint32_t count,
-                           const char *of, const uint32_t **indices, struct error *error) {
-    const struct value *used = own->given ? own : faces;
+static bool corner_indices(const struct script_value *faces, const struct script_value *own, const char *own_name,
+                           uint32_t count, const char *of, const uint32_t **indices, struct error *error) {
+    const struct script_value *used = own->given ? own : faces;
     if (!check_faces(used, own->given ? own_name : "faces", count, of, error))
         return false;
     if (used->count != faces->count)
@@ -73,8 +74,9 @@ static bool corner_indices(const struct value *faces, const struct value *own, c
 }
 
 /* The slots of the faces: numbers of `materials`, counted from 1 there and from 0 here. */
-static bool face_slots(struct context *context, const struct value *args, const uint32_t **out, struct error *error) {
-    const struct value *numbers = &args[MESH_FACE_MATERIALS], *materials = &args[MESH_MATERIALS];
+static bool face_slots(struct script_context *context, const struct script_value *args, const uint32_t **out,
+                       struct error *error) {
+    const struct script_value *numbers = &args[MESH_FACE_MATERIALS], *materials = &args[MESH_MATERIALS];
     *out = NULL;
     if (!numbers->given && !materials->given)
         return true;
@@ -99,10 +101,10 @@ static bool face_slots(struct context *context, const struct value *args, const 
     return true;
 }
 
-static struct mesh *mesh_from_tables(struct context *context, const struct value *args, const char *name,
+static struct mesh *mesh_from_tables(struct script_context *context, const struct script_value *args, const char *name,
                                      struct error *error) {
-    const struct value *verts = &args[MESH_VERTS], *faces = &args[MESH_FACES], *normals = &args[MESH_NORMALS];
-    const struct value *uvs = &args[MESH_UVS];
+    const struct script_value *verts = &args[MESH_VERTS], *faces = &args[MESH_FACES], *normals = &args[MESH_NORMALS];
+    const struct script_value *uvs = &args[MESH_UVS];
     struct mesh_input input = {.name = name,
                                .vertex_count = verts->count,
                                .face_count = faces->count,
@@ -139,7 +141,7 @@ static struct mesh *mesh_from_tables(struct context *context, const struct value
 }
 
 /* Every name must be that of a part. */
-static bool check_parts(const struct model *model, const struct value *materials, struct error *error) {
+static bool check_parts(const struct model *model, const struct script_value *materials, struct error *error) {
     if (materials->given && !materials->names)
         return error_set(error, ERROR_SCENE, "materials of a file have names, as in {paint = m}");
     for (uint32_t i = 0; i < materials->count; i++) {
@@ -159,7 +161,8 @@ static bool check_parts(const struct model *model, const struct value *materials
 }
 
 /* The list as the slots of a mesh from tables. */
-static bool keep_slots(struct context *context, const struct value *materials, struct node *node, struct error *error) {
+static bool keep_slots(struct script_context *context, const struct script_value *materials, struct node *node,
+                       struct error *error) {
     const struct material **slots = arena_alloc_array(&context->scene.arena, materials->count, sizeof *slots);
     if (!slots)
         return error_no_memory(error, "the materials of a mesh");
@@ -172,7 +175,8 @@ static bool keep_slots(struct context *context, const struct value *materials, s
     return true;
 }
 
-bool act_mesh(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_mesh(struct script_context *context, const struct script_value *args, struct script_result *result,
+             struct error *error) {
     bool from_file = args[MESH_FILE].given, from_tables = args[MESH_VERTS].given || args[MESH_FACES].given;
     if (from_file && from_tables)
         return error_set(error, ERROR_SCENE, "file and verts exclude each other");
@@ -185,7 +189,7 @@ bool act_mesh(struct context *context, const struct value *args, struct result *
     enum node_cull cull = (enum node_cull)args[MESH_CULL].choice;
     if (from_file) {
         const struct model *model = model_of_file(context, args, error);
-        const struct value *parts = &args[MESH_MATERIALS];
+        const struct script_value *parts = &args[MESH_MATERIALS];
         struct model_placing placing = {.name = name,
                                         .material = args[MESH_MATERIAL].material,
                                         .cull = cull,
@@ -212,7 +216,8 @@ bool act_mesh(struct context *context, const struct value *args, struct result *
     return true;
 }
 
-bool act_faces(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_faces(struct script_context *context, const struct script_value *args, struct script_result *result,
+              struct error *error) {
     (void)context;
     const struct node *node = args[SELF].node;
     if (node->kind != NODE_GEOMETRY || node->shape.kind != SHAPE_MESH)

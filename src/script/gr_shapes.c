@@ -16,16 +16,16 @@
             "Whether it has no caps; without caps it is not a solid for CSG."                                          \
     }
 
-static struct node *shape_node(struct context *context, const struct value *args, const char *otherwise,
+static struct node *shape_node(struct script_context *context, const struct script_value *args, const char *otherwise,
                                struct error *error) {
-    const struct value *name = &args[SHAPE_NAME];
+    const struct script_value *name = &args[SHAPE_NAME];
     struct node *node = scene_node(&context->scene, NODE_GEOMETRY, name->given ? name->text : otherwise, error);
     if (node)
         node->material = args[SHAPE_MATERIAL].material;
     return node;
 }
 
-static bool give_shape(struct node *node, const struct shape *shape, struct result *result) {
+static bool give_shape(struct node *node, const struct shape *shape, struct script_result *result) {
     if (!node)
         return false;
     node->shape = *shape;
@@ -33,11 +33,11 @@ static bool give_shape(struct node *node, const struct shape *shape, struct resu
     return true;
 }
 
-static double number_or(const struct value *value, double otherwise) {
+static double number_or(const struct script_value *value, double otherwise) {
     return value->given ? value->number : otherwise;
 }
 
-static struct vec3 vector_or(const struct value *value, double x, double y, double z) {
+static struct vec3 vector_or(const struct script_value *value, double x, double y, double z) {
     return value->given ? value->vector : vec3_make(x, y, z);
 }
 
@@ -57,7 +57,7 @@ static bool ends_are_fine(struct vec3 from, struct vec3 to, struct error *error)
 }
 
 enum { CYLINDER_FROM = SHAPE_FIRST, CYLINDER_TO, CYLINDER_RADIUS, CYLINDER_OPEN };
-static const struct parameter cylinder_parameters[] = {
+static const struct script_parameter cylinder_parameters[] = {
     SHAPE("cylinder"),
     [CYLINDER_FROM] = PLACE("from", "{0, -1, 0}", "Centre of one end."),
     [CYLINDER_TO] = PLACE("to", "{0, 1, 0}", "Centre of the other end."),
@@ -65,8 +65,8 @@ static const struct parameter cylinder_parameters[] = {
     [CYLINDER_OPEN] = OPEN_ENDS,
 };
 
-static bool act_cylinder(struct context *context, const struct value *args, struct result *result,
-                         struct error *error) {
+static bool gr_cylinder(struct script_context *context, const struct script_value *args, struct script_result *result,
+                        struct error *error) {
     struct vec3 from = vector_or(&args[CYLINDER_FROM], 0, -1, 0), to = vector_or(&args[CYLINDER_TO], 0, 1, 0);
     double radius = number_or(&args[CYLINDER_RADIUS], 1);
     if (!ends_are_fine(from, to, error) || !length_is_fine(radius, "radius", error))
@@ -77,7 +77,7 @@ static bool act_cylinder(struct context *context, const struct value *args, stru
 }
 
 enum { CONE_FROM = SHAPE_FIRST, CONE_TO, CONE_FROM_RADIUS, CONE_RADIUS, CONE_OPEN };
-static const struct parameter cone_parameters[] = {
+static const struct script_parameter cone_parameters[] = {
     SHAPE("cone"),
     [CONE_FROM] = PLACE("from", "{0, 0, 0}", "The apex, or the centre of the end with from_radius."),
     [CONE_TO] = PLACE("to", "{0, 1, 0}", "Centre of the end with radius."),
@@ -87,7 +87,8 @@ static const struct parameter cone_parameters[] = {
     [CONE_OPEN] = OPEN_ENDS,
 };
 
-static bool act_cone(struct context *context, const struct value *args, struct result *result, struct error *error) {
+static bool gr_cone(struct script_context *context, const struct script_value *args, struct script_result *result,
+                    struct error *error) {
     struct vec3 from = vector_or(&args[CONE_FROM], 0, 0, 0), to = vector_or(&args[CONE_TO], 0, 1, 0);
     double first = number_or(&args[CONE_FROM_RADIUS], 0), second = number_or(&args[CONE_RADIUS], 1);
     if (!ends_are_fine(from, to, error) || !length_is_fine(fmax(first, second), "the larger radius", error))
@@ -99,15 +100,15 @@ static bool act_cone(struct context *context, const struct value *args, struct r
 }
 
 enum { PARABOLOID_RADIUS = SHAPE_FIRST, PARABOLOID_HEIGHT, PARABOLOID_OPEN };
-static const struct parameter paraboloid_parameters[] = {
+static const struct script_parameter paraboloid_parameters[] = {
     SHAPE("paraboloid"),
     [PARABOLOID_RADIUS] = LENGTH("radius", "1", "Radius of the rim."),
     [PARABOLOID_HEIGHT] = LENGTH("height", "1", "y of the rim; the apex is at the origin."),
     [PARABOLOID_OPEN] = OPEN_ENDS,
 };
 
-static bool act_paraboloid(struct context *context, const struct value *args, struct result *result,
-                           struct error *error) {
+static bool gr_paraboloid(struct script_context *context, const struct script_value *args, struct script_result *result,
+                          struct error *error) {
     double radius = number_or(&args[PARABOLOID_RADIUS], 1), height = number_or(&args[PARABOLOID_HEIGHT], 1);
     if (!length_is_fine(radius, "radius", error) || !length_is_fine(height, "height", error))
         return false;
@@ -125,7 +126,7 @@ enum {
     HYPERBOLOID_GAP,
     HYPERBOLOID_OPEN
 };
-static const struct parameter hyperboloid_parameters[] = {
+static const struct script_parameter hyperboloid_parameters[] = {
     SHAPE("hyperboloid"),
     [HYPERBOLOID_SHEETS] = {"sheets", KIND_WHOLE, OPTIONAL, BETWEEN(1, 2), NULL, "1, with gap 2",
                             "1: one sheet with a waist; 2: two bowls."},
@@ -136,8 +137,8 @@ static const struct parameter hyperboloid_parameters[] = {
     [HYPERBOLOID_OPEN] = OPEN_ENDS,
 };
 
-static bool act_hyperboloid(struct context *context, const struct value *args, struct result *result,
-                            struct error *error) {
+static bool gr_hyperboloid(struct script_context *context, const struct script_value *args,
+                           struct script_result *result, struct error *error) {
     double waist = number_or(&args[HYPERBOLOID_WAIST], 0.5), gap = number_or(&args[HYPERBOLOID_GAP], 0.5);
     double radius = number_or(&args[HYPERBOLOID_RADIUS], 2 * waist),
            height = number_or(&args[HYPERBOLOID_HEIGHT], 2 * gap);
@@ -165,14 +166,14 @@ static bool act_hyperboloid(struct context *context, const struct value *args, s
 }
 
 enum { ELLIPSOID_CENTRE = SHAPE_FIRST, ELLIPSOID_RADII };
-static const struct parameter ellipsoid_parameters[] = {
+static const struct script_parameter ellipsoid_parameters[] = {
     SHAPE("ellipsoid"),
     [ELLIPSOID_CENTRE] = PLACE("centre", "{0, 0, 0}", "Centre."),
     [ELLIPSOID_RADII] = {"radii", KIND_SIZE, OPTIONAL, ANY, NULL, "1", "Radii along x, y and z: one number or three."},
 };
 
-static bool act_ellipsoid(struct context *context, const struct value *args, struct result *result,
-                          struct error *error) {
+static bool gr_ellipsoid(struct script_context *context, const struct script_value *args, struct script_result *result,
+                         struct error *error) {
     struct vec3 centre = args[ELLIPSOID_CENTRE].vector, radii = vector_or(&args[ELLIPSOID_RADII], 1, 1, 1);
     if (!(radii.x > 0 && radii.y > 0 && radii.z > 0))
         return error_set(error, ERROR_SCENE, "radii must all be positive: %g, %g, %g", radii.x, radii.y, radii.z);
@@ -202,7 +203,7 @@ enum {
 #define COEFFICIENT(name)                                                                                              \
     { name, KIND_NUMBER, OPTIONAL, ANY, NULL, "0", "Coefficient." }
 
-static const struct parameter quadric_parameters[] = {
+static const struct script_parameter quadric_parameters[] = {
     SHAPE("quadric"), /* without any coefficient the unit ball */
     [QUADRIC_XX] = COEFFICIENT("xx"),
     [QUADRIC_YY] = COEFFICIENT("yy"),
@@ -220,7 +221,8 @@ static const struct parameter quadric_parameters[] = {
     [QUADRIC_OPEN] = OPEN_ENDS,
 };
 
-static bool act_quadric(struct context *context, const struct value *args, struct result *result, struct error *error) {
+static bool gr_quadric(struct script_context *context, const struct script_value *args, struct script_result *result,
+                       struct error *error) {
     struct quadric *quadric = arena_alloc(&context->scene.arena, sizeof *quadric);
     if (!quadric)
         return error_no_memory(error, "a quadric");
@@ -251,14 +253,15 @@ static bool act_quadric(struct context *context, const struct value *args, struc
 }
 
 enum { TORUS_MAJOR = SHAPE_FIRST, TORUS_MINOR };
-static const struct parameter torus_parameters[] = {
+static const struct script_parameter torus_parameters[] = {
     SHAPE("torus"),
     [TORUS_MAJOR] = {"major", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1",
                      "Radius of the centre circle in the plane y = 0."},
     [TORUS_MINOR] = LENGTH("minor", "0.25", "Radius of the tube."),
 };
 
-static bool act_torus(struct context *context, const struct value *args, struct result *result, struct error *error) {
+static bool gr_torus(struct script_context *context, const struct script_value *args, struct script_result *result,
+                     struct error *error) {
     double major = number_or(&args[TORUS_MAJOR], 1), minor = number_or(&args[TORUS_MINOR], 0.25);
     if (!length_is_fine(minor, "minor", error) || !length_is_fine(fmax(major, minor), "major", error))
         return false;
@@ -270,15 +273,15 @@ static bool act_torus(struct context *context, const struct value *args, struct 
 }
 
 enum { SUPER_E = SHAPE_FIRST, SUPER_N };
-static const struct parameter superellipsoid_parameters[] = {
+static const struct script_parameter superellipsoid_parameters[] = {
     SHAPE("superellipsoid"),
     [SUPER_E] = {"e", KIND_NUMBER, OPTIONAL, BETWEEN(0.02, 20), NULL, "1",
                  "Exponent of the cross-section: near 0 a square, 1 a circle, 2 a diamond."},
     [SUPER_N] = {"n", KIND_NUMBER, OPTIONAL, BETWEEN(0.02, 20), NULL, "1", "Exponent of the profile, likewise."},
 };
 
-static bool act_superellipsoid(struct context *context, const struct value *args, struct result *result,
-                               struct error *error) {
+static bool gr_superellipsoid(struct script_context *context, const struct script_value *args,
+                              struct script_result *result, struct error *error) {
     struct node *node = shape_node(context, args, "superellipsoid", error);
     struct shape shape = {.kind = SHAPE_SUPERELLIPSOID,
                           .superellipsoid = {number_or(&args[SUPER_E], 1), number_or(&args[SUPER_N], 1)}};
@@ -286,13 +289,14 @@ static bool act_superellipsoid(struct context *context, const struct value *args
 }
 
 enum { BOX_MIN = SHAPE_FIRST, BOX_MAX };
-static const struct parameter box_parameters[] = {
+static const struct script_parameter box_parameters[] = {
     SHAPE("box"),
     [BOX_MIN] = {"min", KIND_POINT, 0, ANY, NULL, NULL, "A corner."},
     [BOX_MAX] = {"max", KIND_POINT, 0, ANY, NULL, NULL, "The opposite corner."},
 };
 
-static bool act_box(struct context *context, const struct value *args, struct result *result, struct error *error) {
+static bool gr_box(struct script_context *context, const struct script_value *args, struct script_result *result,
+                   struct error *error) {
     struct vec3 a = args[BOX_MIN].vector, b = args[BOX_MAX].vector;
     struct box box = {vec3_min(a, b), vec3_max(a, b)};
     if (!(box.min.x < box.max.x && box.min.y < box.max.y && box.min.z < box.max.z))
@@ -302,8 +306,8 @@ static bool act_box(struct context *context, const struct value *args, struct re
     return give_shape(node, &shape, result);
 }
 
-static bool give_flat(struct context *context, const struct value *args, const char *otherwise, const struct flat *flat,
-                      struct result *result, struct error *error) {
+static bool give_flat(struct script_context *context, const struct script_value *args, const char *otherwise,
+                      const struct flat *flat, struct script_result *result, struct error *error) {
     struct node *node = shape_node(context, args, otherwise, error);
     struct shape shape = {.kind = SHAPE_FLAT, .flat = *flat};
     return give_shape(node, &shape, result);
@@ -311,7 +315,7 @@ static bool give_flat(struct context *context, const struct value *args, const c
 
 /* The classic square, or with a normal or a distance the plane without end. */
 enum { PLANE_NORMAL = SHAPE_FIRST, PLANE_DISTANCE };
-static const struct parameter plane_parameters[] = {
+static const struct script_parameter plane_parameters[] = {
     SHAPE("plane"),
     [PLANE_NORMAL] = {"normal", KIND_DIRECTION, OPTIONAL, ANY, NULL, "none: the square",
                       "Normal of an infinite plane; in CSG the plane is a half-space."},
@@ -319,16 +323,18 @@ static const struct parameter plane_parameters[] = {
                         "Distance of the plane from the origin along the normal."},
 };
 
-static bool act_plane(struct context *context, const struct value *args, struct result *result, struct error *error) {
+static bool gr_plane(struct script_context *context, const struct script_value *args, struct script_result *result,
+                     struct error *error) {
     bool infinite = args[PLANE_NORMAL].given || args[PLANE_DISTANCE].given;
     struct vec3 normal = vector_or(&args[PLANE_NORMAL], 0, 1, 0);
     struct flat flat = infinite ? flat_plane(normal, args[PLANE_DISTANCE].number) : flat_square();
     return give_flat(context, args, "plane", &flat, result, error);
 }
 
-static const struct parameter square_parameters[] = {SHAPE("square")};
+static const struct script_parameter square_parameters[] = {SHAPE("square")};
 
-static bool act_square(struct context *context, const struct value *args, struct result *result, struct error *error) {
+static bool gr_square(struct script_context *context, const struct script_value *args, struct script_result *result,
+                      struct error *error) {
     struct flat flat = flat_square();
     return give_flat(context, args, "square", &flat, result, error);
 }
@@ -342,7 +348,7 @@ static bool span_is_fine(struct vec3 u, struct vec3 v, const char *what, struct 
 }
 
 enum { RECTANGLE_CORNER = SHAPE_FIRST, RECTANGLE_ALONG, RECTANGLE_UP };
-static const struct parameter rectangle_parameters[] = {
+static const struct script_parameter rectangle_parameters[] = {
     SHAPE("rectangle"),
     [RECTANGLE_CORNER] = PLACE("corner", "{-0.5, 0, 0.5}", "Corner where an image has its lower left."),
     [RECTANGLE_ALONG] = {"along", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{1, 0, 0}", "Edge along u of an image."},
@@ -350,8 +356,8 @@ static const struct parameter rectangle_parameters[] = {
                       "Edge along v of an image; not parallel to along."},
 };
 
-static bool act_rectangle(struct context *context, const struct value *args, struct result *result,
-                          struct error *error) {
+static bool gr_rectangle(struct script_context *context, const struct script_value *args, struct script_result *result,
+                         struct error *error) {
     struct vec3 corner = vector_or(&args[RECTANGLE_CORNER], -0.5, 0, 0.5);
     struct vec3 along = vector_or(&args[RECTANGLE_ALONG], 1, 0, 0), up = vector_or(&args[RECTANGLE_UP], 0, 0, -1);
     if (!span_is_fine(along, up, "along and up are parallel", error))
@@ -361,7 +367,7 @@ static bool act_rectangle(struct context *context, const struct value *args, str
 }
 
 enum { DISC_CENTRE = SHAPE_FIRST, DISC_NORMAL, DISC_RADIUS, DISC_INNER };
-static const struct parameter disc_parameters[] = {
+static const struct script_parameter disc_parameters[] = {
     SHAPE("disc"),
     [DISC_CENTRE] = PLACE("centre", "{0, 0, 0}", "Centre."),
     [DISC_NORMAL] = {"normal", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 1, 0}", "Normal of the front."},
@@ -369,7 +375,8 @@ static const struct parameter disc_parameters[] = {
     [DISC_INNER] = {"inner", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0", "Radius of the hole."},
 };
 
-static bool act_disc(struct context *context, const struct value *args, struct result *result, struct error *error) {
+static bool gr_disc(struct script_context *context, const struct script_value *args, struct script_result *result,
+                    struct error *error) {
     double inner = number_or(&args[DISC_INNER], 0);
     double radius = number_or(&args[DISC_RADIUS], inner > 0 ? 2 * inner : 1);
     struct vec3 centre = args[DISC_CENTRE].vector;
@@ -382,15 +389,15 @@ static bool act_disc(struct context *context, const struct value *args, struct r
 }
 
 enum { TRIANGLE_A = SHAPE_FIRST, TRIANGLE_B, TRIANGLE_C };
-static const struct parameter triangle_parameters[] = {
+static const struct script_parameter triangle_parameters[] = {
     SHAPE("triangle"),
     [TRIANGLE_A] = {"a", KIND_POINT, 0, ANY, NULL, NULL, "A corner; from the front, a, b, c run counterclockwise."},
     [TRIANGLE_B] = {"b", KIND_POINT, 0, ANY, NULL, NULL, "The next corner."},
     [TRIANGLE_C] = {"c", KIND_POINT, 0, ANY, NULL, NULL, "The last corner."},
 };
 
-static bool act_triangle(struct context *context, const struct value *args, struct result *result,
-                         struct error *error) {
+static bool gr_triangle(struct script_context *context, const struct script_value *args, struct script_result *result,
+                        struct error *error) {
     struct vec3 a = args[TRIANGLE_A].vector, b = args[TRIANGLE_B].vector, c = args[TRIANGLE_C].vector;
     if (!span_is_fine(vec3_sub(b, a), vec3_sub(c, a), "a, b and c lie on one line", error))
         return false;
@@ -399,7 +406,7 @@ static bool act_triangle(struct context *context, const struct value *args, stru
 }
 
 enum { POLYGON_POINTS = SHAPE_FIRST, POLYGON_OUTLINES };
-static const struct parameter polygon_parameters[] = {
+static const struct script_parameter polygon_parameters[] = {
     SHAPE("polygon"),
     [POLYGON_POINTS] = {"points", KIND_POINTS, 0, ANY, NULL, NULL,
                         "Corners in one plane; from the front, the first outline runs counterclockwise."},
@@ -407,8 +414,9 @@ static const struct parameter polygon_parameters[] = {
                           "Tuples of indices into points, from 0; the polygon is filled by the even-odd rule."},
 };
 
-static bool act_polygon(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    const struct value *points = &args[POLYGON_POINTS], *outlines = &args[POLYGON_OUTLINES];
+static bool gr_polygon(struct script_context *context, const struct script_value *args, struct script_result *result,
+                       struct error *error) {
+    const struct script_value *points = &args[POLYGON_POINTS], *outlines = &args[POLYGON_OUTLINES];
     uint32_t count = outlines->given ? outlines->starts[outlines->count] : points->count;
     uint32_t outline_count = outlines->given ? outlines->count : 1;
     struct vec3 *corners = arena_alloc_array(&context->call, count, sizeof *corners);
@@ -439,35 +447,35 @@ static bool act_polygon(struct context *context, const struct value *args, struc
 }
 
 /* The rows of the table. */
-static const struct function rows[] = {
-    GR("cylinder", cylinder_parameters, RESULT_NODE, act_cylinder,
+static const struct script_function rows[] = {
+    GR("cylinder", cylinder_parameters, RESULT_NODE, gr_cylinder,
        "A capped cylinder; by default about the y axis, of radius 1, from y = -1 to 1.", "material", "name"),
-    GR("cone", cone_parameters, RESULT_NODE, act_cone,
+    GR("cone", cone_parameters, RESULT_NODE, gr_cone,
        "A capped cone or frustum; by default with apex at the origin and radius 1 at y = 1.", "material", "name"),
-    GR("torus", torus_parameters, RESULT_NODE, act_torus, "A torus about the y axis.", "name major? minor?",
+    GR("torus", torus_parameters, RESULT_NODE, gr_torus, "A torus about the y axis.", "name major? minor?",
        "material major? minor?"),
-    GR("plane", plane_parameters, RESULT_NODE, act_plane,
+    GR("plane", plane_parameters, RESULT_NODE, gr_plane,
        "The square from -0.5 to 0.5 in x and z at y = 0; with a normal, an infinite plane.", "material", "name"),
-    GR("square", square_parameters, RESULT_NODE, act_square, "The square from -0.5 to 0.5 in x and z at y = 0.",
+    GR("square", square_parameters, RESULT_NODE, gr_square, "The square from -0.5 to 0.5 in x and z at y = 0.",
        "material", "name"),
-    GR("box", box_parameters, RESULT_NODE, act_box, "A box between two corners.", "material min max", "name min max"),
-    GR("ellipsoid", ellipsoid_parameters, RESULT_NODE, act_ellipsoid, "An ellipsoid along the axes.", "material radii?",
+    GR("box", box_parameters, RESULT_NODE, gr_box, "A box between two corners.", "material min max", "name min max"),
+    GR("ellipsoid", ellipsoid_parameters, RESULT_NODE, gr_ellipsoid, "An ellipsoid along the axes.", "material radii?",
        "name radii?"),
-    GR("paraboloid", paraboloid_parameters, RESULT_NODE, act_paraboloid, "A capped paraboloid that opens along y.",
+    GR("paraboloid", paraboloid_parameters, RESULT_NODE, gr_paraboloid, "A capped paraboloid that opens along y.",
        "material", "name"),
-    GR("hyperboloid", hyperboloid_parameters, RESULT_NODE, act_hyperboloid,
+    GR("hyperboloid", hyperboloid_parameters, RESULT_NODE, gr_hyperboloid,
        "A capped hyperboloid about y, of one sheet or of two.", "material", "name"),
-    GR("quadric", quadric_parameters, RESULT_NODE, act_quadric,
+    GR("quadric", quadric_parameters, RESULT_NODE, gr_quadric,
        "The solid where xx x^2 + yy y^2 + zz z^2 + xy x y + xz x z + yz y z + x x + y y + z z + constant < 0.",
        "material xx yy zz constant", "name xx yy zz constant"),
-    GR("superellipsoid", superellipsoid_parameters, RESULT_NODE, act_superellipsoid,
+    GR("superellipsoid", superellipsoid_parameters, RESULT_NODE, gr_superellipsoid,
        "A rounded cube, cylinder, double cone or star: (|x|^(2/e) + |z|^(2/e))^(e/n) + |y|^(2/n) = 1.",
        "material e? n?", "name e? n?"),
-    GR("rectangle", rectangle_parameters, RESULT_NODE, act_rectangle, "A rectangle or parallelogram.",
+    GR("rectangle", rectangle_parameters, RESULT_NODE, gr_rectangle, "A rectangle or parallelogram.",
        "material corner? along? up?", "name corner? along? up?"),
-    GR("disc", disc_parameters, RESULT_NODE, act_disc, "A disc, or a ring.", "material", "name"),
-    GR("triangle", triangle_parameters, RESULT_NODE, act_triangle, "A triangle.", "material a b c", "name a b c"),
-    GR("polygon", polygon_parameters, RESULT_NODE, act_polygon, "A polygon of any shape, with holes.",
+    GR("disc", disc_parameters, RESULT_NODE, gr_disc, "A disc, or a ring.", "material", "name"),
+    GR("triangle", triangle_parameters, RESULT_NODE, gr_triangle, "A triangle.", "material a b c", "name a b c"),
+    GR("polygon", polygon_parameters, RESULT_NODE, gr_polygon, "A polygon of any shape, with holes.",
        "material points outlines?", "name points outlines?"),
 };
 const struct function_rows shape_functions = {rows, COUNT(rows)};

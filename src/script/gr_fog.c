@@ -1,9 +1,9 @@
 /* Fogs. */
-#include "script/actions.h"
+#include "script/bindings_internal.h"
 #include "script/context.h"
 
-static bool give_fog(struct context *context, struct fog *fog, const struct value *args, struct result *result,
-                     struct error *error) {
+static bool give_fog(struct script_context *context, struct fog *fog, const struct script_value *args,
+                     struct script_result *result, struct error *error) {
     struct fog *kept = arena_alloc(&context->scene.arena, sizeof *kept);
     if (!kept)
         return error_no_memory(error, "a fog");
@@ -14,20 +14,23 @@ static bool give_fog(struct context *context, struct fog *fog, const struct valu
     return true;
 }
 
-bool act_fog(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_fog(struct script_context *context, const struct script_value *args, struct script_result *result,
+            struct error *error) {
     struct fog fog = {.kind = args[FOG_IS_SQUARED].boolean ? FOG_SQUARED : FOG_EXPONENTIAL,
                       .density = args[FOG_AMOUNT].number};
     return give_fog(context, &fog, args, result, error);
 }
 
-bool act_linear_fog(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_linear_fog(struct script_context *context, const struct script_value *args, struct script_result *result,
+                   struct error *error) {
     struct fog fog = {.kind = FOG_LINEAR, .near = args[FOG_NEAR].number, .far = args[FOG_FAR].number};
     if (fog.near > fog.far)
         return error_set(error, ERROR_SCENE, "near must be at most far");
     return give_fog(context, &fog, args, result, error);
 }
 
-bool act_height_fog(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_height_fog(struct script_context *context, const struct script_value *args, struct script_result *result,
+                   struct error *error) {
     struct fog fog = {.kind = FOG_HEIGHT,
                       .density = args[FOG_AMOUNT].number,
                       .base = args[FOG_BASE].number,
@@ -35,8 +38,9 @@ bool act_height_fog(struct context *context, const struct value *args, struct re
     return give_fog(context, &fog, args, result, error);
 }
 
-bool act_fog_profile(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    const struct value *table = &args[FOG_PROFILE_TABLE];
+bool gr_fog_profile(struct script_context *context, const struct script_value *args, struct script_result *result,
+                    struct error *error) {
+    const struct script_value *table = &args[FOG_PROFILE_TABLE];
     uint32_t count = table->count;
     if (count == 0)
         return error_set(error, ERROR_SCENE, "profile must not be empty");
@@ -57,7 +61,8 @@ bool act_fog_profile(struct context *context, const struct value *args, struct r
     return give_fog(context, &fog, args, result, error);
 }
 
-bool act_fog_grid(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_fog_grid(struct script_context *context, const struct script_value *args, struct script_result *result,
+                 struct error *error) {
     struct vec3 cells = args[FOG_CELLS].vector;
     struct fog fog = {.kind = FOG_GRID, .corner = args[FOG_CORNER].vector, .size = args[FOG_SIZE].vector};
     uint64_t count = 1;

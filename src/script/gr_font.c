@@ -1,11 +1,12 @@
 /* gr.glyphs: a font file is mapped for the time of one call. */
-#include "script/actions.h"
+#include "script/bindings_internal.h"
 #include "script/context.h"
 
 #include "base/file.h"
 #include "formats/font.h"
 
-bool act_glyphs(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_glyphs(struct script_context *context, const struct script_value *args, struct script_result *result,
+               struct error *error) {
     char path[PATH_SIZE];
     struct file_bytes bytes;
     struct font_text *text = arena_alloc(&context->call, sizeof *text);

@@ -1,15 +1,16 @@
 /* The call that everything is for. */
 #include "math/elementary.h"
-#include "script/actions.h"
+#include "script/bindings_internal.h"
 #include "script/context.h"
 
-static bool choose_sky(struct context *context, const struct value *args, struct sky *sky, struct error *error) {
-    const struct value *background = &args[RENDER_BACKGROUND];
+static bool choose_sky(struct script_context *context, const struct script_value *args, struct sky *sky,
+                       struct error *error) {
+    const struct script_value *background = &args[RENDER_BACKGROUND];
     *sky = (struct sky){.kind = SKY_GRADIENT};
     if (args[RENDER_SKY].given && background->given)
         return error_set(error, ERROR_SCENE, "sky and background exclude each other");
     if (args[RENDER_SKY].given) {
-        struct image *image = act_find_image(context, &args[RENDER_SKY], error);
+        struct image *image = gr_find_image(context, &args[RENDER_SKY], error);
         return image && sky_from_cross(image, args[RENDER_MIRROR].boolean, sky, error);
     }
     if (background->sky) {
@@ -22,7 +23,7 @@ static bool choose_sky(struct context *context, const struct value *args, struct
 }
 
 /* The named fields of the call win over the command line. */
-static void apply_settings(const struct value *args, struct settings *settings) {
+static void apply_settings(const struct script_value *args, struct settings *settings) {
     if (args[RENDER_SAMPLES].given)
         settings->samples = (int)args[RENDER_SAMPLES].number;
     if (args[RENDER_FULL].given)
@@ -61,7 +62,8 @@ static void apply_settings(const struct value *args, struct settings *settings) 
         settings->cutoff = args[RENDER_CUTOFF].number;
 }
 
-static bool apply_lens(const struct value *args, struct lens *lens, const struct camera *camera, struct error *error) {
+static bool apply_lens(const struct script_value *args, struct lens *lens, const struct camera *camera,
+                       struct error *error) {
     if (args[RENDER_FOCUS].given && args[RENDER_FOCUS_POINT].given)
         return error_set(error, ERROR_SCENE, "focus and focus_point exclude each other");
     if (args[RENDER_PROJECTION].given)
@@ -85,7 +87,7 @@ static bool apply_lens(const struct value *args, struct lens *lens, const struct
     return true;
 }
 
-static bool apply_motion(const struct value *args, struct settings *settings, const struct camera *camera,
+static bool apply_motion(const struct script_value *args, struct settings *settings, const struct camera *camera,
                          struct error *error) {
     if (args[RENDER_VIEW_TO].given && args[RENDER_TARGET].given)
         return error_set(error, ERROR_SCENE, "view_to needs view, and target_to needs target");
@@ -93,8 +95,8 @@ static bool apply_motion(const struct value *args, struct settings *settings, co
         return error_set(error, ERROR_SCENE, "target_to needs target");
     if (args[RENDER_SHUTTER].given)
         settings->shutter = (struct shutter){args[RENDER_SHUTTER].vector.x, args[RENDER_SHUTTER].vector.y};
-    const struct value *eye = &args[RENDER_EYE_TO], *up = &args[RENDER_UP_TO];
-    const struct value *view = &args[args[RENDER_TARGET].given ? RENDER_TARGET_TO : RENDER_VIEW_TO];
+    const struct script_value *eye = &args[RENDER_EYE_TO], *up = &args[RENDER_UP_TO];
+    const struct script_value *view = &args[args[RENDER_TARGET].given ? RENDER_TARGET_TO : RENDER_VIEW_TO];
     settings->motion = (struct camera_motion){.moves = eye->given || view->given || up->given,
                                               .eye = eye->given ? eye->vector : camera->eye,
                                               .view = view->given ? view->vector : camera->view,
@@ -102,7 +104,8 @@ static bool apply_motion(const struct value *args, struct settings *settings, co
     return true;
 }
 
-bool act_render(struct context *context, const struct value *args, struct result *result, struct error *error) {
+bool gr_render(struct script_context *context, const struct script_value *args, struct script_result *result,
+               struct error *error) {
     (void)result;
     if (args[RENDER_VIEW].given && args[RENDER_TARGET].given)
         return error_set(error, ERROR_SCENE, "view and target exclude each other");

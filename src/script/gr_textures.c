@@ -1,11 +1,11 @@
-/* Textures that are no images: patterns, and operations on other textures. A function is an action and a row in here.
+/* Textures that are no images: patterns, and operations on other textures. A function is a binding and a row in here.
  */
-#include "script/actions.h"
+#include "script/bindings_internal.h"
 #include "script/context.h"
 #include "script/table_rows.h"
 
 /* Saved edits count textures among the materials of a scene. */
-struct relief *act_keep_texture(struct context *context, const struct relief *value, struct error *error) {
+struct relief *gr_keep_texture(struct script_context *context, const struct relief *value, struct error *error) {
     struct relief *out = arena_alloc(&context->scene.arena, sizeof *out);
     if (!out) {
         error_no_memory(error, "a texture");
@@ -16,7 +16,8 @@ struct relief *act_keep_texture(struct context *context, const struct relief *va
     return out;
 }
 
-const struct texture *act_texture_of(struct context *context, const struct value *value, struct error *error) {
+const struct texture *gr_texture_of(struct script_context *context, const struct script_value *value,
+                                    struct error *error) {
     struct arena *arena = &context->scene.arena;
     const struct relief *given = value->texture;
     struct vec3 v = value->vector;
@@ -30,9 +31,10 @@ const struct texture *act_texture_of(struct context *context, const struct value
     return texture_keep(arena, v.x == v.y && v.y == v.z ? texture_number(v.x) : texture_constant(v), error);
 }
 
-static bool give(struct context *context, struct texture texture, struct result *result, struct error *error) {
+static bool give(struct script_context *context, struct texture texture, struct script_result *result,
+                 struct error *error) {
     struct relief out = {.kind = MATERIAL_IMAGE, .texture = texture_keep(&context->scene.arena, texture, error)};
-    result->pointer = out.texture ? act_keep_texture(context, &out, error) : NULL;
+    result->pointer = out.texture ? gr_keep_texture(context, &out, error) : NULL;
     return result->pointer != NULL;
 }
 
@@ -43,14 +45,15 @@ static bool give(struct context *context, struct texture texture, struct result 
     { name, KIND_SIZE, OR_TEXTURE, ANY, NULL, NULL, help }
 
 enum { MARBLED_F, MARBLED_MULTIPLIER, MARBLED_VEIN, MARBLED_INTERP };
-static const struct parameter marble_parameters[] = {
+static const struct script_parameter marble_parameters[] = {
     [MARBLED_F] = {"f", KIND_NUMBER, 0, ANY, NULL, NULL, "Factor of the point before the noise."},
     [MARBLED_MULTIPLIER] = {"multiplier", KIND_NUMBER, 0, ANY, NULL, NULL, "Strength of the noise in the veins."},
     [MARBLED_VEIN] = {"vein_frequency", KIND_NUMBER, 0, ANY, NULL, NULL, "Frequency of the veins along y."},
     [MARBLED_INTERP] = INTERP,
 };
 
-static bool marble(struct context *context, const struct value *args, struct result *result, struct error *error) {
+static bool marble(struct script_context *context, const struct script_value *args, struct script_result *result,
+                   struct error *error) {
     return give(context,
                 texture_marble(args[MARBLED_F].number, args[MARBLED_MULTIPLIER].number, args[MARBLED_VEIN].number,
                                (int)args[MARBLED_INTERP].number),
@@ -58,48 +61,51 @@ static bool marble(struct context *context, const struct value *args, struct res
 }
 
 enum { WOODEN_F, WOODEN_DENSITY, WOODEN_INTERP };
-static const struct parameter wood_parameters[] = {
+static const struct script_parameter wood_parameters[] = {
     [WOODEN_F] = {"f", KIND_NUMBER, 0, ANY, NULL, NULL, "Factor of the point before the noise."},
     [WOODEN_DENSITY] = {"density", KIND_NUMBER, 0, ANY, NULL, NULL, "Density of the grain."},
     [WOODEN_INTERP] = INTERP,
 };
 
-static bool wood(struct context *context, const struct value *args, struct result *result, struct error *error) {
+static bool wood(struct script_context *context, const struct script_value *args, struct script_result *result,
+                 struct error *error) {
     return give(context,
                 texture_wood(args[WOODEN_F].number, args[WOODEN_DENSITY].number, (int)args[WOODEN_INTERP].number),
                 result, error);
 }
 
 enum { MIXED_A, MIXED_B, MIXED_RATIO };
-static const struct parameter mix_parameters[] = {
+static const struct script_parameter mix_parameters[] = {
     [MIXED_A] = PART("a", "Value where ratio is 1: a number, a colour or a texture."),
     [MIXED_B] = PART("b", "Value where ratio is 0."),
     [MIXED_RATIO] = {"ratio", KIND_NUMBER, OPTIONAL | OR_TEXTURE, ANY, NULL, "0.5",
                      "Weight of a: the result is a * ratio + b * (1 - ratio)."},
 };
 
-static bool mix(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    struct value ratio = args[MIXED_RATIO];
+static bool mix(struct script_context *context, const struct script_value *args, struct script_result *result,
+                struct error *error) {
+    struct script_value ratio = args[MIXED_RATIO];
     ratio.vector = vec3_all(ratio.given ? ratio.number : 0.5);
-    const struct texture *a = act_texture_of(context, &args[MIXED_A], error);
-    const struct texture *b = a ? act_texture_of(context, &args[MIXED_B], error) : NULL;
-    const struct texture *share = b ? act_texture_of(context, &ratio, error) : NULL;
+    const struct texture *a = gr_texture_of(context, &args[MIXED_A], error);
+    const struct texture *b = a ? gr_texture_of(context, &args[MIXED_B], error) : NULL;
+    const struct texture *share = b ? gr_texture_of(context, &ratio, error) : NULL;
     return share && give(context, texture_mix(a, b, share), result, error);
 }
 
 enum { FACTOR_A, FACTOR_B };
-static const struct parameter multiply_parameters[] = {
+static const struct script_parameter multiply_parameters[] = {
     [FACTOR_A] = PART("a", "One factor: a number, a colour or a texture."),
     [FACTOR_B] = PART("b", "The other factor."),
 };
 
-static bool multiply(struct context *context, const struct value *args, struct result *result, struct error *error) {
-    const struct texture *a = act_texture_of(context, &args[FACTOR_A], error);
-    const struct texture *b = a ? act_texture_of(context, &args[FACTOR_B], error) : NULL;
+static bool multiply(struct script_context *context, const struct script_value *args, struct script_result *result,
+                     struct error *error) {
+    const struct texture *a = gr_texture_of(context, &args[FACTOR_A], error);
+    const struct texture *b = a ? gr_texture_of(context, &args[FACTOR_B], error) : NULL;
     return b && give(context, texture_multiply(a, b), result, error);
 }
 
-static const struct function rows[] = {
+static const struct script_function rows[] = {
     GR("marble_texture", marble_parameters, RESULT_TEXTURE, marble,
        "A marble pattern between 0 and 1, for inputs of gr.material.", "f multiplier vein_frequency interp?"),
     GR("wood_texture", wood_parameters, RESULT_TEXTURE, wood,

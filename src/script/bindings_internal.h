@@ -1,13 +1,14 @@
 /* The middle paragraphs of the gr functions: plain C that cannot raise. The enums number the parameters in table.c;
- * shapes and lights are whole, with their parameters and their rows, in act_shapes.c, act_swept.c and act_lights.c. */
-#ifndef GRAY_SCRIPT_ACTIONS_H
-#define GRAY_SCRIPT_ACTIONS_H
+ * shapes and lights are whole, with their parameters and their rows, in gr_shapes.c, gr_swept.c and gr_lights.c. */
+#ifndef GRAY_SCRIPT_BINDINGS_INTERNAL_H
+#define GRAY_SCRIPT_BINDINGS_INTERNAL_H
 
 #include "script/table.h"
 
-typedef bool action(struct context *context, const struct value *args, struct result *result, struct error *error);
+typedef bool binding(struct script_context *context, const struct script_value *args, struct script_result *result,
+                     struct error *error);
 
-/* act_nodes.c */
+/* gr_nodes.c */
 enum { GROUP_NAME, GROUP_CHILDREN, GROUP_COUNT };
 enum { INSTANCES_NAME, INSTANCES_OF, INSTANCES_AT, INSTANCES_TURN, INSTANCES_AXIS, INSTANCES_SIZE, INSTANCES_COUNT };
 enum { JOINT_NAME, JOINT_X, JOINT_Y, JOINT_CHILDREN, JOINT_COUNT };
@@ -17,11 +18,10 @@ enum { GEOMETRY_NAME, GEOMETRY_PRIMITIVE, GEOMETRY_MATERIAL, GEOMETRY_COUNT };
 enum { CSG_NAME, CSG_A, CSG_B, CSG_OPERANDS, CSG_COUNT };
 enum { INVERSE_NAME, INVERSE_A, INVERSE_COUNT };
 enum { CLIPPED_NAME, CLIPPED_OBJECT, CLIPPED_BY, CLIPPED_COUNT };
-action act_node, act_instances, act_joint, act_sphere, act_cube, act_geometry, act_union, act_difference,
-    act_intersection;
-action act_inverse, act_clipped_by, act_bounded_by, act_transform_order;
+binding gr_node, gr_instances, gr_joint, gr_sphere, gr_cube, gr_geometry, gr_union, gr_difference, gr_intersection;
+binding gr_inverse, gr_clipped_by, gr_bounded_by, gr_transform_order;
 
-/* act_changes.c */
+/* gr_changes.c */
 enum { CHANGENODE_NAME, CHANGENODE_SERIAL, CHANGENODE_MATRIX, CHANGENODE_COUNT };
 enum { CHANGEGONE_NAME, CHANGEGONE_SERIAL, CHANGEGONE_COUNT };
 enum { CHANGEADD_NAME, CHANGEADD_SERIAL, CHANGEADD_SHAPE, CHANGEADD_COLOUR, CHANGEADD_SOURCE, CHANGEADD_COUNT };
@@ -41,11 +41,11 @@ enum { CHANGECOPYLIGHT_NUMBER, CHANGECOPYLIGHT_MOVE, CHANGECOPYLIGHT_FACTOR, CHA
 enum { CHANGENEWLIGHT_POSITION, CHANGENEWLIGHT_COLOUR, CHANGENEWLIGHT_COUNT };
 enum { CHANGEVIEW_PICTURE, CHANGEVIEW_EYE, CHANGEVIEW_VIEW, CHANGEVIEW_UP, CHANGEVIEW_FOV, CHANGEVIEW_COUNT };
 enum { CHANGEEXPOSURE_PICTURE, CHANGEEXPOSURE_STOPS, CHANGEEXPOSURE_COUNT };
-action act_change_node, act_change_delete, act_change_add, act_change_material, act_change_look, act_change_own,
-    act_change_copy_light, act_change_light, act_change_delete_light, act_change_add_light, act_change_view,
-    act_change_exposure;
+binding gr_change_node, gr_change_delete, gr_change_add, gr_change_material, gr_change_look, gr_change_own,
+    gr_change_copy_light, gr_change_light, gr_change_delete_light, gr_change_add_light, gr_change_view,
+    gr_change_exposure;
 
-/* act_methods.c: args[0] is the node itself */
+/* gr_methods.c: args[0] is the node itself */
 enum { SELF };
 enum { CHILD_NODE = 1, CHILD_COUNT };
 enum { SET_MATERIAL = 1, SET_MATERIAL_COUNT };
@@ -55,10 +55,10 @@ enum { STEP_X = 1, STEP_Y, STEP_Z, STEP_VECTOR, STEP_COUNT };
 enum { ROTATE_AXIS = 1, ROTATE_ANGLE, ROTATE_COUNT };
 enum { QUAT_W = 1, QUAT_X, QUAT_Y, QUAT_Z, QUAT_TABLE, QUAT_COUNT };
 enum { MOVES_TO_NODE = 1, MOVES_TO_COUNT };
-action act_add_child, act_set_material, act_set_texture, act_set_bump, act_scale, act_rotate, act_translate;
-action act_rotate_axis, act_rotate_quat, act_velocity, act_moves_to;
+binding gr_add_child, gr_set_material, gr_set_texture, gr_set_bump, gr_scale, gr_rotate, gr_translate;
+binding gr_rotate_axis, gr_rotate_quat, gr_velocity, gr_moves_to;
 
-/* act_mesh.c */
+/* gr_mesh.c */
 enum {
     MESH_NAME,
     MESH_MATERIAL,
@@ -77,13 +77,13 @@ enum {
     MESH_FACE_MATERIALS,
     MESH_COUNT
 };
-action act_mesh, act_bounds, act_faces; /* the last two: args[SELF] is the node */
+binding gr_mesh, gr_bounds, gr_faces; /* the last two: args[SELF] is the node */
 
-/* act_font.c */
+/* gr_font.c */
 enum { GLYPHS_FONT, GLYPHS_TEXT, GLYPHS_COUNT };
-action act_glyphs;
+binding gr_glyphs;
 
-/* act_materials.c */
+/* gr_materials.c */
 enum {
     PHONG_KD,
     PHONG_KS,
@@ -117,23 +117,25 @@ enum { OVER_MATERIAL, OVER_IMAGE, OVER_LOOKUP, OVER_CHANNEL = OVER_LOOKUP + LOOK
 #define RELIEF_KINDS(X) X(MATERIAL_BUMP, "bump") X(MATERIAL_NORMAL, "normal")
 enum { RELIEF_OVER_AMOUNT = OVER_LOOKUP + LOOKUP_COUNT, RELIEF_OVER_KIND };
 enum { FRESNEL_MATERIAL, FRESNEL_COUNT };
-action act_material, act_rr_material, act_marble, act_wood, act_td_cube, act_td_sphere, act_fresnel, act_texture;
-action act_bump, act_image_material, act_bump_material;
+binding gr_material, gr_rr_material, gr_marble, gr_wood, gr_td_cube, gr_td_sphere, gr_fresnel, gr_texture;
+binding gr_bump, gr_image_material, gr_bump_material;
 /* What a script gave as an image, from the store or from its file; NULL and error. */
-struct image *act_find_image(struct context *context, const struct value *value, struct error *error);
+struct image *gr_find_image(struct script_context *context, const struct script_value *value, struct error *error);
 
 /* What node:set_texture keeps: an image as its texture says, else mip-mapped and repeated; NULL and error. */
-const struct texture_image *act_image(struct context *context, const struct value *value, struct error *error);
+const struct texture_image *gr_image(struct script_context *context, const struct script_value *value,
+                                     struct error *error);
 /* What node:set_bump keeps: a result of gr.bump, or any other image with the default height. */
-const struct relief *act_relief(struct context *context, const struct value *value, struct error *error);
+const struct relief *gr_relief(struct script_context *context, const struct script_value *value, struct error *error);
 
-/* act_textures.c */
+/* gr_textures.c */
 /* What a script holds of a texture; NULL and error. */
-struct relief *act_keep_texture(struct context *context, const struct relief *value, struct error *error);
+struct relief *gr_keep_texture(struct script_context *context, const struct relief *value, struct error *error);
 /* The texture that a script gave for an input, or that of its number or colour; NULL and error. */
-const struct texture *act_texture_of(struct context *context, const struct value *value, struct error *error);
+const struct texture *gr_texture_of(struct script_context *context, const struct script_value *value,
+                                    struct error *error);
 
-/* act_sky.c; the fields of the sun come together, counted from SUN_DIRECTION */
+/* gr_sky.c; the fields of the sun come together, counted from SUN_DIRECTION */
 enum { SUN_DIRECTION, SUN_HOUR, SUN_DAY, SUN_LATITUDE, SUN_LONGITUDE, SUN_ZONE, SUN_FIELDS };
 enum { SKY_INTENSITY, SKY_ROTATION, SKY_OWN };
 enum { FACES_FRONT = SKY_OWN, FACES_RIGHT, FACES_BACK, FACES_LEFT, FACES_TOP, FACES_BOTTOM };
@@ -141,16 +143,16 @@ enum { CROSS_IMAGE = SKY_OWN, CROSS_MIRROR };
 enum { MAP_IMAGE = SKY_OWN };
 enum { GRADIENT_STOPS = SKY_OWN };
 enum { CLEAR_SUN = SKY_OWN, CLEAR_TURBIDITY = CLEAR_SUN + SUN_FIELDS, CLEAR_GROUND };
-action act_sky_faces, act_sky_cross, act_sky_map, act_sky_gradient, act_clear_sky, act_sun_light;
+binding gr_sky_faces, gr_sky_cross, gr_sky_map, gr_sky_gradient, gr_clear_sky, gr_sun_light;
 
-/* act_fog.c */
+/* gr_fog.c */
 enum { FOG_COLOUR, FOG_CLEAR_SKY, FOG_OWN };
 enum { FOG_AMOUNT = FOG_OWN, FOG_IS_SQUARED, FOG_COUNT };
 enum { FOG_NEAR = FOG_OWN, FOG_FAR };
 enum { FOG_BASE = FOG_AMOUNT + 1, FOG_SCALE };
 enum { FOG_PROFILE_TABLE = FOG_OWN };
 enum { FOG_CORNER = FOG_OWN, FOG_SIZE, FOG_CELLS, FOG_DENSITIES };
-action act_fog, act_linear_fog, act_height_fog, act_fog_profile, act_fog_grid;
+binding gr_fog, gr_linear_fog, gr_height_fog, gr_fog_profile, gr_fog_grid;
 
 /* Every light begins with these; fields of fading and of lamps only where the kind has them. */
 enum {
@@ -165,12 +167,12 @@ enum {
     LIGHT_VISIBLE,
     LIGHT_OWN /* the first field of the kind's own */
 };
-/* act_lights.c; the other lights are there whole, with their parameters and their rows. */
+/* gr_lights.c; the other lights are there whole, with their parameters and their rows. */
 enum { DISTANT_DIRECTION = LIGHT_EXCLUDE + 1, DISTANT_COUNT };
 enum { SUNLIGHT_SUN = LIGHT_EXCLUDE + 1 };
-action act_directional_light;
+binding gr_directional_light;
 
-/* act_render.c */
+/* gr_render.c */
 enum {
     RENDER_NODE,
     RENDER_FILE,
@@ -224,6 +226,6 @@ enum {
     RENDER_UP_TO,
     RENDER_COUNT
 };
-action act_render;
+binding gr_render;
 
 #endif
