@@ -309,13 +309,13 @@ static float pilot_squared(const struct photon_map *map, const float at[3], floa
         uint32_t node, level;
         float squared;
     } stack[LEVEL_LIMIT + 2];
-    int waiting = 0;
-    stack[waiting].node = 1;
-    stack[waiting].level = 0;
-    stack[waiting++].squared = 0;
-    while (waiting > 0) {
-        uint32_t node = stack[--waiting].node, level = stack[waiting].level;
-        if (stack[waiting].squared > n.bound)
+    int pending = 0;
+    stack[pending].node = 1;
+    stack[pending].level = 0;
+    stack[pending++].squared = 0;
+    while (pending > 0) {
+        uint32_t node = stack[--pending].node, level = stack[pending].level;
+        if (stack[pending].squared > n.bound)
             continue;
         if (level == map->levels) {
             uint32_t k = node - ((uint32_t)1 << level), end = node_first(map, level, k + 1);
@@ -331,12 +331,12 @@ static float pilot_squared(const struct photon_map *map, const float at[3], floa
         float left = squared_to_box(&map->nodes[2 * node], at), right = squared_to_box(&map->nodes[2 * node + 1], at);
         uint32_t near_one = left <= right ? 2 * node : 2 * node + 1;
         /* The nearer child is on top. */
-        stack[waiting].node = near_one ^ 1;
-        stack[waiting].level = level + 1;
-        stack[waiting++].squared = left <= right ? right : left;
-        stack[waiting].node = near_one;
-        stack[waiting].level = level + 1;
-        stack[waiting++].squared = left <= right ? left : right;
+        stack[pending].node = near_one ^ 1;
+        stack[pending].level = level + 1;
+        stack[pending++].squared = left <= right ? right : left;
+        stack[pending].node = near_one;
+        stack[pending].level = level + 1;
+        stack[pending++].squared = left <= right ? left : right;
     }
     return n.bound;
 }
@@ -356,12 +356,12 @@ static void find_radii(void *context, uint32_t chunk, int worker) {
         float bound = INFINITY;
         if (last_at) {
             float dx = at[0] - last_at[0], dy = at[1] - last_at[1], dz = at[2] - last_at[2];
-            float way = sqrtf(dx * dx + dy * dy + dz * dz);
-            if (way <= last / 2) {
+            float distance = sqrtf(dx * dx + dy * dy + dz * dz);
+            if (distance <= last / 2) {
                 map->spots[i].radius = stretch * last;
                 continue;
             }
-            bound = (last + way) * 1.00001F;
+            bound = (last + distance) * 1.00001F;
             bound *= bound;
         }
         last = sqrtf(pilot_squared(map, at, bound));
@@ -489,7 +489,7 @@ void photon_map_destroy(struct photon_map *map) {
 /* --- gathering --- */
 
 /* What one place asks of the photons. */
-struct gathering {
+struct density_query {
     const struct photon_map *map;
     const struct world *world;
     const struct hit *hit;
@@ -503,7 +503,7 @@ struct gathering {
 
 /* Photons fall on the geometric surface, so each brings its power over n.l of that; the lobes hold their own cosine. At
  * grazing light the quotient is bounded. */
-static void add_photon(struct gathering *g, uint32_t i, double weight) {
+static void add_photon(struct density_query *g, uint32_t i, double weight) {
     const struct photon_light *light = &g->map->lights[i];
     if (g->map->listed) {
         const uint8_t *lit = g->world->lights[light->light].lit;
@@ -526,7 +526,7 @@ static void add_photon(struct gathering *g, uint32_t i, double weight) {
 }
 
 /* Distances off the tangent plane count four times: what lies round a corner lights less. */
-static void gather_leaf(struct gathering *g, uint32_t k) {
+static void gather_leaf(struct density_query *g, uint32_t k) {
     const struct photon_map *map = g->map;
     uint32_t end = node_first(map, map->levels, k + 1);
     for (uint32_t i = node_first(map, map->levels, k); i < end; i++) {
@@ -544,28 +544,28 @@ static bool holds(const struct photon_node *node, const float at[3]) {
            at[2] >= node->min[2] && at[2] <= node->max[2];
 }
 
-static void gather(struct gathering *g) {
+static void gather(struct density_query *g) {
     const struct photon_map *map = g->map;
     uint32_t stack[LEVEL_LIMIT + 2], first_leaf = (uint32_t)1 << map->levels;
-    int waiting = 0;
+    int pending = 0;
     if (holds(&map->nodes[1], g->at))
-        stack[waiting++] = 1;
-    while (waiting > 0) {
-        uint32_t node = stack[--waiting];
+        stack[pending++] = 1;
+    while (pending > 0) {
+        uint32_t node = stack[--pending];
         if (node >= first_leaf) {
             gather_leaf(g, node - first_leaf);
             continue;
         }
         for (uint32_t child = 2 * node + 2; child-- > 2 * node;) {
             if (holds(&map->nodes[child], g->at))
-                stack[waiting++] = child;
+                stack[pending++] = child;
         }
     }
 }
 
 struct vec3 photon_map_light(const struct photon_map *map, const struct world *world, const struct hit *hit,
                              const struct bsdf *bsdf) {
-    struct gathering g = {.map = map, .world = world, .hit = hit, .bsdf = bsdf};
+    struct density_query g = {.map = map, .world = world, .hit = hit, .bsdf = bsdf};
     struct vec3 normal = bsdf->lit, albedo = {0, 0, 0};
     if (map->count == 0)
         return vec3_all(0);

@@ -12,17 +12,17 @@
 #include "base/random.h"
 #include "material/material_eval.h"
 #include "material/medium.h"
-#include "render/photon_aim.h"
+#include "render/photon_target.h"
 
 #include <time.h>
 
 enum { BATCH = 1024 };
 
-struct sending {
+struct photon_job {
     const struct world *world;
     const struct fog *fog; /* or NULL */
     const struct settings *settings;
-    const struct photon_aims *aims;
+    const struct photon_targets *targets;
     struct pool *pool;
     struct photon *photons;
     struct world_scratch *scratches; /* of each worker */
@@ -31,7 +31,7 @@ struct sending {
 };
 
 /* A photon under way. */
-struct flight {
+struct photon_path {
     struct ray ray;
     struct medium_stack media;
     struct vec3 left; /* of its power, per draw; the mean over all draws is what the surfaces leave */
@@ -41,8 +41,8 @@ struct flight {
     bool specular; /* it met something specular */
 };
 
-static double draw(struct flight *flight) {
-    return random_unit(random_combine(flight->key, flight->draws++));
+static double draw(struct photon_path *path) {
+    return random_unit(random_combine(path->key, path->draws++));
 }
 
 static double mean(struct vec3 c) {
@@ -50,78 +50,79 @@ static double mean(struct vec3 c) {
 }
 
 /* What a surface does with a photon. */
-struct choice {
+struct branching {
     struct bsdf_branch branches[BSDF_LOBES];
     int count;
     double diffuse; /* the largest component of what answers light from one direction */
 };
 
-static struct choice choice_make(const struct bsdf *bsdf) {
-    struct choice choice = {.diffuse = 0};
+static struct branching branching_make(const struct bsdf *bsdf) {
+    struct branching branching = {.diffuse = 0};
     for (int i = 0; i < bsdf->count; i++) {
         if (lobe_flags(bsdf->lobes[i].kind) & BSDF_LAMBERT)
-            choice.diffuse = vec3_max_abs(bsdf->lobes[i].weight);
+            branching.diffuse = vec3_max_abs(bsdf->lobes[i].weight);
     }
-    choice.count = bsdf_branches(bsdf, choice.branches);
-    return choice;
+    branching.count = bsdf_branches(bsdf, branching.branches);
+    return branching;
 }
 
 /* On to where one of the branches sends it. False: absorbed. */
-static bool fly_on(struct flight *flight, const struct hit *hit, const struct bsdf *bsdf, const struct choice *choice) {
+static bool scatter_photon(struct photon_path *path, const struct hit *hit, const struct bsdf *bsdf,
+                           const struct branching *branching) {
     double to[BSDF_LOBES], all = 0;
-    for (int i = 0; i < choice->count; i++) {
-        to[i] = fmax(mean(vec3_mul(flight->left, choice->branches[i].weight)), 0) * choice->branches[i].expected;
+    for (int i = 0; i < branching->count; i++) {
+        to[i] = fmax(mean(vec3_mul(path->left, branching->branches[i].weight)), 0) * branching->branches[i].expected;
         all += to[i];
     }
     /* All photons are to have the same power: what is left of one that met the strongest thing of its cell. */
-    double survival = all < flight->strength ? all / flight->strength : 1, x = draw(flight);
-    if (!(x < survival) || choice->count == 0)
+    double survival = all < path->strength ? all / path->strength : 1, x = draw(path);
+    if (!(x < survival) || branching->count == 0)
         return false;
     double until = x / survival * all;
     int chosen = 0;
-    while (chosen + 1 < choice->count && !(until < to[chosen]))
+    while (chosen + 1 < branching->count && !(until < to[chosen]))
         until -= to[chosen++];
-    const struct bsdf_branch *branch = &choice->branches[chosen];
+    const struct bsdf_branch *branch = &branching->branches[chosen];
     struct vec3 facet = bsdf->side;
     if (branch->rough) {
-        double u = draw(flight), v = draw(flight);
+        double u = draw(path), v = draw(path);
         facet = bsdf_facet(bsdf, hit->view, (struct sample2){u, v});
     }
     struct bsdf_branch_direction sampled;
     if (!bsdf_branch_sample(bsdf, branch, hit->view, facet, &sampled))
         return false;
-    flight->left = vec3_scale(vec3_mul(flight->left, sampled.weight), all / (to[chosen] * survival));
+    path->left = vec3_scale(vec3_mul(path->left, sampled.weight), all / (to[chosen] * survival));
     if (sampled.transmits)
-        medium_stack_cross(&flight->media, &bsdf->boundary);
-    flight->ray = hit_ray(hit, &flight->ray, sampled.direction, &flight->media);
-    flight->specular = true;
+        medium_stack_cross(&path->media, &bsdf->boundary);
+    path->ray = hit_ray(hit, &path->ray, sampled.direction, &path->media);
+    path->specular = true;
     return true;
 }
 
-static void land(const struct photon_start *start, const struct photon_aim *aim, const struct flight *flight,
-                 const struct hit *hit, struct photon *photon) {
-    struct vec3 power = vec3_mul(start->power, flight->left);
-    power = vec3_scale(power, light_photon_fading(aim->emitter.light, flight->length));
+static void store_photon(const struct photon_start *start, const struct photon_target *target,
+                         const struct photon_path *path, const struct hit *hit, struct photon *photon) {
+    struct vec3 power = vec3_mul(start->power, path->left);
+    power = vec3_scale(power, light_photon_fading(target->emitter.light, path->length));
     if (!vec3_finite(power) || !vec3_finite(hit->point) || !(vec3_max_abs(power) > 0))
         return;
-    *photon = (struct photon){hit->point, power, photon_pack(hit->view), aim->number};
+    *photon = (struct photon){hit->point, power, photon_pack(hit->view), target->number};
 }
 
-static void send(struct sending *s, const struct photon_aim *aim, uint32_t index, struct world_scratch *scratch,
-                 struct photon *photon) {
-    struct photon_start start = photon_aim_start(aim, index, s->seed);
-    struct flight flight = {.ray = {.origin = start.origin, .direction = start.direction, .t_max = INFINITY},
-                            .left = {1, 1, 1},
-                            .strength = start.strength,
-                            .key = start.key};
-    medium_stack_copy(&flight.media, &aim->media);
-    flight.ray.media = &flight.media;
-    flight.ray.time = draw(&flight);
+static void trace_photon(struct photon_job *s, const struct photon_target *target, uint32_t index,
+                         struct world_scratch *scratch, struct photon *photon) {
+    struct photon_start start = photon_target_start(target, index, s->seed);
+    struct photon_path path = {.ray = {.origin = start.origin, .direction = start.direction, .t_max = INFINITY},
+                               .left = {1, 1, 1},
+                               .strength = start.strength,
+                               .key = start.key};
+    medium_stack_copy(&path.media, &target->media);
+    path.ray.media = &path.media;
+    path.ray.time = draw(&path);
     if (start.power.x == 0 && start.power.y == 0 && start.power.z == 0)
         return;
     if (start.from_afar) {
         /* It comes from beyond what is finite: a ground without end may be in its way. */
-        struct ray back = flight.ray;
+        struct ray back = path.ray;
         struct hit ground;
         back.direction = vec3_negate(start.direction);
         if (world_nearest(s->world, &back, scratch, &ground))
@@ -129,55 +130,55 @@ static void send(struct sending *s, const struct photon_aim *aim, uint32_t index
     }
     const struct material_context context = {
         .specular = s->settings->specular, .ambient_plain = s->settings->ambient_plain, .total_reflection = true};
-    const uint8_t *lit = aim->emitter.light->lit;
+    const uint8_t *lit = target->emitter.light->lit;
     for (int bounce = 0; bounce < PHOTON_BOUNCES && !scratch->failed; bounce++) {
         struct hit hit;
         struct bsdf bsdf;
-        if (!world_nearest(s->world, &flight.ray, scratch, &hit))
+        if (!world_nearest(s->world, &path.ray, scratch, &hit))
             return;
-        flight.length += hit.t;
+        path.length += hit.t;
         struct medium_effect effect;
-        if (medium_transmittance(MEDIUM_RAY_PHOTON, s->fog, &flight.ray, hit.t, &effect))
-            flight.left = vec3_mul(flight.left, effect.transmittance);
-        material_eval(&s->world->materials[hit.material], &hit, &flight.media, &context, &bsdf);
-        if (bsdf.opacity < 1 && draw(&flight) >= bsdf.opacity) {
+        if (medium_transmittance(MEDIUM_RAY_PHOTON, s->fog, &path.ray, hit.t, &effect))
+            path.left = vec3_mul(path.left, effect.transmittance);
+        material_eval(&s->world->materials[hit.material], &hit, &path.media, &context, &bsdf);
+        if (bsdf.opacity < 1 && draw(&path) >= bsdf.opacity) {
             /* Through a hole, as if nothing were there. */
-            flight.ray = hit_ray(&hit, &flight.ray, vec3_negate(hit.view), &flight.media);
+            path.ray = hit_ray(&hit, &path.ray, vec3_negate(hit.view), &path.media);
             continue;
         }
-        struct choice choice = choice_make(&bsdf);
-        bool receives = flight.specular && choice.diffuse > 0 && !bsdf.dark;
+        struct branching branching = branching_make(&bsdf);
+        bool receives = path.specular && branching.diffuse > 0 && !bsdf.dark;
         if (receives && (!lit || lit[hit.placed])) {
             double on = 0;
-            for (int i = 0; i < choice.count; i++)
-                on += mean(choice.branches[i].weight);
+            for (int i = 0; i < branching.count; i++)
+                on += mean(branching.branches[i].weight);
             on = fmax(on, 0);
-            double share = choice.diffuse / (choice.diffuse + on);
-            if (draw(&flight) < share) {
-                flight.left = vec3_scale(flight.left, 1 / share);
-                land(&start, aim, &flight, &hit, photon);
+            double share = branching.diffuse / (branching.diffuse + on);
+            if (draw(&path) < share) {
+                path.left = vec3_scale(path.left, 1 / share);
+                store_photon(&start, target, &path, &hit, photon);
                 return;
             }
-            flight.left = vec3_scale(flight.left, 1 / (1 - share));
+            path.left = vec3_scale(path.left, 1 / (1 - share));
         }
-        if (!fly_on(&flight, &hit, &bsdf, &choice))
+        if (!scatter_photon(&path, &hit, &bsdf, &branching))
             return;
     }
 }
 
 static void send_batch(void *context, uint32_t batch, int worker) {
-    struct sending *s = context;
+    struct photon_job *s = context;
     uint64_t end = ((uint64_t)batch + 1) * BATCH;
-    const struct photon_aim *aim = s->aims->aims;
+    const struct photon_target *target = s->targets->targets;
     for (uint32_t i = batch * BATCH; i < end && i < s->count && !pool_cancelled(s->pool); i++) {
         s->photons[i].light = PHOTON_NOWHERE;
-        while (i >= aim->first + aim->count)
-            aim++;
-        send(s, aim, i - aim->first, &s->scratches[worker], &s->photons[i]);
+        while (i >= target->first + target->count)
+            target++;
+        trace_photon(s, target, i - target->first, &s->scratches[worker], &s->photons[i]);
     }
 }
 
-static bool send_all(struct sending *s, struct photon_statistics *statistics, struct error *error) {
+static bool trace_photons(struct photon_job *s, struct photon_statistics *statistics, struct error *error) {
     int workers = pool_workers(s->pool);
     bool failed = false;
     for (int i = 0; i < workers && !failed; i++)
@@ -199,30 +200,31 @@ static double seconds_now(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static bool aim_all(struct sending *s, struct photon_aims *aims, struct arena *arena, struct error *error) {
+static bool find_targets(struct photon_job *s, struct photon_targets *targets, struct arena *arena,
+                         struct error *error) {
     struct world_scratch scratch;
     bool ok = world_scratch_init(&scratch, s->world) || error_no_memory(error, "the crossings of a photon");
-    ok = ok &&
-         photon_aims_make(aims, s->world, (uint32_t)s->settings->caustics.photons, arena, &scratch, s->pool, error);
+    ok = ok && photon_targets_make(targets, s->world, (uint32_t)s->settings->caustics.photons, arena, &scratch, s->pool,
+                                   error);
     world_scratch_destroy(&scratch);
-    s->aims = aims;
-    s->count = aims->count > 0 ? (uint32_t)s->settings->caustics.photons : 0;
+    s->targets = targets;
+    s->count = targets->count > 0 ? (uint32_t)s->settings->caustics.photons : 0;
     return ok;
 }
 
 bool photons_make(struct photon_map *map, const struct render_job *job, struct pool *pool,
                   struct photon_statistics *statistics, struct error *error) {
     struct arena arena = {0};
-    struct photon_aims aims = {0};
+    struct photon_targets targets = {0};
     double begin = seconds_now();
     const struct settings *settings = &job->settings;
-    struct sending s = {.world = job->world,
-                        .fog = job->fog,
-                        .settings = settings,
-                        .pool = pool,
-                        .seed = random_combine(settings->seed, UINT64_C(0x70686f746f6e73))};
+    struct photon_job s = {.world = job->world,
+                           .fog = job->fog,
+                           .settings = settings,
+                           .pool = pool,
+                           .seed = random_combine(settings->seed, UINT64_C(0x70686f746f6e73))};
     *map = (struct photon_map){0};
-    bool ok = aim_all(&s, &aims, &arena, error);
+    bool ok = find_targets(&s, &targets, &arena, error);
     if (ok && s.count > 0) {
         s.photons = mem_alloc((size_t)s.count * sizeof *s.photons);
         s.scratches = mem_alloc_zero((size_t)pool_workers(pool), sizeof *s.scratches);
@@ -230,7 +232,7 @@ bool photons_make(struct photon_map *map, const struct render_job *job, struct p
         if (!ok)
             ok = error_no_memory(error, "the photons of the caustics");
         else
-            ok = send_all(&s, statistics, error);
+            ok = trace_photons(&s, statistics, error);
         double sent = seconds_now();
         ok = ok && photon_map_build(map, job->world, s.photons, s.count, settings->caustics.radius, pool, error);
         statistics->map_seconds += seconds_now() - sent;

@@ -14,7 +14,7 @@
  * Units (docs/light.md): a light without body sends its colour per steradian, times d^2 fading(d) after the way d, so
  * that free light arrives as colour * fading(d) * cosine; a lamp sends radiance / pi per area and projected solid
  * angle, since a view factor is a cosine over pi. */
-#include "render/photon_aim.h"
+#include "render/photon_target.h"
 
 #include "base/random.h"
 #include "math/elementary.h"
@@ -36,7 +36,7 @@ static const double pi = 3.14159265358979323846;
 
 /* --- what is specular --- */
 
-struct caster {
+struct specular_object {
     struct box box;
     struct vec3 middle;
     double radius; /* of a ball round the middle that holds it */
@@ -44,8 +44,8 @@ struct caster {
     uint32_t order;
 };
 
-struct casters {
-    struct caster *list; /* the strongest first */
+struct specular_objects {
+    struct specular_object *list; /* the strongest first */
     uint32_t count;
     struct box all;     /* of them */
     struct vec3 middle; /* of that box */
@@ -71,23 +71,24 @@ static bool is_finite(const struct box *box) {
     return vec3_finite(box->min) && vec3_finite(box->max);
 }
 
-static struct caster caster_make(const struct world *world, uint32_t index, const struct box *box, double strength) {
-    struct caster caster = {.box = *box, .strength = strength, .order = index};
+static struct specular_object specular_object_make(const struct world *world, uint32_t index, const struct box *box,
+                                                   double strength) {
+    struct specular_object specular_object = {.box = *box, .strength = strength, .order = index};
     const struct geometry *geometry = placed_geometry(world, index);
     uint32_t linear = world->primitives[index].linear;
     bool still = linear == LINEAR_NONE || !(linear & LINEAR_MOVING);
-    caster.middle = vec3_scale(vec3_add(box->min, box->max), 0.5);
-    caster.radius = vec3_length(vec3_sub(box->max, caster.middle));
+    specular_object.middle = vec3_scale(vec3_add(box->min, box->max), 0.5);
+    specular_object.radius = vec3_length(vec3_sub(box->max, specular_object.middle));
     if (!geometry->csg && geometry->shape.kind == SHAPE_SPHERE && still) {
         double stretch = linear == LINEAR_NONE ? 1 : world->linear_maps[linear].stretch;
-        caster.radius = fmin(caster.radius, geometry->shape.sphere.radius * stretch * (1 + 0x1p-30));
+        specular_object.radius = fmin(specular_object.radius, geometry->shape.sphere.radius * stretch * (1 + 0x1p-30));
     }
-    return caster;
+    return specular_object;
 }
 
 /* Things without end are meant as far as the finite ones reach, and as far again. */
-static bool find_casters(struct casters *out, const struct world *world, struct arena *arena) {
-    *out = (struct casters){.scene = box_empty()};
+static bool find_casters(struct specular_objects *out, const struct world *world, struct arena *arena) {
+    *out = (struct specular_objects){.scene = box_empty()};
     uint32_t specular = 0;
     for (uint32_t i = 0; i < world->placed_count; i++) {
         specular += placed_strength(world, i) > 0;
@@ -108,7 +109,7 @@ static bool find_casters(struct casters *out, const struct world *world, struct 
         if (!(strength > 0) || box_is_empty(&box))
             continue;
         out->all = box_join(out->all, box);
-        out->list[out->count++] = caster_make(world, i, &box, strength);
+        out->list[out->count++] = specular_object_make(world, i, &box, strength);
     }
     if (out->count > 0)
         out->middle = vec3_scale(vec3_add(out->all.min, out->all.max), 0.5);
@@ -116,12 +117,12 @@ static bool find_casters(struct casters *out, const struct world *world, struct 
 }
 
 /* Heap sort by strength, then by order. */
-static bool is_weaker(const struct caster *a, const struct caster *b) {
+static bool is_weaker(const struct specular_object *a, const struct specular_object *b) {
     return a->strength != b->strength ? a->strength < b->strength : a->order > b->order;
 }
 
-static void sift(struct caster *list, uint32_t root, uint32_t count) {
-    struct caster item = list[root];
+static void sift(struct specular_object *list, uint32_t root, uint32_t count) {
+    struct specular_object item = list[root];
     for (uint32_t child; (child = 2 * root + 1) < count; root = child) {
         child += child + 1 < count && is_weaker(&list[child + 1], &list[child]);
         if (!is_weaker(&list[child], &item))
@@ -131,21 +132,21 @@ static void sift(struct caster *list, uint32_t root, uint32_t count) {
     list[root] = item;
 }
 
-static void sort_casters(struct casters *casters) {
-    for (uint32_t i = casters->count / 2; i-- > 0;)
-        sift(casters->list, i, casters->count);
-    for (uint32_t end = casters->count; end > 1; end--) {
-        struct caster last = casters->list[end - 1];
-        casters->list[end - 1] = casters->list[0];
-        casters->list[0] = last;
-        sift(casters->list, 0, end - 1);
+static void sort_casters(struct specular_objects *specular_objects) {
+    for (uint32_t i = specular_objects->count / 2; i-- > 0;)
+        sift(specular_objects->list, i, specular_objects->count);
+    for (uint32_t end = specular_objects->count; end > 1; end--) {
+        struct specular_object last = specular_objects->list[end - 1];
+        specular_objects->list[end - 1] = specular_objects->list[0];
+        specular_objects->list[0] = last;
+        sift(specular_objects->list, 0, end - 1);
     }
 }
 
 /* --- cells --- */
 
-static bool is_distant(const struct photon_aim *aim) {
-    return aim->emitter.domain != LIGHT_DOMAIN_LOCAL;
+static bool is_distant(const struct photon_target *target) {
+    return target->emitter.domain != LIGHT_DOMAIN_LOCAL;
 }
 
 /* The coordinate on a face of the cube from one that runs evenly over the angle. */
@@ -170,30 +171,30 @@ static struct vec3 face_direction(uint32_t face, double a, double b, double *den
 }
 
 /* Half-spaces that hold the cell: normal . p <= reach for every point p that light of the cell may pass. */
-struct fence {
+struct plane_set {
     struct vec3 normal[5];
-    double reach[5];
+    double plane_offset[5];
     int count;
 };
 
-static void fence_add(struct fence *fence, struct vec3 normal, double reach) {
-    fence->normal[fence->count] = normal;
-    fence->reach[fence->count++] = reach;
+static void plane_set_add(struct plane_set *planes, struct vec3 normal, double plane_offset) {
+    planes->normal[planes->count] = normal;
+    planes->plane_offset[planes->count++] = plane_offset;
 }
 
-static void pyramid_fence(const struct photon_aim *aim, uint32_t face, uint32_t level, uint32_t i, uint32_t j,
-                          struct fence *fence) {
+static void pyramid_planes(const struct photon_target *target, uint32_t face, uint32_t level, uint32_t i, uint32_t j,
+                           struct plane_set *planes) {
     struct vec3 major, axes[2];
     double width = ldexp(2, -(int)level);
     uint32_t place[2] = {i, j};
     face_axes(face, &major, &axes[0], &axes[1]);
-    fence->count = 0;
+    planes->count = 0;
     for (int k = 0; k < 2; k++) {
         double low = on_face(-1 + width * place[k]), high = on_face(-1 + width * (place[k] + 1));
         struct vec3 below = vec3_normalize(vec3_sub(vec3_scale(major, low), axes[k]));
         struct vec3 above = vec3_normalize(vec3_sub(axes[k], vec3_scale(major, high)));
-        fence_add(fence, below, vec3_dot(below, aim->emitter.centre) + aim->emitter.radius);
-        fence_add(fence, above, vec3_dot(above, aim->emitter.centre) + aim->emitter.radius);
+        plane_set_add(planes, below, vec3_dot(below, target->emitter.centre) + target->emitter.radius);
+        plane_set_add(planes, above, vec3_dot(above, target->emitter.centre) + target->emitter.radius);
     }
 }
 
@@ -202,31 +203,32 @@ static double box_min(const struct box *box, struct vec3 n) {
            n.z * (n.z > 0 ? box->min.z : box->max.z);
 }
 
-static bool fence_meets(const struct fence *fence, const struct caster *caster) {
-    for (int k = 0; k < fence->count; k++) {
-        double by_box = box_min(&caster->box, fence->normal[k]);
-        double by_ball = vec3_dot(fence->normal[k], caster->middle) - caster->radius;
+static bool plane_set_meets(const struct plane_set *planes, const struct specular_object *specular_object) {
+    for (int k = 0; k < planes->count; k++) {
+        double by_box = box_min(&specular_object->box, planes->normal[k]);
+        double by_ball = vec3_dot(planes->normal[k], specular_object->middle) - specular_object->radius;
         double min = by_box > by_ball ? by_box : by_ball;
-        if (min > fence->reach[k] + fabs(fence->reach[k]) * 0x1p-40)
+        if (min > planes->plane_offset[k] + fabs(planes->plane_offset[k]) * 0x1p-40)
             return false;
     }
     return true;
 }
 
 /* Across a distant light: a square against the shadow of a ball, and of a box by the axes of both (separating axes). */
-static bool square_meets(const struct photon_aim *aim, double x, double y, double half, const struct caster *caster) {
-    struct vec3 middle = caster->middle, reach = vec3_sub(caster->box.max, middle);
-    const struct vec3 r = aim->emitter.right, u = aim->emitter.up;
+static bool square_meets(const struct photon_target *target, double x, double y, double half,
+                         const struct specular_object *specular_object) {
+    struct vec3 middle = specular_object->middle, plane_offset = vec3_sub(specular_object->box.max, middle);
+    const struct vec3 r = target->emitter.right, u = target->emitter.up;
     double off_x = fabs(vec3_dot(r, middle) - x) - half, off_y = fabs(vec3_dot(u, middle) - y) - half;
     off_x = off_x > 0 ? off_x : 0;
     off_y = off_y > 0 ? off_y : 0;
-    if (off_x * off_x + off_y * off_y > caster->radius * caster->radius * (1 + 0x1p-30))
+    if (off_x * off_x + off_y * off_y > specular_object->radius * specular_object->radius * (1 + 0x1p-30))
         return false;
     const double axes[5][2] = {{1, 0}, {0, 1}, {-u.x, r.x}, {-u.y, r.y}, {-u.z, r.z}};
     for (int k = 0; k < 5; k++) {
         struct vec3 n = vec3_add_scaled(vec3_scale(r, axes[k][0]), u, axes[k][1]);
         double off = fabs(vec3_dot(n, middle) - x * axes[k][0] - y * axes[k][1]);
-        double own = fabs(n.x) * reach.x + fabs(n.y) * reach.y + fabs(n.z) * reach.z;
+        double own = fabs(n.x) * plane_offset.x + fabs(n.y) * plane_offset.y + fabs(n.z) * plane_offset.z;
         if (off > (own + half * (fabs(axes[k][0]) + fabs(axes[k][1]))) * (1 + 0x1p-30))
             return false;
     }
@@ -234,29 +236,30 @@ static bool square_meets(const struct photon_aim *aim, double x, double y, doubl
 }
 
 /* The brightness in the middle of a cell, or a little where only another part of it is lit; 0 where none is. */
-static double cell_shine(const struct photon_aim *aim, uint32_t face, uint32_t i, uint32_t j, double *solid_angle) {
-    double width = ldexp(2, -(int)aim->level), a = -1 + width * (i + 0.5), b = -1 + width * (j + 0.5), density;
+static double cell_shine(const struct photon_target *target, uint32_t face, uint32_t i, uint32_t j,
+                         double *solid_angle) {
+    double width = ldexp(2, -(int)target->level), a = -1 + width * (i + 0.5), b = -1 + width * (j + 0.5), density;
     struct vec3 middle = vec3_normalize(face_direction(face, a, b, solid_angle));
     *solid_angle *= width * width;
-    double own = light_emitter_shine(&aim->emitter, middle), max = own, cos_half = 1;
+    double own = light_emitter_shine(&target->emitter, middle), max = own, cos_half = 1;
     for (int k = 0; k < 4; k++) {
         struct vec3 corner =
             face_direction(face, a + width * (k & 1 ? 0.5 : -0.5), b + width * (k & 2 ? 0.5 : -0.5), &density);
         corner = vec3_normalize(corner);
-        double at_corner = light_emitter_shine(&aim->emitter, corner), cosine = vec3_dot(corner, middle);
+        double at_corner = light_emitter_shine(&target->emitter, corner), cosine = vec3_dot(corner, middle);
         max = at_corner > max ? at_corner : max;
         cos_half = cosine < cos_half ? cosine : cos_half;
     }
     if (max == 0)
-        max = light_emitter_shines_near(&aim->emitter, middle, cos_half) ? 1 : 0;
+        max = light_emitter_shines_near(&target->emitter, middle, cos_half) ? 1 : 0;
     return max > 0 && own < 0.05 ? 0.05 : own;
 }
 
 /* --- the search for cells that count --- */
 
 struct search {
-    const struct casters *casters;
-    struct photon_aim *aim;
+    const struct specular_objects *specular_objects;
+    struct photon_target *target;
     const struct pool *pool;
     uint32_t *stack; /* lists of casters, one behind the other down the tree */
     uint32_t level, found, limit, steps, budget;
@@ -264,16 +267,16 @@ struct search {
 };
 
 static void meet_cell(struct search *s, uint32_t face, uint32_t i, uint32_t j, uint32_t strongest) {
-    struct photon_aim *aim = s->aim;
+    struct photon_target *target = s->target;
     double area = 1, bright = 1;
-    if (!is_distant(aim) && (s->keep || !aim->emitter.even))
-        bright = cell_shine(aim, face, i, j, &area);
+    if (!is_distant(target) && (s->keep || !target->emitter.even))
+        bright = cell_shine(target, face, i, j, &area);
     if (!(bright > 0))
         return;
     if (s->keep) {
-        double strength = s->casters->list[strongest].strength;
-        aim->total += area * bright * strength;
-        aim->cells[s->found] = (struct photon_cell){aim->total, face, i, j, (float)strength, (float)bright};
+        double strength = s->specular_objects->list[strongest].strength;
+        target->total += area * bright * strength;
+        target->cells[s->found] = (struct photon_cell){target->total, face, i, j, (float)strength, (float)bright};
     }
     s->found++;
 }
@@ -281,20 +284,20 @@ static void meet_cell(struct search *s, uint32_t face, uint32_t i, uint32_t j, u
 /* `list`: the casters that the parent may meet. */
 static void visit(struct search *s, uint32_t face, uint32_t level, uint32_t i, uint32_t j, const uint32_t *list,
                   uint32_t count, uint32_t *free_room) {
-    struct photon_aim *aim = s->aim;
-    struct fence fence;
-    double size = ldexp(aim->size, -(int)level), half = size / 2;
+    struct photon_target *target = s->target;
+    struct plane_set planes;
+    double size = ldexp(target->size, -(int)level), half = size / 2;
     s->stopped = s->stopped || ((++s->steps % CANCEL_EVERY == 0 || count > 1000) && pool_cancelled(s->pool));
     if (s->stopped || s->found > s->limit)
         return;
-    if (!is_distant(aim))
-        pyramid_fence(aim, face, level, i, j, &fence);
+    if (!is_distant(target))
+        pyramid_planes(target, face, level, i, j, &planes);
     uint32_t met = 0;
     for (uint32_t k = 0; k < count; k++) {
-        const struct caster *caster = &s->casters->list[list[k]];
-        bool meets = is_distant(aim) ? square_meets(aim, aim->corner[0] + i * size + half,
-                                                    aim->corner[1] + j * size + half, half, caster)
-                                     : fence_meets(&fence, caster);
+        const struct specular_object *specular_object = &s->specular_objects->list[list[k]];
+        bool meets = is_distant(target) ? square_meets(target, target->corner[0] + i * size + half,
+                                                       target->corner[1] + j * size + half, half, specular_object)
+                                        : plane_set_meets(&planes, specular_object);
         if (meets)
             free_room[met++] = list[k];
     }
@@ -309,12 +312,12 @@ static void visit(struct search *s, uint32_t face, uint32_t level, uint32_t i, u
 }
 
 static bool search_level(struct search *s, uint32_t level) {
-    s->level = s->aim->level = level;
+    s->level = s->target->level = level;
     s->found = 0;
-    for (uint32_t k = 0; k < s->casters->count; k++)
+    for (uint32_t k = 0; k < s->specular_objects->count; k++)
         s->stack[k] = k;
-    for (uint32_t face = 0; face < (is_distant(s->aim) ? 1U : 6U); face++)
-        visit(s, face, 0, 0, 0, s->stack, s->casters->count, s->stack + s->casters->count);
+    for (uint32_t face = 0; face < (is_distant(s->target) ? 1U : 6U); face++)
+        visit(s, face, 0, 0, 0, s->stack, s->specular_objects->count, s->stack + s->specular_objects->count);
     return !s->stopped;
 }
 
@@ -334,69 +337,69 @@ static bool find_cells(struct search *s, uint32_t budget, struct arena *arena) {
     }
     if (cells == 0)
         return true;
-    s->aim->cells = arena_alloc_array(arena, cells, sizeof *s->aim->cells);
-    if (!s->aim->cells)
+    s->target->cells = arena_alloc_array(arena, cells, sizeof *s->target->cells);
+    if (!s->target->cells)
         return false;
     s->keep = true;
     s->limit = UINT32_MAX;
     (void)search_level(s, level);
-    s->aim->cell_count = s->found;
+    s->target->cell_count = s->found;
     return true;
 }
 
 /* --- lights --- */
 
 /* The square across a distant light that holds the shadows of all casters, and a plane before the whole scene. */
-static void place_distant(struct photon_aim *aim, const struct casters *casters) {
-    struct vec3 direction = light_photon(&aim->emitter, vec3_all(0), (struct sample2){0, 0}).direction;
+static void place_distant(struct photon_target *target, const struct specular_objects *specular_objects) {
+    struct vec3 direction = light_photon(&target->emitter, vec3_all(0), (struct sample2){0, 0}).direction;
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    for (uint32_t i = 0; i < casters->count; i++) {
-        const struct box *box = &casters->list[i].box;
+    for (uint32_t i = 0; i < specular_objects->count; i++) {
+        const struct box *box = &specular_objects->list[i].box;
         for (int k = 0; k < 2; k++) {
-            struct vec3 axis = k == 0 ? aim->emitter.right : aim->emitter.up;
+            struct vec3 axis = k == 0 ? target->emitter.right : target->emitter.up;
             double min = box_min(box, axis), max = -box_min(box, vec3_negate(axis));
             low[k] = min < low[k] ? min : low[k];
             high[k] = max > high[k] ? max : high[k];
         }
     }
-    aim->size = fmax(high[0] - low[0], high[1] - low[1]);
-    aim->corner[0] = low[0];
-    aim->corner[1] = low[1];
-    double depth = vec3_length(vec3_sub(casters->scene.max, casters->scene.min));
-    aim->behind = box_min(&casters->scene, direction) - depth * 0x1p-6;
-    for (uint32_t i = 0; i < casters->count; i++)
-        aim->behind = fmin(aim->behind, box_min(&casters->list[i].box, direction) - depth * 0x1p-6);
+    target->size = fmax(high[0] - low[0], high[1] - low[1]);
+    target->corner[0] = low[0];
+    target->corner[1] = low[1];
+    double depth = vec3_length(vec3_sub(specular_objects->scene.max, specular_objects->scene.min));
+    target->behind = box_min(&specular_objects->scene, direction) - depth * 0x1p-6;
+    for (uint32_t i = 0; i < specular_objects->count; i++)
+        target->behind = fmin(target->behind, box_min(&specular_objects->list[i].box, direction) - depth * 0x1p-6);
 }
 
-static void estimate_flux(struct photon_aim *aim, const struct casters *casters) {
-    const struct light_emitter *emitter = &aim->emitter;
+static void estimate_flux(struct photon_target *target, const struct specular_objects *specular_objects) {
+    const struct light_emitter *emitter = &target->emitter;
     struct vec3 colour = light_emitter_colour(emitter);
-    double way = vec3_length(vec3_sub(casters->middle, emitter->centre));
-    double fading = light_photon_fading(emitter->light, way > emitter->radius ? way : emitter->radius);
+    double distance = vec3_length(vec3_sub(specular_objects->middle, emitter->centre));
+    double fading = light_photon_fading(emitter->light, distance > emitter->radius ? distance : emitter->radius);
     if (!(fading > 0)) /* beyond its range at the middle, but maybe not everywhere */
-        fading = way * way * 0x1p-6;
-    double cell_area = is_distant(aim) ? ldexp(aim->size * aim->size, -2 * (int)aim->level) : 1;
+        fading = distance * distance * 0x1p-6;
+    double cell_area = is_distant(target) ? ldexp(target->size * target->size, -2 * (int)target->level) : 1;
     double mean = (fabs(colour.x) + fabs(colour.y) + fabs(colour.z)) / 3;
-    aim->flux = mean * fading * light_emitter_unit(emitter) * aim->total * cell_area;
-    if (!isfinite(aim->flux))
-        aim->flux = 0;
+    target->flux = mean * fading * light_emitter_unit(emitter) * target->total * cell_area;
+    if (!isfinite(target->flux))
+        target->flux = 0;
 }
 
-static bool make_aim(struct photon_aim *aim, struct search *search, uint32_t budget, struct arena *arena) {
-    search->aim = aim;
+static bool make_target(struct photon_target *target, struct search *search, uint32_t budget, struct arena *arena) {
+    search->target = target;
     search->stopped = false;
     if (!find_cells(search, budget, arena))
         return false;
-    estimate_flux(aim, search->casters);
+    estimate_flux(target, search->specular_objects);
     return true;
 }
 
-static uint32_t light_parts(const struct light *light, const struct casters *casters) {
+static uint32_t light_parts(const struct light *light, const struct specular_objects *specular_objects) {
     double extent = light_divided_extent(light), nearest = INFINITY;
     if (!(extent > 0))
         return 1;
-    for (uint32_t i = 0; i < casters->count; i++) {
-        const struct box *box = &casters->list[i].box;
+    for (uint32_t i = 0; i < specular_objects->count; i++) {
+        const struct box *box = &specular_objects->list[i].box;
         struct vec3 inside = vec3_min(vec3_max(light->position, box->min), box->max);
         nearest = fmin(nearest, vec3_length(vec3_sub(inside, light->position)));
     }
@@ -405,15 +408,16 @@ static uint32_t light_parts(const struct light *light, const struct casters *cas
 
 /* Light of an environment: a direction by its own choice, then a place of the rectangle across it that holds the shadow
  * of the box of all casters, before the whole scene. Its power is that of a photon that stands for all. */
-static struct light_photon start_around(const struct photon_aim *aim, struct sample2 turn, struct sample2 place) {
-    struct light_photon photon = light_photon(&aim->emitter, vec3_all(0), turn);
+static struct light_photon start_from_environment(const struct photon_target *target, struct sample2 turn,
+                                                  struct sample2 place) {
+    struct light_photon photon = light_photon(&target->emitter, vec3_all(0), turn);
     struct vec3 axes[2], direction = photon.direction;
     frame_tangents(direction, &axes[0], &axes[1]);
     const double at[2] = {place.x, place.y};
-    double area = 1, before = fmin(box_min(&aim->across, direction), box_min(&aim->scene, direction));
-    photon.origin = vec3_scale(direction, before - aim->size * 0x1p-6);
+    double area = 1, before = fmin(box_min(&target->across, direction), box_min(&target->scene, direction));
+    photon.origin = vec3_scale(direction, before - target->size * 0x1p-6);
     for (int k = 0; k < 2; k++) {
-        double low = box_min(&aim->across, axes[k]), width = -box_min(&aim->across, vec3_negate(axes[k])) - low;
+        double low = box_min(&target->across, axes[k]), width = -box_min(&target->across, vec3_negate(axes[k])) - low;
         area *= width;
         photon.origin = vec3_add_scaled(photon.origin, axes[k], low + width * at[k]);
     }
@@ -422,113 +426,114 @@ static struct light_photon start_around(const struct photon_aim *aim, struct sam
 }
 
 /* One cell that is everything; its flux from a few hundred starts. */
-static bool aim_around(struct photon_aim *aim, const struct casters *casters, struct arena *arena) {
+static bool target_environment(struct photon_target *target, const struct specular_objects *specular_objects,
+                               struct arena *arena) {
     enum { PROBES = 16 };
-    aim->across = casters->all;
-    aim->scene = casters->scene;
-    aim->size = vec3_length(vec3_sub(casters->scene.max, casters->scene.min));
-    aim->cells = arena_alloc_array(arena, 1, sizeof *aim->cells);
-    if (!aim->cells)
+    target->across = specular_objects->all;
+    target->scene = specular_objects->scene;
+    target->size = vec3_length(vec3_sub(specular_objects->scene.max, specular_objects->scene.min));
+    target->cells = arena_alloc_array(arena, 1, sizeof *target->cells);
+    if (!target->cells)
         return false;
-    float strength = (float)casters->list[0].strength;
-    aim->total = (double)strength;
-    aim->cells[0] = (struct photon_cell){.until = aim->total, .strength = strength, .shine = 1};
-    aim->cell_count = 1;
+    float strength = (float)specular_objects->list[0].strength;
+    target->total = (double)strength;
+    target->cells[0] = (struct photon_cell){.until = target->total, .strength = strength, .shine = 1};
+    target->cell_count = 1;
     for (int i = 0; i < PROBES * PROBES; i++) {
         struct sample2 turn = {(i % PROBES + 0.5) / PROBES, (i / PROBES + 0.5) / PROBES};
-        struct vec3 power = start_around(aim, turn, (struct sample2){0, 0}).power;
-        aim->flux += (fabs(power.x) + fabs(power.y) + fabs(power.z)) / (3 * PROBES * PROBES) * aim->total;
+        struct vec3 power = start_from_environment(target, turn, (struct sample2){0, 0}).power;
+        target->flux += (fabs(power.x) + fabs(power.y) + fabs(power.z)) / (3 * PROBES * PROBES) * target->total;
     }
-    if (!isfinite(aim->flux))
-        aim->flux = 0;
+    if (!isfinite(target->flux))
+        target->flux = 0;
     return true;
 }
 
-static bool aim_part(struct photon_aim *aim, struct search *search, uint32_t budget, struct arena *arena) {
-    switch (aim->emitter.domain) {
+static bool target_part(struct photon_target *target, struct search *search, uint32_t budget, struct arena *arena) {
+    switch (target->emitter.domain) {
     case LIGHT_DOMAIN_ENVIRONMENT:
-        return aim_around(aim, search->casters, arena);
+        return target_environment(target, search->specular_objects, arena);
     case LIGHT_DOMAIN_PARALLEL:
-        place_distant(aim, search->casters);
+        place_distant(target, search->specular_objects);
         break;
     case LIGHT_DOMAIN_LOCAL:
         break;
     }
-    return make_aim(aim, search, budget, arena);
+    return make_target(target, search, budget, arena);
 }
 
-static bool aim_light(struct photon_aims *out, struct search *search, const struct light *light, uint32_t number,
-                      struct arena *arena) {
-    uint32_t parts = light_parts(light, search->casters), budget = search->budget;
+static bool target_light(struct photon_targets *out, struct search *search, const struct light *light, uint32_t number,
+                         struct arena *arena) {
+    uint32_t parts = light_parts(light, search->specular_objects), budget = search->budget;
     for (uint32_t part = 0; part < parts * parts && !search->stopped; part++) {
-        struct photon_aim *aim = &out->aims[out->count];
-        *aim = (struct photon_aim){.number = number};
-        if (!light_emitter_make(light, part % parts, part / parts, parts, &aim->emitter))
+        struct photon_target *target = &out->targets[out->count];
+        *target = (struct photon_target){.number = number};
+        if (!light_emitter_make(light, part % parts, part / parts, parts, &target->emitter))
             continue;
-        if (!aim_part(aim, search, budget / (parts * parts), arena))
+        if (!target_part(target, search, budget / (parts * parts), arena))
             return false;
-        out->count += aim->cell_count > 0 && aim->flux > 0;
+        out->count += target->cell_count > 0 && target->flux > 0;
     }
     return true;
 }
 
 /* The photons by flux; what rounding leaves goes to the last. */
-static void share_photons(struct photon_aims *aims, uint32_t photons) {
+static void share_photons(struct photon_targets *targets, uint32_t photons) {
     double all = 0, sum = 0;
     uint32_t first = 0;
-    for (uint32_t i = 0; i < aims->count; i++)
-        all += aims->aims[i].flux;
-    for (uint32_t i = 0; i < aims->count; i++) {
-        struct photon_aim *aim = &aims->aims[i];
-        sum += aim->flux;
+    for (uint32_t i = 0; i < targets->count; i++)
+        all += targets->targets[i].flux;
+    for (uint32_t i = 0; i < targets->count; i++) {
+        struct photon_target *target = &targets->targets[i];
+        sum += target->flux;
         double end = floor(photons * (sum / all) + 0.5);
-        uint32_t until = i + 1 == aims->count || end > photons ? photons : (uint32_t)end;
+        uint32_t until = i + 1 == targets->count || end > photons ? photons : (uint32_t)end;
         until = until < first ? first : until;
-        aim->first = first;
-        aim->count = until - first;
+        target->first = first;
+        target->count = until - first;
         first = until;
     }
 }
 
 /* What each light stands in, at its middle when the shutter opens. */
-static bool find_media(struct photon_aims *aims, const struct world *world, struct arena *arena,
+static bool find_media(struct photon_targets *targets, const struct world *world, struct arena *arena,
                        struct world_scratch *scratch) {
-    for (uint32_t i = 0; i < aims->count; i++) {
-        struct photon_aim *aim = &aims->aims[i];
-        struct vec3 centre = aim->emitter.centre;
+    for (uint32_t i = 0; i < targets->count; i++) {
+        struct photon_target *target = &targets->targets[i];
+        struct vec3 centre = target->emitter.centre;
         struct box here = {centre, centre};
-        uint32_t count = is_distant(aim) ? 0 : world_closed_in(world, &here, NULL, 0);
+        uint32_t count = is_distant(target) ? 0 : world_closed_in(world, &here, NULL, 0);
         if (count == 0)
             continue;
         uint32_t *closed = arena_alloc_array(arena, count, sizeof *closed);
         if (!closed)
             return false;
         (void)world_closed_in(world, &here, closed, count);
-        media_around(world, centre, 0, closed, count, scratch, &aim->media);
+        media_around(world, centre, 0, closed, count, scratch, &target->media);
     }
     return !scratch->failed;
 }
 
-bool photon_aims_make(struct photon_aims *out, const struct world *world, uint32_t photons, struct arena *arena,
-                      struct world_scratch *scratch, struct pool *pool, struct error *error) {
-    struct casters casters;
-    *out = (struct photon_aims){0};
-    if (!find_casters(&casters, world, arena))
+bool photon_targets_make(struct photon_targets *out, const struct world *world, uint32_t photons, struct arena *arena,
+                         struct world_scratch *scratch, struct pool *pool, struct error *error) {
+    struct specular_objects specular_objects;
+    *out = (struct photon_targets){0};
+    if (!find_casters(&specular_objects, world, arena))
         return error_no_memory(error, "the photons of the caustics");
-    if (casters.count == 0 || world->light_count == 0)
+    if (specular_objects.count == 0 || world->light_count == 0)
         return true;
-    sort_casters(&casters);
-    struct search search = {.casters = &casters, .pool = pool};
+    sort_casters(&specular_objects);
+    struct search search = {.specular_objects = &specular_objects, .pool = pool};
     /* Enough photons in a cell for their sequence to show; many lights share the time. */
     uint32_t by_photons = photons / PHOTONS_PER_CELL / world->light_count, by_time = BUDGET * 8 / world->light_count;
     search.budget = by_photons < BUDGET ? by_photons : BUDGET;
     search.budget = by_time < search.budget ? by_time : search.budget;
     search.budget = search.budget > MIN_BUDGET ? search.budget : MIN_BUDGET;
-    search.stack = arena_alloc_array(arena, casters.count, (LEVEL_MAX + 2) * sizeof *search.stack);
-    out->aims = arena_alloc_array(arena, world->light_count, PARTS * PARTS * sizeof *out->aims);
-    bool ok = search.stack && out->aims;
+    search.stack = arena_alloc_array(arena, specular_objects.count, (LEVEL_MAX + 2) * sizeof *search.stack);
+    out->targets = arena_alloc_array(arena, world->light_count, PARTS * PARTS * sizeof *out->targets);
+    bool ok = search.stack && out->targets;
     for (uint32_t i = 0; ok && i < world->light_count && !search.stopped; i++)
-        ok = aim_light(out, &search, &world->lights[i], i, arena);
+        ok = target_light(out, &search, &world->lights[i], i, arena);
     if (!ok)
         return error_no_memory(error, "the photons of the caustics");
     if (search.stopped)
@@ -544,34 +549,34 @@ static double fraction(double x) {
     return x - floor(x);
 }
 
-static const struct photon_cell *cell_at(const struct photon_aim *aim, double at) {
-    uint32_t low = 0, high = aim->cell_count - 1;
+static const struct photon_cell *cell_at(const struct photon_target *target, double at) {
+    uint32_t low = 0, high = target->cell_count - 1;
     while (low < high) {
         uint32_t middle = low + (high - low) / 2;
-        if (aim->cells[middle].until > at)
+        if (target->cells[middle].until > at)
             high = middle;
         else
             low = middle + 1;
     }
-    return &aim->cells[low];
+    return &target->cells[low];
 }
 
 /* In the part of a square that a cell is. */
-static struct light_photon start_across(const struct photon_aim *aim, const struct photon_cell *cell,
+static struct light_photon start_across(const struct photon_target *target, const struct photon_cell *cell,
                                         struct sample2 place, double *weight) {
-    struct light_photon photon = light_photon(&aim->emitter, vec3_all(0), place);
-    double size = ldexp(aim->size, -(int)aim->level);
-    double x = aim->corner[0] + (cell->i + place.x) * size, y = aim->corner[1] + (cell->j + place.y) * size;
-    photon.origin = vec3_add_scaled(vec3_scale(aim->emitter.right, x), aim->emitter.up, y);
-    photon.origin = vec3_add_scaled(photon.origin, photon.direction, aim->behind);
+    struct light_photon photon = light_photon(&target->emitter, vec3_all(0), place);
+    double size = ldexp(target->size, -(int)target->level);
+    double x = target->corner[0] + (cell->i + place.x) * size, y = target->corner[1] + (cell->j + place.y) * size;
+    photon.origin = vec3_add_scaled(vec3_scale(target->emitter.right, x), target->emitter.up, y);
+    photon.origin = vec3_add_scaled(photon.origin, photon.direction, target->behind);
     *weight = *weight * size * size;
     return photon;
 }
 
 /* A unit direction within a cell; *share: the solid angle there for that in the cell's middle. */
-static struct vec3 cell_direction(const struct photon_aim *aim, const struct photon_cell *cell, struct sample2 place,
-                                  double *share) {
-    double width = ldexp(2, -(int)aim->level), density, middle_density;
+static struct vec3 cell_direction(const struct photon_target *target, const struct photon_cell *cell,
+                                  struct sample2 place, double *share) {
+    double width = ldexp(2, -(int)target->level), density, middle_density;
     (void)face_direction(cell->face, -1 + width * (cell->i + 0.5), -1 + width * (cell->j + 0.5), &middle_density);
     struct vec3 direction =
         face_direction(cell->face, -1 + width * (cell->i + place.x), -1 + width * (cell->j + place.y), &density);
@@ -579,36 +584,37 @@ static struct vec3 cell_direction(const struct photon_aim *aim, const struct pho
     return vec3_normalize(direction);
 }
 
-struct photon_start photon_aim_start(const struct photon_aim *aim, uint32_t index, uint64_t seed) {
-    uint64_t key = random_combine(seed, (uint64_t)aim->first + index);
-    uint64_t key_of_aim = random_combine(random_combine(seed, UINT64_MAX), aim->first);
+struct photon_start photon_target_start(const struct photon_target *target, uint32_t index, uint64_t seed) {
+    uint64_t key = random_combine(seed, (uint64_t)target->first + index);
+    uint64_t key_of_target = random_combine(random_combine(seed, UINT64_MAX), target->first);
     /* Evenly spaced along the sum of importances: which cell, and how many photons of it came before. */
-    double offset = random_unit(key_of_aim), spacing = aim->total / aim->count;
-    const struct photon_cell *cell = cell_at(aim, (index + offset) * spacing);
-    double before = cell == aim->cells ? 0 : cell[-1].until;
+    double offset = random_unit(key_of_target), spacing = target->total / target->count;
+    const struct photon_cell *cell = cell_at(target, (index + offset) * spacing);
+    double before = cell == target->cells ? 0 : cell[-1].until;
     double turn = index - ceil(before / spacing - offset);
-    uint64_t key_of_cell = random_combine(key_of_aim, (uint64_t)(cell - aim->cells));
+    uint64_t key_of_cell = random_combine(key_of_target, (uint64_t)(cell - target->cells));
     /* Powers of 1 / 1.16730397826141868... (x^5 = x + 1): four dimensions that fill space evenly. */
     static const double steps[4] = {0.8566748838545029, 0.733891856627126, 0.6287067210378086, 0.53859725722361};
     double place[4];
     for (uint64_t k = 0; k < 4; k++)
         place[k] = fraction(random_unit(random_combine(key_of_cell, k)) + turn * steps[k]);
 
-    const struct light_emitter *emitter = &aim->emitter;
+    const struct light_emitter *emitter = &target->emitter;
     struct photon_start start = {.strength = (double)cell->strength, .key = key};
     double weight = spacing / ((double)cell->strength * (double)cell->shine);
     struct light_photon photon;
     switch (emitter->domain) {
     case LIGHT_DOMAIN_ENVIRONMENT:
-        photon = start_around(aim, (struct sample2){place[0], place[1]}, (struct sample2){place[2], place[3]});
+        photon =
+            start_from_environment(target, (struct sample2){place[0], place[1]}, (struct sample2){place[2], place[3]});
         start.from_afar = true;
         break;
     case LIGHT_DOMAIN_PARALLEL:
-        photon = start_across(aim, cell, (struct sample2){place[0], place[1]}, &weight);
+        photon = start_across(target, cell, (struct sample2){place[0], place[1]}, &weight);
         break;
     case LIGHT_DOMAIN_LOCAL: {
         double share;
-        struct vec3 direction = cell_direction(aim, cell, (struct sample2){place[0], place[1]}, &share);
+        struct vec3 direction = cell_direction(target, cell, (struct sample2){place[0], place[1]}, &share);
         photon = light_photon(emitter, direction, (struct sample2){place[2], place[3]});
         weight *= share;
         break;

@@ -1,7 +1,7 @@
 /* Where photons start: for each light the directions (of a distant light: the places across its rays) from which they
  * can meet something specular, in cells; the projection maps of Jensen 1996. */
-#ifndef GRAY_RENDER_PHOTON_AIM_H
-#define GRAY_RENDER_PHOTON_AIM_H
+#ifndef GRAY_RENDER_PHOTON_TARGET_H
+#define GRAY_RENDER_PHOTON_TARGET_H
 
 #include "base/arena.h"
 #include "base/pool.h"
@@ -15,7 +15,7 @@ struct photon_cell {
 };
 
 /* One light, or one part of a light with an extent. */
-struct photon_aim {
+struct photon_target {
     struct light_emitter emitter;
     uint32_t number;                /* of the light */
     double corner[2], size, behind; /* PARALLEL: the square across, and where photons start along the direction; of an
@@ -29,15 +29,15 @@ struct photon_aim {
     struct medium_stack media; /* round the centre */
 };
 
-struct photon_aims {
-    struct photon_aim *aims;
+struct photon_targets {
+    struct photon_target *targets;
     uint32_t count;
 };
 
 /* Finds the cells of every light of the world and shares `photons` among them by flux. Memory comes from the arena.
  * Errors: no memory, cancelled. Without specular things there are no aims. */
-bool photon_aims_make(struct photon_aims *out, const struct world *world, uint32_t photons, struct arena *arena,
-                      struct world_scratch *scratch, struct pool *pool, struct error *error);
+bool photon_targets_make(struct photon_targets *out, const struct world *world, uint32_t photons, struct arena *arena,
+                         struct world_scratch *scratch, struct pool *pool, struct error *error);
 
 struct photon_start {
     struct vec3 origin, direction; /* direction: unit */
@@ -48,6 +48,6 @@ struct photon_start {
     uint64_t key;
 };
 /* Photon `index` (0 .. count-1) of the aim; a function of its arguments. */
-struct photon_start photon_aim_start(const struct photon_aim *aim, uint32_t index, uint64_t seed);
+struct photon_start photon_target_start(const struct photon_target *target, uint32_t index, uint64_t seed);
 
 #endif
