@@ -159,7 +159,7 @@ static void json_ray(const struct trace_report *report, struct text_writer *writ
         text_writer_print(writer, "]");
         vector(writer, "seen", ray->seen);
         vector(writer, "left", ray->left);
-        vector(writer, "fog", ray->veil);
+        vector(writer, "fog", ray->in_scattered);
         vector(writer, "brings", ray->brings);
     }
     text_writer_print(writer, "}");

@@ -247,8 +247,8 @@ static void print_ray(struct text_state *t, const struct pixel_trace_ray *ray) {
     if (!same(ray->left, vec3_all(1))) {
         triple(t, "of ", ray->seen);
         triple(t, " the way leaves ", ray->left);
-        if (!same(ray->veil, vec3_all(0)))
-            triple(t, " and fog adds ", ray->veil);
+        if (!same(ray->in_scattered, vec3_all(0)))
+            triple(t, " and fog adds ", ray->in_scattered);
         text_writer_print(t->writer, "\n");
         indent(t, 1);
     }

@@ -17,20 +17,20 @@ static uint64_t nanoseconds_of(clockid_t clock) {
 }
 
 /* Between how many neighbours on the lattice the picture changes as much as makes pixels be sampled again. */
-static uint32_t edges_between(const struct run *run, const struct vec3 *colours) {
+static uint32_t edges_between(const struct renderer *renderer, const struct vec3 *colours) {
     uint32_t edges = 0;
     for (uint32_t i = 0; i < RAYS; i++) {
-        edges += i % SIDE + 1 < SIDE && integrator_refines(run, colours[i], colours[i + 1]);
-        edges += i / SIDE + 1 < SIDE && integrator_refines(run, colours[i], colours[i + SIDE]);
+        edges += i % SIDE + 1 < SIDE && integrator_refines(renderer, colours[i], colours[i + 1]);
+        edges += i / SIDE + 1 < SIDE && integrator_refines(renderer, colours[i], colours[i + SIDE]);
     }
     return edges;
 }
 
 /* Tiles that others will make, of a farm, are looked at, too. */
 static void probe_tile(void *context, uint32_t tile, int index) {
-    struct run *run = context;
-    struct worker *worker = &run->workers[index];
-    const struct film *film = run->job->film;
+    struct renderer *renderer = context;
+    struct worker *worker = &renderer->workers[index];
+    const struct film *film = renderer->job->film;
     struct film_rectangle r = film_tile_rectangle(film, tile);
     struct vec3 colours[RAYS];
     uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_relaxed);
@@ -38,21 +38,22 @@ static void probe_tile(void *context, uint32_t tile, int index) {
         return;
     uint64_t begun = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID);
     for (uint32_t i = 0; i < RAYS; i++) {
-        struct pixel_sample place = run_first_place(run, r.x0 + (r.x1 - r.x0) * (2 * (i % SIDE) + 1) / (2 * SIDE),
-                                                    r.y0 + (r.y1 - r.y0) * (2 * (i / SIDE) + 1) / (2 * SIDE));
-        if (run_stopped(run, worker) || run_is_enough(run))
+        struct pixel_sample place =
+            renderer_first_sample(renderer, r.x0 + (r.x1 - r.x0) * (2 * (i % SIDE) + 1) / (2 * SIDE),
+                                  r.y0 + (r.y1 - r.y0) * (2 * (i / SIDE) + 1) / (2 * SIDE));
+        if (renderer_stopped(renderer, worker) || renderer_is_done(renderer))
             return;
-        colours[i] = run_sample(run, worker, &place);
+        colours[i] = renderer_sample(renderer, worker, &place);
     }
     uint64_t took = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID) - begun;
-    time_estimate_probe(&run->time_estimate, tile, (double)(r.x1 - r.x0) * (r.y1 - r.y0), 1 + (double)took,
-                        (double)edges_between(run, colours) / PAIRS);
+    time_estimate_probe(&renderer->time_estimate, tile, (double)(r.x1 - r.x0) * (r.y1 - r.y0), 1 + (double)took,
+                        (double)edges_between(renderer, colours) / PAIRS);
 }
 
 /* What was looked at is no part of the picture's statistics. */
-static void forget_counts(struct run *run) {
-    for (int i = 0; i < pool_workers(run->pool); i++) {
-        struct worker *worker = &run->workers[i];
+static void forget_counts(struct renderer *renderer) {
+    for (int i = 0; i < pool_workers(renderer->pool); i++) {
+        struct worker *worker = &renderer->workers[i];
         struct geom_scratch *geom = &worker->scratch.geom;
         worker->camera_rays = 0;
         worker->clamped = worker->state.clamped = false;
@@ -63,62 +64,63 @@ static void forget_counts(struct run *run) {
     }
 }
 
-bool run_cost_prepass(struct run *run) {
-    struct progress_estimate *progress_estimate = run->job->progress_estimate;
-    const struct film *film = run->job->film;
+bool renderer_cost_prepass(struct renderer *renderer) {
+    struct progress_estimate *progress_estimate = renderer->job->progress_estimate;
+    const struct film *film = renderer->job->film;
     if (!progress_estimate)
         return true;
     /* Others of a farm have begun already. */
     uint64_t begun = nanoseconds_of(CLOCK_MONOTONIC);
-    if (!pool_run(run->pool, film_tile_count(film), probe_tile, run))
+    if (!pool_run(renderer->pool, film_tile_count(film), probe_tile, renderer))
         return false;
-    forget_counts(run);
-    time_estimate_begin_tiles(&run->time_estimate);
-    run->estimated = true;
-    atomic_store(&progress_estimate->begun, run->job->handout ? begun : nanoseconds_of(CLOCK_MONOTONIC));
+    forget_counts(renderer);
+    time_estimate_begin_tiles(&renderer->time_estimate);
+    renderer->estimated = true;
+    atomic_store(&progress_estimate->begun, renderer->job->handout ? begun : nanoseconds_of(CLOCK_MONOTONIC));
     progress_estimate_report(progress_estimate, 0, 1, 0);
-    run->worked = nanoseconds_of(CLOCK_PROCESS_CPUTIME_ID);
+    renderer->worked = nanoseconds_of(CLOCK_PROCESS_CPUTIME_ID);
     return true;
 }
 
-void run_report_estimate(struct run *run) {
+void renderer_report_estimate(struct renderer *renderer) {
     uint64_t now = nanoseconds_of(CLOCK_MONOTONIC),
-             reported = atomic_load_explicit(&run->reported, memory_order_relaxed);
-    if (now - reported < pause || !atomic_compare_exchange_strong(&run->reported, &reported, now))
+             reported = atomic_load_explicit(&renderer->reported, memory_order_relaxed);
+    if (now - reported < pause || !atomic_compare_exchange_strong(&renderer->reported, &reported, now))
         return;
-    struct progress_estimate *progress_estimate = run->job->progress_estimate;
-    struct time_estimate_work work = time_estimate_work(&run->time_estimate, run->job->handout ? run->job->film : NULL);
-    uint64_t worked = nanoseconds_of(CLOCK_PROCESS_CPUTIME_ID) - run->worked + 1;
-    double passed = (double)(now - atomic_load(&progress_estimate->begun)) * pool_workers(run->pool);
+    struct progress_estimate *progress_estimate = renderer->job->progress_estimate;
+    struct time_estimate_work work =
+        time_estimate_work(&renderer->time_estimate, renderer->job->handout ? renderer->job->film : NULL);
+    uint64_t worked = nanoseconds_of(CLOCK_PROCESS_CPUTIME_ID) - renderer->worked + 1;
+    double passed = (double)(now - atomic_load(&progress_estimate->begun)) * pool_workers(renderer->pool);
     atomic_store_explicit(&progress_estimate->pace, (uint64_t)(1000 * passed / (double)worked), memory_order_relaxed);
     progress_estimate_report(progress_estimate, work.done, work.left, now);
 }
 
-void run_report_end(struct run *run) {
-    progress_estimate_report(run->job->progress_estimate, 1, 0, nanoseconds_of(CLOCK_MONOTONIC));
+void renderer_report_end(struct renderer *renderer) {
+    progress_estimate_report(renderer->job->progress_estimate, 1, 0, nanoseconds_of(CLOCK_MONOTONIC));
 }
 
-void run_tile_begins(struct run *run, struct worker *worker, uint32_t tile, double share) {
-    if (!run->estimated)
+void renderer_tile_begins(struct renderer *renderer, struct worker *worker, uint32_t tile, double share) {
+    if (!renderer->estimated)
         return;
     worker->tile_begun = worker->first_ended = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID);
-    time_estimate_begin(&run->time_estimate, worker->index, tile, share);
+    time_estimate_begin(&renderer->time_estimate, worker->index, tile, share);
 }
 
-void run_tile_goes_on(struct run *run, struct worker *worker, int pass, double part) {
-    if (!run->estimated)
+void renderer_tile_goes_on(struct renderer *renderer, struct worker *worker, int pass, double part) {
+    if (!renderer->estimated)
         return;
     if (pass == 0 && part >= 1)
         worker->first_ended = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID);
-    time_estimate_part(&run->time_estimate, worker->index, pass, part);
-    run_report_estimate(run);
+    time_estimate_part(&renderer->time_estimate, worker->index, pass, part);
+    renderer_report_estimate(renderer);
 }
 
-void run_tile_ends(struct run *run, struct worker *worker) {
-    if (!run->estimated)
+void renderer_tile_ends(struct renderer *renderer, struct worker *worker) {
+    if (!renderer->estimated)
         return;
     uint64_t now = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID);
-    time_estimate_done(&run->time_estimate, worker->index, (double)(now - worker->tile_begun),
+    time_estimate_done(&renderer->time_estimate, worker->index, (double)(now - worker->tile_begun),
                        (double)(worker->first_ended - worker->tile_begun));
-    run_report_estimate(run);
+    renderer_report_estimate(renderer);
 }

@@ -22,14 +22,15 @@ struct film_record integrator_record(enum integrator_kind integrator) {
     UNREACHABLE(no_kind);
 }
 
-bool integrator_create(struct run *run, int workers, struct render_statistics *statistics, struct error *error) {
-    struct integrator *integrator = run->integrator = mem_alloc_zero(1, sizeof *integrator);
+bool integrator_create(struct renderer *renderer, int workers, struct render_statistics *statistics,
+                       struct error *error) {
+    struct integrator *integrator = renderer->integrator = mem_alloc_zero(1, sizeof *integrator);
     if (!integrator)
         return error_no_memory(error, "the workers of a render");
-    integrator->kind = run->job->settings.integrator;
+    integrator->kind = renderer->job->settings.integrator;
     switch (integrator->kind) {
     case INTEGRATOR_WHITTED:
-        return whitted_create(&integrator->whitted, run, workers, statistics, error);
+        return whitted_create(&integrator->whitted, renderer, workers, statistics, error);
     }
     UNREACHABLE(no_kind);
 }
@@ -45,51 +46,51 @@ void integrator_destroy(struct integrator *integrator) {
     mem_free(integrator);
 }
 
-bool integrator_render(struct run *run, struct worker *worker, const struct rectangle *part) {
-    switch (run->integrator->kind) {
+bool integrator_render(struct renderer *renderer, struct worker *worker, const struct rectangle *part) {
+    switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:
-        return whitted_render(&run->integrator->whitted, run, worker, part);
+        return whitted_render(&renderer->integrator->whitted, renderer, worker, part);
     }
     UNREACHABLE(no_kind);
 }
 
-struct vec3 integrator_radiance(struct run *run, struct worker *worker, const struct ray *ray, uint64_t key) {
-    switch (run->integrator->kind) {
+struct vec3 integrator_radiance(struct renderer *renderer, struct worker *worker, const struct ray *ray, uint64_t key) {
+    switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:
-        return whitted_trace(&run->integrator->whitted, &worker->state, ray, key);
+        return whitted_trace(&renderer->integrator->whitted, &worker->state, ray, key);
     }
     UNREACHABLE(no_kind);
 }
 
-struct vec3 integrator_radiance_met(struct run *run, struct worker *worker, const struct ray *ray,
+struct vec3 integrator_radiance_met(struct renderer *renderer, struct worker *worker, const struct ray *ray,
                                     const struct packet_answer *met, uint64_t key) {
-    switch (run->integrator->kind) {
+    switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:
-        return whitted_trace_met(&run->integrator->whitted, &worker->state, ray, met, key);
+        return whitted_trace_met(&renderer->integrator->whitted, &worker->state, ray, met, key);
     }
     UNREACHABLE(no_kind);
 }
 
-bool integrator_refines(const struct run *run, struct vec3 a, struct vec3 b) {
-    switch (run->integrator->kind) {
+bool integrator_refines(const struct renderer *renderer, struct vec3 a, struct vec3 b) {
+    switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:
-        return whitted_refines(run, a, b);
+        return whitted_refines(renderer, a, b);
     }
     UNREACHABLE(no_kind);
 }
 
-void integrator_repeat(struct run *run, struct worker *worker, int64_t x, int64_t y) {
-    switch (run->integrator->kind) {
+void integrator_repeat(struct renderer *renderer, struct worker *worker, int64_t x, int64_t y) {
+    switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:
-        whitted_repeat(&run->integrator->whitted, run, worker, x, y);
+        whitted_repeat(&renderer->integrator->whitted, renderer, worker, x, y);
         break;
     }
 }
 
-void integrator_add_statistics(const struct run *run, struct render_statistics *out) {
-    switch (run->integrator->kind) {
+void integrator_add_statistics(const struct renderer *renderer, struct render_statistics *out) {
+    switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:
-        whitted_add_statistics(&run->integrator->whitted, run, out);
+        whitted_add_statistics(&renderer->integrator->whitted, renderer, out);
         break;
     }
 }

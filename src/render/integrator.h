@@ -9,30 +9,31 @@
 #ifndef GRAY_RENDER_INTEGRATOR_H
 #define GRAY_RENDER_INTEGRATOR_H
 
-#include "render/run.h"
+#include "render/render_internal.h"
 
 /* What an integrator keeps for a run and for each of its workers. */
 struct integrator;
 
-/* Makes run->integrator of the kind that the settings name, for so many workers, which are there: whatever must be done
- * before the first tile. Photons count in `statistics`. Errors: no memory, cancelled; run->integrator is to be
- * destroyed all the same. */
-bool integrator_create(struct run *run, int workers, struct render_statistics *statistics, struct error *error);
+/* Makes renderer->integrator of the kind that the settings name, for so many workers, which are there: whatever must be
+ * done before the first tile. Photons count in `statistics`. Errors: no memory, cancelled; renderer->integrator is to
+ * be destroyed all the same. */
+bool integrator_create(struct renderer *renderer, int workers, struct render_statistics *statistics,
+                       struct error *error);
 void integrator_destroy(struct integrator *integrator); /* NULL is fine */
 
 /* Makes the pixels of a rectangle within a tile and stores them in the film. False: stopped before the end. */
-bool integrator_render(struct run *run, struct worker *worker, const struct rectangle *part);
+bool integrator_render(struct renderer *renderer, struct worker *worker, const struct rectangle *part);
 /* The colour that a camera ray brings, clamped to the range of float. worker->state has the sampler of the sample and
  * the media round the eye; key: the random key of the ray. */
-struct vec3 integrator_radiance(struct run *run, struct worker *worker, const struct ray *ray, uint64_t key);
+struct vec3 integrator_radiance(struct renderer *renderer, struct worker *worker, const struct ray *ray, uint64_t key);
 /* The same for a ray that went with a packet: what it has met, or NULL. */
-struct vec3 integrator_radiance_met(struct run *run, struct worker *worker, const struct ray *ray,
+struct vec3 integrator_radiance_met(struct renderer *renderer, struct worker *worker, const struct ray *ray,
                                     const struct packet_answer *met, uint64_t key);
 /* For the time estimate: whether pixels between two samples of these colours are to get more samples than others. */
-bool integrator_refines(const struct run *run, struct vec3 a, struct vec3 b);
+bool integrator_refines(const struct renderer *renderer, struct vec3 a, struct vec3 b);
 /* Traces the samples of a finished pixel once more, one by one, for layers that measure what they cost. */
-void integrator_repeat(struct run *run, struct worker *worker, int64_t x, int64_t y);
+void integrator_repeat(struct renderer *renderer, struct worker *worker, int64_t x, int64_t y);
 /* Adds what only this integrator counts. */
-void integrator_add_statistics(const struct run *run, struct render_statistics *out);
+void integrator_add_statistics(const struct renderer *renderer, struct render_statistics *out);
 
 #endif

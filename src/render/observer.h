@@ -79,8 +79,8 @@ struct observation {
             bool has_photons;
         } direct;
         struct observed_end {
-            bool evaluated;                       /* what it met was; else it was too weak */
-            struct vec3 seen, left, veil, brings; /* brings: left * seen + veil */
+            bool evaluated;                               /* what it met was; else it was too weak */
+            struct vec3 seen, left, in_scattered, brings; /* brings: left * seen + veil */
         } end;
         struct observed_mark {
             int x, y;                   /* the neighbour from the pixel, -1..1 */

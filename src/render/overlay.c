@@ -22,7 +22,7 @@ struct stroke {
     uint32_t box; /* of the chunk */
 };
 
-struct boxed {
+struct overlay_box {
     struct box box;
     struct vec3 colour;
 };
@@ -31,7 +31,7 @@ struct boxed {
  * So every thread has its own memory, and every dot gets its lines in the order of the boxes. */
 enum { CHUNK = 512, PIECES = 32, EDGES = 12 };
 
-struct pen {
+struct overlay_drawing {
     const struct render_job *job;
     struct pool *pool;
     const struct overlay_request *request;
@@ -40,37 +40,37 @@ struct pen {
     float *depths;                 /* of the surface in each cell of the film: negative while nobody has asked */
     uint32_t cells_across;
     float (*lines)[4];
-    bool flat;    /* lines are straight in the picture */
+    bool planar;  /* lines are straight in the picture */
     bool inverse; /* 1 / depth is linear along them, not depth */
     bool pair;    /* two pictures side by side */
     struct vec3 colour;
     uint32_t drawn;
-    struct boxed *boxes; /* of the chunk */
+    struct overlay_box *boxes; /* of the chunk */
     uint32_t count, band;
     struct stroke *strokes; /* `room` for each box */
     uint32_t *stroke_count;
     uint32_t room;
 };
 
-static double depth_of(const struct pen *pen, struct vec3 point) {
-    struct vec3 d = vec3_sub(point, pen->camera.eye);
-    return pen->flat ? vec3_dot(d, pen->camera.forward) : vec3_length(d);
+static double depth_of(const struct overlay_drawing *drawing, struct vec3 point) {
+    struct vec3 d = vec3_sub(point, drawing->camera.eye);
+    return drawing->planar ? vec3_dot(d, drawing->camera.forward) : vec3_length(d);
 }
 
 /* Through the middle of the cell. */
-static double surface_depth(struct pen *pen, struct world_scratch *scratch, uint32_t x, uint32_t y) {
-    const struct film *film = pen->job->film;
-    uint32_t cell = pen->request->cell;
-    float *depth = &pen->depths[(size_t)(y / cell) * pen->cells_across + x / cell];
+static double surface_depth(struct overlay_drawing *drawing, struct world_scratch *scratch, uint32_t x, uint32_t y) {
+    const struct film *film = drawing->job->film;
+    uint32_t cell = drawing->request->cell;
+    float *depth = &drawing->depths[(size_t)(y / cell) * drawing->cells_across + x / cell];
     struct ray ray;
     struct hit hit;
     if (*depth >= 0)
         return (double)*depth;
     double px = x / cell * cell + film->x0 + 0.5 * cell, py = y / cell * cell + film->y0 + 0.5 * cell;
     *depth = INFINITY;
-    if (camera_ray_through(&pen->camera, px, py, (struct sample2){0.5, 0.5}, 0, &ray) &&
-        world_nearest(pen->job->world, &ray, scratch, &hit))
-        *depth = (float)fmax(0, depth_of(pen, hit.point));
+    if (camera_ray_through(&drawing->camera, px, py, (struct sample2){0.5, 0.5}, 0, &ray) &&
+        world_nearest(drawing->job->world, &ray, scratch, &hit))
+        *depth = (float)fmax(0, depth_of(drawing, hit.point));
     return (double)*depth;
 }
 
@@ -87,29 +87,30 @@ static bool cut(double from, double way, double low, double high, double *t0, do
 }
 
 /* eye: -1, 1 of a pair; else 0. */
-static void line(struct pen *pen, uint32_t box, int eye, struct place3 a, struct place3 b) {
-    const struct film *film = pen->job->film;
+static void line(struct overlay_drawing *drawing, uint32_t box, int eye, struct place3 a, struct place3 b) {
+    const struct film *film = drawing->job->film;
     double t0 = 0, t1 = 1, dx = b.x - a.x, dy = b.y - a.y;
-    double left = eye > 0 ? pen->camera.width : 0, right = eye < 0 ? pen->camera.width : INFINITY;
+    double left = eye > 0 ? drawing->camera.width : 0, right = eye < 0 ? drawing->camera.width : INFINITY;
     left = fmax(left, film->x0);
     right = fmin(right, (double)film->x0 + film->width);
     if (!isfinite(dx) || !isfinite(dy) || !cut(a.x, dx, left, right, &t0, &t1) ||
         !cut(a.y, dy, film->y0, (double)film->y0 + film->height, &t0, &t1))
         return;
-    double from = pen->inverse ? 1 / a.depth : a.depth, to = pen->inverse ? 1 / b.depth : b.depth, way = t1 - t0;
-    pen->strokes[(size_t)box * pen->room + pen->stroke_count[box]++] =
+    double from = drawing->inverse ? 1 / a.depth : a.depth, to = drawing->inverse ? 1 / b.depth : b.depth,
+           way = t1 - t0;
+    drawing->strokes[(size_t)box * drawing->room + drawing->stroke_count[box]++] =
         (struct stroke){{a.x + t0 * dx - film->x0, a.y + t0 * dy - film->y0, from + t0 * (to - from)},
                         {way * dx, way * dy, way * (to - from)},
                         ceil(fmax(fabs(dx), fabs(dy)) * way),
                         box};
 }
 
-static bool place(const struct pen *pen, int eye, struct vec3 point, struct place3 *out) {
-    out->depth = depth_of(pen, point);
+static bool place(const struct overlay_drawing *drawing, int eye, struct vec3 point, struct place3 *out) {
+    out->depth = depth_of(drawing, point);
     if (eye == 0)
-        return camera_project(&pen->camera, point, &out->x, &out->y);
+        return camera_project(&drawing->camera, point, &out->x, &out->y);
     /* The eye of a pair stands beside, and its window is moved back to where both see the same. */
-    struct camera_frame beside = pen->camera;
+    struct camera_frame beside = drawing->camera;
     double offset = 0.5 * eye * beside.lens.eye_distance;
     beside.eye = vec3_add_scaled(beside.eye, beside.unit_right, offset);
     bool seen = camera_project(&beside, point, &out->x, &out->y);
@@ -117,12 +118,12 @@ static bool place(const struct pen *pen, int eye, struct vec3 point, struct plac
     return seen;
 }
 
-static void edge(struct pen *pen, uint32_t box, int eye, struct vec3 a, struct vec3 b) {
+static void edge(struct overlay_drawing *drawing, uint32_t box, int eye, struct vec3 a, struct vec3 b) {
     struct place3 from, to;
-    if (pen->flat) {
+    if (drawing->planar) {
         /* Before the eye. */
-        double near = 1e-6 * fmax(vec3_length(vec3_sub(b, a)), vec3_length(vec3_sub(a, pen->camera.eye)));
-        double da = depth_of(pen, a), db = depth_of(pen, b);
+        double near = 1e-6 * fmax(vec3_length(vec3_sub(b, a)), vec3_length(vec3_sub(a, drawing->camera.eye)));
+        double da = depth_of(drawing, a), db = depth_of(drawing, b);
         if (da < near && db < near)
             return;
         struct vec3 way = vec3_sub(b, a);
@@ -130,44 +131,44 @@ static void edge(struct pen *pen, uint32_t box, int eye, struct vec3 a, struct v
             a = vec3_add_scaled(a, way, (near - da) / (db - da));
         else if (db < near)
             b = vec3_add_scaled(a, way, (near - da) / (db - da));
-        if (place(pen, eye, a, &from) && place(pen, eye, b, &to))
-            line(pen, box, eye, from, to);
+        if (place(drawing, eye, a, &from) && place(drawing, eye, b, &to))
+            line(drawing, box, eye, from, to);
         return;
     }
-    bool have = place(pen, eye, a, &from);
+    bool have = place(drawing, eye, a, &from);
     for (int i = 1; i <= PIECES; i++) {
-        bool next = place(pen, eye, vec3_add_scaled(a, vec3_sub(b, a), (double)i / PIECES), &to);
+        bool next = place(drawing, eye, vec3_add_scaled(a, vec3_sub(b, a), (double)i / PIECES), &to);
         /* A panorama ends at the back: what jumps from edge to edge is no line. */
-        if (have && next && fabs(to.x - from.x) < pen->camera.width / 2)
-            line(pen, box, eye, from, to);
+        if (have && next && fabs(to.x - from.x) < drawing->camera.width / 2)
+            line(drawing, box, eye, from, to);
         from = to;
         have = next;
     }
 }
 
 static void find_strokes(void *context, uint32_t number, int worker) {
-    struct pen *pen = context;
-    const struct box *box = &pen->boxes[number].box;
+    struct overlay_drawing *drawing = context;
+    const struct box *box = &drawing->boxes[number].box;
     struct vec3 c[8];
     (void)worker;
-    pen->stroke_count[number] = 0;
+    drawing->stroke_count[number] = 0;
     for (int i = 0; i < 8; i++)
         c[i] = vec3_make(i & 1 ? box->max.x : box->min.x, i & 2 ? box->max.y : box->min.y,
                          i & 4 ? box->max.z : box->min.z);
-    for (int eye = pen->pair ? -1 : 0; eye <= (pen->pair ? 1 : 0); eye += 2)
+    for (int eye = drawing->pair ? -1 : 0; eye <= (drawing->pair ? 1 : 0); eye += 2)
         for (int i = 0; i < 8; i++)
             for (int axis = 1; axis <= 4; axis *= 2)
                 if (!(i & axis))
-                    edge(pen, number, eye, c[i], c[i | axis]);
+                    edge(drawing, number, eye, c[i], c[i | axis]);
 }
 
 /* Drawing them. */
 
-static void dot(struct pen *pen, struct world_scratch *scratch, uint32_t x, uint32_t y, double depth,
+static void dot(struct overlay_drawing *drawing, struct world_scratch *scratch, uint32_t x, uint32_t y, double depth,
                 const struct vec3 *colour) {
-    float *ink = pen->lines[(size_t)y * pen->job->film->width + x];
+    float *ink = drawing->lines[(size_t)y * drawing->job->film->width + x];
     /* A box often lies in the faces of its shape: those lines are in front. */
-    bool seen = depth <= surface_depth(pen, scratch, x, y) * 1.002;
+    bool seen = depth <= surface_depth(drawing, scratch, x, y) * 1.002;
     double share = seen ? 0.8 : 0.2;
     for (int c = 0; c < 3; c++)
         ink[c] = (float)((1 - share) * (double)ink[c] + share * vec3_get(*colour, c));
@@ -176,10 +177,10 @@ static void dot(struct pen *pen, struct world_scratch *scratch, uint32_t x, uint
 
 /* The dots of a stroke in rows from top to bottom - 1. Some more are looked at, so that what is one dot in the whole
  * picture is one here. */
-static void draw_stroke(struct pen *pen, struct world_scratch *scratch, const struct stroke *stroke, double top,
-                        double bottom) {
-    double t0 = 0, t1 = 1, width = pen->job->film->width;
-    const struct vec3 *colour = &pen->boxes[stroke->box].colour;
+static void draw_stroke(struct overlay_drawing *drawing, struct world_scratch *scratch, const struct stroke *stroke,
+                        double top, double bottom) {
+    double t0 = 0, t1 = 1, width = drawing->job->film->width;
+    const struct vec3 *colour = &drawing->boxes[stroke->box].colour;
     if (!cut(stroke->from.y, stroke->way.y, top, bottom, &t0, &t1))
         return;
     double last = fmin(stroke->steps, ceil(t1 * stroke->steps) + 1), last_x = -1, last_y = -1;
@@ -188,110 +189,111 @@ static void draw_stroke(struct pen *pen, struct world_scratch *scratch, const st
         double x = floor(stroke->from.x + t * stroke->way.x), y = floor(stroke->from.y + t * stroke->way.y);
         bool another = x < last_x || x > last_x || y < last_y || y > last_y;
         if (another && x >= 0 && x < width && y >= top && y < bottom)
-            dot(pen, scratch, (uint32_t)x, (uint32_t)y, pen->inverse ? 1 / depth : depth, colour);
+            dot(drawing, scratch, (uint32_t)x, (uint32_t)y, drawing->inverse ? 1 / depth : depth, colour);
         last_x = x;
         last_y = y;
     }
 }
 
 static void draw_band(void *context, uint32_t band, int worker) {
-    struct pen *pen = context;
-    uint32_t top = band * pen->band, bottom = top + pen->band, height = pen->job->film->height;
+    struct overlay_drawing *drawing = context;
+    uint32_t top = band * drawing->band, bottom = top + drawing->band, height = drawing->job->film->height;
     bottom = bottom < height ? bottom : height;
-    for (uint32_t box = 0; box < pen->count && !pool_cancelled(pen->pool); box++)
-        for (uint32_t i = 0; i < pen->stroke_count[box]; i++)
-            draw_stroke(pen, &pen->scratch[worker], &pen->strokes[(size_t)box * pen->room + i], top, bottom);
+    for (uint32_t box = 0; box < drawing->count && !pool_cancelled(drawing->pool); box++)
+        for (uint32_t i = 0; i < drawing->stroke_count[box]; i++)
+            draw_stroke(drawing, &drawing->scratch[worker], &drawing->strokes[(size_t)box * drawing->room + i], top,
+                        bottom);
 }
 
-static void draw_chunk(struct pen *pen) {
-    uint32_t height = pen->job->film->height;
-    if (pen->count > 0 && pool_run(pen->pool, pen->count, find_strokes, pen))
-        (void)pool_run(pen->pool, (height + pen->band - 1) / pen->band, draw_band, pen);
-    pen->count = 0;
+static void draw_chunk(struct overlay_drawing *drawing) {
+    uint32_t height = drawing->job->film->height;
+    if (drawing->count > 0 && pool_run(drawing->pool, drawing->count, find_strokes, drawing))
+        (void)pool_run(drawing->pool, (height + drawing->band - 1) / drawing->band, draw_band, drawing);
+    drawing->count = 0;
 }
 
-static void draw_box(struct pen *pen, const struct box *box) {
+static void draw_box(struct overlay_drawing *drawing, const struct box *box) {
     if (!vec3_finite(box->min) || !vec3_finite(box->max) || !(box->min.x <= box->max.x))
         return;
-    pen->boxes[pen->count++] = (struct boxed){*box, pen->colour};
-    pen->drawn++;
-    if (pen->count == CHUNK)
-        draw_chunk(pen);
+    drawing->boxes[drawing->count++] = (struct overlay_box){*box, drawing->colour};
+    drawing->drawn++;
+    if (drawing->count == CHUNK)
+        draw_chunk(drawing);
 }
 
-static bool stopped(const struct pen *pen) {
-    return (pen->drawn & 63) == 0 && pool_cancelled(pen->pool);
+static bool stopped(const struct overlay_drawing *drawing) {
+    return (drawing->drawn & 63) == 0 && pool_cancelled(drawing->pool);
 }
 
 /* --- what is drawn --- */
 
-static uint32_t step_for(const struct pen *pen, uint64_t count) {
-    return (uint32_t)((count + pen->request->limit - 1) / pen->request->limit);
+static uint32_t step_for(const struct overlay_drawing *drawing, uint64_t count) {
+    return (uint32_t)((count + drawing->request->limit - 1) / drawing->request->limit);
 }
 
-static void number_colour(struct pen *pen, uint64_t number) {
-    pen->colour = vec3_make(0.25 + 0.75 * random_unit(random_combine(number, 0)),
-                            0.25 + 0.75 * random_unit(random_combine(number, 1)),
-                            0.25 + 0.75 * random_unit(random_combine(number, 2)));
+static void number_colour(struct overlay_drawing *drawing, uint64_t number) {
+    drawing->colour = vec3_make(0.25 + 0.75 * random_unit(random_combine(number, 0)),
+                                0.25 + 0.75 * random_unit(random_combine(number, 1)),
+                                0.25 + 0.75 * random_unit(random_combine(number, 2)));
 }
 
 /* Boxes of one node have one colour, that of --aov node. */
-static void draw_boxes(struct pen *pen) {
-    const struct world *world = pen->job->world;
-    uint32_t step = step_for(pen, world->placed_count);
-    for (uint32_t i = 0; i < world->placed_count && !stopped(pen); i += step) {
-        number_colour(pen, placed_node(world, i)->serial + UINT64_C(1));
-        draw_box(pen, &world->boxes[i]);
+static void draw_boxes(struct overlay_drawing *drawing) {
+    const struct world *world = drawing->job->world;
+    uint32_t step = step_for(drawing, world->placed_count);
+    for (uint32_t i = 0; i < world->placed_count && !stopped(drawing); i += step) {
+        number_colour(drawing, placed_node(world, i)->serial + UINT64_C(1));
+        draw_box(drawing, &world->boxes[i]);
     }
 }
 
 /* From blue for few over green to red for many. */
-static void share_colour(struct pen *pen, double share) {
+static void share_colour(struct overlay_drawing *drawing, double share) {
     share = share > 1 ? 1 : share;
-    pen->colour = vec3_make(share, 1 - fabs(2 * share - 1), 1 - share);
+    drawing->colour = vec3_make(share, 1 - fabs(2 * share - 1), 1 - share);
 }
 
 /* Voxels that hold something. */
-static void draw_voxels(struct pen *pen) {
-    const struct grid *grid = &pen->job->world->accel.grid;
+static void draw_voxels(struct overlay_drawing *drawing) {
+    const struct grid *grid = &drawing->job->world->accel.grid;
     uint64_t count = (uint64_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
-    uint32_t step = step_for(pen, count);
-    pen->colour = vec3_all(1);
-    draw_box(pen, &grid->bounds);
-    for (uint64_t i = 0; i < count && !stopped(pen); i += step) {
+    uint32_t step = step_for(drawing, count);
+    drawing->colour = vec3_all(1);
+    draw_box(drawing, &grid->bounds);
+    for (uint64_t i = 0; i < count && !stopped(drawing); i += step) {
         uint32_t items = grid->cell_start[i + 1] - grid->cell_start[i];
         struct vec3 at = {(double)(i % grid->cells[0]), (double)(i / grid->cells[0] % grid->cells[1]),
                           (double)(i / grid->cells[0] / grid->cells[1])};
         struct box cell = {vec3_add(grid->bounds.min, vec3_mul(at, grid->cell_size)), {0, 0, 0}};
         cell.max = vec3_add(cell.min, grid->cell_size);
-        share_colour(pen, items / 8.0);
+        share_colour(drawing, items / 8.0);
         if (items > 0)
-            draw_box(pen, &cell);
+            draw_box(drawing, &cell);
     }
 }
 
 /* Inner nodes of the hierarchy: those near the root are red. */
-static void draw_tree(struct pen *pen) {
-    const struct box_tree *tree = &pen->job->world->accel.tree;
-    uint32_t step = step_for(pen, (uint64_t)tree->node_count * BOX_TREE_WIDTH);
-    pen->colour = vec3_all(1);
-    draw_box(pen, &tree->bounds);
-    for (uint32_t i = 0; i < tree->node_count && !stopped(pen); i += step) {
+static void draw_tree(struct overlay_drawing *drawing) {
+    const struct box_tree *tree = &drawing->job->world->accel.tree;
+    uint32_t step = step_for(drawing, (uint64_t)tree->node_count * BOX_TREE_WIDTH);
+    drawing->colour = vec3_all(1);
+    draw_box(drawing, &tree->bounds);
+    for (uint32_t i = 0; i < tree->node_count && !stopped(drawing); i += step) {
         const struct box_tree_node *node = &tree->nodes[i];
         for (int k = 0; k < BOX_TREE_WIDTH; k++) {
             if (node->child[k] == BOX_TREE_NONE || (node->child[k] & BOX_TREE_ITEM))
                 continue;
             struct box box = {{node->planes[0][0][k], node->planes[1][0][k], node->planes[2][0][k]},
                               {node->planes[0][1][k], node->planes[1][1][k], node->planes[2][1][k]}};
-            share_colour(pen, 1 - el_log2(1 + (double)node->child[k]) / 16);
-            draw_box(pen, &box);
+            share_colour(drawing, 1 - el_log2(1 + (double)node->child[k]) / 16);
+            draw_box(drawing, &box);
         }
     }
 }
 
 /* Leaves that hold something; the cell of a node is that of its parent, cut. */
-static void draw_halves(struct pen *pen) {
-    const struct kd_tree *tree = &pen->job->world->accel.kd_tree;
+static void draw_halves(struct overlay_drawing *drawing) {
+    const struct kd_tree *tree = &drawing->job->world->accel.kd_tree;
     struct {
         struct box cell;
         uint32_t node;
@@ -301,14 +303,14 @@ static void draw_halves(struct pen *pen) {
         return;
     stack[depth].cell = tree->bounds;
     stack[depth++].node = 0;
-    while (depth > 0 && !stopped(pen) && pen->drawn < pen->request->limit) {
+    while (depth > 0 && !stopped(drawing) && drawing->drawn < drawing->request->limit) {
         struct box cell = stack[--depth].cell, lower = cell, upper = cell;
         uint32_t number = stack[depth].node;
         const struct kd_node *node = &tree->nodes[number];
         if (node->axis == KD_LEAF) {
-            share_colour(pen, (double)node->count / 8);
+            share_colour(drawing, (double)node->count / 8);
             if (node->count > 0)
-                draw_box(pen, &cell);
+                draw_box(drawing, &cell);
             continue;
         }
         double *high = node->axis == 0 ? &lower.max.x : node->axis == 1 ? &lower.max.y : &lower.max.z;
@@ -321,64 +323,64 @@ static void draw_halves(struct pen *pen) {
     }
 }
 
-static void draw_cells(struct pen *pen) {
-    switch (pen->job->world->accel.kind) {
+static void draw_cells(struct overlay_drawing *drawing) {
+    switch (drawing->job->world->accel.kind) {
     case ACCEL_GRID:
-        draw_voxels(pen);
+        draw_voxels(drawing);
         return;
     case ACCEL_AUTO:
     case ACCEL_BVH:
-        draw_tree(pen);
+        draw_tree(drawing);
         return;
     case ACCEL_KDTREE:
-        draw_halves(pen);
+        draw_halves(drawing);
         return;
     case ACCEL_NONE:
         return;
     }
 }
 
-static void draw(struct pen *pen) {
-    switch (pen->request->kind) {
+static void draw(struct overlay_drawing *drawing) {
+    switch (drawing->request->kind) {
     case OVERLAY_NONE:
         return;
     case OVERLAY_OF_BOXES:
-        draw_boxes(pen);
+        draw_boxes(drawing);
         return;
     case OVERLAY_OF_GRID:
-        draw_cells(pen);
+        draw_cells(drawing);
         return;
     }
 }
 
-static void give_back(struct pen *pen) {
-    for (int i = 0; pen->scratch && i < pool_workers(pen->pool); i++)
-        world_scratch_destroy(&pen->scratch[i]);
-    mem_free(pen->scratch);
-    mem_free(pen->depths);
-    mem_free(pen->boxes);
-    mem_free(pen->strokes);
-    mem_free(pen->stroke_count);
+static void give_back(struct overlay_drawing *drawing) {
+    for (int i = 0; drawing->scratch && i < pool_workers(drawing->pool); i++)
+        world_scratch_destroy(&drawing->scratch[i]);
+    mem_free(drawing->scratch);
+    mem_free(drawing->depths);
+    mem_free(drawing->boxes);
+    mem_free(drawing->strokes);
+    mem_free(drawing->stroke_count);
 }
 
-static bool make_room(struct pen *pen) {
-    const struct film *film = pen->job->film;
-    uint32_t cell = pen->request->cell, workers = (uint32_t)pool_workers(pen->pool);
+static bool make_room(struct overlay_drawing *drawing) {
+    const struct film *film = drawing->job->film;
+    uint32_t cell = drawing->request->cell, workers = (uint32_t)pool_workers(drawing->pool);
     uint32_t rows = (film->height + cell - 1) / cell, share = (rows + 4 * workers - 1) / (4 * workers);
-    pen->cells_across = (film->width + cell - 1) / cell;
-    pen->band = share * cell;
-    pen->room = EDGES * (pen->flat ? 1u : PIECES) * (pen->pair ? 2u : 1u);
-    size_t cells = (size_t)rows * pen->cells_across;
-    pen->scratch = mem_alloc_zero(workers, sizeof *pen->scratch);
-    pen->depths = mem_alloc_zero(cells, sizeof *pen->depths);
-    pen->boxes = mem_alloc_zero(CHUNK, sizeof *pen->boxes);
-    pen->strokes = mem_alloc_zero((size_t)CHUNK * pen->room, sizeof *pen->strokes);
-    pen->stroke_count = mem_alloc_zero(CHUNK, sizeof *pen->stroke_count);
-    bool ok = pen->scratch && pen->depths && pen->boxes && pen->strokes && pen->stroke_count;
+    drawing->cells_across = (film->width + cell - 1) / cell;
+    drawing->band = share * cell;
+    drawing->room = EDGES * (drawing->planar ? 1u : PIECES) * (drawing->pair ? 2u : 1u);
+    size_t cells = (size_t)rows * drawing->cells_across;
+    drawing->scratch = mem_alloc_zero(workers, sizeof *drawing->scratch);
+    drawing->depths = mem_alloc_zero(cells, sizeof *drawing->depths);
+    drawing->boxes = mem_alloc_zero(CHUNK, sizeof *drawing->boxes);
+    drawing->strokes = mem_alloc_zero((size_t)CHUNK * drawing->room, sizeof *drawing->strokes);
+    drawing->stroke_count = mem_alloc_zero(CHUNK, sizeof *drawing->stroke_count);
+    bool ok = drawing->scratch && drawing->depths && drawing->boxes && drawing->strokes && drawing->stroke_count;
     for (uint32_t i = 0; ok && i < workers; i++)
-        ok = world_scratch_init(&pen->scratch[i], pen->job->world);
+        ok = world_scratch_init(&drawing->scratch[i], drawing->job->world);
     for (size_t i = 0; ok && i < cells; i++)
-        pen->depths[i] = -1;
+        drawing->depths[i] = -1;
     return ok;
 }
 
@@ -387,7 +389,7 @@ bool overlay_lines(const struct render_job *job, struct pool *pool, const struct
     const struct film *film = job->film;
     struct camera camera = job->camera;
     char warning[256];
-    struct pen pen = {.job = job, .pool = pool, .request = request, .lines = lines};
+    struct overlay_drawing drawing = {.job = job, .pool = pool, .request = request, .lines = lines};
     for (size_t i = 0; i < (size_t)film->width * film->height; i++) {
         lines[i][0] = lines[i][1] = lines[i][2] = 0;
         lines[i][3] = 1;
@@ -396,20 +398,20 @@ bool overlay_lines(const struct render_job *job, struct pool *pool, const struct
         return true;
     if (job->settings.motion.moves)
         camera = camera_at(&job->camera, &job->settings.motion, shutter_time(job->settings.shutter, 0));
-    if (!camera_prepare(&camera, &job->settings, job->width, job->height, &pen.camera, warning, error))
+    if (!camera_prepare(&camera, &job->settings, job->width, job->height, &drawing.camera, warning, error))
         return false;
-    enum projection projection = pen.camera.lens.projection;
-    pen.inverse = projection == PROJECTION_PERSPECTIVE;
-    pen.flat = pen.inverse || projection == PROJECTION_ORTHOGRAPHIC;
-    pen.pair = pen.camera.lens.stereo == STEREO_SIDE;
-    bool ok = make_room(&pen);
+    enum projection projection = drawing.camera.lens.projection;
+    drawing.inverse = projection == PROJECTION_PERSPECTIVE;
+    drawing.planar = drawing.inverse || projection == PROJECTION_ORTHOGRAPHIC;
+    drawing.pair = drawing.camera.lens.stereo == STEREO_SIDE;
+    bool ok = make_room(&drawing);
     if (ok) {
-        draw(&pen);
-        draw_chunk(&pen);
+        draw(&drawing);
+        draw_chunk(&drawing);
     }
     for (int i = 0; ok && i < pool_workers(pool); i++)
-        ok = !pen.scratch[i].failed;
-    give_back(&pen);
+        ok = !drawing.scratch[i].failed;
+    give_back(&drawing);
     if (!ok)
         return error_no_memory(error, "the lines over a picture");
     return !pool_cancelled(pool) || error_set(error, ERROR_CANCELLED, "stopped while rendering");
@@ -417,7 +419,7 @@ bool overlay_lines(const struct render_job *job, struct pool *pool, const struct
 
 void overlay_lay(struct film *film, float (*lines)[4]) {
     for (size_t i = 0; i < (size_t)film->width * film->height; i++)
-        overlay_ink(lines[i], film->pixels[i].rgb);
+        overlay_blend(lines[i], film->pixels[i].rgb);
 }
 
 bool overlay_draw(const struct render_job *job, struct pool *pool, struct error *error) {

@@ -14,13 +14,13 @@ struct overlay_request {
 };
 
 /* Finds the lines of a wish for the film of a job, whose pixels are not looked at. Lines are seen through the middle of
- * the lens when the shutter opens; what lies behind a surface is drawn faintly. lines: by pixel what overlay_ink does
+ * the lens when the shutter opens; what lies behind a surface is drawn faintly. lines: by pixel what overlay_blend does
  * to it. The same for any number of threads. False: no memory, or cancelled. */
 bool overlay_lines(const struct render_job *job, struct pool *pool, const struct overlay_request *request,
                    float (*lines)[4], struct error *error);
 
 /* One pixel under its lines: the share of it that is still seen, and the light of the lines. */
-static inline void overlay_ink(const float lines[4], float rgb[3]) {
+static inline void overlay_blend(const float lines[4], float rgb[3]) {
     for (int c = 0; c < 3; c++)
         rgb[c] = lines[3] * rgb[c] + lines[c];
 }

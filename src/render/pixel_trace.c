@@ -129,7 +129,7 @@ static void end_ray(struct pixel_trace *pixel_trace, const struct observed_end *
     ray->cut = end->evaluated ? RAY_FOLLOWED : RAY_TOO_WEAK;
     ray->seen = end->seen;
     ray->left = end->left;
-    ray->veil = end->veil;
+    ray->in_scattered = end->in_scattered;
     ray->brings = end->brings;
     pixel_trace->ray = ray->parent;
 }

@@ -73,7 +73,7 @@ struct pixel_trace_ray {
     struct pixel_trace_ray *first, *last; /* those that it sent on */
     double part;                          /* of their weight, where several share one */
     /* What it brings: left * seen + veil. */
-    struct vec3 seen, left, veil, brings;
+    struct vec3 seen, left, in_scattered, brings;
     struct pixel_trace_ray *parent, *next;
 };
 

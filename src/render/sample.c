@@ -3,8 +3,8 @@
 #include "render/integrator.h"
 
 /* The camera at a ray's time. */
-bool run_prepare_at(const struct render_job *job, double ray_time, struct camera_frame *out, char warning[256],
-                    struct error *error) {
+bool renderer_prepare_at(const struct render_job *job, double ray_time, struct camera_frame *out, char warning[256],
+                         struct error *error) {
     const struct settings *settings = &job->settings;
     struct camera camera = job->camera;
     if (settings->motion.moves)
@@ -12,21 +12,22 @@ bool run_prepare_at(const struct render_job *job, double ray_time, struct camera
     return camera_prepare(&camera, settings, job->width, job->height, out, warning, error);
 }
 
-static struct vec3 trace_from_eye(struct run *run, struct worker *worker, struct ray *ray, double share, uint64_t key) {
+static struct vec3 trace_from_eye(struct renderer *renderer, struct worker *worker, struct ray *ray, double share,
+                                  uint64_t key) {
     ray->footprint.spread *= share;
     ray->footprint.width *= share;
     worker->camera_rays++;
-    if (run->media_by_ray) {
-        media_around(run->job->world, ray->origin, ray->time, run->closed, run->closed_count, &worker->scratch,
-                     &worker->ray_media);
+    if (renderer->media_by_ray) {
+        media_around(renderer->job->world, ray->origin, ray->time, renderer->closed, renderer->closed_count,
+                     &worker->scratch, &worker->ray_media);
         worker->state.eye_media = &worker->ray_media;
     }
-    return integrator_radiance(run, worker, ray, key);
+    return integrator_radiance(renderer, worker, ray, key);
 }
 
 /* Through a lens, in another projection, for two eyes. */
-static struct vec3 sample_through(struct run *run, struct worker *worker, const struct camera_frame *camera, double x,
-                                  double y, double time, double share) {
+static struct vec3 sample_through(struct renderer *renderer, struct worker *worker, const struct camera_frame *camera,
+                                  double x, double y, double time, double share) {
     const struct sampler sampler = worker->state.sampler;
     struct sample2 place = sampler_lens(&sampler);
     struct ray ray, right_ray;
@@ -34,89 +35,90 @@ static struct vec3 sample_through(struct run *run, struct worker *worker, const 
     if (!camera_ray_through(camera, x, y, place, anaglyph ? -1 : 0, &ray))
         return vec3_all(0);
     ray.time = time;
-    struct vec3 colour = trace_from_eye(run, worker, &ray, share, sampler.key);
+    struct vec3 colour = trace_from_eye(renderer, worker, &ray, share, sampler.key);
     if (!anaglyph)
         return colour;
     (void)camera_ray_through(camera, x, y, place, 1, &right_ray);
     right_ray.time = time;
-    struct vec3 right = trace_from_eye(run, worker, &right_ray, share, sampler_right_eye(&sampler));
+    struct vec3 right = trace_from_eye(renderer, worker, &right_ray, share, sampler_right_eye(&sampler));
     return vec3_make(colour.x, right.y, right.z);
 }
 
-static void begin_sample(const struct run *run, struct worker *worker, const struct pixel_sample *place) {
-    const struct settings *settings = &run->job->settings;
-    uint64_t pixel = (uint64_t)place->y * run->job->width + (uint64_t)place->x;
+static void begin_sample(const struct renderer *renderer, struct worker *worker, const struct pixel_sample *place) {
+    const struct settings *settings = &renderer->job->settings;
+    uint64_t pixel = (uint64_t)place->y * renderer->job->width + (uint64_t)place->x;
     worker->state.sampler = sampler_make(settings->seed, pixel, place->number, (uint32_t)settings->samples);
 }
 
 /* Of the pixel's width, what a sample stands for: its footprint on textures. */
-static double sample_share(const struct run *run, uint64_t number) {
-    return number > 0 ? 1.0 / run->job->settings.samples : 1;
+static double sample_share(const struct renderer *renderer, uint64_t number) {
+    return number > 0 ? 1.0 / renderer->job->settings.samples : 1;
 }
 
-static struct vec3 sample_alone(struct run *run, struct worker *worker, const struct pixel_sample *place) {
-    begin_sample(run, worker, place);
-    double x = (double)place->x + place->dx, y = (double)place->y + place->dy, share = sample_share(run, place->number);
-    const struct camera_frame *camera = &run->camera;
-    double time = run->timed ? sampler_time(&worker->state.sampler) : 0;
-    if (run->timed && run->job->settings.motion.moves) {
+static struct vec3 sample_alone(struct renderer *renderer, struct worker *worker, const struct pixel_sample *place) {
+    begin_sample(renderer, worker, place);
+    double x = (double)place->x + place->dx, y = (double)place->y + place->dy,
+           share = sample_share(renderer, place->number);
+    const struct camera_frame *camera = &renderer->camera;
+    double time = renderer->timed ? sampler_time(&worker->state.sampler) : 0;
+    if (renderer->timed && renderer->job->settings.motion.moves) {
         char warning[256];
         struct error error;
         camera = &worker->camera;
-        if (!run_prepare_at(run->job, time, &worker->camera, warning, &error))
+        if (!renderer_prepare_at(renderer->job, time, &worker->camera, warning, &error))
             return vec3_all(0); /* the one moment in which a view turns through zero */
     }
     if (!camera_is_plain(camera))
-        return sample_through(run, worker, camera, x, y, time, share);
+        return sample_through(renderer, worker, camera, x, y, time, share);
     struct ray ray = camera_ray(camera, x, y);
     ray.time = time;
-    return trace_from_eye(run, worker, &ray, share, worker->state.sampler.key);
+    return trace_from_eye(renderer, worker, &ray, share, worker->state.sampler.key);
 }
 
-struct vec3 run_sample(struct run *run, struct worker *worker, const struct pixel_sample *place) {
+struct vec3 renderer_sample(struct renderer *renderer, struct worker *worker, const struct pixel_sample *place) {
     observe_sample_begin(worker->state.observer, place);
-    struct vec3 colour = sample_alone(run, worker, place);
+    struct vec3 colour = sample_alone(renderer, worker, place);
     observe_sample_end(worker->state.observer, place, colour);
     return colour;
 }
 
-/* The samples of a batch, as run_sample would bring them. What the camera rays meet is looked for together. */
-void run_sample_batch(struct run *run, struct worker *worker) {
+/* The samples of a batch, as renderer_sample would bring them. What the camera rays meet is looked for together. */
+void renderer_sample_batch(struct renderer *renderer, struct worker *worker) {
     struct batch *batch = &worker->batch;
-    if (!run->together || batch->count == 1) {
+    if (!renderer->together || batch->count == 1) {
         for (uint32_t i = 0; i < batch->count; i++)
-            batch->colours[i] = run_sample(run, worker, &batch->places[i]);
+            batch->colours[i] = renderer_sample(renderer, worker, &batch->places[i]);
         return;
     }
     struct ray_packet *packet = &batch->packet;
     packet->count = batch->count;
-    packet->origin = run->camera.eye;
+    packet->origin = renderer->camera.eye;
     packet->t_min = packet->time = 0;
     for (uint32_t i = 0; i < batch->count; i++) {
         const struct pixel_sample *place = &batch->places[i];
-        struct ray ray = camera_ray(&run->camera, (double)place->x + place->dx, (double)place->y + place->dy);
+        struct ray ray = camera_ray(&renderer->camera, (double)place->x + place->dx, (double)place->y + place->dy);
         packet->direction[0][i] = ray.direction.x;
         packet->direction[1][i] = ray.direction.y;
         packet->direction[2][i] = ray.direction.z;
         packet->t_max[i] = ray.t_max;
     }
     ray_packet_pad(packet);
-    uint64_t met = world_nearest_packet(run->job->world, packet, &worker->scratch, batch->answers);
+    uint64_t met = world_nearest_packet(renderer->job->world, packet, &worker->scratch, batch->answers);
     worker->camera_rays += batch->count;
     for (uint32_t i = 0; i < batch->count; i++) {
         const struct pixel_sample *place = &batch->places[i];
-        struct ray ray = camera_ray(&run->camera, (double)place->x + place->dx, (double)place->y + place->dy);
-        double share = sample_share(run, place->number);
+        struct ray ray = camera_ray(&renderer->camera, (double)place->x + place->dx, (double)place->y + place->dy);
+        double share = sample_share(renderer, place->number);
         ray.footprint.spread *= share;
         ray.footprint.width *= share;
-        begin_sample(run, worker, place);
-        batch->colours[i] = integrator_radiance_met(run, worker, &ray, met >> i & 1 ? &batch->answers[i] : NULL,
+        begin_sample(renderer, worker, place);
+        batch->colours[i] = integrator_radiance_met(renderer, worker, &ray, met >> i & 1 ? &batch->answers[i] : NULL,
                                                     worker->state.sampler.key);
     }
 }
 
 /* The first sample has number 0, at the centre or the corner of the pixel. */
-struct pixel_sample run_first_place(const struct run *run, int64_t x, int64_t y) {
-    double at = run->job->settings.pixel_corner ? 0 : 0.5;
+struct pixel_sample renderer_first_sample(const struct renderer *renderer, int64_t x, int64_t y) {
+    double at = renderer->job->settings.pixel_corner ? 0 : 0.5;
     return (struct pixel_sample){x, y, at, at, 0};
 }

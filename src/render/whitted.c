@@ -185,8 +185,8 @@ static struct vec3 clamp_light(struct integrator_state *state, struct vec3 colou
 }
 
 /* What a ray brings that has met `hit`, or nothing: NULL. */
-static struct vec3 bring(struct integrator_state *state, const struct ray *ray, const struct hit *hit,
-                         const struct path *path) {
+static struct vec3 incident_radiance(struct integrator_state *state, const struct ray *ray, const struct hit *hit,
+                                     const struct path *path) {
     const struct world *world = state->job->world;
     bool met = hit != NULL;
     struct light_hit lamp_hit;
@@ -205,7 +205,7 @@ static struct vec3 bring(struct integrator_state *state, const struct ray *ray, 
         path = &dimmed;
     }
 
-    struct vec3 colour = {0, 0, 0}, seen, veil = {0, 0, 0};
+    struct vec3 colour = {0, 0, 0}, seen, in_scattered = {0, 0, 0};
     bool looked = !(path->weight < path->cutoff);
     if (!looked)
         left = vec3_all(0);
@@ -217,11 +217,11 @@ static struct vec3 bring(struct integrator_state *state, const struct ray *ray, 
         colour = sky_colour(&world->sky, vec3_normalize(ray->direction), ray->footprint.spread);
     seen = colour;
     if (affected) {
-        veil = vec3_mul(air.source, vec3_sub(vec3_all(1), left));
-        colour = vec3_add(vec3_mul(colour, left), veil);
+        in_scattered = vec3_mul(air.source, vec3_sub(vec3_all(1), left));
+        colour = vec3_add(vec3_mul(colour, left), in_scattered);
     }
     colour = clamp_light(state, colour, light_limit);
-    observe_ray_end(state->observer, &(struct observed_end){looked, seen, left, veil, colour});
+    observe_ray_end(state->observer, &(struct observed_end){looked, seen, left, in_scattered, colour});
     return colour;
 }
 
@@ -230,7 +230,7 @@ static struct vec3 trace(struct integrator_state *state, const struct ray *ray, 
     if (integrator_cancelled(state))
         return vec3_all(0); /* deep paths through glass grow exponentially */
     bool met = world_nearest(state->job->world, ray, state->scratch, &hit);
-    return bring(state, ray, met ? &hit : NULL, path);
+    return incident_radiance(state, ray, met ? &hit : NULL, path);
 }
 
 struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
@@ -251,5 +251,5 @@ struct vec3 whitted_trace_met(const struct whitted *whitted, struct integrator_s
     if (met)
         world_describe(state->job->world, &from_eye, met->placed, &met->crossing, &hit);
     const struct path path = {.key = key, .weight = 1, .cutoff = whitted->cutoff};
-    return clamp_light(state, bring(state, &from_eye, met ? &hit : NULL, &path), (double)FLT_MAX);
+    return clamp_light(state, incident_radiance(state, &from_eye, met ? &hit : NULL, &path), (double)FLT_MAX);
 }

@@ -4,7 +4,7 @@
 #ifndef GRAY_RENDER_WHITTED_H
 #define GRAY_RENDER_WHITTED_H
 
-#include "render/run.h"
+#include "render/render_internal.h"
 
 /* Of one worker. */
 struct whitted_worker {
@@ -24,13 +24,16 @@ struct whitted {
 
 /* See render/integrator.h. `whitted` is zero. */
 struct film_record whitted_record(void);
-bool whitted_create(struct whitted *whitted, struct run *run, int workers, struct render_statistics *statistics,
-                    struct error *error);
+bool whitted_create(struct whitted *whitted, struct renderer *renderer, int workers,
+                    struct render_statistics *statistics, struct error *error);
 void whitted_destroy(struct whitted *whitted);
-bool whitted_render(struct whitted *whitted, struct run *run, struct worker *worker, const struct rectangle *part);
-bool whitted_refines(const struct run *run, struct vec3 a, struct vec3 b);
-void whitted_repeat(const struct whitted *whitted, struct run *run, struct worker *worker, int64_t x, int64_t y);
-void whitted_add_statistics(const struct whitted *whitted, const struct run *run, struct render_statistics *out);
+bool whitted_render(struct whitted *whitted, struct renderer *renderer, struct worker *worker,
+                    const struct rectangle *part);
+bool whitted_refines(const struct renderer *renderer, struct vec3 a, struct vec3 b);
+void whitted_repeat(const struct whitted *whitted, struct renderer *renderer, struct worker *worker, int64_t x,
+                    int64_t y);
+void whitted_add_statistics(const struct whitted *whitted, const struct renderer *renderer,
+                            struct render_statistics *out);
 
 /* The colour a camera ray brings, clamped to the range of float; key: the random key of this pixel and sample. */
 struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,

@@ -11,30 +11,30 @@
 #include <math.h>
 
 /* Before the first tile; without photons there is no map. */
-static bool send_photons(struct whitted *whitted, struct run *run, int workers, struct render_statistics *out,
+static bool send_photons(struct whitted *whitted, struct renderer *renderer, int workers, struct render_statistics *out,
                          struct error *error) {
     struct photon_statistics photons = {0};
-    if (run->job->settings.caustics.photons == 0)
+    if (renderer->job->settings.caustics.photons == 0)
         return true;
-    bool ok = photons_make(&whitted->caustics, run->job, run->pool, &photons, error);
+    bool ok = photons_make(&whitted->caustics, renderer->job, renderer->pool, &photons, error);
     out->photons += photons.sent;
     out->photons_landed += photons.landed;
     out->photon_rays += photons.rays;
     out->photon_seconds += photons.seconds;
     out->photon_map_seconds += photons.map_seconds;
     for (int i = 0; i < workers; i++)
-        run->workers[i].state.caustics = &whitted->caustics;
+        renderer->workers[i].state.caustics = &whitted->caustics;
     return ok;
 }
 
-bool whitted_create(struct whitted *whitted, struct run *run, int workers, struct render_statistics *statistics,
-                    struct error *error) {
-    whitted->cutoff = cutoff_weight(run->job);
-    whitted->full = run->job->settings.full || run->timed || run->camera.lens.aperture > 0;
+bool whitted_create(struct whitted *whitted, struct renderer *renderer, int workers,
+                    struct render_statistics *statistics, struct error *error) {
+    whitted->cutoff = cutoff_weight(renderer->job);
+    whitted->full = renderer->job->settings.full || renderer->timed || renderer->camera.lens.aperture > 0;
     whitted->workers = mem_alloc_zero((size_t)workers, sizeof *whitted->workers);
     if (!whitted->workers)
         return error_no_memory(error, "the workers of a render");
-    return send_photons(whitted, run, workers, statistics, error);
+    return send_photons(whitted, renderer, workers, statistics, error);
 }
 
 void whitted_destroy(struct whitted *whitted) {
@@ -42,8 +42,9 @@ void whitted_destroy(struct whitted *whitted) {
     mem_free(whitted->workers);
 }
 
-void whitted_add_statistics(const struct whitted *whitted, const struct run *run, struct render_statistics *out) {
-    for (int i = 0; whitted->workers && i < pool_workers(run->pool); i++)
+void whitted_add_statistics(const struct whitted *whitted, const struct renderer *renderer,
+                            struct render_statistics *out) {
+    for (int i = 0; whitted->workers && i < pool_workers(renderer->pool); i++)
         out->marked_pixels += whitted->workers[i].marked;
 }
 
@@ -70,15 +71,15 @@ static double squared_distance(struct vec3 a, struct vec3 b) {
     return vec3_dot(d, d);
 }
 
-bool whitted_refines(const struct run *run, struct vec3 a, struct vec3 b) {
-    const struct tone *tone = &run->job->settings.tone;
-    return squared_distance(toned(tone, a), toned(tone, b)) > run->job->settings.side_tolerance;
+bool whitted_refines(const struct renderer *renderer, struct vec3 a, struct vec3 b) {
+    const struct tone *tone = &renderer->job->settings.tone;
+    return squared_distance(toned(tone, a), toned(tone, b)) > renderer->job->settings.side_tolerance;
 }
 
 /* A part of a tile at work. */
 struct part {
     const struct whitted *whitted;
-    struct run *run;
+    struct renderer *renderer;
     struct worker *worker;
     struct whitted_worker *own;
     struct rectangle area; /* with the rim, as far as that is in the picture */
@@ -90,7 +91,7 @@ static struct vec3 *first_at(const struct part *part, int64_t x, int64_t y) {
 }
 
 static bool is_marked(const struct part *part, int64_t x, int64_t y) {
-    const struct settings *settings = &part->run->job->settings;
+    const struct settings *settings = &part->renderer->job->settings;
     const struct rectangle *area = &part->area;
     struct vec3 own = toned(&settings->tone, *first_at(part, x, y));
     for (int dy = -1; dy <= 1; dy++) {
@@ -112,9 +113,10 @@ static bool is_marked(const struct part *part, int64_t x, int64_t y) {
 /* --- samples of a pixel --- */
 
 /* Whether the first sample is the one in the middle of N x N. */
-static bool first_counts(const struct run *run) {
-    const struct settings *settings = &run->job->settings;
-    return (settings->samples & 1) && !settings->pixel_corner && run->camera.lens.aperture == 0 && !run->timed;
+static bool first_counts(const struct renderer *renderer) {
+    const struct settings *settings = &renderer->job->settings;
+    return (settings->samples & 1) && !settings->pixel_corner && renderer->camera.lens.aperture == 0 &&
+           !renderer->timed;
 }
 
 /* Sample k of N x N. */
@@ -124,9 +126,9 @@ static struct pixel_sample sample_of_grid(int64_t x, int64_t y, int k, int n) {
 
 /* Mean of the N x N samples; where one of them is the first sample again it is not traced twice. */
 static struct vec3 all_samples(const struct part *part, int64_t x, int64_t y, const struct vec3 *first) {
-    struct run *run = part->run;
-    int n = run->job->settings.samples;
-    bool reuse = first_counts(run);
+    struct renderer *renderer = part->renderer;
+    int n = renderer->job->settings.samples;
+    bool reuse = first_counts(renderer);
     struct batch *batch = &part->worker->batch;
     struct vec3 sum = {0, 0, 0};
     int centre = reuse ? n / 2 * n + n / 2 : -1;
@@ -135,11 +137,11 @@ static struct vec3 all_samples(const struct part *part, int64_t x, int64_t y, co
         batch->count = 0;
         for (int k = begin; k < end; k++) {
             if (k == centre && !first)
-                batch->places[batch->count++] = run_first_place(run, x, y);
+                batch->places[batch->count++] = renderer_first_sample(renderer, x, y);
             else if (k != centre)
                 batch->places[batch->count++] = sample_of_grid(x, y, k, n);
         }
-        run_sample_batch(run, part->worker);
+        renderer_sample_batch(renderer, part->worker);
         uint32_t next = 0;
         for (int k = begin; k < end; k++)
             sum = vec3_add(sum, k == centre && first ? *first : batch->colours[next++]);
@@ -147,19 +149,20 @@ static struct vec3 all_samples(const struct part *part, int64_t x, int64_t y, co
     return vec3_scale(sum, 1 / ((double)n * (double)n));
 }
 
-void whitted_repeat(const struct whitted *whitted, struct run *run, struct worker *worker, int64_t x, int64_t y) {
-    const struct film *film = run->job->film;
-    int n = run->job->settings.samples;
+void whitted_repeat(const struct whitted *whitted, struct renderer *renderer, struct worker *worker, int64_t x,
+                    int64_t y) {
+    const struct film *film = renderer->job->film;
+    int n = renderer->job->settings.samples;
     bool marked = film->marked[(size_t)(y - film->y0) * film->width + (size_t)(x - film->x0)];
-    bool has_first = !whitted->full || run->job->settings.keep_first, reuse = first_counts(run);
-    struct pixel_sample place = run_first_place(run, x, y);
+    bool has_first = !whitted->full || renderer->job->settings.keep_first, reuse = first_counts(renderer);
+    struct pixel_sample place = renderer_first_sample(renderer, x, y);
     if (has_first || reuse)
-        (void)run_sample(run, worker, &place);
-    for (int k = 0; marked && k < n * n && !run_stopped(run, worker); k++) {
+        (void)renderer_sample(renderer, worker, &place);
+    for (int k = 0; marked && k < n * n && !renderer_stopped(renderer, worker); k++) {
         if (reuse && k == n / 2 * n + n / 2)
             continue;
         place = sample_of_grid(x, y, k, n);
-        (void)run_sample(run, worker, &place);
+        (void)renderer_sample(renderer, worker, &place);
     }
 }
 
@@ -172,7 +175,7 @@ static void store(float out[3], struct vec3 colour) {
 }
 
 static void finish_pixel(const struct part *part, int64_t x, int64_t y) {
-    struct film *film = part->run->job->film;
+    struct film *film = part->renderer->job->film;
     size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
     const struct vec3 *first = part->has_first ? first_at(part, x, y) : NULL;
     bool full = part->whitted->full, marked = full || is_marked(part, x, y);
@@ -183,9 +186,9 @@ static void finish_pixel(const struct part *part, int64_t x, int64_t y) {
     part->own->marked += marked;
     observe_pixel(part->worker->state.observer,
                   &(struct observed_pixel){.colour = colour,
-                                           .samples = marked ? part->run->job->settings.samples : 0,
+                                           .samples = marked ? part->renderer->job->settings.samples : 0,
                                            .full = full,
-                                           .first_counts = !marked || first_counts(part->run)});
+                                           .first_counts = !marked || first_counts(part->renderer)});
 }
 
 /* The first samples of a small square go together. */
@@ -197,16 +200,16 @@ static void sample_patch(const struct part *part, int64_t x0, int64_t y0) {
     batch->count = 0;
     for (int64_t y = y0; y < y0 + PATCH && y < part->area.y1; y++) {
         for (int64_t x = x0; x < x0 + PATCH && x < part->area.x1; x++)
-            batch->places[batch->count++] = run_first_place(part->run, x, y);
+            batch->places[batch->count++] = renderer_first_sample(part->renderer, x, y);
     }
-    run_sample_batch(part->run, part->worker);
+    renderer_sample_batch(part->renderer, part->worker);
     for (uint32_t i = 0; i < batch->count; i++)
         *first_at(part, batch->places[i].x, batch->places[i].y) = batch->colours[i];
 }
 
 /* For a viewer: the first pass as far as it is, and what will be sampled again. */
 static void show_marks(const struct part *part, const struct rectangle *tile) {
-    struct film *film = part->run->job->film;
+    struct film *film = part->renderer->job->film;
     for (int64_t y = tile->y0; y < tile->y1; y++) {
         for (int64_t x = tile->x0; x < tile->x1; x++) {
             size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
@@ -216,10 +219,11 @@ static void show_marks(const struct part *part, const struct rectangle *tile) {
     }
 }
 
-bool whitted_render(struct whitted *whitted, struct run *run, struct worker *worker, const struct rectangle *tile) {
-    const struct settings *settings = &run->job->settings;
+bool whitted_render(struct whitted *whitted, struct renderer *renderer, struct worker *worker,
+                    const struct rectangle *tile) {
+    const struct settings *settings = &renderer->job->settings;
     struct part part = {.whitted = whitted,
-                        .run = run,
+                        .renderer = renderer,
                         .worker = worker,
                         .own = &whitted->workers[worker->index],
                         .has_first = !whitted->full || settings->keep_first};
@@ -227,26 +231,27 @@ bool whitted_render(struct whitted *whitted, struct run *run, struct worker *wor
     struct rectangle area = {tile->x0 - rim, tile->y0 - rim, tile->x1 + rim, tile->y1 + rim};
     area.x0 = area.x0 < 0 ? 0 : area.x0;
     area.y0 = area.y0 < 0 ? 0 : area.y0;
-    area.x1 = area.x1 > run->job->width ? run->job->width : area.x1;
-    area.y1 = area.y1 > run->job->height ? run->job->height : area.y1;
+    area.x1 = area.x1 > renderer->job->width ? renderer->job->width : area.x1;
+    area.y1 = area.y1 > renderer->job->height ? renderer->job->height : area.y1;
     part.area = area;
     for (int64_t y = area.y0; y < area.y1 && part.has_first; y += PATCH) {
         for (int64_t x = area.x0; x < area.x1; x += PATCH) {
-            if (run_stopped(run, worker))
+            if (renderer_stopped(renderer, worker))
                 return false;
             sample_patch(&part, x, y);
         }
-        run_tile_goes_on(run, worker, 0, fmin(1, (double)(y + PATCH - area.y0) / (double)(area.y1 - area.y0)));
+        renderer_tile_goes_on(renderer, worker, 0,
+                              fmin(1, (double)(y + PATCH - area.y0) / (double)(area.y1 - area.y0)));
     }
     if (settings->show_marks && part.has_first)
         show_marks(&part, tile);
     for (int64_t y = tile->y0; y < tile->y1; y++) {
         for (int64_t x = tile->x0; x < tile->x1; x++) {
-            if (run_stopped(run, worker))
+            if (renderer_stopped(renderer, worker))
                 return false;
             finish_pixel(&part, x, y);
         }
-        run_tile_goes_on(run, worker, 1, (double)(y + 1 - tile->y0) / (double)(tile->y1 - tile->y0));
+        renderer_tile_goes_on(renderer, worker, 1, (double)(y + 1 - tile->y0) / (double)(tile->y1 - tile->y0));
     }
     return true;
 }

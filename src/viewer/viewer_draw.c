@@ -48,7 +48,7 @@ static void tone_pixel(const struct viewer *viewer, const struct tone *tone, siz
     float rgb[3];
     memcpy(rgb, viewer->display.light + 3 * pixel, sizeof rgb);
     if (viewer->overlay.has_lines)
-        overlay_ink(viewer->overlay.lines[pixel], rgb);
+        overlay_blend(viewer->overlay.lines[pixel], rgb);
     for (size_t c = 0; c < 3; c++)
         viewer->display.image[3 * pixel + c] = png_write_byte(tone_apply(tone, (double)rgb[c]));
 }

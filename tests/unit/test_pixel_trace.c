@@ -30,10 +30,10 @@ static void check_ray(struct tally *tally, const struct pixel_trace_ray *ray) {
     tally->limits += ray->cut == RAY_OVER_LIMIT;
     if (!ray->begun)
         return;
-    struct vec3 whole = vec3_add(vec3_mul(ray->seen, ray->left), ray->veil);
+    struct vec3 whole = vec3_add(vec3_mul(ray->seen, ray->left), ray->in_scattered);
     tally->worst = fmax(tally->worst, difference(whole, ray->brings));
-    tally->fogged += ray->veil.x != 0;
-    tally->absorbed += ray->left.x < 1 && ray->veil.x == 0;
+    tally->fogged += ray->in_scattered.x != 0;
+    tally->absorbed += ray->left.x < 1 && ray->in_scattered.x == 0;
     struct vec3 holes = {0, 0, 0}, surface = vec3_add(ray->direct, ray->bsdf.emission), lights = ray->ambient;
     for (const struct pixel_trace_light *light = ray->lights; light; light = light->next) {
         lights = vec3_add(lights, light->colour);

@@ -1,7 +1,7 @@
 /* What the files of a render share: tiles (render.c), samples (sample.c), integrators (integrator.h), the time estimate
  * (cost_prepass.c), render layers (layers.c). Nobody else includes it. */
-#ifndef GRAY_RENDER_RUN_H
-#define GRAY_RENDER_RUN_H
+#ifndef GRAY_RENDER_RENDER_INTERNAL_H
+#define GRAY_RENDER_RENDER_INTERNAL_H
 
 #include "render/camera.h"
 #include "render/integrator_state.h"
@@ -34,7 +34,7 @@ struct worker {
     uint64_t tile_begun, first_ended; /* processor time, while a time estimate is requested */
 };
 
-struct run {
+struct renderer {
     const struct render_job *job;
     struct pool *pool;
     struct camera_frame camera;
@@ -65,30 +65,31 @@ struct rectangle {
 };
 
 /* The camera at a ray's time. */
-bool run_prepare_at(const struct render_job *job, double ray_time, struct camera_frame *out, char warning[256],
-                    struct error *error);
+bool renderer_prepare_at(const struct render_job *job, double ray_time, struct camera_frame *out, char warning[256],
+                         struct error *error);
 /* The first sample has number 0, at the centre or the corner of the pixel. */
-struct pixel_sample run_first_place(const struct run *run, int64_t x, int64_t y);
-struct vec3 run_sample(struct run *run, struct worker *worker, const struct pixel_sample *place);
-/* The samples of a batch, as run_sample would bring them. What the camera rays meet is looked for together. */
-void run_sample_batch(struct run *run, struct worker *worker);
-static inline bool run_stopped(const struct run *run, const struct worker *worker) {
-    return pool_cancelled(run->pool) || worker->scratch.failed;
+struct pixel_sample renderer_first_sample(const struct renderer *renderer, int64_t x, int64_t y);
+struct vec3 renderer_sample(struct renderer *renderer, struct worker *worker, const struct pixel_sample *place);
+/* The samples of a batch, as renderer_sample would bring them. What the camera rays meet is looked for together. */
+void renderer_sample_batch(struct renderer *renderer, struct worker *worker);
+static inline bool renderer_stopped(const struct renderer *renderer, const struct worker *worker) {
+    return pool_cancelled(renderer->pool) || worker->scratch.failed;
 }
 
 /* Before the first tile; false: stopped. Does nothing if no time estimate is requested. */
-bool run_cost_prepass(struct run *run);
-void run_tile_begins(struct run *run, struct worker *worker, uint32_t tile, double share); /* that share of it */
+bool renderer_cost_prepass(struct renderer *renderer);
+void renderer_tile_begins(struct renderer *renderer, struct worker *worker, uint32_t tile,
+                          double share); /* that share of it */
 /* So much of its first pass (0) or its second is done. */
-void run_tile_goes_on(struct run *run, struct worker *worker, int pass, double part);
-void run_tile_ends(struct run *run, struct worker *worker);
-void run_report_estimate(struct run *run);
-void run_report_end(struct run *run); /* all tiles are done */
+void renderer_tile_goes_on(struct renderer *renderer, struct worker *worker, int pass, double part);
+void renderer_tile_ends(struct renderer *renderer, struct worker *worker);
+void renderer_report_estimate(struct renderer *renderer);
+void renderer_report_end(struct renderer *renderer); /* all tiles are done */
 
 /* No further tile is to be begun. */
-bool run_is_enough(const struct run *run);
+bool renderer_is_done(const struct renderer *renderer);
 
 /* A pool_function: the layers of a tile that is done. */
-void run_layer_item(void *context, uint32_t tile, int worker);
+void renderer_layer_item(void *context, uint32_t tile, int worker);
 
 #endif
