@@ -70,7 +70,7 @@ bool gltf_accessor_read_whole(struct gltf *g, uint32_t index, const struct gltf_
 char *gltf_decode_uri(const struct gltf *g, const char *uri);
 bool gltf_decode_data(const struct gltf *g, const char *uri, uint8_t **out, size_t *size, const char *where);
 
-/* gltf_look.c */
+/* gltf_material.c */
 bool gltf_read_materials(struct gltf *g);
 
 #endif

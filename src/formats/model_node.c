@@ -110,16 +110,16 @@ static bool cut(struct scene *scene, const struct model_texture *map, const stru
     return true;
 }
 
-static bool raise_map(struct scene *scene, const struct model_texture *map, enum material_kind kind, double height,
-                      const struct material **top, struct error *error) {
-    struct relief relief = {.kind = kind, .height = height, .relative = kind == MATERIAL_BUMP};
+static bool add_bump_map(struct scene *scene, const struct model_texture *map, enum material_kind kind, double height,
+                         const struct material **top, struct error *error) {
+    struct bump bump = {.kind = kind, .height = height, .relative = kind == MATERIAL_BUMP};
     struct texture_image image;
     bool there;
     if (!find_map(scene, map, &image, &there, error) || !there)
         return !there;
     struct material *m = scene_material(scene, kind, *top, error);
-    relief.texture = texture_keep(&scene->arena, texture_image(&image, NULL), error);
-    if (!m || !relief.texture || !material_raise(m, &relief, &scene->arena, error))
+    bump.texture = texture_keep(&scene->arena, texture_image(&image, NULL), error);
+    if (!m || !bump.texture || !material_add_bump(m, &bump, &scene->arena, error))
         return false;
     *top = m;
     return true;
@@ -149,8 +149,8 @@ static const struct material *with_maps(struct scene *scene, const struct model_
               (!shiny || cover(scene, &from->map_ks, INPUT_KS, or_white(from->ks), &top, error)) &&
               cover(scene, &from->map_ke, INPUT_EMISSION, or_white(from->ke), &top, error) &&
               cut(scene, &from->map_d, &top, error) &&
-              raise_map(scene, &from->map_bump, MATERIAL_BUMP, RELIEF_HEIGHT * from->map_bump.strength, &top, error) &&
-              raise_map(scene, &from->map_normal, MATERIAL_NORMAL, from->map_normal.strength, &top, error);
+              add_bump_map(scene, &from->map_bump, MATERIAL_BUMP, BUMP_HEIGHT * from->map_bump.strength, &top, error) &&
+              add_bump_map(scene, &from->map_normal, MATERIAL_NORMAL, from->map_normal.strength, &top, error);
     return ok ? top : NULL;
 }
 

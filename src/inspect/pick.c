@@ -182,8 +182,8 @@ static void describe_material(const struct material *material, struct picked *ou
     }
     pick_copy_name(out->material, words);
     out->material_serial = base->serial;
-    for (int part = 0; part < LOOK_PARTS; part++)
-        look_part_get(base, (enum look_part)part, out->look[part]);
+    for (int part = 0; part < MATERIAL_PART_PARTS; part++)
+        material_part_get(base, (enum material_part)part, out->look[part]);
 }
 
 static bool describe(struct picking *p, const struct node *root, const struct hit *hit, int32_t up,

@@ -23,24 +23,24 @@ static void text(struct text_writer *writer, const char *name, const char *value
 }
 
 static void json_link(struct text_writer *writer, const struct pixel_trace_link *link) {
-    const struct surface_look *look = &link->look;
+    const struct surface_inputs *inputs = &link->inputs;
     text_writer_print(writer, "{\"kind\":\"%s\"", inspect_material(link->material));
     if (link->material->name && link->material->name[0])
         text(writer, "name", link->material->name);
-    vector(writer, "kd", look->kd);
-    vector(writer, "ks", look->ks);
-    number(writer, "shininess", look->shininess);
-    number(writer, "reflect", look->reflect);
-    number(writer, "refract", look->refract);
-    number(writer, "ior", look->ior);
-    number(writer, "roughness", look->roughness);
-    number(writer, "opacity", look->opacity);
-    vector(writer, "emission", look->emission);
-    vector(writer, "absorption", look->absorption);
-    vector(writer, "normal", look->normal);
-    flag(writer, "two_sided", look->two_sided);
-    flag(writer, "unlit", look->unlit);
-    flag(writer, "fresnel", look->fresnel);
+    vector(writer, "kd", inputs->kd);
+    vector(writer, "ks", inputs->ks);
+    number(writer, "shininess", inputs->shininess);
+    number(writer, "reflect", inputs->reflect);
+    number(writer, "refract", inputs->refract);
+    number(writer, "ior", inputs->ior);
+    number(writer, "roughness", inputs->roughness);
+    number(writer, "opacity", inputs->opacity);
+    vector(writer, "emission", inputs->emission);
+    vector(writer, "absorption", inputs->absorption);
+    vector(writer, "normal", inputs->normal);
+    flag(writer, "two_sided", inputs->two_sided);
+    flag(writer, "unlit", inputs->unlit);
+    flag(writer, "fresnel", inputs->fresnel);
     text_writer_print(writer, "}");
 }
 

@@ -47,8 +47,8 @@ static void changed_flag(struct text_state *t, const char *name, bool now, bool 
 }
 
 /* One link: what it has changed. */
-static void print_link(struct text_state *t, const struct pixel_trace_link *link, const struct surface_look *before) {
-    const struct surface_look *look = &link->look;
+static void print_link(struct text_state *t, const struct pixel_trace_link *link, const struct surface_inputs *before) {
+    const struct surface_inputs *inputs = &link->inputs;
     indent(t, 1);
     text_writer_print(t->writer, "%s", inspect_material(link->material));
     if (link->material->name && link->material->name[0]) {
@@ -58,20 +58,20 @@ static void print_link(struct text_state *t, const struct pixel_trace_link *link
     }
     text_writer_print(t->writer, ":");
     t->changed = false;
-    changed_triple(t, "kd", look->kd, before->kd);
-    changed_triple(t, "ks", look->ks, before->ks);
-    changed_number(t, "shininess", look->shininess, before->shininess);
-    changed_number(t, "reflect", look->reflect, before->reflect);
-    changed_number(t, "refract", look->refract, before->refract);
-    changed_number(t, "ior", look->ior, before->ior);
-    changed_number(t, "roughness", look->roughness, before->roughness);
-    changed_number(t, "opacity", look->opacity, before->opacity);
-    changed_triple(t, "emission", look->emission, before->emission);
-    changed_triple(t, "absorption", look->absorption, before->absorption);
-    changed_triple(t, "normal", look->normal, before->normal);
-    changed_flag(t, "two-sided", look->two_sided, before->two_sided);
-    changed_flag(t, "unlit", look->unlit, before->unlit);
-    changed_flag(t, "fresnel", look->fresnel, before->fresnel);
+    changed_triple(t, "kd", inputs->kd, before->kd);
+    changed_triple(t, "ks", inputs->ks, before->ks);
+    changed_number(t, "shininess", inputs->shininess, before->shininess);
+    changed_number(t, "reflect", inputs->reflect, before->reflect);
+    changed_number(t, "refract", inputs->refract, before->refract);
+    changed_number(t, "ior", inputs->ior, before->ior);
+    changed_number(t, "roughness", inputs->roughness, before->roughness);
+    changed_number(t, "opacity", inputs->opacity, before->opacity);
+    changed_triple(t, "emission", inputs->emission, before->emission);
+    changed_triple(t, "absorption", inputs->absorption, before->absorption);
+    changed_triple(t, "normal", inputs->normal, before->normal);
+    changed_flag(t, "two-sided", inputs->two_sided, before->two_sided);
+    changed_flag(t, "unlit", inputs->unlit, before->unlit);
+    changed_flag(t, "fresnel", inputs->fresnel, before->fresnel);
     text_writer_print(t->writer, !t->changed ? " changes nothing here\n" : "\n");
 }
 
@@ -167,12 +167,12 @@ static void print_ray(struct text_state *t, const struct pixel_trace_ray *ray);
 
 /* The parts of what the surface shows, in the order in which they are added. */
 static void print_surface(struct text_state *t, const struct pixel_trace_ray *ray) {
-    struct surface_look nothing = {.opacity = 1, .normal = ray->hit.normal};
-    const struct surface_look *before = &nothing;
+    struct surface_inputs nothing = {.opacity = 1, .normal = ray->hit.normal};
+    const struct surface_inputs *before = &nothing;
     print_hit(t, ray);
     for (const struct pixel_trace_link *link = ray->links; link; link = link->next) {
         print_link(t, link, before);
-        before = &link->look;
+        before = &link->inputs;
     }
     if (ray->shaded) {
         print_shading(t, ray);

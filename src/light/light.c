@@ -188,8 +188,8 @@ static struct light_sample surface_sample(const struct light *light, const struc
                                  .intensity = vec3_scale(light->colour, weight)};
 }
 
-static struct light_sample flat_sample(const struct light *light, const struct light_context *context,
-                                       struct sample2 place) {
+static struct light_sample planar_sample(const struct light *light, const struct light_context *context,
+                                         struct sample2 place) {
     struct vec3 target = light_target_at(light, context, place);
     double weight = context->by_angle ? intensity_of(context->seen.angle)
                                       : weight_of_area(context->weight, context->axis, vec3_sub(context->from, target));
@@ -211,9 +211,9 @@ struct light_sample light_sample(const struct light *light, const struct light_c
         return delta_sample(light, context, place);
     switch (light->kind) {
     case LIGHT_PARALLELOGRAM:
-        return flat_sample(light, context, place);
+        return planar_sample(light, context, place);
     case LIGHT_DISC:
-        sample = flat_sample(light, context, place);
+        sample = planar_sample(light, context, place);
         if (context->by_angle && light_is_beside_disc(light, sample.target.at))
             sample.radiance = sample.intensity = vec3_all(0);
         return sample;
@@ -231,7 +231,7 @@ struct light_sample light_sample(const struct light *light, const struct light_c
     return delta_sample(light, context, place);
 }
 
-static double flat_pdf(const struct light_context *context, const struct light_hit *hit) {
+static double planar_pdf(const struct light_context *context, const struct light_hit *hit) {
     if (context->by_angle)
         return 1 / context->seen.angle;
     return pdf_of(weight_of_area(context->weight, context->axis, vec3_sub(context->from, hit->point)));
@@ -244,7 +244,7 @@ double light_pdf(const struct light *light, const struct light_context *context,
     switch (light->kind) {
     case LIGHT_PARALLELOGRAM:
     case LIGHT_DISC:
-        return flat_pdf(context, hit);
+        return planar_pdf(context, hit);
     case LIGHT_SPHERE:
         return pdf_of(context->weight);
     case LIGHT_MESH:
@@ -548,8 +548,8 @@ double light_emitter_unit(const struct light_emitter *emitter) {
 }
 
 /* A place on a disc across; *height: of the ball over it, in radii. */
-static struct vec3 round_place(const struct light_emitter *emitter, struct vec3 right, struct vec3 up,
-                               struct sample2 place, double *height) {
+static struct vec3 round_position(const struct light_emitter *emitter, struct vec3 right, struct vec3 up,
+                                  struct sample2 place, double *height) {
     struct sample2 round = sample_disc(place);
     double radius = emitter->light->radius, squared = 1 - round.x * round.x - round.y * round.y;
     *height = squared > 0 ? sqrt(squared) : 0;
@@ -566,10 +566,10 @@ static struct vec3 emitter_place(const struct light_emitter *emitter, struct vec
     case LIGHT_PARALLELOGRAM:
         return vec3_add_scaled(vec3_add_scaled(light->corner, light->edge1, part.x), light->edge2, part.y);
     case LIGHT_DISC:
-        return round_place(emitter, emitter->right, emitter->up, part, &height);
+        return round_position(emitter, emitter->right, emitter->up, part, &height);
     case LIGHT_SPHERE: /* as it is seen along the direction */
         frame_tangents(direction, &right, &up);
-        at = round_place(emitter, right, up, part, &height);
+        at = round_position(emitter, right, up, part, &height);
         return light->emits && height > 0 ? vec3_add_scaled(at, direction, light->radius * height) : at;
     case LIGHT_POINT:
     case LIGHT_DIRECTIONAL:
@@ -609,7 +609,7 @@ struct light_photon light_photon(const struct light_emitter *emitter, struct vec
     return photon;
 }
 
-double light_photon_fading(const struct light *light, double length) {
+double light_photon_attenuation(const struct light *light, double length) {
     if (!light_is_delta(light))
         return 1;
     switch (light->kind) {
@@ -658,7 +658,7 @@ bool light_is_seen(const struct light *light) {
 unsigned light_properties(const struct light *light) {
     switch (light->kind) {
     case LIGHT_POINT:
-        return LIGHT_HAS_POSITION | (light->fading == FADING_RANGE ? LIGHT_HAS_RANGE : 0U);
+        return LIGHT_HAS_POSITION | (light->attenuation == ATTENUATION_RANGE ? LIGHT_HAS_RANGE : 0U);
     case LIGHT_PARALLELOGRAM:
         return LIGHT_HAS_POSITION | LIGHT_HAS_EDGES;
     case LIGHT_DIRECTIONAL:

@@ -35,7 +35,7 @@ enum { LIGHT_KIND_COUNT = LIST_COUNT(LIGHT_KINDS) };
 #define LIGHT_NONE UINT32_MAX /* in the place of a light's number */
 
 /* COEFFICIENTS: 1 / (c0 + c1 d + c2 d^2); RANGE: 1 - d / range, 0 beyond; INVERSE_SQUARE: intensity / d^2. */
-enum light_fading { FADING_COEFFICIENTS, FADING_RANGE, FADING_INVERSE_SQUARE };
+enum light_attenuation { ATTENUATION_COEFFICIENTS, ATTENUATION_RANGE, ATTENUATION_INVERSE_SQUARE };
 
 struct arena;
 struct error;
@@ -51,7 +51,7 @@ struct light {
     struct vec3 corner, edge1, edge2;
     struct vec3 colour; /* of a lamp: its radiance */
     double falloff[3];
-    enum light_fading fading;
+    enum light_attenuation attenuation;
     double range, intensity;
     struct vec3 direction;          /* unit: where a directional light or a spot shines to, the normal of a disc */
     double cos_inner, cos_outer;    /* spot: full light within the inner angle, none beyond the outer */
@@ -209,7 +209,7 @@ struct light_photon {
  * area across the direction, the mean over places. Fluxes are those of classic intensities (docs/light.md). */
 struct light_photon light_photon(const struct light_emitter *emitter, struct vec3 direction, struct sample2 place);
 /* Times this is the power of a photon after a path of `length`. */
-double light_photon_fading(const struct light *light, double length);
+double light_photon_attenuation(const struct light *light, double length);
 
 /* --- listings and editors --- */
 

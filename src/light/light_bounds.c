@@ -30,9 +30,9 @@ static void work_out(struct light_bounds *b) {
 
 bool light_bounds_finish(struct light_bounds *b) {
     b->steady = fmin(b->steady, max);
-    b->fading = fmin(b->fading, max);
+    b->attenuation = fmin(b->attenuation, max);
     work_out(b);
-    return b->steady + b->fading > 0 && vec3_finite(b->box.min) && vec3_finite(b->box.max);
+    return b->steady + b->attenuation > 0 && vec3_finite(b->box.min) && vec3_finite(b->box.max);
 }
 
 /* --- unions --- */
@@ -71,15 +71,15 @@ struct light_bounds light_bounds_join(const struct light_bounds *a, const struct
                                .cos_theta_e = fmin(a->cos_theta_e, b->cos_theta_e),
                                .two_sided = a->two_sided || b->two_sided,
                                .steady = fmin(a->steady + b->steady, max),
-                               .fading = fmin(a->fading + b->fading, max),
+                               .attenuation = fmin(a->attenuation + b->attenuation, max),
                                .range = fmax(a->range, b->range)};
     struct vec3 axis_b = b->axis;
     if (a->two_sided && b->two_sided && vec3_dot(a->axis, b->axis) < 0)
         axis_b = vec3_negate(axis_b);
     out.axis = join_cones(a->axis, a->cos_theta_o, axis_b, b->cos_theta_o, &out.cos_theta_o);
-    double both = a->fading + b->fading;
+    double both = a->attenuation + b->attenuation;
     for (int i = 0; i < 3 && both > 0; i++)
-        out.falloff[i] = a->falloff[i] * (a->fading / both) + b->falloff[i] * (b->fading / both);
+        out.falloff[i] = a->falloff[i] * (a->attenuation / both) + b->falloff[i] * (b->attenuation / both);
     work_out(&out);
     return out;
 }
@@ -105,10 +105,10 @@ static double strength_at(const struct light_bounds *b, struct vec3 point, doubl
             return 0;
         steady *= 1 - nearest / b->range;
     }
-    if (!(b->fading > 0))
+    if (!(b->attenuation > 0))
         return steady;
     double fall = b->falloff[0] + b->falloff[1] * distance + b->falloff[2] * distance * distance;
-    return steady + number_clamped(b->fading / fall, max);
+    return steady + number_clamped(b->attenuation / fall, max);
 }
 
 double light_bounds_importance(const struct light_bounds *b, struct vec3 point, struct vec3 normal) {

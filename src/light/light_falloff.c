@@ -7,12 +7,12 @@ static const double strongest = 1e200;
 
 double light_attenuation(const struct light *light, double distance) {
     const double *c = light->falloff;
-    switch (light->fading) {
-    case FADING_RANGE:
+    switch (light->attenuation) {
+    case ATTENUATION_RANGE:
         return distance < light->range ? 1 - distance / light->range : 0;
-    case FADING_INVERSE_SQUARE:
+    case ATTENUATION_INVERSE_SQUARE:
         return number_clamped(light->intensity / (distance * distance), strongest);
-    case FADING_COEFFICIENTS:
+    case ATTENUATION_COEFFICIENTS:
         break;
     }
     if (c[0] == 0 && c[1] == 0 && c[2] == 0)
@@ -35,23 +35,23 @@ double light_cone(const struct light *light, struct vec3 from_light) {
 void light_bounds_fade(const struct light *light, struct light_bounds *out) {
     double strength = light_magnitude(light->colour);
     const double *c = light->falloff;
-    switch (light->fading) {
-    case FADING_RANGE:
+    switch (light->attenuation) {
+    case ATTENUATION_RANGE:
         out->steady = strength;
         out->range = light->range;
         return;
-    case FADING_INVERSE_SQUARE:
-        out->fading = strength * fabs(light->intensity);
+    case ATTENUATION_INVERSE_SQUARE:
+        out->attenuation = strength * fabs(light->intensity);
         out->falloff[2] = 1;
         return;
-    case FADING_COEFFICIENTS:
+    case ATTENUATION_COEFFICIENTS:
         break;
     }
     bool constant = c[1] == 0 && c[2] == 0;
     if (constant)
         out->steady = c[0] != 0 ? strength / fabs(c[0]) : strength;
     else
-        out->fading = strength;
+        out->attenuation = strength;
     for (int i = 0; i < 3 && !constant; i++)
         out->falloff[i] = fabs(c[i]);
 }

@@ -55,7 +55,7 @@ static inline struct box light_box_around(struct vec3 centre, struct vec3 half) 
 void light_bounds_fade(const struct light *light, struct light_bounds *out);
 /* A light of that classic intensity at distance 1, which falls with the square of the distance. */
 static inline void light_bounds_emit(double intensity, struct light_bounds *out) {
-    out->fading = intensity;
+    out->attenuation = intensity;
     out->falloff[2] = 1;
 }
 /* A flat lamp of an area over pi, by the cosine (light_flat.c). */

@@ -47,7 +47,7 @@ static double box_measure(const struct box *box) {
 }
 
 static double cost_of(const struct light_bounds *b) {
-    return (b->steady + b->fading) * cone_measure(b) * box_measure(&b->box);
+    return (b->steady + b->attenuation) * cone_measure(b) * box_measure(&b->box);
 }
 
 struct bin {
@@ -196,7 +196,7 @@ static bool build_shares(struct light_sampler *out, const struct item *items, ui
     bool by_power = out->choice == LIGHT_CHOICE_POWER;
     for (uint32_t i = 0; i < placed; i++) {
         candidates[i] = items[i].light;
-        until[i] = by_power ? items[i].bounds.steady + items[i].bounds.fading : 1;
+        until[i] = by_power ? items[i].bounds.steady + items[i].bounds.attenuation : 1;
         sum += until[i];
     }
     double mean = placed > 0 ? sum / placed : 1;

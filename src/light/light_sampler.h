@@ -23,7 +23,7 @@ struct light_bounds {
     bool two_sided; /* ... and likewise about the opposite of the axis */
     /* What a white surface facing it shows at distance d, on average over colours and visible sides:
      * steady + fading / (falloff[0] + falloff[1] d + falloff[2] d^2), nothing beyond `range`. */
-    double steady, fading, falloff[3], range;
+    double steady, attenuation, falloff[3], range;
     struct vec3 centre; /* from here on worked out of what stands above: a ball around the box */
     double radius, sin_theta_o;
 };

@@ -67,14 +67,14 @@ static double running_shares(double *weights, uint32_t count) {
     return sum;
 }
 
-struct filling {
+struct sky_rows {
     const struct sky *sky;
     double *cells;
     uint32_t rows, columns;
 };
 
 static void fill_row(void *context, uint32_t row, int worker) {
-    const struct filling *f = context;
+    const struct sky_rows *f = context;
     (void)worker;
     for (uint32_t column = 0; column < f->columns; column++)
         f->cells[(size_t)row * f->columns + column] = cell_luminance(f->sky, column, row, f->columns, f->rows);
@@ -87,7 +87,7 @@ const struct sky_table *sky_table_build(const struct sky *sky, struct arena *are
     double *until = arena_alloc_array(arena, (size_t)rows * columns, sizeof *until);
     if (!table || !row_until || !until)
         return NULL;
-    struct filling filling = {sky, until, rows, columns};
+    struct sky_rows filling = {sky, until, rows, columns};
     (void)pool_run(pool, rows, fill_row, &filling); /* cancelled: whoever renders next sees it */
     double total = 0;
     for (size_t i = 0; i < (size_t)rows * columns; i++)

@@ -3,7 +3,7 @@
  * made the surface, so they stick to the object. */
 #include "material/material.h"
 
-#include "material/relief.h"
+#include "material/bump.h"
 
 const struct material *material_origin(const struct material *material) {
     return material->origin ? material->origin : material;
@@ -24,7 +24,7 @@ struct material material_flat(const struct material *material) {
     return out;
 }
 
-static void copy_numbers(const struct phong *numbers, struct surface_look *out) {
+static void copy_numbers(const struct phong *numbers, struct surface_inputs *out) {
     out->kd = numbers->kd;
     out->ks = numbers->ks;
     out->shininess = numbers->shininess;
@@ -52,7 +52,7 @@ static void read_number(const struct texture *texture, struct texture_reader *re
         *out = texture_read_scalar(texture, reader);
 }
 
-void material_look(const struct material *material, const struct hit *hit, struct surface_look *out) {
+void material_inputs_at(const struct material *material, const struct hit *hit, struct surface_inputs *out) {
     const struct texture *const *inputs = material->inputs;
     struct texture_reader reader;
     copy_numbers(numbers_of(material), out);
@@ -67,26 +67,26 @@ void material_look(const struct material *material, const struct hit *hit, struc
     read_number(inputs[INPUT_ROUGHNESS], &reader, &out->roughness);
     read_colour(inputs[INPUT_EMISSION], &reader, &out->emission);
     read_number(inputs[INPUT_OPACITY], &reader, &out->opacity);
-    if (material->relief)
-        relief_turn(material->relief, hit, &out->normal);
+    if (material->bump)
+        bump_turn_normal(material->bump, hit, &out->normal);
 }
 
-void material_look_told(const struct material *material, const struct hit *hit, struct surface_look *out,
-                        material_told *told, void *context) {
+void material_inputs_observe(const struct material *material, const struct hit *hit, struct surface_inputs *out,
+                             material_observer *observer, void *context) {
     const struct material *chain[MATERIAL_DEPTH];
     int depth = 0;
-    for (const struct material *link = told ? material : NULL; link && depth < MATERIAL_DEPTH; link = link->base)
+    for (const struct material *link = observer ? material : NULL; link && depth < MATERIAL_DEPTH; link = link->base)
         chain[depth++] = link;
     while (depth > 0) {
-        material_look(chain[--depth], hit, out);
-        told(context, chain[depth], out);
+        material_inputs_at(chain[--depth], hit, out);
+        observer(context, chain[depth], out);
     }
-    if (!told)
-        material_look(material, hit, out);
+    if (!observer)
+        material_inputs_at(material, hit, out);
 }
 
-bool material_has_relief(const struct material *material) {
-    return material->relief != NULL;
+bool material_has_bump(const struct material *material) {
+    return material->bump != NULL;
 }
 
 bool material_has_holes(const struct material *material) {
@@ -97,7 +97,7 @@ bool material_has_image(const struct material *material) {
     for (int i = 0; i < INPUT_COUNT; i++)
         if (material->inputs[i] && material->inputs[i]->has_image)
             return true;
-    return material_has_relief(material);
+    return material_has_bump(material);
 }
 
 bool material_is_transparent(const struct material *material, double *ior) {

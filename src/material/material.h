@@ -1,7 +1,8 @@
 /* Materials: a flat set of inputs, each a number or a texture, and flags. A material is made as a base or derived from
  * another one, its base: derived, it reads the numbers of the base at the end of that chain and has the same textures
- * but for the input that was replaced or mixed (material_inputs.h). Evaluated once per hit into a struct surface_look.
- * Immutable, in the arena of the script; images are shared assets. A chain is at most MATERIAL_DEPTH long. */
+ * but for the input that was replaced or mixed (material_inputs.h). Evaluated once per hit into a struct
+ * surface_inputs. Immutable, in the arena of the script; images are shared assets. A chain is at most MATERIAL_DEPTH
+ * long. */
 #ifndef GRAY_MATERIAL_MATERIAL_H
 #define GRAY_MATERIAL_MATERIAL_H
 
@@ -36,10 +37,10 @@ enum { MATERIAL_KIND_COUNT = LIST_COUNT(MATERIAL_KINDS) };
 enum specular_kind { SPECULAR_KINDS(LIST_MEMBER) };
 
 /* The default height: white is this fraction of the size of the image on the surface above black. */
-#define RELIEF_HEIGHT 0.02
+#define BUMP_HEIGHT 0.02
 
 /* A texture that turns the normal, over those below it. */
-struct relief {
+struct bump {
     enum material_kind kind; /* MATERIAL_BUMP or MATERIAL_NORMAL */
     /* Of a bump: white over black, in units of the object; `relative`, of one image alone: of its size on the surface.
      * Of a normal map: factor of the slopes. */
@@ -49,7 +50,7 @@ struct relief {
      * alone, along those of the image. */
     const struct texture *texture;
     bool from_above; /* the shape's v counts from the top (material_mapping.h) */
-    const struct relief *below;
+    const struct bump *below;
 };
 
 struct material {
@@ -61,7 +62,7 @@ struct material {
     struct material *older;                    /* the one created before it, or NULL */
     const char *name;                          /* for messages; may be NULL */
     const struct texture *inputs[INPUT_COUNT]; /* NULL: the number of the origin */
-    const struct relief *relief;               /* or NULL */
+    const struct bump *bump;                   /* or NULL */
     double metal;                              /* of MATERIAL_METAL: what it mirrors at most */
     enum material_input changed;               /* of MATERIAL_IMAGE */
     bool is_metal, fresnel;
@@ -69,7 +70,7 @@ struct material {
 };
 
 /* The inputs at a hit; material_eval turns them into a BSDF. */
-struct surface_look {
+struct surface_inputs {
     struct vec3 kd, ks;
     double shininess, reflect, refract, ior;
     bool has_ior, two_sided;
@@ -87,17 +88,17 @@ struct surface_look {
 /* A copy that refers to no other material: the numbers of the base at the end of its chain are its own. Tables of
  * worlds hold such copies; material_emission and material_emission_bound ask for the authored one. */
 struct material material_flat(const struct material *material);
-void material_look(const struct material *material, const struct hit *hit, struct surface_look *out);
-/* The same; `told` (or NULL) is called for every material of the chain, from the base on, with its inputs. */
-typedef void material_told(void *context, const struct material *link, const struct surface_look *look);
-void material_look_told(const struct material *material, const struct hit *hit, struct surface_look *out,
-                        material_told *told, void *context);
+void material_inputs_at(const struct material *material, const struct hit *hit, struct surface_inputs *out);
+/* The same; `observer` (or NULL) is called for every material of the chain, from the base on, with its inputs. */
+typedef void material_observer(void *context, const struct material *link, const struct surface_inputs *inputs);
+void material_inputs_observe(const struct material *material, const struct hit *hit, struct surface_inputs *out,
+                             material_observer *observer, void *context);
 /* The base at the end of its chain, as it was made: what the world has copied of it (material_mapping.h) has the
  * numbers of that. */
 const struct material *material_origin(const struct material *material);
 /* What hits must know for it: the footprint in pattern space; where bumps rise (hit->raise). */
 bool material_has_image(const struct material *material);
-bool material_has_relief(const struct material *material);
+bool material_has_bump(const struct material *material);
 bool material_has_holes(const struct material *material); /* its opacity may be below 1 */
 /* Whether light passes into the solid (refract may be above 0, or Fresnel), and its index. */
 bool material_is_transparent(const struct material *material, double *ior);

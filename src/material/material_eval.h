@@ -1,5 +1,5 @@
-/* From a hit to its surface: the inputs of the material (material_look), the side it is seen from, the boundary between
- * two media with Fresnel's shares, and the lobes of all this. */
+/* From a hit to its surface: the inputs of the material (material_inputs_at), the side it is seen from, the boundary
+ * between two media with Fresnel's shares, and the lobes of all this. */
 #ifndef GRAY_MATERIAL_MATERIAL_EVAL_H
 #define GRAY_MATERIAL_MATERIAL_EVAL_H
 
@@ -9,10 +9,10 @@
 /* What the picture says about all surfaces, and who listens. All zero: the defaults. */
 struct material_context {
     enum specular_kind specular;
-    bool ambient_plain;    /* the ambient colour is not multiplied by kd */
-    bool total_reflection; /* what cannot be refracted is reflected; else it is lost */
-    material_told *told;   /* hears of every link of `authored`, or NULL */
-    void *told_to;
+    bool ambient_plain;          /* the ambient colour is not multiplied by kd */
+    bool total_reflection;       /* what cannot be refracted is reflected; else it is lost */
+    material_observer *observer; /* hears of every link of `authored`, or NULL */
+    void *observer_context;
     const struct material *authored; /* of the material, where told is set: the one that the scene has */
 };
 

@@ -64,13 +64,13 @@ bool material_cut(struct material *material, const struct texture_image *image, 
     return cover && material_multiply(material, INPUT_OPACITY, cover, arena, error);
 }
 
-bool material_raise(struct material *material, const struct relief *relief, struct arena *arena, struct error *error) {
-    struct relief *own = arena_alloc(arena, sizeof *own);
+bool material_add_bump(struct material *material, const struct bump *bump, struct arena *arena, struct error *error) {
+    struct bump *own = arena_alloc(arena, sizeof *own);
     if (!own)
         return error_no_memory(error, "a bump map");
-    *own = *relief;
-    own->below = material->relief;
-    material->relief = own;
+    *own = *bump;
+    own->below = material->bump;
+    material->bump = own;
     return true;
 }
 
@@ -111,7 +111,7 @@ bool material_mix_metal(struct material *material, const struct texture *metalne
            put(material, INPUT_KS, texture_mix(colour, material_input(material, INPUT_KS), share), arena, error);
 }
 
-/* The formulas of formats/gltf_look.c, point by point. */
+/* The formulas of formats/gltf_material.c, point by point. */
 bool material_split_metal(struct material *material, const struct texture_image *image, double metalness,
                           double roughness, double f0, struct arena *arena, struct error *error) {
     const struct texture *picture = NULL, *white = texture_keep(arena, texture_number(1), error);

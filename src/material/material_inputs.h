@@ -23,8 +23,8 @@ bool material_cover(struct material *material, enum material_input input, const 
 /* Holes where the image is black, or by its alpha (ALPHA_ALONE); cutoff > 0: all or nothing, from there on. */
 bool material_cut(struct material *material, const struct texture_image *image, double cutoff, struct arena *arena,
                   struct error *error);
-/* `relief` over what turns the normal already; its `below` is set. */
-bool material_raise(struct material *material, const struct relief *relief, struct arena *arena, struct error *error);
+/* `bump` over what turns the normal already; its `below` is set. */
+bool material_add_bump(struct material *material, const struct bump *bump, struct arena *arena, struct error *error);
 /* The share `metalness` of kd colours the highlight and the mirror instead, in the place of that share of ks. */
 bool material_mix_metal(struct material *material, const struct texture *metalness, struct arena *arena,
                         struct error *error);

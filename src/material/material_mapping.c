@@ -75,21 +75,21 @@ static const struct texture *texture_on(struct material_mapping *mapping, const 
 }
 
 /* Normals count along the coordinates of the shape, so theirs change on every layout. */
-static const struct relief *relief_on(struct material_mapping *mapping, const struct relief *relief,
-                                      enum surface_layout layout) {
-    const struct relief *on = known(mapping, relief, layout);
+static const struct bump *bump_has_mapping(struct material_mapping *mapping, const struct bump *bump,
+                                           enum surface_layout layout) {
+    const struct bump *on = known(mapping, bump, layout);
     if (on)
         return on;
-    struct relief *own = arena_alloc(mapping->arena, sizeof *own);
+    struct bump *own = arena_alloc(mapping->arena, sizeof *own);
     if (!own)
         return NULL;
-    *own = *relief;
+    *own = *bump;
     own->from_above = layout != LAYOUT_UV;
-    own->texture = texture_on(mapping, relief->texture, layout);
-    if (relief->below)
-        own->below = relief_on(mapping, relief->below, layout);
-    bool whole = own->texture && (own->below || !relief->below);
-    return remember(mapping, relief, layout, whole ? own : NULL);
+    own->texture = texture_on(mapping, bump->texture, layout);
+    if (bump->below)
+        own->below = bump_has_mapping(mapping, bump->below, layout);
+    bool whole = own->texture && (own->below || !bump->below);
+    return remember(mapping, bump, layout, whole ? own : NULL);
 }
 
 static const struct material *material_on(struct material_mapping *mapping, const struct material *material,
@@ -111,10 +111,10 @@ static const struct material *material_on(struct material_mapping *mapping, cons
         if (material->inputs[i] && !own.inputs[i])
             return NULL;
     }
-    if (material->relief) {
-        own.relief = relief_on(mapping, material->relief, layout);
+    if (material->bump) {
+        own.bump = bump_has_mapping(mapping, material->bump, layout);
         changed = true;
-        if (!own.relief)
+        if (!own.bump)
             return NULL;
     }
     own.origin = material_origin(material);

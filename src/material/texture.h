@@ -75,7 +75,7 @@ struct texture_image {
 };
 
 /* RED, GREEN, BLUE: one component, as a number. COMPLEMENT: 1 - x. SATURATE: between 0 and 1. STEP: 1 from `amount` on,
- * else 0. PHONG_EXPONENT: of roughness r 2 / r^4 - 2, 1 to 2000 (formats/gltf_look.c gives the source). */
+ * else 0. PHONG_EXPONENT: of roughness r 2 / r^4 - 2, 1 to 2000 (formats/gltf_material.c gives the source). */
 #define TEXTURE_FUNCTIONS(X)                                                                                           \
     X(FUNCTION_RED)                                                                                                    \
     X(FUNCTION_GREEN)                                                                                                  \

@@ -57,7 +57,7 @@ struct observation {
         } begin;
         struct {
             const struct material *link;
-            const struct surface_look *look; /* as the link leaves it */
+            const struct surface_inputs *inputs; /* as the link leaves it */
         } material;
         const struct bsdf *surface;
         struct {
@@ -133,8 +133,8 @@ static inline void observe_ray_begin(const struct observer *observer, const stru
 }
 
 /* For struct material_context. */
-static inline void observe_material(void *context, const struct material *link, const struct surface_look *look) {
-    observe(context, &(struct observation){OBSERVED_MATERIAL, .material = {link, look}});
+static inline void observe_material(void *context, const struct material *link, const struct surface_inputs *inputs) {
+    observe(context, &(struct observation){OBSERVED_MATERIAL, .material = {link, inputs}});
 }
 
 static inline void observe_surface(const struct observer *observer, const struct bsdf *surface) {

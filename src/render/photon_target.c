@@ -11,9 +11,9 @@
  *
  * An environment sends from all sides: it chooses directions itself, and each has its rectangle across.
  *
- * Units (docs/light.md): a light without body sends its colour per steradian, times d^2 fading(d) after the way d, so
- * that free light arrives as colour * fading(d) * cosine; a lamp sends radiance / pi per area and projected solid
- * angle, since a view factor is a cosine over pi. */
+ * Units (docs/light.md): a light without body sends its colour per steradian, times d^2 attenuation(d) after the way d,
+ * so that free light arrives as colour * attenuation(d) * cosine; a lamp sends radiance / pi per area and projected
+ * solid angle, since a view factor is a cosine over pi. */
 #include "render/photon_target.h"
 
 #include "base/random.h"
@@ -375,12 +375,13 @@ static void estimate_flux(struct photon_target *target, const struct specular_ob
     const struct light_emitter *emitter = &target->emitter;
     struct vec3 colour = light_emitter_colour(emitter);
     double distance = vec3_length(vec3_sub(specular_objects->middle, emitter->centre));
-    double fading = light_photon_fading(emitter->light, distance > emitter->radius ? distance : emitter->radius);
-    if (!(fading > 0)) /* beyond its range at the middle, but maybe not everywhere */
-        fading = distance * distance * 0x1p-6;
+    double attenuation =
+        light_photon_attenuation(emitter->light, distance > emitter->radius ? distance : emitter->radius);
+    if (!(attenuation > 0)) /* beyond its range at the middle, but maybe not everywhere */
+        attenuation = distance * distance * 0x1p-6;
     double cell_area = is_distant(target) ? ldexp(target->size * target->size, -2 * (int)target->level) : 1;
     double mean = (fabs(colour.x) + fabs(colour.y) + fabs(colour.z)) / 3;
-    target->flux = mean * fading * light_emitter_unit(emitter) * target->total * cell_area;
+    target->flux = mean * attenuation * light_emitter_unit(emitter) * target->total * cell_area;
     if (!isfinite(target->flux))
         target->flux = 0;
 }

@@ -102,7 +102,7 @@ static bool scatter_photon(struct photon_path *path, const struct hit *hit, cons
 static void store_photon(const struct photon_start *start, const struct photon_target *target,
                          const struct photon_path *path, const struct hit *hit, struct photon *photon) {
     struct vec3 power = vec3_mul(start->power, path->left);
-    power = vec3_scale(power, light_photon_fading(target->emitter.light, path->length));
+    power = vec3_scale(power, light_photon_attenuation(target->emitter.light, path->length));
     if (!vec3_finite(power) || !vec3_finite(hit->point) || !(vec3_max_abs(power) > 0))
         return;
     *photon = (struct photon){hit->point, power, photon_pack(hit->view), target->number};

@@ -134,17 +134,17 @@ static void end_ray(struct pixel_trace *pixel_trace, const struct observed_end *
     pixel_trace->ray = ray->parent;
 }
 
-static void add_link(struct pixel_trace *pixel_trace, const struct material *material, const struct surface_look *look) {
+static void add_link(struct pixel_trace *pixel_trace, const struct material *material, const struct surface_inputs *inputs) {
     struct pixel_trace_ray *ray = ray_of(pixel_trace);
     struct pixel_trace_link *link = ray ? take(pixel_trace, sizeof *link) : NULL;
     if (!link)
         return;
-    *link = (struct pixel_trace_link){.material = material, .look = *look};
+    *link = (struct pixel_trace_link){.material = material, .inputs = *inputs};
     struct pixel_trace_link **end = &ray->links;
     while (*end)
         end = &(*end)->next;
     *end = link;
-    ray->opacity = look->opacity;
+    ray->opacity = inputs->opacity;
 }
 
 static void record_surface(struct pixel_trace *pixel_trace, const struct bsdf *surface) {
@@ -255,7 +255,7 @@ static void notice(void *context, const struct observation *what) {
         begin_ray(pixel_trace, &what->begin);
         break;
     case OBSERVED_MATERIAL:
-        add_link(pixel_trace, what->material.link, what->material.look);
+        add_link(pixel_trace, what->material.link, what->material.inputs);
         break;
     case OBSERVED_SURFACE:
         record_surface(pixel_trace, what->surface);

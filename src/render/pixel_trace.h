@@ -17,7 +17,7 @@ enum { PIXEL_TRACE_RAYS = 100000 }; /* further ones are counted and not printed 
 /* One link of a material: the look as it is with it and what is below it. */
 struct pixel_trace_link {
     const struct material *material;
-    struct surface_look look;
+    struct surface_inputs inputs;
     struct pixel_trace_link *next;
 };
 

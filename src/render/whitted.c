@@ -160,8 +160,8 @@ static struct vec3 shade_hit(struct integrator_state *state, const struct ray *r
     const struct material_context context = {.specular = settings->specular,
                                              .ambient_plain = settings->ambient_plain,
                                              .total_reflection = settings->use_tir,
-                                             .told = state->observer ? observe_material : NULL,
-                                             .told_to = state->observer,
+                                             .observer = state->observer ? observe_material : NULL,
+                                             .observer_context = state->observer,
                                              .authored = world->authored.materials[hit->material]};
     struct bsdf bsdf;
     struct surface_point at = {ray, hit, &bsdf};

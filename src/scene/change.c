@@ -23,7 +23,7 @@ struct material added_material(struct vec3 colour) {
 /* What tells changes of a kind apart. */
 static uint64_t target_of(const struct change *change) {
     if (change->kind == CHANGE_MATERIAL)
-        return (uint64_t)change->serial * LOOK_PARTS + (uint64_t)change->part;
+        return (uint64_t)change->serial * MATERIAL_PART_PARTS + (uint64_t)change->part;
     bool counted = change->kind == CHANGE_ADD || change->kind == CHANGE_ADD_LIGHT || change->kind == CHANGE_OWN;
     return counted ? change->number : change->serial;
 }
@@ -33,7 +33,7 @@ bool change_same_target(const struct change *a, const struct change *b) {
 }
 
 bool change_keeps_world(const struct change *change) {
-    return change->kind == CHANGE_MATERIAL && look_part_keeps_world(change->part);
+    return change->kind == CHANGE_MATERIAL && material_part_keeps_world(change->part);
 }
 
 /* Of the first one that does not come before it. */
@@ -302,7 +302,7 @@ static void change_material(struct laying *l) {
         return;
     }
     l->out->materials[l->out->material_count++] = (struct changed_material){material, *material};
-    look_part_set(material, l->change->part, l->change->numbers);
+    material_part_set(material, l->change->part, l->change->numbers);
 }
 
 /* Own materials. */

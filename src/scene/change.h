@@ -7,7 +7,7 @@
 
 #include "base/list.h"
 #include "light/light_edit.h"
-#include "scene/change_look.h"
+#include "scene/change_material.h"
 #include "scene/node.h"
 
 /* In the order in which they are made: what is added is there before it is changed. */
@@ -51,8 +51,8 @@ struct change {
     /* ADDED_COPY: the serial of the node that is shown once more. OWN: that of the base which the new one is like where
      * the shape has none itself; 0: plain gray. ADD_LIGHT: the number of the light that it is like; 0: none. */
     uint32_t source;
-    enum look_part part; /* of MATERIAL */
-    bool turns, colours; /* of LIGHT: it has a turn; a colour */
+    enum material_part part; /* of MATERIAL */
+    bool turns, colours;     /* of LIGHT: it has a turn; a colour */
     /* PLACE: 3 rows of 4. ADD: a colour. MATERIAL: as many as the part has. LIGHT: a way, three factors, and from
      * TURN_AT on 3 rows of 3, from COLOUR_AT on a colour that takes the place of its own. ADD_LIGHT: a place, a
      * colour; of a copy a way, three factors. */

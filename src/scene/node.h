@@ -67,7 +67,7 @@ struct node {
     uint32_t slot_count;
     enum node_cull cull;
     const struct texture_image *texture; /* set_texture: over kd of the material; the mapping is that of the shape */
-    const struct relief *relief;         /* set_bump, likewise */
+    const struct bump *bump;             /* set_bump, likewise */
     enum node_csg operation;             /* NODE_CSG */
     struct node *const *operands;
     uint32_t operand_count;

@@ -109,13 +109,13 @@ enum { IMAGE_MATERIAL, IMAGE_PNG, IMAGE_FILTER, IMAGE_FLIP_U, IMAGE_COUNT };
 /* How a picture is looked up: these fields come together. */
 enum { LOOKUP_FILTER, LOOKUP_WRAP, LOOKUP_FLIP_U, LOOKUP_TILES, LOOKUP_OFFSET, LOOKUP_COUNT };
 enum { TEXTURE_FILE, TEXTURE_LOOKUP };
-enum { RELIEF_FILE, RELIEF_LOOKUP, RELIEF_AMOUNT = RELIEF_LOOKUP + LOOKUP_COUNT, RELIEF_KIND };
+enum { BUMP_FILE, BUMP_LOOKUP, BUMP_AMOUNT = BUMP_LOOKUP + LOOKUP_COUNT, BUMP_KIND };
 enum { OVER_MATERIAL, OVER_IMAGE, OVER_LOOKUP, OVER_CHANNEL = OVER_LOOKUP + LOOKUP_COUNT };
 /* What these parameters may choose. */
 #define HIGHLIGHTS(X) X(HIGHLIGHT_PHONG, "phong") X(HIGHLIGHT_BLINN, "blinn")
 #define IMAGE_CHANNELS(X) X(INPUT_KD, "kd") X(INPUT_KS, "ks") X(INPUT_EMISSION, "emission") X(INPUT_OPACITY, "opacity")
-#define RELIEF_KINDS(X) X(MATERIAL_BUMP, "bump") X(MATERIAL_NORMAL, "normal")
-enum { RELIEF_OVER_AMOUNT = OVER_LOOKUP + LOOKUP_COUNT, RELIEF_OVER_KIND };
+#define BUMP_KINDS(X) X(MATERIAL_BUMP, "bump") X(MATERIAL_NORMAL, "normal")
+enum { BUMP_OVER_AMOUNT = OVER_LOOKUP + LOOKUP_COUNT, BUMP_OVER_KIND };
 enum { FRESNEL_MATERIAL, FRESNEL_COUNT };
 binding gr_material, gr_rr_material, gr_marble, gr_wood, gr_td_cube, gr_td_sphere, gr_fresnel, gr_texture;
 binding gr_bump, gr_image_material, gr_bump_material;
@@ -126,11 +126,12 @@ struct image *gr_find_image(struct script_context *context, const struct script_
 const struct texture_image *gr_image(struct script_context *context, const struct script_value *value,
                                      struct error *error);
 /* What node:set_bump keeps: a result of gr.bump, or any other image with the default height. */
-const struct relief *gr_relief(struct script_context *context, const struct script_value *value, struct error *error);
+const struct bump *read_bump_values(struct script_context *context, const struct script_value *value,
+                                    struct error *error);
 
 /* gr_textures.c */
 /* What a script holds of a texture; NULL and error. */
-struct relief *gr_keep_texture(struct script_context *context, const struct relief *value, struct error *error);
+struct bump *gr_keep_texture(struct script_context *context, const struct bump *value, struct error *error);
 /* The texture that a script gave for an input, or that of its number or colour; NULL and error. */
 const struct texture *gr_texture_of(struct script_context *context, const struct script_value *value,
                                     struct error *error);

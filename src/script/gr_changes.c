@@ -86,18 +86,18 @@ bool gr_change_material(struct script_context *context, const struct script_valu
 bool gr_change_look(struct script_context *context, const struct script_value *args, struct script_result *result,
                     struct error *error) {
     (void)result;
-    enum look_part part = (enum look_part)args[CHANGELOOK_PART].choice;
+    enum material_part part = (enum material_part)args[CHANGELOOK_PART].choice;
     const struct script_value *value = &args[CHANGELOOK_VALUE];
-    uint32_t wanted = (uint32_t)look_part_count(part);
+    uint32_t wanted = (uint32_t)material_part_count(part);
     double low, high;
-    look_part_range(part, &low, &high);
+    material_part_range(part, &low, &high);
     if (value->count != wanted)
         return error_set(error, ERROR_SCENE, "value has %u number%s, but %s has %u", value->count,
-                         value->count == 1 ? "" : "s", look_part_name(part), wanted);
+                         value->count == 1 ? "" : "s", material_part_name(part), wanted);
     for (uint32_t i = 0; i < wanted; i++) {
         if (!(value->numbers[i] >= low && value->numbers[i] <= high))
-            return error_set(error, ERROR_SCENE, "value of %s must be from %g to %g, not %g", look_part_name(part), low,
-                             high, value->numbers[i]);
+            return error_set(error, ERROR_SCENE, "value of %s must be from %g to %g, not %g", material_part_name(part),
+                             low, high, value->numbers[i]);
     }
     struct change *change = note(context, CHANGE_MATERIAL, NULL, args[CHANGELOOK_SERIAL].number, error);
     if (!change)

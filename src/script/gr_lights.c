@@ -11,7 +11,7 @@ enum { PANEL_POSITION = LIGHT_OWN, PANEL_NORMAL, PANEL_RADIUS, PANEL_ONE_SIDED, 
 enum { MESHLIGHT_EMISSION = LIGHT_EXCLUDE + 1, MESHLIGHT_SAMPLES, MESHLIGHT_MESH, MESHLIGHT_COUNT };
 enum { SKYLIGHT_SKY = LIGHT_EXCLUDE + 1, SKYLIGHT_SAMPLES, SKYLIGHT_COUNT };
 
-#define FADING_FIELDS                                                                                                  \
+#define ATTENUATION_FIELDS                                                                                             \
     [LIGHT_FALLOFF] = {"falloff",                                                                                      \
                        KIND_TRIPLE,                                                                                    \
                        OPTIONAL,                                                                                       \
@@ -53,7 +53,7 @@ enum { SKYLIGHT_SKY = LIGHT_EXCLUDE + 1, SKYLIGHT_SAMPLES, SKYLIGHT_COUNT };
 
 static const struct script_parameter light_parameters[] = {
     LIGHT_FIELDS(0),
-    FADING_FIELDS,
+    ATTENUATION_FIELDS,
     [POINT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Position."},
 };
 
@@ -83,7 +83,7 @@ static const struct script_parameter directional_parameters[] = {
 
 static const struct script_parameter spot_parameters[] = {
     LIGHT_FIELDS(0),
-    FADING_FIELDS,
+    ATTENUATION_FIELDS,
     [SPOT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Position."},
     [SPOT_DIRECTION] = {"direction", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, -1, 0}", "The axis of its cone."},
     [SPOT_TARGET] = {"target", KIND_POINT, OPTIONAL, ANY, NULL, NULL, "A point on the axis, instead of direction."},
@@ -95,7 +95,7 @@ static const struct script_parameter spot_parameters[] = {
 
 static const struct script_parameter area_parameters[] = {
     LIGHT_FIELDS(OPTIONAL),
-    FADING_FIELDS,
+    ATTENUATION_FIELDS,
     LAMP_FIELDS,
     [AREA_CORNER] = {"corner", KIND_POINT, 0, ANY, NULL, NULL, "One corner of the parallelogram."},
     [AREA_V1] = {"v1", KIND_DIRECTION, 0, ANY, NULL, NULL, "Edge from that corner."},
@@ -105,7 +105,7 @@ static const struct script_parameter area_parameters[] = {
 
 static const struct script_parameter ball_light_parameters[] = {
     LIGHT_FIELDS(OPTIONAL),
-    FADING_FIELDS,
+    ATTENUATION_FIELDS,
     LAMP_FIELDS,
     [BALL_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Its centre."},
     [BALL_RADIUS] = {"radius", KIND_NUMBER, LOW_OPEN, ABOVE(0), NULL, NULL, "Its radius."},
@@ -113,7 +113,7 @@ static const struct script_parameter ball_light_parameters[] = {
 
 static const struct script_parameter disc_light_parameters[] = {
     LIGHT_FIELDS(OPTIONAL),
-    FADING_FIELDS,
+    ATTENUATION_FIELDS,
     LAMP_FIELDS,
     [PANEL_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Its centre."},
     [PANEL_NORMAL] = {"normal", KIND_DIRECTION, 0, ANY, NULL, NULL, "The direction it faces."},
@@ -148,7 +148,7 @@ static bool give_light(struct script_context *context, struct light *light, cons
     return true;
 }
 
-static bool set_fading(struct light *light, const struct script_value *args, struct error *error) {
+static bool set_attenuation(struct light *light, const struct script_value *args, struct error *error) {
     struct vec3 c = args[LIGHT_FALLOFF].given ? args[LIGHT_FALLOFF].vector : (struct vec3){1, 0, 0};
     if (args[LIGHT_FALLOFF].given + args[LIGHT_RANGE].given + args[LIGHT_INTENSITY].given > 1)
         return error_set(error, ERROR_SCENE, "falloff, range and intensity exclude each other");
@@ -157,9 +157,9 @@ static bool set_fading(struct light *light, const struct script_value *args, str
     light->falloff[2] = c.z;
     light->range = args[LIGHT_RANGE].number;
     light->intensity = args[LIGHT_INTENSITY].number;
-    light->fading = args[LIGHT_RANGE].given       ? FADING_RANGE
-                    : args[LIGHT_INTENSITY].given ? FADING_INVERSE_SQUARE
-                                                  : FADING_COEFFICIENTS;
+    light->attenuation = args[LIGHT_RANGE].given       ? ATTENUATION_RANGE
+                         : args[LIGHT_INTENSITY].given ? ATTENUATION_INVERSE_SQUARE
+                                                       : ATTENUATION_COEFFICIENTS;
     return true;
 }
 
@@ -180,7 +180,7 @@ static bool give_lamp(struct script_context *context, struct light *light, const
         lamp[LIGHT_COLOUR].vector = vec3_all(1);
     if (light->emits)
         lamp[LIGHT_COLOUR].vector = vec3_mul(lamp[LIGHT_COLOUR].vector, args[LIGHT_EMISSION].vector);
-    return set_fading(light, args, error) && give_light(context, light, lamp, result, error);
+    return set_attenuation(light, args, error) && give_light(context, light, lamp, result, error);
 }
 
 static bool set_direction(struct light *light, struct vec3 direction, const char *name, struct error *error) {
@@ -193,7 +193,7 @@ static bool set_direction(struct light *light, struct vec3 direction, const char
 static bool gr_light(struct script_context *context, const struct script_value *args, struct script_result *result,
                      struct error *error) {
     struct light light = {.kind = LIGHT_POINT, .position = args[POINT_POSITION].vector};
-    return set_fading(&light, args, error) && give_light(context, &light, args, result, error);
+    return set_attenuation(&light, args, error) && give_light(context, &light, args, result, error);
 }
 
 bool gr_directional_light(struct script_context *context, const struct script_value *args, struct script_result *result,
@@ -220,7 +220,7 @@ static bool gr_spot_light(struct script_context *context, const struct script_va
                        : args[SPOT_DIRECTION].given ? args[SPOT_DIRECTION].vector
                                                     : (struct vec3){0, -1, 0};
     return set_direction(&light, axis, args[SPOT_TARGET].given ? "the direction to target" : "direction", error) &&
-           set_fading(&light, args, error) && give_light(context, &light, args, result, error);
+           set_attenuation(&light, args, error) && give_light(context, &light, args, result, error);
 }
 
 static bool gr_area_light(struct script_context *context, const struct script_value *args, struct script_result *result,

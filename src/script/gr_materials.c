@@ -55,8 +55,8 @@ static bool with_textures(struct script_context *context, struct material *m, co
     }
     if (!args[PHONG_BUMP].given)
         return true;
-    const struct relief *relief = gr_relief(context, &args[PHONG_BUMP], error);
-    return relief && material_raise(m, relief, arena, error);
+    const struct bump *bump = read_bump_values(context, &args[PHONG_BUMP], error);
+    return bump && material_add_bump(m, bump, arena, error);
 }
 
 static struct material *phong(struct script_context *context, const struct script_value *args, struct error *error) {
@@ -234,14 +234,14 @@ bool gr_image_material(struct script_context *context, const struct script_value
 
 /* How an image or another texture stands on a surface. The amount and the kind are args[0] and args[1]; a bump map
  * keeps what its template says. */
-static bool read_relief(struct script_context *context, const struct script_value *value,
-                        const struct script_value *lookup, const struct script_value *args, struct relief *out,
-                        struct error *error) {
-    const struct relief *from = value->texture;
+static bool read_bump(struct script_context *context, const struct script_value *value,
+                      const struct script_value *lookup, const struct script_value *args, struct bump *out,
+                      struct error *error) {
+    const struct bump *from = value->texture;
     bool known = from && from->kind != MATERIAL_IMAGE;
     bool is_image = !from || texture_as_image(from->texture);
-    *out = (struct relief){.kind = known ? from->kind : MATERIAL_BUMP, .texture = from ? from->texture : NULL};
-    static const enum material_kind kinds[] = {RELIEF_KINDS(LIST_MEMBER)};
+    *out = (struct bump){.kind = known ? from->kind : MATERIAL_BUMP, .texture = from ? from->texture : NULL};
+    static const enum material_kind kinds[] = {BUMP_KINDS(LIST_MEMBER)};
     if (args[1].given)
         out->kind = kinds[args[1].choice];
     if (is_image && !(out->texture = read_texture(context, value, lookup, error)))
@@ -250,7 +250,7 @@ static bool read_relief(struct script_context *context, const struct script_valu
         out->height = args[0].number;
     } else if (!known || from->kind != out->kind) {
         out->relative = out->kind == MATERIAL_BUMP && is_image;
-        out->height = out->kind == MATERIAL_BUMP ? RELIEF_HEIGHT : 1;
+        out->height = out->kind == MATERIAL_BUMP ? BUMP_HEIGHT : 1;
     } else {
         out->relative = from->relative;
         out->height = from->height;
@@ -260,7 +260,7 @@ static bool read_relief(struct script_context *context, const struct script_valu
 
 bool gr_texture(struct script_context *context, const struct script_value *args, struct script_result *result,
                 struct error *error) {
-    struct relief texture = {.kind = MATERIAL_IMAGE};
+    struct bump texture = {.kind = MATERIAL_IMAGE};
     texture.texture = read_texture(context, &args[TEXTURE_FILE], &args[TEXTURE_LOOKUP], error);
     result->pointer = texture.texture ? gr_keep_texture(context, &texture, error) : NULL;
     return result->pointer != NULL;
@@ -268,27 +268,27 @@ bool gr_texture(struct script_context *context, const struct script_value *args,
 
 bool gr_bump(struct script_context *context, const struct script_value *args, struct script_result *result,
              struct error *error) {
-    struct relief relief;
-    if (!read_relief(context, &args[RELIEF_FILE], &args[RELIEF_LOOKUP], &args[RELIEF_AMOUNT], &relief, error))
+    struct bump bump;
+    if (!read_bump(context, &args[BUMP_FILE], &args[BUMP_LOOKUP], &args[BUMP_AMOUNT], &bump, error))
         return false;
-    result->pointer = gr_keep_texture(context, &relief, error);
+    result->pointer = gr_keep_texture(context, &bump, error);
     return result->pointer != NULL;
 }
 
 bool gr_bump_material(struct script_context *context, const struct script_value *args, struct script_result *result,
                       struct error *error) {
-    struct relief relief;
-    if (!read_relief(context, &args[OVER_IMAGE], &args[OVER_LOOKUP], &args[RELIEF_OVER_AMOUNT], &relief, error))
+    struct bump bump;
+    if (!read_bump(context, &args[OVER_IMAGE], &args[OVER_LOOKUP], &args[BUMP_OVER_AMOUNT], &bump, error))
         return false;
-    struct material *m = scene_material(&context->scene, relief.kind, args[OVER_MATERIAL].material, error);
-    return m && material_raise(m, &relief, &context->scene.arena, error) && give(result, m);
+    struct material *m = scene_material(&context->scene, bump.kind, args[OVER_MATERIAL].material, error);
+    return m && material_add_bump(m, &bump, &context->scene.arena, error) && give(result, m);
 }
 
-const struct relief *gr_relief(struct script_context *context, const struct script_value *value, struct error *error) {
+const struct bump *read_bump_values(struct script_context *context, const struct script_value *value,
+                                    struct error *error) {
     static const struct script_value nothing[LOOKUP_COUNT];
-    struct relief relief;
-    return read_relief(context, value, nothing, nothing, &relief, error) ? gr_keep_texture(context, &relief, error)
-                                                                         : NULL;
+    struct bump bump;
+    return read_bump(context, value, nothing, nothing, &bump, error) ? gr_keep_texture(context, &bump, error) : NULL;
 }
 
 const struct texture_image *gr_image(struct script_context *context, const struct script_value *value,

@@ -57,8 +57,8 @@ bool gr_set_bump(struct script_context *context, const struct script_value *args
         return unless_warned(error);
     if (node->kind == NODE_CSG)
         return error_set(error, ERROR_SCENE, "a combined solid has no bump map; set those of its operands");
-    node->relief = gr_relief(context, &args[SET_BUMP], error);
-    return node->relief != NULL;
+    node->bump = read_bump_values(context, &args[SET_BUMP], error);
+    return node->bump != NULL;
 }
 
 static bool step(struct script_context *context, const struct script_value *args, enum node_step kind,

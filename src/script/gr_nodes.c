@@ -150,7 +150,7 @@ bool gr_geometry(struct script_context *context, const struct script_value *args
     node->slot_count = primitive->slot_count;
     node->cull = primitive->cull;
     node->texture = primitive->texture;
-    node->relief = primitive->relief;
+    node->bump = primitive->bump;
     node->operation = primitive->operation;
     node->operands = primitive->operands;
     node->operand_count = primitive->operand_count;

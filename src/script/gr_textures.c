@@ -5,8 +5,8 @@
 #include "script/table_rows.h"
 
 /* Saved edits count textures among the materials of a scene. */
-struct relief *gr_keep_texture(struct script_context *context, const struct relief *value, struct error *error) {
-    struct relief *out = arena_alloc(&context->scene.arena, sizeof *out);
+struct bump *gr_keep_texture(struct script_context *context, const struct bump *value, struct error *error) {
+    struct bump *out = arena_alloc(&context->scene.arena, sizeof *out);
     if (!out) {
         error_no_memory(error, "a texture");
         return NULL;
@@ -19,7 +19,7 @@ struct relief *gr_keep_texture(struct script_context *context, const struct reli
 const struct texture *gr_texture_of(struct script_context *context, const struct script_value *value,
                                     struct error *error) {
     struct arena *arena = &context->scene.arena;
-    const struct relief *given = value->texture;
+    const struct bump *given = value->texture;
     struct vec3 v = value->vector;
     const struct texture_image *image = given ? texture_as_image(given->texture) : NULL;
     if (image) { /* what is transparent is white */
@@ -33,7 +33,7 @@ const struct texture *gr_texture_of(struct script_context *context, const struct
 
 static bool give(struct script_context *context, struct texture texture, struct script_result *result,
                  struct error *error) {
-    struct relief out = {.kind = MATERIAL_IMAGE, .texture = texture_keep(&context->scene.arena, texture, error)};
+    struct bump out = {.kind = MATERIAL_IMAGE, .texture = texture_keep(&context->scene.arena, texture, error)};
     result->pointer = out.texture ? gr_keep_texture(context, &out, error) : NULL;
     return result->pointer != NULL;
 }

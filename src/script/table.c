@@ -120,7 +120,7 @@ static const struct script_parameter change_material_parameters[] = {
 static const struct script_parameter change_look_parameters[] = {
     [CHANGELOOK_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL,
                            "Number of the material in order of creation, from 1."},
-    [CHANGELOOK_PART] = {"part", KIND_CHOICE, 0, 0, 0, LIST_BLANKS(LOOK_PART_LIST), NULL, NULL,
+    [CHANGELOOK_PART] = {"part", KIND_CHOICE, 0, 0, 0, LIST_BLANKS(MATERIAL_PART_LIST), NULL, NULL,
                          "Argument of gr.material to change in its base material."},
     [CHANGELOOK_VALUE] = {"value", KIND_NUMBERS, 0, ANY, NULL, NULL,
                           "New value: three numbers for a colour, else one."},
@@ -450,22 +450,22 @@ static const struct script_parameter texture_parameters[] = {
     LOOKUP_FIELDS(TEXTURE_LOOKUP),
 };
 
-#define RELIEF_AMOUNT_FIELD                                                                                            \
+#define BUMP_AMOUNT_FIELD                                                                                              \
     {                                                                                                                  \
         "height", KIND_NUMBER, OPTIONAL, ANY, NULL, "1/50 of the picture's size; 1 for normals",                       \
             "Height of white above black, in units of the object; for normals, a factor of the slopes."                \
     }
-#define RELIEF_KIND_FIELD                                                                                              \
+#define BUMP_KIND_FIELD                                                                                                \
     {                                                                                                                  \
-        "kind", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(RELIEF_KINDS), NULL, "'bump'",                                \
+        "kind", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(BUMP_KINDS), NULL, "'bump'",                                  \
             "Contents: heights, or normals as colours (x right, y up, z outwards)."                                    \
     }
 
 static const struct script_parameter bump_parameters[] = {
-    [RELIEF_FILE] = {"file", KIND_IMAGE, OR_TEXTURE, ANY, NULL, NULL, "A PNG or JPEG file, or any texture."},
-    LOOKUP_FIELDS(RELIEF_LOOKUP),
-    [RELIEF_AMOUNT] = RELIEF_AMOUNT_FIELD,
-    [RELIEF_KIND] = RELIEF_KIND_FIELD,
+    [BUMP_FILE] = {"file", KIND_IMAGE, OR_TEXTURE, ANY, NULL, NULL, "A PNG or JPEG file, or any texture."},
+    LOOKUP_FIELDS(BUMP_LOOKUP),
+    [BUMP_AMOUNT] = BUMP_AMOUNT_FIELD,
+    [BUMP_KIND] = BUMP_KIND_FIELD,
 };
 
 static const struct script_parameter image_over_parameters[] = {
@@ -480,8 +480,8 @@ static const struct script_parameter bump_over_parameters[] = {
     [OVER_MATERIAL] = BASE,
     [OVER_IMAGE] = {"image", KIND_IMAGE, OR_TEXTURE, ANY, NULL, NULL, "A PNG or JPEG file, or a result of gr.bump."},
     LOOKUP_FIELDS(OVER_LOOKUP),
-    [RELIEF_OVER_AMOUNT] = RELIEF_AMOUNT_FIELD,
-    [RELIEF_OVER_KIND] = RELIEF_KIND_FIELD,
+    [BUMP_OVER_AMOUNT] = BUMP_AMOUNT_FIELD,
+    [BUMP_OVER_KIND] = BUMP_KIND_FIELD,
 };
 
 static const struct script_parameter fresnel_parameters[] = {[FRESNEL_MATERIAL] = BASE};

@@ -66,8 +66,7 @@ struct script_value {
     struct node *node;
     const struct material *material;
     const struct material **materials;
-    const struct relief
-        *texture; /* what gr.texture, gr.bump and their like made; what is no bump is a MATERIAL_IMAGE */
+    const struct bump *texture; /* what gr.texture, gr.bump and their like made; what is no bump is a MATERIAL_IMAGE */
     const char **names;
     struct image *image;
     uint32_t count;

@@ -11,7 +11,7 @@
 #include "render/overlay.h"
 #include "render/render.h"
 #include "scene/change.h"
-#include "scene/change_look.h"
+#include "scene/change_material.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -60,15 +60,15 @@ struct picked {
     char name[PICK_NAME], shape[PICK_NAME], material[PICK_NAME];
     uint32_t serial, parent_serial; /* of the node, and of the one above it */
     char parent_name[PICK_NAME];
-    uint64_t route;             /* to it (viewer/view_overlay.h); 0: not known */
-    uint64_t solid;             /* of an operand: the route to the solid; else 0 */
-    uint32_t levels;            /* nodes above it */
-    int32_t up;                 /* as it was asked for, but no farther than there are nodes */
-    uint32_t below;             /* operands below it on the way to the surface that was hit */
-    uint32_t material_serial;   /* of the base, which can be changed; 0: it is plain gray */
-    double look[LOOK_PARTS][3]; /* of that base */
-    bool can_own;               /* a shape was hit and selected: it can be given a material of its own */
-    double distance;            /* from the eye */
+    uint64_t route;                      /* to it (viewer/view_overlay.h); 0: not known */
+    uint64_t solid;                      /* of an operand: the route to the solid; else 0 */
+    uint32_t levels;                     /* nodes above it */
+    int32_t up;                          /* as it was asked for, but no farther than there are nodes */
+    uint32_t below;                      /* operands below it on the way to the surface that was hit */
+    uint32_t material_serial;            /* of the base, which can be changed; 0: it is plain gray */
+    double look[MATERIAL_PART_PARTS][3]; /* of that base */
+    bool can_own;                        /* a shape was hit and selected: it can be given a material of its own */
+    double distance;                     /* from the eye */
     struct vec3 position, normal;
     bool has_box;
     struct vec3 corners[8];          /* of a box round the node: bit 0 of the number is its first axis, and so on */

@@ -121,11 +121,11 @@ static void format_change(const struct change *c, char *line, size_t size) {
         (void)snprintf(line, size, "gr.change_own(%s, %u, %u)\n", name, c->serial, c->source);
         return;
     case CHANGE_MATERIAL:
-        format_numbers(a, sizeof a, c->numbers, look_part_count(c->part));
-        if (c->part == LOOK_KD)
+        format_numbers(a, sizeof a, c->numbers, material_part_count(c->part));
+        if (c->part == MATERIAL_PART_KD)
             (void)snprintf(line, size, "gr.change_material(%u, %s)\n", c->serial, a);
         else
-            (void)snprintf(line, size, "gr.change_look(%u, '%s', %s)\n", c->serial, look_part_name(c->part), a);
+            (void)snprintf(line, size, "gr.change_look(%u, '%s', %s)\n", c->serial, material_part_name(c->part), a);
         return;
     case CHANGE_LIGHT:
         format_light(c, line, size);

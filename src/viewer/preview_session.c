@@ -148,7 +148,7 @@ static bool change_scene(struct preview_state *work, const struct preview_comman
     const struct render_request *request = preview->request;
     reply->kind = REPLY_CHANGED;
     if ((unsigned)command->change.kind >= CHANGE_KINDS || (unsigned)command->change.added >= ADDED_KINDS ||
-        (unsigned)command->change.part >= LOOK_PARTS ||
+        (unsigned)command->change.part >= MATERIAL_PART_PARTS ||
         !change_list_set(&work->changes, &command->change, command->present)) {
         (void)snprintf(reply->text, sizeof reply->text, "there are too many changes");
         return true;
@@ -186,8 +186,8 @@ static bool answer_click(const struct preview_state *work, const struct preview_
                  error))
         return false;
     const struct material *before = changes_before(&work->changed, picked->material_serial);
-    for (int part = 0; before && part < LOOK_PARTS; part++)
-        look_part_get(before, (enum look_part)part, picked->look[part]);
+    for (int part = 0; before && part < MATERIAL_PART_PARTS; part++)
+        material_part_get(before, (enum material_part)part, picked->look[part]);
     return true;
 }
 

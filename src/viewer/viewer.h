@@ -94,8 +94,8 @@ struct viewer_edit {
     struct selection click; /* where something is to be selected, while click_waits: it was not sent yet */
     bool click_waits;
     enum edit_tool tool;
-    enum look_part part; /* of the material, that the panel has sliders for */
-    bool joins;          /* the next change by the mouse is part of the last one */
+    enum material_part part; /* of the material, that the panel has sliders for */
+    bool joins;              /* the next change by the mouse is part of the last one */
 };
 
 /* Lights of the scene as they are reported, in parts. */

@@ -305,8 +305,8 @@ static struct picked new_picked(const struct viewer *viewer, const struct change
                             .has_box = true,
                             .world_from_parent = viewer->scene.world_from_root};
     const struct material look = added_material(three(change->numbers));
-    for (int part = 0; part < LOOK_PARTS; part++)
-        look_part_get(&look, (enum look_part)part, picked.look[part]);
+    for (int part = 0; part < MATERIAL_PART_PARTS; part++)
+        material_part_get(&look, (enum material_part)part, picked.look[part]);
     pick_copy_name(picked.name, added_kind_name(change->added));
     pick_copy_name(picked.shape, added_kind_name(change->added));
     pick_copy_name(picked.material, "phong");
@@ -387,7 +387,7 @@ void viewer_add_node(struct viewer *viewer, enum added_kind kind) {
 
 /* Looks. */
 
-static struct change material_change(const struct viewer *viewer, enum look_part part) {
+static struct change material_change(const struct viewer *viewer, enum material_part part) {
     const struct picked *picked = &viewer->edit.selection.picked;
     struct change change = {.kind = CHANGE_MATERIAL, .serial = picked->material_serial, .part = part};
     const struct change *now = change_list_find(&viewer->edit.steps.now, &change);
@@ -396,12 +396,12 @@ static struct change material_change(const struct viewer *viewer, enum look_part
     return now ? *now : change;
 }
 
-void viewer_material_now(const struct viewer *viewer, enum look_part part, double numbers[3]) {
+void viewer_material_now(const struct viewer *viewer, enum material_part part, double numbers[3]) {
     struct change change = material_change(viewer, part);
     memcpy(numbers, change.numbers, 3 * sizeof *numbers);
 }
 
-void viewer_set_material(struct viewer *viewer, enum look_part part, const double numbers[3]) {
+void viewer_set_material(struct viewer *viewer, enum material_part part, const double numbers[3]) {
     struct change change = material_change(viewer, part);
     if (change.serial == 0)
         return;
@@ -413,12 +413,12 @@ void viewer_set_material(struct viewer *viewer, enum look_part part, const doubl
 /* The copy is made of the script's material; what was changed of that is changed of the copy, too. */
 void viewer_make_own_material(struct viewer *viewer) {
     struct picked *picked = &viewer->edit.selection.picked;
-    struct change held[LOOK_PARTS];
+    struct change held[MATERIAL_PART_PARTS];
     int count = 0;
     if (viewer->edit.selection.kind != SELECTED_NODE || !picked->can_own)
         return;
-    for (int part = 0; part < LOOK_PARTS; part++) {
-        struct change change = material_change(viewer, (enum look_part)part);
+    for (int part = 0; part < MATERIAL_PART_PARTS; part++) {
+        struct change change = material_change(viewer, (enum material_part)part);
         if (change_list_find(&viewer->edit.steps.now, &change))
             held[count++] = change;
     }

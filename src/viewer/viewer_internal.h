@@ -30,14 +30,14 @@ void viewer_make_edit(struct viewer *viewer, const struct change *change, bool p
 void viewer_undo(struct viewer *viewer, bool again);
 void viewer_delete_selection(struct viewer *viewer);
 void viewer_add_node(struct viewer *viewer, enum added_kind kind);
-void viewer_set_material(struct viewer *viewer, enum look_part part,
+void viewer_set_material(struct viewer *viewer, enum material_part part,
                          const double numbers[3]);    /* of the material that was hit */
 void viewer_make_own_material(struct viewer *viewer); /* gives what is selected a material of its own */
 void viewer_set_exposure(struct viewer *viewer, double stops);
 /* All edits are sent again. */
 void viewer_resend_edits(struct viewer *viewer);
 /* What holds now. */
-void viewer_material_now(const struct viewer *viewer, enum look_part part, double numbers[3]);
+void viewer_material_now(const struct viewer *viewer, enum material_part part, double numbers[3]);
 /* A place on what is selected, as it was when it was picked: where it is now. */
 struct vec3 viewer_moved_point(const struct viewer *viewer, struct vec3 point);
 /* The camera of the last pass; false: it cannot be. */

@@ -260,17 +260,17 @@ static bool draw_sliders(struct viewer *viewer, struct column *column, double to
 }
 
 /* One slider for a number that is no share: its logarithm, or from 1 on. */
-static bool draw_number(struct viewer *viewer, struct column *column, enum look_part part, double *number) {
+static bool draw_number(struct viewer *viewer, struct column *column, enum material_part part, double *number) {
     struct panel *panel = &viewer->display.panel;
     int width = column->columns * CANVAS_CELL * panel->canvas.scale;
-    double low, high, at = part == LOOK_SHININESS ? el_log2(1 + *number) : *number;
-    look_part_range(part, &low, &high);
-    double top = part == LOOK_SHININESS ? 12 : part == LOOK_IOR ? 3 : 1;
+    double low, high, at = part == MATERIAL_PART_SHININESS ? el_log2(1 + *number) : *number;
+    material_part_range(part, &low, &high);
+    double top = part == MATERIAL_PART_SHININESS ? 12 : part == MATERIAL_PART_IOR ? 3 : 1;
     const struct panel_slider slider = {column->x, column->y, width, low, top, bulb};
     bool changed = panel_slider(panel, &slider, &at);
     column->y += panel_line_height(panel);
     if (changed)
-        *number = part == LOOK_SHININESS ? el_exp2(at) - 1 : at;
+        *number = part == MATERIAL_PART_SHININESS ? el_exp2(at) - 1 : at;
     return changed;
 }
 
@@ -278,15 +278,15 @@ static bool draw_number(struct viewer *viewer, struct column *column, enum look_
 static void choose_part(struct viewer *viewer, struct column *column) {
     struct panel *panel = &viewer->display.panel;
     int scale = panel->canvas.scale, x = column->x, right = column->x + column->columns * CANVAS_CELL * scale;
-    for (int i = 0; i < LOOK_PARTS; i++) {
-        const char *name = look_part_name((enum look_part)i);
+    for (int i = 0; i < MATERIAL_PART_PARTS; i++) {
+        const char *name = material_part_name((enum material_part)i);
         int width = panel_button_width(panel, name);
         if (x + width > right) {
             x = column->x;
             column->y += panel_line_height(panel) + 3 * scale;
         }
-        if (panel_button(panel, x, column->y, name, viewer->edit.part == (enum look_part)i))
-            viewer->edit.part = (enum look_part)i;
+        if (panel_button(panel, x, column->y, name, viewer->edit.part == (enum material_part)i))
+            viewer->edit.part = (enum material_part)i;
         x += width + 2 * scale;
     }
     column->y += panel_line_height(panel) + 4 * scale;
@@ -299,9 +299,9 @@ static void draw_look(struct viewer *viewer, struct column *column) {
     if (viewer->edit.selection.picked.material_serial != 0) {
         choose_part(viewer, column);
         viewer_material_now(viewer, viewer->edit.part, numbers);
-        bool colour = look_part_count(viewer->edit.part) == 3, changed;
+        bool colour = material_part_count(viewer->edit.part) == 3, changed;
         struct vec3 c = {numbers[0], numbers[1], numbers[2]};
-        double top = viewer->edit.part == LOOK_KD || viewer->edit.part == LOOK_KS ? 1 : 4;
+        double top = viewer->edit.part == MATERIAL_PART_KD || viewer->edit.part == MATERIAL_PART_KS ? 1 : 4;
         if (panel->pressed)
             viewer->edit.joins = false;
         changed = colour ? draw_sliders(viewer, column, top, &c)
@@ -310,7 +310,7 @@ static void draw_look(struct viewer *viewer, struct column *column) {
             numbers[0] = c.x, numbers[1] = c.y, numbers[2] = c.z;
         if (changed)
             viewer_set_material(viewer, viewer->edit.part, numbers);
-        (void)snprintf(row, sizeof row, colour ? "%s %.3g %.3g %.3g" : "%s %.4g", look_part_name(viewer->edit.part),
+        (void)snprintf(row, sizeof row, colour ? "%s %.3g %.3g %.3g" : "%s %.4g", material_part_name(viewer->edit.part),
                        numbers[0], numbers[1], numbers[2]);
         draw_text(viewer, column, row);
     }

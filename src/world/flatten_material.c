@@ -13,7 +13,7 @@
 struct material_entry {
     const void *material; /* a material, or the list of those of the slots */
     const struct texture_image *texture;
-    const struct relief *relief;
+    const struct bump *bump;
     enum shape_kind shape; /* a texture is mapped by the kind of its shape */
     uint32_t number;
     uint32_t after[SURFACE_LAYOUTS]; /* its index + 1; 0: not known yet */
@@ -37,14 +37,14 @@ static const struct material plain_gray = {
 };
 
 static bool same(const struct material_entry *a, const struct material_entry *b) {
-    return a->material == b->material && a->texture == b->texture && a->relief == b->relief &&
-           ((!a->texture && !a->relief) || a->shape == b->shape);
+    return a->material == b->material && a->texture == b->texture && a->bump == b->bump &&
+           ((!a->texture && !a->bump) || a->shape == b->shape);
 }
 
 /* Where the entry is, or would be. */
 static struct material_entry *find(struct material_table *table, const struct material_entry *wanted) {
     uint64_t key = random_combine((uint64_t)(uintptr_t)wanted->material, (uint64_t)(uintptr_t)wanted->texture);
-    key = random_combine(key, (uint64_t)(uintptr_t)wanted->relief);
+    key = random_combine(key, (uint64_t)(uintptr_t)wanted->bump);
     for (uint32_t at = (uint32_t)key;; at++) {
         struct material_entry *entry = &table->entries[at & (table->capacity - 1)];
         if (!entry->used || same(entry, wanted))
@@ -104,17 +104,17 @@ static const struct material *covered(struct flattening *f, const struct texture
 }
 
 /* Likewise its bump or normal map. */
-static const struct material *raised(struct flattening *f, const struct relief *relief, const struct material *base) {
-    if (!relief || !base)
+static const struct material *raised(struct flattening *f, const struct bump *bump, const struct material *base) {
+    if (!bump || !base)
         return base;
-    struct material *material = derived(f, relief->kind, base);
-    struct relief mapped = *relief;
-    if (texture_as_image(relief->texture)) {
-        struct texture own = *relief->texture;
+    struct material *material = derived(f, bump->kind, base);
+    struct bump mapped = *bump;
+    if (texture_as_image(bump->texture)) {
+        struct texture own = *bump->texture;
         own.image.lookup.mapping = MAPPING_UV;
         mapped.texture = texture_keep(f->arena, own, f->error);
     }
-    return material && mapped.texture && material_raise(material, &mapped, f->arena, f->error) ? material : NULL;
+    return material && mapped.texture && material_add_bump(material, &mapped, f->arena, f->error) ? material : NULL;
 }
 
 /* Room for `count` more at the end of the list. */
@@ -147,7 +147,7 @@ static bool add_set(struct flattening *f, const struct material_entry *entry, co
     *alike = true;
     for (uint32_t i = 0; i < count; i++) {
         const struct material *base = bases[i] ? bases[i] : &plain_gray;
-        const struct material *set = raised(f, entry->relief, covered(f, entry->texture, base));
+        const struct material *set = raised(f, entry->bump, covered(f, entry->texture, base));
         const struct material *on = set ? material_on_layout(&table->mapping, set, layout, f->error) : NULL;
         if (!on)
             return false;
@@ -186,28 +186,28 @@ bool flatten_material(struct flattening *f, const struct node *node, const struc
     const struct material *const *bases = by_slot ? node->slots : &only;
     *count = by_slot ? node->slot_count : 1;
     const struct texture_image *texture = node->texture;
-    const struct relief *relief = node->relief;
+    const struct bump *bump = node->bump;
     for (uint32_t i = 0; i < *count; i++) {
         if (!bases[i])
             warn_once(f, node,
                       by_slot ? "has faces without a material, which are shown in plain gray"
                               : "has no material and is shown in plain gray");
-        if (bases[i] && bases[i]->depth + (texture != NULL) + (relief != NULL) > MATERIAL_DEPTH)
+        if (bases[i] && bases[i]->depth + (texture != NULL) + (bump != NULL) > MATERIAL_DEPTH)
             return error_set(f->error, ERROR_SCENE, "node '%.100s': more than %d materials are nested", node->name,
                              MATERIAL_DEPTH);
     }
-    if ((texture || relief) && node->shape.kind == SHAPE_MESH && !mesh_has_uv(node->shape.mesh)) {
+    if ((texture || bump) && node->shape.kind == SHAPE_MESH && !mesh_has_uv(node->shape.mesh)) {
         warn_once(f, node,
                   texture ? "has a texture, but its mesh has no texture coordinates (vt): the texture is not shown"
                           : "has a bump map, but its mesh has no texture coordinates (vt): it is not shown");
         texture = NULL;
-        relief = NULL;
+        bump = NULL;
     }
     if ((!f->materials || f->materials->count * 2 >= f->materials->capacity) && !grow(f))
         return false;
     const void *key = by_slot ? (const void *)node->slots : only ? (const void *)only : &plain_gray;
     struct material_entry wanted = {
-        .material = key, .texture = texture, .relief = relief, .shape = node->shape.kind, .used = true};
+        .material = key, .texture = texture, .bump = bump, .shape = node->shape.kind, .used = true};
     struct material_entry *entry = find(f->materials, &wanted);
     if (!entry->used) {
         wanted.number = f->materials->number_count;

@@ -75,7 +75,7 @@ struct world {
     struct material *materials;
     const uint32_t *material_numbers;
     bool *material_has_image;  /* such materials need to know the footprint on the surface */
-    bool *material_has_relief; /* and such ones where it rises */
+    bool *material_has_bump;   /* and such ones where it rises */
     uint32_t *material_medium; /* number of the medium in solids of the material, or MEDIUM_NONE: opaque */
     struct medium *media;      /* one for each transparent material; their `placed` is anything */
     uint32_t material_count, material_number_count, medium_count;

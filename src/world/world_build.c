@@ -22,10 +22,10 @@ static bool make_materials(struct world *world, struct arena *arena, struct erro
     uint32_t count = world->material_count;
     world->materials = arena_alloc_array(arena, count, sizeof *world->materials);
     world->material_has_image = arena_alloc_array(arena, count, sizeof *world->material_has_image);
-    world->material_has_relief = arena_alloc_array(arena, count, sizeof *world->material_has_relief);
+    world->material_has_bump = arena_alloc_array(arena, count, sizeof *world->material_has_bump);
     world->material_medium = arena_alloc_array(arena, count, sizeof *world->material_medium);
     world->media = arena_alloc_array(arena, count, sizeof *world->media);
-    if (!world->materials || !world->material_has_image || !world->material_has_relief || !world->material_medium ||
+    if (!world->materials || !world->material_has_image || !world->material_has_bump || !world->material_medium ||
         !world->media)
         return error_no_memory(error, "the materials of the scene");
     world_update_materials(world);
@@ -33,7 +33,7 @@ static bool make_materials(struct world *world, struct arena *arena, struct erro
         const struct material *material = &world->materials[i];
         struct medium medium = {.absorption = material_absorption(material)};
         world->material_has_image[i] = material_has_image(material);
-        world->material_has_relief[i] = material_has_relief(material);
+        world->material_has_bump[i] = material_has_bump(material);
         world->material_medium[i] = MEDIUM_NONE;
         if (material_is_transparent(material, &medium.ior)) {
             world->material_medium[i] = world->medium_count;

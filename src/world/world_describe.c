@@ -38,8 +38,8 @@ bool world_native_uv(const struct world *world, const struct hit *hit, double *u
 
 /* What bumps need: the world's vectors of one unit along the operand's normal and along its tangents, and on spheres
  * the tangents of their coordinates, which other materials do not ask for. */
-static void describe_relief(const struct thing *thing, const struct affine *map, const struct csg_leaf *leaf,
-                            struct hit *hit) {
+static void describe_bump(const struct thing *thing, const struct affine *map, const struct csg_leaf *leaf,
+                          struct hit *hit) {
     const struct shape *shape = geometry_shape(&thing->geometry, hit->leaf);
     bool is_ball = shape_layout(shape) == LAYOUT_SPHERE;
     struct vec3 normal = vec3_normalize(hit->pattern_normal), raise = normal, u = {0}, v = {0}, a, b;
@@ -154,10 +154,10 @@ void world_describe(const struct world *world, const struct ray *ray, uint32_t i
     hit->material = material;
     hit->hull = hull_of(thing, leaf, crossing);
     hit->time = ray->time;
-    if (world->material_has_relief[material]) {
+    if (world->material_has_bump[material]) {
         if (!map)
             world_from_object = transform_identity();
-        describe_relief(thing, &world_from_object.forward, leaf, hit);
+        describe_bump(thing, &world_from_object.forward, leaf, hit);
     }
     hit->front = vec3_dot(hit->view, hit->normal_geometric) >= 0;
     hit->offset = offset_of(map, map ? stretch_of(world, index, map) : 1, &surface, hit->point);

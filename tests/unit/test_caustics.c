@@ -54,7 +54,7 @@ static struct light *inverse_square(struct stage *s, struct vec3 position, doubl
     return add_light(s, (struct light){.kind = LIGHT_POINT,
                                        .position = position,
                                        .colour = {1, 1, 1},
-                                       .fading = FADING_INVERSE_SQUARE,
+                                       .attenuation = ATTENUATION_INVERSE_SQUARE,
                                        .intensity = intensity});
 }
 
@@ -147,9 +147,10 @@ TEST(a_pane_of_index_1_gives_back_the_light_of_every_kind) {
         memcpy(point.falloff, falloffs[i], sizeof point.falloff);
         pane_gives_back("point", point, 0.01);
     }
-    struct light physical = {.kind = LIGHT_POINT, .position = above, .fading = FADING_INVERSE_SQUARE, .intensity = 20};
+    struct light physical = {
+        .kind = LIGHT_POINT, .position = above, .attenuation = ATTENUATION_INVERSE_SQUARE, .intensity = 20};
     pane_gives_back("inverse square", physical, 0.01);
-    struct light range = {.kind = LIGHT_POINT, .position = above, .fading = FADING_RANGE, .range = 6};
+    struct light range = {.kind = LIGHT_POINT, .position = above, .attenuation = ATTENUATION_RANGE, .range = 6};
     pane_gives_back("range", range, 0.01);
     struct light distant = {.kind = LIGHT_DIRECTIONAL, .direction = vec3_normalize(vec3_make(0.3, -1, 0.2))};
     pane_gives_back("directional", distant, 0.01);
@@ -175,7 +176,7 @@ TEST(a_pane_of_index_1_gives_back_the_light_of_lights_with_an_extent) {
                          .position = {0.4, 5, 0},
                          .direction = {0, -1, 0},
                          .radius = 0.4,
-                         .fading = FADING_INVERSE_SQUARE,
+                         .attenuation = ATTENUATION_INVERSE_SQUARE,
                          .intensity = 20};
     struct light globe = {.kind = LIGHT_SPHERE, .position = {0.4, 5, 0}, .radius = 0.4, .falloff = {1, 0, 0}};
     pane_gives_back("area light", panel, 0.015);

@@ -291,7 +291,7 @@ TEST(edits_as_lua_text_are_read_back_to_the_bit) {
          .colours = true,
          .numbers = {0.1, 0.1, 0.1, 1.1, 1.1, 1.1, 0.1, 1, 0, 0, 0.1, 1, 1, 0, 0.1, 0.1, 0.3, 0.7}},
         {.kind = CHANGE_LIGHT, .serial = 2, .colours = true, .numbers = {0, 0, 0, 1, 1, 1, [COLOUR_AT] = 0.3}},
-        {.kind = CHANGE_MATERIAL, .serial = 1, .part = LOOK_ROUGHNESS, .numbers = {0.1}},
+        {.kind = CHANGE_MATERIAL, .serial = 1, .part = MATERIAL_PART_ROUGHNESS, .numbers = {0.1}},
         {.kind = CHANGE_OWN, .serial = 2, .name = "ball", .source = 1},
         {.kind = CHANGE_ADD_LIGHT, .number = 1, .source = 1, .numbers = {0.1, 0, 0, 1, 1, 1}},
     };
@@ -370,7 +370,7 @@ TEST(picking_returns_the_path_of_a_node_its_position_and_its_box) {
     CHECK(picked.serial == ball->serial && picked.parent_serial == group->serial && picked.levels == 2);
     CHECK_NEAR(picked.distance, 9, 1e-9); /* from z = 10 to z = 1 */
     CHECK_NEAR(picked.position.z, 1, 1e-9);
-    CHECK(picked.material_serial == red->serial && picked.look[LOOK_KD][1] == 0.5 && picked.can_own);
+    CHECK(picked.material_serial == red->serial && picked.look[MATERIAL_PART_KD][1] == 0.5 && picked.can_own);
     CHECK(picked.has_box);
     CHECK_NEAR(picked.corners[0].x, -2, 1e-12);
     CHECK_NEAR(picked.corners[7].z, 1, 1e-12);

@@ -330,13 +330,13 @@ TEST(gltf_materials_and_embedded_pictures_become_ours) {
     struct node *node = model_place(&scene, &model, &placing, &error);
     /* The texel that a hit at uv sees: (2 u + 0.5, 3 v + 0.25) counted from above, clamped and mirrored. */
     struct hit hit = {.has_uv = true, .u = 0.05, .v = 1 - 0.125};
-    struct surface_look look;
-    material_look(node->slots[0], &hit, &look);
+    struct surface_inputs look;
+    material_inputs_at(node->slots[0], &hit, &look);
     CHECK_NEAR(look.kd.x, 0.5 * 120 / 255.0, 1e-12);
     CHECK_NEAR(look.kd.y, 120 / 255.0, 1e-12);
     CHECK_NEAR(look.kd.z, 1, 1e-12);
     hit = (struct hit){.has_colour = true, .colour = {0.5, 0.25, 0}};
-    material_look(node->slots[2], &hit, &look);
+    material_inputs_at(node->slots[2], &hit, &look);
     CHECK_NEAR(look.kd.y, 0.25, 0);
     scene_destroy(&scene);
     assets_destroy(&assets);

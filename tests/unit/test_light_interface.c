@@ -366,7 +366,7 @@ static struct vec3 flux_by_photons(const struct light *light) {
         double length = -photon.origin.y / photon.direction.y;
         struct vec3 landed = vec3_add_scaled(photon.origin, photon.direction, length);
         if (landed.x * landed.x + landed.z * landed.z < floor_radius * floor_radius)
-            sum = vec3_add_scaled(sum, photon.power, light_photon_fading(light, length) / PHOTONS);
+            sum = vec3_add_scaled(sum, photon.power, light_photon_attenuation(light, length) / PHOTONS);
     }
     return sum;
 }

@@ -32,7 +32,7 @@ static struct light random_light(uint64_t seed, uint64_t i) {
     struct light light = {.kind = kinds[random_combine(key, 0) % 5], .colour = {3, 2, 1}};
     light.colour = vec3_scale(light.colour, random_combine(key, 2) % 16 == 0 ? 0 : number(key, 3, 0.1, 4));
     memcpy(light.falloff, falloffs[turn], sizeof light.falloff);
-    light.fading = turn > 2 ? FADING_COEFFICIENTS : turn > 1 ? FADING_RANGE : FADING_INVERSE_SQUARE;
+    light.attenuation = turn > 2 ? ATTENUATION_COEFFICIENTS : turn > 1 ? ATTENUATION_RANGE : ATTENUATION_INVERSE_SQUARE;
     light.range = number(key, 4, 1, 6);
     light.intensity = number(key, 5, 0.1, 5);
     light.position = vector(key, 6, 5);
@@ -229,7 +229,7 @@ TEST(a_thousand_lamps_in_a_corridor_have_a_tenth_of_the_variance_of_uniform_choi
                 *light = (struct light){.kind = LIGHT_POINT,
                                         .position = at,
                                         .colour = {1, 1, 1},
-                                        .fading = FADING_INVERSE_SQUARE,
+                                        .attenuation = ATTENUATION_INVERSE_SQUARE,
                                         .intensity = 1};
         }
         struct lights uniform = tree;

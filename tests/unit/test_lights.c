@@ -157,12 +157,12 @@ TEST(fading_by_range_and_by_inverse_square) {
     struct stage s;
     stage_floor(&s);
     s.lights[0] = (struct light){.kind = LIGHT_POINT, .position = {0, 3, 0}, .colour = {1, 1, 1}};
-    s.lights[0].fading = FADING_RANGE;
+    s.lights[0].attenuation = ATTENUATION_RANGE;
     s.lights[0].range = 4;
     CHECK_NEAR(patch_at(&s, 0, 0), 0.25, 1e-7);
     s.lights[0].range = 2.5;
     CHECK_NEAR(patch_at(&s, 0, 0), 0, 0);
-    s.lights[0].fading = FADING_INVERSE_SQUARE;
+    s.lights[0].attenuation = ATTENUATION_INVERSE_SQUARE;
     s.lights[0].intensity = 4;
     CHECK_NEAR(patch_at(&s, 0, 0), 4.0 / 9, 1e-7);
     CHECK_NEAR(patch_at(&s, 4, 0), 4.0 / 25 * 0.6, 1e-7);
@@ -385,7 +385,7 @@ static void lit_scene(struct stage *s, double unit) {
                                   .colour = {0, 0.5, 0},
                                   .cos_inner = 0.95,
                                   .cos_outer = 0.9,
-                                  .fading = FADING_RANGE,
+                                  .attenuation = ATTENUATION_RANGE,
                                   .range = 9 * unit};
     s->lights[5] = lamp(LIGHT_SPHERE, vec3_make(0, 3 * unit, 3 * unit), 0.5 * unit);
     s->lights[5].emits = false;

@@ -37,7 +37,7 @@ static struct hit middle(void) {
                         .dpdv = {0, 1, 0}};
 }
 
-static bool look_of_file(const char *name, const char *material, struct surface_look *look) {
+static bool look_of_file(const char *name, const char *material, struct surface_inputs *look) {
     struct assets assets = {0};
     struct scene scene;
     struct error error = {0};
@@ -52,7 +52,7 @@ static bool look_of_file(const char *name, const char *material, struct surface_
         if (!node->slots[i] || strcmp(node->slot_names[i], material) != 0)
             continue;
         struct hit hit = middle();
-        material_look(node->slots[i], &hit, look);
+        material_inputs_at(node->slots[i], &hit, look);
         found = true;
     }
     scene_destroy(&scene);
@@ -83,7 +83,7 @@ TEST(mtl_maps_of_highlight_emission_opacity_bumps_and_normals_are_shown) {
                            "usemtl ke\nf 1 2 3\nusemtl ke alone\nf 1 2 3\nusemtl glow\nf 1 2 3\nusemtl holes\nf 1 2 3\n"
                            "usemtl bump\nf 1 2 3\nusemtl other bump\nf 1 2 3\nusemtl flat\nf 1 2 3\n"
                            "usemtl tilt\nf 1 2 3\n");
-    struct surface_look look = {0};
+    struct surface_inputs look = {0};
     if (look_of_file("m.obj", "ks", &look)) {
         CHECK_NEAR(look.ks.x, 0.1, 1e-12);
         CHECK_NEAR(look.ks.y, 0.2, 1e-12);
@@ -103,7 +103,7 @@ TEST(mtl_maps_of_highlight_emission_opacity_bumps_and_normals_are_shown) {
         CHECK_NEAR(look.emission.y, 3, 0);
     if (look_of_file("m.obj", "holes", &look))
         CHECK_NEAR(look.opacity, (0.2 + 0.4 + 1) / 3, 1e-12);
-    double slope = 10.0 / 255 * 16 * RELIEF_HEIGHT;
+    double slope = 10.0 / 255 * 16 * BUMP_HEIGHT;
     if (look_of_file("m.obj", "bump", &look))
         CHECK_NEAR(look.normal.x / look.normal.z, -2 * slope, 1e-12);
     if (look_of_file("m.obj", "other bump", &look))
@@ -145,7 +145,7 @@ TEST(gltf_maps_of_metal_roughness_emission_and_normals_are_shown) {
         "\"emissiveTexture\":{\"index\":0},\"normalTexture\":{\"index\":1,\"scale\":0.5}},"
         "{\"name\":\"b\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,0.5,0.25,0.8],"
         "\"baseColorTexture\":{\"index\":0}},\"emissiveTexture\":{\"index\":0},\"alphaMode\":\"MASK\"}");
-    struct surface_look look = {0};
+    struct surface_inputs look = {0};
     if (look_of_file("m.gltf", "a", &look)) {
         double metal = 0.75, rough = 0.5 * 0.4, r4 = rough * rough * rough * rough;
         CHECK_NEAR(look.kd.y, 0.5 * (1 - metal), 1e-12);
@@ -172,7 +172,7 @@ TEST(metal_that_begins_to_let_light_through_keeps_the_filter_of_its_base) {
     struct arena arena = {0};
     struct error error = {0};
     struct material base, metal;
-    struct surface_look look;
+    struct surface_inputs look;
     struct hit hit = middle();
     material_derive(&base, MATERIAL_PHONG, NULL);
     base.phong = (struct phong){.kd = {0.8, 0.4, 0.2}, .ks = {0.9, 0.7, 0.5}, .shininess = 9, .reflect = 0.75};
@@ -182,7 +182,7 @@ TEST(metal_that_begins_to_let_light_through_keeps_the_filter_of_its_base) {
         CHECK(material_split_metal(&metal, NULL, 0.5, 0.5, 0.04, &arena, &error));
         for (int passes = 0; passes < 2; passes++) {
             base.phong.refract = 0.25 * passes;
-            material_look(&metal, &hit, &look);
+            material_inputs_at(&metal, &hit, &look);
             CHECK_NEAR(look.kd.y, 0.2, 1e-15);
             CHECK_NEAR(look.ks.x, passes ? 0.9 : 0.42, 1e-15);
             CHECK_NEAR(look.shininess, passes ? 9 : 30, 1e-12);
@@ -203,16 +203,16 @@ TEST(opacity_by_alpha_is_cut_where_a_mask_says) {
         struct material base = {.kind = MATERIAL_PHONG}, cut, over;
         struct texture_image picture = {.image = image, .mapping = MAPPING_UV, .alpha = ALPHA_ALONE};
         struct arena arena = {0};
-        struct surface_look look;
+        struct surface_inputs look;
         struct hit hit = middle();
         material_derive(&cut, MATERIAL_IMAGE, &base);
         CHECK(material_cut(&cut, &picture, cutoffs[i], &arena, &error));
-        material_look(&cut, &hit, &look);
+        material_inputs_at(&cut, &hit, &look);
         CHECK_NEAR(look.opacity, wanted[i], 1e-12);
         picture.alpha = ALPHA_IGNORED;
         material_derive(&over, MATERIAL_IMAGE, &cut);
         CHECK(material_cover(&over, INPUT_KD, &picture, &arena, &error));
-        material_look(&over, &hit, &look);
+        material_inputs_at(&over, &hit, &look);
         CHECK_NEAR(look.opacity, wanted[i], 1e-12);
         CHECK_NEAR(look.kd.y, 20 / 255.0, 1e-12);
         arena_destroy(&arena);

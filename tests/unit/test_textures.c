@@ -286,7 +286,7 @@ TEST(a_tree_that_doubles_with_each_level_is_refused_before_it_is_too_large) {
 
 /* --- inputs --- */
 
-static void *field_of(struct surface_look *look, enum material_input input, bool *is_colour) {
+static void *field_of(struct surface_inputs *look, enum material_input input, bool *is_colour) {
     *is_colour = input == INPUT_KD || input == INPUT_KS || input == INPUT_EMISSION;
     switch (input) {
     case INPUT_KD:
@@ -329,14 +329,14 @@ TEST(a_texture_multiplies_the_number_of_every_input_and_no_other) {
     palette_init(&p);
     const struct texture *half = number(&p, 0.5);
     struct material base = base_material();
-    struct surface_look plain;
-    material_look(&base, &hit, &plain);
+    struct surface_inputs plain;
+    material_inputs_at(&base, &hit, &plain);
     for (int input = 0; input < INPUT_COUNT; input++) {
         struct material over;
-        struct surface_look look;
+        struct surface_inputs look;
         material_derive(&over, MATERIAL_IMAGE, &base);
         CHECK(material_multiply(&over, (enum material_input)input, half, &p.arena, &p.error));
-        material_look(&over, &hit, &look);
+        material_inputs_at(&over, &hit, &look);
         for (int other = 0; other < INPUT_COUNT; other++) {
             bool is_colour;
             const double *before = field_of(&plain, (enum material_input)other, &is_colour);
@@ -345,9 +345,9 @@ TEST(a_texture_multiplies_the_number_of_every_input_and_no_other) {
                 CHECK(after[i] == (other == input ? 0.5 : 1) * before[i]);
         }
         base.phong.shininess += 1; /* numbers of the base go on to count */
-        material_look(&over, &hit, &look);
+        material_inputs_at(&over, &hit, &look);
         CHECK(look.shininess == base.phong.shininess * (input == INPUT_SHININESS ? 0.5 : 1));
-        material_look(&base, &hit, &plain);
+        material_inputs_at(&base, &hit, &plain);
     }
     palette_destroy(&p);
 }
@@ -369,14 +369,14 @@ TEST(marble_over_wood_over_an_image_is_what_the_decorators_made_bit_by_bit) {
     for (int i = 0; i < 1000; i++) {
         struct hit hit = random_hit(&random);
         struct vec3 at = hit.pattern_point, kd = base.phong.kd;
-        struct surface_look look;
+        struct surface_inputs look;
         struct rgba texel = image_lookup(p.image, 0.5, 0.5, 0, 0, IMAGE_NEAREST, IMAGE_CLAMP, IMAGE_CLAMP);
         kd = vec3_add(vec3_make(texel.r, texel.g, texel.b), vec3_scale(kd, 1 - texel.a));
         double ratio = noise_wood(at.x, at.y, at.z, 3, 5, 1);
         kd = vec3_add(vec3_scale(kd, ratio), vec3_scale(brown, 1 - ratio));
         ratio = noise_marble(at.x, at.y, at.z, 2, 3, 4, 1);
         kd = vec3_add(vec3_scale(kd, ratio), vec3_scale(blue, 1 - ratio));
-        material_look(&marble, &hit, &look);
+        material_inputs_at(&marble, &hit, &look);
         CHECK(same(look.kd, kd));
         CHECK(same(look.ks, base.phong.ks) && look.shininess == 7 && look.opacity == 1);
     }
@@ -395,8 +395,8 @@ TEST(a_thousand_decorators_are_evaluated_in_order) {
         CHECK(material_mix_kd(&chain[i], texture_wood(3, 5, 1), vec3_all(i % 2), &p.arena, &p.error));
         kd = kd * ratio + (i % 2) * (1 - ratio);
     }
-    struct surface_look look;
-    material_look(&chain[MATERIAL_DEPTH - 1], &hit, &look);
+    struct surface_inputs look;
+    material_inputs_at(&chain[MATERIAL_DEPTH - 1], &hit, &look);
     CHECK(look.kd.x == kd);
     CHECK_EQ_INT(chain[MATERIAL_DEPTH - 1].depth, MATERIAL_DEPTH);
     palette_destroy(&p);
@@ -408,11 +408,11 @@ TEST(metalness_moves_kd_to_ks_and_loses_nothing) {
     palette_init(&p);
     for (int i = 0; i <= 10; i++) {
         struct material base = base_material(), metal;
-        struct surface_look look;
+        struct surface_inputs look;
         double m = i / 10.0;
         material_derive(&metal, MATERIAL_METAL, &base);
         CHECK(material_mix_metal(&metal, number(&p, m), &p.arena, &p.error));
-        material_look(&metal, &hit, &look);
+        material_inputs_at(&metal, &hit, &look);
         CHECK_NEAR(look.kd.x, 0.1 * (1 - m), 1e-16);
         CHECK_NEAR(look.ks.x, 0.1 * m + 0.4 * (1 - m), 1e-16);
         CHECK(look.shininess == 7 && look.reflect == 0.8);
@@ -444,15 +444,15 @@ TEST(bumps_of_any_texture_tilt_the_normal_by_the_slope_of_their_height) {
         hit.dpdu.x = hit.dpdv.y = size;
         frame_tangents(hit.pattern_normal, &hit.along_a, &hit.along_b);
         struct material base = base_material(), bumped;
-        struct relief relief = {.kind = MATERIAL_BUMP, .height = factor * size, .texture = height};
-        struct surface_look flat;
+        struct bump bump = {.kind = MATERIAL_BUMP, .height = factor * size, .texture = height};
+        struct surface_inputs flat;
         material_derive(&bumped, MATERIAL_BUMP, &base);
-        CHECK(material_raise(&bumped, &relief, &p.arena, &p.error));
-        material_look(&bumped, &hit, &flat);
+        CHECK(material_add_bump(&bumped, &bump, &p.arena, &p.error));
+        material_inputs_at(&bumped, &hit, &flat);
         double slope = factor * 256 / 255; /* of height over x, 256 texels wide */
         struct vec3 wanted = vec3_normalize(vec3_make(-slope, 0, 1));
         CHECK_NEAR(vec3_length(vec3_sub(flat.normal, wanted)), 0, 1e-6);
-        CHECK(material_has_relief(&bumped) && material_has_image(&bumped));
+        CHECK(material_has_bump(&bumped) && material_has_image(&bumped));
     }
     image_release(image);
     palette_destroy(&p);
@@ -465,12 +465,12 @@ TEST(normals_of_any_texture_point_where_its_colour_says) {
         static const struct vec3 wanted[] = {{0.6, 0, 0.8}, {0, 0.6, 0.8}, {0, 0, 1}};
         struct hit hit = hit_at(0.3, 0.7, 0.1);
         struct material base = base_material(), turned;
-        struct surface_look look;
+        struct surface_inputs look;
         struct vec3 c = vec3_scale(vec3_add(wanted[i], vec3_all(1)), 0.5);
-        struct relief map = {.kind = MATERIAL_NORMAL, .height = 1, .texture = colour(&p, c.x, c.y, c.z)};
+        struct bump map = {.kind = MATERIAL_NORMAL, .height = 1, .texture = colour(&p, c.x, c.y, c.z)};
         material_derive(&turned, MATERIAL_NORMAL, &base);
-        CHECK(material_raise(&turned, &map, &p.arena, &p.error));
-        material_look(&turned, &hit, &look);
+        CHECK(material_add_bump(&turned, &map, &p.arena, &p.error));
+        material_inputs_at(&turned, &hit, &look);
         CHECK_NEAR(vec3_length(vec3_sub(look.normal, wanted[i])), 0, 1e-15);
     }
     palette_destroy(&p);
@@ -482,16 +482,16 @@ TEST(bumps_of_patterns_grow_with_the_object_and_leave_flat_heights_bit_by_bit) {
     struct hit hit = hit_at(0.3, 0.7, 0.1);
     frame_tangents(hit.pattern_normal, &hit.along_a, &hit.along_b);
     struct material base = base_material(), flat, bumped;
-    struct surface_look look, scaled;
-    struct relief even = {.kind = MATERIAL_BUMP, .height = 3, .texture = number(&p, 0.7)};
-    struct relief wood = {.kind = MATERIAL_BUMP, .height = 0.05, .texture = keep(&p, texture_wood(3, 5, 1))};
+    struct surface_inputs look, scaled;
+    struct bump even = {.kind = MATERIAL_BUMP, .height = 3, .texture = number(&p, 0.7)};
+    struct bump wood = {.kind = MATERIAL_BUMP, .height = 0.05, .texture = keep(&p, texture_wood(3, 5, 1))};
     material_derive(&flat, MATERIAL_BUMP, &base);
-    CHECK(material_raise(&flat, &even, &p.arena, &p.error));
-    material_look(&flat, &hit, &look);
+    CHECK(material_add_bump(&flat, &even, &p.arena, &p.error));
+    material_inputs_at(&flat, &hit, &look);
     CHECK(same(look.normal, hit.normal));
     material_derive(&bumped, MATERIAL_BUMP, &base);
-    CHECK(material_raise(&bumped, &wood, &p.arena, &p.error));
-    material_look(&bumped, &hit, &look);
+    CHECK(material_add_bump(&bumped, &wood, &p.arena, &p.error));
+    material_inputs_at(&bumped, &hit, &look);
     CHECK(!same(look.normal, hit.normal));
     CHECK_NEAR(vec3_length(look.normal), 1, 1e-15);
     /* The object, with its bumps, is eight times as large in the world: the normals are the same. */
@@ -500,7 +500,7 @@ TEST(bumps_of_patterns_grow_with_the_object_and_leave_flat_heights_bit_by_bit) {
     hit.raise = vec3_scale(hit.raise, 8);
     hit.dpdu = vec3_scale(hit.dpdu, 8);
     hit.dpdv = vec3_scale(hit.dpdv, 8);
-    material_look(&bumped, &hit, &scaled);
+    material_inputs_at(&bumped, &hit, &scaled);
     CHECK(same(look.normal, scaled.normal));
     palette_destroy(&p);
 }
@@ -560,12 +560,12 @@ TEST(a_copy_for_a_layout_changes_every_image_and_shares_what_its_tree_shares) {
     const struct texture *image = keep(&p, shared), *red = keep(&p, texture_map(image, FUNCTION_RED, 0));
     const struct texture *tree = keep(&p, texture_mix(keep(&p, texture_multiply(image, red)), red, image));
     struct material base = base_material(), covered, raised;
-    struct relief relief = {.kind = MATERIAL_BUMP, .height = 1, .texture = tree};
+    struct bump bump = {.kind = MATERIAL_BUMP, .height = 1, .texture = tree};
     struct material_mapping mapping = {.arena = &p.arena};
     material_derive(&covered, MATERIAL_IMAGE, &base);
     CHECK(material_multiply(&covered, INPUT_KD, tree, &p.arena, &p.error));
     material_derive(&raised, MATERIAL_BUMP, &covered);
-    CHECK(material_raise(&raised, &relief, &p.arena, &p.error));
+    CHECK(material_add_bump(&raised, &bump, &p.arena, &p.error));
     struct hit ball = ball_hit(vec3_make(0.6, 0.64, 0.48)), square = hit_at(0, 0, 0);
     CHECK(material_on_layout(&mapping, &raised, LAYOUT_UV, &p.error) == &raised);
     CHECK(material_on_layout(&mapping, &base, LAYOUT_SPHERE, &p.error) == &base);
@@ -573,16 +573,16 @@ TEST(a_copy_for_a_layout_changes_every_image_and_shares_what_its_tree_shares) {
     CHECK(on && on != &raised && on == material_on_layout(&mapping, &raised, LAYOUT_SPHERE, &p.error));
     CHECK(on->base == material_on_layout(&mapping, &covered, LAYOUT_SPHERE, &p.error) && on->base->base == &base);
     const struct texture *copy = on->inputs[INPUT_KD]->multiply.b;
-    CHECK(copy == on->relief->texture && copy->mix.ratio == copy->mix.a->multiply.a && copy->mix.ratio->shared);
+    CHECK(copy == on->bump->texture && copy->mix.ratio == copy->mix.a->multiply.a && copy->mix.ratio->shared);
     CHECK(copy->mix.ratio->image.lookup.mapping == MAPPING_BALL && image->image.lookup.mapping == MAPPING_BY_SHAPE);
     /* Without coordinates the original shows what is below its image; the copy shows the image, which is even. */
-    struct surface_look bare, shown, flat;
-    material_look(&covered, &ball, &bare);
-    material_look(on->base, &ball, &shown);
-    material_look(&covered, &square, &flat);
+    struct surface_inputs bare, shown, flat;
+    material_inputs_at(&covered, &ball, &bare);
+    material_inputs_at(on->base, &ball, &shown);
+    material_inputs_at(&covered, &square, &flat);
     CHECK(!same(bare.kd, shown.kd) && same(shown.kd, flat.kd));
     base.phong.kd = vec3_scale(base.phong.kd, 2); /* what changes of the base later reaches copies */
-    material_look(on->base, &ball, &bare);
+    material_inputs_at(on->base, &ball, &bare);
     CHECK(same(bare.kd, vec3_scale(shown.kd, 2)));
     palette_destroy(&p);
 }

@@ -576,7 +576,7 @@ static const struct picked a_ball = {
     .levels = 1,
     .material_serial = 1,
     .can_own = true,
-    .look = {[LOOK_KD] = {0.5, 0.5, 0.5}},
+    .look = {[MATERIAL_PART_KD] = {0.5, 0.5, 0.5}},
     .distance = 4,
     .position = {0, 0, 1},
     .has_box = true,
@@ -765,12 +765,12 @@ TEST(window_changes_parts_of_a_material_and_copies_them_to_one_of_its_own) {
     enlarge(&t);
     go_to_the_end(&t);
     pick_ball(&t);
-    viewer_material_now(&t.viewer, LOOK_KD, now);
+    viewer_material_now(&t.viewer, MATERIAL_PART_KD, now);
     CHECK(now[0] == 0.5 && now[2] == 0.5);
-    viewer_set_material(&t.viewer, LOOK_REFLECT, half);
+    viewer_set_material(&t.viewer, MATERIAL_PART_REFLECT, half);
     take_change(&t);
     const struct change *change = &t.viewer.command.change;
-    CHECK(change->kind == CHANGE_MATERIAL && change->serial == 1 && change->part == LOOK_REFLECT);
+    CHECK(change->kind == CHANGE_MATERIAL && change->serial == 1 && change->part == MATERIAL_PART_REFLECT);
     refine(&t);
     viewer_make_own_material(&t.viewer);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);

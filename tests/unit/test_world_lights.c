@@ -241,19 +241,19 @@ TEST(lamps_and_skies_are_sampled_as_scattered_rays_meet_them) {
 /* A white floor: what arrives is E / pi = I f cos, for one light by its own samples. */
 TEST(lights_without_emission_give_what_the_classic_language_says) {
     static const struct {
-        enum light_fading fading;
+        enum light_attenuation attenuation;
         double falloff[3], factor; /* at distance 2 */
-    } cases[] = {{FADING_COEFFICIENTS, {1, 0, 0}, 1},
-                 {FADING_COEFFICIENTS, {0.5, 0.25, 0.125}, 1 / 1.5},
-                 {FADING_RANGE, {0}, 1 - 2.0 / 5},
-                 {FADING_INVERSE_SQUARE, {0}, 3.0 / 4}};
+    } cases[] = {{ATTENUATION_COEFFICIENTS, {1, 0, 0}, 1},
+                 {ATTENUATION_COEFFICIENTS, {0.5, 0.25, 0.125}, 1 / 1.5},
+                 {ATTENUATION_RANGE, {0}, 1 - 2.0 / 5},
+                 {ATTENUATION_INVERSE_SQUARE, {0}, 3.0 / 4}};
     static const enum light_kind kinds[] = {LIGHT_POINT, LIGHT_SPOT, LIGHT_DISC, LIGHT_SPHERE, LIGHT_PARALLELOGRAM};
     for (int k = 0; k < 20; k++) {
         struct room r;
         room_begin(&r);
         struct light light = lamp_of_kind(kinds[k % 5], 0, 2, 0);
         light.emits = false;
-        light.fading = cases[k / 5].fading;
+        light.attenuation = cases[k / 5].attenuation;
         memcpy(light.falloff, cases[k / 5].falloff, sizeof light.falloff);
         light.range = 5;
         light.intensity = 3;

@@ -75,25 +75,23 @@ static struct vec3 tilted_up(double x, double y) {
     return vec3_make(128.0 / 255, 204.0 / 255, 230.0 / 255);
 }
 
-static struct relief relief_of(struct stage *s, enum material_kind kind, struct image *image, double height,
-                               bool flip_u) {
+static struct bump bump_of(struct stage *s, enum material_kind kind, struct image *image, double height, bool flip_u) {
     const struct texture_image lookup = {
         .image = image, .mapping = MAPPING_BY_SHAPE, .filter = IMAGE_MIPMAP, .wrap = IMAGE_REPEAT, .flip_u = flip_u};
     const struct texture *texture = texture_keep(&s->scene.arena, texture_image(&lookup, NULL), &s->error);
     CHECK(texture != NULL);
-    return (struct relief){.kind = kind, .height = height, .texture = texture};
+    return (struct bump){.kind = kind, .height = height, .texture = texture};
 }
 
-static struct material *raised_white(struct stage *s, const struct relief *relief) {
-    struct material *m =
-        scene_material(&s->scene, relief->kind, stage_phong(s, vec3_all(1), vec3_all(0), 1), &s->error);
-    CHECK(material_raise(m, relief, &s->scene.arena, &s->error));
+static struct material *raised_white(struct stage *s, const struct bump *bump) {
+    struct material *m = scene_material(&s->scene, bump->kind, stage_phong(s, vec3_all(1), vec3_all(0), 1), &s->error);
+    CHECK(material_add_bump(m, bump, &s->scene.arena, &s->error));
     return m;
 }
 
-static struct material *relief_over(struct stage *s, enum material_kind kind, struct image *image, double height) {
-    struct relief relief = relief_of(s, kind, image, height, false);
-    return raised_white(s, &relief);
+static struct material *bump_over(struct stage *s, enum material_kind kind, struct image *image, double height) {
+    struct bump bump = bump_of(s, kind, image, height, false);
+    return raised_white(s, &bump);
 }
 
 /* Holes where the image is black. */
@@ -107,13 +105,13 @@ static struct material *cut_out(struct stage *s, struct image *image, struct mat
 /* The normal of the look and the hit that a ray meets. */
 static bool look_at(struct stage *s, struct ray ray, struct hit *hit, struct vec3 *normal) {
     struct world_scratch scratch;
-    struct surface_look look;
+    struct surface_inputs look;
     if (!world_scratch_init(&scratch, &s->world))
         return false;
     *normal = vec3_all(0);
     bool met = world_nearest(&s->world, &ray, &scratch, hit);
     if (met) {
-        material_look(&s->world.materials[hit->material], hit, &look);
+        material_inputs_at(&s->world.materials[hit->material], hit, &look);
         *normal = look.normal;
     }
     world_scratch_destroy(&scratch);
@@ -184,8 +182,7 @@ TEST(relief_of_constant_pictures_leaves_every_bit_of_the_normal) {
     for (uint32_t i = 0; i < 2 * count; i++) {
         struct stage s;
         stage_begin(&s, 1);
-        struct material *m =
-            i % 2 ? relief_over(&s, MATERIAL_BUMP, level, 3) : relief_over(&s, MATERIAL_NORMAL, blue, 1);
+        struct material *m = i % 2 ? bump_over(&s, MATERIAL_BUMP, level, 3) : bump_over(&s, MATERIAL_NORMAL, blue, 1);
         random_place(&s, &random, add_shape(&s, shapes[i / 2], m));
         CHECK(stage_build(&s, s.root, ACCEL_AUTO));
         for (int k = 0; k < 400; k++) {
@@ -215,7 +212,7 @@ TEST(bump_ramp_tilts_the_normal_by_the_closed_form_under_affine_maps) {
         struct stage s;
         stage_begin(&s, 1);
         double height = test_uniform(&random, -0.8, 0.8);
-        struct material *m = relief_over(&s, MATERIAL_BUMP, i % 2 ? down : right, height);
+        struct material *m = bump_over(&s, MATERIAL_BUMP, i % 2 ? down : right, height);
         struct node *node = stage_cube(&s, s.root, m);
         random_place(&s, &random, node);
         CHECK(stage_build(&s, s.root, ACCEL_AUTO));
@@ -247,7 +244,7 @@ TEST(bumps_on_a_ball_are_the_normals_of_the_ball_with_those_heights) {
     struct image *image = paint(waves, 1024, 512, 16);
     struct stage s;
     stage_begin(&s, 1);
-    (void)stage_sphere(&s, s.root, relief_over(&s, MATERIAL_BUMP, image, height));
+    (void)stage_sphere(&s, s.root, bump_over(&s, MATERIAL_BUMP, image, height));
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
     double max = 0;
     for (int i = 0; i < 300; i++) {
@@ -278,7 +275,7 @@ TEST(bump_heights_stand_out_of_the_hollow_that_an_operand_leaves) {
     struct image *image = paint(ramp_right, 255, 4, 16);
     struct stage s;
     stage_begin(&s, 1);
-    struct material *m = relief_over(&s, MATERIAL_BUMP, image, 0.5);
+    struct material *m = bump_over(&s, MATERIAL_BUMP, image, 0.5);
     struct node *outer = stage_cube(&s, s.root, m), *inner = scene_node(&s.scene, NODE_GEOMETRY, "inner", &s.error);
     s.root->first_child = s.root->last_child = NULL;
     inner->shape = (struct shape){.kind = SHAPE_BOX, .box = {{0.1, 0.1, 0.5}, {0.9, 0.9, 2}}};
@@ -304,7 +301,7 @@ TEST(normal_maps_turn_to_where_their_colours_point) {
     for (int i = 0; i < 8; i++) {
         struct stage s;
         stage_begin(&s, 1);
-        struct relief map = relief_of(&s, MATERIAL_NORMAL, i & 1 ? up : right, 1, (i & 4) != 0);
+        struct bump map = bump_of(&s, MATERIAL_NORMAL, i & 1 ? up : right, 1, (i & 4) != 0);
         struct material *m = raised_white(&s, &map);
         (void)add_shape(&s, shapes[i >> 1 & 1], m);
         CHECK(stage_build(&s, s.root, ACCEL_AUTO));
@@ -324,7 +321,7 @@ TEST(relief_turns_the_interpolated_normal_of_smooth_meshes) {
     struct mesh *mesh = square_mesh(true);
     struct stage s;
     stage_begin(&s, 1);
-    (void)add_shape(&s, (struct shape){.kind = SHAPE_MESH, .mesh = mesh}, relief_over(&s, MATERIAL_BUMP, image, 0.25));
+    (void)add_shape(&s, (struct shape){.kind = SHAPE_MESH, .mesh = mesh}, bump_over(&s, MATERIAL_BUMP, image, 0.25));
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
     struct hit hit;
     struct vec3 normal = {0, 0, 0};
@@ -341,7 +338,7 @@ TEST(bumps_finer_than_a_pixel_average_to_flat) {
     struct image *image = paint(stripes, 256, 4, 8);
     struct stage s;
     stage_begin(&s, 1);
-    (void)stage_cube(&s, s.root, relief_over(&s, MATERIAL_BUMP, image, 0.05));
+    (void)stage_cube(&s, s.root, bump_over(&s, MATERIAL_BUMP, image, 0.05));
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
     double near_tilt = 0, far_tilt = 0;
     for (int i = 0; i < 200; i++) {
@@ -369,7 +366,7 @@ TEST(bumps_grow_with_the_object_bit_by_bit) {
         bool relative = turn % 2;
         struct stage s;
         stage_begin(&s, 1);
-        struct relief map = relief_of(&s, MATERIAL_BUMP, image, RELIEF_HEIGHT, false);
+        struct bump map = bump_of(&s, MATERIAL_BUMP, image, BUMP_HEIGHT, false);
         map.relative = relative;
         struct material *m = raised_white(&s, &map);
         double size = ldexp(1, 3 * i);

@@ -10,7 +10,7 @@
  * Normal maps: red, green and blue are the new normal along the picture's right, its top and the old normal, as glTF
  * 2.0 (section 3.9.3) has them, made orthogonal to the normal. The colour that says "no slope" is 128 of 255, as
  * programs write it. */
-#include "material/relief.h"
+#include "material/bump.h"
 
 #include "material/texture_mapping.h"
 #include "math/frame.h"
@@ -28,7 +28,7 @@ static double step_of(double width, uint32_t texels) {
     return width > texel ? fmin(width, 1) : texel;
 }
 
-static void turn_by_heights(const struct relief *relief, const struct texture_image *image, const struct hit *hit,
+static void turn_by_heights(const struct bump *bump, const struct texture_image *image, const struct hit *hit,
                             struct vec3 *normal) {
     struct texcoord at;
     if (!texture_coordinates(image, hit, &at))
@@ -41,8 +41,8 @@ static void turn_by_heights(const struct relief *relief, const struct texture_im
     double step_v = step_of(at.width_v, image_height(image->image));
     double f_u = height_at(image, at, 0.5 * step_u, 0) - height_at(image, at, -0.5 * step_u, 0);
     double f_v = height_at(image, at, 0, 0.5 * step_v) - height_at(image, at, 0, -0.5 * step_v);
-    double height = relief->relative ? relief->height * sqrt(area) : relief->height;
-    struct vec3 up = relief->relative ? hit->normal_geometric : hit->raise;
+    double height = bump->relative ? bump->height * sqrt(area) : bump->height;
+    struct vec3 up = bump->relative ? hit->normal_geometric : hit->raise;
     f_u *= height / step_u;
     f_v *= height / step_v;
     if (f_u == 0 && f_v == 0)
@@ -75,7 +75,7 @@ static struct hit moved(const struct hit *hit, struct vec3 a, struct vec3 b, dou
 
 /* The same formula with the tangents of the object's space. The differences are as wide as the footprint, at least
  * 2^-17 of the coordinates (the cube root of the rounding error, where central differences are best). */
-static void turn_by_texture(const struct relief *relief, const struct hit *hit, struct vec3 *normal) {
+static void turn_by_texture(const struct bump *bump, const struct hit *hit, struct vec3 *normal) {
     struct vec3 n = vec3_cross(hit->along_a, hit->along_b), a, b;
     double area = vec3_length(n);
     double step = fmax(0.5 * hit->footprint * hit->pattern_scale, 0x1p-17 * vec3_max_abs(hit->pattern_point));
@@ -84,9 +84,9 @@ static void turn_by_texture(const struct relief *relief, const struct hit *hit, 
     frame_tangents(vec3_normalize(hit->pattern_normal), &a, &b);
     const struct hit at[4] = {moved(hit, a, b, step, 0), moved(hit, a, b, -step, 0), moved(hit, a, b, 0, step),
                               moved(hit, a, b, 0, -step)};
-    double scale = relief->height / (2 * step);
-    double f_a = scale * (texture_scalar(relief->texture, &at[0]) - texture_scalar(relief->texture, &at[1]));
-    double f_b = scale * (texture_scalar(relief->texture, &at[2]) - texture_scalar(relief->texture, &at[3]));
+    double scale = bump->height / (2 * step);
+    double f_a = scale * (texture_scalar(bump->texture, &at[0]) - texture_scalar(bump->texture, &at[1]));
+    double f_b = scale * (texture_scalar(bump->texture, &at[2]) - texture_scalar(bump->texture, &at[3]));
     if (f_a == 0 && f_b == 0)
         return;
     struct vec3 up = hit->raise;
@@ -112,7 +112,7 @@ static void turn_along(double x, double y, double z, struct vec3 dpdu, struct ve
         *normal = vec3_normalize(turned);
 }
 
-static void turn_to_colours(const struct relief *relief, const struct texture_image *image, const struct hit *hit,
+static void turn_to_colours(const struct bump *bump, const struct texture_image *image, const struct hit *hit,
                             struct vec3 *normal) {
     struct texcoord at;
     if (!texture_coordinates(image, hit, &at))
@@ -121,26 +121,26 @@ static void turn_to_colours(const struct relief *relief, const struct texture_im
     double flat = image_bits(image->image) == 8 ? 128.0 / 255 : 32768.0 / 65535;
     if (!(texel.a > 0))
         return;
-    double x = 2 * relief->height * (texel.r / texel.a - flat);
-    double y = 2 * relief->height * (texel.g / texel.a - flat), z = 2 * texel.b / texel.a - 1;
+    double x = 2 * bump->height * (texel.r / texel.a - flat);
+    double y = 2 * bump->height * (texel.g / texel.a - flat), z = 2 * texel.b / texel.a - 1;
     turn_along(x, y, z, at.dpdu, at.dpdv, normal);
 }
 
 /* The same with the coordinates that the shape supplies; no slope is 0.5, since no file has rounded it. */
-static void turn_to_texture(const struct relief *relief, const struct hit *hit, struct vec3 *normal) {
-    struct vec3 colour = texture_colour(relief->texture, hit);
-    double x = 2 * relief->height * (colour.x - 0.5), y = 2 * relief->height * (colour.y - 0.5);
-    struct vec3 down = relief->from_above ? hit->dpdv : vec3_negate(hit->dpdv);
+static void turn_to_texture(const struct bump *bump, const struct hit *hit, struct vec3 *normal) {
+    struct vec3 colour = texture_colour(bump->texture, hit);
+    double x = 2 * bump->height * (colour.x - 0.5), y = 2 * bump->height * (colour.y - 0.5);
+    struct vec3 down = bump->from_above ? hit->dpdv : vec3_negate(hit->dpdv);
     turn_along(x, y, 2 * colour.z - 1, hit->dpdu, down, normal);
 }
 
-void relief_turn(const struct relief *relief, const struct hit *hit, struct vec3 *normal) {
-    if (relief->below)
-        relief_turn(relief->below, hit, normal);
-    const struct texture_image *image = texture_as_image(relief->texture);
-    bool by_colours = relief->kind == MATERIAL_NORMAL;
+void bump_turn_normal(const struct bump *bump, const struct hit *hit, struct vec3 *normal) {
+    if (bump->below)
+        bump_turn_normal(bump->below, hit, normal);
+    const struct texture_image *image = texture_as_image(bump->texture);
+    bool by_colours = bump->kind == MATERIAL_NORMAL;
     if (image)
-        (by_colours ? turn_to_colours : turn_by_heights)(relief, image, hit, normal);
+        (by_colours ? turn_to_colours : turn_by_heights)(bump, image, hit, normal);
     else
-        (by_colours ? turn_to_texture : turn_by_texture)(relief, hit, normal);
+        (by_colours ? turn_to_texture : turn_by_texture)(bump, hit, normal);
 }

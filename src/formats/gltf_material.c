@@ -220,5 +220,5 @@ bool gltf_read_materials(struct gltf *g) {
 
 #else
 /* Without jansson there is nothing in here. */
-typedef int gltf_look_is_empty;
+typedef int gltf_material_is_default;
 #endif

@@ -1,0 +1,11 @@
+/* Relief without geometry: normals turned by textures. */
+#ifndef GRAY_MATERIAL_BUMP_H
+#define GRAY_MATERIAL_BUMP_H
+
+#include "material/material.h"
+
+/* Turns *normal, a unit vector, by this and before it by all below; leaves it bit by bit where the texture is flat.
+ * Needs hit->raise and the tangents of the mapping (material_has_bump); does nothing where a shape has none. */
+void bump_turn_normal(const struct bump *bump, const struct hit *hit, struct vec3 *normal);
+
+#endif
