@@ -5,7 +5,7 @@
  *   growth [--most N] [--threads N] [--models FOLDER] [--svg FILE] [triangles] [instances] [stadium] */
 #include "accel/isa.h"
 #include "bench/rays_scenes.h"
-#include "geom/mesh.h"
+#include "mesh/mesh.h"
 #include "scene/node.h"
 #include "world/packet.h"
 #include "world/world.h"
@@ -111,9 +111,9 @@ static double trace(const struct world *world, const struct ray *rays, int count
         struct triangle_cost before = scratch->geom.cost;
         double start = seconds(CLOCK_THREAD_CPUTIME_ID);
         for (int i = 0; i < count; i++) {
-            uint32_t placed;
+            uint32_t primitive;
             struct crossing crossing;
-            (void)world_nearest_crossing(world, &rays[i], scratch, &placed, &crossing);
+            (void)world_nearest_crossing(world, &rays[i], scratch, &primitive, &crossing);
         }
         best = fmin(best, 1e9 * (seconds(CLOCK_THREAD_CPUTIME_ID) - start) / fmax(count, 1));
         if (row && round == 0) {
@@ -196,7 +196,7 @@ static void finish_row(struct bench *bench, struct stand *stand, const struct be
     camera_rays(view, rays);
     row->camera_ns = trace(&stand->world, rays, SIDE * SIDE, &scratch, row);
     struct box box = box_empty();
-    for (uint32_t i = 0; i < stand->world.placed_count; i++)
+    for (uint32_t i = 0; i < stand->world.primitive_count; i++)
         box = box_join(box, stand->world.boxes[i]);
     chords(&box, rays);
     row->chord_ns = trace(&stand->world, rays, SIDE * SIDE, &scratch, NULL);
@@ -266,7 +266,8 @@ static void grow_instances(struct bench *bench) {
         if (!node_add_child(&stand.scene, stand.root, many, &stand.error))
             exit(3);
         row.build_seconds = stand_build(&stand, bench->pool);
-        row.bytes_each = (double)(world_placed_memory(&stand.world) + scene_accel_memory(&stand.world.accel)) / count;
+        row.bytes_each =
+            (double)(world_primitive_memory(&stand.world) + scene_accel_memory(&stand.world.accel)) / count;
         finish_row(bench, &stand, &view, &row);
         stand_end(&stand);
         free(at);
@@ -277,13 +278,13 @@ static void grow_instances(struct bench *bench) {
 
 /* --- a mesh in a stadium --- */
 
-static int keep_those_that_meet(const struct world *world, struct ray *rays, int count, uint32_t placed_wanted,
+static int keep_those_that_meet(const struct world *world, struct ray *rays, int count, uint32_t primitive_wanted,
                                 uint32_t triangles, struct world_scratch *scratch) {
     int kept = 0;
     for (int i = 0; i < count; i++) {
-        uint32_t placed;
+        uint32_t primitive;
         struct crossing crossing;
-        if (world_nearest_crossing(world, &rays[i], scratch, &placed, &crossing) && placed == placed_wanted &&
+        if (world_nearest_crossing(world, &rays[i], scratch, &primitive, &crossing) && primitive == primitive_wanted &&
             crossing.part < triangles)
             rays[kept++] = rays[i];
     }

@@ -16,7 +16,7 @@
  * distance to the nearest edge of the triangle in barycentric units. */
 #include "accel/isa.h"
 #include "bench/rays_scenes.h"
-#include "geom/mesh.h"
+#include "mesh/mesh.h"
 #include "world/world.h"
 
 #include <math.h>
@@ -485,14 +485,14 @@ static void trace_batches(struct batches *b, const struct bench_ray *source, uin
         double start = cpu_seconds();
         for (uint32_t i = 0; i < count; i++)
             if (!world_nearest(&b->world, &rays[i], &b->scratch, &hits[0][i]))
-                hits[0][i].placed = WORLD_NOTHING;
+                hits[0][i].primitive = WORLD_NOTHING;
         double middle = cpu_seconds();
         world_nearest_batch(&b->world, rays, count, &b->scratch, hits[1]);
         seconds[1] += cpu_seconds() - middle;
         seconds[0] += middle - start;
         for (uint32_t i = 0; i < count; i++)
-            if (hits[0][i].placed != hits[1][i].placed ||
-                (hits[0][i].placed != WORLD_NOTHING &&
+            if (hits[0][i].primitive != hits[1][i].primitive ||
+                (hits[0][i].primitive != WORLD_NOTHING &&
                  memcmp(&hits[0][i].t, &hits[1][i].t, sizeof hits[0][i].t) != 0)) {
                 fprintf(stderr, "rays: ray %u of a batch has another answer than alone\n", i);
                 exit(3);

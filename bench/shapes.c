@@ -4,16 +4,16 @@
  *
  *   shapes [NAME ...]        NAME is a part of a shape's name; without one all are measured */
 #include "base/arena.h"
-#include "geom/csg.h"
-#include "geom/shape.h"
-#include "geom/shape_blob.h"
-#include "geom/conic.h"
-#include "geom/shape_curve.h"
-#include "geom/flat.h"
-#include "geom/shape_height_field.h"
-#include "geom/shape_lathe.h"
-#include "geom/shape_prism.h"
-#include "geom/shape_sweep.h"
+#include "csg/csg.h"
+#include "shape/shape.h"
+#include "shape/blob.h"
+#include "shape/revolved_quadric.h"
+#include "shape/curve.h"
+#include "shape/planar.h"
+#include "shape/height_field.h"
+#include "shape/lathe.h"
+#include "shape/prism.h"
+#include "shape/sweep.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -235,10 +235,10 @@ int main(int argc, char **argv) {
     const struct vec3 corners[] = {{1, 0, 0}, {0, 0, -1}, {-1, 0, 0}, {0.2, 0, 0.1}, {0, 0, 1}};
     const uint32_t end = 5;
     struct arena arena = {0};
-    struct flat polygon;
+    struct planar polygon;
     const char *why;
     struct geom_scratch scratch;
-    if (!geom_scratch_init(&scratch, 1 << 16) || !flat_polygon(&arena, corners, &end, 1, &polygon, &why))
+    if (!geom_scratch_init(&scratch, 1 << 16) || !planar_polygon(&arena, corners, &end, 1, &polygon, &why))
         return 3;
     const struct {
         const char *name;
@@ -247,22 +247,22 @@ int main(int argc, char **argv) {
         {"sphere", {.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}}},
         {"box", {.kind = SHAPE_BOX, .box = {{-1, -1, -1}, {1, 1, 1}}}},
         {"ellipsoid", {.kind = SHAPE_ELLIPSOID, .ellipsoid = {{0, 0, 0}, {1, 0.5, 0.7}}}},
-        {"cylinder", {.kind = SHAPE_CONIC, .conic = conic_cylinder(low, up, 1, false)}},
-        {"open cylinder", {.kind = SHAPE_CONIC, .conic = conic_cylinder(low, up, 1, true)}},
-        {"cone", {.kind = SHAPE_CONIC, .conic = conic_frustum(zero, 0, up, 1, false)}},
-        {"paraboloid", {.kind = SHAPE_CONIC, .conic = conic_paraboloid(1, 1, false)}},
-        {"hyperboloid of one sheet", {.kind = SHAPE_CONIC, .conic = conic_one_sheet(0.5, 1, -1, 1, false)}},
-        {"hyperboloid of two sheets", {.kind = SHAPE_CONIC, .conic = conic_two_sheets(0.5, 1, 1, false)}},
+        {"cylinder", {.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = revolved_quadric_cylinder(low, up, 1, false)}},
+        {"open cylinder", {.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = revolved_quadric_cylinder(low, up, 1, true)}},
+        {"cone", {.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = revolved_quadric_frustum(zero, 0, up, 1, false)}},
+        {"paraboloid", {.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = revolved_quadric_paraboloid(1, 1, false)}},
+        {"hyperboloid of one sheet", {.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = revolved_quadric_one_sheet(0.5, 1, -1, 1, false)}},
+        {"hyperboloid of two sheets", {.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = revolved_quadric_two_sheets(0.5, 1, 1, false)}},
         {"quadric", {.kind = SHAPE_QUADRIC, .quadric = &saddle}},
         {"torus", {.kind = SHAPE_TORUS, .torus = {1, 0.4}}},
         {"superellipsoid 0.3, 0.3", {.kind = SHAPE_SUPERELLIPSOID, .superellipsoid = {0.3, 0.3}}},
         {"superellipsoid 1.5, 1.5", {.kind = SHAPE_SUPERELLIPSOID, .superellipsoid = {1.5, 1.5}}},
         {"superellipsoid 3, 3", {.kind = SHAPE_SUPERELLIPSOID, .superellipsoid = {3, 3}}},
-        {"square", {.kind = SHAPE_FLAT, .flat = flat_square()}},
-        {"disc", {.kind = SHAPE_FLAT, .flat = flat_disc(zero, up, 1, 0)}},
-        {"triangle", {.kind = SHAPE_FLAT, .flat = flat_triangle(corners[0], corners[1], corners[2])}},
-        {"polygon of 5", {.kind = SHAPE_FLAT, .flat = polygon}},
-        {"half-space", {.kind = SHAPE_FLAT, .flat = flat_plane(up, 0)}},
+        {"square", {.kind = SHAPE_PLANAR, .planar = planar_square()}},
+        {"disc", {.kind = SHAPE_PLANAR, .planar = planar_disc(zero, up, 1, 0)}},
+        {"triangle", {.kind = SHAPE_PLANAR, .planar = planar_triangle(corners[0], corners[1], corners[2])}},
+        {"polygon of 5", {.kind = SHAPE_PLANAR, .planar = polygon}},
+        {"half-space", {.kind = SHAPE_PLANAR, .planar = planar_plane(up, 0)}},
     };
     for (size_t i = 0; i < sizeof table / sizeof table[0]; i++)
         if (is_wanted(argc, argv, table[i].name))

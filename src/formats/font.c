@@ -143,7 +143,7 @@ static int on_line(const FT_Vector *to, void *user) {
     return 0;
 }
 
-static int on_conic(const FT_Vector *by, const FT_Vector *to, void *user) {
+static int on_revolved_quadric(const FT_Vector *by, const FT_Vector *to, void *user) {
     struct setting *s = user;
     double x = (double)s->at.x, y = (double)s->at.y, u = (double)to->x, v = (double)to->y;
     double cx = (double)by->x, cy = (double)by->y;
@@ -157,7 +157,7 @@ static int on_cubic(const FT_Vector *a, const FT_Vector *b, const FT_Vector *to,
 }
 
 static bool outline_of(struct setting *s, FT_UInt index, struct font_glyph *glyph) {
-    static const FT_Outline_Funcs walk = {on_move, on_line, on_conic, on_cubic, 0, 0};
+    static const FT_Outline_Funcs walk = {on_move, on_line, on_revolved_quadric, on_cubic, 0, 0};
     FT_Error code = FT_Load_Glyph(s->face, index, FT_LOAD_NO_SCALE | FT_LOAD_NO_BITMAP);
     if (code)
         return fail(s, code);

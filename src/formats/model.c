@@ -5,8 +5,8 @@
 
 #include "base/file.h"
 #include "base/unreachable.h"
-#include "geom/mesh_smooth.h"
 #include "math/range.h"
+#include "mesh/mesh_smooth.h"
 
 #include <assert.h>
 #include <stdarg.h>

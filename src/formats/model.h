@@ -9,9 +9,9 @@
 #include "base/error.h"
 #include "base/path_policy.h"
 #include "formats/list.h"
-#include "geom/mesh.h"
 #include "image/image.h"
 #include "math/affine.h"
+#include "mesh/mesh.h"
 
 #define MODEL_NONE UINT32_MAX
 

@@ -6,7 +6,7 @@
 #define GRAY_FORMATS_OBJ_H
 
 #include "base/error.h"
-#include "geom/mesh.h"
+#include "mesh/mesh.h"
 
 struct mesh *obj_read(const char *path, struct error *error);
 /* From memory; `path` is for messages. The bytes need no final NUL. */

@@ -154,10 +154,10 @@ static void fill_report(const struct picture_work *work, const struct film *film
     struct rusage usage;
     struct error ignored;
     size_t film_bytes = 0;
-    report->primitives = world->placed_count;
+    report->primitives = world->primitive_count;
     report->triangles = world->triangles;
     report->mesh_bytes = world->mesh_memory;
-    report->placed_bytes = world_placed_memory(world);
+    report->primitive_bytes = world_primitive_memory(world);
     report->search_bytes = scene_accel_memory(&world->accel);
     report->image_bytes = 0;
     for (const struct asset_image *entry = work->process->assets.images; entry; entry = entry->next)

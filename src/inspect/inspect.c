@@ -44,25 +44,25 @@ const char *inspect_ray(enum ray_kind kind) {
     return "?";
 }
 
-const char *trace_path(const struct trace_report *report, uint32_t placed) {
+const char *trace_path(const struct trace_report *report, uint32_t primitive) {
     uint32_t low = 0, high = report->names.count;
     while (low < high) {
         uint32_t middle = low + (high - low) / 2;
-        if (report->names.primitives[middle] < placed)
+        if (report->names.primitives[middle] < primitive)
             low = middle + 1;
         else
             high = middle;
     }
-    bool found = low < report->names.count && report->names.primitives[low] == placed && report->names.paths[low];
-    return found ? report->names.paths[low] : placed_node(report->picture->job->world, placed)->name;
+    bool found = low < report->names.count && report->names.primitives[low] == primitive && report->names.paths[low];
+    return found ? report->names.paths[low] : primitive_node(report->picture->job->world, primitive)->name;
 }
 
 /* All primitives that the rays of a list and below have met: counts them, or notes them too. */
-static size_t note_placed(const struct pixel_trace_ray *ray, uint64_t *out, size_t count) {
+static size_t note_primitives(const struct pixel_trace_ray *ray, uint64_t *out, size_t count) {
     for (; ray; ray = ray->next) {
         if (ray->met) {
             if (out)
-                out[count] = ray->hit.placed;
+                out[count] = ray->hit.primitive;
             count++;
         }
         for (const struct pixel_trace_light *light = ray->lights; light; light = light->next) {
@@ -72,7 +72,7 @@ static size_t note_placed(const struct pixel_trace_ray *ray, uint64_t *out, size
                 out[count] = light->blocker;
             count++;
         }
-        count = note_placed(ray->first, out, count);
+        count = note_primitives(ray->first, out, count);
     }
     return count;
 }
@@ -81,14 +81,14 @@ static bool find_names(struct pixel_trace *pixel_trace, const struct inspected *
                        struct error *error) {
     size_t count = 0, at = 0;
     for (const struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next)
-        count += note_placed(sample->first, NULL, 0);
+        count += note_primitives(sample->first, NULL, 0);
     uint64_t *all = arena_alloc_array(&pixel_trace->arena, count + 1, sizeof *all);
     names->primitives = arena_alloc_array(&pixel_trace->arena, count + 1, sizeof *names->primitives);
     names->paths = arena_alloc_array(&pixel_trace->arena, count + 1, sizeof *names->paths);
     if (!all || !names->primitives || !names->paths)
         return error_no_memory(error, "the trace of a pixel");
     for (const struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next)
-        at = note_placed(sample->first, all, at);
+        at = note_primitives(sample->first, all, at);
     sort_words(all, count);
     for (size_t i = 0; i < count; i++)
         if (i == 0 || all[i] != all[i - 1])

@@ -35,7 +35,7 @@ struct trace_report {
     const struct pixel_trace *pixel_trace;
     struct trace_names names;
 };
-const char *trace_path(const struct trace_report *report, uint32_t placed); /* never NULL */
+const char *trace_path(const struct trace_report *report, uint32_t primitive); /* never NULL */
 void pixel_trace_print(const struct trace_report *report, struct text_writer *writer);
 void pixel_trace_print_json(const struct trace_report *report, struct text_writer *writer);
 

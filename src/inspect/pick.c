@@ -4,7 +4,7 @@
 #include "inspect/pick.h"
 
 #include "base/hash.h"
-#include "geom/csg.h"
+#include "csg/csg.h"
 #include "inspect/inspect.h"
 #include "render/camera.h"
 #include "world/path.h"
@@ -17,7 +17,7 @@ enum { ROUTE_LIMIT = 256 };
 struct picking {
     const struct world *world;
     struct picked *out;
-    uint32_t placed; /* what was hit */
+    uint32_t primitive; /* what was hit */
     /* The route to it, and on to the operand; the selected node is the last of `depth`. */
     struct scene_step steps[ROUTE_LIMIT];
     uint32_t route, whole, depth;
@@ -52,7 +52,7 @@ uint64_t route_hash(const struct scene_step *steps, uint32_t depth) {
 /* The route to what was hit; the traversal ends there. */
 static bool find_route(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
     struct picking *p = context;
-    if (p->placed < first || p->placed >= first + count)
+    if (p->primitive < first || p->primitive >= first + count)
         return true;
     p->route = depth <= ROUTE_LIMIT ? depth : 0;
     memcpy(p->steps, steps, p->route * sizeof *steps);
@@ -61,7 +61,7 @@ static bool find_route(void *context, uint32_t first, uint32_t count, const stru
 
 /* The node that is so many above what was placed, or below. */
 static bool choose_node(struct picking *p, const struct hit *hit, int32_t up) {
-    const struct csg *csg = placed_geometry(p->world, p->placed)->csg;
+    const struct csg *csg = primitive_geometry(p->world, p->primitive)->csg;
     uint32_t length = 0;
     if (csg && !world_operand_way(p->steps[p->route - 1].node, csg->leaves[hit->leaf].origin, p->steps + p->route,
                                   ROUTE_LIMIT - p->route, &length))
@@ -145,10 +145,10 @@ static bool box_operand(struct picking *p, const struct node *node, const struct
 }
 
 static bool box_node(struct picking *p, const struct node *root, struct error *error) {
-    const struct thing *thing = placed_thing(p->world, p->placed);
-    if (p->depth == p->route && thing->parts == 1 && !thing->is_later_part) {
-        struct transform map = world_placement(p->world, p->placed, 0);
-        struct box box = geometry_bounds(&thing->geometry);
+    const struct prototype *prototype = primitive_prototype(p->world, p->primitive);
+    if (p->depth == p->route && prototype->parts == 1 && !prototype->is_later_part) {
+        struct transform map = world_placement(p->world, p->primitive, 0);
+        struct box box = geometry_bounds(&prototype->geometry);
         set_corners(p->out, &box, &map.forward);
         return true;
     }
@@ -165,7 +165,7 @@ static bool box_node(struct picking *p, const struct node *root, struct error *e
 
 static const char *shape_description(const struct picking *p, const struct node *node) {
     if (p->depth == p->route)
-        return geometry_kind_name(placed_geometry(p->world, p->placed));
+        return geometry_kind_name(primitive_geometry(p->world, p->primitive));
     bool solid = p->depth > p->route && node->kind != NODE_GROUP && node->kind != NODE_JOINT;
     return !solid ? "group" : node->kind == NODE_CSG ? "csg" : shape_kind_name(node->shape.kind);
 }
@@ -230,7 +230,7 @@ bool pick_at(const struct render_job *job, const struct node *root, struct pick_
         return error_no_memory(error, "the ray of a click");
     bool found = world_nearest(job->world, &ray, &scratch, &hit), ok = true;
     if (found) {
-        struct picking p = {.world = job->world, .out = out, .placed = hit.placed};
+        struct picking p = {.world = job->world, .out = out, .primitive = hit.primitive};
         out->distance = vec3_length(vec3_sub(hit.point, ray.origin));
         out->position = hit.point;
         out->normal = hit.normal;

@@ -82,10 +82,10 @@ static void json_light(const struct trace_report *report, struct text_writer *wr
 static void json_hit(const struct trace_report *report, struct text_writer *writer, const struct pixel_trace_ray *ray) {
     const struct world *world = report->picture->job->world;
     const struct hit *hit = &ray->hit;
-    const struct geometry *geometry = placed_geometry(world, hit->placed);
-    text(writer, "node", trace_path(report, hit->placed));
+    const struct geometry *geometry = primitive_geometry(world, hit->primitive);
+    text(writer, "node", trace_path(report, hit->primitive));
     text_writer_print(writer, ",\"node_number\":%u,\"placed\":%u,\"shape\":\"%s\"",
-                      placed_node(world, hit->placed)->serial, hit->placed, geometry_kind_name(geometry));
+                      primitive_node(world, hit->primitive)->serial, hit->primitive, geometry_kind_name(geometry));
     if (geometry->csg)
         text_writer_print(writer, ",\"operand\":%u,\"operand_shape\":\"%s\"", hit->leaf + 1,
                           shape_kind_name(geometry_shape(geometry, hit->leaf)->kind));

@@ -141,10 +141,10 @@ static void print_light(const struct text_state *t, const struct pixel_trace_lig
 static void print_hit(const struct text_state *t, const struct pixel_trace_ray *ray) {
     const struct world *world = t->report->picture->job->world;
     const struct hit *hit = &ray->hit;
-    const struct geometry *geometry = placed_geometry(world, hit->placed);
+    const struct geometry *geometry = primitive_geometry(world, hit->primitive);
     indent(t, 1);
     text_writer_print(t->writer, "meets ");
-    text_writer_name(t->writer, trace_path(t->report, hit->placed));
+    text_writer_name(t->writer, trace_path(t->report, hit->primitive));
     text_writer_print(t->writer, ", %s", geometry_kind_name(geometry));
     if (geometry->csg)
         text_writer_print(t->writer, ", operand %u of %u, %s", hit->leaf + 1, geometry->csg->leaf_count,

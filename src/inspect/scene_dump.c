@@ -1,7 +1,7 @@
 /* The flattened world as it was built: one line for everything placed, in flattening order, then materials and lights.
  */
-#include "geom/mesh.h"
 #include "inspect/inspect.h"
+#include "mesh/mesh.h"
 
 #include <stdio.h>
 
@@ -17,59 +17,59 @@ static uint32_t number_of(const struct dump *d, uint32_t material) {
     return d->world->material_numbers[material] + 1;
 }
 
-static void dump_line(const struct dump *d, uint32_t placed, const char *path) {
-    const struct thing *thing = placed_thing(d->world, placed);
-    const struct mesh *mesh = geometry_mesh(&thing->geometry);
-    const struct box *box = &d->world->boxes[placed];
+static void dump_line(const struct dump *d, uint32_t primitive, const char *path) {
+    const struct prototype *prototype = primitive_prototype(d->world, primitive);
+    const struct mesh *mesh = geometry_mesh(&prototype->geometry);
+    const struct box *box = &d->world->boxes[primitive];
     char material[24] = "-", triangles[24] = "-";
-    bool moves =
-        d->world->primitives[placed].linear != LINEAR_NONE && (d->world->primitives[placed].linear & LINEAR_MOVING);
-    uint32_t first = !thing->geometry.csg ? number_of(d, thing->material) : 0;
+    bool moves = d->world->primitives[primitive].linear != LINEAR_NONE &&
+                 (d->world->primitives[primitive].linear & LINEAR_MOVING);
+    uint32_t first = !prototype->geometry.csg ? number_of(d, prototype->material) : 0;
     if (first > 0)
-        (void)snprintf(material, sizeof material, thing->slot_count > 1 ? "%u-%u" : "%u", first,
-                       first + thing->slot_count - 1);
+        (void)snprintf(material, sizeof material, prototype->slot_count > 1 ? "%u-%u" : "%u", first,
+                       first + prototype->slot_count - 1);
     if (mesh)
         (void)snprintf(triangles, sizeof triangles, "%u", mesh_triangle_count(mesh));
-    text_writer_print(d->writer, "%8u  %-14s %9s %9s  %-5s (%.6g, %.6g, %.6g) to (%.6g, %.6g, %.6g)  ", placed + 1,
-                      geometry_kind_name(&thing->geometry), triangles, material, moves ? "moves" : "", box->min.x,
+    text_writer_print(d->writer, "%8u  %-14s %9s %9s  %-5s (%.6g, %.6g, %.6g) to (%.6g, %.6g, %.6g)  ", primitive + 1,
+                      geometry_kind_name(&prototype->geometry), triangles, material, moves ? "moves" : "", box->min.x,
                       box->min.y, box->min.z, box->max.x, box->max.y, box->max.z);
     text_writer_name(d->writer, path);
     text_writer_print(d->writer, "\n");
-    if (!thing->geometry.csg)
+    if (!prototype->geometry.csg)
         return;
-    for (uint32_t i = 0; i < thing->geometry.csg->leaf_count; i++) {
-        const struct csg_leaf *leaf = &thing->geometry.csg->leaves[i];
+    for (uint32_t i = 0; i < prototype->geometry.csg->leaf_count; i++) {
+        const struct csg_leaf *leaf = &prototype->geometry.csg->leaves[i];
         text_writer_print(d->writer, "          . operand %u: %s, material %u\n", i + 1,
                           shape_kind_name(leaf->shape.kind), number_of(d, leaf->material));
     }
 }
 
-static void dump_json(const struct dump *d, uint32_t placed, const char *path) {
-    const struct thing *thing = placed_thing(d->world, placed);
-    const struct mesh *mesh = geometry_mesh(&thing->geometry);
+static void dump_json(const struct dump *d, uint32_t primitive, const char *path) {
+    const struct prototype *prototype = primitive_prototype(d->world, primitive);
+    const struct mesh *mesh = geometry_mesh(&prototype->geometry);
     struct text_writer *writer = d->writer;
-    text_writer_print(writer, "%s{\"number\":%u,\"node\":", placed > 0 ? "," : "", placed + 1);
+    text_writer_print(writer, "%s{\"number\":%u,\"node\":", primitive > 0 ? "," : "", primitive + 1);
     text_writer_json(writer, path);
-    text_writer_print(writer, ",\"node_number\":%u,\"shape\":\"%s\"", placed_node(d->world, placed)->serial,
-                      geometry_kind_name(&thing->geometry));
+    text_writer_print(writer, ",\"node_number\":%u,\"shape\":\"%s\"", primitive_node(d->world, primitive)->serial,
+                      geometry_kind_name(&prototype->geometry));
     if (mesh)
         text_writer_print(writer, ",\"triangles\":%u", mesh_triangle_count(mesh));
-    if (thing->geometry.csg) {
+    if (prototype->geometry.csg) {
         text_writer_print(writer, ",\"operands\":[");
-        for (uint32_t i = 0; i < thing->geometry.csg->leaf_count; i++)
+        for (uint32_t i = 0; i < prototype->geometry.csg->leaf_count; i++)
             text_writer_print(writer, "%s{\"shape\":\"%s\",\"material\":%u}", i > 0 ? "," : "",
-                              shape_kind_name(thing->geometry.csg->leaves[i].shape.kind),
-                              number_of(d, thing->geometry.csg->leaves[i].material));
+                              shape_kind_name(prototype->geometry.csg->leaves[i].shape.kind),
+                              number_of(d, prototype->geometry.csg->leaves[i].material));
         text_writer_print(writer, "]");
     } else {
-        text_writer_print(writer, ",\"material\":%u,\"slots\":%u", number_of(d, thing->material),
-                          thing->slot_count > 1 ? thing->slot_count : 1);
+        text_writer_print(writer, ",\"material\":%u,\"slots\":%u", number_of(d, prototype->material),
+                          prototype->slot_count > 1 ? prototype->slot_count : 1);
     }
-    struct transform map = world_placement(d->world, placed, 0);
+    struct transform map = world_placement(d->world, primitive, 0);
     text_writer_print(writer, ",\"min\":");
-    text_writer_json_vector(writer, d->world->boxes[placed].min);
+    text_writer_json_vector(writer, d->world->boxes[primitive].min);
     text_writer_print(writer, ",\"max\":");
-    text_writer_json_vector(writer, d->world->boxes[placed].max);
+    text_writer_json_vector(writer, d->world->boxes[primitive].max);
     text_writer_print(writer, ",\"world_from_object\":[");
     for (int i = 0; i < 12; i++) {
         text_writer_print(writer, i > 0 ? "," : "");
@@ -78,7 +78,8 @@ static void dump_json(const struct dump *d, uint32_t placed, const char *path) {
     text_writer_print(writer, "]}");
 }
 
-static bool dump_placed(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
+static bool dump_primitives(void *context, uint32_t first, uint32_t count, const struct scene_step *steps,
+                            uint32_t depth) {
     const struct dump *d = context;
     char path[4096];
     (void)world_path_text(steps, depth, path, sizeof path);
@@ -177,10 +178,10 @@ bool inspect_world(const struct inspected *picture, struct text_writer *writer, 
         text_writer_print(writer,
                           ": %u primitives, %llu triangles, %u materials, %u lights; background: %s\n\n"
                           "  number  shape          triangles  material        box  node\n",
-                          world->placed_count, (unsigned long long)world->triangles, world->material_number_count,
+                          world->primitive_count, (unsigned long long)world->triangles, world->material_number_count,
                           world->light_count, inspect_sky(world->sky.kind));
     }
-    bool ok = world_visit_paths(world, picture->root, dump_placed, &d, error);
+    bool ok = world_visit_paths(world, picture->root, dump_primitives, &d, error);
     if (ok)
         dump_rest(&d);
     text_writer_flush(writer);

@@ -69,7 +69,7 @@ struct light {
     /* The nodes (with everything under them) that it lights, or does not; NULL: no such list. Arrays of the script. */
     const struct node *const *include, *const *exclude;
     uint32_t include_count, exclude_count;
-    const uint8_t *lit; /* by placed primitive, made by world_build from the lists; NULL: everything */
+    const uint8_t *lit; /* by primitive, made by world_build from the lists; NULL: everything */
 };
 
 /* Makes what a light needs before it is asked (the table of a sky), in the arena. Errors: no memory. */

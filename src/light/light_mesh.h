@@ -11,7 +11,7 @@ struct light_triangle {
     struct vec3 intensity;                    /* classic, of its radiance over the density of samples by area */
     double density;                           /* of samples by area */
     double offset;                            /* shadow rays end this far from it */
-    uint32_t primitive, part;                 /* what it was made of: a placed primitive, and which triangle there */
+    uint32_t primitive, part;                 /* what it was made of: a primitive, and which triangle there */
 };
 struct light_mesh {
     const struct light_triangle *triangles; /* by primitive, then by part */

@@ -7,7 +7,7 @@
 #define GRAY_MATERIAL_MATERIAL_H
 
 #include "base/list.h"
-#include "geom/hit.h"
+#include "geometry/hit.h"
 #include "material/texture.h"
 
 #include <stdbool.h>

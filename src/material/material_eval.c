@@ -31,7 +31,7 @@ static void set_boundary(const struct hit *hit, const struct medium_stack *media
     bsdf->passes = false;
     if (!inputs->fresnel && inputs->refract == 0)
         return;
-    bsdf->boundary.medium.placed = hit->placed;
+    bsdf->boundary.medium.primitive = hit->primitive;
     bsdf->boundary.medium.ior = inputs->has_ior ? inputs->ior : 1;
     bsdf->boundary.medium.absorption = inputs->absorption;
     bsdf->boundary.entering = hit->front;

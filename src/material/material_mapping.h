@@ -4,8 +4,8 @@
 #ifndef GRAY_MATERIAL_MATERIAL_MAPPING_H
 #define GRAY_MATERIAL_MATERIAL_MAPPING_H
 
-#include "geom/shape.h"
 #include "material/material.h"
+#include "shape/shape.h"
 
 struct material_mapping_entry;
 

@@ -17,15 +17,15 @@ void medium_stack_enter(struct medium_stack *stack, const struct medium *medium)
 }
 
 /* One more than the place of the solid's latest entry; 0: it has none. */
-static uint32_t latest(const struct medium_stack *stack, uint32_t placed) {
+static uint32_t latest(const struct medium_stack *stack, uint32_t primitive) {
     uint32_t i = stack->count;
-    while (i > 0 && stack->entries[i - 1].placed != placed)
+    while (i > 0 && stack->entries[i - 1].primitive != primitive)
         i--;
     return i;
 }
 
-void medium_stack_leave(struct medium_stack *stack, uint32_t placed) {
-    uint32_t end = latest(stack, placed);
+void medium_stack_leave(struct medium_stack *stack, uint32_t primitive) {
+    uint32_t end = latest(stack, primitive);
     if (end == 0)
         return;
     memmove(stack->entries + end - 1, stack->entries + end, (stack->count - end) * sizeof *stack->entries);
@@ -36,14 +36,14 @@ void medium_stack_cross(struct medium_stack *stack, const struct medium_boundary
     if (boundary->entering)
         medium_stack_enter(stack, &boundary->medium);
     else
-        medium_stack_leave(stack, boundary->medium.placed);
+        medium_stack_leave(stack, boundary->medium.primitive);
 }
 
 double medium_stack_eta(const struct medium_stack *stack, const struct medium_boundary *boundary) {
     double here = medium_stack_ior(stack);
     if (boundary->entering)
         return here / boundary->medium.ior;
-    uint32_t end = latest(stack, boundary->medium.placed);
+    uint32_t end = latest(stack, boundary->medium.primitive);
     /* An open surface seen from behind: the ray is in this medium although it never entered it. */
     if (end == 0)
         return boundary->medium.ior / here;

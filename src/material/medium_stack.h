@@ -13,7 +13,7 @@ enum { MEDIA_LIMIT = 32 }; /* deeper nestings forget the outermost (docs/limits.
 
 /* The inside of one solid. */
 struct medium {
-    uint32_t placed; /* the solid: number of its placed primitive */
+    uint32_t primitive; /* the solid: number of its primitive */
     double ior;
     struct vec3 absorption; /* the logarithm of light falls by this per unit */
 };
@@ -37,7 +37,7 @@ static inline double medium_stack_ior(const struct medium_stack *stack) {
 void medium_stack_copy(struct medium_stack *to, const struct medium_stack *from);
 void medium_stack_enter(struct medium_stack *stack, const struct medium *medium);
 /* The latest entry of the solid goes; nothing happens when it is not there (an open surface, a camera on it). */
-void medium_stack_leave(struct medium_stack *stack, uint32_t placed);
+void medium_stack_leave(struct medium_stack *stack, uint32_t primitive);
 
 /* The stack behind the surface. */
 void medium_stack_cross(struct medium_stack *stack, const struct medium_boundary *boundary);

@@ -12,7 +12,7 @@
 #include "base/arena.h"
 #include "base/error.h"
 #include "base/list.h"
-#include "geom/hit.h"
+#include "geometry/hit.h"
 #include "image/image.h"
 #include "math/vec3.h"
 

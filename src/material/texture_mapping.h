@@ -2,8 +2,8 @@
 #ifndef GRAY_MATERIAL_TEXTURE_MAPPING_H
 #define GRAY_MATERIAL_TEXTURE_MAPPING_H
 
-#include "geom/shape.h"
 #include "material/texture.h"
+#include "shape/shape.h"
 
 /* u from the left, v from the top, both in images; the size of the ray's footprint in the same units. */
 struct texcoord {

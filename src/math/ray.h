@@ -21,7 +21,7 @@ struct ray {
     double time; /* 0 at shutter open, 1 at shutter close */
     struct footprint footprint;
     const struct medium_stack *media;
-    uint32_t passes; /* 1 + the number of a placed primitive that the ray is known not to meet; 0: none */
+    uint32_t skip_primitive; /* 1 + the number of a primitive that the ray is known not to meet; 0: none */
 };
 
 static inline struct vec3 ray_at(const struct ray *ray, double t) {

@@ -66,7 +66,7 @@ static int list_figures(struct figure out[FIGURES], const struct picture_report 
         {"node_bytes", "memory: nodes", FIGURE_BYTES, 0, report->node_bytes},
         {"mesh_bytes", "meshes", FIGURE_BYTES, 0, report->mesh_bytes},
         {"image_bytes", "images", FIGURE_BYTES, 0, report->image_bytes},
-        {"placed_bytes", "placed things", FIGURE_BYTES, 0, report->placed_bytes},
+        {"placed_bytes", "placed things", FIGURE_BYTES, 0, report->primitive_bytes},
         {"search_bytes", "search of them", FIGURE_BYTES, 0, report->search_bytes},
         {"film_bytes", "film", FIGURE_BYTES, 0, report->film_bytes},
         {"peak_bytes", "peak memory", FIGURE_BYTES, 0, report->peak_bytes},

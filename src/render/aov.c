@@ -89,7 +89,7 @@ void aov_surface(const struct world *world, const struct ray *ray, uint32_t mask
     if (!world_nearest(world, ray, scratch, &hit))
         return;
     material_eval(&world->materials[hit.material], &hit, NULL, NULL, &bsdf);
-    double depth = hit.t * vec3_length(ray->direction), node = placed_node(world, hit.placed)->serial + 1.0;
+    double depth = hit.t * vec3_length(ray->direction), node = primitive_node(world, hit.primitive)->serial + 1.0;
     set(out[AOV_DEPTH], depth, depth, depth);
     set(out[AOV_NORMAL], bsdf.normal.x, bsdf.normal.y, bsdf.normal.z);
     set(out[AOV_ALBEDO], bsdf.albedo.x, bsdf.albedo.y, bsdf.albedo.z);

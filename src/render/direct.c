@@ -23,7 +23,7 @@ static bool is_free(struct integrator_state *state, const struct hit *hit, struc
                          .direction = direction,
                          .t_max = t_max,
                          .time = hit->time,
-                         .passes = hit_passes_from(hit, side_of(hit, from), direction)};
+                         .skip_primitive = hit_skip_primitive_from(hit, side_of(hit, from), direction)};
     state->shadow_rays++;
     bool free = !world_any(state->job->world, &shadow, state->scratch);
     uint32_t blocker = world_blocker(state->scratch);
@@ -48,16 +48,16 @@ static struct sample_set places_on_light(const struct integrator_state *state, c
 
 /* What stands between: not the hit's own primitive where all of it is behind the surface and all of the light before.
  */
-static struct between light_between(const struct world *world, const struct light_context *context,
-                                    const struct hit *hit) {
+static struct occluder_candidates
+light_occluder_candidates(const struct world *world, const struct light_context *context, const struct hit *hit) {
     struct vec3 corner = context->corner, edge1 = context->edge1, edge2 = context->edge2;
     double side = side_of(hit, context->from);
-    uint32_t passes = hit_passes_from(hit, side, vec3_sub(corner, context->from));
-    for (int i = 1; i < 4 && passes != 0; i++) {
+    uint32_t skip_primitive = hit_skip_primitive_from(hit, side, vec3_sub(corner, context->from));
+    for (int i = 1; i < 4 && skip_primitive != 0; i++) {
         struct vec3 other = vec3_add(i & 1 ? vec3_add(corner, edge1) : corner, i & 2 ? edge2 : vec3_all(0));
-        passes = hit_passes_from(hit, side, vec3_sub(other, context->from));
+        skip_primitive = hit_skip_primitive_from(hit, side, vec3_sub(other, context->from));
     }
-    return world_between(world, context->from, corner, edge1, edge2, passes);
+    return world_occluder_candidates(world, context->from, corner, edge1, edge2, skip_primitive);
 }
 
 /* The share of a delta light that reaches the hit: 0 or 1 for a point, of jittered shadow rays for an extent. */
@@ -72,9 +72,9 @@ static double visible_share(struct integrator_state *state, const struct light *
         return target_is_free(state, hit, from, middle);
     struct sample_set places = places_on_light(state, light, &context, number, key);
     uint32_t all = places.side * places.side, seen = 0, have = 0;
-    struct between between = light_between(world, &context, hit);
+    struct occluder_candidates occluder_candidates = light_occluder_candidates(world, &context, hit);
     state->shadow_rays += all;
-    if (between.known && between.count == 0) {
+    if (occluder_candidates.known && occluder_candidates.count == 0) {
         observe_shadow_rays(state->observer, all, all, OBSERVER_NO_BLOCKER);
         return 1;
     }
@@ -83,7 +83,7 @@ static double visible_share(struct integrator_state *state, const struct light *
         targets[have++] = light_target_at(light, &context, sample_set_point(&places, cell));
         if (have < AREA_BATCH && cell + 1 < all)
             continue;
-        seen += world_visible(world, &between, from, hit->time, targets, have, state->scratch, NULL);
+        seen += world_visible(world, &occluder_candidates, from, hit->time, targets, have, state->scratch, NULL);
         have = 0;
         if (integrator_cancelled(state))
             return 0;
@@ -98,9 +98,9 @@ static void ask_targets(struct integrator_state *state, const struct light_conte
                         const struct vec3 *targets, uint32_t count, bool distant, bool *visible) {
     if (context->bounded) {
         const struct world *world = state->job->world;
-        struct between between = light_between(world, context, hit);
-        uint32_t seen =
-            world_visible(world, &between, context->from, hit->time, targets, count, state->scratch, visible);
+        struct occluder_candidates occluder_candidates = light_occluder_candidates(world, context, hit);
+        uint32_t seen = world_visible(world, &occluder_candidates, context->from, hit->time, targets, count,
+                                      state->scratch, visible);
         state->shadow_rays += count;
         observe_shadow_rays(state->observer, count, seen, OBSERVER_NO_BLOCKER);
         return;
@@ -176,11 +176,11 @@ struct vec3 direct_light(struct integrator_state *state, const struct hit *hit, 
     struct vec3 sum = vec3_mul(state->job->ambient, bsdf->ambient);
     for (uint32_t i = 0; i < world->light_count && !bsdf->dark; i++) {
         const struct light *light = &world->lights[i];
-        if (light->lit && !light->lit[hit->placed]) {
+        if (light->lit && !light->lit[hit->primitive]) {
             observe_light_skipped(state->observer, i, light);
             continue;
         }
-        state->scratch->light = i % WORLD_BLOCKERS;
+        state->scratch->light = i % WORLD_SHADOW_CACHE;
         observe_light_begin(state->observer, i, light);
         struct vec3 own = one_light(state, light, i, hit, bsdf, sampler_light(key, i));
         sum = vec3_add(sum, own);

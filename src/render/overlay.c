@@ -240,9 +240,9 @@ static void number_colour(struct overlay_drawing *drawing, uint64_t number) {
 /* Boxes of one node have one colour, that of --aov node. */
 static void draw_boxes(struct overlay_drawing *drawing) {
     const struct world *world = drawing->job->world;
-    uint32_t step = step_for(drawing, world->placed_count);
-    for (uint32_t i = 0; i < world->placed_count && !stopped(drawing); i += step) {
-        number_colour(drawing, placed_node(world, i)->serial + UINT64_C(1));
+    uint32_t step = step_for(drawing, world->primitive_count);
+    for (uint32_t i = 0; i < world->primitive_count && !stopped(drawing); i += step) {
+        number_colour(drawing, primitive_node(world, i)->serial + UINT64_C(1));
         draw_box(drawing, &world->boxes[i]);
     }
 }

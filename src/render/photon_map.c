@@ -507,7 +507,7 @@ static void add_photon(struct density_query *g, uint32_t i, double weight) {
     const struct photon_light *light = &g->map->lights[i];
     if (g->map->listed) {
         const uint8_t *lit = g->world->lights[light->light].lit;
-        if (lit && !lit[g->hit->placed])
+        if (lit && !lit[g->hit->primitive])
             return;
     }
     struct vec3 from = unfold(light->from);

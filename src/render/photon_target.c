@@ -52,13 +52,13 @@ struct specular_objects {
     struct box scene;   /* of everything that is finite */
 };
 
-static double placed_strength(const struct world *world, uint32_t index) {
-    const struct thing *thing = placed_thing(world, index);
-    const struct csg *csg = thing->geometry.csg;
+static double primitive_strength(const struct world *world, uint32_t index) {
+    const struct prototype *prototype = primitive_prototype(world, index);
+    const struct csg *csg = prototype->geometry.csg;
     double max = 0;
     for (uint32_t leaf = 0; leaf < (csg ? csg->leaf_count : 1); leaf++) {
-        uint32_t material = csg ? csg->leaves[leaf].material : thing->material;
-        uint32_t slots = csg ? csg->leaves[leaf].slot_count : thing->slot_count;
+        uint32_t material = csg ? csg->leaves[leaf].material : prototype->material;
+        uint32_t slots = csg ? csg->leaves[leaf].slot_count : prototype->slot_count;
         for (uint32_t slot = 0; slot < (slots > 1 ? slots : 1); slot++) {
             double strength = material_specular(&world->materials[material + slot]);
             max = strength > max ? strength : max;
@@ -74,7 +74,7 @@ static bool is_finite(const struct box *box) {
 static struct specular_object specular_object_make(const struct world *world, uint32_t index, const struct box *box,
                                                    double strength) {
     struct specular_object specular_object = {.box = *box, .strength = strength, .order = index};
-    const struct geometry *geometry = placed_geometry(world, index);
+    const struct geometry *geometry = primitive_geometry(world, index);
     uint32_t linear = world->primitives[index].linear;
     bool still = linear == LINEAR_NONE || !(linear & LINEAR_MOVING);
     specular_object.middle = vec3_scale(vec3_add(box->min, box->max), 0.5);
@@ -90,8 +90,8 @@ static struct specular_object specular_object_make(const struct world *world, ui
 static bool find_casters(struct specular_objects *out, const struct world *world, struct arena *arena) {
     *out = (struct specular_objects){.scene = box_empty()};
     uint32_t specular = 0;
-    for (uint32_t i = 0; i < world->placed_count; i++) {
-        specular += placed_strength(world, i) > 0;
+    for (uint32_t i = 0; i < world->primitive_count; i++) {
+        specular += primitive_strength(world, i) > 0;
         if (is_finite(&world->boxes[i]))
             out->scene = box_join(out->scene, world->boxes[i]);
     }
@@ -103,8 +103,8 @@ static bool find_casters(struct specular_objects *out, const struct world *world
     struct vec3 size = vec3_sub(out->scene.max, out->scene.min);
     struct box limit = {vec3_sub(out->scene.min, size), vec3_add(out->scene.max, size)};
     out->all = box_empty();
-    for (uint32_t i = 0; i < world->placed_count; i++) {
-        double strength = placed_strength(world, i);
+    for (uint32_t i = 0; i < world->primitive_count; i++) {
+        double strength = primitive_strength(world, i);
         struct box box = box_meet(world->boxes[i], limit);
         if (!(strength > 0) || box_is_empty(&box))
             continue;

@@ -148,7 +148,7 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
         }
         struct branching branching = branching_make(&bsdf);
         bool receives = path.specular && branching.diffuse > 0 && !bsdf.dark;
-        if (receives && (!lit || lit[hit.placed])) {
+        if (receives && (!lit || lit[hit.primitive])) {
             double on = 0;
             for (int i = 0; i < branching.count; i++)
                 on += mean(branching.branches[i].weight);

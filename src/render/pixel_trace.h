@@ -41,7 +41,7 @@ struct pixel_trace_light {
     struct vec3 reflected;     /* by the lobes, of unit light */
     uint32_t asked, arrived;   /* shadow rays */
     bool has_blocker;          /* a single shadow ray was stopped */
-    uint32_t blocker;          /* by this placed primitive */
+    uint32_t blocker;          /* by this primitive */
     struct vec3 colour;        /* of all this in what the surface shows */
     struct pixel_trace_light *next;
 };

@@ -4,11 +4,11 @@
 #define GRAY_RENDER_SETTINGS_H
 
 #include "base/list.h"
-#include "geom/mesh.h"
 #include "image/tone.h"
 #include "material/material.h"
 #include "math/motion.h"
 #include "math/vec3.h"
+#include "mesh/mesh.h"
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -249,7 +249,7 @@ struct vec3 whitted_trace_met(const struct whitted *whitted, struct integrator_s
     if (integrator_cancelled(state))
         return vec3_all(0);
     if (met)
-        world_describe(state->job->world, &from_eye, met->placed, &met->crossing, &hit);
+        world_describe(state->job->world, &from_eye, met->primitive, &met->crossing, &hit);
     const struct path path = {.key = key, .weight = 1, .cutoff = whitted->cutoff};
     return clamp_light(state, incident_radiance(state, &from_eye, met ? &hit : NULL, &path), (double)FLT_MAX);
 }

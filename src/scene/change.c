@@ -3,8 +3,8 @@
 #include "scene/change.h"
 
 #include "base/mem.h"
-#include "geom/conic.h"
 #include "scene/traversal.h"
+#include "shape/revolved_quadric.h"
 
 #include <stddef.h>
 #include <stdio.h>
@@ -212,11 +212,13 @@ static struct shape shape_of(enum added_kind kind) {
     case ADDED_CUBE:
         return (struct shape){.kind = SHAPE_BOX, .box = {vec3_all(-1), vec3_all(1)}};
     case ADDED_CYLINDER:
-        return (struct shape){.kind = SHAPE_CONIC,
-                              .conic = conic_cylinder(vec3_make(0, -1, 0), vec3_make(0, 1, 0), 1, false)};
+        return (struct shape){.kind = SHAPE_REVOLVED_QUADRIC,
+                              .revolved_quadric =
+                                  revolved_quadric_cylinder(vec3_make(0, -1, 0), vec3_make(0, 1, 0), 1, false)};
     case ADDED_CONE:
-        return (struct shape){.kind = SHAPE_CONIC,
-                              .conic = conic_frustum(vec3_make(0, -1, 0), 1, vec3_make(0, 1, 0), 0, false)};
+        return (struct shape){.kind = SHAPE_REVOLVED_QUADRIC,
+                              .revolved_quadric =
+                                  revolved_quadric_frustum(vec3_make(0, -1, 0), 1, vec3_make(0, 1, 0), 0, false)};
     case ADDED_TORUS:
         return (struct shape){.kind = SHAPE_TORUS, .torus = {0.75, 0.25}};
     case ADDED_SPHERE:

@@ -6,13 +6,13 @@
 
 #include "base/arena.h"
 #include "base/list.h"
-#include "geom/mesh.h"
-#include "geom/shape.h"
 #include "light/light.h"
 #include "light/sky.h"
 #include "material/material.h"
 #include "math/affine.h"
+#include "mesh/mesh.h"
 #include "scene/placements.h"
+#include "shape/shape.h"
 
 enum node_kind { NODE_GROUP, NODE_JOINT, NODE_GEOMETRY, NODE_CSG };
 /* Which faces of a mesh no ray sees, by the order of their corners. Operands of CSG are always whole. */

@@ -5,7 +5,7 @@
 
 #include "base/file.h"
 #include "formats/model_node.h"
-#include "geom/mesh_smooth.h"
+#include "mesh/mesh_smooth.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,10 +1,10 @@
 /* Analytic shapes: every row of the table becomes a geometry node with one shape in it. Numbers are checked here for
  * what the table cannot say about several of them together, and for sizes beyond what the root-finders are made for. */
-#include "geom/conic.h"
-#include "geom/flat.h"
 #include "math/range.h"
 #include "script/context.h"
 #include "script/table_rows.h"
+#include "shape/planar.h"
+#include "shape/revolved_quadric.h"
 
 #define LENGTH(name, fallback, help)                                                                                   \
     { name, KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, fallback, help }
@@ -72,7 +72,8 @@ static bool gr_cylinder(struct script_context *context, const struct script_valu
     if (!ends_are_fine(from, to, error) || !length_is_fine(radius, "radius", error))
         return false;
     struct node *node = shape_node(context, args, "cylinder", error);
-    struct shape shape = {.kind = SHAPE_CONIC, .conic = conic_cylinder(from, to, radius, args[CYLINDER_OPEN].boolean)};
+    struct shape shape = {.kind = SHAPE_REVOLVED_QUADRIC,
+                          .revolved_quadric = revolved_quadric_cylinder(from, to, radius, args[CYLINDER_OPEN].boolean)};
     return give_shape(node, &shape, result);
 }
 
@@ -94,8 +95,9 @@ static bool gr_cone(struct script_context *context, const struct script_value *a
     if (!ends_are_fine(from, to, error) || !length_is_fine(fmax(first, second), "the larger radius", error))
         return false;
     struct node *node = shape_node(context, args, "cone", error);
-    struct shape shape = {.kind = SHAPE_CONIC,
-                          .conic = conic_frustum(from, first, to, second, args[CONE_OPEN].boolean)};
+    struct shape shape = {.kind = SHAPE_REVOLVED_QUADRIC,
+                          .revolved_quadric =
+                              revolved_quadric_frustum(from, first, to, second, args[CONE_OPEN].boolean)};
     return give_shape(node, &shape, result);
 }
 
@@ -113,8 +115,9 @@ static bool gr_paraboloid(struct script_context *context, const struct script_va
     if (!length_is_fine(radius, "radius", error) || !length_is_fine(height, "height", error))
         return false;
     struct node *node = shape_node(context, args, "paraboloid", error);
-    struct shape shape = {.kind = SHAPE_CONIC,
-                          .conic = conic_paraboloid(radius, height, args[PARABOLOID_OPEN].boolean)};
+    struct shape shape = {.kind = SHAPE_REVOLVED_QUADRIC,
+                          .revolved_quadric =
+                              revolved_quadric_paraboloid(radius, height, args[PARABOLOID_OPEN].boolean)};
     return give_shape(node, &shape, result);
 }
 
@@ -159,9 +162,9 @@ static bool gr_hyperboloid(struct script_context *context, const struct script_v
     if (!length_is_fine(two ? gap : waist, two ? "gap" : "waist", error))
         return false;
     struct node *node = shape_node(context, args, "hyperboloid", error);
-    struct shape shape = {.kind = SHAPE_CONIC,
-                          .conic = two ? conic_two_sheets(gap, height, radius, open)
-                                       : conic_one_sheet(waist, radius, -height, height, open)};
+    struct shape shape = {.kind = SHAPE_REVOLVED_QUADRIC,
+                          .revolved_quadric = two ? revolved_quadric_two_sheets(gap, height, radius, open)
+                                                  : revolved_quadric_one_sheet(waist, radius, -height, height, open)};
     return give_shape(node, &shape, result);
 }
 
@@ -306,10 +309,10 @@ static bool gr_box(struct script_context *context, const struct script_value *ar
     return give_shape(node, &shape, result);
 }
 
-static bool give_flat(struct script_context *context, const struct script_value *args, const char *otherwise,
-                      const struct flat *flat, struct script_result *result, struct error *error) {
+static bool give_planar(struct script_context *context, const struct script_value *args, const char *otherwise,
+                        const struct planar *planar, struct script_result *result, struct error *error) {
     struct node *node = shape_node(context, args, otherwise, error);
-    struct shape shape = {.kind = SHAPE_FLAT, .flat = *flat};
+    struct shape shape = {.kind = SHAPE_PLANAR, .planar = *planar};
     return give_shape(node, &shape, result);
 }
 
@@ -327,16 +330,16 @@ static bool gr_plane(struct script_context *context, const struct script_value *
                      struct error *error) {
     bool infinite = args[PLANE_NORMAL].given || args[PLANE_DISTANCE].given;
     struct vec3 normal = vector_or(&args[PLANE_NORMAL], 0, 1, 0);
-    struct flat flat = infinite ? flat_plane(normal, args[PLANE_DISTANCE].number) : flat_square();
-    return give_flat(context, args, "plane", &flat, result, error);
+    struct planar planar = infinite ? planar_plane(normal, args[PLANE_DISTANCE].number) : planar_square();
+    return give_planar(context, args, "plane", &planar, result, error);
 }
 
 static const struct script_parameter square_parameters[] = {SHAPE("square")};
 
 static bool gr_square(struct script_context *context, const struct script_value *args, struct script_result *result,
                       struct error *error) {
-    struct flat flat = flat_square();
-    return give_flat(context, args, "square", &flat, result, error);
+    struct planar planar = planar_square();
+    return give_planar(context, args, "square", &planar, result, error);
 }
 
 /* Edges of a length we can use that are not parallel. */
@@ -362,8 +365,8 @@ static bool gr_rectangle(struct script_context *context, const struct script_val
     struct vec3 along = vector_or(&args[RECTANGLE_ALONG], 1, 0, 0), up = vector_or(&args[RECTANGLE_UP], 0, 0, -1);
     if (!span_is_fine(along, up, "along and up are parallel", error))
         return false;
-    struct flat flat = flat_parallelogram(corner, along, up);
-    return give_flat(context, args, "rectangle", &flat, result, error);
+    struct planar planar = planar_parallelogram(corner, along, up);
+    return give_planar(context, args, "rectangle", &planar, result, error);
 }
 
 enum { DISC_CENTRE = SHAPE_FIRST, DISC_NORMAL, DISC_RADIUS, DISC_INNER };
@@ -384,8 +387,8 @@ static bool gr_disc(struct script_context *context, const struct script_value *a
         return false;
     if (!(inner < radius))
         return error_set(error, ERROR_SCENE, "inner must be smaller than radius: %g, %g", inner, radius);
-    struct flat flat = flat_disc(centre, vector_or(&args[DISC_NORMAL], 0, 1, 0), radius, inner);
-    return give_flat(context, args, "disc", &flat, result, error);
+    struct planar planar = planar_disc(centre, vector_or(&args[DISC_NORMAL], 0, 1, 0), radius, inner);
+    return give_planar(context, args, "disc", &planar, result, error);
 }
 
 enum { TRIANGLE_A = SHAPE_FIRST, TRIANGLE_B, TRIANGLE_C };
@@ -401,8 +404,8 @@ static bool gr_triangle(struct script_context *context, const struct script_valu
     struct vec3 a = args[TRIANGLE_A].vector, b = args[TRIANGLE_B].vector, c = args[TRIANGLE_C].vector;
     if (!span_is_fine(vec3_sub(b, a), vec3_sub(c, a), "a, b and c lie on one line", error))
         return false;
-    struct flat flat = flat_triangle(a, b, c);
-    return give_flat(context, args, "triangle", &flat, result, error);
+    struct planar planar = planar_triangle(a, b, c);
+    return give_planar(context, args, "triangle", &planar, result, error);
 }
 
 enum { POLYGON_POINTS = SHAPE_FIRST, POLYGON_OUTLINES };
@@ -438,12 +441,12 @@ static bool gr_polygon(struct script_context *context, const struct script_value
         if (corners_here < 3)
             return error_set(error, ERROR_SCENE, "points has %u corners, not 3 or more", corners_here);
     }
-    struct flat flat;
+    struct planar planar;
     const char *why;
-    if (!flat_polygon(&context->scene.arena, corners, ends, outline_count, &flat, &why))
+    if (!planar_polygon(&context->scene.arena, corners, ends, outline_count, &planar, &why))
         return why ? error_set(error, ERROR_SCENE, "this is not a polygon: %s", why)
                    : error_no_memory(error, "a polygon");
-    return give_flat(context, args, "polygon", &flat, result, error);
+    return give_planar(context, args, "polygon", &planar, result, error);
 }
 
 /* The rows of the table. */

@@ -3,13 +3,13 @@
 #include "script/context.h"
 #include "script/table_rows.h"
 
-#include "geom/patch.h"
-#include "geom/shape_blob.h"
-#include "geom/shape_curve.h"
-#include "geom/shape_height_field.h"
-#include "geom/shape_lathe.h"
-#include "geom/shape_prism.h"
-#include "geom/shape_sweep.h"
+#include "mesh/patch.h"
+#include "shape/blob.h"
+#include "shape/curve.h"
+#include "shape/height_field.h"
+#include "shape/lathe.h"
+#include "shape/prism.h"
+#include "shape/sweep.h"
 
 #include <string.h>
 

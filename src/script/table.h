@@ -5,11 +5,11 @@
 #define GRAY_SCRIPT_TABLE_H
 
 #include "base/error.h"
-#include "geom/mesh.h"
 #include "light/light.h"
 #include "light/sky.h"
 #include "material/fog.h"
 #include "material/material.h"
+#include "mesh/mesh.h"
 #include "scene/node.h"
 
 #include <stdbool.h>

@@ -119,7 +119,7 @@ struct picture_report {
     struct render_statistics rays;
     double write_seconds, write_processor_seconds; /* of the files; filled by who writes them */
     uint64_t primitives, triangles;
-    uint64_t node_bytes, mesh_bytes, image_bytes, placed_bytes, search_bytes, film_bytes; /* memory by part */
+    uint64_t node_bytes, mesh_bytes, image_bytes, primitive_bytes, search_bytes, film_bytes; /* memory by part */
     uint64_t peak_bytes;
     uint32_t grid_cells[3];
     int threads;

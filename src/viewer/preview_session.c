@@ -54,7 +54,7 @@ static void set_pass(struct render_job *job, const struct render_job *own, const
 /* Of everything that has an end. */
 static struct box finite_bounds(const struct world *world) {
     struct box bounds = box_empty();
-    for (uint32_t i = 0; i < world->placed_count; i++) {
+    for (uint32_t i = 0; i < world->primitive_count; i++) {
         if (vec3_finite(world->boxes[i].min) && vec3_finite(world->boxes[i].max))
             bounds = box_join(bounds, world->boxes[i]);
     }

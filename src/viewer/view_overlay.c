@@ -4,7 +4,7 @@
 #include "viewer/view_overlay.h"
 
 #include "base/mem.h"
-#include "geom/csg.h"
+#include "csg/csg.h"
 #include "inspect/pick.h"
 #include "render/camera.h"
 
@@ -96,9 +96,9 @@ struct outline_job {
 };
 
 static bool is_member(const struct node_members *s, const struct hit *hit) {
-    const struct csg *csg = placed_geometry(s->world, hit->placed)->csg;
-    if (!s->member[hit->placed] || s->request->solid == 0 || !csg)
-        return s->member[hit->placed];
+    const struct csg *csg = primitive_geometry(s->world, hit->primitive)->csg;
+    if (!s->member[hit->primitive] || s->request->solid == 0 || !csg)
+        return s->member[hit->primitive];
     uint32_t origin = csg->leaves[hit->leaf].origin;
     return origin >= s->first_leaf && origin < s->end_leaf;
 }
@@ -150,7 +150,7 @@ static bool make_outline(const struct view_overlay_scene *scene, const struct vi
     *found = (struct film_rectangle){0};
     if (!camera_prepare(&job->camera, &settings, job->width, job->height, &frame, ignored, error))
         return false;
-    members.member = mem_alloc_zero((size_t)job->world->placed_count + 1, 1);
+    members.member = mem_alloc_zero((size_t)job->world->primitive_count + 1, 1);
     if (!members.member)
         return error_no_memory(error, "the outline of a node");
     bool ok = world_visit_paths(job->world, scene->root, note_members, &members, error) &&

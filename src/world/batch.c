@@ -8,13 +8,13 @@
 
 static bool goes_with(const struct ray *first, const struct ray *ray) {
     return memcmp(&first->origin, &ray->origin, sizeof ray->origin) == 0 && first->t_min == ray->t_min &&
-           first->time == ray->time && ray->passes == 0;
+           first->time == ray->time && ray->skip_primitive == 0;
 }
 
 /* How many rays from the first on can go as one packet. */
 static uint32_t packet_length(const struct ray *rays, uint32_t count) {
     uint32_t length = 1;
-    if (rays->passes != 0)
+    if (rays->skip_primitive != 0)
         return 1;
     while (length < count && length < PACKET_RAYS && goes_with(rays, &rays[length]))
         length++;
@@ -38,9 +38,9 @@ static void nearest_packet(const struct world *world, const struct ray *rays, ui
     ray_packet_pad(&packet);
     uint64_t found = world_nearest_packet(world, &packet, scratch, answers);
     for (uint32_t i = 0; i < count; i++) {
-        hits[i].placed = WORLD_NOTHING;
+        hits[i].primitive = WORLD_NOTHING;
         if (found >> i & 1)
-            world_describe(world, &rays[i], answers[i].placed, &answers[i].crossing, &hits[i]);
+            world_describe(world, &rays[i], answers[i].primitive, &answers[i].crossing, &hits[i]);
     }
 }
 
@@ -55,7 +55,7 @@ void world_nearest_batch(const struct world *world, const struct ray *rays, uint
         }
         length = 1;
         if (!world_nearest(world, &rays[i], scratch, &hits[i]))
-            hits[i].placed = WORLD_NOTHING;
+            hits[i].primitive = WORLD_NOTHING;
     }
 }
 

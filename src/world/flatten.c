@@ -1,6 +1,6 @@
 /* Flattening of the node DAG. First a traversal of the distinct nodes finds cycles and counts what each node will place
  * (saturating), so that a tree that doubles at every level is refused, or skipped where it places nothing, before any
- * memory is taken. Then every path from the root to a primitive makes one placed primitive. What is known of a node
+ * memory is taken. Then every path from the root to a primitive makes one primitive. What is known of a node
  * meanwhile stands in tables beside the nodes, which are only read. */
 #include "world/flatten.h"
 
@@ -10,10 +10,10 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { PLACED_LIMIT = 1 << 28 };
+enum { PRIMITIVE_LIMIT = 1 << 28 };
 /* In the table of things by node. */
-#define THING_UNKNOWN UINT32_MAX
-#define THING_NOTHING (UINT32_MAX - 1)
+#define PROTOTYPE_UNKNOWN UINT32_MAX
+#define PROTOTYPE_NOTHING (UINT32_MAX - 1)
 
 /* --- counting and cycles --- */
 
@@ -105,12 +105,12 @@ static bool any_slot_has_holes(const struct flattening *f, uint32_t material, ui
     return false;
 }
 
-static bool any_holes(const struct flattening *f, const struct thing *thing) {
-    const struct csg *csg = thing->geometry.csg;
+static bool any_holes(const struct flattening *f, const struct prototype *prototype) {
+    const struct csg *csg = prototype->geometry.csg;
     for (uint32_t i = 0; csg && i < csg->leaf_count; i++)
         if (any_slot_has_holes(f, csg->leaves[i].material, csg->leaves[i].slot_count))
             return true;
-    return !csg && any_slot_has_holes(f, thing->material, thing->slot_count);
+    return !csg && any_slot_has_holes(f, prototype->material, prototype->slot_count);
 }
 
 /* Room for one more in a list that doubles. */
@@ -124,7 +124,7 @@ static void *room_for_one(void *list, uint32_t count, uint32_t *capacity, size_t
     return moved;
 }
 
-static bool place_moving(struct flattening *f, const struct stand *stand, struct placed *out) {
+static bool place_moving(struct flattening *f, const struct pose *pose, struct primitive *out) {
     struct world *world = f->world;
     struct moving *moving =
         room_for_one(world->moving, world->moving_count, &f->moving_capacity, sizeof *world->moving);
@@ -132,25 +132,25 @@ static bool place_moving(struct flattening *f, const struct stand *stand, struct
         return error_no_memory(f->error, "what moves in the scene");
     world->moving = moving;
     out->linear = LINEAR_MOVING | world->moving_count;
-    moving[world->moving_count++] = (struct moving){stand->above, stand->from_node};
+    moving[world->moving_count++] = (struct moving){pose->above, pose->from_node};
     return true;
 }
 
 /* Room for more than was counted: a union that is placed in parts. */
-static bool grow_placed(struct flattening *f) {
-    uint32_t count = f->world->placed_count, capacity = f->placed_capacity + f->placed_capacity / 2 + 16;
-    if (count >= PLACED_LIMIT)
-        return error_set(f->error, ERROR_SCENE, "the scene places more than %d primitives", PLACED_LIMIT);
-    struct placed *placed = arena_alloc_array(f->arena, capacity, sizeof *placed);
+static bool grow_primitives(struct flattening *f) {
+    uint32_t count = f->world->primitive_count, capacity = f->primitive_capacity + f->primitive_capacity / 2 + 16;
+    if (count >= PRIMITIVE_LIMIT)
+        return error_set(f->error, ERROR_SCENE, "the scene places more than %d primitives", PRIMITIVE_LIMIT);
+    struct primitive *primitive = arena_alloc_array(f->arena, capacity, sizeof *primitive);
     struct box *limits = f->limits ? arena_alloc_array(f->arena, capacity, sizeof *limits) : NULL;
-    if (!placed || (f->limits && !limits))
+    if (!primitive || (f->limits && !limits))
         return error_set(f->error, ERROR_MACHINE, "out of memory for %u placed primitives", capacity);
-    memcpy(placed, f->primitives, count * sizeof *placed);
+    memcpy(primitive, f->primitives, count * sizeof *primitive);
     if (limits)
         memcpy(limits, f->limits, count * sizeof *limits);
-    f->world->primitives = f->primitives = placed;
+    f->world->primitives = f->primitives = primitive;
     f->limits = limits;
-    f->placed_capacity = capacity;
+    f->primitive_capacity = capacity;
     return true;
 }
 
@@ -158,25 +158,26 @@ static bool grow_placed(struct flattening *f) {
 static bool keep_limit(struct flattening *f, const struct box *limit) {
     const struct box everywhere = {vec3_all(-INFINITY), vec3_all(INFINITY)};
     if (!f->limits) {
-        f->limits = arena_alloc_array(f->arena, f->placed_capacity, sizeof *f->limits);
+        f->limits = arena_alloc_array(f->arena, f->primitive_capacity, sizeof *f->limits);
         if (!f->limits)
             return error_no_memory(f->error, "the boxes of the scene");
-        for (uint32_t i = 0; i < f->world->placed_count; i++)
+        for (uint32_t i = 0; i < f->world->primitive_count; i++)
             f->limits[i] = everywhere;
     }
-    f->limits[f->world->placed_count] = limit ? *limit : everywhere;
+    f->limits[f->world->primitive_count] = limit ? *limit : everywhere;
     return true;
 }
 
-static bool place(struct flattening *f, const struct stand *stand, const struct surroundings *around, uint32_t thing) {
+static bool place(struct flattening *f, const struct pose *pose, const struct graphics_state *state,
+                  uint32_t prototype) {
     struct world *world = f->world;
-    if (world->placed_count == f->placed_capacity && !grow_placed(f))
+    if (world->primitive_count == f->primitive_capacity && !grow_primitives(f))
         return false;
-    if ((around || f->limits) && !keep_limit(f, around && stand->above == LINK_NONE ? &around->limit : NULL))
+    if ((state || f->limits) && !keep_limit(f, state && pose->above == LINK_NONE ? &state->limit : NULL))
         return false;
-    struct placed *placed = &f->primitives[world->placed_count++];
-    placed->thing = thing;
-    return stand->above != LINK_NONE ? place_moving(f, stand, placed) : flatten_map(f, &stand->from_node, placed);
+    struct primitive *primitive = &f->primitives[world->primitive_count++];
+    primitive->prototype = prototype;
+    return pose->above != LINK_NONE ? place_moving(f, pose, primitive) : flatten_map(f, &pose->from_node, primitive);
 }
 
 bool flatten_mesh_accel(struct flattening *f, const struct shape *shape) {
@@ -184,87 +185,89 @@ bool flatten_mesh_accel(struct flattening *f, const struct shape *shape) {
 }
 
 /* Of a thing, and of the node that it was made of. */
-static bool add_thing(struct flattening *f, const struct node *node, struct thing *thing) {
+static bool add_prototype(struct flattening *f, const struct node *node, struct prototype *prototype) {
     struct world *world = f->world;
-    uint32_t capacity = f->thing_capacity;
-    struct thing *things = room_for_one(world->things, world->thing_count, &capacity, sizeof *world->things);
-    if (things)
-        world->things = things;
-    const struct node **nodes = things ? room_for_one(world->authored.nodes, world->thing_count, &f->thing_capacity,
-                                                      sizeof *world->authored.nodes)
-                                       : NULL;
+    uint32_t capacity = f->prototype_capacity;
+    struct prototype *prototypes =
+        room_for_one(world->prototypes, world->prototype_count, &capacity, sizeof *world->prototypes);
+    if (prototypes)
+        world->prototypes = prototypes;
+    const struct node **nodes = prototypes ? room_for_one(world->authored.nodes, world->prototype_count,
+                                                          &f->prototype_capacity, sizeof *world->authored.nodes)
+                                           : NULL;
     if (!nodes)
         return error_no_memory(f->error, "the things of the scene");
     world->authored.nodes = nodes;
-    thing->holes = any_holes(f, thing);
-    things[world->thing_count] = *thing;
-    nodes[world->thing_count++] = node;
+    prototype->holes = any_holes(f, prototype);
+    prototypes[world->prototype_count] = *prototype;
+    nodes[world->prototype_count++] = node;
     return true;
 }
 
-static bool make_csg(struct flattening *f, const struct node *node, const struct stand *stand,
-                     const struct surroundings *around) {
+static bool make_csg(struct flattening *f, const struct node *node, const struct pose *pose,
+                     const struct graphics_state *state) {
     const struct csg **parts;
     uint32_t count;
-    if (!flatten_csg(f, node, stand, around, &parts, &count))
+    if (!flatten_csg(f, node, pose, state, &parts, &count))
         return false;
     for (uint32_t i = 0; i < count; i++) {
-        struct thing thing = {.geometry = geometry_of_csg(parts[i]), .slot_count = 1, .parts = count - i};
-        thing.is_later_part = i > 0;
-        if (!add_thing(f, node, &thing))
+        struct prototype prototype = {.geometry = geometry_of_csg(parts[i]), .slot_count = 1, .parts = count - i};
+        prototype.is_later_part = i > 0;
+        if (!add_prototype(f, node, &prototype))
             return false;
     }
     return true;
 }
 
 /* The shape of a node, ready for rays, and its materials: the things from `first` on, or none. */
-static bool make_thing(struct flattening *f, const struct node *node, const struct stand *stand,
-                       const struct surroundings *around, uint32_t *first, uint32_t *parts) {
-    *first = f->world->thing_count;
+static bool make_prototype(struct flattening *f, const struct node *node, const struct pose *pose,
+                           const struct graphics_state *state, uint32_t *first, uint32_t *parts) {
+    *first = f->world->prototype_count;
     *parts = 0;
     if (node->kind == NODE_GEOMETRY && !node_has_surface(node))
         return true;
-    if (node->kind == NODE_CSG || (around && around->clips)) {
-        if (!make_csg(f, node, stand, around))
+    if (node->kind == NODE_CSG || (state && state->clips)) {
+        if (!make_csg(f, node, pose, state))
             return false;
     } else {
-        struct thing thing = {.geometry = geometry_of_shape(&node->shape), .cull = node->cull, .parts = 1};
-        const struct material *inherited = around ? around->inherited : NULL;
+        struct prototype prototype = {.geometry = geometry_of_shape(&node->shape), .cull = node->cull, .parts = 1};
+        const struct material *inherited = state ? state->inherited : NULL;
         if ((!f->unasked && !flatten_mesh_accel(f, &node->shape)) ||
-            !flatten_material(f, node, inherited, &thing.material, &thing.slot_count) || !add_thing(f, node, &thing))
+            !flatten_material(f, node, inherited, &prototype.material, &prototype.slot_count) ||
+            !add_prototype(f, node, &prototype))
             return false;
     }
-    *parts = f->world->thing_count - *first;
+    *parts = f->world->prototype_count - *first;
     return true;
 }
 
 /* Things are made when their node is placed for the first time, or always where nodes above it have something to say.
  */
-static bool find_thing(struct flattening *f, const struct node *node, const struct stand *stand,
-                       const struct surroundings *around, uint32_t *first, uint32_t *parts) {
-    if (around && (around->clips || around->inherited))
-        return make_thing(f, node, stand, around, first, parts);
-    uint32_t *known = &f->thing_of[node->index];
-    if (*known == THING_UNKNOWN) {
-        if (!make_thing(f, node, stand, around, first, parts))
+static bool find_prototype(struct flattening *f, const struct node *node, const struct pose *pose,
+                           const struct graphics_state *state, uint32_t *first, uint32_t *parts) {
+    if (state && (state->clips || state->inherited))
+        return make_prototype(f, node, pose, state, first, parts);
+    uint32_t *known = &f->prototype_of[node->index];
+    if (*known == PROTOTYPE_UNKNOWN) {
+        if (!make_prototype(f, node, pose, state, first, parts))
             return false;
-        *known = *parts > 0 ? *first : THING_NOTHING;
+        *known = *parts > 0 ? *first : PROTOTYPE_NOTHING;
         return true;
     }
     *first = *known;
-    *parts = *known == THING_NOTHING ? 0 : f->world->things[*known].parts;
+    *parts = *known == PROTOTYPE_NOTHING ? 0 : f->world->prototypes[*known].parts;
     return true;
 }
 
-static bool place_node(struct flattening *f, const struct node *node, const struct stand *stand,
-                       const struct surroundings *around) {
+static bool place_node(struct flattening *f, const struct node *node, const struct pose *pose,
+                       const struct graphics_state *state) {
     uint32_t first, parts;
     if ((node->kind != NODE_GEOMETRY && node->kind != NODE_CSG) || node_is_placing(node))
         return true;
-    if (!find_thing(f, node, stand, around, &first, &parts))
+    if (!find_prototype(f, node, pose, state, &first, &parts))
         return false;
     for (uint32_t i = 0; i < parts; i++)
-        if (!place(f, stand, around, first + i))
+        if (!place(f, pose, state, first + i))
             return false;
     return true;
 }
@@ -272,12 +275,12 @@ static bool place_node(struct flattening *f, const struct node *node, const stru
 /* Of every node on the path. What is said about the operand of a clipped or bounded node is not said of its children.
  */
 struct place_frame {
-    struct stand stand, of_children;
-    const struct surroundings *around_operand, *around; /* NULL: nothing above says anything */
+    struct pose pose, of_children;
+    const struct graphics_state *state_of_operand, *state; /* NULL: nothing above says anything */
 };
 
 /* A node that moves: a link of its own, on which what is under it stands. */
-static bool stand_moving(struct flattening *f, const struct node *node, const struct stand *parent, struct stand *out) {
+static bool pose_moving(struct flattening *f, const struct node *node, const struct pose *parent, struct pose *out) {
     struct world *world = f->world;
     struct moving_link *links = room_for_one(world->links, world->link_count, &f->link_capacity, sizeof *links);
     if (!links)
@@ -286,7 +289,7 @@ static bool stand_moving(struct flattening *f, const struct node *node, const st
     struct moving_link *link = &links[world->link_count];
     struct transform parent_from_node = node_parent_from_node(node);
     *link = (struct moving_link){.above = parent->above, .above_from_node = parent->from_node};
-    *out = (struct stand){world->link_count++, parent_from_node};
+    *out = (struct pose){world->link_count++, parent_from_node};
     if (!node->moves_to || node->moves_to == node) {
         link->motion = motion_of_velocity(node->velocity);
         return true;
@@ -302,23 +305,23 @@ static bool stand_moving(struct flattening *f, const struct node *node, const st
 }
 
 /* What a clipped or bounded node says about its operand; NULL without memory or for an error. */
-static const struct surroundings *surround(struct flattening *f, const struct node *node, const struct stand *stand,
-                                           const struct surroundings *around) {
-    struct surroundings *own = arena_alloc(f->arena, sizeof *own);
+static const struct graphics_state *surround(struct flattening *f, const struct node *node, const struct pose *pose,
+                                             const struct graphics_state *state) {
+    struct graphics_state *own = arena_alloc(f->arena, sizeof *own);
     struct clip *clip = arena_alloc(f->arena, sizeof *clip);
     if (!own || !clip) {
         error_no_memory(f->error, "flattening the scene");
         return NULL;
     }
-    *own = (struct surroundings){.limit = {vec3_all(-INFINITY), vec3_all(INFINITY)}};
-    if (around)
-        *own = *around;
+    *own = (struct graphics_state){.limit = {vec3_all(-INFINITY), vec3_all(INFINITY)}};
+    if (state)
+        *own = *state;
     if (node->material)
         own->inherited = node->material;
     if (node->operation == NODE_BOUNDED) /* under what moves the hint is not taken */
-        return stand->above != LINK_NONE || flatten_limit(f, node->operands[1], &stand->from_node, &own->limit) ? own
-                                                                                                                : NULL;
-    *clip = (struct clip){node->operands[1], *stand, own->clips};
+        return pose->above != LINK_NONE || flatten_limit(f, node->operands[1], &pose->from_node, &own->limit) ? own
+                                                                                                              : NULL;
+    *clip = (struct clip){node->operands[1], *pose, own->clips};
     own->clips = clip;
     return own;
 }
@@ -331,26 +334,26 @@ bool flatten_check_transform(struct flattening *f, const struct node *node, cons
                      node->name);
 }
 
-static bool enter_node(struct flattening *f, const struct node *node, const struct stand *parent,
-                       const struct surroundings *around, struct place_frame *frame) {
-    frame->stand.above = parent->above;
-    frame->around = around;
+static bool enter_node(struct flattening *f, const struct node *node, const struct pose *parent,
+                       const struct graphics_state *state, struct place_frame *frame) {
+    frame->pose.above = parent->above;
+    frame->state = state;
     if (node_moves(node)) {
-        if (!stand_moving(f, node, parent, &frame->stand))
+        if (!pose_moving(f, node, parent, &frame->pose))
             return false;
     } else {
         struct transform parent_from_node = node_parent_from_node(node);
-        frame->stand.from_node = transform_compose(&parent->from_node, &parent_from_node);
+        frame->pose.from_node = transform_compose(&parent->from_node, &parent_from_node);
     }
-    if (!flatten_check_transform(f, node, &frame->stand.from_node) || !place_node(f, node, &frame->stand, around))
+    if (!flatten_check_transform(f, node, &frame->pose.from_node) || !place_node(f, node, &frame->pose, state))
         return false;
     bool operand = node_is_placing(node) && f->world->authored.draws[node->operands[0]->index];
-    frame->around_operand = operand ? surround(f, node, &frame->stand, around) : NULL;
-    return !operand || frame->around_operand;
+    frame->state_of_operand = operand ? surround(f, node, &frame->pose, state) : NULL;
+    return !operand || frame->state_of_operand;
 }
 
 static bool place_all(struct flattening *f, struct scene_traversal *t) {
-    const struct stand ground = {LINK_NONE, transform_identity()};
+    const struct pose ground = {LINK_NONE, transform_identity()};
     enum scene_event event;
     uint32_t steps = 0;
     while ((event = scene_traversal_next(t)) < SCENE_END) {
@@ -359,14 +362,14 @@ static bool place_all(struct flattening *f, struct scene_traversal *t) {
             return error_set(f->error, ERROR_CANCELLED, "stopped while the scene was flattened");
         if (event == SCENE_CHILDREN)
             frame->of_children =
-                (struct stand){frame->stand.above, scene_step_map(&t->steps[t->depth - 1], &frame->stand.from_node)};
+                (struct pose){frame->pose.above, scene_step_map(&t->steps[t->depth - 1], &frame->pose.from_node)};
         if (event != SCENE_ENTER)
             continue;
         const struct place_frame *above = t->depth > 1 ? scene_traversal_frame(t, 1) : NULL;
         bool operand = above && scene_traversal_operand(t) != SCENE_CHILD;
-        const struct stand *parent = !above ? &ground : operand ? &above->stand : &above->of_children;
-        const struct surroundings *around = !above ? NULL : operand ? above->around_operand : above->around;
-        if (!enter_node(f, scene_traversal_node(t), parent, around, frame))
+        const struct pose *parent = !above ? &ground : operand ? &above->pose : &above->of_children;
+        const struct graphics_state *state = !above ? NULL : operand ? above->state_of_operand : above->state;
+        if (!enter_node(f, scene_traversal_node(t), parent, state, frame))
             return false;
     }
     return event == SCENE_END || error_no_memory(f->error, "flattening the scene");
@@ -374,15 +377,15 @@ static bool place_all(struct flattening *f, struct scene_traversal *t) {
 
 static bool place_scene(struct flattening *f, const struct node *root) {
     uint32_t total = f->scene->node_total;
-    f->thing_of = mem_alloc(total * sizeof *f->thing_of);
-    if (!f->thing_of)
+    f->prototype_of = mem_alloc(total * sizeof *f->prototype_of);
+    if (!f->prototype_of)
         return error_no_memory(f->error, "flattening the scene");
     for (uint32_t i = 0; i < total; i++)
-        f->thing_of[i] = THING_UNKNOWN;
+        f->prototype_of[i] = PROTOTYPE_UNKNOWN;
     struct scene_traversal t = world_traversal(f->world, root, sizeof(struct place_frame));
     bool ok = place_all(f, &t);
     scene_traversal_end(&t);
-    mem_free(f->thing_of);
+    mem_free(f->prototype_of);
     return ok;
 }
 
@@ -390,13 +393,13 @@ bool flatten_scene(struct flattening *f, const struct node *root) {
     uint32_t count;
     if (!count_drawable(f, root, &count))
         return false;
-    if (count > PLACED_LIMIT)
+    if (count > PRIMITIVE_LIMIT)
         return error_set(f->error, ERROR_SCENE, "the scene places more than %d primitives (instances of instances?)",
-                         PLACED_LIMIT);
-    f->placed_capacity = count;
-    f->primitives = arena_alloc_array(f->arena, f->placed_capacity, sizeof *f->primitives);
+                         PRIMITIVE_LIMIT);
+    f->primitive_capacity = count;
+    f->primitives = arena_alloc_array(f->arena, f->primitive_capacity, sizeof *f->primitives);
     if (!f->primitives)
-        return error_set(f->error, ERROR_MACHINE, "out of memory for %u placed primitives", f->placed_capacity);
+        return error_set(f->error, ERROR_MACHINE, "out of memory for %u placed primitives", f->primitive_capacity);
     f->world->primitives = f->primitives;
     bool ok = place_scene(f, root);
     flatten_map_end(f);

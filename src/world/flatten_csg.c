@@ -7,7 +7,7 @@
 #include "world/flatten.h"
 
 #include "base/mem.h"
-#include "geom/csg_split.h"
+#include "csg/csg_split.h"
 #include "scene/traversal.h"
 
 enum { CSG_NESTING = 10000, CSG_LEAVES = 65535 };
@@ -322,15 +322,15 @@ static bool add_solid(struct flattening *f, struct csg_draft *draft, const struc
 
 /* The clips behind the solid, all of them at once. */
 static bool add_clips(struct flattening *f, struct csg_draft *draft, const struct node *node, const struct clip *clips,
-                      const struct stand *stand, enum content *content) {
-    struct transform csg_from_ground = transform_invert(&stand->from_node);
+                      const struct pose *pose, enum content *content) {
+    struct transform csg_from_ground = transform_invert(&pose->from_node);
     uint32_t start = draft->length, leaves = draft->leaf_count;
     *content = EVERYTHING;
     draft->unseen = true;
     for (const struct clip *clip = clips; clip; clip = clip->next) {
-        struct above above = {.csg_from_parent = transform_compose(&csg_from_ground, &clip->stand.from_node)};
+        struct above above = {.csg_from_parent = transform_compose(&csg_from_ground, &clip->pose.from_node)};
         enum content one;
-        if (clip->stand.above != stand->above)
+        if (clip->pose.above != pose->above)
             return error_set(
                 f->error, ERROR_SCENE,
                 "node '%.100s' moves, or a node above it, while what clips it does not; only both together "
@@ -387,12 +387,12 @@ static enum csg_cull cull_of(const struct node *node) {
     return CSG_CULL_NONE;
 }
 
-bool flatten_csg(struct flattening *f, const struct node *node, const struct stand *stand,
-                 const struct surroundings *around, const struct csg ***parts, uint32_t *count) {
+bool flatten_csg(struct flattening *f, const struct node *node, const struct pose *pose,
+                 const struct graphics_state *state, const struct csg ***parts, uint32_t *count) {
     struct csg_draft draft = {0};
     enum content content = SOMETHING, clip = EVERYTHING;
     struct transform identity = transform_identity();
-    struct above above = {.csg_from_parent = identity, .inherited = around ? around->inherited : NULL};
+    struct above above = {.csg_from_parent = identity, .inherited = state ? state->inherited : NULL};
     *parts = NULL;
     *count = 0;
     bool ok = node->kind == NODE_CSG ? add_solid(f, &draft, node, &above, true, &content)
@@ -400,8 +400,8 @@ bool flatten_csg(struct flattening *f, const struct node *node, const struct sta
     if (ok && node->kind != NODE_CSG) /* a surface of its own that is clipped */
         draft.leaves[0].cull = cull_of(node);
     uint32_t solid_length = draft.length;
-    if (ok && content == SOMETHING && around && around->clips)
-        ok = add_clips(f, &draft, node, around->clips, stand, &clip);
+    if (ok && content == SOMETHING && state && state->clips)
+        ok = add_clips(f, &draft, node, state->clips, pose, &clip);
     if (ok && content == SOMETHING && clip != NOTHING)
         ok = build(f, &draft, solid_length, parts, count);
     mem_free(draft.leaves);

@@ -51,7 +51,7 @@ static bool grow(struct flattening *f) {
     return true;
 }
 
-bool flatten_map(struct flattening *f, const struct transform *world_from_object, struct placed *out) {
+bool flatten_map(struct flattening *f, const struct transform *world_from_object, struct primitive *out) {
     struct transform nothing = transform_identity();
     struct world *world = f->world;
     if (memcmp(&nothing, world_from_object, sizeof nothing) == 0) {

@@ -18,7 +18,7 @@ struct gathering {
 };
 
 static void add_triangle(struct gathering *g, const struct mesh *mesh, uint32_t number, const struct transform *map,
-                         double sign, const struct thing *thing) {
+                         double sign, const struct prototype *prototype) {
     struct vec3 corners[3], emission = g->light->emission;
     uint32_t slot;
     mesh_triangle(mesh, number, corners, &slot);
@@ -29,14 +29,14 @@ static void add_triangle(struct gathering *g, const struct mesh *mesh, uint32_t 
         size = fmax(size, vec3_max_abs(corners[i]));
     }
     if (!g->light->has_emission)
-        emission =
-            material_emission(g->world->authored.materials[thing->material + (slot < thing->slot_count ? slot : 0)]);
+        emission = material_emission(
+            g->world->authored.materials[prototype->material + (slot < prototype->slot_count ? slot : 0)]);
     light_mesh_add(&g->mesh, corners, sign, size, emission);
 }
 
 static void add_mesh(struct gathering *g, uint32_t index) {
-    const struct thing *thing = placed_thing(g->world, index);
-    const struct mesh *mesh = thing->geometry.shape.mesh;
+    const struct prototype *prototype = primitive_prototype(g->world, index);
+    const struct mesh *mesh = prototype->geometry.shape.mesh;
     struct transform map =
         world_placement(g->world, index, 0.5); /* of what moves: in the middle of the shutter's time */
     bool mirrored = affine_determinant(&map.forward) < 0;
@@ -45,18 +45,18 @@ static void add_mesh(struct gathering *g, uint32_t index) {
     g->mesh.primitive = index;
     for (uint32_t i = 0; i < mesh_triangle_count(mesh); i++) {
         g->mesh.part = i;
-        add_triangle(g, mesh, i, &map, sign, thing);
+        add_triangle(g, mesh, i, &map, sign, prototype);
     }
 }
 
 static bool is_lamp(const struct gathering *g, uint32_t index) {
-    return (!g->marked || g->marked[index]) && geometry_mesh(placed_geometry(g->world, index));
+    return (!g->marked || g->marked[index]) && geometry_mesh(primitive_geometry(g->world, index));
 }
 
 static uint64_t count_triangles(const struct gathering *g) {
     uint64_t total = 0;
-    for (uint32_t i = 0; i < g->world->placed_count; i++)
-        total += is_lamp(g, i) ? mesh_triangle_count(placed_geometry(g->world, i)->shape.mesh) : 0;
+    for (uint32_t i = 0; i < g->world->primitive_count; i++)
+        total += is_lamp(g, i) ? mesh_triangle_count(primitive_geometry(g->world, i)->shape.mesh) : 0;
     return total;
 }
 
@@ -65,19 +65,20 @@ static bool gather(struct gathering *g, uint64_t total, struct arena *arena, str
         return error_set(error, ERROR_SCENE, "the mesh light '%.100s' has too many triangles", g->light->node->name);
     if (!light_mesh_begin(&g->mesh, total, arena))
         return error_no_memory(error, "a mesh light");
-    for (uint32_t i = 0; i < g->world->placed_count; i++)
+    for (uint32_t i = 0; i < g->world->primitive_count; i++)
         if (is_lamp(g, i))
             add_mesh(g, i);
     return true;
 }
 
-bool light_lamps_primitive(const struct world *world, uint32_t placed, struct light *light, struct arena *arena,
+bool light_lamps_primitive(const struct world *world, uint32_t primitive, struct light *light, struct arena *arena,
                            struct error *error) {
     struct gathering g = {.world = world, .light = light};
     struct light_mesh *mesh = arena_alloc(arena, sizeof *mesh);
-    if (!mesh || !light_mesh_begin(&g.mesh, mesh_triangle_count(placed_geometry(world, placed)->shape.mesh), arena))
+    if (!mesh ||
+        !light_mesh_begin(&g.mesh, mesh_triangle_count(primitive_geometry(world, primitive)->shape.mesh), arena))
         return error_no_memory(error, "a mesh light");
-    add_mesh(&g, placed);
+    add_mesh(&g, primitive);
     light_mesh_end(&g.mesh, light->colour, mesh);
     mesh->shown = true;
     light->mesh = mesh;
@@ -105,7 +106,7 @@ static bool gather_unseen(struct gathering *g, struct flattening *f, struct erro
 static bool resolve_mesh(struct flattening *f, struct light *light, const struct node *root) {
     const struct world *world = f->world;
     struct light_mesh *mesh = arena_alloc(f->arena, sizeof *mesh);
-    uint8_t *marked = arena_alloc_array(f->arena, (size_t)world->placed_count + 1, 1);
+    uint8_t *marked = arena_alloc_array(f->arena, (size_t)world->primitive_count + 1, 1);
     if (!mesh || !marked || !light_lists_mark(world, &light->node, 1, marked, 1, root))
         return error_no_memory(f->error, "a mesh light");
     struct gathering g = {.world = world, .light = light, .marked = marked};

@@ -11,7 +11,7 @@
  * there. */
 bool light_lamps_resolve(struct flattening *f, struct light *lights, const struct node *root);
 /* Sets `mesh` of a light that is one placed mesh alone, with the emission of its materials. Errors: no memory. */
-bool light_lamps_primitive(const struct world *world, uint32_t placed, struct light *light, struct arena *arena,
+bool light_lamps_primitive(const struct world *world, uint32_t primitive, struct light *light, struct arena *arena,
                            struct error *error);
 
 #endif

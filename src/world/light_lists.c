@@ -24,7 +24,7 @@ bool light_lists_mark(const struct world *world, const struct node *const *list,
         const bool *above = t.depth > 1 ? scene_traversal_frame(&t, 1) : NULL;
         bool *listed = scene_traversal_frame(&t, 0);
         *listed = (above && *above) || is_listed(list, list_count, node);
-        uint32_t count = world_placed_by(world, node, next);
+        uint32_t count = world_primitives_of(world, node, next);
         if (*listed && count > 0)
             memset(lit + next, value, count);
         next += count;
@@ -38,12 +38,12 @@ bool light_lists_resolve(const struct world *world, struct light *lights, struct
     for (uint32_t i = 0; i < world->light_count; i++) {
         struct light *light = &lights[i];
         light->lit = NULL;
-        if ((!light->include && !light->exclude) || world->placed_count == 0)
+        if ((!light->include && !light->exclude) || world->primitive_count == 0)
             continue;
-        uint8_t *lit = arena_alloc_array(arena, world->placed_count, 1);
+        uint8_t *lit = arena_alloc_array(arena, world->primitive_count, 1);
         bool ok = lit != NULL;
         if (ok)
-            memset(lit, light->include == NULL, world->placed_count);
+            memset(lit, light->include == NULL, world->primitive_count);
         ok = ok && (!light->include || light_lists_mark(world, light->include, light->include_count, lit, 1, root)) &&
              (!light->exclude || light_lists_mark(world, light->exclude, light->exclude_count, lit, 0, root));
         if (!ok)

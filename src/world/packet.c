@@ -1,4 +1,4 @@
-/* Rays of one origin together: the camera rays of a few pixels go through the hierarchy over the placed primitives as
+/* Rays of one origin together: the camera rays of a few pixels go through the hierarchy over the primitives as
  * one beam, and the shadow rays of one hit towards one light look only at what stands in the shaft between them. Meshes
  * get all the rays that meet their box at once (accel/triangle_packet.h), other shapes one after the other. The answers
  * are those of single rays. */
@@ -75,15 +75,15 @@ static uint64_t meet_box(const struct packet_search *s, const struct box *box) {
 
 /* A mesh without faces to pass over, at rest: all rays may go together. */
 static bool is_plain_mesh(const struct world *world, uint32_t index) {
-    const struct thing *thing = placed_thing(world, index);
+    const struct prototype *prototype = primitive_prototype(world, index);
     uint32_t linear = world->primitives[index].linear;
-    return geometry_mesh(&thing->geometry) && thing->cull == CULL_NONE &&
+    return geometry_mesh(&prototype->geometry) && prototype->cull == CULL_NONE &&
            (linear == LINEAR_NONE || !(linear & LINEAR_MOVING));
 }
 
-/* The rays in the space of a primitive, number by number what placed_ray says. */
-static const struct ray_packet *placed_rays(const struct packet_search *s, uint32_t index, struct ray_packet *out) {
-    const struct placed *placed = &s->world->primitives[index];
+/* The rays in the space of a primitive, number by number what primitive_ray says. */
+static const struct ray_packet *primitive_rays(const struct packet_search *s, uint32_t index, struct ray_packet *out) {
+    const struct primitive *primitive = &s->world->primitives[index];
     const struct ray_packet *rays = s->rays;
     uint32_t count = places(rays);
     out->t_min = rays->t_min;
@@ -91,17 +91,17 @@ static const struct ray_packet *placed_rays(const struct packet_search *s, uint3
     out->count = rays->count;
     for (uint32_t i = 0; i < count; i++)
         out->t_max[i] = s->limit[i];
-    if (placed->linear == LINEAR_NONE) {
+    if (primitive->linear == LINEAR_NONE) {
         out->origin = rays->origin;
         memcpy(out->direction, rays->direction, sizeof out->direction);
         return out;
     }
-    const struct linear_map *map = &s->world->linear_maps[placed->linear];
+    const struct linear_map *map = &s->world->linear_maps[primitive->linear];
     const double *x = map->inverse[0], *y = map->inverse[1], *z = map->inverse[2];
     struct vec3 o = rays->origin;
-    out->origin = vec3_make(x[0] * o.x + x[1] * o.y + x[2] * o.z + placed->shift_back.x,
-                            y[0] * o.x + y[1] * o.y + y[2] * o.z + placed->shift_back.y,
-                            z[0] * o.x + z[1] * o.y + z[2] * o.z + placed->shift_back.z);
+    out->origin = vec3_make(x[0] * o.x + x[1] * o.y + x[2] * o.z + primitive->shift_back.x,
+                            y[0] * o.x + y[1] * o.y + y[2] * o.z + primitive->shift_back.y,
+                            z[0] * o.x + z[1] * o.y + z[2] * o.z + primitive->shift_back.z);
     for (int k = 0; k < 3; k++) {
         const double *row = map->inverse[k];
         for (uint32_t i = 0; i < count; i++)
@@ -115,10 +115,10 @@ static void better(struct packet_search *s, unsigned i, uint32_t index, const st
     uint64_t bit = UINT64_C(1) << i;
     struct packet_answer *best = &s->best[i];
     if ((s->found & bit) &&
-        !(crossing->t < best->crossing.t || (crossing->t == best->crossing.t && index < best->placed)))
+        !(crossing->t < best->crossing.t || (crossing->t == best->crossing.t && index < best->primitive)))
         return;
     best->crossing = *crossing;
-    best->placed = index;
+    best->primitive = index;
     s->found |= bit;
     double just_behind = crossing->t + fabs(crossing->t) * 0x1p-52;
     s->limit[i] = just_behind < s->rays->t_max[i] ? just_behind : s->rays->t_max[i];
@@ -127,8 +127,8 @@ static void better(struct packet_search *s, unsigned i, uint32_t index, const st
 static void try_mesh(struct packet_search *s, uint32_t index, uint64_t active) {
     struct ray_packet object;
     struct packet_hits hits;
-    const struct mesh *mesh = placed_geometry(s->world, index)->shape.mesh;
-    uint64_t met = mesh_nearest_packet(mesh, placed_rays(s, index, &object), active, s->world->mesh_accel,
+    const struct mesh *mesh = primitive_geometry(s->world, index)->shape.mesh;
+    uint64_t met = mesh_nearest_packet(mesh, primitive_rays(s, index, &object), active, s->world->mesh_accel,
                                        &s->scratch->geom, &hits);
     for (; met; met &= met - 1) {
         unsigned i = (unsigned)__builtin_ctzll(met);
@@ -144,7 +144,7 @@ static void try_shape(struct packet_search *s, uint32_t index, uint64_t active) 
         struct crossing crossing;
         struct ray ray = ray_packet_get(s->rays, i);
         ray.t_max = s->limit[i];
-        ray = placed_ray(s->world, index, &ray);
+        ray = primitive_ray(s->world, index, &ray);
         if (world_ask_nearest(s->world, index, &ray, s->scratch, &crossing))
             better(s, i, index, &crossing);
     }
@@ -167,7 +167,7 @@ uint64_t world_nearest_packet(const struct world *world, const struct ray_packet
         uint64_t found = 0;
         for (uint32_t i = 0; i < rays->count; i++) {
             struct ray ray = ray_packet_get(rays, i);
-            found |= (uint64_t)world_nearest_crossing(world, &ray, scratch, &out[i].placed, &out[i].crossing) << i;
+            found |= (uint64_t)world_nearest_crossing(world, &ray, scratch, &out[i].primitive, &out[i].crossing) << i;
         }
         return found;
     }
@@ -205,11 +205,11 @@ uint64_t world_nearest_packet(const struct world *world, const struct ray_packet
 
 /* Which of the rays one primitive stops. */
 static uint64_t stopped_by(const struct packet_search *s, uint32_t index, uint64_t active) {
-    const struct thing *thing = placed_thing(s->world, index);
-    if (is_plain_mesh(s->world, index) && !thing->holes) {
+    const struct prototype *prototype = primitive_prototype(s->world, index);
+    if (is_plain_mesh(s->world, index) && !prototype->holes) {
         struct ray_packet object;
-        return mesh_any_packet(thing->geometry.shape.mesh, placed_rays(s, index, &object), active, s->world->mesh_accel,
-                               &s->scratch->geom);
+        return mesh_any_packet(prototype->geometry.shape.mesh, primitive_rays(s, index, &object), active,
+                               s->world->mesh_accel, &s->scratch->geom);
     }
     uint64_t stopped = 0;
     for (; active; active &= active - 1) {
@@ -221,61 +221,62 @@ static uint64_t stopped_by(const struct packet_search *s, uint32_t index, uint64
 }
 
 /* The rays of `active` that none of the candidates stops; what stops some is asked first the next time. */
-static uint64_t pass(struct packet_search *s, struct between *between) {
+static uint64_t pass(struct packet_search *s, struct occluder_candidates *occluder_candidates) {
     uint64_t alive = ray_packet_all(s->rays);
     for (uint32_t i = 0; i < places(s->rays); i++) {
         for (int k = 0; k < 3; k++)
             s->inverse[k][i] = 1 / s->rays->direction[k][i];
         s->limit[i] = s->rays->t_max[i];
     }
-    for (uint32_t k = 0; k < between->count && alive; k++) {
-        uint32_t item = between->items[k];
+    for (uint32_t k = 0; k < occluder_candidates->count && alive; k++) {
+        uint32_t item = occluder_candidates->items[k];
         uint64_t active = alive & meet_box(s, &s->world->boxes[item]), stopped;
         if (!active || !(stopped = stopped_by(s, item, active)))
             continue;
         alive &= ~stopped;
-        between->items[k] = between->items[0];
-        between->items[0] = item;
+        occluder_candidates->items[k] = occluder_candidates->items[0];
+        occluder_candidates->items[0] = item;
     }
     return alive;
 }
 
-struct between world_between(const struct world *world, struct vec3 from, struct vec3 corner, struct vec3 edge1,
-                             struct vec3 edge2, uint32_t passes) {
-    struct between between;
-    between.count = 0;
-    between.passes = passes;
+struct occluder_candidates world_occluder_candidates(const struct world *world, struct vec3 from, struct vec3 corner,
+                                                     struct vec3 edge1, struct vec3 edge2, uint32_t skip_primitive) {
+    struct occluder_candidates occluder_candidates;
+    occluder_candidates.count = 0;
+    occluder_candidates.skip_primitive = skip_primitive;
     const struct box_tree *tree = scene_accel_hierarchy(&world->accel);
-    between.known = tree != NULL;
-    if (!between.known)
-        return between;
+    occluder_candidates.known = tree != NULL;
+    if (!occluder_candidates.known)
+        return occluder_candidates;
     struct shaft shaft = shaft_make(from, corner, edge1, edge2);
-    between.count = box_tree_in_shaft(tree, &shaft, between.items, BETWEEN_LIMIT);
-    between.known = between.count <= BETWEEN_LIMIT;
-    for (uint32_t i = 0; between.known && i < between.count; i++) {
-        if (between.items[i] + 1 == passes) {
-            between.items[i] = between.items[--between.count];
+    occluder_candidates.count = box_tree_in_shaft(tree, &shaft, occluder_candidates.items, OCCLUDER_CANDIDATES);
+    occluder_candidates.known = occluder_candidates.count <= OCCLUDER_CANDIDATES;
+    for (uint32_t i = 0; occluder_candidates.known && i < occluder_candidates.count; i++) {
+        if (occluder_candidates.items[i] + 1 == skip_primitive) {
+            occluder_candidates.items[i] = occluder_candidates.items[--occluder_candidates.count];
             break;
         }
     }
-    return between;
+    return occluder_candidates;
 }
 
-uint32_t world_visible(const struct world *world, struct between *between, struct vec3 from, double time,
-                       const struct vec3 *targets, uint32_t count, struct world_scratch *scratch, bool *visible) {
+uint32_t world_visible(const struct world *world, struct occluder_candidates *occluder_candidates, struct vec3 from,
+                       double time, const struct vec3 *targets, uint32_t count, struct world_scratch *scratch,
+                       bool *visible) {
     uint32_t seen = 0;
-    if (between->known && between->count == 0) {
+    if (occluder_candidates->known && occluder_candidates->count == 0) {
         for (uint32_t i = 0; i < count && visible; i++)
             visible[i] = true;
         return count;
     }
-    if (!between->known) {
+    if (!occluder_candidates->known) {
         for (uint32_t i = 0; i < count; i++) {
             struct ray ray = {.origin = from,
                               .direction = vec3_sub(targets[i], from),
                               .t_max = 1,
                               .time = time,
-                              .passes = between->passes};
+                              .skip_primitive = occluder_candidates->skip_primitive};
             bool free_way = !world_any(world, &ray, scratch);
             seen += free_way;
             if (visible)
@@ -302,7 +303,7 @@ uint32_t world_visible(const struct world *world, struct between *between, struc
             rays.t_max[i] = 1;
         }
         ray_packet_pad(&rays);
-        uint64_t alive = pass(&s, between);
+        uint64_t alive = pass(&s, occluder_candidates);
         seen += (uint32_t)__builtin_popcountll(alive);
         for (uint32_t i = 0; i < rays.count && visible; i++)
             visible[first + i] = alive >> i & 1;

@@ -7,7 +7,7 @@
 
 struct packet_answer {
     struct crossing crossing;
-    uint32_t placed;
+    uint32_t primitive;
 };
 
 /* For each ray what world_nearest_crossing says: its bit, and out[i]. The packet is padded (ray_packet_pad). */
@@ -15,18 +15,19 @@ uint64_t world_nearest_packet(const struct world *world, const struct ray_packet
                               struct packet_answer *out);
 
 /* What can be between a point and a parallelogram, in any order; not known when there is much. */
-enum { BETWEEN_LIMIT = 24 };
-struct between {
-    uint32_t items[BETWEEN_LIMIT], count;
-    uint32_t passes; /* as of a ray */
+enum { OCCLUDER_CANDIDATES = 24 };
+struct occluder_candidates {
+    uint32_t items[OCCLUDER_CANDIDATES], count;
+    uint32_t skip_primitive; /* as of a ray */
     bool known;
 };
-struct between world_between(const struct world *world, struct vec3 from, struct vec3 corner, struct vec3 edge1,
-                             struct vec3 edge2, uint32_t passes);
+struct occluder_candidates world_occluder_candidates(const struct world *world, struct vec3 from, struct vec3 corner,
+                                                     struct vec3 edge1, struct vec3 edge2, uint32_t skip_primitive);
 /* How many of the points targets[0 .. count-1], all inside the parallelogram, are seen from `from`: as world_any would
  * say of every segment, t in (0, 1). visible (count entries, or NULL) says it of each. What stops some rays comes first
- * in `between` afterwards. */
-uint32_t world_visible(const struct world *world, struct between *between, struct vec3 from, double time,
-                       const struct vec3 *targets, uint32_t count, struct world_scratch *scratch, bool *visible);
+ * in `occluder_candidates` afterwards. */
+uint32_t world_visible(const struct world *world, struct occluder_candidates *occluder_candidates, struct vec3 from,
+                       double time, const struct vec3 *targets, uint32_t count, struct world_scratch *scratch,
+                       bool *visible);
 
 #endif

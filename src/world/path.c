@@ -10,9 +10,9 @@ struct scene_traversal world_traversal(const struct world *world, const struct n
     return t;
 }
 
-uint32_t world_placed_by(const struct world *world, const struct node *node, uint32_t next) {
-    bool places = next < world->placed_count && placed_node(world, next) == node;
-    return places ? placed_thing(world, next)->parts : 0;
+uint32_t world_primitives_of(const struct world *world, const struct node *node, uint32_t next) {
+    bool places = next < world->primitive_count && primitive_node(world, next) == node;
+    return places ? primitive_prototype(world, next)->parts : 0;
 }
 
 bool world_visit_paths(const struct world *world, const struct node *root, world_path_visit *visit, void *context,
@@ -21,8 +21,8 @@ bool world_visit_paths(const struct world *world, const struct node *root, world
     enum scene_event event = SCENE_END;
     uint32_t next = 0;
     bool go_on = true;
-    while (go_on && next < world->placed_count && (event = scene_traversal_next(&t)) < SCENE_END) {
-        uint32_t count = event == SCENE_ENTER ? world_placed_by(world, scene_traversal_node(&t), next) : 0;
+    while (go_on && next < world->primitive_count && (event = scene_traversal_next(&t)) < SCENE_END) {
+        uint32_t count = event == SCENE_ENTER ? world_primitives_of(world, scene_traversal_node(&t), next) : 0;
         if (count > 0)
             go_on = visit(context, next, count, t.steps, t.depth);
         next += count;

@@ -1,4 +1,4 @@
-/* The way from the root to what is placed. A placed primitive knows its node, but a node may hang under several others
+/* The way from the root to what is placed. A primitive knows its node, but a node may hang under several others
  * and in many places: the way is found by the same traversal as flattening's. */
 #ifndef GRAY_WORLD_PATH_H
 #define GRAY_WORLD_PATH_H
@@ -10,7 +10,7 @@
  */
 struct scene_traversal world_traversal(const struct world *world, const struct node *root, size_t frame_size);
 /* How many primitives, from number `next` on, this node has placed when it is entered for the next time. */
-uint32_t world_placed_by(const struct world *world, const struct node *node, uint32_t next);
+uint32_t world_primitives_of(const struct world *world, const struct node *node, uint32_t next);
 
 /* Told in flattening order: primitives first .. first + count - 1 are those of the last node of the way. False: the
  * walk may end. */

@@ -6,7 +6,7 @@
 #include "accel/box_tree.h"
 #include "accel/grid.h"
 #include "accel/kd_tree.h"
-#include "geom/mesh.h"
+#include "mesh/mesh.h"
 
 /* Zero-initialised: nothing to destroy. Owns what it holds; the structures of other kinds stay zero. */
 struct scene_accel {

@@ -1,12 +1,12 @@
-/* The flattened scene: placed primitives, a voxel grid over them, lights; immutable, flat arrays with 32-bit indices,
+/* The flattened scene: primitives, a voxel grid over them, lights; immutable, flat arrays with 32-bit indices,
  * owned by the arena of one job. Answers what a ray meets. */
 #ifndef GRAY_WORLD_WORLD_H
 #define GRAY_WORLD_WORLD_H
 
 #include "base/arena.h"
 #include "base/pool.h"
-#include "geom/geometry.h"
-#include "geom/hit.h"
+#include "csg/geometry.h"
+#include "geometry/hit.h"
 #include "material/medium_stack.h"
 #include "math/motion.h"
 #include "scene/node.h"
@@ -26,15 +26,15 @@ struct moving {
 };
 
 /* What all placements of one node share. */
-struct thing {
+struct prototype {
     struct geometry geometry;
     uint32_t material;   /* unused for CSG: the leaves have their own */
     uint32_t slot_count; /* of a mesh: face slot k has material + k; below 2 all have `material` */
     enum node_cull cull; /* of a mesh */
-    uint32_t parts;      /* of a union placed in parts: how many things from this one on belong to its node; else 1 */
-    bool is_later_part;  /* not the first of them */
-    enum hit_hull hull;  /* unused for CSG, like material */
-    bool holes;          /* some of its materials let rays through by a picture */
+    uint32_t parts;     /* of a union primitive in parts: how many things from this one on belong to its node; else 1 */
+    bool is_later_part; /* not the first of them */
+    enum hit_convexity convexity; /* unused for CSG, like material */
+    bool holes;                   /* some of its materials let rays through by a picture */
 };
 
 /* What was flattened, for inspection: searches and shading never look here. Borrows from the scene. */
@@ -50,23 +50,23 @@ struct linear_map {
     double stretch; /* transform_stretch: bounds errors */
 };
 
-/* A placed primitive, kept small: a scene may have millions. Its map is worked out by world_placement. */
-struct placed {
+/* A primitive, kept small: a scene may have millions. Its map is worked out by world_placement. */
+struct primitive {
     struct vec3 shift, shift_back; /* the last columns of world_from_object and of its inverse */
-    uint32_t thing;
+    uint32_t prototype;
     uint32_t linear; /* number of a linear map, or one of the following */
 };
 #define LINEAR_NONE UINT32_MAX            /* world_from_object changes nothing */
 #define LINEAR_MOVING (UINT32_C(1) << 31) /* with the number of an entry in world->moving */
 
 struct world {
-    const struct placed *primitives;
-    struct thing *things; /* owned, as are maps and moving */
+    const struct primitive *primitives;
+    struct prototype *prototypes; /* owned, as are maps and moving */
     struct linear_map *linear_maps;
     struct moving *moving;
     struct moving_link *links;
-    struct box *boxes; /* world box of each placed primitive */
-    uint32_t placed_count, thing_count, linear_count, moving_count, link_count;
+    struct box *boxes; /* world box of each primitive */
+    uint32_t primitive_count, prototype_count, linear_count, moving_count, link_count;
     struct shutter shutter;
     bool moves; /* something does */
     struct authored authored;
@@ -77,7 +77,7 @@ struct world {
     bool *material_has_image;  /* such materials need to know the footprint on the surface */
     bool *material_has_bump;   /* and such ones where it rises */
     uint32_t *material_medium; /* number of the medium in solids of the material, or MEDIUM_NONE: opaque */
-    struct medium *media;      /* one for each transparent material; their `placed` is anything */
+    struct medium *media;      /* one for each transparent material; their `primitive` is anything */
     uint32_t material_count, material_number_count, medium_count;
     double emission_bound; /* at least the largest component that a material emits */
     const struct light *lights;
@@ -92,7 +92,7 @@ struct world {
 
 #define MEDIUM_NONE UINT32_MAX
 #define WORLD_NOTHING UINT32_MAX /* in the place of a primitive's number */
-enum { WORLD_BLOCKERS = 8 };
+enum { WORLD_SHADOW_CACHE = 8 };
 
 /* One worker's mutable memory while it asks the world. */
 struct world_scratch {
@@ -100,7 +100,7 @@ struct world_scratch {
     bool failed; /* no memory to grow: the frame is abandoned with ERROR_MACHINE */
     uint64_t rays, any_rays;
     /* What stopped the last shadow ray to the light in question (its number, modulo), or WORLD_NOTHING. */
-    uint32_t blockers[WORLD_BLOCKERS], light;
+    uint32_t shadow_cache[WORLD_SHADOW_CACHE], light;
 };
 bool world_scratch_init(struct world_scratch *scratch, const struct world *world);
 void world_scratch_destroy(struct world_scratch *scratch);
@@ -129,35 +129,35 @@ bool world_build(struct world *world, const struct world_input *input, struct ar
 void world_update_materials(struct world *world);
 void world_destroy(struct world *world); /* what is not in the arena */
 /* Bytes of placements with what they share and their boxes. */
-size_t world_placed_memory(const struct world *world);
+size_t world_primitive_memory(const struct world *world);
 
-static inline const struct thing *placed_thing(const struct world *world, uint32_t placed) {
-    return &world->things[world->primitives[placed].thing];
+static inline const struct prototype *primitive_prototype(const struct world *world, uint32_t primitive) {
+    return &world->prototypes[world->primitives[primitive].prototype];
 }
-static inline const struct geometry *placed_geometry(const struct world *world, uint32_t placed) {
-    return &placed_thing(world, placed)->geometry;
+static inline const struct geometry *primitive_geometry(const struct world *world, uint32_t primitive) {
+    return &primitive_prototype(world, primitive)->geometry;
 }
 /* Its pose depends on time. */
-static inline bool placed_moves(const struct world *world, uint32_t placed) {
-    uint32_t linear = world->primitives[placed].linear;
+static inline bool primitive_moves(const struct world *world, uint32_t primitive) {
+    uint32_t linear = world->primitives[primitive].linear;
     return linear != LINEAR_NONE && (linear & LINEAR_MOVING) != 0;
 }
-/* The node that a placed primitive came from. */
-static inline const struct node *placed_node(const struct world *world, uint32_t placed) {
-    return world->authored.nodes[world->primitives[placed].thing];
+/* The node that a primitive came from. */
+static inline const struct node *primitive_node(const struct world *world, uint32_t primitive) {
+    return world->authored.nodes[world->primitives[primitive].prototype];
 }
 /* world_from_object at a ray's time; for what does not move, the bits are those of the composed transforms of the
  * nodes. */
-struct transform world_placement(const struct world *world, uint32_t placed, double ray_time);
+struct transform world_placement(const struct world *world, uint32_t primitive, double ray_time);
 /* The ray in the space of a primitive that moves. */
-struct ray world_ray_of_moving(const struct world *world, uint32_t placed, const struct ray *ray);
+struct ray world_ray_of_moving(const struct world *world, uint32_t primitive, const struct ray *ray);
 /* The ray in object space. */
-static inline struct ray placed_ray(const struct world *world, uint32_t placed, const struct ray *ray) {
-    const struct placed *p = &world->primitives[placed];
+static inline struct ray primitive_ray(const struct world *world, uint32_t primitive, const struct ray *ray) {
+    const struct primitive *p = &world->primitives[primitive];
     if (p->linear == LINEAR_NONE)
         return *ray;
     if (p->linear & LINEAR_MOVING)
-        return world_ray_of_moving(world, placed, ray);
+        return world_ray_of_moving(world, primitive, ray);
     const struct linear_map *map = &world->linear_maps[p->linear];
     const double *x = map->inverse[0], *y = map->inverse[1], *z = map->inverse[2];
     struct vec3 o = ray->origin, d = ray->direction;
@@ -175,11 +175,11 @@ static inline struct ray placed_ray(const struct world *world, uint32_t placed, 
 bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit);
 /* Only which primitive and where, both anything if there is none; for tests and counters. */
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
-                            uint32_t *placed, struct crossing *crossing);
+                            uint32_t *primitive, struct crossing *crossing);
 bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch);
 /* What stopped the last ray of world_any; WORLD_NOTHING: nothing, or every primitive was tried (ACCEL_NONE). */
 static inline uint32_t world_blocker(const struct world_scratch *scratch) {
-    return scratch->blockers[scratch->light];
+    return scratch->shadow_cache[scratch->light];
 }
 /* The same of many rays: of any origin, interval, time and primitive to skip; they may be in any order. hits[i] is what
  * world_nearest says of rays[i], to the bit; where it says no, hits[i].placed is WORLD_NOTHING and the rest is
@@ -191,8 +191,8 @@ void world_nearest_batch(const struct world *world, const struct ray *rays, uint
 void world_any_batch(const struct world *world, const struct ray *rays, uint32_t count, struct world_scratch *scratch,
                      bool *met);
 /* Only what world_nearest_crossing has found, described. */
-void world_describe(const struct world *world, const struct ray *ray, uint32_t placed, const struct crossing *crossing,
-                    struct hit *hit);
+void world_describe(const struct world *world, const struct ray *ray, uint32_t primitive,
+                    const struct crossing *crossing, struct hit *hit);
 /* The u and v that the shape of a hit supplies. False: it has none. */
 bool world_native_uv(const struct world *world, const struct hit *hit, double *u, double *v);
 /* The closed primitives whose box meets `region`: all that can hold a point of it, in flattening order. `out` (or NULL)
@@ -202,6 +202,6 @@ uint32_t world_closed_in(const struct world *world, const struct box *region, ui
  * is at most WORLD_NESTING. Returns the count. */
 enum { WORLD_NESTING = 64 };
 uint32_t world_containing(const struct world *world, struct vec3 point, double ray_time, const uint32_t *candidates,
-                          uint32_t count, struct world_scratch *scratch, uint32_t *placed, uint32_t limit);
+                          uint32_t count, struct world_scratch *scratch, uint32_t *primitive, uint32_t limit);
 
 #endif

@@ -64,13 +64,13 @@ static bool build(struct world *world, const struct world_input *input, struct a
     if (!flatten_scene(&flattening, input->root) || !light_lists_resolve(world, copied, arena, input->root, error) ||
         !light_lamps_resolve(&flattening, copied, input->root))
         return false;
-    world->boxes = arena_alloc_array(arena, world->placed_count, sizeof *world->boxes);
+    world->boxes = arena_alloc_array(arena, world->primitive_count, sizeof *world->boxes);
     if (!world->boxes)
         return error_no_memory(error, "the boxes of the scene");
     if (!make_materials(world, arena, error) || !world_place_boxes(world, flattening.limits, pool, error))
         return false;
     add_up_meshes(world, input->scene->assets);
-    return scene_accel_build(&world->accel, world->mesh_accel, world->boxes, world->placed_count, pool, error);
+    return scene_accel_build(&world->accel, world->mesh_accel, world->boxes, world->primitive_count, pool, error);
 }
 
 bool world_build(struct world *world, const struct world_input *input, struct arena *arena, struct pool *pool,
@@ -84,12 +84,12 @@ bool world_build(struct world *world, const struct world_input *input, struct ar
 }
 
 void world_destroy(struct world *world) {
-    mem_free(world->things);
+    mem_free(world->prototypes);
     mem_free(world->authored.nodes);
     mem_free(world->linear_maps);
     mem_free(world->moving);
     mem_free(world->links);
-    world->things = NULL;
+    world->prototypes = NULL;
     world->authored.nodes = NULL;
     world->linear_maps = NULL;
     world->moving = NULL;
@@ -97,9 +97,9 @@ void world_destroy(struct world *world) {
     scene_accel_destroy(&world->accel);
 }
 
-size_t world_placed_memory(const struct world *world) {
-    return world->placed_count * (sizeof *world->primitives + sizeof *world->boxes) +
-           world->thing_count * (sizeof *world->things + sizeof *world->authored.nodes) +
+size_t world_primitive_memory(const struct world *world) {
+    return world->primitive_count * (sizeof *world->primitives + sizeof *world->boxes) +
+           world->prototype_count * (sizeof *world->prototypes + sizeof *world->authored.nodes) +
            world->linear_count * sizeof *world->linear_maps + world->moving_count * sizeof *world->moving +
            world->link_count * sizeof *world->links;
 }

@@ -1,6 +1,6 @@
 /* The complete description of the one crossing that a search has found. */
-#include "geom/shape_sphere.h"
 #include "math/frame.h"
+#include "shape/sphere.h"
 #include "world/world.h"
 
 #include <string.h>
@@ -33,14 +33,14 @@ static bool same_vector(const struct vec3 *a, const struct vec3 *b) {
 }
 
 bool world_native_uv(const struct world *world, const struct hit *hit, double *u, double *v) {
-    return shape_native_uv(geometry_shape(placed_geometry(world, hit->placed), hit->leaf), hit, u, v);
+    return shape_native_uv(geometry_shape(primitive_geometry(world, hit->primitive), hit->leaf), hit, u, v);
 }
 
 /* What bumps need: the world's vectors of one unit along the operand's normal and along its tangents, and on spheres
  * the tangents of their coordinates, which other materials do not ask for. */
-static void describe_bump(const struct thing *thing, const struct affine *map, const struct csg_leaf *leaf,
+static void describe_bump(const struct prototype *prototype, const struct affine *map, const struct csg_leaf *leaf,
                           struct hit *hit) {
-    const struct shape *shape = geometry_shape(&thing->geometry, hit->leaf);
+    const struct shape *shape = geometry_shape(&prototype->geometry, hit->leaf);
     bool is_ball = shape_layout(shape) == LAYOUT_SPHERE;
     struct vec3 normal = vec3_normalize(hit->pattern_normal), raise = normal, u = {0}, v = {0}, a, b;
     frame_tangents(normal, &a, &b);
@@ -71,10 +71,11 @@ static double stretch_of(const struct world *world, uint32_t index, const struct
     return linear & LINEAR_MOVING ? transform_stretch(map) : world->linear_maps[linear].stretch;
 }
 
-static enum hit_hull hull_of(const struct thing *thing, const struct csg_leaf *leaf, const struct crossing *crossing) {
+static enum hit_convexity convexity_of(const struct prototype *prototype, const struct csg_leaf *leaf,
+                                       const struct crossing *crossing) {
     if (!leaf)
-        return thing->hull;
-    return thing->geometry.csg->hull[crossing->leaf] && !crossing->flip ? HULL_BEHIND : HULL_NONE;
+        return prototype->convexity;
+    return prototype->geometry.csg->convexity[crossing->leaf] && !crossing->flip ? CONVEXITY_BEHIND : CONVEXITY_NONE;
 }
 
 /* The surface of an object in the world; map NULL: the object's space is the world. Every field of the hit is written
@@ -126,7 +127,7 @@ static double pattern_scale(const struct transform *map, const struct csg_leaf *
 
 void world_describe(const struct world *world, const struct ray *ray, uint32_t index, const struct crossing *crossing,
                     struct hit *hit) {
-    const struct thing *thing = placed_thing(world, index);
+    const struct prototype *prototype = primitive_prototype(world, index);
     struct transform world_from_object;
     struct ray ray_object;
     const struct transform *map = NULL;
@@ -138,26 +139,26 @@ void world_describe(const struct world *world, const struct ray *ray, uint32_t i
         own_ray = &ray_object;
     }
     struct surface surface;
-    geometry_describe(&thing->geometry, own_ray, crossing, &surface);
+    geometry_describe(&prototype->geometry, own_ray, crossing, &surface);
     double length = vec3_length(ray->direction);
-    bool in_csg = thing->geometry.csg != NULL;
-    const struct csg_leaf *leaf = in_csg ? &thing->geometry.csg->leaves[surface.leaf] : NULL;
-    uint32_t material = in_csg ? leaf->material : thing->material;
-    uint32_t slot_count = in_csg ? leaf->slot_count : thing->slot_count;
+    bool in_csg = prototype->geometry.csg != NULL;
+    const struct csg_leaf *leaf = in_csg ? &prototype->geometry.csg->leaves[surface.leaf] : NULL;
+    uint32_t material = in_csg ? leaf->material : prototype->material;
+    uint32_t slot_count = in_csg ? leaf->slot_count : prototype->slot_count;
     if (surface.material_slot < slot_count)
         material += surface.material_slot;
     place_surface(&surface, map, hit);
     hit->t = crossing->t;
     hit->view = vec3_scale(ray->direction, -1 / length);
-    hit->placed = index;
+    hit->primitive = index;
     hit->part = crossing->part;
     hit->material = material;
-    hit->hull = hull_of(thing, leaf, crossing);
+    hit->convexity = convexity_of(prototype, leaf, crossing);
     hit->time = ray->time;
     if (world->material_has_bump[material]) {
         if (!map)
             world_from_object = transform_identity();
-        describe_bump(thing, &world_from_object.forward, leaf, hit);
+        describe_bump(prototype, &world_from_object.forward, leaf, hit);
     }
     hit->front = vec3_dot(hit->view, hit->normal_geometric) >= 0;
     hit->offset = offset_of(map, map ? stretch_of(world, index, map) : 1, &surface, hit->point);

@@ -4,13 +4,13 @@
 
 #include "world/world.h"
 
-/* The nearest crossing with one placed primitive, in its own space; scratch grows until it fits. */
+/* The nearest crossing with one primitive, in its own space; scratch grows until it fits. */
 bool world_ask_nearest(const struct world *world, uint32_t index, const struct ray *ray_object,
                        struct world_scratch *scratch, struct crossing *out);
-/* Whether one placed primitive occludes. */
+/* Whether one primitive occludes. */
 bool world_ask_any(const struct world *world, uint32_t index, const struct ray *ray, struct world_scratch *scratch);
 
-/* The boxes of all placed primitives in the world, cut by `limits` where there are any (NULL: none), and what is
+/* The boxes of all primitives in the world, cut by `limits` where there are any (NULL: none), and what is
  * counted on the way: triangles, scratch, hulls. Errors: cancelled. */
 bool world_place_boxes(struct world *world, const struct box *limits, struct pool *pool, struct error *error);
 

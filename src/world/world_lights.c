@@ -31,14 +31,14 @@ static void look_at_materials(const struct world *world, uint32_t first, uint32_
     }
 }
 
-static struct emission emission_of_thing(const struct world *world, const struct thing *thing) {
-    struct emission out = {.varies = thing->holes || thing->cull != CULL_NONE};
-    if (!thing->geometry.csg) {
-        look_at_materials(world, thing->material, thing->slot_count, &out);
+static struct emission emission_of_prototype(const struct world *world, const struct prototype *prototype) {
+    struct emission out = {.varies = prototype->holes || prototype->cull != CULL_NONE};
+    if (!prototype->geometry.csg) {
+        look_at_materials(world, prototype->material, prototype->slot_count, &out);
         return out;
     }
-    for (uint32_t i = 0; i < thing->geometry.csg->leaf_count; i++) {
-        const struct csg_leaf *leaf = &thing->geometry.csg->leaves[i];
+    for (uint32_t i = 0; i < prototype->geometry.csg->leaf_count; i++) {
+        const struct csg_leaf *leaf = &prototype->geometry.csg->leaves[i];
         look_at_materials(world, leaf->material, leaf->slot_count, &out);
     }
     return out;
@@ -71,7 +71,7 @@ static double similarity(const struct affine *map) {
 /* A light that is to stand for a primitive. */
 struct derived {
     const struct world *world;
-    uint32_t placed;
+    uint32_t primitive;
     struct transform map; /* world from object */
     struct light light;
     struct emitter emitter;
@@ -81,10 +81,10 @@ struct derived {
 
 /* The box of its shape as it is placed, where it keeps its right angles, else its box in the world. */
 static struct light_box bounding_box(const struct derived *d, bool moves) {
-    struct box box = geometry_bounds(placed_geometry(d->world, d->placed));
+    struct box box = geometry_bounds(primitive_geometry(d->world, d->primitive));
     bool own = !moves && keeps_right_angles(&d->map.forward) && vec3_finite(box.min) && vec3_finite(box.max);
     if (!own)
-        box = d->world->boxes[d->placed];
+        box = d->world->boxes[d->primitive];
     /* Flat ones have faces on all sides, too. */
     double margin = 0x1p-20 * vec3_max_abs(vec3_sub(box.max, box.min));
     box.min = vec3_sub(box.min, vec3_all(margin));
@@ -124,7 +124,7 @@ static bool derive_bound(struct derived *d, bool moves, bool *ok) {
 }
 
 static bool derive_sphere(struct derived *d, bool *ok) {
-    const struct shape *shape = &placed_geometry(d->world, d->placed)->shape;
+    const struct shape *shape = &primitive_geometry(d->world, d->primitive)->shape;
     double factor = similarity(&d->map.forward);
     if (!(factor > 0))
         return derive_bound(d, false, ok);
@@ -135,36 +135,36 @@ static bool derive_sphere(struct derived *d, bool *ok) {
 }
 
 /* The parallelogram of the points origin + a u + b v. */
-static bool derive_parallelogram(struct derived *d, const struct flat *flat, double a0, double b0, double a1,
+static bool derive_parallelogram(struct derived *d, const struct planar *planar, double a0, double b0, double a1,
                                  double b1) {
-    struct vec3 corner = vec3_add_scaled(vec3_add_scaled(flat->origin, flat->u, a0), flat->v, b0);
+    struct vec3 corner = vec3_add_scaled(vec3_add_scaled(planar->origin, planar->u, a0), planar->v, b0);
     d->light.kind = LIGHT_PARALLELOGRAM;
     d->light.corner = affine_point(&d->map.forward, corner);
-    d->light.edge1 = affine_vector(&d->map.forward, vec3_scale(flat->u, a1 - a0));
-    d->light.edge2 = affine_vector(&d->map.forward, vec3_scale(flat->v, b1 - b0));
+    d->light.edge1 = affine_vector(&d->map.forward, vec3_scale(planar->u, a1 - a0));
+    d->light.edge2 = affine_vector(&d->map.forward, vec3_scale(planar->v, b1 - b0));
     d->light.position = vec3_add_scaled(vec3_add_scaled(d->light.corner, d->light.edge1, 0.5), d->light.edge2, 0.5);
     return vec3_length(vec3_cross(d->light.edge1, d->light.edge2)) > 0;
 }
 
-static bool derive_disc(struct derived *d, const struct flat *flat) {
-    struct vec3 u = affine_vector(&d->map.forward, flat->u), v = affine_vector(&d->map.forward, flat->v);
+static bool derive_disc(struct derived *d, const struct planar *planar) {
+    struct vec3 u = affine_vector(&d->map.forward, planar->u), v = affine_vector(&d->map.forward, planar->v);
     double squared = vec3_length_squared(u);
     bool round =
         fabs(vec3_length_squared(v) - squared) <= 0x1p-40 * squared && fabs(vec3_dot(u, v)) <= 0x1p-40 * squared;
-    d->emitter.decided = d->emitter.decided || !round || flat->inner > 0;
+    d->emitter.decided = d->emitter.decided || !round || planar->inner > 0;
     if (!round)
-        return derive_parallelogram(d, flat, -1, -1, 1, 1);
+        return derive_parallelogram(d, planar, -1, -1, 1, 1);
     d->light.kind = LIGHT_DISC;
-    d->light.position = affine_point(&d->map.forward, flat->origin);
+    d->light.position = affine_point(&d->map.forward, planar->origin);
     d->light.direction = vec3_normalize(vec3_cross(u, v));
     d->light.radius = sqrt(squared);
     return d->light.radius > 0;
 }
 
-static bool derive_triangle(struct derived *d, const struct flat *flat, bool *ok) {
+static bool derive_triangle(struct derived *d, const struct planar *planar, bool *ok) {
     struct light_mesh *mesh = arena_alloc(d->arena, sizeof *mesh);
     struct light_mesh_builder builder;
-    struct vec3 corners[3] = {flat->origin, vec3_add(flat->origin, flat->u), vec3_add(flat->origin, flat->v)};
+    struct vec3 corners[3] = {planar->origin, vec3_add(planar->origin, planar->u), vec3_add(planar->origin, planar->v)};
     double size = 0;
     *ok = (mesh && light_mesh_begin(&builder, 1, d->arena)) || error_no_memory(d->error, "a triangle as a light");
     if (!*ok)
@@ -175,7 +175,7 @@ static bool derive_triangle(struct derived *d, const struct flat *flat, bool *ok
         size = fmax(size, vec3_max_abs(corners[i]));
     }
     builder.one_sided = false;
-    builder.primitive = d->placed;
+    builder.primitive = d->primitive;
     light_mesh_add(&builder, corners, 1, size, d->light.colour);
     light_mesh_end(&builder, vec3_all(1), mesh);
     d->light.kind = LIGHT_MESH;
@@ -185,34 +185,34 @@ static bool derive_triangle(struct derived *d, const struct flat *flat, bool *ok
 }
 
 /* The rectangle around a polygon, along its own axes. */
-static bool derive_polygon(struct derived *d, const struct flat *flat) {
-    struct vec3 n = vec3_cross(flat->u, flat->v);
+static bool derive_polygon(struct derived *d, const struct planar *planar) {
+    struct vec3 n = vec3_cross(planar->u, planar->v);
     double squared = vec3_length_squared(n), low[2], high[2];
-    const struct vec3 rows[2] = {vec3_scale(vec3_cross(flat->v, n), 1 / squared),
-                                 vec3_scale(vec3_cross(n, flat->u), 1 / squared)};
+    const struct vec3 rows[2] = {vec3_scale(vec3_cross(planar->v, n), 1 / squared),
+                                 vec3_scale(vec3_cross(n, planar->u), 1 / squared)};
     for (int i = 0; i < 2; i++) {
-        double start = vec3_dot(rows[i], flat->origin);
-        flat_extent(flat, rows[i], &low[i], &high[i]);
+        double start = vec3_dot(rows[i], planar->origin);
+        planar_extent(planar, rows[i], &low[i], &high[i]);
         low[i] -= start;
         high[i] -= start;
     }
     d->emitter.decided = true;
-    return derive_parallelogram(d, flat, low[0], low[1], high[0], high[1]);
+    return derive_parallelogram(d, planar, low[0], low[1], high[0], high[1]);
 }
 
-static bool derive_flat(struct derived *d, bool *ok) {
-    const struct flat *flat = &placed_geometry(d->world, d->placed)->shape.flat;
-    switch (flat->kind) {
-    case FLAT_PLANE:
+static bool derive_planar(struct derived *d, bool *ok) {
+    const struct planar *planar = &primitive_geometry(d->world, d->primitive)->shape.planar;
+    switch (planar->kind) {
+    case PLANAR_PLANE:
         break;
-    case FLAT_PARALLELOGRAM:
-        return derive_parallelogram(d, flat, 0, 0, 1, 1);
-    case FLAT_DISC:
-        return derive_disc(d, flat);
-    case FLAT_TRIANGLE:
-        return derive_triangle(d, flat, ok);
-    case FLAT_POLYGON:
-        return derive_polygon(d, flat);
+    case PLANAR_PARALLELOGRAM:
+        return derive_parallelogram(d, planar, 0, 0, 1, 1);
+    case PLANAR_DISC:
+        return derive_disc(d, planar);
+    case PLANAR_TRIANGLE:
+        return derive_triangle(d, planar, ok);
+    case PLANAR_POLYGON:
+        return derive_polygon(d, planar);
     }
     return false;
 }
@@ -221,7 +221,7 @@ static bool derive_mesh(struct derived *d, bool *ok) {
     d->light.kind = LIGHT_MESH;
     d->emitter.by_triangle = true;
     struct light unit = {.colour = {1, 1, 1}};
-    *ok = light_lamps_primitive(d->world, d->placed, &unit, d->arena, d->error);
+    *ok = light_lamps_primitive(d->world, d->primitive, &unit, d->arena, d->error);
     d->light.mesh = unit.mesh;
     return *ok && unit.mesh->count > 0;
 }
@@ -229,14 +229,14 @@ static bool derive_mesh(struct derived *d, bool *ok) {
 /* False: the primitive cannot be sampled, or *ok says that memory ran out. */
 static bool derive(struct derived *d, bool *ok) {
     *ok = true;
-    if (placed_moves(d->world, d->placed))
+    if (primitive_moves(d->world, d->primitive))
         return derive_bound(d, true, ok);
-    d->map = world_placement(d->world, d->placed, 0.5);
-    switch (geometry_area(placed_geometry(d->world, d->placed))) {
+    d->map = world_placement(d->world, d->primitive, 0.5);
+    switch (geometry_area(primitive_geometry(d->world, d->primitive))) {
     case SHAPE_AREA_SPHERE:
         return derive_sphere(d, ok);
-    case SHAPE_AREA_FLAT:
-        return derive_flat(d, ok);
+    case SHAPE_AREA_PLANAR:
+        return derive_planar(d, ok);
     case SHAPE_AREA_TRIANGLES:
         return derive_mesh(d, ok);
     case SHAPE_AREA_UNKNOWN:
@@ -252,7 +252,7 @@ struct building {
     struct light *lights;
     struct emitter *emitters;
     uint32_t *of_primitive;
-    struct emission *of_thing;
+    struct emission *of_prototype;
     struct arena *arena;
     struct error *error;
 };
@@ -262,7 +262,7 @@ static void take_light(struct building *b, uint32_t number) {
     const struct world *world = b->out->world;
     const struct light *light = &b->lights[number];
     struct emitter *emitter = &b->emitters[number];
-    *emitter = (struct emitter){.placed = WORLD_NOTHING, .unmet = light_is_delta(light), .emission = light->colour};
+    *emitter = (struct emitter){.primitive = WORLD_NOTHING, .unmet = light_is_delta(light), .emission = light->colour};
     if (!light->mesh)
         return;
     emitter->shown = light->mesh->shown;
@@ -272,27 +272,27 @@ static void take_light(struct building *b, uint32_t number) {
     if (light->has_emission)
         emitter->emission = vec3_mul(light->emission, light->colour);
     for (uint32_t i = 0; i < light->mesh->count && light->mesh->shown; i++) {
-        uint32_t placed = light->mesh->triangles[i].primitive;
-        if (b->of_primitive[placed] != LIGHT_NONE)
+        uint32_t primitive = light->mesh->triangles[i].primitive;
+        if (b->of_primitive[primitive] != LIGHT_NONE)
             continue;
-        const struct thing *thing = placed_thing(world, placed);
-        b->of_primitive[placed] = number;
-        emitter->unmet = emitter->unmet || placed_moves(world, placed);
-        emitter->decided = emitter->decided || thing->holes || thing->cull != CULL_NONE ||
-                           (!light->has_emission && b->of_thing[world->primitives[placed].thing].varies);
+        const struct prototype *prototype = primitive_prototype(world, primitive);
+        b->of_primitive[primitive] = number;
+        emitter->unmet = emitter->unmet || primitive_moves(world, primitive);
+        emitter->decided = emitter->decided || prototype->holes || prototype->cull != CULL_NONE ||
+                           (!light->has_emission && b->of_prototype[world->primitives[primitive].prototype].varies);
     }
     emitter->decided = emitter->decided && !emitter->unmet;
 }
 
-static bool take_primitive(struct building *b, uint32_t placed) {
+static bool take_primitive(struct building *b, uint32_t primitive) {
     const struct world *world = b->out->world;
-    const struct emission *emission = &b->of_thing[world->primitives[placed].thing];
-    if (!emission->emits || b->of_primitive[placed] != LIGHT_NONE)
+    const struct emission *emission = &b->of_prototype[world->primitives[primitive].prototype];
+    if (!emission->emits || b->of_primitive[primitive] != LIGHT_NONE)
         return true;
     struct derived d = {.world = world,
-                        .placed = placed,
+                        .primitive = primitive,
                         .light = {.emits = true, .colour = emission->colour},
-                        .emitter = {.placed = placed, .shown = true, .decided = emission->varies},
+                        .emitter = {.primitive = primitive, .shown = true, .decided = emission->varies},
                         .arena = b->arena,
                         .error = b->error};
     d.emitter.emission = vec3_all(1);
@@ -302,7 +302,7 @@ static bool take_primitive(struct building *b, uint32_t placed) {
     uint32_t number = b->out->count++;
     b->lights[number] = d.light;
     b->emitters[number] = d.emitter;
-    b->of_primitive[placed] = number;
+    b->of_primitive[primitive] = number;
     return true;
 }
 
@@ -312,7 +312,7 @@ static bool take_background(struct building *b, struct pool *pool) {
         if (light_properties(&b->lights[i]) & LIGHT_IS_ENVIRONMENT)
             return true;
     *light = (struct light){.kind = LIGHT_SKY, .emits = true, .colour = {1, 1, 1}, .sky = &b->out->world->sky};
-    b->emitters[b->out->count++] = (struct emitter){.placed = WORLD_NOTHING};
+    b->emitters[b->out->count++] = (struct emitter){.primitive = WORLD_NOTHING};
     return light_prepare(light, b->arena, pool, b->error);
 }
 
@@ -338,15 +338,15 @@ static bool build_lamps(struct building *b, struct pool *pool) {
 static bool allocate(struct building *b) {
     const struct world *world = b->out->world;
     uint32_t emitting = 0;
-    b->of_thing = arena_alloc_array(b->arena, (size_t)world->thing_count + 1, sizeof *b->of_thing);
-    b->of_primitive = arena_alloc_array(b->arena, (size_t)world->placed_count + 1, sizeof *b->of_primitive);
-    if (!b->of_thing || !b->of_primitive)
+    b->of_prototype = arena_alloc_array(b->arena, (size_t)world->prototype_count + 1, sizeof *b->of_prototype);
+    b->of_primitive = arena_alloc_array(b->arena, (size_t)world->primitive_count + 1, sizeof *b->of_primitive);
+    if (!b->of_prototype || !b->of_primitive)
         return false;
-    for (uint32_t i = 0; i < world->thing_count; i++)
-        b->of_thing[i] = emission_of_thing(world, &world->things[i]);
-    for (uint32_t i = 0; i < world->placed_count; i++) {
+    for (uint32_t i = 0; i < world->prototype_count; i++)
+        b->of_prototype[i] = emission_of_prototype(world, &world->prototypes[i]);
+    for (uint32_t i = 0; i < world->primitive_count; i++) {
         b->of_primitive[i] = LIGHT_NONE;
-        emitting += b->of_thing[world->primitives[i].thing].emits;
+        emitting += b->of_prototype[world->primitives[i].prototype].emits;
     }
     size_t max = (size_t)world->light_count + emitting + 1;
     b->lights = arena_alloc_array(b->arena, max, sizeof *b->lights);
@@ -367,7 +367,7 @@ static bool build(struct building *b, bool background, enum light_choice choice,
     out->count = world->light_count;
     for (uint32_t i = 0; i < world->light_count; i++)
         take_light(b, i);
-    for (uint32_t i = 0; i < world->placed_count; i++) {
+    for (uint32_t i = 0; i < world->primitive_count; i++) {
         if ((i & 1023) == 0 && pool_cancelled(pool))
             return error_set(b->error, ERROR_CANCELLED, "stopped while the lights of the scene were gathered");
         if (!take_primitive(b, i))
@@ -434,12 +434,12 @@ bool world_lights_sample(const struct world_lights *lights, const struct light_r
     const struct light *light = &lights->lights[number];
     const struct emitter *emitter = &lights->emitters[number];
     struct view view;
-    if (!world_lights_reach(lights, number, receiver->placed) || !view_make(lights, receiver, number, &view))
+    if (!world_lights_reach(lights, number, receiver->primitive) || !view_make(lights, receiver, number, &view))
         return false;
     struct light_sample sample = view_sample(&view, light, receiver, place);
     if (!(sample.pdf > 0) || !is_own_triangle(lights, number, sample.triangle))
         return false;
-    bool own = emitter->shown && receiver->placed == emitter->placed && receiver->placed != WORLD_NOTHING;
+    bool own = emitter->shown && receiver->primitive == emitter->primitive && receiver->primitive != WORLD_NOTHING;
     *out = (struct world_light_sample){.direction = sample.direction,
                                        .target = sample.target,
                                        .radiance = sample.radiance,
@@ -451,29 +451,29 @@ bool world_lights_sample(const struct world_lights *lights, const struct light_r
     if (sample.is_delta)
         out->radiance = vec3_scale(sample.intensity, radiance_of(1));
     bool alone = emitter->shown && !emitter->by_triangle && !out->decided;
-    out->passes = alone ? emitter->placed + 1 : 0;
+    out->skip_primitive = alone ? emitter->primitive + 1 : 0;
     return out->decided || !is_dark(out->radiance);
 }
 
 static uint32_t triangle_of_hit(const struct world_lights *lights, uint32_t light, const struct hit *hit) {
     bool by_triangle = lights->emitters[light].by_triangle;
-    return by_triangle ? light_mesh_find(lights->lights[light].mesh, hit->placed, hit->part) : 0;
+    return by_triangle ? light_mesh_find(lights->lights[light].mesh, hit->primitive, hit->part) : 0;
 }
 
 bool world_lights_shows(const struct world_lights *lights, const struct world_light_sample *sample,
                         const struct hit *hit) {
-    if (lights->of_primitive[hit->placed] != sample->light)
+    if (lights->of_primitive[hit->primitive] != sample->light)
         return false;
     return triangle_of_hit(lights, sample->light, hit) == sample->triangle;
 }
 
-struct vec3 world_lights_radiance(const struct world_lights *lights, uint32_t placed, const struct hit *hit,
+struct vec3 world_lights_radiance(const struct world_lights *lights, uint32_t primitive, const struct hit *hit,
                                   struct vec3 emission) {
-    uint32_t light = lights->of_primitive[hit->placed];
+    uint32_t light = lights->of_primitive[hit->primitive];
     if (light == LIGHT_NONE)
         return emission;
     const struct emitter *emitter = &lights->emitters[light];
-    if (emitter->unmet || !world_lights_reach(lights, light, placed))
+    if (emitter->unmet || !world_lights_reach(lights, light, primitive))
         return vec3_all(0);
     return emitter->has_own ? emitter->emission : vec3_mul(emission, emitter->emission);
 }
@@ -481,7 +481,7 @@ struct vec3 world_lights_radiance(const struct world_lights *lights, uint32_t pl
 double world_lights_pdf(const struct world_lights *lights, const struct light_receiver *receiver, uint32_t light,
                         struct vec3 direction, const struct light_hit *hit) {
     struct view view;
-    if (lights->emitters[light].unmet || !world_lights_reach(lights, light, receiver->placed))
+    if (lights->emitters[light].unmet || !world_lights_reach(lights, light, receiver->primitive))
         return 0;
     double pmf = light_sampler_pmf(&lights->sampler, receiver->point, receiver->normal, light);
     if (!(pmf > 0) || !view_make(lights, receiver, light, &view))
@@ -493,7 +493,7 @@ double world_lights_pdf(const struct world_lights *lights, const struct light_re
 
 double world_lights_pdf_of_hit(const struct world_lights *lights, const struct light_receiver *receiver,
                                struct vec3 direction, const struct hit *hit) {
-    uint32_t light = lights->of_primitive[hit->placed];
+    uint32_t light = lights->of_primitive[hit->primitive];
     uint32_t triangle = light != LIGHT_NONE ? triangle_of_hit(lights, light, hit) : LIGHT_NONE;
     if (triangle == LIGHT_NONE)
         return 0;

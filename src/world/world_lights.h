@@ -28,7 +28,7 @@
 
 /* What a light has to do with primitives. */
 struct emitter {
-    uint32_t placed;      /* the only primitive, or WORLD_NOTHING: none or several */
+    uint32_t primitive;   /* the only primitive, or WORLD_NOTHING: none or several */
     bool shown;           /* hits of primitives are its own */
     bool by_triangle;     /* each triangle has a density of its own */
     bool decided;         /* the ray to it decides what it meets: emission varies, there are holes, or the light is only
@@ -61,7 +61,7 @@ void world_lights_destroy(struct world_lights *lights);
 struct light_receiver {
     struct vec3 point, from; /* from: where shadow rays start, next to it */
     struct vec3 normal;      /* shading; {0,0,0}: none */
-    uint32_t placed;         /* the primitive, or WORLD_NOTHING */
+    uint32_t primitive;      /* the primitive, or WORLD_NOTHING */
 };
 
 struct world_light_sample {
@@ -71,7 +71,7 @@ struct world_light_sample {
     double pdf;                 /* by solid angle at the point, for this light; of a delta light 1 */
     bool is_delta;              /* no scattered ray brings this light */
     bool decided;
-    uint32_t passes; /* for ray->passes of the shadow ray */
+    uint32_t skip_primitive; /* for ray->skip_primitive of the shadow ray */
     uint32_t light, triangle;
 };
 /* False: nothing arrives from there. */
@@ -81,9 +81,9 @@ bool world_lights_sample(const struct world_lights *lights, const struct light_r
 bool world_lights_shows(const struct world_lights *lights, const struct world_light_sample *sample,
                         const struct hit *hit);
 
-/* What a hit surface, whose material emits `emission` there, sends to a receiver on primitive `placed` (WORLD_NOTHING:
- * none): with gr.mesh_light what that says of it. */
-struct vec3 world_lights_radiance(const struct world_lights *lights, uint32_t placed, const struct hit *hit,
+/* What a hit surface, whose material emits `emission` there, sends to a receiver on primitive `primitive`
+ * (WORLD_NOTHING: none): with gr.mesh_light what that says of it. */
+struct vec3 world_lights_radiance(const struct world_lights *lights, uint32_t primitive, const struct hit *hit,
                                   struct vec3 emission);
 /* The density (by solid angle, times the probability of the light) with which samples for the receiver have this
  * direction (unit) and end at this hit; 0: only scattered rays meet it. */
@@ -110,9 +110,9 @@ bool world_lights_seen(const struct world_lights *lights, const struct ray *ray,
 double world_lights_pdf(const struct world_lights *lights, const struct light_receiver *receiver, uint32_t light,
                         struct vec3 direction, const struct light_hit *hit);
 /* Whether a light reaches a primitive (WORLD_NOTHING: anything), by its lists. */
-static inline bool world_lights_reach(const struct world_lights *lights, uint32_t light, uint32_t placed) {
+static inline bool world_lights_reach(const struct world_lights *lights, uint32_t light, uint32_t primitive) {
     const uint8_t *lit = lights->lights[light].lit;
-    return !lit || placed == WORLD_NOTHING || lit[placed];
+    return !lit || primitive == WORLD_NOTHING || lit[primitive];
 }
 
 #endif

@@ -1,4 +1,4 @@
-/* Where placed primitives stand: their maps, at a time where they move, and their boxes in the world. */
+/* Where primitives stand: their maps, at a time where they move, and their boxes in the world. */
 #include "world/world_internal.h"
 
 static struct transform moved(const struct world *world, const struct moving *moving, double ray_time) {
@@ -13,8 +13,8 @@ static struct transform moved(const struct world *world, const struct moving *mo
     return out;
 }
 
-struct transform world_placement(const struct world *world, uint32_t placed, double ray_time) {
-    const struct placed *p = &world->primitives[placed];
+struct transform world_placement(const struct world *world, uint32_t primitive, double ray_time) {
+    const struct primitive *p = &world->primitives[primitive];
     if (p->linear == LINEAR_NONE)
         return transform_identity();
     if (p->linear & LINEAR_MOVING)
@@ -32,8 +32,8 @@ struct transform world_placement(const struct world *world, uint32_t placed, dou
     return out;
 }
 
-struct ray world_ray_of_moving(const struct world *world, uint32_t placed, const struct ray *ray) {
-    struct transform world_from_object = world_placement(world, placed, ray->time);
+struct ray world_ray_of_moving(const struct world *world, uint32_t primitive, const struct ray *ray) {
+    struct transform world_from_object = world_placement(world, primitive, ray->time);
     return ray_transform(&world_from_object.inverse, ray);
 }
 
@@ -54,12 +54,12 @@ static struct box moving_bounds(const struct world *world, const struct geometry
  * looked at; the others take the box of the mapped box. Between two of them it is asked whether to stop. */
 enum { EXACT_AT_ONCE = 1 << 20, EXACT_IN_ALL = 1 << 22 };
 
-static struct box placed_bounds(const struct world *world, uint32_t placed, uint32_t *exact) {
-    const struct geometry *geometry = placed_geometry(world, placed);
-    uint32_t linear = world->primitives[placed].linear;
+static struct box primitive_bounds(const struct world *world, uint32_t primitive, uint32_t *exact) {
+    const struct geometry *geometry = primitive_geometry(world, primitive);
+    uint32_t linear = world->primitives[primitive].linear;
     if (linear != LINEAR_NONE && (linear & LINEAR_MOVING))
         return moving_bounds(world, geometry, &world->moving[linear & ~LINEAR_MOVING]);
-    struct transform world_from_object = world_placement(world, placed, 0);
+    struct transform world_from_object = world_placement(world, primitive, 0);
     const struct mesh *mesh = geometry_mesh(geometry);
     uint32_t triangles = mesh ? mesh_triangle_count(mesh) : UINT32_MAX;
     if (linear != LINEAR_NONE && triangles <= EXACT_AT_ONCE && triangles <= *exact) {
@@ -72,10 +72,10 @@ static struct box placed_bounds(const struct world *world, uint32_t placed, uint
 bool world_place_boxes(struct world *world, const struct box *limits, struct pool *pool, struct error *error) {
     uint32_t exact = EXACT_IN_ALL;
     world->moves = world->moving_count > 0;
-    for (uint32_t i = 0; i < world->placed_count; i++) {
-        const struct mesh *mesh = geometry_mesh(placed_geometry(world, i));
+    for (uint32_t i = 0; i < world->primitive_count; i++) {
+        const struct mesh *mesh = geometry_mesh(primitive_geometry(world, i));
         uint32_t before = exact;
-        world->boxes[i] = placed_bounds(world, i, &exact);
+        world->boxes[i] = primitive_bounds(world, i, &exact);
         if (limits)
             world->boxes[i] = box_meet(world->boxes[i], box_pad(limits[i]));
         if (box_is_empty(&world->boxes[i]))
@@ -85,10 +85,10 @@ bool world_place_boxes(struct world *world, const struct box *limits, struct poo
         if (mesh)
             world->triangles += mesh_triangle_count(mesh);
     }
-    for (uint32_t i = 0; i < world->thing_count; i++) {
-        uint32_t need = geometry_scratch_need(&world->things[i].geometry);
+    for (uint32_t i = 0; i < world->prototype_count; i++) {
+        uint32_t need = geometry_scratch_need(&world->prototypes[i].geometry);
         world->scratch_need = need > world->scratch_need ? need : world->scratch_need;
-        world->things[i].hull = geometry_hull(&world->things[i].geometry);
+        world->prototypes[i].convexity = geometry_convexity(&world->prototypes[i].geometry);
     }
     return true;
 }

@@ -10,8 +10,8 @@ enum { MAILBOX = 32, SCRATCH_START = 256 };
 
 bool world_scratch_init(struct world_scratch *scratch, const struct world *world) {
     *scratch = (struct world_scratch){0};
-    for (int i = 0; i < WORLD_BLOCKERS; i++)
-        scratch->blockers[i] = WORLD_NOTHING;
+    for (int i = 0; i < WORLD_SHADOW_CACHE; i++)
+        scratch->shadow_cache[i] = WORLD_NOTHING;
     uint32_t need = world->scratch_need > SCRATCH_START ? world->scratch_need : SCRATCH_START;
     return geom_scratch_init(&scratch->geom, need);
 }
@@ -30,29 +30,29 @@ struct search {
     struct ray limited;     /* the ray with t_max just behind the best answer, so that an equal t is still found */
     /* The best answer, if there is one, and where the next goes: what was just written in pieces is slow to copy. */
     struct crossing *best, *next;
-    uint32_t placed;
+    uint32_t primitive;
     bool found;
 };
 
 /* Faces that are not seen are passed: the search goes on behind them. */
 static bool nearest_of_mesh(const struct world *world, uint32_t index, const struct ray *ray_object,
                             struct geom_scratch *geom, struct crossing *out) {
-    const struct thing *thing = placed_thing(world, index);
-    bool found = mesh_nearest(thing->geometry.shape.mesh, ray_object, world->mesh_accel, geom, out);
-    if (thing->cull == CULL_NONE)
+    const struct prototype *prototype = primitive_prototype(world, index);
+    bool found = mesh_nearest(prototype->geometry.shape.mesh, ray_object, world->mesh_accel, geom, out);
+    if (prototype->cull == CULL_NONE)
         return found;
     struct ray rest = *ray_object;
-    while (found && out->enter == (thing->cull == CULL_FRONT)) {
+    while (found && out->enter == (prototype->cull == CULL_FRONT)) {
         rest.t_min = out->t;
-        found = mesh_nearest(thing->geometry.shape.mesh, &rest, world->mesh_accel, geom, out);
+        found = mesh_nearest(prototype->geometry.shape.mesh, &rest, world->mesh_accel, geom, out);
     }
     return found;
 }
 
-/* Runs one question about one placed primitive again with more scratch until it fits. */
+/* Runs one question about one primitive again with more scratch until it fits. */
 bool world_ask_nearest(const struct world *world, uint32_t index, const struct ray *ray_object,
                        struct world_scratch *scratch, struct crossing *out) {
-    const struct geometry *geometry = placed_geometry(world, index);
+    const struct geometry *geometry = primitive_geometry(world, index);
     bool is_mesh = geometry_mesh(geometry) != NULL;
     struct geom_scratch *geom = &scratch->geom;
     for (;;) {
@@ -67,21 +67,21 @@ bool world_ask_nearest(const struct world *world, uint32_t index, const struct r
     }
 }
 
-static void try_placed(struct search *s, uint32_t index) {
-    if (index + 1 == s->ray->passes)
+static void try_primitive(struct search *s, uint32_t index) {
+    if (index + 1 == s->ray->skip_primitive)
         return;
     bool as_it_is = s->world->primitives[index].linear == LINEAR_NONE;
     struct ray ray_object;
     struct crossing *crossing = s->next;
     if (!as_it_is)
-        ray_object = placed_ray(s->world, index, &s->limited);
+        ray_object = primitive_ray(s->world, index, &s->limited);
     if (!world_ask_nearest(s->world, index, as_it_is ? &s->limited : &ray_object, s->scratch, crossing))
         return;
-    if (s->found && !(crossing->t < s->best->t || (crossing->t == s->best->t && index < s->placed)))
+    if (s->found && !(crossing->t < s->best->t || (crossing->t == s->best->t && index < s->primitive)))
         return;
     s->next = s->best;
     s->best = crossing;
-    s->placed = index;
+    s->primitive = index;
     s->found = true;
     double just_behind = crossing->t + fabs(crossing->t) * 0x1p-52;
     s->limited.t_max = just_behind < s->ray->t_max ? just_behind : s->ray->t_max;
@@ -90,7 +90,7 @@ static void try_placed(struct search *s, uint32_t index) {
 static void try_boxed(struct search *s, uint32_t index) {
     s->scratch->geom.box_tests++;
     if (box_probe_meets(&s->probe, &s->world->boxes[index], s->limited.t_min, s->limited.t_max))
-        try_placed(s, index);
+        try_primitive(s, index);
 }
 
 struct mailbox {
@@ -128,7 +128,7 @@ static void search_tree(struct search *s) {
     uint32_t index;
     box_tree_traversal_begin(&traversal, &s->world->accel.tree, s->ray);
     while (box_tree_traversal_next(&traversal, s->limited.t_max, &index))
-        try_placed(s, index);
+        try_primitive(s, index);
     s->scratch->geom.cost.hierarchy_steps += traversal.steps;
 }
 
@@ -151,12 +151,12 @@ static void search_kd_tree(struct search *s) {
 
 static void search_all(struct search *s) {
     s->probe = box_probe_make(s->ray);
-    for (uint32_t i = 0; i < s->world->placed_count; i++)
+    for (uint32_t i = 0; i < s->world->primitive_count; i++)
         try_boxed(s, i);
 }
 
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
-                            uint32_t *placed, struct crossing *crossing) {
+                            uint32_t *primitive, struct crossing *crossing) {
     struct search s;
     struct crossing other;
     s.world = world;
@@ -164,7 +164,7 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
     s.scratch = scratch;
     s.limited = *ray;
     s.found = false;
-    s.placed = 0;
+    s.primitive = 0;
     s.next = crossing;
     s.best = &other;
     scratch->rays++;
@@ -183,18 +183,18 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
         search_all(&s);
         break;
     }
-    *placed = s.placed;
+    *primitive = s.primitive;
     if (s.found && s.best != crossing)
         *crossing = *s.best;
     return s.found;
 }
 
 bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit) {
-    uint32_t placed;
+    uint32_t primitive;
     struct crossing crossing;
-    if (!world_nearest_crossing(world, ray, scratch, &placed, &crossing))
+    if (!world_nearest_crossing(world, ray, scratch, &primitive, &crossing))
         return false;
-    world_describe(world, ray, placed, &crossing, hit);
+    world_describe(world, ray, primitive, &crossing, hit);
     return true;
 }
 
@@ -205,7 +205,7 @@ static bool any_with_holes(const struct world *world, uint32_t index, const stru
                            struct world_scratch *scratch) {
     struct ray rest = *ray;
     for (;;) {
-        struct ray ray_object = placed_ray(world, index, &rest);
+        struct ray ray_object = primitive_ray(world, index, &rest);
         struct crossing crossing;
         struct hit hit;
         struct bsdf bsdf;
@@ -220,19 +220,19 @@ static bool any_with_holes(const struct world *world, uint32_t index, const stru
 }
 
 bool world_ask_any(const struct world *world, uint32_t index, const struct ray *ray, struct world_scratch *scratch) {
-    const struct thing *thing = placed_thing(world, index);
-    if (index + 1 == ray->passes)
+    const struct prototype *prototype = primitive_prototype(world, index);
+    if (index + 1 == ray->skip_primitive)
         return false;
-    if (thing->holes)
+    if (prototype->holes)
         return any_with_holes(world, index, ray, scratch);
-    struct ray ray_object = placed_ray(world, index, ray);
-    const struct mesh *mesh = geometry_mesh(&thing->geometry);
+    struct ray ray_object = primitive_ray(world, index, ray);
+    const struct mesh *mesh = geometry_mesh(&prototype->geometry);
     for (;;) {
         struct crossing ignored;
-        bool found = mesh && thing->cull != CULL_NONE
+        bool found = mesh && prototype->cull != CULL_NONE
                          ? nearest_of_mesh(world, index, &ray_object, &scratch->geom, &ignored)
                      : mesh ? mesh_any(mesh, &ray_object, world->mesh_accel, &scratch->geom)
-                            : geometry_any(&thing->geometry, &ray_object, &scratch->geom);
+                            : geometry_any(&prototype->geometry, &ray_object, &scratch->geom);
         if (!scratch->geom.overflow)
             return found;
         if (!geom_scratch_grow(&scratch->geom)) {
@@ -253,7 +253,7 @@ static bool any_in_grid(const struct world *world, const struct ray *ray, const 
                         struct world_scratch *scratch) {
     struct mailbox mailbox;
     memset(&mailbox, 0xff, sizeof mailbox);
-    (void)mailbox_first(&mailbox, scratch->blockers[scratch->light]);
+    (void)mailbox_first(&mailbox, scratch->shadow_cache[scratch->light]);
     struct grid_traversal traversal = {0};
     bool found = false;
     for (bool go_on = grid_traversal_begin(&traversal, &world->accel.grid, ray); go_on && !found;
@@ -262,7 +262,7 @@ static bool any_in_grid(const struct world *world, const struct ray *ray, const 
             uint32_t index = traversal.items[i];
             found = mailbox_first(&mailbox, index) && any_boxed(world, index, ray, probe, scratch);
             if (found)
-                scratch->blockers[scratch->light] = index;
+                scratch->shadow_cache[scratch->light] = index;
         }
         if (found)
             break;
@@ -273,13 +273,13 @@ static bool any_in_grid(const struct world *world, const struct ray *ray, const 
 
 static bool any_in_tree(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
     struct box_tree_traversal traversal;
-    uint32_t index, asked = scratch->blockers[scratch->light];
+    uint32_t index, asked = scratch->shadow_cache[scratch->light];
     bool found = false;
     box_tree_traversal_begin(&traversal, &world->accel.tree, ray);
     while (!found && box_tree_traversal_any(&traversal, ray->t_max, &index)) {
         found = index != asked && world_ask_any(world, index, ray, scratch);
         if (found)
-            scratch->blockers[scratch->light] = index;
+            scratch->shadow_cache[scratch->light] = index;
     }
     scratch->geom.cost.hierarchy_steps += traversal.steps;
     return found;
@@ -289,7 +289,7 @@ static bool any_in_kd_tree(const struct world *world, const struct ray *ray, con
                            struct world_scratch *scratch) {
     struct mailbox mailbox;
     memset(&mailbox, 0xff, sizeof mailbox);
-    (void)mailbox_first(&mailbox, scratch->blockers[scratch->light]);
+    (void)mailbox_first(&mailbox, scratch->shadow_cache[scratch->light]);
     struct kd_traversal traversal;
     bool found = false;
     kd_traversal_begin(&traversal, &world->accel.kd_tree, ray, 0);
@@ -298,7 +298,7 @@ static bool any_in_kd_tree(const struct world *world, const struct ray *ray, con
             uint32_t index = traversal.items[i];
             found = mailbox_first(&mailbox, index) && any_boxed(world, index, ray, probe, scratch);
             if (found)
-                scratch->blockers[scratch->light] = index;
+                scratch->shadow_cache[scratch->light] = index;
         }
     }
     scratch->geom.cost.hierarchy_steps += traversal.steps;
@@ -308,7 +308,7 @@ static bool any_in_kd_tree(const struct world *world, const struct ray *ray, con
 
 static bool any_of_all(const struct world *world, const struct ray *ray, const struct box_probe *probe,
                        struct world_scratch *scratch) {
-    for (uint32_t i = 0; i < world->placed_count; i++) {
+    for (uint32_t i = 0; i < world->primitive_count; i++) {
         if (any_boxed(world, i, ray, probe, scratch))
             return true;
     }
@@ -335,8 +335,8 @@ bool world_any(const struct world *world, const struct ray *ray, struct world_sc
     scratch->any_rays++;
     struct box_probe probe = box_probe_make(ray);
     /* Neighbouring shadow rays mostly end at the same primitive: it is tested first. The answer cannot depend on it. */
-    uint32_t *blocker = &scratch->blockers[scratch->light];
-    if (*blocker < world->placed_count && any_boxed(world, *blocker, ray, &probe, scratch))
+    uint32_t *blocker = &scratch->shadow_cache[scratch->light];
+    if (*blocker < world->primitive_count && any_boxed(world, *blocker, ray, &probe, scratch))
         return true;
     bool found = any_in_accel(world, ray, &probe, scratch);
     *blocker = found ? *blocker : WORLD_NOTHING;

@@ -3,7 +3,7 @@
 #define GRAY_TESTS_MESH_MAKERS_H
 
 #include "accel/triangle.h"
-#include "geom/mesh.h"
+#include "mesh/mesh.h"
 #include "tests/harness.h"
 
 #include <math.h>

@@ -2,8 +2,8 @@
 #ifndef GRAY_TESTS_RANDOM_MAKERS_H
 #define GRAY_TESTS_RANDOM_MAKERS_H
 
-#include "geom/csg.h"
-#include "geom/mesh.h"
+#include "csg/csg.h"
+#include "mesh/mesh.h"
 #include "tests/harness.h"
 
 #include <math.h>

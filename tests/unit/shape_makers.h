@@ -5,9 +5,9 @@
 #define GRAY_TESTS_SHAPE_MAKERS_H
 
 #include "base/arena.h"
-#include "geom/geometry.h"
-#include "geom/mesh.h"
+#include "csg/geometry.h"
 #include "math/affine.h"
+#include "mesh/mesh.h"
 #include "tests/harness.h"
 
 enum { MADE_MESHES = 512 };

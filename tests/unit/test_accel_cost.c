@@ -161,7 +161,7 @@ TEST(a_mesh_whose_voxels_spare_more_than_the_walk_costs_gets_them) {
     CHECK_EQ_INT(accel_over_mesh(&cost_sample).level, 0);
 }
 
-/* --- over placed primitives --- */
+/* --- over primitives --- */
 
 static void add_ball(struct stage *s, struct node *root, struct vec3 at, double radius) {
     struct node *node = stage_sphere(s, root, NULL);
@@ -206,13 +206,13 @@ static double counted_world(const struct stage *s) {
         struct vec3 route = {test_uniform(&random, -1, 1), test_uniform(&random, -1, 1), test_uniform(&random, -1, 1)};
         struct vec3 at = {test_uniform(&random, -1, 1), test_uniform(&random, -1, 1), test_uniform(&random, -1, 1)};
         if (i % 2) {
-            const struct box *box = &s->world.boxes[(uint32_t)test_uniform(&random, 0, s->world.placed_count)];
+            const struct box *box = &s->world.boxes[(uint32_t)test_uniform(&random, 0, s->world.primitive_count)];
             at = vec3_scale(vec3_add(box->min, box->max), 0.5);
         }
         struct ray ray = {.origin = vec3_add_scaled(at, route, -5), .direction = route, .t_max = INFINITY};
-        uint32_t placed;
+        uint32_t primitive;
         struct crossing crossing;
-        (void)world_nearest_crossing(&s->world, &ray, &scratch, &placed, &crossing);
+        (void)world_nearest_crossing(&s->world, &ray, &scratch, &primitive, &crossing);
     }
     double nodes = (double)scratch.geom.cost.hierarchy_steps, boxes = (double)scratch.geom.box_tests,
            voxels = (double)scratch.geom.cost.voxels;

@@ -1,10 +1,10 @@
 /* Quadrics, torus, superellipsoid, flat shapes: crossings lie on the surface and none is missed, normals are gradients,
  * boxes are tight, image coordinates move as their derivatives say, CSG agrees with point tests. The implicit functions
  * here are written anew, in long double. */
-#include "geom/csg.h"
-#include "geom/shape.h"
-#include "geom/conic.h"
-#include "geom/flat.h"
+#include "csg/csg.h"
+#include "shape/shape.h"
+#include "shape/revolved_quadric.h"
+#include "shape/planar.h"
 #include "tests/harness.h"
 #include "tests/unit/random_makers.h"
 
@@ -98,37 +98,37 @@ static const struct vec3 outline_points[] = {
 static const uint32_t outline_ends[] = {10, 14, 17};
 
 static struct shape random_shape(enum form form, struct test_random *random, struct arena *arena) {
-    struct shape s = {.kind = SHAPE_CONIC};
+    struct shape s = {.kind = SHAPE_REVOLVED_QUADRIC};
     double r = exp(test_uniform(random, -0.7, 0.7)), h = exp(test_uniform(random, -0.7, 0.7));
     double q = test_uniform(random, 0.1, 0.9);
     struct vec3 zero = {0, 0, 0};
     switch (form) {
     case CYLINDER:
     case OPEN_CYLINDER:
-        s.conic = conic_cylinder(vec3_make(0, -1, 0), vec3_make(0, 1, 0), 1, form == OPEN_CYLINDER);
+        s.revolved_quadric = revolved_quadric_cylinder(vec3_make(0, -1, 0), vec3_make(0, 1, 0), 1, form == OPEN_CYLINDER);
         break;
     case CONE:
-        s.conic = conic_frustum(zero, 0, vec3_make(0, 1, 0), 1, false);
+        s.revolved_quadric = revolved_quadric_frustum(zero, 0, vec3_make(0, 1, 0), 1, false);
         break;
     case FRUSTUM:
     case OPEN_FRUSTUM: {
         struct vec3 from = random_vec3(random, 1), to = random_vec3(random, 2);
-        s.conic = conic_frustum(from, r, to, q, form == OPEN_FRUSTUM);
+        s.revolved_quadric = revolved_quadric_frustum(from, r, to, q, form == OPEN_FRUSTUM);
         break;
     }
     case PARABOLOID:
-        s.conic = conic_paraboloid(r, h, false);
+        s.revolved_quadric = revolved_quadric_paraboloid(r, h, false);
         break;
     case ONE_SHEET:
-        s.conic = conic_one_sheet(r * q, r, -h, h * q, false);
+        s.revolved_quadric = revolved_quadric_one_sheet(r * q, r, -h, h * q, false);
         break;
     case TWO_SHEETS:
     case OPEN_TWO_SHEETS:
-        s.conic = conic_two_sheets(h * q, h, r, form == OPEN_TWO_SHEETS);
+        s.revolved_quadric = revolved_quadric_two_sheets(h * q, h, r, form == OPEN_TWO_SHEETS);
         break;
     case OBLIQUE_CYLINDER: {
         struct vec3 from = random_vec3(random, 1), to = random_vec3(random, 2);
-        s.conic = conic_cylinder(from, to, q, false);
+        s.revolved_quadric = revolved_quadric_cylinder(from, to, q, false);
         break;
     }
     case ELLIPSOID:
@@ -181,36 +181,36 @@ static struct shape random_shape(enum form form, struct test_random *random, str
         s.superellipsoid = (struct superellipsoid){q * 4, 3 - q * 3 + 0.05};
         break;
     case HALF_SPACE:
-        s.kind = SHAPE_FLAT;
-        s.flat = flat_plane(random_vec3(random, 1), q - 0.5);
+        s.kind = SHAPE_PLANAR;
+        s.planar = planar_plane(random_vec3(random, 1), q - 0.5);
         break;
     case SQUARE:
-        s.kind = SHAPE_FLAT;
-        s.flat = flat_square();
+        s.kind = SHAPE_PLANAR;
+        s.planar = planar_square();
         break;
     case PARALLELOGRAM: {
         struct vec3 corner = random_vec3(random, 1), along = random_vec3(random, 1), up = random_vec3(random, 1);
-        s.kind = SHAPE_FLAT;
-        s.flat = flat_parallelogram(corner, along, up);
+        s.kind = SHAPE_PLANAR;
+        s.planar = planar_parallelogram(corner, along, up);
         break;
     }
     case DISC:
     case ANNULUS: {
         struct vec3 centre = random_vec3(random, 1), normal = random_vec3(random, 1);
-        s.kind = SHAPE_FLAT;
-        s.flat = flat_disc(centre, normal, r, form == DISC ? 0 : r * q);
+        s.kind = SHAPE_PLANAR;
+        s.planar = planar_disc(centre, normal, r, form == DISC ? 0 : r * q);
         break;
     }
     case TRIANGLE: {
         struct vec3 a = random_vec3(random, 1), b = random_vec3(random, 1), c = random_vec3(random, 1);
-        s.kind = SHAPE_FLAT;
-        s.flat = flat_triangle(a, b, c);
+        s.kind = SHAPE_PLANAR;
+        s.planar = planar_triangle(a, b, c);
         break;
     }
     case POLYGON: {
         const char *why = NULL;
-        s.kind = SHAPE_FLAT;
-        CHECK(flat_polygon(arena, outline_points, outline_ends, 3, &s.flat, &why));
+        s.kind = SHAPE_PLANAR;
+        CHECK(planar_polygon(arena, outline_points, outline_ends, 3, &s.planar, &why));
         break;
     }
     case FORMS:
@@ -230,10 +230,10 @@ static struct vec3 target_at(const struct shape *s, double size, struct test_ran
         double x = p.x / hypot(p.x, p.z), z = p.z / hypot(p.x, p.z);
         return vec3_make(x, test_uniform(random, -1, 1) * s->torus.minor, z);
     }
-    if (s->kind == SHAPE_FLAT && s->flat.kind != FLAT_PLANE) {
-        double min = s->flat.kind == FLAT_DISC ? -1.1 : -0.1;
+    if (s->kind == SHAPE_PLANAR && s->planar.kind != PLANAR_PLANE) {
+        double min = s->planar.kind == PLANAR_DISC ? -1.1 : -0.1;
         double a = test_uniform(random, min, 1.1), b = test_uniform(random, min, 1.1);
-        return vec3_add_scaled(vec3_add_scaled(s->flat.origin, s->flat.u, a), s->flat.v, b);
+        return vec3_add_scaled(vec3_add_scaled(s->planar.origin, s->planar.u, a), s->planar.v, b);
     }
     return p;
 }
@@ -255,8 +255,8 @@ static long double dot_of(struct vec3 a, struct point p) {
 /* Negative inside, of the curved surface (flat: of the plane). */
 static long double implicit(const struct shape *s, struct point p) {
     switch ((int)s->kind) { /* the analytic ones */
-    case SHAPE_CONIC: {
-        const struct conic *c = &s->conic;
+    case SHAPE_REVOLVED_QUADRIC: {
+        const struct revolved_quadric *c = &s->revolved_quadric;
         struct point f = {p.x - c->base.x, p.y - c->base.y, p.z - c->base.z};
         long double h = dot_of(c->axis, f);
         struct point w = {f.x - h * c->axis.x, f.y - h * c->axis.y, f.z - h * c->axis.z};
@@ -279,11 +279,11 @@ static long double implicit(const struct shape *s, struct point p) {
     }
     case SHAPE_SUPERELLIPSOID: {
         long double e = s->superellipsoid.e, n = s->superellipsoid.n;
-        long double flat = powl(powl(fabsl(p.x), 2 / e) + powl(fabsl(p.z), 2 / e), e / n);
-        return powl(flat + powl(fabsl(p.y), 2 / n), n / 2) - 1;
+        long double planar = powl(powl(fabsl(p.x), 2 / e) + powl(fabsl(p.z), 2 / e), e / n);
+        return powl(planar + powl(fabsl(p.y), 2 / n), n / 2) - 1;
     }
-    case SHAPE_FLAT: {
-        const struct flat *f = &s->flat;
+    case SHAPE_PLANAR: {
+        const struct planar *f = &s->planar;
         return dot_of(f->normal, (struct point){p.x - f->origin.x, p.y - f->origin.y, p.z - f->origin.z});
     }
     case SHAPE_SPHERE:
@@ -315,9 +315,9 @@ static double residual(const struct shape *s, struct vec3 p) {
 
 /* Whether the surface's limits hold p, with room to spare (or missing, when `room` is negative). */
 static bool within_limits(const struct shape *s, struct vec3 p, double room) {
-    if (s->kind == SHAPE_CONIC) {
-        double h = vec3_dot(vec3_sub(p, s->conic.base), s->conic.axis);
-        return h > s->conic.lo + room && h < s->conic.hi - room;
+    if (s->kind == SHAPE_REVOLVED_QUADRIC) {
+        double h = vec3_dot(vec3_sub(p, s->revolved_quadric.base), s->revolved_quadric.axis);
+        return h > s->revolved_quadric.lo + room && h < s->revolved_quadric.hi - room;
     }
     if (s->kind == SHAPE_QUADRIC) {
         struct box b = s->quadric->limits;
@@ -335,12 +335,12 @@ static double size_of(const struct shape *s) {
 }
 
 static bool is_flat(const struct shape *s) {
-    return s->kind == SHAPE_FLAT && s->flat.kind != FLAT_PLANE;
+    return s->kind == SHAPE_PLANAR && s->planar.kind != PLANAR_PLANE;
 }
 
 /* A flat shape's membership, told in another way: by distances and areas in space, a polygon by its winding numbers. */
 static bool flat_has(const struct shape *s, enum form form, struct vec3 p, double *clearance) {
-    const struct flat *f = &s->flat;
+    const struct planar *f = &s->planar;
     switch ((int)form) { /* the flat ones */
     case DISC:
     case ANNULUS: {
@@ -435,7 +435,7 @@ static void check_crossing(const struct shape *s, const struct ray *ray, const s
 static void march(const struct shape *s, enum form form, const struct ray *ray, const struct crossing *list,
                   uint32_t count, struct counts *n) {
     if (is_flat(s)) {
-        double height = (double)implicit(s, point_of(ray->origin)), climb = vec3_dot(s->flat.normal, ray->direction);
+        double height = (double)implicit(s, point_of(ray->origin)), climb = vec3_dot(s->planar.normal, ray->direction);
         struct vec3 p = ray_at(ray, -height / climb);
         double clearance = 0;
         bool has = flat_has(s, form, p, &clearance);
@@ -463,7 +463,7 @@ static void march(const struct shape *s, enum form form, const struct ray *ray, 
             n->missed += !near && odd != (negative && within);
             struct geom_scratch none = {0};
             n->missed += !near && shape_contains(s, p, &none) != (negative && within);
-        } else if (i > 0 && within && was_within && !near && s->kind == SHAPE_CONIC) {
+        } else if (i > 0 && within && was_within && !near && s->kind == SHAPE_REVOLVED_QUADRIC) {
             n->missed += (odd != odd_before) != (negative != was_negative); /* the limits are convex */
         }
         was_negative = negative;
@@ -578,11 +578,11 @@ TEST(analytic_shapes_alternate_on_degenerate_lines) {
 TEST(cylinder_cone_torus_and_square_have_the_dimensions_of_the_specification) {
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 64));
-    struct shape cylinder = {.kind = SHAPE_CONIC}, cone = cylinder, torus = {.kind = SHAPE_TORUS, .torus = {2, 0.5}};
-    cylinder.conic = conic_cylinder(vec3_make(0, -1, 0), vec3_make(0, 1, 0), 1, false);
-    cone.conic = conic_frustum(vec3_all(0), 0, vec3_make(0, 1, 0), 1, false);
-    struct shape square = {.kind = SHAPE_FLAT};
-    square.flat = flat_square();
+    struct shape cylinder = {.kind = SHAPE_REVOLVED_QUADRIC}, cone = cylinder, torus = {.kind = SHAPE_TORUS, .torus = {2, 0.5}};
+    cylinder.revolved_quadric = revolved_quadric_cylinder(vec3_make(0, -1, 0), vec3_make(0, 1, 0), 1, false);
+    cone.revolved_quadric = revolved_quadric_frustum(vec3_all(0), 0, vec3_make(0, 1, 0), 1, false);
+    struct shape square = {.kind = SHAPE_PLANAR};
+    square.planar = planar_square();
     const struct {
         const struct shape *shape;
         struct vec3 o, d;
@@ -740,7 +740,7 @@ TEST(analytic_shapes_have_image_coordinates_that_move_as_their_derivatives_say) 
             struct vec3 moved = vec3_sub(q.point, p.point);
             if (fabs(p.u - q.u) > 0.5 || fabs(p.v - q.v) > 0.5 || vec3_length(moved) > 1e-4)
                 continue;
-            if (s.kind != SHAPE_FLAT && form != QUADRIC_ENDLESS && (p.v < 0.05 || p.v > 0.95))
+            if (s.kind != SHAPE_PLANAR && form != QUADRIC_ENDLESS && (p.v < 0.05 || p.v > 0.95))
                 continue;
             struct vec3 predicted = vec3_add(vec3_scale(p.dpdu, q.u - p.u), vec3_scale(p.dpdv, q.v - p.v));
             checked++;
@@ -783,21 +783,21 @@ TEST(analytic_shapes_scaled_by_powers_of_two_give_the_same_t) {
                 struct ray big_ray = ray;
                 big_ray.origin = vec3_scale(ray.origin, f);
                 big_ray.direction = vec3_scale(ray.direction, f);
-                if (s.kind == SHAPE_CONIC) {
-                    big.conic.base = vec3_scale(s.conic.base, f);
-                    big.conic.b *= f;
-                    big.conic.c *= f * f;
-                    big.conic.lo *= f;
-                    big.conic.hi *= f;
+                if (s.kind == SHAPE_REVOLVED_QUADRIC) {
+                    big.revolved_quadric.base = vec3_scale(s.revolved_quadric.base, f);
+                    big.revolved_quadric.b *= f;
+                    big.revolved_quadric.c *= f * f;
+                    big.revolved_quadric.lo *= f;
+                    big.revolved_quadric.hi *= f;
                 } else if (s.kind == SHAPE_TORUS) {
                     big.torus = (struct torus){s.torus.major * f, s.torus.minor * f};
                 } else if (s.kind == SHAPE_ELLIPSOID) {
                     big.ellipsoid =
                         (struct ellipsoid){vec3_scale(s.ellipsoid.centre, f), vec3_scale(s.ellipsoid.radii, f)};
-                } else if (s.kind == SHAPE_FLAT) {
-                    big.flat.origin = vec3_scale(s.flat.origin, f);
-                    big.flat.u = vec3_scale(s.flat.u, f);
-                    big.flat.v = vec3_scale(s.flat.v, f);
+                } else if (s.kind == SHAPE_PLANAR) {
+                    big.planar.origin = vec3_scale(s.planar.origin, f);
+                    big.planar.u = vec3_scale(s.planar.u, f);
+                    big.planar.v = vec3_scale(s.planar.v, f);
                 } else {
                     continue;
                 }
@@ -850,18 +850,18 @@ TEST(analytic_shapes_seen_from_far_away_are_hit_on_their_surface) {
 
 TEST(polygons_that_are_none_are_refused_with_the_reason) {
     struct arena arena = {0};
-    struct flat flat;
+    struct planar planar;
     const char *why = NULL;
     const struct vec3 bent[] = {{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0.5, 1}},
                       line[] = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}};
     const uint32_t four = 4, three = 3, two = 2;
-    CHECK(!flat_polygon(&arena, bent, &four, 1, &flat, &why));
+    CHECK(!planar_polygon(&arena, bent, &four, 1, &planar, &why));
     CHECK_TEXT(why, "its points do not lie in one plane");
-    CHECK(!flat_polygon(&arena, line, &three, 1, &flat, &why));
+    CHECK(!planar_polygon(&arena, line, &three, 1, &planar, &why));
     CHECK_TEXT(why, "the first outline has no area");
-    CHECK(!flat_polygon(&arena, line, &two, 1, &flat, &why));
+    CHECK(!planar_polygon(&arena, line, &two, 1, &planar, &why));
     CHECK_TEXT(why, "an outline has fewer than three points");
-    CHECK(!flat_polygon(&arena, line, &two, 0, &flat, &why));
+    CHECK(!planar_polygon(&arena, line, &two, 0, &planar, &why));
     arena_destroy(&arena);
 }
 

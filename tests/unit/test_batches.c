@@ -74,7 +74,8 @@ static void make_rays(struct test_random *random, const struct world *world, str
         if (test_uniform(random, 0, 1) < 0.1)
             ray->direction.y = 0;
         ray->t_max = test_uniform(random, 0, 1) < 0.3 ? test_uniform(random, 0, 12) : INFINITY;
-        ray->passes = test_uniform(random, 0, 1) < 0.1 ? 1 + (uint32_t)test_uniform(random, 0, world->placed_count) : 0;
+        ray->skip_primitive =
+            test_uniform(random, 0, 1) < 0.1 ? 1 + (uint32_t)test_uniform(random, 0, world->primitive_count) : 0;
         ray->footprint = (struct footprint){test_uniform(random, 0, 0.1), 0.01};
     }
 }
@@ -99,7 +100,7 @@ static void check_batches(const struct world *world, const char *what) {
     for (uint32_t i = 0; i < RAYS; i++) {
         memset(&alone, 0, sizeof alone);
         bool hit = world_nearest(world, &rays[i], &scratch, &alone);
-        bool same = hit == (hits[i].placed != WORLD_NOTHING) && world_any(world, &rays[i], &scratch) == met[i];
+        bool same = hit == (hits[i].primitive != WORLD_NOTHING) && world_any(world, &rays[i], &scratch) == met[i];
         found += hit;
         blocked += met[i];
         wrong += !same || (hit && memcmp(&alone, &hits[i], sizeof alone) != 0);
@@ -135,8 +136,8 @@ static void check_scene(struct listener *listener, const struct render_request *
                                           .accel = accels[k],
                                           .warn = hear_of_scene};
         if (world_build(&world, &input, &arena, pool, &error)) {
-            for (uint32_t i = 0; i < world.placed_count; i++) {
-                const struct geometry *geometry = placed_geometry(&world, i);
+            for (uint32_t i = 0; i < world.primitive_count; i++) {
+                const struct geometry *geometry = primitive_geometry(&world, i);
                 seen[geometry->csg ? SHAPE_KIND_COUNT : geometry->shape.kind] = true;
             }
             (void)snprintf(what, sizeof what, "accelerator %d", (int)accels[k]);

@@ -1,7 +1,7 @@
 /* World boxes under any affine map, for the shapes whose tightest box is known in closed form: contained, and not a
  * hundredth looser. The others are in test_analytic_shapes.c and test_swept_shapes.c, by sampling. */
-#include "geom/patch.h"
-#include "geom/shape_curve.h"
+#include "mesh/patch.h"
+#include "shape/curve.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "tests/unit/mesh_makers.h"

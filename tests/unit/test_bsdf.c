@@ -411,7 +411,7 @@ TEST(lobes_with_facets_are_drawn_as_often_as_they_are_expected_to_give_light) {
 
 /* Seen from outside (or inside) at an angle to the normal +z. */
 static struct hit hit_at(double degrees, bool front) {
-    struct hit hit = {.view = direction_at(degrees, 0.3), .front = front, .placed = 4};
+    struct hit hit = {.view = direction_at(degrees, 0.3), .front = front, .primitive = 4};
     hit.normal = hit.normal_geometric = vec3_make(0, 0, 1);
     if (!front)
         hit.view.z = -hit.view.z;
@@ -433,7 +433,7 @@ TEST(smooth_boundaries_send_light_where_snell_says_with_the_square_of_the_index)
     const struct material_context tir = {.total_reflection = true};
     struct material glass = glass_of(1.5);
     struct medium_stack inside = {.count = 0};
-    medium_stack_enter(&inside, &(struct medium){.placed = 4, .ior = 1.5});
+    medium_stack_enter(&inside, &(struct medium){.primitive = 4, .ior = 1.5});
     for (double degrees = 1; degrees < 90; degrees += 4) {
         for (int front = 0; front < 2; front++) {
             struct hit hit = hit_at(degrees, front);
@@ -468,7 +468,7 @@ TEST(smooth_refraction_is_reciprocal_with_the_square_of_the_index) {
     struct material base = glass_of(1.5), glass;
     material_derive(&glass, MATERIAL_FRESNEL, &base);
     struct medium_stack inside = {.count = 0};
-    medium_stack_enter(&inside, &(struct medium){.placed = 4, .ior = 1.5});
+    medium_stack_enter(&inside, &(struct medium){.primitive = 4, .ior = 1.5});
     for (double degrees = 2; degrees < 88; degrees += 5) {
         struct hit there = hit_at(degrees, true), back = there;
         struct bsdf bsdf;
@@ -491,7 +491,7 @@ TEST(smooth_refraction_is_reciprocal_with_the_square_of_the_index) {
 TEST(what_is_reflected_totally_joins_the_mirror_or_is_lost) {
     struct material glass = glass_of(1.5);
     struct medium_stack inside = {.count = 0};
-    medium_stack_enter(&inside, &(struct medium){.placed = 4, .ior = 1.5});
+    medium_stack_enter(&inside, &(struct medium){.primitive = 4, .ior = 1.5});
     struct hit hit = hit_at(60, false);
     for (int rough = 0; rough < 2; rough++) {
         for (int total = 0; total < 2; total++) {

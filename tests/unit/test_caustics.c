@@ -1,9 +1,9 @@
 /* Caustics: what is sent arrives, where geometry says, in the unit of direct light. */
-#include "geom/conic.h"
-#include "geom/flat.h"
 #include "light/sky.h"
 #include "math/elementary.h"
 #include "render/photon_trace.h"
+#include "shape/planar.h"
+#include "shape/revolved_quadric.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "tests/unit/mesh_makers.h"
@@ -215,7 +215,7 @@ TEST(a_sky_sends_no_photons_through_the_ground) {
     struct stage s;
     struct photon_map map;
     stage_begin(&s, 2);
-    thing(&s, (struct shape){.kind = SHAPE_FLAT, .flat = flat_plane(vec3_make(0, 1, 0), 0)}, white(&s));
+    thing(&s, (struct shape){.kind = SHAPE_PLANAR, .planar = planar_plane(vec3_make(0, 1, 0), 0)}, white(&s));
     ball(&s, vec3_make(0, 2, 0), 1, fresnel_glass(&s, 1.5));
     add_light(&s, (struct light){.kind = LIGHT_SKY, .emits = true, .colour = {1, 1, 1}, .sky = &below, .samples = 1});
     CHECK(send(&s, 20000, &map).sent == 20000);
@@ -304,7 +304,8 @@ TEST(a_lamp_sends_a_mirror_its_view_factor) {
                                  .colour = {1, 1, 1},
                                  .emits = true,
                                  .one_sided = true});
-    thing(&s, (struct shape){.kind = SHAPE_FLAT, .flat = flat_disc(vec3_all(0), vec3_make(0, 1, 0), 1, 0)}, mirror(&s));
+    thing(&s, (struct shape){.kind = SHAPE_PLANAR, .planar = planar_disc(vec3_all(0), vec3_make(0, 1, 0), 1, 0)},
+          mirror(&s));
     double r = 0.5, x = 1 + (1 + r * r) / (r * r), factor = 0.5 * (x - sqrt(x * x - 4));
     arrives("a lamp", &s, pi * factor, 0.015);
 }
@@ -367,8 +368,8 @@ static void ring_on_floor(struct stage *s) {
     stage_begin(s, 2);
     s->settings.caustics.radius = 0.01; /* no search for radii: only places are looked at */
     box(s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), white(s));
-    struct conic ring = conic_cylinder(vec3_make(0, 0, 0), vec3_make(0, 1, 0), 1, true);
-    thing(s, (struct shape){.kind = SHAPE_CONIC, .conic = ring}, mirror(s));
+    struct revolved_quadric ring = revolved_quadric_cylinder(vec3_make(0, 0, 0), vec3_make(0, 1, 0), 1, true);
+    thing(s, (struct shape){.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = ring}, mirror(s));
 }
 
 /* Where light along a line of constant z inside the ring is brightest. */
@@ -427,8 +428,8 @@ static double beam_behind_ball(double ior, double screen) {
     struct photon_map map;
     stage_begin(&s, 2);
     add_light(&s, (struct light){.kind = LIGHT_DIRECTIONAL, .direction = {0, -1, 0}, .colour = {1, 1, 1}});
-    struct flat aperture = flat_disc(vec3_make(0, 2, 0), vec3_make(0, 1, 0), 3, 0.1);
-    thing(&s, (struct shape){.kind = SHAPE_FLAT, .flat = aperture}, white(&s));
+    struct planar aperture = planar_disc(vec3_make(0, 2, 0), vec3_make(0, 1, 0), 3, 0.1);
+    thing(&s, (struct shape){.kind = SHAPE_PLANAR, .planar = aperture}, white(&s));
     ball(&s, vec3_make(0, 0, 0), 1, stage_glass(&s, 0, 1, ior));
     box(&s, vec3_make(-5, -screen - 1, -5), vec3_make(5, -screen, 5), white(&s));
     (void)send(&s, 80000, &map);

@@ -1,7 +1,7 @@
 /* CSG against point-by-point evaluation, coincident faces, algebra, deep programs, exactness under scaling. */
 #include "base/mem.h"
-#include "geom/csg.h"
-#include "geom/mesh.h"
+#include "csg/csg.h"
+#include "mesh/mesh.h"
 #include "tests/harness.h"
 #include "tests/unit/random_makers.h"
 

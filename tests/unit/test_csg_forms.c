@@ -1,7 +1,7 @@
 /* Solids of every closed shape against point-by-point evaluation; inverses, clips, hints and unions in parts against
  * what they are by definition. */
-#include "geom/csg_split.h"
-#include "geom/flat.h"
+#include "csg/csg_split.h"
+#include "shape/planar.h"
 #include "tests/unit/shape_makers.h"
 #include "tests/unit/swept_makers.h"
 
@@ -478,7 +478,7 @@ TEST(csg_bounds_are_intersected_and_subtracted) {
     struct csg_leaf leaves[3] = {
         {.shape = {.kind = SHAPE_BOX, .box = {{0, 0, 0}, {1, 1, 1}}}, .csg_from_leaf = transform_identity()},
         {.shape = {.kind = SHAPE_BOX, .box = {{-1, 0.5, -1}, {2, 3, 2}}}, .csg_from_leaf = transform_identity()},
-        {.shape = {.kind = SHAPE_FLAT, .flat = flat_plane(vec3_make(1, 0, 0), 0.25)},
+        {.shape = {.kind = SHAPE_PLANAR, .planar = planar_plane(vec3_make(1, 0, 0), 0.25)},
          .csg_from_leaf = transform_identity()}};
     const struct csg_token less[] = {
         {CSG_LEAF, 0}, {CSG_LEAF, 1}, {CSG_DIFFERENCE, 0}, {CSG_LEAF, 2}, {CSG_DIFFERENCE, 0}};

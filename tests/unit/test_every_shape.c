@@ -3,9 +3,9 @@
  * or the area that its maker states. */
 #include "tests/unit/shape_makers.h"
 
-#include "geom/csg.h"
-#include "geom/conic.h"
-#include "geom/flat.h"
+#include "csg/csg.h"
+#include "shape/revolved_quadric.h"
+#include "shape/planar.h"
 #include "tests/unit/swept_makers.h"
 
 #include <math.h>
@@ -30,31 +30,31 @@ static struct made_shape made_box(struct test_random *random) {
                                2 * (size.x * size.y + size.y * size.z + size.z * size.x)};
 }
 
-static struct made_shape made_conic(struct test_random *random) {
+static struct made_shape made_revolved_quadric(struct test_random *random) {
     double a = test_uniform(random, 0.2, 1), b = test_uniform(random, 0.2, 1), h = test_uniform(random, 0.2, 1);
     struct vec3 from = random_vec3(random, 0.5), to = vec3_add(from, vec3_make(a, b, -h));
     double length = vec3_length(vec3_sub(to, from));
     bool open = chance(random, 0.3);
-    struct made_shape made = {.shape = {.kind = SHAPE_CONIC}, .volume = NAN, .area = NAN};
-    struct conic *conic = &made.shape.conic;
+    struct made_shape made = {.shape = {.kind = SHAPE_REVOLVED_QUADRIC}, .volume = NAN, .area = NAN};
+    struct revolved_quadric *revolved_quadric = &made.shape.revolved_quadric;
     switch ((int)test_uniform(random, 0, 5)) {
     case 0:
-        *conic = conic_cylinder(from, to, a, open);
+        *revolved_quadric = revolved_quadric_cylinder(from, to, a, open);
         made.volume = M_PI * a * a * length;
         made.area = 2 * M_PI * a * (length + (open ? 0 : a));
         break;
     case 1:
-        *conic = conic_frustum(from, a, to, chance(random, 0.5) ? 0 : b, open);
+        *revolved_quadric = revolved_quadric_frustum(from, a, to, chance(random, 0.5) ? 0 : b, open);
         break;
     case 2:
-        *conic = conic_paraboloid(a, b, open);
+        *revolved_quadric = revolved_quadric_paraboloid(a, b, open);
         made.volume = M_PI / 2 * a * a * b;
         break;
     case 3:
-        *conic = conic_one_sheet(a * b, a, -h, b, open);
+        *revolved_quadric = revolved_quadric_one_sheet(a * b, a, -h, b, open);
         break;
     default:
-        *conic = conic_two_sheets(h * b, h, a, open);
+        *revolved_quadric = revolved_quadric_two_sheets(h * b, h, a, open);
         break;
     }
     if (open)
@@ -105,23 +105,23 @@ static struct made_shape made_superellipsoid(struct test_random *random) {
     return (struct made_shape){shape, 2 * e * n * beta(n / 2 + 1, n) * beta(e / 2, e / 2), NAN};
 }
 
-static struct made_shape made_flat(struct test_random *random) {
+static struct made_shape made_planar(struct test_random *random) {
     struct vec3 a = random_vec3(random, 0.6), b = random_vec3(random, 1), c = random_vec3(random, 1);
     double across = vec3_length(vec3_cross(b, c)), radius = test_uniform(random, 0.3, 1);
-    struct made_shape made = {.shape = {.kind = SHAPE_FLAT}, .volume = NAN, .area = NAN};
+    struct made_shape made = {.shape = {.kind = SHAPE_PLANAR}, .volume = NAN, .area = NAN};
     double pick = test_uniform(random, 0, 1);
     if (pick < 0.3) {
-        made.shape.flat = flat_parallelogram(a, b, c);
+        made.shape.planar = planar_parallelogram(a, b, c);
         made.area = across;
     } else if (pick < 0.6) {
         double inner = chance(random, 0.5) ? 0 : radius * 0.4;
-        made.shape.flat = flat_disc(a, b, radius, inner);
+        made.shape.planar = planar_disc(a, b, radius, inner);
         made.area = M_PI * (radius * radius - inner * inner);
     } else if (pick < 0.9) {
-        made.shape.flat = flat_triangle(a, vec3_add(a, b), vec3_add(a, c));
+        made.shape.planar = planar_triangle(a, vec3_add(a, b), vec3_add(a, c));
         made.area = across / 2;
     } else {
-        made.shape.flat = flat_plane(b, test_uniform(random, -0.5, 0.5));
+        made.shape.planar = planar_plane(b, test_uniform(random, -0.5, 0.5));
     }
     return made;
 }
@@ -284,8 +284,8 @@ struct made_shape make_shape(struct shape_makers *makers, enum shape_kind kind, 
         return made_sphere(random);
     case SHAPE_BOX:
         return made_box(random);
-    case SHAPE_CONIC:
-        return made_conic(random);
+    case SHAPE_REVOLVED_QUADRIC:
+        return made_revolved_quadric(random);
     case SHAPE_ELLIPSOID:
         return made_ellipsoid(random);
     case SHAPE_QUADRIC:
@@ -294,8 +294,8 @@ struct made_shape make_shape(struct shape_makers *makers, enum shape_kind kind, 
         return made_torus(random);
     case SHAPE_SUPERELLIPSOID:
         return made_superellipsoid(random);
-    case SHAPE_FLAT:
-        return made_flat(random);
+    case SHAPE_PLANAR:
+        return made_planar(random);
     case SHAPE_LATHE:
         return made_lathe(makers, random);
     case SHAPE_PRISM:
@@ -360,7 +360,7 @@ static const char *kind_name(int kind) {
 #define THIN 1e-5
 
 struct failures {
-    long crossings, order, nearest, any, box, placed_box, points, normals, layout;
+    long crossings, order, nearest, any, box, primitive_box, points, normals, layout;
 };
 
 /* A surface has what the layout of its shape promises. */
@@ -511,7 +511,7 @@ static void measure(const struct made_geometry *made, struct test_random *random
     for (int i = 0; i < LINES; i++) {
         double z = test_uniform(random, -1, 1), turn = test_uniform(random, 0, 2 * M_PI), r = sqrt(1 - z * z);
         struct vec3 direction = {r * cos(turn), r * sin(turn), z}, side, up;
-        flat_across(direction, &side, &up);
+        planar_across(direction, &side, &up);
         double far = radius * sqrt(test_uniform(random, 0, 1)), angle = test_uniform(random, 0, 2 * M_PI);
         struct vec3 origin = vec3_add_scaled(middle, side, far * cos(angle));
         struct ray ray = ray_from(vec3_add_scaled(origin, up, far * sin(angle)), direction);

@@ -2,7 +2,7 @@
  */
 #include "accel/grid.h"
 #include "base/mem.h"
-#include "geom/shape_box.h"
+#include "shape/box_shape.h"
 #include "tests/harness.h"
 #include "tests/unit/random_makers.h"
 

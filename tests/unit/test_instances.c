@@ -71,8 +71,8 @@ TEST(instances_in_many_places_give_the_bits_of_a_node_for_each) {
         build(&s, &all, kind, &placements);
         CHECK(stage_render(&s, 100, 80));
         size_t size = (size_t)100 * 80 * film_record_size(s.film.record);
-        CHECK_EQ_INT(s.world.placed_count, 2 * PLACES);
-        CHECK_EQ_INT(s.world.thing_count, 2);
+        CHECK_EQ_INT(s.world.primitive_count, 2 * PLACES);
+        CHECK_EQ_INT(s.world.prototype_count, 2);
         if (reference)
             CHECK(memcmp(reference, s.film.pixels, size) == 0);
         else
@@ -109,7 +109,7 @@ TEST(lists_of_lights_hold_for_what_stands_in_many_places) {
     s.lights[0].include = list;
     s.lights[0].include_count = 1;
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
-    CHECK_EQ_INT(s.world.placed_count, 4);
+    CHECK_EQ_INT(s.world.primitive_count, 4);
     for (uint32_t i = 0; i < 4; i++)
         CHECK_EQ_INT(s.world.lights[0].lit[i], i < 3);
     stage_end(&s);
@@ -131,7 +131,7 @@ TEST(a_placement_costs_less_than_two_hundred_bytes_of_the_world) {
     many->placements = &placements;
     stage_sphere(&s, many, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
-    CHECK_EQ_INT(s.world.placed_count, SIDE * SIDE);
+    CHECK_EQ_INT(s.world.primitive_count, SIDE * SIDE);
     CHECK(s.world.linear_count <= 1);
     size_t bytes = s.arena.total + box_tree_memory(&s.world.accel.tree);
     CHECK(bytes < (size_t)200 * SIDE * SIDE);
@@ -181,10 +181,10 @@ TEST(a_dense_heap_in_a_huge_scene_costs_about_what_it_costs_alone) {
             struct ray ray = {.origin = {0, 0.5, 6}, .t_max = INFINITY};
             double x = test_uniform(&random, -0.9, 0.9), y = test_uniform(&random, -0.9, 0.9);
             ray.direction = vec3_sub(vec3_make(x, y, 0), ray.origin);
-            uint32_t placed;
+            uint32_t primitive;
             struct crossing crossing;
             uint64_t before = scratch.geom.cost.hierarchy_steps + scratch.geom.shape_tests;
-            bool met = world_nearest_crossing(&s.world, &ray, &scratch, &placed, &crossing) && placed < 20000;
+            bool met = world_nearest_crossing(&s.world, &ray, &scratch, &primitive, &crossing) && primitive < 20000;
             balls[kind] += met;
             work[kind] += met ? scratch.geom.cost.hierarchy_steps + scratch.geom.shape_tests - before : 0;
         }

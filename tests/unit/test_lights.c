@@ -1,9 +1,9 @@
 /* Lights against closed forms. What a small patch of a white floor gets from a lamp of radiance 1 is the view factor of
  * the lamp; the formulas are those of Howell, "A Catalog of Radiation Heat Transfer Configuration Factors": B-12
  * (disc), B-3 (rectangle over its corner), B-38 (sphere). */
-#include "geom/flat.h"
 #include "math/elementary.h"
 #include "math/sampling.h"
+#include "shape/planar.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 
@@ -95,8 +95,8 @@ TEST(the_inside_of_a_ball_lamp_is_lit) {
 }
 
 static void plane_below(struct node *node) {
-    struct shape plane = {.kind = SHAPE_FLAT};
-    plane.flat = flat_plane(vec3_make(0, 1, 0), 1);
+    struct shape plane = {.kind = SHAPE_PLANAR};
+    plane.planar = planar_plane(vec3_make(0, 1, 0), 1);
     node->shape = plane;
 }
 
@@ -105,10 +105,10 @@ static void plane_below(struct node *node) {
 TEST(a_flat_shape_hides_what_is_below_it) {
     for (int kind = 0; kind < 3; kind++) {
         double seen[2];
-        for (int flat = 0; flat < 2; flat++) {
+        for (int planar = 0; planar < 2; planar++) {
             struct stage s;
             stage_floor(&s);
-            if (flat)
+            if (planar)
                 plane_below(s.root->first_child->node);
             struct vec3 middle = {2, 0.1, 0};
             if (kind == 0)
@@ -117,7 +117,7 @@ TEST(a_flat_shape_hides_what_is_below_it) {
                 s.lights[0] = lamp(kind == 1 ? LIGHT_DISC : LIGHT_SPHERE, middle, 1);
             s.lights[0].direction = vec3_make(-1, 0, 0);
             s.lights[0].emits = false;
-            seen[flat] = patch_at(&s, 0, 0) * sqrt(4.01) / 0.1; /* over the cosine of the middle */
+            seen[planar] = patch_at(&s, 0, 0) * sqrt(4.01) / 0.1; /* over the cosine of the middle */
             stage_end(&s);
         }
         CHECK_NEAR(seen[1], seen[0], 1e-9);

@@ -2,7 +2,7 @@
 
 #include "base/path_policy.h"
 #include "formats/model_node.h"
-#include "geom/mesh_smooth.h"
+#include "mesh/mesh_smooth.h"
 
 /* Reads a model from the test's folder. */
 static bool read_model(struct model *model, const char *name) {

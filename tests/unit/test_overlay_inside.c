@@ -1,8 +1,8 @@
 /* Lines over a picture whose camera stands among the boxes: edges that run past the eye, boxes behind it, boxes without
  * end. What is drawn is what edges give that are projected point by point. */
-#include "geom/flat.h"
 #include "render/camera.h"
 #include "render/overlay.h"
+#include "shape/planar.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "tests/unit/random_makers.h"
@@ -53,7 +53,7 @@ static void prepare(struct stage *s, struct test_random *random) {
         stage_scale(s, cube, 1.3, 0.9, 1.1);
     }
     struct node *floor = stage_cube(s, s->root, material);
-    floor->shape = (struct shape){.kind = SHAPE_FLAT, .flat = flat_plane(vec3_make(0.1, 1, 0), -9)};
+    floor->shape = (struct shape){.kind = SHAPE_PLANAR, .planar = planar_plane(vec3_make(0.1, 1, 0), -9)};
 }
 
 TEST(edges_around_the_camera_are_drawn_where_their_points_are) {
@@ -75,7 +75,7 @@ TEST(edges_around_the_camera_are_drawn_where_their_points_are) {
         CHECK(overlay_lines(&job, s.pool, &request, lines, &s.error));
         CHECK(camera_prepare(&s.camera, &s.settings, WIDTH, HEIGHT, &frame, warning, &s.error));
         memset(wanted, 0, sizeof wanted);
-        for (uint32_t i = 0; i < s.world.placed_count; i++)
+        for (uint32_t i = 0; i < s.world.primitive_count; i++)
             if (vec3_finite(s.world.boxes[i].min) && vec3_finite(s.world.boxes[i].max))
                 mark(&frame, &s.world.boxes[i], wanted);
         int false_ink = 0, missing = 0, inked = 0;

@@ -238,7 +238,7 @@ TEST(ways_to_instances_tell_every_node_and_place_on_them) {
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
     char texts[16][200] = {{0}};
     CHECK(world_visit_paths(&s.world, s.root, note_path, texts, &s.error));
-    CHECK_EQ_INT(s.world.placed_count, 12); /* ball, its cube, the cube; four times */
+    CHECK_EQ_INT(s.world.primitive_count, 12); /* ball, its cube, the cube; four times */
     char expected[200];
     (void)snprintf(expected, sizeof expected, "%s#0 / %s#1 / %s#3 / %s#4", s.root->name, pair->name, ball->name,
                    ball->first_child->node->name);

@@ -570,9 +570,9 @@ TEST(camera_replaces_an_up_parallel_to_view_with_one_warning) {
 TEST(media_stack_removes_the_solid_that_is_left) {
     struct medium_stack media = {.count = 0};
     CHECK_NEAR(medium_stack_ior(&media), 1, 0);
-    medium_stack_enter(&media, &(struct medium){.placed = 3, .ior = 1.5});
-    medium_stack_enter(&media, &(struct medium){.placed = 7, .ior = 1.3});
-    medium_stack_enter(&media, &(struct medium){.placed = 3, .ior = 1.6});
+    medium_stack_enter(&media, &(struct medium){.primitive = 3, .ior = 1.5});
+    medium_stack_enter(&media, &(struct medium){.primitive = 7, .ior = 1.3});
+    medium_stack_enter(&media, &(struct medium){.primitive = 3, .ior = 1.6});
     medium_stack_leave(&media, 7);
     CHECK_NEAR(medium_stack_ior(&media), 1.6, 0);
     medium_stack_leave(&media, 3);
@@ -580,7 +580,7 @@ TEST(media_stack_removes_the_solid_that_is_left) {
     medium_stack_leave(&media, 9);
     CHECK_EQ_INT(media.count, 1);
     for (uint32_t i = 0; i < 100; i++)
-        medium_stack_enter(&media, &(struct medium){.placed = i, .ior = 1 + i});
+        medium_stack_enter(&media, &(struct medium){.primitive = i, .ior = 1 + i});
     CHECK_EQ_INT(media.count, MEDIA_LIMIT);
     CHECK_NEAR(medium_stack_ior(&media), 100, 0);
 }
@@ -590,11 +590,11 @@ TEST(the_relative_index_is_that_of_the_stacks_before_and_behind) {
     for (int run = 0; run < 2000; run++) {
         struct medium_stack before = {.count = 0}, behind;
         for (int i = (int)test_uniform(&random, 0, 6); i > 0; i--) {
-            struct medium medium = {.placed = (uint32_t)test_uniform(&random, 0, 4),
+            struct medium medium = {.primitive = (uint32_t)test_uniform(&random, 0, 4),
                                     .ior = test_uniform(&random, 1, 2)};
             medium_stack_enter(&before, &medium);
         }
-        struct medium_boundary boundary = {.medium = {.placed = (uint32_t)test_uniform(&random, 0, 4), .ior = 1.7},
+        struct medium_boundary boundary = {.medium = {.primitive = (uint32_t)test_uniform(&random, 0, 4), .ior = 1.7},
                                            .entering = run % 2 == 0};
         medium_stack_copy(&behind, &before);
         medium_stack_cross(&behind, &boundary);

@@ -1,7 +1,7 @@
 /* Shapes at their corners: numbers that are none in every place of what they are built from, solids with any room for
  * crossings, meshes that are nearly the same, quadrics of every axis. */
-#include "geom/shape_quadric.h"
-#include "geom/shape_torus.h"
+#include "shape/quadric.h"
+#include "shape/torus.h"
 #include "tests/unit/swept_makers.h"
 
 /* --- numbers that are none --- */

@@ -1,7 +1,7 @@
 /* Spheres and boxes: closed forms, crossings on the surface, uv, bounds of the error, exactness under scaling. */
-#include "geom/shape.h"
-#include "geom/shape_box.h"
-#include "geom/shape_sphere.h"
+#include "shape/box_shape.h"
+#include "shape/shape.h"
+#include "shape/sphere.h"
 #include "tests/harness.h"
 #include "tests/unit/random_makers.h"
 

@@ -166,24 +166,24 @@ static double difference(const struct affine *a, const struct affine *b) {
 }
 
 /* Solids may be empty, or fall apart: then a path has no primitive, or several in a row. */
-static void check_forest(struct forest *f, uint32_t *placed, uint32_t *shared) {
+static void check_forest(struct forest *f, uint32_t *primitive, uint32_t *shared) {
     struct world *world = &f->stage.world;
     static char texts[PATHS][PATH_TEXT];
     static uint8_t listed[PATHS];
-    CHECK(world->placed_count <= PATHS);
+    CHECK(world->primitive_count <= PATHS);
     memset(listed, 0, sizeof listed);
     CHECK(world_visit_paths(world, f->stage.root, note_texts, texts, &f->stage.error));
     CHECK(light_lists_mark(world, f->list, 3, listed, 1, f->stage.root));
     uint32_t next = 0;
     for (uint32_t i = 0; i < f->expected_count; i++) {
         const struct expected *e = &f->expected[i];
-        uint32_t parts = world_placed_by(world, e->node, next);
+        uint32_t parts = world_primitives_of(world, e->node, next);
         /* An empty solid before the same node on another path has taken no primitive: the texts tell them apart. */
         if (parts == 0 || (e->node->kind == NODE_CSG && strcmp(texts[next], e->text) != 0))
             continue;
         for (uint32_t k = next; k < next + parts; k++) {
             struct transform map = world_placement(world, k, 0);
-            CHECK(placed_node(world, k) == e->node);
+            CHECK(primitive_node(world, k) == e->node);
             CHECK_TEXT(texts[k], e->text);
             CHECK(difference(&map.forward, &e->map.forward) < 1e-12);
             CHECK_EQ_INT(listed[k], e->listed);
@@ -191,19 +191,19 @@ static void check_forest(struct forest *f, uint32_t *placed, uint32_t *shared) {
         }
         next += parts;
     }
-    CHECK_EQ_INT(next, world->placed_count);
-    *placed += next;
+    CHECK_EQ_INT(next, world->primitive_count);
+    *primitive += next;
 }
 
 TEST(flattening_paths_and_lists_of_lights_follow_one_order_on_random_graphs) {
     static struct forest f;
-    uint32_t placed = 0, listed = 0;
+    uint32_t primitive = 0, listed = 0;
     for (uint64_t seed = 1; seed <= 60; seed++) {
         if (plant(&f, seed))
-            check_forest(&f, &placed, &listed);
+            check_forest(&f, &primitive, &listed);
         stage_end(&f.stage);
     }
-    CHECK(placed > 1000 && listed > 100 && listed < placed);
+    CHECK(primitive > 1000 && listed > 100 && listed < primitive);
 }
 
 static bool in_box(const struct box *box, struct vec3 p) {
@@ -241,8 +241,8 @@ TEST(picking_names_the_path_of_what_a_ray_meets_and_no_ray_meets_anything_outsid
             if (vec3_length(vec3_sub(hit.point, picked.position)) > 1e-9)
                 continue; /* at an edge */
             hits++;
-            CHECK_TEXT(picked.path, texts[hit.placed]);
-            CHECK_EQ_INT(picked.serial, placed_node(&s->world, hit.placed)->serial);
+            CHECK_TEXT(picked.path, texts[hit.primitive]);
+            CHECK_EQ_INT(picked.serial, primitive_node(&s->world, hit.primitive)->serial);
         }
         world_scratch_destroy(&scratch);
         stage_end(s);
@@ -258,9 +258,9 @@ TEST(paths_inside_of_solids_lead_to_the_shapes_that_flattening_made_leaves_of) {
         if (!plant(&f, seed))
             continue;
         const struct world *world = &f.stage.world;
-        for (uint32_t i = 0; i < world->placed_count; i++) {
-            const struct csg *whole = placed_geometry(world, i)->csg;
-            const struct node *node = placed_node(world, i);
+        for (uint32_t i = 0; i < world->primitive_count; i++) {
+            const struct csg *whole = primitive_geometry(world, i)->csg;
+            const struct node *node = primitive_node(world, i);
             for (uint32_t k = 0; whole && node->kind == NODE_CSG && k < whole->leaf_count; k++) {
                 const struct csg_leaf *leaf = &whole->leaves[k];
                 uint32_t depth;

@@ -1,5 +1,5 @@
 /* Triangulation: the triangles of a polygon cover it once, whatever its shape. */
-#include "geom/triangulate.h"
+#include "mesh/triangulate.h"
 
 #include "tests/harness.h"
 

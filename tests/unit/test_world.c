@@ -1,7 +1,7 @@
 /* The world beside brute force, and what flattening promises. */
 #include "tests/harness.h"
 
-#include "geom/flat.h"
+#include "shape/planar.h"
 #include "tests/stage.h"
 #include "tests/unit/shape_makers.h"
 #include "world/packet.h"
@@ -54,7 +54,7 @@ static struct node *random_shape(struct stage *s, struct shape_makers *makers, s
 
 /* A mixed world: shapes of all kinds, instances of groups, CSG; sometimes flat, sometimes empty. */
 static struct node *random_world(struct stage *s, struct shape_makers *makers, struct test_random *random, int count,
-                                 double spread, bool flat) {
+                                 double spread, bool planar) {
     struct node *root = scene_node(&s->scene, NODE_GROUP, "root", &s->error), *last = NULL;
     for (int i = 0; i < count; i++) {
         struct node *node;
@@ -67,7 +67,7 @@ static struct node *random_world(struct stage *s, struct shape_makers *makers, s
             random_place(s, random, node, spread);
             last = node;
         }
-        if (flat) {
+        if (planar) {
             struct transform t = transform_scale(vec3_make(1, 1e-9, 1));
             node_transform(&s->scene, node, NODE_SCALE, &t);
         }
@@ -174,8 +174,9 @@ TEST(points_of_a_parallelogram_seen_through_a_shaft_are_those_that_single_rays_s
                 seen += !world_any(&s.world, &ray, &scratch);
             }
             partly += seen > 0 && seen < 16;
-            struct between between = world_between(&s.world, from, corner, edge1, edge2, 0);
-            CHECK_EQ_INT(world_visible(&s.world, &between, from, 0, targets, 16, &scratch, NULL), seen);
+            struct occluder_candidates occluder_candidates =
+                world_occluder_candidates(&s.world, from, corner, edge1, edge2, 0);
+            CHECK_EQ_INT(world_visible(&s.world, &occluder_candidates, from, 0, targets, 16, &scratch, NULL), seen);
         }
         world_scratch_destroy(&scratch);
         stage_end(&s);
@@ -187,15 +188,17 @@ TEST(points_of_a_parallelogram_seen_through_a_shaft_are_those_that_single_rays_s
 /* Cylinders, cones from either side of their tip, both kinds of hyperboloid, discs, ellipsoids. */
 static struct node *random_convex_or_not(struct stage *s, struct test_random *random) {
     struct node *node = scene_node(&s->scene, NODE_GEOMETRY, "shape", &s->error);
-    struct conic conics[] = {conic_upright(0, 0, 1, -1, 1, false),     conic_upright(0.25, 0.5, 0.25, -1, 1, false),
-                             conic_upright(0.25, -1, 1, 0, 2, true),   conic_upright(-1, 0, 1, -0.5, 1, false),
-                             conic_upright(1, 0, -0.25, -1, 1, false), conic_upright(1, 0, 0.25, -1, 1, false),
-                             conic_upright(0.25, 0, 0, -1, 1, false),  conic_upright(0, 1, 0, 0, 1, false)};
+    struct revolved_quadric conics[] = {
+        revolved_quadric_upright(0, 0, 1, -1, 1, false),     revolved_quadric_upright(0.25, 0.5, 0.25, -1, 1, false),
+        revolved_quadric_upright(0.25, -1, 1, 0, 2, true),   revolved_quadric_upright(-1, 0, 1, -0.5, 1, false),
+        revolved_quadric_upright(1, 0, -0.25, -1, 1, false), revolved_quadric_upright(1, 0, 0.25, -1, 1, false),
+        revolved_quadric_upright(0.25, 0, 0, -1, 1, false),  revolved_quadric_upright(0, 1, 0, 0, 1, false)};
     int kind = (int)test_uniform(random, 0, 10);
     if (kind < 8)
-        node->shape = (struct shape){.kind = SHAPE_CONIC, .conic = conics[kind]};
+        node->shape = (struct shape){.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = conics[kind]};
     else if (kind == 8)
-        node->shape = (struct shape){.kind = SHAPE_FLAT, .flat = flat_disc(vec3_all(0), vec3_make(0, 1, 1), 1, 0.4)};
+        node->shape =
+            (struct shape){.kind = SHAPE_PLANAR, .planar = planar_disc(vec3_all(0), vec3_make(0, 1, 1), 1, 0.4)};
     else
         node->shape = (struct shape){.kind = SHAPE_ELLIPSOID, .ellipsoid = {vec3_all(0.1), {1, 0.4, 0.7}}};
     random_place(s, random, node, 0.3);
@@ -233,8 +236,8 @@ TEST(what_a_ray_is_told_to_pass_by_it_would_not_have_met) {
                                  .direction = direction,
                                  .t_max = i % 2 ? INFINITY : 3};
             struct ray passing = onward;
-            passing.passes = hit_passes(&hit, direction);
-            if (!passing.passes)
+            passing.skip_primitive = hit_skip_primitive(&hit, direction);
+            if (!passing.skip_primitive)
                 continue;
             told++;
             uint32_t a = 0, b = 0;
@@ -242,14 +245,14 @@ TEST(what_a_ray_is_told_to_pass_by_it_would_not_have_met) {
             bool met = world_nearest_crossing(&s.world, &onward, &scratch, &a, &x);
             met_others += met;
             CHECK_EQ_INT(world_nearest_crossing(&s.world, &passing, &scratch, &b, &y), met);
-            CHECK(!met || (a == b && x.t == y.t && a != hit.placed));
+            CHECK(!met || (a == b && x.t == y.t && a != hit.primitive));
             CHECK_EQ_INT(world_any(&s.world, &passing, &scratch), met);
             struct vec3 edge = vec3_scale(hit.normal_geometric, 1e-3);
-            struct between between =
-                world_between(&s.world, onward.origin, vec3_add(onward.origin, direction), edge, edge, passing.passes);
+            struct occluder_candidates occluder_candidates = world_occluder_candidates(
+                &s.world, onward.origin, vec3_add(onward.origin, direction), edge, edge, passing.skip_primitive);
             struct vec3 target = vec3_add(onward.origin, direction);
             struct ray segment = {.origin = onward.origin, .direction = vec3_sub(target, onward.origin), .t_max = 1};
-            CHECK_EQ_INT(world_visible(&s.world, &between, onward.origin, 0, &target, 1, &scratch, NULL),
+            CHECK_EQ_INT(world_visible(&s.world, &occluder_candidates, onward.origin, 0, &target, 1, &scratch, NULL),
                          !world_any(&s.world, &segment, &scratch));
         }
         world_scratch_destroy(&scratch);
@@ -303,12 +306,12 @@ TEST(packets_of_rays_meet_in_a_world_what_single_rays_meet) {
             hits += (uint64_t)__builtin_popcountll(met);
             for (uint32_t k = 0; k < packet.count; k++) {
                 struct ray ray = ray_packet_get(&packet, k);
-                uint32_t placed;
+                uint32_t primitive;
                 struct crossing c;
-                bool alone = world_nearest_crossing(&s.world, &ray, &scratch, &placed, &c);
+                bool alone = world_nearest_crossing(&s.world, &ray, &scratch, &primitive, &c);
                 bool same = alone == (met >> k & 1);
                 if (same && alone)
-                    same = answers[k].placed == placed && answers[k].crossing.t == c.t &&
+                    same = answers[k].primitive == primitive && answers[k].crossing.t == c.t &&
                            answers[k].crossing.part == c.part && answers[k].crossing.leaf == c.leaf &&
                            answers[k].crossing.u == c.u && answers[k].crossing.v == c.v;
                 if (!same)
@@ -342,9 +345,10 @@ TEST(rays_that_are_not_finite_meet_only_what_is_there) {
             for (int k = 0; k < 6; k++)
                 if (test_uniform(&random, 0, 1) < 0.7)
                     numbers[k / 3][k % 3] = odd[(int)test_uniform(&random, 0, 7.999)];
-            uint32_t placed = 0;
+            uint32_t primitive = 0;
             struct crossing c;
-            CHECK(!world_nearest_crossing(&s.world, &ray, &scratch, &placed, &c) || placed < s.world.placed_count);
+            CHECK(!world_nearest_crossing(&s.world, &ray, &scratch, &primitive, &c) ||
+                  primitive < s.world.primitive_count);
             (void)world_any(&s.world, &ray, &scratch);
         }
         world_scratch_destroy(&scratch);
@@ -381,7 +385,7 @@ TEST(world_refuses_a_tree_that_doubles_sixty_times) {
     CHECK(!stage_build(&s, group, ACCEL_GRID));
     CHECK(strstr(s.error.text, "more than 268435456 primitives") != NULL);
     CHECK(stage_build(&s, empty, ACCEL_GRID)); /* 2^60 paths, but nothing to place on any */
-    CHECK_EQ_INT(s.world.placed_count, 0);
+    CHECK_EQ_INT(s.world.primitive_count, 0);
     stage_end(&s);
 }
 
@@ -398,7 +402,7 @@ TEST(world_flattens_a_chain_of_a_million_nodes) {
     leaf->shape = (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}};
     CHECK(node_add_child(&s.scene, node, leaf, &s.error));
     CHECK(stage_build(&s, root, ACCEL_GRID));
-    CHECK_EQ_INT(s.world.placed_count, 1);
+    CHECK_EQ_INT(s.world.primitive_count, 1);
     CHECK_EQ_INT(s.warnings, 1); /* no material */
     stage_end(&s);
 }
@@ -432,7 +436,7 @@ TEST(an_empty_operand_follows_the_algebra_of_sets) {
         struct node *cut =
             scene_combine(&s.scene, "cut", (enum node_csg)operation, (struct node *[]){ball, nothing}, 2, &s.error);
         CHECK(stage_build(&s, cut, ACCEL_GRID));
-        CHECK_EQ_INT(s.world.placed_count, expected[operation]);
+        CHECK_EQ_INT(s.world.primitive_count, expected[operation]);
     }
     stage_end(&s);
 }

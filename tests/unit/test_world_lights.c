@@ -71,7 +71,7 @@ static struct vec3 of_lights(struct room *r, const struct light_receiver *at, ui
                       .direction = light_target_from(&sample.target, at->from),
                       .t_max = sample.decided ? INFINITY : light_target_end(&sample.target),
                       .time = 0.5,
-                      .passes = sample.passes};
+                      .skip_primitive = sample.skip_primitive};
     struct hit hit;
     struct vec3 radiance = sample.radiance;
     *density = sample.pdf * pmf;
@@ -79,7 +79,7 @@ static struct vec3 of_lights(struct room *r, const struct light_receiver *at, ui
     if (sample.decided) {
         if (!world_nearest(&r->stage.world, &ray, &r->scratch, &hit) || !world_lights_shows(&r->lights, &sample, &hit))
             return vec3_all(0);
-        radiance = world_lights_radiance(&r->lights, at->placed, &hit, emission_at(r, &hit));
+        radiance = world_lights_radiance(&r->lights, at->primitive, &hit, emission_at(r, &hit));
         r->asked++;
         double pdf = world_lights_pdf_of_hit(&r->lights, at, sample.direction, &hit);
         if (!sample.is_delta)
@@ -122,7 +122,7 @@ static void compare(struct room *r, const struct light_receiver *at, uint64_t n,
         double cosine = fabs(vec3_dot(direction, at->normal));
         bool found = world_nearest(&r->stage.world, &ray, &r->scratch, &hit);
         if (found) {
-            double shown = world_lights_radiance(&r->lights, at->placed, &hit, emission_at(r, &hit)).y * cosine;
+            double shown = world_lights_radiance(&r->lights, at->primitive, &hit, emission_at(r, &hit)).y * cosine;
             double pdf = world_lights_pdf_of_hit(&r->lights, at, direction, &hit);
             met += shown / of_scattered;
             weighted += shown / (of_scattered + pdf);
@@ -133,7 +133,7 @@ static void compare(struct room *r, const struct light_receiver *at, uint64_t n,
         uint32_t light;
         world_lights_met_begin(&traversal, &r->lights, &ray);
         while (world_lights_met_next(&traversal, &light, &lamp)) {
-            if (!world_lights_reach(&r->lights, light, at->placed))
+            if (!world_lights_reach(&r->lights, light, at->primitive))
                 continue;
             double shown = light_emitted(&r->lights.lights[light], &ray, &lamp).y * cosine;
             met += shown / of_scattered;
@@ -162,7 +162,7 @@ static void compare(struct room *r, const struct light_receiver *at, uint64_t n,
 static struct light_receiver receiver_at(double x, double y, double z) {
     struct light_receiver at = {.point = {x, y, z}, .normal = vec3_normalize(vec3_make(0.2, 1, -0.3))};
     at.from = at.point;
-    at.placed = WORLD_NOTHING;
+    at.primitive = WORLD_NOTHING;
     return at;
 }
 
@@ -348,14 +348,14 @@ TEST(lists_hold_for_lights_that_are_sampled_and_met) {
     struct ray up = {.origin = at.from, .direction = {0.1, 1, 0}, .t_max = INFINITY};
     struct hit hit;
     CHECK(world_nearest(&r.stage.world, &up, &r.scratch, &hit));
-    for (uint32_t placed = 0; placed < 2; placed++) {
+    for (uint32_t primitive = 0; primitive < 2; primitive++) {
         struct world_light_sample sample;
-        at.placed = placed; /* the mesh, then the ball */
+        at.primitive = primitive; /* the mesh, then the ball */
         for (uint32_t light = 0; light < 2; light++)
-            CHECK(world_lights_sample(&r.lights, &at, light, (struct sample2){0.4, 0.4}, &sample) == (placed == 0) ||
-                  (light == 0 && placed == 0));
-        CHECK((world_lights_radiance(&r.lights, placed, &hit, vec3_all(1)).y > 0) == (placed == 0));
-        CHECK((world_lights_pdf_of_hit(&r.lights, &at, vec3_normalize(up.direction), &hit) > 0) == (placed == 0));
+            CHECK(world_lights_sample(&r.lights, &at, light, (struct sample2){0.4, 0.4}, &sample) == (primitive == 0) ||
+                  (light == 0 && primitive == 0));
+        CHECK((world_lights_radiance(&r.lights, primitive, &hit, vec3_all(1)).y > 0) == (primitive == 0));
+        CHECK((world_lights_pdf_of_hit(&r.lights, &at, vec3_normalize(up.direction), &hit) > 0) == (primitive == 0));
     }
     room_end(&r);
 }

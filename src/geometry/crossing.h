@@ -1,0 +1,154 @@
+/* Crossings: what a ray meets, with just enough to compare and to find the place again. While searching only crossings
+ * travel; normals, uv and materials are worked out once for the survivor (shape_describe). */
+#ifndef GRAY_GEOMETRY_CROSSING_H
+#define GRAY_GEOMETRY_CROSSING_H
+
+#include "accel/triangle_index.h"
+#include "math/box.h"
+#include "math/ray.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct crossing {
+    union {
+        struct {
+            double t;
+            double u, v;   /* barycentric weights of vertices 1 and 2 on a mesh; free for other shapes */
+            uint32_t part; /* which face, triangle or nappe */
+            bool enter;    /* the line goes from outside to inside here (geometric, after a CSG flip) */
+            bool flip;     /* CSG difference or inverse turned the surface inside out */
+            uint16_t leaf; /* which CSG operand made the surface; 0 outside CSG */
+        };
+        struct triangle_hit on_mesh; /* t to enter, so that a search of triangles writes them where they belong */
+    };
+};
+_Static_assert(offsetof(struct crossing, part) == offsetof(struct triangle_hit, triangle) &&
+                   offsetof(struct crossing, enter) == offsetof(struct triangle_hit, enter),
+               "a hit on a mesh is a crossing but for what follows enter");
+
+/* One worker's memory for lists of crossings, used as a stack. It grows between rays, never inside one: when it is too
+ * small a push fails, `overflow` is set, and the caller of the whole ray calls geom_scratch_grow and asks again. */
+struct geom_scratch {
+    struct crossing *items;
+    uint32_t capacity, used;
+    bool overflow;
+    /* what the searches cost; sums, never read by them */
+    uint64_t shape_tests;
+    uint64_t box_tests; /* of single boxes; a node of a hierarchy is one of cost.hierarchy_steps */
+    struct triangle_cost cost;
+};
+
+/* A list on top of the scratch: items[first .. first + count - 1]. */
+struct crossing_list {
+    uint32_t first, count;
+};
+
+bool geom_scratch_init(struct geom_scratch *scratch, uint32_t capacity);
+void geom_scratch_destroy(struct geom_scratch *scratch);
+bool geom_scratch_grow(struct geom_scratch *scratch); /* doubles, clears overflow and used; false: no memory */
+
+static inline bool geom_scratch_push(struct geom_scratch *scratch, struct crossing crossing) {
+    if (scratch->used == scratch->capacity) {
+        scratch->overflow = true;
+        return false;
+    }
+    scratch->items[scratch->used++] = crossing;
+    return true;
+}
+
+/* --- The line of a ray in a shape's own measure: the origin is moved along it to where it passes the shape, the
+ * direction is a unit vector, s counts object units from there. So the numbers that a root-finder sees do not depend on
+ * how far away the ray began, nor on the length of its direction. Scaling by powers of two scales s and changes nothing
+ * else --- */
+
+struct line {
+    struct vec3 origin, direction;
+    double t0, speed; /* t = t0 + s / speed */
+};
+
+/* False: the ray has no direction, or its numbers overflow. */
+bool line_init(struct line *line, const struct ray *ray, struct vec3 centre);
+
+static inline double line_t(const struct line *line, double s) {
+    return line->t0 + s / line->speed;
+}
+static inline struct vec3 line_at(const struct line *line, double s) {
+    return vec3_add_scaled(line->origin, line->direction, s);
+}
+/* Whether the whole line meets the box, which has been padded for rounding. */
+static inline bool line_meets_box(const struct line *line, const struct box *box) {
+    double enter = -INFINITY, leave = INFINITY;
+    for (int axis = 0; axis < 3; axis++) {
+        double o = vec3_get(line->origin, axis), d = vec3_get(line->direction, axis);
+        double lo = vec3_get(box->min, axis) - o, hi = vec3_get(box->max, axis) - o;
+        if (d == 0) {
+            if (lo > 0 || hi < 0)
+                return false;
+            continue;
+        }
+        double near = (d > 0 ? lo : hi) / d, far = (d > 0 ? hi : lo) / d;
+        enter = near > enter ? near : enter;
+        leave = far < leave ? far : leave;
+    }
+    return enter <= leave;
+}
+
+/* Whether a comes before b, in a total order: then it does not matter that sorting is not stable. */
+typedef bool crossing_order(const struct crossing *a, const struct crossing *b);
+
+/* Moves items[root] down until no child comes after it (Williams 1964). */
+static inline void crossings_sift_down(struct crossing *items, uint32_t root, uint32_t count, crossing_order *before) {
+    struct crossing moved = items[root];
+    for (;;) {
+        uint32_t child = 2 * root + 1;
+        if (child >= count)
+            break;
+        if (child + 1 < count && before(&items[child], &items[child + 1]))
+            child++;
+        if (!before(&moved, &items[child]))
+            break;
+        items[root] = items[child];
+        root = child;
+    }
+    items[root] = moved;
+}
+
+/* Sorts through a heap: no memory, never quadratic. Inline, so that the order is compiled into it. */
+static inline void crossings_heap_sort(struct crossing *items, uint32_t count, crossing_order *before) {
+    for (uint32_t i = count / 2; i-- > 0;)
+        crossings_sift_down(items, i, count, before);
+    for (uint32_t end = count; end-- > 1;) {
+        struct crossing last = items[end];
+        items[end] = items[0];
+        items[0] = last;
+        crossings_sift_down(items, 0, end, before);
+    }
+}
+
+/* A list is mostly short and nearly sorted: insertion; long ones go through the heap. */
+static inline void crossings_sort_by(struct crossing *items, uint32_t count, crossing_order *before) {
+    enum { FEW = 40 };
+    if (count > FEW) {
+        crossings_heap_sort(items, count, before);
+        return;
+    }
+    for (uint32_t i = 1; i < count; i++) {
+        struct crossing moved = items[i];
+        uint32_t j = i;
+        for (; j > 0 && before(&moved, &items[j - 1]); j--)
+            items[j] = items[j - 1];
+        items[j] = moved;
+    }
+}
+
+/* Sorts crossings by t (then part, then u). */
+void crossings_sort(struct crossing *items, uint32_t count);
+/* Turns everything above `first` on the scratch, whose t holds s in any order, into the list of an open or closed
+ * shape: by ascending t, and for a closed one without pairs at one t and with enter and leave alternating. */
+void line_finish_open(const struct line *line, struct geom_scratch *scratch, uint32_t first, struct crossing_list *out);
+void line_finish_closed(const struct line *line, struct geom_scratch *scratch, uint32_t first,
+                        struct crossing_list *out);
+
+#endif

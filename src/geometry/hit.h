@@ -1,0 +1,99 @@
+/* The complete description of the one crossing that survives. */
+#ifndef GRAY_GEOMETRY_HIT_H
+#define GRAY_GEOMETRY_HIT_H
+
+#include "math/ray.h"
+#include "math/vec3.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Where the whole primitive lies: anywhere; behind the tangent plane of the hit (convex shapes); in it (flat ones). */
+enum hit_convexity { CONVEXITY_NONE, CONVEXITY_BEHIND, CONVEXITY_PLANAR };
+
+/* A surface point in the object space of the shape, filled by shape_describe. */
+struct surface {
+    struct vec3 point;          /* in the shape's object space */
+    struct vec3 normal;         /* geometric, outward (of the CSG result), any length > 0 */
+    struct vec3 shading_normal; /* interpolated where the mesh has vertex normals, else = normal; any length > 0 */
+    struct vec3 pattern_point;  /* in the object space of the operand that made the surface (= point outside CSG) */
+    struct vec3 pattern_normal; /* geometric, in that space, as the operand has it (not flipped) */
+    bool has_uv;
+    bool has_colour;
+    struct vec3 colour; /* of the vertices, interpolated */
+    double u, v;
+    struct vec3 dpdu, dpdv; /* object space; zero when has_uv is false */
+    double error;  /* bound of the distance between `point` and the true surface, object units, from rounding */
+    uint32_t leaf; /* CSG operand, else 0 */
+    uint32_t material_slot; /* per-face materials of a mesh; 0 = the only one */
+};
+
+/* A surface without image coordinates outside of CSG, written field by field: clearing so much memory by its size takes
+ * longer than finding the point. */
+static inline void surface_make(struct surface *out, struct vec3 point, struct vec3 normal, double error) {
+    const struct vec3 zero = {0, 0, 0};
+    out->point = out->pattern_point = point;
+    out->normal = out->shading_normal = out->pattern_normal = normal;
+    out->has_uv = out->has_colour = false;
+    out->colour = out->dpdu = out->dpdv = zero;
+    out->u = out->v = 0;
+    out->error = error;
+    out->leaf = out->material_slot = 0;
+}
+
+struct hit {
+    double t;
+    struct vec3 point;            /* world */
+    struct vec3 view;             /* unit, to where the ray came from */
+    struct vec3 normal_geometric; /* unit, outward, world */
+    struct vec3 normal;           /* unit, interpolated where there are vertex normals; outward side as given */
+    struct vec3 pattern_point, pattern_normal;
+    bool has_uv, has_colour;
+    struct vec3 colour; /* of the vertices, interpolated */
+    double u, v;
+    struct vec3 dpdu, dpdv; /* world; of balls only where relief asks */
+    /* Where relief asks: what one unit along the operand's outward normal is in the world, and along its tangents by
+     * frame_tangents; by how much pattern_normal turns along these, where that is known (of balls), else 0. */
+    struct vec3 raise, along_a, along_b;
+    double curvature;
+    double offset;        /* a secondary ray starts this far (world units) from point along the normal */
+    double footprint;     /* diameter of the ray's cone here, world units; 0 = unknown */
+    double pattern_scale; /* pattern-space units per world unit (largest stretch); for filtering */
+    bool front;           /* the ray came from outside: dot(view, normal_geometric) >= 0 */
+    uint32_t primitive;   /* index of the primitive */
+    uint32_t leaf, part;
+    uint32_t material; /* index into the world's materials */
+    enum hit_convexity convexity;
+    double time;
+};
+
+/* For ray->skip_primitive: a ray that leaves the surface in `direction` from the side `side` (the sign of the distance
+ * of its origin along normal_geometric), where nothing more of its primitive is, does not meet it again. Directions
+ * within 2^-20 of the surface are left to the search, which knows what rounding does. */
+static inline uint32_t hit_skip_primitive_from(const struct hit *hit, double side, struct vec3 direction) {
+    double rise = vec3_dot(direction, hit->normal_geometric), min = 0x1p-20 * vec3_max_abs(direction);
+    bool apart = hit->convexity == CONVEXITY_BEHIND
+                     ? rise > min
+                     : hit->convexity == CONVEXITY_PLANAR && (side < 0 ? -rise : rise) > min;
+    return apart ? hit->primitive + 1 : 0;
+}
+/* The same of a ray that starts on the side where it goes. */
+static inline uint32_t hit_skip_primitive(const struct hit *hit, struct vec3 direction) {
+    return hit_skip_primitive_from(hit, vec3_dot(direction, hit->normal_geometric), direction);
+}
+
+/* The ray that goes on from the hit of `from` in a direction, off the surface by the hit's own offset. */
+static inline struct ray hit_ray(const struct hit *hit, const struct ray *from, struct vec3 direction,
+                                 const struct medium_stack *media) {
+    double side = vec3_dot(direction, hit->normal_geometric) < 0 ? -hit->offset : hit->offset;
+    return (struct ray){.origin = vec3_add_scaled(hit->point, hit->normal_geometric, side),
+                        .direction = direction,
+                        .t_min = 0,
+                        .t_max = INFINITY,
+                        .time = from->time,
+                        .footprint = {hit->footprint, from->footprint.spread},
+                        .media = media,
+                        .skip_primitive = hit_skip_primitive(hit, direction)};
+}
+
+#endif

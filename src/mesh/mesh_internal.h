@@ -1,0 +1,46 @@
+/* What the files of the mesh share; no other file includes this. */
+#ifndef GRAY_MESH_MESH_INTERNAL_H
+#define GRAY_MESH_MESH_INTERNAL_H
+
+#include "accel/kd_triangles.h"
+#include "accel/triangle_index.h"
+#include "mesh/mesh.h"
+
+/* What searches go through, built when the first of them asks: it is apart from the tables, which never change. */
+struct mesh_accel {
+    struct triangle_index *index, *grid; /* grid: only once ACCEL_GRID was asked for */
+    struct kd_triangles *kd_tree;        /* the same for ACCEL_KDTREE */
+};
+
+/* Triangles as flat arrays. A triangle whose first normal or uv corner is MESH_NONE has none. */
+struct mesh {
+    uint32_t references;
+    uint32_t vertex_count, triangle_count, normal_count, uv_count, face_count, dropped_faces;
+    double (*vertices)[3];
+    uint32_t (*corners)[3];
+    double (*normals)[3]; /* unit length; NULL when the input has none */
+    uint32_t (*normal_corners)[3];
+    double (*uvs)[2]; /* NULL when the input has none */
+    uint32_t (*uv_corners)[3];
+    float (*colours)[3]; /* of the vertices, or NULL */
+    uint32_t *materials; /* per triangle, or NULL */
+    /* The original polygons, stored only if the triangles do not determine them. */
+    uint32_t *face_start, *face_vertex;
+    char *file; /* NULL: of tables */
+    uint64_t input_hash;
+    struct box bounds;
+    bool closed, outward; /* outward: of a closed mesh, the volume it encloses is positive */
+    struct vec3 open_edge[2];
+    struct triangle_set set; /* the triangles as searches see them: borrows from the tables above */
+    struct mesh_accel *accel;
+};
+
+#define MESH_NONE UINT32_MAX
+
+/* (b - a) x (c - a); zero only where the three (rounded differences of) points lie on a line. */
+struct vec3 mesh_triangle_normal(const struct mesh *mesh, uint32_t triangle);
+
+/* Fills closed, outward and open_edge. False: no memory. */
+bool mesh_find_topology(struct mesh *mesh);
+
+#endif

@@ -1,0 +1,27 @@
+/* What is done to the tables of a mesh before it is made: welding, turning round, normals with a crease angle. */
+#ifndef GRAY_MESH_MESH_SMOOTH_H
+#define GRAY_MESH_MESH_SMOOTH_H
+
+#include "mesh/mesh.h"
+
+/* Tables that replace those of a mesh_input; it points into them afterwards. Owner: the caller, mesh_tables_destroy,
+ * once the input is not used any more. Zero value: none. */
+struct mesh_tables {
+    double (*vertices)[3], (*normals)[3];
+    float (*colours)[3];
+    uint32_t *vertex_index, *normal_index, *uv_index;
+};
+void mesh_tables_destroy(struct mesh_tables *tables);
+
+/* One vertex for each place that is used; the colour is that of the first vertex there. False: no memory. */
+bool mesh_input_weld(struct mesh_input *input, struct mesh_tables *own, struct error *error);
+/* Reverses every face, and its normals. */
+bool mesh_input_flip(struct mesh_input *input, struct mesh_tables *own, struct error *error);
+/* A normal for every corner: the mean of the faces round its vertex, weighted with their angles there (Thuermer and
+ * Wuethrich, "Computing Vertex Normals from Polygonal Facets", Journal of Graphics Tools 3(1), 1998), over those faces
+ * that are reached across edges where two faces meet at `degrees` or less. Vertices count as one by their places,
+ * whatever their indices. Edges of three and more faces, and of faces that disagree about the outside, are sharp. 0
+ * degrees: no normals at all, every face is flat. */
+bool mesh_input_smooth(struct mesh_input *input, struct mesh_tables *own, double degrees, struct error *error);
+
+#endif

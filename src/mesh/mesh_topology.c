@@ -1,0 +1,80 @@
+/* Whether a mesh is closed: every edge is used by exactly two triangles, in opposite directions. Vertices count as the
+ * same when their positions are equal, whatever their indices. Edges are gathered at their lower vertex: count, prefix
+ * sum, fill; then each vertex sorts its own few. */
+#include "mesh/mesh_internal.h"
+
+#include "base/mem.h"
+#include "base/sort.h"
+#include "mesh/mesh_weld.h"
+
+/* Sorted uses of the edges at one vertex: (other vertex) * 2 + direction. The first edge not used once each way, or the
+ * count when all are. */
+static size_t first_unpaired(const uint64_t *uses, size_t count) {
+    for (size_t i = 0; i < count; i += 2) {
+        bool paired = i + 1 < count && uses[i + 1] == (uses[i] ^ 1) && !(uses[i] & 1);
+        bool third = i + 2 < count && uses[i + 2] >> 1 == uses[i] >> 1;
+        if (!paired || third)
+            return i;
+    }
+    return count;
+}
+
+static double enclosed_volume(const struct mesh *mesh) {
+    double volume = 0;
+    if (mesh->triangle_count == 0)
+        return 0;
+    const double *base = mesh->vertices[mesh->corners[0][0]];
+    for (uint32_t i = 0; i < mesh->triangle_count; i++) {
+        struct vec3 p[3];
+        for (int j = 0; j < 3; j++) {
+            const double *v = mesh->vertices[mesh->corners[i][j]];
+            p[j] = vec3_make(v[0] - base[0], v[1] - base[1], v[2] - base[2]);
+        }
+        volume += vec3_dot(p[0], vec3_cross(p[1], p[2]));
+    }
+    return volume;
+}
+
+static struct vec3 position(const struct mesh *mesh, uint32_t vertex) {
+    const double *v = mesh->vertices[vertex];
+    return vec3_make(v[0], v[1], v[2]);
+}
+
+bool mesh_find_topology(struct mesh *mesh) {
+    uint32_t *same = mem_alloc((size_t)mesh->vertex_count * sizeof *same);
+    size_t *start = mem_alloc_zero((size_t)mesh->vertex_count + 2, sizeof *start);
+    uint64_t *uses = mem_alloc(3 * (size_t)mesh->triangle_count * sizeof *uses);
+    bool enough = same && start && uses && mesh_weld((const double(*)[3])mesh->vertices, mesh->vertex_count, same);
+    if (enough) {
+        /* Count one place further on, so that filling turns starts into ends of the vertex before. */
+        for (int pass = 0; pass < 2; pass++) {
+            for (uint32_t i = 0; i < mesh->triangle_count; i++)
+                for (int j = 0; j < 3; j++) {
+                    uint64_t a = same[mesh->corners[i][j]], b = same[mesh->corners[i][(j + 1) % 3]];
+                    uint64_t low = a < b ? a : b, high = a < b ? b : a;
+                    if (pass == 0)
+                        start[low + 2]++;
+                    else
+                        uses[start[low + 1]++] = high << 1 | (a > b);
+                }
+            for (size_t v = 2; pass == 0 && v < (size_t)mesh->vertex_count + 2; v++)
+                start[v] += start[v - 1];
+        }
+        mesh->closed = mesh->triangle_count > 0;
+        for (uint32_t v = 0; v < mesh->vertex_count && mesh->closed; v++) {
+            size_t count = start[v + 1] - start[v];
+            sort_words(uses + start[v], count);
+            size_t bad = first_unpaired(uses + start[v], count);
+            if (bad == count)
+                continue;
+            mesh->closed = false;
+            mesh->open_edge[0] = position(mesh, v);
+            mesh->open_edge[1] = position(mesh, (uint32_t)(uses[start[v] + bad] >> 1));
+        }
+        mesh->outward = mesh->closed && enclosed_volume(mesh) > 0;
+    }
+    mem_free(same);
+    mem_free(start);
+    mem_free(uses);
+    return enough;
+}

@@ -1,0 +1,11 @@
+/* Vertices at the same position, bit for bit (-0 and 0 are equal). */
+#ifndef GRAY_MESH_MESH_WELD_H
+#define GRAY_MESH_MESH_WELD_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* same[v] becomes the lowest vertex at the position of v. Linear. False: no memory. */
+bool mesh_weld(const double (*vertices)[3], uint32_t count, uint32_t *same);
+
+#endif

@@ -1,0 +1,27 @@
+/* A binary tree over the boxes of a shape's parts, so that a line asks only the parts near it. In depth-first order: a
+ * first child follows its parent, `skip` is where to go on when a box is missed. Owner: the arena it was built in. */
+#ifndef GRAY_SHAPE_PART_TREE_INTERNAL_H
+#define GRAY_SHAPE_PART_TREE_INTERNAL_H
+
+#include "base/arena.h"
+#include "math/box.h"
+
+#include <stdint.h>
+
+struct part_node {
+    struct box box; /* padded for rounding: by 2^-40 of the largest coordinate in the tree */
+    uint32_t skip;
+    uint32_t first, count; /* into `order`; count 0: has children instead */
+};
+
+struct part_tree {
+    const struct part_node *nodes;
+    uint32_t node_count;
+    const uint32_t *order; /* part numbers */
+};
+
+/* At most `leaf_size` parts in a leaf. False: no memory. */
+bool part_tree_build(struct arena *arena, const struct box *boxes, uint32_t count, uint32_t leaf_size,
+                     struct part_tree *out);
+
+#endif

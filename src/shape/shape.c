@@ -1,0 +1,679 @@
+/* The switch over shapes. A new shape adds one case to every function here; the compiler names those it forgot. */
+#include "shape/shape.h"
+
+#include "mesh/mesh.h"
+#include "shape/blob.h"
+#include "shape/box_shape.h"
+#include "shape/curve.h"
+#include "shape/height_field.h"
+#include "shape/lathe.h"
+#include "shape/prism.h"
+#include "shape/sphere.h"
+#include "shape/sweep.h"
+
+/* What a mesh is expected to put on the scratch; when it is more the scratch grows between rays. */
+#define MESH_CROSSINGS_GUESS 256
+/* The most crossings that the shapes answered by analytic_crossings can have. */
+enum { ANALYTIC_MAX = SUPERELLIPSOID_MAX };
+
+const char *shape_kind_name(enum shape_kind kind) {
+    static const char *const names[] = {SHAPE_KINDS(LIST_WORD)};
+    return names[kind];
+}
+
+/* The least and the greatest dot(g, p) over a shape that knows it in closed form; false for the others. */
+static bool shape_extent(const struct shape *shape, struct vec3 g, double *lo, double *hi) {
+    switch (shape->kind) {
+    case SHAPE_SPHERE: {
+        double middle = vec3_dot(g, shape->sphere.centre), reach = vec3_length(g) * shape->sphere.radius;
+        *lo = middle - reach;
+        *hi = middle + reach;
+        return true;
+    }
+    case SHAPE_REVOLVED_QUADRIC:
+        revolved_quadric_extent(&shape->revolved_quadric, g, lo, hi);
+        return true;
+    case SHAPE_ELLIPSOID:
+        ellipsoid_extent(&shape->ellipsoid, g, lo, hi);
+        return true;
+    case SHAPE_TORUS:
+        torus_extent(&shape->torus, g, lo, hi);
+        return true;
+    case SHAPE_SUPERELLIPSOID:
+        superellipsoid_extent(&shape->superellipsoid, g, lo, hi);
+        return true;
+    case SHAPE_PLANAR:
+        planar_extent(&shape->planar, g, lo, hi);
+        return true;
+    case SHAPE_LATHE:
+        lathe_extent(shape->lathe, g, lo, hi);
+        return true;
+    case SHAPE_PRISM:
+        prism_extent(shape->prism, g, lo, hi);
+        return true;
+    case SHAPE_SWEEP:
+        sweep_extent(shape->sweep, g, lo, hi);
+        return true;
+    case SHAPE_HEIGHT_FIELD:
+        height_field_extent(shape->height_field, g, lo, hi);
+        return true;
+    case SHAPE_CURVE:
+        curve_extent(shape->curve, g, lo, hi);
+        return true;
+    case SHAPE_BLOB:
+        blob_extent(shape->blob, g, lo, hi);
+        return true;
+    case SHAPE_QUADRIC:
+        return quadric_extent(shape->quadric, g, lo, hi);
+    case SHAPE_BOX:
+    case SHAPE_MESH:
+        return false;
+    }
+    return false;
+}
+
+struct box shape_bounds_under(const struct shape *shape, const struct affine *map) {
+    double lo[3], hi[3];
+    for (int i = 0; i < 3; i++) {
+        const double *row = map->m[i];
+        if (!shape_extent(shape, vec3_make(row[0], row[1], row[2]), &lo[i], &hi[i])) {
+            struct box own = shape_bounds(shape);
+            return box_transform(map, &own);
+        }
+        lo[i] += row[3];
+        hi[i] += row[3];
+    }
+    return (struct box){{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
+}
+
+struct box shape_bounds(const struct shape *shape) {
+    switch (shape->kind) {
+    case SHAPE_SPHERE: {
+        struct vec3 c = shape->sphere.centre, r = vec3_all(shape->sphere.radius);
+        return box_pad((struct box){vec3_sub(c, r), vec3_add(c, r)});
+    }
+    case SHAPE_BOX:
+        return shape->box;
+    case SHAPE_REVOLVED_QUADRIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_PLANAR: {
+        struct affine identity = affine_identity();
+        return box_pad(shape_bounds_under(shape, &identity));
+    }
+    case SHAPE_QUADRIC:
+        return box_pad(quadric_bounds(shape->quadric));
+    case SHAPE_LATHE:
+        return lathe_bounds(shape->lathe);
+    case SHAPE_PRISM:
+        return prism_bounds(shape->prism);
+    case SHAPE_SWEEP:
+        return sweep_bounds(shape->sweep);
+    case SHAPE_HEIGHT_FIELD:
+        return height_field_bounds(shape->height_field);
+    case SHAPE_BLOB:
+        return blob_bounds(shape->blob);
+    case SHAPE_CURVE:
+        return curve_bounds(shape->curve);
+    case SHAPE_MESH:
+        return mesh_bounds(shape->mesh);
+    }
+    return box_empty();
+}
+
+/* Whether the box of the shape under the map is the shape itself there. */
+static bool is_box_under(const struct shape *shape, const struct affine *map, const struct box *box) {
+    switch (shape->kind) {
+    case SHAPE_BOX: /* placed along the axes */
+        for (int i = 0; i < 3; i++)
+            if ((map->m[i][0] != 0) + (map->m[i][1] != 0) + (map->m[i][2] != 0) != 1)
+                return false;
+        return true;
+    case SHAPE_PLANAR: /* a half-space with an end */
+        return shape->planar.kind == PLANAR_PLANE &&
+               !(box->min.x == -box->max.x && box->min.y == -box->max.y && box->min.z == -box->max.z);
+    case SHAPE_SPHERE:
+    case SHAPE_REVOLVED_QUADRIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_HEIGHT_FIELD:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE:
+    case SHAPE_MESH:
+        break;
+    }
+    return false;
+}
+
+bool shape_inner_box(const struct shape *shape, const struct affine *map, struct box *out) {
+    struct box b = shape_bounds_under(shape, map);
+    if (!is_box_under(shape, map, &b))
+        return false;
+    const double all[6] = {b.min.x, b.min.y, b.min.z, b.max.x, b.max.y, b.max.z};
+    double largest = 0;
+    for (int i = 0; i < 6; i++)
+        largest = isfinite(all[i]) && fabs(all[i]) > largest ? fabs(all[i]) : largest;
+    struct vec3 margin = vec3_all(largest * 0x1p-40);
+    *out = (struct box){vec3_add(b.min, margin), vec3_sub(b.max, margin)};
+    return true;
+}
+
+bool shape_is_closed(const struct shape *shape) {
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+        return true;
+    case SHAPE_BOX:
+        return true;
+    case SHAPE_REVOLVED_QUADRIC:
+        return revolved_quadric_is_closed(&shape->revolved_quadric);
+    case SHAPE_ELLIPSOID:
+        return true;
+    case SHAPE_QUADRIC:
+        return quadric_is_closed(shape->quadric);
+    case SHAPE_TORUS:
+        return true;
+    case SHAPE_SUPERELLIPSOID:
+        return true;
+    case SHAPE_PLANAR:
+        return shape->planar.kind == PLANAR_PLANE;
+    case SHAPE_LATHE:
+        return lathe_is_closed(shape->lathe);
+    case SHAPE_PRISM:
+        return true;
+    case SHAPE_SWEEP:
+        return true;
+    case SHAPE_HEIGHT_FIELD:
+        return height_field_is_closed(shape->height_field);
+    case SHAPE_BLOB:
+        return true;
+    case SHAPE_CURVE:
+        return false;
+    case SHAPE_MESH:
+        return mesh_is_closed(shape->mesh);
+    }
+    return false;
+}
+
+enum surface_layout shape_layout(const struct shape *shape) {
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+        return LAYOUT_SPHERE;
+    case SHAPE_BOX:
+        return LAYOUT_FACES;
+    case SHAPE_REVOLVED_QUADRIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_PLANAR:
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_HEIGHT_FIELD:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE:
+    case SHAPE_MESH:
+        break;
+    }
+    return LAYOUT_UV;
+}
+
+enum shape_area shape_area(const struct shape *shape) {
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+        return SHAPE_AREA_SPHERE;
+    case SHAPE_PLANAR:
+        return SHAPE_AREA_PLANAR;
+    case SHAPE_MESH:
+        return SHAPE_AREA_TRIANGLES;
+    case SHAPE_BOX:
+    case SHAPE_REVOLVED_QUADRIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_HEIGHT_FIELD:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE:
+        break;
+    }
+    return SHAPE_AREA_UNKNOWN;
+}
+
+bool shape_native_uv(const struct shape *shape, const struct hit *hit, double *u, double *v) {
+    *u = hit->u;
+    *v = hit->v;
+    switch (shape_layout(shape)) {
+    case LAYOUT_SPHERE: {
+        struct surface ball = {.normal = vec3_normalize(hit->pattern_normal)};
+        sphere_uv(1, &ball);
+        *u = ball.u;
+        *v = 1 - ball.v;
+        return true;
+    }
+    case LAYOUT_UV:
+    case LAYOUT_FACES:
+        break;
+    }
+    return hit->has_uv;
+}
+
+enum hit_convexity shape_convexity(const struct shape *shape) {
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+    case SHAPE_BOX:
+    case SHAPE_ELLIPSOID:
+        return CONVEXITY_BEHIND;
+    case SHAPE_REVOLVED_QUADRIC:
+        return revolved_quadric_is_convex(&shape->revolved_quadric) ? CONVEXITY_BEHIND : CONVEXITY_NONE;
+    case SHAPE_PLANAR:
+        return CONVEXITY_PLANAR;
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_HEIGHT_FIELD:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE:
+    case SHAPE_MESH:
+        break;
+    }
+    return CONVEXITY_NONE;
+}
+
+const char *shape_why_open(const struct shape *shape) {
+    if (shape_is_closed(shape))
+        return NULL;
+    switch (shape->kind) {
+    case SHAPE_REVOLVED_QUADRIC:
+    case SHAPE_QUADRIC:
+        return "has no caps (open = true), so it has no inside";
+    case SHAPE_PLANAR:
+        return "is flat, so it has no inside; only a plane with a normal is a half-space";
+    case SHAPE_CURVE:
+        return "is a curve, a ribbon without inside";
+    case SHAPE_LATHE:
+        return "is an open lathe: its profile ends off the axis, so it has no inside";
+    case SHAPE_HEIGHT_FIELD:
+        return "is a sheet without walls and floor (open = true), so it has no inside";
+    case SHAPE_MESH:
+        return "is a mesh with open edges, so it has no inside";
+    case SHAPE_SPHERE:
+    case SHAPE_BOX:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_BLOB:
+        break;
+    }
+    return "is only a surface, so it has no inside";
+}
+
+/* All crossings of the whole line in order with a shape that has only a few. */
+static int analytic_crossings(const struct shape *shape, const struct ray *ray, struct crossing out[ANALYTIC_MAX]) {
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+        return sphere_crossings(shape->sphere.centre, shape->sphere.radius, ray, out) ? 2 : 0;
+    case SHAPE_BOX:
+        return box_shape_crossings(&shape->box, ray, out) ? 2 : 0;
+    case SHAPE_REVOLVED_QUADRIC:
+        return revolved_quadric_crossings(&shape->revolved_quadric, ray, out);
+    case SHAPE_ELLIPSOID:
+        return ellipsoid_crossings(&shape->ellipsoid, ray, out);
+    case SHAPE_QUADRIC:
+        return quadric_crossings(shape->quadric, ray, out);
+    case SHAPE_TORUS:
+        return torus_crossings(&shape->torus, ray, out);
+    case SHAPE_SUPERELLIPSOID:
+        return superellipsoid_crossings(&shape->superellipsoid, ray, out);
+    case SHAPE_PLANAR:
+        return planar_crossings(&shape->planar, ray, out);
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_HEIGHT_FIELD:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE:
+    case SHAPE_MESH:
+        break;
+    }
+    return 0;
+}
+
+static bool analytic_nearest(const struct shape *shape, const struct ray *ray, struct crossing *out) {
+    struct crossing all[ANALYTIC_MAX];
+    int count = analytic_crossings(shape, ray, all);
+    for (int i = 0; i < count; i++)
+        if (all[i].t > ray->t_min && all[i].t < ray->t_max) {
+            *out = all[i];
+            return true;
+        }
+    return false;
+}
+
+bool shape_is_listed(const struct shape *shape) {
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+    case SHAPE_BOX:
+    case SHAPE_REVOLVED_QUADRIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_PLANAR:
+        return false;
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_HEIGHT_FIELD:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE:
+    case SHAPE_MESH:
+        break;
+    }
+    return true;
+}
+
+/* The lists of the shapes that may have many crossings. */
+static bool listed_crossings(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch,
+                             struct crossing_list *out) {
+    switch (shape->kind) {
+    case SHAPE_LATHE:
+        return lathe_crossings(shape->lathe, ray, scratch, out);
+    case SHAPE_PRISM:
+        return prism_crossings(shape->prism, ray, scratch, out);
+    case SHAPE_SWEEP:
+        return sweep_crossings(shape->sweep, ray, scratch, out);
+    case SHAPE_HEIGHT_FIELD:
+        return height_field_crossings(shape->height_field, ray, scratch, out);
+    case SHAPE_BLOB:
+        return blob_crossings(shape->blob, ray, scratch, out);
+    case SHAPE_CURVE:
+        return curve_crossings(shape->curve, ray, scratch, out);
+    case SHAPE_SPHERE:
+    case SHAPE_BOX:
+    case SHAPE_REVOLVED_QUADRIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_PLANAR:
+    case SHAPE_MESH:
+        break;
+    }
+    *out = (struct crossing_list){scratch->used, 0};
+    return true;
+}
+
+static bool listed_nearest(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch,
+                           struct crossing *out) {
+    struct crossing_list list;
+    if (!listed_crossings(shape, ray, scratch, &list))
+        return false;
+    scratch->used = list.first;
+    for (uint32_t i = 0; i < list.count; i++) {
+        const struct crossing *c = &scratch->items[list.first + i];
+        if (c->t > ray->t_min && c->t < ray->t_max) {
+            *out = *c;
+            return true;
+        }
+    }
+    return false;
+}
+
+bool shape_nearest(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch,
+                   struct crossing *out) {
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+    case SHAPE_BOX:
+    case SHAPE_REVOLVED_QUADRIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_PLANAR:
+        scratch->shape_tests++;
+        return analytic_nearest(shape, ray, out);
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE:
+        scratch->shape_tests++;
+        return listed_nearest(shape, ray, scratch, out);
+    case SHAPE_HEIGHT_FIELD: /* the same crossings, without those that come later */
+        scratch->shape_tests++;
+        return height_field_nearest(shape->height_field, ray, scratch, out);
+    case SHAPE_MESH:
+        return mesh_nearest(shape->mesh, ray, ACCEL_AUTO, scratch, out);
+    }
+    return false;
+}
+
+bool shape_any(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch) {
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+    case SHAPE_BOX:
+    case SHAPE_REVOLVED_QUADRIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_PLANAR: {
+        struct crossing ignored;
+        scratch->shape_tests++;
+        return analytic_nearest(shape, ray, &ignored);
+    }
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE: {
+        struct crossing ignored;
+        scratch->shape_tests++;
+        return listed_nearest(shape, ray, scratch, &ignored);
+    }
+    case SHAPE_HEIGHT_FIELD: {
+        struct crossing ignored;
+        scratch->shape_tests++;
+        return height_field_nearest(shape->height_field, ray, scratch, &ignored);
+    }
+    case SHAPE_MESH:
+        return mesh_any(shape->mesh, ray, ACCEL_AUTO, scratch);
+    }
+    return false;
+}
+
+bool shape_crossings(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch,
+                     struct crossing_list *out) {
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+    case SHAPE_BOX:
+    case SHAPE_REVOLVED_QUADRIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_PLANAR: {
+        struct crossing all[ANALYTIC_MAX];
+        scratch->shape_tests++;
+        if (scratch->capacity - scratch->used >= ANALYTIC_MAX) { /* nearly always */
+            uint32_t found = (uint32_t)analytic_crossings(shape, ray, &scratch->items[scratch->used]);
+            *out = (struct crossing_list){scratch->used, found};
+            scratch->used += found;
+            return true;
+        }
+        int count = analytic_crossings(shape, ray, all);
+        *out = (struct crossing_list){scratch->used, (uint32_t)count};
+        for (int i = 0; i < count; i++)
+            if (!geom_scratch_push(scratch, all[i])) {
+                scratch->used = out->first;
+                return false;
+            }
+        return true;
+    }
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_HEIGHT_FIELD:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE:
+        scratch->shape_tests++;
+        return listed_crossings(shape, ray, scratch, out);
+    case SHAPE_MESH:
+        return mesh_crossings(shape->mesh, ray, ACCEL_AUTO, scratch, out);
+    }
+    return false;
+}
+
+/* Parity along one fixed direction, oblique to everything people model; crossings ahead of the point are counted. */
+static bool mesh_contains(const struct mesh *mesh, struct vec3 point, struct geom_scratch *scratch) {
+    struct box bounds = mesh_bounds(mesh);
+    if (!box_contains(&bounds, point))
+        return false;
+    struct ray ray = {.origin = point,
+                      .direction = {0.5773128394, 0.2138497211, 0.7881094327},
+                      .t_min = -INFINITY,
+                      .t_max = INFINITY};
+    struct crossing_list list;
+    if (!mesh_crossings(mesh, &ray, ACCEL_AUTO, scratch, &list))
+        return false;
+    bool inside = false;
+    for (uint32_t i = 0; i < list.count; i++)
+        inside ^= scratch->items[list.first + i].t > 0;
+    scratch->used = list.first;
+    return inside;
+}
+
+bool shape_contains(const struct shape *shape, struct vec3 point, struct geom_scratch *scratch) {
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+        return sphere_contains(shape->sphere.centre, shape->sphere.radius, point);
+    case SHAPE_BOX:
+        return box_shape_contains(&shape->box, point);
+    case SHAPE_REVOLVED_QUADRIC:
+        return revolved_quadric_contains(&shape->revolved_quadric, point);
+    case SHAPE_ELLIPSOID:
+        return ellipsoid_contains(&shape->ellipsoid, point);
+    case SHAPE_QUADRIC:
+        return quadric_contains(shape->quadric, point);
+    case SHAPE_TORUS:
+        return torus_contains(&shape->torus, point);
+    case SHAPE_SUPERELLIPSOID:
+        return superellipsoid_contains(&shape->superellipsoid, point);
+    case SHAPE_PLANAR:
+        return planar_contains(&shape->planar, point);
+    case SHAPE_LATHE:
+        return lathe_contains(shape->lathe, point);
+    case SHAPE_PRISM:
+        return prism_contains(shape->prism, point);
+    case SHAPE_SWEEP:
+        return sweep_contains(shape->sweep, point);
+    case SHAPE_HEIGHT_FIELD:
+        return height_field_contains(shape->height_field, point);
+    case SHAPE_BLOB:
+        return blob_contains(shape->blob, point);
+    case SHAPE_CURVE:
+        return false;
+    case SHAPE_MESH:
+        return mesh_contains(shape->mesh, point, scratch);
+    }
+    return false;
+}
+
+void shape_describe(const struct shape *shape, const struct ray *ray, const struct crossing *crossing,
+                    struct surface *out) {
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+        sphere_describe(shape->sphere.centre, shape->sphere.radius, ray, crossing, out);
+        return;
+    case SHAPE_BOX:
+        box_shape_describe(&shape->box, ray, crossing, out);
+        return;
+    case SHAPE_REVOLVED_QUADRIC:
+        revolved_quadric_describe(&shape->revolved_quadric, ray, crossing, out);
+        return;
+    case SHAPE_ELLIPSOID:
+        ellipsoid_describe(&shape->ellipsoid, ray, crossing, out);
+        return;
+    case SHAPE_QUADRIC:
+        quadric_describe(shape->quadric, ray, crossing, out);
+        return;
+    case SHAPE_TORUS:
+        torus_describe(&shape->torus, ray, crossing, out);
+        return;
+    case SHAPE_SUPERELLIPSOID:
+        superellipsoid_describe(&shape->superellipsoid, ray, crossing, out);
+        return;
+    case SHAPE_PLANAR:
+        planar_describe(&shape->planar, ray, crossing, out);
+        return;
+    case SHAPE_LATHE:
+        lathe_describe(shape->lathe, ray, crossing, out);
+        return;
+    case SHAPE_PRISM:
+        prism_describe(shape->prism, ray, crossing, out);
+        return;
+    case SHAPE_SWEEP:
+        sweep_describe(shape->sweep, ray, crossing, out);
+        return;
+    case SHAPE_HEIGHT_FIELD:
+        height_field_describe(shape->height_field, ray, crossing, out);
+        return;
+    case SHAPE_BLOB:
+        blob_describe(shape->blob, ray, crossing, out);
+        return;
+    case SHAPE_CURVE:
+        curve_describe(shape->curve, ray, crossing, out);
+        return;
+    case SHAPE_MESH:
+        mesh_describe(shape->mesh, ray, crossing, out);
+        return;
+    }
+}
+
+uint32_t shape_scratch_need(const struct shape *shape) {
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+        return 2;
+    case SHAPE_BOX:
+        return 2;
+    case SHAPE_ELLIPSOID:
+    case SHAPE_PLANAR:
+        return 2;
+    case SHAPE_REVOLVED_QUADRIC:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+        return 4;
+    case SHAPE_SUPERELLIPSOID:
+        return SUPERELLIPSOID_MAX;
+    case SHAPE_LATHE:
+        return lathe_scratch_need(shape->lathe);
+    case SHAPE_PRISM:
+        return prism_scratch_need(shape->prism);
+    case SHAPE_SWEEP:
+        return sweep_scratch_need(shape->sweep);
+    case SHAPE_HEIGHT_FIELD:
+        return height_field_scratch_need(shape->height_field);
+    case SHAPE_BLOB:
+        return blob_scratch_need(shape->blob);
+    case SHAPE_CURVE:
+        return curve_scratch_need(shape->curve);
+    case SHAPE_MESH:
+        return MESH_CROSSINGS_GUESS;
+    }
+    return 0;
+}
