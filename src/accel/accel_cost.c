@@ -1,8 +1,8 @@
-/* The cost model of the frame. Two kinds of rays stand for all: lines through the frame at random, of which the share
+/* The cost model of the frame. Two kinds of rays represent all: lines through the frame at random, of which the share
  * S(voxel) / S(frame) visits a voxel (S: surface; Cauchy and Crofton, as in the surface area heuristic of MacDonald and
- * Booth, "Heuristics for Ray Tracing Using Space Subdivision", 1990), and lines to a random thing, since people look at
- * things and light comes from them: for those a crowded voxel counts by how much is in it. Where a ray ends does not
- * matter to the choice: steps and nodes end with it.
+ * Booth, "Heuristics for Ray Tracing Using Space Subdivision", 1990), and lines to a random thing, since cameras look
+ * at objects and light comes from them: for those a crowded voxel counts by how much is in it. Where a ray ends does
+ * not matter to the choice: steps and nodes end with it.
  *
  * A hierarchy is taken for the occupied voxels of all levels, 2, 4, 8 ... along the longest axis; from one to the next
  * it needs log(growth of their number) / log(children) nodes on top of each other. With lists in the voxels nothing has
@@ -51,7 +51,7 @@ static uint32_t cells_along(const struct cost_level *level, const struct box *bo
 struct sample {
     const struct box *boxes;
     uint32_t count;
-    double each; /* items that one of them stands for */
+    double each; /* items that one of them represents */
 };
 
 /* False: the sample is too small for the level. */
@@ -85,7 +85,7 @@ static bool count_level(struct cost_level *level, const struct box *bounds, cons
     level->visited = (double)all * share;
     level->occupied = occupied * share;
     level->listed = listed * sample->each * share;
-    /* One of them is the thing itself; the others stand for as many more. */
+    /* One of them is the thing itself; the others represent as many more. */
     level->around = entries > 0 ? 1 + (squares / entries - 1) * sample->each : 0;
     return sample->each == 1 || entries >= SAMPLE_LIMIT * occupied;
 }

@@ -40,7 +40,7 @@ static struct box run_box(const struct builder *b, uint32_t first, uint32_t coun
     return box;
 }
 
-/* Where an item counts as being. Infinite boxes have no middle; they go by a finite stand-in. */
+/* Where an item counts as being. Infinite boxes have no middle; a finite value replaces them. */
 static double middle(double lo, double hi) {
     if (isfinite(lo) && isfinite(hi))
         return lo + (hi - lo) * 0.5;

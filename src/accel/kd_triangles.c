@@ -111,7 +111,7 @@ struct search {
     struct kd_traversal traversal;
     struct triangle_ray sheared;
     const struct triangle_set *set;
-    uint32_t seen[MAILBOX]; /* triangles tried last: one may stand in many leaves */
+    uint32_t seen[MAILBOX]; /* triangles tried last: one may be in many leaves */
     uint64_t tests;
 };
 

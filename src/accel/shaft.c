@@ -1,4 +1,4 @@
-/* Shafts: what can stand between a point and a parallelogram. Only ever conservative: an item is left out when its box
+/* Shafts: what can be between a point and a parallelogram. Only ever conservative: an item is left out when its box
  * is certainly outside of one plane, with slack for the rounding of plane and box. */
 #include "accel/box_tree.h"
 
@@ -12,7 +12,7 @@ static void add_plane(struct shaft *shaft, struct vec3 normal, struct vec3 on_pl
         normal = vec3_negate(normal);
         side = -side;
     }
-    /* A plane that is not clearly on one side of the middle tells nothing. */
+    /* A plane that is not clearly on one side of the middle gives no information. */
     double slack = size * 0x1p-40;
     if (!(side < -slack))
         return;

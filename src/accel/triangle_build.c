@@ -1,10 +1,11 @@
 /* Hierarchies of eight children to a node (Wald, Benthin, Boulos, "Getting Rid of Packets", RT 2008), cut from binary
  * ones (triangle_tree.h).
  *
- * Parallel and deterministic: ranges above a size that only the data decides are parted all at once, round by round,
- * until what is left can be shared out; the parts are built by jobs, put together, made better by reinsertion on one
- * thread, weighed from below by jobs and on top of them, and written by jobs to where a count of all before them says.
- * The binary hierarchy is a third as large as what is made, and gone by the time the references are. */
+ * Parallel and deterministic: ranges above a size that only the data decides are partitioned by all threads together,
+ * round by round, until the rest can be distributed; the parts are built by jobs, put together, made better by
+ * reinsertion on one thread, weighed from below by jobs and on top of them, and written by jobs to where a count of all
+ * before them says. The binary hierarchy is a third as large as what is made, and gone by the time the references are.
+ */
 #include "accel/triangle_build.h"
 
 #include "accel/triangle_tree.h"
@@ -127,7 +128,7 @@ static bool run_jobs(struct builder *builder, pool_function *function) {
 
 /* --- the binary hierarchies --- */
 
-/* A branch above the pieces that is not parted yet. */
+/* A branch above the pieces that is not partitioned yet. */
 struct open_branch {
     struct range range, part[2];
     uint32_t branch, depth;
@@ -215,7 +216,7 @@ static void build_job(void *context, uint32_t item, int worker) {
     (void)worker;
     for (uint32_t i = job->first; i < job->first + job->count && !job->failed; i++) {
         struct piece *piece = &builder->pieces.items[i];
-        if (piece->depth == 0) /* a whole hierarchy; the others were measured when they were parted */
+        if (piece->depth == 0) /* a whole hierarchy; the others were measured when they were partitioned */
             range_measure(builder->references, &piece->range);
         job->failed =
             !tree_build(&job->tree, builder->references, &piece->range, piece->depth, builder->pool, &piece->branch);

@@ -14,7 +14,7 @@ struct fault_counters {
     _Atomic int error;
     uint64_t acting; /* of calls; 0: none */
     void (*act)(void);
-    pid_t first; /* the process that tells the counts */
+    pid_t first; /* the process that reports the counts */
 };
 
 static struct fault_counters own, *counters = &own;

@@ -59,7 +59,7 @@ static bool cannot_write(struct error *error, const struct file_output *file, in
     return error_set(error, file_refusal_kind(number), "%.600s: cannot be written: %s", file->target, strerror(number));
 }
 
-/* Where the file stands. */
+/* The position of the file. */
 
 static bool set_target(struct file_output *file, const struct file_target *target, struct error *error) {
     memset(file, 0, sizeof *file);
@@ -117,9 +117,9 @@ bool file_same_place(const char *a, const char *b) {
     return same_file(identity_of(&status[0]), identity_of(&status[1])) && strcmp(leaves[0], leaves[1]) == 0;
 }
 
-/* What stands there already. */
+/* The existing file. */
 
-/* The first bytes of the regular file that `place` (O_PATH) stands for; -1: it cannot be read. */
+/* The first bytes of the regular file of `place` (O_PATH); -1: it cannot be read. */
 static ssize_t read_head(int place, uint8_t head[FILE_HEAD_SIZE]) {
     char name[64];
     (void)snprintf(name, sizeof name, "/proc/self/fd/%d", place);
@@ -192,7 +192,7 @@ static const char *kind_of_file(mode_t mode) {
     return S_ISFIFO(mode) ? "a named pipe" : S_ISSOCK(mode) ? "a socket" : "a device";
 }
 
-/* Looks at what stands under the name without opening anything but regular files. *there: something that may be
+/* Inspects the file with this name; opens only regular files. *there: something that may be
  * replaced, with this status. */
 static bool inspect(const struct file_output *file, bool *there, struct stat *status, struct error *error) {
     char text[96];
@@ -633,7 +633,8 @@ void file_output_abandon(struct file_output *file) {
         close_all(file);
 }
 
-/* It gets a temporary name first, where nobody looks for it, so that what is removed is what was inspected. */
+/* It gets a temporary name first, which no other process uses, so that the inspected file is the one that is removed.
+ */
 bool file_output_remove(const struct file_target *target, struct file_identity identity, struct error *error) {
     struct file_output file;
     struct stat status;

@@ -147,7 +147,7 @@ static void take_character(struct line_guard *guard, const char *text, size_t le
         } else if (guard->held_size + length + strlen(own) <= sizeof guard->held) {
             memcpy(guard->held + guard->held_size, text, length);
             guard->held_size += length;
-        } else { /* nobody writes so many of them into a word */
+        } else { /* no word has so many of them */
             release_marked(guard);
             put(guard, text, length);
         }

@@ -5,8 +5,8 @@
  *
  * Coincident faces. Operands have their own transforms, so faces that are meant to be one differ by rounding. A
  * crossing has a bound of the error of its t: the rounding errors of the ray in the leaf's space at that place,
- * relative to the numbers they came from, divided by the cosine at the surface. Crossings whose error intervals overlap
- * cannot be told apart; they form a group and happen at once:
+ * relative to the numbers they came from, divided by the cosine at the surface. Crossings with overlapping error
+ * intervals cannot be distinguished; they form a group and happen at once:
  *   - a leaf that crosses an even number of times within a group does not cross;
  *   - while the line is outside the solid, first all happen that take away, then those that add; while it is inside,
  *     first those that add, then those that take away; each in the order of the operands.

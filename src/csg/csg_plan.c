@@ -4,7 +4,7 @@
  * step per node whose truth changes with it: a union of 10,000 solids is one node.
  *
  * Every node has a box outside of which its truth is what it is with all leaves false. Of an AND that is the common
- * part of the boxes of those children that start false, since any of them decides; if all start true, the box round
+ * part of the boxes of those children that start false, since any of them decides; if all start true, the box around
  * all. An OR is the same with true and false exchanged. From an AND's box goes what a negated box or half-space along
  * the axes takes off an end. A leaf matters only inside the boxes of all nodes above it: a ray that misses their common
  * part does not ask it, and what is subtracted costs nothing beside the solid it is subtracted from.
@@ -74,8 +74,8 @@ struct pending {
     bool negated;
 };
 
-/* Reads a program backwards, which meets the root first and a right operand before the left one. is_all[n] tells
- * whether node n is an AND. Returns the root. */
+/* Reads a program backwards, which meets the root first and a right operand before the left one. is_all[n] says whether
+ * node n is an AND. Returns the root. */
 static uint32_t build_nodes(const struct csg *csg, struct csg_plan *plan, uint32_t first, uint32_t end,
                             struct pending *stack, bool *is_all) {
     uint32_t depth = 0, root = plan->node_count;
@@ -140,7 +140,7 @@ static struct box box_tidy(struct box b) {
     return box_is_empty(&b) ? box_empty() : b;
 }
 
-/* The box round a - b. */
+/* The box around a - b. */
 static struct box box_less(struct box a, struct box b) {
     double lo[3] = {a.min.x, a.min.y, a.min.z}, hi[3] = {a.max.x, a.max.y, a.max.z};
     const double cut_lo[3] = {b.min.x, b.min.y, b.min.z}, cut_hi[3] = {b.max.x, b.max.y, b.max.z};
@@ -164,7 +164,7 @@ static struct box box_less(struct box a, struct box b) {
 /* The box of a node while it is worked out. */
 struct live {
     struct box decided;  /* the common part of the children whose start truth decides the node's */
-    struct box joined;   /* round all children */
+    struct box joined;   /* around all children */
     bool decides;        /* there are deciding children */
     uint32_t first_trim; /* leaves that may take something off the end */
 };

@@ -88,7 +88,7 @@ bool gltf_numbers(const struct gltf *g, const json_t *object, const char *key, d
         return gltf_fail(g, where, "%s is not an array of %d numbers", key, count);
     for (int i = 0; i < count; i++) {
         const json_t *value = json_array_get(array, (size_t)i);
-        assert(isfinite(json_number_value(value))); /* JSON has no others, and 0 is told of what is none */
+        assert(isfinite(json_number_value(value))); /* JSON has no others; 0 if it is not a number */
         if (!json_is_number(value))
             return gltf_fail(g, where, "%s[%d] is not a finite number", key, i);
         out[i] = json_number_value(value);
@@ -451,7 +451,7 @@ static bool read_node(struct gltf *g, struct visit visit, uint8_t *seen, struct 
     return true;
 }
 
-/* The roots: those of the scene, or in a file without scenes all nodes that are nobody's child. */
+/* The roots: those of the scene, or in a file without scenes all nodes without a parent. */
 static bool push_roots(struct gltf *g, struct list *stack) {
     const json_t *nodes = gltf_array(g, "nodes"), *scenes = gltf_array(g, "scenes");
     size_t count = json_array_size(nodes);
@@ -580,7 +580,7 @@ static bool check_json(const struct gltf *g, const char *text, size_t size) {
     return true;
 }
 
-/* jansson tells a lack of memory as broken text, and its allocator has no context to say so in: hence this one
+/* jansson reports lack of memory as broken text, and its allocator has no context for an error: hence this one
  * variable, which lives from the start of a parse to its end. */
 static _Thread_local bool json_memory_failed;
 

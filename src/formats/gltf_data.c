@@ -1,4 +1,4 @@
-/* Buffers, views and accessors of glTF: where numbers stand and what they mean. Source: Khronos Group, "glTF 2.0
+/* Buffers, views and accessors of glTF: the position and the meaning of numbers. Source: Khronos Group, "glTF 2.0
  * Specification" (ISO/IEC 12113:2022), sections 3.6 and 4.4. Every range is checked against the bytes that are there,
  * once, when an accessor is made; reading then checks nothing but the numbers themselves. */
 #ifdef HAVE_JANSSON
@@ -224,7 +224,7 @@ bool gltf_accessor(struct gltf *g, uint32_t index, struct gltf_accessor *out) {
     return !sparse || sparse_part(g, sparse, out, where);
 }
 
-/* Section 3.6.2.2: how whole numbers stand for 0..1 or -1..1; others stand for themselves. */
+/* Section 3.6.2.2: how whole numbers represent 0..1 or -1..1; others are not converted. */
 static double value_of(const uint8_t *p, enum number_type type, bool normalized) {
     static const double one[NUMBER_TYPES] = {
         [NUMBER_I8] = 127, [NUMBER_U8] = 255, [NUMBER_I16] = 32767, [NUMBER_U16] = 65535};

@@ -1,4 +1,4 @@
-/* The common part of all mesh files: telling them apart, gathering tables, making meshes of them. Tables live from the
+/* The common part of all mesh files: recognising them, collecting tables, building meshes. Tables live from the
  * reader to model_finish and not longer: a big file is in memory as bytes, as tables and as a mesh, never twice as one
  * of them. */
 #include "formats/model.h"

@@ -153,7 +153,7 @@ static bool read_map(struct library *l, struct model_texture *map) {
     map->name = arena_copy_text(&l->model->arena, name, length);
     if (!map->name)
         return error_no_memory(l->error, l->path);
-    /* Names in a library are relative to the library, which mostly stands beside the model. */
+    /* Names in a library are relative to the library, which is usually beside the model. */
     const char *slash = strrchr(l->path, '/');
     if (slash && !l->model->options.alone && name[0] != '/') {
         int folder = (int)(slash + 1 - l->path);

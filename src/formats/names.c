@@ -1,4 +1,4 @@
-/* A hash table with open addressing. Where a name stands in it decides nothing: numbers are given in order of arrival.
+/* A hash table with open addressing. The position of a name in it has no effect: numbers are given in order of arrival.
  */
 #include "formats/names.h"
 

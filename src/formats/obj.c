@@ -3,7 +3,7 @@
  * A line is a keyword and blank-separated words; `#` starts a comment, a backslash at the end of a line continues it.
  * Only v, vt, vn, f, usemtl, mtllib, g and o are read; other keywords must at least look like words, so that a binary
  * file is refused on its first line. The faces behind a usemtl have its material; in a file without any usemtl those of
- * a group (g, o) have a material slot of its name, so that a script can tell them apart. Source of the format:
+ * a group (g, o) have a material slot of its name, so that a script can distinguish them. Source of the format:
  * Wavefront, "Object Files (.obj)", Appendix B1 of the Advanced Visualizer manual. Indices count from 1; negative ones
  * count back from the last element read so far. A positive index may point at an element that comes later in the file,
  * so these are checked at the end: for each of the three lists only the largest index and its line need to be kept.
@@ -295,7 +295,7 @@ static bool read_slot(struct reader *reader, struct slotting *slotting) {
            error_no_memory(reader->error, reader->path);
 }
 
-/* Reads one library of materials; false only when it is there and broken. *found tells whether it is there. */
+/* Reads one library of materials; false only when it is there and broken. *found says whether it exists. */
 static bool read_library(struct reader *reader, const char *name, size_t length, bool *found) {
     const char *path;
     struct file_bytes bytes;

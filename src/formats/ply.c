@@ -3,7 +3,7 @@
  *
  * The header is turned into a list of properties per element, each with what it means to us; one loop over elements,
  * rows and properties then reads everything, and what means nothing is passed over by its size. A row of text is a
- * line. Nothing is believed: a count claims at least so many bytes and is refused when the file has fewer, before any
+ * line. Nothing is trusted: a count claims at least so many bytes and is refused when the file has fewer, before any
  * memory is taken, so memory is a small multiple of the file. */
 #include "formats/decimal.h"
 #include "formats/model.h"
@@ -547,7 +547,7 @@ static bool read_face(struct ply *ply, const struct element *element, bool corne
     return add_face(ply, ply->values.items, count) && (!corner_uvs || add_corner_uvs(ply, count));
 }
 
-/* Every vertex from the third on makes a triangle, turned round at every second one. */
+/* Every vertex from the third on makes a triangle, reversed at every second one. */
 static bool add_strips(struct ply *ply) {
     const uint32_t *v = ply->values.items;
     size_t first = 0;

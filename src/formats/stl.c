@@ -121,7 +121,7 @@ static bool read_point(struct text *t, double out[3]) {
     return true;
 }
 
-/* Three words that nobody needs: exporters write nan there. */
+/* Three words that are skipped: exporters write nan there. */
 static bool skip_normal(struct text *t) {
     for (int k = 0; k < 3; k++) {
         size_t length = next_word(t);

@@ -72,7 +72,7 @@ static void finish_output(const struct render_process *process) {
 }
 
 static void report(const struct render_process *process, enum line_kind kind, const char *text) {
-    finish_output(process); /* what the script printed before stands before */
+    finish_output(process); /* earlier output of the script comes first */
     process->services->line(process->services->context, kind, text);
 }
 
@@ -187,7 +187,7 @@ static bool is_asked(const struct options *options) {
     return options->pixel_count > 0 || options->dump_scene;
 }
 
-/* Not by way of the supervisor: what the script prints next stands behind it. */
+/* Not by way of the supervisor: later output of the script follows it. */
 static void print_piece(void *context, const char *text) {
     (void)context;
     text_print(stdout, text);
@@ -464,7 +464,7 @@ static bool render_one(struct render_process *process, const struct render_reque
     return ok;
 }
 
-/* With --check a scene that cannot be built is reported at once and the script goes on, to find what else is wrong. */
+/* With --check a scene that cannot be built is reported at once and the script continues, to find further errors. */
 static bool render(void *context, const struct render_request *request, struct error *error) {
     struct render_process *process = context;
     if (render_one(process, request, error))

@@ -1,5 +1,5 @@
-/* One render process runs all scripts, so that what one script has read serves the next. When it dies, a new one goes
- * on with the script after the one that was running. */
+/* One render process runs all scripts, so that what one script has read serves the next. When it dies, a new one
+ * continues with the next script. */
 #include "host/supervisor_internal.h"
 
 #include "base/mem.h"

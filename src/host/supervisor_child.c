@@ -20,7 +20,7 @@
 
 /* Seconds from the end of the channel to the end of the process. */
 static const double farewell = 10;
-/* How often in a farm a script is begun anew after its renderer was killed. */
+/* How often a farm starts a script again after its renderer was killed. */
 enum { TRIES_MAX = 3 };
 
 /* The processor time of the child: all of it is the script's while no picture is being made, since then the threads of
@@ -216,7 +216,7 @@ static void report_death(struct supervisor *supervisor, int how) {
     supervisor_note_error(supervisor, &error);
 }
 
-/* In a farm a script whose renderer was killed, by this process or by another one, is begun anew: its pictures that are
+/* A farm starts a script again whose renderer was killed, by this process or by another one: its pictures that are
  * finished are passed over. The first rank keeps the tiles of the picture that was being made, the others give theirs
  * back. */
 static bool tries_again(struct supervisor *supervisor, int how) {

@@ -9,7 +9,7 @@
 
 /* Seconds that a child has to give up when the window is closed, which is to be over within 50 milliseconds. */
 static const double patience_quit = 0.01;
-/* Seconds for the scripts to end before they run again; afterwards the process is started anew. */
+/* Seconds for the scripts to end before they run again; afterwards the process is started again. */
 static const double patience_again = 0.3;
 
 /* Without its answer the child would wait for ever, unless it is gone: that is met at the end of the channel. */
@@ -35,7 +35,7 @@ static void forget_stop(const struct supervisor *supervisor) {
     (void)atomic_compare_exchange_strong(&supervisor->control->cancel, &stop, CANCEL_NOTHING);
 }
 
-/* For a script that is begun anew: nothing is left to do for this picture. Without memory it is made again. */
+/* For a script that starts again: nothing is left to do for this picture. Without memory it is made again. */
 static void settle(struct supervisor *supervisor, uint32_t number) {
     uint32_t room = supervisor->retry.settled_count;
     if (!supervisor->output.farm)
@@ -62,7 +62,7 @@ static bool same_picture(const struct picture_request *a, const struct picture_r
            digest_equal(a->files, b->files) && strcmp(a->file, b->file) == 0;
 }
 
-/* A script that is begun anew comes to its pictures again; the one that is kept goes on with the tiles it has. False:
+/* A script that starts again reaches its pictures again; the one that is kept goes on with the tiles it has. False:
  * the picture is made like any other. */
 static bool answer_retry(struct supervisor *supervisor, const struct picture_request *request) {
     struct output_session *output = &supervisor->output;
@@ -220,7 +220,7 @@ static void answer_done(struct supervisor *supervisor, const struct message *mes
     supervisor_send_answer(supervisor, MESSAGE_ANSWER, ok, false, &error, -1);
 }
 
-/* A script that was begun anew has ended before it came to its picture again. */
+/* A script that was started again has ended before it reached its picture again. */
 static void drop_kept(struct supervisor *supervisor, const struct message_script *script) {
     struct error error;
     error_set(&error, ERROR_SCENE,

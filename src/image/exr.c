@@ -69,8 +69,8 @@ struct stream {
     char message[160];
 };
 
-/* The library tells some errors with its own lock held, so its context must not be asked for our data then: that waits
- * for ever. Hence this one variable, which lives while a picture is written or read. */
+/* The library reports some errors with its own lock held, so its context must not be queried for our data then: that
+ * waits for ever. Hence this one variable, which lives while a picture is written or read. */
 static _Thread_local struct stream *telling;
 
 static void on_error(exr_const_context_t context, exr_result_t code, const char *message) {
@@ -228,7 +228,7 @@ static bool encode(struct stream *stream, uint32_t width, uint32_t height, const
     int part;
     exr_result_t begun = exr_start_write(&context, "picture", EXR_WRITE_FILE_DIRECTLY, &init);
     bool ok = begun == EXR_ERR_SUCCESS;
-    stream->no_memory = begun == EXR_ERR_OUT_OF_MEMORY; /* told by nobody, since there is no context yet */
+    stream->no_memory = begun == EXR_ERR_OUT_OF_MEMORY; /* not reported, since there is no context yet */
     if (ok) {
         ok = exr_add_part(context, "light", EXR_STORAGE_SCANLINE, &part) == EXR_ERR_SUCCESS &&
              exr_initialize_required_attr_simple(context, part, (int32_t)width, (int32_t)height, EXR_COMPRESSION_ZIP) ==
@@ -325,7 +325,7 @@ static bool decode_chunks(exr_context_t context, const exr_attr_box2i_t *window,
     return ok;
 }
 
-/* How many pixels a byte of the file can stand for at most: one channel of two bytes through zlib (1032 : 1), and with
+/* The largest number of pixels per byte of the file: one channel of two bytes through zlib (1032 : 1), and with
  * the lossy codings that for one number of a block of 8 x 8. */
 static uint64_t pixels_per_byte(exr_context_t context) {
     const uint64_t zipped = 520;

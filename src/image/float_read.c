@@ -1,8 +1,8 @@
 /* Radiance pictures (Ward, "Real Pixels", Graphics Gems II, 1991, and the file format reference of Radiance): a text
  * header, a line with the size, then rows of four bytes a pixel, flat, with repeated pixels (1, 1, 1, n), or channel by
- * channel in runs. A mantissa m stands for the middle of what was rounded down to it, (m + 1/2) 2^(e - 136). PFM
- * (Debevec): two or three lines of text and floats, rows from the bottom. Every length is checked against what is left
- * before it is believed. */
+ * channel in runs. A mantissa m represents the middle of the values that were rounded down to it, (m + 1/2) 2^(e -
+ * 136). PFM (Debevec): two or three lines of text and floats, rows from the bottom. Every length is checked against the
+ * remaining bytes before it is used. */
 #include "image/float_read.h"
 
 #include "base/mem.h"

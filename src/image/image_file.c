@@ -1,4 +1,4 @@
-/* The choice of a reader. What no reader knows is told by the PNG reader, which names what it seems to be. */
+/* The choice of a reader. For unknown formats the PNG reader makes the error; it names the probable format. */
 #include "image/image_file.h"
 
 #include "base/file.h"

@@ -2,7 +2,7 @@
  *
  * libpng reports errors by longjmp. So everything that must be given back is held by one struct reader that lives in
  * image_parse_png; decode, the function with the setjmp, has no variables of its own that change after it.
- * Nothing is believed before it is checked: sizes are refused before memory is taken, and so is a picture that the
+ * Nothing is used before it is checked: sizes are refused before memory is taken, and so is a picture that the
  * bytes of the file cannot possibly fill (deflate shrinks by 1032 : 1 at most), so a small hostile file costs little
  * memory. Chunks that do not change a texel are skipped unread, except for their check sums. */
 #include "image/levels.h"

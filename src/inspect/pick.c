@@ -1,6 +1,6 @@
 /* The node's box is that of its own shape, turned with it, where the node is one shape; of a group it is the box along
- * the world's axes around everything under it. The route to a combined solid goes on to the operand whose surface was hit;
- * the user selects one of its nodes by going up or down on it. */
+ * the world's axes around everything under it. The route to a combined solid continues to the operand whose surface was
+ * hit; the user selects one of its nodes by going up or down on it. */
 #include "inspect/pick.h"
 
 #include "base/hash.h"

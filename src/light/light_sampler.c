@@ -1,7 +1,7 @@
-/* Building: from the root down, each set of lights is parted where the cost of the two halves is least, by the surface
- * area orientation heuristic of Conty Estevez and Kulla (section 4.4) over bins along each axis: power times the area
- * of the box times the solid angle that the cone of directions fills, larger for boxes that are thin across the split.
- * Sets whose centres agree, and those deeper than DEPTH_LIMIT, are halved in the order of the lights.
+/* Building: from the root down, each set of lights is split where the cost of the two halves is smallest, by the
+ * surface area orientation heuristic of Conty Estevez and Kulla (section 4.4) over bins along each axis: power times
+ * the area of the box times the solid angle that the cone of directions fills, larger for boxes that are thin across
+ * the split. Sets whose centres agree, and those deeper than DEPTH_LIMIT, are halved in the order of the lights.
  *
  * Sampling: one number is used up on the way down; each choice leaves it uniform again. The probability of a light is
  * the product over the way from its leaf up. */

@@ -1,13 +1,12 @@
 /* The sky: a constant, the gradient {0, 0, (1 + y)/2}, or six faces cut from a 4 x 3 cross (docs/language.md 8).
- *
- * The viewer stands in the middle of a cube whose faces are printed on the inside. Looking along f with the picture's
- * upward direction u, the picture's right is r = f x u (right-handed). The sides L F R K stand upright (u = +y); going
+ * The viewer is in the centre of a cube whose faces are printed on the inside. Looking along f with the picture's
+ * upward direction u, the picture's right is r = f x u (right-handed). The sides L F R K are upright (u = +y); going
  * to the right from F = +z one meets r = z x y = -x, so R = -x, K = -z, L = +x. T joins F's upper edge: its lower side
  * points to +z, u = -z; B joins F's lower edge: u = +z. That is the table below, and everything follows from it, the
  * neighbours across each edge too.
  *
  * Filtering has no seams: a texel beyond the edge of a face is fetched from the face that lies there, and at a corner
- * of the cube, where three texels meet and the fourth is missing, their mean stands for it. Both faces at an edge then
+ * of the cube, where three texels meet and the fourth is missing, their mean replaces it. Both faces at an edge then
  * mix the same texels with the same weights. The black corners of the cross are never read: no mip level mixes two
  * cells of the cross (see image.c). */
 #include "light/sky.h"

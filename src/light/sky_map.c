@@ -1,7 +1,7 @@
 /* An image of the whole sphere, longitude along its rows and latitude down its columns. A texel left of the first is
- * the last of its row; a row above the first is the first again, turned half round: it lies on the other side of the
- * pole. So a way over the pole or round the back meets no seam. The mip level follows the rows, whose width on the
- * sphere is the same everywhere. */
+ * the last of its row; a row above the first is the first again, turned by 180 degrees: it lies on the other side of
+ * the pole. So a path over the pole or around the back meets no seam. The mip level follows the rows, whose width on
+ * the sphere is the same everywhere. */
 #include "image/levels.h"
 #include "light/sky_parts.h"
 #include "math/elementary.h"

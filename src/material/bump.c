@@ -1,6 +1,6 @@
 /* Bump maps after J. Blinn, "Simulation of Wrinkled Surfaces", SIGGRAPH 1978: were the point P moved by F along the
  * normal, the new normal would be N' = N + F_v (P_u x n) + F_u (n x P_v), N = P_u x P_v, where F times the change of n
- * itself is left out as small. That is done in the object's own space, where heights are told, and mapped as a whole:
+ * itself is left out as small. This is done in object space, in which heights are given, and transformed as a whole:
  * with n the world vector of one step along the object's normal (hit->raise), the formula holds under any affine map.
  * It is applied to the interpolated normal as a turn by D / |N|, so wrinkles lie on smooth meshes, too.
  *

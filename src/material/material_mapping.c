@@ -1,6 +1,6 @@
 /* Copies of trees of textures, of bumps and of chains of materials, wherever an image below has another mapping. Trees
  * share parts, and chains share most of their trees: whatever was asked about once is found again by its address, so
- * the work is that of the distinct parts. Addresses decide where an entry stands and nothing else. */
+ * the work is that of the distinct parts. Addresses decide the position of an entry and nothing else. */
 #include "material/material_mapping.h"
 
 #include "base/random.h"

@@ -29,7 +29,7 @@ struct texture texture_wood(double f, double density, int interpolation) {
     return (struct texture){.kind = TEXTURE_WOOD, .size = 1, .wood = {f, density, interpolation}};
 }
 
-/* Of a tree whose root stands over these, each or NULL; more than TEXTURE_SIZE counts as that and one. */
+/* Of a tree whose root is above these, each or NULL; more than TEXTURE_SIZE counts as that and one. */
 static struct texture over(enum texture_kind kind, const struct texture *a, const struct texture *b,
                            const struct texture *c) {
     const struct texture *const below[] = {a, b, c};

@@ -57,7 +57,7 @@ static void on_faces(const struct hit *hit, struct texcoord *at) {
                             .dpdv = hit->dpdv};
 }
 
-/* The sides stand upright and alike; front, top and bottom meet at the edges (docs/language.md 6.2). Shapes are seen
+/* The sides are upright and alike; front, top and bottom meet at the edges (docs/language.md 6.2). Shapes are seen
  * from the direction of their normal. */
 static void on_cube(const struct hit *hit, struct texcoord *at) {
     struct vec3 p = hit->pattern_point, n = hit->pattern_normal;

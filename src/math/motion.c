@@ -42,7 +42,7 @@ static struct affine polar_turn(const struct affine *linear) {
                 turn.m[i][j] = next;
             }
         }
-        /* Entries of a turn are at most 1. The first step takes out the scale and tells nothing. */
+        /* Entries of a turn are at most 1. The first step removes the scale and gives no information. */
         if (step > 0 && change < 0x1p-50)
             break;
     }

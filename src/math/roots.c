@@ -3,10 +3,10 @@
  * Quadratics: the discriminant from exact products (Kahan, "On the cost of floating-point computation without extra-
  * precise arithmetic", 2004; products by Dekker 1971), the root without cancellation first, the other by Vieta.
  *
- * Higher degrees: between neighbouring roots of its derivative a polynomial is monotonic, so the signs there tell which
- * pieces hold a root, and each such root is bracketed; the derivative's roots come from the same method, one degree
- * lower, down to the quadratic. In a bracket Newton's steps are taken while they stay inside and shrink, else the bit
- * patterns are halved, which needs at most 64 steps whatever the magnitudes.
+ * Higher degrees: between neighbouring roots of its derivative a polynomial is monotonic, so the signs there determine
+ * which pieces hold a root, and each such root is bracketed; the derivative's roots come from the same method, one
+ * degree lower, down to the quadratic. In a bracket Newton's steps are taken while they stay inside and shrink, else
+ * the bit patterns are halved, which needs at most 64 steps whatever the magnitudes.
  *
  * Why this and no other: it cannot fail to converge, and its count always has the parity of the signs at the ends,
  * which CSG lives on. The remainders of Sturm's chain cancel, so their signs are noise just where roots are close; the

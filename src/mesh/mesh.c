@@ -332,7 +332,7 @@ void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct 
     out->point = vec3_add_scaled(vec3_add_scaled(vec3_scale(a, w), b, u), c, v);
     out->error = 0x1p-49 * fmax(vec3_max_abs(a), fmax(vec3_max_abs(b), vec3_max_abs(c)));
     out->normal = mesh_triangle_normal(mesh, triangle);
-    /* A triangle without area stands in for the seam it closes: it faces the ray. */
+    /* A triangle without area represents the seam it closes: it faces the ray. */
     if (vec3_max_abs(out->normal) == 0)
         out->normal = crossing->enter ? vec3_negate(ray->direction) : ray->direction;
     out->shading_normal = out->normal;

@@ -37,7 +37,7 @@ uint64_t mesh_input_hash(const struct mesh_input *input) {
     return h;
 }
 
-/* Whether the triangles tell the polygons: nothing but triangles, none dropped. */
+/* Whether the triangles determine the polygons: nothing but triangles, none dropped. */
 static bool triangles_are_faces(const struct mesh *mesh) {
     return mesh->face_start == NULL;
 }

@@ -75,7 +75,7 @@ bool mesh_input_weld(struct mesh_input *input, struct mesh_tables *own, struct e
     return true;
 }
 
-/* --- turning round --- */
+/* --- reversing --- */
 
 /* The index lists of all corners with each face backwards; equal pointers stay equal. */
 static uint32_t *reversed(const struct mesh_input *input, const uint32_t *index) {

@@ -21,7 +21,7 @@ struct triangulate_corner {
 
 #define NOT_LISTED UINT32_MAX
 
-/* How much an ear is forgiven when a whole round found none. */
+/* The tolerance for an ear when a whole round found none. */
 enum mercy { EAR_CLEAN, EAR_TOUCHED, EAR_FLAT, EAR_BLOCKED, EAR_ANY };
 
 struct clipper {

@@ -1,6 +1,6 @@
-/* The file is written anew each time, beside the old one, which stays until the new one is whole: a kill at any moment
- * leaves one of the two. So that this never costs much, the pause between two writings is at least twenty times what
- * the last one took. */
+/* The file is written again each time, beside the old one, which stays until the new one is complete: a kill at any
+ * moment leaves one of the two. So that this never costs much, the pause between two writings is at least twenty times
+ * what the last one took. */
 #include "output/checkpoint.h"
 
 #include "base/mem.h"

@@ -35,7 +35,7 @@ static uint8_t *put_name(uint8_t *at, const char *name) {
     return at + 1;
 }
 
-/* The length stands before everything and counts itself. */
+/* The length comes first and includes itself. */
 static size_t finish_packet(uint8_t *out, const uint8_t *end) {
     size_t size = (size_t)(end - out);
     (void)put_number(out, size, 4);

@@ -4,7 +4,7 @@
  * pictures in the run; messages of other pictures are late and are passed over.
  *
  * All ranks send heartbeats, so that silence means that a rank is stopped, dead or cut off. A silent rank
- * gets no tiles and is not waited for, but it stays a member: what it missed reaches it when it goes on. */
+ * gets no tiles and is not waited for, but it stays a member: what it missed reaches it when it continues. */
 #include "output/farm.h"
 
 #include "base/mem.h"
@@ -551,7 +551,7 @@ static void await_others(struct farm *farm) {
             farm->silent += farm->peers[rank].silent;
         }
     }
-    /* A silent rank may still read it, when it goes on. */
+    /* A silent rank may still read it, when it continues. */
     for (int rank = 1; rank < farm->transport->size; rank++)
         send_pair(farm, rank, FARM_END, (uint32_t)farm->silent);
 }

@@ -1,4 +1,4 @@
-/* The name of a layer stands before the extension of the picture's, and the extension says the format for both. */
+/* The name of a layer comes before the extension of the picture, which selects the format of both. */
 #include "output/layers.h"
 
 #include "image/exr.h"

@@ -36,7 +36,7 @@ void progress_init(struct progress *progress, enum progress_mode mode, bool quie
         progress->mode = quiet ? PROGRESS_NONE : isatty(STDERR_FILENO) ? PROGRESS_BAR : PROGRESS_LINES;
 }
 
-/* What scenes have written to the same stream stands on a line of its own. */
+/* Output of scenes to the same stream has a line of its own. */
 static void begin_line(const struct progress *progress) {
     if (progress->stream)
         error_stream_begin_line(progress->stream);

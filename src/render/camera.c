@@ -116,7 +116,7 @@ struct ray camera_ray(const struct camera_frame *frame, double x, double y) {
         .origin = frame->eye, .direction = direction, .t_min = 0, .t_max = INFINITY, .footprint = {0, frame->spread}};
 }
 
-/* A place of the unit square on the lens: a disc, or a regular polygon made of triangles round the middle. */
+/* A place of the unit square on the lens: a disc, or a regular polygon of triangles around the centre. */
 static struct sample2 place_on_lens(const struct lens *lens, struct sample2 place) {
     if (lens->blades < 3)
         return sample_disc(place);

@@ -1,6 +1,6 @@
-/* Looking ahead, where somebody asks how long a picture will take: SIDE x SIDE rays through each tile before the first
+/* The cost pre-pass, if a time estimate is requested: SIDE x SIDE rays through each tile before the first
  * one, about 1 % of the work, and from then on the time estimate (render/time_estimate.h) a hundred times a second,
- * told by whichever worker comes by. Processor time, so that what else the machine does counts for nothing. */
+ * reported by the next free worker. Processor time, so that what else the machine does counts for nothing. */
 #include "render/integrator.h"
 
 #include <string.h>

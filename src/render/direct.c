@@ -1,6 +1,6 @@
 /* Light that comes straight from the lights of the scene, and that of the photon map. A delta light is one evaluation
- * times the share of its shadow rays that arrive; of a lamp every shadow ray is evaluated by itself. The places of a
- * light's samples are cells of the unit square, parted once more among the samples of a pixel. */
+ * times the share of its shadow rays that arrive; of a lamp every shadow ray is evaluated by itself. The samples of a
+ * light are in cells of the unit square, which are divided once more among the samples of a pixel. */
 #include "render/direct.h"
 
 #include "world/packet.h"
@@ -46,7 +46,7 @@ static struct sample_set places_on_light(const struct integrator_state *state, c
     return sampler_on_light(&state->sampler, key, number, side, context->shares_cells);
 }
 
-/* What stands between: not the hit's own primitive where all of it is behind the surface and all of the light before.
+/* Occluders: not the hit's own primitive where all of it is behind the surface and all of the light before.
  */
 static struct occluder_candidates
 light_occluder_candidates(const struct world *world, const struct light_context *context, const struct hit *hit) {

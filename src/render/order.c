@@ -1,6 +1,6 @@
 /* ORDER_SPREAD: tile i comes at the place of i times the golden ratio, modulo 1. However many are done, they lie evenly
  * over the rows of the picture and within them (Weyl's sequence; no irrational number is further from all fractions),
- * so that what they cost stands for what the others will. ORDER_CENTRE: by the distance of their middles from that of
+ * so that their cost represents that of the others. ORDER_CENTRE: by the distance of their middles from that of
  * the rendered part, in units of its half sides. */
 #include "render/order.h"
 

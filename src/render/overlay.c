@@ -37,7 +37,7 @@ struct overlay_drawing {
     const struct overlay_request *request;
     struct camera_frame camera;
     struct world_scratch *scratch; /* by worker */
-    float *depths;                 /* of the surface in each cell of the film: negative while nobody has asked */
+    float *depths;                 /* of the surface in each cell of the film: negative until the first request */
     uint32_t cells_across;
     float (*lines)[4];
     bool planar;  /* lines are straight in the picture */
@@ -109,7 +109,7 @@ static bool place(const struct overlay_drawing *drawing, int eye, struct vec3 po
     out->depth = depth_of(drawing, point);
     if (eye == 0)
         return camera_project(&drawing->camera, point, &out->x, &out->y);
-    /* The eye of a pair stands beside, and its window is moved back to where both see the same. */
+    /* The eyes of a pair are displaced, and their windows are shifted so that both see the same at the screen. */
     struct camera_frame beside = drawing->camera;
     double offset = 0.5 * eye * beside.lens.eye_distance;
     beside.eye = vec3_add_scaled(beside.eye, beside.unit_right, offset);

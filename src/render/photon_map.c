@@ -54,7 +54,7 @@ struct vec3 photon_unpack(uint32_t packed) {
 
 /* --- the order of the photons --- */
 
-/* A photon while the tree is made: its number stands where the radius will be. */
+/* A photon while the tree is made: its number is stored in the field of the radius. */
 struct entry {
     float at[3];
     uint32_t number;
@@ -525,7 +525,7 @@ static void add_photon(struct density_query *g, uint32_t i, double weight) {
     g->sum = vec3_add(g->sum, power);
 }
 
-/* Distances off the tangent plane count four times: what lies round a corner lights less. */
+/* Distances off the tangent plane count four times: surfaces around a corner get less light. */
 static void gather_leaf(struct density_query *g, uint32_t k) {
     const struct photon_map *map = g->map;
     uint32_t end = node_first(map, map->levels, k + 1);

@@ -1,4 +1,4 @@
-/* A light that stands somewhere is surrounded by a cube whose faces are quadtrees of cells, each cell a pyramid of
+/* A light with a position is surrounded by a cube whose faces are quadtrees of cells, each cell a pyramid of
  * directions; a distant light by a square across its rays. A cell counts when its pyramid, widened by the light's own
  * extent, can meet the box of something specular. Cells are made as small as a budget of them allows, so a far small
  * thing is aimed at as well as a near large one.
@@ -39,7 +39,7 @@ static const double pi = 3.14159265358979323846;
 struct specular_object {
     struct box box;
     struct vec3 middle;
-    double radius; /* of a ball round the middle that holds it */
+    double radius; /* of a bounding ball around its centre */
     double strength;
     uint32_t order;
 };
@@ -408,7 +408,7 @@ static uint32_t light_parts(const struct light *light, const struct specular_obj
 }
 
 /* Light of an environment: a direction by its own choice, then a place of the rectangle across it that holds the shadow
- * of the box of all casters, before the whole scene. Its power is that of a photon that stands for all. */
+ * of the box of all casters, before the whole scene. Its power is that of a photon that represents all. */
 static struct light_photon start_from_environment(const struct photon_target *target, struct sample2 turn,
                                                   struct sample2 place) {
     struct light_photon photon = light_photon(&target->emitter, vec3_all(0), turn);
@@ -496,7 +496,7 @@ static void share_photons(struct photon_targets *targets, uint32_t photons) {
     }
 }
 
-/* What each light stands in, at its middle when the shutter opens. */
+/* The media around the centre of each light when the shutter opens. */
 static bool find_media(struct photon_targets *targets, const struct world *world, struct arena *arena,
                        struct world_scratch *scratch) {
     for (uint32_t i = 0; i < targets->count; i++) {

@@ -1,5 +1,5 @@
-/* See pixel_trace.h. Rays hang under the ray that sent them, in the order in which they were sent. Where memory ends, or the
- * limit is reached, rays go on untold: `mute` counts how deep we are below the last one told. */
+/* See pixel_trace.h. Rays hang under the ray that sent them, in the order in which they were sent. Where memory ends,
+ * or the limit is reached, rays go on untold: `mute` counts the levels below the last recorded ray. */
 #include "render/pixel_trace.h"
 
 #include "material/medium_stack.h"
@@ -11,7 +11,7 @@ static void *take(struct pixel_trace *pixel_trace, size_t size) {
     return block;
 }
 
-/* The ray that is under way, or NULL where nothing is told. */
+/* The current ray, or NULL if nothing is recorded. */
 static struct pixel_trace_ray *ray_of(const struct pixel_trace *pixel_trace) {
     return pixel_trace->on && pixel_trace->mute == 0 ? pixel_trace->ray : NULL;
 }
@@ -65,8 +65,11 @@ static struct pixel_trace_ray *add_ray(struct pixel_trace *pixel_trace) {
     struct pixel_trace_ray *ray = take(pixel_trace, sizeof *ray);
     if (!ray)
         return NULL;
-    *ray = (struct pixel_trace_ray){
-        .kind = pixel_trace->kind, .weight = pixel_trace->weight, .number = ++pixel_trace->rays, .parent = parent, .part = 1};
+    *ray = (struct pixel_trace_ray){.kind = pixel_trace->kind,
+                                    .weight = pixel_trace->weight,
+                                    .number = ++pixel_trace->rays,
+                                    .parent = parent,
+                                    .part = 1};
     struct pixel_trace_ray **first = parent ? &parent->first : &pixel_trace->last_sample->first;
     struct pixel_trace_ray **last = parent ? &parent->last : &pixel_trace->last_sample->last;
     if (*last)
@@ -134,7 +137,8 @@ static void end_ray(struct pixel_trace *pixel_trace, const struct observed_end *
     pixel_trace->ray = ray->parent;
 }
 
-static void add_link(struct pixel_trace *pixel_trace, const struct material *material, const struct surface_inputs *inputs) {
+static void add_link(struct pixel_trace *pixel_trace, const struct material *material,
+                     const struct surface_inputs *inputs) {
     struct pixel_trace_ray *ray = ray_of(pixel_trace);
     struct pixel_trace_link *link = ray ? take(pixel_trace, sizeof *link) : NULL;
     if (!link)
@@ -161,7 +165,8 @@ static void begin_light(struct pixel_trace *pixel_trace, uint32_t number, const 
     pixel_trace->light = told;
     if (!told)
         return;
-    *told = (struct pixel_trace_light){.number = number, .light = light, .lamp = !light_is_delta(light), .lit = PIXEL_TRACE_LIGHT_NO_EFFECT};
+    *told = (struct pixel_trace_light){
+        .number = number, .light = light, .lamp = !light_is_delta(light), .lit = PIXEL_TRACE_LIGHT_NO_EFFECT};
     if (ray->last_light)
         ray->last_light->next = told;
     else

@@ -1,4 +1,4 @@
-/* What is told is the moment of the end and not the time left: between two forecasts the latter falls as the clock
+/* The estimate is the moment of the end and not the time left: between two forecasts the latter falls as the clock
  * goes. See progress_estimate.h. */
 #include "render/progress_estimate.h"
 

@@ -322,7 +322,7 @@ bool render_pixels(const struct render_job *job, struct pool *pool, const uint32
     own.film = &film;
     own.settings.show_marks = false;
     bool ok = begin_rendering(&renderer, pool_workers(pool), &statistics, error);
-    renderer.together = false; /* each sample tells for itself */
+    renderer.together = false; /* each sample is reported on its own */
     for (uint32_t i = 0; ok && i < count; i++) {
         struct pixel_trace pixel_trace;
         pixel_trace_init(&pixel_trace, pixels[i][0], pixels[i][1]);

@@ -1,4 +1,4 @@
-/* See sampler.h. Below the key of a pixel's strata stand: the light's number, its order of the parts on that light; the
+/* See sampler.h. Below the key of a pixel's strata are: the light's number, its order of the parts on that light; the
  * key of a ray, that on a rough surface; UINT64_MAX and the next below, those of lens and shutter; 2, the jitter on the
  * lens; and from UINT64_MAX - 2 down the lights' multi-jittered sets. */
 #include "render/sampler.h"

@@ -1,10 +1,10 @@
 /* A linear model of a tile's cost with six terms: its pixels; the time of its rays; that time by the share of edges,
  * which is what will be sampled again; the mean of the last two over the tile and its eight neighbours, since few rays
- * tell little; edges alone. Terms are scaled to a mean of 1 over the picture. Coefficients are those of least squares
- * (a tile counts less the more it is expected to cost, as its deviation grows with it), drawn towards what is believed
- * before by the weight of RIDGE tiles, so that the first few tiles do not decide, and not negative: a term that would
- * be is left out. A tile that is done changes sums only, so a time estimate costs the same however many tiles there
- * are. */
+ * give little information; edges alone. Terms are scaled to a mean of 1 over the picture. Coefficients are those of
+ * least squares (a tile counts less the more it is expected to cost, as its deviation grows with it), regularised
+ * towards the initial values by the weight of RIDGE tiles, so that the first few tiles do not decide, and not negative:
+ * a term that would be is left out. A tile that is done changes sums only, so a time estimate costs the same however
+ * many tiles there are. */
 #include "render/time_estimate.h"
 
 #include "base/mem.h"

@@ -65,7 +65,7 @@ struct surface_point {
     const struct bsdf *bsdf;
 };
 
-/* What comes from where one branch goes on, times its weight. What cannot change the pixel by the cut-off is not
+/* The radiance of one branch, times its weight. What cannot change the pixel by the cut-off is not
  * followed. */
 static struct vec3 follow_branch(struct integrator_state *state, const struct surface_point *at,
                                  const struct bsdf_branch *branch, struct vec3 facet, const struct path *from) {
@@ -96,8 +96,8 @@ static struct vec3 follow_branch(struct integrator_state *state, const struct su
     return vec3_mul(filter, trace(state, &onward, &path));
 }
 
-/* What is seen through the holes of a surface that is only partly there (a picture of leaves): the ray goes on as it
- * was. Bounded, since every hole is a deeper call. */
+/* What is seen through the holes of a surface that is only partly there (a picture of leaves): the ray continues
+ * unchanged. Bounded, since every hole is a deeper call. */
 static struct vec3 follow_hole(struct integrator_state *state, const struct hit *hit, const struct ray *ray,
                                double share, const struct path *from) {
     enum { HOLE_LIMIT = 200 };

@@ -20,7 +20,7 @@ struct material added_material(struct vec3 colour) {
         .kind = MATERIAL_PHONG, .depth = 1, .phong = {.kd = colour, .ks = vec3_all(0.3), .shininess = 30, .ior = 1}};
 }
 
-/* What tells changes of a kind apart. */
+/* The key that distinguishes changes of one kind. */
 static uint64_t target_of(const struct change *change) {
     if (change->kind == CHANGE_MATERIAL)
         return (uint64_t)change->serial * MATERIAL_PART_PARTS + (uint64_t)change->part;
@@ -251,7 +251,7 @@ static bool make_node(struct laying *l, struct node *source, struct added_node *
     return true;
 }
 
-/* One that was made before is used again: somebody who drags things about lays changes over many times a second. */
+/* One that was made before is used again: a user who drags an object applies changes many times a second. */
 static struct node *new_node(struct laying *l, struct node *source) {
     const struct change *change = l->change;
     struct added_node *made = l->scene->added;

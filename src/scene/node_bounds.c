@@ -50,7 +50,7 @@ static bool enter(struct measuring *m) {
     return true;
 }
 
-/* What is round the operands of a combined solid, as far as it can be said without looking at their surfaces. */
+/* A box around the operands of a combined solid, as tight as it can be without their surfaces. */
 static struct box with_operand(const struct node *node, uint32_t number, struct box box, struct box operand) {
     if (number == 0)
         return operand;

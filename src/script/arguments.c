@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Where a value stands, for messages: name, name[i], name[i][j]. */
+/* The position of a value, for messages: name, name[i], name[i][j]. */
 struct place {
     const struct script_parameter *parameter;
     lua_Integer i, j; /* 0 = none */
@@ -275,7 +275,7 @@ static void read_curve(struct script_context *c, int index, struct place place, 
 
 enum { MATERIAL_NAMES = 1000 };
 
-/* Materials by name, or a list of them. Names are read in byte order, so that the first wrong one is told. */
+/* Materials by name, or a list of them. Names are read in byte order, so that the first wrong one is reported. */
 static void read_materials(struct script_context *c, int index, struct place place, struct script_value *value) {
     lua_State *L = c->lua;
     uint32_t length = list_length(c, index, &place), count = 0;
@@ -754,7 +754,7 @@ static bool read_positional(struct script_context *c, const struct script_functi
     int index = 0, place = first;
     bool optional;
     for (const char *form = best; form_next(function, &form, &index, &optional); place++) {
-        /* The name is told in messages about the arguments after it; no method takes one, a test looks. */
+        /* Messages about the arguments after it contain the name; no method takes one, a test looks. */
         if (function->parameters[index].kind == KIND_TEXT && lua_isstring(L, place))
             c->subject = read_text(c, place, &(struct place){.parameter = &function->parameters[index]});
     }

@@ -162,7 +162,7 @@ int files_load(lua_State *L, const char *path) {
     return status;
 }
 
-/* "./mod.lua" is told as "mod.lua". */
+/* "./mod.lua" is reported as "mod.lua". */
 static const char *plain_path(const char *path) {
     return path[0] == '.' && path[1] == '/' ? path + 2 : path;
 }
@@ -187,8 +187,8 @@ bool files_on_path(const struct script_context *context, const char *templates, 
     return false;
 }
 
-/* package.searchers[2]: Lua files along package.path. Upvalue 1: the package table. In the days of Lua 5.0 people wrote
- * the .lua as well. */
+/* package.searchers[2]: Lua files along package.path. Upvalue 1: the package table. Scripts for Lua 5.0 wrote the .lua,
+ * too. */
 static int search_module(lua_State *L) {
     struct script_context *context = context_of(L);
     context->lua = L;

@@ -1,4 +1,4 @@
-/* What somebody has changed in a window, as calls: they are noted, and laid over every picture that is made afterwards.
+/* Edits of the window, as calls: they are noted, and laid over every picture that is made afterwards.
  * Nothing of the script's own tree is changed for good. */
 #include "script/bindings_internal.h"
 #include "script/context.h"

@@ -12,7 +12,7 @@ bool gr_glyphs(struct script_context *context, const struct script_value *args, 
     struct font_text *text = arena_alloc(&context->call, sizeof *text);
     if (!text)
         return error_no_memory(error, "letters");
-    /* What no file can change is told before any is looked for. */
+    /* Errors that do not depend on files are reported before files are searched. */
     if (!FONTS_READABLE)
         return font_layout(args[GLYPHS_FONT].text, NULL, 0, "", &context->call, text, error);
     if (!files_require(context, args[GLYPHS_FONT].text, path, error) ||

@@ -232,7 +232,7 @@ bool gr_image_material(struct script_context *context, const struct script_value
                       error);
 }
 
-/* How an image or another texture stands on a surface. The amount and the kind are args[0] and args[1]; a bump map
+/* How an image or another texture is mapped to a surface. The amount and the kind are args[0] and args[1]; a bump map
  * keeps what its template says. */
 static bool read_bump(struct script_context *context, const struct script_value *value,
                       const struct script_value *lookup, const struct script_value *args, struct bump *out,

@@ -1,5 +1,5 @@
 /* Shapes that are made of many parts: lathe, prism, sweep, height field, blob, curve and patches. The parameters of a
- * shape live in the arena of the scene; what is wrong with them is told by the shape's own builder. */
+ * shape live in the arena of the scene; the builder of the shape reports their errors. */
 #include "script/context.h"
 #include "script/table_rows.h"
 

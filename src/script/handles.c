@@ -1,6 +1,6 @@
 /* Handles: what a script holds of a node, material, light or texture. A userdata with a tag and a pointer into the
- * scene's arena, without finalizer: the scene outlives the Lua state. A ghost stands for what this version does not
- * know; it exists with --lenient only, is accepted everywhere and does nothing. */
+ * scene's arena, without finalizer: the scene outlives the Lua state. A ghost replaces what this version does not have;
+ * it exists with --lenient only, is accepted everywhere and does nothing. */
 #include "script/context.h"
 
 #include <assert.h>

@@ -1,7 +1,7 @@
 /* Scripts use names of Lua's libraries for their own things (`table = gr.node('table')`). The modules that come with
  * the program must not stumble over that: their files see the globals as they were before the script began. What such a
  * file adds (`readobj`) becomes a global of the script, and names it does not find are looked for there. Their
- * `require` finds our modules, whatever files of the same names stand beside the scene. */
+ * `require` finds our modules, whatever files of the same names are beside the scene. */
 #include "script/context.h"
 
 #include "base/file.h"
@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char key = 0;    /* the table stands in the registry under its address */
+static const char key = 0;    /* the table is in the registry under its address */
 static const char hidden = 0; /* likewise: our modules whose names the script's own files have taken, by name */
 
 /* The file of one of our modules, when `require` of the script would find another one first. */
@@ -20,7 +20,7 @@ static bool is_hidden(lua_State *L, const char *name, char file[PATH_SIZE]) {
     const struct script_context *context = context_of(L);
     const char *folder = context->options->library_folder;
     char found[PATH_SIZE], other[PATH_SIZE], own[PATH_SIZE];
-    assert(folder); /* nobody else has this `require` */
+    assert(folder); /* no other code has this `require` */
     if (strpbrk(name, "./\\"))
         return false;
     int length = snprintf(file, PATH_SIZE, "%s/%s.lua", folder, name);

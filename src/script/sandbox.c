@@ -80,7 +80,7 @@ static int collect_garbage(lua_State *L) {
 }
 
 struct allowed {
-    const char *library, *names; /* parted by blanks, one before and one after */
+    const char *library, *names; /* separated by blanks, one before and one after */
 };
 
 static const struct allowed allowed_names[] = {

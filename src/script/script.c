@@ -25,8 +25,8 @@ static size_t place_length(const struct script_context *context, const char *mes
     return digits > 0 && end[0] == ':' && end[1] == ' ' ? (size_t)(end + 2 - message) : 0;
 }
 
-/* The message from its place on: coroutine.wrap and error put another one in front, and the innermost tells most. Whole
- * paths are written where Lua shortened them. NULL without memory. */
+/* The message from its place on: coroutine.wrap and error put another one in front, and the innermost is the most
+ * precise. Whole paths are written where Lua shortened them. NULL without memory. */
 static const char *innermost(struct script_context *context, const char *message, bool *has_place) {
     message = files_unshorten(context, message);
     size_t outer = message ? place_length(context, message) : 0;
@@ -167,7 +167,7 @@ static bool prepare(struct script_context *context, struct path_policy *path_pol
     context->warned = arena_alloc(&context->keep, (size_t)function_count());
     if (!context->warned)
         return error_no_memory(error, "the script");
-    struct file_bytes bytes; /* whether it can be read at all is told before anything else, in one plain line */
+    struct file_bytes bytes; /* an unreadable file is reported before anything else, in one line */
     if (!file_map(context->path, FILE_LIMIT, &bytes, error))
         return false;
     file_unmap(&bytes);

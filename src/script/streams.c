@@ -2,7 +2,7 @@
  * to it that it is not taken for the program's: the stream behind io.stderr calls it (fopencookie(3)), and so does that
  * behind io.stdout and print where standard output is the picture's. Files are opened by base/path_policy.h: regular
  * files only, below the folders of the list. Whatever is written counts towards the limit on output, on standard output
- * too. What is refused comes back the way io.open tells of every failure: nil, a sentence, a number. */
+ * too. Refusals are returned like any failure of io.open: nil, a sentence, a number. */
 #define _GNU_SOURCE
 #include "script/context.h"
 
@@ -23,7 +23,7 @@ static int close_stream(lua_State *L) {
     return luaL_fileresult(L, fclose(stream->f) == 0, NULL);
 }
 
-/* Why a name was refused, for people. */
+/* Why a name was refused, for messages. */
 static const char *refusal(const struct script_context *context, const char *name, bool write) {
     if (errno != EACCES || !context->path_policy)
         return strerror(errno);
@@ -197,7 +197,7 @@ static int search_path(lua_State *L) {
     return 2;
 }
 
-/* Puts a function in the place of another, which becomes its upvalue 1; further upvalues stand above. */
+/* Puts a function in the place of another, which becomes its upvalue 1; further upvalues are above. */
 static void replace(lua_State *L, const char *name, lua_CFunction function, const char *mode) {
     lua_getfield(L, -1, name);
     if (mode)
@@ -213,7 +213,7 @@ static ssize_t write_to_host(void *cookie, const char *text, size_t size) {
 }
 
 /* Puts a stream to the host in the place of the process's own one of that name in the table io, which is on top. It has
- * no buffer, so that what is written stands before what the program says next. */
+ * no buffer, so that its output comes before the next message of the program. */
 static FILE *redirect(lua_State *L, const char *name) {
     struct script_context *context = context_of(L);
     FILE *stream = MAY_GIVE_NULL(fopencookie(context, "w", (cookie_io_functions_t){.write = write_to_host}));

@@ -1,5 +1,5 @@
-/* The table of gr functions. One row a function; everything people read about it and every check of its arguments comes
- * from here. The rows of shapes and lights are in the files that make them. docs/language.md describes all of them. */
+/* The table of gr functions. One row a function; its documentation and every check of its arguments come from here. The
+ * rows of shapes and lights are in the files that make them. docs/language.md describes all of them. */
 #include "script/table.h"
 #include "base/unreachable.h"
 

@@ -145,7 +145,7 @@ static bool read_bytes(const char *text, double low, double high, uint64_t *out)
     return true;
 }
 
-/* Whole numbers parted by `separator`: exactly `count` of them. */
+/* Whole numbers separated by `separator`: exactly `count` of them. */
 static bool read_list(const char *text, char separator, int count, const long long *low, long long high,
                       long long *out) {
     for (int i = 0; i < count; i++) {

@@ -1,4 +1,4 @@
-/* Options that exclude, need or stand for one another. */
+/* Options that exclude, need or imply one another. */
 #include "session/options_internal.h"
 
 #include <string.h>

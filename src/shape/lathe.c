@@ -274,7 +274,7 @@ struct search {
 static bool push(const struct search *f, double x, double sign) {
     const struct hyperbola *hy = f->hy;
     double r = radius_at(f->piece, x), y = height_at(f->piece, x), w = width(hy, r);
-    /* By height or by radius, whichever tells s better. */
+    /* By height or by radius, whichever determines s better. */
     double s = fabs(hy->d) * r >= w * hy->c ? (y - hy->y) / hy->d : hy->foot + sign * w / hy->c;
     if (!isfinite(s))
         s = 0;

@@ -148,7 +148,7 @@ bool planar_polygon(struct arena *arena, const struct vec3 *points, const uint32
             return false;
         }
 
-    /* The image is the rectangle round all points. */
+    /* The image is the bounding rectangle of all points. */
     struct vec3 x, z;
     planar_across(n, &x, &z);
     double x_lo = INFINITY, x_hi = -INFINITY, z_lo = INFINITY, z_hi = -INFINITY;

@@ -252,7 +252,7 @@ void prism_describe(const struct prism *prism, const struct ray *ray, const stru
         out->v = (p.y - min.y) / size.y;
         out->dpdu = vec3_make(by_length * dp, 0, by_length * dq);
         out->dpdv = vec3_make(0, size.y, 0);
-        if (dp * n.z - dq * n.x < 0) { /* the outline goes round the other way */
+        if (dp * n.z - dq * n.x < 0) { /* the outline runs in the other direction */
             out->u = 1 - out->u;
             out->dpdu = vec3_negate(out->dpdu);
         }

@@ -61,7 +61,7 @@ static void describe_end(const struct revolved_quadric *c, struct vec3 f, bool h
     out->normal = high ? c->axis : vec3_negate(c->axis);
     out->error = 0x1p-48 * size;
 
-    /* Like the top and the bottom of the cube, the square round the end being the image; v counts from below. */
+    /* Like the top and the bottom of the cube, the image covers the square around the end; v counts from below. */
     surface_mapping_axes(c->axis, &x, &z);
     if (high)
         z = vec3_negate(z);

@@ -539,7 +539,8 @@ bool shape_crossings(const struct shape *shape, const struct ray *ray, struct ge
     return false;
 }
 
-/* Parity along one fixed direction, oblique to everything people model; crossings ahead of the point are counted. */
+/* Parity along one fixed direction, oblique to the usual directions of models; crossings ahead of the point are
+ * counted. */
 static bool mesh_contains(const struct mesh *mesh, struct vec3 point, struct geom_scratch *scratch) {
     struct box bounds = mesh_bounds(mesh);
     if (!box_contains(&bounds, point))

@@ -241,7 +241,7 @@ static bool make_overlay(struct preview_state *work, const struct pass_view *vie
     return ok || reply->overlay.stopped;
 }
 
-/* What stands there, and where it is seen. */
+/* The object there, and where it is visible. */
 static bool pick(struct preview_state *work, const struct preview_command *command, struct preview_reply *reply,
                  struct error *error) {
     struct view_overlay_request request = {.lines = {OVERLAY_NONE, 1, 1}, .outline = true};

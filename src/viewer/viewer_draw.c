@@ -174,7 +174,7 @@ static void compute_figures(const struct viewer *viewer, struct figures *figures
     double seconds = rays->render_seconds;
     double traced = (double)rays->camera_rays + (double)rays->reflected_rays + (double)rays->refracted_rays +
                     (double)rays->shadow_rays;
-    /* A hierarchy stands in one voxel that holds everything. */
+    /* A hierarchy is in one voxel that contains everything. */
     double voxels = 1;
     for (int i = 0; i < 3; i++)
         voxels *= report->grid_cells[i] > 1 ? report->grid_cells[i] : 1;

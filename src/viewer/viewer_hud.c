@@ -1,5 +1,5 @@
 /* What lies over the picture: the outline of the selection, markers of the lights, the menu, the figures, and the
- * selection's properties. Everything is drawn anew for every frame; a click takes effect at once. */
+ * selection's properties. Everything is drawn again for every frame; a click takes effect at once. */
 #include "inspect/inspect.h"
 #include "viewer/viewer_internal.h"
 

@@ -283,7 +283,7 @@ void viewer_add_light(struct viewer *viewer) {
                                             .moves = true});
 }
 
-/* What was changed of the light is changed of its copy, which stands a little to the right. */
+/* Edits of the light apply to its copy, too, which is displaced slightly to the right. */
 void viewer_copy_light(struct viewer *viewer) {
     const struct light_info *light = selected(viewer);
     struct change change = new_light(viewer), held = light_change(viewer, CHANGE_LIGHT);

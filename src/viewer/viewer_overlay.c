@@ -1,6 +1,6 @@
 /* The overlay in the window: lines are part of the image that is shown and saved, the outline of the selection lies
  * over it. While the camera moves, lines are few and their depth is coarse, and the outline is a box; both are made
- * anew before the finest pass goes on. */
+ * again before the finest pass continues. */
 #include "base/mem.h"
 #include "viewer/viewer_internal.h"
 

@@ -1,6 +1,6 @@
 /* Batches of rays. Rays in a row that share their origin go as a packet (world/packet.h), the others one by one in the
  * order in which they come: the bounces of neighbouring pixels visit the same part of the world. Sorting them by octant
- * and origin was measured and lost (0.76 to 0.81 of the speed: what the tiles' order has brought together is parted).
+ * and origin was measured and lost (0.76 to 0.81 of the speed: what the order of tiles brought together is separated).
  */
 #include "world/packet.h"
 

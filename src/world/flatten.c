@@ -1,7 +1,7 @@
 /* Flattening of the node DAG. First a traversal of the distinct nodes finds cycles and counts what each node will place
  * (saturating), so that a tree that doubles at every level is refused, or skipped where it places nothing, before any
- * memory is taken. Then every path from the root to a primitive makes one primitive. What is known of a node
- * meanwhile stands in tables beside the nodes, which are only read. */
+ * memory is taken. Then every path from the root to a primitive makes one primitive. Temporary data of nodes are in
+ * tables beside the nodes, which are only read. */
 #include "world/flatten.h"
 
 #include "base/mem.h"
@@ -279,7 +279,7 @@ struct place_frame {
     const struct graphics_state *state_of_operand, *state; /* NULL: nothing above says anything */
 };
 
-/* A node that moves: a link of its own, on which what is under it stands. */
+/* A node that moves: a link of its own, which is the base of its children. */
 static bool pose_moving(struct flattening *f, const struct node *node, const struct pose *parent, struct pose *out) {
     struct world *world = f->world;
     struct moving_link *links = room_for_one(world->links, world->link_count, &f->link_capacity, sizeof *links);

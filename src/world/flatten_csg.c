@@ -95,7 +95,7 @@ static bool add_inverse(struct flattening *f, struct csg_draft *draft) {
     return add_token(f, draft, (struct csg_token){.operation = CSG_INVERSE});
 }
 
-/* `so_far` stands in the draft, the operand behind it. */
+/* `so_far` is in the draft, the operand follows it. */
 static bool join(struct flattening *f, struct csg_draft *draft, enum csg_operation operation, enum content operand,
                  enum content *so_far) {
     enum content neutral = operation == CSG_INTERSECTION ? EVERYTHING : NOTHING;
@@ -116,7 +116,7 @@ static bool join(struct flattening *f, struct csg_draft *draft, enum csg_operati
 static bool add_solid(struct flattening *f, struct csg_draft *draft, const struct node *solid,
                       const struct above *above, bool inside, enum content *content);
 
-/* The box round a solid whose place is given by what is above it; without end where nothing is known. */
+/* The box around a solid whose pose is given by the nodes above it; without end where nothing is known. */
 static bool box_of_solid(struct flattening *f, const struct node *solid, const struct above *above, struct box *out) {
     struct csg_draft draft = {.unseen = true};
     enum content content = NOTHING;
@@ -346,7 +346,7 @@ static bool add_clips(struct flattening *f, struct csg_draft *draft, const struc
     return true;
 }
 
-/* Whether nobody can tell parts that keep apart from one solid, from inside of it either. */
+/* Whether disjoint parts are indistinguishable from one solid, also from inside. */
 static bool may_be_split(const struct flattening *f, const struct csg_draft *draft) {
     const uint32_t *numbers = f->world->material_numbers;
     bool all_opaque = true, all_alike = true;

@@ -1,7 +1,7 @@
 /* Effective materials: a node's texture (set_texture) and relief (set_bump) go over its material, a node without
  * material is plain gray. Each distinct set gets one number, in order of first use, and one index for each layout of
  * shapes on which its images lie otherwise (material/material_mapping.h). The table that finds sets again is hashed by
- * address, which decides where an entry stands and never which number it gets. */
+ * address, which decides the position of an entry and never its number. */
 #include "world/flatten.h"
 
 #include "base/random.h"

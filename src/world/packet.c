@@ -1,5 +1,5 @@
 /* Rays of one origin together: the camera rays of a few pixels go through the hierarchy over the primitives as
- * one beam, and the shadow rays of one hit towards one light look only at what stands in the shaft between them. Meshes
+ * one beam, and the shadow rays of one hit towards one light test only what is in the shaft between them. Meshes
  * get all the rays that meet their box at once (accel/triangle_packet.h), other shapes one after the other. The answers
  * are those of single rays. */
 #include "world/packet.h"
@@ -150,7 +150,7 @@ static void try_shape(struct packet_search *s, uint32_t index, uint64_t active) 
     }
 }
 
-/* Beyond this nobody looks for anything any more. */
+/* Beyond this, nothing is searched. */
 static double farthest(const struct packet_search *s) {
     double limit = -INFINITY;
     for (uint32_t i = 0; i < s->rays->count; i++)

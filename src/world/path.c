@@ -117,7 +117,7 @@ struct wanted_operand {
 
 static bool keep_operand(void *context, uint32_t first, uint32_t end, const struct scene_step *steps, uint32_t depth) {
     struct wanted_operand *wanted = context;
-    /* What is below a shape was told before it, so the first one that has the leaf is what it was made of. */
+    /* What is below a shape was reported before it, so the first one that has the leaf is its origin. */
     if (wanted->origin < first || wanted->origin >= end || depth > wanted->capacity)
         return wanted->origin >= end;
     memcpy(wanted->steps, steps, depth * sizeof *steps);

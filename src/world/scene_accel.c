@@ -1,8 +1,8 @@
 /* How many voxels has the frame? A voxel spares a ray that passes it the upper levels of the hierarchy and costs it a
- * step. In a cloud of alike primitives without anything round it, with three voxels to each of them, steps win by a
- * tenth (10,000 spheres) to a fifth (200,000) of the whole picture. But one floor round the cloud makes voxels of the
- * floor's size, which hold everything at once: 25 times slower at 10,000, 190 times at 200,000. No resolution that is
- * the same everywhere suits both. ACCEL_AUTO asks the cost model of accel/accel_cost.c, which knows from a sample of
+ * step. In a cloud of alike primitives without surroundings, with three voxels to each of them, steps win by a
+ * tenth (10,000 spheres) to a fifth (200,000) of the whole picture. But one floor around the cloud makes voxels of the
+ * floor's size, which contain everything at once: 25 times slower at 10,000, 190 times at 200,000. No resolution that
+ * is the same everywhere suits both. ACCEL_AUTO asks the cost model of accel/accel_cost.c, which knows from a sample of
  * the boxes how many voxels a line visits, how long their lists are, and how long for somebody who looks at the
  * crowd: voxels with lists where they cost clearly less, else one voxel with the hierarchy of box_tree.c in it, which
  * also lets packets and shafts through. ACCEL_GRID and ACCEL_BVH pin it. docs/performance.md has the measurements. */

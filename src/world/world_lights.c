@@ -68,7 +68,7 @@ static double similarity(const struct affine *map) {
     return keeps_right_angles(map) ? sqrt(squared) : 0;
 }
 
-/* A light that is to stand for a primitive. */
+/* A light that represents a primitive. */
 struct derived {
     const struct world *world;
     uint32_t primitive;

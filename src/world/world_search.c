@@ -1,5 +1,5 @@
 /* What a ray meets first, and whether it meets anything. Every traversal of the accelerator ends in the same tests of
- * one primitive. A primitive that stands in several cells is tried once per ray: a small mailbox remembers it. */
+ * one primitive. A primitive in several cells is tested once per ray: a small mailbox remembers it. */
 #include "world/world_internal.h"
 
 #include "material/material_eval.h"
@@ -200,7 +200,7 @@ bool world_nearest(const struct world *world, const struct ray *ray, struct worl
 
 /* --- anything in the way --- */
 
-/* A surface with holes stands in the way where at least half of it is there: shadows have two values. */
+/* A surface with holes occludes where its opacity is at least one half: shadows have two values. */
 static bool any_with_holes(const struct world *world, uint32_t index, const struct ray *ray,
                            struct world_scratch *scratch) {
     struct ray rest = *ray;
