@@ -1529,6 +1529,9 @@ function gr.fog_grid(corner, size, cells, densities, colour) end
 ---@field fog? gr.fog fog (a fog; default none): A fog.
 ---@field caustics? integer|{photons?: integer, radius?: number} caustics (a number of photons or {photons = ..., radius = ...}; default --caustics): Caustics: number of photons (default 200000) and radius of the disc that each one lights (default: from their density).
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): gray does not trace rays that can change a pixel by less than this.
+---@field integrator? 'whitted'|'path' integrator ('whitted'|'path'; default --integrator): How light becomes a picture: whitted for rays that mirrors and glass send on, path for light that goes from wall to wall.
+---@field spp? integer spp (a whole number, 1 to 16777216; default --spp, else 64): Samples of a pixel, of integrator path; the option wins.
+---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): Scattering events of a path: 0 shows emission only, 1 direct light.
 ---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure when a PNG file is written.
 ---@field tone? 'none'|'reinhard'|'filmic' tone ('none'|'reinhard'|'filmic'; default --tone): Tone curve that maps bright light into the range of a PNG file.
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
@@ -1595,6 +1598,9 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field fog? gr.fog fog (a fog; default none): A fog.
 ---@field caustics? integer|{photons?: integer, radius?: number} caustics (a number of photons or {photons = ..., radius = ...}; default --caustics): Caustics: number of photons (default 200000) and radius of the disc that each one lights (default: from their density).
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): gray does not trace rays that can change a pixel by less than this.
+---@field integrator? 'whitted'|'path' integrator ('whitted'|'path'; default --integrator): How light becomes a picture: whitted for rays that mirrors and glass send on, path for light that goes from wall to wall.
+---@field spp? integer spp (a whole number, 1 to 16777216; default --spp, else 64): Samples of a pixel, of integrator path; the option wins.
+---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): Scattering events of a path: 0 shows emission only, 1 direct light.
 ---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure when a PNG file is written.
 ---@field tone? 'none'|'reinhard'|'filmic' tone ('none'|'reinhard'|'filmic'; default --tone): Tone curve that maps bright light into the range of a PNG file.
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.

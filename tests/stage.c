@@ -81,6 +81,7 @@ struct render_job stage_job(struct stage *s, uint32_t width, uint32_t height) {
                                .height = height,
                                .ambient = s->ambient,
                                .fog = s->fog,
+                               .background_lights = true,
                                .film = &s->film};
 }
 

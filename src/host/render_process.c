@@ -283,6 +283,8 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
         return false;
     bool ok = true;
     double built = progress_clock(), built_worked = progress_processor_clock();
+    if (job->world)
+        integrator_warn(job, warn_of_scene, process);
     if (is_asked(process->options)) {
         ok = answer_questions(work, error);
     } else if (!process->options->check) {
@@ -408,6 +410,7 @@ static void init_work(struct picture_work *work, struct render_process *process,
         .height = options->height ? (uint32_t)options->height : in_preview(options, request->height),
         .ambient = request->ambient,
         .fog = request->fog,
+        .background_lights = request->sky_chosen,
         .film = &work->film,
         .shard = options->shard,
         .shards = options->shards,

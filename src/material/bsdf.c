@@ -334,9 +334,11 @@ static double expected_share(const struct bsdf *bsdf, const struct lobe *lobe) {
     return flags & BSDF_TRANSMITS ? 1 - reflected : reflected;
 }
 
-/* In proportion to it a lobe is drawn. */
+/* In proportion to it a lobe is drawn. Where there is no boundary no facet reflects. */
 static double lobe_chance(const struct bsdf *bsdf, uint32_t lobes, int i) {
     const struct lobe *lobe = &bsdf->lobes[i];
+    if (lobe->kind == LOBE_GGX_REFLECTION && bsdf->fresnel_of_facets && bsdf->eta == 1)
+        return 0;
     return lobes >> i & 1 && lobe_counts(bsdf, lobe) ? vec3_max_abs(lobe->weight) * expected_share(bsdf, lobe) : 0;
 }
 static double all_chances(const struct bsdf *bsdf, uint32_t lobes) {

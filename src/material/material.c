@@ -143,3 +143,14 @@ double material_specular(const struct material *material) {
     double own = amount > 0 ? amount * (filtered ? 1 : vec3_max_abs(numbers->ks)) : 0;
     return own > material->metal ? own : material->metal;
 }
+
+/* A highlight that is seen head on sends back 2 ks / (e + 1) of uniform light; beside a mirror it is left out. */
+double material_albedo_bound(const struct material *material) {
+    const struct phong *numbers = numbers_of(material);
+    const struct texture *texture = material->inputs[INPUT_KD];
+    double diffuse = vec3_max_abs(texture ? texture_estimate(texture, numbers, TEXTURE_LARGEST) : numbers->kd);
+    double specular = material_specular(material), exponent = numbers->shininess > 0 ? numbers->shininess : 0;
+    if (numbers->unlit)
+        return 0;
+    return diffuse + (specular > 0 ? specular : vec3_max_abs(numbers->ks) * 2 / (exponent + 1));
+}

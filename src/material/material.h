@@ -111,6 +111,8 @@ struct vec3 material_emission_bound(const struct material *material);
 bool material_emission_varies(const struct material *material);
 /* The share of light that its mirror and its refraction give back together, at most; 0: neither. */
 double material_specular(const struct material *material);
+/* About the share of light that it sends back, at most. */
+double material_albedo_bound(const struct material *material);
 bool material_has_ior(const struct material *material);
 
 #endif

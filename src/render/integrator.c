@@ -3,12 +3,14 @@
 
 #include "base/mem.h"
 #include "base/unreachable.h"
+#include "render/path.h"
 #include "render/whitted.h"
 
 struct integrator {
     enum integrator_kind kind;
     union {
         struct whitted whitted;
+        struct path_tracer path;
     };
 };
 
@@ -18,8 +20,20 @@ struct film_record integrator_record(enum integrator_kind integrator) {
     switch (integrator) {
     case INTEGRATOR_WHITTED:
         return whitted_record();
+    case INTEGRATOR_PATH:
+        return path_tracer_record();
     }
     UNREACHABLE(no_kind);
+}
+
+void integrator_warn(const struct render_job *job, world_warning *warn, void *context) {
+    switch (job->settings.integrator) {
+    case INTEGRATOR_WHITTED:
+        break;
+    case INTEGRATOR_PATH:
+        path_tracer_warn(job, warn, context);
+        break;
+    }
 }
 
 bool integrator_create(struct renderer *renderer, int workers, struct render_statistics *statistics,
@@ -31,6 +45,8 @@ bool integrator_create(struct renderer *renderer, int workers, struct render_sta
     switch (integrator->kind) {
     case INTEGRATOR_WHITTED:
         return whitted_create(&integrator->whitted, renderer, workers, statistics, error);
+    case INTEGRATOR_PATH:
+        return path_tracer_create(&integrator->path, renderer, error);
     }
     UNREACHABLE(no_kind);
 }
@@ -42,6 +58,9 @@ void integrator_destroy(struct integrator *integrator) {
     case INTEGRATOR_WHITTED:
         whitted_destroy(&integrator->whitted);
         break;
+    case INTEGRATOR_PATH:
+        path_tracer_destroy(&integrator->path);
+        break;
     }
     mem_free(integrator);
 }
@@ -50,6 +69,8 @@ bool integrator_render(struct renderer *renderer, struct worker *worker, const s
     switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:
         return whitted_render(&renderer->integrator->whitted, renderer, worker, part);
+    case INTEGRATOR_PATH:
+        return path_tracer_render(&renderer->integrator->path, renderer, worker, part);
     }
     UNREACHABLE(no_kind);
 }
@@ -58,6 +79,8 @@ struct vec3 integrator_radiance(struct renderer *renderer, struct worker *worker
     switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:
         return whitted_trace(&renderer->integrator->whitted, &worker->state, ray, key);
+    case INTEGRATOR_PATH:
+        return path_trace(&renderer->integrator->path, &worker->state, ray, key);
     }
     UNREACHABLE(no_kind);
 }
@@ -67,6 +90,8 @@ struct vec3 integrator_radiance_met(struct renderer *renderer, struct worker *wo
     switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:
         return whitted_trace_met(&renderer->integrator->whitted, &worker->state, ray, met, key);
+    case INTEGRATOR_PATH:
+        return path_trace_met(&renderer->integrator->path, &worker->state, ray, met, key);
     }
     UNREACHABLE(no_kind);
 }
@@ -75,6 +100,8 @@ bool integrator_refines(const struct renderer *renderer, struct vec3 a, struct v
     switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:
         return whitted_refines(renderer, a, b);
+    case INTEGRATOR_PATH:
+        return false;
     }
     UNREACHABLE(no_kind);
 }
@@ -84,6 +111,9 @@ void integrator_repeat(struct renderer *renderer, struct worker *worker, int64_t
     case INTEGRATOR_WHITTED:
         whitted_repeat(&renderer->integrator->whitted, renderer, worker, x, y);
         break;
+    case INTEGRATOR_PATH:
+        path_tracer_repeat(&renderer->integrator->path, renderer, worker, x, y);
+        break;
     }
 }
 
@@ -91,6 +121,8 @@ void integrator_add_statistics(const struct renderer *renderer, struct render_st
     switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:
         whitted_add_statistics(&renderer->integrator->whitted, renderer, out);
+        break;
+    case INTEGRATOR_PATH:
         break;
     }
 }

@@ -32,6 +32,7 @@ struct render_job {
     uint32_t width, height; /* of the whole picture */
     struct vec3 ambient;
     const struct fog *fog;           /* or NULL */
+    bool background_lights;          /* the script chose the sky of the world: paths take its light */
     struct film *film;               /* placed for the crop; only tiles in the state FILM_TILE_WANTED are made */
     const _Atomic uint32_t *handout; /* or NULL; while it is 1 more tiles may become wanted */
     uint32_t shard, shards;          /* this one of so many, from 1, makes its own tiles only; 0 of 0: all */
@@ -46,6 +47,8 @@ struct render_job {
 
 /* What films for pictures of an integrator record. */
 struct film_record integrator_record(enum integrator_kind integrator);
+/* Lines about what the scene says and the integrator of the job takes otherwise; the world is built. */
+void integrator_warn(const struct render_job *job, world_warning *warn, void *context);
 /* False: cancelled or out of memory (error says which). The film then holds what was finished. */
 bool render_run(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
                 struct error *error);

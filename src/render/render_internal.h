@@ -42,7 +42,9 @@ struct renderer {
     bool timed;        /* something moves while the shutter is open */
     bool together;     /* camera rays start in one place and at one moment */
     bool media_by_ray; /* rays start in different places or moments, and solids are near */
-    uint32_t *closed;  /* the solids that can contain the eye */
+    enum sampler_kind sampler;
+    double sample_share; /* of a pixel's width, what a sample stands for; SAMPLER_STRATA: as the settings say */
+    uint32_t *closed;    /* the solids that can contain the eye */
     uint32_t closed_count;
     struct integrator *integrator;
     struct worker *workers;

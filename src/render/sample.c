@@ -47,11 +47,20 @@ static struct vec3 sample_through(struct renderer *renderer, struct worker *work
 static void begin_sample(const struct renderer *renderer, struct worker *worker, const struct pixel_sample *place) {
     const struct settings *settings = &renderer->job->settings;
     uint64_t pixel = (uint64_t)place->y * renderer->job->width + (uint64_t)place->x;
-    worker->state.sampler = sampler_make(settings->seed, pixel, place->number, (uint32_t)settings->samples);
+    switch (renderer->sampler) {
+    case SAMPLER_STRATA:
+        worker->state.sampler = sampler_make(settings->seed, pixel, place->number, (uint32_t)settings->samples);
+        break;
+    case SAMPLER_SOBOL:
+        worker->state.sampler = sampler_make_sobol(settings->seed, pixel, place->number);
+        break;
+    }
 }
 
 /* Of the pixel's width, what a sample stands for: its footprint on textures. */
 static double sample_share(const struct renderer *renderer, uint64_t number) {
+    if (renderer->sampler == SAMPLER_SOBOL)
+        return renderer->sample_share;
     return number > 0 ? 1.0 / renderer->job->settings.samples : 1;
 }
 

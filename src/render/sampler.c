@@ -15,11 +15,15 @@ static uint32_t part_of(const struct sampler *sampler, uint64_t dimension) {
 }
 
 struct sample2 sampler_lens(const struct sampler *sampler) {
+    if (sampler->kind == SAMPLER_SOBOL)
+        return sampler_point(sampler, SAMPLER_LENS);
     uint32_t side = sampler->side, cell = part_of(sampler, order_of_lens);
     return sample_cell(random_combine(sampler->pixel_key, jitter_of_lens), cell % side, cell / side, side);
 }
 
 double sampler_time(const struct sampler *sampler) {
+    if (sampler->kind == SAMPLER_SOBOL)
+        return sampler_point(sampler, SAMPLER_TIME).x;
     uint32_t all = sampler->side * sampler->side, cell = part_of(sampler, order_of_times);
     return ((double)cell + random_unit(random_combine(sampler->key, jitter_of_times))) / (double)all;
 }

@@ -8,7 +8,7 @@
 #ifndef GRAY_RENDER_SAMPLER_H
 #define GRAY_RENDER_SAMPLER_H
 
-#include "math/sampling.h"
+#include "render/sobol.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -20,13 +20,23 @@ struct pixel_sample {
     uint64_t number; /* 0: the first sample, which is alone; 1 + k: cell k of N x N */
 };
 
+/* How the samples of a pixel are spread. STRATA: as parts of cells, of N x N samples. SOBOL: as points of sequences
+ * (render/sobol.h), of any number of samples; each decision of a sample has a dimension. */
+enum sampler_kind { SAMPLER_STRATA, SAMPLER_SOBOL };
+
 /* The numbers of one sample. */
 struct sampler {
+    enum sampler_kind kind;
     uint64_t key;       /* of the sample: the root of the keys of its rays */
-    uint64_t pixel_key; /* of the strata */
-    uint32_t cell;      /* of `side` x `side` samples of the pixel */
+    uint64_t pixel_key; /* of the strata; of the sequences */
+    uint32_t cell;      /* of `side` x `side` samples of the pixel; SOBOL: number of the sample */
     uint32_t side;      /* 1: the sample is alone */
 };
+
+/* Dimensions of SOBOL: those of the camera ray, then SAMPLER_VERTEX_DIMENSIONS for each vertex of a path. A point of
+ * the unit square is one dimension. */
+enum sampler_dimension { SAMPLER_PIXEL, SAMPLER_LENS, SAMPLER_TIME, SAMPLER_FIRST_VERTEX };
+enum { SAMPLER_VERTEX_DIMENSIONS = 3 };
 
 /* Sample `number` of a pixel (counted row by row over the whole picture) of side x side. */
 static inline struct sampler sampler_make(uint64_t seed, uint64_t pixel, uint64_t number, uint32_t side) {
@@ -35,6 +45,20 @@ static inline struct sampler sampler_make(uint64_t seed, uint64_t pixel, uint64_
                             .pixel_key = random_combine(key, 1),
                             .cell = number > 0 ? (uint32_t)number - 1 : 0,
                             .side = number > 0 ? side : 1};
+}
+
+/* Sample `number` of a pixel for paths. */
+static inline struct sampler sampler_make_sobol(uint64_t seed, uint64_t pixel, uint64_t number) {
+    uint64_t key = random_combine(random_combine(seed, 2), pixel);
+    return (struct sampler){.kind = SAMPLER_SOBOL,
+                            .key = random_combine(key, number),
+                            .pixel_key = key,
+                            .cell = (uint32_t)number,
+                            .side = 1};
+}
+/* Its point in a dimension. */
+static inline struct sample2 sampler_point(const struct sampler *sampler, uint32_t dimension) {
+    return sobol_point(sampler->cell, random_combine(sampler->pixel_key, dimension));
 }
 
 /* A place of the unit square on the lens, and a moment of the shutter from 0 to 1: one of as many cells as the pixel

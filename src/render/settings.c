@@ -10,6 +10,7 @@ struct settings settings_default(void) {
                              .side_tolerance = 0.005,
                              .corner_tolerance = 0.01,
                              .area_samples = 4,
+                             .max_depth = DEPTH_DEFAULT,
                              .specular = SPECULAR_PHONG,
                              .accel = ACCEL_AUTO,
                              .shutter = {0, 1},
@@ -22,6 +23,7 @@ void settings_set_draft(struct settings *settings, enum draft_level draft_level)
         return;
     settings->full = false;
     settings->samples = 1;
+    settings->path_samples = draft_level == DRAFT_PREVIEW ? 1 : 4;
     settings->side_tolerance = settings->corner_tolerance = HUGE_VAL; /* nothing is sampled again */
     settings->coarse = true;
     settings->area_samples = settings->area_samples < COARSE_SIDE ? settings->area_samples : COARSE_SIDE;

@@ -58,8 +58,11 @@ struct caustics {
 enum { PHOTONS_MAX = 100000000, PHOTONS_USUAL = 200000 };
 
 /* How light becomes a picture; render/integrator.c switches over them. */
-#define INTEGRATORS(X) X(INTEGRATOR_WHITTED, "whitted")
+#define INTEGRATORS(X)                                                                                                 \
+    X(INTEGRATOR_WHITTED, "whitted")                                                                                   \
+    X(INTEGRATOR_PATH, "path")
 enum integrator_kind { INTEGRATORS(LIST_MEMBER) };
+enum { PATH_SAMPLES_DEFAULT = 64, PATH_SAMPLES_MAX = 1 << 24, DEPTH_DEFAULT = 16, DEPTH_MAX = 1000000 };
 #define OVERLAYS(X)                                                                                                    \
     X(OVERLAY_NONE, "none")                                                                                            \
     X(OVERLAY_OF_BOXES, "boxes")                                                                                       \
@@ -71,8 +74,13 @@ enum overlay { OVERLAYS(LIST_MEMBER) };
     X(ORDER_ROWS, "rows")
 enum order { TILE_ORDERS(LIST_MEMBER) };
 
+/* How paths find light that rays can meet: by lights and BSDFs with multiple importance sampling, or, to be compared
+ * with, by one of them alone. */
+enum path_strategy { PATH_STRATEGY_MIS, PATH_STRATEGY_LIGHTS, PATH_STRATEGY_BSDF };
+
 struct settings {
     enum integrator_kind integrator;
+    enum path_strategy path_strategy;
     struct caustics caustics;
     struct lens lens;
     struct shutter shutter;
@@ -85,6 +93,8 @@ struct settings {
     double side_tolerance, corner_tolerance; /* squared RGB distance, >= 0 */
     bool use_tir;
     int area_samples; /* -al-samples: N x N shadow rays; 1..64 */
+    int path_samples; /* --spp: samples of a pixel; 0: nobody chose, PATH_SAMPLES_DEFAULT */
+    int max_depth;    /* scattering events of a path, 0..DEPTH_MAX: 0 emission, 1 direct light */
     uint64_t seed;
     bool view_is_target;         /* --view target */
     bool pixel_corner;           /* --pixel-sample corner */

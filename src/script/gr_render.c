@@ -60,6 +60,15 @@ static void apply_settings(const struct script_value *args, struct settings *set
         settings->caustics = (struct caustics){(int)args[RENDER_CAUSTICS].number, args[RENDER_CAUSTICS].vector.x};
     if (args[RENDER_CUTOFF].given)
         settings->cutoff = args[RENDER_CUTOFF].number;
+    if (args[RENDER_INTEGRATOR].given)
+        settings->integrator = (enum integrator_kind)args[RENDER_INTEGRATOR].choice;
+    if (args[RENDER_SPP].given && settings->path_samples == 0) /* here the option wins */
+        settings->path_samples = (int)args[RENDER_SPP].number;
+    if (args[RENDER_MAX_DEPTH].given)
+        settings->max_depth = (int)args[RENDER_MAX_DEPTH].number;
+    /* Light that goes from wall to wall is computed in linear colours, which a screen shows by the sRGB curve. */
+    if (settings->integrator == INTEGRATOR_PATH && !args[RENDER_SRGB].given)
+        settings->tone.srgb = true;
 }
 
 static bool apply_lens(const struct script_value *args, struct lens *lens, const struct camera *camera,
@@ -133,6 +142,7 @@ bool gr_render(struct script_context *context, const struct script_value *args, 
         .fog = args[RENDER_FOG].fog,
         .settings = context->host->settings,
     };
+    request.sky_chosen = args[RENDER_SKY].given || args[RENDER_BACKGROUND].given;
     apply_settings(args, &request.settings);
     if (!apply_lens(args, &request.settings.lens, &request.camera, error) ||
         !apply_motion(args, &request.settings, &request.camera, error) ||

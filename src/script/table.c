@@ -646,6 +646,13 @@ static const struct script_parameter render_parameters[] = {
                          "(default: from their density)."},
     [RENDER_CUTOFF] = {"cutoff", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "--cutoff",
                        "gray does not trace rays that can change a pixel by less than this."},
+    [RENDER_INTEGRATOR] = {"integrator", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(INTEGRATORS), NULL, "--integrator",
+                           "How light becomes a picture: whitted for rays that mirrors and glass send on, path for "
+                           "light that goes from wall to wall."},
+    [RENDER_SPP] = {"spp", KIND_WHOLE, OPTIONAL, BETWEEN(1, PATH_SAMPLES_MAX), NULL, "--spp, else 64",
+                    "Samples of a pixel, of integrator path; the option wins."},
+    [RENDER_MAX_DEPTH] = {"max_depth", KIND_WHOLE, OPTIONAL, BETWEEN(0, DEPTH_MAX), NULL, "--max-depth",
+                          "Scattering events of a path: 0 shows emission only, 1 direct light."},
     [RENDER_EXPOSURE] = {"exposure", KIND_NUMBER, OPTIONAL, BETWEEN(-100, 100), "stops", "--exposure",
                          "Light is multiplied by 2^exposure when a PNG file is written."},
     [RENDER_TONE] = {"tone", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(TONE_CURVES), NULL, "--tone",

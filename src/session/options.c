@@ -418,14 +418,20 @@ struct digest options_digest(const struct options *options) {
                        option->group == OPTION_GROUP_COMPATIBILITY;
         bool search = option->offset == offsetof(struct options, settings.accel) ||
                       option->offset == offsetof(struct options, isa);
-        bool integrator = option->offset == offsetof(struct options, settings.integrator);
-        if (picture && option->size > 0 && !search && !integrator)
+        bool path = option->offset == offsetof(struct options, settings.integrator) ||
+                    option->offset == offsetof(struct options, settings.path_samples) ||
+                    option->offset == offsetof(struct options, settings.max_depth);
+        if (picture && option->size > 0 && !search && !path)
             digest = digest_option(option, options, digest);
     }
     const struct settings *settings = &options->settings;
     /* Files from before there was a choice have the key of the first. */
     if (settings->integrator != INTEGRATOR_WHITTED)
         digest = digest_bytes(&settings->integrator, sizeof settings->integrator, digest);
+    if (settings->path_samples != 0)
+        digest = digest_bytes(&settings->path_samples, sizeof settings->path_samples, digest);
+    if (settings->max_depth != DEPTH_DEFAULT)
+        digest = digest_bytes(&settings->max_depth, sizeof settings->max_depth, digest);
     const int64_t numbers[] = {options->width,          options->height,
                                (int64_t)settings->seed, settings->cropped,
                                settings->crop_x,        settings->crop_y,

@@ -51,6 +51,10 @@ const struct option option_table[] = {
      "trace N photons for caustics, the light that glass and mirrors focus; 0: none"},
     {OPTION_GROUP_PICTURE, "--cutoff", OPTION_NUMBER, "X", 0, 1, FIELD(settings.cutoff), "0.0001",
      "do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays"},
+    {OPTION_GROUP_PICTURE, "--spp", OPTION_INTEGER, "N", 1, PATH_SAMPLES_MAX, FIELD(settings.path_samples), "64",
+     "N samples for a pixel, with --integrator path"},
+    {OPTION_GROUP_PICTURE, "--max-depth", OPTION_INTEGER, "N", 0, DEPTH_MAX, FIELD(settings.max_depth), "16",
+     "a path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one bounce more"},
     {OPTION_GROUP_PICTURE, "--seed", OPTION_SEED, "N", NO_RANGE, NO_FIELD, "0",
      "seed of all random numbers, including math.random in scripts"},
 

@@ -1,0 +1,182 @@
+/* The light that reaches a vertex of a path straight from the lights of the scene. Light that a ray can meet is found
+ * in two ways, by sampling the light and by scattered rays that meet it; each sample counts by the power heuristic of
+ * multiple importance sampling (Veach 1997, equation 9.14). Other light is found by sampling alone.
+ *
+ * Lamps have no body for shadow rays, so a scattered ray takes the light of every lamp on its way and goes on: both
+ * ways find the same light. */
+#include "render/path.h"
+
+#include "material/medium.h"
+
+/* The weight of a sample of density `pdf` that the other strategy finds with density `other`. */
+static double weight_of(const struct path_tracer *tracer, enum path_strategy strategy, double pdf, double other) {
+    if (tracer->strategy != PATH_STRATEGY_MIS)
+        return tracer->strategy == strategy;
+    return pdf * pdf / (pdf * pdf + other * other);
+}
+
+static bool is_black(struct vec3 c) {
+    return c.x == 0 && c.y == 0 && c.z == 0;
+}
+
+/* --- sampling a light --- */
+
+/* f |cos| of a set of lobes. Classic lobes answer no light from behind the geometric surface. */
+static struct vec3 scattered(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi) {
+    const struct bsdf *bsdf = vertex->bsdf;
+    if (!(vec3_dot(wi, bsdf->geometric_side) > 0))
+        lobes &= bsdf_lobes_with(bsdf, BSDF_TRANSMITS);
+    return lobes ? bsdf_eval(bsdf, lobes, BSDF_RADIANCE, vertex->hit->view, wi) : vec3_all(0);
+}
+
+/* The ray to a sample, from the side of the surface where the light is. media: of that side; `crossed` may hold them.
+ */
+static struct ray shadow_ray(const struct path_vertex *vertex, const struct world_light_sample *sample,
+                             struct medium_stack *crossed) {
+    const struct hit *hit = vertex->hit;
+    struct ray shadow = {.origin = vertex->receiver.from, .time = hit->time, .media = vertex->ray->media};
+    if (!(vec3_dot(sample->direction, vertex->bsdf->geometric_side) > 0)) {
+        double offset = hit->front ? -hit->offset : hit->offset;
+        shadow.origin = vec3_add_scaled(hit->point, hit->normal_geometric, offset);
+        medium_stack_copy(crossed, shadow.media);
+        medium_stack_cross(crossed, &vertex->bsdf->boundary);
+        shadow.media = crossed;
+    }
+    shadow.direction = light_target_from(&sample->target, shadow.origin);
+    shadow.t_max = light_target_end(&sample->target);
+    shadow.skip_primitive = sample->skip_primitive ? sample->skip_primitive : hit_skip_primitive(hit, shadow.direction);
+    return shadow;
+}
+
+/* The radiance of what a ray meets where only that decides. */
+static struct vec3 radiance_met(const struct path_tracer *tracer, struct integrator_state *state,
+                                const struct path_vertex *vertex, const struct world_light_sample *sample,
+                                const struct ray *shadow, double *distance) {
+    const struct world_lights *lights = &tracer->lights;
+    const struct world *world = state->job->world;
+    struct ray ray = *shadow;
+    struct hit hit;
+    struct bsdf bsdf;
+    ray.t_max = INFINITY;
+    if (!world_nearest(world, &ray, state->scratch, &hit) || !world_lights_shows(lights, sample, &hit))
+        return vec3_all(0);
+    *distance = hit.t * vec3_length(ray.direction);
+    material_eval(&world->materials[hit.material], &hit, ray.media, NULL, &bsdf);
+    struct vec3 radiance = world_lights_radiance(lights, vertex->receiver.primitive, &hit, bsdf.emission);
+    return bsdf.opacity < 1 ? vec3_scale(radiance, bsdf.opacity) : radiance;
+}
+
+/* What arrives of a sample: its radiance, dimmed by the medium on the way; black where something is in the way. */
+static struct vec3 arriving(const struct path_tracer *tracer, struct integrator_state *state,
+                            const struct path_vertex *vertex, const struct world_light_sample *sample) {
+    struct medium_stack crossed;
+    struct ray shadow = shadow_ray(vertex, sample, &crossed);
+    double distance = sample->target.distant ? INFINITY : vec3_length(shadow.direction);
+    struct vec3 radiance = sample->radiance;
+    state->scratch->light = sample->light % WORLD_SHADOW_CACHE;
+    state->shadow_rays++;
+    if (sample->decided)
+        radiance = radiance_met(tracer, state, vertex, sample, &shadow, &distance);
+    else if (world_any(state->job->world, &shadow, state->scratch))
+        return vec3_all(0);
+    struct medium_effect effect;
+    if (shadow.media->count == 0 || !medium_transmittance(MEDIUM_RAY_SIGHT, NULL, &shadow, distance, &effect))
+        return radiance;
+    return vec3_mul(radiance, effect.transmittance);
+}
+
+struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_state *state,
+                        const struct path_vertex *vertex, double choice, struct sample2 place) {
+    const struct world_lights *lights = &tracer->lights;
+    const struct vec3 none = {0, 0, 0};
+    const struct light_receiver *receiver = &vertex->receiver;
+    struct world_light_sample sample;
+    double pmf;
+    uint32_t number = light_sampler_sample(&lights->sampler, receiver->point, receiver->normal, choice, &pmf);
+    if (number == LIGHT_NONE || !world_lights_sample(lights, receiver, number, place, &sample))
+        return none;
+    struct vec3 f = scattered(vertex, vertex->lobes, sample.direction);
+    double pdf = pmf * sample.pdf;
+    const struct light *light = &lights->lights[number];
+    bool shown = !light_is_delta(light) && (number >= state->job->world->light_count || light_is_seen(light));
+    if (sample.is_delta) {
+        f = vec3_scale(f, 1 / pdf);
+    } else {
+        double other = bsdf_pdf(vertex->bsdf, vertex->lobes, vertex->hit->view, sample.direction);
+        f = vec3_scale(f, weight_of(tracer, PATH_STRATEGY_LIGHTS, pdf, other) / pdf);
+    }
+    if (vertex->stand_in && !shown)
+        f = vec3_add_scaled(f, scattered(vertex, vertex->stand_in, sample.direction), 1 / pdf);
+    return is_black(f) ? none : vec3_mul(f, arriving(tracer, state, vertex, &sample));
+}
+
+/* --- rays that meet lights --- */
+
+/* Of a scattered ray that meets a light, which samples find with that density. */
+static double met_weight(const struct path_tracer *tracer, const struct path_segment *segment, double pdf) {
+    return segment->pdf == 0 ? 1 : weight_of(tracer, PATH_STRATEGY_BSDF, segment->pdf, pdf);
+}
+
+struct vec3 path_emission(const struct path_tracer *tracer, const struct path_segment *segment, const struct hit *hit,
+                          struct vec3 emission) {
+    const struct world_lights *lights = &tracer->lights;
+    struct vec3 radiance = world_lights_radiance(lights, segment->receiver->primitive, hit, emission);
+    if (is_black(radiance) || segment->pdf == 0)
+        return radiance;
+    double pdf = world_lights_pdf_of_hit(lights, segment->receiver, vec3_negate(hit->view), hit);
+    return vec3_scale(radiance, met_weight(tracer, segment, pdf));
+}
+
+struct vec3 path_lamps(const struct path_tracer *tracer, const struct path_segment *segment, double t_max) {
+    const struct world_lights *lights = &tracer->lights;
+    struct vec3 sum = {0, 0, 0};
+    struct world_lights_traversal traversal;
+    struct light_hit hit;
+    struct ray ray = *segment->ray;
+    uint32_t number;
+    if (lights->lamp_count == 0)
+        return sum;
+    ray.t_max = t_max;
+    world_lights_met_begin(&traversal, lights, &ray);
+    while (world_lights_met_next(&traversal, &number, &hit)) {
+        struct medium_effect effect;
+        if (!world_lights_reach(lights, number, segment->receiver->primitive))
+            continue;
+        (void)medium_transmittance(MEDIUM_RAY_SIGHT, NULL, &ray, hit.t * vec3_length(ray.direction), &effect);
+        struct vec3 radiance = vec3_mul(light_emitted(&lights->lights[number], &ray, &hit), effect.transmittance);
+        double pdf = world_lights_pdf(lights, segment->receiver, number, vec3_normalize(ray.direction), &hit);
+        sum = vec3_add_scaled(sum, radiance, met_weight(tracer, segment, pdf));
+    }
+    return sum;
+}
+
+struct vec3 path_environment(const struct path_tracer *tracer, const struct path_segment *segment) {
+    const struct world_lights *lights = &tracer->lights;
+    const struct light_hit hit = {.t = INFINITY};
+    struct vec3 sum = {0, 0, 0}, direction = vec3_normalize(segment->ray->direction);
+    for (uint32_t i = 0; i < lights->sampler.infinite_count; i++) {
+        uint32_t number = lights->sampler.infinite[i];
+        const struct light *light = &lights->lights[number];
+        if (light_is_delta(light) || !world_lights_reach(lights, number, segment->receiver->primitive))
+            continue;
+        double pdf = world_lights_pdf(lights, segment->receiver, number, direction, &hit);
+        sum = vec3_add_scaled(sum, light_emitted(light, segment->ray, &hit), met_weight(tracer, segment, pdf));
+    }
+    return sum;
+}
+
+bool path_lamp_seen(const struct path_tracer *tracer, const struct ray *ray, double t_max, double *t,
+                    struct vec3 *radiance) {
+    const struct world_lights *lights = &tracer->lights;
+    struct ray limited = *ray;
+    struct light_hit hit;
+    uint32_t number;
+    if (lights->lamp_count == 0)
+        return false;
+    limited.t_max = t_max;
+    if (!world_lights_seen(lights, &limited, &number, &hit))
+        return false;
+    *radiance = light_emitted(&lights->lights[number], &limited, &hit);
+    *t = hit.t;
+    return true;
+}

@@ -1,0 +1,220 @@
+/* One path, from the camera on, vertex by vertex. What it carries is a weight (throughput) and the radiance found so
+ * far; what ends it is the sky, the depth, roulette, or a lamp that is seen.
+ *
+ * A *line of sight* is a camera ray, with all that smooth surfaces make of it and what holes let through. Lines of
+ * sight see what the scene shows: the background, lamps that are visible, fog. Other rays are scattered: they take the
+ * light that a surface receives, weighted against what path_direct has found there. */
+#include "render/path.h"
+
+#include "material/medium.h"
+#include "math/range.h"
+
+enum { HOLE_LIMIT = 200 };           /* holes in a row of surfaces, as in Whitted */
+enum { ROULETTE_FROM = 2 };          /* scattering events before roulette */
+static const double survival = 0.95; /* at most */
+
+struct path {
+    struct ray ray;
+    struct vec3 weight, light;
+    double
+        radiance_scale; /* what refraction has done to the weight so far: products of eta^2, which roulette ignores */
+    double pdf;         /* of the ray's direction, by solid angle; 0: it had no other one */
+    bool sight;
+    int depth, holes;              /* scattering events, holes so far */
+    uint32_t dimension;            /* of the sampler: the first one of the next vertex */
+    struct light_receiver scatter; /* where the ray comes from; not of a line of sight */
+    struct medium_stack media;
+};
+
+static void add_light(struct path *path, struct vec3 radiance) {
+    path->light = vec3_add(path->light, vec3_mul(path->weight, radiance));
+}
+
+/* What lies between the origin of the ray and what it meets: lamps, fog, absorption. False: the path ends at a lamp. */
+static bool travel(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
+                   const struct hit *hit) {
+    double end = hit ? hit->t : path->ray.t_max;
+    struct vec3 radiance;
+    bool seen = false;
+    if (path->sight)
+        seen = path_lamp_seen(tracer, &path->ray, end, &end, &radiance);
+    else
+        add_light(path, path_lamps(tracer, &(struct path_segment){&path->ray, &path->scatter, path->pdf}, end));
+    double distance = hit || seen ? end * vec3_length(path->ray.direction) : INFINITY;
+    struct medium_effect effect;
+    const struct fog *fog = path->sight ? state->job->fog : NULL;
+    if (medium_transmittance(MEDIUM_RAY_SIGHT, fog, &path->ray, distance, &effect)) {
+        add_light(path, vec3_mul(effect.source, vec3_sub(vec3_all(1), effect.transmittance)));
+        path->weight = vec3_mul(path->weight, effect.transmittance);
+    }
+    if (seen)
+        add_light(path, radiance);
+    return !seen;
+}
+
+static void leave_scene(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path) {
+    const struct world *world = state->job->world;
+    if (path->sight)
+        add_light(path, sky_colour(&world->sky, vec3_normalize(path->ray.direction), path->ray.footprint.spread));
+    else
+        add_light(path, path_environment(tracer, &(struct path_segment){&path->ray, &path->scatter, path->pdf}));
+}
+
+/* Which lobes scatter. A highlight stands for the mirror image of lights: where smooth traced lobes show that image, it
+ * answers only lights that no ray meets, and where rough ones do, which answer all lights, it is left out. */
+static void choose_lobes(struct path_vertex *vertex) {
+    const struct bsdf *bsdf = vertex->bsdf;
+    uint32_t highlights = 0, others = 0;
+    bool traced = false;
+    for (int i = 0; i < bsdf->count; i++) {
+        const struct lobe *lobe = &bsdf->lobes[i];
+        unsigned flags = lobe_flags(lobe->kind);
+        traced = traced || (flags & BSDF_TRACED);
+        if (vec3_max_abs(lobe->weight) == 0)
+            continue;
+        if (flags & BSDF_EXPONENT)
+            highlights |= UINT32_C(1) << i;
+        else
+            others |= UINT32_C(1) << i;
+    }
+    vertex->lobes = traced ? others : others | highlights;
+    vertex->stand_in = traced && bsdf->alpha == 0 ? highlights : 0;
+}
+
+/* False: the path ends here. Weights above 1 do not keep it alive for ever. */
+static bool survives(struct path *path, double u) {
+    double chance = vec3_max_abs(path->weight) / path->radiance_scale;
+    chance = chance < survival ? chance : survival;
+    if (!(u < chance))
+        return false;
+    path->weight = vec3_scale(path->weight, 1 / chance);
+    return true;
+}
+
+/* Goes on in a direction of the BSDF. */
+static bool scatter(struct integrator_state *state, struct path *path, const struct path_vertex *vertex,
+                    struct sample2 u, double u_roulette) {
+    const struct hit *hit = vertex->hit;
+    const struct bsdf *bsdf = vertex->bsdf;
+    struct bsdf_sample sample;
+    if (!bsdf_sample(bsdf, vertex->lobes, BSDF_RADIANCE, hit->view, u, &sample))
+        return false;
+    bool transmits = (sample.flags & BSDF_TRANSMITS) != 0, delta = (sample.flags & BSDF_DELTA) != 0;
+    if (!transmits && !(vec3_dot(sample.direction, bsdf->geometric_side) > 0))
+        return false;
+    path->weight = vec3_mul(path->weight, sample.weight);
+    path->depth++;
+    if (transmits)
+        path->radiance_scale *= bsdf->eta * bsdf->eta;
+    if (path->depth > ROULETTE_FROM ? !survives(path, u_roulette) : vec3_max_abs(path->weight) == 0)
+        return false;
+    path->pdf = delta ? 0 : sample.pdf;
+    path->sight = path->sight && delta;
+    path->scatter = vertex->receiver;
+    path->ray = hit_ray(hit, &path->ray, sample.direction, &path->media);
+    if (transmits) {
+        medium_stack_cross(&path->media, &bsdf->boundary);
+        state->refracted_rays++;
+    } else {
+        state->reflected_rays++;
+    }
+    return true;
+}
+
+/* At a surface. False: the path ends here. */
+static bool meet_surface(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
+                         const struct sampler *sampler, const struct hit *hit) {
+    const struct settings *settings = &state->job->settings;
+    const struct world *world = state->job->world;
+    const struct material_context context = {.specular = settings->specular, .total_reflection = true};
+    uint32_t dimension = path->dimension;
+    struct bsdf bsdf;
+    path->dimension += SAMPLER_VERTEX_DIMENSIONS;
+    state->hits++;
+    material_eval(&world->materials[hit->material], hit, path->ray.media, &context, &bsdf);
+    if (bsdf.opacity < 1 && !(random_unit(random_combine(sampler->key, dimension)) < bsdf.opacity)) {
+        path->ray = hit_ray(hit, &path->ray, vec3_negate(hit->view), &path->media);
+        return path->holes++ < HOLE_LIMIT;
+    }
+    if (path->sight)
+        add_light(path, bsdf.emission);
+    else
+        add_light(path, path_emission(tracer, &(struct path_segment){&path->ray, &path->scatter, path->pdf}, hit,
+                                      bsdf.emission));
+    if (path->depth >= tracer->max_depth)
+        return false;
+    struct path_vertex vertex = {.ray = &path->ray, .hit = hit, .bsdf = &bsdf};
+    double side = hit->front ? hit->offset : -hit->offset;
+    vertex.receiver = (struct light_receiver){hit->point, vec3_add_scaled(hit->point, hit->normal_geometric, side),
+                                              bsdf.side, hit->primitive};
+    choose_lobes(&vertex);
+    struct sample2 choice = sampler_point(sampler, dimension);
+    add_light(path, path_direct(tracer, state, &vertex, choice.x, sampler_point(sampler, dimension + 1)));
+    return scatter(state, path, &vertex, sampler_point(sampler, dimension + 2), choice.y);
+}
+
+static struct vec3 clamp_light(struct integrator_state *state, struct vec3 colour) {
+    if (vec3_within(colour, (double)FLT_MAX))
+        return colour;
+    state->clamped = true;
+    return vec3_clamped(colour, (double)FLT_MAX);
+}
+
+/* hit: what the camera ray has met, or NULL; the hits of later rays go into it, too. */
+static struct vec3 follow(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
+                          struct sampler *sampler, struct hit *hit, bool met) {
+    const struct vec3 none = {0, 0, 0};
+    double distance = met ? hit->t * vec3_length(path->ray.direction) : INFINITY;
+    struct ray first = path->ray;
+    observe_ray_begin(state->observer, &first, met ? hit : NULL, NULL, distance, 1);
+    while (travel(tracer, state, path, met ? hit : NULL)) {
+        if (!met)
+            leave_scene(tracer, state, path);
+        if (!met || !meet_surface(tracer, state, path, sampler, hit) || integrator_cancelled(state))
+            break;
+        met = world_nearest(state->job->world, &path->ray, state->scratch, hit);
+    }
+    struct vec3 light = clamp_light(state, path->light);
+    observe_ray_end(state->observer, &(struct observed_end){true, light, vec3_all(1), none, light});
+    return light;
+}
+
+static void begin(struct path *path, struct sampler *sampler, const struct integrator_state *state,
+                  const struct ray *ray, uint64_t key) {
+    path->ray = *ray;
+    path->weight = vec3_all(1);
+    path->light = vec3_all(0);
+    path->radiance_scale = 1;
+    path->pdf = 0;
+    path->sight = true;
+    path->depth = path->holes = 0;
+    path->dimension = SAMPLER_FIRST_VERTEX;
+    medium_stack_copy(&path->media, state->eye_media);
+    path->ray.media = &path->media;
+    *sampler = state->sampler;
+    /* The other eye of a stereo pair. */
+    if (key != sampler->key)
+        sampler->pixel_key = random_combine(sampler->pixel_key, UINT64_MAX);
+    sampler->key = key;
+}
+
+struct vec3 path_trace(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
+                       uint64_t key) {
+    struct path path;
+    struct sampler sampler;
+    struct hit hit;
+    begin(&path, &sampler, state, ray, key);
+    bool met = world_nearest(state->job->world, &path.ray, state->scratch, &hit);
+    return follow(tracer, state, &path, &sampler, &hit, met);
+}
+
+struct vec3 path_trace_met(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
+                           const struct packet_answer *met, uint64_t key) {
+    struct path path;
+    struct sampler sampler;
+    struct hit hit;
+    begin(&path, &sampler, state, ray, key);
+    if (met)
+        world_describe(state->job->world, &path.ray, met->primitive, &met->crossing, &hit);
+    return follow(tracer, state, &path, &sampler, &hit, met != NULL);
+}

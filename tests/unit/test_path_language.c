@@ -1,0 +1,358 @@
+/* What the classic language means to the path tracer (docs/light.md): one test for each rule. */
+#include "shape/planar.h"
+#include "tests/harness.h"
+#include "tests/stage.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIZE = 16 };
+
+static double mean_of(const struct stage *s) {
+    double sum = 0;
+    for (size_t i = 0; i < (size_t)s->film.width * s->film.height; i++)
+        sum += (double)s->film.pixels[i].rgb[0];
+    return sum / ((double)s->film.width * s->film.height);
+}
+
+static double path_mean(struct stage *s, int samples, int depth) {
+    s->settings.integrator = INTEGRATOR_PATH;
+    s->settings.path_samples = samples;
+    s->settings.max_depth = depth;
+    CHECK(stage_render(s, SIZE, SIZE));
+    return mean_of(s);
+}
+
+static double whitted_mean(struct stage *s) {
+    s->settings.integrator = INTEGRATOR_WHITTED;
+    s->settings.full = true;
+    s->settings.samples = s->settings.area_samples = 8;
+    CHECK(stage_render(s, SIZE, SIZE));
+    return mean_of(s);
+}
+
+static struct node *add_flat(struct stage *s, const struct material *material, struct flat flat) {
+    struct node *node = stage_sphere(s, s->root, material);
+    node->shape = (struct shape){.kind = SHAPE_PLANAR, .flat = flat};
+    return node;
+}
+
+/* A white floor at y = 0 seen from above. */
+static struct node *begin_floor(struct stage *s) {
+    stage_begin(s, 1);
+    s->camera = (struct camera){{0, 4, 0}, {0, -1, 0}, {0, 0, -1}, 40};
+    return add_flat(s, stage_phong(s, vec3_all(1), vec3_all(0), 1), planar_plane(vec3_make(0, 1, 0), 0));
+}
+
+static struct light *add_light(struct stage *s, enum light_kind kind) {
+    struct light *light = &s->lights[s->light_count++];
+    *light = (struct light){.kind = kind, .position = {0.5, 3, 0}, .colour = vec3_all(0.8), .falloff = {1, 0, 0}};
+    light->direction = vec3_make(0, -1, 0);
+    light->radius = 0.5;
+    light->corner = vec3_make(-0.5, 3, -0.5);
+    light->edge1 = vec3_make(1, 0, 0);
+    light->edge2 = vec3_make(0, 0, 1);
+    light->cos_inner = 0.95;
+    light->cos_outer = 0.9;
+    return light;
+}
+
+/* A ball throws a shadow on the floor. */
+static void check_light_as_whitted(enum light_kind kind, bool emits, double tolerance) {
+    struct stage s;
+    (void)begin_floor(&s);
+    struct node *ball = stage_sphere(&s, s.root, stage_phong(&s, vec3_make(0.5, 0.5, 0.5), vec3_all(0), 1));
+    stage_scale(&s, ball, 0.4, 0.4, 0.4);
+    stage_move(&s, ball, 0, 1, 0);
+    struct light *light = add_light(&s, kind);
+    light->emits = emits;
+    light->colour = vec3_all(emits ? 4 : 0.8);
+    double want = whitted_mean(&s);
+    CHECK(want > 0.05);
+    CHECK_NEAR(path_mean(&s, 256, 1), want, tolerance * want);
+    stage_end(&s);
+}
+
+TEST(depth_1_is_the_direct_light_of_whitted_for_every_light) {
+    check_light_as_whitted(LIGHT_POINT, false, 0.002);
+    check_light_as_whitted(LIGHT_DIRECTIONAL, false, 0.002);
+    check_light_as_whitted(LIGHT_SPOT, false, 0.002);
+    check_light_as_whitted(LIGHT_PARALLELOGRAM, false, 0.004);
+    check_light_as_whitted(LIGHT_DISC, false, 0.004);
+    check_light_as_whitted(LIGHT_SPHERE, false, 0.004);
+    check_light_as_whitted(LIGHT_PARALLELOGRAM, true, 0.004);
+    check_light_as_whitted(LIGHT_DISC, true, 0.004);
+    check_light_as_whitted(LIGHT_SPHERE, true, 0.004);
+}
+
+TEST(highlights_of_lights_without_body_are_those_of_whitted) {
+    struct stage s;
+    stage_begin(&s, 1);
+    for (int mirrors = 0; mirrors < 2; mirrors++) {
+        struct material *material = stage_phong(&s, vec3_all(0.3), vec3_all(0.5), 12);
+        material->phong.reflect = mirrors; /* of the black sky */
+        (void)stage_sphere(&s, s.root, material);
+    }
+    s.camera = (struct camera){{0, 0, 4}, {0, 0, -1}, {0, 1, 0}, 35};
+    stage_point_light(&s, vec3_make(2, 3, 5), vec3_all(0.9));
+    double want = whitted_mean(&s);
+    CHECK_NEAR(path_mean(&s, 256, 1), want, 0.002 * want);
+    stage_end(&s);
+}
+
+TEST(every_falloff_gives_intensity_times_cosine) {
+    for (int attenuation = 0; attenuation < 3; attenuation++) {
+        struct stage s;
+        (void)begin_floor(&s);
+        struct light *light = add_light(&s, LIGHT_POINT);
+        light->position = vec3_make(0, 3, 0);
+        light->attenuation = (enum light_attenuation)attenuation;
+        light->falloff[0] = 0.5;
+        light->falloff[1] = 0.1;
+        light->falloff[2] = 0.2;
+        light->range = 5;
+        light->intensity = 6;
+        s.camera.fov = 0.01; /* the foot of the light: cosine 1, distance 3 */
+        const double want[3] = {0.8 / (0.5 + 0.3 + 1.8), 0.8 * (1 - 3.0 / 5), 0.8 * 6 / 9};
+        CHECK_NEAR(path_mean(&s, 1, 1), want[attenuation], 1e-5);
+        stage_end(&s);
+    }
+}
+
+TEST(ambient_light_is_nothing_to_paths_and_one_notice_says_so) {
+    static const char scene[] = "local r = gr.node('r')\n"
+                                "r:add_child(gr.sphere{material=gr.material({1,1,1},{0,0,0},1)})\n"
+                                "gr.render{node=r, file='a.png', width=8, height=8, eye={0,0,5}, ambient={1,1,1}, "
+                                "background={0,0,0}, integrator='path', spp=1}\n"
+                                "gr.render{node=r, file='b.png', width=8, height=8, eye={0,0,5}, ambient={0,0,0}, "
+                                "background={0,0,0}, integrator='path', spp=1}\n";
+    struct test_result result = test_gray_scene(scene, "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    const char *notice = strstr(result.err, "ignores ambient");
+    CHECK(notice && !strstr(notice + 1, "ignores ambient"));
+    struct test_picture a = test_read_picture(test_path("a.png")), b = test_read_picture(test_path("b.png"));
+    CHECK(memcmp(a.rgb, b.rgb, (size_t)3 * a.width * a.height) == 0);
+    free(a.rgb);
+    free(b.rgb);
+    free(result.out);
+    free(result.err);
+}
+
+/* --- skies --- */
+
+TEST(a_chosen_background_lights_the_scene_and_the_gradient_that_nobody_chose_does_not) {
+    static const char scene[] =
+        "local r = gr.node('r')\n"
+        "r:add_child(gr.rectangle{material=gr.material{kd={1,1,1}, two_sided=true}, corner={-9,-9,0}, along={18,0,0}, "
+        "up={0,18,0}})\n"
+        "local t = {node=r, width=4, height=4, eye={0,0,5}, integrator='path', spp=64, srgb=false}\n"
+        "for name, background in pairs{none=false, gradient='gradient', colour={.5,.5,.5}} do\n"
+        "  t.file, t.background = name .. '.png', background or nil\n  gr.render(t)\nend\n";
+    struct test_result result = test_gray_scene(scene, "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    struct test_picture none = test_read_picture(test_path("none.png"));
+    struct test_picture gradient = test_read_picture(test_path("gradient.png"));
+    struct test_picture colour = test_read_picture(test_path("colour.png"));
+    for (size_t i = 0; i < 16; i++) {
+        CHECK_EQ_INT(none.rgb[3 * i + 2], 0);
+        CHECK(gradient.rgb[3 * i + 2] > 90); /* half the way from horizon to horizon */
+        CHECK_NEAR(colour.rgb[3 * i], 127, 12);
+    }
+    free(none.rgb);
+    free(gradient.rgb);
+    free(colour.rgb);
+    free(result.out);
+    free(result.err);
+}
+
+TEST(scattered_rays_meet_the_sky_light_and_lines_of_sight_the_background) {
+    struct stage s;
+    static const struct sky blue = {.kind = SKY_CONSTANT, .colour = {0.25, 0.25, 0.25}};
+    (void)begin_floor(&s);
+    struct light *light = add_light(&s, LIGHT_SKY);
+    light->sky = &blue;
+    light->emits = true;
+    light->colour = vec3_all(1);
+    s.sky.colour = vec3_all(0.75);
+    CHECK_NEAR(path_mean(&s, 256, 1), 0.25, 0.001); /* a white floor below the sky light */
+    s.camera.view = vec3_make(0, 1, 0.1);
+    CHECK_NEAR(path_mean(&s, 4, 1), 0.75, 1e-6);
+    /* In a mirror, too. */
+    struct material *mirror = stage_phong(&s, vec3_all(0), vec3_all(1), 1);
+    mirror->phong.reflect = 1;
+    (void)add_flat(&s, mirror, planar_plane(vec3_make(0, 1, 0), 0.5));
+    s.camera.view = vec3_make(0, -1, 0);
+    CHECK_NEAR(path_mean(&s, 4, 4), 0.75, 1e-6);
+    stage_end(&s);
+}
+
+/* --- lamps --- */
+
+TEST(a_lamp_that_is_not_visible_lights_and_is_not_seen) {
+    double light[2], seen[2], mirrored[2];
+    for (int visible = 0; visible < 2; visible++) {
+        struct stage s;
+        struct node *floor = begin_floor(&s);
+        struct light *lamp = add_light(&s, LIGHT_SPHERE);
+        lamp->emits = true;
+        lamp->visible = visible;
+        lamp->colour = vec3_all(4);
+        lamp->position = vec3_make(6, 3, 0);
+        light[visible] = path_mean(&s, 256, 4);
+        s.camera.view = vec3_make(6, -1, 0);
+        s.camera.fov = 3;
+        seen[visible] = path_mean(&s, 4, 4);
+        struct material *mirror = stage_phong(&s, vec3_all(0), vec3_all(1), 1);
+        mirror->phong.reflect = 1;
+        floor->material = mirror;
+        s.camera.view = vec3_make(6, -7, 0);
+        mirrored[visible] = path_mean(&s, 4, 4);
+        stage_end(&s);
+    }
+    CHECK_NEAR(light[0], light[1], 0.01 * light[1]);
+    CHECK(light[0] > 0.01);
+    CHECK_NEAR(seen[0], 0, 0.2);
+    CHECK_NEAR(seen[1], 4, 1e-5);
+    CHECK(mirrored[0] < 0.1); /* a highlight stands for its image */
+    CHECK_NEAR(mirrored[1], 4, 1e-5);
+}
+
+/* Of two halves of a floor one is left out by the lists of every light, sampled and met. */
+TEST(lists_of_nodes_hold_for_light_that_is_sampled_and_light_that_is_met) {
+    static const struct sky grey = {.kind = SKY_CONSTANT, .colour = {1, 1, 1}};
+    for (int kind = 0; kind < LIGHT_KIND_COUNT; kind++) {
+        if (kind == LIGHT_MESH)
+            continue;
+        struct stage s;
+        stage_begin(&s, 1);
+        const struct material *white = stage_phong(&s, vec3_all(1), vec3_all(0), 1);
+        (void)add_flat(&s, white, planar_parallelogram(vec3_make(0, 0, 5), vec3_make(5, 0, 0), vec3_make(0, 0, -10)));
+        const struct node *dark =
+            add_flat(&s, white, planar_parallelogram(vec3_make(-5, 0, 5), vec3_make(5, 0, 0), vec3_make(0, 0, -10)));
+        s.camera = (struct camera){{0, 4, 0}, {0, -1, 0}, {0, 0, -1}, 40};
+        struct light *light = add_light(&s, (enum light_kind)kind);
+        light->position.x = 0;
+        light->emits = kind != LIGHT_POINT && kind != LIGHT_SPOT && kind != LIGHT_DIRECTIONAL;
+        light->sky = &grey;
+        light->cos_outer = 0.5;
+        light->exclude = &dark;
+        light->exclude_count = 1;
+        (void)path_mean(&s, 64, 1);
+        for (uint32_t y = 0; y < SIZE; y++) {
+            for (uint32_t x = 0; x < SIZE; x++)
+                CHECK((stage_pixel(&s, x, y).x > 0.01) == (x >= SIZE / 2));
+        }
+        stage_end(&s);
+    }
+}
+
+TEST(glass_throws_full_shadows_of_lights_without_body_and_lamps_are_found_through_it) {
+    double lamp[2], point[2];
+    for (int pane = 0; pane < 2; pane++) {
+        struct stage s;
+        (void)begin_floor(&s);
+        if (pane) {
+            struct node *glass = stage_cube(&s, s.root, stage_glass(&s, 0, 1, 1));
+            stage_move(&s, glass, -0.5, 2, -0.5);
+            stage_scale(&s, glass, 40, 1, 40);
+        }
+        s.camera = (struct camera){{0, 1.5, 0}, {0, -1, 0}, {0, 0, -1}, 40};
+        struct light *light = add_light(&s, LIGHT_POINT);
+        light->position.y = 4;
+        point[pane] = path_mean(&s, 16, 8);
+        light->kind = LIGHT_SPHERE;
+        light->emits = true;
+        light->radius = 0.8;
+        light->colour = vec3_all(4);
+        lamp[pane] = path_mean(&s, 1024, 8);
+        stage_end(&s);
+    }
+    CHECK(point[0] > 0.1);
+    CHECK_NEAR(point[1], 0, 1e-9);
+    CHECK_NEAR(lamp[1], lamp[0], 0.02 * lamp[0]);
+}
+
+TEST(materials_that_emit_light_the_scene_from_both_sides) {
+    for (int turned = 0; turned < 2; turned++) {
+        struct stage s;
+        (void)begin_floor(&s);
+        struct material *glow = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
+        glow->phong.emission = vec3_all(1);
+        (void)add_flat(&s, glow, planar_plane(vec3_make(0, turned ? 1 : -1, 0), turned ? 6 : -6));
+        CHECK_NEAR(path_mean(&s, 64, 1), 1, 0.001);
+        stage_end(&s);
+    }
+}
+
+/* --- numbers outside of nature --- */
+
+TEST(negative_colours_are_kept) {
+    struct stage s;
+    stage_begin(&s, 1);
+    struct material *material = stage_phong(&s, vec3_all(-0.5), vec3_all(0), 1);
+    material->phong.emission = vec3_all(1);
+    material->phong.two_sided = true;
+    (void)stage_sphere(&s, s.root, material);
+    s.camera.eye = vec3_all(0);
+    CHECK_NEAR(path_mean(&s, 1024, 1000), 1 / 1.5, 0.003);
+    stage_end(&s);
+}
+
+TEST(a_material_that_makes_light_ends_by_depth_and_is_named_once) {
+    static const char scene[] =
+        "local r = gr.node('r')\n"
+        "local m = gr.material{kd={2,2,2}, emission={1,1,1}, two_sided=true}\n"
+        "r:add_child(gr.sphere{material=m})\n"
+        "gr.render{node=r, file='a.pfm', width=8, height=8, eye={0,0,0}, integrator='path', spp=16, max_depth=5}\n";
+    struct test_result result = test_gray_scene(scene, "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    const char *warning = strstr(result.err, "more light than arrives");
+    CHECK(warning && !strstr(warning + 1, "more light than arrives"));
+    free(result.out);
+    free(result.err);
+    struct stage s;
+    stage_begin(&s, 1);
+    struct material *material = stage_phong(&s, vec3_all(2), vec3_all(0), 1);
+    material->phong.emission = vec3_all(1);
+    material->phong.two_sided = true;
+    (void)stage_sphere(&s, s.root, material);
+    s.camera.eye = vec3_all(0);
+    CHECK_NEAR(path_mean(&s, 4096, 5), 63, 0.2); /* 1 + 2 + ... + 32 */
+    CHECK(isfinite(path_mean(&s, 1, 1000000)));  /* one in twenty ends */
+    stage_end(&s);
+}
+
+/* --- media --- */
+
+TEST(fog_dims_lines_of_sight_as_in_whitted_and_nothing_else) {
+    const struct fog fog = {.kind = FOG_EXPONENTIAL, .colour = {0.2, 0.2, 0.2}, .density = 0.1};
+    struct stage s;
+    (void)begin_floor(&s);
+    struct material *mirror = stage_phong(&s, vec3_all(0), vec3_all(0.9), 1);
+    mirror->phong.reflect = 1;
+    struct node *ball = stage_sphere(&s, s.root, mirror);
+    stage_move(&s, ball, 0.5, 1, 0);
+    (void)add_light(&s, LIGHT_POINT);
+    s.sky.colour = vec3_all(0); /* that lights nothing */
+    s.fog = &fog;
+    s.settings.reflect_limit = 1;
+    double want = whitted_mean(&s);
+    CHECK_NEAR(path_mean(&s, 1024, 2), want, 0.01 * want);
+    stage_end(&s);
+}
+
+TEST(glass_absorbs_on_the_way_of_paths) {
+    struct stage s;
+    stage_begin(&s, 1);
+    struct material *glass = stage_glass(&s, 0, 1, 1), *glow = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
+    glass->phong.absorption = vec3_all(0.7);
+    glow->phong.emission = vec3_all(1);
+    struct node *pane = stage_cube(&s, s.root, glass);
+    stage_move(&s, pane, -0.5, -0.5, -0.5);
+    stage_scale(&s, pane, 100, 100, 2);
+    (void)add_flat(&s, glow, planar_plane(vec3_make(0, 0, 1), -5));
+    s.camera.fov = 0.01;
+    CHECK_NEAR(path_mean(&s, 16, 4), exp(-0.7 * 2), 1e-5);
+    stage_end(&s);
+}
