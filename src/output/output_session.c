@@ -181,11 +181,9 @@ static bool join_farm(struct output_session *output, bool *already, struct error
     return ok;
 }
 
-bool output_begin(struct output_session *output, const struct picture_request *request, bool *already,
-                  struct error *error) {
-    struct picture *picture = &output->current;
+/* Limits of the run. *already: another process has this picture (--shard-pictures). */
+static bool count_picture(struct output_session *output, bool *already, struct error *error) {
     const struct options *options = output->options;
-    char notice[256], written[NAME_LIMIT];
     output->pictures++;
     if (!options_allow_picture(options, output->pictures, error))
         return false;
@@ -193,6 +191,51 @@ bool output_begin(struct output_session *output, const struct picture_request *r
         return error_set_limit(error, "%s", output->files.quota.words);
     *already = *already || (options->shards_of_pictures &&
                             (output->pictures - 1) % options->shards_of_pictures != options->shard_of_pictures - 1);
+    return true;
+}
+
+/* What is there of the picture already: a part, a file of an earlier run, tiles of a checkpoint or of the farm. */
+static bool prepare_film(struct output_session *output, const char *written, bool *already, struct error *error) {
+    struct picture *picture = &output->current;
+    char notice[256];
+    *already = part_is_written(output, written);
+    if (*already)
+        return true;
+    if (!checkpoint_open(&output->checkpoint, picture->name, notice, error))
+        return false;
+    if (notice[0] != '\0')
+        output_report(output, LINE_NOTICE, notice);
+    if (!checkpoint_has_written(&output->checkpoint, output->pictures, &picture->tiles.key, written, already, error) ||
+        (!*already && !make_film(output, picture, error)) || !join_farm(output, already, error))
+        return false;
+    if (*already)
+        picture_files_own(&output->files, written);
+    return true;
+}
+
+/* The picture is open from here on: progress and displays show it. */
+static void start_picture(struct output_session *output) {
+    struct picture *picture = &output->current;
+    const struct picture_request *request = &picture->request;
+    struct tone tone = picture_tone(request);
+    bool helps = output->farm && !farm_is_first(output->farm);
+    picture->open = true;
+    atomic_store(&output->control->tiles, 0);
+    atomic_store(&output->control->tiles_done, 0);
+    progress_estimate_reset(&output->control->progress_estimate,
+                            progress_wants_outlook(&output->progress) && !request->in_window && !helps);
+    (void)wait_for_text(output);
+    progress_begin(&output->progress, picture->name, request->width, request->height);
+    if (!request->in_window)
+        display_begin(&output->display, picture->name, &picture->film, &tone);
+}
+
+bool output_begin(struct output_session *output, const struct picture_request *request, bool *already,
+                  struct error *error) {
+    struct picture *picture = &output->current;
+    char written[NAME_LIMIT];
+    if (!count_picture(output, already, error))
+        return false;
     if (*already)
         return true;
     if (!choose_name(output, request->file, picture->name, error) ||
@@ -210,31 +253,10 @@ bool output_begin(struct output_session *output, const struct picture_request *r
     if (!check_files(output, picture, error))
         return false;
     describe_tiles(output, picture);
-    *already = part_is_written(output, written);
-    if (*already)
-        return true;
-    if (!checkpoint_open(&output->checkpoint, picture->name, notice, error))
+    if (!prepare_film(output, written, already, error))
         return false;
-    if (notice[0] != '\0')
-        output_report(output, LINE_NOTICE, notice);
-    if (!checkpoint_has_written(&output->checkpoint, output->pictures, &picture->tiles.key, written, already, error) ||
-        (!*already && !make_film(output, picture, error)) || !join_farm(output, already, error))
-        return false;
-    if (*already) {
-        picture_files_own(&output->files, written);
-        return true;
-    }
-    picture->open = true;
-    atomic_store(&output->control->tiles, 0);
-    atomic_store(&output->control->tiles_done, 0);
-    bool helps = output->farm && !farm_is_first(output->farm);
-    progress_estimate_reset(&output->control->progress_estimate,
-                            progress_wants_outlook(&output->progress) && !request->in_window && !helps);
-    (void)wait_for_text(output);
-    progress_begin(&output->progress, picture->name, request->width, request->height);
-    struct tone tone = picture_tone(request);
-    if (!request->in_window)
-        display_begin(&output->display, picture->name, &picture->film, &tone);
+    if (!*already)
+        start_picture(output);
     return true;
 }
 
