@@ -6,6 +6,7 @@
 #include "base/mem.h"
 #include "light/light_mesh.h"
 #include "material/classic.h"
+#include "material/material_eval.h"
 #include "world/light_lamps.h"
 
 #include <string.h>
@@ -342,8 +343,10 @@ static bool allocate(struct building *b) {
     b->of_primitive = arena_alloc_array(b->arena, (size_t)world->primitive_count + 1, sizeof *b->of_primitive);
     if (!b->of_prototype || !b->of_primitive)
         return false;
-    for (uint32_t i = 0; i < world->prototype_count; i++)
+    for (uint32_t i = 0; i < world->prototype_count; i++) {
         b->of_prototype[i] = emission_of_prototype(world, &world->prototypes[i]);
+        b->out->holes = b->out->holes || world->prototypes[i].holes;
+    }
     for (uint32_t i = 0; i < world->primitive_count; i++) {
         b->of_primitive[i] = LIGHT_NONE;
         emitting += b->of_prototype[world->primitives[i].prototype].emits;
@@ -499,6 +502,55 @@ double world_lights_pdf_of_hit(const struct world_lights *lights, const struct l
         return 0;
     struct light_hit met = {.t = hit->t, .point = hit->point, .triangle = triangle};
     return world_lights_pdf(lights, receiver, light, direction, &met);
+}
+
+/* --- shadow rays --- */
+
+enum { HOLE_LIMIT = 1000 };
+
+/* What the rest of a ray meets, with what its material makes of it. */
+static bool look(const struct world *world, const struct ray *rest, struct world_scratch *scratch, struct hit *hit,
+                 struct bsdf *bsdf) {
+    if (!world_nearest(world, rest, scratch, hit))
+        return false;
+    material_eval(&world->materials[hit->material], hit, NULL, NULL, bsdf);
+    return true;
+}
+
+double world_lights_visible(const struct world_lights *lights, const struct ray *ray, struct world_scratch *scratch) {
+    if (!lights->holes)
+        return !world_any(lights->world, ray, scratch);
+    struct ray rest = *ray;
+    struct hit hit;
+    struct bsdf bsdf;
+    double share = 1;
+    for (int i = 0; i < HOLE_LIMIT && share > 0 && look(lights->world, &rest, scratch, &hit, &bsdf); i++) {
+        share *= 1 - fmin(bsdf.opacity, 1);
+        rest.t_min = hit.t;
+    }
+    return share;
+}
+
+struct vec3 world_lights_seen_by(const struct world_lights *lights, const struct light_receiver *receiver,
+                                 const struct world_light_sample *sample, const struct ray *ray,
+                                 struct world_scratch *scratch, double *t) {
+    struct ray rest = *ray;
+    struct hit hit;
+    struct bsdf bsdf;
+    struct vec3 sum = {0, 0, 0};
+    double share = 1;
+    *t = 0;
+    for (int i = 0; i < HOLE_LIMIT && share > 0 && look(lights->world, &rest, scratch, &hit, &bsdf); i++) {
+        double opacity = fmin(bsdf.opacity, 1);
+        if (opacity > 0 && world_lights_shows(lights, sample, &hit)) {
+            struct vec3 radiance = world_lights_radiance(lights, receiver->primitive, &hit, bsdf.emission);
+            sum = vec3_add_scaled(sum, radiance, share * opacity);
+            *t = hit.t;
+        }
+        share *= 1 - opacity;
+        rest.t_min = hit.t;
+    }
+    return sum;
 }
 
 /* --- lamps --- */

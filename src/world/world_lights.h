@@ -6,11 +6,10 @@
  * Next-event estimation at a point (struct light_receiver):
  *     light = light_sampler_sample(&lights->sampler, point, normal, u, &pmf);
  *     if (light != LIGHT_NONE && world_lights_sample(lights, &receiver, light, place, &sample))
- * Then a ray decides. Where sample.decided is false, the light arrives if world_any finds nothing between receiver.from
- * and sample.target for a ray that skips sample.passes, and its radiance is sample.radiance. Else it arrives if what
- * world_nearest finds in that direction is what was sampled (world_lights_shows), and its radiance is what
- * world_lights_radiance says of the hit and its material's emission. Its weight is bsdf_eval / (pdf * pmf), times that
- * of multiple importance sampling; with is_delta no other ray brings this light, and that weight is 1.
+ * Then a ray from receiver.from to sample.target, which skips sample.skip_primitive, says how much of it arrives. Where
+ * sample.decided is false, sample.radiance times world_lights_visible, with the ray's interval up to the target; else
+ * world_lights_seen_by, with an interval without end: what the ray meets decides. Its weight is bsdf_eval / (pdf *
+ * pmf), times that of multiple importance sampling; with is_delta no other ray brings this light, and that weight is 1.
  *
  * Rays that were scattered meet: a surface (world_lights_radiance with world_lights_pdf_of_hit), lamps on the way,
  * which have no body and all count (world_lights_met_next with world_lights_pdf), and behind everything each light of
@@ -49,6 +48,7 @@ struct world_lights {
     struct box_tree surfaces;       /* over the lamps with a surface of their own; `lamps` by item */
     const uint32_t *lamps;
     uint32_t lamp_count;
+    bool holes; /* something in the world has holes */
 };
 
 /* background: whether scattered rays meet the sky of the world, which is then one more light; where the scene has a sky
@@ -77,6 +77,13 @@ struct world_light_sample {
 /* False: nothing arrives from there. */
 bool world_lights_sample(const struct world_lights *lights, const struct light_receiver *receiver, uint32_t light,
                          struct sample2 place, struct world_light_sample *out);
+/* The share of light that arrives along a shadow ray: holes let through what their opacity leaves. */
+double world_lights_visible(const struct world_lights *lights, const struct ray *ray, struct world_scratch *scratch);
+/* The radiance of a `decided` sample that arrives along the ray to it, the same for holes; *t: where the ray meets the
+ * light. */
+struct vec3 world_lights_seen_by(const struct world_lights *lights, const struct light_receiver *receiver,
+                                 const struct world_light_sample *sample, const struct ray *ray,
+                                 struct world_scratch *scratch, double *t);
 /* Whether a hit is what a `decided` sample was of. */
 bool world_lights_shows(const struct world_lights *lights, const struct world_light_sample *sample,
                         const struct hit *hit);

@@ -16,7 +16,6 @@ struct room {
     struct arena arena;
     struct world_lights lights;
     struct world_scratch scratch;
-    uint64_t asked;
 };
 
 static void room_begin(struct room *r) {
@@ -73,19 +72,19 @@ static struct vec3 of_lights(struct room *r, const struct light_receiver *at, ui
                       .time = 0.5,
                       .skip_primitive = sample.skip_primitive};
     struct hit hit;
-    struct vec3 radiance = sample.radiance;
     *density = sample.pdf * pmf;
     *is_delta = sample.is_delta;
+    struct vec3 radiance;
     if (sample.decided) {
-        if (!world_nearest(&r->stage.world, &ray, &r->scratch, &hit) || !world_lights_shows(&r->lights, &sample, &hit))
-            return vec3_all(0);
-        radiance = world_lights_radiance(&r->lights, at->primitive, &hit, emission_at(r, &hit));
-        r->asked++;
-        double pdf = world_lights_pdf_of_hit(&r->lights, at, sample.direction, &hit);
-        if (!sample.is_delta)
-            CHECK_NEAR(pdf / *density, 1, 1e-4);
-    } else if (world_any(&r->stage.world, &ray, &r->scratch)) {
-        return vec3_all(0);
+        double t;
+        radiance = world_lights_seen_by(&r->lights, at, &sample, &ray, &r->scratch, &t);
+        bool shows =
+            world_nearest(&r->stage.world, &ray, &r->scratch, &hit) && world_lights_shows(&r->lights, &sample, &hit);
+        if (shows && !sample.is_delta)
+            CHECK_NEAR(world_lights_pdf_of_hit(&r->lights, at, sample.direction, &hit) / *density, 1, 1e-4);
+        CHECK(!shows || hit.t == t);
+    } else {
+        radiance = vec3_scale(sample.radiance, world_lights_visible(&r->lights, &ray, &r->scratch));
     }
     return vec3_scale(radiance, fabs(vec3_dot(sample.direction, at->normal)));
 }
@@ -330,6 +329,40 @@ TEST(a_mesh_light_over_an_emitting_mesh_counts_once) {
     CHECK_NEAR(lit[1], lit[0], 1e-9);
     CHECK_NEAR(lit[2], lit[0], 0.02 * lit[0]);
     CHECK_NEAR(lit[3], 2.5 * lit[0], 1e-9);
+}
+
+/* A sheet that lets through a part of the light, in front of a light with a sampler, one with a bound, and a lamp. */
+TEST(holes_let_through_what_their_opacity_leaves) {
+    static const double opacities[] = {0, 0.25, 0.75, 1};
+    double lit[3][5];
+    for (int i = 0; i < 15; i++) {
+        struct room r;
+        room_begin(&r);
+        struct stage *s = &r.stage;
+        if (i / 5 == 0) {
+            stage_move(s, stage_sphere(s, s->root, glowing(&r, 1, 2, 3)), 0, 4, 0);
+        } else if (i / 5 == 1) {
+            stage_move(s, stage_cube(s, s->root, glowing(&r, 1, 2, 3)), 0, 4, 0);
+        } else {
+            s->lights[s->light_count++] = lamp_of_kind(LIGHT_DISC, 0, 4, 0);
+        }
+        if (i % 5 < 4) {
+            struct material *sheet = stage_phong(s, vec3_all(0), vec3_all(0), 1);
+            sheet->inputs[INPUT_OPACITY] = texture_keep(&s->scene.arena, texture_number(opacities[i % 5]), &s->error);
+            struct node *node = stage_cube(s, s->root, sheet); /* seen through twice */
+            stage_scale(s, node, 20, 0.1, 20);
+            stage_move(s, node, -10, 1, -10);
+        }
+        room_build(&r, false);
+        struct light_receiver at = receiver_at(0.2, 0, 0.1);
+        lit[i / 5][i % 5] = mean_of_samples(&r, &at, 2000);
+        room_end(&r);
+    }
+    for (int i = 0; i < 15; i++) {
+        double open = i % 5 < 4 ? 1 - opacities[i % 5] : 1;
+        CHECK(lit[i / 5][4] > 0);
+        CHECK_NEAR(lit[i / 5][i % 5] / lit[i / 5][4], open * open, 1e-9);
+    }
 }
 
 TEST(lists_hold_for_lights_that_are_sampled_and_met) {
