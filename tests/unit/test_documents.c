@@ -176,3 +176,20 @@ static void links_of_page(const char *page, char *text) {
 TEST(documents_have_links_that_lead_somewhere) {
     each_page(links_of_page);
 }
+
+static void lines_of_page(const char *page, char *text) {
+    bool code = false;
+    int number = 1;
+    for (const char *line = text; *line; number++) {
+        size_t length = strcspn(line, "\n");
+        bool fence = strncmp(line, "```", 3) == 0;
+        code = code != fence;
+        if (length > 200 && !code && *line != '|' && strncmp(line, "    ", 4) != 0 && strncmp(line, "  |", 3) != 0)
+            test_fail(__FILE__, __LINE__, "%s:%d is longer than 200 characters", page, number);
+        line += length + (line[length] == '\n');
+    }
+}
+
+TEST(documents_have_lines_of_at_most_200_characters_outside_of_tables_and_code) {
+    each_page(lines_of_page);
+}
