@@ -45,6 +45,15 @@ static bool make_materials(struct world *world, struct arena *arena, struct erro
     return true;
 }
 
+/* The nodes that lights were resolved from stay in the scene: a world's lights have triangles and marks instead. */
+static void forget_nodes(struct light *lights, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) {
+        lights[i].node = NULL;
+        lights[i].include = lights[i].exclude = NULL;
+        lights[i].include_count = lights[i].exclude_count = 0;
+    }
+}
+
 /* Leaves it to the caller to destroy what there is when it fails. */
 static bool build(struct world *world, const struct world_input *input, struct arena *arena, struct pool *pool,
                   struct error *error) {
@@ -64,6 +73,7 @@ static bool build(struct world *world, const struct world_input *input, struct a
     if (!flatten_scene(&flattening, input->root) || !light_lists_resolve(world, copied, arena, input->root, error) ||
         !light_lamps_resolve(&flattening, copied, input->root))
         return false;
+    forget_nodes(copied, world->light_count);
     world->boxes = arena_alloc_array(arena, world->primitive_count, sizeof *world->boxes);
     if (!world->boxes)
         return error_no_memory(error, "the boxes of the scene");

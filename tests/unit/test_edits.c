@@ -107,6 +107,24 @@ static void count_warning(void *context, const char *text) {
     ++*(int *)context;
 }
 
+/* The window keeps the world when only colours change: its materials are copies, which are made again. */
+TEST(a_kept_world_has_changed_colours_once_its_materials_are_updated) {
+    static struct stage s;
+    stage_begin(&s, 1);
+    struct material *red = stage_phong(&s, vec3_make(1, 0, 0), vec3_all(0), 1);
+    struct material *coated = scene_material(&s.scene, MATERIAL_FRESNEL, red, &s.error);
+    stage_sphere(&s, s.root, coated);
+    CHECK(stage_build(&s, s.root, ACCEL_AUTO));
+    const struct material *material = &s.world.materials[0];
+    CHECK(s.world.authored.materials[0] == coated && coated->base == red);
+    CHECK(!material->base && !material->origin && material->fresnel && material->phong.kd.x == 1);
+    red->phong.kd = vec3_make(0, 0, 1);
+    CHECK(material->phong.kd.x == 1);
+    world_update_materials(&s.world);
+    CHECK(material->phong.kd.x == 0 && material->phong.kd.z == 1 && !material->base);
+    stage_end(&s);
+}
+
 TEST(changes_that_are_taken_off_leave_the_scene_as_it_was) {
     static struct stage s;
     struct changed_scene changed;

@@ -112,6 +112,7 @@ TEST(lists_of_lights_hold_for_what_stands_in_many_places) {
     CHECK_EQ_INT(s.world.primitive_count, 4);
     for (uint32_t i = 0; i < 4; i++)
         CHECK_EQ_INT(s.world.lights[0].lit[i], i < 3);
+    CHECK(!s.world.lights[0].include && s.world.lights[0].include_count == 0); /* a world refers to no node */
     stage_end(&s);
 }
 
