@@ -9,7 +9,9 @@
 #ifndef GRAY_BASE_LIST_H
 #define GRAY_BASE_LIST_H
 
-#define LIST_MEMBER(member, ...) member,
+/* A list may have one column: the 0 is what clang wants for the second parameter. */
+#define LIST_FIRST(member, ...) member,
+#define LIST_MEMBER(...) LIST_FIRST(__VA_ARGS__, 0)
 #define LIST_WORD(member, word) [member] = (word),
 #define LIST_ONE(...) +1
 /* How many members a list has: a constant. */

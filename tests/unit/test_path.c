@@ -65,15 +65,15 @@ static struct material *glowing(struct stage *s, double emission, double kd, dou
     return material;
 }
 
-static struct node *add_flat(struct stage *s, const struct material *material, struct flat flat) {
+static struct node *add_planar(struct stage *s, const struct material *material, struct planar planar) {
     struct node *node = stage_sphere(s, s->root, material);
-    node->shape = (struct shape){.kind = SHAPE_PLANAR, .flat = flat};
+    node->shape = (struct shape){.kind = SHAPE_PLANAR, .planar = planar};
     return node;
 }
 
 static struct node *add_rectangle(struct stage *s, const struct material *material, struct vec3 corner,
                                   struct vec3 along, struct vec3 up) {
-    return add_flat(s, material, planar_parallelogram(corner, along, up));
+    return add_planar(s, material, planar_parallelogram(corner, along, up));
 }
 
 /* A room that is a sphere about the origin, with blocks in it, all of one material. */
@@ -168,8 +168,8 @@ TEST_LONG(indirect_light_in_spheres_is_the_same_wherever_the_light_is) {
 static void check_planes(int samples, int seeds) {
     struct stage s;
     stage_begin(&s, 1);
-    (void)add_flat(&s, glowing(&s, 1, 0.5, 0), planar_plane(vec3_make(0, 0, 1), -1));
-    (void)add_flat(&s, glowing(&s, 0, 0.8, 0), planar_plane(vec3_make(0, 0, -1), -1));
+    (void)add_planar(&s, glowing(&s, 1, 0.5, 0), planar_plane(vec3_make(0, 0, 1), -1));
+    (void)add_planar(&s, glowing(&s, 0, 0.8, 0), planar_plane(vec3_make(0, 0, -1), -1));
     s.camera = (struct camera){{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 60};
     check_mean(&s, samples, 1000, seeds, 1 / (1 - 0.5 * 0.8));
     s.camera.view = vec3_make(0, 0, 1);
@@ -221,8 +221,8 @@ TEST_LONG(faces_of_a_cube_light_each_other_by_their_form_factors_for_every_seed)
 static void check_discs(int samples, int seeds) {
     struct stage s;
     stage_begin(&s, 1);
-    (void)add_flat(&s, glowing(&s, 0, 1, 0), planar_disc(vec3_make(0, 0, -0.5), vec3_make(0, 0, 1), 1, 0));
-    (void)add_flat(&s, glowing(&s, 1, 0, 0), planar_disc(vec3_make(0, 0, 0.5), vec3_make(0, 0, -1), 1, 0));
+    (void)add_planar(&s, glowing(&s, 0, 1, 0), planar_disc(vec3_make(0, 0, -0.5), vec3_make(0, 0, 1), 1, 0));
+    (void)add_planar(&s, glowing(&s, 1, 0, 0), planar_disc(vec3_make(0, 0, 0.5), vec3_make(0, 0, -1), 1, 0));
     look_along_z(&s, 2, 0);
     for (int seed = 1; seed <= seeds; seed++) {
         struct estimate square = render_twice(&s, samples, 1, (uint64_t)seed);
@@ -252,8 +252,8 @@ static void check_pane(int samples, int seeds) {
     struct node *pane = stage_cube(&s, s.root, glass);
     stage_move(&s, pane, -0.5, -0.5, -0.5);
     stage_scale(&s, pane, 10, 10, 1);
-    (void)add_flat(&s, behind, planar_plane(vec3_make(0, 0, 1), -5));
-    (void)add_flat(&s, before, planar_plane(vec3_make(0, 0, -1), -5));
+    (void)add_planar(&s, behind, planar_plane(vec3_make(0, 0, 1), -5));
+    (void)add_planar(&s, before, planar_plane(vec3_make(0, 0, -1), -5));
     look_along_z(&s, 1, 3);
     for (int seed = 1; seed <= seeds; seed++) {
         (void)render_path(&s, samples, 100, (uint64_t)seed);

@@ -32,9 +32,9 @@ static double whitted_mean(struct stage *s) {
     return mean_of(s);
 }
 
-static struct node *add_flat(struct stage *s, const struct material *material, struct flat flat) {
+static struct node *add_planar(struct stage *s, const struct material *material, struct planar planar) {
     struct node *node = stage_sphere(s, s->root, material);
-    node->shape = (struct shape){.kind = SHAPE_PLANAR, .flat = flat};
+    node->shape = (struct shape){.kind = SHAPE_PLANAR, .planar = planar};
     return node;
 }
 
@@ -42,7 +42,7 @@ static struct node *add_flat(struct stage *s, const struct material *material, s
 static struct node *begin_floor(struct stage *s) {
     stage_begin(s, 1);
     s->camera = (struct camera){{0, 4, 0}, {0, -1, 0}, {0, 0, -1}, 40};
-    return add_flat(s, stage_phong(s, vec3_all(1), vec3_all(0), 1), planar_plane(vec3_make(0, 1, 0), 0));
+    return add_planar(s, stage_phong(s, vec3_all(1), vec3_all(0), 1), planar_plane(vec3_make(0, 1, 0), 0));
 }
 
 static struct light *add_light(struct stage *s, enum light_kind kind) {
@@ -181,7 +181,7 @@ TEST(scattered_rays_meet_the_sky_light_and_lines_of_sight_the_background) {
     /* In a mirror, too. */
     struct material *mirror = stage_phong(&s, vec3_all(0), vec3_all(1), 1);
     mirror->phong.reflect = 1;
-    (void)add_flat(&s, mirror, planar_plane(vec3_make(0, 1, 0), 0.5));
+    (void)add_planar(&s, mirror, planar_plane(vec3_make(0, 1, 0), 0.5));
     s.camera.view = vec3_make(0, -1, 0);
     CHECK_NEAR(path_mean(&s, 4, 4), 0.75, 1e-6);
     stage_end(&s);
@@ -227,9 +227,9 @@ TEST(lists_of_nodes_hold_for_light_that_is_sampled_and_light_that_is_met) {
         struct stage s;
         stage_begin(&s, 1);
         const struct material *white = stage_phong(&s, vec3_all(1), vec3_all(0), 1);
-        (void)add_flat(&s, white, planar_parallelogram(vec3_make(0, 0, 5), vec3_make(5, 0, 0), vec3_make(0, 0, -10)));
+        (void)add_planar(&s, white, planar_parallelogram(vec3_make(0, 0, 5), vec3_make(5, 0, 0), vec3_make(0, 0, -10)));
         const struct node *dark =
-            add_flat(&s, white, planar_parallelogram(vec3_make(-5, 0, 5), vec3_make(5, 0, 0), vec3_make(0, 0, -10)));
+            add_planar(&s, white, planar_parallelogram(vec3_make(-5, 0, 5), vec3_make(5, 0, 0), vec3_make(0, 0, -10)));
         s.camera = (struct camera){{0, 4, 0}, {0, -1, 0}, {0, 0, -1}, 40};
         struct light *light = add_light(&s, (enum light_kind)kind);
         light->position.x = 0;
@@ -279,7 +279,7 @@ TEST(materials_that_emit_light_the_scene_from_both_sides) {
         (void)begin_floor(&s);
         struct material *glow = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
         glow->phong.emission = vec3_all(1);
-        (void)add_flat(&s, glow, planar_plane(vec3_make(0, turned ? 1 : -1, 0), turned ? 6 : -6));
+        (void)add_planar(&s, glow, planar_plane(vec3_make(0, turned ? 1 : -1, 0), turned ? 6 : -6));
         CHECK_NEAR(path_mean(&s, 64, 1), 1, 0.001);
         stage_end(&s);
     }
@@ -351,7 +351,7 @@ TEST(glass_absorbs_on_the_way_of_paths) {
     struct node *pane = stage_cube(&s, s.root, glass);
     stage_move(&s, pane, -0.5, -0.5, -0.5);
     stage_scale(&s, pane, 100, 100, 2);
-    (void)add_flat(&s, glow, planar_plane(vec3_make(0, 0, 1), -5));
+    (void)add_planar(&s, glow, planar_plane(vec3_make(0, 0, 1), -5));
     s.camera.fov = 0.01;
     CHECK_NEAR(path_mean(&s, 16, 4), exp(-0.7 * 2), 1e-5);
     stage_end(&s);
