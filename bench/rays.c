@@ -354,11 +354,11 @@ static void explain(const struct bench_scene *scene, const char *kind, const str
 
 /* Rays on threads */
 
-enum tracer { GRAY_ALONE, GRAY_PACKETS, EMBREE_ALONE, EMBREE_PACKETS };
+enum shared_state { GRAY_ALONE, GRAY_PACKETS, EMBREE_ALONE, EMBREE_PACKETS };
 enum { TURN = 4096, MAX_THREADS = 64 };
 
 struct work {
-    enum tracer tracer;
+    enum shared_state tracer;
     bool any;
     const struct mesh *mesh;
 #if defined(HAVE_EMBREE)

@@ -96,8 +96,8 @@ bool stage_render(struct stage *s, uint32_t width, uint32_t height) {
                                 &s->error);
     if (ok) {
         free(s->film.pixels);
-        film_place(&s->film, calloc(1, bytes), w, h, integrator_record(s->settings.integrator));
-        film_place_layers(&s->film, s->film.pixels, s->settings.aov);
+        film_layout(&s->film, calloc(1, bytes), w, h, integrator_record(s->settings.integrator));
+        film_layout_layers(&s->film, s->film.pixels, s->settings.aov);
         s->film.x0 = x0;
         s->film.y0 = y0;
         s->film.full_width = width;

@@ -140,7 +140,7 @@ struct front {
 };
 
 /* What becomes of a range: a piece, or a branch that joins the front. */
-static bool place_range(struct builder *builder, struct front *front, const struct range *range, uint32_t depth,
+static bool store_range(struct builder *builder, struct front *front, const struct range *range, uint32_t depth,
                         uint32_t parent, uint32_t *result) {
     if (range->count <= builder->job_limit) {
         struct piece *piece = add_piece(builder, range->count);
@@ -178,7 +178,7 @@ static bool part_front(struct builder *builder, const struct front *front, struc
         const struct open_branch *open = &front->items[i];
         uint32_t child[2];
         for (int k = 0; k < 2; k++)
-            go_on = go_on && place_range(builder, next, &open->part[k], open->depth + 1, open->branch, &child[k]);
+            go_on = go_on && store_range(builder, next, &open->part[k], open->depth + 1, open->branch, &child[k]);
         if (go_on)
             memcpy(builder->tree.branches[open->branch].child, child, sizeof child);
     }
@@ -201,7 +201,7 @@ static bool plan(struct builder *builder, struct hierarchy *hierarchies, uint32_
             continue;
         if (h->count > builder->job_limit) /* else its job does */
             range_measure(builder->references, &range);
-        go_on = place_range(builder, &fronts[0], &range, 0, NO_BRANCH, &h->result);
+        go_on = store_range(builder, &fronts[0], &range, 0, NO_BRANCH, &h->result);
     }
     for (int turn = 0; go_on && fronts[turn].count > 0; turn = !turn)
         go_on = !is_cancelled(builder) && part_front(builder, &fronts[turn], &fronts[!turn]);
@@ -313,7 +313,7 @@ static bool is_node(const struct branch *branch) {
 }
 
 /* Nodes above what becomes a piece: what branch `number` is, a piece or the number of a top node, is *result. */
-static bool place_top(struct builder *builder, uint32_t number, uint32_t *result) {
+static bool store_top(struct builder *builder, uint32_t number, uint32_t *result) {
     const struct branch *branch = &builder->tree.branches[number];
     if (branch->count <= builder->job_limit || !is_node(branch)) {
         struct piece *piece = add_piece(builder, branch->count);
@@ -329,7 +329,7 @@ static bool place_top(struct builder *builder, uint32_t number, uint32_t *result
     builder->top[place] = (struct top_node){.branch = number};
     for (uint32_t i = 0; i < count; i++) {
         uint32_t child;
-        if (!place_top(builder, children[i], &child))
+        if (!store_top(builder, children[i], &child))
             return false;
         builder->top[place].child[i] = child;
     }
@@ -496,7 +496,7 @@ static uint32_t reference_to(const struct builder *builder, uint32_t result) {
 static bool write_all(struct builder *builder, struct hierarchy *hierarchies, uint32_t count) {
     builder->pieces.count = 0;
     for (uint32_t i = 0; i < count; i++)
-        if (hierarchies[i].count > 0 && !place_top(builder, hierarchies[i].result, &hierarchies[i].result))
+        if (hierarchies[i].count > 0 && !store_top(builder, hierarchies[i].result, &hierarchies[i].result))
             return false;
     if (!make_jobs(builder) || !run_jobs(builder, count_job))
         return false;

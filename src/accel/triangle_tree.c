@@ -120,7 +120,7 @@ static uint32_t depth_of(const struct branch *branches, uint32_t number) {
 }
 
 /* The branch beside which `number` would lie best, or NO_BRANCH: where it is. Its parent goes with it. */
-static uint32_t best_place(const struct branch *branches, uint32_t number) {
+static uint32_t best_position(const struct branch *branches, uint32_t number) {
     struct {
         uint32_t number;
         float gain;
@@ -168,7 +168,7 @@ static uint32_t best_place(const struct branch *branches, uint32_t number) {
 static void reinsert(struct tree *tree, uint32_t number) {
     struct branch *branches = tree->branches;
     uint32_t parent = branches[number].parent, sibling = sibling_of(branches, number);
-    uint32_t place = best_place(branches, number);
+    uint32_t place = best_position(branches, number);
     if (place == NO_BRANCH || place == sibling)
         return;
     uint8_t here = branches[number].height, there = branches[place].height;

@@ -39,7 +39,7 @@ __attribute__((constructor)) static void read_environment(void) {
     (void)fault_errno(number ? atoi(number) : 0);
 }
 
-__attribute__((destructor)) static void tell_counts(void) {
+__attribute__((destructor)) static void report_counts(void) {
     const char *path = getenv("GRAY_FAULT_COUNT");
     if (!path || counters->first != getpid())
         return;

@@ -345,7 +345,7 @@ bool file_is_folder(const char *path) {
     return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
 }
 
-int file_open_place(const char *path) {
+int file_open_folder_of(const char *path) {
     return MAY_FAIL(open(path, O_PATH | O_CLOEXEC));
 }
 

@@ -94,7 +94,7 @@ bool file_exists(const char *path);
 bool file_is_regular(const char *path);
 bool file_is_folder(const char *path);
 /* A descriptor (O_PATH) that only names a place in the file system; -1 when there is none. */
-int file_open_place(const char *path);
+int file_open_folder_of(const char *path);
 /* Standard input gives nothing from now on: a scene that waits for it would wait for ever. */
 bool file_null_input(void);
 /* If descriptors 0, 1 or 2 are closed at the start, they are replaced by one that supports neither reading nor writing:

@@ -104,7 +104,7 @@ static bool open_folder(struct file_output *file, struct error *error) {
     return file->folder >= 0 || cannot_write(error, file, errno);
 }
 
-bool file_same_place(const char *a, const char *b) {
+bool file_is_same_folder(const char *a, const char *b) {
     const char *paths[2] = {a, b}, *leaves[2];
     struct stat status[2];
     for (int i = 0; i < 2; i++) {
@@ -361,7 +361,7 @@ static bool interrupted(struct error *error, const struct file_output *file) {
 }
 
 /* A named pipe without a reader is waited for. */
-static bool open_in_place(struct file_output *file, struct error *error) {
+static bool open_direct(struct file_output *file, struct error *error) {
     struct stat status;
     for (;;) {
         file->descriptor = MAY_FAIL(open(file->target, O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
@@ -384,7 +384,7 @@ static bool open_in_place(struct file_output *file, struct error *error) {
 static bool find_direct(struct file_output *file, const struct file_target *target, struct error *error) {
     struct stat status, link;
     struct file_identity stream;
-    if (!file->rules->in_place)
+    if (!file->rules->is_direct)
         return true;
     bool standard = strcmp(target->path, "-") == 0;
     if (!standard && stat(target->path, &status) == 0) {
@@ -437,7 +437,7 @@ bool file_output_open(struct file_output *file, const struct file_target *target
         file->descriptor = MAY_FAIL(fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3));
         ok = file->descriptor >= 0 || cannot_write(error, file, errno);
     } else if (file->direct) {
-        ok = open_in_place(file, error);
+        ok = open_direct(file, error);
     } else {
         ok = open_folder(file, error) && inspect(file, &there, &status, error) &&
              (open_temporary(file) || cannot_write(error, file, errno));

@@ -46,7 +46,7 @@ struct file_rules {
     const char *advice;   /* added to a refusal: " (-o FILE chooses another one)", or NULL */
     enum file_role role;
     bool never_replace;                     /* an existing file of any kind is an error */
-    bool in_place;                          /* "-" is standard output; pipes and devices are written in place */
+    bool is_direct;                         /* "-" is standard output; pipes and devices are written in place */
     bool named_by_user;                     /* the messages name --force */
     bool force;                             /* may_replace does not matter */
     struct file_quota *quota;               /* or NULL */
@@ -70,7 +70,7 @@ struct file_target {
 bool file_output_check(const struct file_target *target, struct error *error);
 /* Whether two names are one place: the same folder, however it is named, and the same last part. The folders must
  * exist. */
-bool file_same_place(const char *a, const char *b);
+bool file_is_same_folder(const char *a, const char *b);
 /* Removes the file if it is still the one with this identity and one that the rules let replace. Fine when there is
  * none. */
 bool file_output_remove(const struct file_target *target, struct file_identity identity, struct error *error);

@@ -306,12 +306,12 @@ static int open_below(const struct path_policy_folder *folder, const char *rest,
         return (int)descriptor;
     /* Opened by name, then asked where it is. */
     int opened = MAY_FAIL(open(canonical, (int)how.flags & ~O_TRUNC, 0666));
-    char link[64], told[PATH_MAX];
+    char link[64], reported[PATH_MAX];
     if (opened < 0)
         return -1;
     (void)snprintf(link, sizeof link, "/proc/self/fd/%d", opened);
-    ssize_t length = MAY_FAIL(readlink(link, told, sizeof told - 1));
-    bool same = length > 0 && (size_t)length == strlen(canonical) && memcmp(told, canonical, (size_t)length) == 0;
+    ssize_t length = MAY_FAIL(readlink(link, reported, sizeof reported - 1));
+    bool same = length > 0 && (size_t)length == strlen(canonical) && memcmp(reported, canonical, (size_t)length) == 0;
     if (!same || ((flags & O_TRUNC) && MAY_FAIL(ftruncate(opened, 0)) != 0)) {
         (void)close(opened);
         errno = EACCES;

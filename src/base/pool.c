@@ -195,21 +195,21 @@ int pool_workers(const struct pool *pool) {
 
 bool pool_run(struct pool *pool, uint32_t count, pool_function *fn, void *context) {
     /* One item is not worth waking anybody. */
-    bool alone = pool->workers == 1 || count <= 1;
+    bool is_serial = pool->workers == 1 || count <= 1;
     pool->runs++;
     (void)pthread_mutex_lock(&pool->mutex);
     pool->fn = fn;
     pool->context = context;
     pool->count = count;
     atomic_store_explicit(&pool->next, 0, memory_order_relaxed);
-    if (!alone) {
+    if (!is_serial) {
         pool->active = pool->workers - 1;
         pool->generation++;
         (void)pthread_cond_broadcast(&pool->start);
     }
     (void)pthread_mutex_unlock(&pool->mutex);
     work(pool, 0);
-    if (!alone) {
+    if (!is_serial) {
         (void)pthread_mutex_lock(&pool->mutex);
         while (pool->active > 0) {
             if (!pool->poll) {

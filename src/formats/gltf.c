@@ -242,12 +242,12 @@ static bool add_vertices(struct gltf *g, const struct primitive *p, const struct
 }
 
 /* Places of the tables at which the vertices of this primitive begin. */
-struct bases {
+struct buffer_bases {
     uint32_t vertex, normal, uv;
 };
 
 static bool add_triangle(struct gltf *g, struct model_mesh *mesh, const struct mesh_plan *plan,
-                         const struct bases *bases, const uint32_t corner[3], uint32_t slot) {
+                         const struct buffer_bases *bases, const uint32_t corner[3], uint32_t slot) {
     uint32_t *start = list_room(&mesh->starts, 1, sizeof *start);
     uint32_t *index = list_room(&mesh->vertex_index, 3, sizeof *index);
     uint32_t *normal = plan->normals ? list_room(&mesh->normal_index, 3, sizeof *normal) : NULL;
@@ -270,7 +270,7 @@ static bool add_triangle(struct gltf *g, struct model_mesh *mesh, const struct m
 }
 
 static bool add_triangles(struct gltf *g, const struct primitive *p, const struct corners *corners,
-                          const struct mesh_plan *plan, const struct bases *bases, uint32_t slot,
+                          const struct mesh_plan *plan, const struct buffer_bases *bases, uint32_t slot,
                           struct model_mesh *mesh) {
     uint64_t step = p->mode == 4 ? 3 : 1;
     for (uint64_t i = 0; i + 2 < corners->count; i += step) {
@@ -297,9 +297,9 @@ static bool add_primitive(struct gltf *g, const struct primitive *p, const struc
     if (!gltf_accessor(g, p->position, &a))
         return false;
     struct corners corners;
-    struct bases bases = {(uint32_t)mesh->vertices.count,
-                          p->normal == MODEL_NONE ? MODEL_NONE : (uint32_t)mesh->normals.count,
-                          p->uv == MODEL_NONE ? MODEL_NONE : (uint32_t)mesh->uvs.count};
+    struct buffer_bases bases = {(uint32_t)mesh->vertices.count,
+                                 p->normal == MODEL_NONE ? MODEL_NONE : (uint32_t)mesh->normals.count,
+                                 p->uv == MODEL_NONE ? MODEL_NONE : (uint32_t)mesh->uvs.count};
     bool ok = read_corners(g, p, a.count, &corners);
     if (ok && mesh->vertices.count + corners.vertices > model_max(g->model))
         ok = gltf_fail(g, p->where, "too many vertices");

@@ -84,7 +84,7 @@ void model_warn(struct model *model, const char *format, ...) {
 
 bool model_find(struct model *model, const char *name, size_t length, const char **path, struct error *error) {
     *path = NULL;
-    if (model->options.alone || length == 0 || length > 4000 || memchr(name, '\0', length))
+    if (model->options.single_file || length == 0 || length > 4000 || memchr(name, '\0', length))
         return true;
     const char *slash = strrchr(model->path, '/');
     int folder = slash ? (int)(slash + 1 - model->path) : 0;

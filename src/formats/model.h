@@ -68,7 +68,7 @@ struct model_options {
     double smooth_angle;                   /* degrees: faces that meet at less are one smooth surface; 0: flat */
     bool weld, flip;                       /* one vertex for each place; faces reversed */
     const struct path_policy *path_policy; /* where files may be read; NULL: everywhere */
-    bool alone;                            /* no other file is opened (tests of readers with strangers' bytes) */
+    bool single_file;                      /* no other file is opened (tests of readers with strangers' bytes) */
     size_t max;                            /* vertices, and corners, of a mesh; 0: as many as an index can name */
 };
 

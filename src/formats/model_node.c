@@ -102,7 +102,7 @@ static bool cut(struct scene *scene, const struct model_texture *map, const stru
     bool there;
     if (!find_map(scene, map, &image, &there, error) || !there)
         return !there;
-    image.alpha = map->by_alpha ? ALPHA_ALONE : ALPHA_DARKENS;
+    image.alpha = map->by_alpha ? ALPHA_ONLY : ALPHA_DARKENS;
     struct material *m = scene_material(scene, MATERIAL_IMAGE, *top, error);
     if (!m || !material_cut(m, &image, map->cutoff, &scene->arena, error))
         return false;
@@ -279,7 +279,7 @@ static bool set_shape(struct placer *p, struct node *node, uint32_t index) {
     return true;
 }
 
-static struct node *place_single(struct placer *p, uint32_t index) {
+static struct node *add_single_node(struct placer *p, uint32_t index) {
     const struct model_node *nodes = model_nodes(p->model);
     struct node *node = scene_node(p->scene, NODE_GEOMETRY, p->placing->name, p->error);
     if (!node || !set_shape(p, node, nodes[index].mesh))
@@ -289,7 +289,7 @@ static struct node *place_single(struct placer *p, uint32_t index) {
     return node;
 }
 
-static struct node *place_tree(struct placer *p) {
+static struct node *add_node_tree(struct placer *p) {
     const struct model_node *nodes = model_nodes(p->model);
     struct node *root = scene_node(p->scene, NODE_GROUP, p->placing->name, p->error);
     struct node **made = mem_alloc_zero(p->model->nodes.count, sizeof *made);
@@ -310,8 +310,8 @@ static struct node *place_tree(struct placer *p) {
     return ok ? root : NULL;
 }
 
-struct node *model_place(struct scene *scene, const struct model *model, const struct model_placing *placing,
-                         struct error *error) {
+struct node *model_add_nodes(struct scene *scene, const struct model *model, const struct model_placing *placing,
+                             struct error *error) {
     struct placer p = {.scene = scene, .model = model, .placing = placing, .error = error};
     p.materials = arena_alloc_array(&scene->arena, model->materials.count, sizeof *p.materials);
     if (!p.materials && model->materials.count) {
@@ -324,5 +324,5 @@ struct node *model_place(struct scene *scene, const struct model *model, const s
             single = i;
             drawn++;
         }
-    return drawn == 1 ? place_single(&p, single) : place_tree(&p);
+    return drawn == 1 ? add_single_node(&p, single) : add_node_tree(&p);
 }

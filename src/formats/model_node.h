@@ -26,7 +26,7 @@ const char *model_part(const struct model *model, size_t index);
 
 /* A model with one mesh becomes one geometry node, others a group with the file's nodes below it; a mesh that the file
  * places several times is one mesh. Everything is made in the scene's arena, pictures come from its store. */
-struct node *model_place(struct scene *scene, const struct model *model, const struct model_placing *placing,
-                         struct error *error);
+struct node *model_add_nodes(struct scene *scene, const struct model *model, const struct model_placing *placing,
+                             struct error *error);
 
 #endif

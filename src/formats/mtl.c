@@ -155,7 +155,7 @@ static bool read_map(struct library *l, struct model_texture *map) {
         return error_no_memory(l->error, l->path);
     /* Names in a library are relative to the library, which is usually beside the model. */
     const char *slash = strrchr(l->path, '/');
-    if (slash && !l->model->options.alone && name[0] != '/') {
+    if (slash && !l->model->options.single_file && name[0] != '/') {
         int folder = (int)(slash + 1 - l->path);
         char *beside = arena_format(&l->model->arena, "%.*s%s", folder, l->path, map->name);
         if (!beside)
@@ -169,7 +169,7 @@ static bool read_map(struct library *l, struct model_texture *map) {
     }
     if (!model_find(l->model, name, length, &map->path, l->error))
         return false;
-    if (!map->path && !l->model->options.alone)
+    if (!map->path && !l->model->options.single_file)
         model_warn(l->model, "%s:%zu: the picture '%.200s' is not there", l->path, l->line, map->name);
     return true;
 }

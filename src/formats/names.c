@@ -8,7 +8,7 @@
 
 #define EMPTY UINT32_MAX
 
-static size_t place_of(const struct names *names, const char *text, size_t length) {
+static size_t slot_of(const struct names *names, const char *text, size_t length) {
     const struct name *entries = names->entries.items;
     size_t at = (size_t)hash_bytes(text, length, 0) & (names->capacity - 1);
     while (names->table[at] != EMPTY) {
@@ -31,14 +31,14 @@ static bool grow(struct names *names) {
     names->capacity = capacity;
     const struct name *entries = names->entries.items;
     for (uint32_t i = 0; i < names->entries.count; i++)
-        table[place_of(names, entries[i].text, entries[i].length)] = i;
+        table[slot_of(names, entries[i].text, entries[i].length)] = i;
     return true;
 }
 
 bool names_add(struct names *names, const char *text, size_t length, uint32_t *number) {
     if (names->entries.count * 2 >= names->capacity && !grow(names))
         return false;
-    size_t at = place_of(names, text, length);
+    size_t at = slot_of(names, text, length);
     if (names->table[at] == EMPTY) {
         struct name *name = list_room(&names->entries, 1, sizeof *name);
         if (!name || names->entries.count >= names->max)
@@ -51,7 +51,7 @@ bool names_add(struct names *names, const char *text, size_t length, uint32_t *n
 }
 
 uint32_t names_find(const struct names *names, const char *text, size_t length) {
-    return names->capacity ? names->table[place_of(names, text, length)] : EMPTY;
+    return names->capacity ? names->table[slot_of(names, text, length)] : EMPTY;
 }
 
 void names_destroy(struct names *names) {

@@ -316,7 +316,7 @@ static bool read_libraries(struct reader *reader) {
     const char *name, *end;
     size_t length = read_name(reader, &name);
     bool found, all = true;
-    if (reader->model->options.alone)
+    if (reader->model->options.single_file)
         return true;
     if (!read_library(reader, name, length, &found))
         return false;
@@ -522,7 +522,7 @@ bool obj_load(struct model *model, const char *text, size_t size, struct error *
 }
 
 struct mesh *obj_parse(const char *path, const char *text, size_t size, struct error *error) {
-    struct model model = {.path = path, .options.alone = true};
+    struct model model = {.path = path, .options.single_file = true};
     struct mesh *mesh = NULL;
     if (obj_load(&model, text, size, error) && model_finish(&model, error))
         mesh = mesh_share(model_meshes(&model)[0].mesh);

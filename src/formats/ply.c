@@ -15,12 +15,29 @@
 enum { ELEMENTS = 64, PROPERTIES = 512 };
 
 /* What a property means. Up to BLUE: a number of a vertex. */
-enum meaning { NOTHING, X, Y, Z, NX, NY, NZ, U, V, RED, GREEN, BLUE, SCALARS, CORNERS = SCALARS, CORNER_UVS, STRIPS };
+enum ply_property {
+    NOTHING,
+    X,
+    Y,
+    Z,
+    NX,
+    NY,
+    NZ,
+    U,
+    V,
+    RED,
+    GREEN,
+    BLUE,
+    SCALARS,
+    CORNERS = SCALARS,
+    CORNER_UVS,
+    STRIPS
+};
 
 struct property {
     bool is_list;
     enum number_type count_type, type;
-    enum meaning meaning;
+    enum ply_property meaning;
 };
 
 enum element_kind { OTHER, VERTICES, FACES };
@@ -124,10 +141,10 @@ static bool read_type(const struct ply *ply, const struct words *words, int i, e
     return header_fail(ply, words, i, "is not a type of number (char, uchar, short, ushort, int, uint, float, double)");
 }
 
-static enum meaning meaning_of(const struct words *words, int i, const char *element, bool is_list) {
+static enum ply_property property_of(const struct words *words, int i, const char *element, bool is_list) {
     static const struct {
         const char *name;
-        enum meaning meaning;
+        enum ply_property meaning;
     } scalars[] = {{"x", X},
                    {"y", Y},
                    {"z", Z},
@@ -176,7 +193,7 @@ static bool read_property(struct ply *ply, const struct words *words) {
         return false;
     if (!read_type(ply, words, name - 1, &p.type))
         return false;
-    p.meaning = meaning_of(words, name, element->name, p.is_list);
+    p.meaning = property_of(words, name, element->name, p.is_list);
     bool whole = p.type < NUMBER_F32;
     if (p.is_list && p.count_type >= NUMBER_F32)
         return header_fail(ply, words, 2, "cannot count the entries of a list");

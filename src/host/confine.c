@@ -80,7 +80,7 @@ static bool add_rule(int ruleset, int folder, uint64_t rights) {
 
 /* A file or folder that the process itself reads; one that is not there is no loss. */
 static bool add_path(int ruleset, const char *path, uint64_t rights) {
-    int descriptor = file_open_place(path);
+    int descriptor = file_open_folder_of(path);
     if (descriptor < 0)
         return true;
     bool added = add_rule(ruleset, descriptor, rights);

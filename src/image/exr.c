@@ -71,10 +71,10 @@ struct stream {
 
 /* The library reports some errors with its own lock held, so its context must not be queried for our data then: that
  * waits for ever. Hence this one variable, which lives while a picture is written or read. */
-static _Thread_local struct stream *telling;
+static _Thread_local struct stream *to_report;
 
 static void on_error(exr_const_context_t context, exr_result_t code, const char *message) {
-    struct stream *stream = telling;
+    struct stream *stream = to_report;
     (void)context;
     stream->no_memory = stream->no_memory || code == EXR_ERR_OUT_OF_MEMORY;
     (void)snprintf(stream->message, sizeof stream->message, "%s", message);
@@ -83,9 +83,9 @@ static void on_error(exr_const_context_t context, exr_result_t code, const char 
 }
 
 static int64_t on_write(exr_const_context_t context, void *data, const void *buffer, uint64_t size, uint64_t offset,
-                        exr_stream_error_func_ptr_t tell) {
+                        exr_stream_error_func_ptr_t report_error) {
     struct stream *stream = data;
-    (void)context, (void)tell;
+    (void)context, (void)report_error;
     uint64_t end = offset + size;
     if (end > stream->capacity) {
         size_t capacity = (size_t)end * 2; /* a picture that is in memory is no half of what addresses can name */
@@ -104,9 +104,9 @@ static int64_t on_write(exr_const_context_t context, void *data, const void *buf
 }
 
 static int64_t on_read(exr_const_context_t context, void *data, void *buffer, uint64_t size, uint64_t offset,
-                       exr_stream_error_func_ptr_t tell) {
+                       exr_stream_error_func_ptr_t report_error) {
     const struct stream *stream = data;
-    (void)context, (void)tell;
+    (void)context, (void)report_error;
     if (offset >= stream->size)
         return 0;
     uint64_t left = stream->size - offset, count = size < left ? size : left;
@@ -131,7 +131,7 @@ static exr_context_initializer_t callbacks(struct stream *stream) {
     return init;
 }
 
-static bool tell(const char *path, const struct stream *stream, const char *fallback, struct error *error) {
+static bool report_error(const char *path, const struct stream *stream, const char *fallback, struct error *error) {
     if (stream->no_memory)
         return error_no_memory(error, path);
     return error_set(error, ERROR_SCENE, "%s: %s", path, stream->message[0] ? stream->message : fallback);
@@ -180,7 +180,7 @@ static bool add_all_channels(exr_context_t context, int part, const struct sourc
 }
 
 /* The library keeps channels in the order of their names. */
-static void aim_encoder(exr_coding_channel_info_t *channel, const struct source *source, uint32_t width, uint32_t y) {
+static void set_encoder(exr_coding_channel_info_t *channel, const struct source *source, uint32_t width, uint32_t y) {
     uint32_t stride = 3;
     const float *from = source->lines;
     if (source->rows)
@@ -212,7 +212,7 @@ static bool write_chunks(exr_context_t context, int part, uint32_t width, uint32
         for (int32_t i = 0; ok && source->rows && i < chunk.height; i++)
             source->rows(source->rows_context, y + (uint32_t)i, source->lines + (size_t)i * width * 3);
         for (int16_t i = 0; ok && i < encoder.channel_count; i++)
-            aim_encoder(&encoder.channels[i], source, width, y);
+            set_encoder(&encoder.channels[i], source, width, y);
         ok =
             ok && (begun || MAY_FAIL(exr_encoding_choose_default_routines(context, part, &encoder)) == EXR_ERR_SUCCESS);
         begun = true;
@@ -245,9 +245,9 @@ static bool write_source(const struct file_target *target, uint32_t width, uint3
                          struct error *error) {
     struct stream stream = {0};
     struct file_output output;
-    telling = &stream;
-    bool ok = encode(&stream, width, height, source) || tell(target->path, &stream, "cannot be written", error);
-    telling = NULL;
+    to_report = &stream;
+    bool ok = encode(&stream, width, height, source) || report_error(target->path, &stream, "cannot be written", error);
+    to_report = NULL;
     if (ok) {
         ok = file_output_open(&output, target, error);
         if (ok && file_output_write(&output, stream.bytes, stream.size, error))
@@ -284,7 +284,7 @@ static float bounded(float light) {
 }
 
 /* The three channels of the picture are decoded in place; the others have nowhere to go. Returns which were met. */
-static unsigned aim_channels(exr_decode_pipeline_t *decoder, float *out, uint32_t width) {
+static unsigned set_channels(exr_decode_pipeline_t *decoder, float *out, uint32_t width) {
     unsigned met = 0;
     for (int16_t i = 0; i < decoder->channel_count; i++) {
         exr_coding_channel_info_t *channel = &decoder->channels[i];
@@ -316,7 +316,7 @@ static bool decode_chunks(exr_context_t context, const exr_attr_box2i_t *window,
         ok = ok && MAY_FAIL(begun ? exr_decoding_update(context, 0, &chunk, &decoder)
                                   : exr_decoding_initialize(context, 0, &chunk, &decoder)) == EXR_ERR_SUCCESS;
         if (ok)
-            *met = aim_channels(&decoder, (float *)image->levels[0].texels + (size_t)y * width * 4, width);
+            *met = set_channels(&decoder, (float *)image->levels[0].texels + (size_t)y * width * 4, width);
         ok = ok && (begun || MAY_FAIL(exr_decoding_choose_default_routines(context, 0, &decoder)) == EXR_ERR_SUCCESS);
         begun = true;
         ok = ok && exr_decoding_run(context, 0, &decoder) == EXR_ERR_SUCCESS;
@@ -340,7 +340,7 @@ static struct image *decode(exr_context_t context, const char *path, struct stre
     exr_attr_box2i_t window;
     if (MAY_FAIL(exr_get_storage(context, 0, &storage)) != EXR_ERR_SUCCESS ||
         MAY_FAIL(exr_get_data_window(context, 0, &window)) != EXR_ERR_SUCCESS) {
-        tell(path, stream, "broken EXR", error);
+        report_error(path, stream, "broken EXR", error);
         return NULL;
     }
     if (storage != EXR_STORAGE_SCANLINE) {
@@ -360,7 +360,7 @@ static struct image *decode(exr_context_t context, const char *path, struct stre
         return NULL;
     memset(image->levels[0].texels, 0, (size_t)width * (size_t)height * 16);
     unsigned met = 0;
-    bool ok = decode_chunks(context, &window, image, &met) || tell(path, stream, "broken EXR", error);
+    bool ok = decode_chunks(context, &window, image, &met) || report_error(path, stream, "broken EXR", error);
     if (ok && met != 7 && met != 8)
         ok = error_set(error, ERROR_SCENE, "%s: an EXR picture needs the channels R, G and B, or Y", path);
     float *texels = image->levels[0].texels;
@@ -386,7 +386,7 @@ struct image *image_parse_exr(const char *path, const uint8_t *data, size_t size
     exr_context_t context;
     init.max_image_width = init.max_image_height = IMAGE_MAX_SIDE;
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
-    telling = &stream;
+    to_report = &stream;
     exr_result_t begun = exr_start_read(&context, path, &init);
     struct image *image = NULL;
     stream.no_memory |= begun == EXR_ERR_OUT_OF_MEMORY;
@@ -394,9 +394,9 @@ struct image *image_parse_exr(const char *path, const uint8_t *data, size_t size
         image = decode(context, path, &stream, error);
         (void)exr_finish(&context);
     } else {
-        tell(path, &stream, "broken EXR", error);
+        report_error(path, &stream, "broken EXR", error);
     }
-    telling = NULL;
+    to_report = NULL;
     return image;
 }
 

@@ -24,7 +24,7 @@ struct reading {
     struct error *error;
 };
 
-static bool tell(struct reading *r, const char *what) {
+static bool report_error(struct reading *r, const char *what) {
     return error_set(r->error, ERROR_SCENE, "%s: %s (before byte %zu)", r->path, what, r->at);
 }
 
@@ -45,7 +45,7 @@ static bool next_line(struct reading *r, char line[LINE_LIMIT]) {
 static struct image *allocate(struct reading *r, unsigned long long width, unsigned long long height) {
     if (width > 0 && height > 0 && width <= IMAGE_MAX_SIDE && height <= IMAGE_MAX_SIDE &&
         width * height / PIXELS_PER_BYTE > r->size) {
-        tell(r, "the file is too short for its pixels");
+        report_error(r, "the file is too short for its pixels");
         return NULL;
     }
     assert(width <= UINT32_MAX && height <= UINT32_MAX);
@@ -84,9 +84,9 @@ static bool hdr_size(struct reading *r, const char *line, struct hdr_header *hea
         negative = negative || ((*p == '-' || *p == '+') && p[1] >= '0' && p[1] <= '9');
     if (negative || strspn(line, "+-XY0123456789 ") != strlen(line) ||
         sscanf(line, "%c%c %9llu %c%c %9llu %c", &sign_y, &letter_y, &y, &sign_x, &letter_x, &x, &rest) != 6)
-        return tell(r, "the line with the size of a Radiance picture cannot be read");
+        return report_error(r, "the line with the size of a Radiance picture cannot be read");
     if (letter_y != 'Y' || letter_x != 'X')
-        return tell(r, "Radiance pictures whose columns come first are not read");
+        return report_error(r, "Radiance pictures whose columns come first are not read");
     header->width = x;
     header->height = y;
     header->from_below = sign_y == '+';
@@ -100,24 +100,24 @@ static bool hdr_read_header(struct reading *r, struct hdr_header *header) {
     bool known = false;
     for (int i = 0; i < HEADER_LINES; i++) {
         if (!next_line(r, line))
-            return tell(r, "the header of a Radiance picture has no end");
+            return report_error(r, "the header of a Radiance picture has no end");
         if (line[0] == '\0') {
             if (!known)
-                return tell(r, "a Radiance picture must say FORMAT=32-bit_rle_rgbe");
-            return next_line(r, line) ? hdr_size(r, line, header) : tell(r, "a Radiance picture has no size");
+                return report_error(r, "a Radiance picture must say FORMAT=32-bit_rle_rgbe");
+            return next_line(r, line) ? hdr_size(r, line, header) : report_error(r, "a Radiance picture has no size");
         }
         if (strncmp(line, "FORMAT=", 7) == 0) {
             known = strcmp(line + 7, "32-bit_rle_rgbe") == 0;
             if (!known)
-                return tell(r, "only Radiance pictures of FORMAT=32-bit_rle_rgbe are read");
+                return report_error(r, "only Radiance pictures of FORMAT=32-bit_rle_rgbe are read");
         } else if (strncmp(line, "EXPOSURE=", 9) == 0) {
             double exposure = strtod(line + 9, NULL);
             if (!(exposure >= 1e-30 && exposure <= 1e30))
-                return tell(r, "the EXPOSURE of a Radiance picture must be above 0");
+                return report_error(r, "the EXPOSURE of a Radiance picture must be above 0");
             header->factor /= exposure;
         }
     }
-    return tell(r, "the header of a Radiance picture has no end");
+    return report_error(r, "the header of a Radiance picture has no end");
 }
 
 /* One row channel by channel, the four bytes of its mark already read. */
@@ -125,14 +125,14 @@ static bool hdr_read_runs(struct reading *r, uint8_t *row, size_t width) {
     for (size_t channel = 0; channel < 4; channel++) {
         for (size_t x = 0; x < width;) {
             if (r->at >= r->size)
-                return tell(r, "a Radiance picture ends early");
+                return report_error(r, "a Radiance picture ends early");
             size_t count = r->data[r->at++];
             bool run = count > 128;
             count -= run ? 128 : 0;
             if (count == 0 || count > width - x)
-                return tell(r, "a run in a Radiance picture is longer than its row");
+                return report_error(r, "a run in a Radiance picture is longer than its row");
             if (r->size - r->at < (run ? 1 : count))
-                return tell(r, "a Radiance picture ends early");
+                return report_error(r, "a Radiance picture ends early");
             for (size_t i = 0; i < count; i++)
                 row[4 * (x + i) + channel] = r->data[r->at + (run ? 0 : i)];
             r->at += run ? 1 : count;
@@ -147,7 +147,7 @@ static bool hdr_read_flat(struct reading *r, uint8_t *row, size_t width) {
     unsigned shift = 0;
     for (size_t x = 0; x < width;) {
         if (r->size - r->at < 4)
-            return tell(r, "a Radiance picture ends early");
+            return report_error(r, "a Radiance picture ends early");
         const uint8_t *p = r->data + r->at;
         r->at += 4;
         if (p[0] != 1 || p[1] != 1 || p[2] != 1) {
@@ -157,7 +157,7 @@ static bool hdr_read_flat(struct reading *r, uint8_t *row, size_t width) {
         }
         size_t count = shift < 24 ? (size_t)p[3] << shift : SIZE_MAX;
         if (x == 0 || count > width - x)
-            return tell(r, "a run in a Radiance picture is longer than its row");
+            return report_error(r, "a run in a Radiance picture is longer than its row");
         for (size_t i = 0; i < count; i++, x++)
             memcpy(row + 4 * x, row + 4 * x - 4, 4);
         shift += 8;
@@ -170,7 +170,7 @@ static bool hdr_read_row(struct reading *r, uint8_t *row, size_t width) {
     if (width < 8 || width > 0x7fff || r->size - r->at < 4 || mark[0] != 2 || mark[1] != 2 || mark[2] > 127)
         return hdr_read_flat(r, row, width);
     if ((size_t)mark[2] << 8 != (width & 0xff00) || mark[3] != (width & 0xff))
-        return tell(r, "a row of a Radiance picture has another width");
+        return report_error(r, "a row of a Radiance picture has another width");
     r->at += 4;
     return hdr_read_runs(r, row, width);
 }
@@ -232,7 +232,7 @@ static bool next_word(struct reading *r, char word[64]) {
 static bool pfm_side(struct reading *r, unsigned long long *side) {
     char word[64];
     if (!next_word(r, word) || strspn(word, "0123456789") != strlen(word) || strlen(word) > 9)
-        return tell(r, "the size of a PFM picture cannot be read");
+        return report_error(r, "the size of a PFM picture cannot be read");
     *side = strtoull(word, NULL, 10);
     return true;
 }
@@ -255,11 +255,11 @@ struct image *image_parse_pfm(const char *path, const uint8_t *data, size_t size
         return NULL;
     double scale = next_word(&r, word) ? strtod(word, &end) : 0;
     if (!(fabs(scale) >= 1e-30 && fabs(scale) <= 1e30) || *end != '\0') {
-        tell(&r, "the scale of a PFM picture cannot be read");
+        report_error(&r, "the scale of a PFM picture cannot be read");
         return NULL;
     }
     if (width <= IMAGE_MAX_SIDE && height <= IMAGE_MAX_SIDE && (size - r.at) / (4 * channels) < width * height) {
-        tell(&r, "the file is too short for its pixels");
+        report_error(&r, "the file is too short for its pixels");
         return NULL;
     }
     struct image *image = allocate(&r, width, height);

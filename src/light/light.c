@@ -557,7 +557,7 @@ static struct vec3 round_position(const struct light_emitter *emitter, struct ve
 }
 
 /* A place on a light that is not a mesh; the photon starts there. */
-static struct vec3 emitter_place(const struct light_emitter *emitter, struct vec3 direction, struct sample2 place) {
+static struct vec3 emitter_point(const struct light_emitter *emitter, struct vec3 direction, struct sample2 place) {
     const struct light *light = emitter->light;
     struct sample2 part = {emitter->low[0] + emitter->side * place.x, emitter->low[1] + emitter->side * place.y};
     struct vec3 right, up, at;
@@ -591,7 +591,7 @@ struct light_photon light_photon(const struct light_emitter *emitter, struct vec
     case LIGHT_SPOT:
     case LIGHT_DISC:
     case LIGHT_SPHERE:
-        photon.origin = emitter_place(emitter, direction, place);
+        photon.origin = emitter_point(emitter, direction, place);
         photon.power = vec3_scale(light->colour, light_emitter_shine(emitter, direction) * light_emitter_unit(emitter));
         break;
     case LIGHT_MESH:

@@ -52,7 +52,7 @@ bool material_cover(struct material *material, enum material_input input, const 
 bool material_cut(struct material *material, const struct texture_image *image, double cutoff, struct arena *arena,
                   struct error *error) {
     struct texture_image own = *image;
-    own.alpha = image->alpha == ALPHA_ALONE ? ALPHA_ALONE : ALPHA_DARKENS;
+    own.alpha = image->alpha == ALPHA_ONLY ? ALPHA_ONLY : ALPHA_DARKENS;
     material->changed = INPUT_OPACITY;
     /* Whole where the surface has no coordinates for the image. */
     const struct texture *whole = texture_keep(arena, texture_number(1), error);

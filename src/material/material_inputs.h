@@ -20,7 +20,7 @@ bool material_mix_kd(struct material *material, struct texture pattern, struct v
 /* The image over the input. Not for INPUT_OPACITY. */
 bool material_cover(struct material *material, enum material_input input, const struct texture_image *image,
                     struct arena *arena, struct error *error);
-/* Holes where the image is black, or by its alpha (ALPHA_ALONE); cutoff > 0: all or nothing, from there on. */
+/* Holes where the image is black, or by its alpha (ALPHA_ONLY); cutoff > 0: all or nothing, from there on. */
 bool material_cut(struct material *material, const struct texture_image *image, double cutoff, struct arena *arena,
                   struct error *error);
 /* `bump` over what turns the normal already; its `below` is set. */

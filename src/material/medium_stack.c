@@ -9,8 +9,8 @@ void medium_stack_copy(struct medium_stack *to, const struct medium_stack *from)
 }
 
 void medium_stack_enter(struct medium_stack *stack, const struct medium *medium) {
-    if (stack->count == MEDIA_LIMIT) {
-        memmove(stack->entries, stack->entries + 1, (MEDIA_LIMIT - 1) * sizeof *stack->entries);
+    if (stack->count == MEDIUM_STACK_LIMIT) {
+        memmove(stack->entries, stack->entries + 1, (MEDIUM_STACK_LIMIT - 1) * sizeof *stack->entries);
         stack->count--;
     }
     stack->entries[stack->count++] = *medium;

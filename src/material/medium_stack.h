@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { MEDIA_LIMIT = 32 }; /* deeper nestings forget the outermost (docs/limits.md) */
+enum { MEDIUM_STACK_LIMIT = 32 }; /* deeper nestings forget the outermost (docs/limits.md) */
 
 /* The inside of one solid. */
 struct medium {
@@ -20,7 +20,7 @@ struct medium {
 
 struct medium_stack {
     uint32_t count;
-    struct medium entries[MEDIA_LIMIT];
+    struct medium entries[MEDIUM_STACK_LIMIT];
 };
 
 /* A surface between two media, as a ray meets it. */

@@ -184,7 +184,7 @@ bool texture_image_colour(const struct texture_image *image, const struct hit *h
     case ALPHA_STRAIGHT:
         share = texel.a > 0 ? 1 / texel.a : 0;
         break;
-    case ALPHA_ALONE:
+    case ALPHA_ONLY:
         *colour = vec3_all(texel.a);
         return true;
     }
@@ -288,7 +288,7 @@ static double evaluate_scalar(const struct texture *texture, struct texture_read
         double rest, under = below ? texture_read_scalar(below, reader) : 0;
         if (!texture_image_colour(&texture->image.lookup, reader->hit, &colour, &rest))
             return under;
-        return (texture->image.lookup.alpha == ALPHA_ALONE ? colour.x : mean(colour)) + under * rest;
+        return (texture->image.lookup.alpha == ALPHA_ONLY ? colour.x : mean(colour)) + under * rest;
     }
     case TEXTURE_MARBLE:
         return marble_at(texture, reader->hit->pattern_point);

@@ -56,7 +56,7 @@ enum texture_alpha {
     ALPHA_IGNORED,  /* the image covers everything where alpha is not 0 */
     ALPHA_DARKENS,  /* the colour counts alpha times; nothing is below */
     ALPHA_STRAIGHT, /* the colour as it was before it was multiplied by alpha; nothing is below */
-    ALPHA_ALONE     /* alpha is what is read */
+    ALPHA_ONLY      /* alpha is what is read */
 };
 
 /* Where an image lies and how it is looked up; zero: MAPPING_SPHERE, the nearest texel. */

@@ -108,8 +108,8 @@ struct motion motion_of_velocity(struct vec3 velocity) {
     return (struct motion){.velocity = velocity};
 }
 
-bool motion_between(const struct transform *from, const struct transform *to, struct vec3 velocity,
-                    struct motion *out) {
+bool motion_interpolate(const struct transform *from, const struct transform *to, struct vec3 velocity,
+                        struct motion *out) {
     double det0 = affine_determinant(&from->forward), det1 = affine_determinant(&to->forward);
     if (!(det0 * det1 > 0))
         return false;

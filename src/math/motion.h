@@ -30,7 +30,8 @@ struct motion {
 struct motion motion_of_velocity(struct vec3 velocity);
 /* The linear parts are pulled apart into a turn and a stretch; the turn goes the short way round one axis, stretch and
  * translation change linearly. False: one pose is a mirror image of the other, there is no way between them. */
-bool motion_between(const struct transform *from, const struct transform *to, struct vec3 velocity, struct motion *out);
+bool motion_interpolate(const struct transform *from, const struct transform *to, struct vec3 velocity,
+                        struct motion *out);
 /* The transform at a time. */
 struct transform motion_at(const struct motion *motion, double time);
 /* A box that holds everything that `box` (in node space) covers from time `open` to `close`. */

@@ -158,7 +158,7 @@ static int drop_pairs(double *roots, int count, int limit) {
 
 /* Roots in [lo, hi] given points (ascending, lo and hi among them) between which the polynomial is monotonic, zero one
  * of them if it is in range. out holds as many numbers as there are points. */
-static int roots_between(const double *c, int degree, const double *points, int point_count, double *out) {
+static int roots_in_interval(const double *c, int degree, const double *points, int point_count, double *out) {
     int count = 0, sign = 0;
     bool touched = false;
     double touch = 0.0;
@@ -218,7 +218,7 @@ static int roots_scaled(const double *c, int degree, double lo, double hi, doubl
     int count = roots_quadratic(derivative[2][2], derivative[2][1], derivative[2][0], found);
     for (int d = 3; d <= degree; d++) {
         int point_count = merge_points(found, count, lo, hi, points);
-        count = roots_between(derivative[d], d, points, point_count, found);
+        count = roots_in_interval(derivative[d], d, points, point_count, found);
     }
     int kept = 0;
     for (int i = 0; i < count; i++) {

@@ -34,7 +34,7 @@ void picture_files_init(struct picture_files *files, const struct options *optio
                                          .expected = "a picture",
                                          .advice = by_user ? NULL : advice,
                                          .role = FILE_ROLE_PICTURE,
-                                         .in_place = by_user,
+                                         .is_direct = by_user,
                                          .named_by_user = by_user,
                                          .force = by_user && options->force,
                                          .places = by_user ? NULL : places,
@@ -42,7 +42,7 @@ void picture_files_init(struct picture_files *files, const struct options *optio
                                          .quota = &files->quota,
                                          .interrupt = &files->interrupt};
     files->beside = files->picture;
-    files->beside.in_place = false;
+    files->beside.is_direct = false;
     files->beside.role = FILE_ROLE_BESIDE;
     files->part = (struct file_rules){.may_replace = tile_file_is,
                                       .expected = "a checkpoint or part",
@@ -225,10 +225,11 @@ static bool check_file(const struct picture_files *files, const char *name, uint
     if (!file_output_check(&target, error))
         return false;
     for (int i = 0; i < number; i++) {
-        if (name_file(files, name, layers, i, &other, error) && other.rules && file_same_place(file.path, other.path))
+        if (name_file(files, name, layers, i, &other, error) && other.rules &&
+            file_is_same_folder(file.path, other.path))
             return error_set(error, ERROR_USAGE, "%.600s: two files of one picture would have this name", file.path);
     }
-    if (checkpoint && file_same_place(file.path, checkpoint))
+    if (checkpoint && file_is_same_folder(file.path, checkpoint))
         return error_set(error, files->options->output ? ERROR_USAGE : ERROR_SCENE,
                          "%.600s: is the name of the checkpoint of this run, and cannot be that of a picture",
                          file.path);

@@ -17,7 +17,7 @@ static uint64_t nanoseconds_of(clockid_t clock) {
 }
 
 /* Between how many neighbours on the lattice the picture changes as much as makes pixels be sampled again. */
-static uint32_t edges_between(const struct renderer *renderer, const struct vec3 *colours) {
+static uint32_t count_edges(const struct renderer *renderer, const struct vec3 *colours) {
     uint32_t edges = 0;
     for (uint32_t i = 0; i < RAYS; i++) {
         edges += i % SIDE + 1 < SIDE && integrator_refines(renderer, colours[i], colours[i + 1]);
@@ -47,7 +47,7 @@ static void probe_tile(void *context, uint32_t tile, int index) {
     }
     uint64_t took = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID) - begun;
     time_estimate_probe(&renderer->time_estimate, tile, (double)(r.x1 - r.x0) * (r.y1 - r.y0), 1 + (double)took,
-                        (double)edges_between(renderer, colours) / PAIRS);
+                        (double)count_edges(renderer, colours) / PAIRS);
 }
 
 /* What was looked at is no part of the picture's statistics. */

@@ -150,7 +150,7 @@ static struct vec3 light_of_delta(struct integrator_state *state, const struct l
     if (!light_arrive(light, hit->point, &arrival))
         return vec3_all(0);
     struct vec3 reflected = bsdf_classic(bsdf, BSDF_ALL, hit->view, arrival.direction);
-    observe_light_place(state->observer, arrival.distance, arrival.strength, arrival.direction, reflected);
+    observe_light_sample(state->observer, arrival.distance, arrival.strength, arrival.direction, reflected);
     if (arrival.strength == 0 || (reflected.x == 0 && reflected.y == 0 && reflected.z == 0))
         return vec3_all(0);
     double share = visible_share(state, light, number, &arrival.middle, hit, key);

@@ -25,7 +25,7 @@ bool film_size(uint32_t width, uint32_t height, struct film_record record, size_
     return true;
 }
 
-void film_place(struct film *film, void *block, uint32_t width, uint32_t height, struct film_record record) {
+void film_layout(struct film *film, void *block, uint32_t width, uint32_t height, struct film_record record) {
     size_t pixels = (size_t)width * height;
     film->width = width;
     film->height = height;
@@ -48,7 +48,7 @@ bool film_size_layered(uint32_t width, uint32_t height, struct film_record recor
     return true;
 }
 
-void film_place_layers(struct film *film, void *block, uint32_t mask) {
+void film_layout_layers(struct film *film, void *block, uint32_t mask) {
     size_t size = 0;
     struct error ignored;
     (void)film_size(film->width, film->height, film->record, &size, &ignored);

@@ -73,12 +73,12 @@ static inline size_t film_record_size(struct film_record record) {
 /* Bytes for the arrays of a film; false when the numbers are too large (over 2^31 pixels). The record is valid. */
 bool film_size(uint32_t width, uint32_t height, struct film_record record, size_t *bytes, struct error *error);
 /* Lays the arrays into a zeroed block of film_size bytes: all colours, all floats, all marks, the tiles. */
-void film_place(struct film *film, void *block, uint32_t width, uint32_t height, struct film_record record);
+void film_layout(struct film *film, void *block, uint32_t width, uint32_t height, struct film_record record);
 
-/* The same with `layers` more of three floats a pixel, laid behind by film_place_layers after film_place. */
+/* The same with `layers` more of three floats a pixel, laid behind by film_layout_layers after film_layout. */
 bool film_size_layered(uint32_t width, uint32_t height, struct film_record record, uint32_t layers, size_t *bytes,
                        struct error *error);
-void film_place_layers(struct film *film, void *block, uint32_t mask);
+void film_layout_layers(struct film *film, void *block, uint32_t mask);
 
 /* How the rendered part is cut into tiles, numbered row by row; x0 and y0 must be set. */
 uint32_t film_tiles_across(const struct film *film);

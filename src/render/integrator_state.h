@@ -13,10 +13,10 @@ struct integrator_state {
     const struct render_job *job;
     const struct pool *pool; /* asked whether to stop; NULL: never */
     struct world_scratch *scratch;
-    const struct medium_stack *eye_media; /* what the camera stands in */
-    struct sampler sampler;               /* of the pixel sample that is traced */
-    const struct photon_map *caustics;    /* or NULL */
-    struct observer *observer;            /* or NULL */
+    const struct medium_stack *eye_medium_stack; /* what the camera stands in */
+    struct sampler sampler;                      /* of the pixel sample that is traced */
+    const struct photon_map *caustics;           /* or NULL */
+    struct observer *observer;                   /* or NULL */
     uint64_t reflected_rays, refracted_rays, shadow_rays, hits;
     bool clamped; /* set where a colour was not finite or too large */
 };

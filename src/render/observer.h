@@ -25,7 +25,7 @@ enum observation_kind {
     OBSERVED_MATERIAL,      /* material: one link of the material of the hit is evaluated */
     OBSERVED_SURFACE,       /* surface: all of it is */
     OBSERVED_LIGHT_BEGIN,   /* light.number, light.light */
-    OBSERVED_LIGHT_PLACE,   /* place: the light is shaded as from one place */
+    OBSERVED_LIGHT_SAMPLE,  /* place: the light is shaded as from one place */
     OBSERVED_SHADOW_RAYS,   /* shadow: of the light under way */
     OBSERVED_LIGHT_END,     /* light.colour */
     OBSERVED_LIGHT_SKIPPED, /* light.number, light.light: its lists leave the surface out */
@@ -65,7 +65,7 @@ struct observation {
             const struct light *light;
             struct vec3 colour; /* of the light in what the surface shows */
         } light;
-        struct observed_place {
+        struct observed_light_sample {
             double distance, strength; /* attenuation times the cone of a spot */
             struct vec3 to_light;      /* unit */
             struct vec3 reflected;     /* of unit light */
@@ -147,11 +147,11 @@ static inline void observe_light_begin(const struct observer *observer, uint32_t
         observe(observer, &(struct observation){OBSERVED_LIGHT_BEGIN, .light = {number, light, {0, 0, 0}}});
 }
 
-static inline void observe_light_place(const struct observer *observer, double distance, double strength,
-                                       struct vec3 to_light, struct vec3 reflected) {
+static inline void observe_light_sample(const struct observer *observer, double distance, double strength,
+                                        struct vec3 to_light, struct vec3 reflected) {
     if (observer)
         observe(observer,
-                &(struct observation){OBSERVED_LIGHT_PLACE, .place = {distance, strength, to_light, reflected}});
+                &(struct observation){OBSERVED_LIGHT_SAMPLE, .place = {distance, strength, to_light, reflected}});
 }
 
 static inline void observe_shadow_rays(const struct observer *observer, uint32_t asked, uint32_t arrived,

@@ -189,7 +189,7 @@ static void begin(struct path *path, struct sampler *sampler, const struct integ
     path->sight = true;
     path->depth = path->holes = 0;
     path->dimension = SAMPLER_FIRST_VERTEX;
-    medium_stack_copy(&path->media, state->eye_media);
+    medium_stack_copy(&path->media, state->eye_medium_stack);
     path->ray.media = &path->media;
     *sampler = state->sampler;
     /* The other eye of a stereo pair. */

@@ -350,7 +350,7 @@ static bool find_cells(struct search *s, uint32_t budget, struct arena *arena) {
 /* --- lights --- */
 
 /* The square across a distant light that holds the shadows of all casters, and a plane before the whole scene. */
-static void place_distant(struct photon_target *target, const struct specular_objects *specular_objects) {
+static void fit_distant_target(struct photon_target *target, const struct specular_objects *specular_objects) {
     struct vec3 direction = light_photon(&target->emitter, vec3_all(0), (struct sample2){0, 0}).direction;
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (uint32_t i = 0; i < specular_objects->count; i++) {
@@ -455,7 +455,7 @@ static bool target_part(struct photon_target *target, struct search *search, uin
     case LIGHT_DOMAIN_ENVIRONMENT:
         return target_environment(target, search->specular_objects, arena);
     case LIGHT_DOMAIN_PARALLEL:
-        place_distant(target, search->specular_objects);
+        fit_distant_target(target, search->specular_objects);
         break;
     case LIGHT_DOMAIN_LOCAL:
         break;
@@ -497,8 +497,8 @@ static void share_photons(struct photon_targets *targets, uint32_t photons) {
 }
 
 /* The media around the centre of each light when the shutter opens. */
-static bool find_media(struct photon_targets *targets, const struct world *world, struct arena *arena,
-                       struct world_scratch *scratch) {
+static bool find_medium_stacks(struct photon_targets *targets, const struct world *world, struct arena *arena,
+                               struct world_scratch *scratch) {
     for (uint32_t i = 0; i < targets->count; i++) {
         struct photon_target *target = &targets->targets[i];
         struct vec3 centre = target->emitter.centre;
@@ -510,7 +510,7 @@ static bool find_media(struct photon_targets *targets, const struct world *world
         if (!closed)
             return false;
         (void)world_closed_in(world, &here, closed, count);
-        media_around(world, centre, 0, closed, count, scratch, &target->media);
+        medium_stack_at(world, centre, 0, closed, count, scratch, &target->media);
     }
     return !scratch->failed;
 }
@@ -539,7 +539,7 @@ bool photon_targets_make(struct photon_targets *out, const struct world *world, 
         return error_no_memory(error, "the photons of the caustics");
     if (search.stopped)
         return error_set(error, ERROR_CANCELLED, "stopped while aiming photons");
-    ok = find_media(out, world, arena, scratch);
+    ok = find_medium_stacks(out, world, arena, scratch);
     share_photons(out, photons);
     return ok || error_no_memory(error, "the photons of the caustics");
 }

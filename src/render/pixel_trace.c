@@ -99,26 +99,26 @@ static void begin_ray(struct pixel_trace *pixel_trace, const struct observed_beg
     const struct ray *ray = seen->ray;
     if (!pixel_trace->on)
         return;
-    struct pixel_trace_ray *told = pixel_trace->mute == 0 ? add_ray(pixel_trace) : NULL;
-    if (!told) {
+    struct pixel_trace_ray *is_recorded = pixel_trace->mute == 0 ? add_ray(pixel_trace) : NULL;
+    if (!is_recorded) {
         pixel_trace->omitted += pixel_trace->mute > 0;
         pixel_trace->mute++;
         return;
     }
-    told->begun = true;
-    told->origin = ray->origin;
-    told->direction = ray->direction;
-    told->time = ray->time;
-    told->share = seen->share;
-    told->media_count = ray->media ? ray->media->count : 0;
-    told->media_ior = ray->media ? medium_stack_ior(ray->media) : 1;
-    told->lamp = seen->light;
-    told->met = seen->hit && !seen->light;
-    if (told->met)
-        told->hit = *seen->hit;
-    told->distance = seen->distance;
-    told->opacity = 1;
-    pixel_trace->ray = told;
+    is_recorded->begun = true;
+    is_recorded->origin = ray->origin;
+    is_recorded->direction = ray->direction;
+    is_recorded->time = ray->time;
+    is_recorded->share = seen->share;
+    is_recorded->media_count = ray->media ? ray->media->count : 0;
+    is_recorded->media_ior = ray->media ? medium_stack_ior(ray->media) : 1;
+    is_recorded->lamp = seen->light;
+    is_recorded->met = seen->hit && !seen->light;
+    if (is_recorded->met)
+        is_recorded->hit = *seen->hit;
+    is_recorded->distance = seen->distance;
+    is_recorded->opacity = 1;
+    pixel_trace->ray = is_recorded;
 }
 
 static void end_ray(struct pixel_trace *pixel_trace, const struct observed_end *end) {
@@ -161,20 +161,20 @@ static void record_surface(struct pixel_trace *pixel_trace, const struct bsdf *s
 
 static void begin_light(struct pixel_trace *pixel_trace, uint32_t number, const struct light *light) {
     struct pixel_trace_ray *ray = ray_of(pixel_trace);
-    struct pixel_trace_light *told = ray ? take(pixel_trace, sizeof *told) : NULL;
-    pixel_trace->light = told;
-    if (!told)
+    struct pixel_trace_light *is_recorded = ray ? take(pixel_trace, sizeof *is_recorded) : NULL;
+    pixel_trace->light = is_recorded;
+    if (!is_recorded)
         return;
-    *told = (struct pixel_trace_light){
+    *is_recorded = (struct pixel_trace_light){
         .number = number, .light = light, .lamp = !light_is_delta(light), .lit = PIXEL_TRACE_LIGHT_NO_EFFECT};
     if (ray->last_light)
-        ray->last_light->next = told;
+        ray->last_light->next = is_recorded;
     else
-        ray->lights = told;
-    ray->last_light = told;
+        ray->lights = is_recorded;
+    ray->last_light = is_recorded;
 }
 
-static void place_light(struct pixel_trace *pixel_trace, const struct observed_place *place) {
+static void record_light_position(struct pixel_trace *pixel_trace, const struct observed_light_sample *place) {
     struct pixel_trace_light *light = light_of(pixel_trace);
     if (!light)
         return;
@@ -206,9 +206,9 @@ static void end_light(struct pixel_trace *pixel_trace, struct vec3 colour) {
 
 static void skip_light(struct pixel_trace *pixel_trace, uint32_t number, const struct light *light) {
     begin_light(pixel_trace, number, light);
-    struct pixel_trace_light *told = light_of(pixel_trace);
-    if (told)
-        told->lit = PIXEL_TRACE_LIGHT_NOT_OURS;
+    struct pixel_trace_light *is_recorded = light_of(pixel_trace);
+    if (is_recorded)
+        is_recorded->lit = PIXEL_TRACE_LIGHT_NOT_OURS;
     pixel_trace->light = NULL;
 }
 
@@ -268,8 +268,8 @@ static void notice(void *context, const struct observation *what) {
     case OBSERVED_LIGHT_BEGIN:
         begin_light(pixel_trace, what->light.number, what->light.light);
         break;
-    case OBSERVED_LIGHT_PLACE:
-        place_light(pixel_trace, &what->place);
+    case OBSERVED_LIGHT_SAMPLE:
+        record_light_position(pixel_trace, &what->place);
         break;
     case OBSERVED_SHADOW_RAYS:
         count_shadow_rays(pixel_trace, &what->shadow);

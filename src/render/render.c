@@ -229,7 +229,7 @@ static bool start_workers(struct renderer *renderer, int workers) {
         worker->state = (struct integrator_state){.job = renderer->job,
                                                   .pool = renderer->pool,
                                                   .scratch = &worker->scratch,
-                                                  .eye_media = &renderer->eye_media};
+                                                  .eye_medium_stack = &renderer->eye_medium_stack};
     }
     return true;
 }
@@ -242,7 +242,7 @@ static void count_tiles(struct renderer *renderer) {
 }
 
 /* The solids that rays may start in, and whether each ray must ask for itself. */
-static bool find_eye_media(struct renderer *renderer, const struct box *origins, bool spread) {
+static bool find_eye_medium_stack(struct renderer *renderer, const struct box *origins, bool spread) {
     const struct world *world = renderer->job->world;
     renderer->closed_count = world->medium_count > 0 ? world_closed_in(world, origins, NULL, 0) : 0;
     renderer->closed = mem_alloc_zero((size_t)renderer->closed_count + 1, sizeof *renderer->closed);
@@ -250,10 +250,10 @@ static bool find_eye_media(struct renderer *renderer, const struct box *origins,
         return false;
     if (renderer->closed_count > 0)
         (void)world_closed_in(world, origins, renderer->closed, renderer->closed_count);
-    renderer->media_by_ray = renderer->closed_count > 0 && spread;
-    renderer->together = camera_is_plain(&renderer->camera) && !renderer->timed && !renderer->media_by_ray;
-    media_around(world, renderer->camera.eye, 0, renderer->closed, renderer->closed_count,
-                 &renderer->workers[0].scratch, &renderer->eye_media);
+    renderer->medium_stack_by_ray = renderer->closed_count > 0 && spread;
+    renderer->together = camera_is_plain(&renderer->camera) && !renderer->timed && !renderer->medium_stack_by_ray;
+    medium_stack_at(world, renderer->camera.eye, 0, renderer->closed, renderer->closed_count,
+                    &renderer->workers[0].scratch, &renderer->eye_medium_stack);
     return !renderer->workers[0].scratch.failed;
 }
 
@@ -262,7 +262,7 @@ static bool prepare_rendering(struct renderer *renderer, const struct camera_fra
     const struct shutter *shutter = &job->settings.shutter;
     renderer->timed = shutter->close > shutter->open && (job->world->moves || job->settings.motion.moves);
     struct box origins = box_join(camera_origins(&renderer->camera), camera_origins(at_close));
-    return find_eye_media(renderer, &origins, renderer->timed || camera_spreads(&renderer->camera));
+    return find_eye_medium_stack(renderer, &origins, renderer->timed || camera_spreads(&renderer->camera));
 }
 
 /* Everything before the first tile. */
@@ -320,7 +320,7 @@ bool render_pixels(const struct render_job *job, struct pool *pool, const uint32
     struct render_statistics statistics = {0};
     struct renderer renderer = {.job = &own, .pool = pool};
     own.film = &film;
-    own.settings.show_marks = false;
+    own.settings.show_refined = false;
     bool ok = begin_rendering(&renderer, pool_workers(pool), &statistics, error);
     renderer.together = false; /* each sample is reported on its own */
     for (uint32_t i = 0; ok && i < count; i++) {

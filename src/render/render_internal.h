@@ -5,7 +5,7 @@
 
 #include "render/camera.h"
 #include "render/integrator_state.h"
-#include "render/media.h"
+#include "render/medium_stack_at.h"
 #include "render/render.h"
 #include "render/time_estimate.h"
 #include "world/packet.h"
@@ -26,7 +26,7 @@ struct worker {
     struct integrator_state state;
     uint64_t camera_rays;
     bool clamped; /* a colour or a layer was not finite or beyond the largest float */
-    struct medium_stack ray_media;
+    struct medium_stack ray_medium_stack;
     struct camera_frame camera; /* of the sample's moment, when the camera moves */
     struct batch batch;
     int index;
@@ -38,10 +38,10 @@ struct renderer {
     const struct render_job *job;
     struct pool *pool;
     struct camera_frame camera;
-    struct medium_stack eye_media;
-    bool timed;        /* something moves while the shutter is open */
-    bool together;     /* camera rays start in one place and at one moment */
-    bool media_by_ray; /* rays start in different places or moments, and solids are near */
+    struct medium_stack eye_medium_stack;
+    bool timed;               /* something moves while the shutter is open */
+    bool together;            /* camera rays start in one place and at one moment */
+    bool medium_stack_by_ray; /* rays start in different places or moments, and solids are near */
     enum sampler_kind sampler;
     double sample_share; /* of a pixel's width, what a sample stands for; SAMPLER_STRATA: as the settings say */
     uint32_t *closed;    /* the solids that can contain the eye */

@@ -17,10 +17,10 @@ static struct vec3 trace_from_eye(struct renderer *renderer, struct worker *work
     ray->footprint.spread *= share;
     ray->footprint.width *= share;
     worker->camera_rays++;
-    if (renderer->media_by_ray) {
-        media_around(renderer->job->world, ray->origin, ray->time, renderer->closed, renderer->closed_count,
-                     &worker->scratch, &worker->ray_media);
-        worker->state.eye_media = &worker->ray_media;
+    if (renderer->medium_stack_by_ray) {
+        medium_stack_at(renderer->job->world, ray->origin, ray->time, renderer->closed, renderer->closed_count,
+                        &worker->scratch, &worker->ray_medium_stack);
+        worker->state.eye_medium_stack = &worker->ray_medium_stack;
     }
     return integrator_radiance(renderer, worker, ray, key);
 }
@@ -64,7 +64,7 @@ static double sample_share(const struct renderer *renderer, uint64_t number) {
     return number > 0 ? 1.0 / renderer->job->settings.samples : 1;
 }
 
-static struct vec3 sample_alone(struct renderer *renderer, struct worker *worker, const struct pixel_sample *place) {
+static struct vec3 sample_single(struct renderer *renderer, struct worker *worker, const struct pixel_sample *place) {
     begin_sample(renderer, worker, place);
     double x = (double)place->x + place->dx, y = (double)place->y + place->dy,
            share = sample_share(renderer, place->number);
@@ -86,7 +86,7 @@ static struct vec3 sample_alone(struct renderer *renderer, struct worker *worker
 
 struct vec3 renderer_sample(struct renderer *renderer, struct worker *worker, const struct pixel_sample *place) {
     observe_sample_begin(worker->state.observer, place);
-    struct vec3 colour = sample_alone(renderer, worker, place);
+    struct vec3 colour = sample_single(renderer, worker, place);
     observe_sample_end(worker->state.observer, place, colour);
     return colour;
 }

@@ -107,7 +107,7 @@ struct settings {
     uint32_t aov;         /* layers beside the picture: a mask of render/aov.h */
     bool keep_first;      /* the first pass is wanted even where -full makes it needless */
     bool coarse;          /* rough surfaces send one ray, lights as many as area_samples says, whatever they ask for */
-    bool show_marks;      /* pixels that are to be resampled are marked in the film before (FILM_MARK_WAITS) */
+    bool show_refined;    /* pixels that are to be resampled are marked in the film before (FILM_MARK_WAITS) */
     bool cropped;
     int64_t crop_x, crop_y, crop_width, crop_height;
 };

@@ -11,11 +11,11 @@
 
 #include <math.h>
 
-enum { PIXELS, TIME, EDGE_TIME, TIME_AROUND, EDGE_TIME_AROUND, EDGES };
+enum { PIXELS, TIME, EDGE_TIME, TIME_PRIOR, EDGE_TIME_PRIOR, EDGES };
 enum { RIDGE = 10 };
 
 static const double believed[TIME_ESTIMATE_TERMS] = {
-    [PIXELS] = 0.1, [TIME] = 0.4, [EDGE_TIME] = 0.1, [TIME_AROUND] = 0.3, [EDGE_TIME_AROUND] = 0.1};
+    [PIXELS] = 0.1, [TIME] = 0.4, [EDGE_TIME] = 0.1, [TIME_PRIOR] = 0.3, [EDGE_TIME_PRIOR] = 0.1};
 
 static double get(const _Atomic double *value) {
     return atomic_load_explicit(value, memory_order_relaxed);
@@ -67,8 +67,8 @@ static void neighbouring_terms(struct time_estimate *time_estimate, uint32_t til
             tiles += other[PIXELS] > 0;
         }
     }
-    time_estimate->terms[tile][TIME_AROUND] = (float)(time / tiles);
-    time_estimate->terms[tile][EDGE_TIME_AROUND] = (float)(edge_time / tiles);
+    time_estimate->terms[tile][TIME_PRIOR] = (float)(time / tiles);
+    time_estimate->terms[tile][EDGE_TIME_PRIOR] = (float)(edge_time / tiles);
 }
 
 void time_estimate_begin_tiles(struct time_estimate *time_estimate) {

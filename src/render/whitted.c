@@ -236,7 +236,7 @@ static struct vec3 trace(struct integrator_state *state, const struct ray *ray, 
 struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
                           uint64_t key) {
     struct ray from_eye = *ray;
-    from_eye.media = state->eye_media;
+    from_eye.media = state->eye_medium_stack;
     const struct path path = {.key = key, .weight = 1, .cutoff = whitted->cutoff};
     return clamp_light(state, trace(state, &from_eye, &path), (double)FLT_MAX);
 }
@@ -245,7 +245,7 @@ struct vec3 whitted_trace_met(const struct whitted *whitted, struct integrator_s
                               const struct packet_answer *met, uint64_t key) {
     struct ray from_eye = *ray;
     struct hit hit;
-    from_eye.media = state->eye_media;
+    from_eye.media = state->eye_medium_stack;
     if (integrator_cancelled(state))
         return vec3_all(0);
     if (met)

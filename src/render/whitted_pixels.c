@@ -208,7 +208,7 @@ static void sample_patch(const struct part *part, int64_t x0, int64_t y0) {
 }
 
 /* For a viewer: the first pass as far as it is, and what will be sampled again. */
-static void show_marks(const struct part *part, const struct rectangle *tile) {
+static void show_refined(const struct part *part, const struct rectangle *tile) {
     struct film *film = part->renderer->job->film;
     for (int64_t y = tile->y0; y < tile->y1; y++) {
         for (int64_t x = tile->x0; x < tile->x1; x++) {
@@ -243,8 +243,8 @@ bool whitted_render(struct whitted *whitted, struct renderer *renderer, struct w
         renderer_tile_goes_on(renderer, worker, 0,
                               fmin(1, (double)(y + PATCH - area.y0) / (double)(area.y1 - area.y0)));
     }
-    if (settings->show_marks && part.has_first)
-        show_marks(&part, tile);
+    if (settings->show_refined && part.has_first)
+        show_refined(&part, tile);
     for (int64_t y = tile->y0; y < tile->y1; y++) {
         for (int64_t x = tile->x0; x < tile->x1; x++) {
             if (renderer_stopped(renderer, worker))

@@ -136,7 +136,7 @@ static bool find_node(const struct scene *scene, struct node *root, uint32_t ser
 
 /* Laying over. */
 
-struct laying {
+struct change_application {
     const struct change *change;
     struct scene *scene;
     struct node *root;
@@ -147,14 +147,14 @@ struct laying {
     struct error *error;
 };
 
-static void tell_missing(const struct laying *l, const char *what) {
+static void report_missing(const struct change_application *l, const char *what) {
     char text[256];
     (void)snprintf(text, sizeof text, "an edit of %s '%s' (%u) is skipped: it no longer exists", what, l->change->name,
                    l->change->serial);
     l->warn(l->context, text);
 }
 
-static struct node *added_node(const struct laying *l, uint32_t serial) {
+static struct node *added_node(const struct change_application *l, uint32_t serial) {
     for (uint32_t i = 0; i < l->out->added_count; i++) {
         if (l->out->added[i]->serial == serial)
             return l->out->added[i];
@@ -162,7 +162,7 @@ static struct node *added_node(const struct laying *l, uint32_t serial) {
     return NULL;
 }
 
-static struct node *node_of(struct laying *l, uint32_t serial, const char *name) {
+static struct node *node_of(struct change_application *l, uint32_t serial, const char *name) {
     struct node *node = added_node(l, serial);
     if (!node && !find_node(l->scene, l->root, serial, name, &node))
         l->no_memory = true;
@@ -172,10 +172,10 @@ static struct node *node_of(struct laying *l, uint32_t serial, const char *name)
 enum { COMMON_PART = offsetof(struct node, joint_x) };
 
 /* Notes the node as it is. */
-static struct node *begin_node(struct laying *l) {
+static struct node *begin_node(struct change_application *l) {
     struct node *node = node_of(l, l->change->serial, l->change->name);
     if (!node) {
-        tell_missing(l, "the node");
+        report_missing(l, "the node");
         return NULL;
     }
     struct changed_node *note = &l->out->nodes[l->out->node_count++];
@@ -186,7 +186,7 @@ static struct node *begin_node(struct laying *l) {
     return node;
 }
 
-static void place_node(struct laying *l) {
+static void place_node(struct change_application *l) {
     struct affine matrix;
     struct transform map;
     memcpy(matrix.m, l->change->numbers, sizeof matrix.m);
@@ -229,7 +229,7 @@ static struct shape shape_of(enum added_kind kind) {
 }
 
 /* The scene's own numbers are not used up, so that later nodes keep theirs. */
-static bool make_node(struct laying *l, struct node *source, struct added_node *made) {
+static bool make_node(struct change_application *l, struct node *source, struct added_node *made) {
     const struct change *change = l->change;
     uint32_t node_count = l->scene->node_count, material_count = l->scene->material_count;
     enum node_kind kind = source ? NODE_GROUP : NODE_GEOMETRY;
@@ -252,7 +252,7 @@ static bool make_node(struct laying *l, struct node *source, struct added_node *
 }
 
 /* One that was made before is used again: a user who drags an object applies changes many times a second. */
-static struct node *new_node(struct laying *l, struct node *source) {
+static struct node *new_node(struct change_application *l, struct node *source) {
     const struct change *change = l->change;
     struct added_node *made = l->scene->added;
     while (made && (made->number != change->number || made->kind != (int)change->added || made->source != source))
@@ -274,10 +274,10 @@ static struct node *new_node(struct laying *l, struct node *source) {
     return made->node;
 }
 
-static bool add_node(struct laying *l) {
+static bool add_node(struct change_application *l) {
     struct node *source = NULL;
     if (l->change->added == ADDED_COPY && !(source = node_of(l, l->change->source, ""))) {
-        tell_missing(l, "a copy under the node");
+        report_missing(l, "a copy under the node");
         return true;
     }
     struct node *parent = begin_node(l);
@@ -290,17 +290,17 @@ static bool add_node(struct laying *l) {
     return true;
 }
 
-static struct material *material_of(const struct laying *l, uint32_t serial) {
+static struct material *material_of(const struct change_application *l, uint32_t serial) {
     struct material *material = l->scene->last_material;
     while (material && material->serial != serial)
         material = material->older;
     return material;
 }
 
-static void change_material(struct laying *l) {
+static void change_material(struct change_application *l) {
     struct material *material = material_of(l, l->change->serial);
     if (!material || material->base) {
-        tell_missing(l, "the material");
+        report_missing(l, "the material");
         return;
     }
     l->out->materials[l->out->material_count++] = (struct changed_material){material, *material};
@@ -314,7 +314,7 @@ static const struct material plain = {
     .kind = MATERIAL_PHONG, .depth = 1, .phong = {.kd = {0.5, 0.5, 0.5}, .shininess = 1, .ior = 1}};
 
 /* A chain of as many links, the base a material of the scene. */
-static bool copy_links(struct laying *l, const struct material *like, struct own_material *own) {
+static bool copy_links(struct change_application *l, const struct material *like, struct own_material *own) {
     uint32_t material_count = l->scene->material_count, count = 0;
     for (const struct material *link = like; link; link = link->base)
         count++;
@@ -333,7 +333,7 @@ static bool copy_links(struct laying *l, const struct material *like, struct own
 }
 
 /* As `like` is now, link by link. The copy that was made before is used again. */
-static const struct material *own_material(struct laying *l, const struct material *like) {
+static const struct material *own_material(struct change_application *l, const struct material *like) {
     struct own_material *own = l->scene->own;
     uint32_t serial = OWN_SERIAL - l->change->number;
     while (own && (own->number != l->change->number || own->like != like))
@@ -364,12 +364,12 @@ static const struct material *own_material(struct laying *l, const struct materi
     return own->links[0];
 }
 
-static bool give_own(struct laying *l) {
+static bool give_own(struct change_application *l) {
     struct node *node = begin_node(l);
     if (!node)
         return true;
     if (node->kind != NODE_GEOMETRY) {
-        tell_missing(l, "the shape");
+        report_missing(l, "the shape");
         return true;
     }
     const struct material *like = node->material;
@@ -379,10 +379,10 @@ static bool give_own(struct laying *l) {
     return node->material != NULL;
 }
 
-static void change_light(struct laying *l) {
+static void change_light(struct change_application *l) {
     const double *numbers = l->change->numbers;
     if (l->change->serial < 1 || l->change->serial > l->out->light_count) {
-        tell_missing(l, "the light");
+        report_missing(l, "the light");
         return;
     }
     struct light *light = &l->out->lights[l->change->serial - 1];
@@ -400,7 +400,7 @@ static void change_light(struct laying *l) {
 }
 
 /* A copy of a light that is not there any more is black: those after it keep their numbers. */
-static void add_light(struct laying *l) {
+static void add_light(struct change_application *l) {
     struct vec3 first = three(l->change->numbers), second = three(l->change->numbers + 3);
     uint32_t number = l->out->light_count++, like = l->change->source;
     struct light *light = &l->out->lights[number];
@@ -413,11 +413,11 @@ static void add_light(struct laying *l) {
         light_move(light, first);
         light->colour = vec3_mul(light->colour, second);
     } else {
-        tell_missing(l, "the light of a copy");
+        report_missing(l, "the light of a copy");
     }
 }
 
-static bool lay(struct laying *l) {
+static bool lay(struct change_application *l) {
     struct node *node;
     switch (l->change->kind) {
     case CHANGE_PLACE:
@@ -455,7 +455,8 @@ bool changes_lay_over(const struct change *changes, uint32_t count, struct scene
                                   .nodes = mem_alloc_zero((size_t)count + 1, sizeof *out->nodes),
                                   .materials = mem_alloc_zero((size_t)count + 1, sizeof *out->materials),
                                   .added = mem_alloc_zero((size_t)count + 1, sizeof(struct node *))};
-    struct laying l = {.scene = scene, .root = root, .out = out, .warn = warn, .context = context, .error = error};
+    struct change_application l = {
+        .scene = scene, .root = root, .out = out, .warn = warn, .context = context, .error = error};
     bool ok = out->lights && out->nodes && out->materials && out->added;
     if (!ok)
         error_no_memory(error, "the changes of the scene");

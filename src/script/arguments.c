@@ -13,26 +13,27 @@
 #include <string.h>
 
 /* The position of a value, for messages: name, name[i], name[i][j]. */
-struct place {
+struct argument_path {
     const struct script_parameter *parameter;
     lua_Integer i, j; /* 0 = none */
 };
 
-static const char *place_words(const struct place *place, char out[128]) {
-    const char *name = place->parameter->name;
-    if (place->j)
-        snprintf(out, 128, "%s[%lld][%lld]", name, (long long)place->i, (long long)place->j);
-    else if (place->i)
-        snprintf(out, 128, "%s[%lld]", name, (long long)place->i);
+static const char *argument_path_text(const struct argument_path *argument_path, char out[128]) {
+    const char *name = argument_path->parameter->name;
+    if (argument_path->j)
+        snprintf(out, 128, "%s[%lld][%lld]", name, (long long)argument_path->i, (long long)argument_path->j);
+    else if (argument_path->i)
+        snprintf(out, 128, "%s[%lld]", name, (long long)argument_path->i);
     else
         snprintf(out, 128, "%s", name);
     return out;
 }
 
-_Noreturn static void wrong_type(struct script_context *c, const struct place *place, const char *wanted, int index) {
+_Noreturn static void wrong_type(struct script_context *c, const struct argument_path *argument_path,
+                                 const char *wanted, int index) {
     char words[128];
     const char *given = value_words(c->lua, index);
-    context_raise(c, "%s must be %s, not %s", place_words(place, words), wanted, given);
+    context_raise(c, "%s must be %s, not %s", argument_path_text(argument_path, words), wanted, given);
 }
 
 /* "a > 0 and b < 180" in words. */
@@ -47,89 +48,93 @@ static void range_words(const struct script_parameter *p, char out[128]) {
         snprintf(out, 128, "between %.15g and %.15g", p->low, p->high);
 }
 
-_Noreturn static void out_of_range(struct script_context *c, const struct place *place) {
+_Noreturn static void out_of_range(struct script_context *c, const struct argument_path *argument_path) {
     char words[128], range[128];
-    range_words(place->parameter, range);
-    context_raise(c, "%s must be %s", place_words(place, words), range);
+    range_words(argument_path->parameter, range);
+    context_raise(c, "%s must be %s", argument_path_text(argument_path, words), range);
 }
 
-static double read_number(struct script_context *c, int index, const struct place *place) {
+static double read_number(struct script_context *c, int index, const struct argument_path *argument_path) {
     int is_number;
     double x = lua_tonumberx(c->lua, index, &is_number);
-    const struct script_parameter *p = place->parameter;
+    const struct script_parameter *p = argument_path->parameter;
     if (!is_number)
-        wrong_type(c, place, place->i ? "a number" : kind_words(p->kind), index);
+        wrong_type(c, argument_path, argument_path->i ? "a number" : kind_words(p->kind), index);
     char words[128];
     if (isnan(x))
-        context_raise(c, "%s must not be NaN (not a number)", place_words(place, words));
+        context_raise(c, "%s must not be NaN (not a number)", argument_path_text(argument_path, words));
     if (isinf(x))
-        context_raise(c, "%s must be finite", place_words(place, words));
+        context_raise(c, "%s must be finite", argument_path_text(argument_path, words));
     bool bounded = p->low != 0 || p->high != 0;
     if (bounded && (p->flags & LOW_OPEN ? x <= p->low : x < p->low))
-        out_of_range(c, place);
+        out_of_range(c, argument_path);
     if (bounded && (p->flags & HIGH_OPEN ? x >= p->high : x > p->high))
-        out_of_range(c, place);
+        out_of_range(c, argument_path);
     if (!number_in_range(x))
-        context_raise(c, "%s must be between %g and %g", place_words(place, words), -NUMBER_LIMIT, NUMBER_LIMIT);
+        context_raise(c, "%s must be between %g and %g", argument_path_text(argument_path, words), -NUMBER_LIMIT,
+                      NUMBER_LIMIT);
     if ((p->flags & NOT_ZERO) && x == 0)
-        context_raise(c, "%s must not be 0", place_words(place, words));
+        context_raise(c, "%s must not be 0", argument_path_text(argument_path, words));
     return x;
 }
 
-static double read_whole(struct script_context *c, int index, const struct place *place) {
-    double x = read_number(c, index, place);
+static double read_whole(struct script_context *c, int index, const struct argument_path *argument_path) {
+    double x = read_number(c, index, argument_path);
     char words[128];
     if (x != floor(x))
-        context_raise(c, "%s must be a whole number", place_words(place, words));
+        context_raise(c, "%s must be a whole number", argument_path_text(argument_path, words));
     return x;
 }
 
-/* The `count` numbers of the table at `index` (absolute). place->i is set for a table inside a list. */
-static void read_tuple(struct script_context *c, int index, struct place place, int count, double *out) {
+/* The `count` numbers of the table at `index` (absolute). argument_path->i is set for a table inside a list. */
+static void read_tuple(struct script_context *c, int index, struct argument_path argument_path, int count,
+                       double *out) {
     lua_State *L = c->lua;
     char words[128];
     lua_Unsigned length = lua_rawlen(L, index);
     if (length != (lua_Unsigned)count)
-        context_raise(c, "%s must have %d numbers, not %llu", place_words(&place, words), count,
+        context_raise(c, "%s must have %d numbers, not %llu", argument_path_text(&argument_path, words), count,
                       (unsigned long long)length);
     for (int k = 0; k < count; k++) {
-        if (lua_rawgeti(L, index, k + 1) == LUA_TNUMBER && place.parameter->low == 0 && place.parameter->high == 0 &&
-            number_in_range(out[k] = lua_tonumber(L, -1)) && !(place.parameter->flags & NOT_ZERO)) {
+        if (lua_rawgeti(L, index, k + 1) == LUA_TNUMBER && argument_path.parameter->low == 0 &&
+            argument_path.parameter->high == 0 && number_in_range(out[k] = lua_tonumber(L, -1)) &&
+            !(argument_path.parameter->flags & NOT_ZERO)) {
             lua_pop(L, 1); /* the common case, without the cost of naming the place */
             continue;
         }
-        struct place inner = place;
-        *(place.i ? &inner.j : &inner.i) = k + 1;
+        struct argument_path inner = argument_path;
+        *(argument_path.i ? &inner.j : &inner.i) = k + 1;
         out[k] = read_number(c, -1, &inner);
         lua_pop(L, 1);
     }
 }
 
 /* An argument that is a table of `count` numbers. */
-static void read_row(struct script_context *c, int index, const struct place *place, int count, double *out) {
+static void read_row(struct script_context *c, int index, const struct argument_path *argument_path, int count,
+                     double *out) {
     if (!lua_istable(c->lua, index))
-        wrong_type(c, place, kind_words(place->parameter->kind), index);
-    read_tuple(c, index, *place, count, out);
+        wrong_type(c, argument_path, kind_words(argument_path->parameter->kind), index);
+    read_tuple(c, index, *argument_path, count, out);
 }
 
-static struct vec3 read_vector(struct script_context *c, int index, const struct place *place) {
+static struct vec3 read_vector(struct script_context *c, int index, const struct argument_path *argument_path) {
     double x[3];
-    read_row(c, index, place, 3, x);
+    read_row(c, index, argument_path, 3, x);
     return (struct vec3){x[0], x[1], x[2]};
 }
 
-static struct vec3 read_interval(struct script_context *c, int index, const struct place *place) {
+static struct vec3 read_interval(struct script_context *c, int index, const struct argument_path *argument_path) {
     double x[2];
     char words[128];
-    read_row(c, index, place, 2, x);
+    read_row(c, index, argument_path, 2, x);
     if (x[0] > x[1])
-        context_raise(c, "%s must not end before it begins", place_words(place, words));
+        context_raise(c, "%s must not end before it begins", argument_path_text(argument_path, words));
     return (struct vec3){x[0], x[1], 0};
 }
 
 /* Strings stay where they are: on the stack or in the table of the call. Numbers count as text, as everywhere in Lua.
  */
-static const char *read_text(struct script_context *c, int index, const struct place *place) {
+static const char *read_text(struct script_context *c, int index, const struct argument_path *argument_path) {
     lua_State *L = c->lua;
     char words[128];
     if (lua_type(L, index) == LUA_TNUMBER) {
@@ -140,26 +145,26 @@ static const char *read_text(struct script_context *c, int index, const struct p
         return text;
     }
     if (lua_type(L, index) != LUA_TSTRING)
-        wrong_type(c, place, kind_words(place->parameter->kind), index);
+        wrong_type(c, argument_path, kind_words(argument_path->parameter->kind), index);
     size_t length;
     const char *text = lua_tolstring(L, index, &length);
     if (strlen(text) != length)
-        context_raise(c, "%s must not hold a zero byte", place_words(place, words));
+        context_raise(c, "%s must not hold a zero byte", argument_path_text(argument_path, words));
     return text;
 }
 
-static const char *read_file_name(struct script_context *c, int index, const struct place *place) {
-    const char *text = read_text(c, index, place);
+static const char *read_file_name(struct script_context *c, int index, const struct argument_path *argument_path) {
+    const char *text = read_text(c, index, argument_path);
     char words[128];
     if (text[0] == '\0')
-        context_raise(c, "%s must not be empty", place_words(place, words));
+        context_raise(c, "%s must not be empty", argument_path_text(argument_path, words));
     return text;
 }
 
 /* Index of the word among the choices, letters compared as they are (axes: in either case). */
-static int read_choice(struct script_context *c, int index, const struct place *place) {
-    const struct script_parameter *p = place->parameter;
-    const char *text = read_text(c, index, place), *word = p->choices;
+static int read_choice(struct script_context *c, int index, const struct argument_path *argument_path) {
+    const struct script_parameter *p = argument_path->parameter;
+    const char *text = read_text(c, index, argument_path), *word = p->choices;
     char lowered[2] = {(char)(text[0] | ' '), '\0'}, words[128];
     if (p->kind == KIND_AXIS && text[0] != '\0' && text[1] == '\0')
         text = lowered;
@@ -178,26 +183,28 @@ static int read_choice(struct script_context *c, int index, const struct place *
         used += (size_t)snprintf(list + used, sizeof list - used, "%s'%.*s'", separator, length, word);
         word = next;
     }
-    context_raise(c, "%s must be %s, not '%.100s'", place_words(place, words), list, text);
+    context_raise(c, "%s must be %s, not '%.100s'", argument_path_text(argument_path, words), list, text);
 }
 
 /* The handle of that type, or NULL for a ghost. */
-static void *read_handle(struct script_context *c, int index, const struct place *place, enum handle_type type) {
+static void *read_handle(struct script_context *c, int index, const struct argument_path *argument_path,
+                         enum handle_type type) {
     const struct handle *handle = handle_at(c->lua, index);
     if (handle && handle->type == HANDLE_GHOST)
         return NULL;
     if (!handle || handle->type != type)
-        wrong_type(c, place, place->i ? handle_words(type) : kind_words(place->parameter->kind), index);
+        wrong_type(c, argument_path, argument_path->i ? handle_words(type) : kind_words(argument_path->parameter->kind),
+                   index);
     return handle->pointer;
 }
 
-static uint32_t list_length(struct script_context *c, int index, const struct place *place) {
+static uint32_t list_length(struct script_context *c, int index, const struct argument_path *argument_path) {
     if (!lua_istable(c->lua, index))
-        wrong_type(c, place, kind_words(place->parameter->kind), index);
+        wrong_type(c, argument_path, kind_words(argument_path->parameter->kind), index);
     lua_Unsigned length = lua_rawlen(c->lua, index);
     char words[128];
     if (length > UINT32_MAX / 4)
-        context_raise(c, "%s has too many entries", place_words(place, words));
+        context_raise(c, "%s has too many entries", argument_path_text(argument_path, words));
     return (uint32_t)length;
 }
 
@@ -209,29 +216,31 @@ static void *call_array(struct script_context *c, size_t count, size_t size) {
 }
 
 /* `{a, nil, b}` may count as one entry or as three: an entry beyond a hole is found and the hole named. */
-static void check_holes(struct script_context *c, int index, const struct place *place, uint32_t length) {
+static void check_holes(struct script_context *c, int index, const struct argument_path *argument_path,
+                        uint32_t length) {
     lua_State *L = c->lua;
     for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1)) {
         if (lua_isinteger(L, -2) && lua_tointeger(L, -2) > (lua_Integer)length)
-            context_raise(c, "%s[%u] is nil", place->parameter->name, (unsigned)length + 1);
+            context_raise(c, "%s[%u] is nil", argument_path->parameter->name, (unsigned)length + 1);
     }
 }
 
-static void read_list_of_handles(struct script_context *c, int index, struct place place, struct script_value *value) {
+static void read_list_of_handles(struct script_context *c, int index, struct argument_path argument_path,
+                                 struct script_value *value) {
     lua_State *L = c->lua;
-    uint32_t length = list_length(c, index, &place);
-    check_holes(c, index, &place, length);
-    bool is_lights = place.parameter->kind == KIND_LIGHTS;
+    uint32_t length = list_length(c, index, &argument_path);
+    check_holes(c, index, &argument_path, length);
+    bool is_lights = argument_path.parameter->kind == KIND_LIGHTS;
     struct light *lights = is_lights ? call_array(c, length, sizeof *lights) : NULL;
     value->nodes = is_lights ? NULL : call_array(c, length, sizeof(struct node *));
     value->lights = lights;
     for (uint32_t k = 0; k < length; k++) {
-        place.i = (lua_Integer)k + 1;
-        if (lua_rawgeti(L, index, place.i) == LUA_TNIL)
-            context_raise(c, "%s[%u] is nil", place.parameter->name, (unsigned)k + 1);
-        void *pointer = read_handle(c, -1, &place, is_lights ? HANDLE_LIGHT : HANDLE_NODE);
+        argument_path.i = (lua_Integer)k + 1;
+        if (lua_rawgeti(L, index, argument_path.i) == LUA_TNIL)
+            context_raise(c, "%s[%u] is nil", argument_path.parameter->name, (unsigned)k + 1);
+        void *pointer = read_handle(c, -1, &argument_path, is_lights ? HANDLE_LIGHT : HANDLE_NODE);
         lua_pop(L, 1);
-        if (!pointer && !(place.parameter->flags & REST)) /* a ghost; where places count it is NULL */
+        if (!pointer && !(argument_path.parameter->flags & REST)) /* a ghost; where places count it is NULL */
             continue;
         if (is_lights)
             lights[value->count++] = *(const struct light *)pointer;
@@ -240,33 +249,34 @@ static void read_list_of_handles(struct script_context *c, int index, struct pla
     }
 }
 
-static void read_tuples(struct script_context *c, int index, struct place place, int width, double *out,
+static void read_tuples(struct script_context *c, int index, struct argument_path argument_path, int width, double *out,
                         uint32_t length) {
     lua_State *L = c->lua;
     int top = lua_gettop(L) + 1;
     for (uint32_t k = 0; k < length; k++) {
-        place.i = (lua_Integer)k + 1;
-        if (lua_rawgeti(L, index, place.i) != LUA_TTABLE)
-            wrong_type(c, &place,
+        argument_path.i = (lua_Integer)k + 1;
+        if (lua_rawgeti(L, index, argument_path.i) != LUA_TTABLE)
+            wrong_type(c, &argument_path,
                        width == 2   ? "a table of 2 numbers"
                        : width == 3 ? "a table of 3 numbers"
                                     : "a table of 4 numbers",
                        -1);
-        read_tuple(c, top, place, width, out + (size_t)k * (size_t)width);
+        read_tuple(c, top, argument_path, width, out + (size_t)k * (size_t)width);
         lua_pop(L, 1);
     }
 }
 
 /* The pairs of one curve in a list of curves; messages name the curve and the pair. */
-static void read_curve(struct script_context *c, int index, struct place place, double *out, uint32_t length) {
+static void read_curve(struct script_context *c, int index, struct argument_path argument_path, double *out,
+                       uint32_t length) {
     lua_State *L = c->lua;
     for (uint32_t k = 0; k < length; k++) {
-        place.j = (lua_Integer)k + 1;
-        if (lua_rawgeti(L, index, place.j) != LUA_TTABLE || lua_rawlen(L, -1) != 2)
-            wrong_type(c, &place, "a pair of numbers", -1);
+        argument_path.j = (lua_Integer)k + 1;
+        if (lua_rawgeti(L, index, argument_path.j) != LUA_TTABLE || lua_rawlen(L, -1) != 2)
+            wrong_type(c, &argument_path, "a pair of numbers", -1);
         for (int d = 0; d < 2; d++) {
             lua_rawgeti(L, -1, d + 1);
-            out[2 * (size_t)k + (size_t)d] = read_number(c, -1, &place);
+            out[2 * (size_t)k + (size_t)d] = read_number(c, -1, &argument_path);
             lua_pop(L, 1);
         }
         lua_pop(L, 1);
@@ -276,24 +286,25 @@ static void read_curve(struct script_context *c, int index, struct place place, 
 enum { MATERIAL_NAMES = 1000 };
 
 /* Materials by name, or a list of them. Names are read in byte order, so that the first wrong one is reported. */
-static void read_materials(struct script_context *c, int index, struct place place, struct script_value *value) {
+static void read_materials(struct script_context *c, int index, struct argument_path argument_path,
+                           struct script_value *value) {
     lua_State *L = c->lua;
-    uint32_t length = list_length(c, index, &place), count = 0;
+    uint32_t length = list_length(c, index, &argument_path), count = 0;
     if (length == 0)
         for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1), count++)
             if (lua_type(L, -2) != LUA_TSTRING)
-                context_raise(c, "%s must be a list or have names", place.parameter->name);
+                context_raise(c, "%s must be a list or have names", argument_path.parameter->name);
     value->materials = call_array(c, length + (size_t)count, sizeof *value->materials);
     for (uint32_t k = 0; k < length; k++) {
-        place.i = (lua_Integer)k + 1;
-        lua_rawgeti(L, index, place.i);
-        value->materials[value->count++] = read_handle(c, -1, &place, HANDLE_MATERIAL);
+        argument_path.i = (lua_Integer)k + 1;
+        lua_rawgeti(L, index, argument_path.i);
+        value->materials[value->count++] = read_handle(c, -1, &argument_path, HANDLE_MATERIAL);
         lua_pop(L, 1);
     }
     if (length > 0)
         return;
     if (count > MATERIAL_NAMES)
-        context_raise(c, "%s has more than %d entries", place.parameter->name, MATERIAL_NAMES);
+        context_raise(c, "%s has more than %d entries", argument_path.parameter->name, MATERIAL_NAMES);
     const char **names = value->names = call_array(c, count, sizeof *names);
     count = 0;
     for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1), count++) {
@@ -309,7 +320,7 @@ static void read_materials(struct script_context *c, int index, struct place pla
         const struct handle *handle = handle_at(L, -1);
         bool ghost = handle && handle->type == HANDLE_GHOST;
         if (!ghost && (!handle || handle->type != HANDLE_MATERIAL))
-            context_raise(c, "%s['%.100s'] must be a material, not %s", place.parameter->name, names[k],
+            context_raise(c, "%s['%.100s'] must be a material, not %s", argument_path.parameter->name, names[k],
                           value_words(L, -1));
         value->materials[k] = ghost ? NULL : handle->pointer;
         lua_pop(L, 1);
@@ -318,32 +329,34 @@ static void read_materials(struct script_context *c, int index, struct place pla
 }
 
 /* Two passes: count the corners, then fill arrays of the right size. */
-static void read_faces(struct script_context *c, int index, struct place place, struct script_value *value) {
+static void read_faces(struct script_context *c, int index, struct argument_path argument_path,
+                       struct script_value *value) {
     lua_State *L = c->lua;
-    uint32_t length = list_length(c, index, &place), *starts = call_array(c, (size_t)length + 1, sizeof *starts);
+    uint32_t length = list_length(c, index, &argument_path),
+             *starts = call_array(c, (size_t)length + 1, sizeof *starts);
     uint64_t corners = 0;
     for (uint32_t k = 0; k < length; k++) {
-        place.i = (lua_Integer)k + 1;
-        if (lua_rawgeti(L, index, place.i) != LUA_TTABLE)
-            wrong_type(c, &place, "a table of indices", -1);
+        argument_path.i = (lua_Integer)k + 1;
+        if (lua_rawgeti(L, index, argument_path.i) != LUA_TTABLE)
+            wrong_type(c, &argument_path, "a table of indices", -1);
         starts[k] = (uint32_t)corners;
         corners += lua_rawlen(L, -1);
         lua_pop(L, 1);
         if (corners >= UINT32_MAX)
-            context_raise(c, "%s have too many corners", place.parameter->name);
+            context_raise(c, "%s have too many corners", argument_path.parameter->name);
     }
     starts[length] = (uint32_t)corners;
     uint32_t *indices = call_array(c, (size_t)corners, sizeof *indices);
     for (uint32_t k = 0; k < length; k++) {
         lua_rawgeti(L, index, (lua_Integer)k + 1);
         for (uint32_t corner = starts[k]; corner < starts[k + 1]; corner++) {
-            place.i = (lua_Integer)k + 1;
-            place.j = (lua_Integer)(corner - starts[k]) + 1;
-            lua_rawgeti(L, -1, place.j);
-            double x = read_whole(c, -1, &place);
+            argument_path.i = (lua_Integer)k + 1;
+            argument_path.j = (lua_Integer)(corner - starts[k]) + 1;
+            lua_rawgeti(L, -1, argument_path.j);
+            double x = read_whole(c, -1, &argument_path);
             char words[128];
             if (x < 0 || x >= UINT32_MAX)
-                context_raise(c, "%s is %.15g: indices count from 0", place_words(&place, words), x);
+                context_raise(c, "%s is %.15g: indices count from 0", argument_path_text(&argument_path, words), x);
             indices[corner] = (uint32_t)x;
             lua_pop(L, 1);
         }
@@ -355,10 +368,11 @@ static void read_faces(struct script_context *c, int index, struct place place, 
 }
 
 /* Numbers of any count from the list at `index` (absolute). */
-static void read_numbers(struct script_context *c, int index, struct place place, double *out, uint32_t length) {
+static void read_numbers(struct script_context *c, int index, struct argument_path argument_path, double *out,
+                         uint32_t length) {
     for (uint32_t k = 0; k < length; k++) {
-        struct place inner = place;
-        *(place.i ? &inner.j : &inner.i) = (lua_Integer)k + 1;
+        struct argument_path inner = argument_path;
+        *(argument_path.i ? &inner.j : &inner.i) = (lua_Integer)k + 1;
         lua_rawgeti(c->lua, index, (lua_Integer)k + 1);
         out[k] = read_number(c, -1, &inner);
         lua_pop(c->lua, 1);
@@ -366,30 +380,32 @@ static void read_numbers(struct script_context *c, int index, struct place place
 }
 
 /* Lists of numbers, or of pairs, of any lengths, one after the other: count first, then fill. */
-static void read_rows(struct script_context *c, int index, struct place place, bool pairs, struct script_value *value) {
+static void read_rows(struct script_context *c, int index, struct argument_path argument_path, bool pairs,
+                      struct script_value *value) {
     lua_State *L = c->lua;
-    uint32_t length = list_length(c, index, &place), *starts = call_array(c, (size_t)length + 1, sizeof *starts);
+    uint32_t length = list_length(c, index, &argument_path),
+             *starts = call_array(c, (size_t)length + 1, sizeof *starts);
     uint64_t total = 0;
     for (uint32_t k = 0; k < length; k++) {
-        place.i = (lua_Integer)k + 1;
-        if (lua_rawgeti(L, index, place.i) != LUA_TTABLE)
-            wrong_type(c, &place, pairs ? "a table of pairs" : "a table of numbers", -1);
+        argument_path.i = (lua_Integer)k + 1;
+        if (lua_rawgeti(L, index, argument_path.i) != LUA_TTABLE)
+            wrong_type(c, &argument_path, pairs ? "a table of pairs" : "a table of numbers", -1);
         starts[k] = (uint32_t)total;
         total += lua_rawlen(L, -1);
         lua_pop(L, 1);
         if (total >= UINT32_MAX / 4)
-            context_raise(c, "%s has too many entries", place.parameter->name);
+            context_raise(c, "%s has too many entries", argument_path.parameter->name);
     }
     starts[length] = (uint32_t)total;
     double *numbers = call_array(c, (size_t)total, (pairs ? 2 : 1) * sizeof *numbers);
     int top = lua_gettop(L) + 1;
     for (uint32_t k = 0; k < length; k++) {
-        place.i = (lua_Integer)k + 1;
-        lua_rawgeti(L, index, place.i);
+        argument_path.i = (lua_Integer)k + 1;
+        lua_rawgeti(L, index, argument_path.i);
         if (pairs)
-            read_curve(c, top, place, numbers + 2 * (size_t)starts[k], starts[k + 1] - starts[k]);
+            read_curve(c, top, argument_path, numbers + 2 * (size_t)starts[k], starts[k + 1] - starts[k]);
         else
-            read_numbers(c, top, place, numbers + starts[k], starts[k + 1] - starts[k]);
+            read_numbers(c, top, argument_path, numbers + starts[k], starts[k + 1] - starts[k]);
         lua_pop(L, 1);
     }
     value->count = length;
@@ -399,7 +415,8 @@ static void read_rows(struct script_context *c, int index, struct place place, b
 }
 
 /* How the photons of caustics are asked for: a number of them, or a table of its own. */
-static void read_caustics(struct script_context *c, int index, const struct place *place, struct script_value *value) {
+static void read_caustics(struct script_context *c, int index, const struct argument_path *argument_path,
+                          struct script_value *value) {
     static const struct script_parameter photons = {
         .name = "caustics.photons", .kind = KIND_WHOLE, .low = 0, .high = PHOTONS_MAX};
     static const struct script_parameter radius = {
@@ -407,11 +424,11 @@ static void read_caustics(struct script_context *c, int index, const struct plac
     lua_State *L = c->lua;
     value->number = PHOTONS_USUAL;
     if (lua_isnumber(L, index)) {
-        value->number = read_whole(c, index, &(struct place){.parameter = &photons});
+        value->number = read_whole(c, index, &(struct argument_path){.parameter = &photons});
         return;
     }
     if (!lua_istable(L, index))
-        wrong_type(c, place, kind_words(place->parameter->kind), index);
+        wrong_type(c, argument_path, kind_words(argument_path->parameter->kind), index);
     const char *unknown = NULL;
     for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1)) {
         if (lua_type(L, -2) != LUA_TSTRING)
@@ -425,10 +442,10 @@ static void read_caustics(struct script_context *c, int index, const struct plac
         context_raise(c, "caustics has the fields photons and radius, not '%.100s'", unknown);
     lua_pushstring(L, "photons");
     if (lua_rawget(L, index) != LUA_TNIL)
-        value->number = read_whole(c, lua_gettop(L), &(struct place){.parameter = &photons});
+        value->number = read_whole(c, lua_gettop(L), &(struct argument_path){.parameter = &photons});
     lua_pushstring(L, "radius");
     if (lua_rawget(L, index) != LUA_TNIL)
-        value->vector.x = read_number(c, lua_gettop(L), &(struct place){.parameter = &radius});
+        value->vector.x = read_number(c, lua_gettop(L), &(struct argument_path){.parameter = &radius});
     lua_pop(L, 2);
 }
 
@@ -441,7 +458,7 @@ static struct image *image_of(const struct bump *texture) {
 /* One argument at an absolute stack index. False: it is a ghost. */
 static bool read_value(struct script_context *c, int index, const struct script_parameter *p,
                        struct script_value *value) {
-    struct place place = {.parameter = p};
+    struct argument_path argument_path = {.parameter = p};
     lua_State *L = c->lua;
     char words[128];
     value->given = true;
@@ -455,46 +472,47 @@ static bool read_value(struct script_context *c, int index, const struct script_
     }
     switch (p->kind) {
     case KIND_NUMBER:
-        value->number = read_number(c, index, &place);
+        value->number = read_number(c, index, &argument_path);
         return true;
     case KIND_WHOLE:
-        value->number = read_whole(c, index, &place);
+        value->number = read_whole(c, index, &argument_path);
         return true;
     case KIND_BOOLEAN:
         if (!lua_isboolean(L, index))
-            wrong_type(c, &place, kind_words(p->kind), index);
+            wrong_type(c, &argument_path, kind_words(p->kind), index);
         value->boolean = lua_toboolean(L, index);
         return true;
     case KIND_TEXT:
-        value->text = read_text(c, index, &place);
+        value->text = read_text(c, index, &argument_path);
         return true;
     case KIND_FILE:
-        value->text = read_file_name(c, index, &place);
+        value->text = read_file_name(c, index, &argument_path);
         return true;
     case KIND_OUTPUT:
-        value->text = files_repair_number(c, read_file_name(c, index, &place));
+        value->text = files_repair_number(c, read_file_name(c, index, &argument_path));
         if (!value->text)
             context_raise_no_memory(c);
         return true;
     case KIND_CHOICE:
     case KIND_AXIS:
-        value->choice = read_choice(c, index, &place);
+        value->choice = read_choice(c, index, &argument_path);
         return true;
     case KIND_POINT:
     case KIND_DIRECTION:
     case KIND_COLOUR:
     case KIND_TRIPLE:
-        value->vector = read_vector(c, index, &place);
+        value->vector = read_vector(c, index, &argument_path);
         return true;
     case KIND_SIZE:
-        value->vector = lua_istable(L, index) ? read_vector(c, index, &place) : vec3_all(read_number(c, index, &place));
+        value->vector = lua_istable(L, index) ? read_vector(c, index, &argument_path)
+                                              : vec3_all(read_number(c, index, &argument_path));
         return true;
     case KIND_INTERVAL:
-        value->vector = read_interval(c, index, &place);
+        value->vector = read_interval(c, index, &argument_path);
         return true;
     case KIND_QUATERNION: {
         double q[4];
-        read_row(c, index, &place, 4, q);
+        read_row(c, index, &argument_path, 4, q);
         value->number = q[0];
         value->vector = vec3_make(q[1], q[2], q[3]);
         return true;
@@ -502,93 +520,93 @@ static bool read_value(struct script_context *c, int index, const struct script_
     case KIND_PAIR:
         if (lua_istable(L, index)) {
             double pair[2];
-            read_tuple(c, index, place, 2, pair);
+            read_tuple(c, index, argument_path, 2, pair);
             value->vector = vec3_make(pair[0], pair[1], 0);
         } else {
-            value->vector.x = value->vector.y = read_number(c, index, &place);
+            value->vector.x = value->vector.y = read_number(c, index, &argument_path);
         }
         return true;
     case KIND_NODE:
-        value->node = read_handle(c, index, &place, HANDLE_NODE);
+        value->node = read_handle(c, index, &argument_path, HANDLE_NODE);
         return value->node != NULL;
     case KIND_MATERIAL:
-        value->material = read_handle(c, index, &place, HANDLE_MATERIAL);
+        value->material = read_handle(c, index, &argument_path, HANDLE_MATERIAL);
         return value->material != NULL;
     case KIND_MATERIALS:
-        read_materials(c, index, place, value);
+        read_materials(c, index, argument_path, value);
         return true;
     case KIND_IMAGE:
         if (lua_isstring(L, index)) {
-            value->text = read_file_name(c, index, &place);
+            value->text = read_file_name(c, index, &argument_path);
             return true;
         }
-        value->texture = read_handle(c, index, &place, HANDLE_TEXTURE);
+        value->texture = read_handle(c, index, &argument_path, HANDLE_TEXTURE);
         value->image = value->texture ? image_of(value->texture) : NULL;
         if (value->texture && !value->image)
-            context_raise(c, "%s must be an image, not another texture", place_words(&place, words));
+            context_raise(c, "%s must be an image, not another texture", argument_path_text(&argument_path, words));
         return value->texture != NULL;
     case KIND_BACKGROUND:
         if (handle_at(L, index)) {
-            value->sky = read_handle(c, index, &place, HANDLE_SKY);
+            value->sky = read_handle(c, index, &argument_path, HANDLE_SKY);
             return value->sky != NULL;
         }
         if (lua_type(L, index) != LUA_TSTRING)
-            value->vector = read_vector(c, index, &place);
+            value->vector = read_vector(c, index, &argument_path);
         else if (strcmp(value->text = lua_tostring(L, index), "gradient") != 0)
-            context_raise(c, "%s must be %s, not '%.100s'", place_words(&place, words), kind_words(p->kind),
-                          value->text);
+            context_raise(c, "%s must be %s, not '%.100s'", argument_path_text(&argument_path, words),
+                          kind_words(p->kind), value->text);
         return true;
     case KIND_FOG:
-        value->fog = read_handle(c, index, &place, HANDLE_FOG);
+        value->fog = read_handle(c, index, &argument_path, HANDLE_FOG);
         return value->fog != NULL;
     case KIND_CAUSTICS:
-        read_caustics(c, index, &place, value);
+        read_caustics(c, index, &argument_path, value);
         return true;
     case KIND_NODES:
     case KIND_LIGHTS:
-        read_list_of_handles(c, index, place, value);
+        read_list_of_handles(c, index, argument_path, value);
         return true;
     case KIND_POINTS: {
-        uint32_t length = list_length(c, index, &place);
+        uint32_t length = list_length(c, index, &argument_path);
         double(*points)[3] = call_array(c, length, sizeof *points);
-        read_tuples(c, index, place, 3, points[0], length);
+        read_tuples(c, index, argument_path, 3, points[0], length);
         value->points = (const double(*)[3])points;
         value->count = length;
         return true;
     }
     case KIND_PAIRS: {
-        uint32_t length = list_length(c, index, &place);
+        uint32_t length = list_length(c, index, &argument_path);
         double(*pairs)[2] = call_array(c, length, sizeof *pairs);
-        read_tuples(c, index, place, 2, pairs[0], length);
+        read_tuples(c, index, argument_path, 2, pairs[0], length);
         value->pairs = (const double(*)[2])pairs;
         value->count = length;
         return true;
     }
     case KIND_STOPS: {
-        uint32_t length = list_length(c, index, &place);
+        uint32_t length = list_length(c, index, &argument_path);
         double(*stops)[4] = call_array(c, length, sizeof *stops);
-        read_tuples(c, index, place, 4, stops[0], length);
+        read_tuples(c, index, argument_path, 4, stops[0], length);
         value->stops = (const double(*)[4])stops;
         value->count = length;
         return true;
     }
     case KIND_FACES:
-        read_faces(c, index, place, value);
+        read_faces(c, index, argument_path, value);
         return true;
     case KIND_NUMBERS: {
         value->single = !lua_istable(L, index);
-        value->count = value->single ? 1 : list_length(c, index, &place);
+        value->count = value->single ? 1 : list_length(c, index, &argument_path);
         double *numbers = call_array(c, value->count, sizeof *numbers);
         if (value->single)
-            numbers[0] = read_number(c, index, &place);
+            numbers[0] = read_number(c, index, &argument_path);
         else
-            read_numbers(c, index, place, numbers, value->count);
+            read_numbers(c, index, argument_path, numbers, value->count);
         value->numbers = numbers;
         return true;
     }
     case KIND_ROWS:
     case KIND_CURVES:
-        read_rows(c, index, place, p->kind == KIND_CURVES, value);
+        read_rows(c, index, argument_path, p->kind == KIND_CURVES, value);
         return true;
     case KIND_COUNT:
         break;
@@ -720,18 +738,18 @@ static const struct script_parameter *rest_of(const struct script_function *func
 }
 
 /* Nodes behind a positional form. Returns the place of the first argument that is none. */
-static int read_rest(struct script_context *c, const struct script_parameter *p, int place,
+static int read_rest(struct script_context *c, const struct script_parameter *p, int argument_path,
                      struct script_value *value) {
     lua_State *L = c->lua;
-    int end = place;
+    int end = argument_path;
     while (end <= lua_gettop(L) && (lua_isnil(L, end) || looks_like(L, end, KIND_NODE, 0)))
         end++;
-    if (end == place)
+    if (end == argument_path)
         return end;
     value->given = value->single = true;
-    value->nodes = call_array(c, (size_t)(end - place), sizeof(struct node *));
-    for (; place < end; place++) {
-        const struct handle *handle = handle_at(L, place);
+    value->nodes = call_array(c, (size_t)(end - argument_path), sizeof(struct node *));
+    for (; argument_path < end; argument_path++) {
+        const struct handle *handle = handle_at(L, argument_path);
         if (!handle)
             context_raise(c, "%s[%u] is nil", p->name, (unsigned)value->count + 1);
         value->nodes[value->count++] = handle->type == HANDLE_GHOST ? NULL : handle->pointer;
@@ -751,28 +769,29 @@ static bool read_positional(struct script_context *c, const struct script_functi
             best = function->forms[k];
         }
     }
-    int index = 0, place = first;
+    int index = 0, argument_path = first;
     bool optional;
-    for (const char *form = best; form_next(function, &form, &index, &optional); place++) {
+    for (const char *form = best; form_next(function, &form, &index, &optional); argument_path++) {
         /* Messages about the arguments after it contain the name; no method takes one, a test looks. */
-        if (function->parameters[index].kind == KIND_TEXT && lua_isstring(L, place))
-            c->subject = read_text(c, place, &(struct place){.parameter = &function->parameters[index]});
+        if (function->parameters[index].kind == KIND_TEXT && lua_isstring(L, argument_path))
+            c->subject =
+                read_text(c, argument_path, &(struct argument_path){.parameter = &function->parameters[index]});
     }
     if (best_fit.leading == 0 && function->forms[1])
         no_form_fits(c, function, first);
-    place = first;
-    for (const char *form = best; form_next(function, &form, &index, &optional); place++) {
+    argument_path = first;
+    for (const char *form = best; form_next(function, &form, &index, &optional); argument_path++) {
         const struct script_parameter *p = &function->parameters[index];
-        if (!optional && lua_isnoneornil(L, place))
+        if (!optional && lua_isnoneornil(L, argument_path))
             context_raise(c, "%s is missing", p->name);
-        if (!read_parameter(c, place, p, &args[index]))
+        if (!read_parameter(c, argument_path, p, &args[index]))
             return false;
     }
     int rest_index;
     const struct script_parameter *rest = rest_of(function, &rest_index);
     if (rest)
-        place = read_rest(c, rest, place, &args[rest_index]);
-    if (lua_gettop(L) >= place)
+        argument_path = read_rest(c, rest, argument_path, &args[rest_index]);
+    if (lua_gettop(L) >= argument_path)
         context_warn_once(c, WARNED_EXTRA, "arguments after %s are ignored", function->parameters[index].name);
     return true;
 }
@@ -811,19 +830,19 @@ static bool read_unnamed(struct script_context *c, const struct script_function 
                          struct script_value *args) {
     int index;
     const struct script_parameter *rest = rest_of(function, &index);
-    struct place place = {.parameter = rest};
+    struct argument_path argument_path = {.parameter = rest};
     if (!rest)
         return false;
     lua_pushstring(c->lua, rest->name);
     bool listed = lua_rawget(c->lua, table) != LUA_TNIL;
     lua_pop(c->lua, 1);
-    check_holes(c, table, &place, (uint32_t)lua_rawlen(c->lua, table));
+    check_holes(c, table, &argument_path, (uint32_t)lua_rawlen(c->lua, table));
     if (lua_rawlen(c->lua, table) == 0)
         return listed;
     if (listed)
         context_raise(c, "%s are given twice, with and without a name", rest->name);
     args[index].given = true;
-    read_list_of_handles(c, table, place, &args[index]);
+    read_list_of_handles(c, table, argument_path, &args[index]);
     return true;
 }
 

@@ -89,7 +89,7 @@ struct script_context {
     struct change *changes;                 /* gr.change_node and its like, in order; in `keep` */
     uint32_t change_count, change_room, added, owned;
     struct changed_view *views; /* the newest first */
-    bool changes_told;          /* what was left out */
+    bool changes_reported;      /* what was left out */
     bool number_repaired;       /* the notice about ".0" was given */
     struct error fatal;
     bool ended; /* os.exit was called and all is well */

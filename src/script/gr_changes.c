@@ -225,7 +225,7 @@ static void change_views(const struct script_context *context, struct render_req
 
 static void warn_once(void *user, const char *text) {
     struct script_context *context = user;
-    if (!context->changes_told)
+    if (!context->changes_reported)
         context_warn(context, "%s", text);
 }
 
@@ -240,7 +240,7 @@ bool changes_begin(struct script_context *context, struct render_request *reques
     if (!changes_lay_over(context->changes, context->change_count, request->scene, request->root, request->lights,
                           request->light_count, warn_once, context, changed, error))
         return false;
-    context->changes_told = true;
+    context->changes_reported = true;
     request->lights = changed->lights;
     request->light_count = changed->light_count;
     return true;

@@ -33,7 +33,7 @@ enum { SKYLIGHT_SKY = LIGHT_EXCLUDE + 1, SKYLIGHT_SAMPLES, SKYLIGHT_COUNT };
                          NULL,                                                                                         \
                          NULL,                                                                                         \
                          "Inverse square falloff, instead of falloff: the light is multiplied by intensity / d^2."}
-#define LAMP_FIELDS                                                                                                    \
+#define AREA_LIGHT_FIELDS                                                                                              \
     [LIGHT_EMISSION] =                                                                                                 \
         {"emission",                                                                                                   \
          KIND_COLOUR,                                                                                                  \
@@ -43,7 +43,7 @@ enum { SKYLIGHT_SKY = LIGHT_EXCLUDE + 1, SKYLIGHT_SAMPLES, SKYLIGHT_COUNT };
          NULL,                                                                                                         \
          "Radiance of its surface, multiplied by colour; the light then depends on its true shape, without falloff."}, \
     [LIGHT_SAMPLES] =                                                                                                  \
-        {"samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "area_samples", "N x N shadow rays for this light."},  \
+        {"samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "area_samples", "N x N shadow rays for this light."}, \
     [LIGHT_VISIBLE] = {"visible", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the light itself is visible."}
 #define ONE_SIDED(text)                                                                                                \
     {                                                                                                                  \
@@ -58,7 +58,7 @@ static const struct script_parameter light_parameters[] = {
 };
 
 #define SAMPLES_FIELD                                                                                                  \
-    { "samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "area_samples", "N x N shadow rays for this light." }
+    { "samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "area_samples", "N x N shadow rays for this light." }
 
 static const struct script_parameter mesh_light_parameters[] = {
     LIGHT_FIELDS(OPTIONAL),
@@ -87,16 +87,16 @@ static const struct script_parameter spot_parameters[] = {
     [SPOT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Position."},
     [SPOT_DIRECTION] = {"direction", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, -1, 0}", "The axis of its cone."},
     [SPOT_TARGET] = {"target", KIND_POINT, OPTIONAL, ANY, NULL, NULL, "A point on the axis, instead of direction."},
-    [SPOT_INNER] = {"inner", KIND_NUMBER, OPTIONAL, BETWEEN(0, 180), "degrees", "three quarters of outer",
+    [SPOT_INNER] = {"inner", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 180), "degrees", "three quarters of outer",
                     "Angle from the axis where the light begins to fall off."},
-    [SPOT_OUTER] = {"outer", KIND_NUMBER, OPTIONAL | LOW_OPEN, BETWEEN(0, 180), "degrees",
+    [SPOT_OUTER] = {"outer", KIND_NUMBER, OPTIONAL | LOW_OPEN, IN_RANGE(0, 180), "degrees",
                     "30, or inner if that is more", "Angle from the axis where the light ends."},
 };
 
 static const struct script_parameter area_parameters[] = {
     LIGHT_FIELDS(OPTIONAL),
     ATTENUATION_FIELDS,
-    LAMP_FIELDS,
+    AREA_LIGHT_FIELDS,
     [AREA_CORNER] = {"corner", KIND_POINT, 0, ANY, NULL, NULL, "One corner of the parallelogram."},
     [AREA_V1] = {"v1", KIND_DIRECTION, 0, ANY, NULL, NULL, "Edge from that corner."},
     [AREA_V2] = {"v2", KIND_DIRECTION, 0, ANY, NULL, NULL, "The other edge from that corner."},
@@ -106,7 +106,7 @@ static const struct script_parameter area_parameters[] = {
 static const struct script_parameter ball_light_parameters[] = {
     LIGHT_FIELDS(OPTIONAL),
     ATTENUATION_FIELDS,
-    LAMP_FIELDS,
+    AREA_LIGHT_FIELDS,
     [BALL_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Its centre."},
     [BALL_RADIUS] = {"radius", KIND_NUMBER, LOW_OPEN, ABOVE(0), NULL, NULL, "Its radius."},
 };
@@ -114,7 +114,7 @@ static const struct script_parameter ball_light_parameters[] = {
 static const struct script_parameter disc_light_parameters[] = {
     LIGHT_FIELDS(OPTIONAL),
     ATTENUATION_FIELDS,
-    LAMP_FIELDS,
+    AREA_LIGHT_FIELDS,
     [PANEL_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Its centre."},
     [PANEL_NORMAL] = {"normal", KIND_DIRECTION, 0, ANY, NULL, NULL, "The direction it faces."},
     [PANEL_RADIUS] = {"radius", KIND_NUMBER, LOW_OPEN, ABOVE(0), NULL, NULL, "Its radius."},
@@ -164,8 +164,8 @@ static bool set_attenuation(struct light *light, const struct script_value *args
 }
 
 /* A light with an extent: fading as from its centre, or a lamp whose surface emits. */
-static bool give_lamp(struct script_context *context, struct light *light, const struct script_value *args,
-                      struct script_result *result, struct error *error) {
+static bool make_area_light(struct script_context *context, struct light *light, const struct script_value *args,
+                            struct script_result *result, struct error *error) {
     struct script_value lamp[LIGHT_OWN];
     for (int i = 0; i < LIGHT_OWN; i++)
         lamp[i] = args[i];
@@ -235,14 +235,14 @@ static bool gr_area_light(struct script_context *context, const struct script_va
     if (!(area > 0x1p-40 * vec3_length(light.edge1) * vec3_length(light.edge2)))
         context_warn_once(context, WARNED_OTHER, "v1 and v2 are parallel or zero: the light has no area%s",
                           args[LIGHT_EMISSION].given ? " and gives no light" : "");
-    return give_lamp(context, &light, args, result, error);
+    return make_area_light(context, &light, args, result, error);
 }
 
 static bool gr_spherical_light(struct script_context *context, const struct script_value *args,
                                struct script_result *result, struct error *error) {
     struct light light = {
         .kind = LIGHT_SPHERE, .position = args[BALL_POSITION].vector, .radius = args[BALL_RADIUS].number};
-    return give_lamp(context, &light, args, result, error);
+    return make_area_light(context, &light, args, result, error);
 }
 
 static bool gr_disc_light(struct script_context *context, const struct script_value *args, struct script_result *result,
@@ -252,7 +252,7 @@ static bool gr_disc_light(struct script_context *context, const struct script_va
                           .radius = args[PANEL_RADIUS].number,
                           .one_sided = args[PANEL_ONE_SIDED].boolean};
     return set_direction(&light, args[PANEL_NORMAL].vector, "normal", error) &&
-           give_lamp(context, &light, args, result, error);
+           make_area_light(context, &light, args, result, error);
 }
 
 static bool gr_mesh_light(struct script_context *context, const struct script_value *args, struct script_result *result,

@@ -199,7 +199,7 @@ bool gr_mesh(struct script_context *context, const struct script_value *args, st
         if (args[MESH_FACE_MATERIALS].given)
             return error_set(error, ERROR_SCENE, "face_materials goes with faces, not with a file");
         result->pointer =
-            model && check_parts(model, parts, error) ? model_place(&context->scene, model, &placing, error) : NULL;
+            model && check_parts(model, parts, error) ? model_add_nodes(&context->scene, model, &placing, error) : NULL;
         return result->pointer != NULL;
     }
     struct mesh *mesh = mesh_from_tables(context, args, name, error);

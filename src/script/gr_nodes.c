@@ -44,14 +44,14 @@ static bool keep_numbers(struct script_context *context, const struct script_val
     return true;
 }
 
-enum { PLACE_NUMBERS = 3, MATRIX_NUMBERS = 12 };
+enum { PLACEMENT_NUMBERS = 3, MATRIX_NUMBERS = 12 };
 
 static bool check_rows(const struct script_value *at, uint32_t length, struct error *error) {
     for (uint32_t i = 0; i < at->count; i++) {
         uint32_t found = at->starts[i + 1] - at->starts[i];
         if (found != length)
             return error_set(error, ERROR_SCENE, "at[%u] has %u numbers, not %s", i + 1, found,
-                             i > 0 ? (length == PLACE_NUMBERS ? "3 as those before" : "12 as those before")
+                             i > 0 ? (length == PLACEMENT_NUMBERS ? "3 as those before" : "12 as those before")
                                    : "3 or 12");
         struct affine matrix;
         struct transform ignored;
@@ -68,13 +68,13 @@ bool gr_instances(struct script_context *context, const struct script_value *arg
                   struct error *error) {
     const struct script_value *at = &args[INSTANCES_AT];
     bool matrices = at->count > 0 && at->starts[1] == MATRIX_NUMBERS;
-    if (!check_rows(at, matrices ? MATRIX_NUMBERS : PLACE_NUMBERS, error))
+    if (!check_rows(at, matrices ? MATRIX_NUMBERS : PLACEMENT_NUMBERS, error))
         return false;
     if (matrices && (args[INSTANCES_TURN].given || args[INSTANCES_SIZE].given))
         return error_set(error, ERROR_SCENE, "turn and size need positions {x, y, z} in at, not matrices");
     struct node *node = scene_node(&context->scene, NODE_GROUP, text_or(&args[INSTANCES_NAME], "instances"), error);
     struct placements *placements = arena_alloc(&context->scene.arena, sizeof *placements);
-    size_t numbers = (size_t)at->count * (matrices ? MATRIX_NUMBERS : PLACE_NUMBERS);
+    size_t numbers = (size_t)at->count * (matrices ? MATRIX_NUMBERS : PLACEMENT_NUMBERS);
     double *kept = arena_alloc_array(&context->scene.arena, numbers, sizeof *kept);
     if (!node || !placements || !kept)
         return error_no_memory(error, "the places of instances");

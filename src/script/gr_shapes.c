@@ -8,7 +8,7 @@
 
 #define LENGTH(name, fallback, help)                                                                                   \
     { name, KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, fallback, help }
-#define PLACE(name, fallback, help)                                                                                    \
+#define POSITION(name, fallback, help)                                                                                 \
     { name, KIND_POINT, OPTIONAL, ANY, NULL, fallback, help }
 #define OPEN_ENDS                                                                                                      \
     {                                                                                                                  \
@@ -59,8 +59,8 @@ static bool ends_are_fine(struct vec3 from, struct vec3 to, struct error *error)
 enum { CYLINDER_FROM = SHAPE_FIRST, CYLINDER_TO, CYLINDER_RADIUS, CYLINDER_OPEN };
 static const struct script_parameter cylinder_parameters[] = {
     SHAPE("cylinder"),
-    [CYLINDER_FROM] = PLACE("from", "{0, -1, 0}", "Centre of one end."),
-    [CYLINDER_TO] = PLACE("to", "{0, 1, 0}", "Centre of the other end."),
+    [CYLINDER_FROM] = POSITION("from", "{0, -1, 0}", "Centre of one end."),
+    [CYLINDER_TO] = POSITION("to", "{0, 1, 0}", "Centre of the other end."),
     [CYLINDER_RADIUS] = LENGTH("radius", "1", "Radius."),
     [CYLINDER_OPEN] = OPEN_ENDS,
 };
@@ -80,8 +80,8 @@ static bool gr_cylinder(struct script_context *context, const struct script_valu
 enum { CONE_FROM = SHAPE_FIRST, CONE_TO, CONE_FROM_RADIUS, CONE_RADIUS, CONE_OPEN };
 static const struct script_parameter cone_parameters[] = {
     SHAPE("cone"),
-    [CONE_FROM] = PLACE("from", "{0, 0, 0}", "The apex, or the centre of the end with from_radius."),
-    [CONE_TO] = PLACE("to", "{0, 1, 0}", "Centre of the end with radius."),
+    [CONE_FROM] = POSITION("from", "{0, 0, 0}", "The apex, or the centre of the end with from_radius."),
+    [CONE_TO] = POSITION("to", "{0, 1, 0}", "Centre of the end with radius."),
     [CONE_FROM_RADIUS] = {"from_radius", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0",
                           "Radius at from; above 0 it is a frustum."},
     [CONE_RADIUS] = {"radius", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1", "Radius at to."},
@@ -131,7 +131,7 @@ enum {
 };
 static const struct script_parameter hyperboloid_parameters[] = {
     SHAPE("hyperboloid"),
-    [HYPERBOLOID_SHEETS] = {"sheets", KIND_WHOLE, OPTIONAL, BETWEEN(1, 2), NULL, "1, with gap 2",
+    [HYPERBOLOID_SHEETS] = {"sheets", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 2), NULL, "1, with gap 2",
                             "1: one sheet with a waist; 2: two bowls."},
     [HYPERBOLOID_RADIUS] = LENGTH("radius", "twice waist, or 1", "Radius of both rims."),
     [HYPERBOLOID_HEIGHT] = LENGTH("height", "twice gap, or 1", "y of one rim; the other is at -y."),
@@ -171,7 +171,7 @@ static bool gr_hyperboloid(struct script_context *context, const struct script_v
 enum { ELLIPSOID_CENTRE = SHAPE_FIRST, ELLIPSOID_RADII };
 static const struct script_parameter ellipsoid_parameters[] = {
     SHAPE("ellipsoid"),
-    [ELLIPSOID_CENTRE] = PLACE("centre", "{0, 0, 0}", "Centre."),
+    [ELLIPSOID_CENTRE] = POSITION("centre", "{0, 0, 0}", "Centre."),
     [ELLIPSOID_RADII] = {"radii", KIND_SIZE, OPTIONAL, ANY, NULL, "1", "Radii along x, y and z: one number or three."},
 };
 
@@ -219,8 +219,8 @@ static const struct script_parameter quadric_parameters[] = {
     [QUADRIC_Z] = COEFFICIENT("z"),
     [QUADRIC_CONSTANT] = {"constant", KIND_NUMBER, OPTIONAL, ANY, NULL, "0",
                           "Constant term; the solid is where the sum is negative."},
-    [QUADRIC_MIN] = PLACE("min", "without end", "Corner of a box that limits it."),
-    [QUADRIC_MAX] = PLACE("max", "without end", "The opposite corner."),
+    [QUADRIC_MIN] = POSITION("min", "without end", "Corner of a box that limits it."),
+    [QUADRIC_MAX] = POSITION("max", "without end", "The opposite corner."),
     [QUADRIC_OPEN] = OPEN_ENDS,
 };
 
@@ -278,9 +278,9 @@ static bool gr_torus(struct script_context *context, const struct script_value *
 enum { SUPER_E = SHAPE_FIRST, SUPER_N };
 static const struct script_parameter superellipsoid_parameters[] = {
     SHAPE("superellipsoid"),
-    [SUPER_E] = {"e", KIND_NUMBER, OPTIONAL, BETWEEN(0.02, 20), NULL, "1",
+    [SUPER_E] = {"e", KIND_NUMBER, OPTIONAL, IN_RANGE(0.02, 20), NULL, "1",
                  "Exponent of the cross-section: near 0 a square, 1 a circle, 2 a diamond."},
-    [SUPER_N] = {"n", KIND_NUMBER, OPTIONAL, BETWEEN(0.02, 20), NULL, "1", "Exponent of the profile, likewise."},
+    [SUPER_N] = {"n", KIND_NUMBER, OPTIONAL, IN_RANGE(0.02, 20), NULL, "1", "Exponent of the profile, likewise."},
 };
 
 static bool gr_superellipsoid(struct script_context *context, const struct script_value *args,
@@ -353,7 +353,7 @@ static bool span_is_fine(struct vec3 u, struct vec3 v, const char *what, struct 
 enum { RECTANGLE_CORNER = SHAPE_FIRST, RECTANGLE_ALONG, RECTANGLE_UP };
 static const struct script_parameter rectangle_parameters[] = {
     SHAPE("rectangle"),
-    [RECTANGLE_CORNER] = PLACE("corner", "{-0.5, 0, 0.5}", "Corner where an image has its lower left."),
+    [RECTANGLE_CORNER] = POSITION("corner", "{-0.5, 0, 0.5}", "Corner where an image has its lower left."),
     [RECTANGLE_ALONG] = {"along", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{1, 0, 0}", "Edge along u of an image."},
     [RECTANGLE_UP] = {"up", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 0, -1}",
                       "Edge along v of an image; not parallel to along."},
@@ -372,7 +372,7 @@ static bool gr_rectangle(struct script_context *context, const struct script_val
 enum { DISC_CENTRE = SHAPE_FIRST, DISC_NORMAL, DISC_RADIUS, DISC_INNER };
 static const struct script_parameter disc_parameters[] = {
     SHAPE("disc"),
-    [DISC_CENTRE] = PLACE("centre", "{0, 0, 0}", "Centre."),
+    [DISC_CENTRE] = POSITION("centre", "{0, 0, 0}", "Centre."),
     [DISC_NORMAL] = {"normal", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 1, 0}", "Normal of the front."},
     [DISC_RADIUS] = LENGTH("radius", "1, or twice inner", "Radius."),
     [DISC_INNER] = {"inner", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0", "Radius of the hole."},

@@ -39,7 +39,7 @@ static bool give(struct script_context *context, struct texture texture, struct 
 }
 
 #define INTERP                                                                                                         \
-    { "interp", KIND_WHOLE, OPTIONAL, BETWEEN(0, 1), NULL, "0", "Interpolation of the noise: 0 linear, 1 cosine." }
+    { "interp", KIND_WHOLE, OPTIONAL, IN_RANGE(0, 1), NULL, "0", "Interpolation of the noise: 0 linear, 1 cosine." }
 /* A colour, a number for all three components, or a texture. */
 #define PART(name, help)                                                                                               \
     { name, KIND_SIZE, OR_TEXTURE, ANY, NULL, NULL, help }

@@ -28,10 +28,10 @@ static int end_script(lua_State *L) {
 
 /* debug.getinfo([thread,] function or level [, what]): source, short_src, currentline, and nothing that can be called.
  */
-static int place_info(lua_State *L) {
+static int position_info(lua_State *L) {
     lua_State *from = L;
     int at = 1;
-    lua_Debug place;
+    lua_Debug argument_path;
     if (lua_isthread(L, 1)) {
         from = lua_tothread(L, 1);
         at = 2;
@@ -39,21 +39,21 @@ static int place_info(lua_State *L) {
     if (lua_isfunction(L, at)) {
         lua_pushvalue(L, at);
         lua_xmove(L, from, 1);
-        lua_getinfo(from, ">Sl", &place);
+        lua_getinfo(from, ">Sl", &argument_path);
     } else {
         lua_Integer level = luaL_checkinteger(L, at);
-        if (level < 0 || level > 1000000 || !lua_getstack(from, (int)level, &place)) {
+        if (level < 0 || level > 1000000 || !lua_getstack(from, (int)level, &argument_path)) {
             lua_pushnil(L);
             return 1;
         }
-        lua_getinfo(from, "Sl", &place);
+        lua_getinfo(from, "Sl", &argument_path);
     }
     lua_createtable(L, 0, 3);
-    lua_pushlstring(L, place.source, place.srclen);
+    lua_pushlstring(L, argument_path.source, argument_path.srclen);
     lua_setfield(L, -2, "source");
-    lua_pushstring(L, place.short_src);
+    lua_pushstring(L, argument_path.short_src);
     lua_setfield(L, -2, "short_src");
-    lua_pushinteger(L, place.currentline);
+    lua_pushinteger(L, argument_path.currentline);
     lua_setfield(L, -2, "currentline");
     return 1;
 }
@@ -147,7 +147,7 @@ void sandbox_open(lua_State *L) {
         return;
     for (size_t k = 0; k < sizeof allowed_names / sizeof allowed_names[0]; k++)
         keep_allowed(L, &allowed_names[k]);
-    set_function(L, "debug", "getinfo", place_info);
+    set_function(L, "debug", "getinfo", position_info);
     set_function(L, "os", "getenv", environment_variable);
     lua_getglobal(L, "collectgarbage");
     lua_pushcclosure(L, collect_garbage, 1);

@@ -13,7 +13,7 @@
 
 /* The length of the place a message begins with, "scene.lua:12: " or that of a chunk from a string; 0 when it has none.
  */
-static size_t place_length(const struct script_context *context, const char *message) {
+static size_t position_length(const struct script_context *context, const char *message) {
     size_t length = strncmp(message, "[string \"", 9) == 0 ? strcspn(message, "]") + 1 : 0;
     for (const struct source_name *source = context->sources; source && length == 0; source = source->next) {
         size_t name = strlen(source->path);
@@ -27,12 +27,12 @@ static size_t place_length(const struct script_context *context, const char *mes
 
 /* The message from its place on: coroutine.wrap and error put another one in front, and the innermost is the most
  * precise. Whole paths are written where Lua shortened them. NULL without memory. */
-static const char *innermost(struct script_context *context, const char *message, bool *has_place) {
+static const char *innermost(struct script_context *context, const char *message, bool *has_position) {
     message = files_unshorten(context, message);
-    size_t outer = message ? place_length(context, message) : 0;
-    *has_place = outer > 0;
+    size_t outer = message ? position_length(context, message) : 0;
+    *has_position = outer > 0;
     const char *inner = outer > 0 ? files_unshorten(context, message + outer) : message;
-    return inner && outer > 0 && place_length(context, inner) == 0 ? message : inner;
+    return inner && outer > 0 && position_length(context, inner) == 0 ? message : inner;
 }
 
 /* Text with every line indented, a tab counting as two more blanks. */
@@ -69,14 +69,14 @@ static int describe_error(lua_State *L) {
         message = luaL_tolstring(L, 1, NULL);
     else
         message = lua_pushfstring(L, "the script raised %s", value_words(L, 1));
-    bool has_place;
-    message = innermost(context, message, &has_place);
+    bool has_position;
+    message = innermost(context, message, &has_position);
     if (!message) {
         error_no_memory(&context->fatal, "the script");
         return 1;
     }
     size_t first = strcspn(message, "\n");
-    error_set(&context->failure, ERROR_SCENE, "%s%.*s", has_place ? "" : where, (int)first, message);
+    error_set(&context->failure, ERROR_SCENE, "%s%.*s", has_position ? "" : where, (int)first, message);
     const char *rest = message + first + (message[first] == '\n');
     luaL_traceback(L, L, *rest ? rest : NULL, 1);
     context->traceback = indent(context->out, lua_tostring(L, -1));

@@ -70,7 +70,7 @@ static const struct script_parameter mesh_parameters[] = {
     [MESH_FACE_UVS] = {"face_uvs", KIND_FACES, OPTIONAL, ANY, NULL, "faces",
                        "For each face a tuple of indices into uvs, from 0."},
     [MESH_SMOOTH] =
-        {"smooth", KIND_NUMBER, OPTIONAL, BETWEEN(0, 180), "degrees", "as given",
+        {"smooth", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 180), "degrees", "as given",
          "Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat."},
     [MESH_WELD] = {"weld", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
                    "Whether vertices at the same position become one."},
@@ -85,7 +85,7 @@ static const struct script_parameter mesh_parameters[] = {
 
 #define SERIAL_HELP "Its number in order of creation, from 0; nodes added in the window count down from 4294967295."
 #define CHANGED_NAME "Name of the node; gray ignores a node with another name."
-#define SERIALS BETWEEN(0, 4294967295.0)
+#define SERIALS IN_RANGE(0, 4294967295.0)
 #define PICTURE_HELP "The file name that gr.render has for the picture."
 
 static const struct script_parameter change_node_parameters[] = {
@@ -166,13 +166,13 @@ static const struct script_parameter change_view_parameters[] = {
     [CHANGEVIEW_EYE] = {"eye", KIND_POINT, 0, ANY, NULL, NULL, "Position of the camera."},
     [CHANGEVIEW_VIEW] = {"view", KIND_DIRECTION, 0, ANY, NULL, NULL, "Direction of view."},
     [CHANGEVIEW_UP] = {"up", KIND_DIRECTION, 0, ANY, NULL, NULL, "Direction that is up in the picture."},
-    [CHANGEVIEW_FOV] = {"fov", KIND_NUMBER, LOW_OPEN | HIGH_OPEN, BETWEEN(0, 180), "degrees", NULL,
+    [CHANGEVIEW_FOV] = {"fov", KIND_NUMBER, LOW_OPEN | HIGH_OPEN, IN_RANGE(0, 180), "degrees", NULL,
                         "Full vertical angle of view."},
 };
 
 static const struct script_parameter change_exposure_parameters[] = {
     [CHANGEEXPOSURE_PICTURE] = {"picture", KIND_TEXT, 0, ANY, NULL, NULL, PICTURE_HELP},
-    [CHANGEEXPOSURE_STOPS] = {"stops", KIND_NUMBER, 0, BETWEEN(-100, 100), "stops", NULL, "New exposure."},
+    [CHANGEEXPOSURE_STOPS] = {"stops", KIND_NUMBER, 0, IN_RANGE(-100, 100), "stops", NULL, "New exposure."},
 };
 
 static const struct script_parameter self_parameters[] = {{"self", KIND_NODE, 0, ANY, NULL, NULL, "The node."}};
@@ -333,14 +333,14 @@ static const struct script_parameter rotate_quat_parameters[] = {
     [PHONG_ROUGHNESS] = {"roughness",                                                                                  \
                          KIND_NUMBER,                                                                                  \
                          OPTIONAL | OR_TEXTURE,                                                                        \
-                         BETWEEN(0, 1),                                                                                \
+                         IN_RANGE(0, 1),                                                                               \
                          NULL,                                                                                         \
                          "0",                                                                                          \
                          "Roughness of reflection and refraction; 0 is polished."},                                    \
     [PHONG_GLOSSY_SAMPLES] = {"glossy_samples",                                                                        \
                               KIND_WHOLE,                                                                              \
                               OPTIONAL,                                                                                \
-                              BETWEEN(1, 64),                                                                          \
+                              IN_RANGE(1, 64),                                                                         \
                               NULL,                                                                                    \
                               "4",                                                                                     \
                               "N x N rays from a rough surface; after the first rough surface of a path, one ray."},   \
@@ -354,14 +354,14 @@ static const struct script_parameter rotate_quat_parameters[] = {
     [PHONG_OPACITY] = {"opacity",                                                                                      \
                        KIND_NUMBER,                                                                                    \
                        OPTIONAL | OR_TEXTURE,                                                                          \
-                       BETWEEN(0, 1),                                                                                  \
+                       IN_RANGE(0, 1),                                                                                 \
                        NULL,                                                                                           \
                        "1",                                                                                            \
                        "Opacity of the surface; below 1 it has holes."},                                               \
     [PHONG_METALNESS] = {"metalness",                                                                                  \
                          KIND_NUMBER,                                                                                  \
                          OPTIONAL | OR_TEXTURE,                                                                        \
-                         BETWEEN(0, 1),                                                                                \
+                         IN_RANGE(0, 1),                                                                               \
                          NULL,                                                                                         \
                          "0",                                                                                          \
                          "Fraction of kd that replaces ks."},                                                          \
@@ -377,9 +377,9 @@ static const struct script_parameter material_parameters[] = {
     [PHONG_KD] = KD,
     [PHONG_KS] = KS,
     [PHONG_SHININESS] = SHININESS,
-    [PHONG_REFLECT] = {"reflect", KIND_NUMBER, OPTIONAL | OR_TEXTURE, BETWEEN(0, 1), NULL, "0",
+    [PHONG_REFLECT] = {"reflect", KIND_NUMBER, OPTIONAL | OR_TEXTURE, IN_RANGE(0, 1), NULL, "0",
                        "Amount of reflection."},
-    [PHONG_REFRACT] = {"refract", KIND_NUMBER, OPTIONAL | OR_TEXTURE, BETWEEN(0, 1), NULL, "0",
+    [PHONG_REFRACT] = {"refract", KIND_NUMBER, OPTIONAL | OR_TEXTURE, IN_RANGE(0, 1), NULL, "0",
                        "Amount of refraction."},
     [PHONG_IOR] = {"ior", KIND_NUMBER, OPTIONAL, ABOVE(1), NULL, "none", "Index of refraction inside the solid."},
     [PHONG_TWO_SIDED] = TWO_SIDED,
@@ -390,9 +390,9 @@ static const struct script_parameter rr_parameters[] = {
     [PHONG_KD] = KD,
     [PHONG_KS] = KS,
     [PHONG_SHININESS] = SHININESS,
-    [PHONG_REFLECT] = {"reflect", KIND_NUMBER, OPTIONAL | OR_TEXTURE, BETWEEN(0, 1), NULL, "0",
+    [PHONG_REFLECT] = {"reflect", KIND_NUMBER, OPTIONAL | OR_TEXTURE, IN_RANGE(0, 1), NULL, "0",
                        "Amount of reflection."},
-    [PHONG_REFRACT] = {"refract", KIND_NUMBER, OPTIONAL | OR_TEXTURE, BETWEEN(0, 1), NULL, "0",
+    [PHONG_REFRACT] = {"refract", KIND_NUMBER, OPTIONAL | OR_TEXTURE, IN_RANGE(0, 1), NULL, "0",
                        "Amount of refraction."},
     [PHONG_IOR] = {"ior", KIND_NUMBER, OPTIONAL, ABOVE(1), NULL, "1", "Index of refraction inside the solid."},
     [PHONG_TWO_SIDED] = TWO_SIDED,
@@ -402,7 +402,7 @@ static const struct script_parameter rr_parameters[] = {
 #define BASE                                                                                                           \
     { "material", KIND_MATERIAL, 0, ANY, NULL, NULL, "The base material." }
 #define INTERP                                                                                                         \
-    { "interp", KIND_WHOLE, OPTIONAL, BETWEEN(0, 1), NULL, "0", "Interpolation of the noise: 0 linear, 1 cosine." }
+    { "interp", KIND_WHOLE, OPTIONAL, IN_RANGE(0, 1), NULL, "0", "Interpolation of the noise: 0 linear, 1 cosine." }
 #define MIX                                                                                                            \
     { "mix", KIND_COLOUR, 0, ANY, NULL, NULL, "Colour to mix with kd." }
 
@@ -425,7 +425,7 @@ static const struct script_parameter wood_parameters[] = {
 
 #define FILTER                                                                                                         \
     { "filter", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(IMAGE_FILTERS), NULL, "'mipmap'", "Filter of the lookup." }
-#define WRAP                                                                                                           \
+#define WRAP_PARAMETER                                                                                                 \
     { "wrap", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(IMAGE_WRAPS), NULL, "'repeat'", "Lookup outside of the image." }
 #define FLIP_U                                                                                                         \
     { "flip_u", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the image is mirrored from left to right." }
@@ -442,7 +442,7 @@ static const struct script_parameter image_parameters[] = {
 #define OFFSET                                                                                                         \
     { "offset", KIND_PAIR, OPTIONAL, ANY, NULL, "0", "Shift in units of the image: one number, or {across, up}." }
 #define LOOKUP_FIELDS(first)                                                                                           \
-    [first + LOOKUP_FILTER] = FILTER, [first + LOOKUP_WRAP] = WRAP, [first + LOOKUP_FLIP_U] = FLIP_U,                  \
+    [first + LOOKUP_FILTER] = FILTER, [first + LOOKUP_WRAP] = WRAP_PARAMETER, [first + LOOKUP_FLIP_U] = FLIP_U,        \
              [first + LOOKUP_TILES] = TILES, [first + LOOKUP_OFFSET] = OFFSET
 
 static const struct script_parameter texture_parameters[] = {
@@ -496,22 +496,22 @@ static const struct script_parameter fresnel_parameters[] = {[FRESNEL_MATERIAL] 
     [(first) +                                                                                                         \
         SUN_DIRECTION] =                                                                                               \
         {"sun", KIND_DIRECTION, OPTIONAL, ANY, NULL, NULL, "Direction to the sun, instead of time and position."},     \
-        [(first) + SUN_HOUR] = {"hour", KIND_NUMBER, OPTIONAL, BETWEEN(0, 24), NULL, "12", "Local time of day."},      \
+        [(first) + SUN_HOUR] = {"hour", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 24), NULL, "12", "Local time of day."},     \
         [(first) +                                                                                                     \
-            SUN_DAY] = {"day", KIND_WHOLE, OPTIONAL, BETWEEN(1, 366), NULL, "172, 21 June", "Day of the year."},       \
+            SUN_DAY] = {"day", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 366), NULL, "172, 21 June", "Day of the year."},      \
         [(first) + SUN_LATITUDE] = {"latitude",                                                                        \
                                     KIND_NUMBER,                                                                       \
                                     OPTIONAL,                                                                          \
-                                    BETWEEN(-90, 90),                                                                  \
+                                    IN_RANGE(-90, 90),                                                                 \
                                     "degrees",                                                                         \
                                     "45",                                                                              \
                                     "Positive is north; in the scene, -z is north and +x is east."},                   \
-        [(first) + SUN_LONGITUDE] = {"longitude", KIND_NUMBER, OPTIONAL,           BETWEEN(-180, 180),                 \
+        [(first) + SUN_LONGITUDE] = {"longitude", KIND_NUMBER, OPTIONAL,           IN_RANGE(-180, 180),                \
                                      "degrees",   "0",         "Positive is east."},                                   \
         [(first) + SUN_ZONE] = {"zone",                                                                                \
                                 KIND_NUMBER,                                                                           \
                                 OPTIONAL,                                                                              \
-                                BETWEEN(-14, 14),                                                                      \
+                                IN_RANGE(-14, 14),                                                                     \
                                 "hours",                                                                               \
                                 "0",                                                                                   \
                                 "Difference of the local time to Greenwich; positive is east."}
@@ -548,7 +548,7 @@ static const struct script_parameter sky_gradient_parameters[] = {
 static const struct script_parameter clear_sky_parameters[] = {
     SKY_FIELDS,
     SUN(CLEAR_SUN),
-    [CLEAR_TURBIDITY] = {"turbidity", KIND_NUMBER, OPTIONAL, BETWEEN(1.7, 10), NULL, "2.5",
+    [CLEAR_TURBIDITY] = {"turbidity", KIND_NUMBER, OPTIONAL, IN_RANGE(1.7, 10), NULL, "2.5",
                          "Turbidity of the air: 2 is very clear, 10 is hazy."},
     [CLEAR_GROUND] = {"ground", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0.15, 0.15, 0.15}", "Colour below the horizon."},
 };
@@ -620,14 +620,14 @@ static const struct script_parameter render_parameters[] = {
         {"background", KIND_BACKGROUND, OPTIONAL, ANY, NULL, "'gradient'",
          "Background for rays that hit nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}."},
     [RENDER_MIRROR] = {"mirror", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the sky cross is mirrored."},
-    [RENDER_SAMPLES] = {"samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "-ss",
+    [RENDER_SAMPLES] = {"samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "-ss",
                         "N x N samples for a marked pixel."},
     [RENDER_FULL] = {"full", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "-full", "Whether every pixel gets N x N samples."},
-    [RENDER_AREA_SAMPLES] = {"area_samples", KIND_WHOLE, OPTIONAL, BETWEEN(1, 64), NULL, "-al-samples",
+    [RENDER_AREA_SAMPLES] = {"area_samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "-al-samples",
                              "N x N shadow rays for an area light."},
-    [RENDER_REFLECT_LIMIT] = {"reflect_limit", KIND_WHOLE, OPTIONAL, BETWEEN(0, 1000), NULL, "-reflect-limit",
+    [RENDER_REFLECT_LIMIT] = {"reflect_limit", KIND_WHOLE, OPTIONAL, IN_RANGE(0, 1000), NULL, "-reflect-limit",
                               "How often a path may reflect."},
-    [RENDER_REFRACT_LIMIT] = {"refract_limit", KIND_WHOLE, OPTIONAL, BETWEEN(0, 1000), NULL, "-refract-limit",
+    [RENDER_REFRACT_LIMIT] = {"refract_limit", KIND_WHOLE, OPTIONAL, IN_RANGE(0, 1000), NULL, "-refract-limit",
                               "How often a path may refract."},
     [RENDER_SIDE_TOLERANCE] = {"side_tolerance", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "-side-tolerance",
                                "Squared distance of colours between side neighbours that marks a pixel."},
@@ -637,23 +637,23 @@ static const struct script_parameter render_parameters[] = {
                         "Whether total internal reflection adds the refracted amount to the reflected one."},
     [RENDER_SPECULAR] = {"specular", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(SPECULAR_KINDS), NULL, "--specular",
                          "Formula of highlights."},
-    [RENDER_SEED] = {"seed", KIND_WHOLE, OPTIONAL, BETWEEN(0, 0x1p53 - 1), NULL, "--seed", "Seed of random numbers."},
+    [RENDER_SEED] = {"seed", KIND_WHOLE, OPTIONAL, IN_RANGE(0, 0x1p53 - 1), NULL, "--seed", "Seed of random numbers."},
     [RENDER_ACCEL] = {"accel", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(ACCEL_KINDS), NULL, "'auto'",
                       "Acceleration structure; the picture is the same."},
     [RENDER_FOG] = {"fog", KIND_FOG, OPTIONAL, ANY, NULL, "none", "A fog."},
     [RENDER_CAUSTICS] = {"caustics", KIND_CAUSTICS, OPTIONAL, ANY, NULL, "--caustics",
                          "Caustics: number of photons (default 200000) and radius of the disc that each one lights "
                          "(default: from their density)."},
-    [RENDER_CUTOFF] = {"cutoff", KIND_NUMBER, OPTIONAL, BETWEEN(0, 1), NULL, "--cutoff",
+    [RENDER_CUTOFF] = {"cutoff", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 1), NULL, "--cutoff",
                        "gray does not trace rays that can change a pixel by less than this."},
     [RENDER_INTEGRATOR] = {"integrator", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(INTEGRATORS), NULL, "--integrator",
                            "How light becomes a picture: whitted for rays that mirrors and glass send on, path for "
                            "light that goes from wall to wall."},
-    [RENDER_SPP] = {"spp", KIND_WHOLE, OPTIONAL, BETWEEN(1, PATH_SAMPLES_MAX), NULL, "--spp, else 64",
+    [RENDER_SPP] = {"spp", KIND_WHOLE, OPTIONAL, IN_RANGE(1, PATH_SAMPLES_MAX), NULL, "--spp, else 64",
                     "Samples of a pixel, of integrator path; the option wins."},
-    [RENDER_MAX_DEPTH] = {"max_depth", KIND_WHOLE, OPTIONAL, BETWEEN(0, DEPTH_MAX), NULL, "--max-depth",
+    [RENDER_MAX_DEPTH] = {"max_depth", KIND_WHOLE, OPTIONAL, IN_RANGE(0, DEPTH_MAX), NULL, "--max-depth",
                           "Scattering events of a path: 0 shows emission only, 1 direct light."},
-    [RENDER_EXPOSURE] = {"exposure", KIND_NUMBER, OPTIONAL, BETWEEN(-100, 100), "stops", "--exposure",
+    [RENDER_EXPOSURE] = {"exposure", KIND_NUMBER, OPTIONAL, IN_RANGE(-100, 100), "stops", "--exposure",
                          "Light is multiplied by 2^exposure when a PNG file is written."},
     [RENDER_TONE] = {"tone", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(TONE_CURVES), NULL, "--tone",
                      "Tone curve that maps bright light into the range of a PNG file."},
@@ -665,7 +665,7 @@ static const struct script_parameter render_parameters[] = {
                            "Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude."},
     [RENDER_VIEW_HEIGHT] = {"view_height", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "2",
                             "Height of an orthographic picture, in units of the scene."},
-    [RENDER_ANGLE] = {"angle", KIND_NUMBER, OPTIONAL | LOW_OPEN, BETWEEN(0, 360), "degrees", "180",
+    [RENDER_ANGLE] = {"angle", KIND_NUMBER, OPTIONAL | LOW_OPEN, IN_RANGE(0, 360), "degrees", "180",
                       "Full angle of a fisheye across the height."},
     [RENDER_SHIFT_X] = {"shift_x", KIND_NUMBER, OPTIONAL, ANY, "widths", "0", "Shift of the window to the right."},
     [RENDER_SHIFT_Y] = {"shift_y", KIND_NUMBER, OPTIONAL, ANY, "heights", "0", "Shift of the window upwards."},
@@ -676,7 +676,7 @@ static const struct script_parameter render_parameters[] = {
                       "Distance of the plane in focus, along the view."},
     [RENDER_FOCUS_POINT] = {"focus_point", KIND_POINT, OPTIONAL, ANY, NULL, NULL,
                             "A point of the plane in focus, instead of focus."},
-    [RENDER_BLADES] = {"blades", KIND_WHOLE, OPTIONAL, BETWEEN(3, 64), NULL, "round",
+    [RENDER_BLADES] = {"blades", KIND_WHOLE, OPTIONAL, IN_RANGE(3, 64), NULL, "round",
                        "Number of blades: the aperture is a polygon."},
     [RENDER_BLADE_ANGLE] = {"blade_angle", KIND_NUMBER, OPTIONAL, ANY, "degrees", "0", "Rotation of that polygon."},
     [RENDER_STEREO] = {"stereo", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(STEREOS), NULL, "'none'",

@@ -9,7 +9,7 @@
 /* The range of a parameter, and no choices. */
 #define ANY 0, 0, NULL
 #define ABOVE(low) (low), (double)INFINITY, NULL
-#define BETWEEN(low, high) (low), (high), NULL
+#define IN_RANGE(low, high) (low), (high), NULL
 
 #define NAME_HELP "Name of the node, for messages."
 #define MATERIAL_HELP "Material of the surface."

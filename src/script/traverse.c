@@ -9,11 +9,11 @@
 #include <lauxlib.h>
 #include <string.h>
 
-enum rank { RANK_SEQUENCE, RANK_NUMBER, RANK_BOOLEAN, RANK_STRING, RANK_HANDLE, RANK_OTHER };
+enum sort_rank { RANK_SEQUENCE, RANK_NUMBER, RANK_BOOLEAN, RANK_STRING, RANK_HANDLE, RANK_OTHER };
 
 /* A key, with what decides its place. `slot` is its index in the list of keys and settles ties. */
 struct key {
-    enum rank rank;
+    enum sort_rank rank;
     uint32_t slot;
     union {
         lua_Integer integer; /* sequence, boolean, handle */

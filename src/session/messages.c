@@ -70,8 +70,8 @@ bool picture_film_size(const struct picture_request *request, size_t *bytes, str
 }
 
 void picture_film_place(const struct picture_request *request, void *block, struct film *film) {
-    film_place(film, block, request->width, request->height, request->record);
-    film_place_layers(film, block, request->layers & AOV_ALL);
+    film_layout(film, block, request->width, request->height, request->record);
+    film_layout_layers(film, block, request->layers & AOV_ALL);
     film->x0 = request->x0;
     film->y0 = request->y0;
     film->full_width = request->full_width;
@@ -81,7 +81,7 @@ void picture_film_place(const struct picture_request *request, void *block, stru
 void view_overlay_buffers(const struct picture_request *request, void *block, struct view_overlay_buffers *buffers) {
     struct film film = {.width = request->width, .height = request->height, .record = request->record};
     size_t pixels = (size_t)request->width * request->height;
-    film_place_layers(&film, block, AOV_ALL); /* any mask gives the place where layers begin */
+    film_layout_layers(&film, block, AOV_ALL); /* any mask gives the place where layers begin */
     float *behind = film.layers[0] + pixels * aov_layers(request->layers & AOV_ALL) * 3;
     buffers->lines = (float(*)[4])(void *)behind;
     buffers->shows = (uint8_t *)(behind + 4 * pixels);
@@ -96,6 +96,6 @@ struct film pass_film(const struct picture_request *request, void *block, uint32
     uint32_t bottom = film.y0 + (request->height + divide - 1) / divide;
     right = right > film.full_width ? film.full_width : right;
     bottom = bottom > film.full_height ? film.full_height : bottom;
-    film_place(&film, block, right - film.x0, bottom - film.y0, request->record);
+    film_layout(&film, block, right - film.x0, bottom - film.y0, request->record);
     return film;
 }

@@ -29,7 +29,7 @@ static void set_pass(struct render_job *job, const struct render_job *own, const
     job->film = film;
     job->width = film->full_width;
     job->height = film->full_height;
-    job->settings.show_marks = true;
+    job->settings.show_refined = true;
     job->settings.order = ORDER_CENTRE;
     job->settings.tone.exposure = view->exposure;
     if (view->divide > 1) { /* the film says which part it is */

@@ -298,7 +298,7 @@ static bool pose_moving(struct flattening *f, const struct node *node, const str
     if (!flatten_check_transform(f, node, &parent_from_node) || !flatten_check_transform(f, node->moves_to, &end))
         return false;
     out->from_node = transform_identity();
-    if (!motion_between(&parent_from_node, &end, node->velocity, &link->motion))
+    if (!motion_interpolate(&parent_from_node, &end, node->velocity, &link->motion))
         return error_set(f->error, ERROR_SCENE, "node '%.100s' moves to its mirror image, which no rotation reaches",
                          node->name);
     return true;

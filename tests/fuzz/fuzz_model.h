@@ -13,7 +13,7 @@ static inline void fuzz_model(const char *path, const uint8_t *data, size_t size
     struct error error = {0};
     struct model model;
     /* The first byte chooses what is done with the mesh. */
-    struct model_options options = {.alone = true};
+    struct model_options options = {.single_file = true};
     if (size > 0) {
         options.smooth = data[size - 1] & 1;
         options.smooth_angle = 30;

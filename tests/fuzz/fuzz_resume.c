@@ -33,7 +33,7 @@ static void go_on(struct checkpoint *checkpoint, const struct tile_picture *pict
     void *block = mem_alloc_zero(1, bytes);
     if (!block)
         return;
-    film_place(&film, block, picture->width, picture->height, picture->record);
+    film_layout(&film, block, picture->width, picture->height, picture->record);
     if (!checkpoint_has_written(checkpoint, picture->number, &picture->key, picture->name, &written, &error) ||
         !checkpoint_restore(checkpoint, picture, &film, notice, &error)) {
         check_error(&error);

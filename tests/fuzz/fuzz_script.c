@@ -131,8 +131,8 @@ static bool make_film(struct film *film, const struct settings *settings, uint32
     void *block = mem_alloc_zero(1, bytes);
     if (!block)
         return error_no_memory(error, "the film");
-    film_place(film, block, width, height, integrator_record(settings->integrator));
-    film_place_layers(film, block, settings->aov);
+    film_layout(film, block, width, height, integrator_record(settings->integrator));
+    film_layout_layers(film, block, settings->aov);
     return true;
 }
 

@@ -21,7 +21,7 @@ static void restore(const struct tile_file *file) {
         return;
     struct film film = {.x0 = picture->x0, .y0 = picture->y0};
     uint32_t restored, twice;
-    film_place(&film, block, picture->width, picture->height, picture->record);
+    film_layout(&film, block, picture->width, picture->height, picture->record);
     tile_file_restore(file, &film, &restored, &twice);
     if (twice != 0 || restored != file->tiles)
         abort();

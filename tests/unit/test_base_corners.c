@@ -142,13 +142,13 @@ TEST(files_that_cannot_be_written_are_told_with_whose_fault_it_is) {
 TEST(a_device_that_is_full_is_no_fault_of_the_scene) {
     struct file_output file;
     struct error error = {0};
-    const struct file_rules in_place = {.in_place = true};
+    const struct file_rules is_direct = {.is_direct = true};
     CHECK(!file_output_open(&file, FILE_AT("/dev/full"), &error) && strstr(error.text, "is a device"));
-    CHECK(file_output_open(&file, &(struct file_target){.path = "/dev/full", .rules = &in_place}, &error));
+    CHECK(file_output_open(&file, &(struct file_target){.path = "/dev/full", .rules = &is_direct}, &error));
     CHECK(!file_output_write(&file, "x", 1, &error));
     CHECK_EQ_INT(error.kind, ERROR_MACHINE);
     file_output_abandon(&file);
-    CHECK(file_output_open(&file, &(struct file_target){.path = "/dev/null", .rules = &in_place}, &error) &&
+    CHECK(file_output_open(&file, &(struct file_target){.path = "/dev/null", .rules = &is_direct}, &error) &&
           file_output_write(&file, "x", 1, &error));
     CHECK(file_output_commit(&file, &error));
 }

@@ -170,7 +170,7 @@ static bool render(void *context) {
     size_t bytes;
     CHECK(film_size(64, 64, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
     void *block = calloc(1, bytes);
-    film_place(&film, block, 64, 64, integrator_record(INTEGRATOR_WHITTED));
+    film_layout(&film, block, 64, 64, integrator_record(INTEGRATOR_WHITTED));
     film.full_width = film.full_height = 64;
     struct render_job job = {.world = &s->world,
                              .camera = s->camera,

@@ -110,8 +110,8 @@ static bool render_small(void *context, const struct render_request *request, st
         !film_size_layered(SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED), aov_layers(AOV_ALL), &bytes, error))
         return false;
     void *block = mem_alloc_zero(1, bytes);
-    film_place(&film, block, SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED));
-    film_place_layers(&film, block, AOV_ALL);
+    film_layout(&film, block, SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED));
+    film_layout_layers(&film, block, AOV_ALL);
     film.full_width = film.full_height = SIDE;
     const struct world_input input = {.scene = request->scene,
                                       .root = request->root,
@@ -932,7 +932,7 @@ TEST(tiles_with_colours_that_are_not_finite_are_refused) {
             CHECK(film_size(file.picture.width, file.picture.height, file.picture.record, &bytes, &error));
             void *block = mem_alloc_zero(1, bytes);
             struct film film = {0};
-            film_place(&film, block, file.picture.width, file.picture.height, file.picture.record);
+            film_layout(&film, block, file.picture.width, file.picture.height, file.picture.record);
             film.full_width = film.width;
             film.full_height = film.height;
             tile_file_restore(&file, &film, &restored, &twice);

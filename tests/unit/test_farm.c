@@ -91,7 +91,7 @@ static void begin_farm(int count) {
         CHECK(farms[rank] != NULL && farm_is_first(farms[rank]) == (rank == 0));
         films[rank] = (struct film){.full_width = WIDTH, .full_height = HEIGHT};
         CHECK(film_size(WIDTH, HEIGHT, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
-        film_place(&films[rank], calloc(1, bytes), WIDTH, HEIGHT, integrator_record(INTEGRATOR_WHITTED));
+        film_layout(&films[rank], calloc(1, bytes), WIDTH, HEIGHT, integrator_record(INTEGRATOR_WHITTED));
     }
 }
 

@@ -55,7 +55,7 @@ TEST(views_of_a_film_show_what_they_are_called) {
     float linear[6];
     CHECK(film_size(2, 1, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
     void *block = calloc(1, bytes);
-    film_place(&film, block, 2, 1, integrator_record(INTEGRATOR_WHITTED));
+    film_layout(&film, block, 2, 1, integrator_record(INTEGRATOR_WHITTED));
     for (int i = 0; i < 2; i++)
         for (int c = 0; c < 3; c++) {
             film.pixels[i].rgb[c] = 0.25F;

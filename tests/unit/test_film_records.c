@@ -17,7 +17,7 @@ static struct film film_of(struct film_record record) {
     struct error error;
     size_t bytes;
     CHECK(film_size(SIDE, SIDE, record, &bytes, &error));
-    film_place(&film, calloc(1, bytes), SIDE, SIDE, record);
+    film_layout(&film, calloc(1, bytes), SIDE, SIDE, record);
     return film;
 }
 

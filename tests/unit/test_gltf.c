@@ -110,7 +110,7 @@ TEST(gltf_nodes_are_placed_by_matrix_and_by_parts_and_share_their_mesh) {
     struct scene scene;
     struct model_placing placing = {.name = "all"};
     scene_init(&scene, &assets);
-    struct node *root = model_place(&scene, &model, &placing, &error);
+    struct node *root = model_add_nodes(&scene, &model, &placing, &error);
     CHECK_EQ_INT(root->kind, NODE_GROUP);
     bool found = false;
     struct vec3 p = place_of(root, "a", vec3_make(1, 0, 0), &found);
@@ -147,7 +147,7 @@ TEST(gltf_file_with_one_mesh_is_one_geometry_node) {
     scene_init(&scene, &assets);
     struct material red = {.depth = 1};
     struct model_placing placing = {.name = "one", .material = &red};
-    struct node *node = model_place(&scene, &model, &placing, &error);
+    struct node *node = model_add_nodes(&scene, &model, &placing, &error);
     CHECK_EQ_INT(node->kind, NODE_GEOMETRY);
     CHECK_TEXT(node->name, "one");
     CHECK(node->material == &red);
@@ -327,7 +327,7 @@ TEST(gltf_materials_and_embedded_pictures_become_ours) {
     struct scene scene;
     struct model_placing placing = {.name = "m"};
     scene_init(&scene, &assets);
-    struct node *node = model_place(&scene, &model, &placing, &error);
+    struct node *node = model_add_nodes(&scene, &model, &placing, &error);
     /* The texel that a hit at uv sees: (2 u + 0.5, 3 v + 0.25) counted from above, clamped and mirrored. */
     struct hit hit = {.has_uv = true, .u = 0.05, .v = 1 - 0.125};
     struct surface_inputs look;

@@ -87,7 +87,7 @@ static bool make(const struct render_request *request, enum accel_kind accel, st
               film_size(SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED), &bytes, error);
     if (ok) {
         void *block = calloc(1, bytes);
-        film_place(&film, block, SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED));
+        film_layout(&film, block, SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED));
         film.full_width = film.full_height = SIDE;
         const struct world_input input = {.scene = request->scene,
                                           .root = request->root,
@@ -224,8 +224,8 @@ static bool ask(enum question question, const struct render_request *request, co
     CHECK(film_size_layered(SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED), aov_layers(job.settings.aov), &bytes,
                             error));
     void *block = calloc(1, bytes);
-    film_place(&film, block, SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED));
-    film_place_layers(&film, block, job.settings.aov);
+    film_layout(&film, block, SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED));
+    film_layout_layers(&film, block, job.settings.aov);
     film.full_width = film.full_height = SIDE;
     uint64_t before = fault_count(FAULT_OF_ALLOCATION);
     fault_at(FAULT_OF_ALLOCATION, k);

@@ -607,7 +607,7 @@ TEST(merge_takes_no_memory_for_tiles_that_no_part_has) {
                                    .whole = true,
                                    .name = "o.png"};
     struct error error;
-    film_place(&film, zeros, FILM_TILE, FILM_TILE, integrator_record(INTEGRATOR_WHITTED));
+    film_layout(&film, zeros, FILM_TILE, FILM_TILE, integrator_record(INTEGRATOR_WHITTED));
     film.full_width = film.full_height = SIDE;
     atomic_store(&film.tiles[0], FILM_TILE_DONE);
     CHECK(tile_file_write(FILE_AT(test_path("forged.part")), NULL, 0, &picture, &film, &error));

@@ -46,7 +46,7 @@ static bool look_of_file(const char *name, const char *material, struct surface_
     bool fresh, found = false;
     scene_init(&scene, &assets);
     const struct model *model = model_asset(&assets, in_folder(name), name, &options, &fresh, &error);
-    struct node *node = model ? model_place(&scene, model, &placing, &error) : NULL;
+    struct node *node = model ? model_add_nodes(&scene, model, &placing, &error) : NULL;
     CHECK_TEXT(error.text, "");
     for (uint32_t i = 0; node && i < node->slot_count; i++) {
         if (!node->slots[i] || strcmp(node->slot_names[i], material) != 0)
@@ -201,7 +201,7 @@ TEST(opacity_by_alpha_is_cut_where_a_mask_says) {
     struct image *image = image_create("t", 2, 2, 8, texels, &error);
     for (int i = 0; i < 3; i++) {
         struct material base = {.kind = MATERIAL_PHONG}, cut, over;
-        struct texture_image picture = {.image = image, .mapping = MAPPING_UV, .alpha = ALPHA_ALONE};
+        struct texture_image picture = {.image = image, .mapping = MAPPING_UV, .alpha = ALPHA_ONLY};
         struct arena arena = {0};
         struct surface_inputs look;
         struct hit hit = middle();

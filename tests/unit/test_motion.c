@@ -37,7 +37,7 @@ TEST(a_motion_begins_and_ends_at_its_poses_and_its_inverse_is_one) {
     for (int i = 0; i < 300; i++) {
         struct transform from = random_pose(&random), to = random_pose(&random);
         struct motion motion;
-        CHECK(motion_between(&from, &to, vec3_all(0), &motion));
+        CHECK(motion_interpolate(&from, &to, vec3_all(0), &motion));
         struct transform start = motion_at(&motion, 0), end = motion_at(&motion, 1), early = motion_at(&motion, -2);
         CHECK(difference(&start.forward, &from.forward) < 1e-12);
         CHECK(difference(&end.forward, &to.forward) < 1e-12);
@@ -53,7 +53,7 @@ TEST(half_of_a_quarter_turn_is_an_eighth_whatever_the_stretch) {
     struct transform end = transform_compose(&turn, &stretch), eighth = transform_rotate(2, 45);
     struct transform expected = transform_compose(&eighth, &stretch);
     struct motion motion;
-    CHECK(motion_between(&stretch, &end, vec3_make(3, 0, 0), &motion));
+    CHECK(motion_interpolate(&stretch, &end, vec3_make(3, 0, 0), &motion));
     CHECK_NEAR(motion.degrees, 90, 1e-12);
     struct transform half = motion_at(&motion, 0.5);
     CHECK_NEAR(half.forward.m[0][3], 1.5, 1e-15);
@@ -61,7 +61,7 @@ TEST(half_of_a_quarter_turn_is_an_eighth_whatever_the_stretch) {
     CHECK(difference(&half.forward, &expected.forward) < 1e-12);
     /* Half a turn has an axis, too. */
     struct transform identity = transform_identity(), back = transform_rotate(0, 180);
-    CHECK(motion_between(&identity, &back, vec3_all(0), &motion));
+    CHECK(motion_interpolate(&identity, &back, vec3_all(0), &motion));
     CHECK_NEAR(motion.degrees, 180, 1e-9);
     CHECK_NEAR(fabs(motion.axis.x), 1, 1e-12);
 }
@@ -69,8 +69,8 @@ TEST(half_of_a_quarter_turn_is_an_eighth_whatever_the_stretch) {
 TEST(there_is_no_way_to_a_mirror_image) {
     struct transform identity = transform_identity(), mirror = transform_scale(vec3_make(1, -1, 1));
     struct motion motion;
-    CHECK(!motion_between(&identity, &mirror, vec3_all(0), &motion));
-    CHECK(motion_between(&mirror, &mirror, vec3_all(0), &motion));
+    CHECK(!motion_interpolate(&identity, &mirror, vec3_all(0), &motion));
+    CHECK(motion_interpolate(&mirror, &mirror, vec3_all(0), &motion));
 }
 
 TEST(bounds_of_a_motion_hold_every_point_at_every_time) {
@@ -79,7 +79,7 @@ TEST(bounds_of_a_motion_hold_every_point_at_every_time) {
         struct transform from = random_pose(&random), to = random_pose(&random);
         struct motion motion = motion_of_velocity(random_vec(&random, 3));
         if (i % 3)
-            CHECK(motion_between(&from, &to, i % 3 == 1 ? vec3_all(0) : random_vec(&random, 3), &motion));
+            CHECK(motion_interpolate(&from, &to, i % 3 == 1 ? vec3_all(0) : random_vec(&random, 3), &motion));
         struct vec3 a = random_vec(&random, 2), b = random_vec(&random, 2);
         struct box box = {vec3_min(a, b), vec3_max(a, b)};
         struct shutter shutter = {test_uniform(&random, -0.5, 0.8), 0};

@@ -214,7 +214,7 @@ TEST(mtl_materials_are_placed_with_the_mesh) {
     const struct model *model = model_asset(&assets, in_folder("p.obj"), "p", &options, &fresh, &error);
     CHECK(model && fresh);
     CHECK(model_asset(&assets, in_folder("p.obj"), "p", &options, &fresh, &error) == model && !fresh);
-    struct node *node = model ? model_place(&scene, model, &placing, &error) : NULL;
+    struct node *node = model ? model_add_nodes(&scene, model, &placing, &error) : NULL;
     CHECK_TEXT(error.text, "");
     if (node) {
         CHECK_EQ_INT(node->slot_count, 4);

@@ -503,7 +503,7 @@ static struct film some_film(uint32_t x0, uint32_t y0, uint32_t width, uint32_t 
     struct error error;
     size_t bytes;
     CHECK(film_size(width, height, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
-    film_place(&film, calloc(1, bytes), width, height, integrator_record(INTEGRATOR_WHITTED));
+    film_layout(&film, calloc(1, bytes), width, height, integrator_record(INTEGRATOR_WHITTED));
     for (size_t i = 0; i < (size_t)width * height; i++) {
         film.marked[i] = test_uniform(random, 0, 1) < 0.3;
         for (int c = 0; c < 3; c++) {
@@ -558,7 +558,7 @@ TEST(a_file_of_tiles_gives_back_what_was_put_in) {
         CHECK_TEXT(file.picture.name, picture.name);
         size_t bytes;
         CHECK(film_size(width, height, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
-        film_place(&back, calloc(1, bytes), width, height, integrator_record(INTEGRATOR_WHITTED));
+        film_layout(&back, calloc(1, bytes), width, height, integrator_record(INTEGRATOR_WHITTED));
         tile_file_restore(&file, &back, &restored, &twice);
         CHECK_EQ_INT(restored, kept);
         CHECK_EQ_INT(twice, 0);

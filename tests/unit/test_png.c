@@ -412,8 +412,8 @@ TEST(png_bytes_are_the_same_by_any_number_of_threads) {
 TEST(png_write_tells_of_a_full_disk) {
     struct error error = {0};
     uint32_t width = 2000;
-    const struct file_rules in_place = {.in_place = true};
-    CHECK(!png_write(&(struct file_target){.path = "/dev/full", .rules = &in_place}, width, 100, noise_rows, &width, &error));
+    const struct file_rules is_direct = {.is_direct = true};
+    CHECK(!png_write(&(struct file_target){.path = "/dev/full", .rules = &is_direct}, width, 100, noise_rows, &width, &error));
     CHECK_EQ_INT(error.kind, ERROR_MACHINE);
     CHECK(strncmp(error.text, "/dev/full: ", 11) == 0 && !strchr(error.text, '\n'));
 }

@@ -108,7 +108,7 @@ TEST(what_is_foretold_is_done_in_the_end_and_counts_for_nothing) {
     void *blocks[2] = {calloc(1, bytes), calloc(1, bytes)};
     struct film films[2] = {film_of(200, 150), film_of(200, 150)};
     for (int i = 0; i < 2; i++)
-        film_place(&films[i], blocks[i], 200, 150, integrator_record(INTEGRATOR_WHITTED));
+        film_layout(&films[i], blocks[i], 200, 150, integrator_record(INTEGRATOR_WHITTED));
     CHECK(progress_estimate_share(&progress_estimate) < 0 && progress_estimate_left(&progress_estimate, 1) < 0);
     CHECK(run_job(&s, &films[0], NULL, NULL, &plain));
     CHECK(run_job(&s, &films[1], &progress_estimate, NULL, &asked));
@@ -246,7 +246,7 @@ TEST(time_estimate_counts_tiles_under_way_and_those_of_others) {
     struct time_estimate time_estimate;
     CHECK(film_size(128, 32, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
     void *block = calloc(1, bytes);
-    film_place(&film, block, 128, 32, integrator_record(INTEGRATOR_WHITTED));
+    film_layout(&film, block, 128, 32, integrator_record(INTEGRATOR_WHITTED));
     CHECK(time_estimate_create(&time_estimate, 4, 4, 1));
     for (uint32_t tile = 0; tile < 4; tile++)
         time_estimate_probe(&time_estimate, tile, 1024, 10, 0);
@@ -289,7 +289,7 @@ TEST(enough_tiles_end_a_render_with_whole_tiles) {
     CHECK(film_size(200, 150, integrator_record(INTEGRATOR_WHITTED), &bytes, &s.error));
     void *block = calloc(1, bytes);
     struct film film = film_of(200, 150);
-    film_place(&film, block, 200, 150, integrator_record(INTEGRATOR_WHITTED));
+    film_layout(&film, block, 200, 150, integrator_record(INTEGRATOR_WHITTED));
     struct render_job job = {.world = &s.world,
                              .camera = s.camera,
                              .settings = s.settings,

@@ -427,7 +427,7 @@ TEST(gzip_of_any_length_is_read_piece_by_piece) {
 
 TEST(names_in_a_library_that_stands_alone_are_kept_as_they_are) {
     static const char text[] = "newmtl a\nmap_Kd x\\y.png\n";
-    struct model model = {.path = "d/t.obj", .options.alone = true};
+    struct model model = {.path = "d/t.obj", .options.single_file = true};
     struct error error = {0};
     CHECK(mtl_load(&model, "d/t.mtl", text, strlen(text), &error));
     CHECK(model.materials.count == 1 && strstr(model_materials(&model)[0].map_kd.name, "y.png"));
@@ -466,12 +466,12 @@ TEST(a_picture_is_not_looked_for_when_a_file_stands_alone) {
     static const char text[] = HEAD TRIANGLE MESH ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{"
                                                   "\"index\":0}}}],\"textures\":[{\"source\":0}],"
                                                   "\"images\":[{\"uri\":\"gone.png\"}]}";
-    for (int alone = 0; alone < 2; alone++) {
+    for (int single_file = 0; single_file < 2; single_file++) {
         struct model model;
         struct error error;
-        struct model_options options = {.alone = alone};
+        struct model_options options = {.single_file = single_file};
         CHECK(parse_model(&model, "t.gltf", text, strlen(text), &options, &error));
-        CHECK_EQ_INT(model.warning_count, 1 - alone);
+        CHECK_EQ_INT(model.warning_count, 1 - single_file);
         model_destroy(&model);
     }
 }

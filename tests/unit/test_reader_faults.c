@@ -177,7 +177,7 @@ static bool read_and_place(const char *path, const struct model_options *options
         *triangles += (int)mesh_triangle_count(model_meshes(&model)[i].mesh);
     scene_init(&scene, &assets);
     struct model_placing placing = {.name = "all"};
-    bool ok = model_place(&scene, &model, &placing, error) != NULL;
+    bool ok = model_add_nodes(&scene, &model, &placing, error) != NULL;
     scene_destroy(&scene);
     assets_destroy(&assets);
     model_destroy(&model);
@@ -375,7 +375,7 @@ TEST(a_part_that_a_file_does_not_name_changes_nothing) {
     const struct material *const materials[] = {red};
     struct model_placing placing = {.name = "n", .part_names = names, .part_materials = materials, .part_count = 1};
     CHECK(!model_has_part(&model, "hull"));
-    const struct node *node = model_place(&scene, &model, &placing, &error);
+    const struct node *node = model_add_nodes(&scene, &model, &placing, &error);
     CHECK(node && node->material != red);
     model_destroy(&model);
     scene_destroy(&scene);

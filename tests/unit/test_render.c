@@ -581,7 +581,7 @@ TEST(media_stack_removes_the_solid_that_is_left) {
     CHECK_EQ_INT(media.count, 1);
     for (uint32_t i = 0; i < 100; i++)
         medium_stack_enter(&media, &(struct medium){.primitive = i, .ior = 1 + i});
-    CHECK_EQ_INT(media.count, MEDIA_LIMIT);
+    CHECK_EQ_INT(media.count, MEDIUM_STACK_LIMIT);
     CHECK_NEAR(medium_stack_ior(&media), 100, 0);
 }
 

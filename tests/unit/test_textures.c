@@ -217,7 +217,7 @@ TEST(alpha_of_an_image_covers_is_ignored_darkens_is_undone_or_is_read_alone) {
     palette_init(&p);
     const struct texture *white = number(&p, 1);
     const double red = 10 / 255.0, wanted[] = {0.4 * red + 0.6, red, 0.4 * red, red, 0.4};
-    for (int alpha = ALPHA_COVERS; alpha <= ALPHA_ALONE; alpha++) {
+    for (int alpha = ALPHA_COVERS; alpha <= ALPHA_ONLY; alpha++) {
         struct texture_image image = picture(&p, (enum texture_alpha)alpha);
         struct texture over = texture_image(&image, white);
         CHECK_NEAR(texture_colour(&over, &hit).x, wanted[alpha], 1e-15);

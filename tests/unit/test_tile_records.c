@@ -306,7 +306,7 @@ static struct film half_film(void) {
     struct error error;
     size_t bytes;
     CHECK(film_size(SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
-    film_place(&film, calloc(1, bytes), SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED));
+    film_layout(&film, calloc(1, bytes), SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED));
     atomic_store(&film.tiles[1], FILM_TILE_DONE);
     atomic_store(&film.tiles[2], FILM_TILE_DONE);
     return film;

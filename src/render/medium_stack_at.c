@@ -1,10 +1,11 @@
-/* See media.h. */
-#include "render/media.h"
+/* See medium_stack_at.h. */
+#include "render/medium_stack_at.h"
 
-void media_around(const struct world *world, struct vec3 point, double ray_time, const uint32_t *closed,
-                  uint32_t closed_count, struct world_scratch *scratch, struct medium_stack *out) {
-    uint32_t inside[MEDIA_LIMIT];
-    uint32_t count = world_containing(world, point, ray_time, closed, closed_count, scratch, inside, MEDIA_LIMIT);
+void medium_stack_at(const struct world *world, struct vec3 point, double ray_time, const uint32_t *closed,
+                     uint32_t closed_count, struct world_scratch *scratch, struct medium_stack *out) {
+    uint32_t inside[MEDIUM_STACK_LIMIT];
+    uint32_t count =
+        world_containing(world, point, ray_time, closed, closed_count, scratch, inside, MEDIUM_STACK_LIMIT);
     out->count = 0;
     for (uint32_t i = 0; i < count; i++) {
         const struct prototype *prototype = primitive_prototype(world, inside[i]);
